@@ -1,0 +1,67 @@
+// The command line: one file a subcommand, each of which adds itself to the parser and does its work in one function.
+//
+// Exit codes: 0 done and reliable; 1 internal error; 2 wrong usage; 3 unreadable or invalid input; 4 done, but the
+// result is not reliable (it is written, with its reasons). Exceptions end in run_command_line, nowhere else.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+
+namespace arthronaut::command_line {
+
+enum ExitCode : int { kDone = 0, kInternalError = 1, kWrongUsage = 2, kInvalidInput = 3, kUnreliable = 4 };
+
+// Progress on a terminal, silence in a pipe. One line, rewritten; removed at the end.
+class Progress {
+ public:
+  explicit Progress(std::string_view what, long total);  // total <= 0: unknown
+  ~Progress();
+  void advance_to(long done);
+
+ private:
+  std::string what_;
+  long total_;
+  int last_percent_ = -1;
+  bool shown_;
+};
+
+// What every subcommand gets. A subcommand's callback sets exit_code (kDone unless it says otherwise).
+struct Context {
+  int exit_code = kDone;
+  bool quiet = false, verbose = false;
+  // A line for the user on standard output unless --quiet. Results asked for with "-o -" are not sent through here.
+  void say(const std::string& line) const;
+  // The reasons of an unreliable result, on standard error, and exit code 4.
+  void say_unreliable(const std::string& what, const std::vector<std::string>& reasons);
+};
+
+// Adds a subcommand with the options that all have (--verbose, --quiet) and an example under its help.
+CLI::App* add_subcommand(CLI::App& app, Context& context, const std::string& name, const std::string& description,
+                         const std::string& example);
+// Adds an option that takes "x,y,z" (mm or a direction), which may start with a minus sign.
+CLI::Option* add_vector_option(CLI::App& subcommand, const std::string& name, Eigen::Vector3d& value,
+                               const std::string& description);
+
+// One a file: app/command_line/NAME_command.cpp.
+void add_calibrate_command(CLI::App& app, Context& context);
+void add_track_command(CLI::App& app, Context& context);
+void add_pivot_command(CLI::App& app, Context& context);
+void add_digitise_command(CLI::App& app, Context& context);
+void add_register_command(CLI::App& app, Context& context);
+void add_import_command(CLI::App& app, Context& context);
+void add_plan_command(CLI::App& app, Context& context);
+void add_phantom_command(CLI::App& app, Context& context);
+void add_navigate_command(CLI::App& app, Context& context);
+void add_replay_command(CLI::App& app, Context& context);
+void add_report_command(CLI::App& app, Context& context);
+void add_markers_command(CLI::App& app, Context& context);
+void add_demo_command(CLI::App& app, Context& context);
+void add_experiment_command(CLI::App& app, Context& context);
+
+// The whole program but the window: returns the exit code; nullopt-like -1 when no subcommand was given and the
+// workstation should open (case_to_open then holds the case's folder or is empty).
+int run_command_line(int argc, char** argv, std::string& case_to_open);
+
+}  // namespace arthronaut::command_line

@@ -1,0 +1,34 @@
+# Every third-party part, all of it from Debian 12. docs/architecture.md says what each is there for.
+
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(CGAL 5.5 REQUIRED)
+find_package(Ceres 2.1 REQUIRED)
+find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc calib3d videoio imgcodecs aruco)
+# VTK without COMPONENTS asks for Qt: name them.
+find_package(VTK 9.1 REQUIRED COMPONENTS
+  CommonCore CommonDataModel CommonExecutionModel CommonTransforms
+  FiltersCore FiltersGeneral FiltersGeometry FiltersModeling FiltersSources
+  IOGeometry IOImage IOLegacy IOPLY IOXML IOCore
+  ImagingCore ImagingGeneral ImagingStatistics
+  RenderingCore RenderingOpenGL2 RenderingFreeType RenderingAnnotation
+  InteractionStyle)
+find_package(GDCM REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(spdlog 1.10 REQUIRED)
+find_package(CLI11 2.1 REQUIRED)
+find_package(SQLite3 REQUIRED)
+find_package(glfw3 3.3 REQUIRED)
+find_package(GLEW REQUIRED)
+find_package(OpenGL REQUIRED COMPONENTS OpenGL EGL)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
+find_library(ARTHRONAUT_HPDF hpdf REQUIRED)
+
+if(ARTHRONAUT_BUILD_TESTS)
+  find_package(GTest REQUIRED)
+  include(GoogleTest)
+endif()
+if(ARTHRONAUT_BUILD_BENCHMARKS)
+  find_package(benchmark REQUIRED)
+endif()

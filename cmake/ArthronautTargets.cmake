@@ -1,0 +1,92 @@
+# The helpers every CMakeLists.txt of the tree uses, and the rules that they enforce:
+#   app -> navigation -> planning, never back; one library a module; warnings, sanitizers and standard in one place.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set_property(GLOBAL PROPERTY GLOBAL_DEPENDS_NO_CYCLES ON)
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+find_program(ARTHRONAUT_CCACHE ccache)
+if(ARTHRONAUT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${ARTHRONAUT_CCACHE})
+endif()
+
+# lld links the VTK and CGAL objects several times faster than the default linker.
+find_program(ARTHRONAUT_LLD ld.lld)
+if(ARTHRONAUT_LLD)
+  add_link_options(-fuse-ld=lld)
+endif()
+
+add_library(arthronaut_compile_options INTERFACE)
+target_compile_options(arthronaut_compile_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+  $<$<BOOL:${ARTHRONAUT_WARNINGS_AS_ERRORS}>:-Werror>)
+target_include_directories(arthronaut_compile_options INTERFACE ${CMAKE_SOURCE_DIR})
+if(ARTHRONAUT_SANITIZER STREQUAL "address")
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+elseif(ARTHRONAUT_SANITIZER STREQUAL "thread")
+  add_compile_options(-fsanitize=thread)
+  add_link_options(-fsanitize=thread)
+elseif(NOT ARTHRONAUT_SANITIZER STREQUAL "")
+  message(FATAL_ERROR "ARTHRONAUT_SANITIZER must be empty, 'address' or 'thread'")
+endif()
+
+# arthronaut_library(planning_bones SOURCES a.cpp ... PUBLIC libs... PRIVATE libs...)
+# Declares a module. The name's first word is the layer; a link that points up the layers stops the configuration.
+function(arthronaut_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  arthronaut_check_layers(${name} ${ARG_PUBLIC} ${ARG_PRIVATE})
+  if(ARG_SOURCES)
+    add_library(${name} STATIC ${ARG_SOURCES})
+    target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE arthronaut_compile_options ${ARG_PRIVATE})
+    target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR})
+  else()
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE ${ARG_PUBLIC})
+    target_include_directories(${name} INTERFACE ${CMAKE_SOURCE_DIR})
+  endif()
+endfunction()
+
+function(arthronaut_check_layers name)
+  foreach(lib IN LISTS ARGN)
+    if((name MATCHES "^planning_" AND lib MATCHES "^(navigation|app)_") OR
+       (name MATCHES "^navigation_" AND lib MATCHES "^app_"))
+      message(FATAL_ERROR "${name} may not link ${lib}: app -> navigation -> planning, never back")
+    endif()
+    if(NOT name MATCHES "^app_" AND lib MATCHES "(glfw|imgui|GLEW|VTK::Rendering)")
+      message(FATAL_ERROR "${name} may not link ${lib}: windows and rendering live in app alone")
+    endif()
+  endforeach()
+endfunction()
+
+# arthronaut_test(navigation_camera SOURCES x_test.cpp ... LIBS libs...)
+# One test program a module; ctest runs each test case on its own.
+function(arthronaut_test name)
+  if(NOT ARTHRONAUT_BUILD_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_executable(${name}_test ${ARG_SOURCES})
+  target_link_libraries(${name}_test PRIVATE arthronaut_compile_options ${ARG_LIBS} GTest::gtest_main GTest::gmock)
+  gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT} SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]" LABELS "${ARG_LABELS}")
+endfunction()
+
+# arthronaut_benchmark(registration SOURCES x_benchmark.cpp LIBS libs...): built with the tests, run by hand.
+function(arthronaut_benchmark name)
+  if(NOT ARTHRONAUT_BUILD_BENCHMARKS)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
+  add_executable(${name}_benchmark ${ARG_SOURCES})
+  target_link_libraries(${name}_benchmark PRIVATE arthronaut_compile_options ${ARG_LIBS} benchmark::benchmark_main)
+endfunction()

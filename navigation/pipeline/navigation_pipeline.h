@@ -1,0 +1,77 @@
+// One frame in, everything that is known about it out: lens, markers, tip, guidance. Thread-free and deterministic: the
+// window's worker thread, the command line, replay and tests all call the same process().
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "navigation/camera/camera_file.h"
+#include "navigation/camera/frame.h"
+#include "navigation/guidance/guidance.h"
+#include "navigation/lens/lens_tracker.h"
+#include "navigation/markers/marker_tracker.h"
+#include "navigation/registration/registration.h"
+#include "navigation/tools/tool_set.h"
+#include "planning/bones/bone.h"
+#include "planning/geometry/tracked_pose.h"
+#include "planning/tunnels/tunnel.h"
+
+namespace arthronaut::pipeline {
+
+struct PipelineOptions {
+  camera::Calibration calibration;
+  double refractive_index = 1.0;  // of the working medium
+  camera::FluidModel fluid_model = camera::FluidModel::FlatPort;
+  bool follow_lens = true;        // false: intrinsics stay at lens angle 0 (for comparison only)
+  tools::ToolSet tools;
+  bones::BoneKind bone = bones::BoneKind::Femur;  // whose world marker is the world
+  bones::Side side = bones::Side::Right;
+  std::string probe_name = "probe";
+  std::string guide_name = "femoral guide";
+};
+
+struct ToolPose {
+  int marker_id = 0;
+  geometry::TrackedPose world_from_tool;
+};
+
+// What one frame says. Immutable once published.
+struct FrameResult {
+  std::int64_t frame_index = 0;
+  std::int64_t timestamp_ns = 0;
+  lens::LensObservation lens;
+  camera::CameraModel camera;                            // of this frame
+  std::vector<markers::MarkerObservation> markers;       // one for each declared marker, world markers first
+  geometry::TrackedPose camera_from_world;               // the world marker of the bone
+  std::vector<ToolPose> tools;                           // world_from_tool of each tool, in the order of the tool set
+  bool tip_is_valid = false;
+  Eigen::Vector3d tip_in_world_mm = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d tip_covariance_mm2 = Eigen::Matrix3d::Zero();
+  guidance::GuidanceNumbers guidance;
+  bool is_frozen = false;                                // the same picture again and again
+  double processing_ms = 0;
+};
+
+class NavigationPipeline {
+ public:
+  // Throws InvalidInput when options break their contract (no world marker for the bone, unusable calibration).
+  explicit NavigationPipeline(const PipelineOptions& options);
+  ~NavigationPipeline();
+
+  // `result` is reused from call to call so that nothing is allocated after the first frames.
+  void process(const camera::Frame& frame, FrameResult& result);
+
+  // What guidance is computed from. Takes effect with the next frame.
+  void set_plan(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm);
+  void set_registration(const std::optional<registration::RegistrationSummary>& marker_from_bone);
+
+  [[nodiscard]] const PipelineOptions& options() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace arthronaut::pipeline

@@ -1,0 +1,67 @@
+// Global registration of touched curves to the bone's surface, with no initial guess: pairs of curve points with
+// tangents against pairs of surface points with normals, hypothesise and test, robust refinement, final polish on the
+// exact mesh; and a verdict about itself.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "navigation/strokes/curves.h"
+#include "planning/geometry/rigid_transform.h"
+#include "planning/geometry/triangle_mesh.h"
+
+namespace arthronaut::registration {
+
+// The bone made ready: distance field, oriented surface samples, pair table, exact tree. Immutable; shared by threads.
+class PreparedBone {
+ public:
+  // mesh: closed, outward, mm. Throws InvalidInput when it is empty.
+  explicit PreparedBone(const geometry::TriangleMesh& mesh);
+  ~PreparedBone();
+  PreparedBone(PreparedBone&&) noexcept;
+  PreparedBone& operator=(PreparedBone&&) noexcept;
+
+  struct Data;
+  [[nodiscard]] const Data& data() const { return *data_; }
+
+ private:
+  std::unique_ptr<const Data> data_;
+};
+
+struct RegistrationOptions {
+  std::uint64_t seed = 1;
+  bool use_marker_prior = true;                      // the world marker sits on the bone
+  std::optional<Eigen::Vector3d> target_in_bone_mm;  // where predicted_tre_mm holds; else the centroid of the points
+};
+
+struct RegistrationSummary {
+  bool has_pose = false;  // false: nothing was found, the pose below is meaningless
+  bool reliable = false;
+  std::vector<std::string> reasons = {"no registration was run"};  // why it is not reliable; empty when it is
+  geometry::RigidTransform marker_from_bone;
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // of the body twist of marker_from_bone, correlated errors in
+  double rms_mm = 0;            // of the inliers
+  double inlier_fraction = 0;
+  int point_count = 0;
+  double predicted_tre_mm = 0;  // one sigma, at the target
+  std::vector<double> point_residuals_mm;  // signed distance of each curve point to the bone, in the order given
+  // How near the best different solution came: its robust cost over the best one's; large is good.
+  double runner_up_ratio = 0;
+};
+
+// Deterministic for a seed. Never throws on poor data: read the summary.
+[[nodiscard]] RegistrationSummary register_curves(const PreparedBone& bone, const strokes::Curves& curves,
+                                                  const RegistrationOptions& options = {});
+
+// One-sigma error in mm that the covariance predicts at a point of the bone frame.
+[[nodiscard]] double predicted_error_mm(const RegistrationSummary& registration, const Eigen::Vector3d& point_in_bone_mm);
+
+// registration.json
+[[nodiscard]] RegistrationSummary read_registration_file(const std::filesystem::path& file);
+void write_registration_file(const std::filesystem::path& file, const RegistrationSummary& registration);
+
+}  // namespace arthronaut::registration

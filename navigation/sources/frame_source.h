@@ -1,0 +1,39 @@
+// Where pictures come from: a video file, still images, a camera device or the simulator, all alike.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "navigation/camera/frame.h"
+
+namespace arthronaut::sources {
+
+struct SourceInfo {
+  std::string name;                    // for screen and record
+  Eigen::Vector2i image_size_px{0, 0};
+  double frames_per_second = 0;        // 0 when unknown
+  std::int64_t frame_count = -1;       // -1 when unknown or endless
+  bool is_live = false;                // frames come at their own pace and can be missed
+};
+
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+  [[nodiscard]] virtual const SourceInfo& info() const = 0;
+  // The next frame; null at the end. Throws InvalidInput when a file ends half-way through a frame or cannot be
+  // decoded (it names file and frame), DeviceError when a device is gone.
+  [[nodiscard]] virtual camera::FramePtr next() = 0;
+};
+
+// A video file, or a printf pattern of still images ("f_%04d.png", counted from the first that exists). Throws IoError
+// or InvalidInput. Timestamps: the file's, else frame / fps, else frame / 60.
+[[nodiscard]] std::unique_ptr<FrameSource> open_video(const std::filesystem::path& video_or_pattern);
+// Throws DeviceError.
+[[nodiscard]] std::unique_ptr<FrameSource> open_device(int device_index);
+
+// One still picture as a frame. Grey pictures become BGR; 16-bit ones are refused. Throws IoError or InvalidInput.
+[[nodiscard]] camera::Frame read_picture(const std::filesystem::path& file);
+
+}  // namespace arthronaut::sources

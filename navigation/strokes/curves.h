@@ -1,0 +1,37 @@
+// What the probe's tip drew on the bone: points in the world-marker frame, in drawing order.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "navigation/strokes/poses_file.h"
+#include "navigation/tools/tool_set.h"
+
+namespace arthronaut::strokes {
+
+struct CurvePoint {
+  int curve = 0;
+  std::optional<double> time_s;
+  Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();  // world-marker frame
+};
+using Curves = std::vector<CurvePoint>;
+
+// curves.csv. Throws IoError or InvalidInput.
+[[nodiscard]] Curves read_curves_file(const std::filesystem::path& file);
+void write_curves_file(const std::filesystem::path& file, const Curves& curves);
+
+struct StrokeOptions {
+  double max_gap_s = 0.1;        // a stroke ends where tracking was gone for longer
+  double max_hop_mm = 1.5;       // and where the tip jumps further between two frames
+  double min_length_mm = 2.0;    // shorter strokes are left out
+};
+
+// Tip positions wherever world marker and tool are seen in the same frame. An empty result is not an error.
+// Throws InvalidInput when the tools declare no such world marker or tool, or the tool has no tip.
+[[nodiscard]] Curves digitise(const std::vector<PoseRow>& poses, const tools::ToolSet& tools, bones::BoneKind bone,
+                              std::string_view tool_name, const StrokeOptions& options = {});
+
+}  // namespace arthronaut::strokes

@@ -1,0 +1,29 @@
+// poses.csv: one row for each marker seen in each frame.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::strokes {
+
+struct PoseRow {
+  std::int64_t frame = 0;
+  double time_s = 0;
+  int marker_id = 0;
+  geometry::RigidTransform camera_from_marker;
+  double rms_px = 0;
+  std::optional<double> mark_angle_deg;  // empty while the lens mark is not found
+};
+
+// Throws IoError or InvalidInput (file, line, column, reason): missing column, a number that is not finite, a quaternion
+// whose norm is off 1 by more than 1e-3, time that runs backwards.
+[[nodiscard]] std::vector<PoseRow> read_poses_file(const std::filesystem::path& file);
+void write_poses_file(const std::filesystem::path& file, const std::vector<PoseRow>& rows);
+[[nodiscard]] std::string poses_to_text(const std::vector<PoseRow>& rows);
+
+}  // namespace arthronaut::strokes

@@ -1,0 +1,119 @@
+#include "planning/files/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <utility>
+
+#include "planning/geometry/error.h"
+
+namespace arthronaut::files {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file descriptor that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int get() const { return fd_; }
+  // close() can report a write error that write() did not (NFS, quota).
+  [[nodiscard]] int close() { return ::close(std::exchange(fd_, -1)); }
+
+ private:
+  int fd_;
+};
+
+[[noreturn]] void fail(const fs::path& file, const char* what) {
+  throw IoError(file, std::string(what) + ": " + std::strerror(errno));
+}
+
+void sync_folder(const fs::path& folder) {
+  const Descriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  // Some file systems cannot sync a folder; the rename itself is still atomic there.
+  if (descriptor.get() >= 0) ::fsync(descriptor.get());
+}
+
+void sync_file(const fs::path& file) {
+  const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (descriptor.get() < 0) fail(file, "cannot open");
+  if (::fsync(descriptor.get()) != 0) fail(file, "cannot write");
+}
+
+void write_whole(const fs::path& file, std::string_view contents) {
+  Descriptor descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  if (descriptor.get() < 0) fail(file, "cannot create");
+  while (!contents.empty()) {
+    const ssize_t written = ::write(descriptor.get(), contents.data(), contents.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(file, "cannot write");
+    contents.remove_prefix(static_cast<std::size_t>(written));
+  }
+  if (descriptor.close() != 0) fail(file, "cannot write");
+}
+
+fs::path temporary_beside(const fs::path& target) {
+  static std::atomic<unsigned> counter{0};
+  return target.parent_path() / ("." + target.stem().string() + "." + std::to_string(::getpid()) + "-" +
+                                 std::to_string(counter++) + ".partial" + target.extension().string());
+}
+
+}  // namespace
+
+void write_atomically(const fs::path& target, const std::function<void(const fs::path&)>& write) {
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder)) throw IoError(target, "the folder " + folder.string() + " does not exist");
+  // The user knows the target's name, not that of the file beside it: errors speak of the target.
+  const fs::path temporary = temporary_beside(target);
+  try {
+    write(temporary);
+    sync_file(temporary);
+    if (::rename(temporary.c_str(), target.c_str()) != 0) fail(target, "cannot replace");
+  } catch (const IoError& error) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    std::string message = error.what();
+    if (const auto at = message.find(temporary.string()); at != std::string::npos) {
+      message.replace(at, temporary.string().size(), target.string());
+    }
+    throw IoError(message);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw;
+  }
+  sync_folder(folder);
+}
+
+void write_atomically(const fs::path& target, std::string_view contents) {
+  if (target == "-") {
+    std::cout << contents << std::flush;
+    if (!std::cout) throw IoError("standard output: cannot write");
+    return;
+  }
+  write_atomically(target, [contents](const fs::path& temporary) { write_whole(temporary, contents); });
+}
+
+std::string read_text(const fs::path& file) {
+  if (fs::is_directory(file)) throw IoError(file, "is a folder, not a file");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw IoError(file, std::string("cannot open: ") + std::strerror(errno));
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (stream.bad()) throw IoError(file, "cannot read");
+  return std::move(text).str();
+}
+
+}  // namespace arthronaut::files

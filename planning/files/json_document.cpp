@@ -1,0 +1,201 @@
+#include "planning/files/json_document.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "planning/files/atomic_file.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::files {
+
+namespace {
+
+using nlohmann::json;
+
+std::string joined(const std::string& place, std::string_view key) {
+  return place.empty() ? std::string(key) : place + "." + std::string(key);
+}
+
+// Where a byte offset stands, for syntax errors.
+std::string line_and_column(std::string_view text, std::size_t byte) {
+  std::size_t line = 1, column = 1;
+  for (std::size_t i = 0; i + 1 < byte && i < text.size(); ++i) {
+    column = text[i] == '\n' ? 1 : column + 1;
+    line += text[i] == '\n';
+  }
+  return "line " + std::to_string(line) + ", column " + std::to_string(column);
+}
+
+// nlohmann writes a number that is not finite as null: refuse instead, the reader would.
+void refuse_not_finite(const nlohmann::ordered_json& node, const std::filesystem::path& file, const std::string& place) {
+  if (node.is_number_float() && !std::isfinite(node.get<double>())) {
+    throw InvalidInput(file, place, "would be written as a number that is not finite");
+  }
+  if (node.is_object()) {
+    for (const auto& [key, value] : node.items()) refuse_not_finite(value, file, joined(place, key));
+  } else if (node.is_array()) {
+    for (std::size_t i = 0; i < node.size(); ++i) {
+      refuse_not_finite(node[i], file, place + "[" + std::to_string(i) + "]");
+    }
+  }
+}
+
+}  // namespace
+
+void JsonObject::fail(std::string_view key, const std::string& reason) const {
+  throw InvalidInput(file_, joined(place_, key), reason);
+}
+
+bool JsonObject::has(std::string_view key) const {
+  const auto found = node_->find(std::string(key));
+  return found != node_->end() && !found->is_null();
+}
+
+const json& JsonObject::at(std::string_view key) const {
+  const auto found = node_->find(std::string(key));
+  if (found == node_->end()) fail(key, "is missing");
+  return *found;
+}
+
+double JsonObject::number(std::string_view key) const {
+  const json& value = at(key);
+  if (!value.is_number()) fail(key, "must be a number");
+  const double number = value.get<double>();
+  if (!std::isfinite(number)) fail(key, "must be finite");
+  return number;
+}
+
+double JsonObject::positive_number(std::string_view key) const {
+  const double value = number(key);
+  if (value <= 0) fail(key, "must be above 0");
+  return value;
+}
+
+std::int64_t JsonObject::integer(std::string_view key) const {
+  const json& value = at(key);
+  if (!value.is_number_integer()) fail(key, "must be an integer");
+  return value.get<std::int64_t>();
+}
+
+bool JsonObject::boolean(std::string_view key) const {
+  const json& value = at(key);
+  if (!value.is_boolean()) fail(key, "must be true or false");
+  return value.get<bool>();
+}
+
+std::string JsonObject::text(std::string_view key) const {
+  const json& value = at(key);
+  if (!value.is_string()) fail(key, "must be a text");
+  return value.get<std::string>();
+}
+
+std::vector<double> JsonObject::numbers(std::string_view key) const {
+  const json& value = at(key);
+  if (!value.is_array()) fail(key, "must be a list of numbers");
+  std::vector<double> result;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (!value[i].is_number() || !std::isfinite(value[i].get<double>())) {
+      fail(std::string(key) + "[" + std::to_string(i) + "]", "must be a finite number");
+    }
+    result.push_back(value[i].get<double>());
+  }
+  return result;
+}
+
+std::vector<std::string> JsonObject::texts(std::string_view key) const {
+  const json& value = at(key);
+  if (!value.is_array()) fail(key, "must be a list of texts");
+  std::vector<std::string> result;
+  for (const auto& item : value) {
+    if (!item.is_string()) fail(key, "must be a list of texts");
+    result.push_back(item.get<std::string>());
+  }
+  return result;
+}
+
+Eigen::Vector2d JsonObject::vector2(std::string_view key) const {
+  const auto values = numbers(key);
+  if (values.size() != 2) fail(key, "must hold 2 numbers, holds " + std::to_string(values.size()));
+  return {values[0], values[1]};
+}
+
+Eigen::Vector3d JsonObject::vector3(std::string_view key) const {
+  const auto values = numbers(key);
+  if (values.size() != 3) fail(key, "must hold 3 numbers, holds " + std::to_string(values.size()));
+  return {values[0], values[1], values[2]};
+}
+
+JsonObject JsonObject::object(std::string_view key) const {
+  const json& value = at(key);
+  if (!value.is_object()) fail(key, "must be an object");
+  JsonObject child = *this;
+  child.node_ = &value;
+  child.place_ = joined(place_, key);
+  return child;
+}
+
+std::vector<JsonObject> JsonObject::objects(std::string_view key) const {
+  const json& value = at(key);
+  if (!value.is_array()) fail(key, "must be a list of objects");
+  std::vector<JsonObject> result;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    JsonObject child = *this;
+    child.node_ = &value[i];
+    child.place_ = joined(place_, key) + "[" + std::to_string(i) + "]";
+    if (!value[i].is_object()) throw InvalidInput(file_, child.place_, "must be an object");
+    result.push_back(std::move(child));
+  }
+  return result;
+}
+
+geometry::RigidTransform JsonObject::rigid_transform(std::string_view key) const {
+  const JsonObject node = object(key);
+  const auto q = node.numbers("q_wxyz");
+  if (q.size() != 4) node.fail("q_wxyz", "must hold 4 numbers, holds " + std::to_string(q.size()));
+  geometry::RigidTransform transform{Eigen::Quaterniond(q[0], q[1], q[2], q[3]), node.vector3("t_mm")};
+  if (std::abs(transform.rotation.norm() - 1) > 1e-3) node.fail("q_wxyz", "must have unit norm");
+  transform.rotation.normalize();
+  return transform;
+}
+
+JsonObject parse_json(std::string_view text, const std::filesystem::path& name, std::string_view format,
+                      int newest_version) {
+  JsonObject root;
+  root.file_ = name;
+  try {
+    root.document_ = std::make_shared<json>(json::parse(text));
+  } catch (const json::parse_error& error) {
+    throw InvalidInput(name, line_and_column(text, error.byte), "is not valid JSON");
+  } catch (const json::exception&) {  // a number too large for a double, say
+    throw InvalidInput(name, "", "holds a number out of range");
+  }
+  root.node_ = root.document_.get();
+  if (!root.node_->is_object()) throw InvalidInput(name, "", "must hold a JSON object");
+  const std::string found = root.text("format");
+  if (found != format) root.fail("format", "is \"" + found + "\", expected \"" + std::string(format) + "\"");
+  const auto version = root.version();
+  if (version < 1) root.fail("version", "must be 1 or more");
+  if (version > newest_version) {
+    root.fail("version", "is " + std::to_string(version) + ", newer than this program reads (" +
+                             std::to_string(newest_version) + "); nothing was changed");
+  }
+  return root;
+}
+
+JsonObject read_json(const std::filesystem::path& file, std::string_view format, int newest_version) {
+  return parse_json(read_text(file), file, format, newest_version);
+}
+
+void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& document) {
+  refuse_not_finite(document, file, "");
+  write_atomically(file, document.dump(2) + "\n");
+}
+
+nlohmann::ordered_json to_json(const Eigen::Vector2d& v) { return {v.x(), v.y()}; }
+nlohmann::ordered_json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+nlohmann::ordered_json to_json(const geometry::RigidTransform& target_from_source) {
+  const auto& q = target_from_source.rotation;
+  return {{"q_wxyz", {q.w(), q.x(), q.y(), q.z()}}, {"t_mm", to_json(target_from_source.translation_mm)}};
+}
+
+}  // namespace arthronaut::files

@@ -1,0 +1,24 @@
+// Where the real and path-traced recordings lie. They are not part of the repository: without them this suite is skipped
+// and says why.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace arthronaut::real_data {
+
+inline std::filesystem::path folder() {
+  if (const char* named = std::getenv("ARTHRONAUT_TEST_DATA")) return named;
+  return ARTHRONAUT_TEST_DATA_DEFAULT;
+}
+
+}  // namespace arthronaut::real_data
+
+// Declares `path` = folder()/relative, or skips the test with the reason.
+#define ARTHRONAUT_REQUIRE_DATA(path, relative)                                                             \
+  const std::filesystem::path path = arthronaut::real_data::folder() / (relative);                          \
+  if (!std::filesystem::exists(path))                                                                       \
+  GTEST_SKIP() << "needs the recorded data, which is not here: " << path.string()                           \
+               << " (set ARTHRONAUT_TEST_DATA to its folder)"
