@@ -1,0 +1,43 @@
+// The eye of a 3D view as plain data, with the moves that mouse and keys make. Perspective; mm; LPS.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "app/scene/plan_picture.h"
+#include "planning/bones/bone.h"
+#include "planning/geometry/triangle_mesh.h"
+
+namespace arthronaut::scene {
+
+struct SceneCamera {
+  Eigen::Vector3d position_mm{0, -300, 0};
+  Eigen::Vector3d focus_mm{0, 0, 0};
+  Eigen::Vector3d up{0, 0, 1};
+  double view_angle_deg = 26;  // of the height
+  bool operator==(const SceneCamera&) const = default;
+};
+
+struct SceneRay {
+  Eigen::Vector3d origin_mm, direction;  // direction is unit
+};
+
+// Sees all of `bounds` from a named side of a knee.
+[[nodiscard]] SceneCamera look_from(View view, bones::Side side, const geometry::Bounds& bounds, double aspect);
+// Along `direction` (unit) at `focus`, `distance_mm` away; `up_hint` is made perpendicular.
+[[nodiscard]] SceneCamera look_along(const Eigen::Vector3d& direction, const Eigen::Vector3d& focus_mm,
+                                     double distance_mm, const Eigen::Vector3d& up_hint);
+
+// About the focus, as a trackball: pixels of the mouse over the height of the view.
+[[nodiscard]] SceneCamera orbited(const SceneCamera& camera, const Eigen::Vector2d& drag_px, double height_px);
+[[nodiscard]] SceneCamera panned(const SceneCamera& camera, const Eigen::Vector2d& drag_px, double height_px);
+[[nodiscard]] SceneCamera zoomed(const SceneCamera& camera, double steps);  // positive: nearer
+
+// Pixel (0, 0) is the top-left corner of the view.
+[[nodiscard]] SceneRay ray_through(const SceneCamera& camera, const Eigen::Vector2d& pixel,
+                                   const Eigen::Vector2d& size_px);
+// nullopt behind the eye.
+[[nodiscard]] std::optional<Eigen::Vector2d> project(const SceneCamera& camera, const Eigen::Vector3d& point_mm,
+                                                     const Eigen::Vector2d& size_px);
+
+}  // namespace arthronaut::scene

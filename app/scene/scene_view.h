@@ -1,0 +1,41 @@
+// One 3D view of a knee, drawn by VTK into a texture of the caller's OpenGL context. Everything here runs on the thread
+// that owns the context, with the context current, and the view dies before it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "app/scene/image.h"
+#include "app/scene/scene_camera.h"
+#include "app/scene/scene_content.h"
+
+namespace arthronaut::scene {
+
+class SceneView {
+ public:
+  // make_current makes the caller's context current on this thread.
+  explicit SceneView(std::function<void()> make_current);
+  ~SceneView();
+  SceneView(const SceneView&) = delete;
+  SceneView& operator=(const SceneView&) = delete;
+
+  void resize(int width_px, int height_px);  // at least 1 x 1
+  void show(const SceneContent& content);
+  void look(const SceneCamera& camera);
+  void set_background(const Color& bottom, const Color& top);
+
+  // Draws when something changed since the last time; returns whether it did. Leaves the OpenGL state to be reset by
+  // the caller: bind framebuffer 0, set the viewport, disable the scissor test.
+  bool render_if_dirty();
+
+  // The picture: an OpenGL texture, bottom row first; 0 before the first render_if_dirty().
+  [[nodiscard]] std::uint32_t texture() const;
+  [[nodiscard]] Image read_image();  // renders first when dirty
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace arthronaut::scene
