@@ -57,6 +57,8 @@ const json& JsonObject::at(std::string_view key) const {
   return *found;
 }
 
+bool JsonObject::is_number(std::string_view key) const { return at(key).is_number(); }
+
 double JsonObject::number(std::string_view key) const {
   const json& value = at(key);
   if (!value.is_number()) fail(key, "must be a number");

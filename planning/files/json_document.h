@@ -21,6 +21,7 @@ namespace arthronaut::files {
 class JsonObject {
  public:
   [[nodiscard]] bool has(std::string_view key) const;  // present and not null
+  [[nodiscard]] bool is_number(std::string_view key) const;  // throws when the key is missing
   [[nodiscard]] double number(std::string_view key) const;           // finite
   [[nodiscard]] double positive_number(std::string_view key) const;  // finite and > 0
   [[nodiscard]] std::int64_t integer(std::string_view key) const;

@@ -1,0 +1,100 @@
+#include "navigation/camera/camera_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include "navigation/camera/medium.h"
+#include "planning/files/json_document.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::camera {
+
+namespace {
+
+constexpr std::string_view kFormat = "arthronaut.camera";
+constexpr int kVersion = 1;
+
+// "medium" is a word or a number.
+double read_medium(const files::JsonObject& root) {
+  if (root.is_number("medium")) {
+    const double index = root.number("medium");
+    if (!(index >= 0.9 && index <= 2)) root.fail("medium", "a refractive index must lie in [0.9, 2]");
+    return index;
+  }
+  try {
+    return refractive_index_from_text(root.text("medium"));
+  } catch (const InvalidInput&) {
+    root.fail("medium", "must be air, water, saline or a refractive index");
+  }
+}
+
+nlohmann::ordered_json medium_to_json(double index) {
+  const std::string text = medium_to_text(index);
+  if (text == "air" || text == "water" || text == "saline") return text;
+  return index;
+}
+
+Eigen::MatrixXd read_covariance(const files::JsonObject& root) {
+  const auto values = root.numbers("covariance");
+  if (values.size() != 36) root.fail("covariance", "must hold 36 numbers, row by row");
+  return Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(values.data());
+}
+
+}  // namespace
+
+CalibrationRecord read_camera_file(const std::filesystem::path& file) {
+  const auto root = files::read_json(file, kFormat, kVersion);
+  CalibrationRecord record;
+  Calibration& c = record.calibration;
+  const auto size = root.vector2("image_size_px");
+  c.image_size_px = size.cast<int>();
+  if (c.image_size_px.cast<double>() != size || c.image_size_px.minCoeff() <= 0 || c.image_size_px.maxCoeff() > 16384) {
+    root.fail("image_size_px", "must hold two whole numbers from 1 to 16384");
+  }
+  c.focal_px = root.positive_number("focal_px");
+  c.aspect_ratio = root.positive_number("aspect_ratio");
+  c.principal_point_px = root.vector2("principal_point_px");
+  c.distortion_xi = root.number("distortion_xi");
+  if (c.distortion_xi < -2 || c.distortion_xi > 1) root.fail("distortion_xi", "must lie in [-2, 1]");
+  c.rotation_center_px = root.vector2("rotation_center_px");
+  c.reference_mark_angle_deg = root.number("reference_mark_angle_deg");
+  const auto boundary = root.object("boundary");
+  c.boundary.center_px = boundary.vector2("center_px");
+  c.boundary.radius_px = boundary.positive_number("radius_px");
+  c.refractive_index = read_medium(root);
+  if (root.has("covariance")) record.covariance = read_covariance(root);
+  if (root.has("rms_px")) record.rms_px = root.number("rms_px");
+  if (root.has("date_utc")) record.date_utc = root.text("date_utc");
+  if (root.has("scope")) record.scope_name = root.text("scope");
+  if (root.has("head")) record.head_name = root.text("head");
+  return record;
+}
+
+void write_camera_file(const std::filesystem::path& file, const CalibrationRecord& record) {
+  const Calibration& c = record.calibration;
+  nlohmann::ordered_json json = {
+      {"format", kFormat},
+      {"version", kVersion},
+      {"image_size_px", {c.image_size_px.x(), c.image_size_px.y()}},
+      {"focal_px", c.focal_px},
+      {"aspect_ratio", c.aspect_ratio},
+      {"principal_point_px", files::to_json(c.principal_point_px)},
+      {"distortion_xi", c.distortion_xi},
+      {"rotation_center_px", files::to_json(c.rotation_center_px)},
+      {"reference_mark_angle_deg", c.reference_mark_angle_deg},
+      {"boundary",
+       {{"center_px", files::to_json(c.boundary.center_px)}, {"radius_px", c.boundary.radius_px}}},
+      {"medium", medium_to_json(c.refractive_index)},
+  };
+  if (record.covariance.size() == 36) {
+    auto values = nlohmann::ordered_json::array();
+    for (int i = 0; i < 36; ++i) values.push_back(record.covariance(i / 6, i % 6));
+    json["covariance"] = std::move(values);
+  }
+  if (record.rms_px >= 0) json["rms_px"] = record.rms_px;
+  if (!record.date_utc.empty()) json["date_utc"] = record.date_utc;
+  if (!record.scope_name.empty()) json["scope"] = record.scope_name;
+  if (!record.head_name.empty()) json["head"] = record.head_name;
+  files::write_json(file, json);
+}
+
+}  // namespace arthronaut::camera

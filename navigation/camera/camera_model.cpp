@@ -1,0 +1,117 @@
+#include "navigation/camera/camera_model.h"
+
+#include <cmath>
+#include <string>
+
+#include "planning/geometry/error.h"
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::camera {
+
+double Calibration::lens_angle_rad(double mark_angle_deg) const {
+  return geometry::rad_from_deg(std::remainder(mark_angle_deg - reference_mark_angle_deg, 360.0));
+}
+
+Eigen::Vector2d Calibration::turned(const Eigen::Vector2d& point_at_angle_0_px, double lens_angle_rad) const {
+  const double c = std::cos(lens_angle_rad), s = std::sin(lens_angle_rad);
+  const Eigen::Vector2d arm = point_at_angle_0_px - rotation_center_px;
+  return rotation_center_px + Eigen::Vector2d(c * arm.x() - s * arm.y(), s * arm.x() + c * arm.y());
+}
+
+CameraModel::CameraModel(const Calibration& calibration, double lens_angle_rad, double refractive_index,
+                         FluidModel fluid_model)
+    : image_size_(calibration.image_size_px),
+      center_(calibration.turned(calibration.principal_point_px, lens_angle_rad)),
+      boundary_{calibration.turned(calibration.boundary.center_px, lens_angle_rad), calibration.boundary.radius_px},
+      focal_(calibration.focal_px),
+      aspect_(calibration.aspect_ratio),
+      xi_(calibration.distortion_xi),
+      index_ratio_(refractive_index / calibration.refractive_index),
+      fluid_model_(fluid_model) {
+  // Written so that NaN fails too.
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) throw InvalidInput(std::string("camera: ") + what);
+  };
+  require(focal_ > 0 && std::isfinite(focal_), "focal_px must be above 0");
+  require(aspect_ > 0 && std::isfinite(aspect_), "aspect_ratio must be above 0");
+  require(xi_ >= -2 && xi_ <= 1, "distortion_xi must lie in [-2, 1]");
+  require(image_size_.x() > 0 && image_size_.y() > 0, "image_size_px must be above 0");
+  require(refractive_index >= 0.9 && refractive_index <= 2, "the medium's refractive index must lie in [0.9, 2]");
+  require(calibration.refractive_index >= 0.9 && calibration.refractive_index <= 2,
+          "the calibration's refractive index must lie in [0.9, 2]");
+  require(center_.allFinite() && std::isfinite(lens_angle_rad), "principal point and lens angle must be finite");
+}
+
+std::optional<Eigen::Vector2d> CameraModel::project(const Eigen::Vector3d& point_in_camera_mm) const {
+  Eigen::Matrix<double, 2, 3> ignored;
+  return project(point_in_camera_mm, ignored);
+}
+
+// The closed form of the header, and its derivative: with S = W + D, a = n^2 - 1, b = a + 4 n^2 xi, v = (X, Y)
+//   du/dv = 2nf (I / S + (a / W + b / D) v v^T / S^2),   du/dZ = -2nf Z (1 / W + 1 / D) v / S^2.
+// The focal rule is the same with no refraction and n f in place of f.
+std::optional<Eigen::Vector2d> CameraModel::project(const Eigen::Vector3d& point_in_camera_mm,
+                                                    Eigen::Matrix<double, 2, 3>& d_pixel_d_point) const {
+  const Eigen::Vector2d v = point_in_camera_mm.head<2>();
+  const double z = point_in_camera_mm.z();
+  if (!(z > 0)) return std::nullopt;
+  const bool refracts = fluid_model_ == FluidModel::FlatPort;
+  const double n2 = refracts ? index_ratio_ * index_ratio_ : 1.0;
+  const double a = n2 - 1, b = a + 4 * n2 * xi_, r2 = v.squaredNorm();
+  const double w2 = z * z - a * r2, d2 = z * z - b * r2;
+  if (!(w2 > 0) || !(d2 > 0)) return std::nullopt;
+  const double w = std::sqrt(w2), d = std::sqrt(d2), s = w + d;
+  const double k = 2 * index_ratio_ * focal_ / s;
+  const Eigen::Vector2d axis_scale(1, aspect_);
+  d_pixel_d_point.leftCols<2>() =
+      k * (Eigen::Matrix2d::Identity() + ((a / w + b / d) / s) * v * v.transpose());
+  d_pixel_d_point.col(2) = -k * (z / s) * (1 / w + 1 / d) * v;
+  d_pixel_d_point.row(1) *= aspect_;
+  return center_ + k * v.cwiseProduct(axis_scale);
+}
+
+std::optional<Eigen::Vector2d> CameraModel::undistort(const Eigen::Vector2d& pixel) const {
+  Eigen::Matrix2d ignored;
+  return undistort(pixel, ignored);
+}
+
+// With m the tangent coordinates in the calibration's medium, Snell's law gives t = m / sqrt(n^2 + (n^2 - 1) |m|^2).
+std::optional<Eigen::Vector2d> CameraModel::undistort(const Eigen::Vector2d& pixel,
+                                                      Eigen::Matrix2d& d_tangent_d_pixel) const {
+  const bool refracts = fluid_model_ == FluidModel::FlatPort;
+  const double f = refracts ? focal_ : focal_ * index_ratio_;
+  const Eigen::Vector2d scale(1 / f, 1 / (f * aspect_));
+  const Eigen::Vector2d distorted = (pixel - center_).cwiseProduct(scale);
+  const double denominator = 1 + xi_ * distorted.squaredNorm();
+  if (!(denominator > 0)) return std::nullopt;  // a ray at 90 degrees or beyond
+  const double g = 1 / denominator;
+  const Eigen::Vector2d m = g * distorted;
+  Eigen::Matrix2d jacobian = g * Eigen::Matrix2d::Identity() - (2 * xi_ * g * g) * distorted * distorted.transpose();
+  Eigen::Vector2d tangent = m;
+  if (refracts) {
+    const double n2 = index_ratio_ * index_ratio_;
+    const double e = n2 + (n2 - 1) * m.squaredNorm();
+    if (!(e > 0)) return std::nullopt;  // total reflection
+    const double root = std::sqrt(e);
+    tangent = m / root;
+    jacobian = (Eigen::Matrix2d::Identity() / root - ((n2 - 1) / (e * root)) * m * m.transpose()) * jacobian;
+  }
+  d_tangent_d_pixel = jacobian * scale.asDiagonal();
+  return tangent;
+}
+
+std::optional<Eigen::Vector3d> CameraModel::ray(const Eigen::Vector2d& pixel) const {
+  const auto tangent = undistort(pixel);
+  if (!tangent) return std::nullopt;
+  return tangent->homogeneous().normalized();
+}
+
+double CameraModel::central_focal_px() const { return focal_ * index_ratio_; }
+
+bool CameraModel::is_inside_view(const Eigen::Vector2d& pixel) const {
+  return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= image_size_.x() - 1 && pixel.y() <= image_size_.y() - 1 &&
+         (boundary_.radius_px <= 0 ||
+          (pixel - boundary_.center_px).squaredNorm() <= boundary_.radius_px * boundary_.radius_px);
+}
+
+}  // namespace arthronaut::camera
