@@ -6,8 +6,10 @@
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace arthronaut::command_line {
 
@@ -60,8 +62,15 @@ void add_markers_command(CLI::App& app, Context& context);
 void add_demo_command(CLI::App& app, Context& context);
 void add_experiment_command(CLI::App& app, Context& context);
 
-// The whole program but the window: returns the exit code; nullopt-like -1 when no subcommand was given and the
-// workstation should open (case_to_open then holds the case's folder or is empty).
-int run_command_line(int argc, char** argv, std::string& case_to_open);
+// What the user asked of the window.
+struct WorkstationRequest {
+  std::string case_folder;  // empty: the built-in case
+  long frames = 0;          // close after so many frames; 0: when the user quits
+  bool list_widgets = false;
+};
+
+// The whole program: parses, dispatches, turns every exception into its exit code and one line on standard error.
+// open_workstation is called when no subcommand was given, and returns the exit code.
+int run_command_line(int argc, char** argv, const std::function<int(const WorkstationRequest&)>& open_workstation);
 
 }  // namespace arthronaut::command_line

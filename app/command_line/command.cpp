@@ -1,0 +1,66 @@
+#include "app/command_line/command.h"
+
+#include <unistd.h>
+
+#include <charconv>
+#include <cmath>
+#include <iostream>
+
+namespace arthronaut::command_line {
+
+Progress::Progress(std::string_view what, long total)
+    : what_(what), total_(total), shown_(::isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  if (shown_ && last_percent_ >= 0) std::cerr << "\r\033[K" << std::flush;
+}
+
+void Progress::advance_to(long done) {
+  if (!shown_) return;
+  // Without a total the count itself is shown, every ten steps.
+  const int percent = static_cast<int>(total_ > 0 ? 100 * done / total_ : done / 10);
+  if (percent == last_percent_) return;
+  last_percent_ = percent;
+  std::cerr << "\r\033[K" << what_ << ' ' << (total_ > 0 ? percent : done) << (total_ > 0 ? " %" : "") << std::flush;
+}
+
+void Context::say(const std::string& line) const {
+  if (!quiet) std::cout << line << '\n' << std::flush;
+}
+
+void Context::say_unreliable(const std::string& what, const std::vector<std::string>& reasons) {
+  std::cerr << "arthronaut: " << what << " is not reliable\n";
+  for (const auto& reason : reasons) std::cerr << "  - " << reason << '\n';
+  exit_code = kUnreliable;
+}
+
+CLI::App* add_subcommand(CLI::App& app, Context& context, const std::string& name, const std::string& description,
+                         const std::string& example) {
+  CLI::App* subcommand = app.add_subcommand(name, description);
+  subcommand->footer("Example:\n  " + example);
+  subcommand->add_flag("--verbose", context.verbose, "Say more");
+  subcommand->add_flag("--quiet", context.quiet, "Say nothing but errors");
+  return subcommand;
+}
+
+CLI::Option* add_vector_option(CLI::App& subcommand, const std::string& name, Eigen::Vector3d& value,
+                               const std::string& description) {
+  const auto parse = [&value](const CLI::results_t& results) {
+    const std::string& text = results.front();
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    Eigen::Vector3d parsed;
+    for (int i = 0; i < 3; ++i) {
+      const auto [next, error] = std::from_chars(at, end, parsed[i]);
+      if (error != std::errc() || !std::isfinite(parsed[i])) return false;
+      if (i < 2 && (next == end || *next != ',')) return false;
+      at = next + (i < 2 ? 1 : 0);
+    }
+    if (at != end) return false;
+    value = parsed;
+    return true;
+  };
+  return subcommand.add_option(name, parse, description)->type_name("X,Y,Z")->expected(1);
+}
+
+}  // namespace arthronaut::command_line

@@ -1,0 +1,10 @@
+#include "app/command_line/command.h"
+#include "app/window/workstation.h"
+
+int main(int argc, char** argv) {
+  using namespace arthronaut;
+  return command_line::run_command_line(argc, argv, [](const command_line::WorkstationRequest& request) {
+    return window::run_workstation(
+        {.case_folder = request.case_folder, .frames = request.frames, .list_widgets = request.list_widgets});
+  });
+}
