@@ -16,9 +16,9 @@ inline std::filesystem::path folder() {
 
 }  // namespace arthronaut::real_data
 
-// Declares `path` = folder()/relative, or skips the test with the reason.
-#define ARTHRONAUT_REQUIRE_DATA(path, relative)                                                             \
-  const std::filesystem::path path = arthronaut::real_data::folder() / (relative);                          \
-  if (!std::filesystem::exists(path))                                                                       \
-  GTEST_SKIP() << "needs the recorded data, which is not here: " << path.string()                           \
+// Declares `variable` = folder()/relative, or skips the test with the reason.
+#define ARTHRONAUT_REQUIRE_DATA(variable, relative)                                                         \
+  const std::filesystem::path variable = arthronaut::real_data::folder() / (relative);                      \
+  if (!std::filesystem::exists(variable))                                                                   \
+  GTEST_SKIP() << "needs the recorded data, which is not here: " << variable.string()                       \
                << " (set ARTHRONAUT_TEST_DATA to its folder)"

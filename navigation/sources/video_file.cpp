@@ -1,0 +1,201 @@
+#include "navigation/sources/video_file.h"
+
+#include <cmath>
+
+#include "navigation/sources/matroska_end.h"
+#include "planning/geometry/error.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/log.h>
+#include <libswscale/swscale.h>
+}
+
+namespace arthronaut::sources {
+namespace {
+
+constexpr double kFallbackFramesPerSecond = 60;
+
+struct FreeLibav {
+  void operator()(AVFormatContext* p) const { avformat_close_input(&p); }
+  void operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
+  void operator()(AVPacket* p) const { av_packet_free(&p); }
+  void operator()(AVFrame* p) const { av_frame_free(&p); }
+  void operator()(SwsContext* p) const { sws_freeContext(p); }
+};
+template <class T>
+using LibavPtr = std::unique_ptr<T, FreeLibav>;
+
+std::string libav_message(int error) {
+  char text[AV_ERROR_MAX_STRING_SIZE] = {};
+  av_strerror(error, text, sizeof text);
+  return text;
+}
+
+class VideoFile : public FrameSource {
+ public:
+  explicit VideoFile(const std::filesystem::path& file) : file_(file), packet_(av_packet_alloc()),
+                                                          picture_(av_frame_alloc()) {
+    // What goes wrong is told once, by exception, with file and frame.
+    av_log_set_level(AV_LOG_QUIET);
+    open_container();
+    open_decoder();
+    const AVRational rate = stream().avg_frame_rate.num > 0 ? stream().avg_frame_rate : stream().r_frame_rate;
+    info_.name = file.filename().string();
+    info_.image_size_px = {decoder_->width, decoder_->height};
+    info_.frames_per_second = rate.num > 0 && rate.den > 0 ? av_q2d(rate) : 0;
+    info_.frame_count = stream().nb_frames > 0 ? stream().nb_frames : -1;
+    info_.encoded_file = file;
+  }
+
+  const SourceInfo& info() const override { return info_; }
+
+  camera::FramePtr next() override {
+    if (!decode()) return nullptr;
+    auto frame = std::make_shared<camera::Frame>();
+    frame->index = next_index_;
+    frame->timestamp_ns = timestamp_ns();
+    frame->width = picture_->width;
+    frame->height = picture_->height;
+    convert(*frame);
+    ++next_index_;
+    return frame;
+  }
+
+ private:
+  AVStream& stream() const { return *container_->streams[stream_index_]; }
+
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw InvalidInput(file_, "frame " + std::to_string(next_index_), reason);
+  }
+
+  void open_container() {
+    AVFormatContext* opened = nullptr;
+    const int error = avformat_open_input(&opened, file_.c_str(), nullptr, nullptr);
+    container_.reset(opened);
+    if (error == AVERROR(EACCES)) throw IoError(file_, "can't be opened: permission denied");
+    if (error < 0) throw InvalidInput(file_, "", "is not a video that can be read: " + libav_message(error));
+    if (const int e = avformat_find_stream_info(opened, nullptr); e < 0) {
+      throw InvalidInput(file_, "", "holds no readable stream: " + libav_message(e));
+    }
+    stream_index_ = av_find_best_stream(opened, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+    if (stream_index_ < 0) throw InvalidInput(file_, "", "holds no video");
+    for (unsigned i = 0; i < opened->nb_streams; ++i) {
+      if (static_cast<int>(i) != stream_index_) opened->streams[i]->discard = AVDISCARD_ALL;
+    }
+  }
+
+  void open_decoder() {
+    const AVCodec* codec = avcodec_find_decoder(stream().codecpar->codec_id);
+    if (!codec) throw InvalidInput(file_, "", "no decoder for its video");
+    decoder_.reset(avcodec_alloc_context3(codec));
+    avcodec_parameters_to_context(decoder_.get(), stream().codecpar);
+    decoder_->thread_count = 2;
+    decoder_->pkt_timebase = stream().time_base;
+    if (const int error = avcodec_open2(decoder_.get(), codec, nullptr); error < 0) {
+      throw InvalidInput(file_, "", "its video can't be decoded: " + libav_message(error));
+    }
+    if (decoder_->width <= 0 || decoder_->height <= 0) {
+      throw InvalidInput(file_, "frame 0", "is missing: the file breaks off before it");
+    }
+  }
+
+  // Puts the next decoded picture into picture_. False at the file's proper end.
+  bool decode() {
+    while (true) {
+      const int received = avcodec_receive_frame(decoder_.get(), picture_.get());
+      if (received == 0) {
+        if (picture_->decode_error_flags || (picture_->flags & AV_FRAME_FLAG_CORRUPT)) fail("is damaged");
+        return true;
+      }
+      if (received == AVERROR_EOF) {
+        check_end();
+        return false;
+      }
+      if (received != AVERROR(EAGAIN)) fail("can't be decoded: " + libav_message(received));
+      feed_decoder();
+    }
+  }
+
+  // A packet that is cut off is not decoded: the pictures before it still come out, then check_end() tells.
+  void feed_decoder() {
+    const int read = breaks_off_ ? AVERROR_EOF : av_read_frame(container_.get(), packet_.get());
+    if (read < 0) {
+      if (read != AVERROR_EOF) breaks_off_ = true;
+      avcodec_send_packet(decoder_.get(), nullptr);
+      return;
+    }
+    int sent = 0;
+    if (packet_->stream_index == stream_index_) {
+      if (packet_->flags & AV_PKT_FLAG_CORRUPT) {
+        breaks_off_ = true;
+      } else {
+        sent = avcodec_send_packet(decoder_.get(), packet_.get());
+      }
+    }
+    av_packet_unref(packet_.get());
+    if (sent < 0) fail("can't be decoded: " + libav_message(sent));
+  }
+
+  void check_end() const {
+    const bool frames_are_missing = info_.frame_count > 0 && next_index_ < info_.frame_count;
+    if (breaks_off_ || matroska_breaks_off(file_)) fail("is cut off: the file ends half-way through it");
+    // Counts in AVI headers may be a few off; a file that lost its second half is told from that.
+    if (frames_are_missing && next_index_ < info_.frame_count - 2) {
+      fail("is missing: the file ends here and should hold " + std::to_string(info_.frame_count) + " frames");
+    }
+    if (next_index_ == 0) fail("is missing: the video is empty");
+  }
+
+  std::int64_t timestamp_ns() {
+    const double fps = info_.frames_per_second > 0 ? info_.frames_per_second : kFallbackFramesPerSecond;
+    const double by_rate_s = static_cast<double>(next_index_) / fps;
+    double time_s = by_rate_s;
+    if (picture_->best_effort_timestamp != AV_NOPTS_VALUE) {
+      const double tick_s = av_q2d(stream().time_base);
+      const double file_s = static_cast<double>(picture_->best_effort_timestamp) * tick_s;
+      if (next_index_ == 0) first_time_s_ = file_s;
+      time_s = file_s - first_time_s_;
+      if (std::abs(time_s - by_rate_s) <= tick_s) time_s = by_rate_s;
+    }
+    const auto ns = static_cast<std::int64_t>(std::llround(time_s * 1e9));
+    last_timestamp_ns_ = std::max(ns, last_timestamp_ns_ + 1);  // some recorders repeat a time
+    return last_timestamp_ns_;
+  }
+
+  void convert(camera::Frame& frame) {
+    if (frame.width != info_.image_size_px.x() || frame.height != info_.image_size_px.y()) {
+      fail("has another size than the frames before it");
+    }
+    converter_.reset(sws_getCachedContext(converter_.release(), frame.width, frame.height,
+                                          static_cast<AVPixelFormat>(picture_->format), frame.width, frame.height,
+                                          AV_PIX_FMT_BGR24, SWS_BICUBIC, nullptr, nullptr, nullptr));
+    if (!converter_) fail("has a pixel format that can't be converted");
+    frame.bgr.resize(static_cast<std::size_t>(3) * frame.width * frame.height);
+    std::uint8_t* const planes[] = {frame.bgr.data()};
+    const int strides[] = {3 * frame.width};
+    sws_scale(converter_.get(), picture_->data, picture_->linesize, 0, frame.height, planes, strides);
+  }
+
+  std::filesystem::path file_;
+  LibavPtr<AVFormatContext> container_;
+  LibavPtr<AVCodecContext> decoder_;
+  LibavPtr<AVPacket> packet_;
+  LibavPtr<AVFrame> picture_;
+  LibavPtr<SwsContext> converter_;
+  SourceInfo info_;
+  int stream_index_ = -1;
+  std::int64_t next_index_ = 0;
+  std::int64_t last_timestamp_ns_ = -1;
+  double first_time_s_ = 0;
+  bool breaks_off_ = false;  // the demuxer met a cut-off packet or a read error
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_video_file(const std::filesystem::path& file) {
+  return std::make_unique<VideoFile>(file);
+}
+
+}  // namespace arthronaut::sources
