@@ -1,0 +1,80 @@
+#include "app/scene/plan_picture.h"
+
+#include <algorithm>
+
+#include "app/scene/offscreen_context.h"
+#include "app/scene/scene_camera.h"
+#include "app/scene/scene_content.h"
+#include "app/scene/scene_view.h"
+#include "planning/geometry/error.h"
+#include "planning/geometry/surface.h"
+
+namespace arthronaut::scene {
+
+namespace {
+
+std::optional<bones::BoneKind> bone_of(const PictureRequest& request) {
+  if (request.view == View::Distal || request.view == View::Notch) return bones::BoneKind::Femur;
+  if (request.view == View::Plateau) return bones::BoneKind::Tibia;
+  return request.only_bone;
+}
+
+double drawn_length_mm(const tunnels::Tunnel& tunnel, const geometry::TriangleMesh& mesh) {
+  constexpr double kLengthOfOneThatMisses_mm = 30;
+  const tunnels::TunnelGeometry measured = tunnels::measure(tunnel, geometry::Surface(mesh));
+  return measured.enters_bone ? measured.length_mm : kLengthOfOneThatMisses_mm;
+}
+
+// Twice the size, each pixel the mean of four: smooth edges on any OpenGL.
+Image halved(const Image& large) {
+  Image small{large.width / 2, large.height / 2, {}};
+  small.rgb.resize(3 * static_cast<std::size_t>(small.width) * static_cast<std::size_t>(small.height));
+  const std::size_t stride = 3 * static_cast<std::size_t>(large.width);
+  std::size_t out = 0;
+  for (int y = 0; y < small.height; ++y) {
+    for (int x = 0; x < small.width; ++x) {
+      const std::size_t at = 2 * static_cast<std::size_t>(y) * stride + 6 * static_cast<std::size_t>(x);
+      for (std::size_t c = 0; c < 3; ++c, ++out) {
+        const int sum = large.rgb[at + c] + large.rgb[at + 3 + c] + large.rgb[at + stride + c] +
+                        large.rgb[at + stride + 3 + c];
+        small.rgb[out] = static_cast<std::uint8_t>((sum + 2) / 4);
+      }
+    }
+  }
+  return small;
+}
+
+}  // namespace
+
+Image render_plan_picture(const PictureRequest& request) {
+  if (request.knee == nullptr) throw InvalidInput("a picture needs a case");
+  if (std::min(request.width, request.height) < 16 || std::max(request.width, request.height) > 8192)
+    throw InvalidInput("a picture's size must be 16 to 8192 pixels");
+  const std::optional<bones::BoneKind> only = bone_of(request);
+  SceneContent content;
+  geometry::TriangleMesh all;
+  for (const auto& [kind, bone] : request.knee->bones) {
+    if ((only && kind != *only) || bone.mesh.empty()) continue;
+    constexpr std::size_t kPictureTriangles = 60'000;
+    content.bones.push_back({simplified(bone.mesh, kPictureTriangles), kBoneColor, 1.0});
+    all.vertices_mm.insert(all.vertices_mm.end(), bone.mesh.vertices_mm.begin(), bone.mesh.vertices_mm.end());
+    const auto planned = request.knee->plan.tunnels.find(kind);
+    if (planned != request.knee->plan.tunnels.end())
+      add_planned_tunnel(content, planned->second, drawn_length_mm(planned->second, bone.mesh));
+    if (request.achieved && request.achieved->bone == kind)
+      add_achieved_tunnel(content, *request.achieved, drawn_length_mm(*request.achieved, bone.mesh));
+  }
+  if (content.bones.empty()) throw InvalidInput("the case has none of the bones that the picture is to show");
+  add_curve_points(content, request.curve_points_in_bone);
+
+  const OffscreenContext context;
+  SceneView view([&] { context.make_current(); });
+  if (request.light_background) view.set_background({0.96F, 0.97F, 0.98F}, {1.0F, 1.0F, 1.0F});
+  view.resize(2 * request.width, 2 * request.height);
+  view.show(content);
+  view.look(look_from(request.view, request.knee->side, geometry::bounds_of(all),
+                      static_cast<double>(request.width) / request.height));
+  return halved(view.read_image());
+}
+
+}  // namespace arthronaut::scene

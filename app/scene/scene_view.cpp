@@ -1,0 +1,230 @@
+#include "app/scene/scene_view.h"
+
+#include <vtkActor.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkLight.h>
+#include <vtkNew.h>
+#include <vtkOpenGLFramebufferObject.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkRenderer.h>
+#include <vtkRendererCollection.h>
+#include <vtkTextureObject.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "app/scene/vtk_from_mesh.h"
+
+namespace arthronaut::scene {
+
+namespace {
+
+struct BoneActor {
+  BoneItem item;
+  vtkSmartPointer<vtkActor> actor;
+};
+
+vtkSmartPointer<vtkActor> actor_of(vtkPolyData* polydata) {
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(polydata);
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  return actor;
+}
+
+void dress(vtkActor& actor, const BoneItem& item) {
+  vtkProperty* property = actor.GetProperty();
+  property->SetColor(item.color.red, item.color.green, item.color.blue);
+  property->SetAmbient(0.10);
+  property->SetDiffuse(0.85);
+  property->SetSpecular(0.12);
+  property->SetSpecularPower(18);
+  property->SetOpacity(item.opacity);
+  // A seen-through bone shows its near surface alone: one blended layer, in any order of drawing.
+  if (item.opacity < 1) {
+    actor.ForceOpaqueOn();
+    property->BackfaceCullingOn();
+  } else {
+    actor.ForceOpaqueOff();
+    property->BackfaceCullingOff();
+  }
+}
+
+void add_lights(vtkRenderer& renderer) {
+  const auto add = [&](double x, double y, double z, double intensity) {
+    vtkNew<vtkLight> light;
+    light->SetLightTypeToCameraLight();
+    light->SetPosition(x, y, z);
+    light->SetFocalPoint(0, 0, 0);
+    light->SetIntensity(intensity);
+    renderer.AddLight(light);
+  };
+  renderer.AutomaticLightCreationOff();
+  add(-0.45, 0.75, 1.0, 0.85);
+  add(0.8, -0.4, 0.6, 0.28);
+}
+
+}  // namespace
+
+struct SceneView::State {
+  std::function<void()> make_current;
+  vtkNew<vtkGenericOpenGLRenderWindow> window;
+  // What is there; and, in a layer of its own above it, a faint copy of what shines through the bone.
+  vtkNew<vtkRenderer> scene, ghost;
+  vtkNew<vtkCamera> camera;
+  std::vector<BoneActor> bones;
+  vtkSmartPointer<vtkActor> solids, ghost_solids;
+  SceneCamera looked_from;
+  int width = 0, height = 0;
+  bool dirty = true, rendered = false;
+
+  static void on_event(vtkObject*, unsigned long event, void* client, void* call) {
+    if (event == vtkCommand::WindowMakeCurrentEvent) static_cast<State*>(client)->make_current();
+    if (event == vtkCommand::WindowIsCurrentEvent) *static_cast<bool*>(call) = true;
+  }
+};
+
+SceneView::SceneView(std::function<void()> make_current) : state_(std::make_unique<State>()) {
+  State& s = *state_;
+  s.make_current = std::move(make_current);
+  s.window->SetOwnContext(0);
+  s.window->SetFrameBlitModeToNoBlit();
+  s.window->SetMultiSamples(0);
+  s.window->SetSupportsOpenGL(1);
+  s.window->SetIsDirect(1);
+  s.window->SetMapped(1);
+  vtkNew<vtkCallbackCommand> observer;
+  observer->SetClientData(&s);
+  observer->SetCallback(&State::on_event);
+  s.window->AddObserver(vtkCommand::WindowMakeCurrentEvent, observer);
+  s.window->AddObserver(vtkCommand::WindowIsCurrentEvent, observer);
+  s.window->InitializeFromCurrentContext();
+  s.window->SetNumberOfLayers(2);
+  s.scene->SetLayer(0);
+  s.ghost->SetLayer(1);
+  s.ghost->InteractiveOff();
+  for (vtkRenderer* renderer : {s.scene.Get(), s.ghost.Get()}) {
+    renderer->SetActiveCamera(s.camera);
+    add_lights(*renderer);
+    s.window->AddRenderer(renderer);
+  }
+  s.scene->GradientBackgroundOn();
+  set_background({0.045F, 0.055F, 0.070F}, {0.085F, 0.105F, 0.130F});
+}
+
+SceneView::~SceneView() {
+  state_->make_current();
+  state_->window->Finalize();
+}
+
+void SceneView::resize(int width_px, int height_px) {
+  State& s = *state_;
+  width_px = std::max(width_px, 1);
+  height_px = std::max(height_px, 1);
+  if (width_px == s.width && height_px == s.height) return;
+  s.width = width_px;
+  s.height = height_px;
+  s.window->SetSize(width_px, height_px);
+  s.dirty = true;
+}
+
+void SceneView::show(const SceneContent& content) {
+  State& s = *state_;
+  // Bones are kept as long as their mesh is: uploading them again is what would cost.
+  std::vector<BoneActor> kept;
+  for (const BoneItem& item : content.bones) {
+    const auto known = std::find_if(s.bones.begin(), s.bones.end(),
+                                    [&](const BoneActor& b) { return b.actor != nullptr && b.item.mesh == item.mesh; });
+    BoneActor bone{item, nullptr};
+    if (known != s.bones.end()) {
+      std::swap(bone.actor, known->actor);
+    } else {
+      bone.actor = actor_of(vtk_from_mesh(*item.mesh));
+      s.scene->AddActor(bone.actor);
+    }
+    dress(*bone.actor, item);
+    kept.push_back(std::move(bone));
+  }
+  for (const BoneActor& old : s.bones)
+    if (old.actor != nullptr) s.scene->RemoveActor(old.actor);
+  s.bones = std::move(kept);
+
+  SolidMesh solid, ghost;
+  const auto add = [&](const auto& items) {
+    for (const auto& item : items) {
+      solid.add(item);
+      if (item.seen_through_bone) ghost.add(item);
+    }
+  };
+  add(content.rods);
+  add(content.lines);
+  add(content.balls);
+  if (s.solids != nullptr) s.scene->RemoveActor(s.solids);
+  if (s.ghost_solids != nullptr) s.ghost->RemoveActor(s.ghost_solids);
+  s.solids = actor_of(vtk_from_solid(solid));
+  s.solids->GetProperty()->SetAmbient(0.30);
+  s.solids->GetProperty()->SetDiffuse(0.75);
+  s.solids->GetProperty()->SetSpecular(0.15);
+  s.scene->AddActor(s.solids);
+  s.ghost_solids = actor_of(vtk_from_solid(ghost));
+  s.ghost_solids->GetProperty()->SetAmbient(0.45);
+  s.ghost_solids->GetProperty()->SetOpacity(0.38);
+  s.ghost_solids->GetProperty()->BackfaceCullingOn();
+  s.ghost_solids->ForceOpaqueOn();
+  s.ghost->AddActor(s.ghost_solids);
+  s.dirty = true;
+}
+
+void SceneView::look(const SceneCamera& camera) {
+  State& s = *state_;
+  if (s.rendered && camera == s.looked_from) return;
+  s.looked_from = camera;
+  s.dirty = true;
+}
+
+void SceneView::set_background(const Color& bottom, const Color& top) {
+  state_->scene->SetBackground(bottom.red, bottom.green, bottom.blue);
+  state_->scene->SetBackground2(top.red, top.green, top.blue);
+  state_->dirty = true;
+}
+
+bool SceneView::render_if_dirty() {
+  State& s = *state_;
+  if (!s.dirty) return false;
+  const SceneCamera& c = s.looked_from;
+  s.camera->SetPosition(c.position_mm.data());
+  s.camera->SetFocalPoint(c.focus_mm.data());
+  s.camera->SetViewUp(c.up.data());
+  s.camera->SetViewAngle(c.view_angle_deg);
+  s.scene->ResetCameraClippingRange();
+  s.window->Render();
+  s.dirty = false;
+  s.rendered = true;
+  return true;
+}
+
+std::uint32_t SceneView::texture() const {
+  if (!state_->rendered) return 0;
+  return state_->window->GetDisplayFramebuffer()->GetColorAttachmentAsTextureObject(0)->GetHandle();
+}
+
+Image SceneView::read_image() {
+  State& s = *state_;
+  s.dirty = true;
+  render_if_dirty();
+  vtkNew<vtkUnsignedCharArray> pixels;
+  s.window->GetPixelData(0, 0, s.width - 1, s.height - 1, 0, pixels.Get(), 0);
+  Image image{s.width, s.height, {}};
+  const std::size_t stride = 3 * static_cast<std::size_t>(s.width);
+  image.rgb.resize(stride * static_cast<std::size_t>(s.height));
+  for (int y = 0; y < s.height; ++y)
+    std::copy_n(pixels->GetPointer(static_cast<vtkIdType>(stride) * (s.height - 1 - y)), stride,
+                image.rgb.begin() + static_cast<std::ptrdiff_t>(stride * static_cast<std::size_t>(y)));
+  return image;
+}
+
+}  // namespace arthronaut::scene
