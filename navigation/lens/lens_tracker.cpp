@@ -1,0 +1,257 @@
+#include "navigation/lens/lens_tracker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "navigation/lens/angle_filter.h"
+#include "navigation/lens/mark.h"
+#include "navigation/lens/rim.h"
+
+namespace arthronaut::lens {
+namespace {
+
+// Rays reach this far about the rim, as shares of the radius: a tooth either way is at most 6 %.
+constexpr double kInner = 0.92, kOuter = 1.075;
+constexpr double kAcceptFree = 0.86;    // score of a mark whose shape is not known yet
+constexpr double kAcceptKnown = 0.80;   // of one whose shape is
+constexpr double kClearLead = 0.06;     // by which the best candidate must lead
+constexpr int kFramesToLearn = 5;
+constexpr int kFramesToJump = 8;        // a mark far from where it was expected, before it is believed
+constexpr int kFramesToSlip = 6;
+
+// The shape of this scope's mark: the mean over the first clear sightings.
+struct LearntShape {
+  MarkPolarity polarity = MarkPolarity::Unknown;
+  MarkShape mean;
+  int sightings = 0;
+  [[nodiscard]] bool is_known() const { return sightings >= kFramesToLearn; }
+  void add(const MarkCandidate& seen) {
+    if (seen.polarity != polarity) *this = {seen.polarity, {}, 0};
+    ++sightings;
+    mean.half_width_deg += (seen.shape.half_width_deg - mean.half_width_deg) / sightings;
+    mean.height += (seen.shape.height - mean.height) / sightings;
+  }
+};
+
+// Where the circle stood, and for how many frames it has been off that.
+struct CircleTrack {
+  camera::Boundary reference;
+  int frames = 0, off_track = 0;
+};
+
+}  // namespace
+
+struct LensTracker::State {
+  LensTrackerOptions options;
+  LensObservation observation;
+  RimProfile profile;
+  DentProfile dents;
+  SearchScratch scratch;
+  AngleFilter filter;
+  LearntShape shape;
+  CircleTrack track;
+  Eigen::Vector2i size_px{0, 0};
+  bool has_circle = false;
+  std::int64_t last_found_ns = 0;
+  int jump_frames = 0;
+  double jump_angle_deg = 0;
+
+  void forget();
+  bool find_circle(const camera::GrayView& frame);
+  bool measure_and_fit(const camera::GrayView& frame, const camera::Boundary& expected, double gate_share);
+  void watch_circle();
+  void find_mark();
+  MarkState choose_mark(MarkCandidate& chosen);
+  bool believe_jump(const MarkCandidate& candidate);
+  [[nodiscard]] MarkPolarity wanted_polarity() const;
+};
+
+void LensTracker::State::forget() {
+  observation = {};
+  filter = {};
+  shape = {};
+  track = {};
+  has_circle = false;
+  jump_frames = 0;
+}
+
+MarkPolarity LensTracker::State::wanted_polarity() const {
+  if (options.polarity != MarkPolarity::Unknown) return options.polarity;
+  return shape.is_known() ? shape.polarity : MarkPolarity::Unknown;
+}
+
+bool LensTracker::State::measure_and_fit(const camera::GrayView& frame, const camera::Boundary& expected,
+                                         double gate_share) {
+  measure_rim(frame, expected, kInner, kOuter, profile);
+  const CircleFit fit = fit_circle(profile, gate_share * expected.radius_px);
+  observation.circle_coverage_deg = fit.coverage_deg;
+  if (!fit.ok) return false;
+  observation.circle = fit.circle;
+  return true;
+}
+
+bool LensTracker::State::find_circle(const camera::GrayView& frame) {
+  if (has_circle && measure_and_fit(frame, observation.circle, 0.015)) return true;
+  if (!has_circle && options.calibration &&
+      options.calibration->image_size_px == Eigen::Vector2i(frame.width, frame.height)) {
+    const camera::Boundary at_rest = options.calibration->boundary;
+    // The rim moves by less than 2 % over a turn of the lens, unless it slipped: then the search below finds it.
+    if (measure_and_fit(frame, at_rest, 0.03)) return measure_and_fit(frame, observation.circle, 0.015);
+  }
+  const std::optional<camera::Boundary> from_nothing = search_circle(frame, scratch);
+  if (from_nothing && measure_and_fit(frame, *from_nothing, 0.03))
+    return measure_and_fit(frame, observation.circle, 0.015);
+  // Too little rim: go on with the circle as it was, for the sake of the mark.
+  if (has_circle) measure_rim(frame, observation.circle, kInner, kOuter, profile);
+  return false;
+}
+
+// Zoom changes the radius; a slipped coupler moves the centre off the track that the lens's turning gives it.
+void LensTracker::State::watch_circle() {
+  if (!observation.circle_found || observation.circle_coverage_deg < 180) return;
+  const camera::Boundary& seen = observation.circle;
+  double allowed_px = 4;
+  if (options.calibration && options.calibration->image_size_px == size_px) {
+    const camera::Calibration& c = *options.calibration;
+    track.reference = c.boundary;
+    if (observation.mark == MarkState::Found)
+      track.reference.center_px =
+          c.turned(c.boundary.center_px, c.lens_angle_rad(observation.mark_angle_deg));
+    else
+      allowed_px += 2 * (c.boundary.center_px - c.rotation_center_px).norm();
+  } else if (track.frames == 0) {
+    track.reference = seen;
+  }
+  ++track.frames;
+  const double off_px = (seen.center_px - track.reference.center_px).norm();
+  const bool is_off = off_px > allowed_px ||
+                      std::abs(seen.radius_px / track.reference.radius_px - 1) > 0.005;
+  track.off_track = is_off ? std::min(track.off_track + 1, 2 * kFramesToSlip) : std::max(track.off_track - 2, 0);
+  observation.zoom_or_slip = track.off_track >= kFramesToSlip;
+  if (!options.calibration && !is_off) {
+    track.reference.center_px += 0.2 * (seen.center_px - track.reference.center_px);
+    track.reference.radius_px += (seen.radius_px - track.reference.radius_px) / std::min(track.frames, 300);
+  }
+}
+
+bool LensTracker::State::believe_jump(const MarkCandidate& candidate) {
+  const bool same_place = jump_frames > 0 && std::abs(difference_deg(candidate.angle_deg, jump_angle_deg)) < 5;
+  jump_frames = same_place ? jump_frames + 1 : 1;
+  jump_angle_deg = candidate.angle_deg;
+  return jump_frames >= kFramesToJump;
+}
+
+MarkState LensTracker::State::choose_mark(MarkCandidate& chosen) {
+  const MarkPolarity polarity = wanted_polarity();
+  const double reach_deg = std::min(3 * filter.sigma_deg() + 2.5, 25.0);
+  if (filter.is_running() && shape.is_known()) {
+    chosen = follow_mark(dents, shape.polarity, shape.mean, filter.angle_deg(), reach_deg);
+    if (chosen.score >= kAcceptKnown) {
+      jump_frames = 0;
+      return MarkState::Found;
+    }
+  }
+  const MarkShape* known = shape.is_known() ? &shape.mean : nullptr;
+  const MarkCandidates all = find_marks(dents, polarity, known);
+  const double accept = known ? kAcceptKnown + 0.05 : kAcceptFree;
+  MarkState at_place = MarkState::NotSeen;
+  if (filter.is_running())
+    at_place = judge_place(dents, filter.angle_deg(), known ? known->half_width_deg : 2.0);
+  else if (profile.dark_share > 0.4)
+    at_place = MarkState::Dark;
+  if (all.count == 0 || all.items[0].score < accept) return at_place;
+
+  chosen = all.items[0];
+  if (filter.is_running()) {
+    for (int k = 0; k < all.count; ++k) {
+      const MarkCandidate& near = all.items[static_cast<std::size_t>(k)];
+      if (near.score >= accept && std::abs(difference_deg(near.angle_deg, filter.angle_deg())) < reach_deg) {
+        chosen = near;
+        jump_frames = 0;
+        return MarkState::Found;
+      }
+    }
+    // Elsewhere than expected. Where it was expected the rim is clean: then it has moved. Else wait.
+    if (all.count > 1 && all.items[1].score > chosen.score - kClearLead) return MarkState::Ambiguous;
+    if (!believe_jump(chosen) && at_place != MarkState::NotSeen) return at_place;
+    filter = {};
+    return MarkState::Found;
+  }
+  // A lit tooth outside the rim can't be made by a scene; a dark dent can.
+  if (all.count > 1 && all.items[1].score > chosen.score - kClearLead) {
+    if (all.items[0].polarity == all.items[1].polarity) return MarkState::Ambiguous;
+    if (chosen.polarity != MarkPolarity::BrightOutward) chosen = all.items[1];
+  }
+  return MarkState::Found;
+}
+
+void LensTracker::State::find_mark() {
+  dents_of(profile, observation.circle, dents);
+  MarkCandidate chosen;
+  observation.mark = choose_mark(chosen);
+  if (observation.mark != MarkState::Found) return;
+  if (!shape.is_known()) shape.add(chosen);
+  filter.update(chosen.angle_deg, std::max(0.1, chosen.sigma_deg));
+  observation.polarity = chosen.polarity;
+  last_found_ns = observation.timestamp_ns;
+}
+
+std::string_view to_text(MarkState state) {
+  switch (state) {
+    case MarkState::Found: return "found";
+    case MarkState::NoCircle: return "no round image border";
+    case MarkState::Dark: return "too dark beside the rim";
+    case MarkState::Covered: return "the mark is covered";
+    case MarkState::Ambiguous: return "two marks look alike";
+    case MarkState::NotSeen: return "no mark on the rim";
+  }
+  return "unknown";
+}
+
+LensTracker::LensTracker(const LensTrackerOptions& options) : state_(std::make_unique<State>()) {
+  state_->options = options;
+}
+LensTracker::~LensTracker() = default;
+LensTracker::LensTracker(LensTracker&&) noexcept = default;
+LensTracker& LensTracker::operator=(LensTracker&&) noexcept = default;
+
+void LensTracker::reset() { state_->forget(); }
+
+const LensObservation& LensTracker::observe(const camera::GrayView& frame, std::int64_t timestamp_ns) {
+  State& state = *state_;
+  LensObservation& seen = state.observation;
+  if (state.size_px != Eigen::Vector2i(frame.width, frame.height)) {
+    state.forget();
+    state.size_px = {frame.width, frame.height};
+  }
+  const double elapsed_s = std::max(0.0, static_cast<double>(timestamp_ns - seen.timestamp_ns) * 1e-9);
+  seen.timestamp_ns = timestamp_ns;
+  state.filter.predict(elapsed_s);
+
+  const camera::Boundary before = seen.circle;
+  seen.circle_found = state.find_circle(frame);
+  if (!seen.circle_found) seen.circle = before;
+  state.has_circle = state.has_circle || seen.circle_found;
+  if (state.has_circle)
+    state.find_mark();
+  else
+    seen.mark = MarkState::NoCircle;
+  if (!seen.circle_found && seen.mark != MarkState::Found)
+    seen.mark = state.has_circle && state.profile.dark_share > 0.4 ? MarkState::Dark : MarkState::NoCircle;
+  state.watch_circle();
+
+  seen.mark_angle_deg = state.filter.angle_deg();
+  seen.mark_sigma_deg = state.filter.sigma_deg();
+  const double lost_s = static_cast<double>(timestamp_ns - state.last_found_ns) * 1e-9;
+  seen.is_stale = !state.filter.is_running() || lost_s > state.options.stale_after_s;
+  // Whatever was learnt may have been wrong: after so long without it, begin again.
+  if (seen.is_stale && state.shape.is_known()) state.shape = {};
+  return seen;
+}
+
+LensObservation observe_still(const camera::GrayView& picture) {
+  LensTracker tracker;
+  return tracker.observe(picture, 0);
+}
+
+}  // namespace arthronaut::lens

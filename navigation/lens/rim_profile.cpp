@@ -1,0 +1,203 @@
+#include <algorithm>
+#include <cmath>
+
+#include "navigation/lens/rim.h"
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::lens {
+namespace {
+
+struct Directions {
+  std::array<float, kRayCount> cosine{}, sine{};
+  Directions() {
+    for (int i = 0; i < kRayCount; ++i) {
+      const double angle = geometry::rad_from_deg(i * kRayStepDeg);
+      cosine[i] = static_cast<float>(std::cos(angle));
+      sine[i] = static_cast<float>(std::sin(angle));
+    }
+  }
+};
+const Directions& directions() {
+  static const Directions table;
+  return table;
+}
+
+struct LinearLight {
+  std::array<float, 256> value{};
+  LinearLight() {
+    for (int i = 0; i < 256; ++i) value[i] = static_cast<float>(std::pow(i / 255.0, 2.2));
+  }
+};
+const LinearLight& linear_light() {
+  static const LinearLight table;
+  return table;
+}
+
+float sample_light(const camera::GrayView& picture, float x, float y) {
+  const int ix = static_cast<int>(x), iy = static_cast<int>(y);
+  const float fx = x - static_cast<float>(ix), fy = y - static_cast<float>(iy);
+  const std::uint8_t* top = picture.row(iy) + ix;
+  const std::uint8_t* bottom = top + picture.stride;
+  const auto& light = linear_light().value;
+  return (1 - fy) * ((1 - fx) * light[top[0]] + fx * light[top[1]]) +
+         fy * ((1 - fx) * light[bottom[0]] + fx * light[bottom[1]]);
+}
+
+// The last radius at which the ray, with a pixel to spare for interpolation, is still in the picture.
+float reach_in_picture(const camera::GrayView& picture, const Eigen::Vector2f& center, float dx, float dy) {
+  float reach = 1e9F;
+  if (dx > 1e-6F) reach = std::min(reach, (static_cast<float>(picture.width - 2) - center.x()) / dx);
+  if (dx < -1e-6F) reach = std::min(reach, (1.0F - center.x()) / dx);
+  if (dy > 1e-6F) reach = std::min(reach, (static_cast<float>(picture.height - 2) - center.y()) / dy);
+  if (dy < -1e-6F) reach = std::min(reach, (1.0F - center.y()) / dy);
+  return reach;
+}
+
+// Median grey value at the outer end of the rays, and how far it scatters.
+void measure_mask(const camera::GrayView& picture, const Eigen::Vector2f& center, float outer_px, double& level,
+                  double& scatter) {
+  std::array<int, 256> histogram{};
+  int count = 0;
+  for (int i = 0; i < kRayCount; i += 2) {
+    const float dx = directions().cosine[i], dy = directions().sine[i];
+    if (reach_in_picture(picture, center, dx, dy) < outer_px) continue;
+    const int x = static_cast<int>(center.x() + outer_px * dx + 0.5F);
+    const int y = static_cast<int>(center.y() + outer_px * dy + 0.5F);
+    ++histogram[picture.row(y)[x]];
+    ++count;
+  }
+  const auto quantile = [&](double share) {
+    int sum = 0, value = 0;
+    while (value < 255 && (sum += histogram[value]) < share * count) ++value;
+    return value;
+  };
+  level = count > 0 ? quantile(0.5) : 0;
+  scatter = count > 0 ? std::max(0.0, quantile(0.84) - level) : 0;
+}
+
+// Radius at which the light has risen half way, near a first lit sample at `first_px`.
+float locate_edge(const camera::GrayView& picture, const Eigen::Vector2f& center, float dx, float dy, float first_px,
+                  float reach_px, float dark_light) {
+  constexpr int kOutside = 4, kInside = 6;
+  std::array<float, kOutside + kInside + 1> light;
+  const float start = std::min(first_px + kOutside, reach_px);
+  for (std::size_t k = 0; k < light.size(); ++k) {
+    const float r = start - static_cast<float>(k);
+    light[k] = sample_light(picture, center.x() + r * dx, center.y() + r * dy);
+  }
+  const std::size_t n = light.size();
+  const float inside = (light[n - 1] + light[n - 2] + light[n - 3]) / 3;
+  const float half = 0.5F * (dark_light + inside);
+  for (std::size_t k = 1; k < n; ++k)
+    if (light[k] >= half && light[k - 1] < half) {
+      const float share = (half - light[k - 1]) / (light[k] - light[k - 1]);
+      return start - (static_cast<float>(k - 1) + share);
+    }
+  return first_px;
+}
+
+}  // namespace
+
+void measure_rim(const camera::GrayView& picture, const camera::Boundary& expected, double inner, double outer,
+                 RimProfile& profile) {
+  profile.about = expected;
+  const Eigen::Vector2f center = expected.center_px.cast<float>();
+  const float outer_px = static_cast<float>(expected.radius_px * outer);
+  const float inner_px = static_cast<float>(expected.radius_px * inner);
+  double scatter = 0;
+  measure_mask(picture, center, outer_px, profile.dark_level, scatter);
+  // A lit scene stands clear of the mask's own noise and of compression's ringing.
+  const int lit = static_cast<int>(profile.dark_level + std::clamp(4.0 * scatter, 7.0, 30.0));
+  const float dark_light = linear_light().value[static_cast<std::size_t>(profile.dark_level)];
+
+  int dark = 0, clipped = 0;
+  for (int i = 0; i < kRayCount; ++i) {
+    const float dx = directions().cosine[i], dy = directions().sine[i];
+    const float reach = reach_in_picture(picture, center, dx, dy);
+    const float start = std::min(outer_px, reach);
+    int run = 0;
+    float first = -1;
+    for (float r = start; r >= inner_px; r -= 1) {
+      const int x = static_cast<int>(center.x() + r * dx + 0.5F), y = static_cast<int>(center.y() + r * dy + 0.5F);
+      if (picture.row(y)[x] <= lit) {
+        run = 0;
+      } else if (++run == 3) {
+        first = r + 2;
+        break;
+      }
+    }
+    if (start < inner_px + 8 || first > start - 1.5F) {
+      profile.state[i] = RayState::Clipped;
+      ++clipped;
+    } else if (first < inner_px + 7) {
+      profile.state[i] = RayState::Dark;
+      ++dark;
+    } else {
+      profile.state[i] = RayState::Edge;
+      profile.radius_px[i] = locate_edge(picture, center, dx, dy, first, reach, dark_light);
+    }
+  }
+  profile.dark_share = static_cast<double>(dark) / kRayCount;
+  profile.clipped_share = static_cast<double>(clipped) / kRayCount;
+}
+
+CircleFit fit_circle(const RimProfile& profile, double gate_px) {
+  // Offsets of centre and radius from the expected circle, by reweighted least squares of the radial distance.
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+  const auto residual = [&](int i) {
+    const double c = directions().cosine[i], s = directions().sine[i], r = profile.radius_px[i];
+    const double x = r * c - offset.x(), y = r * s - offset.y();
+    return std::sqrt(x * x + y * y) - (profile.about.radius_px + offset.z());
+  };
+  std::array<float, kRayCount> magnitude;
+  double scale = gate_px / 4.685;
+  for (int pass = 0; pass < 8; ++pass) {
+    int count = 0;
+    for (int i = 0; i < kRayCount; ++i) {
+      if (profile.state[i] != RayState::Edge) continue;
+      const double e = std::abs(residual(i));
+      if (e < gate_px) magnitude[static_cast<std::size_t>(count++)] = static_cast<float>(e);
+    }
+    if (count < 60) return {};
+    std::nth_element(magnitude.begin(), magnitude.begin() + count / 2, magnitude.begin() + count);
+    scale = std::clamp(1.4826 * magnitude[static_cast<std::size_t>(count / 2)], 0.2, scale);
+
+    const double limit = 4.685 * scale;
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (int i = 0; i < kRayCount; ++i) {
+      if (profile.state[i] != RayState::Edge) continue;
+      const double e = residual(i);
+      if (std::abs(e) >= limit) continue;
+      const double u = e / limit, weight = (1 - u * u) * (1 - u * u);
+      const Eigen::Vector3d row(directions().cosine[i], directions().sine[i], 1);
+      normal += weight * row * row.transpose();
+      right += weight * e * row;
+    }
+    // The smallest pivot tells whether the rim was seen on enough sides to fix the centre.
+    const Eigen::Matrix3d inverse = normal.inverse();
+    if (!inverse.allFinite() || inverse.diagonal().maxCoeff() > 1.0) return {};
+    const Eigen::Vector3d step = inverse * right;
+    offset += step;
+    if (pass > 2 && step.norm() < 1e-3) break;
+  }
+
+  CircleFit fit;
+  fit.circle.center_px = profile.about.center_px + offset.head<2>();
+  fit.circle.radius_px = profile.about.radius_px + offset.z();
+  double sum = 0;
+  int close = 0;
+  for (int i = 0; i < kRayCount; ++i) {
+    if (profile.state[i] != RayState::Edge) continue;
+    const double e = residual(i);
+    if (std::abs(e) > 1.5) continue;
+    sum += e * e;
+    ++close;
+  }
+  fit.coverage_deg = close * kRayStepDeg;
+  fit.rms_px = close > 0 ? std::sqrt(sum / close) : -1;
+  fit.ok = fit.coverage_deg >= 90;
+  return fit;
+}
+
+}  // namespace arthronaut::lens
