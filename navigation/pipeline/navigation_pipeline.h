@@ -12,6 +12,7 @@
 #include "navigation/guidance/guidance.h"
 #include "navigation/lens/lens_tracker.h"
 #include "navigation/markers/marker_tracker.h"
+#include "navigation/pipeline/view_tracker.h"
 #include "navigation/registration/registration.h"
 #include "navigation/tools/tool_set.h"
 #include "planning/bones/bone.h"
@@ -37,30 +38,29 @@ struct ToolPose {
   geometry::TrackedPose world_from_tool;
 };
 
-// What one frame says. Immutable once published.
-struct FrameResult {
-  std::int64_t frame_index = 0;
-  std::int64_t timestamp_ns = 0;
-  lens::LensObservation lens;
-  camera::CameraModel camera;                            // of this frame
-  std::vector<markers::MarkerObservation> markers;       // one for each declared marker, world markers first
+// What one frame says. Immutable once published. Everything of the base is about the picture alone; what follows is about
+// the knee and is valid only in a live picture whose intrinsics are known.
+struct FrameResult : View {                              // markers: world markers first, then the tools'
   geometry::TrackedPose camera_from_world;               // the world marker of the bone
   std::vector<ToolPose> tools;                           // world_from_tool of each tool, in the order of the tool set
   bool tip_is_valid = false;
   Eigen::Vector3d tip_in_world_mm = Eigen::Vector3d::Zero();
   Eigen::Matrix3d tip_covariance_mm2 = Eigen::Matrix3d::Zero();
   guidance::GuidanceNumbers guidance;
-  bool is_frozen = false;                                // the same picture again and again
-  double processing_ms = 0;
+  double processing_ms = 0;                              // of process(): not part of what replay compares
 };
 
 class NavigationPipeline {
  public:
   // Throws InvalidInput when options break their contract (no world marker for the bone, unusable calibration).
   explicit NavigationPipeline(const PipelineOptions& options);
+  // The same with another way to find the markers, which must observe declared_markers(options.tools) in that order.
+  NavigationPipeline(const PipelineOptions& options, std::unique_ptr<markers::MarkerTracker> markers);
   ~NavigationPipeline();
 
-  // `result` is reused from call to call so that nothing is allocated after the first frames.
+  // Frames in order of time. `result` is reused from call to call so that nothing is allocated after the first frames.
+  // Throws InvalidInput when the frame's size is not the camera's; never on what a picture shows. A marker that is lost,
+  // a lens angle that is not known or a frozen picture makes poses, tip and guidance invalid in this very frame.
   void process(const camera::Frame& frame, FrameResult& result);
 
   // What guidance is computed from. Takes effect with the next frame.

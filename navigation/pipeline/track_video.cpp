@@ -1,0 +1,83 @@
+#include "navigation/pipeline/track_video.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "navigation/pipeline/prefetched_source.h"
+
+namespace arthronaut::pipeline {
+
+namespace {
+
+constexpr std::size_t kStateCount = static_cast<std::size_t>(markers::MarkerState::Doubtful) + 1;
+
+void add_marker(std::vector<MarkerStatistics>& markers, int id, std::string name) {
+  MarkerStatistics statistics;
+  statistics.id = id;
+  statistics.name = std::move(name);
+  statistics.frames_by_loss.assign(kStateCount, 0);
+  markers.push_back(std::move(statistics));
+}
+
+std::vector<std::string> reasons_of(const TrackedVideo& video) {
+  const ViewStatistics& s = video.statistics;
+  std::vector<std::string> reasons;
+  if (s.frame_count == 0) reasons.emplace_back("the video has no frame");
+  if (!video.rows.empty() || s.frame_count == 0) return reasons;
+  if (s.frames_with_unknown_lens == s.frame_count) {
+    reasons.emplace_back("the lens mark was not seen, so the lens angle and with it the camera are not known");
+  } else {
+    reasons.emplace_back("no declared marker was tracked in any frame");
+  }
+  return reasons;
+}
+
+}  // namespace
+
+ViewStatistics::ViewStatistics(const tools::ToolSet& tools) {
+  for (const tools::WorldMarker& world : tools.world_markers) {
+    add_marker(markers, world.marker_id, std::string(bones::to_text(world.bone)));
+  }
+  for (const tools::Tool& tool : tools.tools) add_marker(markers, tool.marker_id, tool.name);
+}
+
+void ViewStatistics::add(const View& view, double processing_ms) {
+  ++frame_count;
+  frames_with_mark += view.lens.mark == lens::MarkState::Found ? 1 : 0;
+  frames_with_unknown_lens += view.intrinsics_are_known ? 0 : 1;
+  frames_frozen += view.is_frozen ? 1 : 0;
+  processing_ms_mean += (processing_ms - processing_ms_mean) / static_cast<double>(frame_count);
+  processing_ms_worst = std::max(processing_ms_worst, processing_ms);
+  for (std::size_t i = 0; i < markers.size(); ++i) {
+    MarkerStatistics& statistics = markers[i];
+    if (view.stands_for(view.markers[i])) {
+      ++statistics.frames_with_pose;
+    } else if (!view.markers[i].is_tracked()) {
+      const auto state = static_cast<std::size_t>(view.markers[i].state);
+      ++statistics.frames_by_loss[state];
+      const auto worst = std::max_element(statistics.frames_by_loss.begin(), statistics.frames_by_loss.end());
+      statistics.main_loss = static_cast<markers::MarkerState>(worst - statistics.frames_by_loss.begin());
+    }
+  }
+}
+
+TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions& options,
+                         const tools::ToolSet& tools, const std::function<void(long)>& progress) {
+  TrackedVideo video;
+  video.statistics = ViewStatistics(tools);
+  ViewTracker tracker(options, markers::make_aruco_tracker(markers::declared_markers(tools)));
+  PrefetchedSource prefetched(source);
+  View view;
+  while (const camera::FramePtr frame = prefetched.next()) {
+    const auto begin = std::chrono::steady_clock::now();
+    tracker.observe(*frame, view);
+    const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
+    append_pose_rows(view, video.rows);
+    video.statistics.add(view, taken.count());
+    if (progress) progress(static_cast<long>(video.statistics.frame_count));
+  }
+  video.reasons = reasons_of(video);
+  return video;
+}
+
+}  // namespace arthronaut::pipeline

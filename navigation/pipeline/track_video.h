@@ -1,0 +1,48 @@
+// Marker poses of a whole video: what `arthronaut track` does.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "navigation/pipeline/view_tracker.h"
+#include "navigation/sources/frame_source.h"
+#include "navigation/tools/tool_set.h"
+
+namespace arthronaut::pipeline {
+
+// How often each marker was seen; counts add up to the number of frames.
+struct MarkerStatistics {
+  int id = 0;
+  std::string name;  // "femur" for its world marker, else the tool's
+  long frames_with_pose = 0;
+  // The most frequent reason why there was none; NotSeen when there always was one.
+  markers::MarkerState main_loss = markers::MarkerState::NotSeen;
+  std::vector<long> frames_by_loss;  // by MarkerState
+};
+
+struct ViewStatistics {
+  long frame_count = 0;
+  long frames_with_mark = 0;
+  long frames_with_unknown_lens = 0;  // markers may have been found, but no pose stands
+  long frames_frozen = 0;
+  double processing_ms_mean = 0, processing_ms_worst = 0;
+  std::vector<MarkerStatistics> markers;  // in the order of declared_markers()
+
+  explicit ViewStatistics(const tools::ToolSet& tools);
+  ViewStatistics() = default;
+  void add(const View& view, double processing_ms);
+};
+
+struct TrackedVideo {
+  std::vector<strokes::PoseRow> rows;
+  ViewStatistics statistics;
+  std::vector<std::string> reasons;  // why the result is not reliable; empty when it is
+};
+
+// Decoding runs in a thread of its own. Throws what the source throws, and InvalidInput for another frame size.
+[[nodiscard]] TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions& options,
+                                       const tools::ToolSet& tools,
+                                       const std::function<void(long frames_done)>& progress = {});
+
+}  // namespace arthronaut::pipeline

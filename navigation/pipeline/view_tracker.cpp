@@ -1,0 +1,101 @@
+#include "navigation/pipeline/view_tracker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "planning/geometry/error.h"
+
+namespace arthronaut::pipeline {
+
+namespace {
+
+std::string size_text(int width, int height) { return std::to_string(width) + " x " + std::to_string(height); }
+
+}  // namespace
+
+struct ViewTracker::State {
+  State(const ViewTrackerOptions& with, std::unique_ptr<markers::MarkerTracker> with_markers)
+      : options(with),
+        lens_tracker({.calibration = with.calibration}),
+        markers(std::move(with_markers)),
+        turn_radius_px((with.calibration.principal_point_px - with.calibration.rotation_center_px).norm()) {
+    // Throws here rather than in the first frame.
+    (void)camera::CameraModel(options.calibration, 0, options.refractive_index, options.fluid_model);
+  }
+
+  void follow_lens(View& view) {
+    mark_was_seen = mark_was_seen || view.lens.mark == lens::MarkState::Found;
+    const bool angle_is_usable = options.follow_lens && mark_was_seen;
+    const double angle_rad = angle_is_usable ? options.calibration.lens_angle_rad(view.lens.mark_angle_deg) : 0;
+    view.camera =
+        camera::CameraModel(options.calibration, angle_rad, options.refractive_index, options.fluid_model);
+    view.intrinsics_are_known = !options.follow_lens || is_angle_known(view.lens);
+  }
+
+  // A scope whose principal point lies on the axis of rotation needs no mark; for others the chord that two sigma of
+  // the angle span must stay small.
+  [[nodiscard]] bool is_angle_known(const lens::LensObservation& lens) const {
+    if (lens.zoom_or_slip) return false;
+    if (lens.has_angle() && mark_was_seen) return true;
+    const double two_sigma_deg = mark_was_seen ? std::min(2 * lens.mark_sigma_deg, 180.0) : 180.0;
+    const double chord_px = 2 * turn_radius_px * std::sin(geometry::rad_from_deg(two_sigma_deg) / 2);
+    return chord_px <= options.max_principal_point_error_px;
+  }
+
+  // Equal pictures cost a comparison of all bytes, different ones that of the first few.
+  [[nodiscard]] bool is_frozen(std::int64_t timestamp_ns) {
+    const bool same = gray.size() == last_gray.size() && std::memcmp(gray.data(), last_gray.data(), gray.size()) == 0;
+    if (!same || timestamp_ns < picture_since_ns) picture_since_ns = timestamp_ns;
+    return static_cast<double>(timestamp_ns - picture_since_ns) * 1e-9 >= options.frozen_after_s;
+  }
+
+  ViewTrackerOptions options;
+  lens::LensTracker lens_tracker;
+  std::unique_ptr<markers::MarkerTracker> markers;
+  double turn_radius_px;
+  bool mark_was_seen = false;
+  std::vector<std::uint8_t> gray, last_gray;
+  std::int64_t picture_since_ns = 0;
+};
+
+ViewTracker::ViewTracker(const ViewTrackerOptions& options, std::unique_ptr<markers::MarkerTracker> markers)
+    : state_(std::make_unique<State>(options, std::move(markers))) {}
+
+ViewTracker::~ViewTracker() = default;
+
+void ViewTracker::observe(const camera::Frame& frame, View& view) {
+  State& s = *state_;
+  const Eigen::Vector2i& size = s.options.calibration.image_size_px;
+  if (frame.width != size.x() || frame.height != size.y()) {
+    throw InvalidInput("frame " + std::to_string(frame.index) + " is " + size_text(frame.width, frame.height) +
+                       " pixels, but the camera was calibrated at " + size_text(size.x(), size.y()));
+  }
+  std::swap(s.gray, s.last_gray);
+  camera::gray_from(frame, s.gray);
+  const camera::GrayView picture{s.gray.data(), frame.width, frame.height, frame.width};
+
+  view.frame_index = frame.index;
+  view.timestamp_ns = frame.timestamp_ns;
+  view.is_frozen = s.is_frozen(frame.timestamp_ns);
+  view.lens = s.lens_tracker.observe(picture, frame.timestamp_ns);
+  s.follow_lens(view);
+  const auto markers = s.markers->track(picture, view.camera, frame.timestamp_ns);
+  view.markers.assign(markers.begin(), markers.end());
+}
+
+void append_pose_rows(const View& view, std::vector<strokes::PoseRow>& rows) {
+  for (const markers::MarkerObservation& marker : view.markers) {
+    if (!view.stands_for(marker)) continue;
+    strokes::PoseRow row;
+    row.frame = view.frame_index;
+    row.time_s = static_cast<double>(view.timestamp_ns) * 1e-9;
+    row.marker_id = marker.id;
+    row.camera_from_marker = marker.camera_from_marker;
+    row.rms_px = marker.rms_px;
+    if (view.lens.mark == lens::MarkState::Found) row.mark_angle_deg = view.lens.mark_angle_deg;
+    rows.push_back(row);
+  }
+}
+
+}  // namespace arthronaut::pipeline
