@@ -1,0 +1,73 @@
+#include "navigation/recording/achieved_tunnel.h"
+
+#include <nlohmann/json.hpp>
+
+#include "planning/files/json_document.h"
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::recording {
+
+namespace {
+
+constexpr std::string_view kFormat = "arthronaut.achieved";
+constexpr int kVersion = 1;
+
+nlohmann::ordered_json to_json(const tunnels::Tunnel& tunnel) {
+  return {{"entry_mm", files::to_json(tunnel.entry_mm)},
+          {"direction", files::to_json(tunnel.direction)},
+          {"diameter_mm", tunnel.diameter_mm}};
+}
+
+tunnels::Tunnel tunnel_from(const files::JsonObject& node, bones::BoneKind bone) {
+  tunnels::Tunnel tunnel;
+  tunnel.bone = bone;
+  tunnel.entry_mm = node.vector3("entry_mm");
+  tunnel.direction = node.vector3("direction");
+  if (tunnel.direction.norm() < 1e-6) node.fail("direction", "must not be zero");
+  tunnel.direction.normalize();
+  tunnel.diameter_mm = node.positive_number("diameter_mm");
+  return tunnel;
+}
+
+}  // namespace
+
+TunnelDifference compare(const tunnels::Tunnel& reference, const tunnels::Tunnel& other) {
+  const Eigen::Vector3d to_entry = reference.entry_mm - other.entry_mm;
+  return {.entry_mm = to_entry.norm(),
+          .axis_to_entry_mm = to_entry.cross(other.direction).norm(),
+          .angle_deg = geometry::deg_from_rad(geometry::angle_between_rad(reference.direction, other.direction))};
+}
+
+AchievedTunnel read_achieved_file(const std::filesystem::path& file) {
+  const auto root = files::read_json(file, kFormat, kVersion);
+  const auto bone = bones::bone_kind_from_text(root.text("bone"));
+  AchievedTunnel achieved;
+  achieved.planned = tunnel_from(root.object("planned"), bone);
+  achieved.measured = tunnel_from(root.object("measured"), bone);
+  achieved.depth_mm = root.number("depth_mm");
+  achieved.timestamp_ns = root.integer("timestamp_ns");
+  achieved.pose_count = static_cast<int>(root.integer("pose_count"));
+  achieved.sigma_offset_mm = root.number("sigma_offset_mm");
+  achieved.sigma_angle_deg = root.number("sigma_angle_deg");
+  if (root.has("truth")) achieved.truth = tunnel_from(root.object("truth"), bone);
+  return achieved;
+}
+
+void write_achieved_file(const std::filesystem::path& file, const AchievedTunnel& achieved) {
+  nlohmann::ordered_json json = {
+      {"format", kFormat},
+      {"version", kVersion},
+      {"bone", bones::to_text(achieved.planned.bone)},
+      {"planned", to_json(achieved.planned)},
+      {"measured", to_json(achieved.measured)},
+      {"depth_mm", achieved.depth_mm},
+      {"timestamp_ns", achieved.timestamp_ns},
+      {"pose_count", achieved.pose_count},
+      {"sigma_offset_mm", achieved.sigma_offset_mm},
+      {"sigma_angle_deg", achieved.sigma_angle_deg},
+  };
+  if (achieved.truth) json["truth"] = to_json(*achieved.truth);
+  files::write_json(file, json);
+}
+
+}  // namespace arthronaut::recording

@@ -1,0 +1,37 @@
+// The tunnel as drilled, in a session's achieved.json (format "arthronaut.achieved", version 1): as navigation measured
+// it, what was planned, and, from the simulator alone, what was true.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "planning/tunnels/tunnel.h"
+
+namespace arthronaut::recording {
+
+struct AchievedTunnel {
+  tunnels::Tunnel planned;
+  tunnels::Tunnel measured;       // by navigation, in the bone's frame
+  double depth_mm = 0;            // of the drill beyond the entry
+  std::int64_t timestamp_ns = 0;  // of the last pose it rests on
+  int pose_count = 0;             // it is the median of so many poses
+  double sigma_offset_mm = 0;     // predicted, one sigma
+  double sigma_angle_deg = 0;
+  std::optional<tunnels::Tunnel> truth;
+};
+
+// How one tunnel lies to another of the same bone.
+struct TunnelDifference {
+  double entry_mm = 0;           // between the entries
+  double axis_to_entry_mm = 0;   // reference entry to the other's axis
+  double angle_deg = 0;          // between the axes
+};
+[[nodiscard]] TunnelDifference compare(const tunnels::Tunnel& reference, const tunnels::Tunnel& other);
+
+// Throws IoError or InvalidInput (file, place, reason).
+[[nodiscard]] AchievedTunnel read_achieved_file(const std::filesystem::path& file);
+// Atomic. Throws IoError.
+void write_achieved_file(const std::filesystem::path& file, const AchievedTunnel& achieved);
+
+}  // namespace arthronaut::recording
