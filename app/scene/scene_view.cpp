@@ -166,8 +166,8 @@ void SceneView::show(const SceneContent& content) {
   if (s.solids != nullptr) s.scene->RemoveActor(s.solids);
   if (s.ghost_solids != nullptr) s.ghost->RemoveActor(s.ghost_solids);
   s.solids = actor_of(vtk_from_solid(solid));
-  s.solids->GetProperty()->SetAmbient(0.30);
-  s.solids->GetProperty()->SetDiffuse(0.75);
+  s.solids->GetProperty()->SetAmbient(0.42);
+  s.solids->GetProperty()->SetDiffuse(0.65);
   s.solids->GetProperty()->SetSpecular(0.15);
   s.scene->AddActor(s.solids);
   s.ghost_solids = actor_of(vtk_from_solid(ghost));

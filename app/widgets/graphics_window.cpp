@@ -1,0 +1,120 @@
+#include "app/widgets/graphics_window.h"
+
+#include <GL/glew.h>
+// GLEW stands before GLFW: both declare OpenGL.
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+
+#include <algorithm>
+
+#include "planning/geometry/error.h"
+
+namespace arthronaut::widgets {
+
+struct GraphicsWindow::State {
+  GLFWwindow* window = nullptr;
+  Theme theme;
+  std::vector<KeyPress> arriving, keys;
+
+  static void on_key(GLFWwindow* window, int key, int /*scancode*/, int action, int mods) {
+    if (action == GLFW_RELEASE) return;
+    constexpr int kOurs = GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT;
+    static_cast<State*>(glfwGetWindowUserPointer(window))->arriving.push_back({key, mods & kOurs, action == GLFW_REPEAT});
+  }
+};
+
+GraphicsWindow::GraphicsWindow(const std::string& title, int width, int height) : state_(std::make_unique<State>()) {
+  if (glfwInit() == GLFW_FALSE) {
+    const char* reason = nullptr;
+    glfwGetError(&reason);
+    throw DeviceError(std::string("no display to open a window on") + (reason != nullptr ? std::string(": ") + reason : ""));
+  }
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  glfwWindowHint(GLFW_SAMPLES, 0);
+  if (const GLFWvidmode* mode = glfwGetVideoMode(glfwGetPrimaryMonitor()); mode != nullptr) {
+    width = std::min(width, mode->width);
+    height = std::min(height, mode->height);
+  }
+  state_->window = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+  if (state_->window == nullptr) {
+    const char* reason = nullptr;
+    glfwGetError(&reason);
+    const std::string why = reason != nullptr ? reason : "unknown";
+    glfwTerminate();
+    throw DeviceError("no window with OpenGL 3.3: " + why);
+  }
+  glfwMakeContextCurrent(state_->window);
+  glfwSwapInterval(1);
+  glewExperimental = GL_TRUE;
+  glewInit();
+  glfwSetWindowSizeLimits(state_->window, 960, 540, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  glfwSetWindowUserPointer(state_->window, state_.get());
+  // Before ImGui's own callbacks, which call the ones that they find.
+  glfwSetKeyCallback(state_->window, &State::on_key);
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;  // the layout is ours: nothing to remember
+  ImGui_ImplGlfw_InitForOpenGL(state_->window, true);
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+  int frame_width = 0, frame_height = 0;
+  glfwGetFramebufferSize(state_->window, &frame_width, &frame_height);
+  state_->theme = build_theme(scale_for(frame_width, frame_height));
+}
+
+GraphicsWindow::~GraphicsWindow() {
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+  glfwDestroyWindow(state_->window);
+  glfwTerminate();
+}
+
+void GraphicsWindow::begin_frame(double timeout_s) {
+  State& s = *state_;
+  if (timeout_s > 0)
+    glfwWaitEventsTimeout(timeout_s);
+  else
+    glfwPollEvents();
+  int width = 0, height = 0;
+  glfwGetFramebufferSize(s.window, &width, &height);
+  const float scale = scale_for(width, height);
+  if (width > 0 && scale != s.theme.scale) {
+    s.theme = build_theme(scale);
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+  }
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  s.keys.clear();
+  std::swap(s.keys, s.arriving);
+  if (ImGui::GetIO().WantTextInput) s.keys.clear();
+}
+
+void GraphicsWindow::end_frame() {
+  ImGui::Render();
+  int width = 0, height = 0;
+  glfwGetFramebufferSize(state_->window, &width, &height);
+  // VTK leaves a framebuffer of its own bound.
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(0, 0, width, height);
+  glDisable(GL_SCISSOR_TEST);
+  const ImVec4 background = ImGui::ColorConvertU32ToFloat4(kBackground);
+  glClearColor(background.x, background.y, background.z, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  glfwSwapBuffers(state_->window);
+}
+
+const std::vector<KeyPress>& GraphicsWindow::keys() const { return state_->keys; }
+bool GraphicsWindow::should_close() const { return glfwWindowShouldClose(state_->window) == GLFW_TRUE; }
+void GraphicsWindow::make_current() const { glfwMakeContextCurrent(state_->window); }
+const Theme& GraphicsWindow::theme() const { return state_->theme; }
+double GraphicsWindow::now_s() { return glfwGetTime(); }
+void GraphicsWindow::wake() { glfwPostEmptyEvent(); }
+
+}  // namespace arthronaut::widgets

@@ -1,0 +1,46 @@
+// The one window, its OpenGL context and ImGui. One thread owns all of it: the one that made it.
+//
+// Frame order: poll -> drain queues and actions (logic) -> build UI -> render the scenes that are dirty -> draw UI ->
+// swap. begin_frame() is the first step, end_frame() the last two.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/widgets/theme.h"
+
+namespace arthronaut::widgets {
+
+struct KeyPress {
+  int key = 0;   // GLFW_KEY_*
+  int mods = 0;  // GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT
+  bool is_repeat = false;
+};
+
+class GraphicsWindow {
+ public:
+  // Throws DeviceError when there is no display or no OpenGL 3.3.
+  GraphicsWindow(const std::string& title, int width, int height);
+  ~GraphicsWindow();
+  GraphicsWindow(const GraphicsWindow&) = delete;
+  GraphicsWindow& operator=(const GraphicsWindow&) = delete;
+
+  // Waits for input at most `timeout_s` (0: does not wait), or until wake(), then starts a frame.
+  void begin_frame(double timeout_s);
+  void end_frame();
+  // Keys pressed since the last frame, unless a text field has them.
+  [[nodiscard]] const std::vector<KeyPress>& keys() const;
+  [[nodiscard]] bool should_close() const;
+  void make_current() const;
+  [[nodiscard]] const Theme& theme() const;
+  [[nodiscard]] static double now_s();
+  // From any thread: ends the wait in begin_frame().
+  static void wake();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace arthronaut::widgets

@@ -1,0 +1,38 @@
+// Colours, type and sizes of every screen: dark, calm, read from two metres. Sizes are for a window 1080 pixels high
+// and scale with it, so that a screen looks alike at 720, 1080 and 2160 lines.
+#pragma once
+
+#include <imgui.h>
+
+#include "app/scene/scene_content.h"
+
+namespace arthronaut::widgets {
+
+struct Theme {
+  float scale = 1;          // of all sizes
+  ImFont* body = nullptr;   // 22 px at scale 1
+  ImFont* strong = nullptr; // 22 px, semi-bold
+  ImFont* title = nullptr;  // 32 px
+  ImFont* number = nullptr; // 60 px
+  [[nodiscard]] float px(float size_at_1080) const { return size_at_1080 * scale; }
+};
+
+inline constexpr ImU32 kBackground = IM_COL32(12, 15, 19, 255);
+inline constexpr ImU32 kPanel = IM_COL32(22, 27, 33, 255);
+inline constexpr ImU32 kPanelEdge = IM_COL32(44, 53, 63, 255);
+inline constexpr ImU32 kText = IM_COL32(232, 237, 242, 255);
+inline constexpr ImU32 kQuietText = IM_COL32(158, 171, 184, 255);
+inline constexpr ImU32 kAccent = IM_COL32(86, 180, 233, 255);
+inline constexpr ImU32 kGood = IM_COL32(64, 200, 150, 255);
+inline constexpr ImU32 kCaution = IM_COL32(240, 190, 60, 255);
+inline constexpr ImU32 kBad = IM_COL32(255, 112, 92, 255);
+
+[[nodiscard]] ImU32 color_of(const scene::Color& color, float opacity = 1);
+
+// The scale for a window of this size.
+[[nodiscard]] float scale_for(int width_px, int height_px);
+// (Re)builds fonts and style for a scale. Inter where it is installed, DejaVu Sans else, ImGui's own as the last
+// resort. Between frames only; the caller refreshes the font texture.
+[[nodiscard]] Theme build_theme(float scale);
+
+}  // namespace arthronaut::widgets
