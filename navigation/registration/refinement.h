@@ -1,0 +1,48 @@
+// From a rough pose to the best one nearby.
+//
+// What the tip tells is not symmetric: it never goes into the bone, but it is lifted off, and it rides on soft tissue. So
+// each residual (signed distance to the bone) is explained by one of three: contact, a normal law about 0; soft tissue, a
+// normal law about 0.9 mm; lifted, anything. Their shares and the contact's spread are found with the pose (EM).
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "navigation/registration/distance_field.h"
+#include "navigation/registration/touched_points.h"
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::registration {
+
+// Signed distance and its gradient at a point of the bone frame: the grid's, or the exact mesh's.
+using DistanceFunction = std::function<DistanceField::Sample(const Eigen::Vector3d&)>;
+
+struct ContactModel {
+  double contact_sigma_mm = 0.4;
+  double soft_share = 0.10;
+  double lifted_share = 0.10;
+};
+
+struct MarkerPrior {
+  bool use = false;
+  double height_mm = 2.0, sigma_mm = 0.8;  // of the marker's centre above the bone
+};
+
+struct RefinedPose {
+  geometry::RigidTransform bone_from_marker;
+  ContactModel model;
+  double cost = 0;  // weighted negative log likelihood for each unit of weight; smaller is better
+  std::vector<double> residuals_mm;       // signed, by point
+  std::vector<double> contact_weights;    // probability of contact, by point
+};
+
+// Geman-McClure, its width shrinking from 2 mm to 0.8 mm: from several mm and degrees away to the minimum.
+[[nodiscard]] geometry::RigidTransform approach(const DistanceField& field, const TouchedPoints& points,
+                                                const geometry::RigidTransform& bone_from_marker);
+
+// EM from a pose within about 1 mm.
+[[nodiscard]] RefinedPose refine(const DistanceFunction& distance, const TouchedPoints& points,
+                                 const geometry::RigidTransform& bone_from_marker, const ContactModel& model,
+                                 const MarkerPrior& prior, int iterations);
+
+}  // namespace arthronaut::registration

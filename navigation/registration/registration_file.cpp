@@ -1,0 +1,52 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "navigation/registration/registration.h"
+#include "planning/files/json_document.h"
+
+namespace arthronaut::registration {
+
+namespace {
+constexpr const char* kFormat = "arthronaut.registration";
+constexpr int kVersion = 1;
+}  // namespace
+
+RegistrationSummary read_registration_file(const std::filesystem::path& file) {
+  const files::JsonObject document = files::read_json(file, kFormat, kVersion);
+  RegistrationSummary summary;
+  summary.has_pose = true;
+  summary.marker_from_bone = document.rigid_transform("marker_from_bone");
+  summary.rms_mm = document.number("rms_mm");
+  summary.inlier_fraction = document.number("inlier_fraction");
+  summary.point_count = static_cast<int>(document.integer("point_count"));
+  summary.reliable = document.boolean("reliable");
+  summary.reasons = document.texts("reasons");
+  summary.predicted_tre_mm = document.number("predicted_tre_mm");
+  if (document.has("runner_up_ratio")) summary.runner_up_ratio = document.number("runner_up_ratio");
+  if (document.has("covariance")) {
+    const std::vector<double> entries = document.numbers("covariance");
+    if (entries.size() != 36) document.fail("covariance", "must hold 36 numbers");
+    for (int i = 0; i < 36; ++i) summary.covariance(i / 6, i % 6) = entries[static_cast<std::size_t>(i)];
+  }
+  return summary;
+}
+
+void write_registration_file(const std::filesystem::path& file, const RegistrationSummary& registration) {
+  nlohmann::ordered_json document;
+  document["format"] = kFormat;
+  document["version"] = kVersion;
+  document["marker_from_bone"] = files::to_json(registration.marker_from_bone);
+  document["rms_mm"] = registration.rms_mm;
+  document["inlier_fraction"] = registration.inlier_fraction;
+  document["point_count"] = registration.point_count;
+  document["reliable"] = registration.reliable;
+  document["reasons"] = registration.reasons;
+  document["predicted_tre_mm"] = registration.predicted_tre_mm;
+  document["runner_up_ratio"] = registration.runner_up_ratio;
+  std::vector<double> entries;
+  for (int i = 0; i < 36; ++i) entries.push_back(registration.covariance(i / 6, i % 6));
+  document["covariance"] = entries;
+  files::write_json(file, document);
+}
+
+}  // namespace arthronaut::registration

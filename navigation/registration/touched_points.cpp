@@ -1,0 +1,61 @@
+#include "navigation/registration/touched_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <unordered_map>
+
+namespace arthronaut::registration {
+
+namespace {
+
+void weigh(TouchedPoints& points) {
+  constexpr double kCell_mm = 1.0;
+  const auto key = [](const Eigen::Vector3d& p) {
+    const auto part = [](double c) {
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(c / kCell_mm)) + (1 << 20)) & 0x1fffff;
+    };
+    return part(p.x()) | part(p.y()) << 21 | part(p.z()) << 42;
+  };
+  std::unordered_map<std::uint64_t, int> count;
+  for (const Eigen::Vector3d& p : points.positions_mm) ++count[key(p)];
+  points.weights.clear();
+  points.weight_sum = 0;
+  points.centroid_mm.setZero();
+  for (const Eigen::Vector3d& p : points.positions_mm) {
+    const double weight = 1.0 / count[key(p)];
+    points.weights.push_back(weight);
+    points.weight_sum += weight;
+    points.centroid_mm += weight * p;
+  }
+  if (points.weight_sum > 0) points.centroid_mm /= points.weight_sum;
+}
+
+}  // namespace
+
+TouchedPoints choose_points(const strokes::Curves& curves, std::size_t max_count) {
+  TouchedPoints points;
+  const std::size_t count = std::min(curves.size(), max_count);
+  for (std::size_t i = 0; i < count; ++i) {
+    points.positions_mm.push_back(curves[i * curves.size() / count].position_mm);
+  }
+  weigh(points);
+  return points;
+}
+
+TouchedPoints draw_points(const TouchedPoints& points, std::size_t count, std::uint64_t seed) {
+  std::vector<std::size_t> order(points.positions_mm.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::mt19937_64 random(seed);
+  count = std::min(count, order.size());
+  TouchedPoints drawn;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::swap(order[i], order[i + random() % (order.size() - i)]);
+    drawn.positions_mm.push_back(points.positions_mm[order[i]]);
+  }
+  weigh(drawn);
+  return drawn;
+}
+
+}  // namespace arthronaut::registration

@@ -1,0 +1,24 @@
+// The curve points that a registration weighs: evenly chosen when there are many, each counting for the stretch of bone
+// that it alone covers, so that a place where the probe dwelt does not rule the rest.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "navigation/strokes/curves.h"
+
+namespace arthronaut::registration {
+
+struct TouchedPoints {
+  std::vector<Eigen::Vector3d> positions_mm;  // world-marker frame
+  std::vector<double> weights;                // 1 / points in the same 1 mm cell
+  Eigen::Vector3d centroid_mm = Eigen::Vector3d::Zero();
+  double weight_sum = 0;                      // touched cells, about the mm of path
+};
+
+[[nodiscard]] TouchedPoints choose_points(const strokes::Curves& curves, std::size_t max_count);
+// `count` of the points, at random, each drawn once; for the quick scores.
+[[nodiscard]] TouchedPoints draw_points(const TouchedPoints& points, std::size_t count, std::uint64_t seed);
+
+}  // namespace arthronaut::registration
