@@ -26,7 +26,7 @@ add_library(arthronaut_compile_options INTERFACE)
 target_compile_options(arthronaut_compile_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
   $<$<BOOL:${ARTHRONAUT_WARNINGS_AS_ERRORS}>:-Werror>)
-target_include_directories(arthronaut_compile_options INTERFACE ${CMAKE_SOURCE_DIR})
+target_include_directories(arthronaut_compile_options INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
 if(ARTHRONAUT_SANITIZER STREQUAL "address")
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)

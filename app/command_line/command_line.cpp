@@ -1,3 +1,4 @@
+#include <arthronaut/version.h>
 #include <spdlog/spdlog.h>
 
 #include <cctype>
@@ -6,7 +7,6 @@
 #include <vector>
 
 #include "app/command_line/command.h"
-#include "app/command_line/version.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
@@ -54,7 +54,7 @@ int run_command_line(int argc, char** argv, const std::function<int(const Workst
       "Arthronaut plans and navigates the reconstruction of the anterior cruciate ligament by the arthroscope's own\n"
       "video. Research software, not a medical device. Without a subcommand it opens the workstation."};
   app.name("arthronaut");
-  app.set_version_flag("--version", std::string("arthronaut ") + kVersion);
+  app.set_version_flag("--version", std::string("arthronaut ") + kProgramVersion);
   app.require_subcommand(0, 1);
   app.footer("Exit codes: 0 done and reliable; 1 internal error; 2 wrong usage; 3 unreadable or invalid input;\n"
              "4 done, but the result is not reliable (it is written, with its reasons).");
