@@ -1,0 +1,156 @@
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "app/command_line/command.h"
+#include "navigation/strokes/poses_file.h"
+#include "navigation/tools/pivot_calibration.h"
+#include "navigation/tools/spin_calibration.h"
+#include "planning/files/json_document.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::command_line {
+
+namespace {
+
+struct PivotArguments {
+  int marker_id = -1;
+  std::string poses, output;
+  std::optional<int> world_id;
+  bool camera_fixed = false, spin = false;
+};
+
+// By frame: camera_from_marker of one marker.
+using PosesByFrame = std::map<std::int64_t, geometry::RigidTransform>;
+
+PosesByFrame poses_of(const std::vector<strokes::PoseRow>& rows, int marker_id) {
+  PosesByFrame poses;
+  for (const strokes::PoseRow& row : rows) {
+    if (row.marker_id == marker_id) poses[row.frame] = row.camera_from_marker;
+  }
+  return poses;
+}
+
+// The world marker that the tool's marker shares the most frames with; nullopt without one.
+std::optional<int> likely_world(const std::vector<strokes::PoseRow>& rows, const PosesByFrame& tool,
+                                int tool_id) {
+  std::optional<int> best;
+  std::size_t most = 2;
+  for (const int id : {0, 1}) {
+    if (id == tool_id) continue;
+    std::size_t shared = 0;
+    for (const auto& [frame, pose] : poses_of(rows, id)) shared += tool.count(frame);
+    if (shared > most) {
+      most = shared;
+      best = id;
+    }
+  }
+  return best;
+}
+
+std::vector<geometry::RigidTransform> fixed_from_tool(const Context& context,
+                                                      const PivotArguments& arguments) {
+  const auto rows = strokes::read_poses_file(arguments.poses);
+  const PosesByFrame tool = poses_of(rows, arguments.marker_id);
+  if (tool.empty()) {
+    throw InvalidInput(arguments.poses, "marker_id",
+                       "marker " + std::to_string(arguments.marker_id) + " is never seen");
+  }
+  std::optional<int> world = arguments.world_id;
+  if (!world && !arguments.camera_fixed) world = likely_world(rows, tool, arguments.marker_id);
+
+  std::vector<geometry::RigidTransform> poses;
+  if (!world) {
+    context.say("no world marker in view: the camera is taken as fixed");
+    for (const auto& [frame, pose] : tool) poses.push_back(pose);
+    return poses;
+  }
+  const PosesByFrame camera_from_world = poses_of(rows, *world);
+  for (const auto& [frame, pose] : tool) {
+    const auto seen = camera_from_world.find(frame);
+    if (seen != camera_from_world.end()) poses.push_back(seen->second.inverse() * pose);
+  }
+  if (poses.empty()) {
+    throw InvalidInput(arguments.poses, "marker_id",
+                       "markers " + std::to_string(*world) + " and " + std::to_string(arguments.marker_id) +
+                           " are never seen in the same frame");
+  }
+  context.say("world: marker " + std::to_string(*world) + ", " + std::to_string(poses.size()) +
+              " frames with both");
+  return poses;
+}
+
+void calibrate_tip(Context& context, const PivotArguments& arguments) {
+  const auto summary = tools::calibrate_pivot(fixed_from_tool(context, arguments));
+  nlohmann::ordered_json document;
+  document["format"] = "arthronaut.tip";
+  document["version"] = 1;
+  document["marker_id"] = arguments.marker_id;
+  document["tip_mm"] = summary.has_tip() ? files::to_json(summary.tip_in_tool_mm) : nlohmann::ordered_json();
+  document["rms_mm"] = summary.has_tip() ? nlohmann::ordered_json(summary.rms_mm) : nlohmann::ordered_json();
+  document["cone_deg"] = summary.cone_deg;
+  document["reliable"] = summary.is_usable();
+  document["reasons"] = summary.reasons;
+  document["pose_count"] = summary.pose_count;
+  document["inlier_count"] = summary.inlier_count;
+  if (summary.has_tip()) {
+    document["sigma_mm"] = summary.sigma_mm;
+    document["half_change_mm"] = summary.half_change_mm;
+    document["pivot_mm"] = files::to_json(summary.pivot_in_fixed_mm);
+  }
+  files::write_json(arguments.output, document);
+  if (summary.has_tip()) {
+    char line[200];
+    std::snprintf(line, sizeof line, "tip %.3f, %.3f, %.3f mm; rms %.3f mm on %d of %d poses; cone %.1f deg",
+                  summary.tip_in_tool_mm.x(), summary.tip_in_tool_mm.y(), summary.tip_in_tool_mm.z(),
+                  summary.rms_mm, summary.inlier_count, summary.pose_count, summary.cone_deg);
+    if (arguments.output != "-") context.say(line);
+  }
+  if (!summary.is_usable()) context.say_unreliable("the tip", summary.reasons);
+}
+
+void calibrate_axis(Context& context, const PivotArguments& arguments) {
+  const auto summary = tools::calibrate_spin(fixed_from_tool(context, arguments));
+  nlohmann::ordered_json document;
+  document["format"] = "arthronaut.axis";
+  document["version"] = 1;
+  document["marker_id"] = arguments.marker_id;
+  const bool has = summary.has_axis();
+  document["axis_point_mm"] = has ? files::to_json(summary.axis_point_in_tool_mm) : nlohmann::ordered_json();
+  document["axis_direction"] =
+      has ? files::to_json(summary.axis_direction_in_tool) : nlohmann::ordered_json();
+  document["rms_mm"] = has ? nlohmann::ordered_json(summary.rms_mm) : nlohmann::ordered_json();
+  document["turn_deg"] = summary.turn_deg;
+  document["reliable"] = summary.is_usable();
+  document["reasons"] = summary.reasons;
+  document["pose_count"] = summary.pose_count;
+  document["inlier_count"] = summary.inlier_count;
+  files::write_json(arguments.output, document);
+  if (!summary.is_usable()) context.say_unreliable("the axis", summary.reasons);
+}
+
+}  // namespace
+
+void add_pivot_command(CLI::App& app, Context& context) {
+  CLI::App* subcommand = add_subcommand(
+      app, context, "pivot",
+      "Find the tip of a tool that was pivoted about a fixed point (or, with --spin, its axis)",
+      "arthronaut pivot --marker 2 --poses poses.csv -o tip.json");
+  const auto arguments = std::make_shared<PivotArguments>();
+  subcommand->add_option("--marker", arguments->marker_id, "Id of the tool's marker")->required();
+  subcommand->add_option("--poses", arguments->poses, "Poses as written by track")->required();
+  CLI::Option* world =
+      subcommand->add_option("--world", arguments->world_id,
+                             "Id of the world marker (default: 0 or 1, whichever is seen with the tool)");
+  subcommand
+      ->add_flag("--camera-fixed", arguments->camera_fixed, "The scope was clamped: use no world marker")
+      ->excludes(world);
+  subcommand->add_flag("--spin", arguments->spin, "The tool was turned about its own axis: find that axis");
+  subcommand->add_option("-o,--output", arguments->output, "tip.json, or - for standard output")->required();
+  subcommand->callback([arguments, &context] {
+    arguments->spin ? calibrate_axis(context, *arguments) : calibrate_tip(context, *arguments);
+  });
+}
+
+}  // namespace arthronaut::command_line

@@ -1,0 +1,161 @@
+#include "navigation/tools/spin_calibration.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "planning/geometry/error.h"
+
+namespace arthronaut::tools {
+namespace {
+
+using geometry::RigidTransform;
+
+struct Axis {
+  Eigen::Vector3d in_tool, in_fixed;  // unit directions
+  Eigen::Vector3d point_in_tool, point_in_fixed;
+};
+
+Axis fit_axis(std::span<const RigidTransform> poses, const std::vector<bool>& use) {
+  Eigen::Matrix3d mean = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (use[i]) mean += poses[i].matrix();
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(mean, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Axis axis;
+  axis.in_tool = svd.matrixV().col(0);
+  axis.in_fixed = svd.matrixU().col(0);
+  if (axis.in_tool.y() > 0) {
+    axis.in_tool = -axis.in_tool;
+    axis.in_fixed = -axis.in_fixed;
+  }
+  // P (R p + t - c) = 0 with P across the fixed axis. p along the tool's axis and c along the fixed one are
+  // free: a weak pull to zero takes the feet of the two origins.
+  const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - axis.in_fixed * axis.in_fixed.transpose();
+  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!use[i]) continue;
+    Eigen::Matrix<double, 3, 6> row;
+    row << across * poses[i].matrix(), -across;
+    normal += row.transpose() * row;
+    right -= row.transpose() * poses[i].translation_mm;
+  }
+  normal.topLeftCorner<3, 3>() += 1e3 * axis.in_tool * axis.in_tool.transpose();
+  normal.bottomRightCorner<3, 3>() += 1e3 * axis.in_fixed * axis.in_fixed.transpose();
+  const Eigen::Matrix<double, 6, 1> solution = normal.ldlt().solve(right);
+  axis.point_in_tool = solution.head<3>();
+  axis.point_in_fixed = solution.tail<3>();
+  return axis;
+}
+
+double wobble_rad(const Axis& axis, const RigidTransform& pose) {
+  return geometry::angle_between_rad(pose.rotate(axis.in_tool), axis.in_fixed);
+}
+
+double offset_mm(const Axis& axis, const RigidTransform& pose) {
+  const Eigen::Vector3d apart = pose * axis.point_in_tool - axis.point_in_fixed;
+  return (apart - axis.in_fixed * axis.in_fixed.dot(apart)).norm();
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// The sector that the spin covers: the full circle less the widest gap.
+double turn_deg(const Axis& axis, std::span<const RigidTransform> poses, const std::vector<bool>& use) {
+  const Eigen::Vector3d spoke = axis.in_tool.unitOrthogonal();
+  const Eigen::Vector3d u = axis.in_fixed.unitOrthogonal(), v = axis.in_fixed.cross(u);
+  std::vector<double> angles;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!use[i]) continue;
+    const Eigen::Vector3d turned = poses[i].rotate(spoke);
+    angles.push_back(geometry::deg_from_rad(std::atan2(turned.dot(v), turned.dot(u))));
+  }
+  std::sort(angles.begin(), angles.end());
+  double widest = angles.front() + 360 - angles.back();
+  for (std::size_t i = 1; i < angles.size(); ++i) widest = std::max(widest, angles[i] - angles[i - 1]);
+  return 360 - widest;
+}
+
+void refuse(SpinCalibrationSummary& summary, SpinCalibrationSummary::Outcome outcome, const char* format,
+            double value, double limit) {
+  char line[160];
+  std::snprintf(line, sizeof line, format, value, limit);
+  if (summary.is_usable()) summary.outcome = outcome;
+  summary.reasons.emplace_back(line);
+}
+
+}  // namespace
+
+SpinCalibrationSummary calibrate_spin(std::span<const RigidTransform> fixed_from_tool,
+                                      const SpinCalibrationOptions& options) {
+  using Outcome = SpinCalibrationSummary::Outcome;
+  if (options.min_poses < 3 || !(options.min_turn_deg > 0) || !(options.max_rms_mm > 0) ||
+      !(options.max_direction_sigma_deg > 0) || !(options.outlier_factor > 0)) {
+    throw InvalidInput("spin calibration: every limit must be above 0 and min_poses at least 3");
+  }
+  SpinCalibrationSummary summary;
+  summary.pose_count = static_cast<int>(fixed_from_tool.size());
+  summary.outcome = Outcome::Ok;
+  if (summary.pose_count < options.min_poses) {
+    refuse(summary, Outcome::TooFewPoses, "only %.0f poses; %.0f are needed", summary.pose_count,
+           options.min_poses);
+    summary.message = summary.reasons.front();
+    return summary;
+  }
+
+  // A few rounds of leaving out what stands apart, in angle or in place.
+  std::vector<bool> use(fixed_from_tool.size(), true);
+  Axis axis = fit_axis(fixed_from_tool, use);
+  for (int round = 0; round < 6; ++round) {
+    std::vector<double> angles, offsets;
+    for (const RigidTransform& pose : fixed_from_tool) {
+      angles.push_back(wobble_rad(axis, pose));
+      offsets.push_back(offset_mm(axis, pose));
+    }
+    const double angle_limit = options.outlier_factor * std::max(1e-4, median(angles));
+    const double offset_limit = options.outlier_factor * std::max(1e-3, median(offsets));
+    for (std::size_t i = 0; i < use.size(); ++i)
+      use[i] = angles[i] <= angle_limit && offsets[i] <= offset_limit;
+    axis = fit_axis(fixed_from_tool, use);
+  }
+
+  double squares = 0, wobble = 0;
+  for (std::size_t i = 0; i < use.size(); ++i) {
+    if (!use[i]) continue;
+    ++summary.inlier_count;
+    squares += std::pow(offset_mm(axis, fixed_from_tool[i]), 2);
+    wobble += std::pow(wobble_rad(axis, fixed_from_tool[i]), 2);
+  }
+  const int n = std::max(1, summary.inlier_count);
+  summary.axis_direction_in_tool = axis.in_tool;
+  summary.axis_point_in_tool_mm = axis.point_in_tool;
+  summary.rms_mm = std::sqrt(squares / n);
+  summary.wobble_deg = geometry::deg_from_rad(std::sqrt(wobble / n));
+  summary.turn_deg = turn_deg(axis, fixed_from_tool, use);
+  // The wobble is the noise of two axes; the part of it that turns with the tool is averaged over the sector.
+  summary.direction_sigma_deg = 1.3 * summary.wobble_deg / std::sqrt(static_cast<double>(n));
+
+  if (summary.turn_deg < options.min_turn_deg) {
+    refuse(summary, Outcome::TurnTooSmall, "the guide was turned by %.0f deg; %.0f deg are needed",
+           summary.turn_deg, options.min_turn_deg);
+  }
+  if (summary.rms_mm > options.max_rms_mm) {
+    refuse(summary, Outcome::ResidualTooLarge,
+           "the axis did not stay in place: %.2f mm left over, at most %.2f mm allowed", summary.rms_mm,
+           options.max_rms_mm);
+  }
+  if (summary.direction_sigma_deg > options.max_direction_sigma_deg) {
+    refuse(summary, Outcome::AxisUncertain, "the axis is uncertain by %.2f deg, at most %.2f deg allowed",
+           summary.direction_sigma_deg, options.max_direction_sigma_deg);
+  }
+  summary.message = summary.is_usable() ? "The axis is known." : summary.reasons.front();
+  return summary;
+}
+
+}  // namespace arthronaut::tools

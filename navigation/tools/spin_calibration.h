@@ -1,0 +1,53 @@
+// Finds the axis of a guide that was turned about it in a fixed sleeve.
+//
+// All orientations share one axis: it is the right singular vector of the mean rotation with the largest
+// singular value (in the tool frame), and the left one (in the fixed frame). A point of the axis follows from
+// R_i p + t_i = c + s_i d by least squares across the axis; it is given as the foot of the marker's origin on
+// the axis.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::tools {
+
+struct SpinCalibrationOptions {
+  int min_poses = 20;
+  double min_turn_deg = 90;  // from the first orientation to the last, over the inliers
+  double max_rms_mm = 0.5;   // distance of the turned axis point from the fixed axis, inliers
+  double max_direction_sigma_deg = 0.2;
+  double outlier_factor = 4.0;  // a pose is rejected when its error > factor * median error
+};
+
+struct SpinCalibrationSummary {
+  enum class Outcome {
+    NotRun,
+    TooFewPoses,
+    TurnTooSmall,
+    ResidualTooLarge,
+    AxisUncertain,
+    Ok
+  } outcome = Outcome::NotRun;
+  std::string message = "calibrate_spin was not called.";
+  std::vector<std::string> reasons;
+  Eigen::Vector3d axis_point_in_tool_mm = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis_direction_in_tool =
+      Eigen::Vector3d::Zero();  // unit; its sign is that with the smaller angle to -y
+  double rms_mm = -1;
+  double wobble_deg = -1;  // of the axis about its mean, RMS over the inliers
+  double direction_sigma_deg = -1;
+  double turn_deg = 0;
+  int pose_count = 0, inlier_count = 0;
+  [[nodiscard]] bool has_axis() const { return outcome > Outcome::TooFewPoses; }
+  [[nodiscard]] bool is_usable() const { return outcome == Outcome::Ok; }
+};
+
+// fixed_from_tool in any order. Never throws on poor data. Throws InvalidInput when an option is not above 0.
+[[nodiscard]] SpinCalibrationSummary calibrate_spin(std::span<const geometry::RigidTransform> fixed_from_tool,
+                                                    const SpinCalibrationOptions& options = {});
+
+}  // namespace arthronaut::tools

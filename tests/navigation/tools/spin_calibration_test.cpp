@@ -1,0 +1,82 @@
+#include "navigation/tools/spin_calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <random>
+
+#include "planning/geometry/error.h"
+
+namespace arthronaut::tools {
+namespace {
+
+using geometry::RigidTransform;
+
+const Eigen::Vector3d kDirection = Eigen::Vector3d(0.1, -1, 0.05).normalized();
+const Eigen::Vector3d kPoint(0.5, -24, -3.3);
+
+// A guide turned in a sleeve that stands at will, sliding along it a little.
+std::vector<RigidTransform> spin(double turn_deg, double noise_mm, double noise_deg, int count = 120) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> gauss;
+  const RigidTransform fixed_from_sleeve{Eigen::Quaterniond(0.6, 0.4, -0.5, 0.3).normalized(), {4, -9, 31}};
+  std::vector<RigidTransform> poses;
+  for (int i = 0; i < count; ++i) {
+    const double angle = geometry::rad_from_deg(turn_deg) * i / (count - 1);
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, kDirection));
+    RigidTransform sleeve_from_tool{turn, kPoint - turn * kPoint + kDirection * 2 * std::sin(angle)};
+    geometry::Vector6d error;
+    for (int k = 0; k < 6; ++k)
+      error[k] = gauss(random) * (k < 3 ? noise_mm : geometry::rad_from_deg(noise_deg));
+    poses.push_back(fixed_from_sleeve * sleeve_from_tool * geometry::exp(error));
+  }
+  return poses;
+}
+
+double distance_from_axis(const Eigen::Vector3d& point) { return (point - kPoint).cross(kDirection).norm(); }
+
+// Noise-free poses give the axis to round-off; sliding along it does not matter.
+TEST(SpinCalibration, IsExactWithoutNoise) {
+  const auto summary = calibrate_spin(spin(200, 0, 0));
+  ASSERT_TRUE(summary.is_usable()) << summary.message;
+  EXPECT_LT(geometry::angle_between_rad(summary.axis_direction_in_tool, kDirection), 1e-7);
+  EXPECT_LT(distance_from_axis(summary.axis_point_in_tool_mm), 1e-6);
+  EXPECT_NEAR(summary.axis_point_in_tool_mm.dot(kDirection), 0, 1e-4);
+  EXPECT_NEAR(summary.turn_deg, 200, 1);
+}
+
+// 0.2 deg of orientation noise over 120 poses leaves 0.03 deg of the axis; 4 sigma of that, and the lever of
+// 24 mm.
+TEST(SpinCalibration, AveragesNoise) {
+  const auto summary = calibrate_spin(spin(200, 0.05, 0.2));
+  ASSERT_TRUE(summary.is_usable()) << summary.message;
+  EXPECT_LT(geometry::deg_from_rad(geometry::angle_between_rad(summary.axis_direction_in_tool, kDirection)),
+            0.15);
+  EXPECT_LT(distance_from_axis(summary.axis_point_in_tool_mm), 0.1);
+  EXPECT_GT(summary.direction_sigma_deg, 0.01);
+}
+
+// Some poses thrown about are left out.
+TEST(SpinCalibration, LeavesOutliersOut) {
+  auto poses = spin(220, 0.03, 0.1);
+  for (std::size_t i = 0; i < poses.size(); i += 9) {
+    poses[i] = poses[i] * RigidTransform{Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX())),
+                                         {3, 1, 0}};
+  }
+  const auto summary = calibrate_spin(poses);
+  ASSERT_TRUE(summary.is_usable()) << summary.message;
+  EXPECT_LT(summary.inlier_count, summary.pose_count - 8);
+  EXPECT_LT(distance_from_axis(summary.axis_point_in_tool_mm), 0.1);
+}
+
+// A small turn cannot tell the axis from its neighbours.
+TEST(SpinCalibration, RefusesASmallTurn) {
+  EXPECT_EQ(calibrate_spin(spin(50, 0.05, 0.2)).outcome, SpinCalibrationSummary::Outcome::TurnTooSmall);
+  EXPECT_EQ(calibrate_spin({}).outcome, SpinCalibrationSummary::Outcome::TooFewPoses);
+  SpinCalibrationOptions options;
+  options.max_rms_mm = 0;
+  EXPECT_THROW((void)calibrate_spin(spin(200, 0, 0), options), InvalidInput);
+}
+
+}  // namespace
+}  // namespace arthronaut::tools

@@ -1,0 +1,112 @@
+#include "navigation/tools/tool_set.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "planning/geometry/error.h"
+
+namespace arthronaut::tools {
+namespace {
+
+class ToolsFile : public ::testing::Test {
+ protected:
+  ToolsFile()
+      : file_(std::filesystem::path(::testing::TempDir()) /
+              (std::string("tools_") + ::testing::UnitTest::GetInstance()->current_test_info()->name() +
+               ".json")) {}
+  ~ToolsFile() override { std::filesystem::remove(file_); }
+
+  void write(const std::string& world, const std::string& tools) {
+    std::ofstream(file_) << R"({"format": "arthronaut.tools", "version": 1, "world_markers": [)" << world
+                         << R"(], "tools": [)" << tools << "]}";
+  }
+  // The message with which the file is refused; empty when it is read.
+  std::string refusal() {
+    try {
+      (void)read_tools_file(file_);
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  std::filesystem::path file_;
+};
+
+// What is written is what is read, to the last bit.
+TEST_F(ToolsFile, KeepsTheStandardToolsThroughARoundTrip) {
+  const ToolSet written = standard_tools();
+  write_tools_file(file_, written);
+  const ToolSet read = read_tools_file(file_);
+  ASSERT_EQ(read.world_markers.size(), written.world_markers.size());
+  for (std::size_t i = 0; i < read.world_markers.size(); ++i) {
+    EXPECT_EQ(read.world_markers[i].bone, written.world_markers[i].bone);
+    EXPECT_EQ(read.world_markers[i].marker_id, written.world_markers[i].marker_id);
+    EXPECT_EQ(read.world_markers[i].size_mm, written.world_markers[i].size_mm);
+  }
+  ASSERT_EQ(read.tools.size(), written.tools.size());
+  for (std::size_t i = 0; i < read.tools.size(); ++i) {
+    EXPECT_EQ(read.tools[i].name, written.tools[i].name);
+    EXPECT_EQ(read.tools[i].tip_mm, written.tools[i].tip_mm);
+    ASSERT_EQ(read.tools[i].axis.has_value(), written.tools[i].axis.has_value());
+    if (read.tools[i].axis) {
+      EXPECT_EQ(read.tools[i].axis->point_mm, written.tools[i].axis->point_mm);
+      EXPECT_EQ(read.tools[i].axis->direction, written.tools[i].axis->direction);
+    }
+  }
+}
+
+// The ids are those that interfaces.md promises.
+TEST(StandardTools, CarryTheStandardIds) {
+  const ToolSet set = standard_tools();
+  EXPECT_EQ(set.find_world_marker(bones::BoneKind::Femur)->marker_id, 0);
+  EXPECT_EQ(set.find_world_marker(bones::BoneKind::Tibia)->marker_id, 1);
+  EXPECT_EQ(set.find_tool("probe")->marker_id, 2);
+  EXPECT_TRUE(set.find_tool("probe")->tip_mm.has_value());
+  EXPECT_EQ(set.find_tool("femoral guide")->marker_id, 3);
+  EXPECT_TRUE(set.find_tool("femoral guide")->axis.has_value());
+  EXPECT_EQ(set.find_tool("tibial guide")->marker_id, 4);
+  EXPECT_EQ(set.find_tool("spoon"), nullptr);
+}
+
+// One id on two things would give one of them the other's pose.
+TEST_F(ToolsFile, RefusesAMarkerDeclaredTwice) {
+  write(R"({"bone": "femur", "marker_id": 2, "size_mm": 4})",
+        R"({"name": "probe", "marker_id": 2, "size_mm": 4})");
+  EXPECT_NE(refusal().find("tools[0].marker_id"), std::string::npos) << refusal();
+  EXPECT_NE(refusal().find("world marker of the femur"), std::string::npos) << refusal();
+}
+
+// Each break of the contract has its own message with the place in it.
+TEST_F(ToolsFile, NamesThePlaceOfWhatItRefuses) {
+  write("", R"({"name": "probe", "marker_id": 50, "size_mm": 4})");
+  EXPECT_NE(refusal().find("marker_id: must be 0 to 49"), std::string::npos) << refusal();
+  write("", R"({"name": "probe", "marker_id": 2, "size_mm": 0})");
+  EXPECT_NE(refusal().find("tools[0].size_mm"), std::string::npos) << refusal();
+  write(
+      "",
+      R"({"name": "guide", "marker_id": 3, "size_mm": 4, "axis_point_mm": [0,0,0], "axis_direction": [0,0,0]})");
+  EXPECT_NE(refusal().find("axis_direction: must not be zero"), std::string::npos) << refusal();
+  write("", R"({"name": "guide", "marker_id": 3, "size_mm": 4, "axis_direction": [0,1,0]})");
+  EXPECT_NE(refusal().find("axis_point_mm"), std::string::npos) << refusal();
+  write(R"({"bone": "patella", "marker_id": 2, "size_mm": 4})", "");
+  EXPECT_NE(refusal().find("world_markers[0].bone"), std::string::npos) << refusal();
+  write("", R"({"name": "a", "marker_id": 2, "size_mm": 4}, {"name": "a", "marker_id": 3, "size_mm": 4})");
+  EXPECT_NE(refusal().find("tools[1].name"), std::string::npos) << refusal();
+  write("", R"({"name": "a", "marker_id": 2, "size_mm": 4, "tip_mm": [0, 1e999, 0]})");
+  EXPECT_FALSE(refusal().empty());
+}
+
+// A direction of any length is a direction.
+TEST_F(ToolsFile, NormalisesTheAxis) {
+  write(
+      "",
+      R"({"name": "g", "marker_id": 3, "size_mm": 4, "axis_point_mm": [0,0,0], "axis_direction": [0,-3,4]})");
+  EXPECT_NEAR((read_tools_file(file_).tools[0].axis->direction - Eigen::Vector3d(0, -0.6, 0.8)).norm(), 0,
+              1e-15);
+}
+
+}  // namespace
+}  // namespace arthronaut::tools
