@@ -1,0 +1,49 @@
+#include <cstdio>
+#include <memory>
+
+#include "app/command_line/command.h"
+#include "navigation/strokes/curves.h"
+#include "navigation/strokes/stroke_tangents.h"
+
+namespace arthronaut::command_line {
+
+namespace {
+
+struct DigitiseArguments {
+  std::string poses, tools, bone = "femur", tool = "probe", output;
+};
+
+void digitise(Context& context, const DigitiseArguments& arguments) {
+  const auto poses = strokes::read_poses_file(arguments.poses);
+  const auto tools = tools::read_tools_file(arguments.tools);
+  const auto curves =
+      strokes::digitise(poses, tools, bones::bone_kind_from_text(arguments.bone), arguments.tool);
+  strokes::write_curves_file(arguments.output, curves);
+  if (arguments.output != "-") {
+    char line[120];
+    std::snprintf(line, sizeof line, "%zu points on %d strokes, %.0f mm", curves.size(),
+                  curves.empty() ? 0 : curves.back().curve + 1, strokes::stroke_length_mm(curves));
+    context.say(line);
+  }
+  if (curves.empty()) {
+    context.say_unreliable("the curves", {"the world marker and the tool were never seen together over a stroke"});
+  }
+}
+
+}  // namespace
+
+void add_digitise_command(CLI::App& app, Context& context) {
+  CLI::App* command = add_subcommand(
+      app, context, "digitise", "Turn marker poses into the curves that the probe's tip drew on the bone",
+      "arthronaut digitise --poses poses.csv --tools tools.json --bone femur --tool probe -o curves.csv");
+  const auto arguments = std::make_shared<DigitiseArguments>();
+  command->add_option("--poses", arguments->poses, "poses.csv as written by track")->required();
+  command->add_option("--tools", arguments->tools, "tools.json: markers and the tip")->required();
+  command->add_option("--bone", arguments->bone, "femur or tibia: whose world marker the tip is seen from")
+      ->check(CLI::IsMember({"femur", "tibia"}));
+  command->add_option("--tool", arguments->tool, "Name of the tool that touches the bone");
+  command->add_option("-o,--output", arguments->output, "curves.csv to write; - is standard output")->required();
+  command->callback([&context, arguments] { digitise(context, *arguments); });
+}
+
+}  // namespace arthronaut::command_line
