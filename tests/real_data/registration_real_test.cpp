@@ -1,0 +1,95 @@
+// Path-traced recordings of a real femur, whose truth is known exactly: what digitisation, registration and guidance make
+// of the true poses.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "navigation/guidance/guidance.h"
+#include "navigation/registration/registration.h"
+#include "navigation/strokes/curves.h"
+#include "planning/bones/mesh_file.h"
+#include "planning/files/csv_table.h"
+#include "planning/files/json_document.h"
+#include "tests/real_data/real_data.h"
+
+namespace arthronaut {
+
+namespace {
+
+tunnels::Tunnel read_truth_tunnel(const std::filesystem::path& file) {
+  const auto document = files::read_json(file, "arthronaut-acceptance.tunnel", 1);
+  tunnels::Tunnel tunnel;
+  tunnel.entry_mm = document.vector3("entry_mm");
+  tunnel.direction = document.vector3("direction").normalized();
+  return tunnel;
+}
+
+}  // namespace
+
+// The tip seen from the world marker, from true poses, is the curve that the renderer wrote: 0.01 mm is the rounding of
+// quaternions in the file, seen 26 mm away.
+TEST(RealDigitisation, TruePosesGiveTheTrueCurve) {
+  ARTHRONAUT_REQUIRE_DATA(set, "arthroscopy/probe_wet");
+  const auto curves = strokes::digitise(strokes::read_poses_file(set / "gt/poses.csv"),
+                                        tools::read_tools_file(set / "tools.json"), bones::BoneKind::Femur, "probe");
+  const auto truth = strokes::read_curves_file(set / "gt/curves.csv");
+  ASSERT_EQ(curves.size(), truth.size());
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    EXPECT_LT((curves[i].position_mm - truth[i].position_mm).norm(), 0.01) << "point " << i;
+  }
+}
+
+// Curves without noise on a real femur: found from nothing with any seed, with and without the prior of the marker.
+TEST(RealRegistration, CleanCurvesAreFoundFromNothing) {
+  ARTHRONAUT_REQUIRE_DATA(set, "arthroscopy/probe_wet");
+  const auto plan = read_truth_tunnel(set.parent_path() / "guide_wet/gt/tunnel.json");
+  const auto truth = registration::read_registration_file(set / "gt/registration_gt.json");
+  const auto curves = strokes::read_curves_file(set / "gt/curves.csv");
+  const registration::PreparedBone bone(bones::read_mesh(set / "bone.stl"));
+  for (const bool use_marker_prior : {true, false}) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      const auto found =
+          registration::register_curves(bone, curves, {seed, use_marker_prior, plan.entry_mm});
+      ASSERT_TRUE(found.has_pose);
+      const double error_mm = (found.marker_from_bone * plan.entry_mm - truth.marker_from_bone * plan.entry_mm).norm();
+      EXPECT_TRUE(found.reliable) << (found.reasons.empty() ? "" : found.reasons.front());
+      EXPECT_LT(error_mm, 0.1) << "seed " << seed << (use_marker_prior ? " with" : " without") << " prior";
+    }
+  }
+}
+
+// True poses and the true registration give the numbers that the renderer wrote, in every frame.
+TEST(RealGuidance, TruePosesGiveTheTrueNumbers) {
+  ARTHRONAUT_REQUIRE_DATA(set, "arthroscopy/guide_wet");
+  const auto plan = read_truth_tunnel(set / "gt/tunnel.json");
+  auto truth = registration::read_registration_file(set / "gt/registration_gt.json");
+  const auto tools = tools::read_tools_file(set / "tools.json");
+  const auto poses = strokes::read_poses_file(set / "gt/poses.csv");
+  const auto table = files::CsvTable::read(
+      set / "gt/guide.csv", {"frame", "tip_to_entry_mm", "axis_to_entry_mm", "angle_deg", "tip_x_mm", "dir_x"});
+  const tools::Tool* guide = tools.find_tool("femoral guide");
+  ASSERT_TRUE(guide != nullptr && guide->axis);
+
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    guidance::GuidanceInput input;
+    input.plan = &plan;
+    input.registration = &truth;
+    input.axis = &*guide->axis;
+    for (const strokes::PoseRow& pose : poses) {
+      if (pose.frame != table.integer(row, "frame")) continue;
+      geometry::TrackedPose tracked;
+      tracked.target_from_source = pose.camera_from_marker;
+      tracked.is_valid = true;
+      if (pose.marker_id == 0) input.camera_from_world_marker = tracked;
+      if (pose.marker_id == guide->marker_id) input.camera_from_guide = tracked;
+    }
+    const auto numbers = guidance::compute_guidance(input);
+    ASSERT_TRUE(numbers.is_valid()) << guidance::to_text(numbers.state);
+    EXPECT_NEAR(numbers.tip_to_entry_mm, table.number(row, "tip_to_entry_mm"), 0.01);
+    EXPECT_NEAR(numbers.axis_to_entry_mm, table.number(row, "axis_to_entry_mm"), 0.01);
+    EXPECT_NEAR(numbers.angle_deg, table.number(row, "angle_deg"), 0.01);
+    EXPECT_LT(std::hypot(numbers.offset_anterior_mm, numbers.offset_proximal_mm), 30.0);
+  }
+}
+
+}  // namespace arthronaut
