@@ -1,0 +1,85 @@
+#include "app/widgets/scene_pane.h"
+
+#include <cmath>
+
+namespace arthronaut::widgets {
+
+namespace {
+
+constexpr double kStillAfter_s = 0.25;
+constexpr float kMostPixelsWhenStill = 8e6F;
+constexpr float kClickTravel_px = 4;
+
+Eigen::Vector2d vector(const ImVec2& v) { return {v.x, v.y}; }
+
+}  // namespace
+
+ScenePane::ScenePane(std::function<void()> make_current) : view_(std::move(make_current)) {}
+
+void ScenePane::show(const scene::SceneContent& content) {
+  view_.show(content);
+  changed_ = true;
+}
+
+PaneInput ScenePane::draw(const Ui& ui, const char* name, const Rect& rect,
+                          const std::function<bool(const Eigen::Vector2d&)>& is_handle) {
+  PaneInput input;
+  if (rect.width < 2 || rect.height < 2) return input;
+  ImGui::SetCursorScreenPos(rect.min());
+  ImGui::PushID(name);
+  ImGui::InvisibleButton("view", {rect.width, rect.height},
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                             ImGuiButtonFlags_MouseButtonMiddle);
+  const ImGuiIO& io = ImGui::GetIO();
+  input.is_hovered = ImGui::IsItemHovered();
+  input.mouse_px = vector(io.MousePos) - vector(rect.min());
+  input.size_px = {rect.width, rect.height};
+  const bool left = ImGui::IsMouseDown(ImGuiMouseButton_Left);
+  if (ImGui::IsItemActivated()) {
+    press_travel_px_ = 0;
+    drags_handle_ = left && is_handle && is_handle(input.mouse_px);
+    input.handle_pressed = drags_handle_;
+  }
+  if (ImGui::IsItemActive()) {
+    press_travel_px_ += std::hypot(io.MouseDelta.x, io.MouseDelta.y);
+    input.handle_dragged = drags_handle_ && press_travel_px_ > 0;
+  }
+  if (ImGui::IsItemDeactivated()) {
+    input.handle_released = drags_handle_;
+    input.was_clicked = !drags_handle_ && press_travel_px_ < kClickTravel_px && input.is_hovered &&
+                        ImGui::IsMouseReleased(ImGuiMouseButton_Left);
+    drags_handle_ = false;
+  }
+  if (!is_held_) follow_mouse(input);
+  ui.log.note(name, rect.min(), rect.max());
+  ImGui::PopID();
+  render(ui, rect);
+  return input;
+}
+
+void ScenePane::follow_mouse(const PaneInput& input) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (ImGui::IsItemActive() && !drags_handle_ && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
+    const Eigen::Vector2d drag = vector(io.MouseDelta);
+    camera_ = ImGui::IsMouseDown(ImGuiMouseButton_Left) ? scene::orbited(camera_, drag, input.size_px.y())
+                                                        : scene::panned(camera_, drag, input.size_px.y());
+  }
+  if (input.is_hovered && io.MouseWheel != 0) camera_ = scene::zoomed(camera_, io.MouseWheel);
+}
+
+void ScenePane::render(const Ui& ui, const Rect& rect) {
+  if (!(camera_ == drawn_camera_)) changed_ = true;
+  if (changed_) changed_at_s_ = ui.now_s;
+  const bool is_still = ui.now_s - changed_at_s_ > kStillAfter_s && rect.width * rect.height * 4 < kMostPixelsWhenStill;
+  const float factor = is_still ? 2 : 1;
+  view_.resize(static_cast<int>(rect.width * factor), static_cast<int>(rect.height * factor));
+  view_.look(camera_);
+  view_.render_if_dirty();
+  drawn_camera_ = camera_;
+  changed_ = false;
+  const auto texture = static_cast<std::uintptr_t>(view_.texture());
+  ImGui::GetWindowDrawList()->AddImageRounded(reinterpret_cast<ImTextureID>(texture), rect.min(), rect.max(), {0, 1},
+                                              {1, 0}, IM_COL32_WHITE, ui.theme.px(6));
+}
+
+}  // namespace arthronaut::widgets

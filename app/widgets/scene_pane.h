@@ -1,0 +1,50 @@
+// A 3D view on the screen: draws a SceneView's texture and turns, shifts and zooms it by the mouse.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+
+#include "app/scene/scene_view.h"
+#include "app/widgets/controls.h"
+
+namespace arthronaut::widgets {
+
+// What the mouse did over the view in this frame. Pixels count from the view's top-left corner.
+struct PaneInput {
+  bool is_hovered = false;
+  Eigen::Vector2d mouse_px = Eigen::Vector2d::Zero();
+  Eigen::Vector2d size_px = Eigen::Vector2d::Ones();
+  bool was_clicked = false;      // pressed and let go in one place
+  bool handle_pressed = false;   // pressed on a handle, see below
+  bool handle_dragged = false;
+  bool handle_released = false;
+};
+
+class ScenePane {
+ public:
+  explicit ScenePane(std::function<void()> make_current);
+
+  void show(const scene::SceneContent& content);
+  void look(const scene::SceneCamera& camera) { camera_ = camera; }
+  [[nodiscard]] const scene::SceneCamera& camera() const { return camera_; }
+  // Turning by the mouse can be switched off where the program holds the camera.
+  void set_held(bool held) { is_held_ = held; }
+
+  // Left drag turns, right or middle drag shifts, the wheel zooms; a press where is_handle(pixel) holds drags the
+  // handle instead. While nothing moves the picture is drawn once more at twice the size, for smooth edges.
+  PaneInput draw(const Ui& ui, const char* name, const Rect& rect,
+                 const std::function<bool(const Eigen::Vector2d&)>& is_handle = {});
+
+ private:
+  void follow_mouse(const PaneInput& input);
+  void render(const Ui& ui, const Rect& rect);
+
+  scene::SceneView view_;
+  scene::SceneCamera camera_, drawn_camera_;
+  bool is_held_ = false, drags_handle_ = false, changed_ = true;
+  float press_travel_px_ = 0;
+  double changed_at_s_ = 0;
+};
+
+}  // namespace arthronaut::widgets
