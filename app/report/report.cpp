@@ -1,0 +1,304 @@
+#include "app/report/report.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "app/report/pdf_document.h"
+#include "app/report/versions.h"
+#include "app/scene/plan_picture.h"
+#include "navigation/camera/camera_file.h"
+#include "navigation/camera/medium.h"
+#include "navigation/recording/achieved_tunnel.h"
+#include "navigation/recording/session.h"
+#include "planning/cases/case.h"
+#include "planning/geometry/error.h"
+#include "planning/tunnels/tunnel.h"
+
+namespace arthronaut::report {
+
+namespace {
+
+constexpr double kLeftMm = 20, kWidthMm = 170;
+constexpr const char* kResearchSentence =
+    "Made by research software that is not a medical device. The figures are for research and teaching; they support no "
+    "clinical claim and no decision about a patient.";
+
+std::string number(double value, const char* unit, int decimals = 1) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.*f%s", decimals, value, unit);
+  return text;
+}
+
+std::string point(const Eigen::Vector3d& p, int decimals = 1) {
+  return number(p.x(), ", ", decimals) + number(p.y(), ", ", decimals) + number(p.z(), "", decimals);
+}
+
+std::string utc_now() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  char text[32];
+  std::tm broken{};
+  gmtime_r(&now, &broken);
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &broken);
+  return text;
+}
+
+// What the report tells of: the case and, where there is one, the session that matters.
+struct Content {
+  std::filesystem::path folder;
+  cases::Case knee;
+  std::unique_ptr<recording::RecordedSession> session;
+  std::optional<recording::AchievedTunnel> achieved;
+};
+
+Content gather(const std::filesystem::path& folder) {
+  Content content{.folder = folder, .knee = cases::load_case(folder), .session = nullptr, .achieved = std::nullopt};
+  const auto sessions = cases::session_folders(folder);
+  for (auto it = sessions.rbegin(); it != sessions.rend(); ++it) {
+    const auto achieved_file = *it / "achieved.json";
+    const bool has_achieved = std::filesystem::exists(achieved_file);
+    if (!has_achieved && !std::filesystem::exists(*it / "session.json")) continue;
+    auto session = std::make_unique<recording::RecordedSession>(*it);
+    if (!has_achieved && !session->registration()) continue;
+    content.session = std::move(session);
+    if (has_achieved) content.achieved = recording::read_achieved_file(achieved_file);
+    // The newest session with a drilled tunnel; failing that, the newest with a registration.
+    if (has_achieved) break;
+    bool older_has_achieved = false;
+    for (auto older = it; older != sessions.rend(); ++older) {
+      older_has_achieved |= std::filesystem::exists(*older / "achieved.json");
+    }
+    if (!older_has_achieved) break;
+  }
+  return content;
+}
+
+class Report {
+ public:
+  Report(const Content& content) : content_(content), pdf_("Arthronaut report: " + content.knee.name) {}
+
+  void write(const std::filesystem::path& file) {
+    plan_page();
+    theatre_page();
+    settings();
+    pdf_.save(file);
+  }
+
+ private:
+  void begin_page(const std::string& title) {
+    pdf_.add_page();
+    ++page_;
+    pdf_.text(kLeftMm, 20, title, {.size_pt = 16, .bold = true, .ink = kAccent});
+    pdf_.line(kLeftMm, 289, kLeftMm + kWidthMm, 289);
+    pdf_.text(kLeftMm, 293, content_.knee.name + " · page " + std::to_string(page_) +
+                                " · research software, not a medical device", {.size_pt = 7.5, .ink = kGray});
+    y_ = 28;
+  }
+  void heading(const std::string& text) {
+    y_ += 5;
+    pdf_.text(kLeftMm, y_, text, {.size_pt = 11.5, .bold = true});
+    y_ += 1;
+  }
+  void sentence(const std::string& text, const TextStyle& style = {}) {
+    y_ = pdf_.paragraph(kLeftMm, y_ + 4, kWidthMm, text, style) - 3;
+  }
+  void table(const std::vector<double>& widths_mm, const std::vector<std::vector<std::string>>& rows) {
+    y_ = pdf_.table(kLeftMm, y_, widths_mm, rows);
+  }
+
+  // Two pictures side by side with their names.
+  void pictures(scene::View left, scene::View right, bool with_result) {
+    const double width = (kWidthMm - 6) / 2;
+    double x = kLeftMm, height = 0;
+    for (const scene::View view : {left, right}) {
+      scene::PictureRequest request;
+      request.knee = &content_.knee;
+      request.view = view;
+      request.width = 1000;
+      request.height = 800;
+      request.light_background = true;
+      if (with_result && content_.achieved) {
+        request.achieved = content_.achieved->truth ? *content_.achieved->truth : content_.achieved->measured;
+      }
+      if (with_result) request.curve_points_in_bone = touched_points();
+      const auto picture = scene::render_plan_picture(request);
+      height = pdf_.image(x, y_ + 3, width, picture.rgb, picture.width, picture.height);
+      pdf_.text(x, y_ + 3 + height + 3.5, std::string(scene::to_text(view)), {.size_pt = 8, .ink = kGray});
+      x += width + 6;
+    }
+    y_ += height + 10;
+  }
+
+  std::vector<Eigen::Vector3d> touched_points() const {
+    std::vector<Eigen::Vector3d> points;
+    if (!content_.session || !content_.session->registration()) return points;
+    const auto bone_from_marker = content_.session->registration()->marker_from_bone.inverse();
+    for (const auto& p : content_.session->curves()) points.push_back(bone_from_marker * p.position_mm);
+    return points;
+  }
+
+  void plan_page();
+  void theatre_page();
+  void registration_section(const registration::RegistrationSummary& registration);
+  void result_section(const recording::AchievedTunnel& achieved);
+  void settings();
+
+  const Content& content_;
+  PdfDocument pdf_;
+  double y_ = 0;
+  int page_ = 0;
+};
+
+void Report::plan_page() {
+  begin_page("ACL reconstruction: the plan");
+  table({45, 125}, {{"Case", ""},
+                    {"Name", content_.knee.name},
+                    {"Side", std::string(bones::to_text(content_.knee.side))},
+                    {"Created", content_.knee.created_utc},
+                    {"Report made", utc_now()}});
+  sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
+  heading("Planned tunnels");
+  if (content_.knee.plan.tunnels.empty()) {
+    sentence("No tunnel is planned.");
+  } else {
+    std::vector<std::vector<std::string>> rows = {{"Bone", "Entry, mm (LPS)", "Direction", "Diameter", "Length in bone",
+                                                   "Least wall", "Exit, mm (LPS)"}};
+    for (const auto& [kind, tunnel] : content_.knee.plan.tunnels) {
+      const auto bone = content_.knee.bones.find(kind);
+      tunnels::TunnelGeometry geometry;
+      if (bone != content_.knee.bones.end()) {
+        geometry = tunnels::measure(tunnel, geometry::Surface(bone->second.mesh));
+      }
+      const bool in_bone = geometry.enters_bone;
+      rows.push_back({std::string(bones::to_text(kind)), point(tunnel.entry_mm), point(tunnel.direction, 2),
+                      number(tunnel.diameter_mm, " mm"), in_bone ? number(geometry.length_mm, " mm") : "misses the bone",
+                      in_bone ? number(geometry.wall_mm, " mm") : "–", in_bone ? point(geometry.exit_mm) : "–"});
+    }
+    table({16, 34, 32, 18, 20, 18, 32}, rows);
+  }
+  pictures(scene::View::Anterior, scene::View::Lateral, false);
+}
+
+void Report::registration_section(const registration::RegistrationSummary& registration) {
+  heading("Registration of the bone");
+  table({70, 100}, {{"Quantity", "Value"},
+                    {"Verdict", registration.reliable ? "reliable" : "NOT RELIABLE"},
+                    {"Touched points", std::to_string(registration.point_count)},
+                    {"Distance of the points to the bone, RMS", number(registration.rms_mm, " mm", 2)},
+                    {"Points that fit", number(100 * registration.inlier_fraction, " %", 0)},
+                    {"Predicted error at the target, one sigma", number(registration.predicted_tre_mm, " mm", 2)}});
+  for (const auto& reason : registration.reasons) sentence("– " + reason, {.ink = kWarning});
+  sentence("A small distance of the points does not prove a small error at the tunnel: the predicted error is the figure "
+           "to go by.", {.size_pt = 8, .ink = kGray});
+}
+
+void Report::result_section(const recording::AchievedTunnel& achieved) {
+  heading("Planned against achieved");
+  const auto planned_measured = recording::compare(achieved.planned, achieved.measured);
+  std::vector<std::vector<std::string>> rows = {
+      {"Comparison", "Entry to entry", "Entry to axis", "Angle"},
+      {"As navigation measured it, against the plan", number(planned_measured.entry_mm, " mm", 2),
+       number(planned_measured.axis_to_entry_mm, " mm", 2), number(planned_measured.angle_deg, "°", 2)}};
+  if (achieved.truth) {
+    const auto planned_true = recording::compare(achieved.planned, *achieved.truth);
+    const auto measured_true = recording::compare(*achieved.truth, achieved.measured);
+    rows.push_back({"As it truly lies (simulator), against the plan", number(planned_true.entry_mm, " mm", 2),
+                    number(planned_true.axis_to_entry_mm, " mm", 2), number(planned_true.angle_deg, "°", 2)});
+    rows.push_back({"Error of navigation: measured against true", number(measured_true.entry_mm, " mm", 2),
+                    number(measured_true.axis_to_entry_mm, " mm", 2), number(measured_true.angle_deg, "°", 2)});
+  }
+  table({86, 28, 28, 28}, rows);
+  sentence("Depth reached " + number(achieved.depth_mm, " mm") + ". Predicted error of these figures, one sigma: " +
+               number(achieved.sigma_offset_mm, " mm", 2) + ", " + number(achieved.sigma_angle_deg, "°", 2) +
+               ". Median of " + std::to_string(achieved.pose_count) + " poses of the guide while drilling.",
+           {.size_pt = 8.5, .ink = kGray});
+}
+
+void Report::theatre_page() {
+  begin_page("In theatre");
+  if (!content_.session) {
+    sentence("No session with a registration or a drilled tunnel is recorded in this case.");
+    pictures(scene::View::Notch, scene::View::Medial, false);
+    return;
+  }
+  const auto& session = *content_.session;
+  const auto& header = session.header();
+  long with_world = 0, with_mark = 0;
+  const auto options = session.pipeline_options();
+  const auto* world = options.tools.find_world_marker(header.bone);
+  for (const auto& frame : session.frames()) {
+    for (const auto& pose : frame.poses) with_world += world != nullptr && pose.marker_id == world->marker_id;
+    with_mark += frame.lens.mark == lens::MarkState::Found;
+  }
+  const double frames = std::max<double>(1, static_cast<double>(session.frames().size()));
+  table({70, 100},
+        {{"Session", ""},
+         {"Id", header.id},
+         {"Started", header.started_utc},
+         {"Bone", std::string(bones::to_text(header.bone))},
+         {"Video", header.source},
+         {"Medium", camera::medium_to_text(header.refractive_index)},
+         {"Frames", std::to_string(session.frames().size()) + (session.was_finished() ? "" : " (cut off by a crash)")},
+         {"World marker tracked", number(100 * with_world / frames, " % of the frames")},
+         {"Lens mark found", number(100 * with_mark / frames, " % of the frames")}});
+  if (session.registration()) registration_section(*session.registration());
+  if (content_.achieved) result_section(*content_.achieved);
+  if (y_ > 195) begin_page("Pictures of the result");
+  pictures(scene::View::Notch, scene::View::Lateral, true);
+  if (content_.achieved) {
+    sentence("Planned tunnel, and beside it the tunnel as drilled; dots: where the probe touched the bone.",
+             {.size_pt = 8, .ink = kGray});
+  }
+}
+
+void Report::settings() {
+  begin_page("Camera, tools and versions");
+  const auto camera_file = cases::camera_file(content_.folder);
+  if (std::filesystem::exists(camera_file)) {
+    const auto record = camera::read_camera_file(camera_file);
+    const auto& c = record.calibration;
+    heading("Camera");
+    table({70, 100},
+          {{"Quantity", "Value"},
+           {"Focal length", number(c.focal_px, " px", 2)},
+           {"Distortion xi", number(c.distortion_xi, "", 4)},
+           {"Principal point", number(c.principal_point_px.x(), ", ", 1) + number(c.principal_point_px.y(), " px", 1)},
+           {"Centre of rotation", number(c.rotation_center_px.x(), ", ", 1) + number(c.rotation_center_px.y(), " px", 1)},
+           {"Reprojection error of the calibration", record.rms_px >= 0 ? number(record.rms_px, " px", 2) : "not recorded"},
+           {"Calibrated in", camera::medium_to_text(c.refractive_index)},
+           {"Date", record.date_utc.empty() ? "not recorded" : record.date_utc},
+           {"Scope, head", record.scope_name + (record.head_name.empty() ? "" : ", " + record.head_name)}});
+  }
+  if (content_.session) {
+    heading("Tools");
+    std::vector<std::vector<std::string>> rows = {{"Tool", "Marker", "Size", "Tip or axis in its marker's frame, mm"}};
+    const auto options = content_.session->pipeline_options();
+    for (const auto& world : options.tools.world_markers) {
+      rows.push_back({std::string(bones::to_text(world.bone)) + " (world)", std::to_string(world.marker_id),
+                      number(world.size_mm, " mm", 2), ""});
+    }
+    for (const auto& tool : options.tools.tools) {
+      std::string where;
+      if (tool.tip_mm) where = "tip " + point(*tool.tip_mm, 2);
+      if (tool.axis) where = "axis through " + point(tool.axis->point_mm, 2) + " along " + point(tool.axis->direction, 3);
+      rows.push_back({tool.name, std::to_string(tool.marker_id), number(tool.size_mm, " mm", 2), where});
+    }
+    table({40, 20, 24, 86}, rows);
+  }
+  heading("Versions");
+  std::vector<std::vector<std::string>> rows = {{"Part", "Version"}};
+  for (const auto& [name, version] : versions()) rows.push_back({name, version});
+  table({70, 100}, rows);
+  sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
+}
+
+}  // namespace
+
+void write_report(const std::filesystem::path& case_folder, const std::filesystem::path& output_pdf) {
+  const Content content = gather(case_folder);
+  if (content.knee.bones.empty()) throw InvalidInput(case_folder, "case.json", "holds no bone to report on");
+  Report(content).write(output_pdf);
+}
+
+}  // namespace arthronaut::report
