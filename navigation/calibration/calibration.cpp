@@ -1,0 +1,171 @@
+#include "navigation/calibration/calibration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <numeric>
+
+#include "navigation/calibration/adjustment.h"
+#include "navigation/calibration/closed_form.h"
+#include "navigation/calibration/verdict.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::calibration {
+namespace {
+
+void check_contract(std::span<const CalibrationPicture> pictures, const CalibrationOptions& options) {
+  if (!(options.square_mm > 0) || !std::isfinite(options.square_mm))
+    throw InvalidInput("calibrate: the side of a square must be above 0 mm");
+  if (!(options.refractive_index >= 1 && options.refractive_index <= 2))
+    throw InvalidInput("calibrate: the refractive index must lie in [1, 2]");
+  if (pictures.size() < 3)
+    throw InvalidInput("calibrate: needs three pictures or more, has " + std::to_string(pictures.size()));
+  for (const CalibrationPicture& picture : pictures) {
+    if (picture.size_px != pictures.front().size_px)
+      throw InvalidInput(picture.name + ": is " + std::to_string(picture.size_px.x()) + " x " +
+                         std::to_string(picture.size_px.y()) + " px, " + pictures.front().name + " is " +
+                         std::to_string(pictures.front().size_px.x()) + " x " +
+                         std::to_string(pictures.front().size_px.y()) +
+                         ": all pictures must come from one camera at one setting");
+    if (!picture.board.found()) throw InvalidInput(picture.name + ": " + picture.board.reason);
+  }
+}
+
+// Corners close to the rim are pulled by it; the board ends where the view does.
+std::vector<BoardCorner> corners_inside_view(const CalibrationPicture& picture) {
+  std::vector<BoardCorner> inside;
+  const double reach_px = picture.lens.circle.radius_px - 6;
+  for (const BoardCorner& corner : picture.board.corners)
+    if (!picture.lens.circle_found || (corner.pixel - picture.lens.circle.center_px).norm() < reach_px)
+      inside.push_back(corner);
+  return inside;
+}
+
+Sighting sighting_of(const CalibrationPicture& picture, double square_mm) {
+  Sighting sighting;
+  for (const BoardCorner& corner : corners_inside_view(picture)) {
+    sighting.pixels.push_back(corner.pixel);
+    sighting.board_mm.push_back(corner.lattice.cast<double>() * square_mm);
+  }
+  sighting.has_angle = picture.lens.mark == lens::MarkState::Found;
+  sighting.mark_angle_deg = picture.lens.mark_angle_deg;
+  sighting.has_circle = picture.lens.circle_found;
+  sighting.circle_center_px = picture.lens.circle.center_px;
+  return sighting;
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
+}
+
+double median_radius_px(std::span<const CalibrationPicture> pictures) {
+  std::vector<double> radii;
+  for (const CalibrationPicture& picture : pictures)
+    if (picture.lens.circle_found) radii.push_back(picture.lens.circle.radius_px);
+  if (radii.empty()) return 0;
+  std::nth_element(radii.begin(), radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2), radii.end());
+  return radii[radii.size() / 2];
+}
+
+// Each picture in turn against the camera that the others give: RMS over all their corners, -1 when that fails.
+double leave_one_out(std::span<const Sighting> sightings, const Estimate& estimate, const AdjustmentOptions& options) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t out = 0; out < sightings.size(); ++out) {
+    std::vector<Sighting> rest;
+    Estimate start = estimate, of_one = estimate;
+    start.lens_angle_rad.clear();
+    start.camera_from_board.clear();
+    for (std::size_t i = 0; i < sightings.size(); ++i) {
+      if (i == out) continue;
+      rest.push_back(sightings[i]);
+      start.lens_angle_rad.push_back(estimate.lens_angle_rad[i]);
+      start.camera_from_board.push_back(estimate.camera_from_board[i]);
+    }
+    const AdjustmentResult without = adjust(rest, start, options);
+    of_one = without.estimate;
+    of_one.lens_angle_rad = {estimate.lens_angle_rad[out]};
+    of_one.camera_from_board = {estimate.camera_from_board[out]};
+    AdjustmentOptions pose_alone = options;
+    pose_alone.fix_intrinsics = true;
+    const AdjustmentResult held = adjust(sightings.subspan(out, 1), of_one, pose_alone);
+    if (without.rms_px < 0 || held.rms_px < 0) return -1;
+    const std::size_t corners = sightings[out].pixels.size();
+    sum += held.rms_px * held.rms_px * static_cast<double>(corners);
+    count += corners;
+  }
+  return std::sqrt(sum / static_cast<double>(count));
+}
+
+double rms_of(const std::vector<Eigen::Vector2d>& residuals_px) {
+  double sum = 0;
+  for (const auto& r : residuals_px) sum += r.squaredNorm();
+  return residuals_px.empty() ? -1 : std::sqrt(sum / static_cast<double>(residuals_px.size()));
+}
+
+}  // namespace
+
+CalibrationPicture observe_picture(const std::string& name, const camera::GrayView& picture) {
+  return {name, {picture.width, picture.height}, find_checkerboard(picture), lens::observe_still(picture)};
+}
+
+CalibrationSummary calibrate(std::span<const CalibrationPicture> pictures, const CalibrationOptions& options) {
+  check_contract(pictures, options);
+  CalibrationSummary summary;
+  std::vector<Sighting> sightings;
+  for (const CalibrationPicture& picture : pictures) {
+    sightings.push_back(sighting_of(picture, options.square_mm));
+    if (sightings.back().pixels.size() < 16)
+      throw InvalidInput(picture.name + ": fewer than 16 corners of the board lie inside the round view");
+  }
+  AdjustmentOptions adjustment;
+  adjustment.turns = std::all_of(sightings.begin(), sightings.end(), [](const Sighting& s) { return s.has_angle; });
+
+  const std::vector<Estimate> starts = closed_form_starts(sightings, pictures.front().size_px);
+  AdjustmentResult best;
+  for (const Estimate& start : starts) {
+    AdjustmentResult result = adjust(sightings, start, adjustment);
+    if (result.rms_px >= 0 && (best.rms_px < 0 || result.rms_px < best.rms_px)) best = std::move(result);
+    if (best.rms_px >= 0 && best.rms_px < 0.5) break;
+  }
+  if (best.rms_px < 0) {
+    summary.outcome = CalibrationSummary::Outcome::Failed;
+    summary.reasons.push_back("no camera explains the pictures; are they of one flat checkerboard?");
+    return summary;
+  }
+
+  const Estimate& found = best.estimate;
+  camera::Calibration& calibration = summary.record.calibration;
+  calibration.image_size_px = pictures.front().size_px;
+  calibration.focal_px = found.focal_px;
+  calibration.distortion_xi = found.xi;
+  calibration.principal_point_px = found.principal_point_px;
+  calibration.rotation_center_px = found.rotation_center_px;
+  calibration.reference_mark_angle_deg = found.reference_mark_angle_deg;
+  calibration.refractive_index = options.refractive_index;
+  calibration.boundary = {found.circle_center_px, median_radius_px(pictures)};
+  summary.record.covariance = best.covariance;
+  summary.record.rms_px = summary.rms_px = best.rms_px;
+  summary.record.date_utc = utc_now();
+  summary.record.scope_name = options.scope_name;
+  summary.record.head_name = options.head_name;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const geometry::RigidTransform& pose = found.camera_from_board[i];
+    const double tilt_rad = geometry::angle_between_rad(pose.rotate(Eigen::Vector3d::UnitZ()), Eigen::Vector3d::UnitZ());
+    const double tilt_deg = geometry::deg_from_rad(std::min(tilt_rad, geometry::kPi - tilt_rad));
+    summary.pictures.push_back({pictures[i].name, rms_of(best.residuals_px[i]), tilt_deg,
+                                geometry::deg_from_rad(found.lens_angle_rad[i]), pose, best.residuals_px[i]});
+  }
+  if (options.leave_one_out) summary.leave_one_out_rms_px = leave_one_out(sightings, found, adjustment);
+  summary.reasons = reasons_against(summary, sightings, adjustment.turns);
+  summary.outcome =
+      summary.reasons.empty() ? CalibrationSummary::Outcome::Ok : CalibrationSummary::Outcome::Unreliable;
+  return summary;
+}
+
+}  // namespace arthronaut::calibration

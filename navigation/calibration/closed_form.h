@@ -1,0 +1,23 @@
+// Starts for the joint adjustment, from nothing: the closed form of each picture, then what they have in common.
+// Inside the module.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "navigation/calibration/adjustment.h"
+
+namespace arthronaut::calibration {
+
+// Several, the likeliest first: with the closed form's distortion, then with assumed ones for pictures that do not
+// hold it (little distortion, boards that face the lens).
+[[nodiscard]] std::vector<Estimate> closed_form_starts(std::span<const Sighting> sightings,
+                                                       const Eigen::Vector2i& size_px);
+
+// The point about which these places turn by these angles, by least squares; nullopt when they hardly turn.
+[[nodiscard]] std::optional<Eigen::Vector2d> center_of_turning(std::span<const Eigen::Vector2d> places,
+                                                               std::span<const double> angles_rad);
+
+}  // namespace arthronaut::calibration

@@ -1,0 +1,108 @@
+#include "navigation/calibration/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace arthronaut::calibration {
+namespace {
+
+std::string text(const char* format, double a, double b = 0) {
+  char buffer[200];
+  std::snprintf(buffer, sizeof buffer, format, a, b);
+  return buffer;
+}
+
+// The largest difference between two of the lens angles, degrees.
+double widest_turn_deg(const CalibrationSummary& summary) {
+  double widest = 0;
+  for (const auto& a : summary.pictures)
+    for (const auto& b : summary.pictures)
+      widest = std::max(widest, std::abs(std::remainder(a.lens_angle_deg - b.lens_angle_deg, 360.0)));
+  return widest;
+}
+
+// How far out from the principal point the corners reach, as a share of the view's radius.
+double reach_share(const CalibrationSummary& summary, std::span<const Sighting> sightings) {
+  const camera::Calibration& c = summary.record.calibration;
+  std::vector<double> distances;
+  for (const Sighting& seen : sightings)
+    for (const auto& pixel : seen.pixels) distances.push_back((pixel - c.principal_point_px).norm());
+  const auto at = distances.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(distances.size() - 1));
+  std::nth_element(distances.begin(), at, distances.end());
+  const double radius = c.boundary.radius_px > 0 ? c.boundary.radius_px : 0.5 * c.image_size_px.cast<double>().norm();
+  return *at / radius;
+}
+
+// Distance of each board along the ray through the middle of its corners.
+double median_distance_mm(const CalibrationSummary& summary, std::span<const Sighting> sightings) {
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    for (const auto& p : sightings[i].board_mm) mean += p / static_cast<double>(sightings[i].board_mm.size());
+    distances.push_back((summary.pictures[i].camera_from_board * Eigen::Vector3d(mean.x(), mean.y(), 0)).norm());
+  }
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
+}  // namespace
+
+std::vector<std::string> reasons_against(const CalibrationSummary& summary, std::span<const Sighting> sightings,
+                                         bool turns) {
+  std::vector<std::string> reasons;
+  const camera::Calibration& c = summary.record.calibration;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    if (!sightings[i].has_circle)
+      reasons.push_back(summary.pictures[i].name + ": the round image border was not found");
+    else if (!sightings[i].has_angle)
+      reasons.push_back(summary.pictures[i].name + ": the lens mark was not found");
+  }
+  if (!turns) {
+    reasons.push_back("the lens angles are not known, so the centre of rotation is not");
+  } else if (const double turn = widest_turn_deg(summary); turn < kLeastTurn_deg) {
+    reasons.push_back(text("the lens was turned by no more than %.0f degrees between the pictures (needs %.0f), so the "
+                           "centre of rotation is not known", turn, kLeastTurn_deg));
+  }
+
+  double tilt_deg = 0;
+  for (const auto& picture : summary.pictures) tilt_deg = std::max(tilt_deg, picture.tilt_deg);
+  if (tilt_deg < kLeastTilt_deg)
+    reasons.push_back(text("all boards face the lens (tilted by %.0f degrees at most, needs %.0f), so the focal length is "
+                           "not known", tilt_deg, kLeastTilt_deg));
+  if (const double mm = median_distance_mm(summary, sightings); mm < kNearest_mm || mm > kFurthest_mm)
+    reasons.push_back(text("the boards would stand %.0f mm from the lens, which no arthroscope sees sharply: is the side of "
+                           "a square right?", mm));
+  if (const double reach = reach_share(summary, sightings); reach < 0.6)
+    reasons.push_back(text("the board covers the middle of the view only (%.0f %% of its radius), so the distortion is not "
+                           "known", 100 * reach));
+
+  if (!(summary.rms_px <= kMostRms_px))
+    reasons.push_back(text("corners miss the model by %.2f px (at most %.2f)", summary.rms_px, kMostRms_px));
+  if (summary.leave_one_out_rms_px > kMostLeaveOneOutRms_px)
+    reasons.push_back(text("a picture left out is missed by %.2f px (at most %.2f)", summary.leave_one_out_rms_px,
+                           kMostLeaveOneOutRms_px));
+  for (const auto& picture : summary.pictures)
+    if (picture.rms_px > 2.5 * summary.rms_px && picture.rms_px > kMostRms_px)
+      reasons.push_back(picture.name + ": does not agree with the other pictures");
+
+  if (summary.record.covariance.rows() == 6) {
+    const Eigen::VectorXd sigma = summary.record.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+    if (!(sigma(0) <= kMostFocalSigma * c.focal_px))
+      reasons.push_back(text("the focal length is known to %.1f px only (1 sigma, of %.0f)", sigma(0), c.focal_px));
+    if (!(std::max(sigma(2), sigma(3)) <= kMostCenterSigma_px))
+      reasons.push_back(text("the principal point is known to %.1f px only (1 sigma)", std::max(sigma(2), sigma(3))));
+    if (turns && !(std::max(sigma(4), sigma(5)) <= kMostCenterSigma_px))
+      reasons.push_back(text("the centre of rotation is known to %.1f px only (1 sigma)", std::max(sigma(4), sigma(5))));
+  } else {
+    reasons.push_back("how well the camera is known could not be computed: the pictures leave it open");
+  }
+  if (c.boundary.radius_px > 0 && (c.principal_point_px - c.boundary.center_px).norm() > 0.12 * c.boundary.radius_px)
+    reasons.push_back("the principal point lies far from the middle of the round view");
+  if (c.distortion_xi < -1.2 || c.distortion_xi > 0.3)
+    reasons.push_back(text("the distortion %.2f is not that of an endoscope", c.distortion_xi));
+  return reasons;
+}
+
+}  // namespace arthronaut::calibration
