@@ -27,7 +27,11 @@ struct Format {
   std::string_view extension;
   RawMesh (*parse)(const std::filesystem::path&, std::string_view);
 };
-constexpr std::array<Format, 3> kFormats{{{".stl", parse_stl}, {".ply", parse_ply}, {".obj", parse_obj}}};
+constexpr std::array<Format, 5> kFormats{{{".stl", parse_stl},
+                                          {".ply", parse_ply},
+                                          {".obj", parse_obj},
+                                          {".vtk", parse_legacy_vtk},
+                                          {".vtp", parse_vtp}}};
 
 const Format* format_of(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();
