@@ -31,19 +31,9 @@ void check_contract(std::span<const CalibrationPicture> pictures, const Calibrat
   }
 }
 
-// Corners close to the rim are pulled by it; the board ends where the view does.
-std::vector<BoardCorner> corners_inside_view(const CalibrationPicture& picture) {
-  std::vector<BoardCorner> inside;
-  const double reach_px = picture.lens.circle.radius_px - 6;
-  for (const BoardCorner& corner : picture.board.corners)
-    if (!picture.lens.circle_found || (corner.pixel - picture.lens.circle.center_px).norm() < reach_px)
-      inside.push_back(corner);
-  return inside;
-}
-
 Sighting sighting_of(const CalibrationPicture& picture, double square_mm) {
   Sighting sighting;
-  for (const BoardCorner& corner : corners_inside_view(picture)) {
+  for (const BoardCorner& corner : corners_used(picture)) {
     sighting.pixels.push_back(corner.pixel);
     sighting.board_mm.push_back(corner.lattice.cast<double>() * square_mm);
   }
@@ -63,11 +53,12 @@ std::string utc_now() {
   return text;
 }
 
+// Where no round border is seen, the circle about the whole image stands in for it.
 double median_radius_px(std::span<const CalibrationPicture> pictures) {
   std::vector<double> radii;
   for (const CalibrationPicture& picture : pictures)
     if (picture.lens.circle_found) radii.push_back(picture.lens.circle.radius_px);
-  if (radii.empty()) return 0;
+  if (radii.empty()) return 0.5 * pictures.front().size_px.cast<double>().norm();
   std::nth_element(radii.begin(), radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2), radii.end());
   return radii[radii.size() / 2];
 }
@@ -109,6 +100,15 @@ double rms_of(const std::vector<Eigen::Vector2d>& residuals_px) {
 }
 
 }  // namespace
+
+std::vector<BoardCorner> corners_used(const CalibrationPicture& picture) {
+  std::vector<BoardCorner> used;
+  const double reach_px = picture.lens.circle.radius_px - 6;
+  for (const BoardCorner& corner : picture.board.corners)
+    if (!picture.lens.circle_found || (corner.pixel - picture.lens.circle.center_px).norm() < reach_px)
+      used.push_back(corner);
+  return used;
+}
 
 CalibrationPicture observe_picture(const std::string& name, const camera::GrayView& picture) {
   return {name, {picture.width, picture.height}, find_checkerboard(picture), lens::observe_still(picture)};

@@ -56,7 +56,7 @@ struct CalibrationSummary {
     double tilt_deg = 0;
     double lens_angle_deg = 0;
     geometry::RigidTransform camera_from_board;
-    std::vector<Eigen::Vector2d> residuals_px;  // in the order of the corners
+    std::vector<Eigen::Vector2d> residuals_px;  // in the order of corners_used()
   };
   std::vector<Picture> pictures;
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Ok || outcome == Outcome::Unreliable; }
@@ -64,6 +64,9 @@ struct CalibrationSummary {
 
 // Detects board, circle and mark in one picture.
 [[nodiscard]] CalibrationPicture observe_picture(const std::string& name, const camera::GrayView& picture);
+
+// The corners of a picture that calibrate() uses: those clear of the rim, which pulls at what lies beside it.
+[[nodiscard]] std::vector<BoardCorner> corners_used(const CalibrationPicture& picture);
 
 // Throws InvalidInput when the options or the pictures break the contract (fewer than three, different sizes, no
 // board: the message names the picture). Poor geometry (fronto-parallel, no rotation, implausible distance) is an

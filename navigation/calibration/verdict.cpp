@@ -30,8 +30,7 @@ double reach_share(const CalibrationSummary& summary, std::span<const Sighting> 
     for (const auto& pixel : seen.pixels) distances.push_back((pixel - c.principal_point_px).norm());
   const auto at = distances.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(distances.size() - 1));
   std::nth_element(distances.begin(), at, distances.end());
-  const double radius = c.boundary.radius_px > 0 ? c.boundary.radius_px : 0.5 * c.image_size_px.cast<double>().norm();
-  return *at / radius;
+  return *at / c.boundary.radius_px;
 }
 
 // Distance of each board along the ray through the middle of its corners.
@@ -98,7 +97,7 @@ std::vector<std::string> reasons_against(const CalibrationSummary& summary, std:
   } else {
     reasons.push_back("how well the camera is known could not be computed: the pictures leave it open");
   }
-  if (c.boundary.radius_px > 0 && (c.principal_point_px - c.boundary.center_px).norm() > 0.12 * c.boundary.radius_px)
+  if ((c.principal_point_px - c.boundary.center_px).norm() > 0.12 * c.boundary.radius_px)
     reasons.push_back("the principal point lies far from the middle of the round view");
   if (c.distortion_xi < -1.2 || c.distortion_xi > 0.3)
     reasons.push_back(text("the distortion %.2f is not that of an endoscope", c.distortion_xi));
