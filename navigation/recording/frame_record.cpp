@@ -1,0 +1,148 @@
+#include "navigation/recording/frame_record.h"
+
+#include <algorithm>
+
+namespace arthronaut::recording {
+
+namespace {
+
+void bind_vector(Statement& statement, int first, const Eigen::Vector3d& v) {
+  statement.bind(first, v.x()).bind(first + 1, v.y()).bind(first + 2, v.z());
+}
+
+Eigen::Vector3d vector_at(const Statement& statement, int first) {
+  return {statement.number(first), statement.number(first + 1), statement.number(first + 2)};
+}
+
+RecordedFrame frame_at(const Statement& row) {
+  RecordedFrame frame;
+  frame.index = row.integer(0);
+  frame.timestamp_ns = row.integer(1);
+  lens::LensObservation& lens = frame.lens;
+  lens.timestamp_ns = frame.timestamp_ns;
+  lens.circle_found = row.boolean(2);
+  lens.circle.center_px = {row.number(3), row.number(4)};
+  lens.circle.radius_px = row.number(5);
+  lens.circle_coverage_deg = row.number(6);
+  lens.mark = static_cast<lens::MarkState>(row.integer(7));
+  lens.polarity = static_cast<lens::MarkPolarity>(row.integer(8));
+  lens.mark_angle_deg = row.number(9);
+  lens.mark_sigma_deg = row.number(10);
+  lens.is_stale = row.boolean(11);
+  lens.zoom_or_slip = row.boolean(12);
+  frame.intrinsics_are_known = row.boolean(13);
+  frame.is_frozen = row.boolean(14);
+  frame.tip_is_valid = row.boolean(15);
+  if (frame.tip_is_valid) frame.tip_in_world_mm = vector_at(row, 16);
+  return frame;
+}
+
+strokes::PoseRow pose_at(const Statement& row, const RecordedFrame& frame) {
+  strokes::PoseRow pose;
+  pose.frame = frame.index;
+  pose.time_s = static_cast<double>(frame.timestamp_ns) * 1e-9;
+  pose.marker_id = static_cast<int>(row.integer(1));
+  pose.camera_from_marker.rotation = {row.number(4), row.number(5), row.number(6), row.number(7)};
+  pose.camera_from_marker.translation_mm = vector_at(row, 8);
+  pose.rms_px = row.number(11);
+  if (frame.lens.mark == lens::MarkState::Found) pose.mark_angle_deg = frame.lens.mark_angle_deg;
+  return pose;
+}
+
+guidance::GuidanceNumbers guidance_at(const Statement& row, const RecordedFrame& frame) {
+  guidance::GuidanceNumbers g;
+  g.timestamp_ns = frame.timestamp_ns;
+  g.state = static_cast<guidance::GuidanceState>(row.integer(1));
+  if (!g.is_valid()) return g;
+  g.guide_point_mm = vector_at(row, 2);
+  g.guide_direction = vector_at(row, 5);
+  g.tip_to_entry_mm = row.number(8);
+  g.axis_to_entry_mm = row.number(9);
+  g.angle_deg = row.number(10);
+  g.offset_anterior_mm = row.number(11);
+  g.offset_proximal_mm = row.number(12);
+  g.depth_mm = row.number(13);
+  g.remaining_mm = row.number(14);
+  g.sigma_offset_mm = row.number(15);
+  g.sigma_angle_deg = row.number(16);
+  return g;
+}
+
+// Rows of another table, in the order of frames, each with its frame.
+template <typename Visit>
+void for_each_row(Statement& rows, std::vector<RecordedFrame>& frames, const Visit& visit) {
+  auto frame = frames.begin();
+  while (rows.step()) {
+    frame = std::find_if(frame, frames.end(), [&](const RecordedFrame& f) { return f.index == rows.integer(0); });
+    if (frame == frames.end()) return;
+    visit(rows, *frame);
+  }
+}
+
+}  // namespace
+
+FrameInserter::FrameInserter(SessionDatabase& database)
+    : frame_(database.prepare(
+          "INSERT INTO frames VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")),
+      marker_(database.prepare("INSERT INTO markers VALUES(?,?,?,?,?,?,?,?,?,?,?,?)")),
+      guidance_(database.prepare("INSERT INTO guidance VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")) {}
+
+void FrameInserter::insert(const pipeline::FrameResult& result) {
+  const lens::LensObservation& lens = result.lens;
+  frame_.bind(1, result.frame_index).bind(2, result.timestamp_ns).bind(3, lens.circle_found);
+  frame_.bind(4, lens.circle.center_px.x()).bind(5, lens.circle.center_px.y()).bind(6, lens.circle.radius_px);
+  frame_.bind(7, lens.circle_coverage_deg).bind(8, static_cast<int>(lens.mark));
+  frame_.bind(9, static_cast<int>(lens.polarity)).bind(10, lens.mark_angle_deg).bind(11, lens.mark_sigma_deg);
+  frame_.bind(12, lens.is_stale).bind(13, lens.zoom_or_slip).bind(14, result.intrinsics_are_known);
+  frame_.bind(15, result.is_frozen).bind(16, result.tip_is_valid);
+  bind_vector(frame_, 17, result.tip_in_world_mm);
+  frame_.bind(20, result.processing_ms).run();
+
+  for (const markers::MarkerObservation& marker : result.markers) {
+    const bool has_pose = result.stands_for(marker);
+    marker_.bind(1, result.frame_index).bind(2, marker.id).bind(3, static_cast<int>(marker.state));
+    marker_.bind(4, has_pose);
+    for (int position = 5; position <= 12; ++position) marker_.bind_null(position);
+    if (has_pose) {
+      const Eigen::Quaterniond& q = marker.camera_from_marker.rotation;
+      marker_.bind(5, q.w()).bind(6, q.x()).bind(7, q.y()).bind(8, q.z());
+      bind_vector(marker_, 9, marker.camera_from_marker.translation_mm);
+      marker_.bind(12, marker.rms_px);
+    }
+    marker_.run();
+  }
+
+  const guidance::GuidanceNumbers& g = result.guidance;
+  guidance_.bind(1, result.frame_index).bind(2, static_cast<int>(g.state));
+  for (int position = 3; position <= 17; ++position) guidance_.bind_null(position);
+  if (g.is_valid()) {
+    bind_vector(guidance_, 3, g.guide_point_mm);
+    bind_vector(guidance_, 6, g.guide_direction);
+    guidance_.bind(9, g.tip_to_entry_mm).bind(10, g.axis_to_entry_mm).bind(11, g.angle_deg);
+    guidance_.bind(12, g.offset_anterior_mm).bind(13, g.offset_proximal_mm).bind(14, g.depth_mm);
+    guidance_.bind(15, g.remaining_mm).bind(16, g.sigma_offset_mm).bind(17, g.sigma_angle_deg);
+  }
+  guidance_.run();
+}
+
+std::vector<RecordedFrame> read_frames(SessionDatabase& database) {
+  std::vector<RecordedFrame> frames;
+  Statement rows = database.prepare(
+      "SELECT frame, timestamp_ns, circle_found, circle_x_px, circle_y_px, circle_radius_px, circle_coverage_deg,"
+      " mark_state, mark_polarity, mark_angle_deg, mark_sigma_deg, lens_is_stale, zoom_or_slip, intrinsics_are_known,"
+      " is_frozen, tip_is_valid, tip_x_mm, tip_y_mm, tip_z_mm FROM frames ORDER BY frame");
+  while (rows.step()) frames.push_back(frame_at(rows));
+
+  Statement markers = database.prepare("SELECT * FROM markers ORDER BY frame, marker_id");
+  for_each_row(markers, frames, [](const Statement& row, RecordedFrame& frame) {
+    frame.markers.push_back(
+        {static_cast<int>(row.integer(1)), static_cast<markers::MarkerState>(row.integer(2))});
+    if (row.boolean(3)) frame.poses.push_back(pose_at(row, frame));
+  });
+  Statement guidance = database.prepare("SELECT * FROM guidance ORDER BY frame");
+  for_each_row(guidance, frames,
+               [](const Statement& row, RecordedFrame& frame) { frame.guidance = guidance_at(row, frame); });
+  return frames;
+}
+
+}  // namespace arthronaut::recording

@@ -1,0 +1,134 @@
+#include "navigation/recording/session_database.h"
+
+#include <utility>
+
+#include "planning/geometry/error.h"
+
+namespace arthronaut::recording {
+
+namespace {
+
+// States are stored as the numbers of their enumerators, whose order is therefore part of this format.
+constexpr int kSchemaVersion = 1;
+
+constexpr const char* kTables = R"(
+CREATE TABLE frames(
+  frame INTEGER PRIMARY KEY, timestamp_ns INTEGER NOT NULL,
+  circle_found INTEGER, circle_x_px REAL, circle_y_px REAL, circle_radius_px REAL, circle_coverage_deg REAL,
+  mark_state INTEGER, mark_polarity INTEGER, mark_angle_deg REAL, mark_sigma_deg REAL, lens_is_stale INTEGER,
+  zoom_or_slip INTEGER, intrinsics_are_known INTEGER, is_frozen INTEGER,
+  tip_is_valid INTEGER, tip_x_mm REAL, tip_y_mm REAL, tip_z_mm REAL, processing_ms REAL);
+CREATE TABLE markers(
+  frame INTEGER, marker_id INTEGER, state INTEGER, has_pose INTEGER,
+  qw REAL, qx REAL, qy REAL, qz REAL, tx_mm REAL, ty_mm REAL, tz_mm REAL, rms_px REAL,
+  PRIMARY KEY(frame, marker_id)) WITHOUT ROWID;
+CREATE TABLE guidance(
+  frame INTEGER PRIMARY KEY, state INTEGER,
+  point_x_mm REAL, point_y_mm REAL, point_z_mm REAL, direction_x REAL, direction_y REAL, direction_z REAL,
+  tip_to_entry_mm REAL, axis_to_entry_mm REAL, angle_deg REAL, offset_anterior_mm REAL, offset_proximal_mm REAL,
+  depth_mm REAL, remaining_mm REAL, sigma_offset_mm REAL, sigma_angle_deg REAL);
+CREATE TABLE events(id INTEGER PRIMARY KEY, after_frame INTEGER, timestamp_ns INTEGER, kind TEXT, text TEXT);
+CREATE TABLE pictures(picture INTEGER PRIMARY KEY, frame INTEGER NOT NULL);
+CREATE TABLE ending(finished INTEGER);
+)";
+
+[[noreturn]] void fail(sqlite3* database, const std::filesystem::path& file) {
+  throw IoError(file, database ? sqlite3_errmsg(database) : "out of memory");
+}
+
+}  // namespace
+
+Statement::Statement(sqlite3* database, const std::filesystem::path& file, std::string_view sql)
+    : database_(database), file_(file) {
+  check(sqlite3_prepare_v2(database, sql.data(), static_cast<int>(sql.size()), &statement_, nullptr));
+}
+
+Statement::~Statement() { sqlite3_finalize(statement_); }
+
+void Statement::check(int result) const {
+  if (result != SQLITE_OK) fail(database_, file_);
+}
+
+Statement& Statement::bind(int position, std::int64_t value) {
+  check(sqlite3_bind_int64(statement_, position, value));
+  return *this;
+}
+
+Statement& Statement::bind(int position, double value) {
+  check(sqlite3_bind_double(statement_, position, value));
+  return *this;
+}
+
+Statement& Statement::bind(int position, std::string_view value) {
+  check(sqlite3_bind_text(statement_, position, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT));
+  return *this;
+}
+
+Statement& Statement::bind_null(int position) {
+  check(sqlite3_bind_null(statement_, position));
+  return *this;
+}
+
+bool Statement::step() {
+  const int result = sqlite3_step(statement_);
+  if (result != SQLITE_ROW && result != SQLITE_DONE) fail(database_, file_);
+  return result == SQLITE_ROW;
+}
+
+void Statement::run() {
+  (void)step();
+  check(sqlite3_reset(statement_));
+}
+
+std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_, column); }
+double Statement::number(int column) const { return sqlite3_column_double(statement_, column); }
+bool Statement::is_null(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
+
+std::string Statement::text(int column) const {
+  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
+  return text ? std::string(text, static_cast<std::size_t>(sqlite3_column_bytes(statement_, column))) : "";
+}
+
+SessionDatabase::SessionDatabase(const std::filesystem::path& file, int flags) : file_(file) {
+  const int result = sqlite3_open_v2(file.c_str(), &database_, flags, nullptr);
+  if (result == SQLITE_OK) return;
+  const std::string reason = database_ ? sqlite3_errmsg(database_) : "out of memory";
+  sqlite3_close(database_);
+  throw IoError(file, reason);
+}
+
+SessionDatabase::SessionDatabase(SessionDatabase&& other) noexcept
+    : file_(std::move(other.file_)), database_(std::exchange(other.database_, nullptr)) {}
+
+SessionDatabase::~SessionDatabase() { sqlite3_close(database_); }
+
+void SessionDatabase::execute(const char* sql) {
+  if (sqlite3_exec(database_, sql, nullptr, nullptr, nullptr) != SQLITE_OK) fail(database_, file_);
+}
+
+SessionDatabase SessionDatabase::create(const std::filesystem::path& file) {
+  SessionDatabase database(file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+  database.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;");
+  database.execute(kTables);
+  database.execute(("PRAGMA user_version = " + std::to_string(kSchemaVersion)).c_str());
+  return database;
+}
+
+SessionDatabase SessionDatabase::open(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) throw IoError(file, "no such file");
+  SessionDatabase database(file, SQLITE_OPEN_READWRITE);
+  Statement version = database.prepare("PRAGMA user_version");
+  if (!version.step() || version.integer(0) < 1) throw InvalidInput(file, "", "is not the record of a session");
+  if (version.integer(0) > kSchemaVersion) {
+    throw InvalidInput(file, "", "was written by a newer Arthronaut (version " + std::to_string(version.integer(0)) +
+                                     ", this one reads up to " + std::to_string(kSchemaVersion) + ")");
+  }
+  return database;
+}
+
+void SessionDatabase::seal() {
+  execute("PRAGMA wal_checkpoint(TRUNCATE)");
+  execute("PRAGMA journal_mode = DELETE");
+}
+
+}  // namespace arthronaut::recording

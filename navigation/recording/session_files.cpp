@@ -1,0 +1,126 @@
+#include "navigation/recording/session_files.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "planning/files/atomic_file.h"
+#include "planning/files/json_document.h"
+
+namespace arthronaut::recording {
+
+namespace {
+
+constexpr const char* kSessionFormat = "arthronaut.session";
+constexpr const char* kPlanFormat = "arthronaut.session-plan";
+constexpr int kVersion = 1;
+
+void append_number(std::string& line, double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, ",%.6f", value);
+  line += text;
+}
+
+}  // namespace
+
+std::filesystem::path header_file(const std::filesystem::path& folder) { return folder / "session.json"; }
+std::filesystem::path database_file(const std::filesystem::path& folder) { return folder / "session.sqlite"; }
+
+void write_session_header(const std::filesystem::path& folder, const SessionHeader& header,
+                          const pipeline::PipelineOptions& options) {
+  nlohmann::ordered_json json;
+  json["format"] = kSessionFormat;
+  json["version"] = kVersion;
+  json["id"] = header.id;
+  json["started_utc"] = header.started_utc;
+  json["bone"] = bones::to_text(header.bone);
+  json["side"] = bones::to_text(header.side);
+  json["refractive_index"] = header.refractive_index;
+  json["probe"] = header.probe_name;
+  json["guide"] = header.guide_name;
+  json["source"] = header.source;
+  json["video"] = header.video;
+  json["video_is_reencoded"] = header.video_is_reencoded;
+  json["follow_lens"] = options.follow_lens;
+  json["flat_port"] = options.fluid_model == camera::FluidModel::FlatPort;
+  json["program_version"] = header.program_version;
+  files::write_json(header_file(folder), json);
+}
+
+SessionHeader read_session_header(const std::filesystem::path& folder, pipeline::PipelineOptions& options) {
+  const files::JsonObject json = files::read_json(header_file(folder), kSessionFormat, kVersion);
+  SessionHeader header;
+  header.id = json.text("id");
+  header.started_utc = json.text("started_utc");
+  header.bone = bones::bone_kind_from_text(json.text("bone"));
+  header.side = bones::side_from_text(json.text("side"));
+  header.refractive_index = json.positive_number("refractive_index");
+  header.probe_name = json.text("probe");
+  header.guide_name = json.text("guide");
+  header.source = json.text("source");
+  header.video = json.text("video");
+  header.video_is_reencoded = json.boolean("video_is_reencoded");
+  header.program_version = json.text("program_version");
+  options.bone = header.bone;
+  options.side = header.side;
+  options.refractive_index = header.refractive_index;
+  options.probe_name = header.probe_name;
+  options.guide_name = header.guide_name;
+  options.follow_lens = json.boolean("follow_lens");
+  options.fluid_model = json.boolean("flat_port") ? camera::FluidModel::FlatPort : camera::FluidModel::FocalRule;
+  return header;
+}
+
+void write_guidance_file(const std::filesystem::path& file, const std::vector<RecordedFrame>& frames) {
+  std::string text =
+      "frame,time_s,state,tip_to_entry_mm,axis_to_entry_mm,angle_deg,offset_anterior_mm,offset_proximal_mm,depth_mm,"
+      "remaining_mm,sigma_offset_mm,sigma_angle_deg,point_x_mm,point_y_mm,point_z_mm,direction_x,direction_y,"
+      "direction_z\n";
+  for (const RecordedFrame& frame : frames) {
+    const guidance::GuidanceNumbers& g = frame.guidance;
+    text += std::to_string(frame.index);
+    append_number(text, static_cast<double>(frame.timestamp_ns) * 1e-9);
+    text += ',';
+    text += guidance::to_text(g.state);
+    if (g.is_valid()) {
+      for (const double value :
+           {g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg, g.offset_anterior_mm, g.offset_proximal_mm, g.depth_mm,
+            g.remaining_mm, g.sigma_offset_mm, g.sigma_angle_deg, g.guide_point_mm.x(), g.guide_point_mm.y(),
+            g.guide_point_mm.z(), g.guide_direction.x(), g.guide_direction.y(), g.guide_direction.z()}) {
+        append_number(text, value);
+      }
+    } else {
+      text.append(15, ',');
+    }
+    text += '\n';
+  }
+  files::write_atomically(file, text);
+}
+
+std::string plan_to_text(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm) {
+  if (!plan) return "";
+  nlohmann::ordered_json json;
+  json["format"] = kPlanFormat;
+  json["version"] = kVersion;
+  json["bone"] = bones::to_text(plan->bone);
+  json["entry_mm"] = files::to_json(plan->entry_mm);
+  json["direction"] = files::to_json(plan->direction);
+  json["diameter_mm"] = plan->diameter_mm;
+  json["length_mm"] = planned_length_mm;
+  return json.dump();
+}
+
+RecordedSession::PlanChange plan_from_text(const std::string& text, const std::filesystem::path& name) {
+  RecordedSession::PlanChange change;
+  if (text.empty()) return change;
+  const files::JsonObject json = files::parse_json(text, name, kPlanFormat, kVersion);
+  tunnels::Tunnel tunnel;
+  tunnel.bone = bones::bone_kind_from_text(json.text("bone"));
+  tunnel.entry_mm = json.vector3("entry_mm");
+  tunnel.direction = json.vector3("direction");
+  tunnel.diameter_mm = json.positive_number("diameter_mm");
+  change.plan = tunnel;
+  change.planned_length_mm = json.number("length_mm");
+  return change;
+}
+
+}  // namespace arthronaut::recording

@@ -1,0 +1,14 @@
+// The video of a session as files: copied in, found again.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace arthronaut::recording {
+
+// Copies a video file, or every still of a printf pattern, into the folder as it is; gives the path or pattern relative to
+// the folder. Throws IoError.
+[[nodiscard]] std::string copy_video_into(const std::filesystem::path& session_folder,
+                                          const std::filesystem::path& video_or_pattern);
+
+}  // namespace arthronaut::recording

@@ -1,0 +1,52 @@
+// Counts what operator new is asked for while frames are processed. In a program of its own, since it replaces it.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "tests/navigation/pipeline/scripted_markers.h"
+
+namespace {
+std::atomic<long> allocation_count = 0;
+}
+
+void* operator new(std::size_t size) {
+  ++allocation_count;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace arthronaut {
+namespace {
+
+// Grey conversion, lens, frozen picture, poses, tip and guidance allocate nothing once buffers have their size. (How
+// markers are found is not the pipeline's: a scripted tracker stands in.)
+TEST(NavigationPipelineAllocation, NothingPerFrameAfterTheFirstFrames) {
+  auto script = std::vector<markers::MarkerObservation>{
+      test::seen(0, {Eigen::Quaterniond(0, 1, 0, 0), {0, 0, 20}}), test::seen(2, {Eigen::Quaterniond(0, 1, 0, 0), {5, 0, 20}}),
+      test::seen(3, {Eigen::Quaterniond(0, 1, 0, 0), {0, 5, 20}})};
+  pipeline::PipelineOptions options = test::scripted_options();
+  options.follow_lens = true;
+  options.calibration.rotation_center_px = options.calibration.principal_point_px;
+  pipeline::NavigationPipeline pipeline(options, std::make_unique<test::ScriptedMarkers>(&script));
+  pipeline.set_plan(tunnels::Tunnel{}, 30);
+  registration::RegistrationSummary registration;
+  registration.has_pose = registration.reliable = true;
+  registration.reasons.clear();
+  pipeline.set_registration(registration);
+
+  std::vector<camera::Frame> frames;
+  for (int i = 0; i < 40; ++i) frames.push_back(test::plain_frame(i, static_cast<std::uint8_t>(i % 7)));
+  pipeline::FrameResult result;
+  for (int i = 0; i < 5; ++i) pipeline.process(frames[static_cast<std::size_t>(i)], result);
+  ASSERT_TRUE(result.guidance.is_valid());
+  const long before = allocation_count;
+  for (int i = 5; i < 40; ++i) pipeline.process(frames[static_cast<std::size_t>(i)], result);
+  EXPECT_EQ(allocation_count - before, 0);
+}
+
+}  // namespace
+}  // namespace arthronaut

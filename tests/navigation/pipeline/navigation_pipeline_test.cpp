@@ -1,0 +1,177 @@
+#include "navigation/pipeline/navigation_pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "planning/geometry/error.h"
+#include "tests/navigation/pipeline/scripted_markers.h"
+
+namespace arthronaut {
+namespace {
+
+using geometry::RigidTransform;
+using guidance::GuidanceState;
+using markers::MarkerState;
+
+// Arithmetic of doubles alone separates the pipeline from the truth here.
+constexpr double kExact = 1e-9;
+
+RigidTransform pose(double x, double y, double z, double angle_rad, const Eigen::Vector3d& axis) {
+  return {Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, axis.normalized())), {x, y, z}};
+}
+
+class NavigationPipeline : public ::testing::Test {
+ protected:
+  NavigationPipeline() : pipeline_(options_, std::make_unique<test::ScriptedMarkers>(&script_)) {
+    registration_.has_pose = registration_.reliable = true;
+    registration_.reasons.clear();
+    registration_.marker_from_bone = pose(10, 20, -30, 0.4, {1, 2, 3});
+    plan_.entry_mm = {3, -2, 8};
+    plan_.direction = Eigen::Vector3d(0.2, -0.3, 0.9).normalized();
+    script_ = {test::seen(0, camera_from_world_), test::seen(2, camera_from_world_ * world_from_probe_),
+               test::seen(3, camera_from_world_ * world_from_guide())};
+  }
+
+  // A guide whose axis lies on the plan and whose end stands 5 mm before the entry.
+  [[nodiscard]] RigidTransform world_from_guide() const {
+    const RigidTransform& world_from_bone = registration_.marker_from_bone;
+    RigidTransform result;
+    result.rotation =
+        Eigen::Quaterniond::FromTwoVectors(-Eigen::Vector3d::UnitY(), world_from_bone.rotate(plan_.direction));
+    const Eigen::Vector3d end = world_from_bone * (plan_.entry_mm - 5.0 * plan_.direction);
+    result.translation_mm = end - result.rotate({0, -25, -4});
+    return result;
+  }
+
+  const pipeline::FrameResult& process(std::int64_t index, std::uint8_t gray) {
+    pipeline_.process(test::plain_frame(index, gray), result_);
+    return result_;
+  }
+
+  RigidTransform camera_from_world_ = pose(1, 2, 25, 2.5, {1, 0.2, 0.1});
+  RigidTransform world_from_probe_ = pose(-4, 12, 20, 1.1, {0.3, 1, 0.2});
+  registration::RegistrationSummary registration_;
+  tunnels::Tunnel plan_;
+  pipeline::PipelineOptions options_ = test::scripted_options();
+  std::vector<markers::MarkerObservation> script_;
+  pipeline::NavigationPipeline pipeline_;
+  pipeline::FrameResult result_;
+};
+
+// The tip in the world is the probe's pose relative to the world marker times the tip, wherever the camera is.
+TEST_F(NavigationPipeline, PlacesTipAndToolsInTheWorldMarkersFrame) {
+  const pipeline::FrameResult& result = process(0, 1);
+  ASSERT_TRUE(result.tip_is_valid);
+  EXPECT_LT((result.tip_in_world_mm - world_from_probe_ * Eigen::Vector3d(1, -30, -5)).norm(), kExact);
+  ASSERT_EQ(result.tools.size(), 2u);
+  const RigidTransform error = world_from_probe_.inverse() * result.tools[0].world_from_tool.target_from_source;
+  EXPECT_LT(geometry::log(error).norm(), kExact);
+}
+
+// Plan, registration and guide by construction: on the axis, 5 mm before the entry, and no angle.
+TEST_F(NavigationPipeline, GuidesAlongThePlan) {
+  EXPECT_EQ(process(0, 1).guidance.state, GuidanceState::NoPlan);
+  pipeline_.set_plan(plan_, 30);
+  EXPECT_EQ(process(1, 2).guidance.state, GuidanceState::NoRegistration);
+  pipeline_.set_registration(registration_);
+  const guidance::GuidanceNumbers& g = process(2, 3).guidance;
+  ASSERT_EQ(g.state, GuidanceState::Valid);
+  EXPECT_NEAR(g.axis_to_entry_mm, 0, 1e-6);
+  EXPECT_NEAR(g.angle_deg, 0, 1e-6);
+  EXPECT_NEAR(g.tip_to_entry_mm, 5, 1e-6);
+  EXPECT_EQ(g.timestamp_ns, result_.timestamp_ns);
+}
+
+// A marker that is lost takes everything that rests on it away in that very frame.
+TEST_F(NavigationPipeline, DropsWhatRestsOnALostMarkerInTheSameFrame) {
+  pipeline_.set_plan(plan_, 30);
+  pipeline_.set_registration(registration_);
+  ASSERT_TRUE(process(0, 1).guidance.is_valid());
+  script_[2] = test::lost(3, MarkerState::Covered);
+  EXPECT_EQ(process(1, 2).guidance.state, GuidanceState::GuideLost);
+  EXPECT_TRUE(result_.tip_is_valid);
+  script_[0] = test::lost(0, MarkerState::Glare);
+  EXPECT_EQ(process(2, 3).guidance.state, GuidanceState::WorldMarkerLost);
+  EXPECT_FALSE(result_.tip_is_valid);
+  EXPECT_FALSE(result_.camera_from_world.is_valid);
+  EXPECT_FALSE(result_.tools[0].world_from_tool.is_valid);
+}
+
+// The same picture for 0.3 s is no live picture: nothing of it may guide a hand. The next new picture may.
+TEST_F(NavigationPipeline, SaysThatAPictureIsFrozen) {
+  pipeline_.set_plan(plan_, 30);
+  pipeline_.set_registration(registration_);
+  ASSERT_TRUE(process(0, 7).guidance.is_valid());
+  for (int i = 1; i < 18; ++i) EXPECT_FALSE(process(i, 7).is_frozen) << i;
+  EXPECT_TRUE(process(18, 7).is_frozen);
+  EXPECT_EQ(result_.guidance.state, GuidanceState::Stale);
+  EXPECT_FALSE(result_.tip_is_valid);
+  EXPECT_FALSE(result_.camera_from_world.is_valid);
+  EXPECT_TRUE(process(19, 8).guidance.is_valid());
+}
+
+// The covariance of the tip against 20 000 draws of both poses' errors; 5 % is three standard errors of that many draws.
+TEST_F(NavigationPipeline, PredictsTheTipsErrorFromBothPoses) {
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
+  covariance.diagonal() << 0.01, 0.02, 0.09, 4e-5, 3e-5, 1e-5;
+  script_[0].covariance = script_[1].covariance = covariance;
+  const Eigen::Matrix3d predicted = process(0, 1).tip_covariance_mm2;
+  const Eigen::Vector3d tip = result_.tip_in_world_mm;
+
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  const auto draw = [&] {
+    geometry::Vector6d twist;
+    for (int i = 0; i < 6; ++i) twist[i] = std::sqrt(covariance(i, i)) * normal(random);
+    return geometry::exp(twist);
+  };
+  Eigen::Matrix3d sampled = Eigen::Matrix3d::Zero();
+  constexpr int kDraws = 20000;
+  for (int i = 0; i < kDraws; ++i) {
+    const RigidTransform world_from_camera = (script_[0].camera_from_marker * draw()).inverse();
+    const Eigen::Vector3d error =
+        world_from_camera * (script_[1].camera_from_marker * draw() * Eigen::Vector3d(1, -30, -5)) - tip;
+    sampled += error * error.transpose() / kDraws;
+  }
+  EXPECT_LT((sampled - predicted).norm(), 0.05 * predicted.norm());
+}
+
+// A picture without rim and mark says nothing about the lens: poses of such a frame stand only for a lens whose principal
+// point lies on the axis that it turns about.
+TEST_F(NavigationPipeline, StandsForNoPoseWhileTheLensIsUnknown) {
+  options_.follow_lens = true;
+  pipeline::NavigationPipeline turning(options_, std::make_unique<test::ScriptedMarkers>(&script_));
+  turning.set_plan(plan_, 30);
+  turning.set_registration(registration_);
+  turning.process(test::plain_frame(0, 40), result_);
+  EXPECT_FALSE(result_.intrinsics_are_known);
+  EXPECT_EQ(result_.guidance.state, GuidanceState::LensStale);
+  EXPECT_FALSE(result_.camera_from_world.is_valid);
+  std::vector<strokes::PoseRow> rows;
+  pipeline::append_pose_rows(result_, rows);
+  EXPECT_TRUE(rows.empty());
+
+  options_.calibration.rotation_center_px = options_.calibration.principal_point_px;
+  pipeline::NavigationPipeline centred(options_, std::make_unique<test::ScriptedMarkers>(&script_));
+  centred.process(test::plain_frame(0, 40), result_);
+  EXPECT_TRUE(result_.intrinsics_are_known);
+  pipeline::append_pose_rows(result_, rows);
+  EXPECT_EQ(rows.size(), 3u);
+  EXPECT_FALSE(rows.front().mark_angle_deg.has_value());
+}
+
+// Another size than the calibration's is another camera.
+TEST_F(NavigationPipeline, RefusesFramesOfAnotherSize) {
+  camera::Frame frame = test::plain_frame(0, 1);
+  frame.height = 119;
+  EXPECT_THROW(pipeline_.process(frame, result_), InvalidInput);
+}
+
+TEST_F(NavigationPipeline, NeedsTheBonesWorldMarker) {
+  options_.bone = bones::BoneKind::Tibia;
+  EXPECT_THROW(pipeline::NavigationPipeline{options_}, InvalidInput);
+}
+
+}  // namespace
+}  // namespace arthronaut
