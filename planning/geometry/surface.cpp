@@ -7,10 +7,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
-#include <variant>
 
 #include "planning/geometry/error.h"
 #include "planning/geometry/rigid_transform.h"
@@ -205,6 +206,12 @@ std::vector<RayHit> Surface::all_hits(const Eigen::Vector3d& origin_mm, const Ei
   std::sort(hits.begin(), hits.end(), [](const RayHit& a, const RayHit& b) {
     return std::tie(a.distance_mm, a.triangle) < std::tie(b.distance_mm, b.triangle);
   });
+  // A ray through an edge or a vertex meets all the triangles there: it enters, or leaves, once.
+  const auto is_same_crossing = [&](const RayHit& a, const RayHit& b) {
+    return b.distance_mm - a.distance_mm <= 1e-9 * (1 + b.distance_mm) &&
+           (a.normal.dot(unit) < 0) == (b.normal.dot(unit) < 0);
+  };
+  hits.erase(std::unique(hits.begin(), hits.end(), is_same_crossing), hits.end());
   return hits;
 }
 

@@ -1,0 +1,52 @@
+// Closed meshes of known shape for the tests of surfaces and bones.
+#pragma once
+
+#include <cmath>
+#include <map>
+
+#include "planning/geometry/rigid_transform.h"
+#include "planning/geometry/triangle_mesh.h"
+
+namespace arthronaut::test {
+
+// Outward. Corners at +-half_mm.
+inline geometry::TriangleMesh box(const Eigen::Vector3d& half_mm) {
+  geometry::TriangleMesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.vertices_mm.emplace_back(i & 1 ? half_mm.x() : -half_mm.x(), i & 2 ? half_mm.y() : -half_mm.y(),
+                                  i & 4 ? half_mm.z() : -half_mm.z());
+  }
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+// Outward, vertices on the ellipsoid; 20 * 4^rounds triangles.
+inline geometry::TriangleMesh ellipsoid(const Eigen::Vector3d& radii_mm, int rounds,
+                                        const Eigen::Vector3d& center_mm = Eigen::Vector3d::Zero()) {
+  const double g = (1 + std::sqrt(5.0)) / 2;
+  geometry::TriangleMesh mesh;
+  mesh.vertices_mm = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
+                      {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
+  mesh.triangles = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                    {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
+                    {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+  for (int round = 0; round < rounds; ++round) {
+    std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
+    const auto middle = [&](std::int32_t a, std::int32_t b) {
+      const auto [at, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(mesh.vertices_mm.size()));
+      if (is_new) mesh.vertices_mm.push_back((mesh.vertices_mm[a].normalized() + mesh.vertices_mm[b].normalized()) / 2);
+      return at->second;
+    };
+    std::vector<std::array<std::int32_t, 3>> finer;
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const std::int32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+      finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+    }
+    mesh.triangles = std::move(finer);
+  }
+  for (auto& v : mesh.vertices_mm) v = center_mm + v.normalized().cwiseProduct(radii_mm);
+  return mesh;
+}
+
+}  // namespace arthronaut::test
