@@ -1,0 +1,101 @@
+// The whole theatre on the path-traced clips, with the real femur and the true camera: scratch, register from nothing, guide.
+// Runs through navigate_video, as the command does.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "navigation/camera/camera_file.h"
+#include "navigation/camera/medium.h"
+#include "navigation/pipeline/navigate_video.h"
+#include "planning/bones/mesh_file.h"
+#include "planning/files/csv_table.h"
+#include "planning/files/json_document.h"
+#include "tests/real_data/real_data.h"
+
+namespace arthronaut {
+namespace {
+
+// What the clips were made to be judged by: 2 mm and 2 deg at the planned entry.
+constexpr double kTargetErrorMm = 2.0, kOffsetErrorMm = 2.0, kAngleErrorDeg = 2.0;
+
+tunnels::Tunnel true_plan(const std::filesystem::path& clip) {
+  const auto json = files::read_json(clip / "gt/tunnel.json", "arthronaut-acceptance.tunnel", 1);
+  tunnels::Tunnel plan;
+  plan.entry_mm = json.vector3("entry_mm");
+  plan.direction = json.vector3("direction").normalized();
+  return plan;
+}
+
+pipeline::NavigateOptions options_of(const std::filesystem::path& clip, const tunnels::Tunnel& plan) {
+  pipeline::NavigateOptions options;
+  options.pipeline.calibration = camera::read_camera_file(clip / "camera.json").calibration;
+  options.pipeline.refractive_index = camera::kSalineIndex;
+  options.pipeline.tools = tools::read_tools_file(clip / "tools.json");
+  options.plan = plan;
+  options.planned_length_mm = 25;
+  return options;
+}
+
+double root_mean_square(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+// Scratching finds the bone from nothing; then guidance with that registration agrees with the truth.
+TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
+  ARTHRONAUT_REQUIRE_DATA(probe_clip, "arthroscopy/probe_wet");
+  ARTHRONAUT_REQUIRE_DATA(guide_clip, "arthroscopy/guide_wet");
+  const tunnels::Tunnel plan = true_plan(guide_clip);
+  const registration::PreparedBone bone(bones::read_mesh_file(probe_clip / "bone.stl").mesh);
+
+  pipeline::NavigateOptions scratch = options_of(probe_clip, plan);
+  scratch.bone = &bone;
+  const auto probe_video = sources::open_video(probe_clip / "clip.mkv");
+  const pipeline::NavigationSummary scratched = pipeline::navigate_video(*probe_video, scratch);
+  ASSERT_TRUE(scratched.registration.has_value());
+  const auto truth = files::read_json(probe_clip / "gt/registration_gt.json", "arthronaut.registration", 1)
+                         .rigid_transform("marker_from_bone");
+  const double target_error_mm =
+      (scratched.registration->marker_from_bone * plan.entry_mm - truth * plan.entry_mm).norm();
+  const double rotation_error_deg = geometry::deg_from_rad(geometry::rotation_angle_rad(
+      truth.rotation.conjugate() * scratched.registration->marker_from_bone.rotation));
+  std::printf("probe_wet: %ld frames, tip in %ld, strokes %.0f mm; registration rms %.3f mm, error at the target %.3f mm "
+              "(predicted %.3f), rotation %.3f deg, %s\n",
+              scratched.statistics.frame_count, scratched.frames_with_tip, scratched.stroke_length_mm,
+              scratched.registration->rms_mm, target_error_mm, scratched.registration->predicted_tre_mm,
+              rotation_error_deg, scratched.registration->reliable ? "reliable" : "not reliable");
+  EXPECT_EQ(scratched.statistics.frame_count, 240);
+  EXPECT_TRUE(scratched.registration->reliable);
+  EXPECT_LT(target_error_mm, kTargetErrorMm);
+
+  pipeline::NavigateOptions drill = options_of(guide_clip, plan);
+  drill.registration = scratched.registration;
+  const auto gt = files::CsvTable::read(guide_clip / "gt/guide.csv", {"tip_to_entry_mm", "axis_to_entry_mm", "angle_deg"});
+  std::vector<double> tip_errors, offset_errors, angle_errors;
+  pipeline::NavigationObserver observer;
+  observer.on_frame = [&](const camera::FramePtr&, const pipeline::FrameResult& result) {
+    if (!result.guidance.is_valid()) return;
+    const auto row = static_cast<std::size_t>(result.frame_index);
+    tip_errors.push_back(result.guidance.tip_to_entry_mm - gt.number(row, "tip_to_entry_mm"));
+    offset_errors.push_back(result.guidance.axis_to_entry_mm - gt.number(row, "axis_to_entry_mm"));
+    angle_errors.push_back(result.guidance.angle_deg - gt.number(row, "angle_deg"));
+    EXPECT_LT(std::abs(offset_errors.back()), kOffsetErrorMm) << "frame " << row;
+    EXPECT_LT(std::abs(angle_errors.back()), kAngleErrorDeg) << "frame " << row;
+  };
+  const auto guide_video = sources::open_video(guide_clip / "clip.mkv");
+  const pipeline::NavigationSummary guided = pipeline::navigate_video(*guide_video, drill, observer);
+  ASSERT_GT(guided.frames_with_guidance, 30);  // of 40: the guide is free in all of them
+  const std::size_t last = gt.row_count() - 1;
+  std::printf("guide_wet: guidance in %ld of %ld frames; rms error: tip to entry %.3f mm, axis to entry %.3f mm, "
+              "angle %.3f deg\n  last frame: tip to entry %.2f mm (true %.2f), axis to entry %.2f mm (true %.2f), "
+              "angle %.2f deg (true %.2f)\n",
+              guided.frames_with_guidance, guided.statistics.frame_count, root_mean_square(tip_errors),
+              root_mean_square(offset_errors), root_mean_square(angle_errors), guided.last_guidance.tip_to_entry_mm,
+              gt.number(last, "tip_to_entry_mm"), guided.last_guidance.axis_to_entry_mm,
+              gt.number(last, "axis_to_entry_mm"), guided.last_guidance.angle_deg, gt.number(last, "angle_deg"));
+}
+
+}  // namespace
+}  // namespace arthronaut
