@@ -1,9 +1,10 @@
 #include "navigation/registration/confidence.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "navigation/strokes/stroke_tangents.h"
 
 namespace arthronaut::registration {
 
@@ -16,38 +17,21 @@ namespace {
 // Errors hang together over about this much of path.
 constexpr double kCorrelationLength_mm = 6.0;
 
-}  // namespace
+Vector6d row_of(const Eigen::Vector3d& gradient, const Eigen::Vector3d& arm_mm) {
+  Vector6d row;
+  row << gradient, arm_mm.cross(gradient);
+  return row;
+}
 
-Matrix6d covariance_of(const RefinedPose& pose, const TouchedPoints& points, const PreparedBone::Data& bone,
-                       const MarkerPrior& prior) {
-  const Eigen::Vector3d pivot = pose.bone_from_marker * points.centroid_mm;
-  const double information = 1.0 / (pose.model.contact_sigma_mm * pose.model.contact_sigma_mm * kCorrelationLength_mm);
-  Matrix6d held = Matrix6d::Zero();
-  for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
-    const Eigen::Vector3d p = pose.bone_from_marker * points.positions_mm[i];
-    const Eigen::Vector3d gradient = bone.field.sample(p).gradient;
-    Vector6d row;
-    row << gradient, (p - pivot).cross(gradient);
-    held += points.weights[i] * pose.contact_weights[i] * information * row * row.transpose();
-  }
-  if (prior.use) {
-    const Eigen::Vector3d& marker = pose.bone_from_marker.translation_mm;
-    const Eigen::Vector3d gradient = bone.field.sample(marker).gradient;
-    Vector6d row;
-    row << gradient, (marker - pivot).cross(gradient);
-    held += row * row.transpose() / (prior.sigma_mm * prior.sigma_mm);
-  }
-  // The bone is 10 cm large: what nothing holds is off by no more than 30 mm and half a turn.
-  held.topLeftCorner<3, 3>().diagonal().array() += 1.0 / (30.0 * 30.0);
-  held.bottomRightCorner<3, 3>().diagonal().array() += 1.0 / (3.0 * 3.0);
-  const Matrix6d about_pivot = held.ldlt().solve(Matrix6d::Identity());
+// The covariance of marker_from_bone's body twist from that of the bone frame's twist about the pivot.
+Matrix6d about_origin(const Matrix6d& about_pivot, const Eigen::Vector3d& pivot_mm) {
   Matrix6d shift = Matrix6d::Identity();
-  shift.topRightCorner<3, 3>() = cross_matrix(pivot);
+  shift.topRightCorner<3, 3>() = cross_matrix(pivot_mm);
   const Matrix6d covariance = shift * about_pivot * shift.transpose();
   return 0.5 * (covariance + covariance.transpose());
 }
 
-void judge(const RefinedPose& best, const TouchedPoints& points, double length_mm, RegistrationSummary& summary) {
+void measure_inliers(const RefinedPose& best, const TouchedPoints& points, RegistrationSummary& summary) {
   constexpr double kInlier_mm = 1.0;
   double inlier_weight = 0, square_sum = 0;
   for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
@@ -57,14 +41,68 @@ void judge(const RefinedPose& best, const TouchedPoints& points, double length_m
   }
   summary.rms_mm = inlier_weight > 0 ? std::sqrt(square_sum / inlier_weight) : 0.0;
   summary.inlier_fraction = inlier_weight / std::max(points.weight_sum, 1e-9);
-  summary.reasons.clear();
-  if (length_mm < 40) summary.reasons.push_back("too little was touched: draw at least 100 mm of strokes");
-  if (summary.inlier_fraction < 0.55) summary.reasons.push_back("too few of the points lie on this bone");
+}
+
+std::vector<std::string> doubts(const RegistrationSummary& summary, double length_mm) {
+  std::vector<std::string> reasons;
+  if (length_mm < 40) reasons.push_back("too little was touched: draw at least 100 mm of strokes");
+  if (summary.inlier_fraction < 0.55) reasons.push_back("too few of the points lie on this bone");
   if (summary.predicted_tre_mm > 2.0) {
-    summary.reasons.push_back("the touched patch does not hold the bone fast: touch other faces of the notch too");
+    reasons.push_back("the touched patch does not hold the bone fast: touch other faces of the notch too");
   }
-  if (summary.runner_up_ratio < 1.1) summary.reasons.push_back("two poses fit almost alike");
+  if (summary.runner_up_ratio < 1.1) reasons.push_back("two poses fit almost alike");
+  return reasons;
+}
+
+}  // namespace
+
+Matrix6d information_about(const RefinedPose& pose, const TouchedPoints& points, const PreparedBone::Data& bone,
+                           const MarkerPrior& prior, const Eigen::Vector3d& pivot_mm) {
+  const double information = 1.0 / (pose.model.contact_sigma_mm * pose.model.contact_sigma_mm * kCorrelationLength_mm);
+  Matrix6d held = Matrix6d::Zero();
+  for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
+    const Eigen::Vector3d p = pose.bone_from_marker * points.positions_mm[i];
+    const Vector6d row = row_of(bone.field.sample(p).gradient, p - pivot_mm);
+    held += points.weights[i] * pose.contact_weights[i] * information * row * row.transpose();
+  }
+  if (prior.use) {
+    const Eigen::Vector3d& marker = pose.bone_from_marker.translation_mm;
+    const Vector6d row = row_of(bone.field.sample(marker).gradient, marker - pivot_mm);
+    held += row * row.transpose() / (prior.sigma_mm * prior.sigma_mm);
+  }
+  // The bone is 10 cm large: what nothing holds is off by no more than 30 mm and half a turn.
+  held.topLeftCorner<3, 3>().diagonal().array() += 1.0 / (30.0 * 30.0);
+  held.bottomRightCorner<3, 3>().diagonal().array() += 1.0 / (3.0 * 3.0);
+  return held;
+}
+
+RegistrationSummary summarise(const PreparedBone::Data& bone, const PosePool& pool, const TouchedPoints& points,
+                              const strokes::Curves& curves, const RegistrationOptions& options) {
+  RegistrationSummary summary;
+  summary.point_count = static_cast<int>(curves.size());
+  if (pool.empty()) {
+    summary.reasons = {"no pose was found that puts the touched curves on this bone"};
+    return summary;
+  }
+  const RefinedPose& best = pool.best();
+  const Eigen::Vector3d pivot = best.bone_from_marker * points.centroid_mm;
+  summary.has_pose = true;
+  summary.marker_from_bone = best.bone_from_marker.inverse();
+  const Matrix6d held = information_about(best, points, bone, pool.prior(), pivot);
+  summary.covariance = about_origin(held.ldlt().solve(Matrix6d::Identity()), pivot);
+  summary.predicted_tre_mm = predicted_error_mm(summary, options.target_in_bone_mm.value_or(pivot));
+  constexpr double kNoRival = 10;
+  summary.runner_up_ratio = pool.runner_up() ? std::exp(pool.runner_up()->cost - best.cost) : kNoRival;
+  measure_inliers(best, points, summary);
+  for (const strokes::CurvePoint& point : curves) {
+    const Eigen::Vector3d p = best.bone_from_marker * point.position_mm;
+    const double distance_mm = bone.field.sample(p).distance_mm;
+    summary.point_residuals_mm.push_back(std::abs(distance_mm) < bone.field.band_mm() ? distance_mm
+                                                                                      : bone.surface.signed_distance_mm(p));
+  }
+  summary.reasons = doubts(summary, strokes::stroke_length_mm(curves));
   summary.reliable = summary.reasons.empty();
+  return summary;
 }
 
 }  // namespace arthronaut::registration

@@ -4,15 +4,19 @@
 #pragma once
 
 #include "navigation/registration/prepared_bone.h"
-#include "navigation/registration/refinement.h"
+#include "navigation/registration/pose_pool.h"
 
 namespace arthronaut::registration {
 
-// Covariance of the body twist of marker_from_bone, correlated errors in. Huge, but finite, where nothing holds a motion.
-[[nodiscard]] geometry::Matrix6d covariance_of(const RefinedPose& pose, const TouchedPoints& points,
-                                               const PreparedBone::Data& bone, const MarkerPrior& prior);
+// The best pose of the pool with all that can be said about it. An empty pool gives a summary without a pose.
+[[nodiscard]] RegistrationSummary summarise(const PreparedBone::Data& bone, const PosePool& pool,
+                                            const TouchedPoints& points, const strokes::Curves& curves,
+                                            const RegistrationOptions& options);
 
-// Fills in rms, inliers, verdict and reasons from the best pose and the runner-up's ratio.
-void judge(const RefinedPose& best, const TouchedPoints& points, double length_mm, RegistrationSummary& summary);
+// What the touched points and the prior hold fast: the inverse of the covariance of a twist of the bone frame about
+// `pivot_mm` (bone frame), correlated errors in. Nothing is held less than by the bone's own size.
+[[nodiscard]] geometry::Matrix6d information_about(const RefinedPose& pose, const TouchedPoints& points,
+                                                   const PreparedBone::Data& bone, const MarkerPrior& prior,
+                                                   const Eigen::Vector3d& pivot_mm);
 
 }  // namespace arthronaut::registration

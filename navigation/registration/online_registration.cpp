@@ -1,0 +1,379 @@
+#include "navigation/registration/online_registration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "navigation/registration/coach.h"
+#include "navigation/registration/confidence.h"
+#include "navigation/registration/global_search.h"
+#include "navigation/registration/pose_pool.h"
+#include "navigation/strokes/stroke_tangents.h"
+
+namespace arthronaut::registration {
+
+namespace {
+
+using geometry::RigidTransform;
+
+constexpr std::size_t kPointCount = 500;
+constexpr double kMinLengthToSearch_mm = 25;
+// Pairs to search with at each update: many while nothing is found, one as a watchdog later.
+constexpr int kPairsWhileCollecting = 6, kPairsAfterwards = 1;
+constexpr int kIterations = 6;
+
+struct Stroke {
+  strokes::Curves points;
+  bool is_excluded = false;
+  // Of the first `prepared_count` points.
+  std::size_t prepared_count = 0;
+  std::vector<strokes::OrientedPoint> oriented;
+  double length_mm = 0;
+};
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::string formatted(const char* format, double value) {
+  char text[160];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+}  // namespace
+
+std::string_view to_text(OnlineState state) {
+  switch (state) {
+    case OnlineState::Collecting: return "collecting";
+    case OnlineState::Candidate: return "candidate";
+    case OnlineState::Confirmed: return "confirmed";
+    case OnlineState::Verified: return "verified";
+  }
+  return "unknown";
+}
+
+struct OnlineRegistration::State {
+  State(std::shared_ptr<const PreparedBone> prepared, const OnlineOptions& online_options)
+      : bone(std::move(prepared)), options(online_options), pool(bone->data(), prior_of(online_options)) {}
+
+  static MarkerPrior prior_of(const OnlineOptions& options) {
+    MarkerPrior prior;
+    prior.use = options.use_marker_prior;
+    return prior;
+  }
+
+  [[nodiscard]] strokes::Curves curves_in_use() const;
+  void prepare_strokes();
+  void solve();
+  void remember_solution();
+  void judge_touches();
+  void judge_state();
+  void advise();
+  void describe_strokes();
+  [[nodiscard]] double length_in_use_mm() const;
+  [[nodiscard]] Eigen::Vector3d target_mm() const;
+  [[nodiscard]] int violation_count() const;
+  [[nodiscard]] int agreement_count() const;
+
+  std::shared_ptr<const PreparedBone> bone;
+  OnlineOptions options;
+  std::vector<Stroke> strokes;
+  PosePool pool;
+  TouchedPoints points;  // of the last solution
+  double solved_length_mm = 0;
+  double unmeasured_mm = 0;         // at most so much stroke was drawn since the strokes were last measured
+  bool is_changed = false;          // strokes were excluded, undone or cleared since the last solution
+  bool is_judged = true;            // false: touches came in since the last update
+  std::vector<RigidTransform> solutions;  // marker_from_bone, each with new stroke, newest last
+  std::optional<Eigen::Vector3d> control_point_mm;
+  double control_shift_mm = 0;
+  int control_violations = 0;
+  OnlineResult result;
+  std::vector<HistoryEntry> history;
+};
+
+strokes::Curves OnlineRegistration::State::curves_in_use() const {
+  strokes::Curves curves;
+  for (const Stroke& stroke : strokes) {
+    if (!stroke.is_excluded) curves.insert(curves.end(), stroke.points.begin(), stroke.points.end());
+  }
+  return curves;
+}
+
+void OnlineRegistration::State::prepare_strokes() {
+  for (Stroke& stroke : strokes) {
+    if (stroke.prepared_count == stroke.points.size()) continue;
+    stroke.prepared_count = stroke.points.size();
+    stroke.oriented = strokes::oriented_points(stroke.points);
+    stroke.length_mm = strokes::stroke_length_mm(stroke.points);
+  }
+}
+
+double OnlineRegistration::State::length_in_use_mm() const {
+  double length_mm = 0;
+  for (const Stroke& stroke : strokes) length_mm += stroke.is_excluded ? 0.0 : stroke.length_mm;
+  return length_mm;
+}
+
+Eigen::Vector3d OnlineRegistration::State::target_mm() const {
+  if (options.target_in_bone_mm) return *options.target_in_bone_mm;
+  return pool.empty() ? Eigen::Vector3d::Zero() : pool.best().bone_from_marker * points.centroid_mm;
+}
+
+void OnlineRegistration::State::solve() {
+  const strokes::Curves curves = curves_in_use();
+  points = choose_points(curves, kPointCount);
+  std::vector<strokes::OrientedPoint> oriented;
+  for (const Stroke& stroke : strokes) {
+    if (!stroke.is_excluded) oriented.insert(oriented.end(), stroke.oriented.begin(), stroke.oriented.end());
+  }
+  if (length_in_use_mm() < kMinLengthToSearch_mm) {
+    pool.clear();
+  } else {
+    GlobalSearchOptions search;
+    search.seed = options.seed + result.revision;  // other pairs each time
+    search.use_marker_prior = options.use_marker_prior;
+    const bool is_found = result.state != OnlineState::Collecting;
+    search.curve_pair_count = is_found ? kPairsAfterwards : kPairsWhileCollecting;
+    search.keep_count = is_found ? 6 : 40;
+    pool.add(search_globally(bone->data(), oriented, points, search), points, search.seed);
+    pool.refine_all(points, kIterations);
+  }
+  RegistrationOptions summary_options;
+  summary_options.use_marker_prior = options.use_marker_prior;
+  summary_options.target_in_bone_mm = options.target_in_bone_mm;
+  result.registration = summarise(bone->data(), pool, points, curves, summary_options);
+  if (!result.registration.has_pose) {
+    result.registration.reasons = {"too little was touched yet"};
+    return;
+  }
+  const Eigen::Matrix3d turn = result.registration.covariance.bottomRightCorner<3, 3>();
+  Eigen::Matrix3d across = Eigen::Matrix3d::Identity();
+  if (options.direction_in_bone) across = geometry::cross_matrix(options.direction_in_bone->normalized());
+  result.predicted_angle_deg = geometry::deg_from_rad(std::sqrt((across * turn * across.transpose()).trace()));
+}
+
+void OnlineRegistration::State::remember_solution() {
+  constexpr std::size_t kRemembered = 5;
+  if (!result.registration.has_pose) return;
+  solutions.push_back(result.registration.marker_from_bone);
+  if (solutions.size() > kRemembered) solutions.erase(solutions.begin());
+  history.push_back({result.revision, result.state, result.length_mm, result.registration.rms_mm,
+                     result.registration.predicted_tre_mm, result.registration.marker_from_bone});
+}
+
+// How many of the last solutions, one after the other, agree with the newest at the target; itself included.
+int OnlineRegistration::State::agreement_count() const {
+  constexpr double kDistance_mm = 1.0, kAngle_deg = 1.5;
+  int count = 0;
+  for (auto it = solutions.rbegin(); it != solutions.rend(); ++it, ++count) {
+    const RigidTransform& newest = solutions.back();
+    const double angle_deg =
+        geometry::deg_from_rad(geometry::rotation_angle_rad(newest.rotation.conjugate() * it->rotation));
+    if ((*it * target_mm() - newest * target_mm()).norm() > kDistance_mm || angle_deg > kAngle_deg) break;
+  }
+  return count;
+}
+
+void OnlineRegistration::State::judge_touches() {
+  if (!result.registration.has_pose) return;
+  const RigidTransform bone_from_marker = result.registration.marker_from_bone.inverse();
+  for (Touch& touch : result.touches) {
+    touch.residual_mm = bone->data().surface.signed_distance_mm(bone_from_marker * touch.point_in_marker_mm);
+  }
+}
+
+int OnlineRegistration::State::violation_count() const {
+  int count = control_violations;
+  for (const Touch& touch : result.touches) count += std::abs(touch.residual_mm) > options.max_touch_error_mm;
+  return count;
+}
+
+void OnlineRegistration::State::judge_state() {
+  constexpr double kCandidateRatio = 1.15, kCandidateInliers = 0.5;
+  constexpr int kAgreeingSolutions = 3, kTouchesToVerify = 3, kViolationsToDrop = 2;
+  constexpr double kMaxVerifiedTouch_mm = 1.0, kMaxVerifiedMedian_mm = 0.6;
+  const RegistrationSummary& registration = result.registration;
+  result.state = OnlineState::Collecting;
+  result.alarm.clear();
+  if (!registration.has_pose) return;
+  if (registration.runner_up_ratio < kCandidateRatio || registration.inlier_fraction < kCandidateInliers) return;
+  result.state = OnlineState::Candidate;
+  if (violation_count() >= kViolationsToDrop) {
+    result.alarm = control_violations > 0
+                       ? formatted("the world marker may have moved: the control point is off by %.1f mm", control_shift_mm)
+                       : formatted("the world marker may have moved: %.0f touches lie off the bone",
+                                   static_cast<double>(violation_count()));
+    return;
+  }
+  if (!registration.reliable || agreement_count() < kAgreeingSolutions) return;
+  result.state = OnlineState::Confirmed;
+  std::vector<double> misses_mm;
+  for (const Touch& touch : result.touches) misses_mm.push_back(std::abs(touch.residual_mm));
+  if (std::ssize(misses_mm) < kTouchesToVerify) return;
+  const bool all_lie_on = *std::max_element(misses_mm.begin(), misses_mm.end()) < kMaxVerifiedTouch_mm;
+  if (all_lie_on && median(misses_mm) < kMaxVerifiedMedian_mm) result.state = OnlineState::Verified;
+}
+
+void OnlineRegistration::State::advise() {
+  constexpr double kLengthWanted_mm = 100, kErrorWanted_mm = 1.2, kAgreeingSolutions = 3;
+  Coach coach;
+  const RegistrationSummary& registration = result.registration;
+  if (result.length_mm < kLengthWanted_mm) {
+    coach.missing.push_back(formatted("%.0f mm more of stroke", std::ceil(kLengthWanted_mm - result.length_mm)));
+  }
+  const double length_done = std::min(1.0, result.length_mm / kLengthWanted_mm);
+  if (!registration.has_pose) {
+    coach.progress = 0.3 * length_done;
+    result.coach = std::move(coach);
+    return;
+  }
+  coach.missing.insert(coach.missing.end(), registration.reasons.begin(), registration.reasons.end());
+  const double agreeing = std::min(kAgreeingSolutions, static_cast<double>(agreement_count()));
+  if (agreeing < kAgreeingSolutions) {
+    coach.missing.push_back(formatted("%.0f mm more of stroke on which the result stays put",
+                                      (kAgreeingSolutions - agreeing) * options.refine_every_mm));
+  }
+  const double error_done = std::min(1.0, kErrorWanted_mm / std::max(registration.predicted_tre_mm, 1e-3));
+  coach.progress = 0.3 * length_done + 0.3 * error_done + 0.2 * agreeing / kAgreeingSolutions +
+                   (registration.reliable ? 0.2 : 0.0);
+  coach.patches = find_patches(bone->data(), pool.best(), points, pool.prior(), target_mm());
+  const auto next = std::max_element(coach.patches.begin(), coach.patches.end(),
+                                     [](const BonePatch& l, const BonePatch& r) { return l.gain < r.gain; });
+  if (next != coach.patches.end() && next->gain > 0.02) coach.next_patch_in_bone_mm = next->point_in_bone_mm;
+  if (!result.alarm.empty()) {
+    coach.message = "Check the world marker: " + result.alarm + ".";
+    coach.progress = 0;
+  } else if (result.state == OnlineState::Verified) {
+    coach.message = "Verified.";
+    coach.progress = 1;
+  } else if (result.state == OnlineState::Confirmed) {
+    coach.message = "Confirmed. Touch three places that you know, to verify.";
+    coach.progress = 1;
+  } else if (coach.next_patch_in_bone_mm) {
+    coach.message = "Draw the next stroke " +
+                    describe_place(*next, pool.best().bone_from_marker * points.centroid_mm) + ": it helps most.";
+  }
+  result.coach = std::move(coach);
+}
+
+void OnlineRegistration::State::describe_strokes() {
+  result.strokes.clear();
+  const RigidTransform bone_from_marker = result.registration.marker_from_bone.inverse();
+  for (const Stroke& stroke : strokes) {
+    StrokeInfo info;
+    info.curve = stroke.points.front().curve;
+    info.point_count = static_cast<int>(stroke.points.size());
+    info.length_mm = stroke.length_mm;
+    info.is_excluded = stroke.is_excluded;
+    if (result.registration.has_pose) {
+      std::vector<double> misses_mm;
+      for (const strokes::CurvePoint& point : stroke.points) {
+        misses_mm.push_back(std::abs(bone->data().field.sample(bone_from_marker * point.position_mm).distance_mm));
+      }
+      info.median_residual_mm = median(std::move(misses_mm));
+    }
+    result.strokes.push_back(info);
+  }
+}
+
+OnlineRegistration::OnlineRegistration(std::shared_ptr<const PreparedBone> bone, const OnlineOptions& options)
+    : state_(std::make_unique<State>(std::move(bone), options)) {}
+OnlineRegistration::~OnlineRegistration() = default;
+
+void OnlineRegistration::add_points(std::span<const strokes::CurvePoint> points) {
+  for (const strokes::CurvePoint& point : points) {
+    auto& strokes = state_->strokes;
+    if (strokes.empty() || strokes.back().points.front().curve != point.curve) strokes.emplace_back();
+    strokes::Curves& stroke = strokes.back().points;
+    if (!stroke.empty()) state_->unmeasured_mm += (point.position_mm - stroke.back().position_mm).norm();
+    stroke.push_back(point);
+  }
+}
+
+bool OnlineRegistration::exclude_stroke(int curve, bool is_excluded) {
+  bool found = false;
+  for (Stroke& stroke : state_->strokes) {
+    if (stroke.points.front().curve != curve) continue;
+    stroke.is_excluded = is_excluded;
+    found = state_->is_changed = true;
+  }
+  return found;
+}
+
+bool OnlineRegistration::undo_stroke() {
+  if (state_->strokes.empty()) return false;
+  state_->strokes.pop_back();
+  return state_->is_changed = true;
+}
+
+void OnlineRegistration::add_touch(const Eigen::Vector3d& tip_in_marker_mm) {
+  state_->result.touches.push_back({tip_in_marker_mm, 0});
+  state_->is_judged = false;
+}
+
+void OnlineRegistration::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
+  State& state = *state_;
+  if (!state.control_point_mm) {
+    state.control_point_mm = tip_in_marker_mm;
+    return;
+  }
+  state.control_shift_mm = (tip_in_marker_mm - *state.control_point_mm).norm();
+  // One that is back where it was takes the suspicion away.
+  state.control_violations =
+      state.control_shift_mm > state.options.max_control_shift_mm ? state.control_violations + 1 : 0;
+  state.is_judged = false;
+}
+
+void OnlineRegistration::clear_touches() {
+  state_->result.touches.clear();
+  state_->control_point_mm.reset();
+  state_->control_violations = 0;
+  state_->is_judged = false;
+}
+
+void OnlineRegistration::clear() {
+  clear_touches();
+  state_->strokes.clear();
+  state_->solutions.clear();
+  state_->pool.clear();
+  state_->is_changed = true;
+}
+
+const OnlineResult& OnlineRegistration::update() {
+  State& state = *state_;
+  // Measuring a stroke with its noise taken out costs more than adding up the steps of its points, which is never less.
+  const double missing_mm = state.options.refine_every_mm - (state.length_in_use_mm() - state.solved_length_mm);
+  if (state.unmeasured_mm < missing_mm && !state.is_changed && state.is_judged) return state.result;
+  state.prepare_strokes();
+  state.unmeasured_mm = 0;
+  const double length_mm = state.length_in_use_mm();
+  const bool has_new_stroke = length_mm - state.solved_length_mm >= state.options.refine_every_mm;
+  if (!has_new_stroke && !state.is_changed && state.is_judged) return state.result;
+
+  ++state.result.revision;
+  if (has_new_stroke || state.is_changed) {
+    state.solve();
+    state.solved_length_mm = state.result.length_mm = length_mm;
+    if (state.is_changed) state.solutions.clear();  // agreement has to be earned again
+    state.remember_solution();
+    state.describe_strokes();
+  }
+  state.is_changed = false;
+  state.is_judged = true;
+  state.judge_touches();
+  state.judge_state();
+  state.advise();
+  if (!state.history.empty()) state.history.back().state = state.result.state;
+  return state.result;
+}
+
+const OnlineResult& OnlineRegistration::result() const { return state_->result; }
+const std::vector<HistoryEntry>& OnlineRegistration::history() const { return state_->history; }
+strokes::Curves OnlineRegistration::curves_in_use() const { return state_->curves_in_use(); }
+
+}  // namespace arthronaut::registration

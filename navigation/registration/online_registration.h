@@ -1,0 +1,150 @@
+// Registration while the surgeon scratches.
+//
+// OnlineRegistration is the thread-free core: points go in as they are drawn, update() does a bounded piece of work and
+// returns all that is known. RegistrationWorker runs one on its own thread: the frame thread hands points over and reads
+// the newest result, and never waits for a computation.
+//
+// States:
+//   Collecting  no pose stands out yet
+//   Candidate   one pose is ahead, but something is missing (the coach says what)
+//   Confirmed   reliable, and the last solutions agree with one another at the target
+//   Verified    confirmed, and touches that were not used in the fit lie on the bone
+// A touch that lies off the bone twice (OnlineOptions::max_touch_error_mm), or a control point that has wandered, takes
+// Confirmed and Verified back to Candidate: the world marker may have moved.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "navigation/registration/registration.h"
+
+namespace arthronaut::registration {
+
+enum class OnlineState { Collecting, Candidate, Confirmed, Verified };
+[[nodiscard]] std::string_view to_text(OnlineState state);
+
+struct OnlineOptions {
+  std::uint64_t seed = 1;
+  bool use_marker_prior = true;
+  std::optional<Eigen::Vector3d> target_in_bone_mm;     // the tunnel's entry; else the centroid of the points
+  std::optional<Eigen::Vector3d> direction_in_bone;     // the tunnel's, for the predicted error of its angle
+  double refine_every_mm = 10;       // of new stroke
+  double max_touch_error_mm = 1.5;   // a touch further off the bone is a violation
+  double max_control_shift_mm = 1.0;  // of a control point touched again, in the world-marker frame
+};
+
+// One part of the bone near the touched area, for colouring it.
+struct BonePatch {
+  Eigen::Vector3d point_in_bone_mm = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  bool is_touched = false;
+  double gain = 0;  // in [0, 1]: by how much a stroke here would reduce the predicted error, as a share of it
+};
+
+struct Coach {
+  std::string message = "Draw strokes on the bone with the probe.";  // one sentence: what to do next
+  double progress = 0;                 // in [0, 1]; 1 when confirmed
+  std::vector<std::string> missing;    // what keeps it from being confirmed, in words, nearest first
+  std::optional<Eigen::Vector3d> next_patch_in_bone_mm;  // where the next stroke helps most
+  std::vector<BonePatch> patches;      // empty while collecting
+};
+
+struct StrokeInfo {
+  int curve = 0;
+  int point_count = 0;
+  double length_mm = 0;
+  bool is_excluded = false;
+  double median_residual_mm = 0;  // of |signed distance|; 0 while there is no pose
+};
+
+struct Touch {
+  Eigen::Vector3d point_in_marker_mm = Eigen::Vector3d::Zero();
+  double residual_mm = 0;  // signed distance to the bone by the registration in force; kept up to date
+};
+
+// Everything that is known at one moment. Immutable once published.
+struct OnlineResult {
+  std::uint64_t revision = 0;  // grows with every change
+  OnlineState state = OnlineState::Collecting;
+  RegistrationSummary registration;  // has_pose is false while collecting
+  double predicted_angle_deg = 0;    // one sigma, of a direction of the bone: the tunnel's, or the worst one
+  Coach coach;
+  double length_mm = 0;              // of the strokes in use
+  std::vector<StrokeInfo> strokes;
+  std::vector<Touch> touches;
+  std::string alarm;  // empty, or why the state was taken back: "the world marker may have moved: ..."
+};
+
+// What a registration said when it was replaced or taken back.
+struct HistoryEntry {
+  std::uint64_t revision = 0;
+  OnlineState state = OnlineState::Collecting;
+  double length_mm = 0, rms_mm = 0, predicted_tre_mm = 0;
+  geometry::RigidTransform marker_from_bone;
+};
+
+// Deterministic: the results depend on the order of calls alone, never on time. Not thread-safe.
+class OnlineRegistration {
+ public:
+  OnlineRegistration(std::shared_ptr<const PreparedBone> bone, const OnlineOptions& options);
+  ~OnlineRegistration();
+
+  // In drawing order; a new curve number starts a new stroke. Cheap.
+  void add_points(std::span<const strokes::CurvePoint> points);
+  // Takes a stroke out of the fit, or back in; false when there is no such stroke.
+  bool exclude_stroke(int curve, bool is_excluded = true);
+  // Forgets the stroke drawn last; false when there is none.
+  bool undo_stroke();
+  // A touch that is not used in the fit, to verify. Judged at once, by the registration in force.
+  void add_touch(const Eigen::Vector3d& tip_in_marker_mm);
+  // The control point: the first call keeps it, later ones compare.
+  void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm);
+  // Forgets touches and control point, and with them an alarm; strokes and pose stay.
+  void clear_touches();
+  // Forgets everything but the history.
+  void clear();
+
+  // Solves again when enough was drawn or anything changed; otherwise returns what is known. At most about 10 ms once a
+  // candidate is there, more while collecting.
+  const OnlineResult& update();
+
+  [[nodiscard]] const OnlineResult& result() const;
+  [[nodiscard]] const std::vector<HistoryEntry>& history() const;
+  [[nodiscard]] strokes::Curves curves_in_use() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// The same on a thread of its own. Every member may be called from any thread and returns at once.
+class RegistrationWorker {
+ public:
+  RegistrationWorker(std::shared_ptr<const PreparedBone> bone, const OnlineOptions& options);
+  ~RegistrationWorker();  // stops after the piece of work in hand
+
+  void add_points(std::span<const strokes::CurvePoint> points);
+  void exclude_stroke(int curve, bool is_excluded = true);
+  void undo_stroke();
+  void add_touch(const Eigen::Vector3d& tip_in_marker_mm);
+  void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm);
+  void clear_touches();
+  void clear();
+
+  // The newest result, whole; never null.
+  [[nodiscard]] std::shared_ptr<const OnlineResult> latest() const;
+  // Waits until all that was handed over so far has been worked in; for tests and for the end of a session.
+  void finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace arthronaut::registration

@@ -1,0 +1,43 @@
+// The poses that compete for a set of touched points: refined, ranked, kept apart.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "navigation/registration/global_search.h"
+#include "navigation/registration/prepared_bone.h"
+#include "navigation/registration/refinement.h"
+#include "navigation/registration/touched_points.h"
+
+namespace arthronaut::registration {
+
+// Poses that put the touched area elsewhere (by more than 3 mm or 5 degrees), not refinements of one another.
+[[nodiscard]] bool are_different(const geometry::RigidTransform& a, const geometry::RigidTransform& b,
+                                 const Eigen::Vector3d& centroid_mm);
+
+class PosePool {
+ public:
+  PosePool(const PreparedBone::Data& bone, const MarkerPrior& prior) : bone_(bone), prior_(prior) {}
+
+  // Refines hypotheses roughly on few points, and lets the best into the pool.
+  void add(const std::vector<Hypothesis>& hypotheses, const TouchedPoints& points, std::uint64_t seed);
+  // Refines all poses of the pool on the points, ranks them, and drops twins and all but the best few.
+  void refine_all(const TouchedPoints& points, int iterations);
+  // Fits the best against the mesh itself, which takes out the grid's rounding.
+  void polish(const TouchedPoints& points);
+  void clear() { poses_.clear(); }
+
+  [[nodiscard]] bool empty() const { return poses_.empty(); }
+  [[nodiscard]] const RefinedPose& best() const { return poses_.front(); }
+  [[nodiscard]] const MarkerPrior& prior() const { return prior_; }
+  [[nodiscard]] const RefinedPose* runner_up() const { return poses_.size() > 1 ? &poses_[1] : nullptr; }
+
+ private:
+  void rank(const Eigen::Vector3d& centroid_mm, std::size_t max_count);
+
+  const PreparedBone::Data& bone_;
+  MarkerPrior prior_;
+  std::vector<RefinedPose> poses_;  // best first, different from one another
+};
+
+}  // namespace arthronaut::registration
