@@ -14,28 +14,6 @@ constexpr int kFewestCorners = 16;
 
 using PixelAt = std::map<LatticeNode, Eigen::Vector2d>;
 
-// The largest lattice of all seeds tried; strong saddles first, as they are seldom chance.
-PixelAt largest_lattice(const std::vector<Saddle>& saddles) {
-  Lattice lattice(saddles);
-  PixelAt best;
-  std::vector<bool> tried(saddles.size(), false);
-  int fruitless = 0;
-  for (int seed = 0; seed < static_cast<int>(saddles.size()) && fruitless < 150; ++seed) {
-    if (tried[static_cast<std::size_t>(seed)]) continue;
-    if (!lattice.grow_from(seed) || lattice.nodes().size() <= best.size()) {
-      ++fruitless;
-      continue;
-    }
-    best.clear();
-    for (const auto& [node, saddle] : lattice.nodes()) {
-      best[node] = saddles[static_cast<std::size_t>(saddle)].pixel;
-      tried[static_cast<std::size_t>(saddle)] = true;
-    }
-    if (best.size() > saddles.size() / 2) break;
-  }
-  return best;
-}
-
 std::optional<ConformalMap> map_of(const PixelAt& corners) {
   std::vector<Eigen::Vector2d> pixels, plane;
   for (const auto& [node, pixel] : corners) {
@@ -77,6 +55,31 @@ bool prune(PixelAt& corners, double least_limit_px) {
     if (corners.size() == before) return true;
   }
   return true;
+}
+
+// The largest consistent lattice of all seeds tried; strong saddles first, as they are seldom chance.
+PixelAt largest_lattice(const std::vector<Saddle>& saddles, std::size_t& most_grown) {
+  Lattice lattice(saddles);
+  PixelAt best;
+  std::vector<bool> tried(saddles.size(), false);
+  int fruitless = 0;
+  for (int seed = 0; seed < static_cast<int>(saddles.size()) && fruitless < 150; ++seed) {
+    if (tried[static_cast<std::size_t>(seed)]) continue;
+    if (!lattice.grow_from(seed) || lattice.nodes().size() <= best.size()) {
+      ++fruitless;
+      continue;
+    }
+    PixelAt grown;
+    for (const auto& [node, saddle] : lattice.nodes()) {
+      grown[node] = saddles[static_cast<std::size_t>(saddle)].pixel;
+      tried[static_cast<std::size_t>(saddle)] = true;
+    }
+    most_grown = std::max(most_grown, grown.size());
+    if (!prune(grown, 3.0) || grown.size() <= best.size()) continue;
+    best = std::move(grown);
+    if (best.size() > saddles.size() / 2) break;
+  }
+  return best;
 }
 
 // Shortest distance to a neighbour on the lattice, from the map.
@@ -152,23 +155,27 @@ BoardDetection find_checkerboard(const camera::GrayView& picture) {
     return detection;
   }
   const std::vector<Saddle> saddles = find_saddles(picture);
-  PixelAt corners = largest_lattice(saddles);
+  std::size_t most_grown = 0;
+  PixelAt corners = largest_lattice(saddles, most_grown);
   if (corners.size() < kFewestCorners || !spans_a_plane(corners)) {
     detection.reason = "no checkerboard was found in it (" + std::to_string(saddles.size()) +
-                       " places look like corners, no more than " + std::to_string(corners.size()) +
+                       " places look like corners, no more than " + std::to_string(most_grown) +
                        " of them lie in rows and columns)";
     return detection;
   }
   const SmoothPicture fine = smoothed(picture, 0.7);
   // Indices first, with room for the error of unrefined saddles; then sub-pixel; then the corners still missing.
-  bool consistent = prune(corners, 3.0);
+  bool consistent = true;
   for (int pass = 0; consistent && pass < 30 && add_expected(corners, fine); ++pass) consistent = prune(corners, 3.0);
   if (consistent) {
     const auto map = map_of(corners);
     PixelAt refined;
     for (const auto& [node, pixel] : corners) {
       const double half_window = std::clamp(0.32 * spacing_px(*map, node, pixel), 2.0, 9.0);
-      if (const auto better = refine_corner(fine, pixel, half_window)) refined[node] = *better;
+      auto better = refine_corner(fine, pixel, half_window);
+      // Halos and shading spoil a large neighbourhood first.
+      if (!better && half_window > 3.5) better = refine_corner(fine, pixel, 0.55 * half_window, 0.5);
+      if (better) refined[node] = *better;
     }
     corners = std::move(refined);
     consistent = corners.size() >= kFewestCorners && prune(corners, 1.0);

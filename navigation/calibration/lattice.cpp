@@ -1,12 +1,27 @@
 #include "navigation/calibration/lattice.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace arthronaut::calibration {
 namespace {
 constexpr std::array<std::pair<int, int>, 4> kSteps = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+
+// Corners side by side on one board: black and white change places, the contrast is alike (strength goes with its
+// square), and the step from one to the other runs along an edge of both.
+bool are_neighbours(const Saddle& a, const Saddle& b) {
+  if (a.likeness(b) >= 0) return false;
+  if (a.strength > 12 * b.strength || b.strength > 12 * a.strength) return false;
+  const Eigen::Vector2d step = (b.pixel - a.pixel).normalized();
+  for (const Saddle* s : {&a, &b}) {
+    const double along = std::max(std::abs(step.dot(s->edge[0])), std::abs(step.dot(s->edge[1])));
+    if (along < 0.93) return false;
+  }
+  return true;
 }
+
+}  // namespace
 
 Lattice::Lattice(const std::vector<Saddle>& saddles) : saddles_(saddles), node_of_(saddles.size()) {}
 
@@ -25,20 +40,20 @@ int Lattice::neighbour_along(int from, const Eigen::Vector2d& direction) const {
     const double along = d.dot(direction);
     if (along < 5 || along > best_along) continue;
     if (std::abs(d.x() * direction.y() - d.y() * direction.x()) > 0.25 * along) continue;
-    if (origin.likeness(other) >= 0) continue;
+    if (!are_neighbours(origin, other)) continue;
     best = k;
     best_along = along;
   }
   return best;
 }
 
-int Lattice::nearest(const Eigen::Vector2d& at, double within_px, int opposite_of) const {
-  const Saddle& from = saddles_[static_cast<std::size_t>(opposite_of)];
+int Lattice::nearest(const Eigen::Vector2d& at, double within_px, int beside) const {
+  const Saddle& from = saddles_[static_cast<std::size_t>(beside)];
   int best = -1;
   double best_square = within_px * within_px;
   for (int k = 0; k < static_cast<int>(saddles_.size()); ++k) {
     const double square = (saddles_[static_cast<std::size_t>(k)].pixel - at).squaredNorm();
-    if (square >= best_square || from.likeness(saddles_[static_cast<std::size_t>(k)]) >= 0) continue;
+    if (square >= best_square || !are_neighbours(from, saddles_[static_cast<std::size_t>(k)])) continue;
     best = k;
     best_square = square;
   }

@@ -23,7 +23,7 @@ class Lattice {
 
  private:
   [[nodiscard]] int neighbour_along(int from, const Eigen::Vector2d& direction) const;
-  [[nodiscard]] int nearest(const Eigen::Vector2d& at, double within_px, int opposite_of) const;
+  [[nodiscard]] int nearest(const Eigen::Vector2d& at, double within_px, int beside) const;
   [[nodiscard]] std::optional<Eigen::Vector2d> predict(const LatticeNode& from, int dc, int dr) const;
   void place(const LatticeNode& node, int saddle);
   bool grow_once(double tolerance);

@@ -138,7 +138,7 @@ std::vector<Saddle> find_saddles(const camera::GrayView& picture) {
 }
 
 std::optional<Eigen::Vector2d> refine_corner(const SmoothPicture& picture, const Eigen::Vector2d& start,
-                                             double half_window_px) {
+                                             double half_window_px, double least_likeness) {
   Eigen::Vector2d corner = start;
   const int half = std::max(2, static_cast<int>(std::lround(half_window_px)));
   const double fall = 2.0 / (half_window_px * half_window_px);
@@ -176,7 +176,7 @@ std::optional<Eigen::Vector2d> refine_corner(const SmoothPicture& picture, const
       cross += a * b;
     }
   const double mean = sum / count, variance = square / count - mean * mean;
-  if (!(variance > 4) || (cross / count - mean * mean) / variance < 0.85) return std::nullopt;
+  if (!(variance > 4) || (cross / count - mean * mean) / variance < least_likeness) return std::nullopt;
   return corner;
 }
 

@@ -42,8 +42,9 @@ struct Saddle {
 
 // Sub-pixel place of a corner: the point that the brightness gradients around it are square to (Foerstner). Only
 // accepted when the neighbourhood is its own picture under half a turn, which glare, the view's rim and an instrument
-// spoil. half_window_px must stay below 0.45 of the distance to the next corner.
+// spoil: the correlation of the two must reach least_likeness. half_window_px must stay below 0.45 of the distance to the
+// next corner.
 [[nodiscard]] std::optional<Eigen::Vector2d> refine_corner(const SmoothPicture& picture, const Eigen::Vector2d& start,
-                                                           double half_window_px);
+                                                           double half_window_px, double least_likeness = 0.7);
 
 }  // namespace arthronaut::calibration

@@ -1,0 +1,174 @@
+#include "navigation/lens/lens_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/navigation/lens/rim_picture.h"
+
+namespace arthronaut::lens {
+namespace {
+
+// 0.2 px: a tenth of the drawn rim's width; the fit averages hundreds of rays.
+constexpr double kCircleTolerance_px = 0.2;
+// 0.15 degrees at a radius of 252 px is 0.7 px along the rim.
+constexpr double kAngleTolerance_deg = 0.15;
+
+void expect_found(const LensObservation& seen, const RimTruth& truth) {
+  ASSERT_TRUE(seen.circle_found);
+  EXPECT_NEAR((seen.circle.center_px - truth.center_px).norm(), 0, kCircleTolerance_px);
+  EXPECT_NEAR(seen.circle.radius_px, truth.radius_px, 2 * kCircleTolerance_px);
+  ASSERT_EQ(seen.mark, MarkState::Found) << to_text(seen.mark);
+  EXPECT_NEAR(turn_between_deg(seen.mark_angle_deg, truth.mark_angle_deg), 0, kAngleTolerance_deg);
+  EXPECT_FALSE(seen.is_stale);
+}
+
+// One picture on its own: both polarities, all round the rim, from nothing.
+TEST(LensTracker, FindsCircleAndMarkOfEitherPolarityInAStill) {
+  for (const bool outward : {false, true})
+    for (const double angle_deg : {0.0, 94.5, 179.9, 271.3}) {
+      RimTruth truth;
+      truth.is_bright_outward = outward;
+      truth.mark_angle_deg = angle_deg;
+      const RimPicture picture = draw(truth);
+      const LensObservation seen = observe_still(picture.view());
+      expect_found(seen, truth);
+      EXPECT_EQ(seen.polarity, outward ? MarkPolarity::BrightOutward : MarkPolarity::DarkInward);
+    }
+}
+
+// A circle that is cut by the picture's upper and lower edge, as many heads show it.
+TEST(LensTracker, FindsACircleThatThePictureCuts) {
+  RimTruth truth;
+  truth.radius_px = 320;
+  truth.mark_angle_deg = 12;
+  const RimPicture picture = draw(truth);
+  expect_found(observe_still(picture.view()), truth);
+}
+
+// A turning lens whose circle moves about the centre of rotation: the angle follows without lag.
+TEST(LensTracker, FollowsATurningLens) {
+  LensTracker tracker;
+  for (int frame = 0; frame < 25; ++frame) {
+    RimTruth truth;
+    truth.seed = 100 + static_cast<unsigned>(frame);
+    truth.mark_angle_deg = 340 + 2.5 * frame;
+    const double turn = truth.mark_angle_deg * M_PI / 180;
+    truth.center_px += Eigen::Vector2d(4 * std::cos(turn), 4 * std::sin(turn));
+    const RimPicture picture = draw(truth);
+    expect_found(tracker.observe(picture.view(), frame * 16'666'667LL), truth);
+  }
+}
+
+// Half of the scene lies in the dark and a bright instrument crosses the rim: neither moves circle or mark.
+TEST(LensTracker, IsNotMovedByDarknessOrInstruments) {
+  RimTruth truth;
+  truth.scene = [](double angle_deg, double) {
+    if (angle_deg > 20 && angle_deg < 120) return 3.0;                            // dark
+    if (std::abs(turn_between_deg(angle_deg, -60)) < 8) return 240.0;             // shaft
+    return 80.0;
+  };
+  const RimPicture picture = draw(truth);
+  expect_found(observe_still(picture.view()), truth);
+}
+
+// Dark instruments make dents of their own; the tracker goes on with the mark whose shape and place it knows.
+TEST(LensTracker, KeepsTheMarkWhenADarkInstrumentDentsTheRim) {
+  LensTracker tracker;
+  for (int frame = 0; frame < 20; ++frame) {
+    RimTruth truth;
+    truth.seed = 300 + static_cast<unsigned>(frame);
+    if (frame > 8)
+      truth.scene = [](double angle_deg, double share) {
+        return std::abs(turn_between_deg(angle_deg, 150)) < 2.5 && share > 0.95 ? 2.0 : 90.0;
+      };
+    const RimPicture picture = draw(truth);
+    expect_found(tracker.observe(picture.view(), frame * 16'666'667LL), truth);
+  }
+}
+
+// A mark that is gone from a clean rim, one that is covered and one in the dark are told apart, and after the time
+// allowed the angle is stale.
+TEST(LensTracker, SaysWhyTheMarkIsNotFoundAndWhenItIsStale) {
+  LensTracker tracker;
+  std::int64_t now_ns = 0;
+  const auto show = [&](const RimTruth& truth) {
+    const RimPicture picture = draw(truth);
+    return tracker.observe(picture.view(), now_ns += 16'666'667);
+  };
+  const RimTruth plain;
+  for (int frame = 0; frame < 8; ++frame) ASSERT_EQ(show(plain).mark, MarkState::Found);
+
+  RimTruth dark = plain;
+  dark.scene = [](double angle_deg, double) { return std::abs(turn_between_deg(angle_deg, 205)) < 30 ? 2.0 : 90.0; };
+  LensObservation seen = show(dark);
+  EXPECT_EQ(seen.mark, MarkState::Dark);
+  EXPECT_FALSE(seen.is_stale);
+  EXPECT_TRUE(seen.has_angle());
+
+  RimTruth covered = plain;
+  covered.scene = [](double angle_deg, double share) {
+    return std::abs(turn_between_deg(angle_deg, 205)) < 12 && share > 0.97 ? 2.0 : 90.0;
+  };
+  EXPECT_EQ(show(covered).mark, MarkState::Covered);
+
+  RimTruth gone = plain;
+  gone.has_mark = false;
+  EXPECT_EQ(show(gone).mark, MarkState::NotSeen);
+  now_ns += 1'000'000'000;
+  seen = show(gone);
+  EXPECT_TRUE(seen.is_stale);
+  EXPECT_FALSE(seen.has_angle());
+  EXPECT_GT(seen.mark_sigma_deg, 5);
+}
+
+// Two marks alike in a still: no guess.
+TEST(LensTracker, RefusesToChooseBetweenTwoMarks) {
+  RimTruth truth;
+  truth.scene = [&](double angle_deg, double share) {
+    const double off = std::abs(turn_between_deg(angle_deg, 40)) / 2.1;
+    return share > 1 - 0.04 * std::max(0.0, 1 - off) ? 0.0 : 90.0;
+  };
+  const RimPicture picture = draw(truth);
+  EXPECT_EQ(observe_still(picture.view()).mark, MarkState::Ambiguous);
+}
+
+// Another zoom and a slipped coupler are noticed within a few frames, against the calibration's track.
+TEST(LensTracker, NoticesZoomAndSlip) {
+  const RimTruth truth;
+  LensTrackerOptions options;
+  options.calibration.emplace();
+  options.calibration->image_size_px = {truth.width, truth.height};
+  options.calibration->rotation_center_px = {480, 270};
+  options.calibration->boundary = {truth.center_px, truth.radius_px};
+  options.calibration->reference_mark_angle_deg = truth.mark_angle_deg;
+  for (const bool is_zoom : {false, true}) {
+    LensTracker tracker(options);
+    LensObservation seen;
+    for (int frame = 0; frame < 40; ++frame) {
+      RimTruth now = truth;
+      if (frame >= 15 && is_zoom) now.radius_px *= 1.01;
+      if (frame >= 15 && !is_zoom) now.center_px.x() += 7;
+      const RimPicture picture = draw(now);
+      seen = tracker.observe(picture.view(), frame * 16'666'667LL);
+      if (frame < 15) {
+        EXPECT_FALSE(seen.zoom_or_slip) << frame;
+      }
+    }
+    EXPECT_TRUE(seen.zoom_or_slip) << (is_zoom ? "zoom" : "slip");
+  }
+}
+
+// No round view at all: a plain scene, a black picture, a picture too small to hold one.
+TEST(LensTracker, FindsNoCircleWhereThereIsNone) {
+  for (const int level : {0, 90}) {
+    const std::vector<std::uint8_t> plain(640 * 480, static_cast<std::uint8_t>(level));
+    const LensObservation seen = observe_still({plain.data(), 640, 480, 640});
+    EXPECT_FALSE(seen.circle_found);
+    EXPECT_EQ(seen.mark, MarkState::NoCircle);
+    EXPECT_TRUE(seen.is_stale);
+  }
+  const std::vector<std::uint8_t> tiny(16 * 16, 50);
+  EXPECT_EQ(observe_still({tiny.data(), 16, 16, 16}).mark, MarkState::NoCircle);
+}
+
+}  // namespace
+}  // namespace arthronaut::lens
