@@ -1,0 +1,130 @@
+// case.json and plan.json, and the meshes beside them.
+#include <nlohmann/json.hpp>
+
+#include "planning/bones/mesh_file.h"
+#include "planning/cases/case.h"
+#include "planning/files/json_document.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::cases {
+
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::string_view kCaseFormat = "arthronaut.case", kPlanFormat = "arthronaut.plan";
+constexpr int kCaseVersion = 1, kPlanVersion = 1;
+
+nlohmann::ordered_json landmarks_to_json(const landmarks::Landmarks& landmarks) {
+  auto json = nlohmann::ordered_json::array();
+  for (const auto& [name, position] : landmarks) json.push_back({{"name", name}, {"position_mm", files::to_json(position)}});
+  return json;
+}
+
+landmarks::Landmarks landmarks_from(const files::JsonObject& bone) {
+  landmarks::Landmarks landmarks;
+  if (!bone.has("landmarks")) return landmarks;
+  for (const auto& node : bone.objects("landmarks")) {
+    if (!landmarks.emplace(node.text("name"), node.vector3("position_mm")).second) node.fail("name", "is there twice");
+  }
+  return landmarks;
+}
+
+Plan load_plan(const fs::path& file) {
+  const auto root = files::read_json(file, kPlanFormat, kPlanVersion);
+  Plan plan;
+  for (const auto& node : root.objects("tunnels")) {
+    tunnels::Tunnel tunnel;
+    try {
+      tunnel.bone = bones::bone_kind_from_text(node.text("bone"));
+    } catch (const InvalidInput&) {
+      node.fail("bone", "must be femur or tibia");
+    }
+    tunnel.entry_mm = node.vector3("entry_mm");
+    tunnel.direction = node.vector3("direction");
+    if (tunnel.direction.norm() < 1e-6) node.fail("direction", "must not be zero");
+    tunnel.direction.normalize();
+    tunnel.diameter_mm = node.positive_number("diameter_mm");
+    if (!plan.tunnels.emplace(tunnel.bone, tunnel).second) node.fail("bone", "has two tunnels");
+  }
+  return plan;
+}
+
+// Writing a mesh takes a while; most saves change only the plan.
+bool holds_mesh(const fs::path& file, const geometry::TriangleMesh& mesh) {
+  if (!fs::exists(file)) return false;
+  try {
+    const auto there = bones::read_mesh(file, {.space = bones::Space::LPS, .unit = bones::LengthUnit::Millimetre});
+    return there.triangles == mesh.triangles && there.vertices_mm == mesh.vertices_mm;
+  } catch (const std::runtime_error&) {
+    return false;  // a broken mesh is replaced
+  }
+}
+
+}  // namespace
+
+Case load_case(const fs::path& folder) {
+  if (!fs::is_directory(folder)) throw IoError(folder, "is not a case folder");
+  const fs::path file = folder / "case.json";
+  if (!fs::exists(file)) throw InvalidInput(folder, "", "is not a case: it holds no case.json");
+  const auto root = files::read_json(file, kCaseFormat, kCaseVersion);
+  Case result;
+  result.name = root.text("name");
+  try {
+    result.side = bones::side_from_text(root.text("side"));
+  } catch (const InvalidInput&) {
+    root.fail("side", "must be left or right");
+  }
+  if (root.has("created_utc")) result.created_utc = root.text("created_utc");
+  for (const auto& node : root.objects("bones")) {
+    bones::Bone bone;
+    try {
+      bone.kind = bones::bone_kind_from_text(node.text("kind"));
+    } catch (const InvalidInput&) {
+      node.fail("kind", "must be femur or tibia");
+    }
+    if (node.has("source")) bone.source = node.text("source");
+    bone.mesh = bones::read_mesh(mesh_file(folder, bone.kind),
+                                 {.space = bones::Space::LPS, .unit = bones::LengthUnit::Millimetre});
+    if (auto landmarks = landmarks_from(node); !landmarks.empty()) result.landmarks[bone.kind] = std::move(landmarks);
+    if (!result.bones.emplace(bone.kind, std::move(bone)).second) node.fail("kind", "is there twice");
+  }
+  if (fs::exists(folder / "plan.json")) result.plan = load_plan(folder / "plan.json");
+  return result;
+}
+
+void save_plan(const fs::path& folder, const Plan& plan) {
+  auto tunnels = nlohmann::ordered_json::array();
+  for (const auto& [kind, tunnel] : plan.tunnels) {
+    tunnels.push_back({{"bone", bones::to_text(kind)},
+                       {"entry_mm", files::to_json(tunnel.entry_mm)},
+                       {"direction", files::to_json(tunnel.direction)},
+                       {"diameter_mm", tunnel.diameter_mm}});
+  }
+  files::write_json(folder / "plan.json",
+                    {{"format", kPlanFormat}, {"version", kPlanVersion}, {"tunnels", std::move(tunnels)}});
+}
+
+// case.json is written last: it is what makes the folder a case, and it names only meshes that are already there.
+void save_case(const fs::path& folder, const Case& contents) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw IoError(folder, "cannot create: " + error.message());
+  auto bones = nlohmann::ordered_json::array();
+  for (const auto& [kind, bone] : contents.bones) {
+    if (!holds_mesh(mesh_file(folder, kind), bone.mesh)) bones::write_mesh_ply(mesh_file(folder, kind), bone.mesh);
+    nlohmann::ordered_json node = {{"kind", bones::to_text(kind)}, {"source", bone.source}};
+    if (const auto marks = contents.landmarks.find(kind); marks != contents.landmarks.end()) {
+      node["landmarks"] = landmarks_to_json(marks->second);
+    }
+    bones.push_back(std::move(node));
+  }
+  save_plan(folder, contents.plan);
+  files::write_json(folder / "case.json", {{"format", kCaseFormat},
+                                           {"version", kCaseVersion},
+                                           {"name", contents.name},
+                                           {"side", bones::to_text(contents.side)},
+                                           {"created_utc", contents.created_utc},
+                                           {"bones", std::move(bones)}});
+}
+
+}  // namespace arthronaut::cases
