@@ -1,0 +1,198 @@
+#include "planning/phantom/phantom_knee.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "planning/geometry/error.h"
+#include "planning/geometry/rigid_transform.h"
+#include "planning/geometry/surface.h"
+#include "planning/phantom/implicit_mesh.h"
+#include "planning/phantom/knee_shape.h"
+
+namespace arthronaut::phantom {
+
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using geometry::Surface;
+using landmarks::Landmarks;
+
+// Where the native ligament inserts: Bernard and Hertel's quadrant (deep to shallow, high to low) and Amis and Jakob's
+// line (anterior to posterior) with the medial-lateral share. Means of published studies.
+constexpr double kFemurDeepShallow = 0.28, kFemurHighLow = 0.35;
+constexpr double kTibiaAnteroposterior = 0.41, kTibiaMediolateral = 0.47;
+
+// A bone in the anatomical frame of knee_shape.h: x lateral, y anterior, z superior.
+struct AnatomicalBone {
+  geometry::TriangleMesh mesh;
+  Surface surface;
+  explicit AnatomicalBone(geometry::TriangleMesh m) : mesh(std::move(m)), surface(mesh) {}
+
+  // First surface point from `origin` along `direction`. The phantom's own shape promises that there is one.
+  [[nodiscard]] Vector3d hit(const Vector3d& origin, const Vector3d& direction) const {
+    const auto found = surface.first_hit(origin, direction);
+    if (!found) throw std::logic_error("phantom: a landmark's ray misses the bone");
+    return found->point_mm;
+  }
+  // The vertex that lies furthest along a direction, among those that `among` admits.
+  template <typename Predicate>
+  [[nodiscard]] Vector3d furthest(const Vector3d& direction, Predicate among) const {
+    const Vector3d* best = nullptr;
+    for (const auto& v : mesh.vertices_mm) {
+      if (among(v) && (best == nullptr || v.dot(direction) > best->dot(direction))) best = &v;
+    }
+    if (best == nullptr) throw std::logic_error("phantom: a landmark's region is empty");
+    return *best;
+  }
+};
+
+Vector3d in_sagittal_plane(double x, const Vector2d& yz) { return {x, yz.x(), yz.y()}; }
+
+// Bernard and Hertel's rectangle on the lateral condyle: its sagittal diameter along Blumensaat's line and the height of
+// the condyle below it, both in the sagittal plane through the condyle's middle.
+Vector2d femoral_footprint_yz(const FemurShape& shape, const AnatomicalBone& femur, double condyle_x) {
+  const Vector2d along = shape.roof_direction(), down = shape.roof_normal();
+  const auto exit = [&](const Vector2d& from, const Vector2d& towards) {
+    return (femur.hit(in_sagittal_plane(condyle_x, from), in_sagittal_plane(0, towards)).tail<2>() - from).norm();
+  };
+  const double shallow = exit(shape.roof_point(), along), deep = exit(shape.roof_point(), -along);
+  const double diameter = shallow + deep;
+  double height = 0;
+  for (double s = -deep + 1; s < shallow - 1; s += 0.5) {
+    height = std::max(height, exit(shape.roof_point() + s * along, down));
+  }
+  return shape.roof_point() + (kFemurDeepShallow * diameter - deep) * along + kFemurHighLow * height * down;
+}
+
+Landmarks femur_landmarks(const FemurShape& shape, const AnatomicalBone& femur) {
+  const double scale = shape.parameters().scale, middle = shape.notch_middle_x_mm();
+  const double condyle_x = middle + 22 * scale * shape.parameters().width_factor;
+  const auto is_condylar = [&](const Vector3d& v) { return v.z() < 12 * scale; };
+  Landmarks marks;
+  marks["lateral_epicondyle"] = femur.furthest(Vector3d::UnitX(), is_condylar);
+  marks["medial_epicondyle"] = femur.furthest(-Vector3d::UnitX(), is_condylar);
+  marks["lateral_condyle_posterior"] =
+      femur.furthest(-Vector3d::UnitY(), [&](const Vector3d& v) { return is_condylar(v) && v.x() > middle; });
+  marks["medial_condyle_posterior"] =
+      femur.furthest(-Vector3d::UnitY(), [&](const Vector3d& v) { return is_condylar(v) && v.x() < middle; });
+  // The roof of the notch in the midline: along Blumensaat's line, seen from inside the notch.
+  const auto on_roof = [&](double from_outlet_mm) {
+    const Vector2d below = shape.roof_point() - from_outlet_mm * shape.roof_direction() + 4 * scale * shape.roof_normal();
+    return femur.hit(in_sagittal_plane(middle, below), in_sagittal_plane(0, -shape.roof_normal()));
+  };
+  marks["blumensaat_anterior"] = on_roof(2 * scale);
+  marks["notch_apex"] = on_roof(14 * scale);
+  marks["blumensaat_posterior"] = on_roof(26 * scale);
+  const Vector2d yz = femoral_footprint_yz(shape, femur, condyle_x);
+  marks["native_footprint"] = femur.hit(in_sagittal_plane(middle, yz), Vector3d::UnitX());
+  return marks;
+}
+
+Landmarks tibia_landmarks(const TibiaShape& shape, const AnatomicalBone& tibia) {
+  const double scale = shape.parameters().scale, width = scale * shape.parameters().width_factor;
+  const double top = geometry::bounds_of(tibia.mesh).max_mm.z();
+  const auto is_plateau = [&](const Vector3d& v) { return v.z() > top - 22 * scale; };
+  const auto from_above = [&](double x, double y) { return tibia.hit({x, y, top + 5}, -Vector3d::UnitZ()); };
+  Landmarks marks;
+  marks["plateau_anterior"] = tibia.furthest(Vector3d::UnitY(), is_plateau);
+  marks["plateau_posterior"] = tibia.furthest(-Vector3d::UnitY(), is_plateau);
+  marks["plateau_medial"] = tibia.furthest(-Vector3d::UnitX(), is_plateau);
+  marks["plateau_lateral"] = tibia.furthest(Vector3d::UnitX(), is_plateau);
+  marks["medial_eminence"] = from_above(-6.5 * width, -6 * scale);
+  marks["lateral_eminence"] = from_above(6 * width, -9 * scale);
+  marks["tuberosity"] = tibia.hit({4 * width, 60 * scale, top - 38 * scale}, -Vector3d::UnitY());
+  const double y = marks["plateau_anterior"].y() +
+                   kTibiaAnteroposterior * (marks["plateau_posterior"].y() - marks["plateau_anterior"].y());
+  const double x =
+      marks["plateau_medial"].x() + kTibiaMediolateral * (marks["plateau_lateral"].x() - marks["plateau_medial"].x());
+  marks["native_footprint"] = from_above(x, y);
+  return marks;
+}
+
+// Of the directions within 14 degrees of the customary one, that with the thickest wall among tunnels of a fitting
+// length; the length nearest to fitting where none fits.
+tunnels::Tunnel plan_tunnel(const AnatomicalBone& bone, bones::BoneKind kind, const Vector3d& entry,
+                            const Vector3d& customary, double least_length_mm, double greatest_length_mm) {
+  tunnels::Tunnel best{.bone = kind, .entry_mm = entry, .direction = customary.normalized(), .diameter_mm = 9};
+  double best_merit = -1e9;
+  const Vector3d side = best.direction.unitOrthogonal(), up = best.direction.cross(side);
+  const Vector3d axis = best.direction;
+  for (const double tilt_deg : {0.0, 5.0, 10.0, 14.0}) {
+    for (int turn = 0; turn < (tilt_deg > 0 ? 12 : 1); ++turn) {
+      const double tilt = geometry::rad_from_deg(tilt_deg), angle = turn * geometry::kPi / 6;
+      tunnels::Tunnel candidate = best;
+      candidate.direction =
+          (std::cos(tilt) * axis + std::sin(tilt) * (std::cos(angle) * side + std::sin(angle) * up)).normalized();
+      const auto measured = tunnels::measure(candidate, bone.surface);
+      if (!measured.enters_bone) continue;
+      const double misfit = std::max({0.0, least_length_mm - measured.length_mm, measured.length_mm - greatest_length_mm});
+      const double merit = std::min(measured.wall_mm, 6.0) - 10 * misfit - 0.05 * tilt_deg;
+      if (merit > best_merit) {
+        best_merit = merit;
+        best = candidate;
+      }
+    }
+  }
+  return best;
+}
+
+// The anatomical frame into LPS. A right knee's lateral is the patient's right; a left knee is its mirror image.
+class ToPatient {
+ public:
+  explicit ToPatient(bones::Side side) : x_(side == bones::Side::Right ? -1 : 1) {}
+  [[nodiscard]] Vector3d operator()(const Vector3d& p) const { return {x_ * p.x(), -p.y(), p.z()}; }
+  [[nodiscard]] geometry::TriangleMesh operator()(geometry::TriangleMesh mesh) const {
+    for (auto& v : mesh.vertices_mm) v = (*this)(v);
+    if (x_ > 0) {  // one axis turned, not two: a mirror, which turns triangles inside out
+      for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+    }
+    return mesh;
+  }
+  [[nodiscard]] Landmarks operator()(Landmarks marks) const {
+    for (auto& [name, position] : marks) position = (*this)(position);
+    return marks;
+  }
+  [[nodiscard]] tunnels::Tunnel operator()(tunnels::Tunnel tunnel) const {
+    tunnel.entry_mm = (*this)(tunnel.entry_mm);
+    tunnel.direction = (*this)(tunnel.direction);
+    return tunnel;
+  }
+
+ private:
+  double x_;
+};
+
+}  // namespace
+
+PhantomKnee make_phantom_knee(const PhantomOptions& options) {
+  if (!(options.edge_length_mm >= 0.3 && options.edge_length_mm <= 5)) {
+    throw InvalidInput("phantom: edge_length_mm must lie from 0.3 to 5");
+  }
+  const KneeParameters parameters = vary(options.seed);
+  const FemurShape femur_shape(parameters);
+  const TibiaShape tibia_shape(parameters);
+  const AnatomicalBone femur(
+      mesh_of(femur_shape, {.min_mm = femur_shape.min_mm(), .max_mm = femur_shape.max_mm(), .edge_length_mm = options.edge_length_mm}));
+  const AnatomicalBone tibia(
+      mesh_of(tibia_shape, {.min_mm = tibia_shape.min_mm(), .max_mm = tibia_shape.max_mm(), .edge_length_mm = options.edge_length_mm}));
+  const Landmarks femur_marks = femur_landmarks(femur_shape, femur), tibia_marks = tibia_landmarks(tibia_shape, tibia);
+
+  // Outwards, forwards and up, as drilled through the anteromedial portal; and to the anteromedial face of the tibia,
+  // 55 degrees steep.
+  const auto femoral = plan_tunnel(femur, bones::BoneKind::Femur, femur_marks.at("native_footprint"), {0.72, 0.32, 0.62}, 32, 38);
+  const auto tibial = plan_tunnel(tibia, bones::BoneKind::Tibia, tibia_marks.at("native_footprint"), {-0.30, 0.49, -0.82}, 36, 44);
+
+  const ToPatient to_patient(options.side);
+  const std::string source = "phantom knee, seed " + std::to_string(options.seed);
+  return {.side = options.side,
+          .femur = {.kind = bones::BoneKind::Femur, .mesh = to_patient(femur.mesh), .source = source},
+          .tibia = {.kind = bones::BoneKind::Tibia, .mesh = to_patient(tibia.mesh), .source = source},
+          .femur_landmarks = to_patient(femur_marks),
+          .tibia_landmarks = to_patient(tibia_marks),
+          .femoral_tunnel = to_patient(femoral),
+          .tibial_tunnel = to_patient(tibial)};
+}
+
+}  // namespace arthronaut::phantom
