@@ -1,0 +1,47 @@
+// Runs a recorded session through today's pipeline and says what differs. The registrations and plans of the session take
+// effect at the frames where they did, so that a difference in guidance comes from tracking alone; the registration itself
+// is found again from the recorded curves.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "navigation/recording/session.h"
+
+namespace arthronaut::recording {
+
+struct ReplayOptions {
+  // The bone to register the recorded curves to. Null: the registration is not compared.
+  const registration::PreparedBone* bone = nullptr;
+  std::uint64_t seed = 1;
+  // What passes for the same, on a copied video: far above rounding, far below anything that matters.
+  double tolerance_mm = 1e-3, tolerance_deg = 1e-3;
+  // On frames that the recorder encoded itself, whose pixels are not quite those that were tracked.
+  double reencoded_tolerance_mm = 0.25, reencoded_tolerance_deg = 0.6;
+  // A registration found again may differ by this much, or by its own predicted error where that is larger.
+  double registration_tolerance_mm = 0.1;
+};
+
+struct Difference {
+  std::int64_t frame = -1;  // -1: of the session as a whole
+  std::string what;         // "pose of marker 2", "tip", "guidance angle", "registration", ...
+  double amount = 0;
+  std::string unit;         // "mm", "deg"; empty: present in one and absent in the other, or another state
+  std::string detail;       // in words, where there is no amount
+};
+
+struct ReplaySummary {
+  long recorded_frames = 0, replayed_frames = 0;
+  std::vector<Difference> differences;  // above tolerance, in the order of frames
+  // The largest of all, also below tolerance.
+  double worst_pose_mm = 0, worst_pose_deg = 0, worst_tip_mm = 0, worst_offset_mm = 0, worst_angle_deg = 0;
+  std::optional<double> registration_mm;  // at the target; empty when it was not compared
+  [[nodiscard]] bool is_same() const { return differences.empty() && replayed_frames > 0; }
+};
+
+// Throws InvalidInput when no video was kept, and what the video throws.
+[[nodiscard]] ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions& options,
+                                           const std::function<void(long frames_done)>& progress = {});
+
+}  // namespace arthronaut::recording

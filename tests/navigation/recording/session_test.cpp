@@ -1,0 +1,191 @@
+#include "navigation/recording/session.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "planning/files/atomic_file.h"
+#include "planning/geometry/error.h"
+#include "tests/navigation/recording/recorded_frames.h"
+
+namespace arthronaut {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Session : public ::testing::Test {
+ protected:
+  Session() {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~Session() override { fs::remove_all(folder_); }
+
+  fs::path folder_ = fs::temp_directory_path() /
+                     ("arthronaut_session_" + std::to_string(::getpid()) + "_" +
+                      ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  pipeline::PipelineOptions options_ = test::scripted_options();
+};
+
+// Doubles are stored as they are, so all that is read back equals to the last bit what was written.
+TEST_F(Session, ReadsBackExactlyWhatWasRecorded) {
+  {
+    recording::SessionRecorder recorder(folder_, test::session_header(), options_);
+    for (int i = 0; i < 20; ++i) recorder.append(test::frame_result(i));
+    recorder.add_event({5, "note", "a \"quoted\" note"});
+    recorder.finish();
+  }
+  const recording::RecordedSession session(folder_);
+  EXPECT_TRUE(session.was_finished());
+  EXPECT_EQ(session.header().id, test::session_header().id);
+  EXPECT_EQ(session.header().side, bones::Side::Left);
+  EXPECT_EQ(session.pipeline_options().tools.tools.size(), 2u);
+  EXPECT_EQ(session.pipeline_options().refractive_index, 1.3345);
+  EXPECT_FALSE(session.pipeline_options().follow_lens);
+  ASSERT_EQ(session.frames().size(), 20u);
+  for (int i = 0; i < 20; ++i) {
+    const pipeline::FrameResult wanted = test::frame_result(i);
+    const recording::RecordedFrame& frame = session.frames()[static_cast<std::size_t>(i)];
+    EXPECT_EQ(frame.timestamp_ns, wanted.timestamp_ns);
+    EXPECT_EQ(frame.lens.mark_angle_deg, wanted.lens.mark_angle_deg);
+    EXPECT_EQ(frame.lens.circle.center_px, wanted.lens.circle.center_px);
+    ASSERT_EQ(frame.poses.size(), 2u);
+    EXPECT_EQ(frame.poses[0].camera_from_marker.rotation.coeffs(),
+              wanted.markers[0].camera_from_marker.rotation.coeffs());
+    EXPECT_EQ(frame.poses[1].camera_from_marker.translation_mm, wanted.markers[2].camera_from_marker.translation_mm);
+    ASSERT_EQ(frame.markers.size(), 3u);
+    EXPECT_EQ(frame.markers[1].state, markers::MarkerState::Glare);
+    EXPECT_EQ(frame.tip_is_valid, wanted.tip_is_valid);
+    if (wanted.tip_is_valid) {
+      EXPECT_EQ(frame.tip_in_world_mm, wanted.tip_in_world_mm);
+    }
+    EXPECT_EQ(frame.guidance.state, wanted.guidance.state);
+    if (wanted.guidance.is_valid()) {
+      EXPECT_EQ(frame.guidance.angle_deg, wanted.guidance.angle_deg);
+    }
+  }
+  ASSERT_EQ(session.events().size(), 1u);
+  EXPECT_EQ(session.events()[0].text, "a \"quoted\" note");
+  EXPECT_EQ(session.events()[0].after_frame, 19);
+  EXPECT_TRUE(session.video().empty());
+}
+
+// Plans and registrations come back at the frame where they took effect; the open formats stand beside the record.
+TEST_F(Session, KeepsPlansAndRegistrationsWithTheirMoment) {
+  recording::SessionRecorder recorder(folder_, test::session_header(), options_);
+  tunnels::Tunnel plan;
+  plan.entry_mm = {1.1, -2.2, 3.3};
+  recorder.set_plan(plan, 27.5);
+  recorder.append(test::frame_result(0));
+  recorder.set_registration(test::some_registration());
+  recorder.append(test::frame_result(1));
+  recorder.set_curves({{0, 0.5, {1, 2, 3}}, {0, 0.6, {1, 2, 4}}});
+  recorder.finish();
+
+  const recording::RecordedSession session(folder_);
+  ASSERT_EQ(session.events().size(), 2u);
+  EXPECT_EQ(session.events()[0].after_frame, -1);
+  EXPECT_EQ(session.plan_of(session.events()[0]).plan->entry_mm, plan.entry_mm);
+  EXPECT_EQ(session.plan_of(session.events()[0]).planned_length_mm, 27.5);
+  EXPECT_EQ(session.events()[1].after_frame, 0);
+  const auto registration = session.registration_of(session.events()[1]);
+  EXPECT_LT(geometry::log(registration.marker_from_bone.inverse() * test::some_registration().marker_from_bone).norm(),
+            1e-12);
+  EXPECT_LT((registration.covariance - test::some_registration().covariance).norm(), 1e-12);
+  EXPECT_TRUE(session.registration().has_value());
+  EXPECT_EQ(session.curves().size(), 2u);
+  for (const char* file : {"poses.csv", "guidance.csv", "curves.csv", "registration.json", "camera.json"}) {
+    EXPECT_TRUE(fs::exists(folder_ / file)) << file;
+  }
+  EXPECT_EQ(strokes::read_poses_file(folder_ / "poses.csv").size(), 4u);
+}
+
+// A child records in real time and is killed with no chance to tidy up: all but the last second can be read.
+TEST_F(Session, LosesAtMostOneSecondWhenKilled) {
+  int last_frame_pipe[2];
+  ASSERT_EQ(::pipe(last_frame_pipe), 0);
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    recording::SessionRecorder recorder(folder_, test::session_header(), options_);
+    for (int i = 0;; ++i) {
+      recorder.append(test::frame_result(i));
+      if (::write(last_frame_pipe[1], &i, sizeof i) != sizeof i) ::_exit(1);
+      std::this_thread::sleep_for(std::chrono::milliseconds(17));
+    }
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(2200));
+  ASSERT_EQ(::kill(child, SIGKILL), 0);
+  ::waitpid(child, nullptr, 0);
+  ::close(last_frame_pipe[1]);
+  int last_appended = -1;
+  for (int i = 0; ::read(last_frame_pipe[0], &i, sizeof i) == sizeof i;) last_appended = i;
+  ::close(last_frame_pipe[0]);
+
+  const recording::RecordedSession session(folder_);
+  EXPECT_FALSE(session.was_finished());
+  ASSERT_GT(last_appended, 60);
+  ASSERT_FALSE(session.frames().empty());
+  EXPECT_EQ(session.frames().back().index + 1, static_cast<std::int64_t>(session.frames().size()));
+  EXPECT_GE(session.frames().back().index, last_appended - 60);
+}
+
+// A disk that is full is said at the next call, as an error that names the file; it is not lost in the writer's thread.
+TEST_F(Session, ReportsADiskThatIsFull) {
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    recording::SessionRecorder recorder(folder_, test::session_header(), options_);
+    const rlimit limit{300'000, 300'000};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    int exit_code = 1;
+    try {
+      for (int i = 0; i < 20000; ++i) recorder.append(test::frame_result(i));
+      recorder.finish();
+    } catch (const IoError& error) {
+      exit_code = std::string(error.what()).find("session.sqlite") != std::string::npos ? 0 : 2;
+    }
+    ::_exit(exit_code);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+// Stills are copied under their names, and nothing else of their folder.
+TEST_F(Session, CopiesAPatternOfStills) {
+  const fs::path stills = folder_ / "stills";
+  fs::create_directory(stills);
+  for (const char* name : {"f_0001.png", "f_0002.png", "g_0001.png", "f_0001.txt"}) std::ofstream(stills / name) << name;
+  const fs::path session_folder = folder_ / "session";
+  fs::create_directory(session_folder);
+  recording::SessionRecorder recorder(session_folder, test::session_header(), options_);
+  recorder.copy_video(stills / "f_%04d.png");
+  recorder.finish();
+  EXPECT_EQ(files::read_text(session_folder / "pictures/f_0002.png"), "f_0002.png");
+  EXPECT_FALSE(fs::exists(session_folder / "pictures/g_0001.png"));
+  EXPECT_FALSE(fs::exists(session_folder / "pictures/f_0001.txt"));
+  EXPECT_EQ(recording::RecordedSession(session_folder).video(), session_folder / "pictures/f_%04d.png");
+}
+
+// A file that is no session, and a session of tomorrow, are refused with the file's name.
+TEST_F(Session, RefusesWhatItCannotRead) {
+  EXPECT_THROW(recording::RecordedSession{folder_ / "nowhere"}, IoError);
+  EXPECT_THROW(recording::RecordedSession{folder_}, IoError);
+  recording::SessionRecorder(folder_, test::session_header(), options_).finish();
+  std::string header = files::read_text(folder_ / "session.json");
+  header.replace(header.find("\"version\": 1"), 12, "\"version\": 9");
+  files::write_atomically(folder_ / "session.json", header);
+  EXPECT_THROW(recording::RecordedSession{folder_}, InvalidInput);
+}
+
+}  // namespace
+}  // namespace arthronaut
