@@ -1,6 +1,7 @@
 #include <vtkCellArray.h>
 #include <vtkCommand.h>
 #include <vtkDataArray.h>
+#include <vtkExecutive.h>
 #include <vtkFieldData.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
@@ -22,8 +23,8 @@ class ErrorObserver : public vtkCommand {
  public:
   static ErrorObserver* New() { return new ErrorObserver; }
   void Execute(vtkObject*, unsigned long event, void* data) override {
-    if (event == vtkCommand::ErrorEvent && first_.empty() && data) first_ = static_cast<const char*>(data);
-    if (event == vtkCommand::ErrorEvent && first_.empty()) first_ = "unknown error";
+    if (event != vtkCommand::ErrorEvent || !first_.empty()) return;
+    first_ = data ? static_cast<const char*>(data) : "unknown error";
   }
   // The first error as one line: VTK puts the source file, the class and the address before it.
   [[nodiscard]] std::string first() const {
@@ -102,6 +103,7 @@ RawMesh parse_vtp(const std::filesystem::path& file, std::string_view text) {
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->AddObserver(vtkCommand::ErrorEvent, errors);
   reader->AddObserver(vtkCommand::WarningEvent, errors);
+  reader->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, errors);
   reader->SetReaderErrorObserver(errors);
   reader->SetParserErrorObserver(errors);
   reader->ReadFromInputStringOn();
