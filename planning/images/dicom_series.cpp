@@ -1,0 +1,178 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "planning/geometry/error.h"
+#include "planning/images/dicom_slice.h"
+#include "planning/images/volume_bytes.h"
+
+namespace arthronaut::images {
+
+namespace {
+
+using Slices = std::vector<DicomSlice>;
+
+// Slices lie where their positions say, to the rounding of scanners' headers; a missing slice is 100 % off.
+constexpr double kPositionTolerance_fraction = 0.05;
+constexpr std::size_t kMostFiles = 50000;
+
+std::string formatted(const char* format, double a, double b = 0) {
+  char text[160];
+  std::snprintf(text, sizeof text, format, a, b);
+  return text;
+}
+
+Slices images_below(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (auto at = std::filesystem::recursive_directory_iterator(folder, error);
+       !error && at != std::filesystem::recursive_directory_iterator(); at.increment(error)) {
+    if (at->is_regular_file(error)) files.push_back(at->path());
+    if (files.size() > kMostFiles) throw InvalidInput(folder, "", "holds more files than a study of a knee has");
+  }
+  if (error) throw IoError(folder, "cannot list: " + error.message());
+  // The folder's order is the file system's: the same folder must give the same volume everywhere.
+  std::sort(files.begin(), files.end());
+  if (files.empty()) throw InvalidInput(folder, "", "is empty");
+  Slices slices;
+  std::size_t dicom_count = 0;
+  for (const auto& file : files) {
+    auto slice = read_dicom_header(file);
+    dicom_count += slice.has_value();
+    if (slice && slice->has_pixels) slices.push_back(std::move(*slice));
+  }
+  if (dicom_count == 0) throw InvalidInput(folder, "", "holds no DICOM file");
+  if (slices.empty()) throw InvalidInput(folder, "", "holds DICOM files, but no image among them");
+  return slices;
+}
+
+std::string described(const DicomSlice& first, std::size_t count) {
+  return first.modality + " series " + (first.series_number.empty() ? "?" : first.series_number) +
+         (first.description.empty() ? "" : " \"" + first.description + "\"") + ", " + std::to_string(count) + " images";
+}
+
+Slices chosen_series(const std::filesystem::path& folder, Slices slices, const std::string& wanted) {
+  std::map<std::string, Slices> series;
+  for (auto& slice : slices) series[slice.series_uid].push_back(std::move(slice));
+  std::string list;
+  std::vector<const Slices*> matching;
+  for (const auto& [uid, members] : series) {
+    const DicomSlice& first = members.front();
+    list += (list.empty() ? "" : "; ") + described(first, members.size()) + ", UID " + uid;
+    if (wanted.empty() || wanted == uid || wanted == first.series_number) matching.push_back(&members);
+  }
+  if (matching.empty()) throw InvalidInput(folder, "", "holds no series " + wanted + ": " + list);
+  if (matching.size() > 1) {
+    throw InvalidInput(folder, "", "holds " + std::to_string(series.size()) +
+                                       " series, name one with --series NUMBER or UID: " + list);
+  }
+  return *matching.front();
+}
+
+void refuse_odd_ones(const Slices& slices) {
+  const DicomSlice& first = slices.front();
+  for (const DicomSlice& s : slices) {
+    if (!s.has_geometry) throw InvalidInput(s.file, "", "does not say where it lies in the patient");
+    if (s.frames > 1) {
+      throw InvalidInput(s.file, "", "holds " + std::to_string(s.frames) +
+                                         " frames (enhanced DICOM), which is not read: export single slices or NIfTI");
+    }
+    if (s.columns != first.columns || s.rows != first.rows) {
+      throw InvalidInput(s.file, "", "is " + std::to_string(s.columns) + " x " + std::to_string(s.rows) +
+                                         " pixels, other images of the series are " + std::to_string(first.columns) +
+                                         " x " + std::to_string(first.rows));
+    }
+    // Scout pictures across the others often share their series.
+    if (s.along_columns.dot(first.along_columns) < 0.9999 || s.along_rows.dot(first.along_rows) < 0.9999) {
+      throw InvalidInput(s.file, "", "lies at an angle to " + first.file.filename().string() + " of the same series");
+    }
+    if (std::abs(s.column_spacing_mm - first.column_spacing_mm) > 1e-3 * first.column_spacing_mm ||
+        std::abs(s.row_spacing_mm - first.row_spacing_mm) > 1e-3 * first.row_spacing_mm) {
+      throw InvalidInput(s.file, "", "has another pixel spacing than other images of the series");
+    }
+  }
+}
+
+// A multi-echo series has each slice several times: the first echo is the one with the most signal.
+void keep_first_echo(Slices& slices, std::vector<std::string>& notes) {
+  std::map<double, std::size_t> echoes;
+  for (const DicomSlice& s : slices) {
+    if (!s.echo_time_ms) return;
+    ++echoes[*s.echo_time_ms];
+  }
+  if (echoes.size() < 2) return;
+  const auto [first_ms, count] = *echoes.begin();
+  // A series whose slices merely differ in their echo time has no position twice.
+  if (count == slices.size() || count < 2) return;
+  std::erase_if(slices, [first = first_ms](const DicomSlice& s) { return *s.echo_time_ms != first; });
+  notes.push_back("of " + std::to_string(echoes.size()) + " echoes the first was taken" +
+                  formatted(" (echo time %.3g ms)", first_ms));
+}
+
+bool has_position_twice(const Slices& sorted) {
+  for (std::size_t i = 0; i + 1 < sorted.size(); ++i) {
+    if (sorted[i + 1].depth_mm() - sorted[i].depth_mm() < 0.01) return true;
+  }
+  return false;
+}
+
+void sort_by_position(Slices& slices) {
+  std::stable_sort(slices.begin(), slices.end(),
+                   [](const DicomSlice& a, const DicomSlice& b) { return a.depth_mm() < b.depth_mm(); });
+}
+
+// The step from slice to slice, in the patient: not along the normal for a CT with a tilted gantry.
+Eigen::Vector3d slice_step_mm(const Slices& sorted) {
+  std::vector<double> gaps;
+  for (std::size_t i = 0; i + 1 < sorted.size(); ++i) gaps.push_back(sorted[i + 1].depth_mm() - sorted[i].depth_mm());
+  std::vector<double> by_size = gaps;
+  std::nth_element(by_size.begin(), by_size.begin() + static_cast<std::ptrdiff_t>(by_size.size() / 2), by_size.end());
+  const double usual = by_size[by_size.size() / 2];
+  const Eigen::Vector3d step =
+      (sorted.back().position_mm - sorted.front().position_mm) / static_cast<double>(sorted.size() - 1);
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    const DicomSlice& next = sorted[i + 1];
+    if (std::abs(gaps[i] - usual) > kPositionTolerance_fraction * usual) {
+      throw InvalidInput(next.file, "",
+                         formatted("lies %.2f mm from the slice before it, the others %.2f mm apart", gaps[i], usual) +
+                             ": a slice is missing or one too many (" + sorted[i].file.filename().string() + ")");
+    }
+    const Eigen::Vector3d expected = sorted.front().position_mm + static_cast<double>(i + 1) * step;
+    if ((next.position_mm - expected).norm() > kPositionTolerance_fraction * usual + 0.02) {
+      throw InvalidInput(next.file, "", formatted("lies %.2f mm beside the line of the other slices",
+                                                  (next.position_mm - expected).norm()));
+    }
+  }
+  return step;
+}
+
+}  // namespace
+
+Volume read_dicom_folder(const std::filesystem::path& folder, const VolumeFileOptions& options) {
+  Slices slices = chosen_series(folder, images_below(folder), options.series);
+  Volume volume;
+  volume.format = "DICOM";
+  refuse_odd_ones(slices);
+  sort_by_position(slices);
+  if (has_position_twice(slices)) keep_first_echo(slices, volume.notes);
+  if (slices.size() < 2) throw InvalidInput(folder, "", "holds one slice only");
+  for (std::size_t i = 0; i + 1 < slices.size(); ++i) {
+    if (slices[i + 1].depth_mm() - slices[i].depth_mm() < 0.01) {
+      throw InvalidInput(slices[i + 1].file, "", "lies at the same place as " + slices[i].file.filename().string());
+    }
+  }
+  const DicomSlice& first = slices.front();
+  volume.modality = first.modality;
+  volume.size = {first.columns, first.rows, static_cast<int>(slices.size())};
+  static_cast<void>(checked_voxel_count(folder, volume.size));
+  volume.lps_from_index.linear().col(0) = first.along_columns * first.column_spacing_mm;
+  volume.lps_from_index.linear().col(1) = first.along_rows * first.row_spacing_mm;
+  volume.lps_from_index.linear().col(2) = slice_step_mm(slices);
+  volume.lps_from_index.translation() = first.position_mm;
+  for (const DicomSlice& slice : slices) append_dicom_pixels(slice, volume.values);
+  volume.notes.insert(volume.notes.begin(), described(first, slices.size()));
+  finish(volume, folder);
+  return volume;
+}
+
+}  // namespace arthronaut::images

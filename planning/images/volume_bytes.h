@@ -1,0 +1,55 @@
+// What the readers of the single volume formats share. Inner header of images: others include volume_file.h.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "planning/images/volume.h"
+#include "planning/images/volume_file.h"
+
+namespace arthronaut::images {
+
+enum class Scalar { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Float32, Float64 };
+[[nodiscard]] std::size_t bytes_per(Scalar type);
+[[nodiscard]] double decoded(Scalar type, std::endian order, const char* bytes);
+
+// `text` is the whole file. Throw InvalidInput.
+[[nodiscard]] Volume parse_nifti(const std::filesystem::path& file, std::string_view text);
+[[nodiscard]] Volume parse_nrrd(const std::filesystem::path& file, std::string_view text);
+[[nodiscard]] Volume parse_metaimage(const std::filesystem::path& file, std::string_view text);
+[[nodiscard]] Volume read_dicom_folder(const std::filesystem::path& folder, const VolumeFileOptions& options);
+
+// gzip or zlib. Throws InvalidInput when the data are broken, cut off, or longer than `most_bytes`.
+[[nodiscard]] std::string inflated(const std::filesystem::path& file, std::string_view compressed,
+                                   std::size_t most_bytes);
+
+// Checks the size (each axis 1 or more, 2^31 voxels at most) and returns the number of voxels.
+[[nodiscard]] std::size_t checked_voxel_count(const std::filesystem::path& file, const Eigen::Vector3i& size);
+
+struct Samples {
+  Scalar type = Scalar::Int16;
+  std::endian order = std::endian::little;
+  double slope = 1, intercept = 0;
+};
+// Sets the volume's values from the bytes; needs size. Throws InvalidInput when there are too few bytes.
+void set_values(Volume& volume, const std::filesystem::path& file, std::string_view bytes, const Samples& samples);
+
+// Refuses a singular or not finite geometry, puts the least finite value where there is none and notes it.
+void finish(Volume& volume, const std::filesystem::path& file);
+
+// The header of NRRD and MetaImage: words of a value as numbers. Throws InvalidInput that names the key.
+[[nodiscard]] std::vector<double> numbers_of(const std::filesystem::path& file, const std::string& key,
+                                             std::string_view value);
+// The data file that a header names, beside it; its whole contents. Only a plain name is taken: a header from
+// elsewhere must not make this program read any file of the machine.
+[[nodiscard]] std::string read_data_file(const std::filesystem::path& header_file, std::string_view name);
+
+[[nodiscard]] std::string trimmed(std::string_view text);
+[[nodiscard]] std::string lower_case(std::string_view text);
+
+}  // namespace arthronaut::images
