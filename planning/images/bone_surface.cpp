@@ -1,0 +1,230 @@
+#include "planning/images/bone_surface.h"
+
+#include <vtkCellArray.h>
+#include <vtkFlyingEdges3D.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkWindowedSincPolyDataFilter.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "planning/geometry/error.h"
+#include "planning/images/voxel_mask.h"
+
+namespace arthronaut::images {
+
+namespace {
+
+// Smoothing of the surface, found on spheres and ellipsoids in grids of 0.4 to 3.3 mm: the steps of the slices go, the
+// volume stays within 1 %.
+constexpr int kSmoothingIterations = 20;
+constexpr double kSmoothingPassBand = 0.08;
+// Blur of a label's mask, in voxels: without it marching cubes finds nothing but half-way points.
+constexpr double kMaskBlur_voxels = 0.6;
+// What stands for "surely bone" and "surely not" beside the threshold: about the step from soft tissue to cortex.
+constexpr float kSureStep = 300;
+
+// A part of a volume with room around it.
+struct Field {
+  Eigen::Vector3i first_index;  // of the volume, of the field's voxel (0, 0, 0); may be negative
+  Eigen::Vector3i size;
+  std::vector<float> values;
+
+  [[nodiscard]] std::size_t index(const Eigen::Vector3i& at) const {
+    return static_cast<std::size_t>(at.x()) +
+           static_cast<std::size_t>(size.x()) *
+               (static_cast<std::size_t>(at.y()) + static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(at.z()));
+  }
+};
+
+template <typename IsInside>
+Field field_around(const Volume& volume, int margin, const IsInside& is_inside) {
+  Eigen::Vector3i low = volume.size, high = Eigen::Vector3i::Constant(-1);
+  for (int k = 0; k < volume.size.z(); ++k) {
+    for (int j = 0; j < volume.size.y(); ++j) {
+      for (int i = 0; i < volume.size.x(); ++i) {
+        if (!is_inside(volume.index(i, j, k))) continue;
+        low = low.cwiseMin(Eigen::Vector3i(i, j, k));
+        high = high.cwiseMax(Eigen::Vector3i(i, j, k));
+      }
+    }
+  }
+  Field field;
+  field.first_index = low.array() - margin;
+  field.size = (high - low).array() + 1 + 2 * margin;
+  field.values.assign(static_cast<std::size_t>(field.size.cast<std::int64_t>().prod()), 0.0F);
+  return field;
+}
+
+// Calls visit(field voxel, volume voxel) for the voxels of the field that lie in the volume.
+template <typename Visit>
+void for_each_shared_voxel(const Field& field, const Volume& volume, const Visit& visit) {
+  for (int k = 0; k < field.size.z(); ++k) {
+    for (int j = 0; j < field.size.y(); ++j) {
+      for (int i = 0; i < field.size.x(); ++i) {
+        const Eigen::Vector3i here(i, j, k), there = field.first_index + here;
+        if ((there.array() < 0).any() || (there.array() >= volume.size.array()).any()) continue;
+        visit(field.index(here), volume.index(there.x(), there.y(), there.z()));
+      }
+    }
+  }
+}
+
+void blur(Field& field) {
+  const double side = std::exp(-0.5 / (kMaskBlur_voxels * kMaskBlur_voxels));
+  const auto center_weight = static_cast<float>(1 / (1 + 2 * side)), side_weight = static_cast<float>(side / (1 + 2 * side));
+  std::size_t step = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto n = static_cast<std::size_t>(field.size[axis]);
+    std::vector<float> row(n);
+    for (std::size_t start = 0; start < field.values.size(); ++start) {
+      if (start / step % n != 0) continue;
+      for (std::size_t i = 0; i < n; ++i) row[i] = field.values[start + i * step];
+      for (std::size_t i = 0; i < n; ++i) {
+        const float before = row[i > 0 ? i - 1 : i], after = row[i + 1 < n ? i + 1 : i];
+        field.values[start + i * step] = center_weight * row[i] + side_weight * (before + after);
+      }
+    }
+    step *= n;
+  }
+}
+
+// Marching cubes at `level` in index space, then to the patient, then smoothed.
+geometry::TriangleMesh contour(const Field& field, float level, const Volume& volume) {
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(field.size.x(), field.size.y(), field.size.z());
+  image->AllocateScalars(VTK_FLOAT, 1);
+  std::copy(field.values.begin(), field.values.end(), static_cast<float*>(image->GetScalarPointer()));
+  vtkNew<vtkFlyingEdges3D> cubes;
+  cubes->SetInputData(image);
+  cubes->SetValue(0, level);
+  cubes->ComputeNormalsOff();
+  cubes->ComputeGradientsOff();
+  cubes->ComputeScalarsOff();
+  cubes->Update();
+
+  vtkNew<vtkPolyData> in_patient;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkPolyData* found = cubes->GetOutput();
+  points->SetNumberOfPoints(found->GetNumberOfPoints());
+  const Eigen::Vector3d first = field.first_index.cast<double>();
+  for (vtkIdType i = 0; i < found->GetNumberOfPoints(); ++i) {
+    const Eigen::Vector3d index = Eigen::Map<const Eigen::Vector3d>(found->GetPoint(i)) + first;
+    const Eigen::Vector3d p = volume.lps_from_index * index;
+    points->SetPoint(i, p.data());
+  }
+  in_patient->SetPoints(points);
+  in_patient->SetPolys(found->GetPolys());
+
+  vtkNew<vtkWindowedSincPolyDataFilter> smooth;
+  smooth->SetInputData(in_patient);
+  smooth->SetNumberOfIterations(kSmoothingIterations);
+  smooth->SetPassBand(kSmoothingPassBand);
+  smooth->NormalizeCoordinatesOn();
+  smooth->NonManifoldSmoothingOn();
+  smooth->FeatureEdgeSmoothingOff();
+  smooth->BoundarySmoothingOff();
+  smooth->Update();
+
+  geometry::TriangleMesh mesh;
+  vtkPolyData* surface = smooth->GetOutput();
+  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i) {
+    mesh.vertices_mm.emplace_back(Eigen::Map<const Eigen::Vector3d>(surface->GetPoint(i)));
+  }
+  vtkCellArray* cells = surface->GetPolys();
+  const vtkIdType* corners = nullptr;
+  vtkIdType count = 0;
+  for (cells->InitTraversal(); cells->GetNextCell(count, corners);) {
+    mesh.triangles.push_back({static_cast<std::int32_t>(corners[0]), static_cast<std::int32_t>(corners[1]),
+                              static_cast<std::int32_t>(corners[2])});
+  }
+  return mesh;
+}
+
+int axis_nearest_to_superior(const Volume& volume) {
+  Eigen::Index axis = 0;
+  volume.lps_from_index.linear().colwise().normalized().row(2).cwiseAbs().maxCoeff(&axis);
+  return static_cast<int>(axis);
+}
+
+// Fragments, and the small bones where a large one is asked for, are not in question.
+constexpr double kLeastPieceFraction = 0.2;
+
+const VoxelPiece& chosen_piece(const std::vector<VoxelPiece>& pieces, const Volume& volume, Piece wanted) {
+  const auto height = [&](const VoxelPiece& piece) { return (volume.lps_from_index * piece.center_index).z(); };
+  const VoxelPiece* best = &pieces.front();
+  for (const VoxelPiece& piece : pieces) {
+    if (static_cast<double>(piece.count) < kLeastPieceFraction * static_cast<double>(pieces.front().count)) continue;
+    if (wanted == Piece::Superior && height(piece) > height(*best)) best = &piece;
+    if (wanted == Piece::Inferior && height(piece) < height(*best)) best = &piece;
+  }
+  return *best;
+}
+
+}  // namespace
+
+BoneSurface surface_of_label(const Volume& volume, int label) {
+  const auto labels = labels_of(volume);
+  if (labels.empty()) throw InvalidInput("the volume is no label map: its values are not a few whole numbers");
+  const auto wanted = std::find_if(labels.begin(), labels.end(), [&](const auto& l) { return l.first == label; });
+  if (wanted == labels.end()) {
+    std::string list;
+    for (const auto& [value, count] : labels) list += (list.empty() ? "" : ", ") + std::to_string(value);
+    throw InvalidInput("the volume holds no label " + std::to_string(label) + ", but " + list);
+  }
+  const auto is_label = [&](std::size_t voxel) { return volume.values[voxel] == static_cast<float>(label); };
+  Field field = field_around(volume, 2, is_label);
+  for_each_shared_voxel(field, volume,
+                        [&](std::size_t here, std::size_t there) { field.values[here] = is_label(there) ? 1.0F : 0.0F; });
+  blur(field);
+  BoneSurface surface;
+  surface.mesh = contour(field, 0.5F, volume);
+  if (surface.mesh.empty()) throw InvalidInput("label " + std::to_string(label) + " is too small for a surface");
+  surface.notes.push_back("label " + std::to_string(label) + ": " + std::to_string(wanted->second) + " voxels");
+  return surface;
+}
+
+BoneSurface surface_above_threshold(const Volume& volume, const ThresholdOptions& options) {
+  const auto threshold = static_cast<float>(options.threshold);
+  VoxelMask above(volume.size);
+  for (std::size_t i = 0; i < volume.values.size(); ++i) above.inside[i] = volume.values[i] >= threshold;
+  const auto pieces = connected_pieces(above, 50);
+  if (pieces.empty()) {
+    const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
+    throw InvalidInput("nothing of the volume is above the threshold of " + std::to_string(std::lround(threshold)) +
+                       ": its values run from " + std::to_string(std::lround(*low)) + " to " +
+                       std::to_string(std::lround(*high)));
+  }
+  const VoxelPiece& piece = chosen_piece(pieces, volume, options.piece);
+
+  VoxelMask bone(volume.size);
+  for (const std::size_t v : piece.voxels) bone.inside[v] = 1;
+  close_gaps(bone, volume.spacing_mm(), options.closing_radius_mm);
+  fill_enclosed(bone, axis_nearest_to_superior(volume));
+
+  Field field = field_around(volume, 1, [&](std::size_t v) { return bone.inside[v] != 0; });
+  std::fill(field.values.begin(), field.values.end(), threshold - kSureStep);
+  // Beside the bone the grey values say where within a voxel its surface runs; other bones and the marrow must not.
+  for_each_shared_voxel(field, volume, [&](std::size_t here, std::size_t there) {
+    const float grey = volume.values[there];
+    if (bone.inside[there]) {
+      field.values[here] = grey >= threshold ? std::min(grey, threshold + kSureStep) : threshold + kSureStep;
+    } else {
+      field.values[here] = grey >= threshold ? threshold - kSureStep : std::max(grey, threshold - kSureStep);
+    }
+  });
+  BoneSurface surface;
+  surface.mesh = contour(field, threshold, volume);
+  if (surface.mesh.empty()) throw InvalidInput("what is above the threshold is too small for a surface");
+  const auto voxel_ml = std::abs(volume.lps_from_index.linear().determinant()) / 1000;
+  surface.notes.push_back("threshold " + std::to_string(std::lround(threshold)) + ": " + std::to_string(pieces.size()) +
+                          " pieces, the one taken has " +
+                          std::to_string(std::lround(voxel_ml * static_cast<double>(bone.count()))) + " ml, filled");
+  return surface;
+}
+
+}  // namespace arthronaut::images

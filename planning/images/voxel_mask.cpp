@@ -1,0 +1,156 @@
+#include "planning/images/voxel_mask.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+
+namespace arthronaut::images {
+
+namespace {
+
+// Steps to the neighbours through faces; a step is taken only when the coordinate stays within the volume.
+template <typename Visit>
+void for_each_neighbour(const Eigen::Vector3i& size, std::size_t voxel, unsigned axes, const Visit& visit) {
+  const auto nx = static_cast<std::size_t>(size.x()), ny = static_cast<std::size_t>(size.y());
+  const std::array<std::size_t, 3> at{voxel % nx, voxel / nx % ny, voxel / (nx * ny)};
+  const std::array<std::size_t, 3> step{1, nx, nx * ny};
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    if (!(axes >> axis & 1U)) continue;
+    if (at[axis] > 0) visit(voxel - step[axis]);
+    if (at[axis] + 1 < static_cast<std::size_t>(size[static_cast<int>(axis)])) visit(voxel + step[axis]);
+  }
+}
+
+// One row of squared distances to the nearest set voxel: the lower envelope of parabolas (Felzenszwalb and
+// Huttenlocher, Distance transforms of sampled functions, 2012).
+void squared_distances_along(std::vector<double>& f, double spacing, std::vector<double>& result,
+                             std::vector<int>& vertex, std::vector<double>& boundary) {
+  const int n = static_cast<int>(f.size());
+  const double s2 = spacing * spacing;
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  int last = -1;
+  for (int q = 0; q < n; ++q) {
+    if (f[q] == kFar) continue;
+    double crossing = -kFar;
+    while (last >= 0) {
+      const int v = vertex[last];
+      crossing = ((f[q] + s2 * q * q) - (f[v] + s2 * v * v)) / (2 * s2 * (q - v));
+      if (crossing > boundary[last]) break;
+      --last;
+      crossing = -kFar;
+    }
+    ++last;
+    vertex[last] = q;
+    boundary[last] = crossing;
+  }
+  if (last < 0) {
+    std::fill(result.begin(), result.end(), kFar);
+    return;
+  }
+  for (int q = 0, k = 0; q < n; ++q) {
+    while (k < last && boundary[k + 1] < q) ++k;
+    const double d = spacing * (q - vertex[k]);
+    result[q] = d * d + f[vertex[k]];
+  }
+}
+
+// Sets every voxel within the radius of one that is `value`, to `value`.
+void grow(VoxelMask& mask, std::uint8_t value, const Eigen::Vector3d& spacing_mm, double radius_mm) {
+  std::vector<float> squared(mask.inside.size());
+  for (std::size_t i = 0; i < squared.size(); ++i) {
+    squared[i] = mask.inside[i] == value ? 0.0F : std::numeric_limits<float>::infinity();
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto n = static_cast<std::size_t>(mask.size[axis]);
+    std::vector<double> row(n), result(n), boundary(n + 1);
+    std::vector<int> vertex(n + 1);
+    const std::size_t step = axis == 0   ? 1
+                             : axis == 1 ? static_cast<std::size_t>(mask.size.x())
+                                         : static_cast<std::size_t>(mask.size.x()) * static_cast<std::size_t>(mask.size.y());
+    for (std::size_t start = 0; start < squared.size(); ++start) {
+      if (start / step % n != 0) continue;
+      for (std::size_t i = 0; i < n; ++i) row[i] = squared[start + i * step];
+      squared_distances_along(row, spacing_mm[axis], result, vertex, boundary);
+      for (std::size_t i = 0; i < n; ++i) squared[start + i * step] = static_cast<float>(result[i]);
+    }
+  }
+  const auto limit = static_cast<float>(radius_mm * radius_mm);
+  for (std::size_t i = 0; i < squared.size(); ++i) {
+    if (squared[i] <= limit) mask.inside[i] = value;
+  }
+}
+
+// Sets what cannot be reached from the border through unset voxels, moving along the given axes only.
+void fill_unreached(VoxelMask& mask, unsigned axes) {
+  std::vector<std::uint8_t> reached(mask.inside.size(), 0);
+  std::vector<std::size_t> front;
+  const auto visit = [&](std::size_t voxel) {
+    if (mask.inside[voxel] || reached[voxel]) return;
+    reached[voxel] = 1;
+    front.push_back(voxel);
+  };
+  for (int k = 0; k < mask.size.z(); ++k) {
+    for (int j = 0; j < mask.size.y(); ++j) {
+      for (int i = 0; i < mask.size.x(); ++i) {
+        const Eigen::Vector3i at(i, j, k);
+        for (int axis = 0; axis < 3; ++axis) {
+          if ((axes >> axis & 1U) && (at[axis] == 0 || at[axis] == mask.size[axis] - 1)) visit(mask.index(i, j, k));
+        }
+      }
+    }
+  }
+  while (!front.empty()) {
+    const std::size_t voxel = front.back();
+    front.pop_back();
+    for_each_neighbour(mask.size, voxel, axes, visit);
+  }
+  for (std::size_t i = 0; i < reached.size(); ++i) mask.inside[i] = reached[i] ? 0 : 1;
+}
+
+}  // namespace
+
+std::size_t VoxelMask::count() const { return std::accumulate(inside.begin(), inside.end(), std::size_t{0}); }
+
+std::vector<VoxelPiece> connected_pieces(const VoxelMask& mask, std::size_t least_count) {
+  std::vector<std::uint8_t> taken(mask.inside.size(), 0);
+  std::vector<VoxelPiece> pieces;
+  const auto nx = static_cast<std::size_t>(mask.size.x()), ny = static_cast<std::size_t>(mask.size.y());
+  for (std::size_t seed = 0; seed < taken.size(); ++seed) {
+    if (!mask.inside[seed] || taken[seed]) continue;
+    VoxelPiece piece;
+    piece.voxels.push_back(seed);
+    taken[seed] = 1;
+    for (std::size_t at = 0; at < piece.voxels.size(); ++at) {
+      for_each_neighbour(mask.size, piece.voxels[at], 7, [&](std::size_t voxel) {
+        if (!mask.inside[voxel] || taken[voxel]) return;
+        taken[voxel] = 1;
+        piece.voxels.push_back(voxel);
+      });
+    }
+    piece.count = piece.voxels.size();
+    if (piece.count < least_count) continue;
+    for (const std::size_t v : piece.voxels) {
+      piece.center_index += Eigen::Vector3d(static_cast<double>(v % nx), static_cast<double>(v / nx % ny),
+                                            static_cast<double>(v / (nx * ny)));
+    }
+    piece.center_index /= static_cast<double>(piece.count);
+    pieces.push_back(std::move(piece));
+  }
+  std::stable_sort(pieces.begin(), pieces.end(), [](const auto& a, const auto& b) { return a.count > b.count; });
+  return pieces;
+}
+
+void close_gaps(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm) {
+  const VoxelMask before = mask;
+  grow(mask, 1, spacing_mm, radius_mm);
+  grow(mask, 0, spacing_mm, radius_mm);
+  for (std::size_t i = 0; i < mask.inside.size(); ++i) mask.inside[i] |= before.inside[i];
+}
+
+void fill_enclosed(VoxelMask& mask, int axis) {
+  fill_unreached(mask, 7);
+  fill_unreached(mask, 7U & ~(1U << axis));
+}
+
+}  // namespace arthronaut::images

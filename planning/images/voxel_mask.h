@@ -1,0 +1,40 @@
+// Sets of voxels: connected pieces, closing, filling. Inner header of images.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace arthronaut::images {
+
+struct VoxelMask {
+  Eigen::Vector3i size = Eigen::Vector3i::Zero();
+  std::vector<std::uint8_t> inside;  // 0 or 1, i runs fastest
+
+  explicit VoxelMask(const Eigen::Vector3i& size_in_voxels)
+      : size(size_in_voxels), inside(static_cast<std::size_t>(size_in_voxels.cast<std::int64_t>().prod()), 0) {}
+  [[nodiscard]] std::size_t index(int i, int j, int k) const {
+    return static_cast<std::size_t>(i) +
+           static_cast<std::size_t>(size.x()) *
+               (static_cast<std::size_t>(j) + static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(k));
+  }
+  [[nodiscard]] std::size_t count() const;
+};
+
+struct VoxelPiece {
+  std::size_t count = 0;
+  Eigen::Vector3d center_index = Eigen::Vector3d::Zero();
+  std::vector<std::size_t> voxels;
+};
+
+// Pieces connected through faces, largest first; those below `least_count` are left out.
+[[nodiscard]] std::vector<VoxelPiece> connected_pieces(const VoxelMask& mask, std::size_t least_count);
+
+// Adds what a ball of this radius cannot enter from outside. Beyond the volume nothing is inside.
+void close_gaps(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm);
+
+// Adds what is enclosed on all sides, and what is enclosed within a slice across `axis` (the marrow of a shaft that runs
+// out of the volume).
+void fill_enclosed(VoxelMask& mask, int axis);
+
+}  // namespace arthronaut::images
