@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kMarkSigmaRad = 0.15 * geometry::kPi / 180;  // of a mark angle measured in one picture
 constexpr double kCircleSigmaPx = 0.3;                        // of a circle's centre
-constexpr double kCornerSigmaPx = 0.12;
 constexpr double kHuber = 3.0;  // in sigmas
 
 // Division model of the header of camera_model.h in the calibration's own medium (n = 1).
@@ -26,6 +25,7 @@ void turn(const T* center, const T* point, const T& angle, T* turned) {
 
 struct CornerError {
   Eigen::Vector2d pixel, board_mm;
+  double sigma_px;
   template <typename T>
   bool operator()(const T* lens, const T* angle, const T* pose, T* error) const {
     const T on_board[3] = {T(board_mm.x()), T(board_mm.y()), T(0)};
@@ -36,8 +36,8 @@ struct CornerError {
     if (!(under_root > T(0)) || !(p[2] > T(0))) return false;
     const T scale = 2.0 * lens[0] / (p[2] + sqrt(under_root));
     turn(lens + 4, lens + 2, angle[0], principal);
-    error[0] = (T(pixel.x()) - principal[0] - scale * p[0]) / kCornerSigmaPx;
-    error[1] = (T(pixel.y()) - principal[1] - scale * p[1]) / kCornerSigmaPx;
+    error[0] = (T(pixel.x()) - principal[0] - scale * p[0]) / sigma_px;
+    error[1] = (T(pixel.y()) - principal[1] - scale * p[1]) / sigma_px;
     return true;
   }
 };
@@ -133,7 +133,7 @@ AdjustmentResult adjust(std::span<const Sighting> sightings, const Estimate& sta
     const Sighting& seen = sightings[i];
     for (std::size_t k = 0; k < seen.pixels.size(); ++k)
       problem.AddResidualBlock(new ceres::AutoDiffCostFunction<CornerError, 2, 6, 1, 6>(
-                                   new CornerError{seen.pixels[k], seen.board_mm[k]}),
+                                   new CornerError{seen.pixels[k], seen.board_mm[k], seen.sigma_px[k]}),
                                new ceres::HuberLoss(kHuber), blocks.lens, &blocks.angles[i], blocks.poses[i].data());
     corner_count += seen.pixels.size();
     if (seen.has_angle) {
@@ -167,23 +167,22 @@ AdjustmentResult adjust(std::span<const Sighting> sightings, const Estimate& sta
   result.converged = summary.termination_type == ceres::CONVERGENCE;
   blocks.store(result.estimate);
 
-  double sum = 0;
+  double sum = 0, variance_scale = 0;
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     std::vector<Eigen::Vector2d>& residuals = result.residuals_px.emplace_back();
     for (std::size_t k = 0; k < sightings[i].pixels.size(); ++k) {
       Eigen::Vector2d error(1e3, 1e3);
-      CornerError{sightings[i].pixels[k], sightings[i].board_mm[k]}(blocks.lens, &blocks.angles[i],
-                                                                     blocks.poses[i].data(), error.data());
-      residuals.push_back(error * kCornerSigmaPx);
+      CornerError{sightings[i].pixels[k], sightings[i].board_mm[k], 1.0}(blocks.lens, &blocks.angles[i],
+                                                                          blocks.poses[i].data(), error.data());
+      residuals.push_back(error);
+      // Squares of what Huber leaves of the residual in sigmas: a few gross ones shall not inflate the covariance.
+      const double in_sigmas = std::min(error.norm() / sightings[i].sigma_px[k], kHuber);
+      variance_scale += in_sigmas * in_sigmas / (2.0 * static_cast<double>(corner_count));
       sum += residuals.back().squaredNorm();
     }
   }
   result.rms_px = std::sqrt(sum / static_cast<double>(corner_count));
-  if (!options.fix_intrinsics) {
-    const double per_axis_px = result.rms_px / std::sqrt(2.0);
-    const double ratio = per_axis_px / kCornerSigmaPx;
-    result.covariance = covariance_of(problem, blocks, std::max(0.05, ratio * ratio));
-  }
+  if (!options.fix_intrinsics) result.covariance = covariance_of(problem, blocks, std::max(0.05, variance_scale));
   return result;
 }
 

@@ -13,6 +13,7 @@ namespace arthronaut::calibration {
 // What one picture gives to the adjustment.
 struct Sighting {
   std::vector<Eigen::Vector2d> pixels, board_mm;  // pairs
+  std::vector<double> sigma_px;                   // of each pixel; the common scale is found from the residuals
   bool has_angle = false;
   double mark_angle_deg = 0;  // measured
   bool has_circle = false;

@@ -41,8 +41,8 @@ double median(std::vector<double> values) {
 }
 
 // Takes out what the rest does not support: mis-indexed or chance saddles. False when nothing consistent remains.
-bool prune(PixelAt& corners, double least_limit_px) {
-  for (int pass = 0; pass < 6; ++pass) {
+bool prune(PixelAt& corners, double least_limit_px, int passes = 6) {
+  for (int pass = 0; pass < passes; ++pass) {
     const auto map = map_of(corners);
     if (!map) return false;
     const auto misfit = misfits(corners, *map);
@@ -106,7 +106,7 @@ bool add_expected(PixelAt& corners, const SmoothPicture& picture) {
       const double step = (*expected - pixel).norm();
       if (step < 6 || !looks_like_corner(picture, *expected, std::clamp(0.3 * step, 2.5, 6.0), 6)) continue;
       const auto found = refine_corner(picture, *expected, std::clamp(0.3 * step, 2.0, 5.0));
-      if (found && (*found - *expected).norm() < std::min(2.0, 0.15 * step)) added[next] = *found;
+      if (found && (found->pixel - *expected).norm() < std::min(2.0, 0.15 * step)) added[next] = found->pixel;
     }
   corners.insert(added.begin(), added.end());
   return !added.empty();
@@ -165,20 +165,31 @@ BoardDetection find_checkerboard(const camera::GrayView& picture) {
   }
   const SmoothPicture fine = smoothed(picture, 0.7);
   // Indices first, with room for the error of unrefined saddles; then sub-pixel; then the corners still missing.
+  std::map<LatticeNode, double> sigma_px;
   bool consistent = true;
-  for (int pass = 0; consistent && pass < 30 && add_expected(corners, fine); ++pass) consistent = prune(corners, 3.0);
+  for (int pass = 0; consistent && pass < 30 && add_expected(corners, fine); ++pass) consistent = prune(corners, 3.0, 1);
   if (consistent) {
     const auto map = map_of(corners);
     PixelAt refined;
+    std::size_t lopsided = 0;
+    sigma_px.clear();
     for (const auto& [node, pixel] : corners) {
       const double half_window = std::clamp(0.32 * spacing_px(*map, node, pixel), 2.0, 9.0);
       auto better = refine_corner(fine, pixel, half_window);
       // Halos and shading spoil a large neighbourhood first.
       if (!better && half_window > 3.5) better = refine_corner(fine, pixel, 0.55 * half_window, 0.5);
-      if (better) refined[node] = *better;
+      // Still a corner, though lopsided: its saddle will do, and says that it is less exact.
+      const double ring = std::clamp(half_window, 2.5, 6.0);
+      if (!better && looks_like_corner(fine, pixel, ring, 10)) {
+        better = RefinedCorner{pixel, 0.5};
+        ++lopsided;
+      }
+      if (!better) continue;
+      refined[node] = better->pixel;
+      sigma_px[node] = better->sigma_px;
     }
     corners = std::move(refined);
-    consistent = corners.size() >= kFewestCorners && prune(corners, 1.0);
+    consistent = corners.size() >= kFewestCorners && lopsided < corners.size() / 4 && prune(corners, 1.5);
   }
   if (!consistent) {
     detection.reason = "what looks like corners does not lie on one flat lattice";
@@ -188,7 +199,7 @@ BoardDetection find_checkerboard(const camera::GrayView& picture) {
     detection.reason = "the pattern is a lattice, but not of squares that touch at their corners";
     return detection;
   }
-  for (const auto& [node, pixel] : corners) detection.corners.push_back({{node.first, node.second}, pixel});
+  for (const auto& [node, pixel] : corners) detection.corners.push_back({{node.first, node.second}, pixel, sigma_px.at(node)});
   return detection;
 }
 

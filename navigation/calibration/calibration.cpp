@@ -36,6 +36,7 @@ Sighting sighting_of(const CalibrationPicture& picture, double square_mm) {
   for (const BoardCorner& corner : corners_used(picture)) {
     sighting.pixels.push_back(corner.pixel);
     sighting.board_mm.push_back(corner.lattice.cast<double>() * square_mm);
+    sighting.sigma_px.push_back(corner.sigma_px);
   }
   sighting.has_angle = picture.lens.mark == lens::MarkState::Found;
   sighting.mark_angle_deg = picture.lens.mark_angle_deg;

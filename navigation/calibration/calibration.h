@@ -18,6 +18,7 @@ namespace arthronaut::calibration {
 struct BoardCorner {
   Eigen::Vector2i lattice;     // column, row; the origin is arbitrary in each picture
   Eigen::Vector2d pixel;       // sub-pixel
+  double sigma_px = 0.12;      // how exact against the other corners: small, dim and blurred squares give less
 };
 
 struct BoardDetection {

@@ -9,6 +9,8 @@
 namespace arthronaut::calibration {
 namespace {
 
+constexpr double kGradientNoise = 4.0;  // grey values per px, of a smoothed picture
+
 // Weakest corner: a step of 6 grey values, smoothed by sigma and by the optics.
 double least_strength(double sigma_px) {
   const double total = sigma_px * sigma_px + 1.0;
@@ -137,15 +139,17 @@ std::vector<Saddle> find_saddles(const camera::GrayView& picture) {
   return found;
 }
 
-std::optional<Eigen::Vector2d> refine_corner(const SmoothPicture& picture, const Eigen::Vector2d& start,
-                                             double half_window_px, double least_likeness) {
+std::optional<RefinedCorner> refine_corner(const SmoothPicture& picture, const Eigen::Vector2d& start,
+                                           double half_window_px, double least_likeness) {
   Eigen::Vector2d corner = start;
   const int half = std::max(2, static_cast<int>(std::lround(half_window_px)));
   const double fall = 2.0 / (half_window_px * half_window_px);
+  double sigma_px = 0;
   for (int pass = 0; pass < 12; ++pass) {
     if (!picture.has(corner.x(), corner.y(), half + 2)) return std::nullopt;
     Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
     Eigen::Vector2d right = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
     for (int dy = -half; dy <= half; ++dy)
       for (int dx = -half; dx <= half; ++dx) {
         const double x = corner.x() + dx, y = corner.y() + dy;
@@ -155,10 +159,14 @@ std::optional<Eigen::Vector2d> refine_corner(const SmoothPicture& picture, const
         const Eigen::Matrix2d outer = weight * gradient * gradient.transpose();
         normal += outer;
         right += outer * Eigen::Vector2d(dx, dy);
+        spread += weight * (dx * dx + dy * dy) * outer;
       }
     const double det = normal.determinant();
     if (!(det > 1e-3 * normal.trace() * normal.trace() * 0.25)) return std::nullopt;
-    const Eigen::Vector2d step = normal.inverse() * right;
+    const Eigen::Matrix2d inverse = normal.inverse();
+    const Eigen::Vector2d step = inverse * right;
+    const Eigen::Matrix2d covariance = inverse * spread * inverse;
+    sigma_px = kGradientNoise * std::sqrt(covariance.diagonal().maxCoeff());
     corner += step;
     if ((corner - start).norm() > half_window_px) return std::nullopt;
     if (step.norm() < 1e-3) break;
@@ -177,7 +185,7 @@ std::optional<Eigen::Vector2d> refine_corner(const SmoothPicture& picture, const
     }
   const double mean = sum / count, variance = square / count - mean * mean;
   if (!(variance > 4) || (cross / count - mean * mean) / variance < least_likeness) return std::nullopt;
-  return corner;
+  return RefinedCorner{corner, std::clamp(sigma_px, 0.04, 1.0)};
 }
 
 }  // namespace arthronaut::calibration

@@ -1,0 +1,142 @@
+#include "navigation/calibration/calibration.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "planning/geometry/error.h"
+#include "tests/navigation/calibration/board_scene.h"
+
+namespace arthronaut::calibration {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+const std::vector<BoardView> kThreeViews = {{board_pose(18, 6, 30, 5), 0},
+                                            {board_pose(20, 20, 120, 33), 60},
+                                            {board_pose(22, 34, 250, 71), -70}};
+
+std::vector<CalibrationPicture> pictures_of(const std::vector<BoardView>& views, double corner_sigma_px, unsigned seed,
+                                            double square_mm = 2) {
+  std::mt19937 random(seed);
+  std::vector<CalibrationPicture> pictures;
+  for (const BoardView& view : views)
+    pictures.push_back(picture_of(true_scope(), view, square_mm, corner_sigma_px, 0.1, random));
+  return pictures;
+}
+
+CalibrationOptions options_with(double square_mm) {
+  CalibrationOptions options;
+  options.square_mm = square_mm;
+  return options;
+}
+
+// Where principal points stand at the same mark angle: calibrations may choose other reference angles.
+double principal_error_px(const camera::Calibration& found, const camera::Calibration& truth) {
+  double worst = 0;
+  for (double mark_deg = 0; mark_deg < 360; mark_deg += 30)
+    worst = std::max(worst, (found.turned(found.principal_point_px, found.lens_angle_rad(mark_deg)) -
+                             truth.turned(truth.principal_point_px, truth.lens_angle_rad(mark_deg)))
+                                .norm());
+  return worst;
+}
+
+// Three noisy pictures: the bounds are three times the measured spread at 0.1 px of corner noise.
+TEST(Calibration, RecoversTheScopeFromThreePictures) {
+  const CalibrationSummary summary = calibrate(pictures_of(kThreeViews, 0.1, 5), options_with(2));
+  ASSERT_EQ(summary.outcome, CalibrationSummary::Outcome::Ok)
+      << (summary.reasons.empty() ? "" : summary.reasons.front());
+  const camera::Calibration &found = summary.record.calibration, truth = true_scope();
+  EXPECT_NEAR(found.focal_px, truth.focal_px, 0.5);
+  EXPECT_NEAR(found.distortion_xi, truth.distortion_xi, 0.0009);
+  EXPECT_LT(principal_error_px(found, truth), 0.6);
+  EXPECT_LT((found.rotation_center_px - truth.rotation_center_px).norm(), 0.6);
+  EXPECT_NEAR(summary.rms_px, 0.1 * std::sqrt(2.0), 0.02);
+  EXPECT_NEAR(summary.leave_one_out_rms_px, 0.1 * std::sqrt(2.0), 0.05);
+}
+
+// Over many noise draws the errors are as large as the covariance says: mean square of error / sigma near 1.
+TEST(Calibration, CovarianceIsTrue) {
+  constexpr int kTrials = 40;
+  Eigen::Matrix<double, 6, 1> mean_square = Eigen::Matrix<double, 6, 1>::Zero();
+  CalibrationOptions options = options_with(3);
+  options.leave_one_out = false;
+  const camera::Calibration truth = true_scope();
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const CalibrationSummary summary =
+        calibrate(pictures_of(kThreeViews, 0.15, 100 + static_cast<unsigned>(trial), 3), options);
+    ASSERT_TRUE(summary.is_usable());
+    const camera::Calibration& found = summary.record.calibration;
+    const Eigen::Vector2d c = truth.turned(truth.principal_point_px, truth.lens_angle_rad(found.reference_mark_angle_deg));
+    Eigen::Matrix<double, 6, 1> error;
+    error << found.focal_px - truth.focal_px, found.distortion_xi - truth.distortion_xi, found.principal_point_px - c,
+        found.rotation_center_px - truth.rotation_center_px;
+    ASSERT_EQ(summary.record.covariance.rows(), 6);
+    mean_square += error.cwiseAbs2().cwiseQuotient(summary.record.covariance.diagonal()) / kTrials;
+  }
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_GT(mean_square(k), 0.3) << k;
+    EXPECT_LT(mean_square(k), 2.0) << k;
+  }
+}
+
+// Whole chain on drawn pictures: board finder, circle, mark, adjustment.
+TEST(Calibration, CalibratesFromDrawnPictures) {
+  std::vector<CalibrationPicture> pictures;
+  unsigned seed = 20;
+  for (const BoardView& view : kThreeViews)
+    pictures.push_back(observe_picture("drawn", draw_board(true_scope(), view, 2, 1.5, ++seed).view()));
+  const CalibrationSummary summary = calibrate(pictures, options_with(2));
+  ASSERT_EQ(summary.outcome, CalibrationSummary::Outcome::Ok)
+      << (summary.reasons.empty() ? "" : summary.reasons.front());
+  const camera::Calibration &found = summary.record.calibration, truth = true_scope();
+  EXPECT_NEAR(found.focal_px / truth.focal_px, 1, 0.003);
+  EXPECT_NEAR(found.distortion_xi, truth.distortion_xi, 0.006);
+  EXPECT_LT(principal_error_px(found, truth), 1.0);
+  EXPECT_LT((found.rotation_center_px - truth.rotation_center_px).norm(), 1.5);
+}
+
+// Broken contracts are named.
+TEST(Calibration, ThrowsOnBrokenContracts) {
+  std::vector<CalibrationPicture> pictures = pictures_of(kThreeViews, 0.1, 5);
+  const auto message = [](auto&& run) -> std::string {
+    try {
+      (void)run();
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message([&] { return calibrate(std::span(pictures).first(2), options_with(2)); }), HasSubstr("three pictures"));
+  EXPECT_THAT(message([&] { return calibrate(pictures, options_with(0)); }), HasSubstr("above 0 mm"));
+  EXPECT_THAT(message([&] { return calibrate(pictures, options_with(NAN)); }), HasSubstr("above 0 mm"));
+  std::vector<CalibrationPicture> other_size = pictures;
+  other_size[1].size_px = {1280, 720};
+  EXPECT_THAT(message([&] { return calibrate(other_size, options_with(2)); }), HasSubstr("1280 x 720"));
+  std::vector<CalibrationPicture> no_board = pictures;
+  no_board[2].board = {{}, "no checkerboard was found in it"};
+  EXPECT_THAT(message([&] { return calibrate(no_board, options_with(2)); }), HasSubstr("no checkerboard"));
+}
+
+// Poor pictures give a result with its reasons, each of its own.
+TEST(Calibration, SaysWhyItIsNotReliable) {
+  const std::vector<BoardView> facing = {{board_pose(18, 1, 30, 5), 0}, {board_pose(20, 2, 120, 33), 60}, {board_pose(22, 1, 250, 71), -70}};
+  EXPECT_THAT(calibrate(pictures_of(facing, 0.1, 5), options_with(2)).reasons, Contains(HasSubstr("face the lens")));
+
+  std::vector<BoardView> unturned = kThreeViews;
+  for (BoardView& view : unturned) view.lens_angle_deg = 3;
+  EXPECT_THAT(calibrate(pictures_of(unturned, 0.1, 5), options_with(2)).reasons, Contains(HasSubstr("was turned by")));
+
+  EXPECT_THAT(calibrate(pictures_of(kThreeViews, 0.1, 5), options_with(20)).reasons,
+              Contains(HasSubstr("side of a square")));
+
+  std::vector<CalibrationPicture> no_mark = pictures_of(kThreeViews, 0.1, 5);
+  no_mark[1].lens.mark = lens::MarkState::NotSeen;
+  EXPECT_THAT(calibrate(no_mark, options_with(2)).reasons, Contains(HasSubstr("lens mark was not found")));
+
+  std::vector<CalibrationPicture> noisy = pictures_of(kThreeViews, 1.0, 5);
+  EXPECT_THAT(calibrate(noisy, options_with(2)).reasons, Contains(HasSubstr("miss the model")));
+}
+
+}  // namespace
+}  // namespace arthronaut::calibration
