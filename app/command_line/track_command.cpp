@@ -1,7 +1,8 @@
-#include <cstdio>
+#include <memory>
 
 #include "app/command_line/command.h"
 #include "app/command_line/medium_option.h"
+#include "app/command_line/tracking_report.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/pipeline/track_video.h"
 #include "planning/files/atomic_file.h"
@@ -15,35 +16,6 @@ struct TrackArguments {
   std::optional<double> medium_index;
   bool fixed_lens = false;
 };
-
-std::string share(long part, long whole) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%ld of %ld frames (%.1f %%)", part, whole,
-                whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0.0);
-  return text;
-}
-
-void say_statistics(const Context& context, const pipeline::ViewStatistics& statistics) {
-  for (const pipeline::MarkerStatistics& marker : statistics.markers) {
-    std::string line = "marker " + std::to_string(marker.id) + " (" + marker.name + "): " +
-                       share(marker.frames_with_pose, statistics.frame_count);
-    if (marker.frames_with_pose < statistics.frame_count) {
-      line += ", else mostly: " + std::string(markers::to_text(marker.main_loss));
-    }
-    context.say(line);
-  }
-  context.say("lens mark: " + share(statistics.frames_with_mark, statistics.frame_count));
-  if (statistics.frames_with_unknown_lens > 0) {
-    context.say("no pose stands in " + share(statistics.frames_with_unknown_lens, statistics.frame_count) +
-                ": the lens angle is not known there (--fixed-lens if this lens does not turn)");
-  }
-  if (context.verbose) {
-    char text[80];
-    std::snprintf(text, sizeof text, "processing: %.1f ms a frame, worst %.1f ms", statistics.processing_ms_mean,
-                  statistics.processing_ms_worst);
-    context.say(text);
-  }
-}
 
 void track(Context& context, const TrackArguments& arguments) {
   const camera::CalibrationRecord camera = camera::read_camera_file(arguments.camera);

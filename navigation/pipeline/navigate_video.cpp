@@ -46,7 +46,7 @@ class Operation {
 
  private:
   [[nodiscard]] bool can_register() const {
-    return can_digitise_ && options_.bone != nullptr && !options_.registration;
+    return can_digitise_ && options_.bone != nullptr;
   }
 
   // While the guide is held into the view without a registration to guide by. Looking once in half a second is enough.
@@ -78,7 +78,14 @@ class Operation {
     registration::RegistrationOptions options;
     options.seed = options_.seed;
     if (options_.plan) options.target_in_bone_mm = options_.plan->entry_mm;
-    summary_.registration = registration::register_curves(*options_.bone, summary_.curves, options);
+    const RegistrationSummary found = registration::register_curves(*options_.bone, summary_.curves, options);
+    if (!found.reliable && options_.registration && options_.registration->reliable) {
+      // A few strokes to check a known registration are no reason to lose it; many that fit nowhere are one to say so.
+      if (tried_length_mm_ >= options_.retry_after_mm) summary_.reasons = found.reasons;
+      return;
+    }
+    summary_.reasons.clear();
+    summary_.registration = found;
     summary_.registration_was_found = true;
     pipeline_.set_registration(summary_.registration);
     if (observer_.on_registration) observer_.on_registration(*summary_.registration);

@@ -19,9 +19,9 @@ struct NavigateOptions {
   PipelineOptions pipeline;
   std::optional<tunnels::Tunnel> plan;
   double planned_length_mm = 0;
-  // Used from the first frame; with it nothing is registered.
+  // Used from the first frame, until the strokes of this video give a reliable one.
   std::optional<registration::RegistrationSummary> registration;
-  // Null: nothing is registered. Must outlive the call.
+  // What strokes are registered to; null: nothing is registered. Must outlive the call.
   const registration::PreparedBone* bone = nullptr;
   std::uint64_t seed = 1;
   strokes::StrokeOptions strokes;
@@ -33,7 +33,7 @@ struct NavigateOptions {
 // Called in the thread of navigate_video, in the order of events.
 struct NavigationObserver {
   std::function<void(const camera::FramePtr& frame, const FrameResult& result)> on_frame;
-  // Before the first frame that uses it, or after the last one.
+  // One that was found and is used from the next frame on, or was found after the last one.
   std::function<void(const registration::RegistrationSummary& registration)> on_registration;
 };
 
@@ -42,7 +42,7 @@ struct NavigationSummary {
   std::vector<strokes::PoseRow> rows;
   strokes::Curves curves;
   double stroke_length_mm = 0;
-  // The one that was given, or the last one that was found.
+  // The last one that was found; the one that was given where none was found or only an unreliable one.
   std::optional<registration::RegistrationSummary> registration;
   bool registration_was_found = false;  // here, not given
   long frames_with_tip = 0, frames_with_guidance = 0;

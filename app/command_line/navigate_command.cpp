@@ -1,0 +1,191 @@
+#include <memory>
+
+#include "app/command_line/command.h"
+#include "app/command_line/medium_option.h"
+#include "app/command_line/tracking_report.h"
+#include "navigation/camera/camera_file.h"
+#include "navigation/camera/medium.h"
+#include "navigation/recording/case_sessions.h"
+#include "navigation/recording/record_navigation.h"
+#include "planning/cases/case.h"
+#include "planning/files/atomic_file.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::command_line {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct NavigateArguments {
+  std::string case_folder, video, camera, tools, registration, probe = "probe", guide;
+  std::string bone = "femur";
+  std::optional<double> medium_index;
+  bool fixed_lens = false, no_copy = false;
+  CLI::Option* probe_option = nullptr;
+};
+
+// A session that did not come to its end is removed: a command that fails leaves nothing behind.
+class NewSession {
+ public:
+  explicit NewSession(const fs::path& case_folder) : folder_(cases::create_session_folder(case_folder)) {}
+  ~NewSession() {
+    std::error_code ignored;
+    if (!kept_) fs::remove_all(folder_, ignored);
+  }
+  NewSession(const NewSession&) = delete;
+  NewSession& operator=(const NewSession&) = delete;
+  [[nodiscard]] const fs::path& folder() const { return folder_; }
+  void keep() { kept_ = true; }
+
+ private:
+  fs::path folder_;
+  bool kept_ = false;
+};
+
+// What is given on the command line, else what the case holds.
+fs::path file_to_use(const std::string& given, const fs::path& of_case, const std::string& option) {
+  if (!given.empty()) return given;
+  if (fs::exists(of_case)) return of_case;
+  throw InvalidInput(of_case, "", "is not in the case yet: give " + option);
+}
+
+void adopt(const std::string& given, const fs::path& of_case) {
+  if (given.empty() || fs::absolute(given).lexically_normal() == fs::absolute(of_case).lexically_normal()) return;
+  files::write_atomically(of_case, files::read_text(given));
+}
+
+pipeline::PipelineOptions pipeline_options(const NavigateArguments& arguments, const cases::Case& knee) {
+  pipeline::PipelineOptions options;
+  const fs::path folder = arguments.case_folder;
+  options.calibration =
+      camera::read_camera_file(file_to_use(arguments.camera, cases::camera_file(folder), "--camera")).calibration;
+  options.tools = tools::read_tools_file(file_to_use(arguments.tools, cases::tools_file(folder), "--tools"));
+  options.refractive_index = arguments.medium_index.value_or(
+      options.calibration.refractive_index == camera::kAirIndex ? camera::kSalineIndex
+                                                                : options.calibration.refractive_index);
+  options.follow_lens = !arguments.fixed_lens;
+  options.bone = bones::bone_kind_from_text(arguments.bone);
+  options.side = knee.side;
+  options.probe_name = arguments.probe;
+  options.guide_name = arguments.guide;
+  if (options.guide_name.empty()) {
+    options.guide_name = options.bone == bones::BoneKind::Femur ? "femoral guide" : "tibial guide";
+  } else if (!options.tools.find_tool(options.guide_name)) {
+    throw InvalidInput("--guide: the tools declare no tool named \"" + options.guide_name + "\"");
+  }
+  if (arguments.probe_option->count() > 0 && !options.tools.find_tool(options.probe_name)) {
+    throw InvalidInput("--probe: the tools declare no tool named \"" + options.probe_name + "\"");
+  }
+  return options;
+}
+
+// Plan and registration of the case for this bone.
+pipeline::NavigateOptions navigate_options(const Context& context, const NavigateArguments& arguments,
+                                           const cases::Case& knee) {
+  pipeline::NavigateOptions options;
+  options.pipeline = pipeline_options(arguments, knee);
+  const bones::BoneKind bone = options.pipeline.bone;
+  if (const auto plan = knee.plan.tunnels.find(bone); plan != knee.plan.tunnels.end()) {
+    options.plan = plan->second;
+    options.planned_length_mm =
+        tunnels::measure(plan->second, geometry::Surface(knee.bones.at(bone).mesh)).length_mm;
+  }
+  if (!arguments.registration.empty()) {
+    options.registration = registration::read_registration_file(arguments.registration);
+  } else if (const auto known =
+                 recording::find_registration(arguments.case_folder, bone, options.pipeline.tools)) {
+    options.registration = known->registration;
+    context.say("registration: of session " + known->session_folder.filename().string());
+  }
+  return options;
+}
+
+void say_registration(const Context& context, const pipeline::NavigationSummary& summary) {
+  if (!summary.registration || !summary.registration->has_pose) return context.say("registration: none");
+  const registration::RegistrationSummary& r = *summary.registration;
+  context.say(format("registration (%s): rms %.2f mm over %d points, predicted error %.2f mm at the target, %s",
+                     summary.registration_was_found ? "found" : "given", r.rms_mm, r.point_count, r.predicted_tre_mm,
+                     r.reliable ? "reliable" : "not reliable"));
+}
+
+void say_guidance(const Context& context, const pipeline::NavigationSummary& summary) {
+  const guidance::GuidanceNumbers& g = summary.last_guidance;
+  if (!g.is_valid()) return context.say("guidance: none; at the end: " + std::string(guidance::to_text(summary.last_state)));
+  context.say(format("guidance in %ld of %ld frames; the last: guide to entry %.2f mm, axis to entry %.2f mm, "
+                     "angle %.2f deg",
+                     summary.frames_with_guidance, summary.statistics.frame_count, g.tip_to_entry_mm, g.axis_to_entry_mm,
+                     g.angle_deg));
+  context.say(format("  offset %.2f mm anterior, %.2f mm proximal; depth %.1f mm, remaining %.1f mm; "
+                     "one sigma %.2f mm, %.2f deg",
+                     g.offset_anterior_mm, g.offset_proximal_mm, g.depth_mm, g.remaining_mm, g.sigma_offset_mm,
+                     g.sigma_angle_deg));
+}
+
+void navigate(Context& context, const NavigateArguments& arguments) {
+  const cases::Case knee = cases::load_case(arguments.case_folder);
+  pipeline::NavigateOptions options = navigate_options(context, arguments, knee);
+  const auto mesh = knee.bones.find(options.pipeline.bone);
+  if (mesh == knee.bones.end()) {
+    throw InvalidInput(arguments.case_folder, "", "the case has no " + arguments.bone);
+  }
+  const registration::PreparedBone bone(mesh->second.mesh);
+  options.bone = &bone;
+  const auto source = sources::open_video(arguments.video);
+  context.say("working medium: " + camera::medium_to_text(options.pipeline.refractive_index));
+
+  NewSession session(arguments.case_folder);
+  pipeline::NavigationSummary summary;
+  {
+    Progress progress("navigating", static_cast<long>(source->info().frame_count));
+    long done = 0;
+    pipeline::NavigationObserver observer;
+    observer.on_frame = [&](const auto&, const auto&) { progress.advance_to(++done); };
+    summary = recording::record_navigation(
+        *source, options, session.folder(), arguments.no_copy ? recording::KeepVideo::Refer : recording::KeepVideo::Copy,
+        arguments.video, observer);
+  }
+  adopt(arguments.camera, cases::camera_file(arguments.case_folder));
+  adopt(arguments.tools, cases::tools_file(arguments.case_folder));
+  session.keep();
+
+  say_statistics(context, summary.statistics);
+  context.say(format("strokes: %.0f mm in %zu points", summary.stroke_length_mm, summary.curves.size()));
+  say_registration(context, summary);
+  say_guidance(context, summary);
+  context.say("session: " + session.folder().string());
+  if (!summary.reasons.empty()) context.say_unreliable("the navigation", summary.reasons);
+}
+
+}  // namespace
+
+void add_navigate_command(CLI::App& app, Context& context) {
+  CLI::App* command = add_subcommand(
+      app, context, "navigate", "Track, digitise, register and guide on a recorded video; writes a session into the case",
+      "arthronaut navigate knee.arthro --video scratch.mkv --camera camera.json --tools tools.json");
+  const auto arguments = std::make_shared<NavigateArguments>();
+  command->add_option("CASE", arguments->case_folder, "Case folder")->required();
+  command->add_option("--video", arguments->video, "Video file, or a pattern of still images such as f_%04d.png")
+      ->required();
+  command->add_option("--camera", arguments->camera, "camera.json; copied into the case. Default: the case's");
+  command->add_option("--tools", arguments->tools, "tools.json; copied into the case. Default: the case's");
+  add_medium_option(*command, arguments->medium_index,
+                    "What the scope looks through: air, water, saline or a refractive index. Default: saline when the "
+                    "camera was calibrated in air, else the medium of the calibration");
+  command->add_option("--bone", arguments->bone, "femur or tibia")
+      ->check(CLI::IsMember({"femur", "tibia"}))
+      ->capture_default_str();
+  command->add_option("--registration", arguments->registration,
+                      "registration.json to guide by. Default: the newest reliable one of the case for this world "
+                      "marker; strokes of the probe give a new one");
+  arguments->probe_option = command->add_option("--probe", arguments->probe, "Name of the touch probe in the tools")
+                                ->capture_default_str();
+  command->add_option("--guide", arguments->guide,
+                      "Name of the drill guide in the tools. Default: femoral guide or tibial guide, by the bone");
+  command->add_flag("--fixed-lens", arguments->fixed_lens,
+                    "The lens stays at the calibration's reference angle; the lens mark is not needed");
+  command->add_flag("--no-copy", arguments->no_copy, "Keep only the video's path in the session, not a copy of it");
+  command->callback([&context, arguments] { navigate(context, *arguments); });
+}
+
+}  // namespace arthronaut::command_line

@@ -1,0 +1,91 @@
+#include <memory>
+
+#include "app/command_line/command.h"
+#include "app/command_line/tracking_report.h"
+#include "navigation/recording/replay.h"
+#include "planning/cases/case.h"
+#include "planning/files/atomic_file.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::command_line {
+
+namespace {
+
+struct ReplayArguments {
+  std::string case_folder, session, output;
+};
+
+std::filesystem::path session_folder(const ReplayArguments& arguments) {
+  const auto folders = cases::session_folders(arguments.case_folder);
+  if (folders.empty()) throw InvalidInput(arguments.case_folder, "", "the case has no session");
+  if (arguments.session.empty()) return folders.back();
+  for (const std::filesystem::path& folder : folders) {
+    if (folder.filename() == arguments.session) return folder;
+  }
+  throw InvalidInput(arguments.case_folder, "", "the case has no session \"" + arguments.session + "\"");
+}
+
+std::string line_of(const recording::Difference& difference) {
+  const std::string where = difference.frame < 0 ? "session" : "frame " + std::to_string(difference.frame);
+  if (difference.unit.empty()) return where + ": " + difference.what + ": " + difference.detail;
+  return where + ": " + difference.what + ": " + format("%.6f ", difference.amount) + difference.unit;
+}
+
+std::string table_of(const std::vector<recording::Difference>& differences) {
+  std::string text = "frame,what,amount,unit,detail\n";
+  for (const recording::Difference& d : differences) {
+    text += (d.frame < 0 ? "" : std::to_string(d.frame)) + "," + d.what + "," +
+            (d.unit.empty() ? "" : format("%.9g", d.amount)) + "," + d.unit + "," + d.detail + "\n";
+  }
+  return text;
+}
+
+void replay(Context& context, const ReplayArguments& arguments) {
+  const cases::Case knee = cases::load_case(arguments.case_folder);
+  const recording::RecordedSession session(session_folder(arguments));
+  recording::ReplayOptions options;
+  std::optional<registration::PreparedBone> bone;
+  if (const auto found = knee.bones.find(session.header().bone); found != knee.bones.end()) {
+    options.bone = &bone.emplace(found->second.mesh);
+  }
+  recording::ReplaySummary summary;
+  {
+    Progress progress("replaying", static_cast<long>(session.frames().size()));
+    summary = recording::replay_session(session, options, [&](long done) { progress.advance_to(done); });
+  }
+  if (!arguments.output.empty()) files::write_atomically(arguments.output, table_of(summary.differences));
+  if (arguments.output == "-") {
+    if (!summary.is_same()) context.exit_code = kUnreliable;
+    return;
+  }
+  context.say(format("session %s: %ld of %ld frames replayed%s", session.header().id.c_str(), summary.replayed_frames,
+                     summary.recorded_frames,
+                     session.was_finished() ? "" : " (the recording was cut off and never finished)"));
+  context.say(format("largest differences: pose %.6f mm, %.6f deg; tip %.6f mm; guidance %.6f mm, %.6f deg",
+                     summary.worst_pose_mm, summary.worst_pose_deg, summary.worst_tip_mm, summary.worst_offset_mm,
+                     summary.worst_angle_deg));
+  if (summary.registration_mm) {
+    context.say(format("registration found again: %.4f mm from the recorded one at the target", *summary.registration_mm));
+  }
+  for (const recording::Difference& difference : summary.differences) context.say(line_of(difference));
+  if (summary.is_same()) return context.say("the same");
+  context.say_unreliable("the replay", {summary.replayed_frames == 0
+                                            ? "no frame could be replayed"
+                                            : std::to_string(summary.differences.size()) +
+                                                  " differences above tolerance"});
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app, Context& context) {
+  CLI::App* command = add_subcommand(app, context, "replay",
+                                     "Run a recorded session again through today's pipeline and report every difference",
+                                     "arthronaut replay knee.arthro --session 20260102-030405 -o differences.csv");
+  const auto arguments = std::make_shared<ReplayArguments>();
+  command->add_option("CASE", arguments->case_folder, "Case folder")->required();
+  command->add_option("--session", arguments->session, "The session's folder name; default: the newest");
+  command->add_option("-o,--output", arguments->output, "Table of all differences to write (CSV); - is standard output");
+  command->callback([&context, arguments] { replay(context, *arguments); });
+}
+
+}  // namespace arthronaut::command_line

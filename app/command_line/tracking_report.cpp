@@ -1,0 +1,49 @@
+#include "app/command_line/tracking_report.h"
+
+#include <cstdarg>
+#include <cstdio>
+
+namespace arthronaut::command_line {
+
+namespace {
+
+std::string share(long part, long whole) {
+  return format("%ld of %ld frames (%.1f %%)", part, whole,
+                whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0.0);
+}
+
+}  // namespace
+
+std::string format(const char* pattern, ...) {
+  char text[256];
+  va_list values;
+  va_start(values, pattern);
+  std::vsnprintf(text, sizeof text, pattern, values);
+  va_end(values);
+  return text;
+}
+
+void say_statistics(const Context& context, const pipeline::ViewStatistics& statistics) {
+  for (const pipeline::MarkerStatistics& marker : statistics.markers) {
+    std::string line = "marker " + std::to_string(marker.id) + " (" + marker.name +
+                       "): " + share(marker.frames_with_pose, statistics.frame_count);
+    if (marker.frames_with_pose < statistics.frame_count) {
+      line += ", else mostly: " + std::string(markers::to_text(marker.main_loss));
+    }
+    context.say(line);
+  }
+  context.say("lens mark: " + share(statistics.frames_with_mark, statistics.frame_count));
+  if (statistics.frames_with_unknown_lens > 0) {
+    context.say("no pose stands in " + share(statistics.frames_with_unknown_lens, statistics.frame_count) +
+                ": the lens angle is not known there (--fixed-lens if this lens does not turn)");
+  }
+  if (statistics.frames_frozen > 0) {
+    context.say("frozen picture: " + share(statistics.frames_frozen, statistics.frame_count));
+  }
+  if (context.verbose) {
+    context.say(format("processing: %.1f ms a frame, worst %.1f ms", statistics.processing_ms_mean,
+                       statistics.processing_ms_worst));
+  }
+}
+
+}  // namespace arthronaut::command_line
