@@ -47,6 +47,8 @@ void save_plan(const std::filesystem::path& folder, const Plan& plan);
 [[nodiscard]] std::filesystem::path mesh_file(const std::filesystem::path& case_folder, bones::BoneKind kind);
 // The sessions' folders, oldest first.
 [[nodiscard]] std::vector<std::filesystem::path> session_folders(const std::filesystem::path& case_folder);
+// Now, as created_utc wants it: "2026-01-31T12:00:00Z".
+[[nodiscard]] std::string utc_now();
 // A new, empty, unique session folder; its name sorts by time.
 [[nodiscard]] std::filesystem::path create_session_folder(const std::filesystem::path& case_folder);
 

@@ -28,6 +28,15 @@ std::vector<fs::path> session_folders(const fs::path& case_folder) {
   return folders;
 }
 
+std::string utc_now() {
+  char text[32];
+  std::tm utc{};
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  gmtime_r(&now, &utc);
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
 fs::path create_session_folder(const fs::path& case_folder) {
   std::error_code error;
   fs::create_directories(case_folder / "sessions", error);

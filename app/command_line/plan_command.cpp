@@ -1,0 +1,115 @@
+#include <cstdio>
+
+#include "app/command_line/command.h"
+#include "planning/cases/case.h"
+#include "planning/geometry/error.h"
+#include "planning/geometry/surface.h"
+#include "planning/tunnels/tunnel.h"
+
+namespace arthronaut::command_line {
+
+namespace {
+
+// An entry that lies further off the bone is a slip, not a rounding.
+constexpr double kSnapMm = 5.0;
+
+struct PlanArguments {
+  std::string case_folder, bone;
+  Eigen::Vector3d entry_mm = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
+  double diameter_mm = 9.0;
+  bool at_footprint = false;
+};
+
+std::string text(const char* format, auto... values) {
+  char buffer[256];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+void describe(const Context& context, const tunnels::Tunnel& tunnel, const geometry::Surface& surface) {
+  const auto measured = tunnels::measure(tunnel, surface);
+  const auto& e = tunnel.entry_mm;
+  const auto& d = tunnel.direction;
+  context.say(text("%s tunnel, %.1f mm", std::string(bones::to_text(tunnel.bone)).c_str(), tunnel.diameter_mm));
+  context.say(text("  entry      %.3f, %.3f, %.3f mm", e.x(), e.y(), e.z()));
+  context.say(text("  direction  %.5f, %.5f, %.5f", d.x(), d.y(), d.z()));
+  if (!measured.enters_bone) {
+    context.say("  misses the bone");
+    return;
+  }
+  const auto& x = measured.exit_mm;
+  context.say(text("  length     %.2f mm inside bone", measured.length_mm));
+  context.say(text("  exit       %.3f, %.3f, %.3f mm", x.x(), x.y(), x.z()));
+  context.say(text("  wall       %.2f mm at the thinnest", measured.wall_mm));
+}
+
+tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case& knee, bones::BoneKind kind,
+                               const geometry::Surface& surface, bool has_entry) {
+  tunnels::Tunnel tunnel{.bone = kind, .entry_mm = arguments.entry_mm, .direction = arguments.direction.normalized(),
+                         .diameter_mm = arguments.diameter_mm};
+  if (arguments.at_footprint) {
+    const auto marks = knee.landmarks.find(kind);
+    if (marks == knee.landmarks.end() || !marks->second.contains("native_footprint")) {
+      throw InvalidInput(arguments.case_folder, std::string(bones::to_text(kind)),
+                         "has no landmark native_footprint: give --entry");
+    }
+    tunnel.entry_mm = marks->second.at("native_footprint");
+  } else if (!has_entry) {
+    throw InvalidInput("plan: --entry (or --at-footprint) is needed beside --direction");
+  }
+  const auto nearest = surface.closest_point(tunnel.entry_mm);
+  const double off_mm = (nearest.point_mm - tunnel.entry_mm).norm();
+  if (off_mm > kSnapMm) {
+    throw InvalidInput(text("plan: --entry lies %.1f mm off the bone, more than %.0f mm", off_mm, kSnapMm));
+  }
+  tunnel.entry_mm = nearest.point_mm;
+  if (!tunnels::measure(tunnel, surface).enters_bone) {
+    throw InvalidInput("plan: --direction leads out of the bone at this entry");
+  }
+  return tunnel;
+}
+
+}  // namespace
+
+void add_plan_command(CLI::App& app, Context& context) {
+  const auto arguments = std::make_shared<PlanArguments>();
+  CLI::App* sub = add_subcommand(app, context, "plan", "Place a tunnel, or show the plan when no bone is given",
+                                 "arthronaut plan Knee.arthro --bone femur --entry -10.1,12.9,-0.3 --direction "
+                                 "-0.83,-0.37,0.41 --diameter-mm 9");
+  sub->add_option("case", arguments->case_folder, "Case folder")->required();
+  auto* bone = sub->add_option("--bone", arguments->bone, "femur or tibia")->check(CLI::IsMember({"femur", "tibia"}));
+  auto* entry = add_vector_option(*sub, "--entry", arguments->entry_mm, "Entry on the joint side, mm, LPS")->needs(bone);
+  auto* direction =
+      add_vector_option(*sub, "--direction", arguments->direction, "Direction of drilling, into the bone")->needs(bone);
+  auto* footprint = sub->add_flag("--at-footprint", arguments->at_footprint, "Enter at the native footprint's centre")
+                        ->needs(bone)
+                        ->excludes(entry);
+  sub->add_option("--diameter-mm", arguments->diameter_mm, "Diameter")->check(CLI::Range(3.0, 15.0))->capture_default_str();
+  entry->needs(direction);
+  footprint->needs(direction);
+  sub->callback([arguments, entry, direction, &context] {
+    auto knee = cases::load_case(arguments->case_folder);
+    if (direction->count() == 0) {
+      if (knee.plan.tunnels.empty()) context.say("No tunnel is planned.");
+      for (const auto& [kind, tunnel] : knee.plan.tunnels) {
+        if (!arguments->bone.empty() && arguments->bone != bones::to_text(kind)) continue;
+        if (!knee.bones.contains(kind)) throw InvalidInput(arguments->case_folder, "plan.json", "plans a bone that the case lacks");
+        describe(context, tunnel, geometry::Surface(knee.bones.at(kind).mesh));
+      }
+      return;
+    }
+    if (arguments->direction.norm() < 1e-9) throw InvalidInput("plan: --direction must not be zero");
+    const auto kind = bones::bone_kind_from_text(arguments->bone);
+    const auto bone_of_case = knee.bones.find(kind);
+    if (bone_of_case == knee.bones.end()) {
+      throw InvalidInput(arguments->case_folder, "case.json", "holds no " + arguments->bone);
+    }
+    const geometry::Surface surface(bone_of_case->second.mesh);
+    const auto tunnel = planned_tunnel(*arguments, knee, kind, surface, entry->count() > 0);
+    knee.plan.tunnels[kind] = tunnel;
+    cases::save_plan(arguments->case_folder, knee.plan);
+    describe(context, tunnel, surface);
+  });
+}
+
+}  // namespace arthronaut::command_line
