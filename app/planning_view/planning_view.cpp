@@ -45,7 +45,7 @@ void PlanningView::look_from(const PlanModel& model, scene::View view) {
 
 void PlanningView::apply(const PlanModel& model, const std::string& what, bool continues, const Move& move) const {
   if (!model.has_bone(state_.bone)) return;
-  if (const auto tunnel = move(model)) edit_({state_.bone, tunnel, what + " " + tunnel_name(state_.bone), continues});
+  if (const auto tunnel = move(model)) edit_({state_.bone, tunnel, what + " " + tunnel_name(state_.bone) + " tunnel", continues});
 }
 
 void PlanningView::add_actions(widgets::Actions& actions, std::function<const PlanModel*()> model) {

@@ -16,7 +16,7 @@ namespace arthronaut::planning_view {
 struct PlanEdit {
   bones::BoneKind bone = bones::BoneKind::Femur;
   std::optional<tunnels::Tunnel> tunnel;  // empty: remove it
-  std::string what;                       // "Move the femoral entry"
+  std::string what;                       // "Aim the femoral tunnel"
   bool continues = false;                 // belongs to the edit before it: one drag is one step back
 };
 

@@ -1,0 +1,87 @@
+// One run of the navigation on one source, in a thread of its own: pictures in, live frames out, newest wins. The window
+// reads status() and asks for changes; nothing here knows the window.
+//
+// Threads: the worker takes frames, runs the pipeline, projects the overlay and is the one that talks to the recorder; a
+// registration runs in a second thread and hands its result to the worker. Every public function may be called from any
+// thread and none of them waits, but the destructor, which joins both. States: starting -> running -> ended | failed.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/scene/plan_overlay.h"
+#include "navigation/pipeline/navigation_pipeline.h"
+#include "navigation/recording/session.h"
+#include "navigation/registration/registration.h"
+#include "navigation/sources/frame_source.h"
+
+namespace arthronaut::theatre_view {
+
+using PreparedBonePtr = std::shared_ptr<const registration::PreparedBone>;
+
+struct OperationSetup {
+  std::string title;                                                      // "Simulated operation: scratching"
+  std::function<std::unique_ptr<sources::FrameSource>()> open_source;     // called on the worker
+  pipeline::PipelineOptions pipeline;
+  std::optional<tunnels::Tunnel> plan;
+  double planned_length_mm = 0;
+  std::shared_ptr<const geometry::Surface> surface;
+  std::shared_ptr<const geometry::TriangleMesh> drawn_bone;
+  std::shared_future<PreparedBonePtr> prepared_bone;                      // for registration
+  std::optional<registration::RegistrationSummary> registration;          // from an earlier run
+  bool digitises = true;                                                  // from the first frame
+  std::filesystem::path session_folder;                                   // recorded when not empty
+};
+
+// One picture and everything known about it; the overlay belongs to this very picture.
+struct LiveFrame {
+  camera::FramePtr picture;
+  pipeline::FrameResult result;
+  scene::PlanOverlay overlay;  // empty when no pose of this frame stands
+  double published_s = 0;      // steady clock
+};
+
+struct OperationStatus {
+  enum class Phase { Starting, Running, Ended, Failed } phase = Phase::Starting;
+  std::string message;                        // why it failed
+  std::shared_ptr<const LiveFrame> live;      // the newest; null before the first
+  double frames_per_second = 0;               // that were navigated, lately
+  bool digitises = false;
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> trail;  // touched points, world-marker frame; never null
+  bool is_registering = false;
+  std::optional<registration::RegistrationSummary> registration;
+  std::uint64_t registration_count = 0;       // counts results, so that a new one is noticed
+  std::filesystem::path recording;            // the session's folder while it is recorded, else empty
+  std::string recording_error;
+};
+
+class Operation {
+ public:
+  // on_news is called from the worker whenever status() has changed; it must not call back into the operation.
+  Operation(OperationSetup setup, std::function<void()> on_news);
+  ~Operation();
+  Operation(const Operation&) = delete;
+  Operation& operator=(const Operation&) = delete;
+
+  [[nodiscard]] OperationStatus status() const;
+  [[nodiscard]] const std::string& title() const;
+  [[nodiscard]] static double now_s();  // the clock of published_s
+
+  void set_digitising(bool on);
+  void clear_curves();
+  void register_curves();  // nothing happens while one is running or nothing was touched
+  void start_recording(const std::filesystem::path& session_folder);
+  void stop_recording();
+
+ private:
+  class Worker;
+  std::unique_ptr<Worker> worker_;
+};
+
+}  // namespace arthronaut::theatre_view

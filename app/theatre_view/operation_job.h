@@ -1,0 +1,51 @@
+// The work of an operation without its threads: one step a frame. Deterministic; tests call it directly.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "app/theatre_view/operation.h"
+
+namespace arthronaut::theatre_view {
+
+class OperationJob {
+ public:
+  explicit OperationJob(const OperationSetup& setup);
+  ~OperationJob();
+
+  // The next frame with what is known about it; null at the end of the source. Throws what source and pipeline throw.
+  // published_s is left for the caller.
+  [[nodiscard]] std::shared_ptr<LiveFrame> step();
+
+  void set_digitising(bool on) { digitises_ = on; }
+  [[nodiscard]] bool digitises() const { return digitises_; }
+  void clear_curves();
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& trail() const { return trail_; }
+  [[nodiscard]] strokes::Curves curves() const;
+  void set_registration(const registration::RegistrationSummary& registration, bool found_in_this_session);
+
+  [[nodiscard]] bool is_recording() const { return recorder_ != nullptr; }
+  void start_recording(const std::filesystem::path& session_folder);  // throws IoError
+  void stop_recording();                                             // throws IoError
+  // Why recording ended by itself; empty while all is well.
+  [[nodiscard]] const std::string& recording_error() const { return recording_error_; }
+  [[nodiscard]] const sources::SourceInfo& source_info() const;
+
+ private:
+  void record(const LiveFrame& live);
+  void project(LiveFrame& live) const;
+  [[nodiscard]] std::vector<scene::ClearDisc> tool_tips(const pipeline::FrameResult& result) const;
+
+  OperationSetup setup_;
+  std::unique_ptr<sources::FrameSource> source_, prefetched_;
+  pipeline::NavigationPipeline pipeline_;
+  scene::OverlayModel overlay_;
+  std::optional<registration::RegistrationSummary> registration_;
+  bool digitises_ = false;
+  std::vector<strokes::PoseRow> poses_;
+  std::vector<Eigen::Vector3d> trail_;
+  std::unique_ptr<recording::SessionRecorder> recorder_;
+  std::string recording_error_;
+};
+
+}  // namespace arthronaut::theatre_view

@@ -1,0 +1,159 @@
+#include "app/theatre_view/theatre_display.h"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace arthronaut::theatre_view {
+
+namespace {
+
+using guidance::GuidanceState;
+using Phase = OperationStatus::Phase;
+
+// A picture older than this on the screen is not live. Recorded and simulated pictures may come slowly on a slow
+// machine; half a second is still shorter than a hand needs to trust a frozen screen.
+constexpr double kStaleAfter_s = 0.5;
+
+std::string tenths(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f", value);
+  return text.data();
+}
+
+std::string reason_of_marker(const pipeline::FrameResult& result, int marker_id) {
+  for (const markers::MarkerObservation& marker : result.markers)
+    if (marker.id == marker_id && !marker.is_tracked()) return std::string(markers::to_text(marker.state));
+  return "";
+}
+
+void explain(TheatreDisplay& display, const OperationStatus& status, const pipeline::PipelineOptions& options) {
+  const pipeline::FrameResult& result = status.live->result;
+  if (result.is_frozen) {
+    display.headline = "Picture frozen";
+    display.detail = "The source sends the same picture again and again";
+    return;
+  }
+  switch (result.guidance.state) {
+    case GuidanceState::Valid: break;
+    case GuidanceState::NoPlan:
+      display.headline = "No plan";
+      display.detail = "Plan the tunnel of this bone first";
+      break;
+    case GuidanceState::NoRegistration:
+      display.headline = "Not registered";
+      display.detail = status.is_registering ? "Registering now" : "Touch the bone with the probe, then register";
+      break;
+    case GuidanceState::RegistrationUnreliable:
+      display.headline = "Registration not reliable";
+      if (status.registration && !status.registration->reasons.empty()) display.detail = status.registration->reasons.front();
+      break;
+    case GuidanceState::WorldMarkerLost:
+      display.headline = "Bone marker lost";
+      if (const auto* marker = options.tools.find_world_marker(options.bone)) display.detail = reason_of_marker(result, marker->marker_id);
+      break;
+    case GuidanceState::GuideLost:
+      display.headline = "Drill guide lost";
+      if (const auto* tool = options.tools.find_tool(options.guide_name)) display.detail = reason_of_marker(result, tool->marker_id);
+      break;
+    case GuidanceState::LensStale:
+      display.headline = "Lens angle unknown";
+      display.detail = std::string(lens::to_text(result.lens.mark));
+      break;
+    case GuidanceState::Stale:
+      display.headline = "Poses too old";
+      display.detail = "The markers were not seen together";
+      break;
+  }
+}
+
+}  // namespace
+
+TheatreDisplay display_of(const OperationStatus* status, const pipeline::PipelineOptions* options, double now_s) {
+  TheatreDisplay display;
+  if (status == nullptr || options == nullptr) {
+    display.headline = "No picture";
+    display.detail = "Start a source below";
+    return display;
+  }
+  if (status->phase == Phase::Failed) {
+    display.headline = "Source failed";
+    display.detail = status->message;
+    return display;
+  }
+  if (status->live == nullptr) {
+    display.headline = status->phase == Phase::Ended ? "No picture in the source" : "Starting";
+    display.detail = "Waiting for the first picture";
+    return display;
+  }
+  display.has_picture = true;
+  if (status->phase == Phase::Ended) {
+    display.headline = "The source has ended";
+    display.detail = "This is its last picture";
+    return display;
+  }
+  const double age_s = now_s - status->live->published_s;
+  if (age_s > kStaleAfter_s) {
+    display.headline = "No new picture for " + tenths(age_s) + " s";
+    display.detail = "What you see is not live";
+    return display;
+  }
+  display.is_live = true;
+  const pipeline::FrameResult& result = status->live->result;
+  display.overlay_is_valid = result.camera_from_world.is_valid && result.intrinsics_are_known && !result.is_frozen;
+  display.guidance_is_valid = display.overlay_is_valid && result.guidance.is_valid();
+  if (display.guidance_is_valid)
+    display.guidance = result.guidance;
+  else
+    explain(display, *status, *options);
+  return display;
+}
+
+double offset_mm(const guidance::GuidanceNumbers& guidance) { return guidance.axis_to_entry_mm; }
+
+widgets::Sign sign_of_offset(const guidance::GuidanceNumbers& guidance) {
+  if (guidance.sigma_offset_mm > 2) return widgets::Sign::Bad;
+  if (guidance.axis_to_entry_mm < 1 && guidance.sigma_offset_mm < 1) return widgets::Sign::Good;
+  return guidance.axis_to_entry_mm < 2 ? widgets::Sign::Caution : widgets::Sign::Bad;
+}
+
+widgets::Sign sign_of_angle(const guidance::GuidanceNumbers& guidance) {
+  if (guidance.angle_deg < 2) return widgets::Sign::Good;
+  return guidance.angle_deg < 4 ? widgets::Sign::Caution : widgets::Sign::Bad;
+}
+
+widgets::Sign sign_of_remaining(const guidance::GuidanceNumbers& guidance) {
+  if (guidance.remaining_mm < 2) return widgets::Sign::Bad;
+  return guidance.remaining_mm < 5 ? widgets::Sign::Caution : widgets::Sign::Quiet;
+}
+
+std::string marker_name(const tools::ToolSet& tools, int marker_id) {
+  for (const tools::WorldMarker& marker : tools.world_markers)
+    if (marker.marker_id == marker_id) return marker.bone == bones::BoneKind::Femur ? "Femur marker" : "Tibia marker";
+  for (const tools::Tool& tool : tools.tools) {
+    if (tool.marker_id != marker_id || tool.name.empty()) continue;
+    std::string name = tool.name;
+    if (name.front() >= 'a' && name.front() <= 'z') name.front() = static_cast<char>(name.front() - 'a' + 'A');
+    return name;
+  }
+  return "Marker " + std::to_string(marker_id);
+}
+
+BullseyePoint bullseye_point(const guidance::GuidanceNumbers& guidance, const tunnels::Tunnel& plan) {
+  const Eigen::Vector3d ahead = plan.direction.normalized();
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ() - ahead.z() * ahead;  // proximal; anterior where the plan runs along the bone
+  if (up.norm() < 0.2) up = -Eigen::Vector3d::UnitY() + ahead.y() * ahead;
+  up.normalize();
+  const Eigen::Vector3d right = ahead.cross(up);
+  const double advance = guidance.guide_direction.dot(ahead);
+  const double along = std::abs(advance) > 0.1 ? (plan.entry_mm - guidance.guide_point_mm).dot(ahead) / advance
+                                               : (plan.entry_mm - guidance.guide_point_mm).dot(guidance.guide_direction);
+  const Eigen::Vector3d offset = guidance.guide_point_mm + along * guidance.guide_direction - plan.entry_mm;
+  const auto lean = [&](const Eigen::Vector3d& side) {
+    return geometry::deg_from_rad(std::atan2(guidance.guide_direction.dot(side), advance));
+  };
+  return {offset.dot(right), offset.dot(up), lean(right), lean(up), right.y() <= 0};
+}
+
+}  // namespace arthronaut::theatre_view

@@ -1,0 +1,103 @@
+#include "app/theatre_view/theatre_setup.h"
+
+#include <algorithm>
+#include <array>
+
+#include "navigation/camera/medium.h"
+#include "navigation/simulator/simulated_operation.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::theatre_view {
+
+namespace {
+
+std::string guide_name_of(bones::BoneKind bone) { return bone == bones::BoneKind::Femur ? "femoral guide" : "tibial guide"; }
+
+OperationSetup setup_of(const planning_view::PlanModel& model, bones::BoneKind bone) {
+  OperationSetup setup;
+  setup.pipeline.bone = bone;
+  setup.pipeline.side = model.knee().side;
+  setup.pipeline.guide_name = guide_name_of(bone);
+  setup.plan = model.tunnel(bone);
+  setup.planned_length_mm = setup.plan ? model.drawn_length_mm(bone) : 0;
+  setup.surface = model.shared_surface(bone);
+  setup.drawn_bone = model.drawn_mesh(bone);
+  return setup;
+}
+
+landmarks::Landmarks landmarks_of(const cases::Case& knee, bones::BoneKind bone) {
+  const auto found = knee.landmarks.find(bone);
+  return found == knee.landmarks.end() ? landmarks::Landmarks{} : found->second;
+}
+
+phantom::PhantomKnee phantom_of(const cases::Case& knee) {
+  phantom::PhantomKnee phantom;
+  phantom.side = knee.side;
+  if (knee.bones.contains(bones::BoneKind::Femur)) phantom.femur = knee.bones.at(bones::BoneKind::Femur);
+  if (knee.bones.contains(bones::BoneKind::Tibia)) phantom.tibia = knee.bones.at(bones::BoneKind::Tibia);
+  phantom.femur_landmarks = landmarks_of(knee, bones::BoneKind::Femur);
+  phantom.tibia_landmarks = landmarks_of(knee, bones::BoneKind::Tibia);
+  const auto& tunnels = knee.plan.tunnels;
+  if (tunnels.contains(bones::BoneKind::Femur)) phantom.femoral_tunnel = tunnels.at(bones::BoneKind::Femur);
+  if (tunnels.contains(bones::BoneKind::Tibia)) phantom.tibial_tunnel = tunnels.at(bones::BoneKind::Tibia);
+  return phantom;
+}
+
+}  // namespace
+
+std::string missing_for_simulation(const planning_view::PlanModel& model, bones::BoneKind bone) {
+  if (!model.has_bone(bone)) return "the case has no " + std::string(bones::to_text(bone));
+  if (!model.has_bone(bones::BoneKind::Femur) || !model.has_bone(bones::BoneKind::Tibia)) return "the case has only one bone";
+  if (!model.tunnel(bone)) return "there is no planned tunnel to aim at";
+  const landmarks::Landmarks& known = landmarks_of(model.knee(), bone);
+  return known.contains("native_footprint") ? "" : "the landmarks of the bone are not known";
+}
+
+OperationSetup simulated_setup(const planning_view::PlanModel& model, bones::BoneKind bone, SimulatedPart part) {
+  OperationSetup setup = setup_of(model, bone);
+  setup.title = part == SimulatedPart::Scratch ? "Simulated operation: probe" : "Simulated operation: drill";
+  setup.pipeline.calibration = simulator::standard_camera();
+  setup.pipeline.tools = tools::standard_tools();
+  setup.pipeline.refractive_index = camera::kSalineIndex;
+  setup.digitises = part == SimulatedPart::Scratch;
+  simulator::SimulationOptions simulation;
+  simulation.knee = phantom_of(model.knee());
+  simulation.camera = setup.pipeline.calibration;
+  simulation.tools = setup.pipeline.tools;
+  simulation.bone = bone;
+  simulation.plan = *setup.plan;
+  simulation.refractive_index = setup.pipeline.refractive_index;
+  setup.open_source = [simulation, part]() -> std::unique_ptr<sources::FrameSource> {
+    const auto phase = part == SimulatedPart::Scratch ? simulator::Phase::Scratch : simulator::Phase::Drill;
+    return std::make_unique<simulator::SimulatedOperation>(simulation, phase);
+  };
+  return setup;
+}
+
+std::vector<std::filesystem::path> videos_of(const std::filesystem::path& case_folder) {
+  constexpr std::array<std::string_view, 4> kVideos{".mp4", ".mkv", ".avi", ".mov"};
+  std::vector<std::filesystem::path> videos;
+  std::error_code ignored;  // a folder that can't be read has no videos to offer
+  for (const auto& entry : std::filesystem::directory_iterator(case_folder, ignored))
+    if (std::find(kVideos.begin(), kVideos.end(), entry.path().extension().string()) != kVideos.end())
+      videos.push_back(entry.path());
+  std::sort(videos.begin(), videos.end());
+  return videos;
+}
+
+OperationSetup video_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
+                           const std::filesystem::path& case_folder, const std::filesystem::path& video,
+                           double refractive_index) {
+  if (!model.has_bone(bone)) throw InvalidInput("the case has no " + std::string(bones::to_text(bone)));
+  OperationSetup setup = setup_of(model, bone);
+  setup.title = video.filename().string();
+  setup.pipeline.calibration = camera::read_camera_file(cases::camera_file(case_folder)).calibration;
+  setup.pipeline.tools = tools::read_tools_file(cases::tools_file(case_folder));
+  setup.pipeline.refractive_index = refractive_index;
+  if (setup.pipeline.tools.find_world_marker(bone) == nullptr)
+    throw InvalidInput("tools.json declares no world marker for the " + std::string(bones::to_text(bone)));
+  setup.open_source = [video] { return sources::open_video(video); };
+  return setup;
+}
+
+}  // namespace arthronaut::theatre_view

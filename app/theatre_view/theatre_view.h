@@ -1,0 +1,74 @@
+// Navigation mode: the live picture with the plan on it, beside it the guide relative to the plan, numbers and states.
+// Made to be worked by three keys of a pedal: Space does the next sensible step.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+
+#include "app/planning_view/plan_model.h"
+#include "app/theatre_view/operation.h"
+#include "app/theatre_view/theatre_panels.h"
+#include "app/theatre_view/theatre_setup.h"
+#include "app/widgets/scene_pane.h"
+
+namespace arthronaut::theatre_view {
+
+class TheatreView {
+ public:
+  // wake: ends the window's wait for input; called from other threads.
+  TheatreView(std::function<void()> make_current, std::function<void()> wake);
+  ~TheatreView();
+
+  // Another case; ends what runs. The model is read whenever an operation is started; it outlives this view's use.
+  void open(const planning_view::PlanModel* model, const std::filesystem::path& case_folder);
+  void add_actions(widgets::Actions& actions);
+  void draw(const widgets::Ui& ui, const widgets::Rect& area);
+  // While true the screen must be drawn again soon: pictures are coming, or the overlay fades.
+  [[nodiscard]] bool is_busy() const;
+  // One line for the status bar of the window; empty when there is nothing to say.
+  [[nodiscard]] std::string notice() const { return notice_; }
+
+ private:
+  void start(OperationSetup setup);
+  void start_simulation(SimulatedPart part);
+  void start_video();
+  void take_next_step();
+  void toggle_recording();
+  void cycle_overlay();
+  void show_scene(const TheatreScreen& screen);
+  [[nodiscard]] std::string next_step() const;
+  [[nodiscard]] bool can_simulate() const;
+  [[nodiscard]] bool is_running() const;
+  [[nodiscard]] float overlay_opacity(double now_s) const;
+  void draw_scene(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen);
+  void draw_controls(const widgets::Ui& ui, const widgets::Rect& area);
+
+  struct BoneState {  // what stays when one source ends and another starts
+    std::shared_future<PreparedBonePtr> prepared;
+    std::optional<registration::RegistrationSummary> registration;
+  };
+  struct Choices {
+    bones::BoneKind bone = bones::BoneKind::Femur;
+    bool saline = true;
+    std::size_t video = 0;
+    bool overlay_on = true;
+    double overlay_shown_at_s = 0;
+  };
+
+  const planning_view::PlanModel* model_ = nullptr;
+  std::filesystem::path case_folder_;
+  std::function<void()> wake_;
+  widgets::ScenePane pane_;
+  widgets::VideoTexture video_;
+  std::map<bones::BoneKind, BoneState> bones_;
+  Choices choices_;
+  std::unique_ptr<Operation> operation_;
+  std::unique_ptr<pipeline::PipelineOptions> options_;  // of the operation
+  OperationStatus status_;                              // of this frame
+  SimulatedPart part_ = SimulatedPart::Scratch;
+  std::string notice_;
+};
+
+}  // namespace arthronaut::theatre_view

@@ -1,0 +1,30 @@
+#include "app/window/case_opening.h"
+
+#include <cstdlib>
+
+#include "planning/cases/case.h"
+#include "planning/phantom/phantom_case.h"
+
+namespace arthronaut::window {
+
+std::filesystem::path built_in_case_folder() {
+  const char* data = std::getenv("XDG_DATA_HOME");
+  const char* home = std::getenv("HOME");
+  std::filesystem::path base = std::filesystem::temp_directory_path();
+  if (data != nullptr && *data != '\0')
+    base = data;
+  else if (home != nullptr && *home != '\0')
+    base = std::filesystem::path(home) / ".local" / "share";
+  return base / "arthronaut" / "Phantom.arthro";
+}
+
+OpenedCase open_case(const std::filesystem::path& folder) {
+  const std::filesystem::path chosen = folder.empty() ? built_in_case_folder() : folder;
+  if (folder.empty() && !std::filesystem::exists(chosen / "case.json")) {
+    std::filesystem::create_directories(chosen);
+    cases::save_case(chosen, phantom::case_of(phantom::make_phantom_knee(), "Phantom knee"));
+  }
+  return {chosen, std::make_unique<planning_view::PlanModel>(cases::load_case(chosen))};
+}
+
+}  // namespace arthronaut::window

@@ -1,0 +1,210 @@
+#include "app/window/workstation_window.h"
+
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+
+#include "app/window/key_list.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::window {
+
+namespace {
+
+using widgets::GraphicsWindow;
+
+constexpr int kWidth = 1920, kHeight = 1080;
+constexpr double kIdleWait_s = 0.2, kBusyWait_s = 0.05;
+// After input ImGui needs a few frames until hovering, pressing and layout have settled.
+constexpr int kFramesAfterInput = 4;
+constexpr const char* kNotice = "Research software, not a medical device";
+
+const char* name_of(Mode mode) {
+  switch (mode) {
+    case Mode::Plan: return "plan";
+    case Mode::Navigate: return "navigate";
+    case Mode::Review: return "review";
+  }
+  return "";
+}
+
+}  // namespace
+
+WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
+    : options_(options),
+      window_("Arthronaut", kWidth, kHeight),
+      log_(options.list_widgets),
+      opening_(std::async(std::launch::async, [folder = options.case_folder] {
+        const struct Waker {
+          ~Waker() { GraphicsWindow::wake(); }
+        } waker;
+        return open_case(folder);
+      })),
+      planning_([this] { window_.make_current(); },
+                [this](const planning_view::PlanEdit& edit) { history_.apply(edit, GraphicsWindow::now_s()); }),
+      theatre_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }),
+      review_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }) {
+  add_actions();
+}
+
+WorkstationWindow::~WorkstationWindow() {
+  if (opening_.valid()) opening_.wait();  // its end wakes the window, which must still be there
+}
+
+void WorkstationWindow::add_actions() {
+  const auto is_open = [this] { return open_.model != nullptr; };
+  const auto mode_action = [&](const char* id, const char* label, const char* tooltip, int key, Mode mode) {
+    actions_.add({id, label, tooltip, key, 0, false, is_open, [this, mode] { return mode_ == mode; }, [this, mode] { go_to(mode); }});
+  };
+  mode_action("mode.plan", "Plan", "Place the tunnels", GLFW_KEY_F1, Mode::Plan);
+  mode_action("mode.navigate", "Navigate", "In theatre", GLFW_KEY_F2, Mode::Navigate);
+  mode_action("mode.review", "Review", "What happened", GLFW_KEY_F3, Mode::Review);
+  actions_.add({"app.keys", "Keys", "Every key of this mode", GLFW_KEY_F10, 0, false, {}, [this] { return shows_keys_; },
+                [this] { shows_keys_ = !shows_keys_; }});
+  actions_.add({"app.quit", "Quit", "Everything is saved", GLFW_KEY_Q, GLFW_MOD_CONTROL, false, {}, {}, [this] { quits_ = true; }});
+  actions_.add({"plan.undo", "Undo", "Takes the last change of the plan back", GLFW_KEY_Z, GLFW_MOD_CONTROL, true,
+                [this] { return history_.can_undo(); }, {}, [this] { history_.undo(); }});
+  actions_.add({"plan.redo", "Redo", "Does it again", GLFW_KEY_Y, GLFW_MOD_CONTROL, true,
+                [this] { return history_.can_redo(); }, {}, [this] { history_.redo(); }});
+  planning_.add_actions(actions_, [this]() -> const planning_view::PlanModel* { return open_.model.get(); });
+  theatre_.add_actions(actions_);
+  review_.add_actions(actions_);
+}
+
+void WorkstationWindow::run() {
+  int settle = 30;  // frames to draw without waiting
+  for (long count = 0; !quits_ && !window_.should_close() && (options_.frames == 0 || count < options_.frames); ++count) {
+    const double timeout = settle > 0 ? 0 : is_busy() ? kBusyWait_s : kIdleWait_s;
+    const double started = GraphicsWindow::now_s();
+    frame(timeout);
+    const bool woken = timeout > 0 && GraphicsWindow::now_s() - started < timeout;
+    settle = woken && !theatre_.is_busy() ? kFramesAfterInput : std::max(settle - 1, 0);
+  }
+  history_.settle_now();
+}
+
+bool WorkstationWindow::is_busy() const {
+  return opening_.valid() || theatre_.is_busy() || review_.is_busy() || history_.is_moving();
+}
+
+// poll -> queues and actions -> UI (with the scenes that are dirty) -> draw -> swap
+void WorkstationWindow::frame(double timeout_s) {
+  window_.begin_frame(timeout_s);
+  take_opened_case();
+  dispatch_keys();
+  history_.settle(GraphicsWindow::now_s());
+  const widgets::Ui ui{window_.theme(), actions_, log_, GraphicsWindow::now_s()};
+  draw_screen(ui);
+  window_.end_frame();
+  log_.end_frame();
+}
+
+void WorkstationWindow::take_opened_case() {
+  if (!opening_.valid() || opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  try {  // the top of the opening job: a case that cannot be read is said on the screen
+    open_ = opening_.get();
+  } catch (const std::exception& error) {
+    failure_ = error.what();
+    return;
+  }
+  history_.open(open_.model.get(), open_.folder);
+  planning_.reset(*open_.model);
+  theatre_.open(open_.model.get(), open_.folder);
+  review_.open(open_.model.get(), open_.folder);
+}
+
+void WorkstationWindow::dispatch_keys() {
+  const std::string_view mode_prefix = mode_ == Mode::Plan ? "plan." : mode_ == Mode::Navigate ? "operate." : "review.";
+  for (const widgets::KeyPress& press : window_.keys()) {
+    if (shows_keys_ && press.key == GLFW_KEY_ESCAPE) {
+      shows_keys_ = false;
+      continue;
+    }
+    actions_.press(press, {"app.", "mode.", mode_prefix});
+  }
+}
+
+void WorkstationWindow::go_to(Mode mode) {
+  mode_ = mode;
+  if (mode == Mode::Review) review_.refresh();
+}
+
+void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({0, 0});
+  ImGui::SetNextWindowSize(size);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+  ImGui::Begin("workstation", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::PopStyleVar();
+  ImGui::PushFont(ui.theme.body);
+  widgets::Rect area{0, 0, size.x, size.y};
+  draw_top_bar(ui, area.cut_top(ui.theme.px(72)));
+  draw_status_bar(ui, area.cut_bottom(ui.theme.px(40)));
+  widgets::Rect inner = area.inset(ui.theme.px(12));
+  if (open_.model == nullptr)
+    draw_waiting(ui, inner);
+  else if (mode_ == Mode::Plan)
+    planning_.draw(ui, inner, *open_.model, history_.status());
+  else if (mode_ == Mode::Navigate)
+    theatre_.draw(ui, inner);
+  else
+    review_.draw(ui, inner);
+  if (shows_keys_) draw_key_list(ui, name_of(mode_));
+  ImGui::PopFont();
+  ImGui::End();
+  log_.note_state("mode", name_of(mode_));
+  log_.note_state("case", open_.model != nullptr ? "open" : failure_.empty() ? "opening" : "failed");
+}
+
+void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect& area) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddRectFilled(area.min(), area.max(), widgets::kPanel);
+  draw.AddLine({area.x, area.y + area.height}, area.max(), widgets::kPanelEdge);
+  const float middle = area.y + area.height / 2;
+  const ImFont* title = ui.theme.title;
+  draw.AddText(title, title->FontSize, {area.x + ui.theme.px(20), middle - title->FontSize / 2}, widgets::kText, "Arthronaut");
+  const float width = ui.theme.px(190), height = ui.theme.px(50);
+  float x = area.x + ui.theme.px(230);
+  for (const char* id : {"mode.plan", "mode.navigate", "mode.review"}) {
+    ImGui::SetCursorScreenPos({x, middle - height / 2});
+    widgets::action_button(ui, id, width, height);
+    x += width + ui.theme.px(10);
+  }
+  if (open_.model != nullptr) {
+    const cases::Case& knee = open_.model->knee();
+    const std::string text = knee.name + "  \u2013  " + std::string(bones::to_text(knee.side)) + " knee";
+    const float wide = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, text.c_str()).x;
+    draw.AddText(ui.theme.strong, ui.theme.strong->FontSize,
+                 {area.x + area.width - wide - ui.theme.px(300), middle - ui.theme.strong->FontSize / 2}, widgets::kText, text.c_str());
+  }
+  const float small = ui.theme.px(130);
+  ImGui::SetCursorScreenPos({area.x + area.width - 2 * small - ui.theme.px(22), middle - height / 2});
+  widgets::action_button(ui, "app.keys", small, height);
+  ImGui::SetCursorScreenPos({area.x + area.width - small - ui.theme.px(12), middle - height / 2});
+  widgets::action_button(ui, "app.quit", small, height);
+}
+
+void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Rect& area) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddRectFilled(area.min(), area.max(), widgets::kPanel);
+  const ImFont* font = ui.theme.body;
+  const float y = area.y + (area.height - font->FontSize) / 2;
+  draw.AddText(font, font->FontSize, {area.x + ui.theme.px(20), y}, widgets::kQuietText, kNotice);
+  const std::string notice = !failure_.empty() ? failure_
+                             : mode_ == Mode::Navigate ? theatre_.notice()
+                             : mode_ == Mode::Review   ? review_.notice()
+                                                       : std::string();
+  const std::string text = !notice.empty() ? notice : open_.model != nullptr ? open_.folder.string() : std::string();
+  const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
+  draw.AddText(font, font->FontSize, {area.x + area.width - wide - ui.theme.px(20), y},
+               notice.empty() ? widgets::kQuietText : widgets::kCaution, text.c_str());
+}
+
+void WorkstationWindow::draw_waiting(const widgets::Ui& ui, const widgets::Rect& area) {
+  widgets::text_centered(ui, area, ui.theme.title, failure_.empty() ? widgets::kText : widgets::kBad,
+                         failure_.empty() ? "Opening the case" : "The case cannot be opened: " + failure_);
+}
+
+}  // namespace arthronaut::window

@@ -1,0 +1,54 @@
+// The whole window: modes, bars, the open case, and the loop that keeps the frame order.
+#pragma once
+
+#include <future>
+#include <memory>
+#include <string>
+
+#include "app/planning_view/planning_view.h"
+#include "app/review_view/review_view.h"
+#include "app/theatre_view/theatre_view.h"
+#include "app/widgets/graphics_window.h"
+#include "app/window/case_opening.h"
+#include "app/window/plan_history.h"
+#include "app/window/workstation.h"
+
+namespace arthronaut::window {
+
+enum class Mode { Plan, Navigate, Review };
+
+class WorkstationWindow {
+ public:
+  explicit WorkstationWindow(const WorkstationOptions& options);
+  ~WorkstationWindow();
+  // Until the window closes or the frames are up.
+  void run();
+
+ private:
+  void add_actions();
+  void frame(double timeout_s);
+  void take_opened_case();
+  void dispatch_keys();
+  void go_to(Mode mode);
+  void draw_screen(const widgets::Ui& ui);
+  void draw_top_bar(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_status_bar(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_waiting(const widgets::Ui& ui, const widgets::Rect& area);
+  [[nodiscard]] bool is_busy() const;
+
+  WorkstationOptions options_;
+  widgets::GraphicsWindow window_;
+  widgets::Actions actions_;
+  widgets::WidgetLog log_;
+  std::future<OpenedCase> opening_;
+  OpenedCase open_;
+  PlanHistory history_;
+  planning_view::PlanningView planning_;
+  theatre_view::TheatreView theatre_;
+  review_view::ReviewView review_;
+  Mode mode_ = Mode::Plan;
+  bool shows_keys_ = false, quits_ = false;
+  std::string failure_;
+};
+
+}  // namespace arthronaut::window
