@@ -14,9 +14,6 @@ using geometry::Vector6d;
 
 namespace {
 
-// Errors hang together over about this much of path.
-constexpr double kCorrelationLength_mm = 6.0;
-
 Vector6d row_of(const Eigen::Vector3d& gradient, const Eigen::Vector3d& arm_mm) {
   Vector6d row;
   row << gradient, arm_mm.cross(gradient);

@@ -127,8 +127,6 @@ DistanceField::DistanceField(const TriangleMesh& mesh, const DistanceFieldOption
   spacing_mm_ = std::max(spacing_mm_, std::cbrt(size_mm.prod() / static_cast<double>(options.max_node_count)));
   origin_mm_ = bounds.min_mm.array() - band_mm_ - spacing_mm_;
   size_ = (size_mm / spacing_mm_).array().ceil().cast<int>() + 3;
-  origin_mm_f_ = origin_mm_.cast<float>();
-  inverse_spacing_f_ = static_cast<float>(1.0 / spacing_mm_);
 
   NearestTriangles nearest(mesh, origin_mm_, spacing_mm_, size_, band_mm_);
   nearest.run();
@@ -174,6 +172,25 @@ DistanceField::Sample DistanceField::sample(const Eigen::Vector3d& point_mm) con
                      g.z() * (x10 - x00) + f.z() * (x11 - x01), y1 - y0};
   sample.gradient *= static_cast<double>(kStep_mm) / spacing_mm_;
   return sample;
+}
+
+CoarseDistanceField::CoarseDistanceField(const DistanceField& field) {
+  constexpr double kMaxNodes = 4e6;
+  const double spacing_mm = std::max(1.0, std::cbrt(field.size_mm().prod() / kMaxNodes));
+  nodes_per_mm_ = static_cast<float>(1 / spacing_mm);
+  step_mm_ = static_cast<float>(field.band_mm() / 127);
+  origin_mm_ = field.origin_mm().cast<float>();
+  size_ = (field.size_mm() / spacing_mm).array().floor().cast<int>() + 1;
+  nodes_.reserve(static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()) *
+                 static_cast<std::size_t>(size_.z()));
+  for (int z = 0; z < size_.z(); ++z) {
+    for (int y = 0; y < size_.y(); ++y) {
+      for (int x = 0; x < size_.x(); ++x) {
+        const Eigen::Vector3d node = field.origin_mm() + spacing_mm * Eigen::Vector3d(x, y, z);
+        nodes_.push_back(static_cast<std::int8_t>(std::lround(field.sample(node).distance_mm / field.band_mm() * 127)));
+      }
+    }
+  }
 }
 
 }  // namespace arthronaut::registration

@@ -1,5 +1,5 @@
 // Signed distance to a closed mesh on a regular grid: negative inside, exact at the grid's nodes within a band about the
-// surface, saturated beyond it. Made for millions of look-ups; the exact surface is geometry::Surface.
+// surface, saturated beyond it. The exact surface is geometry::Surface.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,21 +23,9 @@ class DistanceField {
   explicit DistanceField(const geometry::TriangleMesh& mesh, const DistanceFieldOptions& options = {});
 
   [[nodiscard]] double spacing_mm() const { return spacing_mm_; }
+  [[nodiscard]] const Eigen::Vector3d& origin_mm() const { return origin_mm_; }  // the first node
+  [[nodiscard]] Eigen::Vector3d size_mm() const { return spacing_mm_ * (size_.cast<double>().array() - 1).matrix(); }
   [[nodiscard]] double band_mm() const { return band_mm_; }
-
-  // Distance at the nearest node; +band outside the grid. Off by at most 0.87 spacing.
-  [[nodiscard]] float nearest_mm(const Eigen::Vector3f& point_mm) const {
-    const Eigen::Vector3f cell = (point_mm - origin_mm_f_) * inverse_spacing_f_;
-    const int x = static_cast<int>(cell.x() + 0.5f), y = static_cast<int>(cell.y() + 0.5f),
-              z = static_cast<int>(cell.z() + 0.5f);
-    // A negative coordinate becomes a large unsigned number; (-0.5, 0] rounds to node 0, which lies outside the band.
-    if (static_cast<unsigned>(x) >= static_cast<unsigned>(size_[0]) ||
-        static_cast<unsigned>(y) >= static_cast<unsigned>(size_[1]) ||
-        static_cast<unsigned>(z) >= static_cast<unsigned>(size_[2])) {
-      return static_cast<float>(band_mm_);
-    }
-    return kStep_mm * static_cast<float>(nodes_[index(x, y, z)]);
-  }
 
   struct Sample {
     double distance_mm = 0;
@@ -56,11 +44,36 @@ class DistanceField {
   }
 
   Eigen::Vector3d origin_mm_;
-  Eigen::Vector3f origin_mm_f_;
   Eigen::Vector3i size_;
   double spacing_mm_, band_mm_;
-  float inverse_spacing_f_;
   std::vector<std::int16_t> nodes_;  // in steps of kStep_mm, x runs fastest
+};
+
+// The same, small enough to stay in a core's cache: one byte a node, nodes 1 mm apart (more for a large bone). For the
+// millions of look-ups that score hypotheses; off by 0.3 mm in the mean, 0.9 mm at most.
+class CoarseDistanceField {
+ public:
+  explicit CoarseDistanceField(const DistanceField& field);
+
+  // Distance at the nearest node; the band's width outside the grid.
+  [[nodiscard]] float nearest_mm(const Eigen::Vector3f& point_mm) const {
+    const Eigen::Vector3f cell = (point_mm - origin_mm_) * nodes_per_mm_;
+    const int x = static_cast<int>(cell.x() + 0.5f), y = static_cast<int>(cell.y() + 0.5f),
+              z = static_cast<int>(cell.z() + 0.5f);
+    // A negative coordinate becomes a large unsigned number; what rounds to node 0 from below is outside the band.
+    if (static_cast<unsigned>(x) >= static_cast<unsigned>(size_[0]) ||
+        static_cast<unsigned>(y) >= static_cast<unsigned>(size_[1]) ||
+        static_cast<unsigned>(z) >= static_cast<unsigned>(size_[2])) {
+      return 127 * step_mm_;
+    }
+    return step_mm_ * static_cast<float>(nodes_[static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x)]);
+  }
+
+ private:
+  Eigen::Vector3f origin_mm_;
+  Eigen::Vector3i size_;
+  float nodes_per_mm_ = 1, step_mm_ = 0;
+  std::vector<std::int8_t> nodes_;
 };
 
 }  // namespace arthronaut::registration

@@ -24,7 +24,7 @@ struct CurvePair {
 
 // Where the world marker may be: the plate of a screw head above the bone, its face outwards. Wider than what is usual,
 // since a hypothesis is off by some degrees and the field's nearest node by up to 0.4 mm.
-constexpr float kMinMarkerHeight_mm = 0.0f, kMaxMarkerHeight_mm = 4.3f;
+constexpr float kMinMarkerHeight_mm = -0.2f, kMaxMarkerHeight_mm = 4.5f;
 constexpr float kMinMarkerCosine = 0.70f;
 
 constexpr float kScoreReach_mm = 1.5f;
@@ -92,7 +92,7 @@ class Search {
   }
 
   [[nodiscard]] bool marker_may_be_there(const RoughPose& pose) const {
-    const float height_mm = bone_.field.nearest_mm(pose.translation_mm);
+    const float height_mm = bone_.coarse_field.nearest_mm(pose.translation_mm);
     if (height_mm < kMinMarkerHeight_mm || height_mm > kMaxMarkerHeight_mm) return false;
     const Eigen::Vector3d up = bone_.field.sample(pose.translation_mm.cast<double>()).gradient;
     return up.dot(pose.rotation.col(2).cast<double>()) > kMinMarkerCosine * up.norm();
@@ -112,7 +112,7 @@ class Search {
         if (score < kWayOut[checkpoint].least_share * static_cast<float>(i)) return 0;
         ++checkpoint;
       }
-      const float distance = bone_.field.nearest_mm(pose.rotation * test_points_[i] + pose.translation_mm);
+      const float distance = bone_.coarse_field.nearest_mm(pose.rotation * test_points_[i] + pose.translation_mm);
       score += std::max(0.0f, 1 - distance * distance / (kScoreReach_mm * kScoreReach_mm));
     }
     return score;

@@ -13,8 +13,8 @@ namespace arthronaut::registration {
 struct GlobalSearchOptions {
   std::uint64_t seed = 1;
   bool use_marker_prior = true;
-  int curve_pair_count = 12;
-  std::size_t keep_count = 40;  // different hypotheses to hand on
+  int curve_pair_count = 8;
+  std::size_t keep_count = 24;  // different hypotheses to hand on
 };
 
 struct Hypothesis {

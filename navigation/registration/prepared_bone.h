@@ -10,9 +10,10 @@ namespace arthronaut::registration {
 
 struct PreparedBone::Data {
   explicit Data(const geometry::TriangleMesh& mesh)
-      : field(mesh), pairs(mesh), surface(mesh), bounds(geometry::bounds_of(mesh)) {}
+      : field(mesh), coarse_field(field), pairs(mesh), surface(mesh), bounds(geometry::bounds_of(mesh)) {}
 
   DistanceField field;
+  CoarseDistanceField coarse_field;
   PairTable pairs;
   geometry::Surface surface;
   geometry::Bounds bounds;

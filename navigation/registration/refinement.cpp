@@ -90,6 +90,23 @@ ContactModel updated_model(const TouchedPoints& points, const std::vector<double
   return updated;
 }
 
+struct MarkerObjection {
+  double cost, weight;  // weight: of the height's miss in the normal equations
+};
+
+// Robust: a marker that stands otherwise than usual must not bend the result, and costs no more than some 20 mm of path.
+MarkerObjection object_to(const Eigen::Matrix3d& bone_from_marker, const DistanceField::Sample& sample,
+                          const MarkerPrior& prior) {
+  constexpr double kWidth = 9.0;  // squared, in sigmas
+  const double miss = (sample.distance_mm - prior.height_mm) / prior.sigma_mm;
+  const double tilt_rad = geometry::angle_between_rad(bone_from_marker.col(2), sample.gradient);
+  const double excess = std::max(0.0, tilt_rad - prior.free_tilt_rad) / prior.tilt_sigma_rad;
+  const double ratio = kWidth / (kWidth + miss * miss);
+  const auto robust = [](double square) { return 0.5 * kWidth * square / (kWidth + square); };
+  return {kCorrelationLength_mm * (robust(miss * miss) + robust(excess * excess)),
+          kCorrelationLength_mm * ratio * ratio / (prior.sigma_mm * prior.sigma_mm)};
+}
+
 }  // namespace
 
 RigidTransform approach(const DistanceField& field, const TouchedPoints& points, const RigidTransform& start) {
@@ -143,12 +160,9 @@ RefinedPose refine(const DistanceFunction& distance, const TouchedPoints& points
     if (prior.use) {
       const Eigen::Vector3d& marker = refined.bone_from_marker.translation_mm;
       const DistanceField::Sample sample = distance(marker);
-      const double miss = (sample.distance_mm - prior.height_mm) / prior.sigma_mm;
-      // Robust: a marker that stands otherwise than usual must not bend the result.
-      const double ratio = 9.0 / (9.0 + miss * miss);
-      equations.add(marker - pivot, sample.gradient, sample.distance_mm - prior.height_mm,
-                    ratio * ratio / (prior.sigma_mm * prior.sigma_mm));
-      cost += 0.5 * 9.0 * miss * miss / (9.0 + miss * miss);
+      const MarkerObjection objection = object_to(rotation, sample, prior);
+      equations.add(marker - pivot, sample.gradient, sample.distance_mm - prior.height_mm, objection.weight);
+      cost += objection.cost;
     }
     refined.cost = cost / std::max(points.weight_sum, 1e-9);
     if (iteration >= iterations) break;

@@ -23,9 +23,15 @@ struct ContactModel {
   double lifted_share = 0.10;
 };
 
+// Errors along a stroke hang together: about this much of path makes one independent measurement. Costs and weights
+// count touched mm; what is known otherwise (the marker's prior) counts for so many of them.
+inline constexpr double kCorrelationLength_mm = 5.0;
+
+// The world marker is the plate of a screw head: its centre a little above the bone, its face outwards.
 struct MarkerPrior {
   bool use = false;
-  double height_mm = 2.0, sigma_mm = 0.8;  // of the marker's centre above the bone
+  double height_mm = 2.0, sigma_mm = 0.7;  // of the marker's centre above the bone
+  double free_tilt_rad = 0.44, tilt_sigma_rad = 0.10;  // no objection up to 25 degrees
 };
 
 struct RefinedPose {

@@ -9,19 +9,41 @@
 
 namespace arthronaut::registration {
 
+namespace {
+
+// How much better the best pose explains the points than the best different one, in units of independent measurements.
+double lead_of(const PosePool& pool, const TouchedPoints& points) {
+  if (pool.empty()) return 0;
+  constexpr double kNoRival = 100;
+  if (pool.runner_up() == nullptr) return kNoRival;
+  return (pool.runner_up()->cost - pool.best().cost) * points.weight_sum / kCorrelationLength_mm;
+}
+
+}  // namespace
+
 RegistrationSummary register_curves(const PreparedBone& prepared, const strokes::Curves& curves,
                                     const RegistrationOptions& options) {
   constexpr std::size_t kPointCount = 800;
-  constexpr int kIterations = 15;
+  constexpr int kMaxRounds = 7, kPairsEachRound = 8, kIterationsEachRound = 5, kFinalIterations = 12;
+  constexpr std::size_t kHypothesesEachRound = 24;
+  // Found beyond doubt: no need to search on.
+  constexpr double kClearLead = 25, kClearLeadLater = 12;
+
   const PreparedBone::Data& bone = prepared.data();
   const TouchedPoints points = choose_points(curves, kPointCount);
+  const std::vector<strokes::OrientedPoint> oriented = strokes::oriented_points(curves);
   MarkerPrior prior;
   prior.use = options.use_marker_prior;
-
   PosePool pool(bone, prior);
-  pool.add(search_globally(bone, strokes::oriented_points(curves), points, {options.seed, options.use_marker_prior}),
-           points, options.seed);
-  pool.refine_all(points, kIterations);
+  for (int round = 0; round < kMaxRounds; ++round) {
+    const std::uint64_t seed = options.seed * kMaxRounds + static_cast<std::uint64_t>(round);
+    pool.add(search_globally(bone, oriented, points,
+                             {seed, options.use_marker_prior, kPairsEachRound, kHypothesesEachRound}),
+             points, seed);
+    pool.refine_all(points, kIterationsEachRound);
+    if (lead_of(pool, points) > (round == 0 ? kClearLead : kClearLeadLater)) break;
+  }
+  pool.refine_all(points, kFinalIterations);
   if (!pool.empty()) pool.polish(points);
   return summarise(bone, pool, points, curves, options);
 }
