@@ -103,6 +103,8 @@ void write_atomically(const fs::path& target, std::string_view contents) {
     if (!std::cout) throw IoError("standard output: cannot write");
     return;
   }
+  // A device or a pipe (/dev/full, /dev/stdout) is written to; renaming over it would replace it.
+  if (std::error_code ignored; fs::is_other(target, ignored)) return write_whole(target, contents);
   write_atomically(target, [contents](const fs::path& temporary) { write_whole(temporary, contents); });
 }
 
