@@ -1,5 +1,6 @@
-// Finds the declared square markers in a raw, distorted frame and gives the pose of each with its error, or the reason
-// why not. The interface has one implementation on OpenCV's ArUco detector and one of the project's own.
+// Finds the declared square markers in a raw, distorted frame and gives the pose of each with its error, or
+// the reason why not. The interface has one implementation on OpenCV's ArUco detector and one of the
+// project's own.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,50 +20,60 @@ namespace arthronaut::markers {
 
 enum class MarkerState {
   Tracked,
-  NotSeen,     // nothing that looks like it; the reason is not known
-  OutOfView,   // where it was last seen leaves the view
+  NotSeen,    // nothing that looks like it; the reason is not known
+  OutOfView,  // where it was last seen leaves the view
   TooSmall,
   TooOblique,
   Covered,
   Glare,
   Blur,
-  Ambiguous,   // two poses explain the corners alike
-  Duplicate,   // its id is seen twice
-  Doubtful,    // found, but the residual is too large to stand for
+  Ambiguous,  // two poses explain the corners alike
+  Duplicate,  // its id is seen twice
+  Doubtful,   // found, but the residual is too large to stand for
 };
 [[nodiscard]] std::string_view to_text(MarkerState state);
 
 struct DeclaredMarker {
-  int id = 0;            // in DICT_4X4_50
-  double size_mm = 4;    // side of the black square
+  int id = 0;          // in DICT_4X4_50
+  double size_mm = 4;  // side of the black square
 };
 
 struct MarkerObservation {
   int id = 0;
   MarkerState state = MarkerState::NotSeen;
   // The rest is meaningful when is_tracked().
-  std::array<Eigen::Vector2d, 4> corners_px;    // raw pixels: the marker's top-left, top-right, bottom-right, bottom-left
+  std::array<Eigen::Vector2d, 4>
+      corners_px;  // raw pixels: the marker's top-left, top-right, bottom-right, bottom-left
   geometry::RigidTransform camera_from_marker;  // marker frame: x right, y up, z out of the printed face
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // body twist (v mm, w rad)
-  double rms_px = 0;                            // corner reprojection error on the distorted frame
-  double ambiguity_ratio = 0;                   // reprojection error of the other planar solution / of this one
+  double rms_px = 0;           // corner reprojection error on the distorted frame
+  double ambiguity_ratio = 0;  // reprojection error of the other planar solution / of this one
   [[nodiscard]] bool is_tracked() const { return state == MarkerState::Tracked; }
 };
 
 class MarkerTracker {
  public:
   virtual ~MarkerTracker() = default;
-  // One observation for each declared marker, in their order; valid until the next call. Frames in order of time; the
-  // camera is that of this frame's lens angle. Never throws on what a picture shows; throws InvalidInput when the frame's
-  // size is not the camera's.
-  virtual std::span<const MarkerObservation> track(const camera::GrayView& frame, const camera::CameraModel& camera,
+  // One observation for each declared marker, in their order; valid until the next call. Frames in order of
+  // time; the camera is that of this frame's lens angle. Never throws on what a picture shows; throws
+  // InvalidInput when the frame's size is not the camera's.
+  virtual std::span<const MarkerObservation> track(const camera::GrayView& frame,
+                                                   const camera::CameraModel& camera,
                                                    std::int64_t timestamp_ns) = 0;
   virtual void reset() = 0;  // forget the past: another source
 };
 
-// OpenCV's ArUco detector for finding, corners refined to sub-pixel on the raw frame, IPPE, refinement on distorted
-// pixels. Throws InvalidInput when a marker is declared twice, an id is outside 0..49 or a size is not above 0.
+// OpenCV's ArUco detector for finding, corners refined to sub-pixel on the raw frame, IPPE, refinement on
+// distorted pixels. Throws InvalidInput when a marker is declared twice, an id is outside 0..49 or a size is
+// not above 0.
 [[nodiscard]] std::unique_ptr<MarkerTracker> make_aruco_tracker(std::span<const DeclaredMarker> declared);
+
+// The project's own tracker, the one to use: finds squares in the undistorted outline of dark regions,
+// measures every edge of the code to a small part of a pixel in linear light on the raw frame, follows the
+// marker through partial cover, glare and motion blur by prediction, and reports a pose only when its edges
+// confirm it along both axes. rms_px is how far the measured corners lie from the pose's. No memory is
+// allocated after the first frames. Throws as make_aruco_tracker.
+[[nodiscard]] std::unique_ptr<MarkerTracker> make_tracker(std::span<const DeclaredMarker> declared);
 
 // Every marker that the tools declare: world markers first.
 [[nodiscard]] std::vector<DeclaredMarker> declared_markers(const tools::ToolSet& tools);

@@ -1,0 +1,225 @@
+#include "navigation/markers/edge_pose.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace arthronaut::markers {
+namespace {
+
+using geometry::Matrix6d;
+using geometry::RigidTransform;
+using geometry::Vector6d;
+
+constexpr int kIterations = 10;
+constexpr int kMinEdges = 12;
+constexpr int kMaxEdges = 1024;
+constexpr double kTukey = 4.685;
+// Neighbouring profiles share pixels and what is wrong with them: so many of them count as one.
+constexpr double kCorrelatedEdges = 4;
+// What every edge of a side has wrong together (camera, print, compression), as an error of the corners.
+constexpr double kCommonCornerErrorPx = 0.02;
+
+using Vector7d = Eigen::Matrix<double, 7, 1>;
+using Matrix7d = Eigen::Matrix<double, 7, 7>;
+
+// Which way along its normal an edge moves when the dark grows.
+double growth_of(const EdgeSample& sample) { return sample.cells[1] < sample.cells[2] ? 1 : -1; }
+
+// Signed distance (measured less projected) of an edge, and the derivatives of the projected place.
+struct Row {
+  Vector7d jacobian;  // body twist, bloom
+  double residual_px = 0;
+  bool is_valid = false;
+};
+
+Row row_of(const camera::CameraModel& camera, double size_mm, const EdgeSample& sample,
+           const EdgeMeasurement& measurement, const RigidTransform& pose, const Eigen::Matrix3d& rotation,
+           double bloom_px) {
+  Row row;
+  const Eigen::Vector3d place(sample.x * size_mm, sample.y * size_mm, 0);
+  Eigen::Matrix<double, 2, 3> d_pixel;
+  const auto pixel = camera.project(pose * place, d_pixel);
+  if (!pixel) return row;
+  const Eigen::RowVector3d across = measurement.normal.transpose() * d_pixel * rotation;
+  row.jacobian.head<3>() = across.transpose();
+  // -across * [place]x
+  row.jacobian.segment<3>(3) = place.cross(across.transpose());
+  row.jacobian[6] = growth_of(sample);
+  row.residual_px = measurement.offset_px - measurement.normal.dot(*pixel - measurement.point_px) -
+                    bloom_px * row.jacobian[6];
+  row.is_valid = true;
+  return row;
+}
+
+double tukey_weight(double ratio) {
+  if (std::abs(ratio) >= kTukey) return 0;
+  const double left = 1 - ratio * ratio / (kTukey * kTukey);
+  return left * left;
+}
+
+// Median of |residual / sigma| , on the stack.
+double median_of(const std::array<double, kMaxEdges>& ratios, int count) {
+  std::array<double, kMaxEdges> copy = ratios;
+  std::nth_element(copy.begin(), copy.begin() + count / 2, copy.begin() + count);
+  return copy[count / 2];
+}
+
+}  // namespace
+
+EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::span<const EdgeSample> samples,
+                       std::span<const EdgeMeasurement> measurements, const RigidTransform& start,
+                       const BloomPrior& bloom_prior, std::vector<char>& is_inlier) {
+  EdgePose result;
+  RigidTransform pose = start;
+  std::array<double, kMaxEdges> ratios;
+  is_inlier.assign(measurements.size(), 0);
+  Matrix7d normal;
+  double bloom = bloom_prior.mean_px;
+  double scale = 1, squares = 0, weights = 0, px_squares = 0;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const Eigen::Matrix3d rotation = pose.matrix();
+    int count = 0;
+    for (const EdgeMeasurement& measurement : measurements) {
+      if (measurement.state != EdgeState::Found || count == static_cast<int>(ratios.size())) continue;
+      const EdgeSample& sample = samples[measurement.sample];
+      const auto pixel = camera.project(pose * Eigen::Vector3d(sample.x * size_mm, sample.y * size_mm, 0));
+      if (!pixel) return result;
+      ratios[count++] =
+          std::abs(measurement.offset_px - measurement.normal.dot(*pixel - measurement.point_px) -
+                   bloom * growth_of(sample)) /
+          measurement.sigma_px;
+    }
+    if (count < kMinEdges) return result;
+    scale = std::max(1.0, 1.4826 * median_of(ratios, count));
+
+    const double bloom_weight = 1 / (bloom_prior.sigma_px * bloom_prior.sigma_px);
+    normal.setZero();
+    normal(6, 6) = bloom_weight;
+    Vector7d gradient = Vector7d::Zero();
+    gradient[6] = bloom_weight * (bloom_prior.mean_px - bloom);
+    squares = weights = px_squares = 0;
+    result.inliers = 0;
+    for (std::size_t i = 0; i < measurements.size(); ++i) {
+      const EdgeMeasurement& measurement = measurements[i];
+      is_inlier[i] = 0;
+      if (measurement.state != EdgeState::Found) continue;
+      const Row row =
+          row_of(camera, size_mm, samples[measurement.sample], measurement, pose, rotation, bloom);
+      const double ratio = row.residual_px / measurement.sigma_px;
+      const double robust = tukey_weight(ratio / scale);
+      if (!row.is_valid || robust <= 0) continue;
+      const double weight = robust / (measurement.sigma_px * measurement.sigma_px);
+      normal.noalias() += weight * row.jacobian * row.jacobian.transpose();
+      gradient.noalias() += weight * row.residual_px * row.jacobian;
+      squares += robust * ratio * ratio;
+      weights += robust;
+      px_squares += row.residual_px * row.residual_px;
+      is_inlier[i] = 1;
+      ++result.inliers;
+    }
+    if (result.inliers < kMinEdges) return result;
+    Matrix7d damped = normal;
+    damped.diagonal() *= 1 + 1e-9;
+    const Vector7d step = damped.ldlt().solve(gradient);
+    if (!step.allFinite() || step.head<3>().norm() > 5 || step.segment<3>(3).norm() > 0.5) return result;
+    pose = pose * geometry::exp(step.head<6>());
+    bloom += step[6];
+    if (!(pose.translation_mm.z() > 0)) return result;
+    if (iteration >= 2 && step.head<3>().norm() < 1e-5 && step.segment<3>(3).norm() < 1e-6) break;
+  }
+
+  result.converged = true;
+  result.camera_from_marker = pose;
+  result.bloom_px = bloom;
+  result.scale = std::sqrt(squares / std::max(1.0, weights - 6));
+  result.rms_px = std::sqrt(px_squares / result.inliers);
+  std::array<int, 2> seen{}, agreeing{};
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    if (measurements[i].state == EdgeState::OutOfView) continue;
+    const int axis = samples[measurements[i].sample].axis;
+    ++seen[axis];
+    agreeing[axis] += is_inlier[i];
+  }
+  for (int axis = 0; axis < 2; ++axis)
+    result.share[axis] = seen[axis] > 0 ? double(agreeing[axis]) / seen[axis] : 0;
+
+  const double inflation = kCorrelatedEdges * std::max(1.0, result.scale * result.scale);
+  result.covariance = inflation * Matrix7d(normal.ldlt().solve(Matrix7d::Identity())).topLeftCorner<6, 6>();
+  // The common error of the corners, spread over the directions that the corners determine.
+  Matrix6d corner_normal = Matrix6d::Zero();
+  const Eigen::Matrix3d rotation = pose.matrix();
+  for (const Eigen::Vector3d& corner : square_corners_mm(size_mm)) {
+    Eigen::Matrix<double, 2, 3> d_pixel;
+    if (!camera.project(pose * corner, d_pixel)) continue;
+    Eigen::Matrix<double, 2, 6> jacobian;
+    jacobian.leftCols<3>() = d_pixel * rotation;
+    jacobian.rightCols<3>() = -d_pixel * rotation * geometry::cross_matrix(corner);
+    corner_normal.noalias() += jacobian.transpose() * jacobian;
+  }
+  result.covariance +=
+      kCommonCornerErrorPx * kCommonCornerErrorPx * corner_normal.ldlt().solve(Matrix6d::Identity());
+  if (!result.covariance.allFinite()) result.converged = false;
+  return result;
+}
+
+MeasuredCorners measured_corners(const camera::CameraModel& camera, double size_mm,
+                                 std::span<const EdgeSample> samples,
+                                 std::span<const EdgeMeasurement> measurements,
+                                 std::span<const char> is_inlier, const EdgePose& pose) {
+  const RigidTransform& camera_from_marker = pose.camera_from_marker;
+  // Per side: deviation = a + b * along, with along from -0.5 to 0.5.
+  struct Line {
+    double n = 0, t = 0, tt = 0, e = 0, te = 0;
+    Eigen::Vector2d normal = Eigen::Vector2d::Zero();
+    [[nodiscard]] double at(double along) const {
+      const double det = n * tt - t * t;
+      if (n < 5 || det < 0.02 * n * n) return 0;
+      return ((tt * e - t * te) + (n * te - t * e) * along) / det;
+    }
+  };
+  std::array<Line, 4> lines;
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    const EdgeSample& sample = samples[measurements[i].sample];
+    if (sample.side < 0 || !is_inlier[i]) continue;
+    const auto pixel =
+        camera.project(camera_from_marker * Eigen::Vector3d(sample.x * size_mm, sample.y * size_mm, 0));
+    if (!pixel) continue;
+    const double deviation = measurements[i].offset_px -
+                             measurements[i].normal.dot(*pixel - measurements[i].point_px) -
+                             pose.bloom_px * growth_of(sample);
+    const double along = sample.axis == 0 ? sample.y : sample.x;
+    Line& line = lines[sample.side];
+    line.n += 1;
+    line.t += along;
+    line.tt += along * along;
+    line.e += deviation;
+    line.te += along * deviation;
+    line.normal += measurements[i].normal;
+  }
+  MeasuredCorners result;
+  const auto corners_mm = square_corners_mm(size_mm);
+  double squares = 0;
+  for (int corner = 0; corner < 4; ++corner) {
+    const auto pixel = camera.project(camera_from_marker * corners_mm[corner]);
+    result.corners_px[corner] = pixel.value_or(Eigen::Vector2d::Zero());
+    // Corner k lies between the sides k-1 and k (top, right, bottom, left).
+    const Line &before = lines[(corner + 3) % 4], &after = lines[corner];
+    const bool before_is_vertical = (corner + 3) % 2 == 1;
+    const double x = corners_mm[corner].x() / size_mm, y = corners_mm[corner].y() / size_mm;
+    Eigen::Matrix2d normals;
+    normals.row(0) = before.normal.normalized().transpose();
+    normals.row(1) = after.normal.normalized().transpose();
+    if (!(std::abs(normals.determinant()) > 0.1)) continue;
+    const Eigen::Vector2d deviations(before.at(before_is_vertical ? y : x),
+                                     after.at(before_is_vertical ? x : y));
+    const Eigen::Vector2d moved = normals.inverse() * deviations;
+    result.corners_px[corner] += moved;
+    squares += moved.squaredNorm();
+  }
+  result.rms_px = std::sqrt(squares / 4);
+  return result;
+}
+
+}  // namespace arthronaut::markers

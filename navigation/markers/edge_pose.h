@@ -1,0 +1,55 @@
+// The pose of a marker from its measured edges: robust least squares of the distances between measured and
+// projected edges, in raw pixels. A distance is taken across the edge only: along it nothing was measured.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+
+#include "navigation/camera/camera_model.h"
+#include "navigation/markers/edge_profiles.h"
+#include "navigation/markers/planar_pose.h"
+
+namespace arthronaut::markers {
+
+struct EdgePose {
+  bool converged = false;
+  geometry::RigidTransform camera_from_marker;
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // body twist (v mm, w rad)
+  // How much larger than they are the dark areas appear, on every edge: what blur and an inexact gamma leave.
+  // It is told from the distance by the bright cells inside the dark square, which shrink where the square
+  // grows.
+  double bloom_px = 0;
+  double scale = 0;   // residuals / their predicted sigmas
+  double rms_px = 0;  // of the inliers
+  int inliers = 0;
+  // Inliers / samples in view, for edges crossed along x and along y: a marker that is off by a cell keeps
+  // one of them.
+  std::array<double, 2> share{};
+};
+
+// What is known of the bloom beforehand.
+struct BloomPrior {
+  double mean_px = 0, sigma_px = 0.2;
+};
+
+// `is_inlier` gets one entry a measurement and keeps its memory.
+[[nodiscard]] EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm,
+                                     std::span<const EdgeSample> samples,
+                                     std::span<const EdgeMeasurement> measurements,
+                                     const geometry::RigidTransform& start, const BloomPrior& bloom,
+                                     std::vector<char>& is_inlier);
+
+struct MeasuredCorners {
+  Corners corners_px;
+  double rms_px = 0;  // how far they are from the pose's corners
+};
+
+// Where the outline's measured edges meet: a line is laid through each side's deviations from the pose. A
+// side that is hardly seen stays where the pose puts it.
+[[nodiscard]] MeasuredCorners measured_corners(const camera::CameraModel& camera, double size_mm,
+                                               std::span<const EdgeSample> samples,
+                                               std::span<const EdgeMeasurement> measurements,
+                                               std::span<const char> is_inlier, const EdgePose& pose);
+
+}  // namespace arthronaut::markers

@@ -1,0 +1,267 @@
+#include "navigation/markers/edge_profiles.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "navigation/markers/blurred_step.h"
+
+namespace arthronaut::markers {
+namespace {
+
+using geometry::RigidTransform;
+
+constexpr int kMaxReach = 26;  // samples to either side, search included
+constexpr int kMaxProfile = 2 * kMaxReach + 1;
+constexpr float kMinContrast = 3;  // in light of 255: what noise and compression leave
+constexpr float kMinLikeness = 0.85F;
+// Below this the model is wrong in ways that noise does not show: compression, debris, the lens.
+constexpr double kOffsetFloorPx = 0.05;
+constexpr float kPixelBox = 1.0F;
+
+struct Profile {
+  std::array<float, kMaxProfile> light;
+  int reach = 0;  // light[reach] is at the predicted edge
+  int saturated = 0;
+};
+
+// Everything about one sample that the image is not asked for.
+struct Crossing {
+  Eigen::Vector2d point, normal;
+  float cell_px = 0;  // distance of neighbouring edges along the normal
+  float box_px = kPixelBox;
+};
+
+bool locate(const camera::CameraModel& camera, const RigidTransform& pose, const Eigen::Matrix3d& rotation,
+            double size_mm, int cells, const EdgeSample& sample, const Smear& smear, Crossing& crossing) {
+  const Eigen::Vector3d place(sample.x * size_mm, sample.y * size_mm, 0);
+  Eigen::Matrix<double, 2, 3> d_pixel;
+  const auto point = camera.project(pose * place, d_pixel);
+  if (!point || !camera.is_inside_view(*point)) return false;
+  const Eigen::Matrix<double, 2, 3> d_marker = d_pixel * rotation;
+  const Eigen::Vector2d across = d_marker.col(sample.axis), along = d_marker.col(1 - sample.axis);
+  crossing.point = *point;
+  crossing.normal = Eigen::Vector2d(-along.y(), along.x()).normalized();
+  double px_per_mm = crossing.normal.dot(across);
+  if (px_per_mm < 0) {
+    crossing.normal = -crossing.normal;
+    px_per_mm = -px_per_mm;
+  }
+  crossing.cell_px = static_cast<float>(px_per_mm * size_mm / cells);
+  const Eigen::Vector3d moved = smear.motion.head<3>() + smear.motion.tail<3>().cross(place);
+  const double motion_px = std::abs(crossing.normal.dot(d_marker * moved));
+  crossing.box_px = std::max(kPixelBox, static_cast<float>(motion_px));
+  return crossing.cell_px > 1.5F;
+}
+
+// As far as the neighbouring cells are known, and no farther than the step needs.
+int reach_of(const Crossing& crossing, double sigma_px) {
+  const float wanted = 0.5F * crossing.box_px + 3 * static_cast<float>(sigma_px) + 1;
+  return static_cast<int>(
+      std::clamp(std::min(wanted, 0.75F * crossing.cell_px + 0.25F * crossing.box_px), 2.0F, 16.0F));
+}
+
+bool read_profile(const LinearImage& image, const Crossing& crossing, int reach, Profile& profile) {
+  const Eigen::Vector2d first = crossing.point - reach * crossing.normal,
+                        last = crossing.point + reach * crossing.normal;
+  if (!image.contains(first.x(), first.y()) || !image.contains(last.x(), last.y())) return false;
+  profile.reach = reach;
+  profile.saturated = 0;
+  auto x = static_cast<float>(first.x()), y = static_cast<float>(first.y());
+  const auto step_x = static_cast<float>(crossing.normal.x()),
+             step_y = static_cast<float>(crossing.normal.y());
+  for (int i = 0; i <= 2 * reach; ++i, x += step_x, y += step_y) {
+    profile.light[i] = image.sample(x, y);
+    profile.saturated += profile.light[i] < 0;
+  }
+  return true;
+}
+
+struct Model {
+  std::array<float, kMaxProfile> level, slope, d_sigma, d_box;
+};
+
+// The light of the four cells along the normal, dark 0 and bright 1, with the middle edge at `offset`.
+void model_profile(const EdgeSample& sample, const Crossing& crossing, const BlurredStep& step, float offset,
+                   int reach, Model& model) {
+  for (int i = 0; i <= 2 * reach; ++i) {
+    const float at = static_cast<float>(i - reach) - offset;
+    float level = sample.cells[0], slope = 0, d_sigma = 0, d_box = 0;
+    for (int edge = 0; edge < 3; ++edge) {
+      const float rise = sample.cells[edge + 1] - sample.cells[edge];
+      if (rise == 0) continue;
+      const auto value = step.at(at - static_cast<float>(edge - 1) * crossing.cell_px);
+      level += rise * value.level;
+      slope += rise * value.slope;
+      d_sigma += rise * value.d_sigma;
+      d_box += rise * value.d_box;
+    }
+    model.level[i] = level;
+    model.slope[i] = slope;
+    model.d_sigma[i] = d_sigma;
+    model.d_box[i] = d_box;
+  }
+}
+
+// Correlation of the model with the profile shifted by whole pixels; saturated samples are left out.
+float likeness_at(const Profile& profile, const Model& model, int reach, int shift) {
+  float n = 0, sum_i = 0, sum_m = 0, sum_ii = 0, sum_mm = 0, sum_im = 0;
+  const float* light = profile.light.data() + profile.reach - reach + shift;
+  for (int i = 0; i <= 2 * reach; ++i) {
+    const float value = light[i];
+    if (value < 0) continue;
+    const float m = model.level[i];
+    n += 1;
+    sum_i += value;
+    sum_m += m;
+    sum_ii += value * value;
+    sum_mm += m * m;
+    sum_im += value * m;
+  }
+  if (n < 4) return -1;
+  const float spread = (sum_ii - sum_i * sum_i / n) * (sum_mm - sum_m * sum_m / n);
+  return spread > 1e-6F ? (sum_im - sum_i * sum_m / n) / std::sqrt(spread) : -1;
+}
+
+struct Match {
+  float gain = 0, bias = 0, offset = 0, sigma = 0, likeness = -1;
+  bool is_good = false;
+};
+
+// Gain, bias and offset by Gauss-Newton. The model must hold the offset that it starts from.
+Match match_finely(const Profile& profile, const EdgeSample& sample, const Crossing& crossing,
+                   const BlurredStep& step, float start, int reach, Model& model) {
+  Match match;
+  match.offset = start;
+  const float* light = profile.light.data() + profile.reach - reach;
+  float residual_square = 0, slope_square = 0;
+  int used = 0;
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    model_profile(sample, crossing, step, match.offset, reach, model);
+    Eigen::Matrix3f normal = Eigen::Matrix3f::Zero();
+    Eigen::Vector3f right = Eigen::Vector3f::Zero();
+    used = 0;
+    for (int i = 0; i <= 2 * reach; ++i) {
+      if (light[i] < 0) continue;
+      ++used;
+      const float m = model.level[i], s = -model.slope[i];
+      normal(0, 0) += m * m;
+      normal(0, 1) += m;
+      normal(0, 2) += m * s;
+      normal(1, 2) += s;
+      normal(2, 2) += s * s;
+      right[0] += m * light[i];
+      right[1] += light[i];
+      right[2] += s * light[i];
+    }
+    normal(1, 1) = static_cast<float>(used);
+    normal(1, 0) = normal(0, 1);
+    normal(2, 0) = normal(0, 2);
+    normal(2, 1) = normal(1, 2);
+    if (used < 5) return match;
+    const Eigen::Matrix3f inverse = normal.inverse();
+    const Eigen::Vector3f solution = inverse * right;
+    if (!solution.allFinite()) return match;
+    match.gain = solution[0];
+    match.bias = solution[1];
+    if (!(match.gain > kMinContrast)) return match;
+    const float shift = std::clamp(solution[2] / match.gain, -1.5F, 1.5F);
+    match.offset += shift;
+    if (std::abs(match.offset - start) > 2.5F) return match;
+    slope_square = 1 / std::max(inverse(2, 2), 1e-9F);
+    if (std::abs(shift) < 0.01F || iteration == 2) break;
+  }
+  for (int i = 0; i <= 2 * reach; ++i) {
+    if (light[i] < 0) continue;
+    const float residual = light[i] - match.gain * model.level[i] - match.bias;
+    residual_square += residual * residual;
+  }
+  const float variance = residual_square / static_cast<float>(used - 3 > 0 ? used - 3 : 1);
+  match.sigma = std::sqrt(variance / slope_square) / match.gain;
+  match.likeness = likeness_at(profile, model, reach, 0);
+  match.is_good = true;
+  return match;
+}
+
+void add_trend(const Profile& profile, const Crossing& crossing, const Match& match, const Model& model,
+               int reach, SmearTrend& trend) {
+  const float* light = profile.light.data() + profile.reach - reach;
+  const bool moves = crossing.box_px > kPixelBox;
+  for (int i = 0; i <= 2 * reach; ++i) {
+    if (light[i] < 0) continue;
+    const float residual = (light[i] - match.bias) / match.gain - model.level[i];
+    trend.sigma_gain += residual * model.d_sigma[i];
+    trend.sigma_weight += model.d_sigma[i] * model.d_sigma[i];
+    if (!moves) continue;
+    const float by_length = model.d_box[i] * crossing.box_px;
+    trend.motion_gain += residual * by_length;
+    trend.motion_weight += by_length * by_length;
+  }
+}
+
+}  // namespace
+
+void measure_edges(const LinearImage& image, const camera::CameraModel& camera,
+                   const RigidTransform& camera_from_marker, double size_mm, int cells,
+                   std::span<const EdgeSample> samples, const Smear& smear, const ProfileOptions& options,
+                   std::vector<EdgeMeasurement>& measurements, SmearTrend& trend) {
+  measurements.clear();
+  trend = SmearTrend();
+  const Eigen::Matrix3d rotation = camera_from_marker.matrix();
+  Profile profile;
+  Model model;
+  for (std::size_t k = 0; k < samples.size(); k += options.stride) {
+    EdgeMeasurement& measurement = measurements.emplace_back();
+    measurement.sample = static_cast<int>(k);
+    Crossing crossing;
+    if (!locate(camera, camera_from_marker, rotation, size_mm, cells, samples[k], smear, crossing)) continue;
+    const int reach = reach_of(crossing, smear.sigma_px);
+    const int search = std::min(options.search_px, kMaxReach - reach);
+    if (!read_profile(image, crossing, reach + search, profile)) continue;
+    measurement.point_px = crossing.point;
+    measurement.normal = crossing.normal;
+    measurement.box_px = crossing.box_px;
+    if (profile.saturated > profile.reach) {
+      measurement.state = EdgeState::Saturated;
+      continue;
+    }
+
+    const BlurredStep step(crossing.box_px, smear.sigma_px);
+    int best_shift = 0;
+    if (search > 0) {
+      model_profile(samples[k], crossing, step, 0, reach, model);
+      float best = -2;
+      for (int shift = -search; shift <= search; ++shift) {
+        const float likeness = likeness_at(profile, model, reach, shift);
+        // Of two alike, the nearer.
+        if (likeness > best + 0.02F || (likeness > best && std::abs(shift) <= std::abs(best_shift))) {
+          best = likeness;
+          best_shift = shift;
+        }
+      }
+      if (std::abs(best_shift) == search) {
+        measurement.state = EdgeState::Different;
+        continue;
+      }
+    }
+    // The fine match looks at the window around the best shift.
+    Profile window = profile;
+    if (search > 0) {
+      std::copy_n(profile.light.begin() + search + best_shift, 2 * reach + 1, window.light.begin());
+      window.reach = reach;
+    }
+    const Match match = match_finely(window, samples[k], crossing, step, 0, reach, model);
+    measurement.contrast = match.gain;
+    measurement.likeness = match.likeness;
+    if (!match.is_good) {
+      measurement.state = std::abs(match.gain) <= kMinContrast ? EdgeState::Flat : EdgeState::Different;
+      continue;
+    }
+    measurement.offset_px = match.offset + best_shift;
+    measurement.sigma_px = std::hypot(static_cast<double>(match.sigma), kOffsetFloorPx);
+    measurement.state = match.likeness >= kMinLikeness ? EdgeState::Found : EdgeState::Different;
+    if (measurement.state == EdgeState::Found) add_trend(window, crossing, match, model, reach, trend);
+  }
+}
+
+}  // namespace arthronaut::markers

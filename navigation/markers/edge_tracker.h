@@ -1,0 +1,28 @@
+// The project's own tracker: squares found at a quarter of the frame's size, read, and then measured edge by
+// edge at full size and in linear light; followed from frame to frame by prediction. See marker_tracker.h for
+// what it promises.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "navigation/markers/marker_pattern.h"
+#include "navigation/markers/marker_tracker.h"
+
+namespace arthronaut::markers {
+
+struct EdgeTrackerOptions {
+  // Grey level = light ^ (1 / gamma). Below the usual 2.2: blur happens in light, but noise is even in grey
+  // levels. What is left of the blur's asymmetry is estimated with each pose (bloom).
+  double gamma = 1.6;
+  int search_every_frames =
+      4;  // a search of the whole frame, for new markers and for doubles, while all goes well
+};
+
+// The same for other codes, which all have the same count of cells. Throws as make_tracker.
+[[nodiscard]] std::unique_ptr<MarkerTracker> make_edge_tracker(std::span<const DeclaredMarker> declared,
+                                                               std::span<const MarkerCode> codes,
+                                                               const EdgeTrackerOptions& options = {});
+
+}  // namespace arthronaut::markers

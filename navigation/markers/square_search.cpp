@@ -1,0 +1,271 @@
+#include "navigation/markers/square_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace arthronaut::markers {
+namespace {
+
+constexpr int kShrink = 4;
+// In shrunk pixels.
+constexpr int kMinSide = 8;
+constexpr int kRadii[] = {14};
+// A pixel is dark below this share of its neighbourhood's mean (in grey levels, so after the camera's gamma).
+constexpr int kDarkPercent = 84;
+constexpr int kMinMean = 8;
+constexpr double kMinFill = 0.72;  // hull / quadrilateral
+constexpr double kMaxSideRatio = 5;
+constexpr double kMinOpening = 0.25;  // sine of a corner's angle
+constexpr std::size_t kMaxSquares = 64;
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+double area_of(std::span<const Eigen::Vector2d> polygon) {
+  double twice = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    twice += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
+  return 0.5 * twice;
+}
+
+// Removes the edge whose neighbours, prolonged until they meet, add the least area; false when no edge can
+// go. So a rounded or covered corner is restored.
+bool drop_cheapest_edge(std::vector<Eigen::Vector2d>& polygon) {
+  const std::size_t n = polygon.size();
+  double cheapest = 1e300;
+  std::size_t drop = n;
+  Eigen::Vector2d meeting = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector2d &before = polygon[(i + n - 1) % n], &a = polygon[i], &b = polygon[(i + 1) % n],
+                          &after = polygon[(i + 2) % n];
+    const Eigen::Vector2d in = a - before, out = after - b;
+    const double turn = cross(in, out);
+    if (turn <= 1e-12 * in.norm() * out.norm()) continue;  // they part, or run back
+    const double along = cross(b - a, out) / turn;
+    if (along < 0) continue;
+    const Eigen::Vector2d point = a + along * in;
+    const double added = 0.5 * std::abs(cross(point - a, b - a));
+    if (added < cheapest) {
+      cheapest = added;
+      drop = i;
+      meeting = point;
+    }
+  }
+  if (drop == n) return false;
+  polygon[drop] = meeting;
+  polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>((drop + 1) % n));
+  return true;
+}
+
+}  // namespace
+
+std::span<const FoundSquare> SquareSearch::find(const camera::GrayView& frame,
+                                                const camera::CameraModel& camera) {
+  squares_.clear();
+  squares_.reserve(kMaxSquares);
+  shrink(frame, camera);
+  if (width_ < 2 * kMinSide || height_ < 2 * kMinSide) return squares_;
+  for (const int radius : kRadii) {
+    mark_dark_pixels(radius);
+    label_regions();
+    for (std::size_t label = 0; label < regions_.size() && squares_.size() < kMaxSquares; ++label) {
+      const Region& region = regions_[label];
+      const int across = region.right - region.left + 1, down = region.bottom - region.top + 1;
+      if (std::min(across, down) < kMinSide / 2 || std::max(across, down) < kMinSide) continue;
+      if (across > width_ * 9 / 10 || down > height_ * 9 / 10 || region.area < across * down / 6) continue;
+      FoundSquare square;
+      if (outline_square(static_cast<int>(label), region, camera, square)) squares_.push_back(square);
+    }
+  }
+  return squares_;
+}
+
+// The bounding box of the view, four by four pixels to one.
+void SquareSearch::shrink(const camera::GrayView& frame, const camera::CameraModel& camera) {
+  int right = frame.width, bottom = frame.height;
+  left_ = top_ = 0;
+  if (const auto& circle = camera.boundary(); circle.radius_px > 0) {
+    left_ = std::clamp(static_cast<int>(circle.center_px.x() - circle.radius_px), 0, frame.width);
+    top_ = std::clamp(static_cast<int>(circle.center_px.y() - circle.radius_px), 0, frame.height);
+    right = std::clamp(static_cast<int>(circle.center_px.x() + circle.radius_px) + 1, left_, frame.width);
+    bottom = std::clamp(static_cast<int>(circle.center_px.y() + circle.radius_px) + 1, top_, frame.height);
+  }
+  width_ = (right - left_) / kShrink;
+  height_ = (bottom - top_) / kShrink;
+  const std::size_t count = static_cast<std::size_t>(width_) * height_;
+  small_.resize(count);
+  dark_.resize(count);
+  labels_.resize(count);
+  sums_.resize((static_cast<std::size_t>(width_) + 1) * (height_ + 1));
+  first_.resize(std::max(width_, height_));
+  last_.resize(std::max(width_, height_));
+  std::fill_n(sums_.begin(), width_ + 1, 0U);
+  for (int y = 0; y < height_; ++y) {
+    const std::uint8_t* rows[kShrink];
+    for (int k = 0; k < kShrink; ++k) rows[k] = frame.row(top_ + kShrink * y + k) + left_;
+    std::uint8_t* out = &small_[static_cast<std::size_t>(y) * width_];
+    for (int x = 0; x < width_; ++x) {
+      int sum = kShrink * kShrink / 2;
+      for (const std::uint8_t* row : rows) {
+        const std::uint8_t* cell = row + kShrink * x;
+        sum += cell[0] + cell[1] + cell[2] + cell[3];
+      }
+      out[x] = static_cast<std::uint8_t>(sum / (kShrink * kShrink));
+    }
+    const std::uint32_t* above = &sums_[static_cast<std::size_t>(y) * (width_ + 1)];
+    std::uint32_t* here = &sums_[static_cast<std::size_t>(y + 1) * (width_ + 1)];
+    std::uint32_t row_sum = 0;
+    here[0] = 0;
+    for (int x = 0; x < width_; ++x) {
+      row_sum += out[x];
+      here[x + 1] = above[x + 1] + row_sum;
+    }
+  }
+}
+
+void SquareSearch::mark_dark_pixels(int radius) {
+  for (int y = 0; y < height_; ++y) {
+    const int y0 = std::max(0, y - radius), y1 = std::min(height_, y + radius + 1);
+    const std::uint32_t* upper = &sums_[static_cast<std::size_t>(y0) * (width_ + 1)];
+    const std::uint32_t* lower = &sums_[static_cast<std::size_t>(y1) * (width_ + 1)];
+    const std::uint8_t* in = &small_[static_cast<std::size_t>(y) * width_];
+    std::uint8_t* out = &dark_[static_cast<std::size_t>(y) * width_];
+    for (int x = 0; x < width_; ++x) {
+      const int x0 = std::max(0, x - radius), x1 = std::min(width_, x + radius + 1);
+      const int sum = static_cast<int>(lower[x1] - lower[x0] - upper[x1] + upper[x0]);
+      const int area = (y1 - y0) * (x1 - x0);
+      out[x] = in[x] * area * 100 < sum * kDarkPercent && sum > kMinMean * area;
+    }
+  }
+}
+
+// Four-connected regions by union-find: the eight-connected would run across the corners of bright cells to
+// the outside.
+void SquareSearch::label_regions() {
+  parents_.clear();
+  const auto root_of = [this](int label) {
+    while (parents_[label] != label) label = parents_[label] = parents_[parents_[label]];
+    return label;
+  };
+  for (int y = 0; y < height_; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * width_;
+    for (int x = 0; x < width_; ++x) {
+      int& label = labels_[row + x];
+      label = -1;
+      if (!dark_[row + x]) continue;
+      const int before = x > 0 ? labels_[row + x - 1] : -1, above = y > 0 ? labels_[row - width_ + x] : -1;
+      if (before < 0 && above < 0) {
+        label = static_cast<int>(parents_.size());
+        parents_.push_back(label);
+      } else if (before >= 0 && above >= 0 && before != above) {
+        const int a = root_of(before), b = root_of(above);
+        label = std::min(a, b);
+        parents_[std::max(a, b)] = label;
+      } else {
+        label = before >= 0 ? before : above;
+      }
+    }
+  }
+  // Roots come before what hangs on them: number them in one pass.
+  regions_.clear();
+  for (std::size_t i = 0; i < parents_.size(); ++i) {
+    if (parents_[i] == static_cast<int>(i)) {
+      parents_[i] = -1 - static_cast<int>(regions_.size());
+      regions_.push_back({width_, -1, height_, -1, 0});
+    } else {
+      const int parent = parents_[i];
+      parents_[i] = parents_[parent];
+    }
+  }
+  for (int y = 0; y < height_; ++y) {
+    int* row = &labels_[static_cast<std::size_t>(y) * width_];
+    for (int x = 0; x < width_; ++x) {
+      if (row[x] < 0) continue;
+      row[x] = -1 - parents_[row[x]];
+      Region& region = regions_[row[x]];
+      region.left = std::min(region.left, x);
+      region.right = std::max(region.right, x);
+      region.top = std::min(region.top, y);
+      region.bottom = y;
+      ++region.area;
+    }
+  }
+}
+
+bool SquareSearch::outline_square(int label, const Region& region, const camera::CameraModel& camera,
+                                  FoundSquare& square) {
+  // The outermost pixels of every row and column are all of a convex outline.
+  outline_.clear();
+  const auto add = [&](double x, double y) {
+    const auto point = camera.undistort({left_ + x, top_ + y});
+    if (point) outline_.push_back(*point);
+  };
+  const double middle = 0.5 * (kShrink - 1);
+  std::fill(first_.begin(), first_.end(), -1);
+  for (int y = region.top; y <= region.bottom; ++y) {
+    const int* row = &labels_[static_cast<std::size_t>(y) * width_];
+    int left = -1, right = -1;
+    for (int x = region.left; x <= region.right; ++x) {
+      if (row[x] != label) continue;
+      if (left < 0) left = x;
+      right = x;
+      if (first_[x] < 0) first_[x] = y;
+      last_[x] = y;
+    }
+    if (left < 0) continue;
+    add(kShrink * left - 0.5, kShrink * y + middle);
+    add(kShrink * right + kShrink - 0.5, kShrink * y + middle);
+  }
+  for (int x = region.left; x <= region.right; ++x) {
+    if (first_[x] < 0) continue;
+    add(kShrink * x + middle, kShrink * first_[x] - 0.5);
+    add(kShrink * x + middle, kShrink * last_[x] + kShrink - 0.5);
+  }
+  if (outline_.size() < 16) return false;
+  take_hull();
+  if (hull_.size() < 4) return false;
+  const double hull_area = area_of(hull_);
+  while (hull_.size() > 4) {
+    if (!drop_cheapest_edge(hull_)) return false;
+  }
+  const double quad_area = area_of(hull_);
+  if (!(quad_area > 0) || hull_area < kMinFill * quad_area) return false;
+
+  double shortest = 1e300, longest = 0;
+  for (int i = 0; i < 4; ++i) {
+    const Eigen::Vector2d side = hull_[(i + 1) % 4] - hull_[i],
+                          next = hull_[(i + 2) % 4] - hull_[(i + 1) % 4];
+    if (cross(side, next) < kMinOpening * side.norm() * next.norm()) return false;
+    const auto pixel = camera.project(hull_[i].homogeneous());
+    if (!pixel) return false;
+    // The hull turns from x to y, which is clockwise with y down.
+    square.tangent[i] = hull_[i];
+    square.corners_px[i] = *pixel;
+  }
+  for (int i = 0; i < 4; ++i) {
+    const double length = (square.corners_px[(i + 1) % 4] - square.corners_px[i]).norm();
+    shortest = std::min(shortest, length);
+    longest = std::max(longest, length);
+  }
+  square.shortest_side_px = shortest;
+  square.longest_side_px = longest;
+  return longest < kMaxSideRatio * shortest && longest >= kMinSide * kShrink;
+}
+
+// Andrew's monotone chain, turning from x to y.
+void SquareSearch::take_hull() {
+  std::sort(outline_.begin(), outline_.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+  });
+  hull_.clear();
+  const auto add = [this](const Eigen::Vector2d& point, std::size_t keep) {
+    while (hull_.size() > keep && cross(hull_.back() - hull_[hull_.size() - 2], point - hull_.back()) <= 0)
+      hull_.pop_back();
+    hull_.push_back(point);
+  };
+  for (const Eigen::Vector2d& point : outline_) add(point, 1);
+  const std::size_t lower = hull_.size();
+  for (auto point = outline_.rbegin() + 1; point != outline_.rend(); ++point) add(*point, lower);
+  hull_.pop_back();
+}
+
+}  // namespace arthronaut::markers
