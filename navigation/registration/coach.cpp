@@ -33,7 +33,8 @@ std::vector<BonePatch> find_patches(const PreparedBone::Data& bone, const Refine
   std::vector<Eigen::Vector3f> touched;
   for (const Eigen::Vector3d& p : points.positions_mm) touched.push_back((pose.bone_from_marker * p).cast<float>());
   const Eigen::Vector3d pivot = pose.bone_from_marker * points.centroid_mm;
-  const Matrix6d information = information_about(pose, points, bone, prior, pivot);
+  const Matrix6d information =
+      covariance_about(pose, points, bone, prior, pivot).ldlt().solve(Matrix6d::Identity());
   const double before_mm = target_error_mm(information, target_mm - pivot);
 
   std::vector<const SurfaceSample*> near;

@@ -14,6 +14,9 @@ using geometry::Vector6d;
 
 namespace {
 
+constexpr double kMeasuredShare = 0.7;
+constexpr double kBoneSize_mm = 30, kBoneTurn_rad = 3;
+
 Vector6d row_of(const Eigen::Vector3d& gradient, const Eigen::Vector3d& arm_mm) {
   Vector6d row;
   row << gradient, arm_mm.cross(gradient);
@@ -47,30 +50,51 @@ std::vector<std::string> doubts(const RegistrationSummary& summary, double lengt
   if (summary.predicted_tre_mm > 2.0) {
     reasons.push_back("the touched patch does not hold the bone fast: touch other faces of the notch too");
   }
-  if (summary.runner_up_ratio < 1.1) reasons.push_back("two poses fit almost alike");
+  if (summary.runner_up_ratio < 1.15) reasons.push_back("two poses fit almost alike");
   return reasons;
 }
 
 }  // namespace
 
-Matrix6d information_about(const RefinedPose& pose, const TouchedPoints& points, const PreparedBone::Data& bone,
-                           const MarkerPrior& prior, const Eigen::Vector3d& pivot_mm) {
-  const double information = 1.0 / (pose.model.contact_sigma_mm * pose.model.contact_sigma_mm * kCorrelationLength_mm);
-  Matrix6d held = Matrix6d::Zero();
+Matrix6d covariance_about(const RefinedPose& pose, const TouchedPoints& points, const PreparedBone::Data& bone,
+                          const MarkerPrior& prior, const Eigen::Vector3d& pivot_mm) {
+  Matrix6d held = Matrix6d::Zero(), pull = Matrix6d::Zero();
+  double curvature = 0, information = 1e-9;
+  Vector6d stretch_pull = Vector6d::Zero();
+  int stretch_count = 0;
   for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
     const Eigen::Vector3d p = pose.bone_from_marker * points.positions_mm[i];
     const Vector6d row = row_of(bone.field.sample(p).gradient, p - pivot_mm);
-    held += points.weights[i] * pose.contact_weights[i] * information * row * row.transpose();
+    const ResidualEvidence evidence = evidence_of(pose.residuals_mm[i], pose.model);
+    held += points.weights[i] * evidence.information * row * row.transpose();
+    curvature += points.weights[i] * evidence.curvature;
+    information += points.weights[i] * evidence.information;
+    stretch_pull += points.weights[i] * evidence.slope * row;
+    if (i + 1 == points.positions_mm.size() || points.stretches[i + 1] != points.stretches[i]) {
+      pull += stretch_pull * stretch_pull.transpose();
+      stretch_pull.setZero();
+      ++stretch_count;
+    }
   }
+  // Six parameters were fitted to the stretches.
+  pull *= stretch_count / std::max(stretch_count - 6.0, 1.0);
+  // Few stretches measure the scatter poorly: a part of it is what the law of the residuals expects.
+  pull = kMeasuredShare * pull + (1 - kMeasuredShare) * kCorrelationLength_mm * held;
+  // Where it is not known which explanation holds, a residual says less than if it were.
+  held *= std::clamp(curvature / information, 0.2, 1.0);
+
+  const auto add_knowledge = [&](const Vector6d& row, double sigma) {
+    const Matrix6d known = row * row.transpose() * (kCorrelationLength_mm / (sigma * sigma));
+    held += known;
+    pull += kCorrelationLength_mm * known;
+  };
   if (prior.use) {
     const Eigen::Vector3d& marker = pose.bone_from_marker.translation_mm;
-    const Vector6d row = row_of(bone.field.sample(marker).gradient, marker - pivot_mm);
-    held += row * row.transpose() / (prior.sigma_mm * prior.sigma_mm);
+    add_knowledge(row_of(bone.field.sample(marker).gradient, marker - pivot_mm), prior.sigma_mm);
   }
-  // The bone is 10 cm large: what nothing holds is off by no more than 30 mm and half a turn.
-  held.topLeftCorner<3, 3>().diagonal().array() += 1.0 / (30.0 * 30.0);
-  held.bottomRightCorner<3, 3>().diagonal().array() += 1.0 / (3.0 * 3.0);
-  return held;
+  for (int k = 0; k < 6; ++k) add_knowledge(Vector6d::Unit(k), k < 3 ? kBoneSize_mm : kBoneTurn_rad);
+  const Matrix6d inverse = held.ldlt().solve(Matrix6d::Identity());
+  return inverse * pull * inverse;
 }
 
 RegistrationSummary summarise(const PreparedBone::Data& bone, const PosePool& pool, const TouchedPoints& points,
@@ -85,8 +109,7 @@ RegistrationSummary summarise(const PreparedBone::Data& bone, const PosePool& po
   const Eigen::Vector3d pivot = best.bone_from_marker * points.centroid_mm;
   summary.has_pose = true;
   summary.marker_from_bone = best.bone_from_marker.inverse();
-  const Matrix6d held = information_about(best, points, bone, pool.prior(), pivot);
-  summary.covariance = about_origin(held.ldlt().solve(Matrix6d::Identity()), pivot);
+  summary.covariance = about_origin(covariance_about(best, points, bone, pool.prior(), pivot), pivot);
   summary.predicted_tre_mm = predicted_error_mm(summary, options.target_in_bone_mm.value_or(pivot));
   constexpr double kNoRival = 10;
   summary.runner_up_ratio = pool.runner_up() ? std::exp(pool.runner_up()->cost - best.cost) : kNoRival;

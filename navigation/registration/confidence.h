@@ -13,10 +13,11 @@ namespace arthronaut::registration {
                                             const TouchedPoints& points, const strokes::Curves& curves,
                                             const RegistrationOptions& options);
 
-// What the touched points and the prior hold fast: the inverse of the covariance of a twist of the bone frame about
-// `pivot_mm` (bone frame), correlated errors in. Nothing is held less than by the bone's own size.
-[[nodiscard]] geometry::Matrix6d information_about(const RefinedPose& pose, const TouchedPoints& points,
-                                                   const PreparedBone::Data& bone, const MarkerPrior& prior,
-                                                   const Eigen::Vector3d& pivot_mm);
+// Covariance of a twist of the bone frame about `pivot_mm` (bone frame). Robust ("sandwich"): the curvature of the cost on
+// both sides, and between them how much the pull of whole stretches of path scatters, which holds correlated errors and
+// whatever else the law of the residuals leaves out. What nothing holds is off by no more than the bone's own size.
+[[nodiscard]] geometry::Matrix6d covariance_about(const RefinedPose& pose, const TouchedPoints& points,
+                                                  const PreparedBone::Data& bone, const MarkerPrior& prior,
+                                                  const Eigen::Vector3d& pivot_mm);
 
 }  // namespace arthronaut::registration

@@ -109,6 +109,22 @@ MarkerObjection object_to(const Eigen::Matrix3d& bone_from_marker, const Distanc
 
 }  // namespace
 
+ResidualEvidence evidence_of(double residual_mm, const ContactModel& model) {
+  const Explanation explanation = explain(residual_mm, model);
+  const double contact_information = 1 / (model.contact_sigma_mm * model.contact_sigma_mm);
+  const double soft_information = 1 / (kSoftSigma_mm * kSoftSigma_mm + 1 / contact_information);
+  const double contact_slope = residual_mm * contact_information;
+  const double soft_slope = (residual_mm - kSoftHeight_mm) * soft_information;
+  ResidualEvidence evidence;
+  evidence.contact = explanation.contact;
+  evidence.slope = explanation.contact * contact_slope + explanation.soft * soft_slope;
+  evidence.information = explanation.contact * contact_information + explanation.soft * soft_information;
+  const double square_slope =
+      explanation.contact * contact_slope * contact_slope + explanation.soft * soft_slope * soft_slope;
+  evidence.curvature = evidence.information - (square_slope - evidence.slope * evidence.slope);
+  return evidence;
+}
+
 RigidTransform approach(const DistanceField& field, const TouchedPoints& points, const RigidTransform& start) {
   constexpr int kIterations = 18;
   constexpr double kFirstWidth_mm = 2.0, kLastWidth_mm = 0.8;
@@ -170,9 +186,6 @@ RefinedPose refine(const DistanceFunction& distance, const TouchedPoints& points
     move(refined.bone_from_marker, twist, pivot);
     refined.model = updated_model(points, refined.residuals_mm, refined.model);
     if (is_small(twist) && iteration > 3) iterations = iteration + 1;
-  }
-  for (const double residual : refined.residuals_mm) {
-    refined.contact_weights.push_back(explain(residual, refined.model).contact);
   }
   return refined;
 }

@@ -39,8 +39,16 @@ struct RefinedPose {
   ContactModel model;
   double cost = 0;  // weighted negative log likelihood for each unit of weight; smaller is better
   std::vector<double> residuals_mm;       // signed, by point
-  std::vector<double> contact_weights;    // probability of contact, by point
 };
+
+// What the law says about one residual: the derivatives of its negative log density.
+struct ResidualEvidence {
+  double contact = 0;      // probability that the tip touched the bone
+  double slope = 0;        // first derivative, 1/mm
+  double curvature = 0;    // second derivative, 1/mm^2; negative where explanations compete
+  double information = 0;  // the curvature if it were known which explanation holds, 1/mm^2
+};
+[[nodiscard]] ResidualEvidence evidence_of(double residual_mm, const ContactModel& model);
 
 // Geman-McClure, its width shrinking from 2 mm to 0.8 mm: from several mm and degrees away to the minimum.
 [[nodiscard]] geometry::RigidTransform approach(const DistanceField& field, const TouchedPoints& points,

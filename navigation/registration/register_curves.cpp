@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "navigation/registration/confidence.h"
 #include "navigation/registration/global_search.h"
@@ -17,6 +18,32 @@ double lead_of(const PosePool& pool, const TouchedPoints& points) {
   constexpr double kNoRival = 100;
   if (pool.runner_up() == nullptr) return kNoRival;
   return (pool.runner_up()->cost - pool.best().cost) * points.weight_sum / kCorrelationLength_mm;
+}
+
+// Starts around a pose, some millimetres and degrees away: a rival that lies near it is easily missed by the search, and
+// is the one that a small residual hides best.
+std::vector<Hypothesis> neighbours_of(const geometry::RigidTransform& bone_from_marker,
+                                      const Eigen::Vector3d& centroid_mm, std::uint64_t seed) {
+  constexpr int kCount = 24;
+  constexpr double kDistance_mm = 6, kAngle_rad = 0.35;
+  std::mt19937_64 random(seed);
+  const auto vector = [&random](double length) {
+    const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
+    Eigen::Vector3d v;
+    do v = {uniform(), uniform(), uniform()};
+    while (v.squaredNorm() > 1);
+    return Eigen::Vector3d(length * v);
+  };
+  const Eigen::Vector3d center = bone_from_marker * centroid_mm;
+  std::vector<Hypothesis> neighbours(kCount);
+  for (Hypothesis& neighbour : neighbours) {
+    const Eigen::Vector3d turn = vector(kAngle_rad);
+    const Eigen::Quaterniond rotation(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+    neighbour.bone_from_marker.rotation = rotation * bone_from_marker.rotation;
+    neighbour.bone_from_marker.translation_mm =
+        center + vector(kDistance_mm) + rotation * (bone_from_marker.translation_mm - center);
+  }
+  return neighbours;
 }
 
 }  // namespace
@@ -43,6 +70,7 @@ RegistrationSummary register_curves(const PreparedBone& prepared, const strokes:
     pool.refine_all(points, kIterationsEachRound);
     if (lead_of(pool, points) > (round == 0 ? kClearLead : kClearLeadLater)) break;
   }
+  if (!pool.empty()) pool.add(neighbours_of(pool.best().bone_from_marker, points.centroid_mm, options.seed), points, options.seed);
   pool.refine_all(points, kFinalIterations);
   if (!pool.empty()) pool.polish(points);
   return summarise(bone, pool, points, curves, options);
