@@ -152,6 +152,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
     result.bones.push_back(finished(*kind, name, surface.mesh, result.side));
     ImportedBone& bone = result.bones.back();
     bone.lines.insert(bone.lines.begin(), surface.notes.begin(), surface.notes.end());
+    bone.doubts.insert(bone.doubts.begin(), surface.doubts.begin(), surface.doubts.end());
   } catch (const InvalidInput& error) {
     // Those of the surface speak of "the volume": the file's name goes before it, once.
     const std::string message = error.what();

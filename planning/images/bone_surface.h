@@ -15,12 +15,14 @@ namespace arthronaut::images {
 struct BoneSurface {
   geometry::TriangleMesh mesh;     // LPS, mm, closed; not yet turned outwards
   std::vector<std::string> notes;  // what was chosen, for a person to see
+  std::vector<std::string> doubts;  // why it may not be the one bone that was asked for
 };
 
 // Throws InvalidInput when the volume is no label map or does not hold the label; the message lists those that it does.
 [[nodiscard]] BoneSurface surface_of_label(const Volume& volume, int label);
 
-// Which of the connected pieces above the threshold: several bones of a knee lie in one scan.
+// Which of the pieces above the threshold: several bones of a knee lie in one scan. In thick slices the bones touch:
+// unless the largest is asked for, they are parted where they are thinnest.
 enum class Piece { Largest, Superior, Inferior };
 
 struct ThresholdOptions {

@@ -1,6 +1,5 @@
 #include "planning/images/dicom_slice.h"
 
-#include <gdcmAttribute.h>
 #include <gdcmImageReader.h>
 #include <gdcmReader.h>
 #include <gdcmTrace.h>
@@ -12,6 +11,7 @@
 #include <fstream>
 #include <set>
 
+#include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "planning/images/volume_bytes.h"
 
@@ -108,18 +108,28 @@ Scalar scalar_of(const DicomSlice& slice, const gdcm::PixelFormat& format) {
   }
 }
 
-// Uncompressed pixels that are cut off are padded by GDCM without a word.
-void refuse_short_pixels(const DicomSlice& slice, const gdcm::ImageReader& reader, std::size_t expected_bytes) {
+// GDCM fills up pixels that are cut off without a word. So the pixel data's element is looked up in the file itself, and
+// must end before the file does.
+bool are_pixels_cut_off(const DicomSlice& slice, const gdcm::ImageReader& reader) {
+  const gdcm::TransferSyntax syntax = reader.GetFile().GetHeader().GetDataSetTransferSyntax();
+  if (syntax.IsEncapsulated() || syntax == gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian) return false;
+  const gdcm::Tag tag(0x7fe0, 0x0010);
   const gdcm::DataSet& data = reader.GetFile().GetDataSet();
-  const gdcm::Tag pixel_data(0x7fe0, 0x0010);
-  if (reader.GetFile().GetHeader().GetDataSetTransferSyntax().IsEncapsulated()) return;
-  const gdcm::ByteValue* bytes =
-      data.FindDataElement(pixel_data) ? data.GetDataElement(pixel_data).GetByteValue() : nullptr;
-  const std::size_t found = bytes ? static_cast<std::size_t>(bytes->GetLength()) : 0;
-  if (found < expected_bytes) {
-    throw InvalidInput(slice.file, "pixel data",
-                       "end early: " + std::to_string(found) + " of " + std::to_string(expected_bytes) + " bytes");
+  const gdcm::ByteValue* value = data.FindDataElement(tag) ? data.GetDataElement(tag).GetByteValue() : nullptr;
+  if (!value) return true;
+  const auto length = static_cast<double>(static_cast<std::size_t>(value->GetLength()));
+  const bool is_big = syntax.GetSwapCode() == gdcm::SwapCode::BigEndian;
+  const std::endian order = is_big ? std::endian::big : std::endian::little;
+  const std::string bytes = files::read_text(slice.file);
+  const std::string_view tag_bytes(is_big ? "\x7f\xe0\x00\x10" : "\xe0\x7f\x10\x00", 4);
+  for (auto at = bytes.find(tag_bytes); at != std::string::npos && at + 12 <= bytes.size();
+       at = bytes.find(tag_bytes, at + 1)) {
+    const bool is_explicit = bytes[at + 4] == 'O';  // OW or OB, two bytes unused, the length
+    const std::size_t length_at = at + (is_explicit ? 8 : 4);
+    if (decoded(Scalar::UInt32, order, bytes.data() + length_at) != length) continue;
+    return static_cast<double>(bytes.size() - length_at - 4) < length;
   }
+  return true;
 }
 
 }  // namespace
@@ -176,7 +186,7 @@ void append_dicom_pixels(const DicomSlice& slice, std::vector<float>& values) {
         image.GetRows() != static_cast<unsigned>(slice.rows) || image.GetBufferLength() != expected) {
       throw InvalidInput(slice.file, "pixel data", "are of another size than the header says");
     }
-    refuse_short_pixels(slice, reader, expected);
+    if (are_pixels_cut_off(slice, reader)) throw InvalidInput(slice.file, "pixel data", "end early: the file is cut off");
     buffer.resize(expected);
     if (!image.GetBuffer(buffer.data())) {
       const gdcm::TransferSyntax syntax = reader.GetFile().GetHeader().GetDataSetTransferSyntax();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -55,26 +56,30 @@ void squared_distances_along(std::vector<double>& f, double spacing, std::vector
   }
 }
 
-// Sets every voxel within the radius of one that is `value`, to `value`.
-void grow(VoxelMask& mask, std::uint8_t value, const Eigen::Vector3d& spacing_mm, double radius_mm) {
-  std::vector<float> squared(mask.inside.size());
-  for (std::size_t i = 0; i < squared.size(); ++i) {
-    squared[i] = mask.inside[i] == value ? 0.0F : std::numeric_limits<float>::infinity();
-  }
+// In place: 0 where a set voxel is, infinity elsewhere; becomes the squared distance in mm^2.
+void to_squared_distances(std::vector<float>& squared, const Eigen::Vector3i& size, const Eigen::Vector3d& spacing_mm) {
+  std::size_t step = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto n = static_cast<std::size_t>(mask.size[axis]);
+    const auto n = static_cast<std::size_t>(size[axis]);
     std::vector<double> row(n), result(n), boundary(n + 1);
     std::vector<int> vertex(n + 1);
-    const std::size_t step = axis == 0   ? 1
-                             : axis == 1 ? static_cast<std::size_t>(mask.size.x())
-                                         : static_cast<std::size_t>(mask.size.x()) * static_cast<std::size_t>(mask.size.y());
     for (std::size_t start = 0; start < squared.size(); ++start) {
       if (start / step % n != 0) continue;
       for (std::size_t i = 0; i < n; ++i) row[i] = squared[start + i * step];
       squared_distances_along(row, spacing_mm[axis], result, vertex, boundary);
       for (std::size_t i = 0; i < n; ++i) squared[start + i * step] = static_cast<float>(result[i]);
     }
+    step *= n;
   }
+}
+
+// Sets every voxel within the radius of one that is `value`, to `value`.
+void grow(VoxelMask& mask, std::uint8_t value, const Eigen::Vector3d& spacing_mm, double radius_mm) {
+  std::vector<float> squared(mask.inside.size());
+  for (std::size_t i = 0; i < squared.size(); ++i) {
+    squared[i] = mask.inside[i] == value ? 0.0F : std::numeric_limits<float>::infinity();
+  }
+  to_squared_distances(squared, mask.size, spacing_mm);
   const auto limit = static_cast<float>(radius_mm * radius_mm);
   for (std::size_t i = 0; i < squared.size(); ++i) {
     if (squared[i] <= limit) mask.inside[i] = value;
@@ -139,6 +144,20 @@ std::vector<VoxelPiece> connected_pieces(const VoxelMask& mask, std::size_t leas
   }
   std::stable_sort(pieces.begin(), pieces.end(), [](const auto& a, const auto& b) { return a.count > b.count; });
   return pieces;
+}
+
+void erode(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm) {
+  grow(mask, 0, spacing_mm, radius_mm);
+}
+
+std::vector<float> distances_mm(const Eigen::Vector3i& size, const std::vector<std::size_t>& voxels,
+                                const Eigen::Vector3d& spacing_mm) {
+  std::vector<float> result(static_cast<std::size_t>(size.cast<std::int64_t>().prod()),
+                            std::numeric_limits<float>::infinity());
+  for (const std::size_t v : voxels) result[v] = 0;
+  to_squared_distances(result, size, spacing_mm);
+  for (float& d : result) d = std::sqrt(d);
+  return result;
 }
 
 void close_gaps(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm) {

@@ -30,6 +30,13 @@ struct VoxelPiece {
 // Pieces connected through faces, largest first; those below `least_count` are left out.
 [[nodiscard]] std::vector<VoxelPiece> connected_pieces(const VoxelMask& mask, std::size_t least_count);
 
+// Takes away what is nearer than this to an unset voxel.
+void erode(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm);
+
+// Distance of every voxel from the nearest of these, in mm.
+[[nodiscard]] std::vector<float> distances_mm(const Eigen::Vector3i& size, const std::vector<std::size_t>& voxels,
+                                              const Eigen::Vector3d& spacing_mm);
+
 // Adds what a ball of this radius cannot enter from outside. Beyond the volume nothing is inside.
 void close_gaps(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm);
 
