@@ -13,6 +13,9 @@
 namespace arthronaut::calibration {
 namespace {
 
+// Below this the centre of rotation can't be told from the pictures and stays in the middle of the view.
+constexpr double kLeastMeasurableTurn_deg = 15;
+
 void check_contract(std::span<const CalibrationPicture> pictures, const CalibrationOptions& options) {
   if (!(options.square_mm > 0) || !std::isfinite(options.square_mm))
     throw InvalidInput("calibrate: the side of a square must be above 0 mm");
@@ -94,6 +97,17 @@ double leave_one_out(std::span<const Sighting> sightings, const Estimate& estima
   return std::sqrt(sum / static_cast<double>(count));
 }
 
+// The widest difference of two mark angles; 0 when one of them is not known.
+double measured_turn_deg(std::span<const Sighting> sightings) {
+  double widest = 0;
+  for (const Sighting& a : sightings)
+    for (const Sighting& b : sightings) {
+      if (!a.has_angle || !b.has_angle) return 0;
+      widest = std::max(widest, std::abs(std::remainder(a.mark_angle_deg - b.mark_angle_deg, 360.0)));
+    }
+  return widest;
+}
+
 double rms_of(const std::vector<Eigen::Vector2d>& residuals_px) {
   double sum = 0;
   for (const auto& r : residuals_px) sum += r.squaredNorm();
@@ -125,7 +139,7 @@ CalibrationSummary calibrate(std::span<const CalibrationPicture> pictures, const
       throw InvalidInput(picture.name + ": fewer than 16 corners of the board lie inside the round view");
   }
   AdjustmentOptions adjustment;
-  adjustment.turns = std::all_of(sightings.begin(), sightings.end(), [](const Sighting& s) { return s.has_angle; });
+  adjustment.turns = measured_turn_deg(sightings) > kLeastMeasurableTurn_deg;
 
   const std::vector<Estimate> starts = closed_form_starts(sightings, pictures.front().size_px);
   AdjustmentResult best;
@@ -151,6 +165,10 @@ CalibrationSummary calibrate(std::span<const CalibrationPicture> pictures, const
   calibration.refractive_index = options.refractive_index;
   calibration.boundary = {found.circle_center_px, median_radius_px(pictures)};
   summary.record.covariance = best.covariance;
+  if (!adjustment.turns && best.covariance.rows() == 6) {
+    const double guess_px = 0.03 * calibration.boundary.radius_px;
+    summary.record.covariance.bottomRightCorner<2, 2>() = guess_px * guess_px * Eigen::Matrix2d::Identity();
+  }
   summary.record.rms_px = summary.rms_px = best.rms_px;
   summary.record.date_utc = utc_now();
   summary.record.scope_name = options.scope_name;

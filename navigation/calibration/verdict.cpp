@@ -33,13 +33,12 @@ double reach_share(const CalibrationSummary& summary, std::span<const Sighting> 
   return *at / c.boundary.radius_px;
 }
 
-// Distance of each board along the ray through the middle of its corners.
-double median_distance_mm(const CalibrationSummary& summary, std::span<const Sighting> sightings) {
+// Where the optical axis meets each board; the corners' own mean is drawn far away by boards that run to the horizon.
+double median_distance_mm(const CalibrationSummary& summary) {
   std::vector<double> distances;
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-    for (const auto& p : sightings[i].board_mm) mean += p / static_cast<double>(sightings[i].board_mm.size());
-    distances.push_back((summary.pictures[i].camera_from_board * Eigen::Vector3d(mean.x(), mean.y(), 0)).norm());
+  for (const auto& picture : summary.pictures) {
+    const Eigen::Vector3d normal = picture.camera_from_board.rotate(Eigen::Vector3d::UnitZ());
+    distances.push_back(std::abs(normal.dot(picture.camera_from_board.translation_mm) / normal.z()));
   }
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
@@ -58,7 +57,9 @@ std::vector<std::string> reasons_against(const CalibrationSummary& summary, std:
     else if (!sightings[i].has_angle)
       reasons.push_back(summary.pictures[i].name + ": the lens mark was not found");
   }
-  if (!turns) {
+  const bool has_angles =
+      std::all_of(sightings.begin(), sightings.end(), [](const Sighting& s) { return s.has_angle; });
+  if (!has_angles) {
     reasons.push_back("the lens angles are not known, so the centre of rotation is not");
   } else if (const double turn = widest_turn_deg(summary); turn < kLeastTurn_deg) {
     reasons.push_back(text("the lens was turned by no more than %.0f degrees between the pictures (needs %.0f), so the "
@@ -70,7 +71,7 @@ std::vector<std::string> reasons_against(const CalibrationSummary& summary, std:
   if (tilt_deg < kLeastTilt_deg)
     reasons.push_back(text("all boards face the lens (tilted by %.0f degrees at most, needs %.0f), so the focal length is "
                            "not known", tilt_deg, kLeastTilt_deg));
-  if (const double mm = median_distance_mm(summary, sightings); mm < kNearest_mm || mm > kFurthest_mm)
+  if (const double mm = median_distance_mm(summary); mm < kNearest_mm || mm > kFurthest_mm)
     reasons.push_back(text("the boards would stand %.0f mm from the lens, which no arthroscope sees sharply: is the side of "
                            "a square right?", mm));
   if (const double reach = reach_share(summary, sightings); reach < 0.6)

@@ -18,7 +18,7 @@ inline constexpr double kMostFocalSigma = 0.003;             // of the focal len
 inline constexpr double kMostCenterSigma_px = 1.5;           // of the rotation centre and the principal point
 inline constexpr double kLeastTilt_deg = 12;                 // of the most tilted board
 inline constexpr double kLeastTurn_deg = 60;                 // between the two most different lens angles
-inline constexpr double kNearest_mm = 5, kFurthest_mm = 60;  // of the board from the lens
+inline constexpr double kNearest_mm = 9, kFurthest_mm = 30;  // of the board from the lens
 
 // Plain words, most important first; empty: nothing speaks against it.
 [[nodiscard]] std::vector<std::string> reasons_against(const CalibrationSummary& summary,
