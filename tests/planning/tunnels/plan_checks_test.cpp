@@ -1,0 +1,92 @@
+#include "planning/tunnels/plan_checks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace arthronaut::tunnels {
+namespace {
+
+using bones::BoneKind;
+using Verdict = PlanCheck::Verdict;
+
+TunnelGeometry inside(double length_mm, double wall_mm) {
+  return {.enters_bone = true, .entry_on_surface_mm = {0, 0, 0}, .exit_mm = {0, 0, length_mm}, .length_mm = length_mm,
+          .wall_mm = wall_mm};
+}
+
+PlanCheck named(const std::vector<PlanCheck>& checks, const std::string& name) {
+  const auto found = std::find_if(checks.begin(), checks.end(), [&](const auto& check) { return check.name == name; });
+  if (found == checks.end()) ADD_FAILURE() << "no check " << name;
+  return found == checks.end() ? PlanCheck{} : *found;
+}
+
+// 10 mm deep and 20 mm high, the corner at the origin: percentages can be read off.
+PlanSurroundings with_quadrant() {
+  PlanSurroundings surroundings;
+  surroundings.quadrant = {.corner_mm = {0, 0, 0}, .shallow = {0, -1, 0}, .low = {0, 0, -1}, .depth_mm = 10,
+                           .height_mm = 20};
+  return surroundings;
+}
+
+// The limits and what happens on either side of them.
+TEST(PlanChecks, JudgesTheFemoralLength) {
+  const Tunnel tunnel{.bone = BoneKind::Femur};
+  EXPECT_EQ(named(check_plan(tunnel, inside(30.0, 5), {}), "Length").verdict, Verdict::Fine);
+  EXPECT_EQ(named(check_plan(tunnel, inside(29.9, 5), {}), "Length").verdict, Verdict::Look);
+  EXPECT_THAT(named(check_plan(tunnel, inside(24.9, 5), {}), "Length").text, ::testing::HasSubstr("shorter than 25 mm"));
+}
+
+TEST(PlanChecks, JudgesTheWall) {
+  const Tunnel tunnel{.bone = BoneKind::Femur};
+  EXPECT_EQ(named(check_plan(tunnel, inside(35, 2.0), {}), "Wall").verdict, Verdict::Fine);
+  EXPECT_EQ(named(check_plan(tunnel, inside(35, 1.9), {}), "Wall").verdict, Verdict::Look);
+  EXPECT_EQ(named(check_plan(tunnel, inside(35, 0.9), {}), "Wall").verdict, Verdict::Wrong);
+  EXPECT_THAT(named(check_plan(tunnel, inside(35, -0.1), {}), "Wall").text, ::testing::HasSubstr("breaks out"));
+}
+
+// The norm of the quadrant is met in its middle, and left on each side with its own word.
+TEST(PlanChecks, JudgesThePlaceInTheQuadrant) {
+  const Tunnel tunnel{.bone = BoneKind::Femur};
+  auto geometry = inside(35, 5);
+  geometry.entry_on_surface_mm = {3, -2.84, -7.14};
+  auto checks = check_plan(tunnel, geometry, with_quadrant());
+  EXPECT_EQ(named(checks, "Deep to shallow").verdict, Verdict::Fine);
+  EXPECT_EQ(named(checks, "Deep to shallow").text, "28.4 %");
+  EXPECT_EQ(named(checks, "High to low").text, "35.7 %");
+  geometry.entry_on_surface_mm = {3, -4.5, -2.0};
+  checks = check_plan(tunnel, geometry, with_quadrant());
+  EXPECT_EQ(named(checks, "Deep to shallow").verdict, Verdict::Look);
+  EXPECT_EQ(named(checks, "Deep to shallow").text, "45.0 %: shallower than 33.5 %");
+  EXPECT_EQ(named(checks, "High to low").text, "10.0 %: higher than 28.8 %");
+}
+
+// Every number to compare with says where it comes from, and norms can be changed.
+TEST(PlanChecks, NameTheirSourcesAndFollowChangedNorms) {
+  const Tunnel tunnel{.bone = BoneKind::Femur};
+  for (const auto& check : check_plan(tunnel, inside(35, 5), with_quadrant())) EXPECT_FALSE(check.source.empty()) << check.name;
+  PlanNorms strict;
+  strict.short_femoral_tunnel_mm = 36;
+  EXPECT_EQ(named(check_plan(tunnel, inside(35, 5), {}, strict), "Length").verdict, Verdict::Look);
+}
+
+// Howell's angle, seen from the front.
+TEST(PlanChecks, JudgesTheTibiasCoronalAngle) {
+  EXPECT_NEAR(coronal_angle_deg({0, 0, -1}), 90, 1e-12);
+  EXPECT_NEAR(coronal_angle_deg({1, 5, -1}), 45, 1e-12);
+  Tunnel tunnel{.bone = BoneKind::Tibia, .direction = Eigen::Vector3d(0.41, -0.3, -1).normalized()};
+  EXPECT_EQ(named(check_plan(tunnel, inside(40, 5), {}), "Coronal angle").verdict, Verdict::Fine);
+  tunnel.direction = Eigen::Vector3d(0.2, -0.3, -1).normalized();
+  EXPECT_EQ(named(check_plan(tunnel, inside(40, 5), {}), "Coronal angle").verdict, Verdict::Look);
+}
+
+// A tunnel beside the bone has one message and no numbers.
+TEST(PlanChecks, SayOnlyThatItMisses) {
+  const auto checks = check_plan({}, {}, with_quadrant());
+  ASSERT_EQ(checks.size(), 1U);
+  EXPECT_EQ(checks[0].verdict, Verdict::Wrong);
+}
+
+}  // namespace
+}  // namespace arthronaut::tunnels
