@@ -80,9 +80,9 @@ double FemurShape::operator()(const Eigen::Vector3d& p) const {
   shaft = filleted_intersection(shaft, -(q.z() + 8.0), 3.0);
 
   double bone = smooth_union(pulley(q), shaft, 10.0);
-  bone = smooth_union(bone, ellipsoid(q, {32.5, -3.0, 1.0}, {7.0, 11.0, 10.0}), 12.0);     // lateral epicondyle
-  bone = smooth_union(bone, ellipsoid(q, {-33.5, -3.5, 2.0}, {7.5, 12.0, 11.0}), 12.0);   // medial epicondyle
-  bone = smooth_union(bone, ellipsoid(q, {-28.5, -6.0, 15.0}, {6.0, 6.0, 6.0}), 10.0);   // adductor tubercle
+  bone = smooth_union(bone, ellipsoid(q, {29.0, -3.0, 1.0}, {9.0, 13.0, 12.0}), 12.0);     // lateral epicondyle
+  bone = smooth_union(bone, ellipsoid(q, {-30.0, -3.5, 1.5}, {9.5, 14.0, 12.0}), 12.0);   // medial epicondyle
+  bone = smooth_union(bone, ellipsoid(q, {-26.5, -6.0, 13.5}, {6.0, 6.0, 6.0}), 12.0);   // adductor tubercle
   bone = filleted_difference(bone, notch(q), 3.5);
 
   const auto& phase = parameters_.ripple_phases;

@@ -13,7 +13,7 @@ using ImplicitFunction = std::function<double(const Eigen::Vector3d&)>;
 struct ImplicitMeshOptions {
   Eigen::Vector3d min_mm, max_mm;  // the surface lies wholly inside
   double edge_length_mm = 1.0;     // of the sampling grid, about the mesh's mean edge
-  int relaxations = 6;             // rounds that even out the triangles along the surface
+  int relaxations = 4;             // rounds that even out the triangles along the surface
 };
 
 // Closed, outward, vertices on the surface within 1e-6 mm; the same input gives the same mesh, bit for bit.

@@ -7,6 +7,7 @@
 #include "planning/geometry/error.h"
 #include "planning/geometry/rigid_transform.h"
 #include "planning/geometry/surface.h"
+#include "planning/landmarks/insertion_grids.h"
 #include "planning/phantom/implicit_mesh.h"
 #include "planning/phantom/knee_shape.h"
 
@@ -20,9 +21,9 @@ using geometry::Surface;
 using landmarks::Landmarks;
 
 // Where the native ligament inserts: Bernard and Hertel's quadrant (deep to shallow, high to low) and Amis and Jakob's
-// line (anterior to posterior) with the medial-lateral share. Means of published studies.
-constexpr double kFemurDeepShallow = 0.28, kFemurHighLow = 0.35;
-constexpr double kTibiaAnteroposterior = 0.41, kTibiaMediolateral = 0.47;
+// line (anterior to posterior) with the medial-lateral share. Means of published studies, in percent.
+constexpr double kFemurDeepShallow = 28, kFemurHighLow = 35;
+constexpr double kTibiaAnteroposterior = 41, kTibiaMediolateral = 47;
 
 // A bone in the anatomical frame of knee_shape.h: x lateral, y anterior, z superior.
 struct AnatomicalBone {
@@ -50,25 +51,8 @@ struct AnatomicalBone {
 
 Vector3d in_sagittal_plane(double x, const Vector2d& yz) { return {x, yz.x(), yz.y()}; }
 
-// Bernard and Hertel's rectangle on the lateral condyle: its sagittal diameter along Blumensaat's line and the height of
-// the condyle below it, both in the sagittal plane through the condyle's middle.
-Vector2d femoral_footprint_yz(const FemurShape& shape, const AnatomicalBone& femur, double condyle_x) {
-  const Vector2d along = shape.roof_direction(), down = shape.roof_normal();
-  const auto exit = [&](const Vector2d& from, const Vector2d& towards) {
-    return (femur.hit(in_sagittal_plane(condyle_x, from), in_sagittal_plane(0, towards)).tail<2>() - from).norm();
-  };
-  const double shallow = exit(shape.roof_point(), along), deep = exit(shape.roof_point(), -along);
-  const double diameter = shallow + deep;
-  double height = 0;
-  for (double s = -deep + 1; s < shallow - 1; s += 0.5) {
-    height = std::max(height, exit(shape.roof_point() + s * along, down));
-  }
-  return shape.roof_point() + (kFemurDeepShallow * diameter - deep) * along + kFemurHighLow * height * down;
-}
-
 Landmarks femur_landmarks(const FemurShape& shape, const AnatomicalBone& femur) {
   const double scale = shape.parameters().scale, middle = shape.notch_middle_x_mm();
-  const double condyle_x = middle + 22 * scale * shape.parameters().width_factor;
   const auto is_condylar = [&](const Vector3d& v) { return v.z() < 12 * scale; };
   Landmarks marks;
   marks["lateral_epicondyle"] = femur.furthest(Vector3d::UnitX(), is_condylar);
@@ -85,8 +69,13 @@ Landmarks femur_landmarks(const FemurShape& shape, const AnatomicalBone& femur) 
   marks["blumensaat_anterior"] = on_roof(2 * scale);
   marks["notch_apex"] = on_roof(14 * scale);
   marks["blumensaat_posterior"] = on_roof(26 * scale);
-  const Vector2d yz = femoral_footprint_yz(shape, femur, condyle_x);
-  marks["native_footprint"] = femur.hit(in_sagittal_plane(middle, yz), Vector3d::UnitX());
+  // The grid is the one that plans are judged by. In this frame the lateral side is that of a left knee in LPS, and the
+  // wall is met from the middle of the notch.
+  const auto quadrant = landmarks::femoral_quadrant(femur.mesh, marks, bones::Side::Left);
+  if (!quadrant) throw std::logic_error("phantom: no quadrant on the femur");
+  const Vector3d in_notch = quadrant->point_at({.deep_shallow = kFemurDeepShallow, .high_low = kFemurHighLow});
+  const Vector3d across = quadrant->low.cross(quadrant->shallow);
+  marks["native_footprint"] = femur.hit(in_notch, across.x() > 0 ? across : -across);
   return marks;
 }
 
@@ -103,11 +92,14 @@ Landmarks tibia_landmarks(const TibiaShape& shape, const AnatomicalBone& tibia) 
   marks["medial_eminence"] = from_above(-6.5 * width, -6 * scale);
   marks["lateral_eminence"] = from_above(6 * width, -9 * scale);
   marks["tuberosity"] = tibia.hit({4 * width, 60 * scale, top - 38 * scale}, -Vector3d::UnitY());
-  const double y = marks["plateau_anterior"].y() +
-                   kTibiaAnteroposterior * (marks["plateau_posterior"].y() - marks["plateau_anterior"].y());
-  const double x =
-      marks["plateau_medial"].x() + kTibiaMediolateral * (marks["plateau_lateral"].x() - marks["plateau_medial"].x());
-  marks["native_footprint"] = from_above(x, y);
+  const auto grid = landmarks::tibial_grid(marks);
+  if (!grid) throw std::logic_error("phantom: no grid on the tibia");
+  // The two shares meet where both lines cross, seen from above.
+  const Vector3d along = 0.01 * kTibiaAnteroposterior * grid->depth_mm * grid->posterior;
+  const Vector3d across = 0.01 * kTibiaMediolateral * grid->width_mm * grid->lateral;
+  const Vector3d corner = grid->anterior_mm + (grid->medial_mm - grid->anterior_mm).dot(grid->lateral) * grid->lateral;
+  const Vector3d footprint = corner + along + across;
+  marks["native_footprint"] = from_above(footprint.x(), footprint.y());
   return marks;
 }
 
@@ -128,7 +120,7 @@ tunnels::Tunnel plan_tunnel(const AnatomicalBone& bone, bones::BoneKind kind, co
       const auto measured = tunnels::measure(candidate, bone.surface);
       if (!measured.enters_bone) continue;
       const double misfit = std::max({0.0, least_length_mm - measured.length_mm, measured.length_mm - greatest_length_mm});
-      const double merit = std::min(measured.wall_mm, 6.0) - 10 * misfit - 0.05 * tilt_deg;
+      const double merit = std::min(measured.wall_mm, 6.0) - 10 * misfit - 0.12 * tilt_deg;
       if (merit > best_merit) {
         best_merit = merit;
         best = candidate;
@@ -173,16 +165,19 @@ PhantomKnee make_phantom_knee(const PhantomOptions& options) {
   const KneeParameters parameters = vary(options.seed);
   const FemurShape femur_shape(parameters);
   const TibiaShape tibia_shape(parameters);
-  const AnatomicalBone femur(
-      mesh_of(femur_shape, {.min_mm = femur_shape.min_mm(), .max_mm = femur_shape.max_mm(), .edge_length_mm = options.edge_length_mm}));
-  const AnatomicalBone tibia(
-      mesh_of(tibia_shape, {.min_mm = tibia_shape.min_mm(), .max_mm = tibia_shape.max_mm(), .edge_length_mm = options.edge_length_mm}));
+  const auto bone_of = [&](const auto& shape) {
+    return AnatomicalBone(mesh_of(
+        shape, {.min_mm = shape.min_mm(), .max_mm = shape.max_mm(), .edge_length_mm = options.edge_length_mm}));
+  };
+  const AnatomicalBone femur = bone_of(femur_shape), tibia = bone_of(tibia_shape);
   const Landmarks femur_marks = femur_landmarks(femur_shape, femur), tibia_marks = tibia_landmarks(tibia_shape, tibia);
 
   // Outwards, forwards and up, as drilled through the anteromedial portal; and to the anteromedial face of the tibia,
   // 55 degrees steep.
-  const auto femoral = plan_tunnel(femur, bones::BoneKind::Femur, femur_marks.at("native_footprint"), {0.72, 0.32, 0.62}, 32, 38);
-  const auto tibial = plan_tunnel(tibia, bones::BoneKind::Tibia, tibia_marks.at("native_footprint"), {-0.30, 0.49, -0.82}, 36, 44);
+  const auto femoral = plan_tunnel(femur, bones::BoneKind::Femur, femur_marks.at("native_footprint"),
+                                   {0.72, 0.32, 0.62}, 32, 38);
+  const auto tibial = plan_tunnel(tibia, bones::BoneKind::Tibia, tibia_marks.at("native_footprint"),
+                                  {-0.30, 0.49, -0.82}, 36, 44);
 
   const ToPatient to_patient(options.side);
   const std::string source = "phantom knee, seed " + std::to_string(options.seed);

@@ -27,9 +27,9 @@ double TibiaShape::plateau_height_mm(double lateral, double anterior) const {
   double height = kPlateauZ + slope * (anterior + 3.0);
   height -= 2.2 * bump(lateral + 20.0, anterior + 3.0, 9.0, 12.0);
   height += 0.8 * bump(lateral - 20.0, anterior + 6.0, 9.0, 11.0);
-  height += parameters_.eminence_height_mm * bump(lateral + 6.5, anterior + 6.0, 3.8, 7.5);
-  height += (parameters_.eminence_height_mm - 1.5) * bump(lateral - 6.0, anterior + 9.0, 3.6, 6.5);
-  height += 1.8 * bump(lateral, anterior + 7.0, 7.0, 9.0);
+  height += (parameters_.eminence_height_mm - 0.5) * bump(lateral + 6.5, anterior + 6.0, 4.4, 8.0);
+  height += (parameters_.eminence_height_mm - 1.5) * bump(lateral - 6.0, anterior + 9.0, 4.2, 7.0);
+  height += 1.5 * bump(lateral, anterior + 7.0, 10.0, 11.0);
   return height;
 }
 
