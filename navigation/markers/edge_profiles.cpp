@@ -17,6 +17,9 @@ constexpr float kMinContrast = 3;  // in light of 255: what noise and compressio
 constexpr float kMinLikeness = 0.85F;
 // Below this the model is wrong in ways that noise does not show: compression, debris, the lens.
 constexpr double kOffsetFloorPx = 0.05;
+// A smear by motion is no exact box: the hand does not move evenly.
+constexpr double kOffsetPerBox = 0.04;
+constexpr float kSharpBox = 1.5F;
 constexpr float kPixelBox = 1.0F;
 
 struct Profile {
@@ -190,8 +193,10 @@ void add_trend(const Profile& profile, const Crossing& crossing, const Match& ma
   for (int i = 0; i <= 2 * reach; ++i) {
     if (light[i] < 0) continue;
     const float residual = (light[i] - match.bias) / match.gain - model.level[i];
-    trend.sigma_gain += residual * model.d_sigma[i];
-    trend.sigma_weight += model.d_sigma[i] * model.d_sigma[i];
+    if (crossing.box_px < kSharpBox) {
+      trend.sigma_gain += residual * model.d_sigma[i];
+      trend.sigma_weight += model.d_sigma[i] * model.d_sigma[i];
+    }
     if (!moves) continue;
     const float by_length = model.d_box[i] * crossing.box_px;
     trend.motion_gain += residual * by_length;
@@ -258,7 +263,8 @@ void measure_edges(const LinearImage& image, const camera::CameraModel& camera,
       continue;
     }
     measurement.offset_px = match.offset + best_shift;
-    measurement.sigma_px = std::hypot(static_cast<double>(match.sigma), kOffsetFloorPx);
+    measurement.sigma_px = std::hypot(static_cast<double>(match.sigma), kOffsetFloorPx,
+                                      kOffsetPerBox * (crossing.box_px - kPixelBox));
     measurement.state = match.likeness >= kMinLikeness ? EdgeState::Found : EdgeState::Different;
     if (measurement.state == EdgeState::Found) add_trend(window, crossing, match, model, reach, trend);
   }

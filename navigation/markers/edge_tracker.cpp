@@ -37,16 +37,15 @@ class EdgeTracker final : public MarkerTracker {
                                            std::int64_t timestamp_ns) override {
     check_frame_size(frame, camera);
     const LinearImage image(frame, light_);
-    bool lost_one = false;
+    bool missing = false;
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       observations_[i] = MarkerObservation();
       observations_[i].id = tracks_[i].marker().id;
       const auto start = tracks_[i].predicted(timestamp_ns);
-      if (!start) continue;
-      lost_one |=
-          !tracks_[i].measure(image, camera, *start, kReachPredicted, timestamp_ns, smear_, observations_[i]);
+      missing |= !start || !tracks_[i].measure(image, camera, *start, kReachPredicted, timestamp_ns, smear_,
+                                               observations_[i]);
     }
-    if (lost_one || frames_to_search_-- <= 0) {
+    if (missing || frames_to_search_-- <= 0) {
       frames_to_search_ = options_.search_every_frames - 1;
       search(frame, image, camera, timestamp_ns);
     }

@@ -16,8 +16,7 @@ struct EdgeTrackerOptions {
   // Grey level = light ^ (1 / gamma). Below the usual 2.2: blur happens in light, but noise is even in grey
   // levels. What is left of the blur's asymmetry is estimated with each pose (bloom).
   double gamma = 1.6;
-  int search_every_frames =
-      4;  // a search of the whole frame, for new markers and for doubles, while all goes well
+  int search_every_frames = 4;  // a search of the whole frame, for doubles, while every marker is tracked
 };
 
 // The same for other codes, which all have the same count of cells. Throws as make_tracker.

@@ -16,7 +16,12 @@ constexpr std::int64_t kMotionNs = 70'000'000;
 constexpr double kMinShare = 0.3;  // of the edges crossed along x, and along y
 constexpr double kMinMeanShare = 0.42;
 constexpr double kMaxScale = 8;  // residuals / their predicted sigmas
-constexpr double kMaxRmsPx = 0.6;
+constexpr double kMaxRmsPx = 1.2;
+// A marker that comes from nowhere must be seen nearly whole: there is no motion to agree with.
+constexpr double kMinNewShare = 0.7;
+// Motions over the exposure that are tried when none is known.
+constexpr double kTriedLengthsPx[] = {7, 14};
+constexpr int kTriedDirections = 4;
 constexpr double kMaxSigmaMm = 0.25, kMaxSigmaRad = 1.0 * geometry::kPi / 180;
 constexpr double kMinCellPx = 3;
 constexpr double kMinFacing = 0.2;  // cosine of the face's normal to the line of sight: 78 degrees
@@ -78,11 +83,13 @@ bool MarkerTrack::measure(const LinearImage& image, const camera::CameraModel& c
     observation.state = MarkerState::TooSmall;
     return false;
   }
-  Smear picture{smear.sigma_px, smear.exposure_share * twist_to(start, timestamp_ns)};
+  const bool is_new = !predicted(timestamp_ns);
   SmearTrend trend;
   ProfileOptions coarse;
   coarse.search_px = std::clamp(static_cast<int>(std::lround(reach_cells * cell)), 2, 16);
   coarse.stride = 2;
+  Smear picture{smear.sigma_px, is_new ? likely_motion(image, camera, start, coarse.search_px, smear)
+                                       : Vector6d(smear.exposure_share * twist_to(start, timestamp_ns))};
   measure_edges(image, camera, start, marker_.size_mm, cells_, samples_, picture, coarse, measurements_,
                 trend);
   EdgePose fit =
@@ -93,7 +100,7 @@ bool MarkerTrack::measure(const LinearImage& image, const camera::CameraModel& c
   }
   for (int pass = 0; pass < 2; ++pass) {
     const RigidTransform here = fit.camera_from_marker;
-    picture.motion = smear.exposure_share * twist_to(here, timestamp_ns);
+    if (!is_new) picture.motion = smear.exposure_share * twist_to(here, timestamp_ns);
     measure_edges(image, camera, here, marker_.size_mm, cells_, samples_, picture, {}, measurements_, trend);
     fit = fit_edge_pose(camera, marker_.size_mm, samples_, measurements_, here, smear.bloom, is_inlier_);
     if (!fit.converged) {
@@ -117,7 +124,7 @@ bool MarkerTrack::measure(const LinearImage& image, const camera::CameraModel& c
     observation.ambiguity_ratio =
         std::min(kNoOtherPose, other->rms_px / std::max(observation.rms_px, kCornerSigmaPx));
   }
-  observation.state = judge(fit, observation, other);
+  observation.state = judge(fit, observation, other, is_new);
   if (observation.state == MarkerState::Covered)
     observation.state = reason_of_loss(camera, fit.camera_from_marker);
   if (!observation.is_tracked()) return false;
@@ -125,8 +132,42 @@ bool MarkerTrack::measure(const LinearImage& image, const camera::CameraModel& c
   return true;
 }
 
+Vector6d MarkerTrack::likely_motion(const LinearImage& image, const camera::CameraModel& camera,
+                                    const RigidTransform& pose, int search_px, const CameraSmear& smear) {
+  ProfileOptions sparse;
+  sparse.search_px = search_px;
+  sparse.stride = 4;
+  SmearTrend ignored;
+  const auto likeness = [&](const Vector6d& motion) {
+    measure_edges(image, camera, pose, marker_.size_mm, cells_, samples_, {smear.sigma_px, motion}, sparse,
+                  measurements_, ignored);
+    double sum = 0;
+    for (const EdgeMeasurement& measurement : measurements_) sum += std::max(0.0, measurement.likeness - 0.5);
+    return sum;
+  };
+  Vector6d best = Vector6d::Zero();
+  double most = likeness(best);
+  if (most > 0.47 * static_cast<double>(measurements_.size())) return best;  // sharp
+  const double mm_per_px = pose.translation_mm.z() / camera.central_focal_px();
+  for (const double length : kTriedLengthsPx) {
+    for (int direction = 0; direction < kTriedDirections; ++direction) {
+      const double angle = geometry::kPi * direction / kTriedDirections;
+      Vector6d motion = Vector6d::Zero();
+      motion.head<3>() = pose.rotation.conjugate() * Eigen::Vector3d(length * mm_per_px * std::cos(angle),
+                                                                     length * mm_per_px * std::sin(angle), 0);
+      const double sum = likeness(motion);
+      if (sum > most) {
+        most = sum;
+        best = motion;
+      }
+    }
+  }
+  return best;
+}
+
 MarkerState MarkerTrack::judge(const EdgePose& fit, const MarkerObservation& observation,
-                               const std::optional<SquarePose>& other) const {
+                               const std::optional<SquarePose>& other, bool is_new) const {
+  if (is_new && std::min(fit.share[0], fit.share[1]) < kMinNewShare) return MarkerState::Covered;
   if (std::min(fit.share[0], fit.share[1]) < kMinShare || fit.share[0] + fit.share[1] < 2 * kMinMeanShare) {
     return MarkerState::Covered;
   }

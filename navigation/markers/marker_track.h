@@ -49,8 +49,13 @@ class MarkerTrack {
   // known.
   [[nodiscard]] geometry::Vector6d twist_to(const geometry::RigidTransform& pose,
                                             std::int64_t timestamp_ns) const;
+  // The smear under which the picture looks most like the marker at this pose, when nothing is known of the
+  // motion: the motion over the exposure as a body twist.
+  [[nodiscard]] geometry::Vector6d likely_motion(const LinearImage& image, const camera::CameraModel& camera,
+                                                 const geometry::RigidTransform& pose, int search_px,
+                                                 const CameraSmear& smear);
   [[nodiscard]] MarkerState judge(const EdgePose& fit, const MarkerObservation& observation,
-                                  const std::optional<SquarePose>& other) const;
+                                  const std::optional<SquarePose>& other, bool is_new) const;
   [[nodiscard]] MarkerState reason_of_loss(const camera::CameraModel& camera,
                                            const geometry::RigidTransform& pose) const;
 

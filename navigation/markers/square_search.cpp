@@ -13,10 +13,13 @@ constexpr int kRadii[] = {14};
 // A pixel is dark below this share of its neighbourhood's mean (in grey levels, so after the camera's gamma).
 constexpr int kDarkPercent = 84;
 constexpr int kMinMean = 8;
-constexpr double kMinFill = 0.72;  // hull / quadrilateral
+constexpr double kMinFill = 0.6;  // hull / quadrilateral
 constexpr double kMaxSideRatio = 5;
 constexpr double kMinOpening = 0.25;  // sine of a corner's angle
 constexpr std::size_t kMaxSquares = 64;
+// Of the side's length: what may belong to a side, and what lies on it.
+constexpr double kNearSide = 0.25, kOnLine = 0.02;
+constexpr int kLineTrials = 40, kMaxSidePoints = 512;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -55,6 +58,13 @@ bool drop_cheapest_edge(std::vector<Eigen::Vector2d>& polygon) {
   polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>((drop + 1) % n));
   return true;
 }
+
+struct Line {
+  Eigen::Vector2d point, direction;
+  [[nodiscard]] double distance(const Eigen::Vector2d& p) const {
+    return std::abs(cross(direction, p - point));
+  }
+};
 
 }  // namespace
 
@@ -229,16 +239,18 @@ bool SquareSearch::outline_square(int label, const Region& region, const camera:
   }
   const double quad_area = area_of(hull_);
   if (!(quad_area > 0) || hull_area < kMinFill * quad_area) return false;
+  std::array<Eigen::Vector2d, 4> quad = {hull_[0], hull_[1], hull_[2], hull_[3]};
+  if (!straighten_sides(quad)) return false;
 
   double shortest = 1e300, longest = 0;
   for (int i = 0; i < 4; ++i) {
     const Eigen::Vector2d side = hull_[(i + 1) % 4] - hull_[i],
                           next = hull_[(i + 2) % 4] - hull_[(i + 1) % 4];
     if (cross(side, next) < kMinOpening * side.norm() * next.norm()) return false;
-    const auto pixel = camera.project(hull_[i].homogeneous());
+    const auto pixel = camera.project(quad[i].homogeneous());
     if (!pixel) return false;
     // The hull turns from x to y, which is clockwise with y down.
-    square.tangent[i] = hull_[i];
+    square.tangent[i] = quad[i];
     square.corners_px[i] = *pixel;
   }
   for (int i = 0; i < 4; ++i) {
@@ -249,6 +261,65 @@ bool SquareSearch::outline_square(int label, const Region& region, const camera:
   square.shortest_side_px = shortest;
   square.longest_side_px = longest;
   return longest < kMaxSideRatio * shortest && longest >= kMinSide * kShrink;
+}
+
+// The hull is pushed out by whatever dark thing touches the square. Each side becomes the line that most of
+// the outline's points near it agree on, by trying pairs of them in a fixed order.
+bool SquareSearch::straighten_sides(std::array<Eigen::Vector2d, 4>& quad) const {
+  double size = 0;
+  for (int i = 0; i < 4; ++i) size = std::max(size, (quad[(i + 1) % 4] - quad[i]).norm());
+  const double near = kNearSide * size, tight = kOnLine * size;
+  std::array<Line, 4> lines;
+  std::array<Eigen::Vector2d, kMaxSidePoints> points;
+  for (int side = 0; side < 4; ++side) {
+    const Eigen::Vector2d &a = quad[side], &b = quad[(side + 1) % 4];
+    const Line guess{a, (b - a).normalized()};
+    const double length = (b - a).norm();
+    int count = 0;
+    for (const Eigen::Vector2d& point : outline_) {
+      const double along = guess.direction.dot(point - a);
+      if (count < kMaxSidePoints && along > 0.05 * length && along < 0.95 * length &&
+          guess.distance(point) < near) {
+        points[count++] = point;
+      }
+    }
+    if (count < 4) return false;
+    Line best = guess;
+    int most = 0;
+    for (int trial = 0; trial < kLineTrials; ++trial) {
+      const Eigen::Vector2d &p = points[trial * 7919 % count],
+                            &q = points[(trial * 104729 + count / 2) % count];
+      if ((q - p).norm() < 0.25 * length) continue;
+      const Line line{p, (q - p).normalized()};
+      if (std::abs(line.direction.dot(guess.direction)) < 0.85) continue;
+      int on = 0;
+      for (int i = 0; i < count; ++i) on += line.distance(points[i]) < tight;
+      if (on > most) {
+        most = on;
+        best = line;
+      }
+    }
+    if (most == 0) return false;
+    // Total least squares of what lies on it.
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+    for (int i = 0; i < count; ++i) {
+      if (best.distance(points[i]) < tight) mean += points[i] / most;
+    }
+    for (int i = 0; i < count; ++i) {
+      if (best.distance(points[i]) < tight) spread += (points[i] - mean) * (points[i] - mean).transpose();
+    }
+    const double angle = 0.5 * std::atan2(2 * spread(0, 1), spread(0, 0) - spread(1, 1));
+    lines[side] = {mean, {std::cos(angle), std::sin(angle)}};
+  }
+  for (int corner = 0; corner < 4; ++corner) {
+    const Line &before = lines[(corner + 3) % 4], &after = lines[corner];
+    const double turn = cross(before.direction, after.direction);
+    if (std::abs(turn) < kMinOpening) return false;
+    quad[corner] =
+        before.point + before.direction * (cross(after.point - before.point, after.direction) / turn);
+  }
+  return area_of(quad) > 0;
 }
 
 // Andrew's monotone chain, turning from x to y.

@@ -38,6 +38,7 @@ class SquareSearch {
   bool outline_square(int label, const Region& region, const camera::CameraModel& camera,
                       FoundSquare& square);
   void take_hull();
+  bool straighten_sides(std::array<Eigen::Vector2d, 4>& quad) const;
 
   int left_ = 0, top_ = 0;      // of the shrunk picture's first pixel, in frame pixels
   int width_ = 0, height_ = 0;  // of the shrunk picture
