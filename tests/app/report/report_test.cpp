@@ -1,0 +1,115 @@
+#include "app/report/report.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "navigation/recording/achieved_tunnel.h"
+#include "navigation/recording/session.h"
+#include "navigation/tools/tool_set.h"
+#include "planning/cases/case.h"
+#include "planning/files/atomic_file.h"
+#include "planning/geometry/error.h"
+#include "planning/phantom/phantom_case.h"
+
+namespace arthronaut::report {
+
+namespace {
+
+// A case of the phantom, its meshes coarse: pictures are looked at elsewhere.
+class Report : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(::testing::TempDir()) / "report_test" /
+              ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+    knee_ = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 3.0}), "Knee of Ærø");
+    cases::save_case(knee_folder(), knee_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::filesystem::path knee_folder() const { return folder_ / "Knee.arthro"; }
+  std::filesystem::path pdf() const { return folder_ / "report.pdf"; }
+
+  std::string pdf_info() const { return output_of("pdfinfo " + pdf().string()); }
+  std::string pdf_text() const { return output_of("pdftotext -layout " + pdf().string() + " - 2>/dev/null"); }
+
+  cases::Case knee_;
+
+ private:
+  std::string output_of(const std::string& command) const {
+    const auto file = folder_ / "output.txt";
+    EXPECT_EQ(std::system((command + " > " + file.string()).c_str()), 0) << command;
+    return files::read_text(file);
+  }
+  std::filesystem::path folder_;
+};
+
+int page_count(const std::string& info) {
+  const auto at = info.find("Pages:");
+  return at == std::string::npos ? 0 : std::atoi(info.c_str() + at + 6);
+}
+
+void expect_contains(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << "\"" << part << "\" is not in:\n" << text;
+}
+
+}  // namespace
+
+// A case that has only been planned: the plan's numbers, versions and what the software is not.
+TEST_F(Report, OfAPlanAloneSaysThatNothingWasNavigated) {
+  write_report(knee_folder(), pdf());
+  EXPECT_GE(page_count(pdf_info()), 2);
+  const std::string text = pdf_text();
+  expect_contains(text, "Knee of Ærø");
+  expect_contains(text, "not a medical device");
+  expect_contains(text, "No session with a registration");
+  expect_contains(text, "femur");
+  expect_contains(text, "OpenCV");
+}
+
+// A session with a registration and a drilled tunnel: the comparison is the one that the geometry says.
+TEST_F(Report, ComparesPlannedAndAchieved) {
+  const auto session_folder = cases::create_session_folder(knee_folder());
+  pipeline::PipelineOptions options;
+  options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
+  options.tools = tools::standard_tools();
+  recording::SessionHeader header;
+  header.id = session_folder.filename().string();
+  header.refractive_index = 1.333;
+  registration::RegistrationSummary registration;
+  registration.has_pose = true;
+  registration.reasons = {"too few points", "one flat patch"};
+  registration.point_count = 812;
+  registration.rms_mm = 0.31;
+  {
+    recording::SessionRecorder recorder(session_folder, header, options);
+    recorder.set_registration(registration);
+    recorder.finish();
+  }
+  const auto planned = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  auto measured = planned, truth = planned;
+  const Eigen::Vector3d side = planned.direction.unitOrthogonal();
+  measured.entry_mm += 1.25 * side;  // across the axis: entry and axis are off by the same
+  truth.entry_mm += 2.0 * side;
+  recording::write_achieved_file(session_folder / "achieved.json",
+                                 {.planned = planned, .measured = measured, .depth_mm = 30, .pose_count = 42, .truth = truth});
+  write_report(knee_folder(), pdf());
+  EXPECT_GE(page_count(pdf_info()), 3);
+  const std::string text = pdf_text();
+  expect_contains(text, "NOT RELIABLE");
+  expect_contains(text, "too few points");
+  expect_contains(text, "812");
+  expect_contains(text, "1.25 mm");  // plan to measured
+  expect_contains(text, "2.00 mm");  // plan to truth
+  expect_contains(text, "0.75 mm");  // measured to truth
+  expect_contains(text, "water");
+}
+
+TEST_F(Report, LeavesNothingBehindWhenItFails) {
+  EXPECT_THROW(write_report(knee_folder() / "nothing", pdf()), IoError);
+  EXPECT_THROW(write_report(knee_folder(), "/nowhere/report.pdf"), IoError);
+  EXPECT_FALSE(std::filesystem::exists(pdf()));
+}
+
+}  // namespace arthronaut::report
