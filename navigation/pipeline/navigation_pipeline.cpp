@@ -113,7 +113,7 @@ struct NavigationPipeline::State {
 };
 
 NavigationPipeline::NavigationPipeline(const PipelineOptions& options)
-    : NavigationPipeline(options, markers::make_aruco_tracker(markers::declared_markers(options.tools))) {}
+    : NavigationPipeline(options, markers::make_tracker(markers::declared_markers(options.tools))) {}
 
 NavigationPipeline::NavigationPipeline(const PipelineOptions& options,
                                        std::unique_ptr<markers::MarkerTracker> markers)
