@@ -120,7 +120,7 @@ std::optional<ConformalCamera> camera_of(const ConformalMap& map) {
 std::optional<ConformalCamera> camera_without_distortion(std::span<const Eigen::Vector2d> pixels,
                                                          std::span<const Eigen::Vector2d> plane_points,
                                                          const Eigen::Vector2d& principal_point_px) {
-  if (pixels.size() < 6) return std::nullopt;
+  if (pixels.size() < 4) return std::nullopt;
   const Normaliser of_pixels(pixels), of_plane(plane_points);
   Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Zero();
   for (std::size_t k = 0; k < pixels.size(); ++k) {

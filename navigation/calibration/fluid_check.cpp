@@ -1,0 +1,149 @@
+#include "navigation/calibration/fluid_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+#include "navigation/calibration/plane_pose.h"
+
+namespace arthronaut::calibration {
+namespace {
+
+using geometry::RigidTransform;
+
+std::array<Eigen::Vector3d, 4> marker_corners_mm(double size_mm) {
+  const double h = 0.5 * size_mm;
+  return {{{-h, h, 0}, {h, h, 0}, {h, -h, 0}, {-h, -h, 0}}};
+}
+
+struct FrameErrors {
+  std::vector<double> square_px, mm, deg;
+};
+
+// One frame under one camera: both markers by themselves, then the ruler as one body.
+void add_errors(const RulerSighting& seen, const Ruler& ruler, const camera::CameraModel& model, FrameErrors& errors) {
+  const auto corners = marker_corners_mm(ruler.marker_size_mm);
+  const auto first = solve_plane_pose(corners, seen.first_px, model);
+  const auto second = solve_plane_pose(corners, seen.second_px, model);
+  if (!first || !second) return;
+  const RigidTransform off =
+      ruler.first_from_second.inverse() * (first->camera_from_plane.inverse() * second->camera_from_plane);
+  errors.mm.push_back(off.translation_mm.norm());
+  errors.deg.push_back(geometry::deg_from_rad(geometry::rotation_angle_rad(off.rotation)));
+
+  std::vector<Eigen::Vector3d> points(corners.begin(), corners.end());
+  std::vector<Eigen::Vector2d> pixels(seen.first_px.begin(), seen.first_px.end());
+  for (const Eigen::Vector3d& corner : corners) points.push_back(ruler.first_from_second * corner);
+  pixels.insert(pixels.end(), seen.second_px.begin(), seen.second_px.end());
+  if (const auto whole = refine_pose(points, pixels, model, first->camera_from_plane))
+    errors.square_px.push_back(whole->rms_px * whole->rms_px);
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return -1;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+FrameErrors errors_under(std::span<const RulerSighting> sightings, const Ruler& ruler,
+                         const camera::Calibration& calibration, double index, camera::FluidModel fluid) {
+  FrameErrors errors;
+  for (const RulerSighting& seen : sightings) {
+    const camera::CameraModel model(calibration, calibration.lens_angle_rad(seen.mark_angle_deg), index, fluid);
+    add_errors(seen, ruler, model, errors);
+  }
+  return errors;
+}
+
+// The median resists frames with a corner in glare.
+double misfit_px(const FrameErrors& errors) { return std::sqrt(std::max(0.0, quantile(errors.square_px, 0.5))); }
+
+FluidCheckSummary::Row row_of(FluidHypothesis hypothesis, const FrameErrors& errors) {
+  return {hypothesis,
+          errors.square_px.empty() ? -1 : misfit_px(errors),
+          quantile(errors.mm, 0.5),
+          quantile(errors.deg, 0.5),
+          quantile(errors.mm, 0.95),
+          quantile(errors.deg, 0.95)};
+}
+
+// Golden section over the working medium's index. The misfit has one valley between air and glass.
+double best_index(const std::function<double(double)>& misfit, double low, double high) {
+  const double ratio = (std::sqrt(5.0) - 1) / 2;
+  double a = high - ratio * (high - low), b = low + ratio * (high - low);
+  double at_a = misfit(a), at_b = misfit(b);
+  while (high - low > 1e-3) {
+    if (at_a < at_b) {
+      high = b;
+      b = a;
+      at_b = at_a;
+      a = high - ratio * (high - low);
+      at_a = misfit(a);
+    } else {
+      low = a;
+      a = b;
+      at_a = at_b;
+      b = low + ratio * (high - low);
+      at_b = misfit(b);
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+std::string text(const char* format, double a, double b) {
+  char buffer[200];
+  std::snprintf(buffer, sizeof buffer, format, a, b);
+  return buffer;
+}
+
+std::vector<std::string> reasons_against(const FluidCheckSummary& summary, const FluidCheckOptions& options) {
+  std::vector<std::string> reasons;
+  if (summary.frame_count < options.fewest_frames)
+    reasons.push_back(text("the ruler's two markers were seen together in %.0f frames only (needs %.0f)",
+                           static_cast<double>(summary.frame_count), static_cast<double>(options.fewest_frames)));
+  if (summary.rows.front().rms_px < 0) return reasons;
+  const auto& flat = *std::find_if(summary.rows.begin(), summary.rows.end(), [](const FluidCheckSummary::Row& row) {
+    return row.hypothesis == FluidHypothesis::FlatPort;
+  });
+  if (flat.median_mm > options.most_median_mm || flat.median_deg > options.most_median_deg)
+    reasons.push_back(text("the ruler comes out wrong by %.2f mm and %.1f degrees", flat.median_mm, flat.median_deg));
+  if (std::abs(summary.best_index - options.refractive_index) > options.most_index_error)
+    reasons.push_back(text("the pictures look like a refractive index of %.2f, not %.3f: another medium, or a port that "
+                           "is not flat", summary.best_index, options.refractive_index));
+  return reasons;
+}
+
+}  // namespace
+
+std::string_view to_text(FluidHypothesis hypothesis) {
+  switch (hypothesis) {
+    case FluidHypothesis::FlatPort: return "flat port";
+    case FluidHypothesis::FocalRule: return "focal length times index";
+    case FluidHypothesis::NoRefraction: return "no refraction";
+  }
+  return "unknown";
+}
+
+FluidCheckSummary check_fluid(std::span<const RulerSighting> sightings, const Ruler& ruler,
+                              const camera::Calibration& calibration, const FluidCheckOptions& options) {
+  FluidCheckSummary summary;
+  summary.frame_count = sightings.size();
+  const auto under = [&](double index, camera::FluidModel fluid) {
+    return errors_under(sightings, ruler, calibration, index, fluid);
+  };
+  using camera::FluidModel;
+  summary.rows = {row_of(FluidHypothesis::FlatPort, under(options.refractive_index, FluidModel::FlatPort)),
+                  row_of(FluidHypothesis::FocalRule, under(options.refractive_index, FluidModel::FocalRule)),
+                  row_of(FluidHypothesis::NoRefraction, under(calibration.refractive_index, FluidModel::FlatPort))};
+  std::stable_sort(summary.rows.begin(), summary.rows.end(), [](const auto& a, const auto& b) {
+    return (a.rms_px < 0 ? 1e9 : a.rms_px) < (b.rms_px < 0 ? 1e9 : b.rms_px);
+  });
+  if (!sightings.empty())
+    summary.best_index = best_index([&](double index) { return misfit_px(under(index, FluidModel::FlatPort)); }, 1.0, 1.5);
+  summary.reasons = reasons_against(summary, options);
+  return summary;
+}
+
+}  // namespace arthronaut::calibration
