@@ -174,7 +174,7 @@ const VoxelPiece& chosen_piece(const std::vector<VoxelPiece>& pieces, const Volu
 VoxelMask filled(const VoxelPiece& piece, const Volume& volume, double closing_radius_mm) {
   VoxelMask mask(volume.size);
   for (const std::size_t v : piece.voxels) mask.inside[v] = 1;
-  close_gaps(mask, volume.spacing_mm(), closing_radius_mm);
+  if (closing_radius_mm > 0) close_gaps(mask, volume.spacing_mm(), closing_radius_mm);
   fill_enclosed(mask, axis_nearest_to_superior(volume));
   return mask;
 }
@@ -263,13 +263,24 @@ BoneSurface surface_above_threshold(const Volume& volume, const ThresholdOptions
                        ": its values run from " + std::to_string(std::lround(*low)) + " to " +
                        std::to_string(std::lround(*high)));
   }
-  VoxelMask bone = filled(chosen_piece(pieces, volume, options.piece), volume, options.closing_radius_mm);
+  const VoxelPiece& piece = chosen_piece(pieces, volume, options.piece);
+  VoxelMask bone = filled(piece, volume, options.closing_radius_mm);
   BoneSurface surface;
   surface.notes.push_back("threshold " + std::to_string(std::lround(threshold)) + ": " + std::to_string(pieces.size()) +
                           (pieces.size() == 1 ? " piece" : " pieces"));
   const bool stands_alone = pieces.size() > 1 && is_large(pieces[1], pieces[0]);
   if (options.piece != Piece::Largest && !stands_alone) {
-    if (part_from_others(bone, volume, options.piece)) {
+    // Closing gaps widens the neck as well: it is looked for without first.
+    VoxelMask unclosed = filled(piece, volume, 0);
+    bool is_parted = part_from_others(unclosed, volume, options.piece);
+    if (is_parted) {
+      bone = unclosed;
+      close_gaps(bone, volume.spacing_mm(), options.closing_radius_mm);
+      fill_enclosed(bone, axis_nearest_to_superior(volume));
+    } else {
+      is_parted = part_from_others(bone, volume, options.piece);
+    }
+    if (is_parted) {
       surface.notes.push_back("bones that touched were parted where they were thinnest");
     } else {
       surface.doubts.push_back("there is one large piece only: if it shows femur and tibia, they touch, and this is both");

@@ -39,7 +39,7 @@ Slices images_below(const std::filesystem::path& folder) {
   for (const auto& file : files) {
     auto slice = read_dicom_header(file);
     dicom_count += slice.has_value();
-    if (slice && slice->has_pixels) slices.push_back(std::move(*slice));
+    if (slice && slice->is_image) slices.push_back(std::move(*slice));
   }
   if (dicom_count == 0) throw InvalidInput(folder, "", "holds no DICOM file");
   if (slices.empty()) throw InvalidInput(folder, "", "holds DICOM files, but no image among them");
@@ -137,6 +137,9 @@ Eigen::Vector3d slice_step_mm(const Slices& sorted) {
                          formatted("lies %.2f mm from the slice before it, the others %.2f mm apart", gaps[i], usual) +
                              ": a slice is missing or one too many (" + sorted[i].file.filename().string() + ")");
     }
+  }
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    const DicomSlice& next = sorted[i + 1];
     const Eigen::Vector3d expected = sorted.front().position_mm + static_cast<double>(i + 1) * step;
     if ((next.position_mm - expected).norm() > kPositionTolerance_fraction * usual + 0.02) {
       throw InvalidInput(next.file, "", formatted("lies %.2f mm beside the line of the other slices",

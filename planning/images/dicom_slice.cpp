@@ -1,38 +1,25 @@
 #include "planning/images/dicom_slice.h"
 
 #include <gdcmImageReader.h>
-#include <gdcmReader.h>
 #include <gdcmTrace.h>
 
 #include <Eigen/Geometry>
-#include <bit>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <set>
 
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
+#include "planning/images/dicom_elements.h"
 #include "planning/images/volume_bytes.h"
 
 namespace arthronaut::images {
 
 namespace {
 
-std::string text_of(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element) {
-  const gdcm::Tag tag(group, element);
-  if (!data.FindDataElement(tag)) return "";
-  const gdcm::ByteValue* bytes = data.GetDataElement(tag).GetByteValue();
-  if (!bytes) return "";
-  std::string text(bytes->GetPointer(), bytes->GetLength());
-  while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.pop_back();
-  return trimmed(text);
-}
-
 // A decimal string with `count` values; nullopt when it is absent or anything else.
-std::optional<std::vector<double>> decimals_of(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element,
-                                               std::size_t count) {
-  const std::string text = text_of(data, group, element);
+std::optional<std::vector<double>> decimals_of(const DicomElements& elements, std::uint16_t group,
+                                               std::uint16_t element, std::size_t count) {
+  const std::string text = elements.text(group, element);
   std::vector<double> values;
   for (std::size_t at = 0; at <= text.size() && !text.empty();) {
     const std::size_t end = std::min(text.find('\\', at), text.size());
@@ -48,33 +35,10 @@ std::optional<std::vector<double>> decimals_of(const gdcm::DataSet& data, std::u
   return values;
 }
 
-int unsigned_short_of(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element, int absent) {
-  const gdcm::Tag tag(group, element);
-  if (!data.FindDataElement(tag)) return absent;
-  const gdcm::ByteValue* bytes = data.GetDataElement(tag).GetByteValue();
-  if (!bytes || bytes->GetLength() < 2) return absent;
-  // GDCM has put the bytes into the order of this machine.
-  return static_cast<int>(decoded(Scalar::UInt16, std::endian::native, bytes->GetPointer()));
-}
-
-// GDCM prints what it stumbles over; what matters of it becomes an exception here.
-void silence_gdcm() {
-  gdcm::Trace::WarningOff();
-  gdcm::Trace::ErrorOff();
-  gdcm::Trace::DebugOff();
-}
-
-bool has_dicom_mark(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  char start[132] = {};
-  stream.read(start, sizeof start);
-  return stream.gcount() == sizeof start && std::string_view(start + 128, 4) == "DICM";
-}
-
-void read_geometry(const gdcm::DataSet& data, DicomSlice& slice) {
-  const auto position = decimals_of(data, 0x0020, 0x0032, 3);
-  const auto orientation = decimals_of(data, 0x0020, 0x0037, 6);
-  const auto spacing = decimals_of(data, 0x0028, 0x0030, 2);
+void read_geometry(const DicomElements& elements, DicomSlice& slice) {
+  const auto position = decimals_of(elements, 0x0020, 0x0032, 3);
+  const auto orientation = decimals_of(elements, 0x0020, 0x0037, 6);
+  const auto spacing = decimals_of(elements, 0x0028, 0x0030, 2);
   if (!position || !orientation || !spacing) return;
   slice.position_mm = Eigen::Vector3d(position->data());
   slice.along_columns = Eigen::Vector3d(orientation->data());
@@ -92,6 +56,36 @@ void read_geometry(const gdcm::DataSet& data, DicomSlice& slice) {
   slice.has_geometry = true;
 }
 
+std::size_t pixel_count(const DicomSlice& slice) {
+  return static_cast<std::size_t>(slice.rows) * static_cast<std::size_t>(slice.columns);
+}
+
+// Pixels as they lie in the file. The bits beside the stored ones may hold overlays of old scanners: cut off.
+void append_raw_pixels(const DicomSlice& slice, const DicomElements& elements, std::vector<float>& values) {
+  const int allocated = elements.unsigned_short(0x0028, 0x0100, 16);
+  const int stored = elements.unsigned_short(0x0028, 0x0101, allocated);
+  const int high_bit = elements.unsigned_short(0x0028, 0x0102, stored - 1);
+  const bool is_signed = elements.unsigned_short(0x0028, 0x0103, 0) == 1;
+  if ((allocated != 8 && allocated != 16 && allocated != 32) || stored < 1 || stored > allocated ||
+      high_bit >= allocated || high_bit + 1 < stored) {
+    throw InvalidInput(slice.file, "pixel format", "is not one that is read");
+  }
+  const Scalar type = allocated == 8 ? Scalar::UInt8 : allocated == 16 ? Scalar::UInt16 : Scalar::UInt32;
+  const std::size_t width = bytes_per(type), count = pixel_count(slice);
+  if (elements.raw_pixels.size() < count * width) {
+    throw InvalidInput(slice.file, "pixel data", "end early: " + std::to_string(elements.raw_pixels.size()) + " of " +
+                                                     std::to_string(count * width) + " bytes");
+  }
+  const auto shift = static_cast<unsigned>(high_bit + 1 - stored);
+  const std::uint64_t mask = (std::uint64_t{1} << static_cast<unsigned>(stored)) - 1, sign = (mask >> 1U) + 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto bits = static_cast<std::uint64_t>(decoded(type, elements.order, elements.raw_pixels.data() + i * width));
+    const std::uint64_t value = bits >> shift & mask;
+    const double number = static_cast<double>(value) - (is_signed && (value & sign) ? static_cast<double>(mask) + 1 : 0);
+    values.push_back(static_cast<float>(slice.slope * number + slice.intercept));
+  }
+}
+
 Scalar scalar_of(const DicomSlice& slice, const gdcm::PixelFormat& format) {
   switch (format.GetScalarType()) {
     case gdcm::PixelFormat::INT8: return Scalar::Int8;
@@ -102,34 +96,39 @@ Scalar scalar_of(const DicomSlice& slice, const gdcm::PixelFormat& format) {
     case gdcm::PixelFormat::UINT16: return Scalar::UInt16;
     case gdcm::PixelFormat::INT32: return Scalar::Int32;
     case gdcm::PixelFormat::UINT32: return Scalar::UInt32;
-    case gdcm::PixelFormat::FLOAT32: return Scalar::Float32;
-    case gdcm::PixelFormat::FLOAT64: return Scalar::Float64;
     default: throw InvalidInput(slice.file, "pixel format", "is not one that is read");
   }
 }
 
-// GDCM fills up pixels that are cut off without a word. So the pixel data's element is looked up in the file itself, and
-// must end before the file does.
-bool are_pixels_cut_off(const DicomSlice& slice, const gdcm::ImageReader& reader) {
-  const gdcm::TransferSyntax syntax = reader.GetFile().GetHeader().GetDataSetTransferSyntax();
-  if (syntax.IsEncapsulated() || syntax == gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian) return false;
-  const gdcm::Tag tag(0x7fe0, 0x0010);
-  const gdcm::DataSet& data = reader.GetFile().GetDataSet();
-  const gdcm::ByteValue* value = data.FindDataElement(tag) ? data.GetDataElement(tag).GetByteValue() : nullptr;
-  if (!value) return true;
-  const auto length = static_cast<double>(static_cast<std::size_t>(value->GetLength()));
-  const bool is_big = syntax.GetSwapCode() == gdcm::SwapCode::BigEndian;
-  const std::endian order = is_big ? std::endian::big : std::endian::little;
-  const std::string bytes = files::read_text(slice.file);
-  const std::string_view tag_bytes(is_big ? "\x7f\xe0\x00\x10" : "\xe0\x7f\x10\x00", 4);
-  for (auto at = bytes.find(tag_bytes); at != std::string::npos && at + 12 <= bytes.size();
-       at = bytes.find(tag_bytes, at + 1)) {
-    const bool is_explicit = bytes[at + 4] == 'O';  // OW or OB, two bytes unused, the length
-    const std::size_t length_at = at + (is_explicit ? 8 : 4);
-    if (decoded(Scalar::UInt32, order, bytes.data() + length_at) != length) continue;
-    return static_cast<double>(bytes.size() - length_at - 4) < length;
+void append_decompressed_pixels(const DicomSlice& slice, const std::string& syntax, std::vector<float>& values) {
+  // GDCM prints what it stumbles over; what matters of it becomes an exception here.
+  gdcm::Trace::WarningOff();
+  gdcm::Trace::ErrorOff();
+  gdcm::Trace::DebugOff();
+  gdcm::ImageReader reader;
+  reader.SetFileName(slice.file.c_str());
+  std::vector<char> buffer;
+  Scalar type = Scalar::Int16;
+  try {
+    if (!reader.Read()) throw InvalidInput(slice.file, "pixel data", "cannot be read (transfer syntax " + syntax + ")");
+    const gdcm::Image& image = reader.GetImage();
+    type = scalar_of(slice, image.GetPixelFormat());
+    const std::size_t expected = pixel_count(slice) * bytes_per(type);
+    if (image.GetColumns() != static_cast<unsigned>(slice.columns) ||
+        image.GetRows() != static_cast<unsigned>(slice.rows) || image.GetBufferLength() != expected) {
+      throw InvalidInput(slice.file, "pixel data", "are of another size than the header says");
+    }
+    buffer.resize(expected);
+    if (!image.GetBuffer(buffer.data())) {
+      throw InvalidInput(slice.file, "pixel data", "cannot be decompressed (transfer syntax " + syntax + ")");
+    }
+  } catch (const gdcm::Exception&) {
+    throw InvalidInput(slice.file, "pixel data", "cannot be decompressed (transfer syntax " + syntax + ")");
   }
-  return true;
+  for (std::size_t at = 0; at < buffer.size(); at += bytes_per(type)) {
+    const double stored = decoded(type, std::endian::native, buffer.data() + at);
+    values.push_back(static_cast<float>(slice.slope * stored + slice.intercept));
+  }
 }
 
 }  // namespace
@@ -137,68 +136,36 @@ bool are_pixels_cut_off(const DicomSlice& slice, const gdcm::ImageReader& reader
 Eigen::Vector3d DicomSlice::normal() const { return along_columns.cross(along_rows); }
 
 std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
-  silence_gdcm();
-  if (!has_dicom_mark(file)) return std::nullopt;
-  try {
-    gdcm::Reader reader;
-    reader.SetFileName(file.c_str());
-    std::set<gdcm::Tag> skipped;
-    if (!reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0010), skipped)) {
-      throw InvalidInput(file, "", "is a DICOM file that cannot be read: broken or cut off");
-    }
-    const gdcm::DataSet& data = reader.GetFile().GetDataSet();
-    DicomSlice slice;
-    slice.file = file;
-    slice.series_uid = text_of(data, 0x0020, 0x000e);
-    slice.series_number = text_of(data, 0x0020, 0x0011);
-    slice.description = text_of(data, 0x0008, 0x103e);
-    slice.modality = text_of(data, 0x0008, 0x0060);
-    slice.rows = unsigned_short_of(data, 0x0028, 0x0010, 0);
-    slice.columns = unsigned_short_of(data, 0x0028, 0x0011, 0);
-    slice.samples_per_pixel = unsigned_short_of(data, 0x0028, 0x0002, 1);
-    // Plans, contours and reports of the same study have no rows.
-    slice.has_pixels = slice.rows > 0 && slice.columns > 0;
-    if (const auto frames = decimals_of(data, 0x0028, 0x0008, 1)) slice.frames = static_cast<int>((*frames)[0]);
-    if (const auto echo = decimals_of(data, 0x0018, 0x0081, 1)) slice.echo_time_ms = (*echo)[0];
-    if (const auto slope = decimals_of(data, 0x0028, 0x1053, 1)) slice.slope = (*slope)[0];
-    if (const auto intercept = decimals_of(data, 0x0028, 0x1052, 1)) slice.intercept = (*intercept)[0];
-    read_geometry(data, slice);
-    return slice;
-  } catch (const gdcm::Exception&) {
-    throw InvalidInput(file, "", "is a DICOM file that cannot be read: broken or cut off");
-  }
+  const std::string text = files::read_text(file);
+  if (!has_dicom_mark(text)) return std::nullopt;
+  const DicomElements elements = parse_dicom(file, text);
+  DicomSlice slice;
+  slice.file = file;
+  slice.series_uid = elements.text(0x0020, 0x000e);
+  slice.series_number = elements.text(0x0020, 0x0011);
+  slice.description = elements.text(0x0008, 0x103e);
+  slice.modality = elements.text(0x0008, 0x0060);
+  slice.rows = elements.unsigned_short(0x0028, 0x0010, 0);
+  slice.columns = elements.unsigned_short(0x0028, 0x0011, 0);
+  slice.samples_per_pixel = elements.unsigned_short(0x0028, 0x0002, 1);
+  // Plans, contours and reports of the same study have no rows.
+  slice.is_image = slice.rows > 0 && slice.columns > 0;
+  if (const auto frames = decimals_of(elements, 0x0028, 0x0008, 1)) slice.frames = static_cast<int>((*frames)[0]);
+  if (const auto echo = decimals_of(elements, 0x0018, 0x0081, 1)) slice.echo_time_ms = (*echo)[0];
+  if (const auto slope = decimals_of(elements, 0x0028, 0x1053, 1)) slice.slope = (*slope)[0];
+  if (const auto intercept = decimals_of(elements, 0x0028, 0x1052, 1)) slice.intercept = (*intercept)[0];
+  read_geometry(elements, slice);
+  return slice;
 }
 
 void append_dicom_pixels(const DicomSlice& slice, std::vector<float>& values) {
-  silence_gdcm();
   if (slice.samples_per_pixel != 1) throw InvalidInput(slice.file, "", "is a picture in colours, not a slice");
-  gdcm::ImageReader reader;
-  reader.SetFileName(slice.file.c_str());
-  std::vector<char> buffer;
-  Scalar type = Scalar::Int16;
-  try {
-    if (!reader.Read()) throw InvalidInput(slice.file, "", "its pixels cannot be read: broken, cut off, or no image");
-    const gdcm::Image& image = reader.GetImage();
-    type = scalar_of(slice, image.GetPixelFormat());
-    const std::size_t expected =
-        static_cast<std::size_t>(slice.rows) * static_cast<std::size_t>(slice.columns) * bytes_per(type);
-    if (image.GetColumns() != static_cast<unsigned>(slice.columns) ||
-        image.GetRows() != static_cast<unsigned>(slice.rows) || image.GetBufferLength() != expected) {
-      throw InvalidInput(slice.file, "pixel data", "are of another size than the header says");
-    }
-    if (are_pixels_cut_off(slice, reader)) throw InvalidInput(slice.file, "pixel data", "end early: the file is cut off");
-    buffer.resize(expected);
-    if (!image.GetBuffer(buffer.data())) {
-      const gdcm::TransferSyntax syntax = reader.GetFile().GetHeader().GetDataSetTransferSyntax();
-      throw InvalidInput(slice.file, "pixel data",
-                         std::string("cannot be decoded (") + gdcm::TransferSyntax::GetTSString(syntax) + ")");
-    }
-  } catch (const gdcm::Exception&) {
-    throw InvalidInput(slice.file, "pixel data", "cannot be decoded");
-  }
-  for (std::size_t at = 0; at < buffer.size(); at += bytes_per(type)) {
-    const double stored = decoded(type, std::endian::native, buffer.data() + at);
-    values.push_back(static_cast<float>(slice.slope * stored + slice.intercept));
+  const DicomElements elements = parse_dicom(slice.file, files::read_text(slice.file));
+  if (!elements.has_pixel_data) throw InvalidInput(slice.file, "pixel data", "are missing: the file is cut off");
+  if (elements.is_compressed) {
+    append_decompressed_pixels(slice, elements.transfer_syntax, values);
+  } else {
+    append_raw_pixels(slice, elements, values);
   }
 }
 

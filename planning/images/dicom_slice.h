@@ -12,7 +12,7 @@ namespace arthronaut::images {
 struct DicomSlice {
   std::filesystem::path file;
   std::string series_uid, series_number, description, modality;
-  bool has_pixels = false;
+  bool is_image = false;  // a plan, a contour or a report is none
   int columns = 0, rows = 0, frames = 1, samples_per_pixel = 1;
   // LPS, mm. has_geometry is false when the header lacks one of them.
   bool has_geometry = false;
@@ -27,7 +27,7 @@ struct DicomSlice {
   [[nodiscard]] double depth_mm() const { return normal().dot(position_mm); }
 };
 
-// nullopt for a file that is not DICOM. Throws InvalidInput for one that is, and is broken.
+// Keeps no pixels: they are read when the volume is put together. nullopt for a file that is not DICOM. Throws InvalidInput for one that is, and is broken.
 [[nodiscard]] std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file);
 
 // Rescaled pixels, columns * rows of them, appended to `values`. Throws InvalidInput: a compression that cannot be

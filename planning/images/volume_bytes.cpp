@@ -48,9 +48,10 @@ double decoded(Scalar type, std::endian order, const char* bytes) {
   return decode<double>(order, bytes);
 }
 
-std::string inflated(const std::filesystem::path& file, std::string_view compressed, std::size_t most_bytes) {
+std::string inflated(const std::filesystem::path& file, std::string_view compressed, std::size_t most_bytes,
+                     Compression compression) {
   z_stream stream{};
-  if (inflateInit2(&stream, 15 + 32) != Z_OK) throw InvalidInput(file, "", "cannot be decompressed");
+  if (inflateInit2(&stream, compression == Compression::Raw ? -15 : 15 + 32) != Z_OK) throw InvalidInput(file, "", "cannot be decompressed");
   std::string result;
   std::string chunk(1 << 20, '\0');
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(compressed.data()));

@@ -1,6 +1,7 @@
 // What the readers of the single volume formats share. Inner header of images: others include volume_file.h.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <filesystem>
@@ -24,9 +25,10 @@ enum class Scalar { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Fl
 [[nodiscard]] Volume parse_metaimage(const std::filesystem::path& file, std::string_view text);
 [[nodiscard]] Volume read_dicom_folder(const std::filesystem::path& folder, const VolumeFileOptions& options);
 
-// gzip or zlib. Throws InvalidInput when the data are broken, cut off, or longer than `most_bytes`.
+enum class Compression { GzipOrZlib, Raw };
+// Throws InvalidInput when the data are broken, cut off, or longer than `most_bytes`.
 [[nodiscard]] std::string inflated(const std::filesystem::path& file, std::string_view compressed,
-                                   std::size_t most_bytes);
+                                   std::size_t most_bytes, Compression compression = Compression::GzipOrZlib);
 
 // Checks the size (each axis 1 or more, 2^31 voxels at most) and returns the number of voxels.
 [[nodiscard]] std::size_t checked_voxel_count(const std::filesystem::path& file, const Eigen::Vector3i& size);
