@@ -3,6 +3,7 @@
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -109,7 +110,7 @@ void set_constant(ceres::Problem& problem, Blocks& blocks, const AdjustmentOptio
     for (double& angle : blocks.angles) problem.SetParameterBlockConstant(&angle);
 }
 
-Eigen::MatrixXd covariance_of(ceres::Problem& problem, const Blocks& blocks, double variance_scale) {
+Eigen::MatrixXd covariance_of(ceres::Problem& problem, const Blocks& blocks) {
   ceres::Covariance::Options options;
   options.algorithm_type = ceres::DENSE_SVD;
   options.null_space_rank = -1;
@@ -118,12 +119,23 @@ Eigen::MatrixXd covariance_of(ceres::Problem& problem, const Blocks& blocks, dou
   if (!covariance.Compute(wanted, &problem)) return {};
   Eigen::Matrix<double, 6, 6, Eigen::RowMajor> block;
   if (!covariance.GetCovarianceBlock(blocks.lens, blocks.lens, block.data())) return {};
-  return variance_scale * block;
+  return block;
 }
 
-}  // namespace
+// The scale of the corners' errors against their sigmas: from the median length, which outliers do not move. The length of
+// a two-dimensional normal error has its median at 1.177 sigma.
+double scale_of(std::span<const Sighting> sightings, const std::vector<std::vector<Eigen::Vector2d>>& residuals_px) {
+  std::vector<double> in_sigmas;
+  for (std::size_t i = 0; i < sightings.size(); ++i)
+    for (std::size_t k = 0; k < residuals_px[i].size(); ++k)
+      in_sigmas.push_back(residuals_px[i][k].norm() / sightings[i].sigma_px[k]);
+  const auto middle = in_sigmas.begin() + static_cast<std::ptrdiff_t>(in_sigmas.size() / 2);
+  std::nth_element(in_sigmas.begin(), middle, in_sigmas.end());
+  return std::max(0.05, *middle / 1.177);
+}
 
-AdjustmentResult adjust(std::span<const Sighting> sightings, const Estimate& start, const AdjustmentOptions& options) {
+AdjustmentResult adjust_at_scale(std::span<const Sighting> sightings, const Estimate& start,
+                                 const AdjustmentOptions& options, double scale) {
   AdjustmentResult result;
   result.estimate = start;
   Blocks blocks(start);
@@ -133,7 +145,7 @@ AdjustmentResult adjust(std::span<const Sighting> sightings, const Estimate& sta
     const Sighting& seen = sightings[i];
     for (std::size_t k = 0; k < seen.pixels.size(); ++k)
       problem.AddResidualBlock(new ceres::AutoDiffCostFunction<CornerError, 2, 6, 1, 6>(
-                                   new CornerError{seen.pixels[k], seen.board_mm[k], seen.sigma_px[k]}),
+                                   new CornerError{seen.pixels[k], seen.board_mm[k], scale * seen.sigma_px[k]}),
                                new ceres::HuberLoss(kHuber), blocks.lens, &blocks.angles[i], blocks.poses[i].data());
     corner_count += seen.pixels.size();
     if (seen.has_angle) {
@@ -167,7 +179,7 @@ AdjustmentResult adjust(std::span<const Sighting> sightings, const Estimate& sta
   result.converged = summary.termination_type == ceres::CONVERGENCE;
   blocks.store(result.estimate);
 
-  double sum = 0, variance_scale = 0;
+  double sum = 0;
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     std::vector<Eigen::Vector2d>& residuals = result.residuals_px.emplace_back();
     for (std::size_t k = 0; k < sightings[i].pixels.size(); ++k) {
@@ -175,15 +187,22 @@ AdjustmentResult adjust(std::span<const Sighting> sightings, const Estimate& sta
       CornerError{sightings[i].pixels[k], sightings[i].board_mm[k], 1.0}(blocks.lens, &blocks.angles[i],
                                                                           blocks.poses[i].data(), error.data());
       residuals.push_back(error);
-      // Squares of what Huber leaves of the residual in sigmas: a few gross ones shall not inflate the covariance.
-      const double in_sigmas = std::min(error.norm() / sightings[i].sigma_px[k], kHuber);
-      variance_scale += in_sigmas * in_sigmas / (2.0 * static_cast<double>(corner_count));
       sum += residuals.back().squaredNorm();
     }
   }
   result.rms_px = std::sqrt(sum / static_cast<double>(corner_count));
-  if (!options.fix_intrinsics) result.covariance = covariance_of(problem, blocks, std::max(0.05, variance_scale));
+  if (!options.fix_intrinsics) result.covariance = covariance_of(problem, blocks);
   return result;
+}
+
+}  // namespace
+
+AdjustmentResult adjust(std::span<const Sighting> sightings, const Estimate& start, const AdjustmentOptions& options) {
+  const AdjustmentResult first = adjust_at_scale(sightings, start, options, 1.0);
+  if (first.rms_px < 0) return first;
+  // Once more with the corners' true noise: it sets what counts as an outlier, the weight of corners against mark and
+  // circle, and the covariance.
+  return adjust_at_scale(sightings, first.estimate, options, scale_of(sightings, first.residuals_px));
 }
 
 }  // namespace arthronaut::calibration
