@@ -48,7 +48,7 @@ void say_result(const Context& context, const calibration::CalibrationSummary& s
   const camera::Calibration& c = summary.record.calibration;
   const Eigen::MatrixXd& covariance = summary.record.covariance;
   const auto sigma = [&](int k) { return covariance.rows() == 6 ? std::sqrt(covariance(k, k)) : 0.0; };
-  context.say(line("focal length %.2f px (+- %.2f), xi %.4f (+- %.4f)", c.focal_px, sigma(0), c.distortion_xi, sigma(1)));
+  context.say(line("focal length %.2f px (+- %.2f), xi %.5f (+- %.5f)", c.focal_px, sigma(0), c.distortion_xi, sigma(1)));
   context.say(line("principal point (%.2f, %.2f) px (+- %.2f), centre of rotation (%.2f, %.2f) px (+- %.2f)",
                    c.principal_point_px.x(), c.principal_point_px.y(), std::max(sigma(2), sigma(3)),
                    c.rotation_center_px.x(), c.rotation_center_px.y(), std::max(sigma(4), sigma(5))));

@@ -30,11 +30,15 @@ void write(cv::Mat& canvas, const cv::Point& where, const std::string& text, con
 
 void draw_field(cv::Mat& canvas, const CalibrationSummary& summary, std::span<const CalibrationPicture> pictures) {
   const camera::Calibration& c = summary.record.calibration;
-  const double scale = std::min(1000.0 / c.image_size_px.x(), 740.0 / c.image_size_px.y());
+  // The round view fills the field; where it is larger than the picture, the picture does.
+  const Eigen::Vector2d reach = Eigen::Vector2d::Constant(1.03 * c.boundary.radius_px);
+  const Eigen::Vector2d low = (c.boundary.center_px - reach).cwiseMax(0);
+  const Eigen::Vector2d size = (c.boundary.center_px + reach).cwiseMin(c.image_size_px.cast<double>()) - low;
+  const double scale = std::min(880.0 / size.x(), 780.0 / size.y());
   const auto place = [&](const Eigen::Vector2d& pixel) {
-    return at(pixel * scale + Eigen::Vector2d(kMargin, 100));
+    return at((pixel - low) * scale + Eigen::Vector2d(kMargin, 95));
   };
-  cv::rectangle(canvas, place({0, 0}), place(c.image_size_px.cast<double>()), kFaint, 1);
+  cv::rectangle(canvas, place(low), place(low + size), kFaint, 1);
   cv::circle(canvas, place(c.boundary.center_px), static_cast<int>(c.boundary.radius_px * scale), kFaint, 1, cv::LINE_AA);
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const auto& residuals = summary.pictures[i].residuals_px;
@@ -48,22 +52,22 @@ void draw_field(cv::Mat& canvas, const CalibrationSummary& summary, std::span<co
 }
 
 void draw_scatter(cv::Mat& canvas, const CalibrationSummary& summary) {
-  const cv::Point middle(1340, 330);
-  constexpr double kPxPerPx = 200;
+  const cv::Point middle(1270, 370);
+  constexpr double kPxPerPx = 250;
   for (int ring = 1; ring <= 4; ++ring)
     cv::circle(canvas, middle, static_cast<int>(0.25 * ring * kPxPerPx), kFaint, 1, cv::LINE_AA);
   write(canvas, middle + cv::Point(-30, static_cast<int>(kPxPerPx) + 24), "1 px", kFaint);
   for (std::size_t i = 0; i < summary.pictures.size(); ++i)
     for (const Eigen::Vector2d& r : summary.pictures[i].residuals_px)
       cv::circle(canvas, cv::Point2d(middle) + at(kPxPerPx * r), 1, colour(i), cv::FILLED, cv::LINE_AA);
-  int y = 610;
+  int y = 690;
   char text[200];
   for (std::size_t i = 0; i < summary.pictures.size() && y < kHeight - 20; ++i, y += 26) {
     const auto& picture = summary.pictures[i];
     std::snprintf(text, sizeof text, "%.18s: %.2f px, %zu corners, tilt %.0f deg, lens %.0f deg",
                   std::filesystem::path(picture.name).filename().c_str(), picture.rms_px, picture.residuals_px.size(),
                   picture.tilt_deg, picture.lens_angle_deg);
-    write(canvas, {1100, y}, text, colour(i));
+    write(canvas, {970, y}, text, colour(i));
   }
 }
 
