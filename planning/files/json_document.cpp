@@ -1,6 +1,7 @@
 #include "planning/files/json_document.h"
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "planning/files/atomic_file.h"
@@ -76,6 +77,11 @@ double JsonObject::positive_number(std::string_view key) const {
 std::int64_t JsonObject::integer(std::string_view key) const {
   const json& value = at(key);
   if (!value.is_number_integer()) fail(key, "must be an integer");
+  // Beyond 63 bits get() would wrap into another number.
+  if (value.is_number_unsigned() &&
+      value.get<std::uint64_t>() > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
+    fail(key, "is out of range");
+  }
   return value.get<std::int64_t>();
 }
 
@@ -190,7 +196,8 @@ JsonObject read_json(const std::filesystem::path& file, std::string_view format,
 
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& document) {
   refuse_not_finite(document, file, "");
-  write_atomically(file, document.dump(2) + "\n");
+  // Bytes that are no UTF-8 (of a file name, say) become the replacement character instead of an exception.
+  write_atomically(file, document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 nlohmann::ordered_json to_json(const Eigen::Vector2d& v) { return {v.x(), v.y()}; }

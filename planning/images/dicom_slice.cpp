@@ -161,7 +161,7 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
 void append_dicom_pixels(const DicomSlice& slice, std::vector<float>& values) {
   if (slice.samples_per_pixel != 1) throw InvalidInput(slice.file, "", "is a picture in colours, not a slice");
   const DicomElements elements = parse_dicom(slice.file, files::read_text(slice.file));
-  if (!elements.has_pixel_data) throw InvalidInput(slice.file, "pixel data", "are missing: the file is cut off");
+  if (!elements.has_pixel_data) throw InvalidInput(slice.file, "pixel data", "are missing");
   if (elements.is_compressed) {
     append_decompressed_pixels(slice, elements.transfer_syntax, values);
   } else {

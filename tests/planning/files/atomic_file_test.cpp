@@ -1,0 +1,131 @@
+#include "planning/files/atomic_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "planning/geometry/error.h"
+#include "tests/planning/files/temporary_folder.h"
+
+namespace arthronaut::files {
+namespace {
+
+using test::message_of;
+using test::TemporaryFolder;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(AtomicFile, WritesReplacesAndReadsBack) {
+  const TemporaryFolder folder;
+  const std::string bytes("a\0b\r\n\xff", 6);
+  write_atomically(folder / "x.bin", bytes);
+  EXPECT_EQ(read_text(folder / "x.bin"), bytes);
+  write_atomically(folder / "x.bin", "");
+  EXPECT_EQ(read_text(folder / "x.bin"), "");
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(AtomicFile, MissingThingsAreIoErrorsThatNameTheFile) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(message_of<IoError>([&] { (void)read_text(folder / "absent"); }), HasSubstr("absent"));
+  EXPECT_THAT(message_of<IoError>([&] { (void)read_text(folder.path()); }), HasSubstr("is a folder"));
+  EXPECT_THAT(message_of<IoError>([&] { write_atomically(folder / "no" / "x", "1"); }), HasSubstr("does not exist"));
+  // A folder of the target's name cannot be replaced, and nothing is left beside it.
+  std::filesystem::create_directory(folder / "x");
+  EXPECT_THAT(message_of<IoError>([&] { write_atomically(folder / "x", "1"); }), HasSubstr("cannot replace"));
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+// /proc refuses new files even to root, as a folder without write permission does to everybody else.
+TEST(AtomicFile, AReadOnlyFolderIsAnIoErrorOfTheTarget) {
+  EXPECT_THAT(message_of<IoError>([&] { write_atomically("/proc/case.json", "1"); }),
+              AllOf(HasSubstr("/proc/case.json"), Not(HasSubstr(".partial"))));
+  if (::geteuid() == 0) return;  // root writes into any folder
+  const TemporaryFolder folder;
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  EXPECT_THAT(message_of<IoError>([&] { write_atomically(folder / "x", "1"); }), HasSubstr("Permission denied"));
+}
+
+// A limit on the size of files ends a write half-way, as a full disk does.
+TEST(AtomicFile, ADiskThatFillsUpLeavesTheOldContents) {
+  const TemporaryFolder folder;
+  write_atomically(folder / "plan.json", "old");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{4096, 4096};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      write_atomically(folder / "plan.json", std::string(100000, 'x'));
+    } catch (const IoError& error) {
+      const std::string message = error.what();
+      const bool names_target = message.find("plan.json") != std::string::npos && message.find("partial") == std::string::npos;
+      ::_exit(names_target ? 42 : 43);
+    }
+    ::_exit(1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 42);
+  EXPECT_EQ(read_text(folder / "plan.json"), "old");
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+// The writer of a PDF or a mesh that fails: its exception passes, its half file goes.
+TEST(AtomicFile, AWriterThatThrowsLeavesNothing) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(write_atomically(folder / "a.pdf",
+                                [](const std::filesystem::path& temporary) {
+                                  EXPECT_EQ(temporary.extension(), ".pdf");
+                                  std::ofstream(temporary) << "half";
+                                  throw InvalidInput("no");
+                                }),
+               InvalidInput);
+  EXPECT_EQ(folder.file_count(), 0U);
+  // A writer that writes nothing at all is an error of the target too.
+  EXPECT_THAT(message_of<IoError>([&] { write_atomically(folder / "a.pdf", [](const std::filesystem::path&) {}); }),
+              AllOf(HasSubstr("a.pdf"), Not(HasSubstr("partial"))));
+}
+
+// kill -9 between write and rename, and at thirty other moments: the old or the new contents, never a mixture.
+TEST(AtomicFile, AKilledWriterLeavesAWholeFile) {
+  const TemporaryFolder folder;
+  const std::string first(200000, 'a'), second(150000, 'b');
+  for (int round = 0; round < 30; ++round) {
+    write_atomically(folder / "case.json", first);
+    const pid_t child = ::fork();
+    if (child == 0) {
+      for (;;) {
+        write_atomically(folder / "case.json", second);
+        write_atomically(folder / "case.json", first);
+      }
+    }
+    ::usleep(static_cast<useconds_t>(500 + 400 * round));
+    ::kill(child, SIGKILL);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    const std::string found = read_text(folder / "case.json");
+    EXPECT_TRUE(found == first || found == second) << "round " << round << ": " << found.size() << " bytes";
+  }
+  const pid_t child = ::fork();
+  if (child == 0) {
+    write_atomically(folder / "case.json", [](const std::filesystem::path& temporary) {
+      std::ofstream(temporary) << "new";
+      ::kill(::getpid(), SIGKILL);
+    });
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status));
+  const std::string found = read_text(folder / "case.json");
+  EXPECT_TRUE(found == first || found == second);
+}
+
+}  // namespace
+}  // namespace arthronaut::files
