@@ -8,10 +8,21 @@
 
 namespace arthronaut::registration {
 
+// The strokes that a pose is judged against.
+struct TouchedCurves {
+  const strokes::Curves& curves;
+  const TouchedPoints& points;  // chosen from them
+  double length_mm = 0;
+  double white_noise_mm = 0;    // of the tip, one coordinate, from the strokes alone
+};
+[[nodiscard]] double white_noise_of(const std::vector<strokes::OrientedPoint>& oriented);
+
 // The best pose of the pool with all that can be said about it. An empty pool gives a summary without a pose.
 [[nodiscard]] RegistrationSummary summarise(const PreparedBone::Data& bone, const PosePool& pool,
-                                            const TouchedPoints& points, const strokes::Curves& curves,
-                                            const RegistrationOptions& options);
+                                            const TouchedCurves& touched, const RegistrationOptions& options);
+
+// The misfit is more than slow errors of a good tracker make of this white noise.
+[[nodiscard]] bool misfits(double misfit_mm, double white_noise_mm);
 
 // Covariance of a twist of the bone frame about `pivot_mm` (bone frame). Robust ("sandwich"): the curvature of the cost on
 // both sides, and between them how much the pull of whole stretches of path scatters, which holds correlated errors and

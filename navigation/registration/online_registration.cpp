@@ -6,6 +6,7 @@
 
 #include "navigation/registration/coach.h"
 #include "navigation/registration/confidence.h"
+#include "navigation/registration/curve_checks.h"
 #include "navigation/registration/global_search.h"
 #include "navigation/registration/pose_pool.h"
 #include "navigation/strokes/stroke_tangents.h"
@@ -131,7 +132,8 @@ void OnlineRegistration::State::solve() {
   for (const Stroke& stroke : strokes) {
     if (!stroke.is_excluded) oriented.insert(oriented.end(), stroke.oriented.begin(), stroke.oriented.end());
   }
-  if (length_in_use_mm() < kMinLengthToSearch_mm) {
+  const std::vector<std::string> objections = objections_to(curves, bone->data().bounds.size_mm().norm());
+  if (length_in_use_mm() < kMinLengthToSearch_mm || !objections.empty()) {
     pool.clear();
   } else {
     GlobalSearchOptions search;
@@ -146,9 +148,11 @@ void OnlineRegistration::State::solve() {
   RegistrationOptions summary_options;
   summary_options.use_marker_prior = options.use_marker_prior;
   summary_options.target_in_bone_mm = options.target_in_bone_mm;
-  result.registration = summarise(bone->data(), pool, points, curves, summary_options);
+  result.registration = summarise(bone->data(), pool, {curves, points, length_in_use_mm(), white_noise_of(oriented)},
+                                  summary_options);
   if (!result.registration.has_pose) {
-    result.registration.reasons = {"too little was touched yet"};
+    result.registration.reasons = objections;
+    if (objections.empty()) result.registration.reasons = {"no pose was found yet that puts the strokes on the bone"};
     return;
   }
   const Eigen::Matrix3d turn = result.registration.covariance.bottomRightCorner<3, 3>();
@@ -229,6 +233,7 @@ void OnlineRegistration::State::advise() {
   const double length_done = std::min(1.0, result.length_mm / kLengthWanted_mm);
   if (!registration.has_pose) {
     coach.progress = 0.3 * length_done;
+    coach.missing.insert(coach.missing.end(), registration.reasons.begin(), registration.reasons.end());
     result.coach = std::move(coach);
     return;
   }

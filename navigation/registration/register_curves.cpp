@@ -3,6 +3,7 @@
 #include <random>
 
 #include "navigation/registration/confidence.h"
+#include "navigation/registration/curve_checks.h"
 #include "navigation/registration/global_search.h"
 #include "navigation/registration/pose_pool.h"
 #include "navigation/registration/registration.h"
@@ -11,6 +12,8 @@
 namespace arthronaut::registration {
 
 namespace {
+
+constexpr int kMaxRounds = 7, kMirrorRounds = 2;
 
 // How much better the best pose explains the points than the best different one, in units of independent measurements.
 double lead_of(const PosePool& pool, const TouchedPoints& points) {
@@ -46,23 +49,20 @@ std::vector<Hypothesis> neighbours_of(const geometry::RigidTransform& bone_from_
   return neighbours;
 }
 
-}  // namespace
-
-RegistrationSummary register_curves(const PreparedBone& prepared, const strokes::Curves& curves,
-                                    const RegistrationOptions& options) {
+RegistrationSummary search_and_summarise(const PreparedBone::Data& bone, const strokes::Curves& curves,
+                                         const RegistrationOptions& options, int max_rounds) {
   constexpr std::size_t kPointCount = 800;
-  constexpr int kMaxRounds = 7, kPairsEachRound = 8, kIterationsEachRound = 5, kFinalIterations = 12;
+  constexpr int kPairsEachRound = 8, kIterationsEachRound = 5, kFinalIterations = 12;
   constexpr std::size_t kHypothesesEachRound = 24;
   // Found beyond doubt: no need to search on.
   constexpr double kClearLead = 25, kClearLeadLater = 12;
 
-  const PreparedBone::Data& bone = prepared.data();
   const TouchedPoints points = choose_points(curves, kPointCount);
   const std::vector<strokes::OrientedPoint> oriented = strokes::oriented_points(curves);
   MarkerPrior prior;
   prior.use = options.use_marker_prior;
   PosePool pool(bone, prior);
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     const std::uint64_t seed = options.seed * kMaxRounds + static_cast<std::uint64_t>(round);
     pool.add(search_globally(bone, oriented, points,
                              {seed, options.use_marker_prior, kPairsEachRound, kHypothesesEachRound}),
@@ -70,10 +70,37 @@ RegistrationSummary register_curves(const PreparedBone& prepared, const strokes:
     pool.refine_all(points, kIterationsEachRound);
     if (lead_of(pool, points) > (round == 0 ? kClearLead : kClearLeadLater)) break;
   }
-  if (!pool.empty()) pool.add(neighbours_of(pool.best().bone_from_marker, points.centroid_mm, options.seed), points, options.seed);
-  pool.refine_all(points, kFinalIterations);
-  if (!pool.empty()) pool.polish(points);
-  return summarise(bone, pool, points, curves, options);
+  if (!pool.empty()) {
+    const std::uint64_t seed = options.seed * kMaxRounds;
+    pool.add(neighbours_of(pool.best().bone_from_marker, points.centroid_mm, seed), points, seed);
+    pool.refine_all(points, kFinalIterations);
+    pool.polish(points);
+  }
+  return summarise(bone, pool, {curves, points, strokes::stroke_length_mm(curves), white_noise_of(oriented)}, options);
+}
+
+// The curves as they would be had the bone been its own mirror image. The marker's face stays its face.
+strokes::Curves mirrored(strokes::Curves curves) {
+  for (strokes::CurvePoint& point : curves) point.position_mm.x() = -point.position_mm.x();
+  return curves;
+}
+
+}  // namespace
+
+RegistrationSummary register_curves(const PreparedBone& prepared, const strokes::Curves& curves,
+                                    const RegistrationOptions& options) {
+  const PreparedBone::Data& bone = prepared.data();
+  RegistrationSummary summary;
+  summary.point_count = static_cast<int>(curves.size());
+  summary.reasons = objections_to(curves, bone.bounds.size_mm().norm());
+  if (!summary.reasons.empty()) return summary;
+
+  summary = search_and_summarise(bone, curves, options, kMaxRounds);
+  if (!summary.reliable && search_and_summarise(bone, mirrored(curves), options, kMirrorRounds).reliable) {
+    summary.reasons.insert(summary.reasons.begin(),
+                           "the curves fit the mirror image of this bone: it is the bone of the other side");
+  }
+  return summary;
 }
 
 double predicted_error_mm(const RegistrationSummary& registration, const Eigen::Vector3d& point_in_bone_mm) {

@@ -51,6 +51,9 @@ struct RegistrationSummary {
   std::vector<double> point_residuals_mm;  // signed distance of each curve point to the bone, in the order given
   // How near the best different solution came: its robust cost over the best one's; large is good.
   double runner_up_ratio = 0;
+  // What the residuals hold beyond the tip's own white noise, root mean square: slow errors of tracking, and above all
+  // a bone that is another one than the mesh's. Judged inside the bone, where lifting and soft tissue don't reach.
+  double misfit_mm = 0;
 };
 
 // Deterministic for a seed. Never throws on poor data: read the summary.

@@ -23,6 +23,7 @@ RegistrationSummary read_registration_file(const std::filesystem::path& file) {
   summary.reasons = document.texts("reasons");
   summary.predicted_tre_mm = document.number("predicted_tre_mm");
   if (document.has("runner_up_ratio")) summary.runner_up_ratio = document.number("runner_up_ratio");
+  if (document.has("misfit_mm")) summary.misfit_mm = document.number("misfit_mm");
   if (document.has("covariance")) {
     const std::vector<double> entries = document.numbers("covariance");
     if (entries.size() != 36) document.fail("covariance", "must hold 36 numbers");
@@ -43,6 +44,7 @@ void write_registration_file(const std::filesystem::path& file, const Registrati
   document["reasons"] = registration.reasons;
   document["predicted_tre_mm"] = registration.predicted_tre_mm;
   document["runner_up_ratio"] = registration.runner_up_ratio;
+  document["misfit_mm"] = registration.misfit_mm;
   std::vector<double> entries;
   for (int i = 0; i < 36; ++i) entries.push_back(registration.covariance(i / 6, i % 6));
   document["covariance"] = entries;
