@@ -4,6 +4,8 @@
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
+#include "planning/tunnels/aim.h"
+#include "planning/tunnels/plan_checks.h"
 #include "planning/tunnels/tunnel.h"
 
 namespace arthronaut::command_line {
@@ -17,7 +19,7 @@ struct PlanArguments {
   std::string case_folder, bone;
   Eigen::Vector3d entry_mm = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
   double diameter_mm = 9.0;
-  bool at_footprint = false;
+  bool at_footprint = false, customary = false, list = false;
 };
 
 std::string text(const char* format, auto... values) {
@@ -26,28 +28,37 @@ std::string text(const char* format, auto... values) {
   return buffer;
 }
 
-void describe(const Context& context, const tunnels::Tunnel& tunnel, const geometry::Surface& surface) {
+void describe(const Context& context, const cases::Case& knee, const tunnels::Tunnel& tunnel,
+              const geometry::Surface& surface) {
   const auto measured = tunnels::measure(tunnel, surface);
   const auto& e = tunnel.entry_mm;
   const auto& d = tunnel.direction;
   context.say(text("%s tunnel, %.1f mm", std::string(bones::to_text(tunnel.bone)).c_str(), tunnel.diameter_mm));
   context.say(text("  entry      %.3f, %.3f, %.3f mm", e.x(), e.y(), e.z()));
   context.say(text("  direction  %.5f, %.5f, %.5f", d.x(), d.y(), d.z()));
-  if (!measured.enters_bone) {
-    context.say("  misses the bone");
-    return;
+  if (measured.enters_bone) {
+    const auto& x = measured.exit_mm;
+    context.say(text("  length     %.2f mm inside bone", measured.length_mm));
+    context.say(text("  exit       %.3f, %.3f, %.3f mm", x.x(), x.y(), x.z()));
+    context.say(text("  wall       %.2f mm at the thinnest", measured.wall_mm));
   }
-  const auto& x = measured.exit_mm;
-  context.say(text("  length     %.2f mm inside bone", measured.length_mm));
-  context.say(text("  exit       %.3f, %.3f, %.3f mm", x.x(), x.y(), x.z()));
-  context.say(text("  wall       %.2f mm at the thinnest", measured.wall_mm));
+  const auto marks = knee.landmarks.find(tunnel.bone);
+  const auto surroundings =
+      tunnels::surroundings_of(knee.bones.at(tunnel.bone).mesh, tunnel.bone,
+                               marks == knee.landmarks.end() ? landmarks::Landmarks{} : marks->second, knee.side);
+  for (const auto& check : tunnels::check_plan(tunnel, measured, surroundings)) {
+    const bool is_amiss =
+        check.verdict == tunnels::PlanCheck::Verdict::Look || check.verdict == tunnels::PlanCheck::Verdict::Wrong;
+    const std::string source = is_amiss && !check.source.empty() ? " [" + check.source + "]" : "";
+    context.say((is_amiss ? "  ! " : "    ") + check.name + ": " + check.text + source);
+  }
 }
 
 tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case& knee, bones::BoneKind kind,
                                const geometry::Surface& surface, bool has_entry) {
   tunnels::Tunnel tunnel{.bone = kind, .entry_mm = arguments.entry_mm, .direction = arguments.direction.normalized(),
                          .diameter_mm = arguments.diameter_mm};
-  if (arguments.at_footprint) {
+  if (arguments.at_footprint || arguments.customary) {
     const auto marks = knee.landmarks.find(kind);
     if (marks == knee.landmarks.end() || !marks->second.contains("native_footprint")) {
       throw InvalidInput(arguments.case_folder, std::string(bones::to_text(kind)),
@@ -63,6 +74,10 @@ tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case
     throw InvalidInput(text("plan: --entry lies %.1f mm off the bone, more than %.0f mm", off_mm, kSnapMm));
   }
   tunnel.entry_mm = nearest.point_mm;
+  if (arguments.customary) {
+    tunnel.direction = tunnels::customary_direction(kind, knee.side);
+    tunnel = tunnels::aim(tunnel, surface, tunnels::customary_aim(kind));
+  }
   if (!tunnels::measure(tunnel, surface).enters_bone) {
     throw InvalidInput("plan: --direction leads out of the bone at this entry");
   }
@@ -85,20 +100,29 @@ void add_plan_command(CLI::App& app, Context& context) {
                         ->needs(bone)
                         ->excludes(entry);
   sub->add_option("--diameter-mm", arguments->diameter_mm, "Diameter")->check(CLI::Range(3.0, 15.0))->capture_default_str();
+  auto* customary = sub->add_flag("--default", arguments->customary,
+                                  "Through the native footprint in the customary direction, fitted to the bone")
+                        ->needs(bone)
+                        ->excludes(entry)
+                        ->excludes(direction)
+                        ->excludes(footprint);
+  sub->add_flag("--list", arguments->list, "Show the plan")->excludes(direction)->excludes(customary);
   entry->needs(direction);
   footprint->needs(direction);
   sub->callback([arguments, entry, direction, &context] {
     auto knee = cases::load_case(arguments->case_folder);
-    if (direction->count() == 0) {
+    if (direction->count() == 0 && !arguments->customary) {
       if (knee.plan.tunnels.empty()) context.say("No tunnel is planned.");
       for (const auto& [kind, tunnel] : knee.plan.tunnels) {
         if (!arguments->bone.empty() && arguments->bone != bones::to_text(kind)) continue;
-        if (!knee.bones.contains(kind)) throw InvalidInput(arguments->case_folder, "plan.json", "plans a bone that the case lacks");
-        describe(context, tunnel, geometry::Surface(knee.bones.at(kind).mesh));
+        if (!knee.bones.contains(kind)) {
+          throw InvalidInput(arguments->case_folder, "plan.json", "plans a bone that the case lacks");
+        }
+        describe(context, knee, tunnel, geometry::Surface(knee.bones.at(kind).mesh));
       }
       return;
     }
-    if (arguments->direction.norm() < 1e-9) throw InvalidInput("plan: --direction must not be zero");
+    if (!arguments->customary && arguments->direction.norm() < 1e-9) throw InvalidInput("plan: --direction must not be zero");
     const auto kind = bones::bone_kind_from_text(arguments->bone);
     const auto bone_of_case = knee.bones.find(kind);
     if (bone_of_case == knee.bones.end()) {
@@ -108,7 +132,7 @@ void add_plan_command(CLI::App& app, Context& context) {
     const auto tunnel = planned_tunnel(*arguments, knee, kind, surface, entry->count() > 0);
     knee.plan.tunnels[kind] = tunnel;
     cases::save_plan(arguments->case_folder, knee.plan);
-    describe(context, tunnel, surface);
+    describe(context, knee, tunnel, surface);
   });
 }
 

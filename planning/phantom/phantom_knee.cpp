@@ -1,15 +1,16 @@
 #include "planning/phantom/phantom_knee.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "planning/geometry/error.h"
-#include "planning/geometry/rigid_transform.h"
 #include "planning/geometry/surface.h"
 #include "planning/landmarks/insertion_grids.h"
 #include "planning/phantom/implicit_mesh.h"
 #include "planning/phantom/knee_shape.h"
+#include "planning/tunnels/aim.h"
 
 namespace arthronaut::phantom {
 
@@ -103,31 +104,12 @@ Landmarks tibia_landmarks(const TibiaShape& shape, const AnatomicalBone& tibia) 
   return marks;
 }
 
-// Of the directions within 14 degrees of the customary one, that with the thickest wall among tunnels of a fitting
-// length; the length nearest to fitting where none fits.
-tunnels::Tunnel plan_tunnel(const AnatomicalBone& bone, bones::BoneKind kind, const Vector3d& entry,
-                            const Vector3d& customary, double least_length_mm, double greatest_length_mm) {
-  tunnels::Tunnel best{.bone = kind, .entry_mm = entry, .direction = customary.normalized(), .diameter_mm = 9};
-  double best_merit = -1e9;
-  const Vector3d side = best.direction.unitOrthogonal(), up = best.direction.cross(side);
-  const Vector3d axis = best.direction;
-  for (const double tilt_deg : {0.0, 5.0, 10.0, 14.0}) {
-    for (int turn = 0; turn < (tilt_deg > 0 ? 12 : 1); ++turn) {
-      const double tilt = geometry::rad_from_deg(tilt_deg), angle = turn * geometry::kPi / 6;
-      tunnels::Tunnel candidate = best;
-      candidate.direction =
-          (std::cos(tilt) * axis + std::sin(tilt) * (std::cos(angle) * side + std::sin(angle) * up)).normalized();
-      const auto measured = tunnels::measure(candidate, bone.surface);
-      if (!measured.enters_bone) continue;
-      const double misfit = std::max({0.0, least_length_mm - measured.length_mm, measured.length_mm - greatest_length_mm});
-      const double merit = std::min(measured.wall_mm, 6.0) - 10 * misfit - 0.12 * tilt_deg;
-      if (merit > best_merit) {
-        best_merit = merit;
-        best = candidate;
-      }
-    }
-  }
-  return best;
+// Planned in the anatomical frame, so that a left knee's plan is the mirror image of a right one's to the last bit.
+tunnels::Tunnel plan_tunnel(const AnatomicalBone& bone, bones::BoneKind kind, const Vector3d& entry) {
+  const Vector3d patient = tunnels::customary_direction(kind, bones::Side::Left);
+  const tunnels::Tunnel customary{.bone = kind, .entry_mm = entry,
+                                  .direction = {patient.x(), -patient.y(), patient.z()}, .diameter_mm = 9};
+  return tunnels::aim(customary, bone.surface, tunnels::customary_aim(kind));
 }
 
 // The anatomical frame into LPS. A right knee's lateral is the patient's right; a left knee is its mirror image.
@@ -172,12 +154,8 @@ PhantomKnee make_phantom_knee(const PhantomOptions& options) {
   const AnatomicalBone femur = bone_of(femur_shape), tibia = bone_of(tibia_shape);
   const Landmarks femur_marks = femur_landmarks(femur_shape, femur), tibia_marks = tibia_landmarks(tibia_shape, tibia);
 
-  // Outwards, forwards and up, as drilled through the anteromedial portal; and to the anteromedial face of the tibia,
-  // 55 degrees steep.
-  const auto femoral = plan_tunnel(femur, bones::BoneKind::Femur, femur_marks.at("native_footprint"),
-                                   {0.72, 0.32, 0.62}, 32, 38);
-  const auto tibial = plan_tunnel(tibia, bones::BoneKind::Tibia, tibia_marks.at("native_footprint"),
-                                  {-0.30, 0.49, -0.82}, 36, 44);
+  const auto femoral = plan_tunnel(femur, bones::BoneKind::Femur, femur_marks.at("native_footprint"));
+  const auto tibial = plan_tunnel(tibia, bones::BoneKind::Tibia, tibia_marks.at("native_footprint"));
 
   const ToPatient to_patient(options.side);
   const std::string source = "phantom knee, seed " + std::to_string(options.seed);
