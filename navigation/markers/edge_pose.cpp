@@ -17,9 +17,9 @@ constexpr int kMinEdges = 12;
 constexpr int kMaxEdges = 1024;
 constexpr double kTukey = 4.685;
 // Neighbouring profiles share pixels and what is wrong with them: so many of them count as one.
-constexpr double kCorrelatedEdges = 4;
+constexpr double kCorrelatedEdges = 2.5;
 // What every edge of a side has wrong together (camera, print, compression), as an error of the corners.
-constexpr double kCommonCornerErrorPx = 0.02;
+constexpr double kCommonCornerErrorPx = 0.016;
 
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;

@@ -1,0 +1,215 @@
+#include "navigation/markers/marker_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "navigation/markers/square_search.h"
+#include "planning/geometry/error.h"
+#include "tests/navigation/markers/counted_allocations.h"
+#include "tests/navigation/markers/rendered_marker.h"
+
+namespace arthronaut::markers {
+namespace {
+
+using geometry::RigidTransform;
+
+constexpr std::int64_t kFrameNs = 16'666'667;
+
+class MarkerTracking : public ::testing::Test {
+ protected:
+  static PlacedMarker placed(int id, const RigidTransform& pose) { return {codes_4x4_50()[id], 4, pose}; }
+  RenderedPicture picture(const std::vector<PlacedMarker>& markers, unsigned seed = 1) const {
+    PictureOptions options;
+    options.seed = seed;
+    return {camera_, markers, options};
+  }
+  static double angle_deg(const RigidTransform& a, const RigidTransform& b) {
+    return geometry::deg_from_rad(geometry::rotation_angle_rad(a.rotation.conjugate() * b.rotation));
+  }
+  static void expect_near(const MarkerObservation& seen, const RigidTransform& truth, double deg, double mm) {
+    ASSERT_TRUE(seen.is_tracked()) << to_text(seen.state);
+    EXPECT_LT(angle_deg(seen.camera_from_marker, truth), deg);
+    EXPECT_LT((seen.camera_from_marker.translation_mm - truth.translation_mm).norm(), mm);
+    EXPECT_GT(seen.covariance.trace(), 0);
+  }
+
+  camera::CameraModel camera_ = small_scope();
+  std::vector<DeclaredMarker> declared_ = {{0, 4}, {2, 4}};
+  RigidTransform world_ = facing_pose(-4.5, 3, 17, 20, 10, 15), probe_ = facing_pose(4, -2, 15, -15, 25, 120);
+};
+
+// Two markers through the wet, turned, distorted lens. A marker of 80 px whose 180 edges are each good to 0.1
+// px is known to about 0.1 deg and 10 um; the limits are three times that.
+TEST_F(MarkerTracking, MeasuresPosesOfARenderedPicture) {
+  const auto tracker = make_tracker(declared_);
+  const auto shown = picture({placed(0, world_), placed(2, probe_)});
+  for (int frame = 0; frame < 3; ++frame) {
+    const auto seen = tracker->track(shown.view(), camera_, frame * kFrameNs);
+    ASSERT_EQ(seen.size(), 2u);
+    expect_near(seen[0], world_, 0.3, 0.03);
+    expect_near(seen[1], probe_, 0.3, 0.03);
+  }
+}
+
+// The reference tracker sees the same, less exactly: its corners are good to 0.2 px, and the gamma shrinks
+// the square.
+TEST_F(MarkerTracking, AgreesWithTheReferenceTracker) {
+  const auto tracker = make_aruco_tracker(declared_);
+  const auto seen = tracker->track(picture({placed(0, world_), placed(2, probe_)}).view(), camera_, 0);
+  expect_near(seen[0], world_, 1.5, 0.3);
+  expect_near(seen[1], probe_, 1.5, 0.3);
+}
+
+// In all four turns and from all sides the marker's own top-left stays its top-left.
+TEST_F(MarkerTracking, KeepsTheMarkersFrameInEveryTurn) {
+  for (const double turn : {5.0, 95.0, 185.0, 275.0}) {
+    const auto tracker = make_tracker(declared_);
+    const RigidTransform truth = facing_pose(1, 0.5, 16, 12, -20, turn);
+    const auto seen = tracker->track(picture({placed(2, truth)}).view(), camera_, 0);
+    expect_near(seen[1], truth, 0.3, 0.03);
+    const Eigen::Vector2d top_left = camera_.project(truth * Eigen::Vector3d(-2, 2, 0)).value();
+    EXPECT_LT((seen[1].corners_px[0] - top_left).norm(), 0.3);
+  }
+}
+
+// The error over poses and noise stays within what the covariance says. It may stay well within: the
+// covariance also carries what compression and the renderers of others add.
+TEST_F(MarkerTracking, DoesNotUnderstateItsError) {
+  double sum = 0;
+  int count = 0;
+  for (int i = 0; i < 12; i += 2) {
+    const RigidTransform a = facing_pose(-4.5 + 0.1 * i, 3, 16 + 0.5 * i, 20 - 3 * i, 10 + i, 15 + 31 * i);
+    const RigidTransform b =
+        facing_pose(4, -2 - 0.1 * i, 15 + 0.4 * i, -15 + 2 * i, 25 - 4 * i, 120 + 17 * i);
+    const auto tracker = make_tracker(declared_);
+    const auto seen = tracker->track(picture({placed(0, a), placed(2, b)}, 100 + i).view(), camera_, 0);
+    for (int k = 0; k < 2; ++k) {
+      if (!seen[k].is_tracked()) continue;
+      const geometry::Vector6d error = geometry::log(seen[k].camera_from_marker.inverse() * (k == 0 ? a : b));
+      sum += error.dot(seen[k].covariance.inverse() * error) / 6;
+      ++count;
+    }
+  }
+  ASSERT_GE(count, 11);
+  RecordProperty("normalised_error", std::to_string(sum / count));
+  EXPECT_LT(sum / count, 2);
+}
+
+// A corner and a third of a side covered: found from nothing, and right.
+TEST_F(MarkerTracking, FindsAMarkerWithACoveredCorner) {
+  auto shown = picture({placed(2, probe_)});
+  const Eigen::Vector2d corner = camera_.project(probe_ * Eigen::Vector3d(-2, 2, 0)).value();
+  shown.cover(static_cast<int>(corner.x()) - 14, static_cast<int>(corner.y()) - 14,
+              static_cast<int>(corner.x()) + 14, static_cast<int>(corner.y()) + 14, 150);
+  const auto tracker = make_tracker(declared_);
+  expect_near(tracker->track(shown.view(), camera_, 0)[1], probe_, 0.6, 0.06);
+}
+
+// A bar across the marker: followed from the frame before, or refused with the reason; never wrong.
+TEST_F(MarkerTracking, FollowsAPartlyCoveredMarkerAndNeverReportsAWrongOne) {
+  const auto clear = picture({placed(2, probe_)});
+  const Eigen::Vector2d middle = camera_.project(probe_.translation_mm).value();
+  const auto tracker = make_tracker(declared_);
+  int followed = 0;
+  for (int width = 4; width <= 100; width += 16) {
+    tracker->reset();
+    (void)tracker->track(clear.view(), camera_, 0);
+    auto barred = picture({placed(2, probe_)});
+    const int x = static_cast<int>(middle.x());
+    barred.cover(x - width / 2, 0, x + width / 2, 600, 120);
+    const auto& seen = tracker->track(barred.view(), camera_, kFrameNs)[1];
+    if (!seen.is_tracked()) {
+      EXPECT_TRUE(seen.state == MarkerState::Covered || seen.state == MarkerState::Doubtful)
+          << to_text(seen.state);
+      continue;
+    }
+    ++followed;
+    expect_near(seen, probe_, 2, 0.2);
+  }
+  EXPECT_GE(followed, 2);
+}
+
+// An id that is in view twice belongs to neither.
+TEST_F(MarkerTracking, RefusesAMarkerThatIsSeenTwice) {
+  const auto shown = picture({placed(2, world_), placed(2, probe_)});
+  for (const bool own : {true, false}) {
+    const auto tracker = own ? make_tracker(declared_) : make_aruco_tracker(declared_);
+    const auto seen = tracker->track(shown.view(), camera_, 0);
+    EXPECT_EQ(seen[1].state, MarkerState::Duplicate) << (own ? "own" : "reference");
+    EXPECT_FALSE(seen[0].is_tracked());
+  }
+}
+
+// A marker that moves out of the view says so.
+TEST_F(MarkerTracking, SaysThatAMarkerLeftTheView) {
+  const auto tracker = make_tracker(declared_);
+  MarkerState last = MarkerState::NotSeen;
+  for (int frame = 0; frame < 20; ++frame) {
+    const auto pose = facing_pose(6 + 0.5 * frame, -1, 16, 10, 15, 20);
+    last = tracker->track(picture({placed(2, pose)}).view(), camera_, frame * kFrameNs)[1].state;
+    if (last == MarkerState::OutOfView) break;
+  }
+  EXPECT_EQ(last, MarkerState::OutOfView);
+}
+
+// Black, white, and grey pictures hold nothing; the next good one does.
+TEST_F(MarkerTracking, SurvivesEmptyPictures) {
+  const auto tracker = make_tracker(declared_);
+  for (const std::uint8_t grey : {0, 128, 255}) {
+    const std::vector<std::uint8_t> flat(800 * 600, grey);
+    for (const auto& seen : tracker->track({flat.data(), 800, 600, 800}, camera_, 0)) {
+      EXPECT_EQ(seen.state, MarkerState::NotSeen);
+    }
+  }
+  EXPECT_TRUE(tracker->track(picture({placed(2, probe_)}).view(), camera_, kFrameNs)[1].is_tracked());
+}
+
+// The same frames give the same numbers, also after a reset.
+TEST_F(MarkerTracking, IsDeterministic) {
+  const auto shown = picture({placed(0, world_), placed(2, probe_)});
+  const auto tracker = make_tracker(declared_);
+  const MarkerObservation first = tracker->track(shown.view(), camera_, 0)[0];
+  (void)tracker->track(shown.view(), camera_, kFrameNs);
+  tracker->reset();
+  const MarkerObservation again = tracker->track(shown.view(), camera_, 0)[0];
+  EXPECT_EQ(first.camera_from_marker.translation_mm, again.camera_from_marker.translation_mm);
+  EXPECT_EQ(first.covariance, again.covariance);
+}
+
+// What breaks the contract is said, with its name.
+TEST_F(MarkerTracking, RefusesBadDeclarationsAndFrames) {
+  const std::vector<DeclaredMarker> twice = {{2, 4}, {2, 4}}, outside = {{50, 4}}, flat = {{2, 0}},
+                                    nan = {{2, std::nan("")}};
+  for (const auto& bad : {twice, outside, flat, nan}) {
+    EXPECT_THROW((void)make_tracker(bad), InvalidInput);
+    EXPECT_THROW((void)make_aruco_tracker(bad), InvalidInput);
+  }
+  const std::vector<std::uint8_t> small(640 * 480);
+  EXPECT_THROW((void)make_tracker(declared_)->track({small.data(), 640, 480, 640}, camera_, 0), InvalidInput);
+  EXPECT_THROW((void)make_aruco_tracker(declared_)->track({}, camera_, 0), InvalidInput);
+}
+
+// After the first frames nothing is allocated: neither while tracking, nor when a marker is lost and searched
+// for.
+TEST_F(MarkerTracking, AllocatesNothingAfterWarmUp) {
+  const auto both = picture({placed(0, world_), placed(2, probe_)}), one = picture({placed(2, probe_)});
+  const auto tracker = make_tracker(declared_);
+  for (int frame = 0; frame < 12; ++frame)
+    (void)tracker->track((frame % 4 ? both : one).view(), camera_, frame * kFrameNs);
+  start_counting_allocations();
+  for (int frame = 12; frame < 40; ++frame)
+    (void)tracker->track((frame % 4 ? both : one).view(), camera_, frame * kFrameNs);
+  EXPECT_EQ(stop_counting_allocations(), 0);
+}
+
+// What the tools declare is declared to the tracker, world markers first.
+TEST(DeclaredMarkers, FollowTheTools) {
+  const auto declared = declared_markers(tools::standard_tools());
+  ASSERT_EQ(declared.size(), 5u);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(declared[i].id, i);
+}
+
+}  // namespace
+}  // namespace arthronaut::markers

@@ -1,0 +1,48 @@
+// Pictures of markers with known poses: area-sampled, blurred in light, then gamma, noise and 8 bits. Shares
+// nothing with what the product knows about how edges look.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "navigation/camera/camera_model.h"
+#include "navigation/camera/frame.h"
+#include "navigation/markers/marker_pattern.h"
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::markers {
+
+struct PlacedMarker {
+  MarkerCode code;
+  double size_mm = 4;
+  geometry::RigidTransform camera_from_marker;
+};
+
+struct PictureOptions {
+  double blur_px = 1.1;  // sigma of the optics
+  double gamma = 2.2;
+  double noise_grey = 1.5;  // sigma, in grey levels
+  unsigned seed = 1;
+};
+
+class RenderedPicture {
+ public:
+  RenderedPicture(const camera::CameraModel& camera, const std::vector<PlacedMarker>& markers,
+                  const PictureOptions& options = {});
+
+  [[nodiscard]] camera::GrayView view() const { return {grey_.data(), width_, height_, width_}; }
+  // Paints over everything within these bounds (pixels).
+  void cover(int left, int top, int right, int bottom, std::uint8_t grey);
+
+ private:
+  int width_, height_;
+  std::vector<std::uint8_t> grey_;
+};
+
+// A small wet arthroscope, 800 x 600, lens turned by 30 degrees.
+[[nodiscard]] camera::CameraModel small_scope();
+// A marker that faces the camera, tilted about x and then y and turned about its normal.
+[[nodiscard]] geometry::RigidTransform facing_pose(double x_mm, double y_mm, double z_mm, double tilt_x_deg,
+                                                   double tilt_y_deg, double turn_deg);
+
+}  // namespace arthronaut::markers
