@@ -5,11 +5,21 @@
 
 namespace arthronaut::planning_view {
 
+namespace {
+
+landmarks::Landmarks landmarks_of(const cases::Case& knee, bones::BoneKind kind) {
+  const auto found = knee.landmarks.find(kind);
+  return found == knee.landmarks.end() ? landmarks::Landmarks{} : found->second;
+}
+
+}  // namespace
+
 PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
   for (const auto& [kind, bone] : knee_.bones) {
     if (bone.mesh.empty()) continue;
     bones_.emplace(kind, BoneModel{scene::simplified(bone.mesh), std::make_shared<geometry::Surface>(bone.mesh),
-                                   geometry::bounds_of(bone.mesh), {}});
+                                   geometry::bounds_of(bone.mesh), {},
+                                   tunnels::surroundings_of(bone.mesh, kind, landmarks_of(knee_, kind), knee_.side)});
     measure(kind);
   }
   if (bones_.empty()) throw InvalidInput("the case \"" + knee_.name + "\" has no bone to show");
@@ -23,14 +33,10 @@ std::optional<tunnels::Tunnel> PlanModel::tunnel(bones::BoneKind kind) const {
 
 const tunnels::TunnelGeometry& PlanModel::measured(bones::BoneKind kind) const { return bones_.at(kind).measured; }
 
-std::vector<PlanCheck> PlanModel::checks(bones::BoneKind kind) const {
+std::vector<tunnels::PlanCheck> PlanModel::checks(bones::BoneKind kind) const {
   const auto planned = tunnel(kind);
   if (!planned) return {};
-  std::optional<Eigen::Vector3d> footprint;
-  if (const auto landmarks = knee_.landmarks.find(kind); landmarks != knee_.landmarks.end())
-    if (const auto point = landmarks->second.find("native_footprint"); point != landmarks->second.end())
-      footprint = point->second;
-  return check_plan(*planned, measured(kind), footprint);
+  return tunnels::check_plan(*planned, measured(kind), bones_.at(kind).surroundings);
 }
 
 double PlanModel::drawn_length_mm(bones::BoneKind kind) const {

@@ -8,9 +8,9 @@
 #include <optional>
 #include <vector>
 
-#include "app/planning_view/plan_checks.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/surface.h"
+#include "planning/tunnels/plan_checks.h"
 
 namespace arthronaut::planning_view {
 
@@ -32,7 +32,7 @@ class PlanModel {
 
   [[nodiscard]] std::optional<tunnels::Tunnel> tunnel(bones::BoneKind kind) const;
   [[nodiscard]] const tunnels::TunnelGeometry& measured(bones::BoneKind kind) const;  // meaningful with a tunnel
-  [[nodiscard]] std::vector<PlanCheck> checks(bones::BoneKind kind) const;            // empty without a tunnel
+  [[nodiscard]] std::vector<tunnels::PlanCheck> checks(bones::BoneKind kind) const;            // empty without a tunnel
   // How far a tunnel is drawn: through the bone, or 30 mm where it misses.
   [[nodiscard]] double drawn_length_mm(bones::BoneKind kind) const;
   [[nodiscard]] geometry::Bounds bounds(std::optional<bones::BoneKind> only) const;
@@ -47,6 +47,7 @@ class PlanModel {
     std::shared_ptr<const geometry::Surface> surface;
     geometry::Bounds bounds;
     tunnels::TunnelGeometry measured;
+    tunnels::PlanSurroundings surroundings;
   };
   void measure(bones::BoneKind kind);
 

@@ -1,17 +1,18 @@
 #include <Eigen/Geometry>
 
+#include "app/planning_view/anatomical_text.h"
 #include "app/planning_view/planning_view.h"
 
 namespace arthronaut::planning_view {
 
 namespace {
 
-widgets::Sign sign_of(PlanCheck::Verdict verdict) {
+widgets::Sign sign_of(tunnels::PlanCheck::Verdict verdict) {
   switch (verdict) {
-    case PlanCheck::Verdict::Fine: return widgets::Sign::Good;
-    case PlanCheck::Verdict::Look: return widgets::Sign::Caution;
-    case PlanCheck::Verdict::Wrong: return widgets::Sign::Bad;
-    case PlanCheck::Verdict::Note: return widgets::Sign::Quiet;
+    case tunnels::PlanCheck::Verdict::Fine: return widgets::Sign::Good;
+    case tunnels::PlanCheck::Verdict::Look: return widgets::Sign::Caution;
+    case tunnels::PlanCheck::Verdict::Wrong: return widgets::Sign::Bad;
+    case tunnels::PlanCheck::Verdict::Note: return widgets::Sign::Quiet;
   }
   return widgets::Sign::Quiet;
 }
@@ -61,7 +62,7 @@ void draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const Pla
                        "Leaves the bone " + anatomical_text(geometry.exit_mm - geometry.entry_on_surface_mm, model.knee().side) +
                            " of the entry");
     ImGui::Dummy({0, ui.theme.px(4)});
-    for (const PlanCheck& check : model.checks(bone)) {
+    for (const tunnels::PlanCheck& check : model.checks(bone)) {
       ImGui::BeginGroup();
       widgets::status_row(ui, sign_of(check.verdict), check.name, check.text);
       ImGui::EndGroup();

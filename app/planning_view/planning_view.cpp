@@ -136,6 +136,9 @@ void PlanningView::draw(const widgets::Ui& ui, const widgets::Rect& area, const 
   }
   draw_bones(ui, rest, model);
   draw_plan_panel(ui, panel, model, state_.bone, status);
+  ui.log.note_state("plan", status.save_failed ? "failed" : status.saved.starts_with("saved") ? "saved" : "moving");
+  ui.log.note_state("undo", status.undo_what);
+  ui.log.note_state("redo", status.redo_what);
 }
 
 void PlanningView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model) {

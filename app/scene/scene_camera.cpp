@@ -38,8 +38,9 @@ Direction direction_of(View view, bones::Side side) {
     case View::Medial: return {{lateral, 0, 0}, {0, 0, 1}};
     case View::Lateral: return {{-lateral, 0, 0}, {0, 0, 1}};
     case View::Distal: return {{0, 0, 1}, {0, -1, 0}};
-    // From below, the front and the medial side: the lateral wall of the notch, where the footprint is, faces the eye.
-    case View::Notch: return {Eigen::Vector3d(0.62 * lateral, 0.32, 0.72).normalized(), {0, -1, 0.4}};
+    // From below and a little from the medial side and the back: between the condyles onto the lateral wall of the notch,
+    // where the footprint is.
+    case View::Notch: return {Eigen::Vector3d(0.36 * lateral, -0.10, 0.93).normalized(), {0, -1, 0}};
     case View::Plateau: return {{0, 0, -1}, {0, -1, 0}};
   }
   throw InvalidInput("unknown view");

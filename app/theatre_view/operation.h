@@ -36,6 +36,8 @@ struct OperationSetup {
   std::shared_future<PreparedBonePtr> prepared_bone;                      // for registration
   std::optional<registration::RegistrationSummary> registration;          // from an earlier run
   bool digitises = true;                                                  // from the first frame
+  // Where the tunnel truly goes; the simulated source alone knows. Filled in by open_source, null else.
+  std::shared_ptr<std::optional<tunnels::Tunnel>> truth;
   std::filesystem::path session_folder;                                   // recorded when not empty
 };
 

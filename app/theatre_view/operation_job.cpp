@@ -49,6 +49,7 @@ std::shared_ptr<LiveFrame> OperationJob::step() {
     pipeline::append_pose_rows(live->result, poses_);
     trail_.push_back(live->result.tip_in_world_mm);
   }
+  drilled_.add(live->result.guidance);
   record(*live);
   project(*live);
   return live;
@@ -136,8 +137,18 @@ void OperationJob::start_recording(const std::filesystem::path& session_folder) 
 void OperationJob::stop_recording() {
   if (recorder_ == nullptr) return;
   if (!poses_.empty()) recorder_->set_curves(curves());
+  record_drilled_tunnel();
   recorder_->finish();
   recorder_.reset();
+}
+
+void OperationJob::record_drilled_tunnel() {
+  if (!setup_.plan) return;
+  std::optional<recording::AchievedTunnel> achieved = drilled_.measured(*setup_.plan);
+  if (!achieved) return;
+  if (setup_.truth != nullptr) achieved->truth = *setup_.truth;
+  recording::write_achieved_file(recorder_->folder() / "achieved.json", *achieved);
+  recorder_->add_event({achieved->timestamp_ns, "tunnel drilled", "achieved.json"});
 }
 
 const sources::SourceInfo& OperationJob::source_info() const { return source_->info(); }

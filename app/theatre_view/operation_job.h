@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/theatre_view/operation.h"
+#include "app/theatre_view/tunnel_meter.h"
 
 namespace arthronaut::theatre_view {
 
@@ -33,6 +34,7 @@ class OperationJob {
 
  private:
   void record(const LiveFrame& live);
+  void record_drilled_tunnel();
   void project(LiveFrame& live) const;
   [[nodiscard]] std::vector<scene::ClearDisc> tool_tips(const pipeline::FrameResult& result) const;
 
@@ -46,6 +48,7 @@ class OperationJob {
   std::vector<Eigen::Vector3d> trail_;
   std::unique_ptr<recording::SessionRecorder> recorder_;
   std::string recording_error_;
+  TunnelMeter drilled_;
 };
 
 }  // namespace arthronaut::theatre_view

@@ -42,6 +42,7 @@ void TheatreView::add_actions(widgets::Actions& actions) {
                  operation_.reset();
                  options_.reset();
                  choices_.bone = choices_.bone == bones::BoneKind::Femur ? bones::BoneKind::Tibia : bones::BoneKind::Femur;
+                 look_along_plan();
                }});
   actions.add({"operate.medium", "Saline", "Saline while on, air while off; for the next video", GLFW_KEY_M, 0, false, {},
                [this] { return choices_.saline; }, [this] { choices_.saline = !choices_.saline; }});

@@ -74,7 +74,7 @@ TheatreDisplay display_of(const OperationStatus* status, const pipeline::Pipelin
   TheatreDisplay display;
   if (status == nullptr || options == nullptr) {
     display.headline = "No picture";
-    display.detail = "Start a source below";
+    display.detail = "Space starts the next step";
     return display;
   }
   if (status->phase == Phase::Failed) {

@@ -67,9 +67,12 @@ OperationSetup simulated_setup(const planning_view::PlanModel& model, bones::Bon
   simulation.bone = bone;
   simulation.plan = *setup.plan;
   simulation.refractive_index = setup.pipeline.refractive_index;
-  setup.open_source = [simulation, part]() -> std::unique_ptr<sources::FrameSource> {
-    const auto phase = part == SimulatedPart::Scratch ? simulator::Phase::Scratch : simulator::Phase::Drill;
-    return std::make_unique<simulator::SimulatedOperation>(simulation, phase);
+  setup.truth = std::make_shared<std::optional<tunnels::Tunnel>>();
+  setup.open_source = [simulation, part, truth = setup.truth]() -> std::unique_ptr<sources::FrameSource> {
+    if (part == SimulatedPart::Scratch) return std::make_unique<simulator::SimulatedOperation>(simulation, simulator::Phase::Scratch);
+    auto operation = std::make_unique<simulator::SimulatedOperation>(simulation, simulator::Phase::Drill);
+    *truth = operation->drilled_tunnel();
+    return operation;
   };
   return setup;
 }

@@ -32,6 +32,7 @@ void TheatreView::open(const planning_view::PlanModel* model, const std::filesys
   model_ = model;
   case_folder_ = case_folder;
   if (model_ != nullptr && !model_->has_bone(choices_.bone)) choices_.bone = bones::BoneKind::Tibia;
+  if (model_ != nullptr) look_along_plan();
 }
 
 void TheatreView::start(OperationSetup setup) {
@@ -45,20 +46,26 @@ void TheatreView::start(OperationSetup setup) {
   }
   setup.prepared_bone = bone.prepared;
   setup.registration = bone.registration;
+  if (bone.registration && bone.registration->reliable) setup.digitises = false;
+  part_.reset();
   operation_.reset();  // ends and joins the one before
   options_ = std::make_unique<pipeline::PipelineOptions>(setup.pipeline);
   operation_ = std::make_unique<Operation>(std::move(setup), wake_);
   status_ = operation_->status();
-  if (const auto tunnel = model_->tunnel(choices_.bone)) {
-    const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-    scene::SceneCamera camera = scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm, 190, up);
-    pane_.look(scene::orbited(camera, {40, -30}, 600));  // a little from the side: depth is seen too
-  }
+  look_along_plan();
+}
+
+void TheatreView::look_along_plan() {
+  const auto tunnel = model_->tunnel(choices_.bone);
+  if (!tunnel) return pane_.look(scene::look_from(scene::View::Anterior, model_->knee().side, model_->bounds(choices_.bone), 1));
+  const scene::SceneCamera along =
+      scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm, 190, Eigen::Vector3d::UnitZ());
+  pane_.look(scene::orbited(along, {40, -30}, 600));  // a little from the side: depth is seen too
 }
 
 void TheatreView::start_simulation(SimulatedPart part) {
-  part_ = part;
   start(simulated_setup(*model_, choices_.bone, part));
+  part_ = part;
 }
 
 void TheatreView::start_video() {
@@ -82,10 +89,11 @@ std::string TheatreView::next_step() const {
   if (model_ == nullptr) return "open a case";
   if (!model_->tunnel(choices_.bone)) return "plan the tunnel (F1)";
   const bool registered = status_.registration && status_.registration->reliable;
-  if (operation_ == nullptr || status_.phase == Phase::Failed) return can_simulate() ? "start the simulated operation" : "start a source";
+  if (operation_ == nullptr || status_.phase == Phase::Failed) return can_simulate() ? "start the simulated operation" : "open the next video";
   if (status_.is_registering) return "wait for the registration";
   if (!registered && status_.trail->size() >= kEnoughPoints) return "register what was touched";
   if (registered && (part_ == SimulatedPart::Scratch || !is_running()) && can_simulate()) return "drill";
+  if (!is_running() && !videos_of(case_folder_).empty()) return "open the next video";
   if (registered) return "follow the bullseye";
   return "touch the bone with the probe";
 }
@@ -95,7 +103,7 @@ void TheatreView::take_next_step() {
   if (step == "start the simulated operation") return start_simulation(SimulatedPart::Scratch);
   if (step == "register what was touched") return operation_->register_curves();
   if (step == "drill") return start_simulation(SimulatedPart::Drill);
-  if (step == "start a source") return start_video();
+  if (step == "open the next video") return start_video();
   if (step == "touch the bone with the probe" && status_.phase == Phase::Ended && can_simulate())
     return start_simulation(SimulatedPart::Scratch);
 }
@@ -195,7 +203,10 @@ void TheatreView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area, c
   pane_.draw(ui, "operate.view", area);
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const std::string label = screen.display.guidance_is_valid ? "Drill guide and plan" : "Plan; the guide is not known now";
-  draw.AddText(ui.theme.strong, ui.theme.strong->FontSize, {area.x + ui.theme.px(14), area.y + ui.theme.px(10)},
+  const ImVec2 wide = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, label.c_str());
+  draw.AddRectFilled(area.min(), {area.x + wide.x + ui.theme.px(28), area.y + wide.y + ui.theme.px(18)}, IM_COL32(12, 15, 19, 200),
+                     ui.theme.px(6));
+  draw.AddText(ui.theme.strong, ui.theme.strong->FontSize, {area.x + ui.theme.px(14), area.y + ui.theme.px(9)},
                screen.display.guidance_is_valid ? widgets::kQuietText : widgets::kCaution, label.c_str());
 }
 

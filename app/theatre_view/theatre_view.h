@@ -37,6 +37,7 @@ class TheatreView {
   void take_next_step();
   void toggle_recording();
   void cycle_overlay();
+  void look_along_plan();
   void show_scene(const TheatreScreen& screen);
   [[nodiscard]] std::string next_step() const;
   [[nodiscard]] bool can_simulate() const;
@@ -67,7 +68,7 @@ class TheatreView {
   std::unique_ptr<Operation> operation_;
   std::unique_ptr<pipeline::PipelineOptions> options_;  // of the operation
   OperationStatus status_;                              // of this frame
-  SimulatedPart part_ = SimulatedPart::Scratch;
+  std::optional<SimulatedPart> part_;                   // of the running simulation
   std::string notice_;
 };
 

@@ -34,11 +34,11 @@ struct LineStyle {
 LineStyle style_of(const OverlayLine& line, float opacity, float scale) {
   const float seen = line.is_hidden ? 0.35F * opacity : opacity;
   switch (line.kind) {
-    case OverlayLine::Kind::BoneOutline: return {widgets::color_of(scene::Color{1, 1, 1}, 0.45F * seen), 1.5F * scale};
+    case OverlayLine::Kind::BoneOutline: return {widgets::color_of(scene::Color{1, 1, 1}, 0.5F * seen), 2.0F * scale};
     case OverlayLine::Kind::EntryRing: return {widgets::color_of(scene::Color{1, 1, 1}, seen), 3.5F * scale};
-    case OverlayLine::Kind::TunnelWall: return {widgets::color_of(scene::kPlanColor, 0.75F * seen), 1.5F * scale};
+    case OverlayLine::Kind::TunnelWall: return {widgets::color_of(scene::kPlanColor, 0.75F * seen), 2.0F * scale};
     case OverlayLine::Kind::TunnelAxis: return {widgets::color_of(scene::kPlanColor, seen), 3.0F * scale};
-    case OverlayLine::Kind::Curve: return {widgets::color_of(scene::kCurveColor, 0.8F * seen), 2.0F * scale};
+    case OverlayLine::Kind::Curve: return {widgets::color_of(scene::kCurveColor, 0.9F * seen), 3.0F * scale};
   }
   return {widgets::kText, scale};
 }
@@ -77,9 +77,9 @@ void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const TheatreS
   ui.log.note("operate.video_panel", area.min(), area.max());
   const TheatreDisplay& display = screen.display;
   if (!display.has_picture) {
-    widgets::text_centered(ui, {area.x, area.y, area.width, area.height * 0.9F}, ui.theme.title, widgets::kText, display.headline);
-    widgets::text_centered(ui, {area.x, area.center().y, area.width, area.height * 0.2F}, ui.theme.strong, widgets::kQuietText,
-                           display.detail);
+    const float middle = area.center().y, height = ui.theme.px(60);
+    widgets::text_centered(ui, {area.x, middle - height, area.width, height}, ui.theme.title, widgets::kText, display.headline);
+    widgets::text_centered(ui, {area.x, middle, area.width, 2 * height}, ui.theme.strong, widgets::kQuietText, display.detail);
     return;
   }
   texture.upload(screen.status->live->picture);

@@ -81,10 +81,10 @@ Theme build_theme(float scale) {
   ImGui::GetIO().Fonts->Clear();
   Theme theme;
   theme.scale = scale;
-  theme.body = add_font(kRegular, std::round(22 * scale));
-  theme.strong = add_font(kSemiBold, std::round(22 * scale));
-  theme.title = add_font(kSemiBold, std::round(32 * scale));
-  theme.number = add_font(kSemiBold, std::round(60 * scale));
+  theme.body = add_font(kRegular, std::round(24 * scale));
+  theme.strong = add_font(kSemiBold, std::round(24 * scale));
+  theme.title = add_font(kSemiBold, std::round(34 * scale));
+  theme.number = add_font(kSemiBold, std::round(64 * scale));
   build_style(scale);
   return theme;
 }

@@ -10,10 +10,10 @@ namespace arthronaut::widgets {
 
 struct Theme {
   float scale = 1;          // of all sizes
-  ImFont* body = nullptr;   // 22 px at scale 1
-  ImFont* strong = nullptr; // 22 px, semi-bold
-  ImFont* title = nullptr;  // 32 px
-  ImFont* number = nullptr; // 60 px
+  ImFont* body = nullptr;   // 24 px at scale 1
+  ImFont* strong = nullptr; // 24 px, semi-bold
+  ImFont* title = nullptr;  // 34 px
+  ImFont* number = nullptr; // 64 px
   [[nodiscard]] float px(float size_at_1080) const { return size_at_1080 * scale; }
 };
 

@@ -1,0 +1,113 @@
+#include "app/scene/plan_overlay.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace arthronaut::scene {
+namespace {
+
+using Kind = OverlayLine::Kind;
+
+// A block of bone, 40 x 40 x 30 mm, whose front face lies at z = 0.
+geometry::TriangleMesh block() {
+  geometry::TriangleMesh mesh;
+  for (int i = 0; i < 8; ++i)
+    mesh.vertices_mm.push_back({(i & 1) != 0 ? 20.0 : -20.0, (i & 2) != 0 ? 20.0 : -20.0, (i & 4) != 0 ? 30.0 : 0.0});
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+camera::CameraModel scope() {
+  camera::Calibration calibration;
+  calibration.image_size_px = {1920, 1080};
+  calibration.focal_px = 590;
+  calibration.principal_point_px = {962, 541};
+  calibration.rotation_center_px = {958, 538};
+  calibration.distortion_xi = -0.3;
+  calibration.boundary = {{960, 540}, 531};
+  return camera::CameraModel(calibration, 0.3, 1.3345);
+}
+
+struct Scene {
+  std::shared_ptr<const geometry::Surface> surface = std::make_shared<geometry::Surface>(block());
+  camera::CameraModel camera = scope();
+  geometry::RigidTransform camera_from_bone{Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY())), {1, -2, 35}};
+  tunnels::Tunnel plan;
+  OverlayModel model;
+  Scene() : plan(into_the_front()), model(surface, block(), plan, 25) {}
+  static tunnels::Tunnel into_the_front() {
+    tunnels::Tunnel tunnel;
+    tunnel.entry_mm = {2, 3, 0};
+    tunnel.direction = Eigen::Vector3d(0.1, 0, 1).normalized();
+    tunnel.diameter_mm = 8;
+    return tunnel;
+  }
+};
+
+std::vector<Eigen::Vector2d> points_of(const PlanOverlay& overlay, Kind kind, bool hidden) {
+  std::vector<Eigen::Vector2d> points;
+  for (const OverlayLine& line : overlay)
+    if (line.kind == kind && line.is_hidden == hidden) points.insert(points.end(), line.points_px.begin(), line.points_px.end());
+  return points;
+}
+
+// The mouth of the tunnel is where the camera model puts the drill's cylinder on the face: exact under distortion.
+TEST(PlanOverlay, EntryRingLiesWhereTheCameraModelSaysItDoes) {
+  const Scene scene;
+  const PlanOverlay overlay = scene.model.project(scene.camera, scene.camera_from_bone, {});
+  const auto ring = points_of(overlay, Kind::EntryRing, false);
+  ASSERT_GT(ring.size(), 40U);
+  for (const Eigen::Vector2d& pixel : ring) {
+    // Back through the camera onto the face z = 0: the distance from the axis must be the radius.
+    const auto ray = scene.camera.ray(pixel);
+    ASSERT_TRUE(ray);
+    const geometry::RigidTransform bone_from_camera = scene.camera_from_bone.inverse();
+    const Eigen::Vector3d eye = bone_from_camera.translation_mm, along = bone_from_camera.rotate(*ray);
+    const Eigen::Vector3d on_face = eye - eye.z() / along.z() * along;
+    const double from_axis = (on_face - scene.plan.entry_mm).cross(scene.plan.direction).norm();
+    EXPECT_NEAR(from_axis, 4.0, 0.25);  // the ring is lifted off the face by 0.15 mm
+  }
+}
+
+// What is inside the bone is marked as hidden, what is in front of it is not.
+TEST(PlanOverlay, TunnelInsideTheBoneIsHidden) {
+  const Scene scene;
+  const PlanOverlay overlay = scene.model.project(scene.camera, scene.camera_from_bone, {});
+  EXPECT_FALSE(points_of(overlay, Kind::TunnelAxis, false).empty());
+  EXPECT_GT(points_of(overlay, Kind::TunnelAxis, true).size(), 15U);
+  const auto in_front = scene.camera.project(scene.camera_from_bone * (scene.plan.entry_mm - 5 * scene.plan.direction));
+  ASSERT_TRUE(in_front);
+  const auto seen = points_of(overlay, Kind::TunnelAxis, false);
+  EXPECT_TRUE(std::any_of(seen.begin(), seen.end(), [&](const Eigen::Vector2d& p) { return (p - *in_front).norm() < 1e-6; }));
+}
+
+// Nothing is drawn over the tip of a tool, and nothing outside the round view.
+TEST(PlanOverlay, KeepsOffTheToolTipAndInsideTheView) {
+  const Scene scene;
+  const auto entry = scene.camera.project(scene.camera_from_bone * scene.plan.entry_mm);
+  ASSERT_TRUE(entry);
+  const ClearDisc disc{*entry, 60};
+  const PlanOverlay overlay = scene.model.project(scene.camera, scene.camera_from_bone, std::span(&disc, 1));
+  ASSERT_FALSE(overlay.empty());
+  for (const OverlayLine& line : overlay)
+    for (const Eigen::Vector2d& pixel : line.points_px) {
+      EXPECT_GE((pixel - disc.center_px).norm(), 60);
+      EXPECT_TRUE(scene.camera.is_inside_view(pixel));
+    }
+}
+
+// A curve breaks where the tip hopped.
+TEST(PlanOverlay, CurvesBreakAtHops) {
+  const camera::CameraModel camera = scope();
+  const std::vector<Eigen::Vector3d> points{{0, 0, 30}, {1, 0, 30}, {2, 0, 30}, {8, 0, 30}, {9, 0, 30}};
+  PlanOverlay overlay;
+  add_curves(overlay, camera, points, 1.5, {});
+  ASSERT_EQ(overlay.size(), 2U);
+  EXPECT_EQ(overlay[0].points_px.size(), 3U);
+  EXPECT_EQ(overlay[1].points_px.size(), 2U);
+}
+
+}  // namespace
+}  // namespace arthronaut::scene

@@ -1,0 +1,77 @@
+// A display of the test's own (Xvfb), the workstation on it, and a hand (xdotool).
+#pragma once
+
+#include <sys/types.h>
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace arthronaut::test {
+
+// What is missing on this machine to test the window; empty when nothing is.
+[[nodiscard]] std::string missing_for_window_tests();
+
+// An X server without a screen. Gone when the test is over.
+class VirtualDisplay {
+ public:
+  VirtualDisplay(int width, int height);
+  ~VirtualDisplay();
+  VirtualDisplay(const VirtualDisplay&) = delete;
+  VirtualDisplay& operator=(const VirtualDisplay&) = delete;
+  [[nodiscard]] const std::string& name() const { return name_; }  // ":7"
+
+ private:
+  pid_t process_ = -1;
+  std::string name_;
+};
+
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<unsigned char> rgb;
+  [[nodiscard]] std::array<int, 3> at(int x, int y) const;
+};
+
+struct Area {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+// The workstation with --list-widgets. What it prints is read as it comes.
+class RunningWorkstation {
+ public:
+  // data_home holds the built-in case.
+  RunningWorkstation(const VirtualDisplay& display, const std::filesystem::path& data_home);
+  ~RunningWorkstation();
+  RunningWorkstation(const RunningWorkstation&) = delete;
+  RunningWorkstation& operator=(const RunningWorkstation&) = delete;
+
+  // False when the state did not become so within the time.
+  [[nodiscard]] bool wait_for_state(const std::string& key, const std::string& value, double seconds = 40) const;
+  [[nodiscard]] std::string state(const std::string& key) const;
+  [[nodiscard]] std::map<std::string, Area> widgets() const;  // of the last complete list
+
+  void press(const std::string& key) const;  // as xdotool names it
+  void click(const std::string& widget) const;
+  void drag(int x0, int y0, int x1, int y1) const;
+  [[nodiscard]] Picture screenshot() const;
+  // The exit code, or -1 when it did not end within the time.
+  int wait_for_exit(double seconds);
+
+ private:
+  void read_output(int pipe);
+  void hand(const std::string& arguments) const;
+
+  std::string display_;
+  std::filesystem::path folder_;
+  pid_t process_ = -1;
+  mutable std::mutex mutex_;
+  std::map<std::string, std::string> states_;
+  std::map<std::string, Area> arriving_, widgets_;
+  std::thread reader_;
+};
+
+}  // namespace arthronaut::test
