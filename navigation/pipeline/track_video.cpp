@@ -26,8 +26,12 @@ std::vector<std::string> reasons_of(const TrackedVideo& video) {
   if (!video.rows.empty() || s.frame_count == 0) return reasons;
   if (s.frames_with_unknown_lens == s.frame_count) {
     reasons.emplace_back("the lens mark was not seen, so the lens angle and with it the camera are not known");
-  } else {
-    reasons.emplace_back("no declared marker was tracked in any frame");
+    return reasons;
+  }
+  reasons.emplace_back("no declared marker was tracked in any frame");
+  const auto is_doubtful = [](const MarkerStatistics& m) { return m.main_loss == markers::MarkerState::Doubtful; };
+  if (std::any_of(s.markers.begin(), s.markers.end(), is_doubtful)) {
+    reasons.emplace_back("markers were seen, but their corners fit no pose: are camera, medium and sizes right?");
   }
   return reasons;
 }
@@ -65,7 +69,7 @@ TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions&
                          const tools::ToolSet& tools, const std::function<void(long)>& progress) {
   TrackedVideo video;
   video.statistics = ViewStatistics(tools);
-  ViewTracker tracker(options, markers::make_aruco_tracker(markers::declared_markers(tools)));
+  ViewTracker tracker(options, markers::make_tracker(markers::declared_markers(tools)));
   PrefetchedSource prefetched(source);
   View view;
   while (const camera::FramePtr frame = prefetched.next()) {

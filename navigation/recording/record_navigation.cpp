@@ -2,27 +2,17 @@
 
 #include <arthronaut/version.h>
 
-#include <chrono>
-#include <ctime>
+#include "planning/cases/case.h"
 
 namespace arthronaut::recording {
 
 namespace {
 
-std::string now_utc() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  ::gmtime_r(&now, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
-}
-
 SessionHeader header_of(const sources::FrameSource& source, const pipeline::PipelineOptions& options,
                         const std::filesystem::path& folder) {
   SessionHeader header;
   header.id = folder.filename().string();
-  header.started_utc = now_utc();
+  header.started_utc = cases::utc_now();
   header.bone = options.bone;
   header.side = options.side;
   header.refractive_index = options.refractive_index;

@@ -122,6 +122,19 @@ Eigen::Vector3d centroid(const strokes::Curves& curves) {
   return sum / static_cast<double>(curves.size());
 }
 
+// What was registered. curves.csv is rounded; where the recorded poses give the same strokes, they give them exactly.
+strokes::Curves registered_curves(const RecordedSession& session) {
+  const pipeline::PipelineOptions options = session.pipeline_options();
+  const tools::Tool* probe = options.tools.find_tool(options.probe_name);
+  if (!probe || !probe->tip_mm) return session.curves();
+  std::vector<strokes::PoseRow> rows;
+  for (const RecordedFrame& frame : session.frames()) {
+    rows.insert(rows.end(), frame.poses.begin(), frame.poses.end());
+  }
+  strokes::Curves curves = strokes::digitise(rows, options.tools, options.bone, options.probe_name);
+  return curves.size() == session.curves().size() ? curves : session.curves();
+}
+
 void compare_registration(const RecordedSession& session, const EventPlayer& player, const ReplayOptions& options,
                           ReplaySummary& summary) {
   if (!options.bone || !player.found() || session.curves().empty()) return;
@@ -129,11 +142,12 @@ void compare_registration(const RecordedSession& session, const EventPlayer& pla
   registration::RegistrationOptions registering;
   registering.seed = options.seed;
   if (player.plan().plan) registering.target_in_bone_mm = player.plan().plan->entry_mm;
-  const auto now = registration::register_curves(*options.bone, session.curves(), registering);
-  if (then.has_pose != now.has_pose || then.reliable != now.reliable) {
-    summary.differences.push_back({-1, "registration", 0, "",
-                                   now.reliable ? "is reliable now and was not" : "was reliable and is not now"});
-  }
+  const auto now = registration::register_curves(*options.bone, registered_curves(session), registering);
+  const auto differs = [&](const char* detail) {
+    summary.differences.push_back({-1, "registration", 0, "", detail});
+  };
+  if (then.reliable != now.reliable) differs(now.reliable ? "is reliable now and was not" : "was reliable and is not now");
+  if (then.has_pose != now.has_pose) differs(now.has_pose ? "has a pose now and had none" : "had a pose and has none now");
   if (!then.has_pose || !now.has_pose) return;
   const Eigen::Vector3d target_in_bone =
       registering.target_in_bone_mm.value_or(then.marker_from_bone.inverse() * centroid(session.curves()));

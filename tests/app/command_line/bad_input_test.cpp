@@ -1,0 +1,147 @@
+// Bad input, each with its message and exit code; and nothing half-written is left behind.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "planning/files/atomic_file.h"
+#include "tests/app/command_line/marker_clip.h"
+
+namespace arthronaut {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using test::run_program;
+
+class BadInput : public ::testing::Test {
+ protected:
+  BadInput() { test::write_marker_clip(folder_); }
+
+  [[nodiscard]] std::vector<std::string> track(const std::string& output) const {
+    return {"track",      "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json", "--fixed-lens", "-o", output,
+            folder_ / "clip.mkv"};
+  }
+  void spoil(const std::string& name, const std::string& what, const std::string& with) const {
+    std::string text = files::read_text(folder_ / name);
+    text.replace(text.find(what), what.size(), with);
+    test::write_file(folder_ / name, text);
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+// File and field are named.
+TEST_F(BadInput, CameraWithAMissingField) {
+  spoil("camera.json", "\"focal_px\"", "\"focal\"");
+  const auto result = run_program(track(folder_ / "poses.csv"));
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, AllOf(HasSubstr("camera.json"), HasSubstr("focal_px")));
+  EXPECT_THAT(folder_.names(), ElementsAre("camera.json", "clip.mkv", "tools.json"));
+}
+
+TEST_F(BadInput, CameraOfANewerVersion) {
+  spoil("camera.json", "\"version\": 1", "\"version\": 2");
+  const auto result = run_program(track(folder_ / "poses.csv"));
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, AllOf(HasSubstr("camera.json"), HasSubstr("version")));
+}
+
+TEST_F(BadInput, CameraOfAnotherPictureSize) {
+  spoil("camera.json", "[640, 480]", "[1920, 1080]");
+  const auto result = run_program(track(folder_ / "poses.csv"));
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, AllOf(HasSubstr("640 x 480"), HasSubstr("1920 x 1080")));
+  EXPECT_THAT(folder_.names(), ElementsAre("camera.json", "clip.mkv", "tools.json"));
+}
+
+// Which marker, and who had it first.
+TEST_F(BadInput, ToolsWithAMarkerTwice) {
+  spoil("tools.json", "\"marker_id\": 2", "\"marker_id\": 0");
+  const auto result = run_program(track(folder_ / "poses.csv"));
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, AllOf(HasSubstr("tools.json"), HasSubstr("marker 0"), HasSubstr("already")));
+}
+
+// The frame where the video breaks off is named; the poses before it are not passed off as the whole.
+TEST_F(BadInput, VideoThatEndsHalfWayThroughAFrame) {
+  std::filesystem::resize_file(folder_ / "clip.mkv", std::filesystem::file_size(folder_ / "clip.mkv") * 6 / 10);
+  const auto result = run_program(track(folder_ / "poses.csv"));
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, AllOf(HasSubstr("clip.mkv"), HasSubstr("frame")));
+  EXPECT_THAT(folder_.names(), ElementsAre("camera.json", "clip.mkv", "tools.json"));
+}
+
+TEST_F(BadInput, VideoThatIsNotThereOrNoVideo) {
+  std::filesystem::remove(folder_ / "clip.mkv");
+  EXPECT_EQ(run_program(track("-")).exit_code, 3);
+  test::write_file(folder_ / "clip.mkv", "no video");
+  const auto result = run_program(track("-"));
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, HasSubstr("clip.mkv"));
+  EXPECT_EQ(result.output, "");
+}
+
+TEST_F(BadInput, EmptyFolderToImport) {
+  std::filesystem::create_directory(folder_ / "empty");
+  const auto result = run_program({"import", folder_ / "empty", "-o", folder_ / "knee.arthro"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, HasSubstr("empty"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "knee.arthro"));
+}
+
+TEST_F(BadInput, MeshThatIsCutOffOrHoldsNoNumber) {
+  test::write_file(folder_ / "cut.stl", std::string(80, ' ') + std::string("\x10\0\0\0", 4) + std::string(70, '\0'));
+  const auto cut = run_program({"import", folder_ / "cut.stl", "--side", "left", "-o", folder_ / "knee.arthro"});
+  EXPECT_EQ(cut.exit_code, 3);
+  EXPECT_THAT(cut.errors, HasSubstr("cut.stl"));
+  test::write_file(folder_ / "nan.stl",
+                   "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 90 nan 0\nvertex 0 90 0\nendloop\n"
+                   "endfacet\nendsolid a\n");
+  const auto nan = run_program({"import", folder_ / "nan.stl", "--side", "left", "-o", folder_ / "knee.arthro"});
+  EXPECT_EQ(nan.exit_code, 3);
+  EXPECT_THAT(nan.errors, HasSubstr("nan.stl"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "knee.arthro"));
+}
+
+// A full disk: by the limit on file sizes, and by the device that is always full.
+TEST_F(BadInput, DiskThatIsFull) {
+  const auto limited = run_program(track(folder_ / "poses.csv"), {.file_size_bytes = 1000});
+  EXPECT_EQ(limited.exit_code, 3);
+  EXPECT_THAT(limited.errors, HasSubstr("poses.csv"));
+  EXPECT_THAT(folder_.names(), ElementsAre("camera.json", "clip.mkv", "tools.json"));
+  const auto full = run_program(track("/dev/full"));
+  EXPECT_EQ(full.exit_code, 3);
+  EXPECT_THAT(full.errors, HasSubstr("No space left"));
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST_F(BadInput, FolderThatIsReadOnly) {
+  const auto result = run_program(track(folder_ / "poses.csv"), {.as_nobody = true});
+  // Not root: the folder is the tester's own and writable.
+  if (::geteuid() != 0) GTEST_SKIP() << "needs root, to give up its rights";
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, AllOf(HasSubstr("poses.csv"), HasSubstr("Permission denied")));
+  EXPECT_THAT(folder_.names(), ElementsAre("camera.json", "clip.mkv", "tools.json"));
+}
+
+TEST_F(BadInput, FolderThatIsNotThere) {
+  const auto result = run_program(track(folder_ / "nowhere/poses.csv"));
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, HasSubstr("nowhere"));
+}
+
+TEST_F(BadInput, CaseThatIsNone) {
+  for (const char* command : {"navigate", "replay", "report"}) {
+    std::vector<std::string> arguments{command, folder_ / "nothing.arthro"};
+    if (arguments[0] == "navigate") arguments.insert(arguments.end(), {"--video", folder_ / "clip.mkv"});
+    if (arguments[0] == "report") arguments.insert(arguments.end(), {"-o", folder_ / "report.pdf"});
+    const auto result = run_program(arguments);
+    EXPECT_EQ(result.exit_code, 3) << command;
+    EXPECT_THAT(result.errors, HasSubstr("nothing.arthro")) << command;
+  }
+}
+
+}  // namespace
+}  // namespace arthronaut

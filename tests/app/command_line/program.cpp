@@ -1,0 +1,87 @@
+#include "tests/app/command_line/program.h"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+namespace arthronaut::test {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string contents_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return std::move(text).str();
+}
+
+[[noreturn]] void become_program(const std::vector<std::string>& arguments, const ProgramLimits& limits, int output,
+                                 int errors) {
+  ::dup2(output, STDOUT_FILENO);
+  ::dup2(errors, STDERR_FILENO);
+  if (limits.file_size_bytes > 0) {
+    const auto bytes = static_cast<rlim_t>(limits.file_size_bytes);
+    const rlimit limit{bytes, bytes};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  constexpr unsigned kNobody = 65534;
+  if (limits.as_nobody && ::geteuid() == 0 && (::setgid(kNobody) != 0 || ::setuid(kNobody) != 0)) ::_exit(126);
+  std::vector<char*> words{const_cast<char*>(ARTHRONAUT_PROGRAM)};
+  for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+  words.push_back(nullptr);
+  ::execv(ARTHRONAUT_PROGRAM, words.data());
+  ::_exit(127);
+}
+
+}  // namespace
+
+ProgramResult run_program(const std::vector<std::string>& arguments, const ProgramLimits& limits) {
+  const TemporaryFolder folder;
+  const int output = ::open((folder / "out").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  const int errors = ::open((folder / "err").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  const pid_t child = ::fork();
+  if (child == 0) become_program(arguments, limits, output, errors);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ::close(output);
+  ::close(errors);
+  ProgramResult result;
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  result.output = contents_of(folder / "out");
+  result.errors = contents_of(folder / "err");
+  return result;
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (fs::temp_directory_path() / "arthronaut_XXXXXX").string();
+  if (!::mkdtemp(name.data())) std::abort();
+  folder_ = name;
+  fs::permissions(folder_, fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read | fs::perms::others_exec,
+                  fs::perm_options::add);
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+std::vector<std::string> TemporaryFolder::names() const {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+void write_file(const std::string& file, const std::string& contents) {
+  std::ofstream(file, std::ios::binary) << contents;
+}
+
+}  // namespace arthronaut::test

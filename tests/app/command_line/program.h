@@ -1,0 +1,42 @@
+// Runs the real executable, as a user does, in a folder of its own.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace arthronaut::test {
+
+struct ProgramResult {
+  int exit_code = -1;  // 128 + signal when it was killed
+  std::string output, errors;
+};
+
+struct ProgramLimits {
+  long file_size_bytes = 0;      // above 0: writing more fails like a full disk
+  bool as_nobody = false;        // gives up root, which no folder is read-only for
+};
+
+ProgramResult run_program(const std::vector<std::string>& arguments, const ProgramLimits& limits = {});
+
+// A folder that is gone when the test is over. Others may look into it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
+  [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
+  // Names of all that lies in it.
+  [[nodiscard]] std::vector<std::string> names() const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+void write_file(const std::string& file, const std::string& contents);
+
+}  // namespace arthronaut::test

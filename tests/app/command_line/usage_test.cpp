@@ -1,0 +1,65 @@
+// What the command line promises before it has seen any file.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/app/command_line/program.h"
+
+namespace arthronaut {
+namespace {
+
+using ::testing::HasSubstr;
+using test::run_program;
+
+class Subcommand : public ::testing::TestWithParam<const char*> {};
+
+// Every subcommand of the interface exists, explains itself and shows an example that starts with its own name.
+TEST_P(Subcommand, HelpsWithAnExample) {
+  const auto result = run_program({GetParam(), "--help"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.output, HasSubstr(std::string("arthronaut ") + GetParam()));
+  EXPECT_THAT(result.output, HasSubstr("Example"));
+  EXPECT_THAT(result.output, HasSubstr("--quiet"));
+  EXPECT_THAT(result.output, HasSubstr("--verbose"));
+}
+
+// An option that does not exist is wrong usage everywhere.
+TEST_P(Subcommand, RefusesAnUnknownOption) {
+  EXPECT_EQ(run_program({GetParam(), "--no-such-option"}).exit_code, 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Subcommand,
+                         ::testing::Values("calibrate", "track", "pivot", "digitise", "register", "import", "plan",
+                                           "phantom", "navigate", "replay", "report", "markers", "demo"),
+                         [](const auto& test) { return std::string(test.param); });
+
+TEST(CommandLine, SaysItsVersion) {
+  const auto result = run_program({"--version"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.output, HasSubstr("arthronaut 0."));
+}
+
+// A slip of the keyboard is named, and nothing is opened.
+TEST(CommandLine, RefusesAnUnknownSubcommand) {
+  const auto result = run_program({"trakc", "--help-me"});
+  EXPECT_EQ(result.exit_code, 2);
+  const auto word = run_program({"trakc"});
+  EXPECT_EQ(word.exit_code, 2);
+  EXPECT_THAT(word.errors, HasSubstr("trakc"));
+}
+
+TEST(CommandLine, SaysWhichRequiredOptionIsMissing) {
+  const auto result = run_program({"track", "--tools", "tools.json", "-o", "-", "clip.mkv"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.errors, HasSubstr("--camera"));
+}
+
+// A word that is no medium is a slip of the keyboard too.
+TEST(CommandLine, RefusesAnUnknownMedium) {
+  const auto result =
+      run_program({"track", "--camera", "c", "--tools", "t", "--medium", "mud", "-o", "-", "clip.mkv"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.errors, HasSubstr("mud"));
+}
+
+}  // namespace
+}  // namespace arthronaut
