@@ -1,0 +1,11 @@
+// `arthronaut experiment registration`.
+#pragma once
+
+#include "app/command_line/command.h"
+
+namespace arthronaut::command_line {
+
+// Adds itself under `experiment`.
+void add_registration_experiment(CLI::App& experiment, Context& context);
+
+}  // namespace arthronaut::command_line
