@@ -147,8 +147,8 @@ void compare_registration(const RecordedSession& session, const EventPlayer& pla
     summary.differences.push_back({-1, "registration", 0, "", detail});
   };
   if (then.reliable != now.reliable) differs(now.reliable ? "is reliable now and was not" : "was reliable and is not now");
-  if (then.has_pose != now.has_pose) differs(now.has_pose ? "has a pose now and had none" : "had a pose and has none now");
-  if (!then.has_pose || !now.has_pose) return;
+  // registration.json always holds a transform, also where none was found: only a reliable one is worth comparing.
+  if (!then.reliable || !now.reliable) return;
   const Eigen::Vector3d target_in_bone =
       registering.target_in_bone_mm.value_or(then.marker_from_bone.inverse() * centroid(session.curves()));
   const double error_mm = (then.marker_from_bone * target_in_bone - now.marker_from_bone * target_in_bone).norm();

@@ -1,0 +1,316 @@
+#include "app/command_line/demo_operation.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <map>
+#include <mutex>
+
+#include "app/command_line/demo_pictures.h"
+#include "app/command_line/tracking_report.h"
+#include "app/report/report.h"
+#include "navigation/calibration/calibration.h"
+#include "navigation/recording/achieved_tunnel.h"
+#include "navigation/recording/record_navigation.h"
+#include "navigation/simulator/simulated_operation.h"
+#include "navigation/tools/pivot_calibration.h"
+#include "planning/cases/case.h"
+#include "planning/phantom/phantom_case.h"
+
+namespace arthronaut::command_line {
+
+namespace {
+
+namespace fs = std::filesystem;
+using simulator::Phase;
+
+// Keeps how deep the drill truly was in every frame: frames are rendered in another thread than they are tracked in.
+class WatchedOperation : public sources::FrameSource {
+ public:
+  WatchedOperation(const simulator::SimulationOptions& options, Phase phase) : operation_(options, phase) {}
+  const sources::SourceInfo& info() const override { return operation_.info(); }
+  camera::FramePtr next() override {
+    camera::FramePtr frame = operation_.next();
+    const std::lock_guard lock(mutex_);
+    if (frame) depth_mm_[frame->index] = operation_.truth().drilled_depth_mm;
+    return frame;
+  }
+  [[nodiscard]] double depth_mm(std::int64_t frame) const {
+    const std::lock_guard lock(mutex_);
+    return depth_mm_.at(frame);
+  }
+  [[nodiscard]] const simulator::SimulatedOperation& operation() const { return operation_; }
+
+ private:
+  simulator::SimulatedOperation operation_;
+  mutable std::mutex mutex_;
+  std::map<std::int64_t, double> depth_mm_;
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Robust mean of guidance while the drill ran.
+class DrillRecord {
+ public:
+  void add(const guidance::GuidanceNumbers& g, double depth_mm) {
+    for (int i = 0; i < 3; ++i) {
+      const auto axis = static_cast<std::size_t>(i);
+      point_[axis].push_back(g.guide_point_mm[i]);
+      direction_[axis].push_back(g.guide_direction[i]);
+    }
+    sigma_offset_.push_back(g.sigma_offset_mm);
+    sigma_angle_.push_back(g.sigma_angle_deg);
+    depth_mm_ = depth_mm;
+    timestamp_ns_ = g.timestamp_ns;
+  }
+  [[nodiscard]] int count() const { return static_cast<int>(sigma_offset_.size()); }
+
+  // Precondition: count() > 0. The depth is read off the drill's scale, to the millimetre.
+  [[nodiscard]] recording::AchievedTunnel achieved(const tunnels::Tunnel& planned, const geometry::Surface& bone) const {
+    recording::AchievedTunnel achieved;
+    achieved.planned = achieved.measured = planned;
+    for (int i = 0; i < 3; ++i) {
+      const auto axis = static_cast<std::size_t>(i);
+      achieved.measured.entry_mm[i] = median(point_[axis]);
+      achieved.measured.direction[i] = median(direction_[axis]);
+    }
+    achieved.measured.direction.normalize();
+    const tunnels::TunnelGeometry geometry = tunnels::measure(achieved.measured, bone);
+    if (geometry.enters_bone) achieved.measured.entry_mm = geometry.entry_on_surface_mm;
+    achieved.depth_mm = std::round(depth_mm_);
+    achieved.timestamp_ns = timestamp_ns_;
+    achieved.pose_count = count();
+    achieved.sigma_offset_mm = median(sigma_offset_);
+    achieved.sigma_angle_deg = median(sigma_angle_);
+    return achieved;
+  }
+
+ private:
+  std::array<std::vector<double>, 3> point_, direction_;
+  std::vector<double> sigma_offset_, sigma_angle_;
+  double depth_mm_ = 0;
+  std::int64_t timestamp_ns_ = 0;
+};
+
+class Demo {
+ public:
+  Demo(Context& context, const DemoOptions& options)
+      : context_(context), options_(options), started_(std::chrono::steady_clock::now()) {}
+
+  void run() {
+    plan();
+    if (!calibrate()) return;
+    pivot();
+    scratch();
+    if (drill()) say_result();
+    finish();
+  }
+
+ private:
+  void step(const std::string& name) {
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started_;
+    context_.say(format("[%5.1f s] ", elapsed.count()) + name);
+  }
+
+  void plan() {
+    step("Plan: a " + std::string(bones::to_text(options_.side)) + " phantom knee with its anatomical tunnels");
+    simulation_.knee = phantom::make_phantom_knee({.side = options_.side, .seed = options_.seed});
+    simulation_.camera = simulator::standard_camera();
+    simulation_.tools = tools::standard_tools();
+    simulation_.plan = simulation_.knee.femoral_tunnel;
+    simulation_.seed = options_.seed;
+    const geometry::TriangleMesh& mesh = simulation_.knee.femur.mesh;
+    femur_ = std::make_unique<geometry::Surface>(mesh);
+    planned_length_mm_ = tunnels::measure(simulation_.plan, *femur_).length_mm;
+    cases::save_case(options_.case_folder, phantom::case_of(simulation_.knee, options_.case_folder.stem().string()));
+    fs::create_directory(options_.case_folder / "pictures");
+    context_.say(format("          femur of %zu triangles; tunnel of %.1f mm, diameter %.1f mm", mesh.triangles.size(),
+                        planned_length_mm_, simulation_.plan.diameter_mm));
+  }
+
+  bool calibrate() {
+    step("Calibrate: stills of a checkerboard in air, the lens turned in between");
+    WatchedOperation source(simulation_, Phase::Calibrate);
+    std::vector<calibration::CalibrationPicture> pictures;
+    std::vector<std::uint8_t> gray;
+    while (const camera::FramePtr frame = source.next()) {
+      camera::gray_from(*frame, gray);
+      pictures.push_back(calibration::observe_picture("still " + std::to_string(frame->index),
+                                                      {gray.data(), frame->width, frame->height, frame->width}));
+    }
+    calibration::CalibrationOptions options;
+    options.square_mm = simulation_.square_mm;
+    options.scope_name = "simulated arthroscope";
+    const calibration::CalibrationSummary summary = calibration::calibrate(pictures, options);
+    if (!summary.is_usable()) {
+      context_.say_unreliable("the calibration", summary.reasons);
+      return false;
+    }
+    camera::write_camera_file(cases::camera_file(options_.case_folder), summary.record);
+    navigation_.pipeline.calibration = summary.record.calibration;
+    const camera::Calibration& found = summary.record.calibration;
+    context_.say(format("          %zu stills, rms %.2f px; focal length %+.2f %%, principal point %.1f px from the truth",
+                        pictures.size(), summary.rms_px, 100 * (found.focal_px / simulation_.camera.focal_px - 1),
+                        (found.principal_point_px - simulation_.camera.turned(
+                             simulation_.camera.principal_point_px,
+                             simulation_.camera.lens_angle_rad(found.reference_mark_angle_deg))).norm()));
+    if (summary.outcome == calibration::CalibrationSummary::Outcome::Unreliable) {
+      context_.say_unreliable("the calibration", summary.reasons);
+    }
+    return true;
+  }
+
+  // From here on in saline, with the camera and the tip that were found, not the true ones.
+  void pivot() {
+    step("Pivot: the probe swings about its tip");
+    pipeline::ViewTrackerOptions view;
+    view.calibration = navigation_.pipeline.calibration;
+    view.refractive_index = simulation_.refractive_index;
+    WatchedOperation source(simulation_, Phase::Pivot);
+    const pipeline::TrackedVideo tracked = pipeline::track_video(source, view, simulation_.tools);
+    tools::ToolSet tools = simulation_.tools;
+    const auto probe = std::find_if(tools.tools.begin(), tools.tools.end(), [](const auto& t) { return t.name == "probe"; });
+    const int world_id = tools.find_world_marker(simulation_.bone)->marker_id;
+    std::map<std::int64_t, geometry::RigidTransform> camera_from_world;
+    for (const strokes::PoseRow& row : tracked.rows) {
+      if (row.marker_id == world_id) camera_from_world[row.frame] = row.camera_from_marker;
+    }
+    std::vector<geometry::RigidTransform> world_from_probe;
+    for (const strokes::PoseRow& row : tracked.rows) {
+      const auto world = camera_from_world.find(row.frame);
+      if (row.marker_id != probe->marker_id || world == camera_from_world.end()) continue;
+      world_from_probe.push_back(world->second.inverse() * row.camera_from_marker);
+    }
+    const tools::PivotCalibrationSummary summary = tools::calibrate_pivot(world_from_probe);
+    if (summary.has_tip()) {
+      context_.say(format("          %d poses, rms %.3f mm, cone %.0f deg; tip %.3f mm from the truth", summary.pose_count,
+                          summary.rms_mm, summary.cone_deg, (summary.tip_in_tool_mm - *probe->tip_mm).norm()));
+    }
+    if (summary.is_usable()) {
+      probe->tip_mm = summary.tip_in_tool_mm;
+    } else {
+      context_.say_unreliable("the pivot (the tip stays as made)", summary.reasons);
+    }
+    tools::write_tools_file(cases::tools_file(options_.case_folder), tools);
+    navigation_.pipeline.tools = tools;
+    navigation_.pipeline.refractive_index = simulation_.refractive_index;
+    navigation_.pipeline.bone = simulation_.bone;
+    navigation_.pipeline.side = options_.side;
+    navigation_.plan = simulation_.plan;
+    navigation_.planned_length_mm = planned_length_mm_;
+  }
+
+  void scratch() {
+    step("Scratch: the probe draws on the notch wall, and the femur is found from nothing");
+    const registration::PreparedBone bone(simulation_.knee.femur.mesh);
+    navigation_.bone = &bone;
+    const pipeline::NavigationSummary summary = navigate(Phase::Scratch, "scratch", [](auto&, const auto&) {});
+    navigation_.bone = nullptr;
+    navigation_.registration = summary.registration;
+    if (summary.registration && summary.registration->has_pose) {
+      const Eigen::Vector3d& entry = simulation_.plan.entry_mm;
+      context_.say(format("          strokes of %.0f mm; rms %.2f mm, predicted error at the entry %.2f mm, true error %.2f mm",
+                          summary.stroke_length_mm, summary.registration->rms_mm, summary.registration->predicted_tre_mm,
+                          (summary.registration->marker_from_bone * entry - true_marker_from_bone_ * entry).norm()));
+    }
+    if (!summary.reasons.empty()) context_.say_unreliable("the registration", summary.reasons);
+  }
+
+  bool drill() {
+    step("Drill: the guide is led to the plan, and the tunnel is drilled");
+    DrillRecord record;
+    const pipeline::NavigationSummary summary =
+        navigate(Phase::Drill, "drill", [&](const WatchedOperation& source, const pipeline::FrameResult& result) {
+          const double depth_mm = source.depth_mm(result.frame_index);
+          if (depth_mm > 0 && result.guidance.is_valid()) record.add(result.guidance, depth_mm);
+        });
+    context_.say(format("          guidance in %ld of %ld frames, the tunnel measured in %d of them",
+                        summary.frames_with_guidance, summary.statistics.frame_count, record.count()));
+    if (record.count() == 0) {
+      context_.say_unreliable("the drilled tunnel", {"there was no guidance while the drill ran: " +
+                                                     std::string(guidance::to_text(summary.last_state))});
+      return false;
+    }
+    achieved_ = record.achieved(simulation_.plan, *femur_);
+    achieved_.truth = true_tunnel_;
+    recording::write_achieved_file(last_session_ / "achieved.json", achieved_);
+    return true;
+  }
+
+  // One phase as a session of the case; its last frame with a registration becomes a picture.
+  template <typename Watch>
+  pipeline::NavigationSummary navigate(Phase phase, const std::string& name, const Watch& watch) {
+    WatchedOperation source(simulation_, phase);
+    last_session_ = cases::create_session_folder(options_.case_folder);
+    camera::FramePtr last_frame;
+    pipeline::FrameResult last_result;
+    Progress progress(name, static_cast<long>(source.info().frame_count));
+    long done = 0;
+    pipeline::NavigationObserver observer;
+    observer.on_frame = [&](const camera::FramePtr& frame, const pipeline::FrameResult& result) {
+      watch(source, result);
+      progress.advance_to(++done);
+      if (!result.camera_from_world.is_valid) return;
+      last_frame = frame;
+      last_result = result;
+    };
+    const pipeline::NavigationSummary summary = recording::record_navigation(
+        source, navigation_, last_session_, recording::KeepVideo::Encode, {}, observer);
+    true_marker_from_bone_ = source.operation().marker_from_bone();
+    if (phase == Phase::Drill) true_tunnel_ = source.operation().drilled_tunnel();
+    if (last_frame) {
+      write_frame_picture(options_.case_folder / "pictures" / (name + ".png"), *last_frame, last_result,
+                          summary.registration, simulation_.knee.femur.mesh, simulation_.plan, planned_length_mm_);
+    }
+    return summary;
+  }
+
+  void say_result() {
+    const auto line = [&](const char* what, const recording::TunnelDifference& d) {
+      context_.say(format("          %s: entry %.2f mm, angle %.2f deg", what, d.entry_mm, d.angle_deg));
+    };
+    line("planned against measured ", recording::compare(achieved_.planned, achieved_.measured));
+    line("planned against the truth", recording::compare(achieved_.planned, *achieved_.truth));
+    line("measured against the truth", recording::compare(*achieved_.truth, achieved_.measured));
+  }
+
+  void finish() {
+    step("Report");
+    const fs::path report = options_.case_folder / "report.pdf";
+    report::write_report(options_.case_folder, report);
+    step("Done");
+    context_.say("case:     " + options_.case_folder.string());
+    context_.say("report:   " + report.string());
+    context_.say("pictures: " + (options_.case_folder / "pictures").string());
+  }
+
+  Context& context_;
+  DemoOptions options_;
+  std::chrono::steady_clock::time_point started_;
+  simulator::SimulationOptions simulation_;   // the truth
+  pipeline::NavigateOptions navigation_;      // what the theatre has found so far
+  std::unique_ptr<geometry::Surface> femur_;
+  double planned_length_mm_ = 0;
+  fs::path last_session_;
+  geometry::RigidTransform true_marker_from_bone_;
+  tunnels::Tunnel true_tunnel_;
+  recording::AchievedTunnel achieved_;
+};
+
+}  // namespace
+
+void run_demo(Context& context, const DemoOptions& options) {
+  try {
+    Demo(context, options).run();
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(options.case_folder, ignored);
+    throw;
+  }
+}
+
+}  // namespace arthronaut::command_line
