@@ -20,6 +20,9 @@ constexpr double kTukey = 4.685;
 constexpr double kCorrelatedEdges = 2.5;
 // What every edge of a side has wrong together (camera, print, compression), as an error of the corners.
 constexpr double kCommonCornerErrorPx = 0.016;
+// What the edges of a smeared, or of a partly covered, marker have wrong together: the hand does not move
+// evenly, and what covers it also shades what is beside it.
+constexpr double kCommonErrorPerBox = 0.03, kCommonErrorPerCover = 0.25;
 
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
@@ -77,7 +80,7 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
   is_inlier.assign(measurements.size(), 0);
   Matrix7d normal;
   double bloom = bloom_prior.mean_px;
-  double scale = 1, squares = 0, weights = 0, px_squares = 0;
+  double scale = 1, squares = 0, weights = 0, px_squares = 0, boxes = 0;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const Eigen::Matrix3d rotation = pose.matrix();
     int count = 0;
@@ -99,7 +102,7 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
     normal(6, 6) = bloom_weight;
     Vector7d gradient = Vector7d::Zero();
     gradient[6] = bloom_weight * (bloom_prior.mean_px - bloom);
-    squares = weights = px_squares = 0;
+    squares = weights = px_squares = boxes = 0;
     result.inliers = 0;
     for (std::size_t i = 0; i < measurements.size(); ++i) {
       const EdgeMeasurement& measurement = measurements[i];
@@ -116,6 +119,7 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
       squares += robust * ratio * ratio;
       weights += robust;
       px_squares += row.residual_px * row.residual_px;
+      boxes += measurement.box_px;
       is_inlier[i] = 1;
       ++result.inliers;
     }

@@ -33,6 +33,7 @@ struct Crossing {
   Eigen::Vector2d point, normal;
   float cell_px = 0;  // distance of neighbouring edges along the normal
   float box_px = kPixelBox;
+  bool moves_backwards = false;  // against the normal
 };
 
 bool locate(const camera::CameraModel& camera, const RigidTransform& pose, const Eigen::Matrix3d& rotation,
@@ -52,8 +53,9 @@ bool locate(const camera::CameraModel& camera, const RigidTransform& pose, const
   }
   crossing.cell_px = static_cast<float>(px_per_mm * size_mm / cells);
   const Eigen::Vector3d moved = smear.motion.head<3>() + smear.motion.tail<3>().cross(place);
-  const double motion_px = std::abs(crossing.normal.dot(d_marker * moved));
-  crossing.box_px = std::max(kPixelBox, static_cast<float>(motion_px));
+  const double motion_px = crossing.normal.dot(d_marker * moved);
+  crossing.moves_backwards = motion_px < 0;
+  crossing.box_px = std::max(kPixelBox, static_cast<float>(std::abs(motion_px)));
   return crossing.cell_px > 1.5F;
 }
 
@@ -189,7 +191,7 @@ Match match_finely(const Profile& profile, const EdgeSample& sample, const Cross
 void add_trend(const Profile& profile, const Crossing& crossing, const Match& match, const Model& model,
                int reach, SmearTrend& trend) {
   const float* light = profile.light.data() + profile.reach - reach;
-  const bool moves = crossing.box_px > kPixelBox;
+  double box_gain = 0, box_weight = 0;
   for (int i = 0; i <= 2 * reach; ++i) {
     if (light[i] < 0) continue;
     const float residual = (light[i] - match.bias) / match.gain - model.level[i];
@@ -197,11 +199,14 @@ void add_trend(const Profile& profile, const Crossing& crossing, const Match& ma
       trend.sigma_gain += residual * model.d_sigma[i];
       trend.sigma_weight += model.d_sigma[i] * model.d_sigma[i];
     }
-    if (!moves) continue;
-    const float by_length = model.d_box[i] * crossing.box_px;
-    trend.motion_gain += residual * by_length;
-    trend.motion_weight += by_length * by_length;
+    box_gain += residual * model.d_box[i];
+    box_weight += model.d_box[i] * model.d_box[i];
   }
+  if (crossing.box_px <= kPixelBox) return;
+  const Eigen::Vector2d direction =
+      crossing.moves_backwards ? Eigen::Vector2d(-crossing.normal) : crossing.normal;
+  trend.motion_gain += box_gain * direction;
+  trend.motion_weight += box_weight * direction * direction.transpose();
 }
 
 }  // namespace

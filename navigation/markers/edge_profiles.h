@@ -49,8 +49,10 @@ struct ProfileOptions {
 
 // How the residuals of a marker's profiles want the smear changed; from the fine match.
 struct SmearTrend {
-  double sigma_gain = 0, sigma_weight = 0;    // step = gain / weight
-  double motion_gain = 0, motion_weight = 0;  // relative change of the motion's length
+  double sigma_gain = 0, sigma_weight = 0;  // step = gain / weight
+  // The same for the motion over the exposure as a vector in the image: step = weight^-1 gain, in pixels.
+  Eigen::Vector2d motion_gain = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d motion_weight = Eigen::Matrix2d::Zero();
 };
 
 // One measurement for each sample used; `measurements` keeps its memory. A pose that is partly behind the

@@ -14,9 +14,6 @@ namespace {
 
 using geometry::RigidTransform;
 
-// How far the edges are looked for, in cells; less than half, or the next edge answers.
-constexpr double kReachPredicted = 0.35, kReachFound = 0.45;
-
 class EdgeTracker final : public MarkerTracker {
  public:
   EdgeTracker(std::span<const DeclaredMarker> declared, std::span<const MarkerCode> codes,
@@ -42,8 +39,8 @@ class EdgeTracker final : public MarkerTracker {
       observations_[i] = MarkerObservation();
       observations_[i].id = tracks_[i].marker().id;
       const auto start = tracks_[i].predicted(timestamp_ns);
-      missing |= !start || !tracks_[i].measure(image, camera, *start, kReachPredicted, timestamp_ns, smear_,
-                                               observations_[i]);
+      missing |=
+          !start || !tracks_[i].measure(image, camera, *start, false, timestamp_ns, smear_, observations_[i]);
     }
     if (missing || frames_to_search_-- <= 0) {
       frames_to_search_ = options_.search_every_frames - 1;
@@ -92,7 +89,7 @@ class EdgeTracker final : public MarkerTracker {
     if (!homography) return;
     for (const RigidTransform& start : poses_from_homography(*homography)) {
       if (!(start.translation_mm.z() > 0)) continue;
-      if (track.measure(image, camera, start, kReachFound, timestamp_ns, smear_, observation)) return;
+      if (track.measure(image, camera, start, true, timestamp_ns, smear_, observation)) return;
     }
   }
 

@@ -30,7 +30,7 @@ class MarkerTrack {
   // Measures the marker around this pose, to `reach` cells to either side. Fills the observation; true when
   // tracked.
   bool measure(const LinearImage& image, const camera::CameraModel& camera,
-               const geometry::RigidTransform& start, double reach_cells, std::int64_t timestamp_ns,
+               const geometry::RigidTransform& start, bool is_found, std::int64_t timestamp_ns,
                CameraSmear& smear, MarkerObservation& observation);
 
   // The observation of this frame is final: remembers it.
@@ -54,8 +54,9 @@ class MarkerTrack {
   [[nodiscard]] geometry::Vector6d likely_motion(const LinearImage& image, const camera::CameraModel& camera,
                                                  const geometry::RigidTransform& pose, int search_px,
                                                  const CameraSmear& smear);
+  void follow_from(const MarkerObservation& observation, std::int64_t timestamp_ns);
   [[nodiscard]] MarkerState judge(const EdgePose& fit, const MarkerObservation& observation,
-                                  const std::optional<SquarePose>& other, bool is_new) const;
+                                  const std::optional<SquarePose>& other, bool is_found) const;
   [[nodiscard]] MarkerState reason_of_loss(const camera::CameraModel& camera,
                                            const geometry::RigidTransform& pose) const;
 
