@@ -1,6 +1,8 @@
 // The map from a picture under division-model distortion to a plane: with m(u) = (|u|^2, u_x, u_y, 1), a point of the
-// plane is P ~ B m(u), where B is 3 x 4. It is linear in B, needs no start, and holds principal point and distortion
-// in closed form: B's null vector. (docs/conventions.md, "Calibration".) Inside the module.
+// plane is P ~ B m(u), where B is 3 x 4. It is linear in B and needs no start. Why: an undistorted, centred pixel is
+// (u_x - c_x, u_y - c_y, 1 + lambda |u - c|^2), linear in m(u) too. Its kernel is B's null vector, scaled to end in 1:
+//   nu = (|c|^2 - 1 / lambda, c_x, c_y, 1),   which gives the principal point c and the distortion lambda = xi / f^2.
+// Degenerate without distortion (lambda = 0) and, for the focal length, without tilt. Inside the module.
 #pragma once
 
 #include <Eigen/Core>

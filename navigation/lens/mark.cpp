@@ -120,10 +120,47 @@ void dents_of(const RimProfile& profile, const camera::Boundary& circle, DentPro
     if (!dents.seen[ray]) continue;
     const double angle = geometry::rad_from_deg(i * kRayStepDeg);
     const double along = shift.x() * std::cos(angle) + shift.y() * std::sin(angle);
+    dents.light[ray] = profile.inside_light[ray];
     dents.depth_px[ray] = static_cast<float>(circle.radius_px - (profile.radius_px[ray] - along));
   }
   dents.shift_px = shift;
 }
+
+namespace {
+
+// A mark is cut out of the mask, so the scene inside it is as light as beside it, give or take its texture (print on
+// paper is a thirtieth). A dark instrument or a dark place of the scene dents the rim too, but is itself what is dark
+// there; and where one side can't be seen, a dent may be the end of the darkness.
+bool is_lit_like_its_flanks(const DentProfile& dents, int begin, int end) {
+  constexpr int kFlank = 8;
+  const auto median_light = [&](int from, int to) {
+    std::array<float, kRayCount> light;
+    int count = 0;
+    for (int i = from; i <= to; ++i) {
+      const auto ray = static_cast<std::size_t>(wrapped_ray(i));
+      if (dents.seen[ray]) light[static_cast<std::size_t>(count++)] = dents.light[ray];
+    }
+    if (count < 0.6 * (to - from + 1)) return -1.0F;
+    std::nth_element(light.begin(), light.begin() + count / 2, light.begin() + count);
+    return light[static_cast<std::size_t>(count / 2)];
+  };
+  const float inside = median_light(begin, end);
+  const float before = median_light(begin - kFlank, begin - 2), after = median_light(end + 2, end + kFlank);
+  return before > 0 && after > 0 && inside > 0.02F * std::max(before, after);
+}
+
+// One dent may come in parts; the better description of it stays.
+void add(MarkCandidates& found, const MarkCandidate& candidate) {
+  for (int k = 0; k < found.count; ++k) {
+    MarkCandidate& known = found.items[static_cast<std::size_t>(k)];
+    if (known.polarity != candidate.polarity || std::abs(difference_deg(known.angle_deg, candidate.angle_deg)) > 3) continue;
+    if (candidate.score > known.score) known = candidate;
+    return;
+  }
+  if (found.count < MarkCandidates::kMost) found.items[static_cast<std::size_t>(found.count++)] = candidate;
+}
+
+}  // namespace
 
 MarkCandidates find_marks(const DentProfile& dents, MarkPolarity polarity, const MarkShape* known) {
   MarkCandidates found;
@@ -159,6 +196,7 @@ MarkCandidates find_marks(const DentProfile& dents, MarkPolarity polarity, const
       const int begin = i;
       i = end;
       if (width_deg < 0.9 || width_deg > 14 || peak < 0.015 * dents.radius_px) continue;
+      if (!is_lit_like_its_flanks(dents, begin, end)) continue;
 
       MarkCandidate candidate;
       candidate.polarity = side;
@@ -170,8 +208,8 @@ MarkCandidates find_marks(const DentProfile& dents, MarkPolarity polarity, const
       if (!fit_triangle(window, known, dents.radius_px, tip_deg, candidate.shape)) continue;
       judge_fit(window, tip_deg, candidate.shape, dents.radius_px, candidate);
       candidate.angle_deg = wrapped_deg(tip_deg + dents.angle_correction_deg(tip_deg));
-      if (candidate.shape.height < 0.012 || candidate.shape.height > 0.12) continue;
-      if (found.count < MarkCandidates::kMost) found.items[static_cast<std::size_t>(found.count++)] = candidate;
+      if (candidate.shape.height < 0.012 || candidate.shape.height > 0.12 || candidate.shape.half_width_deg < 0.9) continue;
+      add(found, candidate);
     }
   }
   std::sort(found.items.begin(), found.items.begin() + found.count,

@@ -28,6 +28,7 @@ struct MarkCandidate {
 struct DentProfile {
   std::array<float, kRayCount> depth_px{};
   std::array<bool, kRayCount> seen{};
+  std::array<float, kRayCount> light{};                // of the scene inside the rim, linear
   Eigen::Vector2d shift_px = Eigen::Vector2d::Zero();  // of the circle's centre against the rays' centre
   double radius_px = 0;
   // What to add to the angle of a ray that meets the rim to have its angle about the circle's centre.

@@ -27,6 +27,7 @@ struct RimProfile {
   camera::Boundary about;                       // the centre of the rays and the radius that was expected
   std::array<RayState, kRayCount> state{};
   std::array<float, kRayCount> radius_px{};     // meaningful where state is Edge
+  std::array<float, kRayCount> inside_light{};  // of the scene just inside that edge, linear, 0 to 1
   double dark_level = 0;                        // grey value of the mask
   double dark_share = 0, clipped_share = 0;     // of all rays
 };

@@ -77,7 +77,7 @@ void measure_mask(const camera::GrayView& picture, const Eigen::Vector2f& center
 
 // Radius at which the light has risen half way, near a first lit sample at `first_px`.
 float locate_edge(const camera::GrayView& picture, const Eigen::Vector2f& center, float dx, float dy, float first_px,
-                  float reach_px, float dark_light) {
+                  float reach_px, float dark_light, float& inside) {
   constexpr int kOutside = 4, kInside = 6;
   std::array<float, kOutside + kInside + 1> light;
   const float start = std::min(first_px + kOutside, reach_px);
@@ -86,7 +86,7 @@ float locate_edge(const camera::GrayView& picture, const Eigen::Vector2f& center
     light[k] = sample_light(picture, center.x() + r * dx, center.y() + r * dy);
   }
   const std::size_t n = light.size();
-  const float inside = (light[n - 1] + light[n - 2] + light[n - 3]) / 3;
+  inside = (light[n - 1] + light[n - 2] + light[n - 3]) / 3;
   const float half = 0.5F * (dark_light + inside);
   for (std::size_t k = 1; k < n; ++k)
     if (light[k] >= half && light[k - 1] < half) {
@@ -103,7 +103,8 @@ void measure_rim(const camera::GrayView& picture, const camera::Boundary& expect
   profile.about = expected;
   const Eigen::Vector2f center = expected.center_px.cast<float>();
   const float outer_px = static_cast<float>(expected.radius_px * outer);
-  const float inner_px = static_cast<float>(expected.radius_px * inner);
+  // Room for telling an edge from the end of the ray, whatever the size of the circle.
+  const float inner_px = static_cast<float>(expected.radius_px * inner) - 8;
   double scatter = 0;
   measure_mask(picture, center, outer_px, profile.dark_level, scatter);
   // A lit scene stands clear of the mask's own noise and of compression's ringing.
@@ -134,7 +135,7 @@ void measure_rim(const camera::GrayView& picture, const camera::Boundary& expect
       ++dark;
     } else {
       profile.state[i] = RayState::Edge;
-      profile.radius_px[i] = locate_edge(picture, center, dx, dy, first, reach, dark_light);
+      profile.radius_px[i] = locate_edge(picture, center, dx, dy, first, reach, dark_light, profile.inside_light[i]);
     }
   }
   profile.dark_share = static_cast<double>(dark) / kRayCount;
