@@ -26,7 +26,7 @@ double merit_of(const TunnelGeometry& measured, double tilt_deg, const AimOption
 Eigen::Vector3d customary_direction(bones::BoneKind kind, bones::Side side) {
   const double lateral = side == bones::Side::Right ? -1 : 1;
   const Eigen::Vector3d direction = kind == bones::BoneKind::Femur ? Eigen::Vector3d(0.72 * lateral, -0.32, 0.62)
-                                                                   : Eigen::Vector3d(-0.30 * lateral, -0.49, -0.82);
+                                                                   : Eigen::Vector3d(-0.36 * lateral, -0.47, -0.80);
   return direction.normalized();
 }
 

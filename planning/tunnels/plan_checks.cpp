@@ -47,9 +47,19 @@ PlanCheck check_length(const Tunnel& tunnel, const TunnelGeometry& geometry, con
   return check;
 }
 
-PlanCheck check_wall(const TunnelGeometry& geometry, const PlanNorms& norms) {
-  PlanCheck check{Verdict::Fine, "Wall", number(geometry.wall_mm, "mm"),
-                  "a rim of 2.5 mm (Piefer 2012, PubMed 22301358); 1 to 2 mm as a limit is customary"};
+// The back wall is a femoral matter. A tibial tunnel leaves through a slanting face, where its wall thins out by itself:
+// there only a wall that is nearly gone is worth a look.
+PlanCheck check_wall(const Tunnel& tunnel, const TunnelGeometry& geometry, const PlanNorms& norms) {
+  PlanCheck check{Verdict::Fine, "Wall", number(geometry.wall_mm, "mm"), ""};
+  if (tunnel.bone == bones::BoneKind::Tibia) {
+    check.source = "no published limit for the tibia";
+    if (geometry.wall_mm < norms.breaking_wall_mm) {
+      check.verdict = Verdict::Look;
+      check.text += ": less than " + limit(norms.breaking_wall_mm, "mm") + " beside the tunnel or at its slanting exit";
+    }
+    return check;
+  }
+  check.source = "a rim of 2.5 mm (Piefer 2012, PubMed 22301358); 1 to 2 mm as a limit is customary";
   if (geometry.wall_mm <= 0) {
     check.verdict = Verdict::Wrong;
     check.text += ": breaks out of the bone";
@@ -120,7 +130,7 @@ std::vector<PlanCheck> check_plan(const Tunnel& tunnel, const TunnelGeometry& ge
   if (!geometry.enters_bone) {
     return {{Verdict::Wrong, "Axis", "misses the bone: place the entry on it and aim inwards", ""}};
   }
-  std::vector<PlanCheck> checks{check_length(tunnel, geometry, norms), check_wall(geometry, norms),
+  std::vector<PlanCheck> checks{check_length(tunnel, geometry, norms), check_wall(tunnel, geometry, norms),
                                 check_diameter(tunnel, norms)};
   const Eigen::Vector3d& entry = geometry.entry_on_surface_mm;
   if (tunnel.bone == bones::BoneKind::Femur && surroundings.quadrant) {

@@ -46,6 +46,13 @@ TEST(PlanChecks, JudgesTheWall) {
   EXPECT_THAT(named(check_plan(tunnel, inside(35, -0.1), {}), "Wall").text, ::testing::HasSubstr("breaks out"));
 }
 
+// The limits of the back wall are the femur's: a tibial tunnel thins out at its slanting exit.
+TEST(PlanChecks, JudgesTheTibialWallMoreMildly) {
+  const Tunnel tunnel{.bone = BoneKind::Tibia, .direction = {0.4, 0, -0.9}};
+  EXPECT_EQ(named(check_plan(tunnel, inside(40, 1.5), {}), "Wall").verdict, Verdict::Fine);
+  EXPECT_EQ(named(check_plan(tunnel, inside(40, 0.5), {}), "Wall").verdict, Verdict::Look);
+}
+
 // The norm of the quadrant is met in its middle, and left on each side with its own word.
 TEST(PlanChecks, JudgesThePlaceInTheQuadrant) {
   const Tunnel tunnel{.bone = BoneKind::Femur};
