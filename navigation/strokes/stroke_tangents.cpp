@@ -59,14 +59,14 @@ Points running_mean(const Points& points, std::size_t half_width) {
 // Noise makes the path of dense samples too long: the samples are smoothed over the shortest stride at which walking
 // every second step would hardly shorten the path.
 std::vector<double> arc_lengths(const Points& points) {
-  constexpr double kStillShortens = 1.2;
+  constexpr double kStillShortens = 1.1;
   const Points despiked = running_median(points, 2);
   std::size_t stride = 1;
   while (2 * stride < points.size() / 4 &&
          length_at_stride(despiked, stride) > kStillShortens * length_at_stride(despiked, 2 * stride)) {
     stride *= 2;
   }
-  const Points smooth = stride > 1 ? running_mean(despiked, stride) : despiked;
+  const Points smooth = stride > 1 ? running_mean(despiked, 2 * stride) : despiked;
   std::vector<double> arc_mm(points.size(), 0.0);
   for (std::size_t i = 1; i < points.size(); ++i) arc_mm[i] = arc_mm[i - 1] + (smooth[i] - smooth[i - 1]).norm();
   return arc_mm;

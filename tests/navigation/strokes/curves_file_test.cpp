@@ -1,0 +1,31 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "navigation/strokes/curves.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::strokes {
+
+// Points come back in order, with their curve and with or without a time.
+TEST(CurvesFile, RoundTripKeepsOrderAndEmptyTimes) {
+  const Curves curves{{0, 0.25, {1, 2, 3}}, {0, std::nullopt, {-1.5, 2.25, 3}}, {7, 1.0, {0, 0, -9.125}}};
+  const auto file = std::filesystem::path(testing::TempDir()) / "curves_round_trip.csv";
+  write_curves_file(file, curves);
+  const Curves read = read_curves_file(file);
+  ASSERT_EQ(read.size(), curves.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read[i].curve, curves[i].curve);
+    EXPECT_EQ(read[i].time_s, curves[i].time_s);
+    EXPECT_LT((read[i].position_mm - curves[i].position_mm).norm(), 1e-6);
+  }
+}
+
+// A number that is not finite is refused.
+TEST(CurvesFile, RefusesNumbersThatAreNotFinite) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "curves_inf.csv";
+  std::ofstream(file) << "curve,time_s,x_mm,y_mm,z_mm\n0,0,1,inf,3\n";
+  EXPECT_THROW((void)read_curves_file(file), InvalidInput);
+}
+
+}  // namespace arthronaut::strokes

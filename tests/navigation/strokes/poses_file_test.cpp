@@ -1,0 +1,69 @@
+#include "navigation/strokes/poses_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "planning/geometry/error.h"
+
+namespace arthronaut::strokes {
+
+namespace {
+
+constexpr const char* kHeader = "frame,time_s,marker_id,qw,qx,qy,qz,tx_mm,ty_mm,tz_mm,rms_px,mark_angle_deg\n";
+
+std::filesystem::path file_with(const std::string& name, const std::string& text) {
+  const auto file = std::filesystem::path(testing::TempDir()) / name;
+  std::ofstream(file) << text;
+  return file;
+}
+
+std::string error_of(const std::filesystem::path& file) {
+  try {
+    (void)read_poses_file(file);
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "nothing was thrown";
+}
+
+}  // namespace
+
+// What is written is read back: the file's nine digits leave less than 1e-6 mm and 1e-8 rad.
+TEST(PosesFile, RoundTripKeepsPosesAndEmptyMarkAngles) {
+  PoseRow first, second;
+  first.frame = 3;
+  first.time_s = 0.05;
+  first.marker_id = 2;
+  first.camera_from_marker.rotation = Eigen::Quaterniond(0.5, -0.5, 0.5, 0.5);
+  first.camera_from_marker.translation_mm = {1.25, -2.5, 30.123456};
+  first.rms_px = 0.125;
+  second = first;
+  second.frame = 4;
+  second.mark_angle_deg = 271.3;
+  const auto file = std::filesystem::path(testing::TempDir()) / "poses_round_trip.csv";
+  write_poses_file(file, {first, second});
+  const auto rows = read_poses_file(file);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].frame, 3);
+  EXPECT_EQ(rows[0].marker_id, 2);
+  EXPECT_FALSE(rows[0].mark_angle_deg.has_value());
+  EXPECT_NEAR(rows[1].mark_angle_deg.value(), 271.3, 1e-6);
+  EXPECT_LT((rows[0].camera_from_marker.translation_mm - first.camera_from_marker.translation_mm).norm(), 1e-6);
+  EXPECT_LT(rows[0].camera_from_marker.rotation.angularDistance(first.camera_from_marker.rotation), 1e-8);
+}
+
+// A number that is no rotation, time that runs backwards, a missing column: each is refused with its place.
+TEST(PosesFile, RefusesWhatBreaksTheContract) {
+  EXPECT_THAT(error_of(file_with("norm.csv", std::string(kHeader) + "0,0,0,0.9,0,0,0,1,2,3,0.1,\n")),
+              testing::AllOf(testing::HasSubstr("norm.csv"), testing::HasSubstr("qw"), testing::HasSubstr("norm")));
+  EXPECT_THAT(error_of(file_with("time.csv", std::string(kHeader) + "0,0.5,0,1,0,0,0,1,2,3,0.1,\n1,0.4,0,1,0,0,0,1,2,3,0.1,\n")),
+              testing::HasSubstr("backwards"));
+  EXPECT_THAT(error_of(file_with("nan.csv", std::string(kHeader) + "0,0,0,1,0,0,0,nan,2,3,0.1,\n")),
+              testing::HasSubstr("tx_mm"));
+  EXPECT_THAT(error_of(file_with("column.csv", "frame,time_s,marker_id\n0,0,0\n")), testing::HasSubstr("qw"));
+  EXPECT_THROW((void)read_poses_file("/nowhere/poses.csv"), IoError);
+}
+
+}  // namespace arthronaut::strokes
