@@ -27,13 +27,15 @@ images::BoneImportOptions options_of(const ImportArguments& arguments) {
 }
 
 // The case to add to: the one that is there, or a new one of the side that is known.
-cases::Case case_to_extend(const fs::path& folder, const ImportArguments& arguments, const images::BoneImport& import) {
+cases::Case case_to_extend(const fs::path& folder, const ImportArguments& arguments,
+                           const images::BoneImport& import) {
   if (fs::exists(folder / "case.json")) {
     cases::Case existing = cases::load_case(folder);
     if (import.side && *import.side != existing.side) {
-      throw InvalidInput(folder, "", "is a " + std::string(bones::to_text(existing.side)) + " knee, the import is a " +
-                                         std::string(bones::to_text(*import.side)) + " one" +
-                                         (import.side_was_guessed ? " by its name (--side says otherwise)" : ""));
+      throw InvalidInput(folder, "",
+                         "is a " + std::string(bones::to_text(existing.side)) + " knee, the import is a " +
+                             std::string(bones::to_text(*import.side)) + " one" +
+                             (import.side_was_guessed ? " by its name (--side says otherwise)" : ""));
     }
     if (!arguments.name.empty()) existing.name = arguments.name;
     return existing;
@@ -42,7 +44,8 @@ cases::Case case_to_extend(const fs::path& folder, const ImportArguments& argume
     throw InvalidInput(folder, "", "exists and is not a case: nothing was written");
   }
   if (!import.side) {
-    throw InvalidInput(arguments.source, "", "its name does not say which knee it is: add --side left or --side right");
+    throw InvalidInput(arguments.source, "",
+                       "its name does not say which knee it is: add --side left or --side right");
   }
   cases::Case created;
   created.name = arguments.name.empty() ? folder.stem().string() : arguments.name;
@@ -56,8 +59,9 @@ void add_bones(const fs::path& folder, cases::Case& target, const images::BoneIm
     const bones::BoneKind kind = imported.bone.kind;
     // A tunnel planned on another surface would lie somewhere else in this one.
     if (target.bones.contains(kind) && target.plan.tunnels.contains(kind)) {
-      throw InvalidInput(folder, "", "holds a plan on its " + std::string(bones::to_text(kind)) +
-                                         ", which another bone would make wrong: import into another case");
+      throw InvalidInput(folder, "",
+                         "holds a plan on its " + std::string(bones::to_text(kind)) +
+                             ", which another bone would make wrong: import into another case");
     }
     target.bones[kind] = imported.bone;
     target.landmarks.erase(kind);
@@ -99,10 +103,11 @@ void import(Context& context, const ImportArguments& arguments) {
 
 void add_import_command(CLI::App& app, Context& context) {
   const auto arguments = std::make_shared<ImportArguments>();
-  CLI::App* sub = add_subcommand(app, context, "import",
-                                 "Make a case, or add a bone to one, from a mesh, a DICOM folder, a volume or a label map",
-                                 "arthronaut import right_femur.stl -o Knee.arthro\n"
-                                 "  arthronaut import labels.nrrd -o Knee.arthro --label femur=5,tibia=6 --side right");
+  CLI::App* sub = add_subcommand(
+      app, context, "import",
+      "Make a case, or add a bone to one, from a mesh, a DICOM folder, a volume or a label map",
+      "arthronaut import right_femur.stl -o Knee.arthro\n"
+      "  arthronaut import labels.nrrd -o Knee.arthro --label femur=5,tibia=6 --side right");
   sub->add_option("SOURCE", arguments->source,
                   "Mesh (STL, PLY, OBJ, VTK, VTP), folder of DICOM files, or volume (NIfTI, NRRD, MetaImage)")
       ->required();
@@ -113,10 +118,12 @@ void add_import_command(CLI::App& app, Context& context) {
       ->check(CLI::IsMember({"left", "right"}));
   sub->add_option("--unit", arguments->unit, "Unit of a mesh's coordinates: mm, cm, m or in")
       ->check(CLI::IsMember({"mm", "cm", "m", "in"}));
-  sub->add_option("--space", arguments->space, "Axes of a mesh: lps or ras; default: as the file says, else lps")
+  sub->add_option("--space", arguments->space,
+                  "Axes of a mesh: lps or ras; default: as the file says, else lps")
       ->check(CLI::IsMember({"lps", "ras"}, CLI::ignore_case));
   sub->add_option("--label", arguments->labels, "Labels of a label map, as in femur=5,tibia=6");
-  sub->add_option("--threshold", arguments->threshold, "Least value of bone in a grey volume; default for CT: 250 HU");
+  sub->add_option("--threshold", arguments->threshold,
+                  "Least value of bone in a grey volume; default for CT: 250 HU");
   sub->add_option("--series", arguments->series, "Series number or UID, for a DICOM folder with several");
   sub->add_option("--name", arguments->name, "Name of the case; default: that of its folder");
   sub->callback([&context, arguments] { import(context, *arguments); });

@@ -35,8 +35,9 @@ constexpr std::array<Format, 5> kFormats{{{".stl", parse_stl},
 
 const Format* format_of(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();
-  const auto found = std::find_if(kFormats.begin(), kFormats.end(),
-                                  [&](const Format& f) { return equal_ignoring_case(f.extension, extension); });
+  const auto found = std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& f) {
+    return equal_ignoring_case(f.extension, extension);
+  });
   return found == kFormats.end() ? nullptr : found;
 }
 
@@ -46,7 +47,8 @@ bool is_size_of_bone(double size_mm) { return size_mm >= kSmallestBone_mm && siz
 std::string wrong_size(double size) {
   char number[32];
   std::snprintf(number, sizeof number, "%.3g", size);
-  std::string text = std::string("is ") + number + " mm large if it is in millimetres, which no bone of the knee is";
+  std::string text =
+      std::string("is ") + number + " mm large if it is in millimetres, which no bone of the knee is";
   std::string fitting;
   for (const auto& unit : kUnits) {
     if (!is_size_of_bone(size * unit.mm)) continue;
@@ -67,13 +69,15 @@ void to_lps_mm(geometry::TriangleMesh& mesh, Space space, double scale) {
 void refuse_unwritable(const std::filesystem::path& file, const geometry::TriangleMesh& mesh) {
   for (std::size_t i = 0; i < mesh.vertices_mm.size(); ++i) {
     if (!mesh.vertices_mm[i].allFinite()) {
-      throw InvalidInput(file, "vertex " + std::to_string(i + 1), "would be written with a number that is not finite");
+      throw InvalidInput(file, "vertex " + std::to_string(i + 1),
+                         "would be written with a number that is not finite");
     }
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (const std::int32_t v : mesh.triangles[t]) {
       if (v < 0 || static_cast<std::size_t>(v) >= mesh.vertices_mm.size()) {
-        throw InvalidInput(file, "triangle " + std::to_string(t + 1), "would be written with a vertex out of range");
+        throw InvalidInput(file, "triangle " + std::to_string(t + 1),
+                           "would be written with a vertex out of range");
       }
     }
   }
@@ -137,11 +141,11 @@ geometry::TriangleMesh read_mesh(const std::filesystem::path& file, const MeshFi
 
 void write_mesh_ply(const std::filesystem::path& file, const geometry::TriangleMesh& mesh) {
   refuse_unwritable(file, mesh);
-  std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment SPACE=LPS\ncomment unit mm\nelement vertex " +
-                      std::to_string(mesh.vertices_mm.size()) +
-                      "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
-                      std::to_string(mesh.triangles.size()) +
-                      "\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string bytes =
+      "ply\nformat binary_little_endian 1.0\ncomment SPACE=LPS\ncomment unit mm\nelement vertex " +
+      std::to_string(mesh.vertices_mm.size()) +
+      "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+      std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
   bytes.reserve(bytes.size() + 24 * mesh.vertices_mm.size() + 13 * mesh.triangles.size());
   for (const auto& v : mesh.vertices_mm) {
     for (int i = 0; i < 3; ++i) append(bytes, v[i]);
@@ -160,7 +164,8 @@ void write_mesh_stl(const std::filesystem::path& file, const geometry::TriangleM
   append(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
   bytes.reserve(bytes.size() + 50 * mesh.triangles.size());
   for (const auto& t : mesh.triangles) {
-    const Eigen::Vector3d &a = mesh.vertices_mm[t[0]], &b = mesh.vertices_mm[t[1]], &c = mesh.vertices_mm[t[2]];
+    const Eigen::Vector3d &a = mesh.vertices_mm[t[0]], &b = mesh.vertices_mm[t[1]],
+                          &c = mesh.vertices_mm[t[2]];
     const Eigen::Vector3d normal = Eigen::Vector3d((b - a).cross(c - a)).stableNormalized();
     for (const Eigen::Vector3d& p : {normal, a, b, c}) {
       for (int i = 0; i < 3; ++i) append(bytes, static_cast<float>(p[i]));

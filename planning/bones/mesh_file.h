@@ -1,9 +1,11 @@
-// Bone surfaces in the files that other programs write: STL (text, binary), PLY (text, binary), OBJ, legacy VTK, VTP.
+// Bone surfaces in the files that other programs write: STL (text, binary), PLY (text, binary), OBJ, legacy
+// VTK, VTP.
 //
-// The readers are strict: a file that is cut off, holds a number that is not finite, or refers to a vertex that it does
-// not have is refused with the file, the place (byte, line, triangle or vertex) and the reason, and nothing is
-// returned. VTK's readers return what they could make of such files, mostly without a word; so the formats that are
-// simple enough are read here. VTP, whose compressed blocks are not, is read by VTK and checked.
+// The readers are strict: a file that is cut off, holds a number that is not finite, or refers to a vertex
+// that it does not have is refused with the file, the place (byte, line, triangle or vertex) and the reason,
+// and nothing is returned. VTK's readers return what they could make of such files, mostly without a word; so
+// the formats that are simple enough are read here. VTP, whose compressed blocks are not, is read by VTK and
+// checked.
 #pragma once
 
 #include <filesystem>
@@ -29,12 +31,12 @@ enum class LengthUnit { Millimetre, Centimetre, Metre, Inch };
 struct MeshFileOptions {
   // Overrides what the file says. A file that says nothing is in LPS.
   std::optional<Space> space;
-  // Without it the file is taken to be in mm, and refused when no knee bone in mm has that size (kSmallestBone_mm to
-  // kLargestBone_mm, largest extent of the box). With it the size is not questioned.
+  // Without it the file is taken to be in mm, and refused when no knee bone in mm has that size
+  // (kSmallestBone_mm to kLargestBone_mm, largest extent of the box). With it the size is not questioned.
   std::optional<LengthUnit> unit;
 };
-inline constexpr double kSmallestBone_mm = 30.0;   // half the width of a child's tibial plateau
-inline constexpr double kLargestBone_mm = 700.0;   // longer than any femur
+inline constexpr double kSmallestBone_mm = 30.0;  // half the width of a child's tibial plateau
+inline constexpr double kLargestBone_mm = 700.0;  // longer than any femur
 
 struct MeshFile {
   geometry::TriangleMesh mesh;  // LPS, mm; as found otherwise: neither closed nor oriented for sure
@@ -44,16 +46,17 @@ struct MeshFile {
   LengthUnit unit_in_file = LengthUnit::Millimetre;
 };
 
-// The format is told by the extension, and text or binary by the contents. Polygons are cut into triangles, the equal
-// points of an STL become one. Throws IoError when the file cannot be read, else InvalidInput.
+// The format is told by the extension, and text or binary by the contents. Polygons are cut into triangles,
+// the equal points of an STL become one. Throws IoError when the file cannot be read, else InvalidInput.
 [[nodiscard]] MeshFile read_mesh_file(const std::filesystem::path& file, const MeshFileOptions& options = {});
-[[nodiscard]] geometry::TriangleMesh read_mesh(const std::filesystem::path& file, const MeshFileOptions& options = {});
+[[nodiscard]] geometry::TriangleMesh read_mesh(const std::filesystem::path& file,
+                                               const MeshFileOptions& options = {});
 
 // True for the extensions that read_mesh_file takes, upper or lower case.
 [[nodiscard]] bool is_mesh_file(const std::filesystem::path& file);
 
-// Binary little-endian PLY, double coordinates, LPS, mm. Atomic. Throws IoError; InvalidInput when a coordinate is not
-// finite or an index is out of range (nothing is written then).
+// Binary little-endian PLY, double coordinates, LPS, mm. Atomic. Throws IoError; InvalidInput when a
+// coordinate is not finite or an index is out of range (nothing is written then).
 void write_mesh_ply(const std::filesystem::path& file, const geometry::TriangleMesh& mesh);
 // Binary STL, float coordinates as the format has it. Atomic, errors as above.
 void write_mesh_stl(const std::filesystem::path& file, const geometry::TriangleMesh& mesh);

@@ -38,13 +38,13 @@ class TextCursor {
  public:
   TextCursor(const std::filesystem::path& file, std::string_view text) : file_(&file), text_(text) {}
 
-  [[nodiscard]] bool at_end();                 // nothing but white space is left
-  [[nodiscard]] std::string_view word();       // throws at the end of the file
+  [[nodiscard]] bool at_end();                    // nothing but white space is left
+  [[nodiscard]] std::string_view word();          // throws at the end of the file
   [[nodiscard]] std::string_view rest_of_line();  // and goes past it
   [[nodiscard]] std::string_view line_left() const;
-  [[nodiscard]] double number();               // finite
+  [[nodiscard]] double number();  // finite
   [[nodiscard]] std::int64_t integer();
-  void expect(std::string_view keyword);       // case does not matter
+  void expect(std::string_view keyword);  // case does not matter
   // For binary parts: the bytes from here on, and how to go past them.
   [[nodiscard]] std::string_view bytes() const { return text_.substr(at_); }
   void skip_bytes(std::size_t count) { at_ += count; }

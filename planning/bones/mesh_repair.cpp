@@ -85,8 +85,9 @@ std::size_t count_edges_not_manifold(const std::vector<Polygon>& polygons) {
   return count;
 }
 
-// Orients the triangles consistently, part by part, and cuts where three or more meet in an edge. Returns which of them
-// now look the other way. Corners may have become copies of the points they were, so places are compared.
+// Orients the triangles consistently, part by part, and cuts where three or more meet in an edge. Returns
+// which of them now look the other way. Corners may have become copies of the points they were, so places are
+// compared.
 std::vector<bool> orient(Soup& soup) {
   const std::vector<Polygon> before = soup.polygons;
   pmp::orient_polygon_soup(soup.points, soup.polygons);
@@ -120,7 +121,8 @@ double border_length(Halfedge border, const SurfaceMesh& mesh) {
   return length;
 }
 
-// A cone over the border: closed whatever the border's shape, for the holes that the triangulation gives up on.
+// A cone over the border: closed whatever the border's shape, for the holes that the triangulation gives up
+// on.
 void fill_by_cone(Halfedge border, SurfaceMesh& mesh) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double count = 0;
@@ -171,7 +173,8 @@ geometry::TriangleMesh plain_mesh(SurfaceMesh& mesh) {
   return result;
 }
 
-// Thin triangles, whose three corners lie on a line, need the neighbours to close up: CGAL flips and collapses.
+// Thin triangles, whose three corners lie on a line, need the neighbours to close up: CGAL flips and
+// collapses.
 void remove_flat_triangles(SurfaceMesh& mesh, MeshRepairReport& report) {
   std::vector<Face> flat;
   pmp::degenerate_faces(mesh, std::back_inserter(flat));
@@ -194,7 +197,8 @@ MeshRepair mend(const geometry::TriangleMesh& mesh) {
   SurfaceMesh surface;
   pmp::polygon_soup_to_polygon_mesh(soup.points, soup.polygons, surface);
   auto was_flipped = surface.add_property_map<Face, bool>("f:flipped", false).first;
-  for (std::size_t t = 0; t < flipped.size(); ++t) was_flipped[Face(static_cast<SurfaceMesh::size_type>(t))] = flipped[t];
+  for (std::size_t t = 0; t < flipped.size(); ++t)
+    was_flipped[Face(static_cast<SurfaceMesh::size_type>(t))] = flipped[t];
   pmp::stitch_borders(surface);
   keep_largest_part(surface, report);
   // What was cut at an edge shared by three closes again once the third is gone.
@@ -230,7 +234,8 @@ MeshRepair mend_mesh(const geometry::TriangleMesh& mesh) {
     return mend(mesh);
   } catch (const CGAL::Failure_exception& failure) {
     // CGAL's checks, where they are compiled in, speak of its code: of use to nobody who has the mesh.
-    throw InvalidInput(std::string("mesh: cannot be mended (") + failure.library() + ": " + failure.expression() + ")");
+    throw InvalidInput(std::string("mesh: cannot be mended (") + failure.library() + ": " +
+                       failure.expression() + ")");
   }
 }
 

@@ -11,21 +11,21 @@ namespace arthronaut::bones {
 
 struct MeshRepairReport {
   std::size_t vertices_found = 0, triangles_found = 0;
-  std::size_t vertices_merged = 0;          // of the same place as another
-  std::size_t vertices_unused = 0;          // of no triangle
-  std::size_t triangles_degenerate = 0;     // without an area
-  std::size_t triangles_duplicate = 0;      // the same corners as another
-  std::size_t edges_not_manifold = 0;       // shared by three triangles or more, or by two that look opposite ways
-  std::size_t parts_found = 1;              // connected pieces; the one of the largest area is kept
+  std::size_t vertices_merged = 0;       // of the same place as another
+  std::size_t vertices_unused = 0;       // of no triangle
+  std::size_t triangles_degenerate = 0;  // without an area
+  std::size_t triangles_duplicate = 0;   // the same corners as another
+  std::size_t edges_not_manifold = 0;  // shared by three triangles or more, or by two that look opposite ways
+  std::size_t parts_found = 1;         // connected pieces; the one of the largest area is kept
   std::size_t triangles_of_other_parts = 0;
   std::size_t holes_filled = 0;
-  double largest_hole_mm = 0;               // length of its edge
-  double filled_area_fraction = 0;          // of the surface as it is now
-  std::size_t triangles_flipped = 0;        // of the kept part, looked the other way; all of them: was inside out
+  double largest_hole_mm = 0;         // length of its edge
+  double filled_area_fraction = 0;    // of the surface as it is now
+  std::size_t triangles_flipped = 0;  // of the kept part, looked the other way; all of them: was inside out
   bool was_inside_out = false;
   std::size_t vertices_now = 0, triangles_now = 0;
   double volume_mm3 = 0;
-  bool is_closed = false;                   // false: the result must not be used for planning
+  bool is_closed = false;  // false: the result must not be used for planning
 
   [[nodiscard]] bool changed_anything() const;
   // A line for each thing that was found and mended, for a person; empty when the mesh was fine.
@@ -39,9 +39,9 @@ struct MeshRepair {
   MeshRepairReport report;
 };
 
-// Merges equal points, drops what has no area, keeps the largest part, fills its holes and turns it outwards. Points
-// are not moved. A million triangles take a few seconds. Throws InvalidInput when nothing is left, an index is out of
-// range or a coordinate is not finite.
+// Merges equal points, drops what has no area, keeps the largest part, fills its holes and turns it outwards.
+// Points are not moved. A million triangles take in the order of ten seconds. Throws InvalidInput when
+// nothing is left, an index is out of range or a coordinate is not finite.
 [[nodiscard]] MeshRepair mend_mesh(const geometry::TriangleMesh& mesh);
 
 }  // namespace arthronaut::bones

@@ -23,7 +23,8 @@ std::string shown(std::string_view word) {
 }  // namespace
 
 bool equal_ignoring_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](char x, char y) { return lower(x) == lower(y); });
 }
 
 std::optional<double> number_from(std::string_view word) {
@@ -111,7 +112,8 @@ void TextCursor::fail(const std::string& reason) const {
 }
 
 void append_polygon(geometry::TriangleMesh& mesh, const std::vector<std::int32_t>& corners) {
-  for (std::size_t i = 2; i < corners.size(); ++i) mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
+  for (std::size_t i = 2; i < corners.size(); ++i)
+    mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
 }
 
 }  // namespace arthronaut::bones

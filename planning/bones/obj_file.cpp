@@ -2,7 +2,8 @@
 
 namespace arthronaut::bones {
 
-// Wavefront OBJ: "v x y z", "f a b c ..." with a, a/t, a//n or a/t/n, counted from 1 or, below 0, from the end.
+// Wavefront OBJ: "v x y z", "f a b c ..." with a, a/t, a//n or a/t/n, counted from 1 or, below 0, from the
+// end.
 RawMesh parse_obj(const std::filesystem::path& file, std::string_view text) {
   RawMesh raw;
   raw.format = "OBJ";
@@ -25,7 +26,8 @@ RawMesh parse_obj(const std::filesystem::path& file, std::string_view text) {
         if (!number || *number != std::floor(*number)) cursor.fail("a corner of the face is not an integer");
         const double index = *number < 0 ? static_cast<double>(count) + *number : *number - 1;
         if (index < 0 || index >= static_cast<double>(count)) {
-          cursor.fail("the face refers to a vertex that is not among the " + std::to_string(count) + " above it");
+          cursor.fail("the face refers to a vertex that is not among the " + std::to_string(count) +
+                      " above it");
         }
         corners.push_back(static_cast<std::int32_t>(index));
       }

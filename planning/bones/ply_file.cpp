@@ -126,14 +126,22 @@ class Values {
   [[nodiscard]] double decoded(Scalar type, const char* at) const {
     const std::endian order = encoding_ == Encoding::BigEndian ? std::endian::big : std::endian::little;
     switch (type) {
-      case Scalar::Int8: return scalar_at<std::int8_t>(at, order);
-      case Scalar::UInt8: return scalar_at<std::uint8_t>(at, order);
-      case Scalar::Int16: return scalar_at<std::int16_t>(at, order);
-      case Scalar::UInt16: return scalar_at<std::uint16_t>(at, order);
-      case Scalar::Int32: return scalar_at<std::int32_t>(at, order);
-      case Scalar::UInt32: return scalar_at<std::uint32_t>(at, order);
-      case Scalar::Float32: return scalar_at<float>(at, order);
-      case Scalar::Float64: break;
+      case Scalar::Int8:
+        return scalar_at<std::int8_t>(at, order);
+      case Scalar::UInt8:
+        return scalar_at<std::uint8_t>(at, order);
+      case Scalar::Int16:
+        return scalar_at<std::int16_t>(at, order);
+      case Scalar::UInt16:
+        return scalar_at<std::uint16_t>(at, order);
+      case Scalar::Int32:
+        return scalar_at<std::int32_t>(at, order);
+      case Scalar::UInt32:
+        return scalar_at<std::uint32_t>(at, order);
+      case Scalar::Float32:
+        return scalar_at<float>(at, order);
+      case Scalar::Float64:
+        break;
     }
     return scalar_at<double>(at, order);
   }
@@ -146,11 +154,13 @@ class Values {
 // Reads the body into a mesh; one element kind after the other, in the header's order.
 class Body {
  public:
-  Body(const std::filesystem::path& file, Values& values, RawMesh& raw) : file_(file), values_(values), raw_(raw) {}
+  Body(const std::filesystem::path& file, Values& values, RawMesh& raw)
+      : file_(file), values_(values), raw_(raw) {}
 
   void read(const Element& element) {
     if (element.properties.empty() && element.count > 0) fail(element, 0, "has no property");
-    if (element.name == "vertex") raw_.mesh.vertices_mm.reserve(std::min(element.count, values_.bytes_left()));
+    if (element.name == "vertex")
+      raw_.mesh.vertices_mm.reserve(std::min(element.count, values_.bytes_left()));
     for (std::size_t row = 0; row < element.count; ++row) read_row(element, row);
   }
 
@@ -175,14 +185,16 @@ class Body {
 
   void read_list(const Element& element, std::size_t row, const Property& property) {
     const double count = values_.next(*property.list_count_type, element, row);
-    if (!(count >= 0) || count != std::floor(count)) fail(element, row, "has a list with a count that is none");
+    if (!(count >= 0) || count != std::floor(count))
+      fail(element, row, "has a list with a count that is none");
     const bool is_polygon =
         element.name == "face" && (property.name == "vertex_indices" || property.name == "vertex_index");
     corners_.clear();
     for (double i = 0; i < count; ++i) {
       const double value = values_.next(property.type, element, row);
       if (!is_polygon) continue;
-      if (!(value >= 0) || value >= static_cast<double>(raw_.mesh.vertices_mm.size()) || value != std::floor(value)) {
+      if (!(value >= 0) || value >= static_cast<double>(raw_.mesh.vertices_mm.size()) ||
+          value != std::floor(value)) {
         fail(element, row,
              "refers to a vertex that is not among the " + std::to_string(raw_.mesh.vertices_mm.size()));
       }

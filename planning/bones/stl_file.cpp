@@ -48,8 +48,9 @@ RawMesh parse_binary(const std::filesystem::path& file, std::string_view text) {
   const std::size_t count = scalar_at<std::uint32_t>(text.data() + 80, std::endian::little);
   const std::size_t whole = (text.size() - kHeaderBytes) / kTriangleBytes;
   if (whole < count) {
-    throw InvalidInput(file, "byte " + std::to_string(text.size()),
-                       "the file ends in triangle " + std::to_string(whole + 1) + " of " + std::to_string(count));
+    throw InvalidInput(
+        file, "byte " + std::to_string(text.size()),
+        "the file ends in triangle " + std::to_string(whole + 1) + " of " + std::to_string(count));
   }
   RawMesh raw;
   raw.format = "binary STL";
@@ -80,7 +81,8 @@ RawMesh parse_text(const std::filesystem::path& file, std::string_view text) {
     cursor.expect("solid");
     const auto declared = space_declared_in(cursor.rest_of_line());
     if (declared) raw.declared_space = declared;
-    for (std::string_view word = cursor.word(); !equal_ignoring_case(word, "endsolid"); word = cursor.word()) {
+    for (std::string_view word = cursor.word(); !equal_ignoring_case(word, "endsolid");
+         word = cursor.word()) {
       if (!equal_ignoring_case(word, "facet")) cursor.fail("expected \"facet\" or \"endsolid\"");
       // The normal is not used, and degenerate triangles have it as nan in files of several programs.
       static_cast<void>(cursor.rest_of_line());
@@ -116,7 +118,8 @@ RawMesh parse_stl(const std::filesystem::path& file, std::string_view text) {
   // Some programs begin a binary file with "solid": the length that the count asks for decides first.
   const bool is_binary_by_length =
       text.size() >= kHeaderBytes &&
-      text.size() == kHeaderBytes + kTriangleBytes * scalar_at<std::uint32_t>(text.data() + 80, std::endian::little);
+      text.size() ==
+          kHeaderBytes + kTriangleBytes * scalar_at<std::uint32_t>(text.data() + 80, std::endian::little);
   if (!is_binary_by_length && looks_like_text(text)) return parse_text(file, text);
   if (text.size() < kHeaderBytes) {
     throw InvalidInput(file, "byte " + std::to_string(text.size()), "the file ends within the STL header");

@@ -48,7 +48,8 @@ class LegacyReader {
       } else if (equal_ignoring_case(key, "METADATA")) {
         static_cast<void>(cursor_.rest_of_line());
         // Ends with an empty line.
-        while (!cursor_.bytes().empty() && cursor_.rest_of_line().find_first_not_of("\r ") != std::string_view::npos) {
+        while (!cursor_.bytes().empty() &&
+               cursor_.rest_of_line().find_first_not_of("\r ") != std::string_view::npos) {
         }
       } else if (equal_ignoring_case(key, "FIELD")) {
         read_field();
@@ -66,7 +67,8 @@ class LegacyReader {
     constexpr std::string_view kMagic = "# vtk DataFile Version ";
     const std::string_view first = cursor_.rest_of_line();
     if (!equal_ignoring_case(first.substr(0, kMagic.size()), kMagic)) cursor_.fail("not a VTK file");
-    version_ = number_from(first.substr(kMagic.size(), first.find_last_not_of("\r ") + 1 - kMagic.size())).value_or(0);
+    version_ = number_from(first.substr(kMagic.size(), first.find_last_not_of("\r ") + 1 - kMagic.size()))
+                   .value_or(0);
     raw_.declared_space = space_declared_in(cursor_.rest_of_line());
     const std::string_view encoding = cursor_.word();
     is_binary_ = equal_ignoring_case(encoding, "BINARY");
@@ -74,7 +76,8 @@ class LegacyReader {
     raw_.format = is_binary_ ? "binary VTK" : "text VTK";
     cursor_.expect("DATASET");
     const std::string_view dataset = cursor_.word();
-    if (!equal_ignoring_case(dataset, "POLYDATA")) cursor_.fail("holds no surface: expected DATASET POLYDATA");
+    if (!equal_ignoring_case(dataset, "POLYDATA"))
+      cursor_.fail("holds no surface: expected DATASET POLYDATA");
   }
 
   std::size_t read_count() {
@@ -108,8 +111,8 @@ class LegacyReader {
     static_cast<void>(cursor_.rest_of_line());
     const std::string_view bytes = cursor_.bytes();
     if (bytes.size() / type.bytes < count) {
-      cursor_.fail(std::string("the file ends in number ") + std::to_string(bytes.size() / type.bytes + 1) + " of " +
-                   std::to_string(count) + " of the " + what);
+      cursor_.fail(std::string("the file ends in number ") + std::to_string(bytes.size() / type.bytes + 1) +
+                   " of " + std::to_string(count) + " of the " + what);
     }
     for (std::size_t i = 0; i < count; ++i) values.push_back(type.decode(bytes.data() + i * type.bytes));
     cursor_.skip_bytes(count * type.bytes);
@@ -129,7 +132,8 @@ class LegacyReader {
   }
 
   std::int32_t vertex(double index, std::size_t cell) {
-    if (!(index >= 0) || index >= static_cast<double>(raw_.mesh.vertices_mm.size()) || index != std::floor(index)) {
+    if (!(index >= 0) || index >= static_cast<double>(raw_.mesh.vertices_mm.size()) ||
+        index != std::floor(index)) {
       cursor_.fail("cell " + std::to_string(cell + 1) + " refers to a vertex that is not among the " +
                    std::to_string(raw_.mesh.vertices_mm.size()));
     }
@@ -175,7 +179,8 @@ class LegacyReader {
   void append_strip(const std::vector<std::int32_t>& corners) {
     for (std::size_t i = 2; i < corners.size(); ++i) {
       const bool is_odd = i % 2 != 0;
-      raw_.mesh.triangles.push_back({corners[is_odd ? i - 1 : i - 2], corners[is_odd ? i - 2 : i - 1], corners[i]});
+      raw_.mesh.triangles.push_back(
+          {corners[is_odd ? i - 1 : i - 2], corners[is_odd ? i - 2 : i - 1], corners[i]});
     }
   }
 
@@ -185,7 +190,8 @@ class LegacyReader {
     for (std::size_t i = 0; i < count; ++i) {
       static_cast<void>(cursor_.word());
       const std::size_t components = read_count(), tuples = read_count();
-      if (components != 0 && tuples > cursor_.bytes().size() / components) cursor_.fail("the field is too long");
+      if (components != 0 && tuples > cursor_.bytes().size() / components)
+        cursor_.fail("the field is too long");
       const std::size_t values = components * tuples;
       const TextCursor before = cursor_;
       if (cursor_.word() == "string") {

@@ -129,7 +129,8 @@ RawMesh parse_vtp(const std::filesystem::path& file, std::string_view text) {
   const std::size_t vertex_count = raw.mesh.vertices_mm.size();
   for_each_cell(file, data->GetPolys(), vertex_count,
                 [&](const std::vector<std::int32_t>& corners) { append_polygon(raw.mesh, corners); });
-  if (data->GetNumberOfStrips() > 0) throw InvalidInput(file, "", "holds triangle strips: save it as triangles");
+  if (data->GetNumberOfStrips() > 0)
+    throw InvalidInput(file, "", "holds triangle strips: save it as triangles");
   return raw;
 }
 

@@ -28,7 +28,8 @@ std::string line_and_column(std::string_view text, std::size_t byte) {
 }
 
 // nlohmann writes a number that is not finite as null: refuse instead, the reader would.
-void refuse_not_finite(const nlohmann::ordered_json& node, const std::filesystem::path& file, const std::string& place) {
+void refuse_not_finite(const nlohmann::ordered_json& node, const std::filesystem::path& file,
+                       const std::string& place) {
   if (node.is_number_float() && !std::isfinite(node.get<double>())) {
     throw InvalidInput(file, place, "would be written as a number that is not finite");
   }
@@ -197,7 +198,8 @@ JsonObject read_json(const std::filesystem::path& file, std::string_view format,
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& document) {
   refuse_not_finite(document, file, "");
   // Bytes that are no UTF-8 (of a file name, say) become the replacement character instead of an exception.
-  write_atomically(file, document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  write_atomically(file,
+                   document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 nlohmann::ordered_json to_json(const Eigen::Vector2d& v) { return {v.x(), v.y()}; }

@@ -38,8 +38,8 @@ struct Foot {
   int index = 0;
 };
 
-// By the regions of the triangle's plane in which the query's foot falls; the sign of the distance hangs on the feature,
-// which the coordinates of the foot alone would not tell reliably.
+// By the regions of the triangle's plane in which the query's foot falls; the sign of the distance hangs on
+// the feature, which the coordinates of the foot alone would not tell reliably.
 Foot foot_on_triangle(const Eigen::Vector3d& p, const std::array<Eigen::Vector3d, 3>& corner) {
   const Eigen::Vector3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
   bool is_inside = true;
@@ -75,11 +75,11 @@ std::pair<std::int32_t, std::int32_t> edge_key(std::int32_t a, std::int32_t b) {
 
 struct Surface::Tree {
   std::vector<Triangle> triangles;
-  std::vector<std::int32_t> mesh_triangle;             // index in the mesh given
-  std::vector<std::array<std::int32_t, 3>> corners;    // points of the same place share an index
+  std::vector<std::int32_t> mesh_triangle;           // index in the mesh given
+  std::vector<std::array<std::int32_t, 3>> corners;  // points of the same place share an index
   std::vector<Eigen::Vector3d> points;
-  std::vector<Eigen::Vector3d> normals;                // unit, of the triangles
-  std::vector<Eigen::Vector3d> corner_normals;         // angle-weighted, not unit
+  std::vector<Eigen::Vector3d> normals;                      // unit, of the triangles
+  std::vector<Eigen::Vector3d> corner_normals;               // angle-weighted, not unit
   std::vector<std::array<Eigen::Vector3d, 3>> edge_normals;  // sum over the triangles at each edge, not unit
   AabbTree aabb;
 
@@ -110,8 +110,8 @@ void Surface::Tree::add_triangles(const TriangleMesh& mesh) {
     for (int i = 0; i < 3; ++i) {
       const std::int32_t v = mesh.triangles[t][i];
       if (v < 0 || static_cast<std::size_t>(v) >= merged.size()) {
-        throw InvalidInput("mesh: triangle " + std::to_string(t) + ": refers to vertex " + std::to_string(v) + " of " +
-                           std::to_string(merged.size()));
+        throw InvalidInput("mesh: triangle " + std::to_string(t) + ": refers to vertex " + std::to_string(v) +
+                           " of " + std::to_string(merged.size()));
       }
       c[i] = merged[v];
     }
@@ -128,8 +128,9 @@ void Surface::Tree::add_triangles(const TriangleMesh& mesh) {
   if (triangles.empty()) throw InvalidInput("mesh: holds no triangle with an area");
 }
 
-// Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal (2005): the dot product with
-// these normals has the right sign wherever the closest point lies on an edge or a corner of a closed mesh.
+// Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal (2005): the dot
+// product with these normals has the right sign wherever the closest point lies on an edge or a corner of a
+// closed mesh.
 void Surface::Tree::weigh_normals() {
   corner_normals.assign(points.size(), Eigen::Vector3d::Zero());
   std::vector<std::pair<std::pair<std::int32_t, std::int32_t>, std::size_t>> edges;
@@ -179,13 +180,15 @@ SurfacePoint Surface::closest_point(const Eigen::Vector3d& query_mm) const {
 double Surface::signed_distance_mm(const Eigen::Vector3d& query_mm) const {
   const auto [foot, t] = tree_->closest(query_mm);
   const Eigen::Vector3d offset = query_mm - foot.point;
-  const Eigen::Vector3d& normal = foot.feature == Feature::Face   ? tree_->normals[t]
-                                  : foot.feature == Feature::Edge ? tree_->edge_normals[t][foot.index]
-                                                                  : tree_->corner_normals[tree_->corners[t][foot.index]];
+  const Eigen::Vector3d& normal = foot.feature == Feature::Face ? tree_->normals[t]
+                                  : foot.feature == Feature::Edge
+                                      ? tree_->edge_normals[t][foot.index]
+                                      : tree_->corner_normals[tree_->corners[t][foot.index]];
   return std::copysign(offset.norm(), offset.dot(normal));
 }
 
-std::vector<RayHit> Surface::all_hits(const Eigen::Vector3d& origin_mm, const Eigen::Vector3d& direction) const {
+std::vector<RayHit> Surface::all_hits(const Eigen::Vector3d& origin_mm,
+                                      const Eigen::Vector3d& direction) const {
   const Eigen::Vector3d unit = direction.normalized();
   const Kernel::Ray_3 ray(to_cgal(origin_mm), Kernel::Vector_3(unit.x(), unit.y(), unit.z()));
   std::vector<AabbTree::Intersection_and_primitive_id<Kernel::Ray_3>::Type> found;
@@ -215,7 +218,8 @@ std::vector<RayHit> Surface::all_hits(const Eigen::Vector3d& origin_mm, const Ei
   return hits;
 }
 
-std::optional<RayHit> Surface::first_hit(const Eigen::Vector3d& origin_mm, const Eigen::Vector3d& direction) const {
+std::optional<RayHit> Surface::first_hit(const Eigen::Vector3d& origin_mm,
+                                         const Eigen::Vector3d& direction) const {
   auto hits = all_hits(origin_mm, direction);
   if (hits.empty()) return std::nullopt;
   return hits.front();

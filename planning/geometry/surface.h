@@ -1,5 +1,5 @@
-// Exact queries against a triangle mesh: nearest point, rays, inside or outside. Built once (a CGAL AABB tree), then
-// read by any number of threads.
+// Exact queries against a triangle mesh: nearest point, rays, inside or outside. Built once (a CGAL AABB
+// tree), then read by any number of threads.
 #pragma once
 
 #include <memory>
@@ -31,10 +31,12 @@ class Surface {
   [[nodiscard]] SurfacePoint closest_point(const Eigen::Vector3d& query_mm) const;
   // Distance, negative inside. The sign is right for closed, outward oriented meshes.
   [[nodiscard]] double signed_distance_mm(const Eigen::Vector3d& query_mm) const;
-  // direction need not be unit. Hits in order of distance, the origin's own triangle included when it touches. A ray
-  // through an edge or a vertex crosses the surface once there, not once a triangle.
-  [[nodiscard]] std::optional<RayHit> first_hit(const Eigen::Vector3d& origin_mm, const Eigen::Vector3d& direction) const;
-  [[nodiscard]] std::vector<RayHit> all_hits(const Eigen::Vector3d& origin_mm, const Eigen::Vector3d& direction) const;
+  // direction need not be unit. Hits in order of distance, the origin's own triangle included when it
+  // touches. A ray through an edge or a vertex crosses the surface once there, not once a triangle.
+  [[nodiscard]] std::optional<RayHit> first_hit(const Eigen::Vector3d& origin_mm,
+                                                const Eigen::Vector3d& direction) const;
+  [[nodiscard]] std::vector<RayHit> all_hits(const Eigen::Vector3d& origin_mm,
+                                             const Eigen::Vector3d& direction) const;
 
  private:
   struct Tree;

@@ -41,7 +41,8 @@ std::vector<std::string> words_of(const std::filesystem::path& source) {
 template <typename T, typename Matches>
 std::optional<T> only_one(const std::vector<std::string>& words, T first, T second, const Matches& matches) {
   const auto occurs = [&](T value) {
-    return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return matches(word, value); });
+    return std::any_of(words.begin(), words.end(),
+                       [&](const std::string& word) { return matches(word, value); });
   };
   const bool has_first = occurs(first), has_second = occurs(second);
   if (has_first == has_second) return std::nullopt;
@@ -50,8 +51,8 @@ std::optional<T> only_one(const std::vector<std::string>& words, T first, T seco
 
 std::string formatted_size(const Eigen::Vector3d& size) {
   char text[120];
-  std::snprintf(text, sizeof text, "%.1f x %.1f x %.1f mm (left-right x front-back x up-down)", size.x(), size.y(),
-                size.z());
+  std::snprintf(text, sizeof text, "%.1f x %.1f x %.1f mm (left-right x front-back x up-down)", size.x(),
+                size.y(), size.z());
   return text;
 }
 
@@ -68,9 +69,9 @@ ImportedBone finished(BoneKind kind, const std::string& source, const geometry::
   imported.doubts = repair.report.doubts();
   const double x = bounds.center_mm().x();
   if (side && std::abs(x) > kClearlySideways_mm && (x > 0) != (*side == Side::Left)) {
-    imported.doubts.push_back("the bone lies " + std::to_string(std::lround(std::abs(x))) + " mm to the patient's " +
-                              (x > 0 ? "left" : "right") + ", but the side is " + std::string(bones::to_text(*side)) +
-                              ": check --side and --space");
+    imported.doubts.push_back("the bone lies " + std::to_string(std::lround(std::abs(x))) +
+                              " mm to the patient's " + (x > 0 ? "left" : "right") + ", but the side is " +
+                              std::string(bones::to_text(*side)) + ": check --side and --space");
   }
   return imported;
 }
@@ -86,7 +87,9 @@ void import_mesh(const std::filesystem::path& source, const BoneImportOptions& o
   const auto kind = options.kind ? options.kind : bone_kind_in_name(source);
   if (!kind) ask_for_kind(source);
   const bones::MeshFile file = bones::read_mesh_file(source, {options.space, options.unit});
-  const char* said_by = options.space ? "as --space says" : file.space_was_declared ? "as the file says" : "the file does not say";
+  const char* said_by = options.space             ? "as --space says"
+                        : file.space_was_declared ? "as the file says"
+                                                  : "the file does not say";
   result.lines.push_back(file.format + ", in " + std::string(bones::to_text(file.unit_in_file)) + ", " +
                          (file.space_in_file == bones::Space::LPS ? "LPS" : "RAS") + " (" + said_by + ")");
   try {
@@ -96,12 +99,14 @@ void import_mesh(const std::filesystem::path& source, const BoneImportOptions& o
   }
 }
 
-double threshold_for(const std::filesystem::path& source, const BoneImportOptions& options, const Volume& volume) {
+double threshold_for(const std::filesystem::path& source, const BoneImportOptions& options,
+                     const Volume& volume) {
   if (options.threshold) return *options.threshold;
   const float least = *std::min_element(volume.values.begin(), volume.values.end());
   if (volume.modality == "CT" || (volume.modality.empty() && least < kAir_hu)) return kCtThreshold_hu;
-  throw InvalidInput(source, "", "is no CT, so there is no threshold that finds bone: give --threshold, or import a "
-                                 "label map or a mesh of it");
+  throw InvalidInput(source, "",
+                     "is no CT, so there is no threshold that finds bone: give --threshold, or import a "
+                     "label map or a mesh of it");
 }
 
 std::string list_of(const std::vector<std::pair<int, std::size_t>>& labels) {
@@ -112,15 +117,17 @@ std::string list_of(const std::vector<std::pair<int, std::size_t>>& labels) {
   return list;
 }
 
-void import_volume(const std::filesystem::path& source, const BoneImportOptions& options, BoneImport& result) {
+void import_volume(const std::filesystem::path& source, const BoneImportOptions& options,
+                   BoneImport& result) {
   if (options.space || options.unit) {
-    throw InvalidInput(source, "", "is a volume, which says its space and unit itself: --space and --unit are for meshes");
+    throw InvalidInput(
+        source, "", "is a volume, which says its space and unit itself: --space and --unit are for meshes");
   }
   const Volume volume = read_volume(source, {options.series});
   const Eigen::Vector3d spacing = volume.spacing_mm();
   char text[160];
-  std::snprintf(text, sizeof text, "%d x %d x %d voxels of %.3g x %.3g x %.3g mm, ", volume.size.x(), volume.size.y(),
-                volume.size.z(), spacing.x(), spacing.y(), spacing.z());
+  std::snprintf(text, sizeof text, "%d x %d x %d voxels of %.3g x %.3g x %.3g mm, ", volume.size.x(),
+                volume.size.y(), volume.size.z(), spacing.x(), spacing.y(), spacing.z());
   result.lines.push_back(volume.format + ", " + text + axes_in_words(volume));
   result.lines.insert(result.lines.end(), volume.notes.begin(), volume.notes.end());
 
@@ -133,18 +140,22 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
       for (const auto& [kind, label] : options.labels) {
         if (options.kind && *options.kind != kind) continue;
         const BoneSurface surface = surface_of_label(volume, label);
-        result.bones.push_back(finished(kind, "label " + std::to_string(label) + " of " + name, surface.mesh, result.side));
-        result.bones.back().lines.insert(result.bones.back().lines.begin(), surface.notes.begin(), surface.notes.end());
+        result.bones.push_back(
+            finished(kind, "label " + std::to_string(label) + " of " + name, surface.mesh, result.side));
+        result.bones.back().lines.insert(result.bones.back().lines.begin(), surface.notes.begin(),
+                                         surface.notes.end());
       }
       if (result.bones.empty()) throw InvalidInput("--label does not name the bone of --bone");
       return;
     }
     if (is_label_map && !options.threshold) {
-      throw InvalidInput("is a label map with the labels " + list_of(labels) +
-                         ": say which are the bones, for example --label femur=" + std::to_string(labels[1].first));
+      throw InvalidInput(
+          "is a label map with the labels " + list_of(labels) +
+          ": say which are the bones, for example --label femur=" + std::to_string(labels[1].first));
     }
     const auto kind = options.kind ? options.kind : bone_kind_in_name(source);
-    if (!kind) throw InvalidInput("does not say which of its bones to take: add --bone femur or --bone tibia");
+    if (!kind)
+      throw InvalidInput("does not say which of its bones to take: add --bone femur or --bone tibia");
     ThresholdOptions threshold;
     threshold.threshold = threshold_for(source, options, volume);
     threshold.piece = *kind == BoneKind::Femur ? Piece::Superior : Piece::Inferior;
@@ -173,16 +184,18 @@ BoneImport import_bones(const std::filesystem::path& source, const BoneImportOpt
   } else if (is_volume_source(source)) {
     import_volume(source, options, result);
   } else {
-    throw InvalidInput(source, "", "is nothing that is imported: a mesh (STL, PLY, OBJ, VTK, VTP), a DICOM folder, or a "
-                                   "volume (NIfTI, NRRD, MetaImage)");
+    throw InvalidInput(source, "",
+                       "is nothing that is imported: a mesh (STL, PLY, OBJ, VTK, VTP), a DICOM folder, or a "
+                       "volume (NIfTI, NRRD, MetaImage)");
   }
   return result;
 }
 
 std::optional<BoneKind> bone_kind_in_name(const std::filesystem::path& source) {
-  return only_one(words_of(source), BoneKind::Femur, BoneKind::Tibia, [](const std::string& word, BoneKind kind) {
-    return word.find(kind == BoneKind::Femur ? "femur" : "tibia") != std::string::npos;
-  });
+  return only_one(words_of(source), BoneKind::Femur, BoneKind::Tibia,
+                  [](const std::string& word, BoneKind kind) {
+                    return word.find(kind == BoneKind::Femur ? "femur" : "tibia") != std::string::npos;
+                  });
 }
 
 std::optional<Side> side_in_name(const std::filesystem::path& source) {

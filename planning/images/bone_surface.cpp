@@ -19,13 +19,14 @@ namespace arthronaut::images {
 
 namespace {
 
-// Smoothing of the surface, found on spheres and ellipsoids in grids of 0.4 to 3.3 mm: the steps of the slices go, the
-// volume stays within 1 %.
+// Smoothing of the surface, found on spheres and ellipsoids in grids of 0.4 to 3.3 mm: the steps of the
+// slices go, the volume stays within 1 %.
 constexpr int kSmoothingIterations = 20;
 constexpr double kSmoothingPassBand = 0.08;
 // Blur of a label's mask, in voxels: without it marching cubes finds nothing but half-way points.
 constexpr double kMaskBlur_voxels = 0.6;
-// What stands for "surely bone" and "surely not" beside the threshold: about the step from soft tissue to cortex.
+// What stands for "surely bone" and "surely not" beside the threshold: about the step from soft tissue to
+// cortex.
 constexpr float kSureStep = 300;
 
 // A part of a volume with room around it.
@@ -37,7 +38,8 @@ struct Field {
   [[nodiscard]] std::size_t index(const Eigen::Vector3i& at) const {
     return static_cast<std::size_t>(at.x()) +
            static_cast<std::size_t>(size.x()) *
-               (static_cast<std::size_t>(at.y()) + static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(at.z()));
+               (static_cast<std::size_t>(at.y()) +
+                static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(at.z()));
   }
 };
 
@@ -76,7 +78,8 @@ void for_each_shared_voxel(const Field& field, const Volume& volume, const Visit
 
 void blur(Field& field) {
   const double side = std::exp(-0.5 / (kMaskBlur_voxels * kMaskBlur_voxels));
-  const auto center_weight = static_cast<float>(1 / (1 + 2 * side)), side_weight = static_cast<float>(side / (1 + 2 * side));
+  const auto center_weight = static_cast<float>(1 / (1 + 2 * side)),
+             side_weight = static_cast<float>(side / (1 + 2 * side));
   std::size_t step = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const auto n = static_cast<std::size_t>(field.size[axis]);
@@ -161,7 +164,9 @@ bool is_large(const VoxelPiece& piece, const VoxelPiece& largest) {
 }
 
 const VoxelPiece& chosen_piece(const std::vector<VoxelPiece>& pieces, const Volume& volume, Piece wanted) {
-  const auto height = [&](const VoxelPiece& piece) { return (volume.lps_from_index * piece.center_index).z(); };
+  const auto height = [&](const VoxelPiece& piece) {
+    return (volume.lps_from_index * piece.center_index).z();
+  };
   const VoxelPiece* best = &pieces.front();
   for (const VoxelPiece& piece : pieces) {
     if (!is_large(piece, pieces.front())) continue;
@@ -202,8 +207,9 @@ bool stand_above_each_other(const VoxelPiece& a, const VoxelPiece& b, const Volu
   return overlap <= kMostOverlap_fraction * std::min(a_high - a_low, b_high - b_low);
 }
 
-// Bones that touch are joined by necks thinner than themselves: worn down until two large pieces are left, each of which
-// then takes the voxels that are nearer to it. Returns false, and leaves the mask, when it does not fall apart.
+// Bones that touch are joined by necks thinner than themselves: worn down until two large pieces are left,
+// each of which then takes the voxels that are nearer to it. Returns false, and leaves the mask, when it does
+// not fall apart.
 bool part_from_others(VoxelMask& bone, const Volume& volume, Piece wanted) {
   const Eigen::Vector3d spacing = volume.spacing_mm();
   for (double radius = 1; radius <= kDeepestParting_mm; radius += 1) {
@@ -233,8 +239,10 @@ bool part_from_others(VoxelMask& bone, const Volume& volume, Piece wanted) {
 
 BoneSurface surface_of_label(const Volume& volume, int label) {
   const auto labels = labels_of(volume);
-  if (labels.empty()) throw InvalidInput("the volume is no label map: its values are not a few whole numbers");
-  const auto wanted = std::find_if(labels.begin(), labels.end(), [&](const auto& l) { return l.first == label; });
+  if (labels.empty())
+    throw InvalidInput("the volume is no label map: its values are not a few whole numbers");
+  const auto wanted =
+      std::find_if(labels.begin(), labels.end(), [&](const auto& l) { return l.first == label; });
   if (wanted == labels.end()) {
     std::string list;
     for (const auto& [value, count] : labels) list += (list.empty() ? "" : ", ") + std::to_string(value);
@@ -242,13 +250,16 @@ BoneSurface surface_of_label(const Volume& volume, int label) {
   }
   const auto is_label = [&](std::size_t voxel) { return volume.values[voxel] == static_cast<float>(label); };
   Field field = field_around(volume, 2, is_label);
-  for_each_shared_voxel(field, volume,
-                        [&](std::size_t here, std::size_t there) { field.values[here] = is_label(there) ? 1.0F : 0.0F; });
+  for_each_shared_voxel(field, volume, [&](std::size_t here, std::size_t there) {
+    field.values[here] = is_label(there) ? 1.0F : 0.0F;
+  });
   blur(field);
   BoneSurface surface;
   surface.mesh = contour(field, 0.5F, volume);
-  if (surface.mesh.empty()) throw InvalidInput("label " + std::to_string(label) + " is too small for a surface");
-  surface.notes.push_back("label " + std::to_string(label) + ": " + std::to_string(wanted->second) + " voxels");
+  if (surface.mesh.empty())
+    throw InvalidInput("label " + std::to_string(label) + " is too small for a surface");
+  surface.notes.push_back("label " + std::to_string(label) + ": " + std::to_string(wanted->second) +
+                          " voxels");
   return surface;
 }
 
@@ -259,15 +270,15 @@ BoneSurface surface_above_threshold(const Volume& volume, const ThresholdOptions
   const auto pieces = connected_pieces(above, 50);
   if (pieces.empty()) {
     const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
-    throw InvalidInput("nothing of the volume is above the threshold of " + std::to_string(std::lround(threshold)) +
-                       ": its values run from " + std::to_string(std::lround(*low)) + " to " +
-                       std::to_string(std::lround(*high)));
+    throw InvalidInput("nothing of the volume is above the threshold of " +
+                       std::to_string(std::lround(threshold)) + ": its values run from " +
+                       std::to_string(std::lround(*low)) + " to " + std::to_string(std::lround(*high)));
   }
   const VoxelPiece& piece = chosen_piece(pieces, volume, options.piece);
   VoxelMask bone = filled(piece, volume, options.closing_radius_mm);
   BoneSurface surface;
-  surface.notes.push_back("threshold " + std::to_string(std::lround(threshold)) + ": " + std::to_string(pieces.size()) +
-                          (pieces.size() == 1 ? " piece" : " pieces"));
+  surface.notes.push_back("threshold " + std::to_string(std::lround(threshold)) + ": " +
+                          std::to_string(pieces.size()) + (pieces.size() == 1 ? " piece" : " pieces"));
   const bool stands_alone = pieces.size() > 1 && is_large(pieces[1], pieces[0]);
   if (options.piece != Piece::Largest && !stands_alone) {
     // Closing gaps widens the neck as well: it is looked for without first.
@@ -283,7 +294,8 @@ BoneSurface surface_above_threshold(const Volume& volume, const ThresholdOptions
     if (is_parted) {
       surface.notes.push_back("bones that touched were parted where they were thinnest");
     } else {
-      surface.doubts.push_back("there is one large piece only: if it shows femur and tibia, they touch, and this is both");
+      surface.doubts.push_back(
+          "there is one large piece only: if it shows femur and tibia, they touch, and this is both");
     }
   }
   const auto voxel_ml = std::abs(volume.lps_from_index.linear().determinant()) / 1000;
@@ -292,14 +304,16 @@ BoneSurface surface_above_threshold(const Volume& volume, const ThresholdOptions
 
   Field field = field_around(volume, 1, [&](std::size_t v) { return bone.inside[v] != 0; });
   std::fill(field.values.begin(), field.values.end(), threshold - kSureStep);
-  // Beside the bone the grey values say where within a voxel its surface runs; other bones and the marrow must not.
+  // Beside the bone the grey values say where within a voxel its surface runs; other bones and the marrow
+  // must not.
   for_each_shared_voxel(field, volume, [&](std::size_t here, std::size_t there) {
     const float grey = volume.values[there];
     if (bone.inside[there]) {
       field.values[here] = grey >= threshold ? std::min(grey, threshold + kSureStep) : threshold + kSureStep;
     } else {
       // Bone of another piece right beside it: half-way.
-      field.values[here] = grey >= threshold ? threshold - 0.5F * kSureStep : std::max(grey, threshold - kSureStep);
+      field.values[here] =
+          grey >= threshold ? threshold - 0.5F * kSureStep : std::max(grey, threshold - kSureStep);
     }
   });
   surface.mesh = contour(field, threshold, volume);

@@ -23,7 +23,8 @@ struct ElementHeader {
 
 class Walker {
  public:
-  Walker(const std::filesystem::path& file, std::string_view text, std::size_t at, bool is_explicit, std::endian order)
+  Walker(const std::filesystem::path& file, std::string_view text, std::size_t at, bool is_explicit,
+         std::endian order)
       : file_(file), text_(text), at_(at), is_explicit_(is_explicit), order_(order) {}
 
   [[nodiscard]] bool at_end() const { return at_ >= text_.size(); }
@@ -77,7 +78,8 @@ class Walker {
         static_cast<void>(bytes(item.length));
         continue;
       }
-      for (ElementHeader inner = this->header(); inner.tag != kItemEnd; inner = this->header()) skip(inner, depth + 1);
+      for (ElementHeader inner = this->header(); inner.tag != kItemEnd; inner = this->header())
+        skip(inner, depth + 1);
     }
     is_explicit_ = was_explicit;
   }
@@ -138,7 +140,8 @@ DicomElements parse_dicom(const std::filesystem::path& file, std::string_view te
   // The file's own group is explicit and little endian, whatever follows.
   Walker meta(file, text, 132, true, std::endian::little);
   std::size_t dataset_at = meta.byte();
-  while (text.size() - dataset_at >= 2 && decoded(Scalar::UInt16, std::endian::little, text.data() + dataset_at) == 2) {
+  while (text.size() - dataset_at >= 2 &&
+         decoded(Scalar::UInt16, std::endian::little, text.data() + dataset_at) == 2) {
     const ElementHeader header = meta.header();
     if (header.length == kUndefined) meta.fail("an element of the file's header without a length");
     const std::string_view value = meta.bytes(header.length);

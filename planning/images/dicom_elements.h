@@ -1,7 +1,8 @@
 // The data elements of a DICOM file, strictly. Inner header of images.
 //
-// GDCM, as Debian builds it, stops the whole program by an assertion on many broken files, and fills up pixels that are
-// cut off. So every file is walked through here first, and GDCM is left with what only it can do: to decompress.
+// GDCM, as Debian builds it, stops the whole program by an assertion on many broken files, and fills up
+// pixels that are cut off. So every file is walked through here first, and GDCM is left with what only it can
+// do: to decompress.
 #pragma once
 
 #include <bit>
@@ -14,12 +15,12 @@
 namespace arthronaut::images {
 
 struct DicomElements {
-  std::string transfer_syntax;                 // UID
-  std::endian order = std::endian::little;     // of numbers and uncompressed pixels
-  std::map<std::uint32_t, std::string> values; // group << 16 | element; the short ones of the top level
+  std::string transfer_syntax;                  // UID
+  std::endian order = std::endian::little;      // of numbers and uncompressed pixels
+  std::map<std::uint32_t, std::string> values;  // group << 16 | element; the short ones of the top level
   bool has_pixel_data = false;
   bool is_compressed = false;
-  std::string raw_pixels;                      // when not compressed: all that the element holds
+  std::string raw_pixels;  // when not compressed: all that the element holds
 
   // Without the blanks around it; empty when absent.
   [[nodiscard]] std::string text(std::uint16_t group, std::uint16_t element) const;

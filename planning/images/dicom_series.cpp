@@ -28,7 +28,8 @@ Slices images_below(const std::filesystem::path& folder) {
   for (auto at = std::filesystem::recursive_directory_iterator(folder, error);
        !error && at != std::filesystem::recursive_directory_iterator(); at.increment(error)) {
     if (at->is_regular_file(error)) files.push_back(at->path());
-    if (files.size() > kMostFiles) throw InvalidInput(folder, "", "holds more files than a study of a knee has");
+    if (files.size() > kMostFiles)
+      throw InvalidInput(folder, "", "holds more files than a study of a knee has");
   }
   if (error) throw IoError(folder, "cannot list: " + error.message());
   // The folder's order is the file system's: the same folder must give the same volume everywhere.
@@ -48,7 +49,8 @@ Slices images_below(const std::filesystem::path& folder) {
 
 std::string described(const DicomSlice& first, std::size_t count) {
   return first.modality + " series " + (first.series_number.empty() ? "?" : first.series_number) +
-         (first.description.empty() ? "" : " \"" + first.description + "\"") + ", " + std::to_string(count) + " images";
+         (first.description.empty() ? "" : " \"" + first.description + "\"") + ", " + std::to_string(count) +
+         " images";
 }
 
 Slices chosen_series(const std::filesystem::path& folder, Slices slices, const std::string& wanted) {
@@ -63,8 +65,9 @@ Slices chosen_series(const std::filesystem::path& folder, Slices slices, const s
   }
   if (matching.empty()) throw InvalidInput(folder, "", "holds no series " + wanted + ": " + list);
   if (matching.size() > 1) {
-    throw InvalidInput(folder, "", "holds " + std::to_string(series.size()) +
-                                       " series, name one with --series NUMBER or UID: " + list);
+    throw InvalidInput(
+        folder, "",
+        "holds " + std::to_string(series.size()) + " series, name one with --series NUMBER or UID: " + list);
   }
   return *matching.front();
 }
@@ -74,17 +77,20 @@ void refuse_odd_ones(const Slices& slices) {
   for (const DicomSlice& s : slices) {
     if (!s.has_geometry) throw InvalidInput(s.file, "", "does not say where it lies in the patient");
     if (s.frames > 1) {
-      throw InvalidInput(s.file, "", "holds " + std::to_string(s.frames) +
-                                         " frames (enhanced DICOM), which is not read: export single slices or NIfTI");
+      throw InvalidInput(s.file, "",
+                         "holds " + std::to_string(s.frames) +
+                             " frames (enhanced DICOM), which is not read: export single slices or NIfTI");
     }
     if (s.columns != first.columns || s.rows != first.rows) {
-      throw InvalidInput(s.file, "", "is " + std::to_string(s.columns) + " x " + std::to_string(s.rows) +
-                                         " pixels, other images of the series are " + std::to_string(first.columns) +
-                                         " x " + std::to_string(first.rows));
+      throw InvalidInput(s.file, "",
+                         "is " + std::to_string(s.columns) + " x " + std::to_string(s.rows) +
+                             " pixels, other images of the series are " + std::to_string(first.columns) +
+                             " x " + std::to_string(first.rows));
     }
     // Scout pictures across the others often share their series.
     if (s.along_columns.dot(first.along_columns) < 0.9999 || s.along_rows.dot(first.along_rows) < 0.9999) {
-      throw InvalidInput(s.file, "", "lies at an angle to " + first.file.filename().string() + " of the same series");
+      throw InvalidInput(s.file, "",
+                         "lies at an angle to " + first.file.filename().string() + " of the same series");
     }
     if (std::abs(s.column_spacing_mm - first.column_spacing_mm) > 1e-3 * first.column_spacing_mm ||
         std::abs(s.row_spacing_mm - first.row_spacing_mm) > 1e-3 * first.row_spacing_mm) {
@@ -124,26 +130,30 @@ void sort_by_position(Slices& slices) {
 // The step from slice to slice, in the patient: not along the normal for a CT with a tilted gantry.
 Eigen::Vector3d slice_step_mm(const Slices& sorted) {
   std::vector<double> gaps;
-  for (std::size_t i = 0; i + 1 < sorted.size(); ++i) gaps.push_back(sorted[i + 1].depth_mm() - sorted[i].depth_mm());
+  for (std::size_t i = 0; i + 1 < sorted.size(); ++i)
+    gaps.push_back(sorted[i + 1].depth_mm() - sorted[i].depth_mm());
   std::vector<double> by_size = gaps;
-  std::nth_element(by_size.begin(), by_size.begin() + static_cast<std::ptrdiff_t>(by_size.size() / 2), by_size.end());
+  std::nth_element(by_size.begin(), by_size.begin() + static_cast<std::ptrdiff_t>(by_size.size() / 2),
+                   by_size.end());
   const double usual = by_size[by_size.size() / 2];
   const Eigen::Vector3d step =
       (sorted.back().position_mm - sorted.front().position_mm) / static_cast<double>(sorted.size() - 1);
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     const DicomSlice& next = sorted[i + 1];
     if (std::abs(gaps[i] - usual) > kPositionTolerance_fraction * usual) {
-      throw InvalidInput(next.file, "",
-                         formatted("lies %.2f mm from the slice before it, the others %.2f mm apart", gaps[i], usual) +
-                             ": a slice is missing or one too many (" + sorted[i].file.filename().string() + ")");
+      throw InvalidInput(
+          next.file, "",
+          formatted("lies %.2f mm from the slice before it, the others %.2f mm apart", gaps[i], usual) +
+              ": a slice is missing or one too many (" + sorted[i].file.filename().string() + ")");
     }
   }
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     const DicomSlice& next = sorted[i + 1];
     const Eigen::Vector3d expected = sorted.front().position_mm + static_cast<double>(i + 1) * step;
     if ((next.position_mm - expected).norm() > kPositionTolerance_fraction * usual + 0.02) {
-      throw InvalidInput(next.file, "", formatted("lies %.2f mm beside the line of the other slices",
-                                                  (next.position_mm - expected).norm()));
+      throw InvalidInput(next.file, "",
+                         formatted("lies %.2f mm beside the line of the other slices",
+                                   (next.position_mm - expected).norm()));
     }
   }
   return step;
@@ -161,7 +171,8 @@ Volume read_dicom_folder(const std::filesystem::path& folder, const VolumeFileOp
   if (slices.size() < 2) throw InvalidInput(folder, "", "holds one slice only");
   for (std::size_t i = 0; i + 1 < slices.size(); ++i) {
     if (slices[i + 1].depth_mm() - slices[i].depth_mm() < 0.01) {
-      throw InvalidInput(slices[i + 1].file, "", "lies at the same place as " + slices[i].file.filename().string());
+      throw InvalidInput(slices[i + 1].file, "",
+                         "lies at the same place as " + slices[i].file.filename().string());
     }
   }
   const DicomSlice& first = slices.front();

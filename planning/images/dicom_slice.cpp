@@ -27,7 +27,8 @@ std::optional<std::vector<double>> decimals_of(const DicomElements& elements, st
     if (part.starts_with('+')) part.erase(0, 1);
     double value = 0;
     const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (error != std::errc() || stop != part.data() + part.size() || !std::isfinite(value)) return std::nullopt;
+    if (error != std::errc() || stop != part.data() + part.size() || !std::isfinite(value))
+      return std::nullopt;
     values.push_back(value);
     at = end + 1;
   }
@@ -45,14 +46,16 @@ void read_geometry(const DicomElements& elements, DicomSlice& slice) {
   slice.along_rows = Eigen::Vector3d(orientation->data() + 3);
   slice.row_spacing_mm = (*spacing)[0];
   slice.column_spacing_mm = (*spacing)[1];
-  // Directions are written with few digits: near enough to unit and to each other's normal is made exactly so.
+  // Directions are written with few digits: near enough to unit and to each other's normal is made exactly
+  // so.
   const double skew = slice.along_columns.dot(slice.along_rows);
   if (std::abs(slice.along_columns.norm() - 1) > 0.01 || std::abs(slice.along_rows.norm() - 1) > 0.01 ||
       std::abs(skew) > 0.01 || slice.row_spacing_mm <= 0 || slice.column_spacing_mm <= 0) {
     throw InvalidInput(slice.file, "image orientation or pixel spacing", "is not one");
   }
   slice.along_columns.normalize();
-  slice.along_rows = (slice.along_rows - slice.along_rows.dot(slice.along_columns) * slice.along_columns).normalized();
+  slice.along_rows =
+      (slice.along_rows - slice.along_rows.dot(slice.along_columns) * slice.along_columns).normalized();
   slice.has_geometry = true;
 }
 
@@ -73,34 +76,45 @@ void append_raw_pixels(const DicomSlice& slice, const DicomElements& elements, s
   const Scalar type = allocated == 8 ? Scalar::UInt8 : allocated == 16 ? Scalar::UInt16 : Scalar::UInt32;
   const std::size_t width = bytes_per(type), count = pixel_count(slice);
   if (elements.raw_pixels.size() < count * width) {
-    throw InvalidInput(slice.file, "pixel data", "end early: " + std::to_string(elements.raw_pixels.size()) + " of " +
-                                                     std::to_string(count * width) + " bytes");
+    throw InvalidInput(slice.file, "pixel data",
+                       "end early: " + std::to_string(elements.raw_pixels.size()) + " of " +
+                           std::to_string(count * width) + " bytes");
   }
   const auto shift = static_cast<unsigned>(high_bit + 1 - stored);
   const std::uint64_t mask = (std::uint64_t{1} << static_cast<unsigned>(stored)) - 1, sign = (mask >> 1U) + 1;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto bits = static_cast<std::uint64_t>(decoded(type, elements.order, elements.raw_pixels.data() + i * width));
+    const auto bits =
+        static_cast<std::uint64_t>(decoded(type, elements.order, elements.raw_pixels.data() + i * width));
     const std::uint64_t value = bits >> shift & mask;
-    const double number = static_cast<double>(value) - (is_signed && (value & sign) ? static_cast<double>(mask) + 1 : 0);
+    const double number =
+        static_cast<double>(value) - (is_signed && (value & sign) ? static_cast<double>(mask) + 1 : 0);
     values.push_back(static_cast<float>(slice.slope * number + slice.intercept));
   }
 }
 
 Scalar scalar_of(const DicomSlice& slice, const gdcm::PixelFormat& format) {
   switch (format.GetScalarType()) {
-    case gdcm::PixelFormat::INT8: return Scalar::Int8;
-    case gdcm::PixelFormat::UINT8: return Scalar::UInt8;
+    case gdcm::PixelFormat::INT8:
+      return Scalar::Int8;
+    case gdcm::PixelFormat::UINT8:
+      return Scalar::UInt8;
     case gdcm::PixelFormat::INT12:
-    case gdcm::PixelFormat::INT16: return Scalar::Int16;
+    case gdcm::PixelFormat::INT16:
+      return Scalar::Int16;
     case gdcm::PixelFormat::UINT12:
-    case gdcm::PixelFormat::UINT16: return Scalar::UInt16;
-    case gdcm::PixelFormat::INT32: return Scalar::Int32;
-    case gdcm::PixelFormat::UINT32: return Scalar::UInt32;
-    default: throw InvalidInput(slice.file, "pixel format", "is not one that is read");
+    case gdcm::PixelFormat::UINT16:
+      return Scalar::UInt16;
+    case gdcm::PixelFormat::INT32:
+      return Scalar::Int32;
+    case gdcm::PixelFormat::UINT32:
+      return Scalar::UInt32;
+    default:
+      throw InvalidInput(slice.file, "pixel format", "is not one that is read");
   }
 }
 
-void append_decompressed_pixels(const DicomSlice& slice, const std::string& syntax, std::vector<float>& values) {
+void append_decompressed_pixels(const DicomSlice& slice, const std::string& syntax,
+                                std::vector<float>& values) {
   // GDCM prints what it stumbles over; what matters of it becomes an exception here.
   gdcm::Trace::WarningOff();
   gdcm::Trace::ErrorOff();
@@ -110,7 +124,8 @@ void append_decompressed_pixels(const DicomSlice& slice, const std::string& synt
   std::vector<char> buffer;
   Scalar type = Scalar::Int16;
   try {
-    if (!reader.Read()) throw InvalidInput(slice.file, "pixel data", "cannot be read (transfer syntax " + syntax + ")");
+    if (!reader.Read())
+      throw InvalidInput(slice.file, "pixel data", "cannot be read (transfer syntax " + syntax + ")");
     const gdcm::Image& image = reader.GetImage();
     type = scalar_of(slice, image.GetPixelFormat());
     const std::size_t expected = pixel_count(slice) * bytes_per(type);
@@ -150,7 +165,8 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
   slice.samples_per_pixel = elements.unsigned_short(0x0028, 0x0002, 1);
   // Plans, contours and reports of the same study have no rows.
   slice.is_image = slice.rows > 0 && slice.columns > 0;
-  if (const auto frames = decimals_of(elements, 0x0028, 0x0008, 1)) slice.frames = static_cast<int>((*frames)[0]);
+  if (const auto frames = decimals_of(elements, 0x0028, 0x0008, 1))
+    slice.frames = static_cast<int>((*frames)[0]);
   if (const auto echo = decimals_of(elements, 0x0018, 0x0081, 1)) slice.echo_time_ms = (*echo)[0];
   if (const auto slope = decimals_of(elements, 0x0028, 0x1053, 1)) slice.slope = (*slope)[0];
   if (const auto intercept = decimals_of(elements, 0x0028, 0x1052, 1)) slice.intercept = (*intercept)[0];
@@ -159,7 +175,8 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
 }
 
 void append_dicom_pixels(const DicomSlice& slice, std::vector<float>& values) {
-  if (slice.samples_per_pixel != 1) throw InvalidInput(slice.file, "", "is a picture in colours, not a slice");
+  if (slice.samples_per_pixel != 1)
+    throw InvalidInput(slice.file, "", "is a picture in colours, not a slice");
   const DicomElements elements = parse_dicom(slice.file, files::read_text(slice.file));
   if (!elements.has_pixel_data) throw InvalidInput(slice.file, "pixel data", "are missing");
   if (elements.is_compressed) {

@@ -27,11 +27,12 @@ struct DicomSlice {
   [[nodiscard]] double depth_mm() const { return normal().dot(position_mm); }
 };
 
-// Keeps no pixels: they are read when the volume is put together. nullopt for a file that is not DICOM. Throws InvalidInput for one that is, and is broken.
+// Keeps no pixels: they are read when the volume is put together. nullopt for a file that is not DICOM.
+// Throws InvalidInput for one that is, and is broken.
 [[nodiscard]] std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file);
 
-// Rescaled pixels, columns * rows of them, appended to `values`. Throws InvalidInput: a compression that cannot be
-// decoded, pixels cut off, colours.
+// Rescaled pixels, columns * rows of them, appended to `values`. Throws InvalidInput: a compression that
+// cannot be decoded, pixels cut off, colours.
 void append_dicom_pixels(const DicomSlice& slice, std::vector<float>& values);
 
 }  // namespace arthronaut::images

@@ -44,10 +44,10 @@ Header parse_header(const std::filesystem::path& file, std::string_view text) {
 
 Scalar scalar_of(const std::filesystem::path& file, const std::string& name) {
   static const std::map<std::string, Scalar> kNames{
-      {"MET_CHAR", Scalar::Int8},       {"MET_UCHAR", Scalar::UInt8},         {"MET_SHORT", Scalar::Int16},
-      {"MET_USHORT", Scalar::UInt16},   {"MET_INT", Scalar::Int32},           {"MET_UINT", Scalar::UInt32},
-      {"MET_LONG", Scalar::Int32},      {"MET_ULONG", Scalar::UInt32},        {"MET_LONG_LONG", Scalar::Int64},
-      {"MET_ULONG_LONG", Scalar::UInt64}, {"MET_FLOAT", Scalar::Float32},     {"MET_DOUBLE", Scalar::Float64}};
+      {"MET_CHAR", Scalar::Int8},         {"MET_UCHAR", Scalar::UInt8},   {"MET_SHORT", Scalar::Int16},
+      {"MET_USHORT", Scalar::UInt16},     {"MET_INT", Scalar::Int32},     {"MET_UINT", Scalar::UInt32},
+      {"MET_LONG", Scalar::Int32},        {"MET_ULONG", Scalar::UInt32},  {"MET_LONG_LONG", Scalar::Int64},
+      {"MET_ULONG_LONG", Scalar::UInt64}, {"MET_FLOAT", Scalar::Float32}, {"MET_DOUBLE", Scalar::Float64}};
   const auto found = kNames.find(name);
   if (found == kNames.end()) {
     throw InvalidInput(file, "ElementType", "\"" + name.substr(0, 40) + "\" holds no single numbers");
@@ -75,8 +75,8 @@ Volume parse_metaimage(const std::filesystem::path& file, std::string_view text)
   if (!channels.empty() && channels != "1") throw InvalidInput(file, "ElementNumberOfChannels", "must be 1");
   const auto sizes = field_of_three(file, header, {"dimsize"}, 3);
   const auto spacing = field_of_three(file, header, {"elementspacing", "elementsize"}, 3);
-  // The format calls its three axes for the patient the same as DICOM: LPS. The matrix holds the direction of i, then of
-  // j, then of k. Without it the file does not say how it lies.
+  // The format calls its three axes for the patient the same as DICOM: LPS. The matrix holds the direction of
+  // i, then of j, then of k. Without it the file does not say how it lies.
   const auto directions = field_of_three(file, header, {"transformmatrix", "rotation", "orientation"}, 9);
   const auto origin = field_of_three(file, header, {"offset", "position", "origin"}, 3);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -86,7 +86,8 @@ Volume parse_metaimage(const std::filesystem::path& file, std::string_view text)
     const auto a = static_cast<Eigen::Index>(axis);
     volume.size[a] = static_cast<int>(sizes[axis]);
     for (std::size_t i = 0; i < 3; ++i) {
-      volume.lps_from_index.linear()(static_cast<Eigen::Index>(i), a) = spacing[axis] * directions[3 * axis + i];
+      volume.lps_from_index.linear()(static_cast<Eigen::Index>(i), a) =
+          spacing[axis] * directions[3 * axis + i];
     }
     volume.lps_from_index.translation()[a] = origin[axis];
   }
@@ -102,9 +103,11 @@ Volume parse_metaimage(const std::filesystem::path& file, std::string_view text)
       data_name == "LOCAL" ? std::string(text.substr(header.bytes)) : read_data_file(file, data_name);
   const std::string header_size = header.field({"headersize"});
   if (!header_size.empty() && header_size != "0") throw InvalidInput(file, "HeaderSize", "is not read");
-  if (lower_case(header.field({"binarydata"})) == "false") throw InvalidInput(file, "BinaryData", "must be True");
+  if (lower_case(header.field({"binarydata"})) == "false")
+    throw InvalidInput(file, "BinaryData", "must be True");
   const std::size_t most_bytes = checked_voxel_count(file, volume.size) * bytes_per(samples.type);
-  set_values(volume, file, header.is_true({"compresseddata"}) ? inflated(file, data, most_bytes) : data, samples);
+  set_values(volume, file, header.is_true({"compresseddata"}) ? inflated(file, data, most_bytes) : data,
+             samples);
   finish(volume, file);
   return volume;
 }

@@ -7,10 +7,11 @@ namespace arthronaut::images {
 
 namespace {
 
-// Where the fields of the two versions of the header are: nifti1.h and nifti2.h of the NIfTI data format working group.
+// Where the fields of the two versions of the header are: nifti1.h and nifti2.h of the NIfTI data format
+// working group.
 struct Layout {
-  std::size_t header_bytes, dim, dim_bytes, datatype, pixdim, vox_offset, slope, intercept, units, qform, sform,
-      quaternion, q_offset, srow, real_bytes;
+  std::size_t header_bytes, dim, dim_bytes, datatype, pixdim, vox_offset, slope, intercept, units, qform,
+      sform, quaternion, q_offset, srow, real_bytes;
 };
 constexpr Layout kNifti1{348, 40, 2, 70, 76, 108, 112, 116, 123, 252, 254, 256, 268, 280, 4};
 constexpr Layout kNifti2{540, 16, 8, 12, 104, 168, 176, 184, 500, 344, 348, 352, 376, 400, 8};
@@ -20,7 +21,8 @@ class Header {
   Header(const std::filesystem::path& file, std::string_view text) : file_(file), text_(text) {
     for (const Layout& layout : {kNifti1, kNifti2}) {
       for (const std::endian order : {std::endian::little, std::endian::big}) {
-        if (text.size() >= 4 && decoded(Scalar::Int32, order, text.data()) == static_cast<double>(layout.header_bytes)) {
+        if (text.size() >= 4 &&
+            decoded(Scalar::Int32, order, text.data()) == static_cast<double>(layout.header_bytes)) {
           layout_ = layout;
           order_ = order;
         }
@@ -33,10 +35,12 @@ class Header {
   [[nodiscard]] const Layout& layout() const { return layout_; }
   [[nodiscard]] std::endian order() const { return order_; }
   [[nodiscard]] double dim(std::size_t i) const {
-    return decoded(is_2() ? Scalar::Int64 : Scalar::Int16, order_, text_.data() + layout_.dim + i * layout_.dim_bytes);
+    return decoded(is_2() ? Scalar::Int64 : Scalar::Int16, order_,
+                   text_.data() + layout_.dim + i * layout_.dim_bytes);
   }
   [[nodiscard]] double real(std::size_t offset, std::size_t i = 0) const {
-    return decoded(is_2() ? Scalar::Float64 : Scalar::Float32, order_, text_.data() + offset + i * layout_.real_bytes);
+    return decoded(is_2() ? Scalar::Float64 : Scalar::Float32, order_,
+                   text_.data() + offset + i * layout_.real_bytes);
   }
   [[nodiscard]] double code(std::size_t offset) const {
     return decoded(is_2() ? Scalar::Int32 : Scalar::Int16, order_, text_.data() + offset);
@@ -45,7 +49,8 @@ class Header {
     return static_cast<int>(decoded(Scalar::Int16, order_, text_.data() + layout_.datatype));
   }
   [[nodiscard]] double vox_offset() const {
-    return is_2() ? decoded(Scalar::Int64, order_, text_.data() + layout_.vox_offset) : real(layout_.vox_offset);
+    return is_2() ? decoded(Scalar::Int64, order_, text_.data() + layout_.vox_offset)
+                  : real(layout_.vox_offset);
   }
   [[nodiscard]] int units() const {
     return is_2() ? static_cast<int>(code(layout_.units)) : static_cast<unsigned char>(text_[layout_.units]);
@@ -62,31 +67,46 @@ class Header {
 
 Scalar scalar_of(const std::filesystem::path& file, int datatype) {
   switch (datatype) {
-    case 2: return Scalar::UInt8;
-    case 4: return Scalar::Int16;
-    case 8: return Scalar::Int32;
-    case 16: return Scalar::Float32;
-    case 64: return Scalar::Float64;
-    case 256: return Scalar::Int8;
-    case 512: return Scalar::UInt16;
-    case 768: return Scalar::UInt32;
-    case 1024: return Scalar::Int64;
-    case 1280: return Scalar::UInt64;
-    default: throw InvalidInput(file, "datatype", "is " + std::to_string(datatype) + ", which holds no single numbers");
+    case 2:
+      return Scalar::UInt8;
+    case 4:
+      return Scalar::Int16;
+    case 8:
+      return Scalar::Int32;
+    case 16:
+      return Scalar::Float32;
+    case 64:
+      return Scalar::Float64;
+    case 256:
+      return Scalar::Int8;
+    case 512:
+      return Scalar::UInt16;
+    case 768:
+      return Scalar::UInt32;
+    case 1024:
+      return Scalar::Int64;
+    case 1280:
+      return Scalar::UInt64;
+    default:
+      throw InvalidInput(file, "datatype",
+                         "is " + std::to_string(datatype) + ", which holds no single numbers");
   }
 }
 
 // The rotation of the quaternion (a, b, c, d), of which a is implied, and the handedness in pixdim[0].
 Eigen::Affine3d from_qform(const Header& header) {
   const Layout& at = header.layout();
-  const double b = header.real(at.quaternion, 0), c = header.real(at.quaternion, 1), d = header.real(at.quaternion, 2);
+  const double b = header.real(at.quaternion, 0), c = header.real(at.quaternion, 1),
+               d = header.real(at.quaternion, 2);
   const Eigen::Quaterniond q(std::sqrt(std::max(0.0, 1 - b * b - c * c - d * d)), b, c, d);
   const double handedness = header.real(at.pixdim, 0) < 0 ? -1 : 1;
   Eigen::Affine3d ras_from_index = Eigen::Affine3d::Identity();
   ras_from_index.linear() = q.normalized().toRotationMatrix();
-  for (int i = 0; i < 3; ++i) ras_from_index.linear().col(i) *= header.real(at.pixdim, static_cast<std::size_t>(i) + 1);
+  for (int i = 0; i < 3; ++i)
+    ras_from_index.linear().col(i) *= header.real(at.pixdim, static_cast<std::size_t>(i) + 1);
   ras_from_index.linear().col(2) *= handedness;
-  for (int i = 0; i < 3; ++i) ras_from_index.translation()[i] = header.real(at.q_offset, static_cast<std::size_t>(i));
+  for (int i = 0; i < 3; ++i)
+    ras_from_index.translation()[i] = header.real(at.q_offset, static_cast<std::size_t>(i));
   return ras_from_index;
 }
 
@@ -94,7 +114,8 @@ Eigen::Affine3d from_sform(const Header& header) {
   Eigen::Affine3d ras_from_index = Eigen::Affine3d::Identity();
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) {
-      ras_from_index(row, column) = header.real(header.layout().srow, static_cast<std::size_t>(4 * row + column));
+      ras_from_index(row, column) =
+          header.real(header.layout().srow, static_cast<std::size_t>(4 * row + column));
     }
   }
   return ras_from_index;
@@ -103,10 +124,14 @@ Eigen::Affine3d from_sform(const Header& header) {
 double mm_per_unit(const std::filesystem::path& file, const Header& header) {
   switch (header.units() & 7) {
     case 0:  // not said: mm in practice
-    case 2: return 1;
-    case 1: return 1000;
-    case 3: return 0.001;
-    default: throw InvalidInput(file, "xyzt_units", "is no unit of length");
+    case 2:
+      return 1;
+    case 1:
+      return 1000;
+    case 3:
+      return 0.001;
+    default:
+      throw InvalidInput(file, "xyzt_units", "is no unit of length");
   }
 }
 
@@ -123,15 +148,19 @@ Volume parse_nifti(const std::filesystem::path& file, std::string_view text) {
   Volume volume;
   volume.format = "NIfTI";
   const double dimension = header.dim(0);
-  if (!(dimension >= 3 && dimension <= 7)) throw InvalidInput(file, "dim[0]", "is not a volume of three dimensions");
+  if (!(dimension >= 3 && dimension <= 7))
+    throw InvalidInput(file, "dim[0]", "is not a volume of three dimensions");
   for (int i = 1; i <= static_cast<int>(dimension); ++i) {
     const double n = header.dim(static_cast<std::size_t>(i));
-    if (!(n >= 1 && n <= 65536)) throw InvalidInput(file, "dim[" + std::to_string(i) + "]", "is out of range");
+    if (!(n >= 1 && n <= 65536))
+      throw InvalidInput(file, "dim[" + std::to_string(i) + "]", "is out of range");
     if (i > 3 && n != 1) throw InvalidInput(file, "", "holds several volumes: export the one that is meant");
     if (i <= 3) volume.size[i - 1] = static_cast<int>(n);
   }
-  const bool has_sform = header.code(header.layout().sform) > 0, has_qform = header.code(header.layout().qform) > 0;
-  if (!has_sform && !has_qform) throw InvalidInput(file, "", "does not say how it lies in the patient (no sform, no qform)");
+  const bool has_sform = header.code(header.layout().sform) > 0,
+             has_qform = header.code(header.layout().qform) > 0;
+  if (!has_sform && !has_qform)
+    throw InvalidInput(file, "", "does not say how it lies in the patient (no sform, no qform)");
   Eigen::Affine3d ras_from_index = has_sform ? from_sform(header) : from_qform(header);
   ras_from_index = Eigen::Scaling(mm_per_unit(file, header)) * ras_from_index;
   volume.lps_from_index = Eigen::Scaling(-1.0, -1.0, 1.0) * ras_from_index;
@@ -146,7 +175,8 @@ Volume parse_nifti(const std::filesystem::path& file, std::string_view text) {
     samples.intercept = intercept;
   }
   const double offset = header.vox_offset();
-  if (!(offset >= static_cast<double>(header.layout().header_bytes)) || offset > static_cast<double>(text.size())) {
+  if (!(offset >= static_cast<double>(header.layout().header_bytes)) ||
+      offset > static_cast<double>(text.size())) {
     throw InvalidInput(file, "vox_offset", "lies outside of the file (a pair of .hdr and .img is not read)");
   }
   set_values(volume, file, text.substr(static_cast<std::size_t>(offset)), samples);

@@ -39,21 +39,45 @@ Header parse_header(const std::filesystem::path& file, std::string_view text) {
 }
 
 Scalar scalar_of(const std::filesystem::path& file, const std::string& name) {
-  static const std::map<std::string, Scalar> kNames{
-      {"signed char", Scalar::Int8}, {"int8", Scalar::Int8}, {"int8_t", Scalar::Int8},
-      {"uchar", Scalar::UInt8}, {"unsigned char", Scalar::UInt8}, {"uint8", Scalar::UInt8}, {"uint8_t", Scalar::UInt8},
-      {"short", Scalar::Int16}, {"short int", Scalar::Int16}, {"signed short", Scalar::Int16},
-      {"signed short int", Scalar::Int16}, {"int16", Scalar::Int16}, {"int16_t", Scalar::Int16},
-      {"ushort", Scalar::UInt16}, {"unsigned short", Scalar::UInt16}, {"unsigned short int", Scalar::UInt16},
-      {"uint16", Scalar::UInt16}, {"uint16_t", Scalar::UInt16},
-      {"int", Scalar::Int32}, {"signed int", Scalar::Int32}, {"int32", Scalar::Int32}, {"int32_t", Scalar::Int32},
-      {"uint", Scalar::UInt32}, {"unsigned int", Scalar::UInt32}, {"uint32", Scalar::UInt32},
-      {"uint32_t", Scalar::UInt32}, {"longlong", Scalar::Int64}, {"long long", Scalar::Int64},
-      {"int64", Scalar::Int64}, {"int64_t", Scalar::Int64}, {"ulonglong", Scalar::UInt64},
-      {"unsigned long long", Scalar::UInt64}, {"uint64", Scalar::UInt64}, {"uint64_t", Scalar::UInt64},
-      {"float", Scalar::Float32}, {"double", Scalar::Float64}};
+  static const std::map<std::string, Scalar> kNames{{"signed char", Scalar::Int8},
+                                                    {"int8", Scalar::Int8},
+                                                    {"int8_t", Scalar::Int8},
+                                                    {"uchar", Scalar::UInt8},
+                                                    {"unsigned char", Scalar::UInt8},
+                                                    {"uint8", Scalar::UInt8},
+                                                    {"uint8_t", Scalar::UInt8},
+                                                    {"short", Scalar::Int16},
+                                                    {"short int", Scalar::Int16},
+                                                    {"signed short", Scalar::Int16},
+                                                    {"signed short int", Scalar::Int16},
+                                                    {"int16", Scalar::Int16},
+                                                    {"int16_t", Scalar::Int16},
+                                                    {"ushort", Scalar::UInt16},
+                                                    {"unsigned short", Scalar::UInt16},
+                                                    {"unsigned short int", Scalar::UInt16},
+                                                    {"uint16", Scalar::UInt16},
+                                                    {"uint16_t", Scalar::UInt16},
+                                                    {"int", Scalar::Int32},
+                                                    {"signed int", Scalar::Int32},
+                                                    {"int32", Scalar::Int32},
+                                                    {"int32_t", Scalar::Int32},
+                                                    {"uint", Scalar::UInt32},
+                                                    {"unsigned int", Scalar::UInt32},
+                                                    {"uint32", Scalar::UInt32},
+                                                    {"uint32_t", Scalar::UInt32},
+                                                    {"longlong", Scalar::Int64},
+                                                    {"long long", Scalar::Int64},
+                                                    {"int64", Scalar::Int64},
+                                                    {"int64_t", Scalar::Int64},
+                                                    {"ulonglong", Scalar::UInt64},
+                                                    {"unsigned long long", Scalar::UInt64},
+                                                    {"uint64", Scalar::UInt64},
+                                                    {"uint64_t", Scalar::UInt64},
+                                                    {"float", Scalar::Float32},
+                                                    {"double", Scalar::Float64}};
   const auto found = kNames.find(lower_case(name));
-  if (found == kNames.end()) throw InvalidInput(file, "type", "\"" + name.substr(0, 40) + "\" holds no single numbers");
+  if (found == kNames.end())
+    throw InvalidInput(file, "type", "\"" + name.substr(0, 40) + "\" holds no single numbers");
   return found->second;
 }
 
@@ -64,8 +88,9 @@ Eigen::Vector3d lps_from_space(const std::filesystem::path& file, const std::str
   if (name == "right-anterior-superior" || name == "ras") return {-1, -1, 1};
   if (name == "left-anterior-superior" || name == "las") return {1, -1, 1};
   throw InvalidInput(file, "space",
-                     name.empty() ? "is missing: the file does not say where left is"
-                                  : "\"" + name.substr(0, 40) + "\" is not a space of a patient that is read");
+                     name.empty()
+                         ? "is missing: the file does not say where left is"
+                         : "\"" + name.substr(0, 40) + "\" is not a space of a patient that is read");
 }
 
 std::string voxel_bytes(const std::filesystem::path& file, const Header& header, std::string_view text,
@@ -79,7 +104,8 @@ std::string voxel_bytes(const std::filesystem::path& file, const Header& header,
   }
   for (const char* key : {"line skip", "lineskip", "byte skip", "byteskip"}) {
     const std::string skip = header.field(key);
-    if (!skip.empty() && skip != "0") throw InvalidInput(file, key, "is not read: save the file again without it");
+    if (!skip.empty() && skip != "0")
+      throw InvalidInput(file, key, "is not read: save the file again without it");
   }
   const std::string encoding = lower_case(header.field("encoding"));
   if (encoding == "raw") return data;

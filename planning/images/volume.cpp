@@ -16,7 +16,8 @@ std::vector<std::pair<int, std::size_t>> labels_of(const Volume& volume) {
 }
 
 std::string axes_in_words(const Volume& volume) {
-  constexpr const char* kWords[3][2] = {{"left", "right"}, {"posterior", "anterior"}, {"superior", "inferior"}};
+  constexpr const char* kWords[3][2] = {
+      {"left", "right"}, {"posterior", "anterior"}, {"superior", "inferior"}};
   std::string text;
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector3d direction = volume.lps_from_index.linear().col(axis);

@@ -10,8 +10,8 @@ namespace arthronaut::images {
 
 struct Volume {
   Eigen::Vector3i size = Eigen::Vector3i::Zero();
-  // Takes an index (i, j, k), the centre of that voxel, to LPS in mm. Oblique, sheared and mirrored axes are all
-  // possible; never singular.
+  // Takes an index (i, j, k), the centre of that voxel, to LPS in mm. Oblique, sheared and mirrored axes are
+  // all possible; never singular.
   Eigen::Affine3d lps_from_index = Eigen::Affine3d::Identity();
   // i runs fastest. Rescaled: Hounsfield units for a CT, labels as they are. Finite.
   std::vector<float> values;
@@ -22,14 +22,16 @@ struct Volume {
   [[nodiscard]] std::size_t index(int i, int j, int k) const {
     return static_cast<std::size_t>(i) +
            static_cast<std::size_t>(size.x()) *
-               (static_cast<std::size_t>(j) + static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(k));
+               (static_cast<std::size_t>(j) +
+                static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(k));
   }
   [[nodiscard]] float at(int i, int j, int k) const { return values[index(i, j, k)]; }
   // Distance of neighbouring voxels along i, j and k.
   [[nodiscard]] Eigen::Vector3d spacing_mm() const { return lps_from_index.linear().colwise().norm(); }
 };
 
-// How often each value occurs, for a volume that holds whole numbers only and not more than 256 of them; else empty.
+// How often each value occurs, for a volume that holds whole numbers only and not more than 256 of them; else
+// empty.
 [[nodiscard]] std::vector<std::pair<int, std::size_t>> labels_of(const Volume& volume);
 
 // "left-posterior-superior" for the axes i, j, k: the patient direction that each comes closest to.

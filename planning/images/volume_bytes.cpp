@@ -34,16 +34,26 @@ std::size_t bytes_per(Scalar type) {
 
 double decoded(Scalar type, std::endian order, const char* bytes) {
   switch (type) {
-    case Scalar::Int8: return decode<std::int8_t>(order, bytes);
-    case Scalar::UInt8: return decode<std::uint8_t>(order, bytes);
-    case Scalar::Int16: return decode<std::int16_t>(order, bytes);
-    case Scalar::UInt16: return decode<std::uint16_t>(order, bytes);
-    case Scalar::Int32: return decode<std::int32_t>(order, bytes);
-    case Scalar::UInt32: return decode<std::uint32_t>(order, bytes);
-    case Scalar::Int64: return decode<std::int64_t>(order, bytes);
-    case Scalar::UInt64: return decode<std::uint64_t>(order, bytes);
-    case Scalar::Float32: return decode<float>(order, bytes);
-    case Scalar::Float64: break;
+    case Scalar::Int8:
+      return decode<std::int8_t>(order, bytes);
+    case Scalar::UInt8:
+      return decode<std::uint8_t>(order, bytes);
+    case Scalar::Int16:
+      return decode<std::int16_t>(order, bytes);
+    case Scalar::UInt16:
+      return decode<std::uint16_t>(order, bytes);
+    case Scalar::Int32:
+      return decode<std::int32_t>(order, bytes);
+    case Scalar::UInt32:
+      return decode<std::uint32_t>(order, bytes);
+    case Scalar::Int64:
+      return decode<std::int64_t>(order, bytes);
+    case Scalar::UInt64:
+      return decode<std::uint64_t>(order, bytes);
+    case Scalar::Float32:
+      return decode<float>(order, bytes);
+    case Scalar::Float64:
+      break;
   }
   return decode<double>(order, bytes);
 }
@@ -51,7 +61,8 @@ double decoded(Scalar type, std::endian order, const char* bytes) {
 std::string inflated(const std::filesystem::path& file, std::string_view compressed, std::size_t most_bytes,
                      Compression compression) {
   z_stream stream{};
-  if (inflateInit2(&stream, compression == Compression::Raw ? -15 : 15 + 32) != Z_OK) throw InvalidInput(file, "", "cannot be decompressed");
+  if (inflateInit2(&stream, compression == Compression::Raw ? -15 : 15 + 32) != Z_OK)
+    throw InvalidInput(file, "", "cannot be decompressed");
   std::string result;
   std::string chunk(1 << 20, '\0');
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(compressed.data()));
@@ -86,11 +97,13 @@ std::size_t checked_voxel_count(const std::filesystem::path& file, const Eigen::
   return static_cast<std::size_t>(count);
 }
 
-void set_values(Volume& volume, const std::filesystem::path& file, std::string_view bytes, const Samples& samples) {
+void set_values(Volume& volume, const std::filesystem::path& file, std::string_view bytes,
+                const Samples& samples) {
   const std::size_t count = checked_voxel_count(file, volume.size), width = bytes_per(samples.type);
   if (bytes.size() / width < count) {
-    throw InvalidInput(file, "", "ends early: holds " + std::to_string(bytes.size() / width) + " of " +
-                                     std::to_string(count) + " voxels");
+    throw InvalidInput(file, "",
+                       "ends early: holds " + std::to_string(bytes.size() / width) + " of " +
+                           std::to_string(count) + " voxels");
   }
   volume.values.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -101,7 +114,8 @@ void set_values(Volume& volume, const std::filesystem::path& file, std::string_v
 
 void finish(Volume& volume, const std::filesystem::path& file) {
   const Eigen::Matrix3d axes = volume.lps_from_index.linear();
-  if (!volume.lps_from_index.matrix().allFinite()) throw InvalidInput(file, "", "its orientation is not finite");
+  if (!volume.lps_from_index.matrix().allFinite())
+    throw InvalidInput(file, "", "its orientation is not finite");
   const Eigen::Vector3d spacing = volume.spacing_mm();
   if (!(spacing.minCoeff() > 1e-3) || !(spacing.maxCoeff() < 1e3)) {
     throw InvalidInput(file, "", "its voxels are below 0.001 mm or above 1000 mm");
@@ -121,7 +135,8 @@ void finish(Volume& volume, const std::filesystem::path& file) {
   volume.notes.push_back(std::to_string(not_finite) + " voxels were not finite: taken for empty");
 }
 
-std::vector<double> numbers_of(const std::filesystem::path& file, const std::string& key, std::string_view value) {
+std::vector<double> numbers_of(const std::filesystem::path& file, const std::string& key,
+                               std::string_view value) {
   std::vector<double> result;
   const auto separator = [](char c) { return c == ' ' || c == '\t' || c == ',' || c == '(' || c == ')'; };
   for (std::size_t at = 0; at < value.size();) {
@@ -145,8 +160,9 @@ std::vector<double> numbers_of(const std::filesystem::path& file, const std::str
 std::string read_data_file(const std::filesystem::path& header_file, std::string_view name) {
   const std::filesystem::path data(name);
   if (data.empty() || data.has_parent_path() || data == "." || data == "..") {
-    throw InvalidInput(header_file, "", "names the data file \"" + std::string(name.substr(0, 40)) +
-                                            "\": only a file in the same folder is read");
+    throw InvalidInput(header_file, "",
+                       "names the data file \"" + std::string(name.substr(0, 40)) +
+                           "\": only a file in the same folder is read");
   }
   return files::read_text(header_file.parent_path() / data);
 }

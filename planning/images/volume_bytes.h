@@ -39,7 +39,8 @@ struct Samples {
   double slope = 1, intercept = 0;
 };
 // Sets the volume's values from the bytes; needs size. Throws InvalidInput when there are too few bytes.
-void set_values(Volume& volume, const std::filesystem::path& file, std::string_view bytes, const Samples& samples);
+void set_values(Volume& volume, const std::filesystem::path& file, std::string_view bytes,
+                const Samples& samples);
 
 // Refuses a singular or not finite geometry, puts the least finite value where there is none and notes it.
 void finish(Volume& volume, const std::filesystem::path& file);

@@ -34,7 +34,8 @@ Volume read_volume(const std::filesystem::path& source, const VolumeFileOptions&
   if (text.size() > 132 && std::string_view(text).substr(128, 4) == "DICM") {
     throw InvalidInput(source, "", "is one DICOM file: name the folder that holds its series");
   }
-  throw InvalidInput(source, "", "is not a volume this program reads: a DICOM folder, NIfTI, NRRD or MetaImage");
+  throw InvalidInput(source, "",
+                     "is not a volume this program reads: a DICOM folder, NIfTI, NRRD or MetaImage");
 }
 
 }  // namespace arthronaut::images

@@ -57,7 +57,8 @@ void squared_distances_along(std::vector<double>& f, double spacing, std::vector
 }
 
 // In place: 0 where a set voxel is, infinity elsewhere; becomes the squared distance in mm^2.
-void to_squared_distances(std::vector<float>& squared, const Eigen::Vector3i& size, const Eigen::Vector3d& spacing_mm) {
+void to_squared_distances(std::vector<float>& squared, const Eigen::Vector3i& size,
+                          const Eigen::Vector3d& spacing_mm) {
   std::size_t step = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const auto n = static_cast<std::size_t>(size[axis]);
@@ -100,7 +101,8 @@ void fill_unreached(VoxelMask& mask, unsigned axes) {
       for (int i = 0; i < mask.size.x(); ++i) {
         const Eigen::Vector3i at(i, j, k);
         for (int axis = 0; axis < 3; ++axis) {
-          if ((axes >> axis & 1U) && (at[axis] == 0 || at[axis] == mask.size[axis] - 1)) visit(mask.index(i, j, k));
+          if ((axes >> axis & 1U) && (at[axis] == 0 || at[axis] == mask.size[axis] - 1))
+            visit(mask.index(i, j, k));
         }
       }
     }
@@ -142,7 +144,8 @@ std::vector<VoxelPiece> connected_pieces(const VoxelMask& mask, std::size_t leas
     piece.center_index /= static_cast<double>(piece.count);
     pieces.push_back(std::move(piece));
   }
-  std::stable_sort(pieces.begin(), pieces.end(), [](const auto& a, const auto& b) { return a.count > b.count; });
+  std::stable_sort(pieces.begin(), pieces.end(),
+                   [](const auto& a, const auto& b) { return a.count > b.count; });
   return pieces;
 }
 

@@ -12,11 +12,13 @@ struct VoxelMask {
   std::vector<std::uint8_t> inside;  // 0 or 1, i runs fastest
 
   explicit VoxelMask(const Eigen::Vector3i& size_in_voxels)
-      : size(size_in_voxels), inside(static_cast<std::size_t>(size_in_voxels.cast<std::int64_t>().prod()), 0) {}
+      : size(size_in_voxels),
+        inside(static_cast<std::size_t>(size_in_voxels.cast<std::int64_t>().prod()), 0) {}
   [[nodiscard]] std::size_t index(int i, int j, int k) const {
     return static_cast<std::size_t>(i) +
            static_cast<std::size_t>(size.x()) *
-               (static_cast<std::size_t>(j) + static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(k));
+               (static_cast<std::size_t>(j) +
+                static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(k));
   }
   [[nodiscard]] std::size_t count() const;
 };
@@ -34,14 +36,15 @@ struct VoxelPiece {
 void erode(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm);
 
 // Distance of every voxel from the nearest of these, in mm.
-[[nodiscard]] std::vector<float> distances_mm(const Eigen::Vector3i& size, const std::vector<std::size_t>& voxels,
+[[nodiscard]] std::vector<float> distances_mm(const Eigen::Vector3i& size,
+                                              const std::vector<std::size_t>& voxels,
                                               const Eigen::Vector3d& spacing_mm);
 
 // Adds what a ball of this radius cannot enter from outside. Beyond the volume nothing is inside.
 void close_gaps(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm);
 
-// Adds what is enclosed on all sides, and what is enclosed within a slice across `axis` (the marrow of a shaft that runs
-// out of the volume).
+// Adds what is enclosed on all sides, and what is enclosed within a slice across `axis` (the marrow of a
+// shaft that runs out of the volume).
 void fill_enclosed(VoxelMask& mask, int axis);
 
 }  // namespace arthronaut::images

@@ -41,8 +41,8 @@ void expect_sound(const ImportedBone& imported) {
 // The four bones from MRI: names that say side and bone, open edges in one femur and in the tibia.
 TEST(ImportRealBones, FemoraAndTibiaFromMri) {
   ARTHRONAUT_REQUIRE_DATA(folder, "bones/mri-femora");
-  for (const char* name : {"1_RIGHT_femur_Nov_02_2021.vtk", "3_RIGHT_femur_Nov_02_2021.vtk", "femur_mesh_10k_pts.vtk",
-                           "tibia_smoothed_image_10k_pts_thick_regions.vtk"}) {
+  for (const char* name : {"1_RIGHT_femur_Nov_02_2021.vtk", "3_RIGHT_femur_Nov_02_2021.vtk",
+                           "femur_mesh_10k_pts.vtk", "tibia_smoothed_image_10k_pts_thick_regions.vtk"}) {
     SCOPED_TRACE(name);
     std::cout << name << '\n';
     BoneImportOptions options;
@@ -50,7 +50,8 @@ TEST(ImportRealBones, FemoraAndTibiaFromMri) {
     const BoneImport import = import_bones(folder / name, options);
     ASSERT_EQ(import.bones.size(), 1U);
     expect_sound(import.bones[0]);
-    EXPECT_EQ(import.bones[0].bone.kind, std::string(name).starts_with("tibia") ? BoneKind::Tibia : BoneKind::Femur);
+    EXPECT_EQ(import.bones[0].bone.kind,
+              std::string(name).starts_with("tibia") ? BoneKind::Tibia : BoneKind::Femur);
     // A fin on one edge is all that these files have: nothing of the bone may go with it.
     EXPECT_NEAR(static_cast<double>(import.bones[0].repair.triangles_now),
                 static_cast<double>(import.bones[0].repair.triangles_found), 10);
@@ -58,7 +59,8 @@ TEST(ImportRealBones, FemoraAndTibiaFromMri) {
   EXPECT_EQ(side_in_name(folder / "3_RIGHT_femur_Nov_02_2021.vtk"), Side::Right);
 }
 
-// Metres: refused with the way out, then right; and the published attachment points lie on the bone that comes of it.
+// Metres: refused with the way out, then right; and the published attachment points lie on the bone that
+// comes of it.
 TEST(ImportRealBones, BonesInMetres) {
   ARTHRONAUT_REQUIRE_DATA(folder, "bones/lenhart2015");
   for (const char* name : {"lenhart2015-R-femur-bone.stl", "lenhart2015-R-tibia-bone.stl"}) {
@@ -74,7 +76,8 @@ TEST(ImportRealBones, BonesInMetres) {
   }
   BoneImportOptions options;
   options.unit = bones::LengthUnit::Metre;
-  const geometry::Surface femur(import_bones(folder / "lenhart2015-R-femur-bone.stl", options).bones.at(0).bone.mesh);
+  const geometry::Surface femur(
+      import_bones(folder / "lenhart2015-R-femur-bone.stl", options).bones.at(0).bone.mesh);
   std::ifstream points(folder / "acl_pcl_attachments.csv");
   std::string line;
   int count = 0;
@@ -124,17 +127,20 @@ void expect_same_volume(const Volume& a, const Volume& b) {
         const Eigen::Vector3i at = exact.array().round().cast<int>();
         ASSERT_TRUE((at.array() >= 0).all() && (at.array() < b.size.array()).all()) << at.transpose();
         worst_offset = std::max(worst_offset, (exact - at.cast<double>()).norm());
-        worst_value = std::max(worst_value, static_cast<double>(std::abs(a.at(i, j, k) - b.at(at.x(), at.y(), at.z()))));
+        worst_value = std::max(worst_value,
+                               static_cast<double>(std::abs(a.at(i, j, k) - b.at(at.x(), at.y(), at.z()))));
       }
     }
   }
   // Header text of the one and 32-bit floats of the other.
   EXPECT_LT(worst_offset, 0.01);
-  std::cout << "    worst difference: " << worst_value << " of value, " << worst_offset << " voxels of place\n";
+  std::cout << "    worst difference: " << worst_value << " of value, " << worst_offset
+            << " voxels of place\n";
   EXPECT_LT(worst_value, 0.51);  // the NIfTI was made before the values were rounded for DICOM
 }
 
-// The authors' NIfTI of the same volume, through another reader and another frame (RAS): voxel by voxel the same.
+// The authors' NIfTI of the same volume, through another reader and another frame (RAS): voxel by voxel the
+// same.
 TEST(ImportRealVolumes, DicomAndNiftiOfTheSameCtAgree) {
   ARTHRONAUT_REQUIRE_DATA(dicom, "volumes/knee-ct-051/CT");
   ARTHRONAUT_REQUIRE_DATA(nifti, "volumes/STS_051_CT_image.nii.gz");
@@ -188,14 +194,16 @@ TEST(ImportRealVolumes, LabelsOfAnObliqueVolume) {
   EXPECT_EQ(import.side, Side::Right);
   ASSERT_EQ(import.bones.size(), 2U);
   for (const auto& imported : import.bones) expect_sound(imported);
-  const auto femur = geometry::bounds_of(import.bones[0].bone.mesh), tibia = geometry::bounds_of(import.bones[1].bone.mesh);
+  const auto femur = geometry::bounds_of(import.bones[0].bone.mesh),
+             tibia = geometry::bounds_of(import.bones[1].bone.mesh);
   EXPECT_GT(femur.min_mm.z(), tibia.max_mm.z() - 25);  // the eminences reach into the notch
   EXPECT_NEAR(femur.center_mm().x(), tibia.center_mm().x(), 10);
   // 1.53 million voxels of 0.3646 x 0.3646 x 0.70 mm.
   const Volume volume = read_volume(file);
   for (const auto& [value, count] : labels_of(volume)) {
     if (value != 5) continue;
-    const double labelled_mm3 = static_cast<double>(count) * std::abs(volume.lps_from_index.linear().determinant());
+    const double labelled_mm3 =
+        static_cast<double>(count) * std::abs(volume.lps_from_index.linear().determinant());
     EXPECT_NEAR(import.bones[0].repair.volume_mm3, labelled_mm3, 0.01 * labelled_mm3);
   }
 }
@@ -236,8 +244,9 @@ TEST(ImportRealVolumes, TransferSyntaxesDecodeOrAreRefused) {
   }
   for (const auto& [name, outcome] : outcomes) std::cout << "    " << name << ": " << outcome << '\n';
   EXPECT_GE(outcomes.size(), 16U);
-  for (const char* name : {"MR_small_RLE.dcm", "MR_small_bigendian.dcm", "MR_small_expb.dcm", "MR_small_implicit.dcm",
-                           "MR_small_jp2klossless.dcm", "MR_small_jpeg_ls_lossless.dcm", "MR_small_padded.dcm"}) {
+  for (const char* name :
+       {"MR_small_RLE.dcm", "MR_small_bigendian.dcm", "MR_small_expb.dcm", "MR_small_implicit.dcm",
+        "MR_small_jp2klossless.dcm", "MR_small_jpeg_ls_lossless.dcm", "MR_small_padded.dcm"}) {
     EXPECT_EQ(outcomes[name], "read");
     EXPECT_EQ(pixels[name], pixels["MR_small.dcm"]) << name;
   }

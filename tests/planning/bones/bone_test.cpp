@@ -8,7 +8,8 @@ namespace arthronaut::bones {
 namespace {
 
 TEST(Bone, WordsRoundTripAndOthersAreRefused) {
-  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) EXPECT_EQ(bone_kind_from_text(to_text(kind)), kind);
+  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia})
+    EXPECT_EQ(bone_kind_from_text(to_text(kind)), kind);
   for (const Side side : {Side::Left, Side::Right}) EXPECT_EQ(side_from_text(to_text(side)), side);
   EXPECT_THROW((void)bone_kind_from_text("Femur"), InvalidInput);
   EXPECT_THROW((void)bone_kind_from_text("patella"), InvalidInput);

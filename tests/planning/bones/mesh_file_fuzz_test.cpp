@@ -13,18 +13,34 @@ namespace {
 
 // What transfers, editors and broken writers do to a file: bits, runs, cuts, repeats, and numbers made huge.
 std::string mutated(std::string bytes, std::mt19937& random) {
-  const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n ? n - 1 : 0)(random); };
+  const auto below = [&](std::size_t n) {
+    return std::uniform_int_distribution<std::size_t>(0, n ? n - 1 : 0)(random);
+  };
   const std::size_t count = 1 + below(4);
   for (std::size_t i = 0; i < count && !bytes.empty(); ++i) {
     const std::size_t at = below(bytes.size());
     switch (below(8)) {
-      case 0: bytes[at] = static_cast<char>(below(256)); break;
-      case 1: bytes[at] ^= static_cast<char>(1U << below(8)); break;
-      case 2: bytes.resize(at); break;
-      case 3: bytes.erase(at, below(20)); break;
-      case 4: bytes.insert(at, bytes.substr(below(bytes.size()), below(60))); break;
-      case 5: bytes.insert(at, "999999999999"); break;
-      case 6: bytes.insert(at, below(2) ? " nan " : "-"); break;
+      case 0:
+        bytes[at] = static_cast<char>(below(256));
+        break;
+      case 1:
+        bytes[at] ^= static_cast<char>(1U << below(8));
+        break;
+      case 2:
+        bytes.resize(at);
+        break;
+      case 3:
+        bytes.erase(at, below(20));
+        break;
+      case 4:
+        bytes.insert(at, bytes.substr(below(bytes.size()), below(60)));
+        break;
+      case 5:
+        bytes.insert(at, "999999999999");
+        break;
+      case 6:
+        bytes.insert(at, below(2) ? " nan " : "-");
+        break;
       default: {
         // In a header, where the counts are.
         const std::size_t early = below(std::min<std::size_t>(bytes.size(), 300));

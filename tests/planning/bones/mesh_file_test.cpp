@@ -26,7 +26,8 @@ void expect_same_surface(const geometry::TriangleMesh& found, const geometry::Tr
   EXPECT_EQ(found.vertices_mm.size(), expected.vertices_mm.size());
   for (std::size_t t = 0; t < found.triangles.size(); ++t) {
     for (int i = 0; i < 3; ++i) {
-      const auto &a = found.vertices_mm[found.triangles[t][i]], &b = expected.vertices_mm[expected.triangles[t][i]];
+      const auto &a = found.vertices_mm[found.triangles[t][i]],
+                 &b = expected.vertices_mm[expected.triangles[t][i]];
       // Float coordinates of up to 100 mm carry 4e-6 mm.
       EXPECT_NEAR((a - b).norm(), 0, 1e-5);
     }
@@ -100,13 +101,14 @@ TEST(MeshFile, TruncatedFilesAreRefused) {
   const TemporaryFolder folder;
   for (const auto& [name, contents] : test::all_forms(bone_like())) {
     SCOPED_TRACE(name);
-    // An OBJ and an STL in text may be cut between two triangles without a trace in the format, the former at the end of
-    // any line; what makes the end of the others certain is checked at every tenth.
+    // An OBJ and an STL in text may be cut between two triangles without a trace in the format, the former at
+    // the end of any line; what makes the end of the others certain is checked at every tenth.
     if (name.ends_with(".obj")) continue;
     const std::size_t end = name.ends_with(".vtk") ? contents.find("POINT_DATA") - 5 : contents.size() - 10;
     for (int tenth = 0; tenth <= 10; ++tenth) {
       test::write_bytes(folder / name, contents.substr(0, end * static_cast<std::size_t>(tenth) / 10));
-      EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_mesh(folder / name); }), HasSubstr(name)) << tenth;
+      EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_mesh(folder / name); }), HasSubstr(name))
+          << tenth;
     }
   }
 }
@@ -121,7 +123,8 @@ TEST(MeshFile, TruncatedStlNamesTriangleAndByte) {
 
 TEST(MeshFile, NotFiniteCoordinatesAreRefusedWithTheirPlace) {
   const TemporaryFolder folder;
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     geometry::TriangleMesh mesh = bone_like();
     mesh.vertices_mm[17].y() = bad;
     for (const auto& [name, contents] : test::all_forms(mesh)) {
@@ -161,7 +164,8 @@ TEST(MeshFile, EmptyAndForeignFilesAreRefused) {
   const TemporaryFolder folder;
   for (const char* name : {"a.stl", "a.ply", "a.obj", "a.vtk", "a.vtp"}) {
     test::write_bytes(folder / name, "");
-    EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_mesh(folder / name); }), HasSubstr("empty")) << name;
+    EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_mesh(folder / name); }), HasSubstr("empty"))
+        << name;
     test::write_bytes(folder / name, "This is a letter to the surgeon.\n");
     EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_mesh(folder / name); }), HasSubstr(name));
   }
@@ -173,16 +177,19 @@ TEST(MeshFile, EmptyAndForeignFilesAreRefused) {
   EXPECT_THROW((void)read_mesh(folder.path()), IoError);
 }
 
-// Programs differ: quads, corners counted from the end, two solids in a file, CRLF, a binary that begins with "solid".
+// Programs differ: quads, corners counted from the end, two solids in a file, CRLF, a binary that begins with
+// "solid".
 TEST(MeshFile, VariantsOfOtherProgramsAreRead) {
   const TemporaryFolder folder;
-  test::write_bytes(folder / "quad.obj", "v 0 0 0\r\nv 50 0 0\r\nv 50 50 0 1.0\r\nv 0 50 0\r\nf -4/1 -3/2 -2/3 -1/4\r\n");
+  test::write_bytes(folder / "quad.obj",
+                    "v 0 0 0\r\nv 50 0 0\r\nv 50 50 0 1.0\r\nv 0 50 0\r\nf -4/1 -3/2 -2/3 -1/4\r\n");
   const auto quad = read_mesh(folder / "quad.obj");
   EXPECT_EQ(quad.triangles.size(), 2U);
   EXPECT_NEAR(geometry::surface_area_mm2(quad), 2500, 1e-9);
 
   std::string two = test::text_stl(bone_like()) + test::text_stl(test::ellipsoid({5, 5, 5}, 1));
-  for (std::size_t at = 0; (at = two.find('\n', at)) != std::string::npos; at += 2) two.replace(at, 1, "\r\n");
+  for (std::size_t at = 0; (at = two.find('\n', at)) != std::string::npos; at += 2)
+    two.replace(at, 1, "\r\n");
   test::write_bytes(folder / "two.stl", two);
   EXPECT_EQ(read_mesh(folder / "two.stl").triangles.size(), 160U);
 

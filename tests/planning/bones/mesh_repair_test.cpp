@@ -61,7 +61,8 @@ TEST(MeshRepair, InsideOutIsTurned) {
 
 TEST(MeshRepair, TrianglesThatLookInwardsAreTurnedAndCounted) {
   TriangleMesh mesh = bone();
-  for (std::size_t t = 5; t < mesh.triangles.size(); t += 50) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+  for (std::size_t t = 5; t < mesh.triangles.size(); t += 50)
+    std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
   const MeshRepair repair = mend_mesh(mesh);
   expect_the_bone(repair);
   EXPECT_EQ(repair.report.triangles_flipped, (mesh.triangles.size() - 5 + 49) / 50);
@@ -69,7 +70,8 @@ TEST(MeshRepair, TrianglesThatLookInwardsAreTurnedAndCounted) {
 }
 
 TEST(MeshRepair, TheLargestPartIsKept) {
-  TriangleMesh mesh = test::ellipsoid({5, 5, 5}, 4, {80, 0, 0});  // more triangles than the bone, and less surface
+  TriangleMesh mesh =
+      test::ellipsoid({5, 5, 5}, 4, {80, 0, 0});  // more triangles than the bone, and less surface
   append(mesh, bone());
   const MeshRepair repair = mend_mesh(mesh);
   expect_the_bone(repair);
@@ -93,7 +95,8 @@ TEST(MeshRepair, SmallHolesAreFilled) {
 TEST(MeshRepair, ACutShaftGetsAFlatCap) {
   TriangleMesh mesh = test::ellipsoid({40, 30, 25}, 5);
   std::erase_if(mesh.triangles, [&](const auto& t) {
-    return mesh.vertices_mm[t[0]].x() > 20 || mesh.vertices_mm[t[1]].x() > 20 || mesh.vertices_mm[t[2]].x() > 20;
+    return mesh.vertices_mm[t[0]].x() > 20 || mesh.vertices_mm[t[1]].x() > 20 ||
+           mesh.vertices_mm[t[2]].x() > 20;
   });
   const MeshRepair repair = mend_mesh(mesh);
   EXPECT_TRUE(repair.report.is_closed);
@@ -126,7 +129,8 @@ TEST(MeshRepair, AFinIsCutOff) {
   expect_the_bone(repair);
 }
 
-// A point in the middle of an edge that one neighbour uses and the other does not, with a flat triangle in between.
+// A point in the middle of an edge that one neighbour uses and the other does not, with a flat triangle in
+// between.
 TEST(MeshRepair, TrianglesWithoutAnAreaGo) {
   TriangleMesh mesh = test::box({32, 16, 8});
   mesh.triangles.push_back({0, 0, 1});  // a line
@@ -157,14 +161,17 @@ TEST(MeshRepair, RefusesWhatIsNoMesh) {
   EXPECT_THROW((void)mend_mesh(bad), InvalidInput);
 }
 
-// Triangles at random among the points: nothing to be proud of, but never a crash, and closed when it says so.
+// Triangles at random among the points: nothing to be proud of, but never a crash, and closed when it says
+// so.
 TEST(MeshRepair, NonsenseIsSurvived) {
   std::mt19937 random(11);
   for (int round = 0; round < 30; ++round) {
     TriangleMesh mesh = test::ellipsoid(kRadii, 1);
-    std::uniform_int_distribution<std::int32_t> vertex(0, static_cast<std::int32_t>(mesh.vertices_mm.size()) - 1);
+    std::uniform_int_distribution<std::int32_t> vertex(
+        0, static_cast<std::int32_t>(mesh.vertices_mm.size()) - 1);
     for (int i = 0; i < 1 + round; ++i) {
-      mesh.triangles[static_cast<std::size_t>(vertex(random))] = {vertex(random), vertex(random), vertex(random)};
+      mesh.triangles[static_cast<std::size_t>(vertex(random))] = {vertex(random), vertex(random),
+                                                                  vertex(random)};
     }
     try {
       const MeshRepair repair = mend_mesh(mesh);

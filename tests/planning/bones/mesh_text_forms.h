@@ -1,5 +1,5 @@
-// The same mesh in every format and encoding that is read, written here by hand: the readers are not tested with
-// writers of their own.
+// The same mesh in every format and encoding that is read, written here by hand: the readers are not tested
+// with writers of their own.
 #pragma once
 
 #include <bit>
@@ -27,7 +27,9 @@ inline std::string number(double value) {
   std::snprintf(text, sizeof text, "%.9g", value);
   return text;
 }
-inline std::string numbers(const Eigen::Vector3d& v) { return number(v.x()) + " " + number(v.y()) + " " + number(v.z()); }
+inline std::string numbers(const Eigen::Vector3d& v) {
+  return number(v.x()) + " " + number(v.y()) + " " + number(v.z());
+}
 
 inline std::string text_stl(const geometry::TriangleMesh& mesh, const std::string& title = "bone") {
   std::string text = "solid " + title + "\n";
@@ -41,20 +43,23 @@ inline std::string text_stl(const geometry::TriangleMesh& mesh, const std::strin
 
 inline std::string binary_stl(const geometry::TriangleMesh& mesh, std::string header = "made by hand") {
   header.resize(80, ' ');
-  std::string bytes = header + bytes_of(static_cast<std::uint32_t>(mesh.triangles.size()), std::endian::little);
+  std::string bytes =
+      header + bytes_of(static_cast<std::uint32_t>(mesh.triangles.size()), std::endian::little);
   for (const auto& t : mesh.triangles) {
     bytes += std::string(12, '\0');
     for (const auto v : t) {
-      for (int i = 0; i < 3; ++i) bytes += bytes_of(static_cast<float>(mesh.vertices_mm[v][i]), std::endian::little);
+      for (int i = 0; i < 3; ++i)
+        bytes += bytes_of(static_cast<float>(mesh.vertices_mm[v][i]), std::endian::little);
     }
     bytes += std::string(2, '\0');
   }
   return bytes;
 }
 
-inline std::string ply_header(const geometry::TriangleMesh& mesh, const std::string& format, const std::string& comment) {
-  return "ply\nformat " + format + " 1.0\n" + (comment.empty() ? "" : "comment " + comment + "\n") + "element vertex " +
-         std::to_string(mesh.vertices_mm.size()) +
+inline std::string ply_header(const geometry::TriangleMesh& mesh, const std::string& format,
+                              const std::string& comment) {
+  return "ply\nformat " + format + " 1.0\n" + (comment.empty() ? "" : "comment " + comment + "\n") +
+         "element vertex " + std::to_string(mesh.vertices_mm.size()) +
          "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar quality\nelement face " +
          std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
 }
@@ -68,9 +73,10 @@ inline std::string text_ply(const geometry::TriangleMesh& mesh, const std::strin
   return text;
 }
 
-inline std::string binary_ply(const geometry::TriangleMesh& mesh, std::endian order, const std::string& comment = "") {
-  std::string bytes = ply_header(
-      mesh, order == std::endian::little ? "binary_little_endian" : "binary_big_endian", comment);
+inline std::string binary_ply(const geometry::TriangleMesh& mesh, std::endian order,
+                              const std::string& comment = "") {
+  std::string bytes =
+      ply_header(mesh, order == std::endian::little ? "binary_little_endian" : "binary_big_endian", comment);
   for (const auto& v : mesh.vertices_mm) {
     for (int i = 0; i < 3; ++i) bytes += bytes_of(static_cast<float>(v[i]), order);
     bytes += '\xff';
@@ -107,8 +113,8 @@ inline std::string legacy_vtk(const geometry::TriangleMesh& mesh, bool binary, i
   };
   std::vector<double> coordinates;
   for (const auto& v : mesh.vertices_mm) coordinates.insert(coordinates.end(), v.data(), v.data() + 3);
-  std::string text = "# vtk DataFile Version " + std::to_string(version) + (version >= 5 ? ".1" : ".2") + "\n" + title +
-                     "\n" + (binary ? "BINARY" : "ASCII") + "\nDATASET POLYDATA\nPOINTS " +
+  std::string text = "# vtk DataFile Version " + std::to_string(version) + (version >= 5 ? ".1" : ".2") +
+                     "\n" + title + "\n" + (binary ? "BINARY" : "ASCII") + "\nDATASET POLYDATA\nPOINTS " +
                      std::to_string(mesh.vertices_mm.size()) + " float\n" + list(coordinates, 0.0F);
   const std::size_t count = mesh.triangles.size();
   if (version >= 5) {
@@ -123,7 +129,8 @@ inline std::string legacy_vtk(const geometry::TriangleMesh& mesh, bool binary, i
   } else {
     std::vector<std::int32_t> cells;
     for (const auto& t : mesh.triangles) cells.insert(cells.end(), {3, t[0], t[1], t[2]});
-    text += "POLYGONS " + std::to_string(count) + " " + std::to_string(4 * count) + "\n" + list(cells, std::int32_t{0});
+    text += "POLYGONS " + std::to_string(count) + " " + std::to_string(4 * count) + "\n" +
+            list(cells, std::int32_t{0});
   }
   return text + "POINT_DATA " + std::to_string(mesh.vertices_mm.size()) + "\n";
 }
@@ -136,16 +143,19 @@ inline std::string vtp(const geometry::TriangleMesh& mesh, const std::string& co
     offsets += std::to_string(3 * (t + 1)) + " ";
   }
   return "<?xml version=\"1.0\"?>\n" + (comment.empty() ? "" : "<!-- " + comment + " -->\n") +
-         "<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n<Piece NumberOfPoints=\"" +
-         std::to_string(mesh.vertices_mm.size()) + "\" NumberOfPolys=\"" + std::to_string(mesh.triangles.size()) +
+         "<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n<Piece "
+         "NumberOfPoints=\"" +
+         std::to_string(mesh.vertices_mm.size()) + "\" NumberOfPolys=\"" +
+         std::to_string(mesh.triangles.size()) +
          "\">\n<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">" + points +
-         "</DataArray></Points>\n<Polys><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">" + indices +
-         "</DataArray>\n<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">" + offsets +
+         "</DataArray></Points>\n<Polys><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">" +
+         indices + "</DataArray>\n<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">" + offsets +
          "</DataArray></Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n";
 }
 
 // File name -> contents. `note` goes where the format has room for a comment.
-inline std::map<std::string, std::string> all_forms(const geometry::TriangleMesh& mesh, const std::string& note = "") {
+inline std::map<std::string, std::string> all_forms(const geometry::TriangleMesh& mesh,
+                                                    const std::string& note = "") {
   return {{"text.stl", text_stl(mesh, "bone " + note)},
           {"binary.stl", binary_stl(mesh, "made by hand " + note)},
           {"text.ply", text_ply(mesh, note)},

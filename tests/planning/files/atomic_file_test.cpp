@@ -35,7 +35,8 @@ TEST(AtomicFile, MissingThingsAreIoErrorsThatNameTheFile) {
   const TemporaryFolder folder;
   EXPECT_THAT(message_of<IoError>([&] { (void)read_text(folder / "absent"); }), HasSubstr("absent"));
   EXPECT_THAT(message_of<IoError>([&] { (void)read_text(folder.path()); }), HasSubstr("is a folder"));
-  EXPECT_THAT(message_of<IoError>([&] { write_atomically(folder / "no" / "x", "1"); }), HasSubstr("does not exist"));
+  EXPECT_THAT(message_of<IoError>([&] { write_atomically(folder / "no" / "x", "1"); }),
+              HasSubstr("does not exist"));
   // A folder of the target's name cannot be replaced, and nothing is left beside it.
   std::filesystem::create_directory(folder / "x");
   EXPECT_THAT(message_of<IoError>([&] { write_atomically(folder / "x", "1"); }), HasSubstr("cannot replace"));
@@ -48,8 +49,10 @@ TEST(AtomicFile, AReadOnlyFolderIsAnIoErrorOfTheTarget) {
               AllOf(HasSubstr("/proc/case.json"), Not(HasSubstr(".partial"))));
   if (::geteuid() == 0) return;  // root writes into any folder
   const TemporaryFolder folder;
-  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
-  EXPECT_THAT(message_of<IoError>([&] { write_atomically(folder / "x", "1"); }), HasSubstr("Permission denied"));
+  std::filesystem::permissions(folder.path(),
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  EXPECT_THAT(message_of<IoError>([&] { write_atomically(folder / "x", "1"); }),
+              HasSubstr("Permission denied"));
 }
 
 // A limit on the size of files ends a write half-way, as a full disk does.
@@ -65,7 +68,8 @@ TEST(AtomicFile, ADiskThatFillsUpLeavesTheOldContents) {
       write_atomically(folder / "plan.json", std::string(100000, 'x'));
     } catch (const IoError& error) {
       const std::string message = error.what();
-      const bool names_target = message.find("plan.json") != std::string::npos && message.find("partial") == std::string::npos;
+      const bool names_target =
+          message.find("plan.json") != std::string::npos && message.find("partial") == std::string::npos;
       ::_exit(names_target ? 42 : 43);
     }
     ::_exit(1);
@@ -89,11 +93,13 @@ TEST(AtomicFile, AWriterThatThrowsLeavesNothing) {
                InvalidInput);
   EXPECT_EQ(folder.file_count(), 0U);
   // A writer that writes nothing at all is an error of the target too.
-  EXPECT_THAT(message_of<IoError>([&] { write_atomically(folder / "a.pdf", [](const std::filesystem::path&) {}); }),
-              AllOf(HasSubstr("a.pdf"), Not(HasSubstr("partial"))));
+  EXPECT_THAT(
+      message_of<IoError>([&] { write_atomically(folder / "a.pdf", [](const std::filesystem::path&) {}); }),
+      AllOf(HasSubstr("a.pdf"), Not(HasSubstr("partial"))));
 }
 
-// kill -9 between write and rename, and at thirty other moments: the old or the new contents, never a mixture.
+// kill -9 between write and rename, and at thirty other moments: the old or the new contents, never a
+// mixture.
 TEST(AtomicFile, AKilledWriterLeavesAWholeFile) {
   const TemporaryFolder folder;
   const std::string first(200000, 'a'), second(150000, 'b');

@@ -17,7 +17,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 TEST(CsvTable, FindsColumnsByNameWhateverTheirOrder) {
-  const CsvTable table = CsvTable::parse("z_mm, extra ,x_mm,frame\r\n1.5,a b,-2e3,7\r\n,,0.25,8\r\n", "p.csv", {"x_mm", "frame"});
+  const CsvTable table = CsvTable::parse("z_mm, extra ,x_mm,frame\r\n1.5,a b,-2e3,7\r\n,,0.25,8\r\n", "p.csv",
+                                         {"x_mm", "frame"});
   ASSERT_EQ(table.row_count(), 2U);
   EXPECT_EQ(table.number(0, "x_mm"), -2000);
   EXPECT_EQ(table.integer(1, "frame"), 8);
@@ -30,11 +31,14 @@ TEST(CsvTable, FindsColumnsByNameWhateverTheirOrder) {
 TEST(CsvTable, EveryErrorNamesFileLineAndColumn) {
   EXPECT_THAT(message_of<InvalidInput>([] { (void)CsvTable::parse("a,b\n1,2\n1\n", "p.csv", {}); }),
               AllOf(HasSubstr("p.csv"), HasSubstr("line 3")));
-  EXPECT_THAT(message_of<InvalidInput>([] { (void)CsvTable::parse("a,b\n", "p.csv", {"c"}); }), HasSubstr("\"c\""));
+  EXPECT_THAT(message_of<InvalidInput>([] { (void)CsvTable::parse("a,b\n", "p.csv", {"c"}); }),
+              HasSubstr("\"c\""));
   EXPECT_THROW((void)CsvTable::parse("", "p.csv", {}), InvalidInput);
   const CsvTable table = CsvTable::parse("a,b\n1,x\nnan,1.5\n1e999,\n", "p.csv", {"a"});
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)table.number(0, "b"); }), AllOf(HasSubstr("line 2"), HasSubstr("column b")));
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)table.number(1, "a"); }), AllOf(HasSubstr("line 3"), HasSubstr("finite")));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)table.number(0, "b"); }),
+              AllOf(HasSubstr("line 2"), HasSubstr("column b")));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)table.number(1, "a"); }),
+              AllOf(HasSubstr("line 3"), HasSubstr("finite")));
   EXPECT_THROW((void)table.number(2, "a"), InvalidInput);
   EXPECT_THROW((void)table.integer(1, "b"), InvalidInput);
   EXPECT_THROW((void)table.number(2, "b"), InvalidInput);
@@ -51,15 +55,22 @@ TEST(CsvTable, AHeaderAloneIsATableWithoutRows) {
 TEST(CsvTable, BrokenTextGivesFiniteNumbersOrInvalidInput) {
   const std::string whole = "curve,time_s,x_mm,y_mm\n0,0.016,1.25,-3.5\n0,,1.5,2e-3\n1,0.05,7,8\n";
   std::mt19937 random(1);
-  const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
+  const auto below = [&](std::size_t n) {
+    return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
+  };
   for (int i = 0; i < 5000; ++i) {
     std::string broken = whole;
     for (std::size_t n = 1 + below(3); n > 0; --n) {
       const std::size_t at = below(broken.size());
       switch (below(3)) {
-        case 0: broken[at] = static_cast<char>(below(256)); break;
-        case 1: broken.erase(at, 1 + below(8)); break;
-        default: broken.insert(at, below(2) ? "inf" : ",,\n");
+        case 0:
+          broken[at] = static_cast<char>(below(256));
+          break;
+        case 1:
+          broken.erase(at, 1 + below(8));
+          break;
+        default:
+          broken.insert(at, below(2) ? "inf" : ",,\n");
       }
       if (broken.empty()) broken = "x";
     }

@@ -41,7 +41,8 @@ TEST(JsonDocument, ReadsWhatIsThere) {
 
 TEST(JsonDocument, EveryMissNamesFilePlaceAndReason) {
   const JsonObject root = parse(kWhole);
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)root.number("absent"); }), AllOf(HasSubstr("a.json: absent: is missing")));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)root.number("absent"); }),
+              AllOf(HasSubstr("a.json: absent: is missing")));
   EXPECT_THAT(message_of<InvalidInput>([&] { (void)root.object("o").objects("k")[1].number("z"); }),
               HasSubstr("a.json: o.k[1].z: is missing"));
   EXPECT_THAT(message_of<InvalidInput>([&] { (void)root.vector2("v"); }), HasSubstr("holds 3"));
@@ -54,7 +55,8 @@ TEST(JsonDocument, EveryMissNamesFilePlaceAndReason) {
 }
 
 TEST(JsonDocument, RefusesAnotherFormatOrANewerVersion) {
-  EXPECT_THAT(message_of<InvalidInput>([] { (void)parse(R"({"format": "other", "version": 1})"); }), HasSubstr("other"));
+  EXPECT_THAT(message_of<InvalidInput>([] { (void)parse(R"({"format": "other", "version": 1})"); }),
+              HasSubstr("other"));
   EXPECT_THAT(message_of<InvalidInput>([] { (void)parse(R"({"format": "arthronaut.test", "version": 2})"); }),
               HasSubstr("newer"));
   EXPECT_THROW((void)parse(R"({"format": "arthronaut.test", "version": 0})"), InvalidInput);
@@ -66,8 +68,8 @@ TEST(JsonDocument, RefusesAnotherFormatOrANewerVersion) {
 
 // An integer beyond 64 bits, signed, would wrap into another number.
 TEST(JsonDocument, IntegersThatDoNotFitAreRefused) {
-  const JsonObject root =
-      parse(R"({"format": "arthronaut.test", "version": 1, "i": 18446744073709551615, "j": 9223372036854775807})");
+  const JsonObject root = parse(
+      R"({"format": "arthronaut.test", "version": 1, "i": 18446744073709551615, "j": 9223372036854775807})");
   EXPECT_EQ(root.integer("j"), 9223372036854775807);
   EXPECT_THROW((void)root.integer("i"), InvalidInput);
 }
@@ -94,16 +96,25 @@ TEST(JsonDocument, TextThatIsNoUtf8IsStillWritten) {
 // Broken documents: values, or InvalidInput, and nothing else.
 TEST(JsonDocument, BrokenTextGivesValuesOrInvalidInput) {
   std::mt19937 random(1);
-  const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
+  const auto below = [&](std::size_t n) {
+    return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
+  };
   for (int i = 0; i < 5000; ++i) {
     std::string broken = kWhole;
     for (std::size_t n = 1 + below(3); n > 0; --n) {
       const std::size_t at = below(broken.size());
       switch (below(4)) {
-        case 0: broken[at] = static_cast<char>(below(256)); break;
-        case 1: broken.erase(at, 1 + below(6)); break;
-        case 2: broken.insert(at, below(2) ? "1e999" : "{[,"); break;
-        default: broken.resize(at + 1);
+        case 0:
+          broken[at] = static_cast<char>(below(256));
+          break;
+        case 1:
+          broken.erase(at, 1 + below(6));
+          break;
+        case 2:
+          broken.insert(at, below(2) ? "1e999" : "{[,");
+          break;
+        default:
+          broken.resize(at + 1);
       }
       if (broken.empty()) broken = "{";
     }
@@ -125,7 +136,9 @@ TEST(JsonDocument, BrokenTextGivesValuesOrInvalidInput) {
 TEST(JsonDocument, DeepNestingIsSurvived) {
   const std::string deep(100000, '[');
   EXPECT_THROW((void)parse(deep), InvalidInput);
-  EXPECT_THROW((void)parse(R"({"format": "arthronaut.test", "version": 1, "x": )" + deep + std::string(100000, ']') + "}").number("x"),
+  EXPECT_THROW((void)parse(R"({"format": "arthronaut.test", "version": 1, "x": )" + deep +
+                           std::string(100000, ']') + "}")
+                   .number("x"),
                InvalidInput);
 }
 

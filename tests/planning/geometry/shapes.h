@@ -26,16 +26,18 @@ inline geometry::TriangleMesh ellipsoid(const Eigen::Vector3d& radii_mm, int rou
                                         const Eigen::Vector3d& center_mm = Eigen::Vector3d::Zero()) {
   const double g = (1 + std::sqrt(5.0)) / 2;
   geometry::TriangleMesh mesh;
-  mesh.vertices_mm = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                      {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  mesh.triangles = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                    {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                    {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+  mesh.vertices_mm = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                      {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  mesh.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                    {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                    {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (int round = 0; round < rounds; ++round) {
     std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
     const auto middle = [&](std::int32_t a, std::int32_t b) {
-      const auto [at, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(mesh.vertices_mm.size()));
-      if (is_new) mesh.vertices_mm.push_back((mesh.vertices_mm[a].normalized() + mesh.vertices_mm[b].normalized()) / 2);
+      const auto [at, is_new] =
+          middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(mesh.vertices_mm.size()));
+      if (is_new)
+        mesh.vertices_mm.push_back((mesh.vertices_mm[a].normalized() + mesh.vertices_mm[b].normalized()) / 2);
       return at->second;
     };
     std::vector<std::array<std::int32_t, 3>> finer;

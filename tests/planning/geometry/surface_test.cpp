@@ -49,7 +49,8 @@ TEST(Surface, SignIsRightBesideAThinWedge) {
   const Surface surface(wedge);
   std::mt19937 random(2);
   for (int i = 0; i < 5000; ++i) {
-    const Eigen::Vector3d p = Eigen::Vector3d(50, 0.5, 0.5) + random_point(random, 1).cwiseProduct(Eigen::Vector3d(60, 2, 2));
+    const Eigen::Vector3d p =
+        Eigen::Vector3d(50, 0.5, 0.5) + random_point(random, 1).cwiseProduct(Eigen::Vector3d(60, 2, 2));
     // Inside when on the inner side of all four planes.
     bool inside = true;
     for (const auto& t : wedge.triangles) {

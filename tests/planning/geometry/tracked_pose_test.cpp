@@ -24,7 +24,8 @@ TrackedPose pose_with_covariance(std::mt19937& random, double sigma_mm, double s
   pose.timestamp_ns = 1000;
   pose.is_valid = true;
   Matrix6d root = Matrix6d::Zero();
-  for (int i = 0; i < 6; ++i) root.row(i) = 0.4 * normal_twist(random).transpose() * (i < 3 ? sigma_mm : sigma_rad);
+  for (int i = 0; i < 6; ++i)
+    root.row(i) = 0.4 * normal_twist(random).transpose() * (i < 3 ? sigma_mm : sigma_rad);
   for (int i = 0; i < 6; ++i) root(i, i) += i < 3 ? sigma_mm : sigma_rad;
   pose.covariance = root * root.transpose();
   return pose;
@@ -34,7 +35,8 @@ TrackedPose pose_with_covariance(std::mt19937& random, double sigma_mm, double s
 TEST(TrackedPose, ComposedCovarianceIsThatOfSamples) {
   std::mt19937 random(1);
   // Small, so that first order is all there is; the mm are scaled down as the radians are.
-  const TrackedPose a = pose_with_covariance(random, 0.05, 0.001), b = pose_with_covariance(random, 0.05, 0.001);
+  const TrackedPose a = pose_with_covariance(random, 0.05, 0.001),
+                    b = pose_with_covariance(random, 0.05, 0.001);
   const TrackedPose ab = compose(a, b), a_inverse = inverse(a);
   const Matrix6d root_a = a.covariance.llt().matrixL(), root_b = b.covariance.llt().matrixL();
   Matrix6d sampled = Matrix6d::Zero(), sampled_inverse = Matrix6d::Zero();

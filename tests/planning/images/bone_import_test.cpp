@@ -25,8 +25,8 @@ TEST(BoneImport, NamesTellBoneAndSide) {
   EXPECT_EQ(bone_kind_in_name("Tibia_L.stl"), BoneKind::Tibia);
   EXPECT_EQ(side_in_name("Tibia_L.stl"), Side::Left);
   EXPECT_EQ(side_in_name("LEFT/"), Side::Left);
-  EXPECT_EQ(side_in_name("bright_femur.stl"), std::nullopt);      // not a word
-  EXPECT_EQ(side_in_name("left_not_right.stl"), std::nullopt);    // both
+  EXPECT_EQ(side_in_name("bright_femur.stl"), std::nullopt);    // not a word
+  EXPECT_EQ(side_in_name("left_not_right.stl"), std::nullopt);  // both
   EXPECT_EQ(bone_kind_in_name("femur_and_tibia.nrrd"), std::nullopt);
   EXPECT_EQ(bone_kind_in_name("patella.stl"), std::nullopt);
 }
@@ -35,7 +35,8 @@ TEST(BoneImport, LabelsAreParsedStrictly) {
   const auto labels = labels_from_text("femur=5,tibia=6");
   EXPECT_EQ(labels.at(BoneKind::Femur), 5);
   EXPECT_EQ(labels.at(BoneKind::Tibia), 6);
-  for (const char* bad : {"", "femur", "femur=", "=5", "femur=5,", "femur=5x", "patella=7", "femur=5,femur=6", "5"}) {
+  for (const char* bad :
+       {"", "femur", "femur=", "=5", "femur=5,", "femur=5x", "patella=7", "femur=5,femur=6", "5"}) {
     EXPECT_THROW((void)labels_from_text(bad), InvalidInput) << bad;
   }
 }
@@ -72,13 +73,16 @@ TEST(BoneImport, ABoneOnTheOtherSideRaisesADoubt) {
 TEST(BoneImport, WhatIsNotSaidIsAskedFor) {
   const TemporaryFolder folder;
   test::write_bytes(folder / "bone.stl", test::binary_stl(test::ellipsoid({40, 30, 25}, 2)));
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)import_bones(folder / "bone.stl"); }), HasSubstr("--bone femur"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)import_bones(folder / "bone.stl"); }),
+              HasSubstr("--bone femur"));
   EXPECT_THROW((void)import_bones(folder / "absent.stl"), IoError);
   test::write_bytes(folder / "notes.txt", "x");
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)import_bones(folder / "notes.txt"); }), HasSubstr("DICOM"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)import_bones(folder / "notes.txt"); }),
+              HasSubstr("DICOM"));
   BoneImportOptions options;
   options.threshold = 300;
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)import_bones(folder / "bone.stl", options); }), HasSubstr("volumes"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)import_bones(folder / "bone.stl", options); }),
+              HasSubstr("volumes"));
 }
 
 }  // namespace

@@ -22,14 +22,16 @@ Volume sampled(const Eigen::Vector3d& spacing_mm, const Eigen::Vector3i& size, c
   Volume volume;
   volume.size = size;
   const Eigen::Matrix3d turned =
-      Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix() * Eigen::Vector3d(1, 1, -1).asDiagonal();
+      Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix() *
+      Eigen::Vector3d(1, 1, -1).asDiagonal();
   volume.lps_from_index.linear() = turned * spacing_mm.asDiagonal();
   volume.lps_from_index.translation() =
       -(volume.lps_from_index.linear() * (0.5 * (size.cast<double>() - Eigen::Vector3d::Ones())));
   for (int k = 0; k < size.z(); ++k) {
     for (int j = 0; j < size.y(); ++j) {
       for (int i = 0; i < size.x(); ++i) {
-        volume.values.push_back(static_cast<float>(value_at(volume.lps_from_index * Eigen::Vector3d(i, j, k))));
+        volume.values.push_back(
+            static_cast<float>(value_at(volume.lps_from_index * Eigen::Vector3d(i, j, k))));
       }
     }
   }
@@ -59,7 +61,8 @@ Error error_of(const geometry::TriangleMesh& mesh) {
 TEST(BoneSurface, OfALabelInAnObliqueGrid) {
   for (const Eigen::Vector3d& spacing : {Eigen::Vector3d(0.8, 0.8, 0.8), Eigen::Vector3d(0.8, 0.8, 2.0)}) {
     const Eigen::Vector3i size = (Eigen::Vector3d(110, 110, 110).cwiseQuotient(spacing)).cast<int>();
-    const Volume volume = sampled(spacing, size, [](const auto& p) { return ellipsoid_level(p) < 1 ? 5 : 0; });
+    const Volume volume =
+        sampled(spacing, size, [](const auto& p) { return ellipsoid_level(p) < 1 ? 5 : 0; });
     const auto repair = bones::mend_mesh(surface_of_label(volume, 5).mesh);
     EXPECT_TRUE(repair.report.is_closed);
     EXPECT_EQ(repair.report.parts_found, 1U);
@@ -75,7 +78,8 @@ TEST(BoneSurface, OfALabelInAnObliqueGrid) {
 TEST(BoneSurface, AboveAThresholdTheMarrowIsFilledIn) {
   const Volume volume = sampled({0.8, 0.8, 1.6}, {130, 130, 70}, [](const auto& p) {
     const double depth_mm = (ellipsoid_level(p) - 1) * 28;
-    const double outer = std::clamp(0.5 - depth_mm / 1.6, 0.0, 1.0), inner = std::clamp(0.5 - (depth_mm + 3) / 1.6, 0.0, 1.0);
+    const double outer = std::clamp(0.5 - depth_mm / 1.6, 0.0, 1.0),
+                 inner = std::clamp(0.5 - (depth_mm + 3) / 1.6, 0.0, 1.0);
     // Soft tissue 50, cortex 1000, marrow 100; the threshold lies half-way up the outer edge.
     return 50 + 950 * outer - 900 * inner;
   });
@@ -117,7 +121,8 @@ TEST(BoneSurface, BonesThatTouchAreParted) {
     for (int j = 0; j < 70; ++j) {
       for (int i = 0; i < 70; ++i) {
         const Eigen::Vector3d p = volume.lps_from_index * Eigen::Vector3d(i, j, k);
-        const bool above = (p - Eigen::Vector3d(0, 0, 25)).norm() < 25.2, below = (p + Eigen::Vector3d(0, 0, 25)).norm() < 25.2;
+        const bool above = (p - Eigen::Vector3d(0, 0, 25)).norm() < 25.2,
+                   below = (p + Eigen::Vector3d(0, 0, 25)).norm() < 25.2;
         volume.values[volume.index(i, j, k)] = above || below ? 800 : 0;
       }
     }
@@ -135,7 +140,8 @@ TEST(BoneSurface, BonesThatTouchAreParted) {
 TEST(BoneSurface, WhatIsNotThereIsRefused) {
   const Volume labels = sampled({1, 1, 1}, {20, 20, 20}, [](const auto& p) { return p.norm() < 5 ? 3 : 0; });
   EXPECT_THAT(message_of<InvalidInput>([&] { (void)surface_of_label(labels, 5); }), HasSubstr("0, 3"));
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)surface_above_threshold(labels, {}); }), HasSubstr("from 0 to 3"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)surface_above_threshold(labels, {}); }),
+              HasSubstr("from 0 to 3"));
   const Volume grey = sampled({1, 1, 1}, {20, 20, 20}, [](const auto& p) { return p.norm(); });
   EXPECT_THAT(message_of<InvalidInput>([&] { (void)surface_of_label(grey, 5); }), HasSubstr("no label map"));
 }
@@ -147,7 +153,8 @@ TEST(VoxelMask, DistancesAreThoseOfTheNearestVoxel) {
   const std::vector<std::size_t> voxels{3, 100, 101, 250};
   const auto found = distances_mm(size, voxels, spacing);
   const auto place = [&](std::size_t v) {
-    return Eigen::Vector3d(static_cast<double>(v % 9), static_cast<double>(v / 9 % 7), static_cast<double>(v / 63))
+    return Eigen::Vector3d(static_cast<double>(v % 9), static_cast<double>(v / 9 % 7),
+                           static_cast<double>(v / 63))
         .cwiseProduct(spacing)
         .eval();
   };

@@ -54,7 +54,8 @@ TEST(VolumeFile, TruncatedFilesAreRefused) {
     SCOPED_TRACE(name);
     for (int tenth = 0; tenth < 10; ++tenth) {
       write_bytes(folder / name, contents.substr(0, contents.size() * static_cast<std::size_t>(tenth) / 10));
-      EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder / name); }), HasSubstr(name)) << tenth;
+      EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder / name); }), HasSubstr(name))
+          << tenth;
     }
     write_bytes(folder / name, contents.substr(0, contents.size() - 1));
     EXPECT_THROW((void)read_volume(folder / name), InvalidInput);
@@ -71,11 +72,13 @@ TEST(VolumeFile, WithoutOrientationIsRefused) {
   std::string nrrd = test::nrrd(test::oblique_volume(), false, false);
   nrrd.erase(nrrd.find("space: "), nrrd.find("sizes") - nrrd.find("space: "));
   write_bytes(folder / "a.nrrd", nrrd);
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder / "a.nrrd"); }), HasSubstr("where left is"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder / "a.nrrd"); }),
+              HasSubstr("where left is"));
   std::string meta = test::metaimage(test::oblique_volume(), false);
   meta.erase(meta.find("TransformMatrix"), meta.find("Offset") - meta.find("TransformMatrix"));
   write_bytes(folder / "a.mha", meta);
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder / "a.mha"); }), HasSubstr("transformmatrix"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder / "a.mha"); }),
+              HasSubstr("transformmatrix"));
 }
 
 TEST(VolumeFile, DetachedDataOnlyFromTheSameFolder) {
@@ -86,7 +89,8 @@ TEST(VolumeFile, DetachedDataOnlyFromTheSameFolder) {
   write_bytes(folder / "a.raw", whole.substr(split + 6));
   expect_same(read_volume(folder / "a.mhd"), test::oblique_volume());
   write_bytes(folder / "b.mhd", whole.substr(0, split) + "../../etc/passwd\n");
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder / "b.mhd"); }), HasSubstr("same folder"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder / "b.mhd"); }),
+              HasSubstr("same folder"));
 }
 
 // Sorted by position, spacing by positions (the thickness in these headers is a lie), rescaled.
@@ -96,7 +100,8 @@ TEST(DicomSeries, IsSortedByPosition) {
   write_bytes(folder / "README.txt", "not an image");
   const Volume volume = read_volume(folder.path());
   EXPECT_EQ(volume.modality, "CT");
-  // The normal of the slices decides which end is first: this volume's third axis runs along it or against it.
+  // The normal of the slices decides which end is first: this volume's third axis runs along it or against
+  // it.
   expect_same(volume, even_volume());
 }
 
@@ -135,7 +140,8 @@ TEST(DicomSeries, OddImagesAreRefusedByName) {
     return message_of<InvalidInput>([&] { (void)read_volume(folder.path()); });
   };
   using Slice = test::DicomSliceForm;
-  EXPECT_THAT(with_odd([](Slice& s) { s.columns = 5, s.rows = 7; }), AllOf(HasSubstr(".dcm"), HasSubstr("pixels")));
+  EXPECT_THAT(with_odd([](Slice& s) { s.columns = 5, s.rows = 7; }),
+              AllOf(HasSubstr(".dcm"), HasSubstr("pixels")));
   EXPECT_THAT(with_odd([](Slice& s) { std::swap(s.along_rows, s.along_columns); }), HasSubstr("angle"));
   EXPECT_THAT(with_odd([](Slice& s) { s.column_spacing_mm = 0.6; }), HasSubstr("spacing"));
   EXPECT_THAT(with_odd([](Slice& s) { s.position_mm += 2 * s.along_rows; }), HasSubstr("beside the line"));
@@ -177,7 +183,8 @@ TEST(DicomSeries, OneOfSeveralSeriesIsChosenByName) {
   }
   EXPECT_THROW((void)read_volume(folder.path()), InvalidInput);
   expect_same(read_volume(folder.path(), {"1.2.3.4"}), even_volume());
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder.path(), {"9"}); }), HasSubstr("1.2.3.77"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder.path(), {"9"}); }),
+              HasSubstr("1.2.3.77"));
 }
 
 TEST(DicomSeries, EmptyAndForeignFoldersAreRefused) {
@@ -187,7 +194,8 @@ TEST(DicomSeries, EmptyAndForeignFoldersAreRefused) {
   EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder.path()); }), HasSubstr("no DICOM"));
   write_bytes(folder / "slice.dcm", test::dicom(test::dicom_slices(even_volume()).begin()->second));
   EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder.path()); }), HasSubstr("one slice"));
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder / "slice.dcm"); }), HasSubstr("folder"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder / "slice.dcm"); }),
+              HasSubstr("folder"));
 }
 
 // A thousand broken files for each parser: a volume that is whole, or InvalidInput, and nothing else.
@@ -196,21 +204,36 @@ TEST(VolumeFileFuzz, BrokenFilesGiveAWholeVolumeOrInvalidInput) {
   for (const auto& [name, contents] : test::all_volume_forms(test::oblique_volume())) {
     SCOPED_TRACE(name);
     std::mt19937 random(3);
-    const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
+    const auto below = [&](std::size_t n) {
+      return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
+    };
     for (int i = 0; i < 1000; ++i) {
       std::string broken = contents;
       for (std::size_t n = 1 + below(3); n > 0 && !broken.empty(); --n) {
         const std::size_t at = below(std::min<std::size_t>(broken.size(), below(3) ? 400 : broken.size()));
         switch (below(6)) {
-          case 0: broken[at] = static_cast<char>(below(256)); break;
-          case 1: broken[at] ^= static_cast<char>(1U << below(8)); break;
-          case 2: broken.resize(at); break;
-          case 3: broken.erase(at, below(9)); break;
-          case 4: broken.insert(at, "99999"); break;
-          default: broken[at] = "0123456789-nN\n "[below(15)];
+          case 0:
+            broken[at] = static_cast<char>(below(256));
+            break;
+          case 1:
+            broken[at] ^= static_cast<char>(1U << below(8));
+            break;
+          case 2:
+            broken.resize(at);
+            break;
+          case 3:
+            broken.erase(at, below(9));
+            break;
+          case 4:
+            broken.insert(at, "99999");
+            break;
+          default:
+            broken[at] = "0123456789-nN\n "[below(15)];
         }
       }
-      const auto parse = name.ends_with(".nrrd") ? parse_nrrd : name.ends_with(".mha") ? parse_metaimage : parse_nifti;
+      const auto parse = name.ends_with(".nrrd")  ? parse_nrrd
+                         : name.ends_with(".mha") ? parse_metaimage
+                                                  : parse_nifti;
       try {
         const Volume volume = parse(folder / name, broken);
         ASSERT_EQ(volume.values.size(), static_cast<std::size_t>(volume.size.cast<std::int64_t>().prod()));
@@ -232,15 +255,24 @@ TEST(DicomFuzz, BrokenSlicesGiveAWholeVolumeOrInvalidInput) {
   const auto& [name, slice] = *slices.begin();
   const std::string whole = test::dicom(slice);
   std::mt19937 random(5);
-  const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
+  const auto below = [&](std::size_t n) {
+    return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
+  };
   for (int i = 0; i < 300; ++i) {
     std::string broken = whole;
     const std::size_t at = 132 + below(whole.size() - 132);
     switch (below(4)) {
-      case 0: broken[at] = static_cast<char>(below(256)); break;
-      case 1: broken[at] ^= static_cast<char>(1U << below(8)); break;
-      case 2: broken.resize(at); break;
-      default: broken.erase(at, 1 + below(6));
+      case 0:
+        broken[at] = static_cast<char>(below(256));
+        break;
+      case 1:
+        broken[at] ^= static_cast<char>(1U << below(8));
+        break;
+      case 2:
+        broken.resize(at);
+        break;
+      default:
+        broken.erase(at, 1 + below(6));
     }
     write_bytes(folder / name, broken);
     try {

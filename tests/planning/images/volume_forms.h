@@ -1,4 +1,5 @@
-// The same volume in every format that is read, written here by hand: the readers are not tested with writers of their own.
+// The same volume in every format that is read, written here by hand: the readers are not tested with writers
+// of their own.
 #pragma once
 
 #include <zlib.h>
@@ -79,7 +80,8 @@ inline std::string nifti(const images::Volume& volume, std::endian order, bool a
     put(256, static_cast<float>(q.x()));
     put(260, static_cast<float>(q.y()));
     put(264, static_cast<float>(q.z()));
-    for (int i = 0; i < 3; ++i) put(268 + 4 * static_cast<std::size_t>(i), static_cast<float>(ras.translation()[i]));
+    for (int i = 0; i < 3; ++i)
+      put(268 + 4 * static_cast<std::size_t>(i), static_cast<float>(ras.translation()[i]));
   } else {
     put(254, std::int16_t{1});
     for (int row = 0; row < 3; ++row) {
@@ -99,24 +101,28 @@ inline std::string joined(const Eigen::Vector3d& v, const char* separator) {
 inline std::string nrrd(const images::Volume& volume, bool ras, bool gzip) {
   const Eigen::Vector3d sign = ras ? Eigen::Vector3d(-1, -1, 1) : Eigen::Vector3d(1, 1, 1);
   std::string header = "NRRD0004\n# by hand\ntype: short\ndimension: 3\nspace: " +
-                       std::string(ras ? "right-anterior-superior" : "left-posterior-superior") + "\nsizes: 7 5 4\nspace directions:";
+                       std::string(ras ? "right-anterior-superior" : "left-posterior-superior") +
+                       "\nsizes: 7 5 4\nspace directions:";
   for (int axis = 0; axis < 3; ++axis) {
     header += " (" + joined(volume.lps_from_index.linear().col(axis).cwiseProduct(sign), ",") + ")";
   }
   header += "\nkinds: domain domain domain\nendian: little\nencoding: " + std::string(gzip ? "gzip" : "raw") +
-            "\nspace origin: (" + joined(volume.lps_from_index.translation().cwiseProduct(sign), ",") + ")\nkey:=value\n\n";
+            "\nspace origin: (" + joined(volume.lps_from_index.translation().cwiseProduct(sign), ",") +
+            ")\nkey:=value\n\n";
   const std::string data = shorts(volume, std::endian::little);
   return header + (gzip ? deflated(data, true) : data);
 }
 
 inline std::string metaimage(const images::Volume& volume, bool compressed) {
-  std::string header = "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = True\nCompressedData = " +
-                       std::string(compressed ? "True" : "False") + "\nTransformMatrix =";
+  std::string header =
+      "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = True\nCompressedData = " +
+      std::string(compressed ? "True" : "False") + "\nTransformMatrix =";
   const Eigen::Vector3d spacing = volume.spacing_mm();
   for (int axis = 0; axis < 3; ++axis) {
     header += " " + joined(volume.lps_from_index.linear().col(axis) / spacing[axis], " ");
   }
-  header += "\nOffset = " + joined(volume.lps_from_index.translation(), " ") + "\nElementSpacing = " + joined(spacing, " ") +
+  header += "\nOffset = " + joined(volume.lps_from_index.translation(), " ") +
+            "\nElementSpacing = " + joined(spacing, " ") +
             "\nDimSize = 7 5 4\nElementType = MET_SHORT\nElementDataFile = LOCAL\n";
   const std::string data = shorts(volume, std::endian::big);
   return header + (compressed ? deflated(data, false) : data);
@@ -144,9 +150,11 @@ struct DicomSliceForm {
 };
 
 inline std::string dicom(const DicomSliceForm& slice) {
-  const auto element = [](std::uint16_t group, std::uint16_t number_in_group, const std::string& type, std::string value) {
+  const auto element = [](std::uint16_t group, std::uint16_t number_in_group, const std::string& type,
+                          std::string value) {
     if (value.size() % 2 != 0) value += type == "UI" ? '\0' : ' ';
-    std::string bytes = bytes_of(group, std::endian::little) + bytes_of(number_in_group, std::endian::little) + type;
+    std::string bytes =
+        bytes_of(group, std::endian::little) + bytes_of(number_in_group, std::endian::little) + type;
     if (type == "OW" || type == "OB") {
       bytes += std::string(2, '\0') + bytes_of(static_cast<std::uint32_t>(value.size()), std::endian::little);
     } else {
@@ -154,7 +162,9 @@ inline std::string dicom(const DicomSliceForm& slice) {
     }
     return bytes + value;
   };
-  const auto short_value = [](int value) { return bytes_of(static_cast<std::uint16_t>(value), std::endian::little); };
+  const auto short_value = [](int value) {
+    return bytes_of(static_cast<std::uint16_t>(value), std::endian::little);
+  };
   std::string pixels;
   for (const auto v : slice.stored) pixels += bytes_of(v, std::endian::little);
   const std::string ct_storage = "1.2.840.10008.5.1.4.1.1.2";
@@ -163,18 +173,21 @@ inline std::string dicom(const DicomSliceForm& slice) {
   std::string data = element(8, 0x16, "UI", ct_storage) + element(8, 0x60, "CS", slice.modality) +
                      element(0x18, 0x50, "DS", "99");  // a slice thickness that must not be believed
   if (!slice.echo_time.empty()) data += element(0x18, 0x81, "DS", slice.echo_time);
-  data += element(0x20, 0x0e, "UI", slice.series_uid) + element(0x20, 0x11, "IS", "3") +
-          element(0x20, 0x32, "DS", joined(slice.position_mm, "\\")) +
-          element(0x20, 0x37, "DS", joined(slice.along_columns, "\\") + "\\" + joined(slice.along_rows, "\\")) +
-          element(0x28, 2, "US", short_value(1)) + element(0x28, 4, "CS", "MONOCHROME2") +
-          element(0x28, 0x10, "US", short_value(slice.rows)) + element(0x28, 0x11, "US", short_value(slice.columns)) +
-          element(0x28, 0x30, "DS", number(slice.row_spacing_mm) + "\\" + number(slice.column_spacing_mm)) +
-          element(0x28, 0x100, "US", short_value(16)) + element(0x28, 0x101, "US", short_value(16)) +
-          element(0x28, 0x102, "US", short_value(15)) + element(0x28, 0x103, "US", short_value(1)) +
-          element(0x28, 0x1052, "DS", number(slice.intercept)) + element(0x28, 0x1053, "DS", number(slice.slope)) +
-          element(0x7fe0, 0x10, "OW", pixels);
+  data +=
+      element(0x20, 0x0e, "UI", slice.series_uid) + element(0x20, 0x11, "IS", "3") +
+      element(0x20, 0x32, "DS", joined(slice.position_mm, "\\")) +
+      element(0x20, 0x37, "DS", joined(slice.along_columns, "\\") + "\\" + joined(slice.along_rows, "\\")) +
+      element(0x28, 2, "US", short_value(1)) + element(0x28, 4, "CS", "MONOCHROME2") +
+      element(0x28, 0x10, "US", short_value(slice.rows)) +
+      element(0x28, 0x11, "US", short_value(slice.columns)) +
+      element(0x28, 0x30, "DS", number(slice.row_spacing_mm) + "\\" + number(slice.column_spacing_mm)) +
+      element(0x28, 0x100, "US", short_value(16)) + element(0x28, 0x101, "US", short_value(16)) +
+      element(0x28, 0x102, "US", short_value(15)) + element(0x28, 0x103, "US", short_value(1)) +
+      element(0x28, 0x1052, "DS", number(slice.intercept)) +
+      element(0x28, 0x1053, "DS", number(slice.slope)) + element(0x7fe0, 0x10, "OW", pixels);
   return std::string(128, '\0') + "DICM" +
-         element(2, 0, "UL", bytes_of(static_cast<std::uint32_t>(meta.size()), std::endian::little)) + meta + data;
+         element(2, 0, "UL", bytes_of(static_cast<std::uint32_t>(meta.size()), std::endian::little)) + meta +
+         data;
 }
 
 // The slices of the volume, in file names that do not tell their order.
@@ -187,7 +200,8 @@ inline std::map<std::string, DicomSliceForm> dicom_slices(const images::Volume& 
     slice.along_columns = volume.lps_from_index.linear().col(0) / spacing.x();
     slice.along_rows = volume.lps_from_index.linear().col(1) / spacing.y();
     for (int j = 0; j < 5; ++j) {
-      for (int i = 0; i < 7; ++i) slice.stored.push_back(static_cast<std::int16_t>((volume.at(i, j, k) + 1024) / 2));
+      for (int i = 0; i < 7; ++i)
+        slice.stored.push_back(static_cast<std::int16_t>((volume.at(i, j, k) + 1024) / 2));
     }
     slice.slope = 2;
     slices["image" + std::to_string((k * 7 + 3) % 5) + ".dcm"] = slice;
