@@ -11,13 +11,15 @@ std::string anatomical_text(const Eigen::Vector3d& displacement_mm, bones::Side 
     double value;
     const char *positive, *negative;
   };
-  const std::array<Part, 3> parts{Part{displacement_mm.z(), "proximal", "distal"}, Part{lateral, "lateral", "medial"},
+  const std::array<Part, 3> parts{Part{displacement_mm.z(), "proximal", "distal"},
+                                  Part{lateral, "lateral", "medial"},
                                   Part{-displacement_mm.y(), "anterior", "posterior"}};
   std::string text;
   for (const Part& part : parts) {
     if (std::abs(part.value) < 0.5) continue;
     if (!text.empty()) text += ", ";
-    text += std::to_string(std::lround(std::abs(part.value))) + " mm " + (part.value > 0 ? part.positive : part.negative);
+    text += std::to_string(std::lround(std::abs(part.value))) + " mm " +
+            (part.value > 0 ? part.positive : part.negative);
   }
   return text.empty() ? "at the entry" : text;
 }

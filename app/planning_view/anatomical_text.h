@@ -8,7 +8,8 @@
 
 namespace arthronaut::planning_view {
 
-// "21 mm proximal, 14 mm lateral, 3 mm anterior" of a displacement in LPS; parts below half a millimetre are left out.
+// "21 mm proximal, 14 mm lateral, 3 mm anterior" of a displacement in LPS; parts below half a millimetre are
+// left out.
 [[nodiscard]] std::string anatomical_text(const Eigen::Vector3d& displacement_mm, bones::Side side);
 
 }  // namespace arthronaut::planning_view

@@ -17,9 +17,12 @@ landmarks::Landmarks landmarks_of(const cases::Case& knee, bones::BoneKind kind)
 PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
   for (const auto& [kind, bone] : knee_.bones) {
     if (bone.mesh.empty()) continue;
-    bones_.emplace(kind, BoneModel{scene::simplified(bone.mesh), std::make_shared<geometry::Surface>(bone.mesh),
-                                   geometry::bounds_of(bone.mesh), {},
-                                   tunnels::surroundings_of(bone.mesh, kind, landmarks_of(knee_, kind), knee_.side)});
+    bones_.emplace(
+        kind, BoneModel{scene::simplified(bone.mesh),
+                        std::make_shared<geometry::Surface>(bone.mesh),
+                        geometry::bounds_of(bone.mesh),
+                        {},
+                        tunnels::surroundings_of(bone.mesh, kind, landmarks_of(knee_, kind), knee_.side)});
     measure(kind);
   }
   if (bones_.empty()) throw InvalidInput("the case \"" + knee_.name + "\" has no bone to show");
@@ -31,7 +34,9 @@ std::optional<tunnels::Tunnel> PlanModel::tunnel(bones::BoneKind kind) const {
   return found->second;
 }
 
-const tunnels::TunnelGeometry& PlanModel::measured(bones::BoneKind kind) const { return bones_.at(kind).measured; }
+const tunnels::TunnelGeometry& PlanModel::measured(bones::BoneKind kind) const {
+  return bones_.at(kind).measured;
+}
 
 std::vector<tunnels::PlanCheck> PlanModel::checks(bones::BoneKind kind) const {
   const auto planned = tunnel(kind);

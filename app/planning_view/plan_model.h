@@ -1,5 +1,6 @@
-// The open case as the plan mode sees it: the bones made ready for drawing and for exact queries, the tunnels and what
-// was measured of them. The one place where the plan lives while the program runs; it changes through set_tunnel alone.
+// The open case as the plan mode sees it: the bones made ready for drawing and for exact queries, the tunnels
+// and what was measured of them. The one place where the plan lives while the program runs; it changes
+// through set_tunnel alone.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +23,9 @@ class PlanModel {
   [[nodiscard]] const cases::Case& knee() const { return knee_; }
   [[nodiscard]] bool has_bone(bones::BoneKind kind) const { return bones_.contains(kind); }
   // Preconditions of these three: has_bone(kind).
-  [[nodiscard]] const geometry::Surface& surface(bones::BoneKind kind) const { return *bones_.at(kind).surface; }
+  [[nodiscard]] const geometry::Surface& surface(bones::BoneKind kind) const {
+    return *bones_.at(kind).surface;
+  }
   [[nodiscard]] std::shared_ptr<const geometry::Surface> shared_surface(bones::BoneKind kind) const {
     return bones_.at(kind).surface;
   }
@@ -31,8 +34,9 @@ class PlanModel {
   }
 
   [[nodiscard]] std::optional<tunnels::Tunnel> tunnel(bones::BoneKind kind) const;
-  [[nodiscard]] const tunnels::TunnelGeometry& measured(bones::BoneKind kind) const;  // meaningful with a tunnel
-  [[nodiscard]] std::vector<tunnels::PlanCheck> checks(bones::BoneKind kind) const;            // empty without a tunnel
+  [[nodiscard]] const tunnels::TunnelGeometry& measured(
+      bones::BoneKind kind) const;  // meaningful with a tunnel
+  [[nodiscard]] std::vector<tunnels::PlanCheck> checks(bones::BoneKind kind) const;  // empty without a tunnel
   // How far a tunnel is drawn: through the bone, or 30 mm where it misses.
   [[nodiscard]] double drawn_length_mm(bones::BoneKind kind) const;
   [[nodiscard]] geometry::Bounds bounds(std::optional<bones::BoneKind> only) const;

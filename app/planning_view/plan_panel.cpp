@@ -9,23 +9,29 @@ namespace {
 
 widgets::Sign sign_of(tunnels::PlanCheck::Verdict verdict) {
   switch (verdict) {
-    case tunnels::PlanCheck::Verdict::Fine: return widgets::Sign::Good;
-    case tunnels::PlanCheck::Verdict::Look: return widgets::Sign::Caution;
-    case tunnels::PlanCheck::Verdict::Wrong: return widgets::Sign::Bad;
-    case tunnels::PlanCheck::Verdict::Note: return widgets::Sign::Quiet;
+    case tunnels::PlanCheck::Verdict::Fine:
+      return widgets::Sign::Good;
+    case tunnels::PlanCheck::Verdict::Look:
+      return widgets::Sign::Caution;
+    case tunnels::PlanCheck::Verdict::Wrong:
+      return widgets::Sign::Bad;
+    case tunnels::PlanCheck::Verdict::Note:
+      return widgets::Sign::Quiet;
   }
   return widgets::Sign::Quiet;
 }
 
-void draw_numbers(const widgets::Ui& ui, const tunnels::Tunnel& tunnel, const tunnels::TunnelGeometry& geometry) {
+void draw_numbers(const widgets::Ui& ui, const tunnels::Tunnel& tunnel,
+                  const tunnels::TunnelGeometry& geometry) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, height = ui.theme.px(100);
   widgets::Rect row{at.x, at.y, width, height};
   const widgets::Rect left = row.cut_left(width / 2);
   const bool inside = geometry.enters_bone;
-  widgets::number_block(ui, left, "Length in bone", inside ? widgets::fixed(geometry.length_mm, 1) : "\u2013", "mm",
+  widgets::number_block(ui, left, "Length in bone", inside ? widgets::fixed(geometry.length_mm, 1) : "\u2013",
+                        "mm", widgets::Sign::Quiet);
+  widgets::number_block(ui, row, "Diameter", widgets::fixed(tunnel.diameter_mm, 1), "mm",
                         widgets::Sign::Quiet);
-  widgets::number_block(ui, row, "Diameter", widgets::fixed(tunnel.diameter_mm, 1), "mm", widgets::Sign::Quiet);
   ImGui::Dummy({width, height});
 }
 
@@ -41,15 +47,17 @@ void draw_history(const widgets::Ui& ui, const PlanStatus& status) {
   button_pair(ui, "plan.undo", "plan.redo");
   widgets::text_in(ui.theme.body, widgets::kQuietText,
                    status.undo_what.empty() ? "Nothing to undo" : "Last: " + status.undo_what);
-  widgets::status_row(ui, status.save_failed ? widgets::Sign::Bad : widgets::Sign::Good, "Plan", status.saved);
+  widgets::status_row(ui, status.save_failed ? widgets::Sign::Bad : widgets::Sign::Good, "Plan",
+                      status.saved);
 }
 
 }  // namespace
 
-void draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model, bones::BoneKind bone,
-                     const PlanStatus& status) {
+void draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model,
+                     bones::BoneKind bone, const PlanStatus& status) {
   widgets::begin_panel(ui, "plan.panel", area);
-  widgets::text_in(ui.theme.title, widgets::kText, bone == bones::BoneKind::Femur ? "Femoral tunnel" : "Tibial tunnel");
+  widgets::text_in(ui.theme.title, widgets::kText,
+                   bone == bones::BoneKind::Femur ? "Femoral tunnel" : "Tibial tunnel");
   widgets::text_in(ui.theme.body, widgets::kQuietText,
                    std::string(bones::to_text(model.knee().side)) + " knee \u2013 " + model.knee().name);
   ImGui::Separator();
@@ -58,9 +66,11 @@ void draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const Pla
     const tunnels::TunnelGeometry& geometry = model.measured(bone);
     draw_numbers(ui, *tunnel, geometry);
     if (geometry.enters_bone)
-      widgets::text_in(ui.theme.body, widgets::kText,
-                       "Leaves the bone " + anatomical_text(geometry.exit_mm - geometry.entry_on_surface_mm, model.knee().side) +
-                           " of the entry");
+      widgets::text_in(
+          ui.theme.body, widgets::kText,
+          "Leaves the bone " +
+              anatomical_text(geometry.exit_mm - geometry.entry_on_surface_mm, model.knee().side) +
+              " of the entry");
     ImGui::Dummy({0, ui.theme.px(4)});
     for (const tunnels::PlanCheck& check : model.checks(bone)) {
       ImGui::BeginGroup();
@@ -68,16 +78,19 @@ void draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const Pla
       ImGui::EndGroup();
       if (ImGui::IsItemHovered() && !check.source.empty()) ImGui::SetTooltip("%s", check.source.c_str());
     }
-    widgets::text_in(ui.theme.body, widgets::kQuietText, "Customary values, not limits of safety. The surgeon decides.");
+    widgets::text_in(ui.theme.body, widgets::kQuietText,
+                     "Customary values, not limits of safety. The surgeon decides.");
   } else {
-    widgets::text_in(ui.theme.body, widgets::kText, "No tunnel yet. Press P and click on the bone where it is to begin.");
+    widgets::text_in(ui.theme.body, widgets::kText,
+                     "No tunnel yet. Press P and click on the bone where it is to begin.");
   }
   ImGui::Separator();
   button_pair(ui, "plan.place", "plan.bone");
   button_pair(ui, "plan.narrower", "plan.wider");
   widgets::action_button(ui, "plan.remove", ImGui::GetContentRegionAvail().x);
-  widgets::text_in(ui.theme.body, widgets::kQuietText,
-                   "Arrow keys aim by 1\u00B0, with Shift they slide the entry by 0.5 mm. Handles can be dragged.");
+  widgets::text_in(
+      ui.theme.body, widgets::kQuietText,
+      "Arrow keys aim by 1\u00B0, with Shift they slide the entry by 0.5 mm. Handles can be dragged.");
   ImGui::Separator();
   draw_history(ui, status);
   widgets::end_panel();

@@ -43,22 +43,33 @@ void PlanningView::look_from(const PlanModel& model, scene::View view) {
   state_.shown_revision = 0;
 }
 
-void PlanningView::apply(const PlanModel& model, const std::string& what, bool continues, const Move& move) const {
+void PlanningView::apply(const PlanModel& model, const std::string& what, bool continues,
+                         const Move& move) const {
   if (!model.has_bone(state_.bone)) return;
-  if (const auto tunnel = move(model)) edit_({state_.bone, tunnel, what + " " + tunnel_name(state_.bone) + " tunnel", continues});
+  if (const auto tunnel = move(model))
+    edit_({state_.bone, tunnel, what + " " + tunnel_name(state_.bone) + " tunnel", continues});
 }
 
 void PlanningView::add_actions(widgets::Actions& actions, std::function<const PlanModel*()> model) {
-  const auto has_tunnel = [this, model] { return model() != nullptr && model()->tunnel(state_.bone).has_value(); };
-  const auto is_open = [model] { return model() != nullptr; };
-  const auto move_action = [&](const char* id, const char* label, const char* tooltip, int key, int mods,
-                               const char* what, std::function<tunnels::Tunnel(const PlanModel&, const tunnels::Tunnel&)> move) {
-    actions.add({id, label, tooltip, key, mods, true, has_tunnel, {}, [this, model, what, move] {
-                   apply(*model(), what, true, [&](const PlanModel& m) { return move(m, *m.tunnel(state_.bone)); });
-                 }});
+  const auto has_tunnel = [this, model] {
+    return model() != nullptr && model()->tunnel(state_.bone).has_value();
   };
+  const auto is_open = [model] { return model() != nullptr; };
+  const auto move_action =
+      [&](const char* id, const char* label, const char* tooltip, int key, int mods, const char* what,
+          std::function<tunnels::Tunnel(const PlanModel&, const tunnels::Tunnel&)> move) {
+        actions.add({id, label, tooltip, key, mods, true, has_tunnel, {}, [this, model, what, move] {
+                       apply(*model(), what, true,
+                             [&](const PlanModel& m) { return move(m, *m.tunnel(state_.bone)); });
+                     }});
+      };
   add_view_actions(actions, model);
-  actions.add({"plan.bone", "Other bone", "Plan the tunnel of the other bone", GLFW_KEY_TAB, 0, false,
+  actions.add({"plan.bone",
+               "Other bone",
+               "Plan the tunnel of the other bone",
+               GLFW_KEY_TAB,
+               0,
+               false,
                [this, model] {
                  const BoneKind other = state_.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
                  return model() != nullptr && model()->has_bone(other);
@@ -69,31 +80,48 @@ void PlanningView::add_actions(widgets::Actions& actions, std::function<const Pl
                  if (state_.only) look_from(*model(), scene::View::Anterior);
                  state_.shown_revision = 0;
                }});
-  actions.add({"plan.place", "Place entry", "Then click where the tunnel is to begin on the bone", GLFW_KEY_P, 0, false,
-               is_open, [this] { return state_.places_entry; }, [this] { state_.places_entry = !state_.places_entry; }});
-  move_action("plan.wider", "Wider", "Half a millimetre more", GLFW_KEY_EQUAL, 0, "Change the diameter of the",
-              [](const PlanModel&, const tunnels::Tunnel& t) { return with_diameter(t, t.diameter_mm + 0.5); });
-  move_action("plan.narrower", "Narrower", "Half a millimetre less", GLFW_KEY_MINUS, 0, "Change the diameter of the",
-              [](const PlanModel&, const tunnels::Tunnel& t) { return with_diameter(t, t.diameter_mm - 0.5); });
+  actions.add({"plan.place", "Place entry", "Then click where the tunnel is to begin on the bone", GLFW_KEY_P,
+               0, false, is_open, [this] { return state_.places_entry; },
+               [this] { state_.places_entry = !state_.places_entry; }});
+  move_action(
+      "plan.wider", "Wider", "Half a millimetre more", GLFW_KEY_EQUAL, 0, "Change the diameter of the",
+      [](const PlanModel&, const tunnels::Tunnel& t) { return with_diameter(t, t.diameter_mm + 0.5); });
+  move_action(
+      "plan.narrower", "Narrower", "Half a millimetre less", GLFW_KEY_MINUS, 0, "Change the diameter of the",
+      [](const PlanModel&, const tunnels::Tunnel& t) { return with_diameter(t, t.diameter_mm - 0.5); });
   struct Arrow {
     const char *id, *word;
     int key;
     Eigen::Vector2d right_up;
   };
-  const std::array<Arrow, 4> arrows{Arrow{"left", "left", GLFW_KEY_LEFT, {-1, 0}}, Arrow{"right", "right", GLFW_KEY_RIGHT, {1, 0}},
-                                    Arrow{"up", "up", GLFW_KEY_UP, {0, 1}}, Arrow{"down", "down", GLFW_KEY_DOWN, {0, -1}}};
+  const std::array<Arrow, 4> arrows{
+      Arrow{"left", "left", GLFW_KEY_LEFT, {-1, 0}}, Arrow{"right", "right", GLFW_KEY_RIGHT, {1, 0}},
+      Arrow{"up", "up", GLFW_KEY_UP, {0, 1}}, Arrow{"down", "down", GLFW_KEY_DOWN, {0, -1}}};
   for (const Arrow& arrow : arrows) {
     move_action((std::string("plan.aim_") + arrow.id).c_str(), (std::string("Aim ") + arrow.word).c_str(),
                 "The far end of the tunnel moves that way by 1 degree", arrow.key, 0, "Aim the",
-                [this, arrow](const PlanModel&, const tunnels::Tunnel& t) { return turned(t, pane_.camera(), arrow.right_up); });
-    move_action((std::string("plan.slide_") + arrow.id).c_str(), (std::string("Slide entry ") + arrow.word).c_str(),
-                "The entry moves over the bone by half a millimetre", arrow.key, GLFW_MOD_SHIFT, "Move the entry of the",
-                [this, arrow](const PlanModel& m, const tunnels::Tunnel& t) {
+                [this, arrow](const PlanModel&, const tunnels::Tunnel& t) {
+                  return turned(t, pane_.camera(), arrow.right_up);
+                });
+    move_action((std::string("plan.slide_") + arrow.id).c_str(),
+                (std::string("Slide entry ") + arrow.word).c_str(),
+                "The entry moves over the bone by half a millimetre", arrow.key, GLFW_MOD_SHIFT,
+                "Move the entry of the", [this, arrow](const PlanModel& m, const tunnels::Tunnel& t) {
                   return with_entry_slid(t, pane_.camera(), 0.5 * arrow.right_up, m.surface(state_.bone));
                 });
   }
-  actions.add({"plan.remove", "Remove tunnel", "Undo brings it back", GLFW_KEY_DELETE, 0, false, has_tunnel, {},
-               [this] { edit_({state_.bone, std::nullopt, "Remove the " + tunnel_name(state_.bone) + " tunnel", false}); }});
+  actions.add(
+      {"plan.remove",
+       "Remove tunnel",
+       "Undo brings it back",
+       GLFW_KEY_DELETE,
+       0,
+       false,
+       has_tunnel,
+       {},
+       [this] {
+         edit_({state_.bone, std::nullopt, "Remove the " + tunnel_name(state_.bone) + " tunnel", false});
+       }});
 }
 
 void PlanningView::add_view_actions(widgets::Actions& actions, std::function<const PlanModel*()> model) {
@@ -117,26 +145,36 @@ void PlanningView::add_view_actions(widgets::Actions& actions, std::function<con
                  },
                  [this, side] { return state_.looked_from == side.view; },
                  [this, model, side] { look_from(*model(), side.view); }});
-  actions.add({"plan.see_through", "See through", "The bone turns translucent", GLFW_KEY_T, 0, false, {},
-               [this] { return state_.see_through; }, [this] {
+  actions.add({"plan.see_through",
+               "See through",
+               "The bone turns translucent",
+               GLFW_KEY_T,
+               0,
+               false,
+               {},
+               [this] { return state_.see_through; },
+               [this] {
                  state_.see_through = !state_.see_through;
                  state_.shown_revision = 0;
                }});
 }
 
-void PlanningView::draw(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model, const PlanStatus& status) {
+void PlanningView::draw(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model,
+                        const PlanStatus& status) {
   widgets::Rect rest = area;
   const widgets::Rect panel = rest.cut_right(ui.theme.px(470), ui.theme.px(12));
   widgets::Rect views = rest.cut_top(ui.theme.px(44), ui.theme.px(10));
   ImGui::SetCursorScreenPos(views.min());
-  for (const char* id : {"plan.anterior", "plan.posterior", "plan.medial", "plan.lateral", "plan.distal", "plan.notch",
-                         "plan.plateau", "plan.see_through"}) {
+  for (const char* id : {"plan.anterior", "plan.posterior", "plan.medial", "plan.lateral", "plan.distal",
+                         "plan.notch", "plan.plateau", "plan.see_through"}) {
     widgets::action_button(ui, id);
     ImGui::SameLine();
   }
   draw_bones(ui, rest, model);
   draw_plan_panel(ui, panel, model, state_.bone, status);
-  ui.log.note_state("plan", status.save_failed ? "failed" : status.saved.starts_with("saved") ? "saved" : "moving");
+  ui.log.note_state("plan", status.save_failed                  ? "failed"
+                            : status.saved.starts_with("saved") ? "saved"
+                                                                : "moving");
   ui.log.note_state("undo", status.undo_what);
   ui.log.note_state("redo", status.redo_what);
 }
@@ -164,7 +202,8 @@ void PlanningView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area, 
     };
     if (state_.only && *state_.only != state_.bone) return false;
     if (const auto aim = aim_handle(model); aim && near(*aim)) state_.dragged = Handle::Aim;
-    if (const auto tunnel = model.tunnel(state_.bone); tunnel && near(tunnel->entry_mm)) state_.dragged = Handle::Entry;
+    if (const auto tunnel = model.tunnel(state_.bone); tunnel && near(tunnel->entry_mm))
+      state_.dragged = Handle::Entry;
     return state_.dragged != Handle::None;
   };
   const widgets::PaneInput input = pane_.draw(ui, "plan.view", area, handle_at);
@@ -183,8 +222,9 @@ void PlanningView::use_pane_input(const PlanModel& model, const widgets::PaneInp
   const scene::SceneRay ray = scene::ray_through(pane_.camera(), input.mouse_px, input.size_px);
   if (input.handle_pressed) state_.has_dragged = false;
   if (input.handle_dragged && state_.dragged == Handle::Entry) {
-    apply(model, "Drag the entry of the", state_.has_dragged,
-          [&](const PlanModel& m) { return with_entry_at(*m.tunnel(state_.bone), ray, m.surface(state_.bone)); });
+    apply(model, "Drag the entry of the", state_.has_dragged, [&](const PlanModel& m) {
+      return with_entry_at(*m.tunnel(state_.bone), ray, m.surface(state_.bone));
+    });
     state_.has_dragged = true;
   }
   if (input.handle_dragged && state_.dragged == Handle::Aim) {
@@ -196,13 +236,15 @@ void PlanningView::use_pane_input(const PlanModel& model, const widgets::PaneInp
   if (input.was_clicked && state_.places_entry) {
     apply(model, "Place the entry of the", false, [&](const PlanModel& m) -> std::optional<tunnels::Tunnel> {
       const auto tunnel = m.tunnel(state_.bone);
-      return tunnel ? with_entry_at(*tunnel, ray, m.surface(state_.bone)) : first_tunnel(state_.bone, ray, m.surface(state_.bone));
+      return tunnel ? with_entry_at(*tunnel, ray, m.surface(state_.bone))
+                    : first_tunnel(state_.bone, ray, m.surface(state_.bone));
     });
     state_.places_entry = false;
   }
 }
 
-void PlanningView::draw_handles(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model) const {
+void PlanningView::draw_handles(const widgets::Ui& ui, const widgets::Rect& area,
+                                const PlanModel& model) const {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.PushClipRect(area.min(), area.max(), true);
   const Eigen::Vector2d size(area.width, area.height);
@@ -216,7 +258,8 @@ void PlanningView::draw_handles(const widgets::Ui& ui, const widgets::Rect& area
   const float radius = ui.theme.px(13), line = ui.theme.px(3);
   const auto label = [&](const ImVec2& at, const char* text) {
     const ImVec2 place(at.x + radius * 1.4F, at.y - ui.theme.body->FontSize / 2);
-    draw.AddText(ui.theme.strong, ui.theme.strong->FontSize, {place.x + 1, place.y + 1}, widgets::kBackground, text);
+    draw.AddText(ui.theme.strong, ui.theme.strong->FontSize, {place.x + 1, place.y + 1}, widgets::kBackground,
+                 text);
     draw.AddText(ui.theme.strong, ui.theme.strong->FontSize, place, widgets::kText, text);
   };
   if (is_shown) {
@@ -228,17 +271,19 @@ void PlanningView::draw_handles(const widgets::Ui& ui, const widgets::Rect& area
       ui.log.note("plan.entry_handle", {at->x - radius, at->y - radius}, {at->x + radius, at->y + radius});
     }
     if (const auto at = on_screen(*aim_handle(model))) {
-      draw.AddQuadFilled({at->x, at->y - radius}, {at->x + radius, at->y}, {at->x, at->y + radius}, {at->x - radius, at->y},
-                         widgets::color_of(scene::kPlanColor));
-      draw.AddQuad({at->x, at->y - radius}, {at->x + radius, at->y}, {at->x, at->y + radius}, {at->x - radius, at->y},
-                   widgets::kText, line * 0.7F);
+      draw.AddQuadFilled({at->x, at->y - radius}, {at->x + radius, at->y}, {at->x, at->y + radius},
+                         {at->x - radius, at->y}, widgets::color_of(scene::kPlanColor));
+      draw.AddQuad({at->x, at->y - radius}, {at->x + radius, at->y}, {at->x, at->y + radius},
+                   {at->x - radius, at->y}, widgets::kText, line * 0.7F);
       label(*at, "Aim");
       ui.log.note("plan.aim_handle", {at->x - radius, at->y - radius}, {at->x + radius, at->y + radius});
     }
   }
   if (state_.places_entry)
-    draw.AddText(ui.theme.title, ui.theme.title->FontSize, {area.x + ui.theme.px(20), area.y + ui.theme.px(16)},
-                 widgets::kAccent, ("Click on the " + std::string(bones::to_text(state_.bone)) + ": the tunnel begins there").c_str());
+    draw.AddText(
+        ui.theme.title, ui.theme.title->FontSize, {area.x + ui.theme.px(20), area.y + ui.theme.px(16)},
+        widgets::kAccent,
+        ("Click on the " + std::string(bones::to_text(state_.bone)) + ": the tunnel begins there").c_str());
   draw.PopClipRect();
 }
 

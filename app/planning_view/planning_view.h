@@ -1,4 +1,5 @@
-// Plan mode: the bones in 3D, the tunnels with their handles, and the numbers. Reads the model, asks for changes.
+// Plan mode: the bones in 3D, the tunnels with their handles, and the numbers. Reads the model, asks for
+// changes.
 #pragma once
 
 #include <functional>
@@ -22,7 +23,7 @@ struct PlanEdit {
 
 // What the plan mode shows beside the model.
 struct PlanStatus {
-  std::string saved;     // "Saved 11:04:22", or what went wrong
+  std::string saved;  // "Saved 11:04:22", or what went wrong
   bool save_failed = false;
   std::string undo_what, redo_what;  // empty: nothing to undo, to redo
 };
@@ -31,9 +32,11 @@ class PlanningView {
  public:
   PlanningView(std::function<void()> make_current, std::function<void(const PlanEdit&)> edit);
 
-  // plan.* actions; they live as long as this view. `model` may change between calls, null while no case is open.
+  // plan.* actions; they live as long as this view. `model` may change between calls, null while no case is
+  // open.
   void add_actions(widgets::Actions& actions, std::function<const PlanModel*()> model);
-  void draw(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model, const PlanStatus& status);
+  void draw(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model,
+            const PlanStatus& status);
   // Another case is open.
   void reset(const PlanModel& model);
 
@@ -65,7 +68,7 @@ class PlanningView {
 };
 
 // The column of numbers, checks and buttons beside the bones.
-void draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model, bones::BoneKind bone,
-                     const PlanStatus& status);
+void draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model,
+                     bones::BoneKind bone, const PlanStatus& status);
 
 }  // namespace arthronaut::planning_view

@@ -20,7 +20,8 @@ ScreenAxes axes_of(const scene::SceneCamera& camera) {
   return {right, right.cross(ahead), ahead};
 }
 
-Eigen::Vector3d turned_towards(const Eigen::Vector3d& direction, const Eigen::Vector3d& side, double angle_deg) {
+Eigen::Vector3d turned_towards(const Eigen::Vector3d& direction, const Eigen::Vector3d& side,
+                               double angle_deg) {
   const Eigen::Vector3d across = side - side.dot(direction) * direction;
   if (across.norm() < 0.05) return direction;  // it points that way: no turn brings it further
   const double angle = geometry::rad_from_deg(angle_deg);
@@ -65,12 +66,13 @@ tunnels::Tunnel turned(const tunnels::Tunnel& tunnel, const scene::SceneCamera& 
   return result;
 }
 
-tunnels::Tunnel aimed(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera, const scene::SceneRay& ray,
-                      const Eigen::Vector3d& handle_mm) {
+tunnels::Tunnel aimed(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera,
+                      const scene::SceneRay& ray, const Eigen::Vector3d& handle_mm) {
   const Eigen::Vector3d ahead = axes_of(camera).ahead;
   const double along = ray.direction.dot(ahead);
   if (along < 1e-6) return tunnel;
-  const Eigen::Vector3d target = ray.origin_mm + (handle_mm - ray.origin_mm).dot(ahead) / along * ray.direction;
+  const Eigen::Vector3d target =
+      ray.origin_mm + (handle_mm - ray.origin_mm).dot(ahead) / along * ray.direction;
   const Eigen::Vector3d direction = target - tunnel.entry_mm;
   tunnels::Tunnel result = tunnel;
   if (direction.norm() > 1) result.direction = direction.normalized();

@@ -15,8 +15,10 @@ namespace arthronaut::planning_view {
                                                           const geometry::Surface& bone);
 // Slides the entry over the bone by so many mm to the right and up as the camera sees it.
 [[nodiscard]] tunnels::Tunnel with_entry_slid(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera,
-                                              const Eigen::Vector2d& right_up_mm, const geometry::Surface& bone);
-// Aims so that the far end moves to the right and up as the camera sees it; the same tunnel where it points that way.
+                                              const Eigen::Vector2d& right_up_mm,
+                                              const geometry::Surface& bone);
+// Aims so that the far end moves to the right and up as the camera sees it; the same tunnel where it points
+// that way.
 [[nodiscard]] tunnels::Tunnel turned(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera,
                                      const Eigen::Vector2d& right_up_deg);
 // Aims at where the ray meets the plane through `handle_mm` that faces the camera.

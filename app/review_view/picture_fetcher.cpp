@@ -16,7 +16,8 @@ constexpr std::size_t kKept = 24;  // pictures of 6 MB
 
 class PictureFetcher::Worker {
  public:
-  Worker(const std::filesystem::path& folder, std::function<void()> on_news) : folder_(folder), on_news_(std::move(on_news)) {
+  Worker(const std::filesystem::path& folder, std::function<void()> on_news)
+      : folder_(folder), on_news_(std::move(on_news)) {
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
   ~Worker() {

@@ -1,5 +1,6 @@
-// Fetches single pictures of a recorded session in a thread of its own: the newest wish wins, pictures near the last one
-// are kept. Going back far means reading the video from its start again, so a picture may take seconds to come.
+// Fetches single pictures of a recorded session in a thread of its own: the newest wish wins, pictures near
+// the last one are kept. Going back far means reading the video from its start again, so a picture may take
+// seconds to come.
 //
 // Threads: the window asks; one worker reads. States: reading -> failed (error() says why).
 #pragma once

@@ -26,7 +26,8 @@ void ReviewView::refresh() {
   std::reverse(sessions_.begin(), sessions_.end());  // newest first
   if (sessions_.empty()) return;
   // What was chosen keeps its place in the list as new sessions come.
-  const auto same = review_ ? std::find(sessions_.begin(), sessions_.end(), review_->folder) : sessions_.end();
+  const auto same =
+      review_ ? std::find(sessions_.begin(), sessions_.end(), review_->folder) : sessions_.end();
   if (same != sessions_.end())
     chosen_ = static_cast<std::size_t>(same - sessions_.begin());
   else
@@ -67,12 +68,15 @@ void ReviewView::take_opened() {
       cursor_.frame = i;
       break;
     }
-  if (!review_->session->video().empty()) pictures_ = std::make_unique<PictureFetcher>(review_->folder, wake_);
+  if (!review_->session->video().empty())
+    pictures_ = std::make_unique<PictureFetcher>(review_->folder, wake_);
   const bones::BoneKind bone = review_->session->header().bone;
   if (model_->has_bone(bone)) {
     const auto tunnel = model_->tunnel(bone);
     const geometry::Bounds bounds = model_->bounds(bone);
-    pane_.look(tunnel ? scene::orbited(scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm, 190, {0, 0, 1}), {40, -30}, 600)
+    pane_.look(tunnel ? scene::orbited(scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm,
+                                                         190, {0, 0, 1}),
+                                       {40, -30}, 600)
                       : scene::look_from(scene::View::Anterior, model_->knee().side, bounds, 1));
   }
 }
@@ -98,14 +102,18 @@ void ReviewView::step(long frames) {
 void ReviewView::add_actions(widgets::Actions& actions) {
   const auto has = [this] { return has_frames(); };
   actions.add({"review.play", "Play", "From here at the pace it happened", GLFW_KEY_SPACE, 0, false, has,
-               [this] { return cursor_.plays; }, [this] {
+               [this] { return cursor_.plays; },
+               [this] {
                  cursor_.plays = !cursor_.plays;
                  if (cursor_.frame + 1 >= review_->session->frames().size()) cursor_.frame = 0;
                  cursor_.play_from_s = time_s(*review_->session, cursor_.frame);
                  cursor_.play_started_s = widgets::GraphicsWindow::now_s();
                }});
   const auto jump = [&](const char* id, const char* label, int key, int mods, long frames) {
-    actions.add({id, label, std::string(label) + " on the time line", key, mods, true, has, {}, [this, frames] { step(frames); }});
+    actions.add(
+        {id, label, std::string(label) + " on the time line", key, mods, true, has, {}, [this, frames] {
+           step(frames);
+         }});
   };
   jump("review.back", "1 back", GLFW_KEY_LEFT, 0, -1);
   jump("review.forward", "1 forward", GLFW_KEY_RIGHT, 0, 1);
@@ -113,10 +121,24 @@ void ReviewView::add_actions(widgets::Actions& actions) {
   jump("review.forward_far", "60 forward", GLFW_KEY_RIGHT, GLFW_MOD_SHIFT, 60);
   jump("review.first", "First", GLFW_KEY_HOME, 0, -1'000'000'000);
   jump("review.last", "Last", GLFW_KEY_END, 0, 1'000'000'000);
-  actions.add({"review.newer", "Newer session", "The session after this one", GLFW_KEY_UP, 0, false,
-               [this] { return chosen_ && *chosen_ > 0; }, {}, [this] { choose(*chosen_ - 1); }});
-  actions.add({"review.older", "Older session", "The session before this one", GLFW_KEY_DOWN, 0, false,
-               [this] { return chosen_ && *chosen_ + 1 < sessions_.size(); }, {}, [this] { choose(*chosen_ + 1); }});
+  actions.add({"review.newer",
+               "Newer session",
+               "The session after this one",
+               GLFW_KEY_UP,
+               0,
+               false,
+               [this] { return chosen_ && *chosen_ > 0; },
+               {},
+               [this] { choose(*chosen_ - 1); }});
+  actions.add({"review.older",
+               "Older session",
+               "The session before this one",
+               GLFW_KEY_DOWN,
+               0,
+               false,
+               [this] { return chosen_ && *chosen_ + 1 < sessions_.size(); },
+               {},
+               [this] { choose(*chosen_ + 1); }});
 }
 
 void ReviewView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
@@ -125,13 +147,15 @@ void ReviewView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   const float gap = ui.theme.px(12);
   widgets::Rect rest = area;
   draw_sessions(ui, rest.cut_left(ui.theme.px(380), gap));
-  ui.log.note_state("session", review_ ? review_->folder.filename().string() : opening_.valid() ? "opening" : "none");
+  ui.log.note_state("session", review_            ? review_->folder.filename().string()
+                               : opening_.valid() ? "opening"
+                                                  : "none");
   if (!has_frames()) {
-    const char* text = sessions_.empty()   ? "No session yet. Record one in Navigate."
-                       : opening_.valid()  ? "Opening the session"
-                       : !notice_.empty()  ? "This session cannot be read. The reason stands below."
-                       : review_           ? "This session has no pictures."
-                                           : "Choose a session.";
+    const char* text = sessions_.empty()  ? "No session yet. Record one in Navigate."
+                       : opening_.valid() ? "Opening the session"
+                       : !notice_.empty() ? "This session cannot be read. The reason stands below."
+                       : review_          ? "This session has no pictures."
+                                          : "Choose a session.";
     widgets::text_centered(ui, rest, ui.theme.title, widgets::kQuietText, text);
     return;
   }
@@ -171,19 +195,21 @@ void ReviewView::draw_picture(const widgets::Ui& ui, const widgets::Rect& area) 
   draw.AddRectFilled(area.min(), area.max(), IM_COL32(0, 0, 0, 255), ui.theme.px(6));
   ui.log.note("review.picture", area.min(), area.max());
   if (pictures_ == nullptr)
-    return widgets::text_centered(ui, area, ui.theme.strong, widgets::kQuietText, "No video was kept with this session");
+    return widgets::text_centered(ui, area, ui.theme.strong, widgets::kQuietText,
+                                  "No video was kept with this session");
   if (const std::string error = pictures_->error(); !error.empty())
     return widgets::text_centered(ui, area, ui.theme.strong, widgets::kBad, error);
   const camera::FramePtr picture = pictures_->picture(review_->session->frames()[cursor_.frame].index);
   video_.upload(picture);
-  if (video_.texture() == 0) return widgets::text_centered(ui, area, ui.theme.strong, widgets::kQuietText, "Reading the video");
+  if (video_.texture() == 0)
+    return widgets::text_centered(ui, area, ui.theme.strong, widgets::kQuietText, "Reading the video");
   const float w = static_cast<float>(video_.width()), h = static_cast<float>(video_.height());
   // The square about the middle: the round view of the arthroscope.
   const float side = std::min(w, h);
   const widgets::Rect at = widgets::fitted(area, 1);
   const ImVec2 from{(w - side) / 2 / w, (h - side) / 2 / h}, to{(w + side) / 2 / w, (h + side) / 2 / h};
-  draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(video_.texture())), at.min(), at.max(), from, to,
-                picture != nullptr ? IM_COL32_WHITE : IM_COL32(90, 90, 90, 255));
+  draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(video_.texture())), at.min(),
+                at.max(), from, to, picture != nullptr ? IM_COL32_WHITE : IM_COL32(90, 90, 90, 255));
   if (picture == nullptr && !cursor_.plays)
     widgets::text_centered(ui, area, ui.theme.strong, widgets::kText, "Reading the video");
 }
@@ -205,13 +231,16 @@ void ReviewView::show_scene() {
   content.bones.push_back({model_->drawn_mesh(bone), scene::kBoneColor, 1.0});
   const auto plan = review_->achieved ? std::optional(review_->achieved->planned) : model_->tunnel(bone);
   if (plan) scene::add_planned_tunnel(content, *plan, model_->drawn_length_mm(bone));
-  if (review_->achieved) scene::add_achieved_tunnel(content, review_->achieved->measured, review_->achieved->depth_mm);
+  if (review_->achieved)
+    scene::add_achieved_tunnel(content, review_->achieved->measured, review_->achieved->depth_mm);
   if (session.registration() && session.registration()->has_pose) {
     const geometry::RigidTransform bone_from_marker = session.registration()->marker_from_bone.inverse();
     std::vector<Eigen::Vector3d> touched;
-    for (const strokes::CurvePoint& point : session.curves()) touched.push_back(bone_from_marker * point.position_mm);
+    for (const strokes::CurvePoint& point : session.curves())
+      touched.push_back(bone_from_marker * point.position_mm);
     scene::add_curve_points(content, touched);
-    if (frame.tip_is_valid) content.balls.push_back({bone_from_marker * frame.tip_in_world_mm, 2.5, scene::kGuideColor, false});
+    if (frame.tip_is_valid)
+      content.balls.push_back({bone_from_marker * frame.tip_in_world_mm, 2.5, scene::kGuideColor, false});
   }
   if (frame.guidance.is_valid())
     scene::add_guide(content, frame.guidance.guide_point_mm, frame.guidance.guide_direction,

@@ -1,4 +1,5 @@
-// Review mode: the sessions of the case, their time line, and picture, 3D view and numbers at any moment of it.
+// Review mode: the sessions of the case, their time line, and picture, 3D view and numbers at any moment of
+// it.
 #pragma once
 
 #include <filesystem>
@@ -64,8 +65,10 @@ class ReviewView {
 
 // Tracks, events and the cursor; returns the frame that the mouse asks for.
 [[nodiscard]] std::optional<std::size_t> draw_time_line(const widgets::Ui& ui, const widgets::Rect& area,
-                                                        const SessionReview& review, const ReviewCursor& cursor);
+                                                        const SessionReview& review,
+                                                        const ReviewCursor& cursor);
 // The numbers of this moment, the registration, and planned against achieved.
-void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const SessionReview& review, std::size_t frame);
+void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const SessionReview& review,
+                 std::size_t frame);
 
 }  // namespace arthronaut::review_view

@@ -1,5 +1,5 @@
-// A recorded session made ready for looking at: what happened when, frame by frame, and how the tunnel as drilled lies to
-// the plan. Plain data, read once; no window.
+// A recorded session made ready for looking at: what happened when, frame by frame, and how the tunnel as
+// drilled lies to the plan. Plain data, read once; no window.
 #pragma once
 
 #include <filesystem>

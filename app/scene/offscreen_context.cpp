@@ -9,8 +9,8 @@
 #include "planning/geometry/error.h"
 
 // Debian's GLEW was built for GLX: without an X display its glewInit loads every entry point and then reports
-// GLEW_ERROR_NO_GLX_DISPLAY (4), which VTK takes for a failure and logs for each frame. This definition stands before
-// the library's and takes that one answer for success.
+// GLEW_ERROR_NO_GLX_DISPLAY (4), which VTK takes for a failure and logs for each frame. This definition
+// stands before the library's and takes that one answer for success.
 extern "C" unsigned int glewInit() {
   using Init = unsigned int (*)();
   static const auto init = reinterpret_cast<Init>(dlsym(RTLD_NEXT, "glewInit"));
@@ -58,9 +58,18 @@ OffscreenContext::OffscreenContext() : state_(std::make_unique<State>()) {
   s.previous_read = eglGetCurrentSurface(EGL_READ);
   s.display = open_display();
   if (!eglBindAPI(EGL_OPENGL_API)) fail("choosing OpenGL");
-  constexpr EGLint kConfig[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
-                                EGL_RED_SIZE,     8,               EGL_GREEN_SIZE,      8,
-                                EGL_BLUE_SIZE,    8,               EGL_DEPTH_SIZE,      24,
+  constexpr EGLint kConfig[] = {EGL_SURFACE_TYPE,
+                                EGL_PBUFFER_BIT,
+                                EGL_RENDERABLE_TYPE,
+                                EGL_OPENGL_BIT,
+                                EGL_RED_SIZE,
+                                8,
+                                EGL_GREEN_SIZE,
+                                8,
+                                EGL_BLUE_SIZE,
+                                8,
+                                EGL_DEPTH_SIZE,
+                                24,
                                 EGL_NONE};
   EGLConfig config = nullptr;
   EGLint count = 0;
@@ -68,9 +77,12 @@ OffscreenContext::OffscreenContext() : state_(std::make_unique<State>()) {
   constexpr EGLint kSurface[] = {EGL_WIDTH, 16, EGL_HEIGHT, 16, EGL_NONE};
   s.surface = eglCreatePbufferSurface(s.display, config, kSurface);
   if (s.surface == EGL_NO_SURFACE) fail("making a surface");
-  constexpr EGLint kContext[] = {EGL_CONTEXT_MAJOR_VERSION,       3,
-                                 EGL_CONTEXT_MINOR_VERSION,       3,
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+  constexpr EGLint kContext[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                 3,
+                                 EGL_CONTEXT_MINOR_VERSION,
+                                 3,
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                  EGL_NONE};
   s.context = eglCreateContext(s.display, config, EGL_NO_CONTEXT, kContext);
   if (s.context == EGL_NO_CONTEXT) {

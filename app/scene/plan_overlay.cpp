@@ -12,11 +12,13 @@ namespace {
 using Kind = OverlayLine::Kind;
 
 bool is_free(const Eigen::Vector2d& pixel, std::span<const ClearDisc> clear) {
-  return std::none_of(clear.begin(), clear.end(),
-                      [&](const ClearDisc& disc) { return (pixel - disc.center_px).norm() < disc.radius_px; });
+  return std::none_of(clear.begin(), clear.end(), [&](const ClearDisc& disc) {
+    return (pixel - disc.center_px).norm() < disc.radius_px;
+  });
 }
 
-std::optional<Eigen::Vector2d> drawn_pixel(const camera::CameraModel& camera, const Eigen::Vector3d& point_in_camera_mm,
+std::optional<Eigen::Vector2d> drawn_pixel(const camera::CameraModel& camera,
+                                           const Eigen::Vector3d& point_in_camera_mm,
                                            std::span<const ClearDisc> clear) {
   const auto pixel = camera.project(point_in_camera_mm);
   if (!pixel || !camera.is_inside_view(*pixel) || !is_free(*pixel, clear)) return std::nullopt;
@@ -52,13 +54,16 @@ class LineWriter {
 
 }  // namespace
 
-OverlayModel::OverlayModel(std::shared_ptr<const geometry::Surface> surface, const geometry::TriangleMesh& drawn_bone,
+OverlayModel::OverlayModel(std::shared_ptr<const geometry::Surface> surface,
+                           const geometry::TriangleMesh& drawn_bone,
                            const std::optional<tunnels::Tunnel>& plan, double length_mm)
     : surface_(std::move(surface)), vertices_mm_(drawn_bone.vertices_mm), triangles_(drawn_bone.triangles) {
   std::map<std::pair<int, int>, int> first_side;
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     const auto& t = triangles_[i];
-    const auto vertex = [&](int k) -> const Eigen::Vector3d& { return vertices_mm_[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])]; };
+    const auto vertex = [&](int k) -> const Eigen::Vector3d& {
+      return vertices_mm_[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])];
+    };
     triangle_normals_.push_back((vertex(1) - vertex(0)).cross(vertex(2) - vertex(0)));
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = t[k], b = t[(k + 1) % 3];
@@ -109,7 +114,8 @@ bool OverlayModel::is_hidden(const Eigen::Vector3d& eye_mm, const Eigen::Vector3
   return hit && hit->distance_mm < distance - kTolerance_mm;
 }
 
-PlanOverlay OverlayModel::project(const camera::CameraModel& camera, const geometry::RigidTransform& camera_from_bone,
+PlanOverlay OverlayModel::project(const camera::CameraModel& camera,
+                                  const geometry::RigidTransform& camera_from_bone,
                                   std::span<const ClearDisc> clear) const {
   PlanOverlay overlay;
   const Eigen::Vector3d eye = camera_from_bone.inverse().translation_mm;
@@ -125,13 +131,16 @@ PlanOverlay OverlayModel::project(const camera::CameraModel& camera, const geome
 }
 
 void OverlayModel::add_outline(PlanOverlay& overlay, const camera::CameraModel& camera,
-                               const geometry::RigidTransform& camera_from_bone, std::span<const ClearDisc> clear) const {
+                               const geometry::RigidTransform& camera_from_bone,
+                               std::span<const ClearDisc> clear) const {
   const Eigen::Vector3d eye = camera_from_bone.inverse().translation_mm;
   std::vector<bool> faces_eye(triangles_.size());
   for (std::size_t i = 0; i < triangles_.size(); ++i)
-    faces_eye[i] = triangle_normals_[i].dot(eye - vertices_mm_[static_cast<std::size_t>(triangles_[i][0])]) > 0;
+    faces_eye[i] =
+        triangle_normals_[i].dot(eye - vertices_mm_[static_cast<std::size_t>(triangles_[i][0])]) > 0;
   for (const Edge& edge : edges_) {
-    if (faces_eye[static_cast<std::size_t>(edge.left)] == faces_eye[static_cast<std::size_t>(edge.right)]) continue;
+    if (faces_eye[static_cast<std::size_t>(edge.left)] == faces_eye[static_cast<std::size_t>(edge.right)])
+      continue;
     const Eigen::Vector3d& a = vertices_mm_[static_cast<std::size_t>(edge.from)];
     const Eigen::Vector3d& b = vertices_mm_[static_cast<std::size_t>(edge.to)];
     const auto pixel_a = drawn_pixel(camera, camera_from_bone * a, clear);
@@ -141,8 +150,9 @@ void OverlayModel::add_outline(PlanOverlay& overlay, const camera::CameraModel& 
   }
 }
 
-void add_curves(PlanOverlay& overlay, const camera::CameraModel& camera, std::span<const Eigen::Vector3d> points_in_camera_mm,
-                double max_hop_mm, std::span<const ClearDisc> clear) {
+void add_curves(PlanOverlay& overlay, const camera::CameraModel& camera,
+                std::span<const Eigen::Vector3d> points_in_camera_mm, double max_hop_mm,
+                std::span<const ClearDisc> clear) {
   LineWriter line(overlay, Kind::Curve);
   for (std::size_t i = 0; i < points_in_camera_mm.size(); ++i) {
     if (i > 0 && (points_in_camera_mm[i] - points_in_camera_mm[i - 1]).norm() > max_hop_mm) line.finish();

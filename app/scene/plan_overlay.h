@@ -1,5 +1,6 @@
-// The plan as lines over a picture of the arthroscope, exact under distortion: points are projected by the one camera
-// model, frame by frame, with that frame's camera and pose. What the bone hides is marked as hidden.
+// The plan as lines over a picture of the arthroscope, exact under distortion: points are projected by the
+// one camera model, frame by frame, with that frame's camera and pose. What the bone hides is marked as
+// hidden.
 #pragma once
 
 #include <Eigen/Core>
@@ -62,8 +63,10 @@ class OverlayModel {
   std::vector<Path> paths_;
 };
 
-// Points of curves, given in the camera frame, as lines that break where two points are more than max_hop_mm apart.
-void add_curves(PlanOverlay& overlay, const camera::CameraModel& camera, std::span<const Eigen::Vector3d> points_in_camera_mm,
-                double max_hop_mm, std::span<const ClearDisc> clear);
+// Points of curves, given in the camera frame, as lines that break where two points are more than max_hop_mm
+// apart.
+void add_curves(PlanOverlay& overlay, const camera::CameraModel& camera,
+                std::span<const Eigen::Vector3d> points_in_camera_mm, double max_hop_mm,
+                std::span<const ClearDisc> clear);
 
 }  // namespace arthronaut::scene

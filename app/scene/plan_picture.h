@@ -1,5 +1,6 @@
-// Pictures of a plan for the report and the demonstration: bones, tunnels, the tunnel as drilled and what the probe
-// drew, from named sides. Rendered off-screen by EGL: works with and without a display, from any one thread at a time.
+// Pictures of a plan for the report and the demonstration: bones, tunnels, the tunnel as drilled and what the
+// probe drew, from named sides. Rendered off-screen by EGL: works with and without a display, from any one
+// thread at a time.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,17 +27,18 @@ enum class View {
 [[nodiscard]] std::string_view to_text(View view);  // "anterior", ...
 
 struct PictureRequest {
-  const cases::Case* knee = nullptr;              // not null
-  std::optional<bones::BoneKind> only_bone;       // empty: both; Distal and Notch show the femur, Plateau the tibia
-  std::optional<tunnels::Tunnel> achieved;        // as drilled, drawn in another colour and pattern
+  const cases::Case* knee = nullptr;  // not null
+  std::optional<bones::BoneKind>
+      only_bone;                            // empty: both; Distal and Notch show the femur, Plateau the tibia
+  std::optional<tunnels::Tunnel> achieved;  // as drilled, drawn in another colour and pattern
   std::vector<Eigen::Vector3d> curve_points_in_bone;  // mm, LPS
   View view = View::Anterior;
   int width = 800, height = 600;
-  bool light_background = false;                  // for paper
+  bool light_background = false;  // for paper
 };
 
-// The tunnels are seen through the bone. Throws DeviceError when no OpenGL context can be made, InvalidInput when the
-// case has none of the bones asked for or the size is not in 16..8192.
+// The tunnels are seen through the bone. Throws DeviceError when no OpenGL context can be made, InvalidInput
+// when the case has none of the bones asked for or the size is not in 16..8192.
 [[nodiscard]] Image render_plan_picture(const PictureRequest& request);
 
 }  // namespace arthronaut::scene

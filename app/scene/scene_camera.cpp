@@ -33,15 +33,22 @@ struct Direction {
 Direction direction_of(View view, bones::Side side) {
   const double lateral = side == bones::Side::Right ? -1 : 1;
   switch (view) {
-    case View::Anterior: return {{0, 1, 0}, {0, 0, 1}};
-    case View::Posterior: return {{0, -1, 0}, {0, 0, 1}};
-    case View::Medial: return {{lateral, 0, 0}, {0, 0, 1}};
-    case View::Lateral: return {{-lateral, 0, 0}, {0, 0, 1}};
-    case View::Distal: return {{0, 0, 1}, {0, -1, 0}};
-    // From below and a little from the medial side and the back: between the condyles onto the lateral wall of the notch,
-    // where the footprint is.
-    case View::Notch: return {Eigen::Vector3d(0.36 * lateral, -0.10, 0.93).normalized(), {0, -1, 0}};
-    case View::Plateau: return {{0, 0, -1}, {0, -1, 0}};
+    case View::Anterior:
+      return {{0, 1, 0}, {0, 0, 1}};
+    case View::Posterior:
+      return {{0, -1, 0}, {0, 0, 1}};
+    case View::Medial:
+      return {{lateral, 0, 0}, {0, 0, 1}};
+    case View::Lateral:
+      return {{-lateral, 0, 0}, {0, 0, 1}};
+    case View::Distal:
+      return {{0, 0, 1}, {0, -1, 0}};
+    // From below and a little from the medial side and the back: between the condyles onto the lateral wall
+    // of the notch, where the footprint is.
+    case View::Notch:
+      return {Eigen::Vector3d(0.36 * lateral, -0.10, 0.93).normalized(), {0, -1, 0}};
+    case View::Plateau:
+      return {{0, 0, -1}, {0, -1, 0}};
   }
   throw InvalidInput("unknown view");
 }
@@ -50,13 +57,20 @@ Direction direction_of(View view, bones::Side side) {
 
 std::string_view to_text(View view) {
   switch (view) {
-    case View::Anterior: return "anterior";
-    case View::Posterior: return "posterior";
-    case View::Medial: return "medial";
-    case View::Lateral: return "lateral";
-    case View::Distal: return "distal";
-    case View::Notch: return "notch";
-    case View::Plateau: return "plateau";
+    case View::Anterior:
+      return "anterior";
+    case View::Posterior:
+      return "posterior";
+    case View::Medial:
+      return "medial";
+    case View::Lateral:
+      return "lateral";
+    case View::Distal:
+      return "distal";
+    case View::Notch:
+      return "notch";
+    case View::Plateau:
+      return "plateau";
   }
   throw InvalidInput("unknown view");
 }
@@ -91,9 +105,9 @@ SceneCamera orbited(const SceneCamera& camera, const Eigen::Vector2d& drag_px, d
   const Axes axes = axes_of(camera);
   constexpr double kTurnPerHeight = 1.2 * geometry::kPi;  // a drag over the whole height turns by 216 degrees
   const double scale = kTurnPerHeight / std::max(height_px, 1.0);
-  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(-drag_px.x() * scale, axes.up) *
-                                Eigen::AngleAxisd(-drag_px.y() * scale, axes.right))
-                                   .toRotationMatrix();
+  const Eigen::Matrix3d turn =
+      (Eigen::AngleAxisd(-drag_px.x() * scale, axes.up) * Eigen::AngleAxisd(-drag_px.y() * scale, axes.right))
+          .toRotationMatrix();
   SceneCamera result = camera;
   result.position_mm = camera.focus_mm + turn * (camera.position_mm - camera.focus_mm);
   result.up = (turn * axes.up).normalized();
@@ -120,7 +134,8 @@ SceneCamera zoomed(const SceneCamera& camera, double steps) {
   return result;
 }
 
-SceneRay ray_through(const SceneCamera& camera, const Eigen::Vector2d& pixel, const Eigen::Vector2d& size_px) {
+SceneRay ray_through(const SceneCamera& camera, const Eigen::Vector2d& pixel,
+                     const Eigen::Vector2d& size_px) {
   const Axes axes = axes_of(camera);
   const double scale = half_height(camera) / (0.5 * size_px.y());
   const Eigen::Vector2d offset = (pixel - 0.5 * size_px) * scale;

@@ -23,13 +23,15 @@ struct SceneRay {
 };
 
 // Sees all of `bounds` from a named side of a knee.
-[[nodiscard]] SceneCamera look_from(View view, bones::Side side, const geometry::Bounds& bounds, double aspect);
+[[nodiscard]] SceneCamera look_from(View view, bones::Side side, const geometry::Bounds& bounds,
+                                    double aspect);
 // Along `direction` (unit) at `focus`, `distance_mm` away; `up_hint` is made perpendicular.
 [[nodiscard]] SceneCamera look_along(const Eigen::Vector3d& direction, const Eigen::Vector3d& focus_mm,
                                      double distance_mm, const Eigen::Vector3d& up_hint);
 
 // About the focus, as a trackball: pixels of the mouse over the height of the view.
-[[nodiscard]] SceneCamera orbited(const SceneCamera& camera, const Eigen::Vector2d& drag_px, double height_px);
+[[nodiscard]] SceneCamera orbited(const SceneCamera& camera, const Eigen::Vector2d& drag_px,
+                                  double height_px);
 [[nodiscard]] SceneCamera panned(const SceneCamera& camera, const Eigen::Vector2d& drag_px, double height_px);
 [[nodiscard]] SceneCamera zoomed(const SceneCamera& camera, double steps);  // positive: nearer
 
@@ -37,7 +39,8 @@ struct SceneRay {
 [[nodiscard]] SceneRay ray_through(const SceneCamera& camera, const Eigen::Vector2d& pixel,
                                    const Eigen::Vector2d& size_px);
 // nullopt behind the eye.
-[[nodiscard]] std::optional<Eigen::Vector2d> project(const SceneCamera& camera, const Eigen::Vector3d& point_mm,
+[[nodiscard]] std::optional<Eigen::Vector2d> project(const SceneCamera& camera,
+                                                     const Eigen::Vector3d& point_mm,
                                                      const Eigen::Vector2d& size_px);
 
 }  // namespace arthronaut::scene

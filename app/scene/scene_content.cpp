@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kBeforeEntry_mm = 1.0;  // a tube starts just above the bone so that its mouth is seen
 
-LineItem ring_about(const Eigen::Vector3d& center, const Eigen::Vector3d& axis, double diameter_mm, double line_mm,
-                    const Color& color) {
+LineItem ring_about(const Eigen::Vector3d& center, const Eigen::Vector3d& axis, double diameter_mm,
+                    double line_mm, const Color& color) {
   LineItem ring{{}, line_mm, true, color, true};
   const Eigen::Vector3d side = axis.unitOrthogonal(), other = axis.cross(side);
   constexpr int kPoints = 48;
@@ -25,13 +25,15 @@ LineItem ring_about(const Eigen::Vector3d& center, const Eigen::Vector3d& axis, 
 
 }  // namespace
 
-void add_planned_tunnel(SceneContent& content, const tunnels::Tunnel& tunnel, double length_mm, const Color& color) {
+void add_planned_tunnel(SceneContent& content, const tunnels::Tunnel& tunnel, double length_mm,
+                        const Color& color) {
   const Eigen::Vector3d from = tunnel.entry_mm - kBeforeEntry_mm * tunnel.direction;
   const Eigen::Vector3d to = tunnel.entry_mm + (length_mm + kBeforeEntry_mm) * tunnel.direction;
   content.rods.push_back({from, to, tunnel.diameter_mm, tunnel.diameter_mm, color, true});
   content.lines.push_back(ring_about(from, tunnel.direction, tunnel.diameter_mm + 1.6, 0.8, {1, 1, 1}));
   // The axis, drawn out on both sides: where a drill comes from and where it goes.
-  content.lines.push_back({{tunnel.entry_mm - 14 * tunnel.direction, to + 8 * tunnel.direction}, 0.5, false, color, true});
+  content.lines.push_back(
+      {{tunnel.entry_mm - 14 * tunnel.direction, to + 8 * tunnel.direction}, 0.5, false, color, true});
 }
 
 void add_achieved_tunnel(SceneContent& content, const tunnels::Tunnel& tunnel, double length_mm) {
@@ -41,8 +43,8 @@ void add_achieved_tunnel(SceneContent& content, const tunnels::Tunnel& tunnel, d
   int band = 0;
   for (double at = -kBeforeEntry_mm; at < length_mm; at += kBand_mm, ++band) {
     const double end = std::min(at + kBand_mm, length_mm);
-    content.rods.push_back({tunnel.entry_mm + at * tunnel.direction, tunnel.entry_mm + end * tunnel.direction, diameter,
-                            diameter, band % 2 == 0 ? kAchievedColor : kDark, true});
+    content.rods.push_back({tunnel.entry_mm + at * tunnel.direction, tunnel.entry_mm + end * tunnel.direction,
+                            diameter, diameter, band % 2 == 0 ? kAchievedColor : kDark, true});
   }
 }
 
@@ -65,7 +67,8 @@ void add_curve_points(SceneContent& content, const std::vector<Eigen::Vector3d>&
   for (const Eigen::Vector3d& point : points_mm) {
     if (!line.points_mm.empty() && (point - line.points_mm.back()).norm() > kHop_mm) flush();
     // A tube needs no more than a point every 0.3 mm.
-    if (line.points_mm.empty() || (point - line.points_mm.back()).norm() > 0.3) line.points_mm.push_back(point);
+    if (line.points_mm.empty() || (point - line.points_mm.back()).norm() > 0.3)
+      line.points_mm.push_back(point);
   }
   flush();
 }

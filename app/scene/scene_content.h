@@ -1,5 +1,5 @@
-// What a 3D view shows, as plain data: the view keeps itself like it. Cheap to build anew for every change; bones are
-// shared and compared by address.
+// What a 3D view shows, as plain data: the view keeps itself like it. Cheap to build anew for every change;
+// bones are shared and compared by address.
 #pragma once
 
 #include <Eigen/Core>

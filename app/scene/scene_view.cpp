@@ -137,8 +137,9 @@ void SceneView::show(const SceneContent& content) {
   // Bones are kept as long as their mesh is: uploading them again is what would cost.
   std::vector<BoneActor> kept;
   for (const BoneItem& item : content.bones) {
-    const auto known = std::find_if(s.bones.begin(), s.bones.end(),
-                                    [&](const BoneActor& b) { return b.actor != nullptr && b.item.mesh == item.mesh; });
+    const auto known = std::find_if(s.bones.begin(), s.bones.end(), [&](const BoneActor& b) {
+      return b.actor != nullptr && b.item.mesh == item.mesh;
+    });
     BoneActor bone{item, nullptr};
     if (known != s.bones.end()) {
       std::swap(bone.actor, known->actor);

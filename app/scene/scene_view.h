@@ -1,5 +1,5 @@
-// One 3D view of a knee, drawn by VTK into a texture of the caller's OpenGL context. Everything here runs on the thread
-// that owns the context, with the context current, and the view dies before it.
+// One 3D view of a knee, drawn by VTK into a texture of the caller's OpenGL context. Everything here runs on
+// the thread that owns the context, with the context current, and the view dies before it.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ class SceneView {
   void look(const SceneCamera& camera);
   void set_background(const Color& bottom, const Color& top);
 
-  // Draws when something changed since the last time; returns whether it did. Leaves the OpenGL state to be reset by
-  // the caller: bind framebuffer 0, set the viewport, disable the scissor test.
+  // Draws when something changed since the last time; returns whether it did. Leaves the OpenGL state to be
+  // reset by the caller: bind framebuffer 0, set the viewport, disable the scissor test.
   bool render_if_dirty();
 
   // The picture: an OpenGL texture, bottom row first; 0 before the first render_if_dirty().

@@ -10,7 +10,9 @@ namespace arthronaut::scene {
 namespace {
 
 std::array<std::uint8_t, 3> bytes_of(const Color& color) {
-  const auto byte = [](float value) { return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.F, 1.F) * 255)); };
+  const auto byte = [](float value) {
+    return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.F, 1.F) * 255));
+  };
   return {byte(color.red), byte(color.green), byte(color.blue)};
 }
 
@@ -53,7 +55,8 @@ void add_cap(SolidMesh& mesh, const Ring& ring, const Eigen::Vector3d& normal, i
              const std::array<std::uint8_t, 3>& color) {
   const int middle = add_point(mesh, ring.center, normal, color);
   const int first = static_cast<int>(mesh.points_mm.size());
-  for (int i = 0; i < sides; ++i) add_point(mesh, ring.center + ring.radius * on_ring(ring, i, sides), normal, color);
+  for (int i = 0; i < sides; ++i)
+    add_point(mesh, ring.center + ring.radius * on_ring(ring, i, sides), normal, color);
   const bool along = ring.side.cross(ring.other).dot(normal) > 0;
   for (int i = 0; i < sides; ++i) {
     const int a = first + i, b = first + (i + 1) % sides;
@@ -91,7 +94,8 @@ void SolidMesh::add(const LineItem& line) {
     if (!(along.norm() > 1e-9)) continue;
     along.normalize();
     // The frame of the ring before, carried on, so that the tube does not twist.
-    side = side.isZero() ? Eigen::Vector3d(along.unitOrthogonal()) : Eigen::Vector3d(side - side.dot(along) * along);
+    side = side.isZero() ? Eigen::Vector3d(along.unitOrthogonal())
+                         : Eigen::Vector3d(side - side.dot(along) * along);
     if (!(side.norm() > 1e-9)) side = along.unitOrthogonal();
     side.normalize();
     const int ring =
@@ -112,7 +116,8 @@ void SolidMesh::add(const BallItem& ball) {
     const int first = static_cast<int>(points_mm.size());
     for (int k = 0; k < kSides; ++k) {
       const double turn = 2 * std::numbers::pi * k / kSides;
-      const Eigen::Vector3d out(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), -std::cos(angle));
+      const Eigen::Vector3d out(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn),
+                                -std::cos(angle));
       add_point(*this, ball.center_mm + 0.5 * ball.diameter_mm * out, out, color);
     }
     if (previous >= 0) join_rings(*this, previous, first, kSides);

@@ -1,4 +1,5 @@
-// Rods, lines and balls as coloured triangles: one mesh for all, so that a guide that moves costs one upload a frame.
+// Rods, lines and balls as coloured triangles: one mesh for all, so that a guide that moves costs one upload
+// a frame.
 #pragma once
 
 #include <Eigen/Core>

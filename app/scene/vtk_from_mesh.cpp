@@ -16,7 +16,8 @@ namespace {
 
 vtkSmartPointer<vtkCellArray> cells_from(const std::vector<std::array<std::int32_t, 3>>& triangles) {
   auto cells = vtkSmartPointer<vtkCellArray>::New();
-  cells->AllocateExact(static_cast<vtkIdType>(triangles.size()), static_cast<vtkIdType>(3 * triangles.size()));
+  cells->AllocateExact(static_cast<vtkIdType>(triangles.size()),
+                       static_cast<vtkIdType>(3 * triangles.size()));
   for (const auto& t : triangles) {
     const vtkIdType ids[3] = {t[0], t[1], t[2]};
     cells->InsertNextCell(3, ids);
@@ -74,7 +75,8 @@ geometry::TriangleMesh mesh_from_vtk(vtkPolyData& polydata) {
   polydata.GetPolys()->InitTraversal();
   while (polydata.GetPolys()->GetNextCell(ids) != 0) {
     if (ids->GetNumberOfIds() != 3) continue;
-    mesh.triangles.push_back({static_cast<std::int32_t>(ids->GetId(0)), static_cast<std::int32_t>(ids->GetId(1)),
+    mesh.triangles.push_back({static_cast<std::int32_t>(ids->GetId(0)),
+                              static_cast<std::int32_t>(ids->GetId(1)),
                               static_cast<std::int32_t>(ids->GetId(2))});
   }
   return mesh;
@@ -87,7 +89,8 @@ std::shared_ptr<const geometry::TriangleMesh> simplified(const geometry::Triangl
   whole->GetPointData()->Initialize();  // shape alone decides
   auto decimation = vtkSmartPointer<vtkQuadricDecimation>::New();
   decimation->SetInputData(whole);
-  decimation->SetTargetReduction(1.0 - static_cast<double>(max_triangles) / static_cast<double>(mesh.triangles.size()));
+  decimation->SetTargetReduction(1.0 - static_cast<double>(max_triangles) /
+                                           static_cast<double>(mesh.triangles.size()));
   decimation->Update();
   return std::make_shared<geometry::TriangleMesh>(mesh_from_vtk(*decimation->GetOutput()));
 }

@@ -16,17 +16,21 @@ void draw_target(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, 
   draw.AddCircleFilled(center, radius, IM_COL32(15, 19, 24, 255), 96);
   for (const double ring : kRings_mm) {
     const float r = static_cast<float>(ring) * per_mm;
-    draw.AddCircle(center, r, ring == 1 ? widgets::kGood : IM_COL32(90, 104, 118, 255), 96, ui.theme.px(ring == 1 ? 3 : 2));
+    draw.AddCircle(center, r, ring == 1 ? widgets::kGood : IM_COL32(90, 104, 118, 255), 96,
+                   ui.theme.px(ring == 1 ? 3 : 2));
     const std::string text = widgets::fixed(ring, 0) + (ring == 5 ? " mm" : "");
-    draw.AddText(ui.theme.body, ui.theme.body->FontSize, {center.x + r * 0.72F + ui.theme.px(3), center.y + r * 0.70F},
-                 widgets::kQuietText, text.c_str());
+    draw.AddText(ui.theme.body, ui.theme.body->FontSize,
+                 {center.x + r * 0.72F + ui.theme.px(3), center.y + r * 0.70F}, widgets::kQuietText,
+                 text.c_str());
   }
-  draw.AddLine({center.x - radius, center.y}, {center.x + radius, center.y}, IM_COL32(64, 75, 86, 255), ui.theme.px(1.5F));
-  draw.AddLine({center.x, center.y - radius}, {center.x, center.y + radius}, IM_COL32(64, 75, 86, 255), ui.theme.px(1.5F));
+  draw.AddLine({center.x - radius, center.y}, {center.x + radius, center.y}, IM_COL32(64, 75, 86, 255),
+               ui.theme.px(1.5F));
+  draw.AddLine({center.x, center.y - radius}, {center.x, center.y + radius}, IM_COL32(64, 75, 86, 255),
+               ui.theme.px(1.5F));
 }
 
-void draw_directions(const widgets::Ui& ui, ImDrawList& draw, const widgets::Rect& area, const ImVec2& center, float radius,
-                     bool anterior_is_right) {
+void draw_directions(const widgets::Ui& ui, ImDrawList& draw, const widgets::Rect& area, const ImVec2& center,
+                     float radius, bool anterior_is_right) {
   ImFont* font = ui.theme.strong;
   const auto put = [&](const char* text, float x, float y, float align) {
     const float width = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text).x;
@@ -42,10 +46,11 @@ void draw_directions(const widgets::Ui& ui, ImDrawList& draw, const widgets::Rec
 }
 
 // The axis of the guide as a dot with a tail that leans as the guide does: 1 degree as long as 1 mm.
-void draw_guide(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, float radius, const BullseyePoint& point,
-                widgets::Sign sign) {
+void draw_guide(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, float radius,
+                const BullseyePoint& point, widgets::Sign sign) {
   const float per_mm = radius / static_cast<float>(kShown_mm);
-  ImVec2 at{center.x + static_cast<float>(point.right_mm) * per_mm, center.y - static_cast<float>(point.up_mm) * per_mm};
+  ImVec2 at{center.x + static_cast<float>(point.right_mm) * per_mm,
+            center.y - static_cast<float>(point.up_mm) * per_mm};
   const float dx = at.x - center.x, dy = at.y - center.y, far = std::hypot(dx, dy);
   const bool is_outside = far > radius;
   if (is_outside) at = {center.x + dx / far * radius, center.y + dy / far * radius};
@@ -53,18 +58,22 @@ void draw_guide(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, f
   if (is_outside) {  // an arrow head on the rim says: farther that way
     const ImVec2 out{dx / far, dy / far};
     const float size = ui.theme.px(20);
-    draw.AddTriangleFilled({at.x + out.x * size, at.y + out.y * size}, {at.x - out.y * size * 0.7F, at.y + out.x * size * 0.7F},
+    draw.AddTriangleFilled({at.x + out.x * size, at.y + out.y * size},
+                           {at.x - out.y * size * 0.7F, at.y + out.x * size * 0.7F},
                            {at.x + out.y * size * 0.7F, at.y - out.x * size * 0.7F}, color);
     return;
   }
-  const ImVec2 tail{at.x + static_cast<float>(point.lean_right_deg) * per_mm, at.y - static_cast<float>(point.lean_up_deg) * per_mm};
+  const ImVec2 tail{at.x + static_cast<float>(point.lean_right_deg) * per_mm,
+                    at.y - static_cast<float>(point.lean_up_deg) * per_mm};
   draw.AddLine(at, tail, color, ui.theme.px(5));
   draw.AddCircle(at, ui.theme.px(15), color, 32, ui.theme.px(4));
   widgets::draw_sign(draw, at, ui.theme.px(9), sign);
 }
 
 widgets::Sign worse(widgets::Sign a, widgets::Sign b) {
-  const auto rank = [](widgets::Sign s) { return s == widgets::Sign::Bad ? 2 : s == widgets::Sign::Caution ? 1 : 0; };
+  const auto rank = [](widgets::Sign s) {
+    return s == widgets::Sign::Bad ? 2 : s == widgets::Sign::Caution ? 1 : 0;
+  };
   return rank(a) >= rank(b) ? a : b;
 }
 
@@ -100,20 +109,25 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Theatr
   widgets::Rect rest = area.inset(ui.theme.px(18));
   const bool valid = screen.display.guidance_is_valid;
   const guidance::GuidanceNumbers& g = screen.display.guidance;
-  const auto with_sigma = [&](const char* unit, double sigma) { return unit + (" \u00B1 " + widgets::fixed(sigma, 1)); };
+  const auto with_sigma = [&](const char* unit, double sigma) {
+    return unit + (" \u00B1 " + widgets::fixed(sigma, 1));
+  };
   const auto block = [&](const char* name, double value, const std::string& unit, widgets::Sign sign) {
     const widgets::Rect row = rest.cut_top(rest.height > 0 ? (area.height - ui.theme.px(36)) / 4 : 0);
     // No number at all where none is valid: an old one would be believed.
-    widgets::number_block(ui, row, name, valid ? widgets::fixed(value, 1) : "\u2013", valid ? unit : "", valid ? sign : widgets::Sign::Quiet);
+    widgets::number_block(ui, row, name, valid ? widgets::fixed(value, 1) : "\u2013", valid ? unit : "",
+                          valid ? sign : widgets::Sign::Quiet);
     return row;
   };
-  const widgets::Rect offset = block("Offset", offset_mm(g), with_sigma("mm", g.sigma_offset_mm), sign_of_offset(g));
+  const widgets::Rect offset =
+      block("Offset", offset_mm(g), with_sigma("mm", g.sigma_offset_mm), sign_of_offset(g));
   if (valid) {
     const std::string text = direction_text(g.offset_anterior_mm, "anterior", "posterior") + "\n" +
                              direction_text(g.offset_proximal_mm, "proximal", "distal");
     ImFont* font = ui.theme.body;
     const float width = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
-    draw.AddText(font, font->FontSize, {offset.x + offset.width - width, offset.y}, widgets::kText, text.c_str());
+    draw.AddText(font, font->FontSize, {offset.x + offset.width - width, offset.y}, widgets::kText,
+                 text.c_str());
   }
   block("Angle", g.angle_deg, with_sigma("\u00B0", g.sigma_angle_deg), sign_of_angle(g));
   block("Depth", g.depth_mm, "mm", widgets::Sign::Quiet);

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <limits>
 #include <mutex>
 #include <thread>
 
@@ -14,10 +15,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_of(Clock::time_point time) { return std::chrono::duration<double>(time.time_since_epoch()).count(); }
+double seconds_of(Clock::time_point time) {
+  return std::chrono::duration<double>(time.time_since_epoch()).count();
+}
 
-// A recorded or simulated source is shown at its own pace: faster sources wait, slower ones run in slow motion rather than
-// leave frames out, since every frame may carry a touched point.
+// A recorded or simulated source is shown at its own pace: faster sources wait, slower ones run in slow
+// motion rather than leave frames out, since every frame may carry a touched point.
 class Pace {
  public:
   // When the frame with this timestamp is due.
@@ -43,7 +46,8 @@ class Pace {
 
 class Operation::Worker {
  public:
-  Worker(OperationSetup setup, std::function<void()> on_news) : setup_(std::move(setup)), on_news_(std::move(on_news)) {
+  Worker(OperationSetup setup, std::function<void()> on_news)
+      : setup_(std::move(setup)), on_news_(std::move(on_news)) {
     status_.trail = std::make_shared<std::vector<Eigen::Vector3d>>();
     status_.registration = setup_.registration;
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
@@ -70,6 +74,13 @@ class Operation::Worker {
     return status_;
   }
   const OperationSetup& setup() const { return setup_; }
+
+  void clear_curves(OperationJob& job) {
+    job.clear_curves();
+    if (online_ != nullptr) online_->clear();
+    best_tre_mm_ = std::numeric_limits<double>::infinity();
+    note_digitising(job);
+  }
 
   void start_registration(const OperationJob& job) {
     const strokes::Curves curves = job.curves();
@@ -135,6 +146,7 @@ class Operation::Worker {
       if (live == nullptr) return;
       if (!job.source_info().is_live) wait_until(pace.due(live->picture->timestamp_ns), stop);
       publish(std::move(live));
+      register_along(job);
       if (!job.recording_error().empty()) {
         update([&](OperationStatus& s) {
           s.recording_error = job.recording_error();
@@ -149,13 +161,45 @@ class Operation::Worker {
     }
   }
 
+  void register_along(OperationJob& job) {
+    if (!job.digitises()) return;
+    if (online_ == nullptr) {
+      if (setup_.prepared_bone.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+      registration::OnlineOptions options;
+      if (setup_.plan) {
+        options.target_in_bone_mm = setup_.plan->entry_mm;
+        options.direction_in_bone = setup_.plan->direction;
+      }
+      online_ = std::make_unique<registration::RegistrationWorker>(setup_.prepared_bone.get(), options);
+    }
+    if (const strokes::Curves points = job.take_new_points(); !points.empty()) online_->add_points(points);
+    const auto latest = online_->latest();
+    if (online_revision_ == latest->revision) return;
+    online_revision_ = latest->revision;
+    // Taken over when it is confirmed first, and again when it has become clearly better.
+    const bool is_confirmed =
+        latest->state >= registration::OnlineState::Confirmed && latest->registration.reliable;
+    const bool is_better = latest->registration.predicted_tre_mm < 0.9 * best_tre_mm_;
+    if (is_confirmed && is_better) {
+      best_tre_mm_ = latest->registration.predicted_tre_mm;
+      job.set_registration(latest->registration, true);
+    }
+    update([&](OperationStatus& s) {
+      s.online = latest;
+      if (!is_confirmed || !is_better) return;
+      s.registration = latest->registration;
+      ++s.registration_count;
+    });
+  }
+
   // After the last picture: registering what was touched is still possible.
   void wait_out(OperationJob& job, const std::stop_token& stop) {
     note_digitising(job);
     while (!stop.stop_requested()) {
       run_requests(job);
       std::unique_lock lock(mutex_);
-      news_.wait_for(lock, std::chrono::milliseconds(200), [&] { return stop.stop_requested() || !requests_.empty(); });
+      news_.wait_for(lock, std::chrono::milliseconds(200),
+                     [&] { return stop.stop_requested() || !requests_.empty(); });
     }
   }
 
@@ -218,6 +262,9 @@ class Operation::Worker {
   std::atomic<bool> is_registering_ = false;
   int frames_since_ = 0;
   Clock::time_point counted_from_ = Clock::now();
+  std::unique_ptr<registration::RegistrationWorker> online_;  // of the worker thread
+  std::uint64_t online_revision_ = 0;
+  double best_tre_mm_ = std::numeric_limits<double>::infinity();
   std::jthread registering_, thread_;
 };
 
@@ -237,10 +284,7 @@ void Operation::set_digitising(bool on) {
 }
 
 void Operation::clear_curves() {
-  worker_->post([w = worker_.get()](OperationJob& job) {
-    job.clear_curves();
-    w->note_digitising(job);
-  });
+  worker_->post([w = worker_.get()](OperationJob& job) { w->clear_curves(job); });
 }
 
 void Operation::register_curves() {
@@ -248,7 +292,8 @@ void Operation::register_curves() {
 }
 
 void Operation::start_recording(const std::filesystem::path& session_folder) {
-  worker_->post([w = worker_.get(), session_folder](OperationJob& job) { w->start_recording(job, session_folder); });
+  worker_->post(
+      [w = worker_.get(), session_folder](OperationJob& job) { w->start_recording(job, session_folder); });
 }
 
 void Operation::stop_recording() {

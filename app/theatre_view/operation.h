@@ -1,9 +1,13 @@
-// One run of the navigation on one source, in a thread of its own: pictures in, live frames out, newest wins. The window
-// reads status() and asks for changes; nothing here knows the window.
+// One run of the navigation on one source, in a thread of its own: pictures in, live frames out, newest wins.
+// The window reads status() and asks for changes; nothing here knows the window.
 //
-// Threads: the worker takes frames, runs the pipeline, projects the overlay and is the one that talks to the recorder; a
-// registration runs in a second thread and hands its result to the worker. Every public function may be called from any
-// thread and none of them waits, but the destructor, which joins both. States: starting -> running -> ended | failed.
+// While the probe draws, a registration runs along; the moment it is confirmed it takes effect by itself.
+// register_curves() asks for one from all that was drawn.
+//
+// Threads: the worker takes frames, runs the pipeline, projects the overlay and is the one that talks to the
+// recorder; registrations run in threads of their own and hand their results to the worker. Every public
+// function may be called from any thread and none of them waits, but the destructor, which joins both.
+// States: starting -> running -> ended | failed.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +22,7 @@
 #include "app/scene/plan_overlay.h"
 #include "navigation/pipeline/navigation_pipeline.h"
 #include "navigation/recording/session.h"
-#include "navigation/registration/registration.h"
+#include "navigation/registration/online_registration.h"
 #include "navigation/sources/frame_source.h"
 
 namespace arthronaut::theatre_view {
@@ -26,19 +30,19 @@ namespace arthronaut::theatre_view {
 using PreparedBonePtr = std::shared_ptr<const registration::PreparedBone>;
 
 struct OperationSetup {
-  std::string title;                                                      // "Simulated operation: scratching"
-  std::function<std::unique_ptr<sources::FrameSource>()> open_source;     // called on the worker
+  std::string title;                                                   // "Simulated operation: scratching"
+  std::function<std::unique_ptr<sources::FrameSource>()> open_source;  // called on the worker
   pipeline::PipelineOptions pipeline;
   std::optional<tunnels::Tunnel> plan;
   double planned_length_mm = 0;
   std::shared_ptr<const geometry::Surface> surface;
   std::shared_ptr<const geometry::TriangleMesh> drawn_bone;
-  std::shared_future<PreparedBonePtr> prepared_bone;                      // for registration
-  std::optional<registration::RegistrationSummary> registration;          // from an earlier run
-  bool digitises = true;                                                  // from the first frame
+  std::shared_future<PreparedBonePtr> prepared_bone;              // for registration
+  std::optional<registration::RegistrationSummary> registration;  // from an earlier run
+  bool digitises = true;                                          // from the first frame
   // Where the tunnel truly goes; the simulated source alone knows. Filled in by open_source, null else.
   std::shared_ptr<std::optional<tunnels::Tunnel>> truth;
-  std::filesystem::path session_folder;                                   // recorded when not empty
+  std::filesystem::path session_folder;  // recorded when not empty
 };
 
 // One picture and everything known about it; the overlay belongs to this very picture.
@@ -51,21 +55,25 @@ struct LiveFrame {
 
 struct OperationStatus {
   enum class Phase { Starting, Running, Ended, Failed } phase = Phase::Starting;
-  std::string message;                        // why it failed
-  std::shared_ptr<const LiveFrame> live;      // the newest; null before the first
-  double frames_per_second = 0;               // that were navigated, lately
+  std::string message;                    // why it failed
+  std::shared_ptr<const LiveFrame> live;  // the newest; null before the first
+  double frames_per_second = 0;           // that were navigated, lately
   bool digitises = false;
-  std::shared_ptr<const std::vector<Eigen::Vector3d>> trail;  // touched points, world-marker frame; never null
+  std::shared_ptr<const std::vector<Eigen::Vector3d>>
+      trail;  // touched points, world-marker frame; never null
+  // The registration that runs while the probe draws, with what to touch next; null while it does not run.
+  std::shared_ptr<const registration::OnlineResult> online;
   bool is_registering = false;
   std::optional<registration::RegistrationSummary> registration;
-  std::uint64_t registration_count = 0;       // counts results, so that a new one is noticed
-  std::filesystem::path recording;            // the session's folder while it is recorded, else empty
+  std::uint64_t registration_count = 0;  // counts results, so that a new one is noticed
+  std::filesystem::path recording;       // the session's folder while it is recorded, else empty
   std::string recording_error;
 };
 
 class Operation {
  public:
-  // on_news is called from the worker whenever status() has changed; it must not call back into the operation.
+  // on_news is called from the worker whenever status() has changed; it must not call back into the
+  // operation.
   Operation(OperationSetup setup, std::function<void()> on_news);
   ~Operation();
   Operation(const Operation&) = delete;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <ctime>
+#include <utility>
 
 #include "arthronaut/version.h"
 #include "navigation/pipeline/prefetched_source.h"
@@ -13,7 +14,9 @@ namespace {
 
 constexpr double kTipClearance_px = 45;  // of 1080 lines: what is drawn keeps this far from a tool's tip
 
-const tools::Tool* guide_of(const pipeline::PipelineOptions& options) { return options.tools.find_tool(options.guide_name); }
+const tools::Tool* guide_of(const pipeline::PipelineOptions& options) {
+  return options.tools.find_tool(options.guide_name);
+}
 
 std::string utc_now() {
   const std::time_t now = std::time(nullptr);
@@ -45,15 +48,28 @@ std::shared_ptr<LiveFrame> OperationJob::step() {
   live->picture = prefetched_->next();
   if (live->picture == nullptr) return nullptr;
   pipeline_.process(*live->picture, live->result);
-  if (digitises_ && live->result.tip_is_valid) {
-    pipeline::append_pose_rows(live->result, poses_);
-    trail_.push_back(live->result.tip_in_world_mm);
-  }
+  if (digitises_ && live->result.tip_is_valid) digitise(live->result);
   drilled_.add(live->result.guidance);
   record(*live);
   project(*live);
   return live;
 }
+
+void OperationJob::digitise(const pipeline::FrameResult& result) {
+  pipeline::append_pose_rows(result, poses_);
+  trail_.push_back(result.tip_in_world_mm);
+  const strokes::StrokeOptions limits;
+  strokes::CurvePoint point{0, static_cast<double>(result.timestamp_ns) * 1e-9, result.tip_in_world_mm};
+  if (last_point_) {
+    const bool goes_on = *point.time_s - *last_point_->time_s <= limits.max_gap_s &&
+                         (point.position_mm - last_point_->position_mm).norm() <= limits.max_hop_mm;
+    point.curve = last_point_->curve + (goes_on ? 0 : 1);
+  }
+  last_point_ = point;
+  new_points_.push_back(point);
+}
+
+strokes::Curves OperationJob::take_new_points() { return std::exchange(new_points_, {}); }
 
 void OperationJob::record(const LiveFrame& live) {
   if (recorder_ == nullptr) return;
@@ -89,7 +105,8 @@ std::vector<scene::ClearDisc> OperationJob::tool_tips(const pipeline::FrameResul
   const geometry::RigidTransform& camera_from_world = result.camera_from_world.target_from_source;
   const double radius = kTipClearance_px * result.camera.image_size_px().y() / 1080.0;
   const auto add = [&](const Eigen::Vector3d& tip_in_world_mm) {
-    if (const auto pixel = result.camera.project(camera_from_world * tip_in_world_mm)) tips.push_back({*pixel, radius});
+    if (const auto pixel = result.camera.project(camera_from_world * tip_in_world_mm))
+      tips.push_back({*pixel, radius});
   };
   if (result.tip_is_valid) add(result.tip_in_world_mm);
   const tools::Tool* guide = guide_of(setup_.pipeline);
@@ -103,13 +120,15 @@ std::vector<scene::ClearDisc> OperationJob::tool_tips(const pipeline::FrameResul
 void OperationJob::clear_curves() {
   poses_.clear();
   trail_.clear();
+  new_points_.clear();
 }
 
 strokes::Curves OperationJob::curves() const {
   return strokes::digitise(poses_, setup_.pipeline.tools, setup_.pipeline.bone, setup_.pipeline.probe_name);
 }
 
-void OperationJob::set_registration(const registration::RegistrationSummary& registration, bool found_in_this_session) {
+void OperationJob::set_registration(const registration::RegistrationSummary& registration,
+                                    bool found_in_this_session) {
   registration_ = registration;
   pipeline_.set_registration(registration);
   if (recorder_ == nullptr) return;

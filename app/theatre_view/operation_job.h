@@ -14,8 +14,8 @@ class OperationJob {
   explicit OperationJob(const OperationSetup& setup);
   ~OperationJob();
 
-  // The next frame with what is known about it; null at the end of the source. Throws what source and pipeline throw.
-  // published_s is left for the caller.
+  // The next frame with what is known about it; null at the end of the source. Throws what source and
+  // pipeline throw. published_s is left for the caller.
   [[nodiscard]] std::shared_ptr<LiveFrame> step();
 
   void set_digitising(bool on) { digitises_ = on; }
@@ -23,16 +23,19 @@ class OperationJob {
   void clear_curves();
   [[nodiscard]] const std::vector<Eigen::Vector3d>& trail() const { return trail_; }
   [[nodiscard]] strokes::Curves curves() const;
+  // Points that were drawn since the last call, numbered by stroke, for the registration that runs along.
+  [[nodiscard]] strokes::Curves take_new_points();
   void set_registration(const registration::RegistrationSummary& registration, bool found_in_this_session);
 
   [[nodiscard]] bool is_recording() const { return recorder_ != nullptr; }
   void start_recording(const std::filesystem::path& session_folder);  // throws IoError
-  void stop_recording();                                             // throws IoError
+  void stop_recording();                                              // throws IoError
   // Why recording ended by itself; empty while all is well.
   [[nodiscard]] const std::string& recording_error() const { return recording_error_; }
   [[nodiscard]] const sources::SourceInfo& source_info() const;
 
  private:
+  void digitise(const pipeline::FrameResult& result);
   void record(const LiveFrame& live);
   void record_drilled_tunnel();
   void project(LiveFrame& live) const;
@@ -46,6 +49,8 @@ class OperationJob {
   bool digitises_ = false;
   std::vector<strokes::PoseRow> poses_;
   std::vector<Eigen::Vector3d> trail_;
+  strokes::Curves new_points_;
+  std::optional<strokes::CurvePoint> last_point_;
   std::unique_ptr<recording::SessionRecorder> recorder_;
   std::string recording_error_;
   TunnelMeter drilled_;

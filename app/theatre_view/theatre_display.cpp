@@ -12,8 +12,8 @@ namespace {
 using guidance::GuidanceState;
 using Phase = OperationStatus::Phase;
 
-// A picture older than this on the screen is not live. Recorded and simulated pictures may come slowly on a slow
-// machine; half a second is still shorter than a hand needs to trust a frozen screen.
+// A picture older than this on the screen is not live. Recorded and simulated pictures may come slowly on a
+// slow machine; half a second is still shorter than a hand needs to trust a frozen screen.
 constexpr double kStaleAfter_s = 0.5;
 
 std::string tenths(double value) {
@@ -28,7 +28,8 @@ std::string reason_of_marker(const pipeline::FrameResult& result, int marker_id)
   return "";
 }
 
-void explain(TheatreDisplay& display, const OperationStatus& status, const pipeline::PipelineOptions& options) {
+void explain(TheatreDisplay& display, const OperationStatus& status,
+             const pipeline::PipelineOptions& options) {
   const pipeline::FrameResult& result = status.live->result;
   if (result.is_frozen) {
     display.headline = "Picture frozen";
@@ -36,26 +37,31 @@ void explain(TheatreDisplay& display, const OperationStatus& status, const pipel
     return;
   }
   switch (result.guidance.state) {
-    case GuidanceState::Valid: break;
+    case GuidanceState::Valid:
+      break;
     case GuidanceState::NoPlan:
       display.headline = "No plan";
       display.detail = "Plan the tunnel of this bone first";
       break;
     case GuidanceState::NoRegistration:
       display.headline = "Not registered";
-      display.detail = status.is_registering ? "Registering now" : "Touch the bone with the probe, then register";
+      display.detail =
+          status.is_registering ? "Registering now" : "Touch the bone with the probe, then register";
       break;
     case GuidanceState::RegistrationUnreliable:
       display.headline = "Registration not reliable";
-      if (status.registration && !status.registration->reasons.empty()) display.detail = status.registration->reasons.front();
+      if (status.registration && !status.registration->reasons.empty())
+        display.detail = status.registration->reasons.front();
       break;
     case GuidanceState::WorldMarkerLost:
       display.headline = "Bone marker lost";
-      if (const auto* marker = options.tools.find_world_marker(options.bone)) display.detail = reason_of_marker(result, marker->marker_id);
+      if (const auto* marker = options.tools.find_world_marker(options.bone))
+        display.detail = reason_of_marker(result, marker->marker_id);
       break;
     case GuidanceState::GuideLost:
       display.headline = "Drill guide lost";
-      if (const auto* tool = options.tools.find_tool(options.guide_name)) display.detail = reason_of_marker(result, tool->marker_id);
+      if (const auto* tool = options.tools.find_tool(options.guide_name))
+        display.detail = reason_of_marker(result, tool->marker_id);
       break;
     case GuidanceState::LensStale:
       display.headline = "Lens angle unknown";
@@ -70,7 +76,8 @@ void explain(TheatreDisplay& display, const OperationStatus& status, const pipel
 
 }  // namespace
 
-TheatreDisplay display_of(const OperationStatus* status, const pipeline::PipelineOptions* options, double now_s) {
+TheatreDisplay display_of(const OperationStatus* status, const pipeline::PipelineOptions* options,
+                          double now_s) {
   TheatreDisplay display;
   if (status == nullptr || options == nullptr) {
     display.headline = "No picture";
@@ -101,7 +108,8 @@ TheatreDisplay display_of(const OperationStatus* status, const pipeline::Pipelin
   }
   display.is_live = true;
   const pipeline::FrameResult& result = status->live->result;
-  display.overlay_is_valid = result.camera_from_world.is_valid && result.intrinsics_are_known && !result.is_frozen;
+  display.overlay_is_valid =
+      result.camera_from_world.is_valid && result.intrinsics_are_known && !result.is_frozen;
   display.guidance_is_valid = display.overlay_is_valid && result.guidance.is_valid();
   if (display.guidance_is_valid)
     display.guidance = result.guidance;
@@ -130,11 +138,13 @@ widgets::Sign sign_of_remaining(const guidance::GuidanceNumbers& guidance) {
 
 std::string marker_name(const tools::ToolSet& tools, int marker_id) {
   for (const tools::WorldMarker& marker : tools.world_markers)
-    if (marker.marker_id == marker_id) return marker.bone == bones::BoneKind::Femur ? "Femur marker" : "Tibia marker";
+    if (marker.marker_id == marker_id)
+      return marker.bone == bones::BoneKind::Femur ? "Femur marker" : "Tibia marker";
   for (const tools::Tool& tool : tools.tools) {
     if (tool.marker_id != marker_id || tool.name.empty()) continue;
     std::string name = tool.name;
-    if (name.front() >= 'a' && name.front() <= 'z') name.front() = static_cast<char>(name.front() - 'a' + 'A');
+    if (name.front() >= 'a' && name.front() <= 'z')
+      name.front() = static_cast<char>(name.front() - 'a' + 'A');
     return name;
   }
   return "Marker " + std::to_string(marker_id);
@@ -142,13 +152,15 @@ std::string marker_name(const tools::ToolSet& tools, int marker_id) {
 
 BullseyePoint bullseye_point(const guidance::GuidanceNumbers& guidance, const tunnels::Tunnel& plan) {
   const Eigen::Vector3d ahead = plan.direction.normalized();
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ() - ahead.z() * ahead;  // proximal; anterior where the plan runs along the bone
+  Eigen::Vector3d up =
+      Eigen::Vector3d::UnitZ() - ahead.z() * ahead;  // proximal; anterior where the plan runs along the bone
   if (up.norm() < 0.2) up = -Eigen::Vector3d::UnitY() + ahead.y() * ahead;
   up.normalize();
   const Eigen::Vector3d right = ahead.cross(up);
   const double advance = guidance.guide_direction.dot(ahead);
-  const double along = std::abs(advance) > 0.1 ? (plan.entry_mm - guidance.guide_point_mm).dot(ahead) / advance
-                                               : (plan.entry_mm - guidance.guide_point_mm).dot(guidance.guide_direction);
+  const double along = std::abs(advance) > 0.1
+                           ? (plan.entry_mm - guidance.guide_point_mm).dot(ahead) / advance
+                           : (plan.entry_mm - guidance.guide_point_mm).dot(guidance.guide_direction);
   const Eigen::Vector3d offset = guidance.guide_point_mm + along * guidance.guide_direction - plan.entry_mm;
   const auto lean = [&](const Eigen::Vector3d& side) {
     return geometry::deg_from_rad(std::atan2(guidance.guide_direction.dot(side), advance));

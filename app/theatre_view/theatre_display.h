@@ -1,5 +1,6 @@
-// What may stand on the theatre screen at this moment. Every panel asks here, so that the overlay, the guide and the
-// numbers come and go together: what is not valid now is not drawn, and the reason stands in its place.
+// What may stand on the theatre screen at this moment. Every panel asks here, so that the overlay, the guide
+// and the numbers come and go together: what is not valid now is not drawn, and the reason stands in its
+// place.
 #pragma once
 
 #include <string>
@@ -14,16 +15,16 @@ struct TheatreDisplay {
   bool is_live = false;           // ... and it is of now
   bool overlay_is_valid = false;  // the plan's lines belong to this picture
   bool guidance_is_valid = false;
-  std::string headline, detail;   // why not; empty while guidance is valid
+  std::string headline, detail;        // why not; empty while guidance is valid
   guidance::GuidanceNumbers guidance;  // meaningful when guidance_is_valid
 };
 
 // now_s on the clock of Operation::now_s(). status may be null: no operation was started.
-[[nodiscard]] TheatreDisplay display_of(const OperationStatus* status, const pipeline::PipelineOptions* options,
-                                        double now_s);
+[[nodiscard]] TheatreDisplay display_of(const OperationStatus* status,
+                                        const pipeline::PipelineOptions* options, double now_s);
 
-// Good: offset under 1 mm, angle under 2 degrees and a predicted offset error under 1 mm. Caution: under 2 mm and 4
-// degrees. Bad: anything else. The program's own thresholds (methods: quantities of guidance).
+// Good: offset under 1 mm, angle under 2 degrees and a predicted offset error under 1 mm. Caution: under 2 mm
+// and 4 degrees. Bad: anything else. The program's own thresholds (methods: quantities of guidance).
 [[nodiscard]] widgets::Sign sign_of_offset(const guidance::GuidanceNumbers& guidance);
 [[nodiscard]] widgets::Sign sign_of_angle(const guidance::GuidanceNumbers& guidance);
 // Bad where less than 2 mm of the planned length remain, caution below 5 mm.
@@ -35,13 +36,14 @@ struct TheatreDisplay {
 // "probe", "femur marker", ... of a declared marker.
 [[nodiscard]] std::string marker_name(const tools::ToolSet& tools, int marker_id);
 
-// The bullseye's point: where the guide's axis crosses the plane through the entry, seen along the plan with the
-// proximal direction up; mm, x to the right. And how the guide leans there, in degrees the same way.
+// The bullseye's point: where the guide's axis crosses the plane through the entry, seen along the plan with
+// the proximal direction up; mm, x to the right. And how the guide leans there, in degrees the same way.
 struct BullseyePoint {
   double right_mm = 0, up_mm = 0;
   double lean_right_deg = 0, lean_up_deg = 0;
   bool anterior_is_right = true;
 };
-[[nodiscard]] BullseyePoint bullseye_point(const guidance::GuidanceNumbers& guidance, const tunnels::Tunnel& plan);
+[[nodiscard]] BullseyePoint bullseye_point(const guidance::GuidanceNumbers& guidance,
+                                           const tunnels::Tunnel& plan);
 
 }  // namespace arthronaut::theatre_view

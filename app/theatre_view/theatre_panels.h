@@ -9,18 +9,19 @@ namespace arthronaut::theatre_view {
 
 // What the panels read.
 struct TheatreScreen {
-  const OperationStatus* status = nullptr;                 // null: no operation
-  const pipeline::PipelineOptions* options = nullptr;      // of the operation; null with status
+  const OperationStatus* status = nullptr;             // null: no operation
+  const pipeline::PipelineOptions* options = nullptr;  // of the operation; null with status
   const TheatreDisplay& display;
   std::optional<tunnels::Tunnel> plan = std::nullopt;
   double planned_length_mm = 0;
   std::shared_ptr<const geometry::Surface> surface = nullptr;  // of the bone; may be null
-  float overlay_opacity = 1;                               // 0: off
-  std::string title = "", next_step = "";                            // "Simulated operation", "register"
+  float overlay_opacity = 1;                                   // 0: off
+  std::string title = "", next_step = "";                      // "Simulated operation", "register"
 };
 
 // The picture, cut to the round view, with the plan drawn on it.
-void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen, widgets::VideoTexture& texture);
+void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen,
+                widgets::VideoTexture& texture);
 void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen);
 void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen);
 // Markers, lens, registration, probe, record: each with its state and the reason.

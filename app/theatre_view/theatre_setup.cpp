@@ -11,7 +11,9 @@ namespace arthronaut::theatre_view {
 
 namespace {
 
-std::string guide_name_of(bones::BoneKind bone) { return bone == bones::BoneKind::Femur ? "femoral guide" : "tibial guide"; }
+std::string guide_name_of(bones::BoneKind bone) {
+  return bone == bones::BoneKind::Femur ? "femoral guide" : "tibial guide";
+}
 
 OperationSetup setup_of(const planning_view::PlanModel& model, bones::BoneKind bone) {
   OperationSetup setup;
@@ -47,13 +49,15 @@ phantom::PhantomKnee phantom_of(const cases::Case& knee) {
 
 std::string missing_for_simulation(const planning_view::PlanModel& model, bones::BoneKind bone) {
   if (!model.has_bone(bone)) return "the case has no " + std::string(bones::to_text(bone));
-  if (!model.has_bone(bones::BoneKind::Femur) || !model.has_bone(bones::BoneKind::Tibia)) return "the case has only one bone";
+  if (!model.has_bone(bones::BoneKind::Femur) || !model.has_bone(bones::BoneKind::Tibia))
+    return "the case has only one bone";
   if (!model.tunnel(bone)) return "there is no planned tunnel to aim at";
   const landmarks::Landmarks& known = landmarks_of(model.knee(), bone);
   return known.contains("native_footprint") ? "" : "the landmarks of the bone are not known";
 }
 
-OperationSetup simulated_setup(const planning_view::PlanModel& model, bones::BoneKind bone, SimulatedPart part) {
+OperationSetup simulated_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
+                               SimulatedPart part) {
   OperationSetup setup = setup_of(model, bone);
   setup.title = part == SimulatedPart::Scratch ? "Simulated operation: probe" : "Simulated operation: drill";
   setup.pipeline.calibration = simulator::standard_camera();
@@ -69,7 +73,8 @@ OperationSetup simulated_setup(const planning_view::PlanModel& model, bones::Bon
   simulation.refractive_index = setup.pipeline.refractive_index;
   setup.truth = std::make_shared<std::optional<tunnels::Tunnel>>();
   setup.open_source = [simulation, part, truth = setup.truth]() -> std::unique_ptr<sources::FrameSource> {
-    if (part == SimulatedPart::Scratch) return std::make_unique<simulator::SimulatedOperation>(simulation, simulator::Phase::Scratch);
+    if (part == SimulatedPart::Scratch)
+      return std::make_unique<simulator::SimulatedOperation>(simulation, simulator::Phase::Scratch);
     auto operation = std::make_unique<simulator::SimulatedOperation>(simulation, simulator::Phase::Drill);
     *truth = operation->drilled_tunnel();
     return operation;

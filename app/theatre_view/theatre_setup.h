@@ -15,14 +15,15 @@ enum class SimulatedPart { Scratch, Drill };
 // Why the simulated operation can't run on this bone of the case: no plan, no landmarks. Empty when it can.
 [[nodiscard]] std::string missing_for_simulation(const planning_view::PlanModel& model, bones::BoneKind bone);
 // Precondition: missing_for_simulation() is empty. Standard scope and standard tools, in saline.
-[[nodiscard]] OperationSetup simulated_setup(const planning_view::PlanModel& model, bones::BoneKind bone, SimulatedPart part);
+[[nodiscard]] OperationSetup simulated_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
+                                             SimulatedPart part);
 
 // Videos that lie in the case's folder: *.mp4, *.mkv, *.avi, *.mov, by name.
 [[nodiscard]] std::vector<std::filesystem::path> videos_of(const std::filesystem::path& case_folder);
-// A recorded video with the case's camera.json and tools.json. Throws IoError or InvalidInput when those are missing or
-// broken: the message says which.
+// A recorded video with the case's camera.json and tools.json. Throws IoError or InvalidInput when those are
+// missing or broken: the message says which.
 [[nodiscard]] OperationSetup video_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
-                                         const std::filesystem::path& case_folder, const std::filesystem::path& video,
-                                         double refractive_index);
+                                         const std::filesystem::path& case_folder,
+                                         const std::filesystem::path& video, double refractive_index);
 
 }  // namespace arthronaut::theatre_view

@@ -57,7 +57,9 @@ void TheatreView::start(OperationSetup setup) {
 
 void TheatreView::look_along_plan() {
   const auto tunnel = model_->tunnel(choices_.bone);
-  if (!tunnel) return pane_.look(scene::look_from(scene::View::Anterior, model_->knee().side, model_->bounds(choices_.bone), 1));
+  if (!tunnel)
+    return pane_.look(
+        scene::look_from(scene::View::Anterior, model_->knee().side, model_->bounds(choices_.bone), 1));
   const scene::SceneCamera along =
       scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm, 190, Eigen::Vector3d::UnitZ());
   pane_.look(scene::orbited(along, {40, -30}, 600));  // a little from the side: depth is seen too
@@ -83,13 +85,16 @@ void TheatreView::start_video() {
 
 bool TheatreView::is_running() const { return operation_ != nullptr && status_.phase == Phase::Running; }
 
-bool TheatreView::can_simulate() const { return model_ != nullptr && missing_for_simulation(*model_, choices_.bone).empty(); }
+bool TheatreView::can_simulate() const {
+  return model_ != nullptr && missing_for_simulation(*model_, choices_.bone).empty();
+}
 
 std::string TheatreView::next_step() const {
   if (model_ == nullptr) return "open a case";
   if (!model_->tunnel(choices_.bone)) return "plan the tunnel (F1)";
   const bool registered = status_.registration && status_.registration->reliable;
-  if (operation_ == nullptr || status_.phase == Phase::Failed) return can_simulate() ? "start the simulated operation" : "open the next video";
+  if (operation_ == nullptr || status_.phase == Phase::Failed)
+    return can_simulate() ? "start the simulated operation" : "open the next video";
   if (status_.is_registering) return "wait for the registration";
   if (!registered && status_.trail->size() >= kEnoughPoints) return "register what was touched";
   if (registered && (part_ == SimulatedPart::Scratch || !is_running()) && can_simulate()) return "drill";
@@ -119,7 +124,8 @@ void TheatreView::toggle_recording() {
 
 float TheatreView::overlay_opacity(double now_s) const {
   if (!choices_.overlay_on) return 0;
-  const double faded = std::clamp((now_s - choices_.overlay_shown_at_s - kOverlayFull_s) / kOverlayFading_s, 0.0, 1.0);
+  const double faded =
+      std::clamp((now_s - choices_.overlay_shown_at_s - kOverlayFull_s) / kOverlayFading_s, 0.0, 1.0);
   return 1 - static_cast<float>(faded) * (1 - kOverlayFaded);
 }
 
@@ -131,7 +137,8 @@ void TheatreView::cycle_overlay() {
 }
 
 bool TheatreView::is_busy() const {
-  return operation_ != nullptr && (status_.phase == Phase::Running || status_.phase == Phase::Starting || status_.is_registering);
+  return operation_ != nullptr &&
+         (status_.phase == Phase::Running || status_.phase == Phase::Starting || status_.is_registering);
 }
 
 void TheatreView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
@@ -172,7 +179,9 @@ void TheatreView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
 
   ui.log.note_state("guidance", display.guidance_is_valid ? "valid" : display.headline);
   ui.log.note_state("next", screen.next_step);
-  ui.log.note_state("registration", !status_.registration ? "none" : status_.registration->reliable ? "reliable" : "unreliable");
+  ui.log.note_state("registration", !status_.registration            ? "none"
+                                    : status_.registration->reliable ? "reliable"
+                                                                     : "unreliable");
   ui.log.note_state("recording", status_.recording.empty() ? "off" : "on");
   ui.log.note_state("picture", !display.has_picture ? "none" : display.is_live ? "live" : "old");
 }
@@ -181,15 +190,19 @@ void TheatreView::show_scene(const TheatreScreen& screen) {
   scene::SceneContent content;
   content.bones.push_back({model_->drawn_mesh(choices_.bone), scene::kBoneColor, 1.0});
   if (screen.plan) scene::add_planned_tunnel(content, *screen.plan, screen.planned_length_mm);
-  const bool has_pose = status_.registration && status_.registration->has_pose && status_.registration->reliable;
+  const bool has_pose =
+      status_.registration && status_.registration->has_pose && status_.registration->reliable;
   if (has_pose && screen.status != nullptr) {
     const geometry::RigidTransform bone_from_marker = status_.registration->marker_from_bone.inverse();
     std::vector<Eigen::Vector3d> touched;
     for (const Eigen::Vector3d& point : *status_.trail) touched.push_back(bone_from_marker * point);
     scene::add_curve_points(content, touched);
     if (screen.display.overlay_is_valid && status_.live->result.tip_is_valid)
-      content.balls.push_back({bone_from_marker * status_.live->result.tip_in_world_mm, 2.5, scene::kGuideColor, false});
+      content.balls.push_back(
+          {bone_from_marker * status_.live->result.tip_in_world_mm, 2.5, scene::kGuideColor, false});
   }
+  if (status_.online != nullptr && status_.digitises && status_.online->coach.next_patch_in_bone_mm)
+    content.balls.push_back({*status_.online->coach.next_patch_in_bone_mm, 5, scene::kAchievedColor, false});
   if (screen.display.guidance_is_valid) {
     const guidance::GuidanceNumbers& g = screen.display.guidance;
     scene::add_guide(content, g.guide_point_mm, g.guide_direction, std::max(g.remaining_mm, 5.0));
@@ -202,11 +215,16 @@ void TheatreView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area, c
   show_scene(screen);
   pane_.draw(ui, "operate.view", area);
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const std::string label = screen.display.guidance_is_valid ? "Drill guide and plan" : "Plan; the guide is not known now";
+  const std::string label =
+      screen.display.guidance_is_valid ? "Drill guide and plan"
+      : status_.online != nullptr && status_.digitises && status_.online->coach.next_patch_in_bone_mm
+          ? "Orange ball: touch there next"
+          : "Plan; the guide is not known now";
   const ImVec2 wide = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, label.c_str());
-  draw.AddRectFilled(area.min(), {area.x + wide.x + ui.theme.px(28), area.y + wide.y + ui.theme.px(18)}, IM_COL32(12, 15, 19, 200),
-                     ui.theme.px(6));
-  draw.AddText(ui.theme.strong, ui.theme.strong->FontSize, {area.x + ui.theme.px(14), area.y + ui.theme.px(9)},
+  draw.AddRectFilled(area.min(), {area.x + wide.x + ui.theme.px(28), area.y + wide.y + ui.theme.px(18)},
+                     IM_COL32(12, 15, 19, 200), ui.theme.px(6));
+  draw.AddText(ui.theme.strong, ui.theme.strong->FontSize,
+               {area.x + ui.theme.px(14), area.y + ui.theme.px(9)},
                screen.display.guidance_is_valid ? widgets::kQuietText : widgets::kCaution, label.c_str());
 }
 

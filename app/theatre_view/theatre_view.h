@@ -1,5 +1,5 @@
-// Navigation mode: the live picture with the plan on it, beside it the guide relative to the plan, numbers and states.
-// Made to be worked by three keys of a pedal: Space does the next sensible step.
+// Navigation mode: the live picture with the plan on it, beside it the guide relative to the plan, numbers
+// and states. Made to be worked by three keys of a pedal: Space does the next sensible step.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,8 @@ class TheatreView {
   TheatreView(std::function<void()> make_current, std::function<void()> wake);
   ~TheatreView();
 
-  // Another case; ends what runs. The model is read whenever an operation is started; it outlives this view's use.
+  // Another case; ends what runs. The model is read whenever an operation is started; it outlives this view's
+  // use.
   void open(const planning_view::PlanModel* model, const std::filesystem::path& case_folder);
   void add_actions(widgets::Actions& actions);
   void draw(const widgets::Ui& ui, const widgets::Rect& area);

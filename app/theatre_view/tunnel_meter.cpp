@@ -22,7 +22,8 @@ template <typename Vector>
 Eigen::Vector3d median_vector(const std::vector<guidance::GuidanceNumbers>& poses, const Vector& vector) {
   Eigen::Vector3d result;
   for (int axis = 0; axis < 3; ++axis)
-    result[axis] = median_of(poses, [&](const guidance::GuidanceNumbers& pose) { return vector(pose)[axis]; });
+    result[axis] =
+        median_of(poses, [&](const guidance::GuidanceNumbers& pose) { return vector(pose)[axis]; });
   return result;
 }
 
@@ -39,7 +40,8 @@ void TunnelMeter::add(const guidance::GuidanceNumbers& guidance) {
   double deepest = guidance.depth_mm;
   for (const guidance::GuidanceNumbers& pose : deepest_) deepest = std::max(deepest, pose.depth_mm);
   if (guidance.depth_mm < deepest - kWindow_mm) return;
-  std::erase_if(deepest_, [&](const guidance::GuidanceNumbers& pose) { return pose.depth_mm < deepest - kWindow_mm; });
+  std::erase_if(deepest_,
+                [&](const guidance::GuidanceNumbers& pose) { return pose.depth_mm < deepest - kWindow_mm; });
   deepest_.push_back(guidance);
 }
 
@@ -48,15 +50,19 @@ std::optional<recording::AchievedTunnel> TunnelMeter::measured(const tunnels::Tu
   recording::AchievedTunnel achieved;
   achieved.planned = planned;
   achieved.measured = planned;  // bone and diameter: the drill is the planned one
-  achieved.measured.direction =
-      median_vector(deepest_, [](const guidance::GuidanceNumbers& pose) { return pose.guide_direction; }).normalized();
-  achieved.measured.entry_mm =
-      median_vector(deepest_, [&](const guidance::GuidanceNumbers& pose) { return crossing_of(pose, planned); });
-  achieved.depth_mm = median_of(deepest_, [](const guidance::GuidanceNumbers& pose) { return pose.depth_mm; });
+  achieved.measured.direction = median_vector(deepest_, [](const guidance::GuidanceNumbers& pose) {
+                                  return pose.guide_direction;
+                                }).normalized();
+  achieved.measured.entry_mm = median_vector(
+      deepest_, [&](const guidance::GuidanceNumbers& pose) { return crossing_of(pose, planned); });
+  achieved.depth_mm =
+      median_of(deepest_, [](const guidance::GuidanceNumbers& pose) { return pose.depth_mm; });
   achieved.timestamp_ns = deepest_.back().timestamp_ns;
   achieved.pose_count = static_cast<int>(deepest_.size());
-  achieved.sigma_offset_mm = median_of(deepest_, [](const guidance::GuidanceNumbers& pose) { return pose.sigma_offset_mm; });
-  achieved.sigma_angle_deg = median_of(deepest_, [](const guidance::GuidanceNumbers& pose) { return pose.sigma_angle_deg; });
+  achieved.sigma_offset_mm =
+      median_of(deepest_, [](const guidance::GuidanceNumbers& pose) { return pose.sigma_offset_mm; });
+  achieved.sigma_angle_deg =
+      median_of(deepest_, [](const guidance::GuidanceNumbers& pose) { return pose.sigma_angle_deg; });
   return achieved;
 }
 

@@ -13,8 +13,8 @@ class TunnelMeter {
  public:
   // Numbers that are not valid are ignored.
   void add(const guidance::GuidanceNumbers& guidance);
-  // Nothing while the guide was never deeper than 5 mm. Else the median axis of the poses within 1 mm of the greatest depth;
-  // its entry is where that axis crosses the plane through the planned entry across the plan.
+  // Nothing while the guide was never deeper than 5 mm. Else the median axis of the poses within 1 mm of the
+  // greatest depth; its entry is where that axis crosses the plane through the planned entry across the plan.
   [[nodiscard]] std::optional<recording::AchievedTunnel> measured(const tunnels::Tunnel& planned) const;
 
  private:

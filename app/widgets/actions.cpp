@@ -9,28 +9,48 @@ namespace arthronaut::widgets {
 namespace {
 
 std::string plain_key_name(int key) {
-  if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) return std::string(1, static_cast<char>('A' + key - GLFW_KEY_A));
-  if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) return std::string(1, static_cast<char>('0' + key - GLFW_KEY_0));
+  if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z)
+    return std::string(1, static_cast<char>('A' + key - GLFW_KEY_A));
+  if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9)
+    return std::string(1, static_cast<char>('0' + key - GLFW_KEY_0));
   if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F12) return "F" + std::to_string(key - GLFW_KEY_F1 + 1);
   switch (key) {
-    case GLFW_KEY_SPACE: return "Space";
-    case GLFW_KEY_TAB: return "Tab";
-    case GLFW_KEY_ENTER: return "Enter";
-    case GLFW_KEY_ESCAPE: return "Esc";
-    case GLFW_KEY_LEFT: return "\u2190";
-    case GLFW_KEY_RIGHT: return "\u2192";
-    case GLFW_KEY_UP: return "\u2191";
-    case GLFW_KEY_DOWN: return "\u2193";
-    case GLFW_KEY_HOME: return "Home";
-    case GLFW_KEY_END: return "End";
-    case GLFW_KEY_PAGE_UP: return "Page up";
-    case GLFW_KEY_PAGE_DOWN: return "Page down";
-    case GLFW_KEY_DELETE: return "Del";
-    case GLFW_KEY_COMMA: return ",";
-    case GLFW_KEY_PERIOD: return ".";
-    case GLFW_KEY_MINUS: return "-";
-    case GLFW_KEY_EQUAL: return "+";
-    default: return "";
+    case GLFW_KEY_SPACE:
+      return "Space";
+    case GLFW_KEY_TAB:
+      return "Tab";
+    case GLFW_KEY_ENTER:
+      return "Enter";
+    case GLFW_KEY_ESCAPE:
+      return "Esc";
+    case GLFW_KEY_LEFT:
+      return "\u2190";
+    case GLFW_KEY_RIGHT:
+      return "\u2192";
+    case GLFW_KEY_UP:
+      return "\u2191";
+    case GLFW_KEY_DOWN:
+      return "\u2193";
+    case GLFW_KEY_HOME:
+      return "Home";
+    case GLFW_KEY_END:
+      return "End";
+    case GLFW_KEY_PAGE_UP:
+      return "Page up";
+    case GLFW_KEY_PAGE_DOWN:
+      return "Page down";
+    case GLFW_KEY_DELETE:
+      return "Del";
+    case GLFW_KEY_COMMA:
+      return ",";
+    case GLFW_KEY_PERIOD:
+      return ".";
+    case GLFW_KEY_MINUS:
+      return "-";
+    case GLFW_KEY_EQUAL:
+      return "+";
+    default:
+      return "";
   }
 }
 
@@ -39,12 +59,13 @@ std::string plain_key_name(int key) {
 std::string key_name(int key, int mods) {
   const std::string plain = plain_key_name(key);
   if (plain.empty()) return "";
-  return std::string((mods & GLFW_MOD_CONTROL) != 0 ? "Ctrl+" : "") + ((mods & GLFW_MOD_ALT) != 0 ? "Alt+" : "") +
-         ((mods & GLFW_MOD_SHIFT) != 0 ? "Shift+" : "") + plain;
+  return std::string((mods & GLFW_MOD_CONTROL) != 0 ? "Ctrl+" : "") +
+         ((mods & GLFW_MOD_ALT) != 0 ? "Alt+" : "") + ((mods & GLFW_MOD_SHIFT) != 0 ? "Shift+" : "") + plain;
 }
 
 void Actions::add(Action action) {
-  const auto same = std::find_if(actions_.begin(), actions_.end(), [&](const Action& a) { return a.id == action.id; });
+  const auto same =
+      std::find_if(actions_.begin(), actions_.end(), [&](const Action& a) { return a.id == action.id; });
   if (same != actions_.end())
     *same = std::move(action);
   else
@@ -52,7 +73,8 @@ void Actions::add(Action action) {
 }
 
 const Action* Actions::find(std::string_view id) const {
-  const auto found = std::find_if(actions_.begin(), actions_.end(), [&](const Action& a) { return a.id == id; });
+  const auto found =
+      std::find_if(actions_.begin(), actions_.end(), [&](const Action& a) { return a.id == id; });
   return found == actions_.end() ? nullptr : &*found;
 }
 

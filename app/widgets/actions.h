@@ -1,5 +1,5 @@
-// Everything the user can do, once: name, words, key, when it is possible, and the doing. Buttons, keys, the key list
-// and tests all go through it.
+// Everything the user can do, once: name, words, key, when it is possible, and the doing. Buttons, keys, the
+// key list and tests all go through it.
 #pragma once
 
 #include <functional>
@@ -17,9 +17,9 @@ struct Action {
   std::string tooltip;  // a sentence
   int key = 0;          // GLFW_KEY_*; 0: none
   int mods = 0;
-  bool repeats = false;                // while the key is held
-  std::function<bool()> is_enabled;    // empty: always
-  std::function<bool()> is_on;         // for switches; empty: not a switch
+  bool repeats = false;              // while the key is held
+  std::function<bool()> is_enabled;  // empty: always
+  std::function<bool()> is_on;       // for switches; empty: not a switch
   std::function<void()> run;
 };
 

@@ -13,7 +13,8 @@ ImVec2 text_size(ImFont* font, std::string_view text, float wrap = 0) {
   return font->CalcTextSizeA(font->FontSize, 1e9F, wrap, text.data(), text.data() + text.size());
 }
 
-void draw_text(ImDrawList& draw, ImFont* font, const ImVec2& at, ImU32 color, std::string_view text, float wrap = 0) {
+void draw_text(ImDrawList& draw, ImFont* font, const ImVec2& at, ImU32 color, std::string_view text,
+               float wrap = 0) {
   draw.AddText(font, font->FontSize, at, color, text.data(), text.data() + text.size(), wrap);
 }
 
@@ -21,10 +22,14 @@ void draw_text(ImDrawList& draw, ImFont* font, const ImVec2& at, ImU32 color, st
 
 ImU32 color_of(Sign sign) {
   switch (sign) {
-    case Sign::Good: return kGood;
-    case Sign::Caution: return kCaution;
-    case Sign::Bad: return kBad;
-    case Sign::Quiet: return kQuietText;
+    case Sign::Good:
+      return kGood;
+    case Sign::Caution:
+      return kCaution;
+    case Sign::Bad:
+      return kBad;
+    case Sign::Quiet:
+      return kQuietText;
   }
   return kQuietText;
 }
@@ -61,7 +66,8 @@ void action_button(const Ui& ui, std::string_view action_id, float width, float 
   const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax();
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const ImGuiCol fill = held ? ImGuiCol_ButtonActive : hovered ? ImGuiCol_ButtonHovered : ImGuiCol_Button;
-  draw.AddRectFilled(min, max, is_on ? IM_COL32(28, 74, 104, 255) : ImGui::GetColorU32(fill), style.FrameRounding);
+  draw.AddRectFilled(min, max, is_on ? IM_COL32(28, 74, 104, 255) : ImGui::GetColorU32(fill),
+                     style.FrameRounding);
   if (is_on) draw.AddRect(min, max, kAccent, style.FrameRounding, 0, ui.theme.px(2));
   const ImU32 text = enabled ? kText : IM_COL32(104, 115, 126, 255);
   const float middle = (min.y + max.y) / 2;
@@ -69,7 +75,8 @@ void action_button(const Ui& ui, std::string_view action_id, float width, float 
   draw.PushClipRect(min, max, true);
   draw_text(draw, ui.theme.body, {left, middle - label_size.y / 2}, text, action->label);
   if (!key.empty())
-    draw_text(draw, ui.theme.body, {max.x - style.FramePadding.x - text_size(ui.theme.body, key).x, middle - label_size.y / 2},
+    draw_text(draw, ui.theme.body,
+              {max.x - style.FramePadding.x - text_size(ui.theme.body, key).x, middle - label_size.y / 2},
               enabled ? kQuietText : IM_COL32(84, 94, 104, 255), key);
   draw.PopClipRect();
   if (hovered && !action->tooltip.empty()) ImGui::SetTooltip("%s", action->tooltip.c_str());
@@ -87,7 +94,8 @@ void draw_sign(ImDrawList& draw, const ImVec2& c, float r, Sign sign) {
       draw.AddLine({c.x - 0.10F * r, c.y + 0.40F * r}, {c.x + 0.50F * r, c.y - 0.35F * r}, ink, line);
       break;
     case Sign::Caution:
-      draw.AddTriangleFilled({c.x, c.y - 1.1F * r}, {c.x + 1.15F * r, c.y + 0.9F * r}, {c.x - 1.15F * r, c.y + 0.9F * r}, color);
+      draw.AddTriangleFilled({c.x, c.y - 1.1F * r}, {c.x + 1.15F * r, c.y + 0.9F * r},
+                             {c.x - 1.15F * r, c.y + 0.9F * r}, color);
       draw.AddLine({c.x, c.y - 0.4F * r}, {c.x, c.y + 0.30F * r}, ink, line);
       draw.AddCircleFilled({c.x, c.y + 0.62F * r}, line * 0.6F, ink);
       break;
@@ -96,7 +104,9 @@ void draw_sign(ImDrawList& draw, const ImVec2& c, float r, Sign sign) {
       draw.AddLine({c.x - 0.45F * r, c.y - 0.45F * r}, {c.x + 0.45F * r, c.y + 0.45F * r}, ink, line);
       draw.AddLine({c.x - 0.45F * r, c.y + 0.45F * r}, {c.x + 0.45F * r, c.y - 0.45F * r}, ink, line);
       break;
-    case Sign::Quiet: draw.AddCircle(c, 0.8F * r, color, 24, line * 0.7F); break;
+    case Sign::Quiet:
+      draw.AddCircle(c, 0.8F * r, color, 24, line * 0.7F);
+      break;
   }
 }
 
@@ -127,7 +137,8 @@ float number_width(ImFont* font, std::string_view text) {
   float width = 0;
   for (std::size_t i = 0; i < text.size();) {
     std::size_t length = 1;
-    while (i + length < text.size() && (static_cast<unsigned char>(text[i + length]) & 0xC0U) == 0x80U) ++length;
+    while (i + length < text.size() && (static_cast<unsigned char>(text[i + length]) & 0xC0U) == 0x80U)
+      ++length;
     const bool is_digit = text[i] >= '0' && text[i] <= '9';
     width += is_digit ? digit : text_size(font, text.substr(i, length)).x;
     i += length;
@@ -140,7 +151,8 @@ float draw_number(ImDrawList& draw, ImFont* font, const ImVec2& at, ImU32 color,
   float x = at.x;
   for (std::size_t i = 0; i < text.size();) {
     std::size_t length = 1;
-    while (i + length < text.size() && (static_cast<unsigned char>(text[i + length]) & 0xC0U) == 0x80U) ++length;
+    while (i + length < text.size() && (static_cast<unsigned char>(text[i + length]) & 0xC0U) == 0x80U)
+      ++length;
     const std::string_view glyph = text.substr(i, length);
     const float own = text_size(font, glyph).x;
     const bool is_digit = text[i] >= '0' && text[i] <= '9';
@@ -164,7 +176,8 @@ void number_block(const Ui& ui, const Rect& rect, std::string_view name, std::st
   draw_text(draw, theme.strong, {x, rect.y}, kQuietText, name);
   const float top = rect.y + theme.strong->FontSize * 1.05F;
   const float width = draw_number(draw, theme.number, {rect.x, top}, color, value);
-  draw_text(draw, theme.strong, {rect.x + width + theme.px(8), top + theme.number->FontSize * 0.86F - theme.strong->FontSize},
+  draw_text(draw, theme.strong,
+            {rect.x + width + theme.px(8), top + theme.number->FontSize * 0.86F - theme.strong->FontSize},
             kQuietText, unit);
 }
 

@@ -31,7 +31,8 @@ enum class Sign {
 void begin_panel(const Ui& ui, const char* name, const Rect& rect, std::string_view title = {});
 void end_panel();
 
-// A button for an action: its label, its key, greyed while it is not possible. Width 0: as wide as the label needs.
+// A button for an action: its label, its key, greyed while it is not possible. Width 0: as wide as the label
+// needs.
 void action_button(const Ui& ui, std::string_view action_id, float width = 0, float height = 0);
 
 void draw_sign(ImDrawList& draw, const ImVec2& center, float radius, Sign sign);
@@ -46,8 +47,9 @@ float draw_number(ImDrawList& draw, ImFont* font, const ImVec2& at, ImU32 color,
 void number_block(const Ui& ui, const Rect& rect, std::string_view name, std::string_view value,
                   std::string_view unit, Sign sign);
 
-void text_in(ImFont* font, ImU32 color, std::string_view text);          // wraps in the panel
-void text_centered(const Ui& ui, const Rect& rect, ImFont* font, ImU32 color, std::string_view text);  // wraps
+void text_in(ImFont* font, ImU32 color, std::string_view text);  // wraps in the panel
+void text_centered(const Ui& ui, const Rect& rect, ImFont* font, ImU32 color,
+                   std::string_view text);  // wraps
 
 // "1.2", "-0.4"; a minus sign of the width of the plus sign; never "-0.0".
 [[nodiscard]] std::string fixed(double value, int decimals);

@@ -6,8 +6,6 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 
-#include <algorithm>
-
 #include "planning/geometry/error.h"
 
 namespace arthronaut::widgets {
@@ -20,24 +18,30 @@ struct GraphicsWindow::State {
   static void on_key(GLFWwindow* window, int key, int /*scancode*/, int action, int mods) {
     if (action == GLFW_RELEASE) return;
     constexpr int kOurs = GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT;
-    static_cast<State*>(glfwGetWindowUserPointer(window))->arriving.push_back({key, mods & kOurs, action == GLFW_REPEAT});
+    static_cast<State*>(glfwGetWindowUserPointer(window))
+        ->arriving.push_back({key, mods & kOurs, action == GLFW_REPEAT});
   }
 };
 
-GraphicsWindow::GraphicsWindow(const std::string& title, int width, int height) : state_(std::make_unique<State>()) {
+GraphicsWindow::GraphicsWindow(const std::string& title) : state_(std::make_unique<State>()) {
   if (glfwInit() == GLFW_FALSE) {
     const char* reason = nullptr;
     glfwGetError(&reason);
-    throw DeviceError(std::string("no display to open a window on") + (reason != nullptr ? std::string(": ") + reason : ""));
+    throw DeviceError(std::string("no display to open a window on") +
+                      (reason != nullptr ? std::string(": ") + reason : ""));
   }
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
   glfwWindowHint(GLFW_SAMPLES, 0);
-  if (const GLFWvidmode* mode = glfwGetVideoMode(glfwGetPrimaryMonitor()); mode != nullptr) {
-    width = std::min(width, mode->width);
-    height = std::min(height, mode->height);
+  // The whole screen: a window manager keeps its bars, and where there is none the window fills the display.
+  glfwWindowHint(GLFW_MAXIMIZED, GLFW_TRUE);
+  int width = 1920, height = 1080;
+  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  if (const GLFWvidmode* mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr; mode != nullptr) {
+    width = mode->width;
+    height = mode->height;
   }
   state_->window = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (state_->window == nullptr) {

@@ -1,7 +1,7 @@
 // The one window, its OpenGL context and ImGui. One thread owns all of it: the one that made it.
 //
-// Frame order: poll -> drain queues and actions (logic) -> build UI -> render the scenes that are dirty -> draw UI ->
-// swap. begin_frame() is the first step, end_frame() the last two.
+// Frame order: poll -> drain queues and actions (logic) -> build UI -> render the scenes that are dirty ->
+// draw UI -> swap. begin_frame() is the first step, end_frame() the last two.
 #pragma once
 
 #include <memory>
@@ -20,8 +20,8 @@ struct KeyPress {
 
 class GraphicsWindow {
  public:
-  // Throws DeviceError when there is no display or no OpenGL 3.3.
-  GraphicsWindow(const std::string& title, int width, int height);
+  // As large as the screen. Throws DeviceError when there is no display or no OpenGL 3.3.
+  explicit GraphicsWindow(const std::string& title);
   ~GraphicsWindow();
   GraphicsWindow(const GraphicsWindow&) = delete;
   GraphicsWindow& operator=(const GraphicsWindow&) = delete;

@@ -70,7 +70,8 @@ void ScenePane::follow_mouse(const PaneInput& input) {
 void ScenePane::render(const Ui& ui, const Rect& rect) {
   if (!(camera_ == drawn_camera_)) changed_ = true;
   if (changed_) changed_at_s_ = ui.now_s;
-  const bool is_still = ui.now_s - changed_at_s_ > kStillAfter_s && rect.width * rect.height * 4 < kMostPixelsWhenStill;
+  const bool is_still =
+      ui.now_s - changed_at_s_ > kStillAfter_s && rect.width * rect.height * 4 < kMostPixelsWhenStill;
   const float factor = is_still ? 2 : 1;
   view_.resize(static_cast<int>(rect.width * factor), static_cast<int>(rect.height * factor));
   view_.look(camera_);
@@ -78,8 +79,8 @@ void ScenePane::render(const Ui& ui, const Rect& rect) {
   drawn_camera_ = camera_;
   changed_ = false;
   const auto texture = static_cast<std::uintptr_t>(view_.texture());
-  ImGui::GetWindowDrawList()->AddImageRounded(reinterpret_cast<ImTextureID>(texture), rect.min(), rect.max(), {0, 1},
-                                              {1, 0}, IM_COL32_WHITE, ui.theme.px(6));
+  ImGui::GetWindowDrawList()->AddImageRounded(reinterpret_cast<ImTextureID>(texture), rect.min(), rect.max(),
+                                              {0, 1}, {1, 0}, IM_COL32_WHITE, ui.theme.px(6));
 }
 
 }  // namespace arthronaut::widgets

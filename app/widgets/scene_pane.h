@@ -15,8 +15,8 @@ struct PaneInput {
   bool is_hovered = false;
   Eigen::Vector2d mouse_px = Eigen::Vector2d::Zero();
   Eigen::Vector2d size_px = Eigen::Vector2d::Ones();
-  bool was_clicked = false;      // pressed and let go in one place
-  bool handle_pressed = false;   // pressed on a handle, see below
+  bool was_clicked = false;     // pressed and let go in one place
+  bool handle_pressed = false;  // pressed on a handle, see below
   bool handle_dragged = false;
   bool handle_released = false;
 };
@@ -31,8 +31,9 @@ class ScenePane {
   // Turning by the mouse can be switched off where the program holds the camera.
   void set_held(bool held) { is_held_ = held; }
 
-  // Left drag turns, right or middle drag shifts, the wheel zooms; a press where is_handle(pixel) holds drags the
-  // handle instead. While nothing moves the picture is drawn once more at twice the size, for smooth edges.
+  // Left drag turns, right or middle drag shifts, the wheel zooms; a press where is_handle(pixel) holds drags
+  // the handle instead. While nothing moves the picture is drawn once more at twice the size, for smooth
+  // edges.
   PaneInput draw(const Ui& ui, const char* name, const Rect& rect,
                  const std::function<bool(const Eigen::Vector2d&)>& is_handle = {});
 

@@ -10,10 +10,9 @@ namespace arthronaut::widgets {
 namespace {
 
 using Paths = std::array<const char*, 4>;
-constexpr Paths kRegular{"/usr/share/fonts/opentype/inter/Inter-Regular.otf",
-                         "/usr/share/fonts/truetype/inter/Inter-Regular.ttf",
-                         "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
-                         "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf"};
+constexpr Paths kRegular{
+    "/usr/share/fonts/opentype/inter/Inter-Regular.otf", "/usr/share/fonts/truetype/inter/Inter-Regular.ttf",
+    "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf"};
 constexpr Paths kSemiBold{"/usr/share/fonts/opentype/inter/Inter-SemiBold.otf",
                           "/usr/share/fonts/truetype/inter/Inter-SemiBold.ttf",
                           "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf",
@@ -21,7 +20,8 @@ constexpr Paths kSemiBold{"/usr/share/fonts/opentype/inter/Inter-SemiBold.otf",
 
 ImFont* add_font(const Paths& paths, float size_px) {
   // Latin with accents; dashes and the ellipsis; Greek sigma; arrows; the minus sign.
-  static constexpr std::array<ImWchar, 11> kGlyphs{0x20, 0x17F, 0x2010, 0x2026, 0x3C3, 0x3C3, 0x2190, 0x2193, 0x2212, 0x2212, 0};
+  static constexpr std::array<ImWchar, 11> kGlyphs{0x20,   0x17F,  0x2010, 0x2026, 0x3C3, 0x3C3,
+                                                   0x2190, 0x2193, 0x2212, 0x2212, 0};
   ImFontConfig config;
   config.OversampleH = 2;
   config.OversampleV = 1;

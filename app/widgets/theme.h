@@ -1,5 +1,5 @@
-// Colours, type and sizes of every screen: dark, calm, read from two metres. Sizes are for a window 1080 pixels high
-// and scale with it, so that a screen looks alike at 720, 1080 and 2160 lines.
+// Colours, type and sizes of every screen: dark, calm, read from two metres. Sizes are for a window 1080
+// pixels high and scale with it, so that a screen looks alike at 720, 1080 and 2160 lines.
 #pragma once
 
 #include <imgui.h>
@@ -9,11 +9,11 @@
 namespace arthronaut::widgets {
 
 struct Theme {
-  float scale = 1;          // of all sizes
-  ImFont* body = nullptr;   // 24 px at scale 1
-  ImFont* strong = nullptr; // 24 px, semi-bold
-  ImFont* title = nullptr;  // 34 px
-  ImFont* number = nullptr; // 64 px
+  float scale = 1;           // of all sizes
+  ImFont* body = nullptr;    // 24 px at scale 1
+  ImFont* strong = nullptr;  // 24 px, semi-bold
+  ImFont* title = nullptr;   // 34 px
+  ImFont* number = nullptr;  // 64 px
   [[nodiscard]] float px(float size_at_1080) const { return size_at_1080 * scale; }
 };
 
@@ -31,8 +31,8 @@ inline constexpr ImU32 kBad = IM_COL32(255, 112, 92, 255);
 
 // The scale for a window of this size.
 [[nodiscard]] float scale_for(int width_px, int height_px);
-// (Re)builds fonts and style for a scale. Inter where it is installed, DejaVu Sans else, ImGui's own as the last
-// resort. Between frames only; the caller refreshes the font texture.
+// (Re)builds fonts and style for a scale. Inter where it is installed, DejaVu Sans else, ImGui's own as the
+// last resort. Between frames only; the caller refreshes the font texture.
 [[nodiscard]] Theme build_theme(float scale);
 
 }  // namespace arthronaut::widgets

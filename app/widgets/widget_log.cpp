@@ -8,7 +8,8 @@ namespace arthronaut::widgets {
 void WidgetLog::note(std::string_view name, const ImVec2& min, const ImVec2& max) {
   if (!prints_) return;
   frame_ += "WIDGET " + std::string(name);
-  for (const float value : {min.x, min.y, max.x - min.x, max.y - min.y}) frame_ += " " + std::to_string(std::lround(value));
+  for (const float value : {min.x, min.y, max.x - min.x, max.y - min.y})
+    frame_ += " " + std::to_string(std::lround(value));
   frame_ += "\n";
 }
 
@@ -17,7 +18,8 @@ void WidgetLog::note_state(std::string_view key, std::string_view value) {
   const auto known = states_.find(key);
   if (known != states_.end() && known->second == value) return;
   states_.insert_or_assign(std::string(key), std::string(value));
-  std::printf("STATE %.*s %.*s\n", static_cast<int>(key.size()), key.data(), static_cast<int>(value.size()), value.data());
+  std::printf("STATE %.*s %.*s\n", static_cast<int>(key.size()), key.data(), static_cast<int>(value.size()),
+              value.data());
   std::fflush(stdout);
 }
 

@@ -8,7 +8,8 @@ void draw_key_list(const widgets::Ui& ui, std::string_view mode) {
   const std::string_view prefix = mode == "plan" ? "plan." : mode == "navigate" ? "operate." : "review.";
   std::vector<const widgets::Action*> shown;
   for (const widgets::Action& action : ui.actions.all()) {
-    const bool here = action.id.starts_with("app.") || action.id.starts_with("mode.") || action.id.starts_with(prefix);
+    const bool here =
+        action.id.starts_with("app.") || action.id.starts_with("mode.") || action.id.starts_with(prefix);
     if (here && action.key != 0) shown.push_back(&action);
   }
   const ImVec2 size = ImGui::GetIO().DisplaySize;

@@ -38,7 +38,8 @@ void PlanHistory::apply(const planning_view::PlanEdit& edit, double now_s) {
   if (!history_->is_dragging()) history_->begin_drag();
   movement_ = edit.what;
   moved_at_s_ = now_s;
-  const commands::TunnelSetter set = [model = model_](bones::BoneKind bone, const std::optional<tunnels::Tunnel>& tunnel) {
+  const commands::TunnelSetter set = [model = model_](bones::BoneKind bone,
+                                                      const std::optional<tunnels::Tunnel>& tunnel) {
     model->set_tunnel(bone, tunnel);
   };
   history_->execute(commands::set_tunnel(set, edit.bone, model_->tunnel(edit.bone), edit.tunnel, edit.what));
@@ -60,7 +61,9 @@ void PlanHistory::redo() {
   describe();
 }
 
-bool PlanHistory::can_undo() const { return history_ != nullptr && (history_->is_dragging() || history_->can_undo()); }
+bool PlanHistory::can_undo() const {
+  return history_ != nullptr && (history_->is_dragging() || history_->can_undo());
+}
 bool PlanHistory::can_redo() const { return history_ != nullptr && history_->can_redo(); }
 
 void PlanHistory::settle(double now_s) {

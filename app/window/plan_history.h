@@ -1,5 +1,5 @@
-// Carries out the edits of the plan mode: each becomes a step of the undo history and is saved. Edits that follow each
-// other as one movement (a drag, a key held down) are one step, saved when the hand rests.
+// Carries out the edits of the plan mode: each becomes a step of the undo history and is saved. Edits that
+// follow each other as one movement (a drag, a key held down) are one step, saved when the hand rests.
 #pragma once
 
 #include <filesystem>

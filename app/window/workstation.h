@@ -8,7 +8,7 @@ namespace arthronaut::window {
 struct WorkstationOptions {
   std::filesystem::path case_folder;  // empty: the built-in phantom case
   long frames = 0;                    // close after so many frames; 0: until the user quits (tests)
-  bool list_widgets = false;          // print "READY" and each widget's rectangle, for tests that drive the window
+  bool list_widgets = false;  // print "READY" and each widget's rectangle, for tests that drive the window
 };
 
 // Runs until the window closes; returns the exit code. Throws DeviceError when no window can be opened.

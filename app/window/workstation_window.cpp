@@ -13,7 +13,6 @@ namespace {
 
 using widgets::GraphicsWindow;
 
-constexpr int kWidth = 1920, kHeight = 1080;
 constexpr double kIdleWait_s = 0.2, kBusyWait_s = 0.05;
 // After input ImGui needs a few frames until hovering, pressing and layout have settled.
 constexpr int kFramesAfterInput = 4;
@@ -21,9 +20,12 @@ constexpr const char* kNotice = "Research software, not a medical device";
 
 const char* name_of(Mode mode) {
   switch (mode) {
-    case Mode::Plan: return "plan";
-    case Mode::Navigate: return "navigate";
-    case Mode::Review: return "review";
+    case Mode::Plan:
+      return "plan";
+    case Mode::Navigate:
+      return "navigate";
+    case Mode::Review:
+      return "review";
   }
   return "";
 }
@@ -32,16 +34,18 @@ const char* name_of(Mode mode) {
 
 WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
     : options_(options),
-      window_("Arthronaut", kWidth, kHeight),
+      window_("Arthronaut"),
       log_(options.list_widgets),
-      opening_(std::async(std::launch::async, [folder = options.case_folder] {
-        const struct Waker {
-          ~Waker() { GraphicsWindow::wake(); }
-        } waker;
-        return open_case(folder);
-      })),
-      planning_([this] { window_.make_current(); },
-                [this](const planning_view::PlanEdit& edit) { history_.apply(edit, GraphicsWindow::now_s()); }),
+      opening_(std::async(std::launch::async,
+                          [folder = options.case_folder] {
+                            const struct Waker {
+                              ~Waker() { GraphicsWindow::wake(); }
+                            } waker;
+                            return open_case(folder);
+                          })),
+      planning_(
+          [this] { window_.make_current(); },
+          [this](const planning_view::PlanEdit& edit) { history_.apply(edit, GraphicsWindow::now_s()); }),
       theatre_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }),
       review_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }) {
   add_actions();
@@ -54,18 +58,43 @@ WorkstationWindow::~WorkstationWindow() {
 void WorkstationWindow::add_actions() {
   const auto is_open = [this] { return open_.model != nullptr; };
   const auto mode_action = [&](const char* id, const char* label, const char* tooltip, int key, Mode mode) {
-    actions_.add({id, label, tooltip, key, 0, false, is_open, [this, mode] { return mode_ == mode; }, [this, mode] { go_to(mode); }});
+    actions_.add({id, label, tooltip, key, 0, false, is_open, [this, mode] { return mode_ == mode; },
+                  [this, mode] { go_to(mode); }});
   };
   mode_action("mode.plan", "Plan", "Place the tunnels", GLFW_KEY_F1, Mode::Plan);
   mode_action("mode.navigate", "Navigate", "In theatre", GLFW_KEY_F2, Mode::Navigate);
   mode_action("mode.review", "Review", "What happened", GLFW_KEY_F3, Mode::Review);
-  actions_.add({"app.keys", "Keys", "Every key of this mode", GLFW_KEY_F10, 0, false, {}, [this] { return shows_keys_; },
+  actions_.add({"app.keys",
+                "Keys",
+                "Every key of this mode",
+                GLFW_KEY_F10,
+                0,
+                false,
+                {},
+                [this] { return shows_keys_; },
                 [this] { shows_keys_ = !shows_keys_; }});
-  actions_.add({"app.quit", "Quit", "Everything is saved", GLFW_KEY_Q, GLFW_MOD_CONTROL, false, {}, {}, [this] { quits_ = true; }});
-  actions_.add({"plan.undo", "Undo", "Takes the last change of the plan back", GLFW_KEY_Z, GLFW_MOD_CONTROL, true,
-                [this] { return history_.can_undo(); }, {}, [this] { history_.undo(); }});
-  actions_.add({"plan.redo", "Redo", "Does it again", GLFW_KEY_Y, GLFW_MOD_CONTROL, true,
-                [this] { return history_.can_redo(); }, {}, [this] { history_.redo(); }});
+  actions_.add(
+      {"app.quit", "Quit", "Everything is saved", GLFW_KEY_Q, GLFW_MOD_CONTROL, false, {}, {}, [this] {
+         quits_ = true;
+       }});
+  actions_.add({"plan.undo",
+                "Undo",
+                "Takes the last change of the plan back",
+                GLFW_KEY_Z,
+                GLFW_MOD_CONTROL,
+                true,
+                [this] { return history_.can_undo(); },
+                {},
+                [this] { history_.undo(); }});
+  actions_.add({"plan.redo",
+                "Redo",
+                "Does it again",
+                GLFW_KEY_Y,
+                GLFW_MOD_CONTROL,
+                true,
+                [this] { return history_.can_redo(); },
+                {},
+                [this] { history_.redo(); }});
   planning_.add_actions(actions_, [this]() -> const planning_view::PlanModel* { return open_.model.get(); });
   theatre_.add_actions(actions_);
   review_.add_actions(actions_);
@@ -73,7 +102,8 @@ void WorkstationWindow::add_actions() {
 
 void WorkstationWindow::run() {
   int settle = 30;  // frames to draw without waiting
-  for (long count = 0; !quits_ && !window_.should_close() && (options_.frames == 0 || count < options_.frames); ++count) {
+  for (long count = 0;
+       !quits_ && !window_.should_close() && (options_.frames == 0 || count < options_.frames); ++count) {
     const double timeout = settle > 0 ? 0 : is_busy() ? kBusyWait_s : kIdleWait_s;
     const double started = GraphicsWindow::now_s();
     frame(timeout);
@@ -114,7 +144,9 @@ void WorkstationWindow::take_opened_case() {
 }
 
 void WorkstationWindow::dispatch_keys() {
-  const std::string_view mode_prefix = mode_ == Mode::Plan ? "plan." : mode_ == Mode::Navigate ? "operate." : "review.";
+  const std::string_view mode_prefix = mode_ == Mode::Plan       ? "plan."
+                                       : mode_ == Mode::Navigate ? "operate."
+                                                                 : "review.";
   for (const widgets::KeyPress& press : window_.keys()) {
     if (shows_keys_ && press.key == GLFW_KEY_ESCAPE) {
       shows_keys_ = false;
@@ -165,7 +197,8 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
   draw.AddLine({area.x, area.y + area.height}, area.max(), widgets::kPanelEdge);
   const float middle = area.y + area.height / 2;
   const ImFont* title = ui.theme.title;
-  draw.AddText(title, title->FontSize, {area.x + ui.theme.px(20), middle - title->FontSize / 2}, widgets::kText, "Arthronaut");
+  draw.AddText(title, title->FontSize, {area.x + ui.theme.px(20), middle - title->FontSize / 2},
+               widgets::kText, "Arthronaut");
   const float width = ui.theme.px(190), height = ui.theme.px(50);
   float x = area.x + ui.theme.px(230);
   for (const char* id : {"mode.plan", "mode.navigate", "mode.review"}) {
@@ -178,7 +211,8 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
     const std::string text = knee.name + "  \u2013  " + std::string(bones::to_text(knee.side)) + " knee";
     const float wide = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, text.c_str()).x;
     draw.AddText(ui.theme.strong, ui.theme.strong->FontSize,
-                 {area.x + area.width - wide - ui.theme.px(300), middle - ui.theme.strong->FontSize / 2}, widgets::kText, text.c_str());
+                 {area.x + area.width - wide - ui.theme.px(300), middle - ui.theme.strong->FontSize / 2},
+                 widgets::kText, text.c_str());
   }
   const float small = ui.theme.px(130);
   ImGui::SetCursorScreenPos({area.x + area.width - 2 * small - ui.theme.px(22), middle - height / 2});
@@ -193,11 +227,13 @@ void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Re
   const ImFont* font = ui.theme.body;
   const float y = area.y + (area.height - font->FontSize) / 2;
   draw.AddText(font, font->FontSize, {area.x + ui.theme.px(20), y}, widgets::kQuietText, kNotice);
-  const std::string notice = !failure_.empty() ? failure_
+  const std::string notice = !failure_.empty()         ? failure_
                              : mode_ == Mode::Navigate ? theatre_.notice()
                              : mode_ == Mode::Review   ? review_.notice()
                                                        : std::string();
-  const std::string text = !notice.empty() ? notice : open_.model != nullptr ? open_.folder.string() : std::string();
+  const std::string text = !notice.empty()          ? notice
+                           : open_.model != nullptr ? open_.folder.string()
+                                                    : std::string();
   const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
   draw.AddText(font, font->FontSize, {area.x + area.width - wide - ui.theme.px(20), y},
                notice.empty() ? widgets::kQuietText : widgets::kCaution, text.c_str());

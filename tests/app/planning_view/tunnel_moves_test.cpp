@@ -12,7 +12,8 @@ namespace {
 geometry::Surface slab() {
   geometry::TriangleMesh mesh;
   for (int i = 0; i < 8; ++i)
-    mesh.vertices_mm.push_back({(i & 1) != 0 ? 50.0 : -50.0, (i & 2) != 0 ? 30.0 : 0.0, (i & 4) != 0 ? 50.0 : -50.0});
+    mesh.vertices_mm.push_back(
+        {(i & 1) != 0 ? 50.0 : -50.0, (i & 2) != 0 ? 30.0 : 0.0, (i & 4) != 0 ? 50.0 : -50.0});
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   return geometry::Surface(mesh);
@@ -50,7 +51,8 @@ TEST(TunnelMoves, FirstTunnelGoesInwards) {
 // One press of an arrow key turns by exactly its angle, and the far end moves that way on the screen.
 TEST(TunnelMoves, AimTurnsTheFarEndThatWay) {
   const tunnels::Tunnel right = turned(straight(), anterior(), {1, 0});
-  EXPECT_NEAR(geometry::deg_from_rad(geometry::angle_between_rad(right.direction, straight().direction)), 1, 1e-9);
+  EXPECT_NEAR(geometry::deg_from_rad(geometry::angle_between_rad(right.direction, straight().direction)), 1,
+              1e-9);
   EXPECT_GT(right.direction.x(), straight().direction.x());
   const tunnels::Tunnel up = turned(straight(), anterior(), {0, 1});
   EXPECT_GT(up.direction.z(), straight().direction.z());
@@ -90,7 +92,8 @@ TEST(TunnelMoves, DiameterIsClamped) {
 
 // LPS to words: lateral changes sign with the side, small parts are not named.
 TEST(AnatomicalText, FollowsTheSide) {
-  EXPECT_EQ(anatomical_text({-28, -12, 14}, bones::Side::Right), "14 mm proximal, 28 mm lateral, 12 mm anterior");
+  EXPECT_EQ(anatomical_text({-28, -12, 14}, bones::Side::Right),
+            "14 mm proximal, 28 mm lateral, 12 mm anterior");
   EXPECT_EQ(anatomical_text({-28, 0.2, 0}, bones::Side::Left), "28 mm medial");
   EXPECT_EQ(anatomical_text({0, 0, 0.3}, bones::Side::Left), "at the entry");
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace arthronaut::scene {
@@ -13,7 +14,8 @@ using Kind = OverlayLine::Kind;
 geometry::TriangleMesh block() {
   geometry::TriangleMesh mesh;
   for (int i = 0; i < 8; ++i)
-    mesh.vertices_mm.push_back({(i & 1) != 0 ? 20.0 : -20.0, (i & 2) != 0 ? 20.0 : -20.0, (i & 4) != 0 ? 30.0 : 0.0});
+    mesh.vertices_mm.push_back(
+        {(i & 1) != 0 ? 20.0 : -20.0, (i & 2) != 0 ? 20.0 : -20.0, (i & 4) != 0 ? 30.0 : 0.0});
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   return mesh;
@@ -33,7 +35,8 @@ camera::CameraModel scope() {
 struct Scene {
   std::shared_ptr<const geometry::Surface> surface = std::make_shared<geometry::Surface>(block());
   camera::CameraModel camera = scope();
-  geometry::RigidTransform camera_from_bone{Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY())), {1, -2, 35}};
+  geometry::RigidTransform camera_from_bone{
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY())), {1, -2, 35}};
   tunnels::Tunnel plan;
   OverlayModel model;
   Scene() : plan(into_the_front()), model(surface, block(), plan, 25) {}
@@ -49,11 +52,13 @@ struct Scene {
 std::vector<Eigen::Vector2d> points_of(const PlanOverlay& overlay, Kind kind, bool hidden) {
   std::vector<Eigen::Vector2d> points;
   for (const OverlayLine& line : overlay)
-    if (line.kind == kind && line.is_hidden == hidden) points.insert(points.end(), line.points_px.begin(), line.points_px.end());
+    if (line.kind == kind && line.is_hidden == hidden)
+      points.insert(points.end(), line.points_px.begin(), line.points_px.end());
   return points;
 }
 
-// The mouth of the tunnel is where the camera model puts the drill's cylinder on the face: exact under distortion.
+// The mouth of the tunnel is where the camera model puts the drill's cylinder on the face: exact under
+// distortion.
 TEST(PlanOverlay, EntryRingLiesWhereTheCameraModelSaysItDoes) {
   const Scene scene;
   const PlanOverlay overlay = scene.model.project(scene.camera, scene.camera_from_bone, {});
@@ -77,10 +82,12 @@ TEST(PlanOverlay, TunnelInsideTheBoneIsHidden) {
   const PlanOverlay overlay = scene.model.project(scene.camera, scene.camera_from_bone, {});
   EXPECT_FALSE(points_of(overlay, Kind::TunnelAxis, false).empty());
   EXPECT_GT(points_of(overlay, Kind::TunnelAxis, true).size(), 15U);
-  const auto in_front = scene.camera.project(scene.camera_from_bone * (scene.plan.entry_mm - 5 * scene.plan.direction));
+  const auto in_front =
+      scene.camera.project(scene.camera_from_bone * (scene.plan.entry_mm - 5 * scene.plan.direction));
   ASSERT_TRUE(in_front);
   const auto seen = points_of(overlay, Kind::TunnelAxis, false);
-  EXPECT_TRUE(std::any_of(seen.begin(), seen.end(), [&](const Eigen::Vector2d& p) { return (p - *in_front).norm() < 1e-6; }));
+  EXPECT_TRUE(std::any_of(seen.begin(), seen.end(),
+                          [&](const Eigen::Vector2d& p) { return (p - *in_front).norm() < 1e-6; }));
 }
 
 // Nothing is drawn over the tip of a tool, and nothing outside the round view.

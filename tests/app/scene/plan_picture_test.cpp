@@ -33,7 +33,8 @@ PictureRequest request_of(View view) {
 template <typename Predicate>
 double share_of(const Image& image, const Predicate& is_it) {
   int count = 0;
-  for (std::size_t i = 0; i < image.rgb.size(); i += 3) count += is_it(image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]) ? 1 : 0;
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3)
+    count += is_it(image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]) ? 1 : 0;
   return 3.0 * count / static_cast<double>(image.rgb.size());
 }
 bool is_bone(int r, int g, int b) { return r > 70 && r > b + 12 && g > b; }
@@ -49,7 +50,8 @@ class PlanPicture : public ::testing::Test {
 // Every view shows bone and a planned tunnel, and no two views look alike.
 TEST_F(PlanPicture, EveryViewShowsBoneAndPlan) {
   std::vector<Image> pictures;
-  for (const View view : {View::Anterior, View::Posterior, View::Medial, View::Lateral, View::Distal, View::Notch, View::Plateau}) {
+  for (const View view : {View::Anterior, View::Posterior, View::Medial, View::Lateral, View::Distal,
+                          View::Notch, View::Plateau}) {
     pictures.push_back(render_plan_picture(request_of(view)));
     const Image& image = pictures.back();
     ASSERT_EQ(image.rgb.size(), 3U * 320 * 240);
@@ -63,7 +65,8 @@ TEST_F(PlanPicture, EveryViewShowsBoneAndPlan) {
 
 // The same request gives the same pixels.
 TEST_F(PlanPicture, IsDeterministic) {
-  EXPECT_EQ(render_plan_picture(request_of(View::Notch)).rgb, render_plan_picture(request_of(View::Notch)).rgb);
+  EXPECT_EQ(render_plan_picture(request_of(View::Notch)).rgb,
+            render_plan_picture(request_of(View::Notch)).rgb);
 }
 
 // A tunnel as drilled is drawn in a colour of its own.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 namespace arthronaut::scene {
 namespace {
 
@@ -32,13 +34,16 @@ TEST(SceneCamera, LateralViewFollowsTheSide) {
 
 // Every named view holds the whole bone.
 TEST(SceneCamera, NamedViewsHoldAllCorners) {
-  for (const View view : {View::Anterior, View::Posterior, View::Medial, View::Lateral, View::Distal, View::Notch, View::Plateau}) {
+  for (const View view : {View::Anterior, View::Posterior, View::Medial, View::Lateral, View::Distal,
+                          View::Notch, View::Plateau}) {
     const SceneCamera camera = look_from(view, bones::Side::Left, kKnee, 4.0 / 3);
     for (int corner = 0; corner < 8; ++corner) {
-      const Eigen::Vector3d point((corner & 1) != 0 ? 40 : -40, (corner & 2) != 0 ? 30 : -30, (corner & 4) != 0 ? 60 : -60);
+      const Eigen::Vector3d point((corner & 1) != 0 ? 40 : -40, (corner & 2) != 0 ? 30 : -30,
+                                  (corner & 4) != 0 ? 60 : -60);
       const auto pixel = project(camera, point, kSize);
       ASSERT_TRUE(pixel);
-      EXPECT_TRUE(pixel->x() >= 0 && pixel->y() >= 0 && pixel->x() <= 800 && pixel->y() <= 600) << to_text(view);
+      EXPECT_TRUE(pixel->x() >= 0 && pixel->y() >= 0 && pixel->x() <= 800 && pixel->y() <= 600)
+          << to_text(view);
     }
   }
 }
@@ -57,8 +62,10 @@ TEST(SceneCamera, RayAndProjectionAreInverse) {
 TEST(SceneCamera, MovesAsAHandExpects) {
   const SceneCamera camera = look_from(View::Anterior, bones::Side::Right, kKnee, 4.0 / 3);
   const SceneCamera turned = orbited(camera, {100, 0}, 600);
-  EXPECT_NEAR((turned.position_mm - turned.focus_mm).norm(), (camera.position_mm - camera.focus_mm).norm(), 1e-9);
-  const auto front_before = project(camera, {0, -30, 0}, kSize), front_after = project(turned, {0, -30, 0}, kSize);
+  EXPECT_NEAR((turned.position_mm - turned.focus_mm).norm(), (camera.position_mm - camera.focus_mm).norm(),
+              1e-9);
+  const auto front_before = project(camera, {0, -30, 0}, kSize),
+             front_after = project(turned, {0, -30, 0}, kSize);
   ASSERT_TRUE(front_before && front_after);
   EXPECT_GT(front_after->x(), front_before->x());
   const SceneCamera moved = panned(camera, {50, 20}, 600);

@@ -10,12 +10,15 @@ namespace {
 
 double volume_of(const SolidMesh& mesh) {
   double six_times = 0;
-  const auto point = [&](std::int32_t i) { return mesh.points_mm[static_cast<std::size_t>(i)].cast<double>().eval(); };
+  const auto point = [&](std::int32_t i) {
+    return mesh.points_mm[static_cast<std::size_t>(i)].cast<double>().eval();
+  };
   for (const auto& t : mesh.triangles) six_times += point(t[0]).dot(point(t[1]).cross(point(t[2])));
   return six_times / 6;
 }
 
-// A closed solid that faces outwards has the volume of its shape; a polygon of 24 sides lacks about 1 % of a circle.
+// A closed solid that faces outwards has the volume of its shape; a polygon of 24 sides lacks about 1 % of a
+// circle.
 TEST(SolidMesh, RodIsClosedAndFacesOutwards) {
   SolidMesh mesh;
   mesh.add(RodItem{{1, 2, 3}, {4, 6, 15}, 9, 9, kPlanColor, false});

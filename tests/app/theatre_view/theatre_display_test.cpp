@@ -54,10 +54,12 @@ TEST(TheatreDisplay, ShowsWhatIsValid) {
 
 // Whatever makes guidance invalid takes the numbers away in that very frame and says why.
 TEST(TheatreDisplay, EveryInvalidStateHidesTheNumbersAndSaysWhy) {
-  for (const GuidanceState state : {GuidanceState::NoPlan, GuidanceState::NoRegistration, GuidanceState::RegistrationUnreliable,
-                                    GuidanceState::WorldMarkerLost, GuidanceState::GuideLost, GuidanceState::LensStale,
-                                    GuidanceState::Stale}) {
-    const TheatreDisplay display = display_after([&](OperationStatus&, LiveFrame& live) { live.result.guidance.state = state; });
+  for (const GuidanceState state :
+       {GuidanceState::NoPlan, GuidanceState::NoRegistration, GuidanceState::RegistrationUnreliable,
+        GuidanceState::WorldMarkerLost, GuidanceState::GuideLost, GuidanceState::LensStale,
+        GuidanceState::Stale}) {
+    const TheatreDisplay display =
+        display_after([&](OperationStatus&, LiveFrame& live) { live.result.guidance.state = state; });
     EXPECT_FALSE(display.guidance_is_valid) << to_text(state);
     EXPECT_FALSE(display.headline.empty()) << to_text(state);
     EXPECT_EQ(display.guidance.angle_deg, 0) << "a number of the frame leaked";
@@ -66,9 +68,11 @@ TEST(TheatreDisplay, EveryInvalidStateHidesTheNumbersAndSaysWhy) {
 
 // A pose that does not stand takes the overlay with it, even where guidance claims to be valid.
 TEST(TheatreDisplay, OverlayNeedsThePoseOfThisFrame) {
-  const auto lost = display_after([](OperationStatus&, LiveFrame& live) { live.result.camera_from_world.is_valid = false; });
+  const auto lost = display_after(
+      [](OperationStatus&, LiveFrame& live) { live.result.camera_from_world.is_valid = false; });
   EXPECT_FALSE(lost.overlay_is_valid || lost.guidance_is_valid);
-  const auto lens = display_after([](OperationStatus&, LiveFrame& live) { live.result.intrinsics_are_known = false; });
+  const auto lens =
+      display_after([](OperationStatus&, LiveFrame& live) { live.result.intrinsics_are_known = false; });
   EXPECT_FALSE(lens.overlay_is_valid || lens.guidance_is_valid);
   const auto frozen = display_after([](OperationStatus&, LiveFrame& live) { live.result.is_frozen = true; });
   EXPECT_FALSE(frozen.overlay_is_valid || frozen.guidance_is_valid);
@@ -77,7 +81,8 @@ TEST(TheatreDisplay, OverlayNeedsThePoseOfThisFrame) {
 
 // A worker that hangs must not leave its last picture standing as live.
 TEST(TheatreDisplay, AnOldPictureIsNotLive) {
-  const TheatreDisplay display = display_after([](OperationStatus&, LiveFrame& live) { live.published_s = kNow_s - 2; });
+  const TheatreDisplay display =
+      display_after([](OperationStatus&, LiveFrame& live) { live.published_s = kNow_s - 2; });
   EXPECT_TRUE(display.has_picture);
   EXPECT_FALSE(display.is_live || display.overlay_is_valid || display.guidance_is_valid);
   EXPECT_EQ(display.headline, "No new picture for 2.0 s");
@@ -109,7 +114,8 @@ TEST(TheatreDisplay, NamesTheReasonOfTheMarker) {
   EXPECT_EQ(display.detail, std::string(markers::to_text(markers::MarkerState::Glare)));
 }
 
-guidance::GuidanceNumbers numbers_of(const Eigen::Vector3d& offset, const Eigen::Vector3d& lean, const tunnels::Tunnel& plan) {
+guidance::GuidanceNumbers numbers_of(const Eigen::Vector3d& offset, const Eigen::Vector3d& lean,
+                                     const tunnels::Tunnel& plan) {
   guidance::GuidanceNumbers numbers;
   numbers.state = GuidanceState::Valid;
   numbers.guide_direction = (plan.direction + lean).normalized();
@@ -117,8 +123,8 @@ guidance::GuidanceNumbers numbers_of(const Eigen::Vector3d& offset, const Eigen:
   return numbers;
 }
 
-// The bullseye looks along the plan with proximal up; anterior is on the side that it names; the dot is as far out as the
-// axis misses the entry, and a lean alone does not move it.
+// The bullseye looks along the plan with proximal up; anterior is on the side that it names; the dot is as
+// far out as the axis misses the entry, and a lean alone does not move it.
 TEST(Bullseye, PointIsWhereTheAxisMissesTheEntry) {
   tunnels::Tunnel plan;
   plan.entry_mm = {3, 4, 5};

@@ -14,7 +14,8 @@ tunnels::Tunnel plan() {
   return tunnel;
 }
 
-guidance::GuidanceNumbers pose_at(double depth_mm, const Eigen::Vector3d& entry, const Eigen::Vector3d& direction) {
+guidance::GuidanceNumbers pose_at(double depth_mm, const Eigen::Vector3d& entry,
+                                  const Eigen::Vector3d& direction) {
   guidance::GuidanceNumbers pose;
   pose.state = guidance::GuidanceState::Valid;
   pose.guide_direction = direction;
@@ -23,15 +24,16 @@ guidance::GuidanceNumbers pose_at(double depth_mm, const Eigen::Vector3d& entry,
   return pose;
 }
 
-// A drill that runs 1.5 mm beside the plan and leans is found again, from noisy poses and with the wild ones of the way
-// in left out; the tolerance is the noise of a median over 60 poses.
+// A drill that runs 1.5 mm beside the plan and leans is found again, from noisy poses and with the wild ones
+// of the way in left out; the tolerance is the noise of a median over 60 poses.
 TEST(TunnelMeter, FindsTheAxisOfTheDeepestPoses) {
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0, 0.1);
   const Eigen::Vector3d entry = plan().entry_mm + plan().direction.unitOrthogonal() * 1.5;
   const Eigen::Vector3d direction = (plan().direction + Eigen::Vector3d(0, 0.03, 0.01)).normalized();
   TunnelMeter meter;
-  for (double depth = -10; depth < 30; depth += 0.5) meter.add(pose_at(depth, entry + Eigen::Vector3d(5, 5, 5), direction));
+  for (double depth = -10; depth < 30; depth += 0.5)
+    meter.add(pose_at(depth, entry + Eigen::Vector3d(5, 5, 5), direction));
   for (int i = 0; i < 60; ++i)
     meter.add(pose_at(31, entry + Eigen::Vector3d(noise(random), noise(random), noise(random)), direction));
   const auto achieved = meter.measured(plan());

@@ -13,7 +13,15 @@ struct Counter {
   bool enabled = true;
   Actions actions;
   explicit Counter(bool repeats = false) {
-    actions.add({"plan.undo", "Undo", "", GLFW_KEY_Z, GLFW_MOD_CONTROL, repeats, [this] { return enabled; }, {}, [this] { ++runs; }});
+    actions.add({"plan.undo",
+                 "Undo",
+                 "",
+                 GLFW_KEY_Z,
+                 GLFW_MOD_CONTROL,
+                 repeats,
+                 [this] { return enabled; },
+                 {},
+                 [this] { ++runs; }});
   }
   bool press(int key, int mods, bool is_repeat = false, std::string_view prefix = "plan.") const {
     return actions.press({key, mods, is_repeat}, {prefix});

@@ -28,7 +28,8 @@ void end(pid_t process) {
 }
 
 // Starts a program; its descriptor `from` writes into the returned pipe.
-std::pair<pid_t, int> start(const std::vector<std::string>& arguments, int from, const std::map<std::string, std::string>& environment) {
+std::pair<pid_t, int> start(const std::vector<std::string>& arguments, int from,
+                            const std::map<std::string, std::string>& environment) {
   std::array<int, 2> ends{};
   if (pipe(ends.data()) != 0) throw std::runtime_error("no pipe");
   const pid_t process = fork();
@@ -62,8 +63,9 @@ std::string missing_for_window_tests() {
 VirtualDisplay::VirtualDisplay(int width, int height) {
   constexpr int kDisplayDescriptor = 3;
   const std::string screen = std::to_string(width) + "x" + std::to_string(height) + "x24";
-  const auto [process, pipe] = start({"Xvfb", "-displayfd", std::to_string(kDisplayDescriptor), "-screen", "0", screen, "-nolisten", "tcp"},
-                                     kDisplayDescriptor, {});
+  const auto [process, pipe] = start(
+      {"Xvfb", "-displayfd", std::to_string(kDisplayDescriptor), "-screen", "0", screen, "-nolisten", "tcp"},
+      kDisplayDescriptor, {});
   process_ = process;
   name_ = ":";
   char letter = 0;
@@ -75,14 +77,15 @@ VirtualDisplay::VirtualDisplay(int width, int height) {
 VirtualDisplay::~VirtualDisplay() { end(process_); }
 
 std::array<int, 3> Picture::at(int x, int y) const {
-  const std::size_t i = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+  const std::size_t i =
+      3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
   return {rgb.at(i), rgb.at(i + 1), rgb.at(i + 2)};
 }
 
 RunningWorkstation::RunningWorkstation(const VirtualDisplay& display, const std::filesystem::path& data_home)
     : display_(display.name()), folder_(data_home) {
-  const auto [process, pipe] =
-      start({ARTHRONAUT_PROGRAM, "--list-widgets"}, 1, {{"DISPLAY", display_}, {"XDG_DATA_HOME", data_home.string()}});
+  const auto [process, pipe] = start({ARTHRONAUT_PROGRAM, "--list-widgets"}, 1,
+                                     {{"DISPLAY", display_}, {"XDG_DATA_HOME", data_home.string()}});
   process_ = process;
   reader_ = std::thread([this, pipe = pipe] { read_output(pipe); });
 }
@@ -119,7 +122,8 @@ void RunningWorkstation::read_output(int pipe) {
   fclose(stream);
 }
 
-bool RunningWorkstation::wait_for_state(const std::string& key, const std::string& value, double seconds) const {
+bool RunningWorkstation::wait_for_state(const std::string& key, const std::string& value,
+                                        double seconds) const {
   const auto until = Clock::now() + std::chrono::duration<double>(seconds);
   while (Clock::now() < until) {
     if (state(key) == value) return true;
@@ -140,7 +144,8 @@ std::map<std::string, Area> RunningWorkstation::widgets() const {
 }
 
 void RunningWorkstation::hand(const std::string& arguments) const {
-  if (std::system(("DISPLAY=" + display_ + " xdotool " + arguments).c_str()) != 0) throw std::runtime_error("xdotool " + arguments);
+  if (std::system(("DISPLAY=" + display_ + " xdotool " + arguments).c_str()) != 0)
+    throw std::runtime_error("xdotool " + arguments);
 }
 
 void RunningWorkstation::press(const std::string& key) const { hand("key " + key); }
@@ -150,19 +155,20 @@ void RunningWorkstation::click(const std::string& widget) const {
   const auto found = all.find(widget);
   if (found == all.end()) throw std::runtime_error("no widget " + widget);
   const Area& area = found->second;
-  hand("mousemove " + std::to_string(area.x + area.width / 2) + " " + std::to_string(area.y + area.height / 2) +
-       " sleep 0.2 mousedown 1 sleep 0.2 mouseup 1");
+  hand("mousemove " + std::to_string(area.x + area.width / 2) + " " +
+       std::to_string(area.y + area.height / 2) + " sleep 0.2 mousedown 1 sleep 0.2 mouseup 1");
 }
 
 void RunningWorkstation::drag(int x0, int y0, int x1, int y1) const {
   const auto text = [](int x, int y) { return std::to_string(x) + " " + std::to_string(y); };
-  hand("mousemove " + text(x0, y0) + " sleep 0.2 mousedown 1 sleep 0.2 mousemove " + text((x0 + x1) / 2, (y0 + y1) / 2) +
-       " sleep 0.2 mousemove " + text(x1, y1) + " sleep 0.2 mouseup 1");
+  hand("mousemove " + text(x0, y0) + " sleep 0.2 mousedown 1 sleep 0.2 mousemove " +
+       text((x0 + x1) / 2, (y0 + y1) / 2) + " sleep 0.2 mousemove " + text(x1, y1) + " sleep 0.2 mouseup 1");
 }
 
 Picture RunningWorkstation::screenshot() const {
   const std::filesystem::path file = folder_ / "screen.ppm";
-  if (std::system(("DISPLAY=" + display_ + " import -window root -depth 8 ppm:" + file.string()).c_str()) != 0)
+  if (std::system(("DISPLAY=" + display_ + " import -window root -depth 8 ppm:" + file.string()).c_str()) !=
+      0)
     throw std::runtime_error("import failed");
   std::ifstream stream(file, std::ios::binary);
   std::string magic;

@@ -50,7 +50,8 @@ class RunningWorkstation {
   RunningWorkstation& operator=(const RunningWorkstation&) = delete;
 
   // False when the state did not become so within the time.
-  [[nodiscard]] bool wait_for_state(const std::string& key, const std::string& value, double seconds = 40) const;
+  [[nodiscard]] bool wait_for_state(const std::string& key, const std::string& value,
+                                    double seconds = 40) const;
   [[nodiscard]] std::string state(const std::string& key) const;
   [[nodiscard]] std::map<std::string, Area> widgets() const;  // of the last complete list
 

@@ -1,5 +1,5 @@
-// Drives the real window from outside, as a user does. Slow machines are waited for: what is tested is what happens, not
-// how fast.
+// Drives the real window from outside, as a user does. Slow machines are waited for: what is tested is what
+// happens, not how fast.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -42,7 +42,8 @@ double share(const Picture& picture, const Area& area, const Predicate& holds) {
 
 bool is_bone(const std::array<int, 3>& c) { return c[0] > 70 && c[0] > c[2] + 12; }
 
-// One walk through the whole program: plan (aim, undo, autosave), navigate (a live picture, then none), review, quit.
+// One walk through the whole program: plan (aim, undo, autosave), navigate (a live picture, then none),
+// review, quit.
 TEST_F(Workstation, LeadsThroughItsThreeModes) {
   const VirtualDisplay display(1280, 720);
   RunningWorkstation app(display, folder_);
@@ -66,7 +67,8 @@ TEST_F(Workstation, LeadsThroughItsThreeModes) {
 
   // A drag over the bone turns it: many pixels change, the plan does not.
   const Area view = app.widgets().at("plan.view");
-  app.drag(view.x + view.width / 5, view.y + view.height * 4 / 5, view.x + view.width / 2, view.y + view.height * 3 / 5);
+  app.drag(view.x + view.width / 5, view.y + view.height * 4 / 5, view.x + view.width / 2,
+           view.y + view.height * 3 / 5);
   const Picture after = app.screenshot();
   long changed = 0;
   for (std::size_t i = 0; i < before.rgb.size(); i += 3) changed += before.rgb[i] != after.rgb[i] ? 1 : 0;
@@ -104,7 +106,8 @@ TEST_P(WorkstationLayout, HoldsAtEverySize) {
   const VirtualDisplay display(width, height);
   RunningWorkstation app(display, folder_);
   ASSERT_TRUE(app.wait_for_state("case", "open", 60));
-  for (const auto& [mode, key] : {std::pair{"plan", "F1"}, std::pair{"navigate", "F2"}, std::pair{"review", "F3"}}) {
+  for (const auto& [mode, key] :
+       {std::pair{"plan", "F1"}, std::pair{"navigate", "F2"}, std::pair{"review", "F3"}}) {
     app.press(key);
     ASSERT_TRUE(app.wait_for_state("mode", mode));
     (void)app.screenshot();  // the frame with the mode's widgets is on the screen now, and so is its list
@@ -125,7 +128,8 @@ TEST_P(WorkstationLayout, HoldsAtEverySize) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Screens, WorkstationLayout,
-                         ::testing::Values(std::pair{1280, 720}, std::pair{1920, 1080}, std::pair{3840, 2160}));
+                         ::testing::Values(std::pair{1280, 720}, std::pair{1920, 1080},
+                                           std::pair{3840, 2160}));
 
 }  // namespace
 }  // namespace arthronaut::test
