@@ -30,8 +30,8 @@ struct SimulationOptions {
   tunnels::Tunnel plan;                    // what the scripted surgeon aims at in Drill
   double refractive_index = 1.3345;        // in all phases but Calibrate
   std::uint64_t seed = 1;
-  int frames_per_second = 60;
-  int frame_count = 0;                     // 0: the phase's own length
+  int frames_per_second = 30;
+  int frame_count = 0;                     // 0: the phase's own length; else its motion sampled in so many frames
   double drill_error_mm = 0.6, drill_error_deg = 1.0;  // how well the scripted surgeon aims
   double square_mm = 1.5;                  // of the checkerboard
 };

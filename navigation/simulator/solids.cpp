@@ -1,0 +1,246 @@
+#include "navigation/simulator/solids.h"
+
+#include <cmath>
+#include <opencv2/aruco.hpp>
+
+namespace arthronaut::simulator {
+namespace {
+
+enum Region { kPaper, kInk, kSide };
+
+const Skin kPaperSkin{{0.66f, 0.72f, 0.76f}, 0.02f, 4};
+const Skin kInkSkin{{0.020f, 0.020f, 0.021f}, 0.01f, 4};
+const Skin kSideSkin{{0.06f, 0.065f, 0.07f}, 0.05f, 5};
+constexpr double kNearestMm = 0.5;  // nothing is seen closer than this
+
+// A ray in the plate's frame: origin + depth * direction.
+struct LocalRay {
+  Eigen::Vector3d origin, direction;
+};
+
+class Plate : public Solid {
+ public:
+  Plate(const geometry::RigidTransform& camera_from_plate, const PlateShape& shape)
+      : shape_(shape), camera_from_plate_(camera_from_plate), rotation_(camera_from_plate.matrix()),
+        origin_(camera_from_plate.inverse().translation_mm) {}
+
+  bool hit(const Eigen::Vector3d& direction, SolidHit& hit) const override {
+    const LocalRay ray{origin_, rotation_.transpose() * direction};
+    return hit_face(ray, hit) || hit_side(ray, hit);
+  }
+
+  std::vector<Eigen::Vector3d> hull() const override {
+    std::vector<Eigen::Vector3d> corners;
+    for (const double z : {0.0, -shape_.thickness_mm}) {
+      for (const double sx : {-1.0, 1.0}) {
+        for (const double sy : {-1.0, 1.0}) {
+          const double hy = shape_.is_round ? shape_.half_size_mm.x() : shape_.half_size_mm.y();
+          corners.push_back(camera_from_plate_ * Eigen::Vector3d(sx * shape_.half_size_mm.x(), sy * hy, z));
+        }
+      }
+    }
+    return corners;
+  }
+
+ private:
+  bool hit_face(const LocalRay& ray, SolidHit& hit) const {
+    if (ray.direction.z() >= 0) return false;  // seen from behind
+    const double depth = -ray.origin.z() / ray.direction.z();
+    if (depth < kNearestMm) return false;
+    const Eigen::Vector2d at = (ray.origin + depth * ray.direction).head<2>();
+    if (!is_on_face(at)) return false;
+    hit.depth_mm = depth;
+    hit.normal = rotation_.col(2);
+    hit.region = is_ink(at) ? kInk : kPaper;
+    hit.skin = hit.region == kInk ? &kInkSkin : &kPaperSkin;
+    return true;
+  }
+
+  bool is_on_face(const Eigen::Vector2d& at) const {
+    if (shape_.is_round) return at.squaredNorm() <= shape_.half_size_mm.x() * shape_.half_size_mm.x();
+    return std::abs(at.x()) <= shape_.half_size_mm.x() && std::abs(at.y()) <= shape_.half_size_mm.y();
+  }
+
+  bool is_ink(const Eigen::Vector2d& at) const {
+    for (const PrintedMarker& marker : shape_.markers) {
+      const double column = ((at.x() - marker.center_mm.x()) / marker.size_mm + 0.5) * 6;
+      const double row = (0.5 - (at.y() - marker.center_mm.y()) / marker.size_mm) * 6;
+      if (column >= 0 && column < 6 && row >= 0 && row < 6) {
+        return !marker.cells[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+      }
+    }
+    if (shape_.tick_spacing_mm <= 0) return false;
+    // Every fifth tick is twice as long.
+    const double ticks = at.y() / shape_.tick_spacing_mm;
+    const double nearest = std::round(ticks);
+    const double length = std::fmod(std::abs(nearest), 5.0) == 0 ? 2.0 : 1.0;
+    return std::abs(ticks - nearest) * shape_.tick_spacing_mm < 0.06 && at.x() > shape_.half_size_mm.x() - length;
+  }
+
+  bool hit_side(const LocalRay& ray, SolidHit& hit) const {
+    return shape_.is_round ? hit_round_side(ray, hit) : hit_flat_sides(ray, hit);
+  }
+
+  bool hit_round_side(const LocalRay& ray, SolidHit& hit) const {
+    const Eigen::Vector2d o = ray.origin.head<2>(), d = ray.direction.head<2>();
+    const double a = d.squaredNorm(), b = o.dot(d);
+    const double c = o.squaredNorm() - shape_.half_size_mm.x() * shape_.half_size_mm.x();
+    const double root = b * b - a * c;
+    if (root < 0 || a < 1e-12) return false;
+    return accept_side((-b - std::sqrt(root)) / a, ray, hit, [&](const Eigen::Vector3d& at) {
+      return Eigen::Vector3d(at.x(), at.y(), 0).normalized();
+    });
+  }
+
+  bool hit_flat_sides(const LocalRay& ray, SolidHit& hit) const {
+    for (int axis = 0; axis < 2; ++axis) {
+      const double speed = ray.direction[axis];
+      if (std::abs(speed) < 1e-12) continue;
+      const double sign = speed > 0 ? -1 : 1;
+      const double depth = (sign * shape_.half_size_mm[axis] - ray.origin[axis]) / speed;
+      const double across = (ray.origin + depth * ray.direction)[1 - axis];
+      if (std::abs(across) > shape_.half_size_mm[1 - axis]) continue;
+      if (accept_side(depth, ray, hit, [&](const Eigen::Vector3d&) -> Eigen::Vector3d {
+            return sign * Eigen::Vector3d::Unit(axis);
+          })) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  template <class Normal>
+  bool accept_side(double depth, const LocalRay& ray, SolidHit& hit, Normal normal) const {
+    const Eigen::Vector3d at = ray.origin + depth * ray.direction;
+    if (depth < kNearestMm || at.z() > 0 || at.z() < -shape_.thickness_mm) return false;
+    hit.depth_mm = depth;
+    hit.normal = rotation_ * normal(at);
+    hit.region = kSide;
+    hit.skin = &kSideSkin;
+    return true;
+  }
+
+  PlateShape shape_;
+  geometry::RigidTransform camera_from_plate_;
+  Eigen::Matrix3d rotation_;
+  Eigen::Vector3d origin_;  // of the camera, in the plate's frame
+};
+
+class Checkerboard : public Solid {
+ public:
+  Checkerboard(const geometry::RigidTransform& camera_from_board, double square_mm)
+      : rotation_(camera_from_board.matrix()), origin_(camera_from_board.inverse().translation_mm),
+        square_mm_(square_mm) {}
+
+  bool hit(const Eigen::Vector3d& direction, SolidHit& hit) const override {
+    const Eigen::Vector3d local = rotation_.transpose() * direction;
+    if (std::abs(local.z()) < 1e-9) return false;
+    const double depth = -origin_.z() / local.z();
+    if (depth < kNearestMm) return false;
+    const Eigen::Vector2d at = (origin_ + depth * local).head<2>() / square_mm_;
+    hit.depth_mm = depth;
+    hit.normal = rotation_.col(2) * (origin_.z() > 0 ? 1 : -1);
+    hit.region = (static_cast<long>(std::floor(at.x())) + static_cast<long>(std::floor(at.y()))) & 1 ? kPaper : kInk;
+    hit.skin = hit.region == kInk ? &kInkSkin : &kPaperSkin;
+    return true;
+  }
+
+  std::vector<Eigen::Vector3d> hull() const override { return {}; }
+
+ private:
+  Eigen::Matrix3d rotation_;
+  Eigen::Vector3d origin_;
+  double square_mm_;
+};
+
+class Rod : public Solid {
+ public:
+  Rod(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm, double radius_mm, const Skin& skin)
+      : from_(from_mm), along_(to_mm - from_mm), radius_(radius_mm), length_(along_.norm()), skin_(skin) {
+    along_ /= length_;
+  }
+
+  bool hit(const Eigen::Vector3d& direction, SolidHit& hit) const override {
+    // The cylinder about the axis, in the plane across it.
+    const Eigen::Vector3d d = direction - along_.dot(direction) * along_;
+    const Eigen::Vector3d o = -from_ + along_.dot(from_) * along_;
+    const double a = d.squaredNorm(), b = o.dot(d), c = o.squaredNorm() - radius_ * radius_;
+    const double root = b * b - a * c;
+    if (root < 0) return false;
+    if (a > 1e-12) {
+      const double depth = (-b - std::sqrt(root)) / a;
+      const double position = along_.dot(depth * direction - from_);
+      if (depth > kNearestMm && position >= 0 && position <= length_) {
+        return accept(depth, direction, from_ + position * along_, hit);
+      }
+    }
+    return hit_end(direction, from_, hit) || hit_end(direction, from_ + length_ * along_, hit);
+  }
+
+  std::vector<Eigen::Vector3d> hull() const override {
+    std::vector<Eigen::Vector3d> corners;
+    for (const Eigen::Vector3d& end : {from_, Eigen::Vector3d(from_ + length_ * along_)}) {
+      for (int i = 0; i < 8; ++i) {
+        corners.emplace_back(end + radius_ * Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+      }
+    }
+    return corners;
+  }
+
+ private:
+  bool hit_end(const Eigen::Vector3d& direction, const Eigen::Vector3d& center, SolidHit& hit) const {
+    const double a = direction.squaredNorm(), b = -center.dot(direction);
+    const double root = b * b - a * (center.squaredNorm() - radius_ * radius_);
+    if (root < 0) return false;
+    const double depth = (-b - std::sqrt(root)) / a;
+    return depth > kNearestMm && accept(depth, direction, center, hit);
+  }
+
+  bool accept(double depth, const Eigen::Vector3d& direction, const Eigen::Vector3d& axis_point, SolidHit& hit) const {
+    hit.depth_mm = depth;
+    hit.normal = (depth * direction - axis_point) / radius_;
+    hit.region = 0;
+    hit.skin = &skin_;
+    return true;
+  }
+
+  Eigen::Vector3d from_, along_;
+  double radius_, length_;
+  Skin skin_;
+};
+
+}  // namespace
+
+MarkerCells marker_cells(int id) {
+  static const auto all = [] {
+    std::array<MarkerCells, 50> drawn{};
+    const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50);
+    for (int marker = 0; marker < 50; ++marker) {
+      cv::Mat picture;
+      cv::aruco::drawMarker(dictionary, marker, 6, picture, 1);
+      for (int i = 0; i < 36; ++i) {
+        drawn[static_cast<std::size_t>(marker)][static_cast<std::size_t>(i / 6)][static_cast<std::size_t>(i % 6)] =
+            picture.at<std::uint8_t>(i / 6, i % 6) > 0;
+      }
+    }
+    return drawn;
+  }();
+  return all.at(static_cast<std::size_t>(id));
+}
+
+std::unique_ptr<Solid> make_plate(const geometry::RigidTransform& camera_from_plate, const PlateShape& shape) {
+  return std::make_unique<Plate>(camera_from_plate, shape);
+}
+
+std::unique_ptr<Solid> make_checkerboard(const geometry::RigidTransform& camera_from_board, double square_mm) {
+  return std::make_unique<Checkerboard>(camera_from_board, square_mm);
+}
+
+std::unique_ptr<Solid> make_rod(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm, double radius_mm,
+                                const Skin& skin) {
+  return std::make_unique<Rod>(from_mm, to_mm, radius_mm, skin);
+}
+
+Skin steel() { return {{0.075f, 0.078f, 0.08f}, 1.1f, 5}; }
+
+}  // namespace arthronaut::simulator

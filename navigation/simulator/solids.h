@@ -1,0 +1,71 @@
+// The hard things in front of the simulated lens: printed plates (markers, screw heads, rulers, the checkerboard) and
+// round rods. All are met exactly, ray by ray, in the camera frame (mm), so that their edges lie where the camera model
+// puts them.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::simulator {
+
+// How a surface answers light; colours are linear, blue green red.
+struct Skin {
+  Eigen::Vector3f albedo_bgr{0.5f, 0.5f, 0.5f};
+  float specular = 0;      // strength of the highlight
+  int gloss_doublings = 5; // the highlight's exponent is 2 to this power
+};
+
+struct SolidHit {
+  double depth_mm = 0;  // along the camera's z axis
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  const Skin* skin = nullptr;
+  int region = 0;       // differs between parts of a solid that look different
+};
+
+class Solid {
+ public:
+  virtual ~Solid() = default;
+  // Where the ray `depth * direction` (direction.z == 1) enters the solid in front of the camera. False: it misses.
+  [[nodiscard]] virtual bool hit(const Eigen::Vector3d& direction, SolidHit& hit) const = 0;
+  // How far behind the bone's surface the solid is still drawn: what a surgeon clears out of the way by bending the knee.
+  double yields_mm = 0;
+  // Points in the camera frame whose hull holds the solid; empty: it may be anywhere in the picture.
+  [[nodiscard]] virtual std::vector<Eigen::Vector3d> hull() const = 0;
+};
+
+// True for a white cell. Row 0 is the marker's top.
+using MarkerCells = std::array<std::array<bool, 6>, 6>;
+// The whole printed square of DICT_4X4_50, its black border included. id in 0..49.
+[[nodiscard]] MarkerCells marker_cells(int id);
+
+struct PrintedMarker {
+  Eigen::Vector2d center_mm = Eigen::Vector2d::Zero();  // on the plate
+  double size_mm = 4;
+  MarkerCells cells{};
+};
+
+// A flat plate whose printed face is z = 0 of its own frame, z towards the viewer, with thickness behind it.
+struct PlateShape {
+  Eigen::Vector2d half_size_mm{3, 3};
+  bool is_round = false;         // a disc of radius half_size_mm.x()
+  double thickness_mm = 0.8;
+  std::vector<PrintedMarker> markers;
+  double tick_spacing_mm = 0;    // > 0: a ruler with ticks along its right edge
+};
+[[nodiscard]] std::unique_ptr<Solid> make_plate(const geometry::RigidTransform& camera_from_plate,
+                                                const PlateShape& shape);
+
+// A checkerboard without end in z = 0.
+[[nodiscard]] std::unique_ptr<Solid> make_checkerboard(const geometry::RigidTransform& camera_from_board,
+                                                       double square_mm);
+
+// A rod with round ends; both end points lie radius_mm inside its ends.
+[[nodiscard]] std::unique_ptr<Solid> make_rod(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm,
+                                              double radius_mm, const Skin& skin);
+[[nodiscard]] Skin steel();
+
+}  // namespace arthronaut::simulator

@@ -1,0 +1,399 @@
+#include "navigation/simulator/staging.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "navigation/simulator/instruments.h"
+#include "navigation/simulator/random.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::simulator {
+namespace {
+
+using Eigen::Vector3d;
+using geometry::RigidTransform;
+
+constexpr double kMinSidePx = 80;              // of a marker's black square
+constexpr double kMinTiltDeg = 8, kMaxTiltDeg = 52;
+constexpr double kViewShare = 0.93;            // of the view's radius that markers keep within
+constexpr double kMinClearanceMm = 5;          // of the lens from the bone
+
+RigidTransform frame_from_axes(const Vector3d& x, const Vector3d& y, const Vector3d& z, const Vector3d& origin) {
+  Eigen::Matrix3d axes;
+  axes << x, y, z;
+  return {Eigen::Quaterniond(axes).normalized(), origin};
+}
+
+// Looks from eye along `forward`; `up` points to the picture's top.
+RigidTransform bone_from_camera(const Vector3d& eye, const Vector3d& forward, const Vector3d& up) {
+  const Vector3d z = forward.normalized(), x = z.cross(up).normalized();
+  return frame_from_axes(x, z.cross(x), z, eye);
+}
+
+// A marker at `center` whose y axis is near `y` and whose normal is turned from `to_viewer` by tilt_rad at most.
+RigidTransform marker_facing(const Vector3d& center, const Vector3d& normal, const Vector3d& y) {
+  const Vector3d z = normal.normalized(), x = y.cross(z).normalized();
+  return frame_from_axes(x, z.cross(x), z, center);
+}
+
+// Turns `normal` towards `wanted` until the angle between them is at most limit_rad.
+Vector3d turned_towards(const Vector3d& normal, const Vector3d& wanted, double limit_rad) {
+  const double angle = geometry::angle_between_rad(normal, wanted);
+  if (angle <= limit_rad) return normal;
+  const Vector3d axis = normal.cross(wanted).normalized();
+  return Eigen::AngleAxisd(angle - limit_rad, axis) * normal;
+}
+
+class Stage {
+ public:
+  Stage(const SimulationOptions& options, const geometry::Surface& bone)
+      : options_(options), bone_(bone), camera_(options.camera, 0, options.refractive_index),
+        probe_(probe_of(options.tools)), guide_(guide_of(options)), world_(world_marker_of(options)),
+        random_(options.seed * 7919 + 17) {
+    const double lateral_x = options.knee.side == bones::Side::Right ? -1 : 1;
+    lateral_ = {lateral_x, 0, 0};
+    const Vector3d direction = options.plan.direction.normalized();
+    guide_marker_mm_ = options.plan.entry_mm - (guide_.axis->point_mm.norm() - 1) * direction;
+  }
+
+  Staging find() {
+    // Most places for the world marker fail one of the phases at once: many are tried.
+    for (int attempt = 0; attempt < 1500; ++attempt) {
+      Staging staging;
+      if (place_world_marker(staging) && stage_drill(staging) && stage_pivot(staging) && stage_scratch(staging)) {
+        return staging;
+      }
+    }
+    throw InvalidInput("simulator: the arthroscope finds no place from which markers and planned entry can be seen");
+  }
+
+ private:
+  Vector3d anatomical(double lateral, double anterior, double superior) const {
+    // The tibia is looked at from above, the femur from below.
+    const double up = options_.bone == bones::BoneKind::Femur ? superior : -superior;
+    return lateral * lateral_ + Vector3d(0, -anterior, up);
+  }
+
+  bool place_world_marker(Staging& staging) {
+    const Vector3d near = options_.plan.entry_mm + anatomical(random_.between(-8, 6), random_.between(-8, 14),
+                                                              random_.between(-22, 0));
+    const geometry::SurfacePoint spot = bone_.closest_point(near);
+    // Near enough to where the guide's marker will be to be seen with it.
+    if ((spot.point_mm - guide_marker_mm_).norm() > 24) return false;
+    // Where the scope will roughly be.
+    const Vector3d viewer = options_.plan.entry_mm + anatomical(-14, 8, -34);
+    const Vector3d to_viewer = (viewer - spot.point_mm).normalized();
+    if (spot.normal.dot(to_viewer) < std::cos(geometry::rad_from_deg(75))) return false;
+    const Vector3d normal = turned_towards(spot.normal, to_viewer, geometry::rad_from_deg(30));
+    const Vector3d y = Eigen::AngleAxisd(random_.between(-0.6, 0.6), normal) * anatomical(0, 1, 0.3);
+    staging.bone_from_world_marker = marker_facing(spot.point_mm + random_.between(1.6, 3.2) * spot.normal, normal, y);
+    // The whole face is above the bone.
+    for (const double sx : {-1.0, 0.0, 1.0}) {
+      for (const double sy : {-1.0, 0.0, 1.0}) {
+        const double reach = 0.6 * world_.size_mm;
+        const Vector3d corner = staging.bone_from_world_marker * Vector3d(sx * reach, sy * reach, 0);
+        if (bone_.signed_distance_mm(corner) < 0.2) return false;
+      }
+    }
+    return true;
+  }
+
+  // A lens position that sees the world marker well, looking between it and `other`.
+  std::optional<RigidTransform> random_view(const Staging& staging, const Vector3d& other, double min_back, double max_back) {
+    const RigidTransform& world = staging.bone_from_world_marker;
+    const double back = random_.between(min_back, max_back);
+    Vector3d direction = world.rotate(Vector3d::UnitZ());
+    direction = (direction + 0.6 * Vector3d(random_.between(-1, 1), random_.between(-1, 1), random_.between(-1, 1)));
+    const Vector3d eye = world.translation_mm + back * direction.normalized();
+    if (bone_.signed_distance_mm(eye) < kMinClearanceMm) return std::nullopt;
+    const double share = random_.between(0.35, 0.65);
+    const Vector3d forward = share * (world.translation_mm - eye).normalized() + (1 - share) * (other - eye).normalized();
+    const RigidTransform view = bone_from_camera(eye, forward, anatomical(0, 1, random_.between(0, 0.6)));
+    Solids solids;
+    add_world_marker(world_, view.inverse() * world, solids);
+    if (!sees(view, world, world_.size_mm, solids, 0, true)) return std::nullopt;
+    return view;
+  }
+
+  // The marker's square, with a margin, is inside the view, large, not too oblique and hidden by nothing.
+  bool sees(const RigidTransform& bone_from_view, const RigidTransform& bone_from_marker, double size_mm,
+            const Solids& solids, std::size_t own, bool bone_hides) const {
+    const RigidTransform camera_from_marker = bone_from_view.inverse() * bone_from_marker;
+    const Vector3d& center = camera_from_marker.translation_mm;
+    if (center.z() < 6) return false;
+    const double tilt_deg = geometry::deg_from_rad(
+        geometry::angle_between_rad(camera_from_marker.rotate(Vector3d::UnitZ()), -center));
+    if (tilt_deg < kMinTiltDeg || tilt_deg > kMaxTiltDeg) return false;
+    std::array<Eigen::Vector2d, 4> corners;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Vector3d corner(i == 0 || i == 3 ? -1 : 1, i < 2 ? 1 : -1, 0);
+      const Vector3d in_camera = camera_from_marker * (0.62 * size_mm * corner);
+      const auto pixel = camera_.project(in_camera);
+      if (!pixel || !camera_.is_inside_view(*pixel)) return false;
+      const camera::Boundary& boundary = camera_.boundary();
+      if ((*pixel - boundary.center_px).norm() > kViewShare * boundary.radius_px) return false;
+      corners[i] = *pixel;
+      if (is_hidden(in_camera, solids, own)) return false;
+      if (bone_hides && is_behind_bone(bone_from_view, bone_from_marker * (0.5 * size_mm * corner))) return false;
+    }
+    if (is_hidden(center, solids, own)) return false;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if ((corners[i] - corners[(i + 1) % 4]).norm() < 1.24 * kMinSidePx) return false;
+    }
+    return true;
+  }
+
+  static bool is_hidden(const Vector3d& in_camera, const Solids& solids, std::size_t own) {
+    for (std::size_t i = 0; i < solids.size(); ++i) {
+      SolidHit hit;
+      if (i != own && solids[i]->hit(in_camera / in_camera.z(), hit) && hit.depth_mm < in_camera.z()) return true;
+    }
+    return false;
+  }
+
+  bool is_behind_bone(const RigidTransform& bone_from_view, const Vector3d& point) const {
+    const Vector3d eye = bone_from_view.translation_mm;
+    const auto hit = bone_.first_hit(eye, point - eye);
+    return hit && hit->distance_mm < (point - eye).norm() - 0.1;
+  }
+
+  // World marker and tool marker both seen with the tool held so.
+  bool sees_both(const Staging& staging, const RigidTransform& view, const tools::Tool& tool,
+                 const RigidTransform& bone_from_tool) const {
+    const RigidTransform camera_from_bone = view.inverse();
+    Solids solids;
+    add_world_marker(world_, camera_from_bone * staging.bone_from_world_marker, solids);
+    add_tool(tool, camera_from_bone * bone_from_tool, solids);
+    return sees(view, bone_from_tool, tool.size_mm, solids, 1, false) &&
+           sees(view, staging.bone_from_world_marker, world_.size_mm, solids, 0, false);
+  }
+
+  bool stage_drill(Staging& staging) {
+    const tunnels::Tunnel& plan = options_.plan;
+    const Vector3d direction = plan.direction.normalized();
+    // How far off the guide is when its marker comes into view: the further the better, and 4 mm at least.
+    double best_mm = 3.5;
+    for (int attempt = 0; attempt < 200 && best_mm < 10; ++attempt) {
+      const auto view = random_view(staging, guide_marker_mm_, 19, 28);
+      if (!view) continue;
+      double off_mm = 0;
+      for (double off = 0; off <= 11; off += 1) {
+        const RigidTransform pose =
+            guide_pose(*guide_.axis, plan.entry_mm - off * direction, direction, view->translation_mm);
+        if (!sees_both(staging, *view, guide_, pose)) break;
+        off_mm = off;
+      }
+      if (off_mm <= best_mm) continue;
+      best_mm = off_mm;
+      staging.bone_from_camera_drill = *view;
+    }
+    return best_mm > 3.5;
+  }
+
+  // How the probe is held with its tip at `tip` and its marker near `hold`: of the turns about the line from tip to
+  // marker, the one whose marker faces the viewer but for 18 degrees, which a pose from one square needs.
+  std::optional<ProbePose> hold_probe(const Vector3d& tip, const Vector3d& hold, const Vector3d& viewer) const {
+    const Vector3d in_marker = -*probe_.tip_mm;  // from tip to marker, in the marker's frame
+    const double length = in_marker.norm();
+    const Vector3d u = (hold - tip).normalized(), center = tip + length * u;
+    const Vector3d to_viewer = (viewer - center).normalized();
+    // The normal lies on a cone about u.
+    const double cone = std::acos(std::clamp(in_marker.z() / length, -1.0, 1.0));
+    const Vector3d across = to_viewer - to_viewer.dot(u) * u;
+    if (across.norm() < 0.05) return std::nullopt;
+    const Vector3d side = across.normalized();
+    const auto normal_at = [&](double turn) -> Vector3d {
+      return std::cos(cone) * u + std::sin(cone) * (Eigen::AngleAxisd(turn, u) * side);
+    };
+    double turn = 0;
+    while (turn < 1.0 && geometry::angle_between_rad(normal_at(turn), to_viewer) < geometry::rad_from_deg(18)) turn += 0.02;
+    const Vector3d z = normal_at(turn);
+    // u = R in_marker / length with in_marker in the plane of the marker's y and z (x is small): solve for y.
+    const Vector3d y = (length * u - in_marker.z() * z).normalized();
+    RigidTransform pose = marker_facing(center, z, y);
+    pose.translation_mm = tip - pose.rotate(*probe_.tip_mm);
+    return ProbePose{tip, pose};
+  }
+
+  bool stage_scratch(Staging& staging) {
+    for (int attempt = 0; attempt < 25; ++attempt) {
+      const auto view = random_view(staging, options_.plan.entry_mm, 24, 33);
+      if (!view) continue;
+      auto strokes = find_strokes(staging, *view);
+      double total = 0;
+      for (const auto& stroke : strokes) total += 0.5 * static_cast<double>(stroke.size());
+      if (total < 200) continue;
+      staging.bone_from_camera_scratch = *view;
+      staging.strokes = std::move(strokes);
+      return true;
+    }
+    return false;
+  }
+
+  // Strokes along rows and columns of the picture, where the probe can touch what the lens sees.
+  std::vector<std::vector<ProbePose>> find_strokes(const Staging& staging, const RigidTransform& view) {
+    std::vector<std::vector<ProbePose>> strokes;
+    double total = 0;
+    for (int line = 0; line < 14 && total < 235; ++line) {
+      const bool is_row = line % 2 == 0;
+      // From the middle outwards, to both sides in turn.
+      const int step = (line / 2 + 1) / 2 * ((line / 2) % 2 ? 1 : -1);
+      const double across = 0.19 * step + 0.03;
+      std::vector<ProbePose> best;
+      // Held so or so: the best of a few ways.
+      for (int way = 0; way < 4; ++way) {
+        const Vector3d hold = view * Vector3d(random_.between(-9, 9), random_.between(-9, 9), random_.between(12, 18));
+        auto stroke = longest_stroke(staging, view, hold, is_row, across);
+        if (stroke.size() > best.size()) best = std::move(stroke);
+      }
+      if (best.size() < 20) continue;
+      best.resize(std::min<std::size_t>(best.size(), 80));
+      total += 0.5 * static_cast<double>(best.size());
+      strokes.push_back(std::move(best));
+    }
+    return strokes;
+  }
+
+  // The longest run along one row or column of the picture, by share of the view's radius.
+  std::vector<ProbePose> longest_stroke(const Staging& staging, const RigidTransform& view, const Vector3d& hold,
+                                        bool is_row, double across) const {
+    constexpr int kRays = 150;
+    const camera::Boundary& boundary = camera_.boundary();
+    std::vector<ProbePose> stroke, best;
+    const auto end_stroke = [&] {
+      if (stroke.size() > best.size()) best = stroke;
+      stroke.clear();
+    };
+    for (int i = 0; i <= kRays; ++i) {
+      const double along = -0.85 + 1.7 * i / kRays;
+      const Eigen::Vector2d share = is_row ? Eigen::Vector2d(along, across) : Eigen::Vector2d(across, along);
+      const auto ray = camera_.ray(boundary.center_px + boundary.radius_px * share);
+      const auto hit = ray ? bone_.first_hit(view.translation_mm, view.rotate(*ray)) : std::nullopt;
+      if (hit) {
+        extend(staging, view, hold, hit->point_mm, stroke, end_stroke);
+      } else {
+        end_stroke();
+      }
+    }
+    end_stroke();
+    return best;
+  }
+
+  // Goes on to `point` in steps of 0.5 mm on the surface, or ends the stroke where the surface jumps or a marker is lost.
+  template <class End>
+  void extend(const Staging& staging, const RigidTransform& view, const Vector3d& hold, const Vector3d& point,
+              std::vector<ProbePose>& stroke, End end_stroke) const {
+    if (!stroke.empty() && (point - stroke.back().tip_mm).norm() > 3) end_stroke();
+    while (stroke.empty() || (point - stroke.back().tip_mm).norm() >= 0.5) {
+      Vector3d tip = point;
+      if (!stroke.empty()) {
+        const Vector3d towards = (point - stroke.back().tip_mm).normalized();
+        tip = bone_.closest_point(stroke.back().tip_mm + 0.5 * towards).point_mm;
+        if ((tip - stroke.back().tip_mm).norm() < 0.3) { end_stroke(); return; }
+      }
+      const auto pose = hold_probe(tip, hold, view.translation_mm);
+      if (!pose || !sees_both(staging, view, probe_, pose->bone_from_marker)) { end_stroke(); return; }
+      stroke.push_back(*pose);
+    }
+  }
+
+  bool stage_pivot(Staging& staging) {
+    for (int attempt = 0; attempt < 150; ++attempt) {
+      const Vector3d tip =
+          bone_.closest_point(options_.plan.entry_mm + anatomical(random_.between(-6, 8), random_.between(-6, 18),
+                                                                  random_.between(-18, 4))).point_mm;
+      const auto view = random_view(staging, tip, 22, 33);
+      if (!view) continue;
+      const RigidTransform camera_from_bone = view->inverse();
+      const Vector3d tip_in_camera = camera_from_bone * tip;
+      if (tip_in_camera.z() < 28) continue;
+      const Vector3d hold = tip_in_camera + Vector3d(random_.between(-12, 12), random_.between(-12, 12), -19);
+      const Vector3d mean = view->rotate((hold - tip_in_camera).normalized());
+      for (const double cone_deg : {34.0, 31.0, 28.0, 25.0}) {
+        auto swing = swing_about(tip, mean, cone_deg, view->translation_mm);
+        const bool all = !swing.empty() && std::all_of(swing.begin(), swing.end(), [&](const ProbePose& pose) {
+          return sees_both(staging, *view, probe_, pose.bone_from_marker);
+        });
+        if (!all) continue;
+        staging.bone_from_camera_pivot = *view;
+        staging.pivot = std::move(swing);
+        staging.pivot_cone_deg = cone_deg;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // Twice around the cone, once on its rim and once half-way in.
+  std::vector<ProbePose> swing_about(const Vector3d& tip, const Vector3d& mean, double cone_deg,
+                                     const Vector3d& viewer) const {
+    constexpr int kStops = 48;
+    const Vector3d side = mean.unitOrthogonal(), up = mean.cross(side);
+    std::vector<ProbePose> swing;
+    for (int i = 0; i < kStops; ++i) {
+      const double turn = 4 * geometry::kPi * i / kStops;
+      const double tilt = geometry::rad_from_deg(cone_deg) * (0.75 + 0.25 * std::cos(0.5 * turn));
+      const Vector3d u =
+          std::cos(tilt) * mean + std::sin(tilt) * (std::cos(turn) * side + std::sin(turn) * up);
+      const auto pose = hold_probe(tip, tip + 20 * u, viewer);
+      if (!pose) return {};
+      swing.push_back(*pose);
+    }
+    return swing;
+  }
+
+  const SimulationOptions& options_;
+  const geometry::Surface& bone_;
+  camera::CameraModel camera_;
+  const tools::Tool& probe_;
+  const tools::Tool& guide_;
+  const tools::WorldMarker& world_;
+  Random random_;
+  Vector3d lateral_;
+  Vector3d guide_marker_mm_;  // about, with its point at the planned entry
+};
+
+}  // namespace
+
+Staging stage_operation(const SimulationOptions& options, const geometry::Surface& bone) {
+  return Stage(options, bone).find();
+}
+
+RigidTransform guide_pose(const tools::ToolAxis& axis, const Vector3d& point_mm, const Vector3d& direction,
+                          const Vector3d& viewer_mm) {
+  // The rotation that lays the tool's axis along `direction`, then the turn about it that shows the marker.
+  const Vector3d bend = axis.direction.cross(direction);
+  const Eigen::Quaterniond aligned(Eigen::AngleAxisd(
+      geometry::angle_between_rad(axis.direction, direction),
+      bend.norm() > 1e-9 ? Vector3d(bend.normalized()) : Vector3d(axis.direction.unitOrthogonal())));
+  const Vector3d center = point_mm - aligned * axis.point_mm;
+  const auto across = [&](const Vector3d& v) -> Vector3d { return (v - v.dot(direction) * direction).normalized(); };
+  const Vector3d is = across(aligned * Vector3d::UnitZ()), wanted = across(viewer_mm - center);
+  const double turn = std::atan2(direction.dot(is.cross(wanted)), is.dot(wanted));
+  const Eigen::Quaterniond rotation =
+      Eigen::Quaterniond(Eigen::AngleAxisd(turn + geometry::rad_from_deg(14), direction)) * aligned;
+  return {rotation.normalized(), point_mm - rotation * axis.point_mm};
+}
+
+const tools::Tool& probe_of(const tools::ToolSet& tools) {
+  for (const tools::Tool& tool : tools.tools) {
+    if (tool.tip_mm) return tool;
+  }
+  throw InvalidInput("simulator: the tools hold no probe, a tool with tip_mm");
+}
+
+const tools::Tool& guide_of(const SimulationOptions& options) {
+  const std::string name = std::string(bones::to_text(options.bone)) == "femur" ? "femoral guide" : "tibial guide";
+  if (const tools::Tool* named = options.tools.find_tool(name); named && named->axis) return *named;
+  for (const tools::Tool& tool : options.tools.tools) {
+    if (tool.axis) return tool;
+  }
+  throw InvalidInput("simulator: the tools hold no drill guide, a tool with axis_point_mm");
+}
+
+const tools::WorldMarker& world_marker_of(const SimulationOptions& options) {
+  if (const tools::WorldMarker* marker = options.tools.find_world_marker(options.bone)) return *marker;
+  throw InvalidInput("simulator: the tools hold no world marker for the " + std::string(bones::to_text(options.bone)));
+}
+
+}  // namespace arthronaut::simulator
