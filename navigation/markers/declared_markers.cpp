@@ -44,11 +44,11 @@ std::vector<DeclaredMarker> declared_markers(const tools::ToolSet& tools) {
   return declared;
 }
 
-void check_declaration(std::span<const DeclaredMarker> declared) {
+void check_declaration(std::span<const DeclaredMarker> declared, int dictionary_size) {
   for (std::size_t i = 0; i < declared.size(); ++i) {
     const DeclaredMarker& marker = declared[i];
     const std::string name = "marker " + std::to_string(marker.id);
-    if (marker.id < 0 || marker.id >= kDictionarySize) {
+    if (marker.id < 0 || marker.id >= dictionary_size) {
       throw InvalidInput(name + ": the id must be 0 to " + std::to_string(kDictionarySize - 1) +
                          " (DICT_4X4_50)");
     }

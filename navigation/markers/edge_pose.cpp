@@ -17,12 +17,12 @@ constexpr int kMinEdges = 12;
 constexpr int kMaxEdges = 1024;
 constexpr double kTukey = 4.685;
 // Neighbouring profiles share pixels and what is wrong with them: so many of them count as one.
-constexpr double kCorrelatedEdges = 2.5;
+constexpr double kCorrelatedEdges = 2.2;
 // What every edge of a side has wrong together (camera, print, compression), as an error of the corners.
-constexpr double kCommonCornerErrorPx = 0.016;
+constexpr double kCommonCornerErrorPx = 0.015;
 // What the edges of a smeared, or of a partly covered, marker have wrong together: the hand does not move
 // evenly, and what covers it also shades what is beside it.
-constexpr double kCommonErrorPerBox = 0.03, kCommonErrorPerCover = 0.25;
+constexpr double kCommonErrorPerBox = 0.08, kCommonErrorPerCover = 0.25;
 
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;

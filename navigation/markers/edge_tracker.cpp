@@ -114,7 +114,7 @@ class EdgeTracker final : public MarkerTracker {
 std::unique_ptr<MarkerTracker> make_edge_tracker(std::span<const DeclaredMarker> declared,
                                                  std::span<const MarkerCode> codes,
                                                  const EdgeTrackerOptions& options) {
-  check_declaration(declared);
+  check_declaration(declared, static_cast<int>(codes.size()));
   return std::make_unique<EdgeTracker>(declared, codes, options);
 }
 

@@ -26,6 +26,8 @@ constexpr int kTriedDirections = 4;
 constexpr double kMaxSigmaMm = 0.25, kMaxSigmaRad = 1.5 * geometry::kPi / 180;
 constexpr int kMaxPasses = 4;
 constexpr double kMaxNewMotionPx = 5;
+// At first sight the motion is a guess: so much more may be wrong with each corner.
+constexpr double kFoundCornerSigmaPx = 0.15;
 // How far the edges are looked for, in cells; less than half, or the next edge answers.
 constexpr double kReachPredicted = 0.35, kReachFound = 0.45;
 constexpr double kMinCellPx = 3;
@@ -150,10 +152,13 @@ bool MarkerTrack::measure(const LinearImage& image, const camera::CameraModel& c
   observation.rms_px = corners.rms_px;
   std::optional<SquarePose> other;
   observation.ambiguity_ratio = kNoOtherPose;
-  if (const auto poses = solve_square(camera, corners.corners_px, marker_.size_mm); poses && poses->other) {
+  if (const auto poses = solve_square(camera, corners.corners_px, marker_.size_mm)) {
     other = poses->other;
-    observation.ambiguity_ratio =
-        std::min(kNoOtherPose, other->rms_px / std::max(observation.rms_px, kCornerSigmaPx));
+    if (other) {
+      observation.ambiguity_ratio =
+          std::min(kNoOtherPose, other->rms_px / std::max(observation.rms_px, kCornerSigmaPx));
+    }
+    if (is_found) observation.covariance += square_covariance(poses->best, kFoundCornerSigmaPx);
   }
   observation.state = judge(fit, observation, other, is_found);
   if (observation.state == MarkerState::Covered)

@@ -6,7 +6,9 @@
 namespace arthronaut::markers {
 namespace {
 
-constexpr int kShrink = 4;
+// By how much the frame is made smaller for the search: small pictures hold small markers.
+constexpr int kShrink = 4, kShrinkSmall = 2;
+constexpr int kSmallView = 700;  // in frame pixels
 // In shrunk pixels.
 constexpr int kMinSide = 8;
 constexpr int kRadii[] = {14};
@@ -59,6 +61,18 @@ bool drop_cheapest_edge(std::vector<Eigen::Vector2d>& polygon) {
   return true;
 }
 
+template <int kTimes>
+void average_row(const camera::GrayView& frame, int left, int top, int width, std::uint8_t* out) {
+  for (int x = 0; x < width; ++x) {
+    int sum = kTimes * kTimes / 2;
+    for (int k = 0; k < kTimes; ++k) {
+      const std::uint8_t* cell = frame.row(top + k) + left + kTimes * x;
+      for (int i = 0; i < kTimes; ++i) sum += cell[i];
+    }
+    out[x] = static_cast<std::uint8_t>(sum / (kTimes * kTimes));
+  }
+}
+
 struct Line {
   Eigen::Vector2d point, direction;
   [[nodiscard]] double distance(const Eigen::Vector2d& p) const {
@@ -99,8 +113,9 @@ void SquareSearch::shrink(const camera::GrayView& frame, const camera::CameraMod
     right = std::clamp(static_cast<int>(circle.center_px.x() + circle.radius_px) + 1, left_, frame.width);
     bottom = std::clamp(static_cast<int>(circle.center_px.y() + circle.radius_px) + 1, top_, frame.height);
   }
-  width_ = (right - left_) / kShrink;
-  height_ = (bottom - top_) / kShrink;
+  shrink_ = std::max(right - left_, bottom - top_) > kSmallView ? kShrink : kShrinkSmall;
+  width_ = (right - left_) / shrink_;
+  height_ = (bottom - top_) / shrink_;
   const std::size_t count = static_cast<std::size_t>(width_) * height_;
   small_.resize(count);
   dark_.resize(count);
@@ -110,17 +125,9 @@ void SquareSearch::shrink(const camera::GrayView& frame, const camera::CameraMod
   last_.resize(std::max(width_, height_));
   std::fill_n(sums_.begin(), width_ + 1, 0U);
   for (int y = 0; y < height_; ++y) {
-    const std::uint8_t* rows[kShrink];
-    for (int k = 0; k < kShrink; ++k) rows[k] = frame.row(top_ + kShrink * y + k) + left_;
     std::uint8_t* out = &small_[static_cast<std::size_t>(y) * width_];
-    for (int x = 0; x < width_; ++x) {
-      int sum = kShrink * kShrink / 2;
-      for (const std::uint8_t* row : rows) {
-        const std::uint8_t* cell = row + kShrink * x;
-        sum += cell[0] + cell[1] + cell[2] + cell[3];
-      }
-      out[x] = static_cast<std::uint8_t>(sum / (kShrink * kShrink));
-    }
+    shrink_ == kShrink ? average_row<kShrink>(frame, left_, top_ + shrink_ * y, width_, out)
+                       : average_row<kShrinkSmall>(frame, left_, top_ + shrink_ * y, width_, out);
     const std::uint32_t* above = &sums_[static_cast<std::size_t>(y) * (width_ + 1)];
     std::uint32_t* here = &sums_[static_cast<std::size_t>(y + 1) * (width_ + 1)];
     std::uint32_t row_sum = 0;
@@ -209,7 +216,7 @@ bool SquareSearch::outline_square(int label, const Region& region, const camera:
     const auto point = camera.undistort({left_ + x, top_ + y});
     if (point) outline_.push_back(*point);
   };
-  const double middle = 0.5 * (kShrink - 1);
+  const double middle = 0.5 * (shrink_ - 1);
   std::fill(first_.begin(), first_.end(), -1);
   for (int y = region.top; y <= region.bottom; ++y) {
     const int* row = &labels_[static_cast<std::size_t>(y) * width_];
@@ -222,13 +229,13 @@ bool SquareSearch::outline_square(int label, const Region& region, const camera:
       last_[x] = y;
     }
     if (left < 0) continue;
-    add(kShrink * left - 0.5, kShrink * y + middle);
-    add(kShrink * right + kShrink - 0.5, kShrink * y + middle);
+    add(shrink_ * left - 0.5, shrink_ * y + middle);
+    add(shrink_ * right + shrink_ - 0.5, shrink_ * y + middle);
   }
   for (int x = region.left; x <= region.right; ++x) {
     if (first_[x] < 0) continue;
-    add(kShrink * x + middle, kShrink * first_[x] - 0.5);
-    add(kShrink * x + middle, kShrink * last_[x] + kShrink - 0.5);
+    add(shrink_ * x + middle, shrink_ * first_[x] - 0.5);
+    add(shrink_ * x + middle, shrink_ * last_[x] + shrink_ - 0.5);
   }
   if (outline_.size() < 16) return false;
   take_hull();
@@ -260,7 +267,7 @@ bool SquareSearch::outline_square(int label, const Region& region, const camera:
   }
   square.shortest_side_px = shortest;
   square.longest_side_px = longest;
-  return longest < kMaxSideRatio * shortest && longest >= kMinSide * kShrink;
+  return longest < kMaxSideRatio * shortest && longest >= kMinSide * shrink_;
 }
 
 // The hull is pushed out by whatever dark thing touches the square. Each side becomes the line that most of

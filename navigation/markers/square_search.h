@@ -40,6 +40,7 @@ class SquareSearch {
   void take_hull();
   bool straighten_sides(std::array<Eigen::Vector2d, 4>& quad) const;
 
+  int shrink_ = 4;
   int left_ = 0, top_ = 0;      // of the shrunk picture's first pixel, in frame pixels
   int width_ = 0, height_ = 0;  // of the shrunk picture
   std::vector<std::uint8_t> small_;
