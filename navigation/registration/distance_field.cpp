@@ -166,11 +166,11 @@ DistanceField::Sample DistanceField::sample(const Eigen::Vector3d& point_mm) con
   const double x01 = g.x() * n001 + f.x() * n101, x11 = g.x() * n011 + f.x() * n111;
   const double y0 = g.y() * x00 + f.y() * x10, y1 = g.y() * x01 + f.y() * x11;
   Sample sample;
-  sample.distance_mm = static_cast<double>(kStep_mm) * (g.z() * y0 + f.z() * y1);
+  sample.distance_mm = kStep_mm * (g.z() * y0 + f.z() * y1);
   sample.gradient = {g.z() * (g.y() * (n100 - n000) + f.y() * (n110 - n010)) +
                          f.z() * (g.y() * (n101 - n001) + f.y() * (n111 - n011)),
                      g.z() * (x10 - x00) + f.z() * (x11 - x01), y1 - y0};
-  sample.gradient *= static_cast<double>(kStep_mm) / spacing_mm_;
+  sample.gradient *= kStep_mm / spacing_mm_;
   return sample;
 }
 

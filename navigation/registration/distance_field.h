@@ -35,7 +35,7 @@ class DistanceField {
   [[nodiscard]] Sample sample(const Eigen::Vector3d& point_mm) const;
 
  private:
-  static constexpr float kStep_mm = 0.001f;
+  static constexpr double kStep_mm = 0.001;
 
   [[nodiscard]] std::size_t index(int x, int y, int z) const {
     return static_cast<std::size_t>(x) +

@@ -7,6 +7,7 @@
 #include "navigation/registration/coach.h"
 #include "navigation/registration/confidence.h"
 #include "navigation/registration/curve_checks.h"
+#include "navigation/registration/curve_registration.h"
 #include "navigation/registration/global_search.h"
 #include "navigation/registration/pose_pool.h"
 #include "navigation/strokes/stroke_tangents.h"
@@ -22,6 +23,7 @@ constexpr double kMinLengthToSearch_mm = 25;
 // Pairs to search with at each update: many while nothing is found, one as a watchdog later.
 constexpr int kPairsWhileCollecting = 6, kPairsAfterwards = 1;
 constexpr int kIterations = 6;
+constexpr int kAgreeingSolutions = 3;
 
 struct Stroke {
   strokes::Curves points;
@@ -68,7 +70,11 @@ struct OnlineRegistration::State {
   }
 
   [[nodiscard]] strokes::Curves curves_in_use() const;
+  [[nodiscard]] RegistrationOptions registration_options() const {
+    return {options.seed, options.use_marker_prior, options.target_in_bone_mm};
+  }
   void prepare_strokes();
+  void check_side();
   void solve();
   void remember_solution();
   void judge_touches();
@@ -88,6 +94,8 @@ struct OnlineRegistration::State {
   double solved_length_mm = 0;
   double unmeasured_mm = 0;         // at most so much stroke was drawn since the strokes were last measured
   bool is_changed = false;          // strokes were excluded, undone or cleared since the last solution
+  bool is_other_side = false;       // as the last check, before a confirmation, told
+  double side_checked_mm = 0;       // the stroke length then; 0 when there was none
   bool is_judged = true;            // false: touches came in since the last update
   std::vector<RigidTransform> solutions;  // marker_from_bone, each with new stroke, newest last
   std::optional<Eigen::Vector3d> control_point_mm;
@@ -145,11 +153,8 @@ void OnlineRegistration::State::solve() {
     pool.add(search_globally(bone->data(), oriented, points, search), points, search.seed);
     pool.refine_all(points, kIterations);
   }
-  RegistrationOptions summary_options;
-  summary_options.use_marker_prior = options.use_marker_prior;
-  summary_options.target_in_bone_mm = options.target_in_bone_mm;
   result.registration = summarise(bone->data(), pool, {curves, points, length_in_use_mm(), white_noise_of(oriented)},
-                                  summary_options);
+                                  registration_options());
   if (!result.registration.has_pose) {
     result.registration.reasons = objections;
     if (objections.empty()) result.registration.reasons = {"no pose was found yet that puts the strokes on the bone"};
@@ -183,6 +188,20 @@ int OnlineRegistration::State::agreement_count() const {
   return count;
 }
 
+// Which side's bone it is shows late: with few strokes the wrong one fits too. So it is asked once when all else would
+// confirm, and again when half as much again was drawn.
+void OnlineRegistration::State::check_side() {
+  const bool is_due = side_checked_mm == 0 || result.length_mm > 1.5 * side_checked_mm || is_other_side;
+  if (is_due && agreement_count() >= kAgreeingSolutions && result.registration.reliable) {
+    is_other_side =
+        mirror_image_fits_better(bone->data(), curves_in_use(), registration_options(), result.registration);
+    side_checked_mm = result.length_mm;
+  }
+  if (!is_other_side || !result.registration.has_pose) return;
+  result.registration.reliable = false;
+  result.registration.reasons.insert(result.registration.reasons.begin(), std::string(kOtherSideReason));
+}
+
 void OnlineRegistration::State::judge_touches() {
   if (!result.registration.has_pose) return;
   const RigidTransform bone_from_marker = result.registration.marker_from_bone.inverse();
@@ -199,7 +218,7 @@ int OnlineRegistration::State::violation_count() const {
 
 void OnlineRegistration::State::judge_state() {
   constexpr double kCandidateRatio = 1.15, kCandidateInliers = 0.5;
-  constexpr int kAgreeingSolutions = 3, kTouchesToVerify = 3, kViolationsToDrop = 2;
+  constexpr int kTouchesToVerify = 3, kViolationsToDrop = 2;
   constexpr double kMaxVerifiedTouch_mm = 1.0, kMaxVerifiedMedian_mm = 0.6;
   const RegistrationSummary& registration = result.registration;
   result.state = OnlineState::Collecting;
@@ -224,7 +243,7 @@ void OnlineRegistration::State::judge_state() {
 }
 
 void OnlineRegistration::State::advise() {
-  constexpr double kLengthWanted_mm = 100, kErrorWanted_mm = 1.2, kAgreeingSolutions = 3;
+  constexpr double kLengthWanted_mm = 100, kErrorWanted_mm = 1.2;
   Coach coach;
   const RegistrationSummary& registration = result.registration;
   if (result.length_mm < kLengthWanted_mm) {
@@ -238,7 +257,7 @@ void OnlineRegistration::State::advise() {
     return;
   }
   coach.missing.insert(coach.missing.end(), registration.reasons.begin(), registration.reasons.end());
-  const double agreeing = std::min(kAgreeingSolutions, static_cast<double>(agreement_count()));
+  const double agreeing = std::min(kAgreeingSolutions, agreement_count());
   if (agreeing < kAgreeingSolutions) {
     coach.missing.push_back(formatted("%.0f mm more of stroke on which the result stays put",
                                       (kAgreeingSolutions - agreeing) * options.refine_every_mm));
@@ -346,6 +365,8 @@ void OnlineRegistration::clear() {
   state_->strokes.clear();
   state_->solutions.clear();
   state_->pool.clear();
+  state_->is_other_side = false;
+  state_->side_checked_mm = 0;
   state_->is_changed = true;
 }
 
@@ -366,6 +387,7 @@ const OnlineResult& OnlineRegistration::update() {
     state.solved_length_mm = state.result.length_mm = length_mm;
     if (state.is_changed) state.solutions.clear();  // agreement has to be earned again
     state.remember_solution();
+    state.check_side();
     state.describe_strokes();
   }
   state.is_changed = false;

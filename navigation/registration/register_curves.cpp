@@ -4,6 +4,7 @@
 
 #include "navigation/registration/confidence.h"
 #include "navigation/registration/curve_checks.h"
+#include "navigation/registration/curve_registration.h"
 #include "navigation/registration/global_search.h"
 #include "navigation/registration/pose_pool.h"
 #include "navigation/registration/registration.h"
@@ -49,6 +50,14 @@ std::vector<Hypothesis> neighbours_of(const geometry::RigidTransform& bone_from_
   return neighbours;
 }
 
+// The curves as they would be had the bone been its own mirror image. The marker's face stays its face.
+strokes::Curves mirrored(strokes::Curves curves) {
+  for (strokes::CurvePoint& point : curves) point.position_mm.x() = -point.position_mm.x();
+  return curves;
+}
+
+}  // namespace
+
 RegistrationSummary search_and_summarise(const PreparedBone::Data& bone, const strokes::Curves& curves,
                                          const RegistrationOptions& options, int max_rounds) {
   constexpr std::size_t kPointCount = 800;
@@ -79,13 +88,11 @@ RegistrationSummary search_and_summarise(const PreparedBone::Data& bone, const s
   return summarise(bone, pool, {curves, points, strokes::stroke_length_mm(curves), white_noise_of(oriented)}, options);
 }
 
-// The curves as they would be had the bone been its own mirror image. The marker's face stays its face.
-strokes::Curves mirrored(strokes::Curves curves) {
-  for (strokes::CurvePoint& point : curves) point.position_mm.x() = -point.position_mm.x();
-  return curves;
+bool mirror_image_fits_better(const PreparedBone::Data& bone, const strokes::Curves& curves,
+                              const RegistrationOptions& options, const RegistrationSummary& found) {
+  const RegistrationSummary image = search_and_summarise(bone, mirrored(curves), options, kMirrorRounds);
+  return image.reliable && image.misfit_mm < found.misfit_mm;
 }
-
-}  // namespace
 
 RegistrationSummary register_curves(const PreparedBone& prepared, const strokes::Curves& curves,
                                     const RegistrationOptions& options) {
@@ -96,9 +103,8 @@ RegistrationSummary register_curves(const PreparedBone& prepared, const strokes:
   if (!summary.reasons.empty()) return summary;
 
   summary = search_and_summarise(bone, curves, options, kMaxRounds);
-  if (!summary.reliable && search_and_summarise(bone, mirrored(curves), options, kMirrorRounds).reliable) {
-    summary.reasons.insert(summary.reasons.begin(),
-                           "the curves fit the mirror image of this bone: it is the bone of the other side");
+  if (!summary.reliable && mirror_image_fits_better(bone, curves, options, summary)) {
+    summary.reasons.insert(summary.reasons.begin(), std::string(kOtherSideReason));
   }
   return summary;
 }

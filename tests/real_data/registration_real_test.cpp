@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "navigation/experiments/registration_trial.h"
 #include "navigation/guidance/guidance.h"
 #include "navigation/registration/registration.h"
 #include "navigation/strokes/curves.h"
@@ -54,6 +55,26 @@ TEST(RealRegistration, CleanCurvesAreFoundFromNothing) {
       const double error_mm = (found.marker_from_bone * plan.entry_mm - truth.marker_from_bone * plan.entry_mm).norm();
       EXPECT_TRUE(found.reliable) << (found.reasons.empty() ? "" : found.reasons.front());
       EXPECT_LT(error_mm, 0.1) << "seed " << seed << (use_marker_prior ? " with" : " without") << " prior";
+    }
+  }
+}
+
+// Strokes on one person's femur never register reliably to another's, whatever the noise, and always to their own.
+TEST(RealRegistration, AnotherPersonsFemurIsRefused) {
+  ARTHRONAUT_REQUIRE_DATA(folder, "bones/mri-femora");
+  const auto mesh = bones::read_mesh(folder / "femur_mesh_10k_pts.vtk");
+  const auto other = bones::read_mesh(folder / "3_RIGHT_femur_Nov_02_2021.vtk");
+  const registration::PreparedBone own_bone(mesh), other_bone(other);
+  const geometry::Surface surface(mesh);
+  const auto wall = experiments::find_lateral_notch_wall(mesh, surface, bones::Side::Right);
+  ASSERT_TRUE(wall.has_value());
+  for (const auto noise : {experiments::TrialNoise::Dry, experiments::TrialNoise::ExVivo}) {
+    for (const std::uint64_t seed : {1, 2}) {
+      const auto trial = experiments::make_trial(mesh, surface, *wall, experiments::setting_of(noise), seed);
+      const auto own = registration::register_curves(own_bone, trial.curves, {seed, true, *wall});
+      EXPECT_TRUE(own.reliable);
+      EXPECT_LT((own.marker_from_bone * *wall - trial.marker_from_bone * *wall).norm(), 1.0);
+      EXPECT_FALSE(registration::register_curves(other_bone, trial.curves, {seed, true, *wall}).reliable);
     }
   }
 }

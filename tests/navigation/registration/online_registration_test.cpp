@@ -1,0 +1,160 @@
+#include "navigation/registration/online_registration.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/navigation/registration/phantom_bone.h"
+
+namespace arthronaut::registration {
+
+namespace {
+
+using experiments::TrialNoise;
+
+OnlineOptions options_for(const PhantomBone& bone) {
+  OnlineOptions options;
+  options.target_in_bone_mm = bone.target_mm;
+  options.direction_in_bone = Eigen::Vector3d(-0.8, 0, 0.6);
+  return options;
+}
+
+// Point by point, as the frames bring them; returns the states that were passed.
+std::vector<OnlineState> draw(OnlineRegistration& online, const strokes::Curves& curves) {
+  std::vector<OnlineState> states{online.result().state};
+  for (const strokes::CurvePoint& point : curves) {
+    online.add_points({&point, 1});
+    const OnlineState state = online.update().state;
+    if (state != states.back()) states.push_back(state);
+  }
+  return states;
+}
+
+// A place that you know: somewhere on the bone, seen from the marker.
+Eigen::Vector3d known_place(const PhantomBone& bone, const experiments::Trial& trial, double dx_mm) {
+  return trial.marker_from_bone * bone.surface->closest_point(bone.target_mm + Eigen::Vector3d(dx_mm, dx_mm, 3)).point_mm;
+}
+
+}  // namespace
+
+// From nothing to confirmed while the strokes come in; the coach's bar ends full; then touches verify it.
+TEST(OnlineRegistration, ConfirmsWhileScratchingAndVerifiesByTouches) {
+  const PhantomBone& bone = phantom_bone();
+  const auto trial = bone.trial(TrialNoise::Dry, 1);
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  const auto states = draw(online, trial.curves);
+  EXPECT_EQ(states.front(), OnlineState::Collecting);
+  EXPECT_EQ(states.back(), OnlineState::Confirmed);
+  const OnlineResult& result = online.result();
+  EXPECT_DOUBLE_EQ(result.coach.progress, 1);
+  EXPECT_LT((result.registration.marker_from_bone * bone.target_mm - trial.marker_from_bone * bone.target_mm).norm(), 0.4);
+  EXPECT_EQ(result.strokes.size(), 6u);
+  EXPECT_GT(result.predicted_angle_deg, 0);
+  EXPECT_GT(online.history().size(), 10u);
+
+  for (const double dx_mm : {0.0, 4.0, -4.0}) online.add_touch(known_place(bone, trial, dx_mm));
+  EXPECT_EQ(online.update().state, OnlineState::Verified);
+}
+
+// With little drawn it says what is missing, and where to go on: a place on the bone that was not touched yet.
+TEST(OnlineRegistration, CoachSaysWhatIsMissing) {
+  const PhantomBone& bone = phantom_bone();
+  auto curves = bone.trial(TrialNoise::Dry, 1).curves;
+  curves.resize(130);
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  draw(online, curves);
+  const Coach& coach = online.result().coach;
+  EXPECT_LT(coach.progress, 1);
+  EXPECT_FALSE(coach.missing.empty());
+  if (online.result().registration.has_pose) {
+    ASSERT_TRUE(coach.next_patch_in_bone_mm.has_value());
+    EXPECT_LT(std::abs(bone.surface->signed_distance_mm(*coach.next_patch_in_bone_mm)), 0.01);
+    EXPECT_GT(coach.patches.size(), 20u);
+  }
+}
+
+// Two touches off the bone take the confirmation back, whatever was sure before; forgetting them gives it back.
+TEST(OnlineRegistration, TwoViolationsDropTheState) {
+  const PhantomBone& bone = phantom_bone();
+  const auto trial = bone.trial(TrialNoise::Dry, 2);
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  draw(online, trial.curves);
+  ASSERT_EQ(online.result().state, OnlineState::Confirmed);
+  const auto normal = trial.marker_from_bone.rotate(bone.surface->closest_point(bone.target_mm).normal);
+  online.add_touch(known_place(bone, trial, 0) + 2.5 * normal);
+  EXPECT_EQ(online.update().state, OnlineState::Confirmed);
+  online.add_touch(known_place(bone, trial, 1) + 2.5 * normal);
+  EXPECT_EQ(online.update().state, OnlineState::Candidate);
+  EXPECT_THAT(online.result().alarm, testing::HasSubstr("world marker"));
+  online.clear_touches();
+  EXPECT_EQ(online.update().state, OnlineState::Confirmed);
+}
+
+// A bumped world marker: the control point, touched again, is elsewhere.
+TEST(OnlineRegistration, ControlPointTellsABumpedMarker) {
+  const PhantomBone& bone = phantom_bone();
+  const auto trial = bone.trial(TrialNoise::Dry, 2);
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  const Eigen::Vector3d control = known_place(bone, trial, 0);
+  online.touch_control_point(control);
+  draw(online, trial.curves);
+  online.touch_control_point(control + Eigen::Vector3d(0.2, 0, 0));
+  EXPECT_EQ(online.update().state, OnlineState::Confirmed);
+  online.touch_control_point(control + Eigen::Vector3d(1.5, 0, 0));
+  online.touch_control_point(control + Eigen::Vector3d(1.5, 0, 0));
+  EXPECT_EQ(online.update().state, OnlineState::Candidate);
+  EXPECT_THAT(online.result().alarm, testing::HasSubstr("control point"));
+}
+
+// A bad stroke can be taken out, put back, and undone.
+TEST(OnlineRegistration, StrokesCanBeExcludedAndUndone) {
+  const PhantomBone& bone = phantom_bone();
+  auto curves = bone.trial(TrialNoise::Dry, 3).curves;
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  draw(online, curves);
+  EXPECT_TRUE(online.exclude_stroke(2));
+  EXPECT_FALSE(online.exclude_stroke(99));
+  EXPECT_TRUE(online.update().strokes[2].is_excluded);
+  EXPECT_LT(online.curves_in_use().size(), curves.size());
+  EXPECT_TRUE(online.exclude_stroke(2, false));
+  EXPECT_TRUE(online.undo_stroke());
+  EXPECT_EQ(online.update().strokes.size(), 5u);
+  EXPECT_TRUE(online.result().registration.has_pose);
+  online.clear();
+  EXPECT_EQ(online.update().state, OnlineState::Collecting);
+  EXPECT_FALSE(online.undo_stroke());
+}
+
+// The wrong side's bone is never confirmed.
+TEST(OnlineRegistration, NeverConfirmsTheMirroredBone) {
+  const PhantomBone& bone = phantom_bone();
+  auto curves = bone.trial(TrialNoise::Dry, 1).curves;
+  for (auto& point : curves) point.position_mm.x() = -point.position_mm.x();
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  for (const OnlineState state : draw(online, curves)) EXPECT_LT(state, OnlineState::Confirmed);
+}
+
+// The worker's result is the core's, whatever the threads do, and what is published is never torn.
+TEST(RegistrationWorker, GivesWhatTheCoreGives) {
+  const PhantomBone& bone = phantom_bone();
+  auto curves = bone.trial(TrialNoise::Dry, 1).curves;
+  curves.resize(700);
+  OnlineRegistration core(bone.prepared, options_for(bone));
+  draw(core, curves);
+  RegistrationWorker worker(bone.prepared, options_for(bone));
+  ASSERT_NE(worker.latest(), nullptr);
+  std::uint64_t seen = 0;
+  for (const strokes::CurvePoint& point : curves) {
+    worker.add_points({&point, 1});
+    const auto latest = worker.latest();
+    EXPECT_GE(latest->revision, seen);
+    seen = latest->revision;
+  }
+  worker.finish();
+  const auto latest = worker.latest();
+  EXPECT_EQ(latest->revision, core.result().revision);
+  EXPECT_EQ(latest->state, core.result().state);
+  EXPECT_EQ(latest->registration.marker_from_bone.translation_mm,
+            core.result().registration.marker_from_bone.translation_mm);
+}
+
+}  // namespace arthronaut::registration
