@@ -35,7 +35,8 @@ std::vector<calibration::CalibrationPicture> observe(const std::vector<std::stri
   for (const std::string& image : images) {
     const camera::Frame frame = sources::read_picture(image);
     camera::gray_from(frame, gray);
-    pictures.push_back(calibration::observe_picture(image, {gray.data(), frame.width, frame.height, frame.width}));
+    pictures.push_back(
+        calibration::observe_picture(image, {gray.data(), frame.width, frame.height, frame.width}));
     progress.advance_to(static_cast<long>(pictures.size()));
   }
   return pictures;
@@ -43,28 +44,32 @@ std::vector<calibration::CalibrationPicture> observe(const std::vector<std::stri
 
 void say_result(const Context& context, const calibration::CalibrationSummary& summary) {
   for (const auto& picture : summary.pictures)
-    context.say(line("%s: %zu corners, %.2f px, tilted by %.0f degrees, lens at %.1f degrees", picture.name.c_str(),
-                     picture.residuals_px.size(), picture.rms_px, picture.tilt_deg, picture.lens_angle_deg));
+    context.say(line("%s: %zu corners, %.2f px, tilted by %.0f degrees, lens at %.1f degrees",
+                     picture.name.c_str(), picture.residuals_px.size(), picture.rms_px, picture.tilt_deg,
+                     picture.lens_angle_deg));
   const camera::Calibration& c = summary.record.calibration;
   const Eigen::MatrixXd& covariance = summary.record.covariance;
   const auto sigma = [&](int k) { return covariance.rows() == 6 ? std::sqrt(covariance(k, k)) : 0.0; };
-  context.say(line("focal length %.2f px (+- %.2f), xi %.5f (+- %.5f)", c.focal_px, sigma(0), c.distortion_xi, sigma(1)));
+  context.say(line("focal length %.2f px (+- %.2f), xi %.5f (+- %.5f)", c.focal_px, sigma(0), c.distortion_xi,
+                   sigma(1)));
   context.say(line("principal point (%.2f, %.2f) px (+- %.2f), centre of rotation (%.2f, %.2f) px (+- %.2f)",
                    c.principal_point_px.x(), c.principal_point_px.y(), std::max(sigma(2), sigma(3)),
                    c.rotation_center_px.x(), c.rotation_center_px.y(), std::max(sigma(4), sigma(5))));
-  context.say(line("corners miss the model by %.3f px (RMS), those of a picture left out by %.3f px", summary.rms_px,
-                   summary.leave_one_out_rms_px));
+  context.say(line("corners miss the model by %.3f px (RMS), those of a picture left out by %.3f px",
+                   summary.rms_px, summary.leave_one_out_rms_px));
 }
 
 void run_calibrate(Context& context, CalibrateArguments& arguments) {
   calibration::CalibrationOptions& options = arguments.options;
   options.refractive_index = arguments.medium_index.value_or(1.0);
   if (arguments.images.size() < 3)
-    throw InvalidInput("calibrate: needs three pictures or more, has " + std::to_string(arguments.images.size()));
+    throw InvalidInput("calibrate: needs three pictures or more, has " +
+                       std::to_string(arguments.images.size()));
   const std::vector<calibration::CalibrationPicture> pictures = observe(arguments.images);
   const calibration::CalibrationSummary summary = calibration::calibrate(pictures, options);
   if (!summary.is_usable())
-    throw InvalidInput("calibrate: " + (summary.reasons.empty() ? std::string("failed") : summary.reasons.front()));
+    throw InvalidInput("calibrate: " +
+                       (summary.reasons.empty() ? std::string("failed") : summary.reasons.front()));
   if (!arguments.plot.empty()) calibration::write_residual_plot(arguments.plot, summary, pictures);
   camera::write_camera_file(arguments.output, summary.record);
   if (arguments.output != "-") say_result(context, summary);
@@ -74,9 +79,10 @@ void run_calibrate(Context& context, CalibrateArguments& arguments) {
 }  // namespace
 
 void add_calibrate_command(CLI::App& app, Context& context) {
-  CLI::App* command = add_subcommand(app, context, "calibrate",
-                                     "Camera calibration from pictures of a checkerboard, the lens turned in between",
-                                     "arthronaut calibrate --square-mm 1.5 -o camera.json a.png b.png c.png");
+  CLI::App* command =
+      add_subcommand(app, context, "calibrate",
+                     "Camera calibration from pictures of a checkerboard, the lens turned in between",
+                     "arthronaut calibrate --square-mm 1.5 -o camera.json a.png b.png c.png");
   const auto arguments = std::make_shared<CalibrateArguments>();
   command->add_option("--square-mm", arguments->options.square_mm, "Side of one square of the board, mm")
       ->required()
@@ -86,8 +92,10 @@ void add_calibrate_command(CLI::App& app, Context& context) {
   command->add_option("--scope", arguments->options.scope_name, "Name of the scope, kept in camera.json");
   command->add_option("--head", arguments->options.head_name, "Name of the camera head, kept in camera.json");
   command->add_option("--plot", arguments->plot, "PNG file for a plot of the residuals");
-  command->add_option("-o,--output", arguments->output, "camera.json to write; - is standard output")->required();
-  command->add_option("IMAGE", arguments->images, "Three or more pictures; the board may run past the view")->required();
+  command->add_option("-o,--output", arguments->output, "camera.json to write; - is standard output")
+      ->required();
+  command->add_option("IMAGE", arguments->images, "Three or more pictures; the board may run past the view")
+      ->required();
   command->callback([&context, arguments] { run_calibrate(context, *arguments); });
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMarkSigmaRad = 0.15 * geometry::kPi / 180;  // of a mark angle measured in one picture
 constexpr double kCircleSigmaPx = 0.3;                        // of a circle's centre
-constexpr double kHuber = 3.0;  // in sigmas
+constexpr double kHuber = 3.0;                                // in sigmas
 
 // Division model of the header of camera_model.h in the calibration's own medium (n = 1).
 // lens: focal, xi, principal x, y, rotation centre x, y.
@@ -71,7 +71,11 @@ struct Blocks {
   std::vector<std::array<double, 6>> poses;
 
   explicit Blocks(const Estimate& e)
-      : lens{e.focal_px, e.xi, e.principal_point_px.x(), e.principal_point_px.y(), e.rotation_center_px.x(),
+      : lens{e.focal_px,
+             e.xi,
+             e.principal_point_px.x(),
+             e.principal_point_px.y(),
+             e.rotation_center_px.x(),
              e.rotation_center_px.y()},
         circle{e.circle_center_px.x(), e.circle_center_px.y()},
         angles(e.lens_angle_rad) {
@@ -122,9 +126,10 @@ Eigen::MatrixXd covariance_of(ceres::Problem& problem, const Blocks& blocks) {
   return block;
 }
 
-// The scale of the corners' errors against their sigmas: from the median length, which outliers do not move. The length of
-// a two-dimensional normal error has its median at 1.177 sigma.
-double scale_of(std::span<const Sighting> sightings, const std::vector<std::vector<Eigen::Vector2d>>& residuals_px) {
+// The scale of the corners' errors against their sigmas: from the median length, which outliers do not move.
+// The length of a two-dimensional normal error has its median at 1.177 sigma.
+double scale_of(std::span<const Sighting> sightings,
+                const std::vector<std::vector<Eigen::Vector2d>>& residuals_px) {
   std::vector<double> in_sigmas;
   for (std::size_t i = 0; i < sightings.size(); ++i)
     for (std::size_t k = 0; k < residuals_px[i].size(); ++k)
@@ -144,20 +149,21 @@ AdjustmentResult adjust_at_scale(std::span<const Sighting> sightings, const Esti
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     const Sighting& seen = sightings[i];
     for (std::size_t k = 0; k < seen.pixels.size(); ++k)
-      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<CornerError, 2, 6, 1, 6>(
-                                   new CornerError{seen.pixels[k], seen.board_mm[k], scale * seen.sigma_px[k]}),
-                               new ceres::HuberLoss(kHuber), blocks.lens, &blocks.angles[i], blocks.poses[i].data());
+      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<CornerError, 2, 6, 1, 6>(new CornerError{
+                                   seen.pixels[k], seen.board_mm[k], scale * seen.sigma_px[k]}),
+                               new ceres::HuberLoss(kHuber), blocks.lens, &blocks.angles[i],
+                               blocks.poses[i].data());
     corner_count += seen.pixels.size();
     if (seen.has_angle) {
-      const double measured = geometry::rad_from_deg(
-          std::remainder(seen.mark_angle_deg - start.reference_mark_angle_deg, 360.0));
-      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<MarkError, 1, 1>(new MarkError{measured}), nullptr,
-                               &blocks.angles[i]);
+      const double measured =
+          geometry::rad_from_deg(std::remainder(seen.mark_angle_deg - start.reference_mark_angle_deg, 360.0));
+      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<MarkError, 1, 1>(new MarkError{measured}),
+                               nullptr, &blocks.angles[i]);
     }
     if (seen.has_circle && options.turns)
       problem.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<CircleError, 2, 6, 1, 2>(new CircleError{seen.circle_center_px}), nullptr,
-          blocks.lens, &blocks.angles[i], blocks.circle);
+          new ceres::AutoDiffCostFunction<CircleError, 2, 6, 1, 2>(new CircleError{seen.circle_center_px}),
+          nullptr, blocks.lens, &blocks.angles[i], blocks.circle);
   }
   set_constant(problem, blocks, options);
 
@@ -184,8 +190,8 @@ AdjustmentResult adjust_at_scale(std::span<const Sighting> sightings, const Esti
     std::vector<Eigen::Vector2d>& residuals = result.residuals_px.emplace_back();
     for (std::size_t k = 0; k < sightings[i].pixels.size(); ++k) {
       Eigen::Vector2d error(1e3, 1e3);
-      CornerError{sightings[i].pixels[k], sightings[i].board_mm[k], 1.0}(blocks.lens, &blocks.angles[i],
-                                                                          blocks.poses[i].data(), error.data());
+      CornerError{sightings[i].pixels[k], sightings[i].board_mm[k], 1.0}(
+          blocks.lens, &blocks.angles[i], blocks.poses[i].data(), error.data());
       residuals.push_back(error);
       sum += residuals.back().squaredNorm();
     }
@@ -197,11 +203,12 @@ AdjustmentResult adjust_at_scale(std::span<const Sighting> sightings, const Esti
 
 }  // namespace
 
-AdjustmentResult adjust(std::span<const Sighting> sightings, const Estimate& start, const AdjustmentOptions& options) {
+AdjustmentResult adjust(std::span<const Sighting> sightings, const Estimate& start,
+                        const AdjustmentOptions& options) {
   const AdjustmentResult first = adjust_at_scale(sightings, start, options, 1.0);
   if (first.rms_px < 0) return first;
-  // Once more with the corners' true noise: it sets what counts as an outlier, the weight of corners against mark and
-  // circle, and the covariance.
+  // Once more with the corners' true noise: it sets what counts as an outlier, the weight of corners against
+  // mark and circle, and the covariance.
   return adjust_at_scale(sightings, first.estimate, options, scale_of(sightings, first.residuals_px));
 }
 

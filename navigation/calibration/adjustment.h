@@ -1,5 +1,5 @@
-// The joint adjustment of all pictures: one focal length, one distortion, one principal point that turns about one
-// centre with the lens. Inside the module.
+// The joint adjustment of all pictures: one focal length, one distortion, one principal point that turns
+// about one centre with the lens. Inside the module.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@ namespace arthronaut::calibration {
 // What one picture gives to the adjustment.
 struct Sighting {
   std::vector<Eigen::Vector2d> pixels, board_mm;  // pairs
-  std::vector<double> sigma_px;                   // of each pixel; the common scale is found from the residuals
+  std::vector<double> sigma_px;  // of each pixel; the common scale is found from the residuals
   bool has_angle = false;
   double mark_angle_deg = 0;  // measured
   bool has_circle = false;
@@ -23,12 +23,12 @@ struct Sighting {
 // The state of the adjustment. Lens angles are relative to the reference mark angle.
 struct Estimate {
   double focal_px = 0, xi = 0;
-  Eigen::Vector2d principal_point_px = Eigen::Vector2d::Zero();   // at lens angle 0
+  Eigen::Vector2d principal_point_px = Eigen::Vector2d::Zero();  // at lens angle 0
   Eigen::Vector2d rotation_center_px = Eigen::Vector2d::Zero();
-  Eigen::Vector2d circle_center_px = Eigen::Vector2d::Zero();     // at lens angle 0
+  Eigen::Vector2d circle_center_px = Eigen::Vector2d::Zero();  // at lens angle 0
   double reference_mark_angle_deg = 0;
-  std::vector<double> lens_angle_rad;                              // one a picture
-  std::vector<geometry::RigidTransform> camera_from_board;         // one a picture
+  std::vector<double> lens_angle_rad;                       // one a picture
+  std::vector<geometry::RigidTransform> camera_from_board;  // one a picture
 };
 
 struct AdjustmentOptions {
@@ -39,7 +39,7 @@ struct AdjustmentOptions {
 struct AdjustmentResult {
   bool converged = false;
   Estimate estimate;
-  double rms_px = -1;   // length of the residual vectors over all corners
+  double rms_px = -1;                                      // length of the residual vectors over all corners
   std::vector<std::vector<Eigen::Vector2d>> residuals_px;  // seen - expected, by picture
   // Of (focal_px, xi, principal x, y, rotation centre x, y); scaled by the residuals; 0x0 when not computed.
   Eigen::MatrixXd covariance;

@@ -40,7 +40,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// Takes out what the rest does not support: mis-indexed or chance saddles. False when nothing consistent remains.
+// Takes out what the rest does not support: mis-indexed or chance saddles. False when nothing consistent
+// remains.
 bool prune(PixelAt& corners, double least_limit_px, int passes = 6) {
   for (int pass = 0; pass < passes; ++pass) {
     const auto map = map_of(corners);
@@ -92,7 +93,8 @@ double spacing_px(const ConformalMap& map, const LatticeNode& node, const Eigen:
   return least;
 }
 
-// Looks for the neighbours that growing missed (dim, blurred, at the edge of the view) where the map expects them.
+// Looks for the neighbours that growing missed (dim, blurred, at the edge of the view) where the map expects
+// them.
 bool add_expected(PixelAt& corners, const SmoothPicture& picture) {
   const auto map = map_of(corners);
   if (!map) return false;
@@ -124,7 +126,8 @@ bool spans_a_plane(const PixelAt& corners) {
   return high_c - low_c >= 2 && high_r - low_r >= 2;
 }
 
-// Squares are of one brightness up to their corners; the gaps between dots, which form a lattice too, are not.
+// Squares are of one brightness up to their corners; the gaps between dots, which form a lattice too, are
+// not.
 bool has_flat_squares(const PixelAt& corners, const SmoothPicture& picture) {
   std::vector<double> unlike;
   for (const auto& [node, pixel] : corners) {
@@ -140,7 +143,8 @@ bool has_flat_squares(const PixelAt& corners, const SmoothPicture& picture) {
     const Eigen::Vector2d near_corner = pixel + 0.4 * (middle - pixel);
     if ((near_corner - pixel).norm() < 4) continue;  // too small for blur to leave anything flat
     const double contrast = picture.bilinear(middle.x(), middle.y()) - picture.bilinear(other.x(), other.y());
-    const double rise = picture.bilinear(near_corner.x(), near_corner.y()) - picture.bilinear(other.x(), other.y());
+    const double rise =
+        picture.bilinear(near_corner.x(), near_corner.y()) - picture.bilinear(other.x(), other.y());
     if (std::abs(contrast) > 5) unlike.push_back(std::abs(rise / contrast - 1));
   }
   return unlike.size() < 6 || median(unlike) < 0.3;
@@ -164,10 +168,12 @@ BoardDetection find_checkerboard(const camera::GrayView& picture) {
     return detection;
   }
   const SmoothPicture fine = smoothed(picture, 0.7);
-  // Indices first, with room for the error of unrefined saddles; then sub-pixel; then the corners still missing.
+  // Indices first, with room for the error of unrefined saddles; then sub-pixel; then the corners still
+  // missing.
   std::map<LatticeNode, double> sigma_px;
   bool consistent = true;
-  for (int pass = 0; consistent && pass < 30 && add_expected(corners, fine); ++pass) consistent = prune(corners, 3.0, 1);
+  for (int pass = 0; consistent && pass < 30 && add_expected(corners, fine); ++pass)
+    consistent = prune(corners, 3.0, 1);
   if (consistent) {
     const auto map = map_of(corners);
     PixelAt refined;
@@ -199,7 +205,8 @@ BoardDetection find_checkerboard(const camera::GrayView& picture) {
     detection.reason = "the pattern is a lattice, but not of squares that touch at their corners";
     return detection;
   }
-  for (const auto& [node, pixel] : corners) detection.corners.push_back({{node.first, node.second}, pixel, sigma_px.at(node)});
+  for (const auto& [node, pixel] : corners)
+    detection.corners.push_back({{node.first, node.second}, pixel, sigma_px.at(node)});
   return detection;
 }
 

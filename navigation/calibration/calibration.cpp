@@ -67,8 +67,10 @@ double median_radius_px(std::span<const CalibrationPicture> pictures) {
   return radii[radii.size() / 2];
 }
 
-// Each picture in turn against the camera that the others give: RMS over all their corners, -1 when that fails.
-double leave_one_out(std::span<const Sighting> sightings, const Estimate& estimate, const AdjustmentOptions& options) {
+// Each picture in turn against the camera that the others give: RMS over all their corners, -1 when that
+// fails.
+double leave_one_out(std::span<const Sighting> sightings, const Estimate& estimate,
+                     const AdjustmentOptions& options) {
   double sum = 0;
   std::size_t count = 0;
   for (std::size_t out = 0; out < sightings.size(); ++out) {
@@ -129,7 +131,8 @@ CalibrationPicture observe_picture(const std::string& name, const camera::GrayVi
   return {name, {picture.width, picture.height}, find_checkerboard(picture), lens::observe_still(picture)};
 }
 
-CalibrationSummary calibrate(std::span<const CalibrationPicture> pictures, const CalibrationOptions& options) {
+CalibrationSummary calibrate(std::span<const CalibrationPicture> pictures,
+                             const CalibrationOptions& options) {
   check_contract(pictures, options);
   CalibrationSummary summary;
   std::vector<Sighting> sightings;
@@ -175,7 +178,8 @@ CalibrationSummary calibrate(std::span<const CalibrationPicture> pictures, const
   summary.record.head_name = options.head_name;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const geometry::RigidTransform& pose = found.camera_from_board[i];
-    const double tilt_rad = geometry::angle_between_rad(pose.rotate(Eigen::Vector3d::UnitZ()), Eigen::Vector3d::UnitZ());
+    const double tilt_rad =
+        geometry::angle_between_rad(pose.rotate(Eigen::Vector3d::UnitZ()), Eigen::Vector3d::UnitZ());
     const double tilt_deg = geometry::deg_from_rad(std::min(tilt_rad, geometry::kPi - tilt_rad));
     summary.pictures.push_back({pictures[i].name, rms_of(best.residuals_px[i]), tilt_deg,
                                 geometry::deg_from_rad(found.lens_angle_rad[i]), pose, best.residuals_px[i]});

@@ -1,6 +1,7 @@
 // Calibration of an arthroscope from three or more pictures of a checkerboard, the lens turned in between.
-// Source: conformal closed form of each picture, then one joint adjustment (one focal length, one distortion, one
-// principal point that turns about one centre, the mark's angle of each picture). See docs/conventions.md.
+// Source: conformal closed form of each picture, then one joint adjustment (one focal length, one distortion,
+// one principal point that turns about one centre, the mark's angle of each picture). See
+// docs/conventions.md.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,9 +17,9 @@
 namespace arthronaut::calibration {
 
 struct BoardCorner {
-  Eigen::Vector2i lattice;     // column, row; the origin is arbitrary in each picture
-  Eigen::Vector2d pixel;       // sub-pixel
-  double sigma_px = 0.12;      // how exact against the other corners: small, dim and blurred squares give less
+  Eigen::Vector2i lattice;  // column, row; the origin is arbitrary in each picture
+  Eigen::Vector2d pixel;    // sub-pixel
+  double sigma_px = 0.12;   // how exact against the other corners: small, dim and blurred squares give less
 };
 
 struct BoardDetection {
@@ -27,8 +28,8 @@ struct BoardDetection {
   [[nodiscard]] bool found() const { return !corners.empty(); }
 };
 
-// The inner corners of a checkerboard that may run past the view, under strong barrel distortion, glare and blur; no
-// count of squares is given.
+// The inner corners of a checkerboard that may run past the view, under strong barrel distortion, glare and
+// blur; no count of squares is given.
 [[nodiscard]] BoardDetection find_checkerboard(const camera::GrayView& picture);
 
 struct CalibrationPicture {
@@ -39,18 +40,18 @@ struct CalibrationPicture {
 };
 
 struct CalibrationOptions {
-  double square_mm = 0;             // required, > 0
-  double refractive_index = 1.0;    // of the medium the pictures were taken in
+  double square_mm = 0;           // required, > 0
+  double refractive_index = 1.0;  // of the medium the pictures were taken in
   std::string scope_name, head_name;
   bool leave_one_out = true;
 };
 
 struct CalibrationSummary {
   enum class Outcome { NotRun, Ok, Unreliable, Failed } outcome = Outcome::NotRun;
-  std::vector<std::string> reasons;   // why it is unreliable or failed, in plain words
-  camera::CalibrationRecord record;   // meaningful unless Failed
-  double rms_px = -1;                 // over all corners
-  double leave_one_out_rms_px = -1;   // -1 when not computed
+  std::vector<std::string> reasons;  // why it is unreliable or failed, in plain words
+  camera::CalibrationRecord record;  // meaningful unless Failed
+  double rms_px = -1;                // over all corners
+  double leave_one_out_rms_px = -1;  // -1 when not computed
   struct Picture {
     std::string name;
     double rms_px = -1;
@@ -69,9 +70,9 @@ struct CalibrationSummary {
 // The corners of a picture that calibrate() uses: those clear of the rim, which pulls at what lies beside it.
 [[nodiscard]] std::vector<BoardCorner> corners_used(const CalibrationPicture& picture);
 
-// Throws InvalidInput when the options or the pictures break the contract (fewer than three, different sizes, no
-// board: the message names the picture). Poor geometry (fronto-parallel, no rotation, implausible distance) is an
-// outcome with reasons, not an exception.
+// Throws InvalidInput when the options or the pictures break the contract (fewer than three, different sizes,
+// no board: the message names the picture). Poor geometry (fronto-parallel, no rotation, implausible
+// distance) is an outcome with reasons, not an exception.
 [[nodiscard]] CalibrationSummary calibrate(std::span<const CalibrationPicture> pictures,
                                            const CalibrationOptions& options);
 

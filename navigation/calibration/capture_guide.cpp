@@ -27,26 +27,32 @@ double median(std::vector<double>& values) {
 // Cells of a grid over the round view that have a corner in them or beside them.
 double coverage_of(const CalibrationPicture& picture) {
   constexpr int kCells = 9;
-  const Eigen::Vector2d center =
-      picture.lens.circle_found ? picture.lens.circle.center_px : Eigen::Vector2d(0.5 * picture.size_px.cast<double>());
-  const double radius = picture.lens.circle_found ? picture.lens.circle.radius_px : 0.5 * picture.size_px.cast<double>().norm();
+  const Eigen::Vector2d center = picture.lens.circle_found
+                                     ? picture.lens.circle.center_px
+                                     : Eigen::Vector2d(0.5 * picture.size_px.cast<double>());
+  const double radius =
+      picture.lens.circle_found ? picture.lens.circle.radius_px : 0.5 * picture.size_px.cast<double>().norm();
   const double cell_px = 2 * radius / kCells;
   int inside = 0, covered = 0;
   for (int cy = 0; cy < kCells; ++cy)
     for (int cx = 0; cx < kCells; ++cx) {
-      const Eigen::Vector2d middle = center + cell_px * (Eigen::Vector2d(cx, cy).array() + 0.5 - 0.5 * kCells).matrix();
-      const bool in_picture = middle.x() > 0 && middle.y() > 0 && middle.x() < picture.size_px.x() && middle.y() < picture.size_px.y();
+      const Eigen::Vector2d middle =
+          center + cell_px * (Eigen::Vector2d(cx, cy).array() + 0.5 - 0.5 * kCells).matrix();
+      const bool in_picture = middle.x() > 0 && middle.y() > 0 && middle.x() < picture.size_px.x() &&
+                              middle.y() < picture.size_px.y();
       if ((middle - center).norm() > radius || !in_picture) continue;
       ++inside;
-      covered += std::any_of(picture.board.corners.begin(), picture.board.corners.end(), [&](const BoardCorner& corner) {
-        return (corner.pixel - middle).squaredNorm() < cell_px * cell_px;
-      });
+      covered += std::any_of(picture.board.corners.begin(), picture.board.corners.end(),
+                             [&](const BoardCorner& corner) {
+                               return (corner.pixel - middle).squaredNorm() < cell_px * cell_px;
+                             });
     }
   return inside > 0 ? static_cast<double>(covered) / inside : 0;
 }
 
 // From black to white across the edge half way between two corners: contrast over the steepest slope.
-std::optional<double> edge_width_at(const camera::GrayView& frame, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+std::optional<double> edge_width_at(const camera::GrayView& frame, const Eigen::Vector2d& a,
+                                    const Eigen::Vector2d& b) {
   constexpr int kReach = 7;
   const Eigen::Vector2d along = b - a;
   if (along.norm() < 2.5 * kReach) return std::nullopt;
@@ -59,15 +65,18 @@ std::optional<double> edge_width_at(const camera::GrayView& frame, const Eigen::
     profile[static_cast<std::size_t>(k + kReach)] = frame.row(y)[x];
   }
   double steepest = 0;
-  for (std::size_t k = 1; k < profile.size(); ++k) steepest = std::max(steepest, std::abs(profile[k] - profile[k - 1]));
-  const double contrast = std::abs(profile.front() + profile[1] - profile.back() - profile[profile.size() - 2]) / 2;
+  for (std::size_t k = 1; k < profile.size(); ++k)
+    steepest = std::max(steepest, std::abs(profile[k] - profile[k - 1]));
+  const double contrast =
+      std::abs(profile.front() + profile[1] - profile.back() - profile[profile.size() - 2]) / 2;
   if (contrast < 15 || steepest < 1) return std::nullopt;
   return contrast / steepest;
 }
 
 double edge_width_of(const camera::GrayView& frame, const CalibrationPicture& picture) {
   std::map<std::pair<int, int>, Eigen::Vector2d> at;
-  for (const BoardCorner& corner : picture.board.corners) at[{corner.lattice.x(), corner.lattice.y()}] = corner.pixel;
+  for (const BoardCorner& corner : picture.board.corners)
+    at[{corner.lattice.x(), corner.lattice.y()}] = corner.pixel;
   std::vector<double> widths;
   for (const auto& [node, pixel] : at)
     for (const auto& next : {std::pair{node.first + 1, node.second}, std::pair{node.first, node.second + 1}})
@@ -81,7 +90,8 @@ double saturated_share(const camera::GrayView& frame, const CalibrationPicture& 
   const camera::Boundary& circle = picture.lens.circle;
   for (int y = 0; y < frame.height; y += 4)
     for (int x = 0; x < frame.width; x += 4) {
-      if (picture.lens.circle_found && (Eigen::Vector2d(x, y) - circle.center_px).norm() > circle.radius_px) continue;
+      if (picture.lens.circle_found && (Eigen::Vector2d(x, y) - circle.center_px).norm() > circle.radius_px)
+        continue;
       ++inside;
       saturated += frame.row(y)[x] >= 252;
     }
@@ -98,15 +108,19 @@ std::optional<double> tilt_of(const CalibrationPicture& picture) {
   const auto camera = map ? camera_of(*map) : std::nullopt;
   if (!camera) return std::nullopt;
   // A board that faces the lens holds no focal length; then that of a usual field of view shows that it does.
-  const double usual_px = picture.lens.circle_found ? 1.1 * picture.lens.circle.radius_px : 0.5 * picture.size_px.x();
+  const double usual_px =
+      picture.lens.circle_found ? 1.1 * picture.lens.circle.radius_px : 0.5 * picture.size_px.x();
   const double focal_px = focal_from_homographies(std::span(&camera->homography, 1)).value_or(usual_px);
   const bool is_plausible = focal_px > 0.4 * usual_px && focal_px < 4 * usual_px;
-  const geometry::RigidTransform pose = pose_from_homography(camera->homography, is_plausible ? focal_px : usual_px);
-  const double angle = geometry::angle_between_rad(pose.rotate(Eigen::Vector3d::UnitZ()), Eigen::Vector3d::UnitZ());
+  const geometry::RigidTransform pose =
+      pose_from_homography(camera->homography, is_plausible ? focal_px : usual_px);
+  const double angle =
+      geometry::angle_between_rad(pose.rotate(Eigen::Vector3d::UnitZ()), Eigen::Vector3d::UnitZ());
   return geometry::deg_from_rad(std::min(angle, geometry::kPi - angle));
 }
 
-// Median distance from each corner to the nearest one of the picture before; no more than half a square can be told.
+// Median distance from each corner to the nearest one of the picture before; no more than half a square can
+// be told.
 std::optional<double> motion_between(const CalibrationPicture& before, const CalibrationPicture& now) {
   if (!before.board.found() || !now.board.found()) return std::nullopt;
   std::vector<double> shifts;
@@ -145,7 +159,8 @@ const CaptureAdvice& CaptureGuide::look(const camera::GrayView& frame) {
   advice_.quality.motion_px = motion_between(before, advice_.picture);
   if (has_mark(advice_.picture))
     for (const CalibrationPicture& other : taken_)
-      advice_.quality.turn_deg = std::min(advice_.quality.turn_deg.value_or(360), turn_between(advice_.picture, other));
+      advice_.quality.turn_deg =
+          std::min(advice_.quality.turn_deg.value_or(360), turn_between(advice_.picture, other));
   judge();
   advise();
   return advice_;
@@ -167,21 +182,23 @@ void CaptureGuide::judge() {
     return;
   }
   if (quality.corner_count < limits_.fewest_corners)
-    reasons.push_back(text("only %.0f corners are seen (needs %.0f)", static_cast<double>(quality.corner_count),
+    reasons.push_back(text("only %.0f corners are seen (needs %.0f)",
+                           static_cast<double>(quality.corner_count),
                            static_cast<double>(limits_.fewest_corners)));
   if (quality.coverage < limits_.least_coverage)
     reasons.push_back(text("the board covers %.0f %% of the view (needs %.0f %%)", 100 * quality.coverage,
                            100 * limits_.least_coverage));
   if (quality.edge_width_px > limits_.widest_edge_px)
-    reasons.push_back(text("blurred: edges are %.1f px wide (at most %.1f)", quality.edge_width_px, limits_.widest_edge_px));
+    reasons.push_back(text("blurred: edges are %.1f px wide (at most %.1f)", quality.edge_width_px,
+                           limits_.widest_edge_px));
   if (quality.saturated > limits_.most_saturated)
     reasons.push_back(text("glare: %.0f %% of the view is white (at most %.0f %%)", 100 * quality.saturated,
                            100 * limits_.most_saturated));
   if (quality.motion_px && *quality.motion_px > limits_.most_motion_px)
     reasons.push_back(text("it moves: %.1f px since the last look", *quality.motion_px));
   if (quality.turn_deg && *quality.turn_deg < limits_.least_turn_deg)
-    reasons.push_back(text("the lens stands %.0f degrees from a picture taken (needs %.0f)", *quality.turn_deg,
-                           limits_.least_turn_deg));
+    reasons.push_back(text("the lens stands %.0f degrees from a picture taken (needs %.0f)",
+                           *quality.turn_deg, limits_.least_turn_deg));
 }
 
 double CaptureGuide::span_deg(const CalibrationPicture* with) const {
@@ -213,7 +230,8 @@ void CaptureGuide::advise() {
 }
 
 void CaptureGuide::take() {
-  if (!advice_.picture.board.found()) throw InvalidInput("calibration: there is no checkerboard in the picture");
+  if (!advice_.picture.board.found())
+    throw InvalidInput("calibration: there is no checkerboard in the picture");
   taken_.push_back(advice_.picture);
   taken_.back().name = "picture " + std::to_string(taken_.size());
   tilts_deg_.push_back(advice_.quality.tilt_deg.value_or(-1));

@@ -20,7 +20,8 @@ double median(std::vector<double> values) {
 }
 
 // The picture's corners undistorted about a given principal point and distortion, and their homography.
-std::optional<ConformalCamera> camera_given(const Sighting& seen, const Eigen::Vector2d& principal_px, double lambda) {
+std::optional<ConformalCamera> camera_given(const Sighting& seen, const Eigen::Vector2d& principal_px,
+                                            double lambda) {
   std::vector<Eigen::Vector2d> undistorted;
   for (const Eigen::Vector2d& pixel : seen.pixels) {
     const Eigen::Vector2d d = pixel - principal_px;
@@ -38,7 +39,8 @@ std::optional<ConformalCamera> camera_given(const Sighting& seen, const Eigen::V
 
 // A complete start from one camera per picture. focal_px 0: from the homographies.
 std::optional<Estimate> start_from(std::span<const Sighting> sightings, const Estimate& shared,
-                                   const std::vector<Eigen::Vector2d>& principal_px, double lambda, double focal_px) {
+                                   const std::vector<Eigen::Vector2d>& principal_px, double lambda,
+                                   double focal_px) {
   Estimate start = shared;
   std::vector<Eigen::Matrix3d> homographies;
   for (std::size_t i = 0; i < sightings.size(); ++i) {
@@ -54,7 +56,8 @@ std::optional<Estimate> start_from(std::span<const Sighting> sightings, const Es
   start.focal_px = focal_px;
   start.xi = lambda * focal_px * focal_px;
   start.camera_from_board.clear();
-  for (const Eigen::Matrix3d& h : homographies) start.camera_from_board.push_back(pose_from_homography(h, focal_px));
+  for (const Eigen::Matrix3d& h : homographies)
+    start.camera_from_board.push_back(pose_from_homography(h, focal_px));
   return start;
 }
 
@@ -78,30 +81,34 @@ std::optional<Eigen::Vector2d> center_of_turning(std::span<const Eigen::Vector2d
   return Eigen::Vector2d(solution.head<2>());
 }
 
-std::vector<Estimate> closed_form_starts(std::span<const Sighting> sightings, const Eigen::Vector2i& size_px) {
+std::vector<Estimate> closed_form_starts(std::span<const Sighting> sightings,
+                                         const Eigen::Vector2i& size_px) {
   Estimate shared;
   const bool turns =
       std::all_of(sightings.begin(), sightings.end(), [](const Sighting& s) { return s.has_angle; });
   shared.reference_mark_angle_deg = turns ? sightings.front().mark_angle_deg : 0;
   std::vector<Eigen::Vector2d> circles;
   for (const Sighting& seen : sightings) {
-    shared.lens_angle_rad.push_back(
-        turns ? geometry::rad_from_deg(std::remainder(seen.mark_angle_deg - shared.reference_mark_angle_deg, 360.0))
-              : 0.0);
-    circles.push_back(seen.has_circle ? seen.circle_center_px : Eigen::Vector2d(0.5 * (size_px.cast<double>().array() - 1)));
+    shared.lens_angle_rad.push_back(turns ? geometry::rad_from_deg(std::remainder(
+                                                seen.mark_angle_deg - shared.reference_mark_angle_deg, 360.0))
+                                          : 0.0);
+    circles.push_back(seen.has_circle ? seen.circle_center_px
+                                      : Eigen::Vector2d(0.5 * (size_px.cast<double>().array() - 1)));
   }
   const auto center = turns ? center_of_turning(circles, shared.lens_angle_rad) : std::nullopt;
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const auto& c : circles) mean += c / static_cast<double>(circles.size());
   shared.rotation_center_px = center.value_or(mean);
-  shared.circle_center_px = turned(circles.front(), shared.rotation_center_px, -shared.lens_angle_rad.front());
+  shared.circle_center_px =
+      turned(circles.front(), shared.rotation_center_px, -shared.lens_angle_rad.front());
   shared.principal_point_px = shared.circle_center_px;
 
   std::vector<Estimate> starts;
   const auto add = [&](const std::vector<Eigen::Vector2d>& principal, double lambda, double focal_px) {
     auto start = start_from(sightings, shared, principal, lambda, focal_px);
     if (!start) return;
-    start->principal_point_px = turned(principal.front(), shared.rotation_center_px, -shared.lens_angle_rad.front());
+    start->principal_point_px =
+        turned(principal.front(), shared.rotation_center_px, -shared.lens_angle_rad.front());
     starts.push_back(*start);
   };
 
@@ -120,9 +127,9 @@ std::vector<Estimate> closed_form_starts(std::span<const Sighting> sightings, co
     add(principal, median(lambdas), 0);
     add(circles, median(lambdas), 0);
   }
-  for (const double share : {0.0, -0.1, -0.25})
-    add(circles, share / (0.25 * half_size * half_size), 0);
-  // Boards that all face the lens leave the focal length open: assume fields of view, the verdict says the rest.
+  for (const double share : {0.0, -0.1, -0.25}) add(circles, share / (0.25 * half_size * half_size), 0);
+  // Boards that all face the lens leave the focal length open: assume fields of view, the verdict says the
+  // rest.
   for (const double focal_share : {0.55, 1.0, 2.0})
     add(circles, lambdas.empty() ? 0.0 : std::min(0.0, median(lambdas)), focal_share * half_size);
   return starts;

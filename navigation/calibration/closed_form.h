@@ -1,5 +1,5 @@
-// Starts for the joint adjustment, from nothing: the closed form of each picture, then what they have in common.
-// Inside the module.
+// Starts for the joint adjustment, from nothing: the closed form of each picture, then what they have in
+// common. Inside the module.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,8 +11,8 @@
 
 namespace arthronaut::calibration {
 
-// Several, the likeliest first: with the closed form's distortion, then with assumed ones for pictures that do not
-// hold it (little distortion, boards that face the lens).
+// Several, the likeliest first: with the closed form's distortion, then with assumed ones for pictures that
+// do not hold it (little distortion, boards that face the lens).
 [[nodiscard]] std::vector<Estimate> closed_form_starts(std::span<const Sighting> sightings,
                                                        const Eigen::Vector2i& size_px);
 

@@ -77,7 +77,8 @@ std::optional<ConformalMap> fit_conformal_map(std::span<const Eigen::Vector2d> p
       normal += weight[k] * rows.transpose() * rows;
     }
     b = null_map(normal);
-    // Algebraic error over the local magnification and the homogeneous scale is the error in (normalised) pixels.
+    // Algebraic error over the local magnification and the homogeneous scale is the error in (normalised)
+    // pixels.
     for (std::size_t k = 0; k < pixels.size(); ++k) {
       const Eigen::Vector2d v = (pixels[k] - map.mean_px) * map.scale;
       const Eigen::Vector3d h = b * monomials(v);
@@ -112,7 +113,8 @@ std::optional<ConformalCamera> camera_of(const ConformalMap& map) {
   camera.principal_point_px = c / map.scale + map.mean_px;
   camera.lambda_px = lambda * map.scale * map.scale;
   // From normalised to true pixels: x_px = x / scale.
-  camera.homography = Eigen::Vector3d(1 / map.scale, 1 / map.scale, 1).asDiagonal() * plane_from_undistorted.inverse();
+  camera.homography =
+      Eigen::Vector3d(1 / map.scale, 1 / map.scale, 1).asDiagonal() * plane_from_undistorted.inverse();
   if (!camera.homography.allFinite()) return std::nullopt;
   return camera;
 }
@@ -136,7 +138,8 @@ std::optional<ConformalCamera> camera_without_distortion(std::span<const Eigen::
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(normal);
   const Eigen::Matrix3d h =
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(eigen.eigenvectors().col(0).data());
-  Eigen::Matrix3d pixel_from_normalised = Eigen::Matrix3d::Identity(), normalised_from_plane = pixel_from_normalised;
+  Eigen::Matrix3d pixel_from_normalised = Eigen::Matrix3d::Identity(),
+                  normalised_from_plane = pixel_from_normalised;
   pixel_from_normalised.topLeftCorner<2, 2>() /= of_pixels.scale;
   pixel_from_normalised.topRightCorner<2, 1>() = of_pixels.mean - principal_point_px;
   normalised_from_plane.topLeftCorner<2, 2>() *= of_plane.scale;
@@ -149,7 +152,8 @@ std::optional<ConformalCamera> camera_without_distortion(std::span<const Eigen::
 }
 
 std::optional<double> focal_from_homographies(std::span<const Eigen::Matrix3d> homographies) {
-  // With y = 1 / f^2: y (h1.h2)_xy = -h31 h32 and y (|h1|^2 - |h2|^2)_xy = -(h31^2 - h32^2), by least squares.
+  // With y = 1 / f^2: y (h1.h2)_xy = -h31 h32 and y (|h1|^2 - |h2|^2)_xy = -(h31^2 - h32^2), by least
+  // squares.
   double top = 0, bottom = 0;
   for (Eigen::Matrix3d h : homographies) {
     h /= std::sqrt(h.leftCols<2>().topRows<2>().squaredNorm() + 1e-300);
@@ -171,7 +175,8 @@ geometry::RigidTransform pose_from_homography(const Eigen::Matrix3d& homography,
   axes << m.col(0), m.col(1), m.col(0).cross(m.col(1));
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
-  if (rotation.determinant() < 0) rotation = svd.matrixU() * Eigen::Vector3d(1, 1, -1).asDiagonal() * svd.matrixV().transpose();
+  if (rotation.determinant() < 0)
+    rotation = svd.matrixU() * Eigen::Vector3d(1, 1, -1).asDiagonal() * svd.matrixV().transpose();
   return {Eigen::Quaterniond(rotation).normalized(), m.col(2)};
 }
 

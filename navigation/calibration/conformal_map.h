@@ -1,7 +1,9 @@
-// The map from a picture under division-model distortion to a plane: with m(u) = (|u|^2, u_x, u_y, 1), a point of the
-// plane is P ~ B m(u), where B is 3 x 4. It is linear in B and needs no start. Why: an undistorted, centred pixel is
-// (u_x - c_x, u_y - c_y, 1 + lambda |u - c|^2), linear in m(u) too. Its kernel is B's null vector, scaled to end in 1:
-//   nu = (|c|^2 - 1 / lambda, c_x, c_y, 1),   which gives the principal point c and the distortion lambda = xi / f^2.
+// The map from a picture under division-model distortion to a plane: with m(u) = (|u|^2, u_x, u_y, 1), a
+// point of the plane is P ~ B m(u), where B is 3 x 4. It is linear in B and needs no start. Why: an
+// undistorted, centred pixel is (u_x - c_x, u_y - c_y, 1 + lambda |u - c|^2), linear in m(u) too. Its kernel
+// is B's null vector, scaled to end in 1:
+//   nu = (|c|^2 - 1 / lambda, c_x, c_y, 1),   which gives the principal point c and the distortion lambda =
+//   xi / f^2.
 // Degenerate without distortion (lambda = 0) and, for the focal length, without tilt. Inside the module.
 #pragma once
 
@@ -39,14 +41,15 @@ struct ConformalCamera {
 [[nodiscard]] std::optional<ConformalCamera> camera_of(const ConformalMap& map);
 
 // The same with the principal point given and no distortion: a start where the closed form has no answer.
-[[nodiscard]] std::optional<ConformalCamera> camera_without_distortion(std::span<const Eigen::Vector2d> pixels,
-                                                                       std::span<const Eigen::Vector2d> plane_points,
-                                                                       const Eigen::Vector2d& principal_point_px);
+[[nodiscard]] std::optional<ConformalCamera> camera_without_distortion(
+    std::span<const Eigen::Vector2d> pixels, std::span<const Eigen::Vector2d> plane_points,
+    const Eigen::Vector2d& principal_point_px);
 
 // One focal length for several homographies; nullopt when no plane is tilted enough to tell.
 [[nodiscard]] std::optional<double> focal_from_homographies(std::span<const Eigen::Matrix3d> homographies);
 
 // Pose of the plane (units of its points) seen with this focal length.
-[[nodiscard]] geometry::RigidTransform pose_from_homography(const Eigen::Matrix3d& homography, double focal_px);
+[[nodiscard]] geometry::RigidTransform pose_from_homography(const Eigen::Matrix3d& homography,
+                                                            double focal_px);
 
 }  // namespace arthronaut::calibration

@@ -22,7 +22,8 @@ struct FrameErrors {
 };
 
 // One frame under one camera: both markers by themselves, then the ruler as one body.
-void add_errors(const RulerSighting& seen, const Ruler& ruler, const camera::CameraModel& model, FrameErrors& errors) {
+void add_errors(const RulerSighting& seen, const Ruler& ruler, const camera::CameraModel& model,
+                FrameErrors& errors) {
   const auto corners = marker_corners_mm(ruler.marker_size_mm);
   const auto first = solve_plane_pose(corners, seen.first_px, model);
   const auto second = solve_plane_pose(corners, seen.second_px, model);
@@ -42,7 +43,8 @@ void add_errors(const RulerSighting& seen, const Ruler& ruler, const camera::Cam
 
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return -1;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -51,14 +53,17 @@ FrameErrors errors_under(std::span<const RulerSighting> sightings, const Ruler& 
                          const camera::Calibration& calibration, double index, camera::FluidModel fluid) {
   FrameErrors errors;
   for (const RulerSighting& seen : sightings) {
-    const camera::CameraModel model(calibration, calibration.lens_angle_rad(seen.mark_angle_deg), index, fluid);
+    const camera::CameraModel model(calibration, calibration.lens_angle_rad(seen.mark_angle_deg), index,
+                                    fluid);
     add_errors(seen, ruler, model, errors);
   }
   return errors;
 }
 
 // The median resists frames with a corner in glare.
-double misfit_px(const FrameErrors& errors) { return std::sqrt(std::max(0.0, quantile(errors.square_px, 0.5))); }
+double misfit_px(const FrameErrors& errors) {
+  return std::sqrt(std::max(0.0, quantile(errors.square_px, 0.5)));
+}
 
 FluidCheckSummary::Row row_of(FluidHypothesis hypothesis, const FrameErrors& errors) {
   return {hypothesis,
@@ -102,16 +107,20 @@ std::vector<std::string> reasons_against(const FluidCheckSummary& summary, const
   std::vector<std::string> reasons;
   if (summary.frame_count < options.fewest_frames)
     reasons.push_back(text("the ruler's two markers were seen together in %.0f frames only (needs %.0f)",
-                           static_cast<double>(summary.frame_count), static_cast<double>(options.fewest_frames)));
+                           static_cast<double>(summary.frame_count),
+                           static_cast<double>(options.fewest_frames)));
   if (summary.rows.front().rms_px < 0) return reasons;
-  const auto& flat = *std::find_if(summary.rows.begin(), summary.rows.end(), [](const FluidCheckSummary::Row& row) {
-    return row.hypothesis == FluidHypothesis::FlatPort;
-  });
+  const auto& flat = *std::find_if(
+      summary.rows.begin(), summary.rows.end(),
+      [](const FluidCheckSummary::Row& row) { return row.hypothesis == FluidHypothesis::FlatPort; });
   if (flat.median_mm > options.most_median_mm || flat.median_deg > options.most_median_deg)
-    reasons.push_back(text("the ruler comes out wrong by %.2f mm and %.1f degrees", flat.median_mm, flat.median_deg));
+    reasons.push_back(
+        text("the ruler comes out wrong by %.2f mm and %.1f degrees", flat.median_mm, flat.median_deg));
   if (std::abs(summary.best_index - options.refractive_index) > options.most_index_error)
-    reasons.push_back(text("the pictures look like a refractive index of %.2f, not %.3f: another medium, or a port that "
-                           "is not flat", summary.best_index, options.refractive_index));
+    reasons.push_back(
+        text("the pictures look like a refractive index of %.2f, not %.3f: another medium, or a port that "
+             "is not flat",
+             summary.best_index, options.refractive_index));
   return reasons;
 }
 
@@ -119,9 +128,12 @@ std::vector<std::string> reasons_against(const FluidCheckSummary& summary, const
 
 std::string_view to_text(FluidHypothesis hypothesis) {
   switch (hypothesis) {
-    case FluidHypothesis::FlatPort: return "flat port";
-    case FluidHypothesis::FocalRule: return "focal length times index";
-    case FluidHypothesis::NoRefraction: return "no refraction";
+    case FluidHypothesis::FlatPort:
+      return "flat port";
+    case FluidHypothesis::FocalRule:
+      return "focal length times index";
+    case FluidHypothesis::NoRefraction:
+      return "no refraction";
   }
   return "unknown";
 }
@@ -134,14 +146,16 @@ FluidCheckSummary check_fluid(std::span<const RulerSighting> sightings, const Ru
     return errors_under(sightings, ruler, calibration, index, fluid);
   };
   using camera::FluidModel;
-  summary.rows = {row_of(FluidHypothesis::FlatPort, under(options.refractive_index, FluidModel::FlatPort)),
-                  row_of(FluidHypothesis::FocalRule, under(options.refractive_index, FluidModel::FocalRule)),
-                  row_of(FluidHypothesis::NoRefraction, under(calibration.refractive_index, FluidModel::FlatPort))};
+  summary.rows = {
+      row_of(FluidHypothesis::FlatPort, under(options.refractive_index, FluidModel::FlatPort)),
+      row_of(FluidHypothesis::FocalRule, under(options.refractive_index, FluidModel::FocalRule)),
+      row_of(FluidHypothesis::NoRefraction, under(calibration.refractive_index, FluidModel::FlatPort))};
   std::stable_sort(summary.rows.begin(), summary.rows.end(), [](const auto& a, const auto& b) {
     return (a.rms_px < 0 ? 1e9 : a.rms_px) < (b.rms_px < 0 ? 1e9 : b.rms_px);
   });
   if (!sightings.empty())
-    summary.best_index = best_index([&](double index) { return misfit_px(under(index, FluidModel::FlatPort)); }, 1.0, 1.5);
+    summary.best_index =
+        best_index([&](double index) { return misfit_px(under(index, FluidModel::FlatPort)); }, 1.0, 1.5);
   summary.reasons = reasons_against(summary, options);
   return summary;
 }

@@ -1,6 +1,6 @@
-// The five-second self-check in fluid: a ruler with two markers whose relative pose is known is held before the lens,
-// and each model of the fluid's effect is asked how well it explains what is seen. Tells a wrong medium, a port that
-// is not flat, a dry calibration that was changed since.
+// The five-second self-check in fluid: a ruler with two markers whose relative pose is known is held before
+// the lens, and each model of the fluid's effect is asked how well it explains what is seen. Tells a wrong
+// medium, a port that is not flat, a dry calibration that was changed since.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,14 +37,15 @@ enum class FluidHypothesis {
 struct FluidCheckSummary {
   struct Row {
     FluidHypothesis hypothesis = FluidHypothesis::FlatPort;
-    double rms_px = -1;                        // of all eight corners, the ruler's pose solved in each frame
-    double median_mm = -1, median_deg = -1;    // of the markers' relative pose, each marker solved by itself
-    double worst_mm = -1, worst_deg = -1;      // of 95 % of the frames
+    double rms_px = -1;                      // of all eight corners, the ruler's pose solved in each frame
+    double median_mm = -1, median_deg = -1;  // of the markers' relative pose, each marker solved by itself
+    double worst_mm = -1, worst_deg = -1;    // of 95 % of the frames
   };
-  std::vector<Row> rows;            // best (least rms_px) first
+  std::vector<Row> rows;  // best (least rms_px) first
   std::size_t frame_count = 0;
-  double best_index = 0;            // the working medium's index that a flat port explains the frames best with
-  std::vector<std::string> reasons = {"the check was not run"};  // why the given medium can't be trusted; empty: it can
+  double best_index = 0;  // the working medium's index that a flat port explains the frames best with
+  std::vector<std::string> reasons = {
+      "the check was not run"};  // why the given medium can't be trusted; empty: it can
   [[nodiscard]] bool is_trusted() const { return reasons.empty(); }
 };
 
@@ -52,11 +53,13 @@ struct FluidCheckOptions {
   double refractive_index = 1.3345;  // of the medium that is said to be there
   std::size_t fewest_frames = 20;
   double most_median_mm = 0.15, most_median_deg = 1.5;
-  double most_index_error = 0.03;    // of best_index from refractive_index
+  double most_index_error = 0.03;  // of best_index from refractive_index
 };
 
-// Does not throw on poor sightings: read the summary. Throws InvalidInput for an unusable calibration or index.
+// Does not throw on poor sightings: read the summary. Throws InvalidInput for an unusable calibration or
+// index.
 [[nodiscard]] FluidCheckSummary check_fluid(std::span<const RulerSighting> sightings, const Ruler& ruler,
-                                            const camera::Calibration& calibration, const FluidCheckOptions& options);
+                                            const camera::Calibration& calibration,
+                                            const FluidCheckOptions& options);
 
 }  // namespace arthronaut::calibration

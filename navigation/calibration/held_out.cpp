@@ -5,7 +5,8 @@
 
 namespace arthronaut::calibration {
 
-HeldOut check_held_out(const CalibrationPicture& picture, const camera::Calibration& calibration, double square_mm) {
+HeldOut check_held_out(const CalibrationPicture& picture, const camera::Calibration& calibration,
+                       double square_mm) {
   HeldOut held;
   Estimate estimate;
   estimate.focal_px = calibration.focal_px;

@@ -1,4 +1,5 @@
-// A calibration against a picture that it has not seen: the board's pose is solved, the camera is not touched.
+// A calibration against a picture that it has not seen: the board's pose is solved, the camera is not
+// touched.
 #pragma once
 
 #include "navigation/calibration/calibration.h"
@@ -12,7 +13,7 @@ struct HeldOut {
 };
 
 // The lens angle is that of the picture's mark where it was found, else the calibration's reference.
-[[nodiscard]] HeldOut check_held_out(const CalibrationPicture& picture, const camera::Calibration& calibration,
-                                     double square_mm);
+[[nodiscard]] HeldOut check_held_out(const CalibrationPicture& picture,
+                                     const camera::Calibration& calibration, double square_mm);
 
 }  // namespace arthronaut::calibration

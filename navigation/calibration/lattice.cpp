@@ -8,8 +8,8 @@ namespace arthronaut::calibration {
 namespace {
 constexpr std::array<std::pair<int, int>, 4> kSteps = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
-// Corners side by side on one board: black and white change places, the contrast is alike (strength goes with its
-// square), and the step from one to the other runs along an edge of both.
+// Corners side by side on one board: black and white change places, the contrast is alike (strength goes with
+// its square), and the step from one to the other runs along an edge of both.
 bool are_neighbours(const Saddle& a, const Saddle& b) {
   if (a.likeness(b) >= 0) return false;
   if (a.strength > 12 * b.strength || b.strength > 12 * a.strength) return false;

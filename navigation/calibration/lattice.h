@@ -19,7 +19,9 @@ class Lattice {
   // Grows from a saddle that has a neighbour in all four directions; false when it has not.
   bool grow_from(int seed);
   [[nodiscard]] const std::map<LatticeNode, int>& nodes() const { return saddle_at_; }
-  [[nodiscard]] bool is_used(int saddle) const { return node_of_[static_cast<std::size_t>(saddle)].has_value(); }
+  [[nodiscard]] bool is_used(int saddle) const {
+    return node_of_[static_cast<std::size_t>(saddle)].has_value();
+  }
 
  private:
   [[nodiscard]] int neighbour_along(int from, const Eigen::Vector2d& direction) const;

@@ -12,9 +12,10 @@ namespace {
 using geometry::RigidTransform;
 
 // Sum of squares, and for a body twist on the right the normal equations; nullopt when a point can't be seen.
-std::optional<double> linearise(std::span<const Eigen::Vector3d> points, std::span<const Eigen::Vector2d> pixels,
-                                const camera::CameraModel& camera, const RigidTransform& pose,
-                                geometry::Matrix6d& normal, geometry::Vector6d& right) {
+std::optional<double> linearise(std::span<const Eigen::Vector3d> points,
+                                std::span<const Eigen::Vector2d> pixels, const camera::CameraModel& camera,
+                                const RigidTransform& pose, geometry::Matrix6d& normal,
+                                geometry::Vector6d& right) {
   normal.setZero();
   right.setZero();
   double cost = 0;
@@ -38,12 +39,14 @@ RigidTransform mirrored(const RigidTransform& pose) {
   const Eigen::Vector3d sight = pose.translation_mm.normalized();
   const Eigen::Vector3d normal = pose.rotate(Eigen::Vector3d::UnitZ());
   const Eigen::Vector3d other = (2 * sight * sight.dot(normal) - normal).normalized();
-  return {(Eigen::Quaterniond::FromTwoVectors(normal, other) * pose.rotation).normalized(), pose.translation_mm};
+  return {(Eigen::Quaterniond::FromTwoVectors(normal, other) * pose.rotation).normalized(),
+          pose.translation_mm};
 }
 
 }  // namespace
 
-std::optional<PlanePose> refine_pose(std::span<const Eigen::Vector3d> points_mm, std::span<const Eigen::Vector2d> pixels,
+std::optional<PlanePose> refine_pose(std::span<const Eigen::Vector3d> points_mm,
+                                     std::span<const Eigen::Vector2d> pixels,
                                      const camera::CameraModel& camera, const RigidTransform& start) {
   RigidTransform pose = start;
   geometry::Matrix6d normal, trial_normal;
@@ -73,7 +76,8 @@ std::optional<PlanePose> refine_pose(std::span<const Eigen::Vector3d> points_mm,
 }
 
 std::optional<PlanePose> solve_plane_pose(std::span<const Eigen::Vector3d> points_mm,
-                                          std::span<const Eigen::Vector2d> pixels, const camera::CameraModel& camera) {
+                                          std::span<const Eigen::Vector2d> pixels,
+                                          const camera::CameraModel& camera) {
   std::vector<Eigen::Vector2d> tangents, plane;
   for (std::size_t k = 0; k < pixels.size(); ++k) {
     const auto tangent = camera.undistort(pixels[k]);

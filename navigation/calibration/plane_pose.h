@@ -1,5 +1,5 @@
-// Pose of a few known points through the camera model, on raw distorted pixels. Inside the module; live tracking has
-// its own solver in navigation/markers.
+// Pose of a few known points through the camera model, on raw distorted pixels. Inside the module; live
+// tracking has its own solver in navigation/markers.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,8 @@ struct PlanePose {
   double rms_px = 0;  // length of the reprojection errors
 };
 
-// Points of the plane z = 0 (four or more). Both poses that a plane may take are refined, the better one returned.
+// Points of the plane z = 0 (four or more). Both poses that a plane may take are refined, the better one
+// returned.
 [[nodiscard]] std::optional<PlanePose> solve_plane_pose(std::span<const Eigen::Vector3d> points_mm,
                                                         std::span<const Eigen::Vector2d> pixels,
                                                         const camera::CameraModel& camera);

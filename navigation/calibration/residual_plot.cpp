@@ -28,7 +28,8 @@ void write(cv::Mat& canvas, const cv::Point& where, const std::string& text, con
   cv::putText(canvas, text, where, cv::FONT_HERSHEY_SIMPLEX, 0.55, ink, 1, cv::LINE_AA);
 }
 
-void draw_field(cv::Mat& canvas, const CalibrationSummary& summary, std::span<const CalibrationPicture> pictures) {
+void draw_field(cv::Mat& canvas, const CalibrationSummary& summary,
+                std::span<const CalibrationPicture> pictures) {
   const camera::Calibration& c = summary.record.calibration;
   // The round view fills the field; where it is larger than the picture, the picture does.
   const Eigen::Vector2d reach = Eigen::Vector2d::Constant(1.03 * c.boundary.radius_px);
@@ -39,13 +40,14 @@ void draw_field(cv::Mat& canvas, const CalibrationSummary& summary, std::span<co
     return at((pixel - low) * scale + Eigen::Vector2d(kMargin, 95));
   };
   cv::rectangle(canvas, place(low), place(low + size), kFaint, 1);
-  cv::circle(canvas, place(c.boundary.center_px), static_cast<int>(c.boundary.radius_px * scale), kFaint, 1, cv::LINE_AA);
+  cv::circle(canvas, place(c.boundary.center_px), static_cast<int>(c.boundary.radius_px * scale), kFaint, 1,
+             cv::LINE_AA);
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const auto& residuals = summary.pictures[i].residuals_px;
     const auto corners = corners_used(pictures[i]);
     for (std::size_t k = 0; k < residuals.size() && k < corners.size(); ++k)
-      cv::line(canvas, place(corners[k].pixel), place(corners[k].pixel + kMagnified * residuals[k]), colour(i), 1,
-               cv::LINE_AA);
+      cv::line(canvas, place(corners[k].pixel), place(corners[k].pixel + kMagnified * residuals[k]),
+               colour(i), 1, cv::LINE_AA);
   }
   cv::drawMarker(canvas, place(c.principal_point_px), kInk, cv::MARKER_CROSS, 18, 2, cv::LINE_AA);
   cv::drawMarker(canvas, place(c.rotation_center_px), kInk, cv::MARKER_TILTED_CROSS, 14, 2, cv::LINE_AA);
@@ -65,15 +67,16 @@ void draw_scatter(cv::Mat& canvas, const CalibrationSummary& summary) {
   for (std::size_t i = 0; i < summary.pictures.size() && y < kHeight - 20; ++i, y += 26) {
     const auto& picture = summary.pictures[i];
     std::snprintf(text, sizeof text, "%.18s: %.2f px, %zu corners, tilt %.0f deg, lens %.0f deg",
-                  std::filesystem::path(picture.name).filename().c_str(), picture.rms_px, picture.residuals_px.size(),
-                  picture.tilt_deg, picture.lens_angle_deg);
+                  std::filesystem::path(picture.name).filename().c_str(), picture.rms_px,
+                  picture.residuals_px.size(), picture.tilt_deg, picture.lens_angle_deg);
     write(canvas, {970, y}, text, colour(i));
   }
 }
 
 }  // namespace
 
-camera::Frame draw_residuals(const CalibrationSummary& summary, std::span<const CalibrationPicture> pictures) {
+camera::Frame draw_residuals(const CalibrationSummary& summary,
+                             std::span<const CalibrationPicture> pictures) {
   camera::Frame frame;
   frame.width = kWidth;
   frame.height = kHeight;
@@ -82,11 +85,13 @@ camera::Frame draw_residuals(const CalibrationSummary& summary, std::span<const 
   canvas = kPaper;
   const camera::Calibration& c = summary.record.calibration;
   char text[200];
-  std::snprintf(text, sizeof text, "f %.1f px   xi %.4f   principal point (%.1f, %.1f)   rotation centre (%.1f, %.1f)",
-                c.focal_px, c.distortion_xi, c.principal_point_px.x(), c.principal_point_px.y(), c.rotation_center_px.x(),
-                c.rotation_center_px.y());
+  std::snprintf(text, sizeof text,
+                "f %.1f px   xi %.4f   principal point (%.1f, %.1f)   rotation centre (%.1f, %.1f)",
+                c.focal_px, c.distortion_xi, c.principal_point_px.x(), c.principal_point_px.y(),
+                c.rotation_center_px.x(), c.rotation_center_px.y());
   write(canvas, {kMargin, 40}, text);
-  std::snprintf(text, sizeof text, "RMS %.3f px   left out %.3f px   lines: residuals x %.0f   + principal point   x centre",
+  std::snprintf(text, sizeof text,
+                "RMS %.3f px   left out %.3f px   lines: residuals x %.0f   + principal point   x centre",
                 summary.rms_px, summary.leave_one_out_rms_px, kMagnified);
   write(canvas, {kMargin, 70}, text);
   draw_field(canvas, summary, pictures);

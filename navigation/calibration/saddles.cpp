@@ -19,8 +19,8 @@ double least_strength(double sigma_px) {
 }
 
 void set_edges(Saddle& saddle) {
-  // Along an edge the second derivative vanishes: ixx c^2 + 2 ixy c s + iyy s^2 = 0. In the axes of the Hessian with
-  // eigenvalues a > 0 > b that is tan = +-sqrt(-a / b).
+  // Along an edge the second derivative vanishes: ixx c^2 + 2 ixy c s + iyy s^2 = 0. In the axes of the
+  // Hessian with eigenvalues a > 0 > b that is tan = +-sqrt(-a / b).
   const double mean = 0.5 * (saddle.ixx + saddle.iyy);
   const double half = std::hypot(0.5 * (saddle.ixx - saddle.iyy), saddle.ixy);
   const double a = mean + half, b = mean - half;
@@ -134,7 +134,8 @@ std::vector<Saddle> find_saddles(const camera::GrayView& picture) {
   const SmoothPicture fine = smoothed(picture, 0.8);
   find_at_scale(picture, 1.5, 4.5, fine, found);
   find_at_scale(picture, 3.0, 7.0, fine, found);
-  std::sort(found.begin(), found.end(), [](const Saddle& a, const Saddle& b) { return a.strength > b.strength; });
+  std::sort(found.begin(), found.end(),
+            [](const Saddle& a, const Saddle& b) { return a.strength > b.strength; });
   if (found.size() > 4000) found.resize(4000);
   return found;
 }

@@ -36,20 +36,22 @@ struct Saddle {
 // All saddles with the four-fold look of a checkerboard corner, strongest first.
 [[nodiscard]] std::vector<Saddle> find_saddles(const camera::GrayView& picture);
 
-// A ring of brightness about a corner is cut exactly four times, alike on opposite sides. contrast: grey values.
-[[nodiscard]] bool looks_like_corner(const SmoothPicture& picture, const Eigen::Vector2d& at, double radius_px,
-                                     double least_contrast);
+// A ring of brightness about a corner is cut exactly four times, alike on opposite sides. contrast: grey
+// values.
+[[nodiscard]] bool looks_like_corner(const SmoothPicture& picture, const Eigen::Vector2d& at,
+                                     double radius_px, double least_contrast);
 
 struct RefinedCorner {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   double sigma_px = 0;  // what noise of the gradients makes of the place, along the worse axis
 };
 
-// Sub-pixel place of a corner: the point that the brightness gradients around it are square to (Foerstner). Only
-// accepted when the neighbourhood is its own picture under half a turn, which glare, the view's rim and an instrument
-// spoil: the correlation of the two must reach least_likeness. half_window_px must stay below 0.45 of the distance to the
-// next corner.
-[[nodiscard]] std::optional<RefinedCorner> refine_corner(const SmoothPicture& picture, const Eigen::Vector2d& start,
-                                                         double half_window_px, double least_likeness = 0.7);
+// Sub-pixel place of a corner: the point that the brightness gradients around it are square to (Foerstner).
+// Only accepted when the neighbourhood is its own picture under half a turn, which glare, the view's rim and
+// an instrument spoil: the correlation of the two must reach least_likeness. half_window_px must stay below
+// 0.45 of the distance to the next corner.
+[[nodiscard]] std::optional<RefinedCorner> refine_corner(const SmoothPicture& picture,
+                                                         const Eigen::Vector2d& start, double half_window_px,
+                                                         double least_likeness = 0.7);
 
 }  // namespace arthronaut::calibration

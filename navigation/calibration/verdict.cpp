@@ -28,12 +28,14 @@ double reach_share(const CalibrationSummary& summary, std::span<const Sighting> 
   std::vector<double> distances;
   for (const Sighting& seen : sightings)
     for (const auto& pixel : seen.pixels) distances.push_back((pixel - c.principal_point_px).norm());
-  const auto at = distances.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(distances.size() - 1));
+  const auto at =
+      distances.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(distances.size() - 1));
   std::nth_element(distances.begin(), at, distances.end());
   return *at / c.boundary.radius_px;
 }
 
-// Where the optical axis meets each board; the corners' own mean is drawn far away by boards that run to the horizon.
+// Where the optical axis meets each board; the corners' own mean is drawn far away by boards that run to the
+// horizon.
 double median_distance_mm(const CalibrationSummary& summary) {
   std::vector<double> distances;
   for (const auto& picture : summary.pictures) {
@@ -47,8 +49,8 @@ double median_distance_mm(const CalibrationSummary& summary) {
 
 }  // namespace
 
-std::vector<std::string> reasons_against(const CalibrationSummary& summary, std::span<const Sighting> sightings,
-                                         bool turns) {
+std::vector<std::string> reasons_against(const CalibrationSummary& summary,
+                                         std::span<const Sighting> sightings, bool turns) {
   std::vector<std::string> reasons;
   const camera::Calibration& c = summary.record.calibration;
   for (std::size_t i = 0; i < sightings.size(); ++i) {
@@ -62,27 +64,35 @@ std::vector<std::string> reasons_against(const CalibrationSummary& summary, std:
   if (!has_angles) {
     reasons.push_back("the lens angles are not known, so the centre of rotation is not");
   } else if (const double turn = widest_turn_deg(summary); turn < kLeastTurn_deg) {
-    reasons.push_back(text("the lens was turned by no more than %.0f degrees between the pictures (needs %.0f), so the "
-                           "centre of rotation is not known", turn, kLeastTurn_deg));
+    reasons.push_back(
+        text("the lens was turned by no more than %.0f degrees between the pictures (needs %.0f), so the "
+             "centre of rotation is not known",
+             turn, kLeastTurn_deg));
   }
 
   double tilt_deg = 0;
   for (const auto& picture : summary.pictures) tilt_deg = std::max(tilt_deg, picture.tilt_deg);
   if (tilt_deg < kLeastTilt_deg)
-    reasons.push_back(text("all boards face the lens (tilted by %.0f degrees at most, needs %.0f), so the focal length is "
-                           "not known", tilt_deg, kLeastTilt_deg));
+    reasons.push_back(
+        text("all boards face the lens (tilted by %.0f degrees at most, needs %.0f), so the focal length is "
+             "not known",
+             tilt_deg, kLeastTilt_deg));
   if (const double mm = median_distance_mm(summary); mm < kNearest_mm || mm > kFurthest_mm)
-    reasons.push_back(text("the boards would stand %.0f mm from the lens, which no arthroscope sees sharply: is the side of "
-                           "a square right?", mm));
+    reasons.push_back(text(
+        "the boards would stand %.0f mm from the lens, which no arthroscope sees sharply: is the side of "
+        "a square right?",
+        mm));
   if (const double reach = reach_share(summary, sightings); reach < 0.6)
-    reasons.push_back(text("the board covers the middle of the view only (%.0f %% of its radius), so the distortion is not "
-                           "known", 100 * reach));
+    reasons.push_back(
+        text("the board covers the middle of the view only (%.0f %% of its radius), so the distortion is not "
+             "known",
+             100 * reach));
 
   if (!(summary.rms_px <= kMostRms_px))
     reasons.push_back(text("corners miss the model by %.2f px (at most %.2f)", summary.rms_px, kMostRms_px));
   if (summary.leave_one_out_rms_px > kMostLeaveOneOutRms_px)
-    reasons.push_back(text("a picture left out is missed by %.2f px (at most %.2f)", summary.leave_one_out_rms_px,
-                           kMostLeaveOneOutRms_px));
+    reasons.push_back(text("a picture left out is missed by %.2f px (at most %.2f)",
+                           summary.leave_one_out_rms_px, kMostLeaveOneOutRms_px));
   for (const auto& picture : summary.pictures)
     if (picture.rms_px > 2.5 * summary.rms_px && picture.rms_px > kMostRms_px)
       reasons.push_back(picture.name + ": does not agree with the other pictures");
@@ -90,11 +100,14 @@ std::vector<std::string> reasons_against(const CalibrationSummary& summary, std:
   if (summary.record.covariance.rows() == 6) {
     const Eigen::VectorXd sigma = summary.record.covariance.diagonal().cwiseMax(0).cwiseSqrt();
     if (!(sigma(0) <= kMostFocalSigma * c.focal_px))
-      reasons.push_back(text("the focal length is known to %.1f px only (1 sigma, of %.0f)", sigma(0), c.focal_px));
+      reasons.push_back(
+          text("the focal length is known to %.1f px only (1 sigma, of %.0f)", sigma(0), c.focal_px));
     if (!(std::max(sigma(2), sigma(3)) <= kMostCenterSigma_px))
-      reasons.push_back(text("the principal point is known to %.1f px only (1 sigma)", std::max(sigma(2), sigma(3))));
+      reasons.push_back(
+          text("the principal point is known to %.1f px only (1 sigma)", std::max(sigma(2), sigma(3))));
     if (turns && !(std::max(sigma(4), sigma(5)) <= kMostCenterSigma_px))
-      reasons.push_back(text("the centre of rotation is known to %.1f px only (1 sigma)", std::max(sigma(4), sigma(5))));
+      reasons.push_back(
+          text("the centre of rotation is known to %.1f px only (1 sigma)", std::max(sigma(4), sigma(5))));
   } else {
     reasons.push_back("how well the camera is known could not be computed: the pictures leave it open");
   }

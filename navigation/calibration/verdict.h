@@ -10,8 +10,8 @@
 
 namespace arthronaut::calibration {
 
-// Limits of a calibration that is fit for guidance. The distances are those at which an arthroscope is in focus on a
-// board that fills its view.
+// Limits of a calibration that is fit for guidance. The distances are those at which an arthroscope is in
+// focus on a board that fills its view.
 inline constexpr double kMostRms_px = 0.5;
 inline constexpr double kMostLeaveOneOutRms_px = 0.7;
 inline constexpr double kMostFocalSigma = 0.003;             // of the focal length

@@ -7,9 +7,9 @@
 
 namespace arthronaut::lens {
 namespace {
-constexpr double kAcceleration = 1700;     // deg/s^2, of a hand that turns the lens
-constexpr double kStartSpeedSigma = 200;   // deg/s
-constexpr double kSpeedMemory_s = 0.25;    // a hand that is not seen is taken to stop
+constexpr double kAcceleration = 1700;    // deg/s^2, of a hand that turns the lens
+constexpr double kStartSpeedSigma = 200;  // deg/s
+constexpr double kSpeedMemory_s = 0.25;   // a hand that is not seen is taken to stop
 }  // namespace
 
 double AngleFilter::sigma_deg() const { return running_ ? std::min(360.0, std::sqrt(var_angle_)) : 360.0; }

@@ -9,7 +9,8 @@
 namespace arthronaut::lens {
 namespace {
 
-// Grey level of the mask: a low quantile of the picture, which the mask's corners fill even when the circle is large.
+// Grey level of the mask: a low quantile of the picture, which the mask's corners fill even when the circle
+// is large.
 int mask_level(const camera::GrayView& picture) {
   std::array<int, 256> histogram{};
   int count = 0;
@@ -79,7 +80,8 @@ std::optional<camera::Boundary> search_circle(const camera::GrayView& picture, S
   const double size = std::min(picture.width, picture.height);
   const double tolerance_px = std::max(2.0, 0.004 * size);
   const auto is_plausible = [&](const camera::Boundary& circle) {
-    return circle.radius_px > 0.2 * size && circle.radius_px < 0.75 * std::max(picture.width, picture.height) &&
+    return circle.radius_px > 0.2 * size &&
+           circle.radius_px < 0.75 * std::max(picture.width, picture.height) &&
            circle.center_px.x() > 0.2 * picture.width && circle.center_px.x() < 0.8 * picture.width &&
            circle.center_px.y() > 0.2 * picture.height && circle.center_px.y() < 0.8 * picture.height;
   };

@@ -12,11 +12,11 @@ namespace {
 
 // Rays reach this far about the rim, as shares of the radius: a tooth either way is at most 6 %.
 constexpr double kInner = 0.92, kOuter = 1.075;
-constexpr double kAcceptFree = 0.86;    // score of a mark whose shape is not known yet
-constexpr double kAcceptKnown = 0.80;   // of one whose shape is
-constexpr double kClearLead = 0.06;     // by which the best candidate must lead
+constexpr double kAcceptFree = 0.86;   // score of a mark whose shape is not known yet
+constexpr double kAcceptKnown = 0.80;  // of one whose shape is
+constexpr double kClearLead = 0.06;    // by which the best candidate must lead
 constexpr int kFramesToLearn = 5;
-constexpr int kFramesToJump = 8;        // a mark far from where it was expected, before it is believed
+constexpr int kFramesToJump = 8;  // a mark far from where it was expected, before it is believed
 constexpr int kFramesToSlip = 6;
 
 // The shape of this scope's mark: the mean over the first clear sightings.
@@ -95,7 +95,8 @@ bool LensTracker::State::find_circle(const camera::GrayView& frame) {
   if (!has_circle && options.calibration &&
       options.calibration->image_size_px == Eigen::Vector2i(frame.width, frame.height)) {
     const camera::Boundary at_rest = options.calibration->boundary;
-    // The rim moves by less than 2 % over a turn of the lens, unless it slipped: then the search below finds it.
+    // The rim moves by less than 2 % over a turn of the lens, unless it slipped: then the search below finds
+    // it.
     if (measure_and_fit(frame, at_rest, 0.03)) return measure_and_fit(frame, observation.circle, 0.015);
   }
   const std::optional<camera::Boundary> from_nothing = search_circle(frame, scratch);
@@ -124,9 +125,9 @@ void LensTracker::State::watch_circle() {
   }
   ++track.frames;
   const double off_px = (seen.center_px - track.reference.center_px).norm();
-  const bool is_off = off_px > allowed_px ||
-                      std::abs(seen.radius_px / track.reference.radius_px - 1) > 0.005;
-  track.off_track = is_off ? std::min(track.off_track + 1, 2 * kFramesToSlip) : std::max(track.off_track - 2, 0);
+  const bool is_off = off_px > allowed_px || std::abs(seen.radius_px / track.reference.radius_px - 1) > 0.005;
+  track.off_track =
+      is_off ? std::min(track.off_track + 1, 2 * kFramesToSlip) : std::max(track.off_track - 2, 0);
   observation.zoom_or_slip = track.off_track >= kFramesToSlip;
   if (!options.calibration && !is_off) {
     track.reference.center_px += 0.2 * (seen.center_px - track.reference.center_px);
@@ -135,7 +136,8 @@ void LensTracker::State::watch_circle() {
 }
 
 bool LensTracker::State::believe_jump(const MarkCandidate& candidate) {
-  const bool same_place = jump_frames > 0 && std::abs(difference_deg(candidate.angle_deg, jump_angle_deg)) < 5;
+  const bool same_place =
+      jump_frames > 0 && std::abs(difference_deg(candidate.angle_deg, jump_angle_deg)) < 5;
   jump_frames = same_place ? jump_frames + 1 : 1;
   jump_angle_deg = candidate.angle_deg;
   return jump_frames >= kFramesToJump;
@@ -198,12 +200,18 @@ void LensTracker::State::find_mark() {
 
 std::string_view to_text(MarkState state) {
   switch (state) {
-    case MarkState::Found: return "found";
-    case MarkState::NoCircle: return "no round image border";
-    case MarkState::Dark: return "too dark beside the rim";
-    case MarkState::Covered: return "the mark is covered";
-    case MarkState::Ambiguous: return "two marks look alike";
-    case MarkState::NotSeen: return "no mark on the rim";
+    case MarkState::Found:
+      return "found";
+    case MarkState::NoCircle:
+      return "no round image border";
+    case MarkState::Dark:
+      return "too dark beside the rim";
+    case MarkState::Covered:
+      return "the mark is covered";
+    case MarkState::Ambiguous:
+      return "two marks look alike";
+    case MarkState::NotSeen:
+      return "no mark on the rim";
   }
   return "unknown";
 }

@@ -1,5 +1,5 @@
-// Finds the circular image border and the lens mark in every frame, so that the intrinsics follow the lens. The mark
-// may be a dark tooth that points inwards or a bright one that points outwards.
+// Finds the circular image border and the lens mark in every frame, so that the intrinsics follow the lens.
+// The mark may be a dark tooth that points inwards or a bright one that points outwards.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@ namespace arthronaut::lens {
 
 enum class MarkState {
   Found,
-  NoCircle,         // the rim itself was not found
-  Dark,             // the scene beside the rim is too dark to tell
-  Covered,          // something crosses the rim where the mark was expected
-  Ambiguous,        // two dents look alike
-  NotSeen,          // a clean rim without a mark
+  NoCircle,   // the rim itself was not found
+  Dark,       // the scene beside the rim is too dark to tell
+  Covered,    // something crosses the rim where the mark was expected
+  Ambiguous,  // two dents look alike
+  NotSeen,    // a clean rim without a mark
 };
 [[nodiscard]] std::string_view to_text(MarkState state);
 
@@ -27,19 +27,20 @@ enum class MarkPolarity { Unknown, DarkInward, BrightOutward };
 struct LensObservation {
   std::int64_t timestamp_ns = 0;
   bool circle_found = false;
-  camera::Boundary circle;            // measured in this frame when circle_found, else predicted
-  double circle_coverage_deg = 0;     // how much of the rim was seen
+  camera::Boundary circle;         // measured in this frame when circle_found, else predicted
+  double circle_coverage_deg = 0;  // how much of the rim was seen
   MarkState mark = MarkState::NoCircle;
   MarkPolarity polarity = MarkPolarity::Unknown;
-  double mark_angle_deg = 0;          // filtered, [0, 360); measured when mark == Found, else the last known one
-  double mark_sigma_deg = 360;        // grows while the mark is not found
-  bool is_stale = true;               // no mark for longer than the options allow: intrinsics can't be trusted
-  bool zoom_or_slip = false;          // radius or centre off their track: another zoom, or the coupler slipped
+  double mark_angle_deg = 0;    // filtered, [0, 360); measured when mark == Found, else the last known one
+  double mark_sigma_deg = 360;  // grows while the mark is not found
+  bool is_stale = true;         // no mark for longer than the options allow: intrinsics can't be trusted
+  bool zoom_or_slip = false;    // radius or centre off their track: another zoom, or the coupler slipped
   [[nodiscard]] bool has_angle() const { return mark == MarkState::Found || !is_stale; }
 };
 
 struct LensTrackerOptions {
-  std::optional<camera::Calibration> calibration;  // predicts the circle and its track; without it: found from nothing
+  std::optional<camera::Calibration>
+      calibration;  // predicts the circle and its track; without it: found from nothing
   double stale_after_s = 1.0;
   // Which polarity to believe where both are possible; Unknown lets the tracker learn it.
   MarkPolarity polarity = MarkPolarity::Unknown;

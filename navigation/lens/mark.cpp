@@ -41,7 +41,8 @@ double triangle(double angle_deg, double tip_deg, double half_width_deg) {
 }
 
 // Tip, half width and height by Gauss-Newton with Huber weights; with `known`, the tip alone.
-bool fit_triangle(const Window& window, const MarkShape* known, double radius_px, double& tip_deg, MarkShape& shape) {
+bool fit_triangle(const Window& window, const MarkShape* known, double radius_px, double& tip_deg,
+                  MarkShape& shape) {
   double height_px = shape.height * radius_px;
   for (int pass = 0; pass < 12; ++pass) {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -105,7 +106,8 @@ double difference_deg(double a, double b) {
   return d > 180.0 ? d - 360.0 : d;
 }
 
-// A point of the rim at ray angle a moves, about the shifted centre, by the shift across the ray over the radius.
+// A point of the rim at ray angle a moves, about the shifted centre, by the shift across the ray over the
+// radius.
 double DentProfile::angle_correction_deg(double angle_deg) const {
   const double a = geometry::rad_from_deg(angle_deg);
   return geometry::deg_from_rad((shift_px.x() * std::sin(a) - shift_px.y() * std::cos(a)) / radius_px);
@@ -128,9 +130,9 @@ void dents_of(const RimProfile& profile, const camera::Boundary& circle, DentPro
 
 namespace {
 
-// A mark is cut out of the mask, so the scene inside it is as light as beside it, give or take its texture (print on
-// paper is a thirtieth). A dark instrument or a dark place of the scene dents the rim too, but is itself what is dark
-// there; and where one side can't be seen, a dent may be the end of the darkness.
+// A mark is cut out of the mask, so the scene inside it is as light as beside it, give or take its texture
+// (print on paper is a thirtieth). A dark instrument or a dark place of the scene dents the rim too, but is
+// itself what is dark there; and where one side can't be seen, a dent may be the end of the darkness.
 bool is_lit_like_its_flanks(const DentProfile& dents, int begin, int end) {
   constexpr int kFlank = 8;
   const auto median_light = [&](int from, int to) {
@@ -153,7 +155,9 @@ bool is_lit_like_its_flanks(const DentProfile& dents, int begin, int end) {
 void add(MarkCandidates& found, const MarkCandidate& candidate) {
   for (int k = 0; k < found.count; ++k) {
     MarkCandidate& known = found.items[static_cast<std::size_t>(k)];
-    if (known.polarity != candidate.polarity || std::abs(difference_deg(known.angle_deg, candidate.angle_deg)) > 3) continue;
+    if (known.polarity != candidate.polarity ||
+        std::abs(difference_deg(known.angle_deg, candidate.angle_deg)) > 3)
+      continue;
     if (candidate.score > known.score) known = candidate;
     return;
   }
@@ -201,14 +205,17 @@ MarkCandidates find_marks(const DentProfile& dents, MarkPolarity polarity, const
       MarkCandidate candidate;
       candidate.polarity = side;
       double tip_deg = moment / area * kRayStepDeg;
-      candidate.shape = known ? *known : MarkShape{std::max(0.8, area * kRayStepDeg / peak), peak / dents.radius_px};
+      candidate.shape =
+          known ? *known : MarkShape{std::max(0.8, area * kRayStepDeg / peak), peak / dents.radius_px};
       const double half_deg = std::max(0.5 * (end - begin + 1) * kRayStepDeg, candidate.shape.half_width_deg);
       const Window window = window_of(dents, sign, tip_deg, half_deg + kFlankDeg);
       if (window.seen < 0.6 * window.rays) continue;
       if (!fit_triangle(window, known, dents.radius_px, tip_deg, candidate.shape)) continue;
       judge_fit(window, tip_deg, candidate.shape, dents.radius_px, candidate);
       candidate.angle_deg = wrapped_deg(tip_deg + dents.angle_correction_deg(tip_deg));
-      if (candidate.shape.height < 0.012 || candidate.shape.height > 0.12 || candidate.shape.half_width_deg < 0.9) continue;
+      if (candidate.shape.height < 0.012 || candidate.shape.height > 0.12 ||
+          candidate.shape.half_width_deg < 0.9)
+        continue;
       add(found, candidate);
     }
   }
@@ -217,8 +224,8 @@ MarkCandidates find_marks(const DentProfile& dents, MarkPolarity polarity, const
   return found;
 }
 
-MarkCandidate follow_mark(const DentProfile& dents, MarkPolarity polarity, const MarkShape& known, double expected_deg,
-                          double search_deg) {
+MarkCandidate follow_mark(const DentProfile& dents, MarkPolarity polarity, const MarkShape& known,
+                          double expected_deg, double search_deg) {
   const double sign = sign_of(polarity);
   const double center = expected_deg - dents.angle_correction_deg(expected_deg);
   const double height_px = known.height * dents.radius_px;
@@ -247,7 +254,8 @@ MarkCandidate follow_mark(const DentProfile& dents, MarkPolarity polarity, const
   int kept = 0;
   for (int k = 0; k < window.seen; ++k) {
     const auto at = static_cast<std::size_t>(k), to = static_cast<std::size_t>(kept);
-    const double e = window.depth_px[at] - height_px * triangle(window.angle_deg[at], best_tip, known.half_width_deg);
+    const double e =
+        window.depth_px[at] - height_px * triangle(window.angle_deg[at], best_tip, known.half_width_deg);
     if (std::abs(e) > 0.35 * height_px + 1.0) continue;
     window.angle_deg[to] = window.angle_deg[at];
     window.depth_px[to] = window.depth_px[at];
@@ -270,7 +278,8 @@ MarkState judge_place(const DentProfile& dents, double angle_deg, double half_wi
   const Window window = window_of(dents, 1.0, angle_deg, half_width_deg + kFlankDeg);
   if (window.seen < window.rays / 2) return MarkState::Dark;
   int off_rim = 0;
-  for (int k = 0; k < window.seen; ++k) off_rim += std::abs(window.depth_px[static_cast<std::size_t>(k)]) > 2.5;
+  for (int k = 0; k < window.seen; ++k)
+    off_rim += std::abs(window.depth_px[static_cast<std::size_t>(k)]) > 2.5;
   return off_rim > window.seen / 3 ? MarkState::Covered : MarkState::NotSeen;
 }
 

@@ -1,5 +1,5 @@
-// The lens mark as a dent in the rim: candidates in one profile, and the shape that is learnt of the true one.
-// Inside the module; users of the lens take lens_tracker.h.
+// The lens mark as a dent in the rim: candidates in one profile, and the shape that is learnt of the true
+// one. Inside the module; users of the lens take lens_tracker.h.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct MarkShape {
 
 struct MarkCandidate {
   MarkPolarity polarity = MarkPolarity::Unknown;
-  double angle_deg = 0;   // of the tip about the circle's centre, [0, 360)
+  double angle_deg = 0;  // of the tip about the circle's centre, [0, 360)
   double sigma_deg = 0;
   MarkShape shape;
   double score = 0;       // normalised correlation with the triangle over mark and flanks, at most 1
@@ -44,16 +44,18 @@ struct MarkCandidates {
   int count = 0;
 };
 // Everything that could be a mark, nothing assumed about where; `known` (a learnt shape) sharpens the choice.
-[[nodiscard]] MarkCandidates find_marks(const DentProfile& dents, MarkPolarity polarity, const MarkShape* known);
+[[nodiscard]] MarkCandidates find_marks(const DentProfile& dents, MarkPolarity polarity,
+                                        const MarkShape* known);
 
-// The learnt shape within search_deg of an expected angle, even when one flank is in the dark. A score of 0: nothing.
-[[nodiscard]] MarkCandidate follow_mark(const DentProfile& dents, MarkPolarity polarity, const MarkShape& known,
-                                        double expected_deg, double search_deg);
+// The learnt shape within search_deg of an expected angle, even when one flank is in the dark. A score of 0:
+// nothing.
+[[nodiscard]] MarkCandidate follow_mark(const DentProfile& dents, MarkPolarity polarity,
+                                        const MarkShape& known, double expected_deg, double search_deg);
 
 // What stands at a place of the rim where the mark was expected but not found.
 [[nodiscard]] MarkState judge_place(const DentProfile& dents, double angle_deg, double half_width_deg);
 
-[[nodiscard]] double wrapped_deg(double angle_deg);     // to [0, 360)
+[[nodiscard]] double wrapped_deg(double angle_deg);       // to [0, 360)
 [[nodiscard]] double difference_deg(double a, double b);  // a - b to (-180, 180]
 
 }  // namespace arthronaut::lens

@@ -54,8 +54,8 @@ float reach_in_picture(const camera::GrayView& picture, const Eigen::Vector2f& c
 }
 
 // Median grey value at the outer end of the rays, and how far it scatters.
-void measure_mask(const camera::GrayView& picture, const Eigen::Vector2f& center, float outer_px, double& level,
-                  double& scatter) {
+void measure_mask(const camera::GrayView& picture, const Eigen::Vector2f& center, float outer_px,
+                  double& level, double& scatter) {
   std::array<int, 256> histogram{};
   int count = 0;
   for (int i = 0; i < kRayCount; i += 2) {
@@ -76,8 +76,8 @@ void measure_mask(const camera::GrayView& picture, const Eigen::Vector2f& center
 }
 
 // Radius at which the light has risen half way, near a first lit sample at `first_px`.
-float locate_edge(const camera::GrayView& picture, const Eigen::Vector2f& center, float dx, float dy, float first_px,
-                  float reach_px, float dark_light, float& inside) {
+float locate_edge(const camera::GrayView& picture, const Eigen::Vector2f& center, float dx, float dy,
+                  float first_px, float reach_px, float dark_light, float& inside) {
   constexpr int kOutside = 4, kInside = 6;
   std::array<float, kOutside + kInside + 1> light;
   const float start = std::min(first_px + kOutside, reach_px);
@@ -98,8 +98,8 @@ float locate_edge(const camera::GrayView& picture, const Eigen::Vector2f& center
 
 }  // namespace
 
-void measure_rim(const camera::GrayView& picture, const camera::Boundary& expected, double inner, double outer,
-                 RimProfile& profile) {
+void measure_rim(const camera::GrayView& picture, const camera::Boundary& expected, double inner,
+                 double outer, RimProfile& profile) {
   profile.about = expected;
   const Eigen::Vector2f center = expected.center_px.cast<float>();
   const float outer_px = static_cast<float>(expected.radius_px * outer);
@@ -119,7 +119,8 @@ void measure_rim(const camera::GrayView& picture, const camera::Boundary& expect
     int run = 0;
     float first = -1;
     for (float r = start; r >= inner_px; r -= 1) {
-      const int x = static_cast<int>(center.x() + r * dx + 0.5F), y = static_cast<int>(center.y() + r * dy + 0.5F);
+      const int x = static_cast<int>(center.x() + r * dx + 0.5F),
+                y = static_cast<int>(center.y() + r * dy + 0.5F);
       if (picture.row(y)[x] <= lit) {
         run = 0;
       } else if (++run == 3) {
@@ -135,7 +136,8 @@ void measure_rim(const camera::GrayView& picture, const camera::Boundary& expect
       ++dark;
     } else {
       profile.state[i] = RayState::Edge;
-      profile.radius_px[i] = locate_edge(picture, center, dx, dy, first, reach, dark_light, profile.inside_light[i]);
+      profile.radius_px[i] =
+          locate_edge(picture, center, dx, dy, first, reach, dark_light, profile.inside_light[i]);
     }
   }
   profile.dark_share = static_cast<double>(dark) / kRayCount;
@@ -143,7 +145,8 @@ void measure_rim(const camera::GrayView& picture, const camera::Boundary& expect
 }
 
 CircleFit fit_circle(const RimProfile& profile, double gate_px) {
-  // Offsets of centre and radius from the expected circle, by reweighted least squares of the radial distance.
+  // Offsets of centre and radius from the expected circle, by reweighted least squares of the radial
+  // distance.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   const auto residual = [&](int i) {
     const double c = directions().cosine[i], s = directions().sine[i], r = profile.radius_px[i];

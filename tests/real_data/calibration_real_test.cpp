@@ -23,14 +23,17 @@ calibration::CalibrationPicture observe(const std::filesystem::path& file) {
   const camera::Frame frame = sources::read_picture(file);
   std::vector<std::uint8_t> gray;
   camera::gray_from(frame, gray);
-  return calibration::observe_picture(file.filename().string(), {gray.data(), frame.width, frame.height, frame.width});
+  return calibration::observe_picture(file.filename().string(),
+                                      {gray.data(), frame.width, frame.height, frame.width});
 }
 
-std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder, const std::string& prefix) {
+std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder,
+                                               const std::string& prefix) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string(), extension = entry.path().extension().string();
-    if (name.starts_with(prefix) && (extension == ".png" || extension == ".jpg")) files.push_back(entry.path());
+    if (name.starts_with(prefix) && (extension == ".png" || extension == ".jpg"))
+      files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -46,7 +49,8 @@ calibration::CalibrationSummary calibrate_cal_air(const std::filesystem::path& f
 
 // The ruler's markers in every frame of the clip, the intrinsics following the lens mark (or standing still).
 std::vector<calibration::RulerSighting> ruler_sightings(const std::filesystem::path& clip,
-                                                        const camera::Calibration& calibration, bool follow_lens) {
+                                                        const camera::Calibration& calibration,
+                                                        bool follow_lens) {
   const auto source = sources::open_video(clip);
   const markers::DeclaredMarker declared[] = {{5, 2.89}, {6, 2.89}};
   const auto tracker = markers::make_tracker(declared);
@@ -67,11 +71,12 @@ std::vector<calibration::RulerSighting> ruler_sightings(const std::filesystem::p
 }
 
 void print(const char* what, const calibration::FluidCheckSummary::Row& row, std::size_t frames) {
-  std::printf("| %s | %zu | %.3f | %.3f | %.3f | %.3f | %.3f |\n", what, frames, row.median_deg, row.median_mm,
-              row.worst_deg, row.worst_mm, row.rms_px);
+  std::printf("| %s | %zu | %.3f | %.3f | %.3f | %.3f | %.3f |\n", what, frames, row.median_deg,
+              row.median_mm, row.worst_deg, row.worst_mm, row.rms_px);
 }
 
-// Three pictures in air against the true camera, and stills at other lens angles whose board poses alone are solved.
+// Three pictures in air against the true camera, and stills at other lens angles whose board poses alone are
+// solved.
 TEST(CalibrationOnPictures, FindsTheTrueCamera) {
   ARTHRONAUT_REQUIRE_DATA(folder, "arthroscopy/cal_air");
   const calibration::CalibrationSummary summary = calibrate_cal_air(folder);
@@ -82,9 +87,10 @@ TEST(CalibrationOnPictures, FindsTheTrueCamera) {
   const camera::Calibration& found = summary.record.calibration;
   double principal_px = 0;
   for (double mark_deg = 0; mark_deg < 360; mark_deg += 15)
-    principal_px = std::max(principal_px, (found.turned(found.principal_point_px, found.lens_angle_rad(mark_deg)) -
-                                           truth.turned(truth.principal_point_px, truth.lens_angle_rad(mark_deg)))
-                                              .norm());
+    principal_px =
+        std::max(principal_px, (found.turned(found.principal_point_px, found.lens_angle_rad(mark_deg)) -
+                                truth.turned(truth.principal_point_px, truth.lens_angle_rad(mark_deg)))
+                                   .norm());
   const double center_px = (found.rotation_center_px - truth.rotation_center_px).norm();
   std::cout << "focal length off by " << 100 * (found.focal_px / truth.focal_px - 1) << " %, xi by "
             << found.distortion_xi - truth.distortion_xi << ", principal point by " << principal_px
@@ -96,18 +102,19 @@ TEST(CalibrationOnPictures, FindsTheTrueCamera) {
   EXPECT_LT(center_px, 1.5);
 
   for (const auto& file : pictures_in(folder, "held_")) {
-    const calibration::HeldOut held = calibration::check_held_out(observe(file), summary.record.calibration, 1.5);
-    std::cout << file.filename().string() << ": " << held.corner_count << " corners, reprojection RMS " << held.rms_px
-              << " px\n";
+    const calibration::HeldOut held =
+        calibration::check_held_out(observe(file), summary.record.calibration, 1.5);
+    std::cout << file.filename().string() << ": " << held.corner_count << " corners, reprojection RMS "
+              << held.rms_px << " px\n";
     EXPECT_GT(held.corner_count, 400U);
     EXPECT_GT(held.rms_px, 0);
     EXPECT_LE(held.rms_px, 0.35);
   }
 }
 
-// Calibrated in air, used in saline, over the whole turn of the lens: the two markers' relative pose against the ruler's,
-// beside what comes of the paper's focal rule and of a lens that is not followed. The bounds are those of OpenCV's
-// ArUco with the true camera.
+// Calibrated in air, used in saline, over the whole turn of the lens: the two markers' relative pose against
+// the ruler's, beside what comes of the paper's focal rule and of a lens that is not followed. The bounds are
+// those of OpenCV's ArUco with the true camera.
 TEST(CalibrationInFluid, KeepsTheRulerTrueWhileTheLensTurns) {
   ARTHRONAUT_REQUIRE_DATA(air, "arthroscopy/cal_air");
   ARTHRONAUT_REQUIRE_DATA(wet, "arthroscopy/ruler_wet");
@@ -116,10 +123,12 @@ TEST(CalibrationInFluid, KeepsTheRulerTrueWhileTheLensTurns) {
   const auto fixed = ruler_sightings(wet / "clip.mkv", found, false);
   const calibration::FluidCheckSummary check = calibration::check_fluid(followed, {}, found, {});
   std::printf("| camera | frames | median deg | median mm | 95 %% deg | 95 %% mm | rms px |\n");
-  for (const auto& row : check.rows) print(std::string(to_text(row.hypothesis)).c_str(), row, followed.size());
+  for (const auto& row : check.rows)
+    print(std::string(to_text(row.hypothesis)).c_str(), row, followed.size());
   const auto of_fixed = calibration::check_fluid(fixed, {}, found, {});
   for (const auto& row : of_fixed.rows)
-    if (row.hypothesis == calibration::FluidHypothesis::FlatPort) print("flat port, lens not followed", row, fixed.size());
+    if (row.hypothesis == calibration::FluidHypothesis::FlatPort)
+      print("flat port, lens not followed", row, fixed.size());
   std::printf("index that fits best: %.4f\n", check.best_index);
 
   const auto& best = check.rows.front();
@@ -138,11 +147,12 @@ TEST(BoardFinderOnPictures, FindsTheOpenCvChessboards) {
   ARTHRONAUT_REQUIRE_DATA(folder, "checkerboards/opencv-stereo");
   for (const char* side : {"left", "right"})
     for (const auto& file : pictures_in(folder, side))
-      EXPECT_EQ(observe(file).board.corners.size(), 54U) << file.filename().string() << ": " << observe(file).board.reason;
+      EXPECT_EQ(observe(file).board.corners.size(), 54U)
+          << file.filename().string() << ": " << observe(file).board.reason;
 }
 
-// Boards through a laparoscope, whose 140 corners somebody else's detector gave: all found, within half a pixel in the
-// median (the given ones themselves scatter by 0.2 to 0.4 px against OpenCV's).
+// Boards through a laparoscope, whose 140 corners somebody else's detector gave: all found, within half a
+// pixel in the median (the given ones themselves scatter by 0.2 to 0.4 px against OpenCV's).
 TEST(BoardFinderOnPictures, FindsTheLaparoscopeChessboards) {
   ARTHRONAUT_REQUIRE_DATA(folder, "checkerboards/viking-laparoscope");
   for (const auto& file : pictures_in(folder, "left-")) {
@@ -152,7 +162,8 @@ TEST(BoardFinderOnPictures, FindsTheLaparoscopeChessboards) {
     Eigen::Vector2d point;
     while (given >> point.x() >> point.y()) {
       double nearest = 1e9;
-      for (const auto& corner : picture.board.corners) nearest = std::min(nearest, (corner.pixel - point).norm());
+      for (const auto& corner : picture.board.corners)
+        nearest = std::min(nearest, (corner.pixel - point).norm());
       distances_px.push_back(nearest);
     }
     ASSERT_EQ(distances_px.size(), 140U);
@@ -164,8 +175,8 @@ TEST(BoardFinderOnPictures, FindsTheLaparoscopeChessboards) {
 }
 
 // OpenCV's own calibration on the same corners, without tangential terms; RMS of the error's length.
-double opencv_rms_px(const std::vector<calibration::CalibrationPicture>& pictures, double square_mm, int flags,
-                     double& focal_px) {
+double opencv_rms_px(const std::vector<calibration::CalibrationPicture>& pictures, double square_mm,
+                     int flags, double& focal_px) {
   std::vector<std::vector<cv::Point3f>> boards;
   std::vector<std::vector<cv::Point2f>> pixels;
   for (const auto& picture : pictures) {
@@ -186,15 +197,17 @@ double opencv_rms_px(const std::vector<calibration::CalibrationPicture>& picture
   return rms;
 }
 
-// One coefficient of the division model against one and three of OpenCV's polynomial, same corners, square pixels.
+// One coefficient of the division model against one and three of OpenCV's polynomial, same corners, square
+// pixels.
 TEST(CalibrationOnPictures, DivisionModelBesideOpenCvsRadialModel) {
   struct Set {
     const char *folder, *prefix;
     double square_mm;
   };
   std::printf("| pictures | division, rms px, f | OpenCV k1, rms px, f | OpenCV k1 k2 k3, rms px, f |\n");
-  for (const Set& set : {Set{"checkerboards/opencv-stereo", "left", 25}, Set{"checkerboards/opencv-stereo", "right", 25},
-                         Set{"checkerboards/viking-laparoscope", "left-", 3}}) {
+  for (const Set& set :
+       {Set{"checkerboards/opencv-stereo", "left", 25}, Set{"checkerboards/opencv-stereo", "right", 25},
+        Set{"checkerboards/viking-laparoscope", "left-", 3}}) {
     ARTHRONAUT_REQUIRE_DATA(folder, set.folder);
     std::vector<calibration::CalibrationPicture> pictures;
     for (const auto& file : pictures_in(folder, set.prefix)) pictures.push_back(observe(file));
@@ -204,7 +217,8 @@ TEST(CalibrationOnPictures, DivisionModelBesideOpenCvsRadialModel) {
     const calibration::CalibrationSummary summary = calibration::calibrate(pictures, options);
     ASSERT_TRUE(summary.is_usable());
     double focal_of_one = 0, focal_of_three = 0;
-    const double one = opencv_rms_px(pictures, set.square_mm, cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3, focal_of_one);
+    const double one =
+        opencv_rms_px(pictures, set.square_mm, cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3, focal_of_one);
     const double three = opencv_rms_px(pictures, set.square_mm, 0, focal_of_three);
     std::printf("| %s/%s | %.3f, %.1f | %.3f, %.1f | %.3f, %.1f |\n", set.folder, set.prefix, summary.rms_px,
                 summary.record.calibration.focal_px, one, focal_of_one, three, focal_of_three);

@@ -1,4 +1,5 @@
-// The lens tracker on recorded clips with the true mark angle and circle of every frame, and on real endoscope frames.
+// The lens tracker on recorded clips with the true mark angle and circle of every frame, and on real
+// endoscope frames.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +24,9 @@ double quantile(std::vector<double> values, double share) {
 struct ClipErrors {
   std::vector<double> angle_deg, center_px;  // of the frames where the mark was found
   std::size_t frames = 0;
-  [[nodiscard]] double found_share() const { return static_cast<double>(angle_deg.size()) / static_cast<double>(frames); }
+  [[nodiscard]] double found_share() const {
+    return static_cast<double>(angle_deg.size()) / static_cast<double>(frames);
+  }
 };
 
 ClipErrors track(const std::filesystem::path& folder) {
@@ -34,26 +37,27 @@ ClipErrors track(const std::filesystem::path& folder) {
   std::vector<std::uint8_t> gray;
   while (const camera::FramePtr frame = source->next()) {
     camera::gray_from(*frame, gray);
-    const auto& seen = tracker.observe({gray.data(), frame->width, frame->height, frame->width}, frame->timestamp_ns);
+    const auto& seen =
+        tracker.observe({gray.data(), frame->width, frame->height, frame->width}, frame->timestamp_ns);
     const std::size_t row = errors.frames++;
     if (seen.mark != lens::MarkState::Found) continue;
     errors.angle_deg.push_back(
         std::abs(std::remainder(seen.mark_angle_deg - truth.number(row, "mark_angle_deg"), 360.0)));
-    errors.center_px.push_back(
-        (seen.circle.center_px - Eigen::Vector2d(truth.number(row, "boundary_x_px"), truth.number(row, "boundary_y_px")))
-            .norm());
+    errors.center_px.push_back((seen.circle.center_px - Eigen::Vector2d(truth.number(row, "boundary_x_px"),
+                                                                        truth.number(row, "boundary_y_px")))
+                                   .norm());
   }
-  std::cout << folder.filename().string() << ": mark found in " << errors.angle_deg.size() << " of " << errors.frames
-            << " frames, angle error median " << quantile(errors.angle_deg, 0.5) << ", 95 % "
-            << quantile(errors.angle_deg, 0.95) << " deg, circle centre median " << quantile(errors.center_px, 0.5)
-            << " px\n";
+  std::cout << folder.filename().string() << ": mark found in " << errors.angle_deg.size() << " of "
+            << errors.frames << " frames, angle error median " << quantile(errors.angle_deg, 0.5) << ", 95 % "
+            << quantile(errors.angle_deg, 0.95) << " deg, circle centre median "
+            << quantile(errors.center_px, 0.5) << " px\n";
   return errors;
 }
 
 class LensOnClips : public testing::TestWithParam<const char*> {};
 
-// Half of what a degree's tenth moves the principal point by is far below a corner's noise; the bounds are those that
-// the lens-rotation experiment asks for.
+// Half of what a degree's tenth moves the principal point by is far below a corner's noise; the bounds are
+// those that the lens-rotation experiment asks for.
 TEST_P(LensOnClips, FollowsTheMark) {
   ARTHRONAUT_REQUIRE_DATA(folder, std::string("arthroscopy/") + GetParam());
   const ClipErrors errors = track(folder);
@@ -65,7 +69,8 @@ TEST_P(LensOnClips, FollowsTheMark) {
 }
 INSTANTIATE_TEST_SUITE_P(Clips, LensOnClips, testing::Values("ruler_wet", "probe_wet", "guide_wet", "hard"));
 
-// Real frames with a bright tooth that points outwards; circle and angle were measured by hand by somebody else.
+// Real frames with a bright tooth that points outwards; circle and angle were measured by hand by somebody
+// else.
 TEST(LensOnEndoscope, FindsCircleAndToothInEveryFrame) {
   ARTHRONAUT_REQUIRE_DATA(folder, "endoscope/dots-768");
   for (int i = 1; i <= 11; ++i) {
@@ -74,7 +79,8 @@ TEST(LensOnEndoscope, FindsCircleAndToothInEveryFrame) {
     const camera::Frame frame = sources::read_picture(folder / name);
     std::vector<std::uint8_t> gray;
     camera::gray_from(frame, gray);
-    const lens::LensObservation seen = lens::observe_still({gray.data(), frame.width, frame.height, frame.width});
+    const lens::LensObservation seen =
+        lens::observe_still({gray.data(), frame.width, frame.height, frame.width});
     ASSERT_TRUE(seen.circle_found) << name;
     EXPECT_NEAR((seen.circle.center_px - Eigen::Vector2d(417.7, 341.2)).norm(), 0, 2) << name;
     EXPECT_NEAR(seen.circle.radius_px, 326, 2) << name;

@@ -13,7 +13,8 @@ struct Comparison {
   bool lattice_is_consistent = true;
 };
 
-// Matches each corner with the projected corner nearest to it; on a consistent lattice neighbours stay neighbours.
+// Matches each corner with the projected corner nearest to it; on a consistent lattice neighbours stay
+// neighbours.
 Comparison compare(const BoardDetection& detection, const camera::Calibration& scope, const BoardView& view,
                    double square_mm) {
   std::mt19937 random(1);
@@ -40,24 +41,27 @@ Comparison compare(const BoardDetection& detection, const camera::Calibration& s
   }
   result.rms_px = std::sqrt(sum / static_cast<double>(errors.size()));
   result.rms_in_sigmas = std::sqrt(sum_in_sigmas / static_cast<double>(errors.size()));
-  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
+  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),
+                   errors.end());
   result.median_px = errors[errors.size() / 2];
   std::printf("%zu of %zu corners, median %.3f px, rms %.3f px, %.2f sigmas\n", result.found, result.visible,
               result.median_px, result.rms_px, result.rms_in_sigmas);
   for (const auto& [node, lattice] : true_node) {
     const auto right = true_node.find({node.first + 1, node.second});
-    if (right != true_node.end() && (right->second - lattice).squaredNorm() != 1) result.lattice_is_consistent = false;
+    if (right != true_node.end() && (right->second - lattice).squaredNorm() != 1)
+      result.lattice_is_consistent = false;
   }
   return result;
 }
 
-// Boards that run past the view, through strong distortion, at three tilts: most corners (the rest are squares of a few
-// pixels), no index wrong, and
-// as exact as each corner says of itself. 0.12 px a corner of median sharpness is what noise and 8 bits leave.
+// Boards that run past the view, through strong distortion, at three tilts: most corners (the rest are
+// squares of a few pixels), no index wrong, and as exact as each corner says of itself. 0.12 px a corner of
+// median sharpness is what noise and 8 bits leave.
 TEST(BoardFinder, FindsTheCornersOfABoardThatRunsPastTheView) {
   const camera::Calibration scope = true_scope();
-  for (const BoardView& view : {BoardView{board_pose(18, 6, 30, 5), 0}, BoardView{board_pose(20, 25, 120, 33), 60},
-                                BoardView{board_pose(22, 38, 250, 71), -70}}) {
+  for (const BoardView& view :
+       {BoardView{board_pose(18, 6, 30, 5), 0}, BoardView{board_pose(20, 25, 120, 33), 60},
+        BoardView{board_pose(22, 38, 250, 71), -70}}) {
     const GrayPicture picture = draw_board(scope, view, 2, 1.5, 3);
     const Comparison result = compare(find_checkerboard(picture.view()), scope, view, 2);
     EXPECT_GE(result.found, result.visible * 8 / 10);
@@ -92,7 +96,8 @@ TEST(BoardFinder, RefusesWhatIsNoCheckerboard) {
   const auto refuse = [&](const char* what, auto&& value_at) {
     std::vector<std::uint8_t> gray(kWidth * kHeight);
     for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) gray[static_cast<std::size_t>(y) * kWidth + x] = static_cast<std::uint8_t>(value_at(x, y));
+      for (int x = 0; x < kWidth; ++x)
+        gray[static_cast<std::size_t>(y) * kWidth + x] = static_cast<std::uint8_t>(value_at(x, y));
     const BoardDetection detection = find_checkerboard({gray.data(), kWidth, kHeight, kWidth});
     EXPECT_FALSE(detection.found()) << what;
     EXPECT_FALSE(detection.reason.empty()) << what;

@@ -26,9 +26,11 @@ inline camera::Calibration true_scope() {
 }
 
 // A board whose corner (0, 0) lies on the axis, tilted about a direction in the image.
-inline geometry::RigidTransform board_pose(double distance_mm, double tilt_deg, double tilt_axis_deg, double spin_deg) {
+inline geometry::RigidTransform board_pose(double distance_mm, double tilt_deg, double tilt_axis_deg,
+                                           double spin_deg) {
   const double axis = geometry::rad_from_deg(tilt_axis_deg);
-  const Eigen::AngleAxisd tilt(geometry::rad_from_deg(tilt_deg), Eigen::Vector3d(std::cos(axis), std::sin(axis), 0));
+  const Eigen::AngleAxisd tilt(geometry::rad_from_deg(tilt_deg),
+                               Eigen::Vector3d(std::cos(axis), std::sin(axis), 0));
   const Eigen::AngleAxisd spin(geometry::rad_from_deg(spin_deg), Eigen::Vector3d::UnitZ());
   return {Eigen::Quaterniond(tilt * spin), {0.4, -0.3, distance_mm}};
 }
@@ -39,8 +41,9 @@ struct BoardView {
 };
 
 // Corners with Gaussian noise, 0.92 of the view's radius at most, and what the lens tracker would report.
-inline CalibrationPicture picture_of(const camera::Calibration& scope, const BoardView& view, double square_mm,
-                                     double corner_sigma_px, double mark_sigma_deg, std::mt19937& random) {
+inline CalibrationPicture picture_of(const camera::Calibration& scope, const BoardView& view,
+                                     double square_mm, double corner_sigma_px, double mark_sigma_deg,
+                                     std::mt19937& random) {
   std::normal_distribution<double> normal;
   const double alpha = geometry::rad_from_deg(view.lens_angle_deg);
   const camera::CameraModel model(scope, alpha, scope.refractive_index);
@@ -49,7 +52,8 @@ inline CalibrationPicture picture_of(const camera::Calibration& scope, const Boa
   picture.size_px = scope.image_size_px;
   for (int c = -30; c <= 30; ++c)
     for (int r = -30; r <= 30; ++r) {
-      const auto pixel = model.project(view.camera_from_board * Eigen::Vector3d(c * square_mm, r * square_mm, 0));
+      const auto pixel =
+          model.project(view.camera_from_board * Eigen::Vector3d(c * square_mm, r * square_mm, 0));
       if (!pixel || (*pixel - model.boundary().center_px).norm() > 0.92 * scope.boundary.radius_px) continue;
       picture.board.corners.push_back(
           {{c, r}, *pixel + corner_sigma_px * Eigen::Vector2d(normal(random), normal(random))});
@@ -58,32 +62,32 @@ inline CalibrationPicture picture_of(const camera::Calibration& scope, const Boa
   picture.lens.circle = model.boundary();
   picture.lens.circle.center_px += 0.1 * Eigen::Vector2d(normal(random), normal(random));
   picture.lens.mark = lens::MarkState::Found;
-  picture.lens.mark_angle_deg =
-      std::fmod(scope.reference_mark_angle_deg + view.lens_angle_deg + 720 + mark_sigma_deg * normal(random), 360.0);
+  picture.lens.mark_angle_deg = std::fmod(
+      scope.reference_mark_angle_deg + view.lens_angle_deg + 720 + mark_sigma_deg * normal(random), 360.0);
   return picture;
 }
 
-// An 8-bit picture of the board, five samples over 1.2 px (as optics blur), gamma 2.2, shaded towards the rim, with noise.
+// An 8-bit picture of the board, five samples over 1.2 px (as optics blur), gamma 2.2, shaded towards the
+// rim, with noise.
 struct GrayPicture {
   int width = 0, height = 0;
   std::vector<std::uint8_t> gray;
   [[nodiscard]] camera::GrayView view() const { return {gray.data(), width, height, width}; }
 };
 
-inline GrayPicture draw_board(const camera::Calibration& scope, const BoardView& view, double square_mm, double noise,
-                              unsigned seed) {
+inline GrayPicture draw_board(const camera::Calibration& scope, const BoardView& view, double square_mm,
+                              double noise, unsigned seed) {
   const camera::CameraModel model(scope, geometry::rad_from_deg(view.lens_angle_deg), scope.refractive_index);
   const geometry::RigidTransform board_from_camera = view.camera_from_board.inverse();
   GrayPicture picture{scope.image_size_px.x(), scope.image_size_px.y(), {}};
   picture.gray.resize(static_cast<std::size_t>(picture.width) * picture.height);
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, noise);
-  const double mark_rad =
-      geometry::rad_from_deg(scope.reference_mark_angle_deg + view.lens_angle_deg);
+  const double mark_rad = geometry::rad_from_deg(scope.reference_mark_angle_deg + view.lens_angle_deg);
   const auto light_at = [&](const Eigen::Vector2d& pixel) {
     const Eigen::Vector2d d = pixel - model.boundary().center_px;
-    const double off_deg =
-        std::abs(geometry::deg_from_rad(std::remainder(std::atan2(d.y(), d.x()) - mark_rad, 2 * geometry::kPi)));
+    const double off_deg = std::abs(
+        geometry::deg_from_rad(std::remainder(std::atan2(d.y(), d.x()) - mark_rad, 2 * geometry::kPi)));
     const double rim = scope.boundary.radius_px * (1 - 0.04 * std::max(0.0, 1 - off_deg / 2.1));
     if (d.norm() > rim) return 0.0;
     const auto tangent = model.undistort(pixel);

@@ -12,12 +12,11 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-const std::vector<BoardView> kThreeViews = {{board_pose(18, 6, 30, 5), 0},
-                                            {board_pose(20, 20, 120, 33), 60},
-                                            {board_pose(22, 34, 250, 71), -70}};
+const std::vector<BoardView> kThreeViews = {
+    {board_pose(18, 6, 30, 5), 0}, {board_pose(20, 20, 120, 33), 60}, {board_pose(22, 34, 250, 71), -70}};
 
-std::vector<CalibrationPicture> pictures_of(const std::vector<BoardView>& views, double corner_sigma_px, unsigned seed,
-                                            double square_mm = 2) {
+std::vector<CalibrationPicture> pictures_of(const std::vector<BoardView>& views, double corner_sigma_px,
+                                            unsigned seed, double square_mm = 2) {
   std::mt19937 random(seed);
   std::vector<CalibrationPicture> pictures;
   for (const BoardView& view : views)
@@ -67,10 +66,11 @@ TEST(Calibration, CovarianceIsTrue) {
         calibrate(pictures_of(kThreeViews, 0.15, 100 + static_cast<unsigned>(trial), 3), options);
     ASSERT_TRUE(summary.is_usable());
     const camera::Calibration& found = summary.record.calibration;
-    const Eigen::Vector2d c = truth.turned(truth.principal_point_px, truth.lens_angle_rad(found.reference_mark_angle_deg));
+    const Eigen::Vector2d c =
+        truth.turned(truth.principal_point_px, truth.lens_angle_rad(found.reference_mark_angle_deg));
     Eigen::Matrix<double, 6, 1> error;
-    error << found.focal_px - truth.focal_px, found.distortion_xi - truth.distortion_xi, found.principal_point_px - c,
-        found.rotation_center_px - truth.rotation_center_px;
+    error << found.focal_px - truth.focal_px, found.distortion_xi - truth.distortion_xi,
+        found.principal_point_px - c, found.rotation_center_px - truth.rotation_center_px;
     ASSERT_EQ(summary.record.covariance.rows(), 6);
     mean_square += error.cwiseAbs2().cwiseQuotient(summary.record.covariance.diagonal()) / kTrials;
   }
@@ -107,7 +107,8 @@ TEST(Calibration, ThrowsOnBrokenContracts) {
     }
     return "";
   };
-  EXPECT_THAT(message([&] { return calibrate(std::span(pictures).first(2), options_with(2)); }), HasSubstr("three pictures"));
+  EXPECT_THAT(message([&] { return calibrate(std::span(pictures).first(2), options_with(2)); }),
+              HasSubstr("three pictures"));
   EXPECT_THAT(message([&] { return calibrate(pictures, options_with(0)); }), HasSubstr("above 0 mm"));
   EXPECT_THAT(message([&] { return calibrate(pictures, options_with(NAN)); }), HasSubstr("above 0 mm"));
   std::vector<CalibrationPicture> other_size = pictures;
@@ -120,12 +121,15 @@ TEST(Calibration, ThrowsOnBrokenContracts) {
 
 // Poor pictures give a result with its reasons, each of its own.
 TEST(Calibration, SaysWhyItIsNotReliable) {
-  const std::vector<BoardView> facing = {{board_pose(18, 1, 30, 5), 0}, {board_pose(20, 2, 120, 33), 60}, {board_pose(22, 1, 250, 71), -70}};
-  EXPECT_THAT(calibrate(pictures_of(facing, 0.1, 5), options_with(2)).reasons, Contains(HasSubstr("face the lens")));
+  const std::vector<BoardView> facing = {
+      {board_pose(18, 1, 30, 5), 0}, {board_pose(20, 2, 120, 33), 60}, {board_pose(22, 1, 250, 71), -70}};
+  EXPECT_THAT(calibrate(pictures_of(facing, 0.1, 5), options_with(2)).reasons,
+              Contains(HasSubstr("face the lens")));
 
   std::vector<BoardView> unturned = kThreeViews;
   for (BoardView& view : unturned) view.lens_angle_deg = 3;
-  EXPECT_THAT(calibrate(pictures_of(unturned, 0.1, 5), options_with(2)).reasons, Contains(HasSubstr("was turned by")));
+  EXPECT_THAT(calibrate(pictures_of(unturned, 0.1, 5), options_with(2)).reasons,
+              Contains(HasSubstr("was turned by")));
 
   EXPECT_THAT(calibrate(pictures_of(kThreeViews, 0.1, 5), options_with(20)).reasons,
               Contains(HasSubstr("side of a square")));

@@ -27,7 +27,8 @@ TEST(CaptureGuide, LeadsThroughThreePictures) {
   guide.take();
   EXPECT_EQ(guide.advice().wanted, "Turn the lens");
 
-  EXPECT_THAT(guide.look(drawn(26, 20).view()).rejections, Contains(HasSubstr("20 degrees from a picture taken")));
+  EXPECT_THAT(guide.look(drawn(26, 20).view()).rejections,
+              Contains(HasSubstr("20 degrees from a picture taken")));
   for (const double lens_angle_deg : {60.0, 120.0}) {
     const GrayPicture picture = drawn(26, lens_angle_deg);
     guide.look(picture.view());

@@ -24,9 +24,11 @@ std::vector<RulerSighting> sightings_in(double index, camera::FluidModel fluid, 
   while (sightings.size() < 60) {
     const double lens_angle_deg = 90 * any(random);
     const camera::CameraModel model(scope, geometry::rad_from_deg(lens_angle_deg), index, fluid);
-    geometry::RigidTransform camera_from_first = board_pose(22, 35 * std::abs(any(random)), 180 * any(random), 180 * any(random));
+    geometry::RigidTransform camera_from_first =
+        board_pose(22, 35 * std::abs(any(random)), 180 * any(random), 180 * any(random));
     // The printed face looks back at the lens; the ruler's middle, not its first marker, is near the axis.
-    camera_from_first.rotation = camera_from_first.rotation * Eigen::AngleAxisd(geometry::kPi, Eigen::Vector3d::UnitX());
+    camera_from_first.rotation =
+        camera_from_first.rotation * Eigen::AngleAxisd(geometry::kPi, Eigen::Vector3d::UnitX());
     camera_from_first.translation_mm -= camera_from_first.rotate({5, 0, 0});
     RulerSighting seen;
     seen.mark_angle_deg = scope.reference_mark_angle_deg + lens_angle_deg;
@@ -35,7 +37,8 @@ std::vector<RulerSighting> sightings_in(double index, camera::FluidModel fluid, 
       for (std::size_t k = 0; k < 4; ++k) {
         const double h = 0.5 * ruler.marker_size_mm;
         const Eigen::Vector3d corner(k == 0 || k == 3 ? -h : h, k < 2 ? h : -h, 0);
-        const auto pixel = model.project(camera_from_first * (marker == 0 ? corner : ruler.first_from_second * corner));
+        const auto pixel =
+            model.project(camera_from_first * (marker == 0 ? corner : ruler.first_from_second * corner));
         visible = visible && pixel && model.is_inside_view(*pixel);
         if (!visible) break;
         (marker == 0 ? seen.first_px : seen.second_px)[k] =

@@ -1,5 +1,6 @@
-// How exact a calibration is at a given corner noise: the joint adjustment of three pictures over many noise draws,
-// against what is known to be attainable (closed form and joint adjustment of the same geometry, measured elsewhere).
+// How exact a calibration is at a given corner noise: the joint adjustment of three pictures over many noise
+// draws, against what is known to be attainable (closed form and joint adjustment of the same geometry,
+// measured elsewhere).
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -43,7 +44,8 @@ Spread study(double tilt_deg, double corner_sigma_px, int trials) {
     }
     const CalibrationSummary summary = calibrate(pictures, options);
     const camera::Calibration& found = summary.record.calibration;
-    const Eigen::Vector2d c = truth.turned(truth.principal_point_px, truth.lens_angle_rad(found.reference_mark_angle_deg));
+    const Eigen::Vector2d c =
+        truth.turned(truth.principal_point_px, truth.lens_angle_rad(found.reference_mark_angle_deg));
     const double focal_error = found.focal_px - truth.focal_px;
     square.focal_px += focal_error * focal_error / trials;
     square.in_sigmas += focal_error * focal_error / summary.record.covariance(0, 0) / trials;
@@ -52,7 +54,7 @@ Spread study(double tilt_deg, double corner_sigma_px, int trials) {
     square.center_px += (found.rotation_center_px - truth.rotation_center_px).squaredNorm() / 2 / trials;
     square.rms_px += summary.rms_px * summary.rms_px / 2 / trials;
   }
-  return {std::sqrt(square.focal_px),     std::sqrt(square.xi),     std::sqrt(square.principal_px),
+  return {std::sqrt(square.focal_px),  std::sqrt(square.xi),     std::sqrt(square.principal_px),
           std::sqrt(square.center_px), std::sqrt(square.rms_px), std::sqrt(square.in_sigmas)};
 }
 
@@ -60,17 +62,21 @@ struct Attainable {
   double tilt_deg, noise_px, focal_px, xi, principal_px, center_px;
 };
 
-// xi at 0.3 px was not measured elsewhere: three times that at 0.1 px. A fifth is added for 40 draws' own scatter.
+// xi at 0.3 px was not measured elsewhere: three times that at 0.1 px. A fifth is added for 40 draws' own
+// scatter.
 TEST(NoiseStudy, IsAtOrBelowWhatIsAttainable) {
-  const Attainable table[] = {{6, 0.1, 3.4, 0.0029, 0.30, 0.25},  {17, 0.1, 0.49, 0.0005, 0.30, 0.25},
+  const Attainable table[] = {{6, 0.1, 3.4, 0.0029, 0.30, 0.25},   {17, 0.1, 0.49, 0.0005, 0.30, 0.25},
                               {34, 0.1, 0.14, 0.0003, 0.30, 0.25}, {6, 0.3, 10, 0.0087, 0.93, 0.4},
                               {17, 0.3, 1.5, 0.0015, 0.93, 0.4},   {34, 0.3, 0.43, 0.0009, 0.93, 0.4}};
-  std::printf("| tilt deg | noise px | focal px | xi | principal px | centre px | residual px | f error in sigmas |\n");
+  std::printf(
+      "| tilt deg | noise px | focal px | xi | principal px | centre px | residual px | f error in sigmas "
+      "|\n");
   for (const Attainable& row : table) {
     const Spread spread = study(row.tilt_deg, row.noise_px, 40);
-    std::printf("| %.0f | %.1f | %.2f (%.2f) | %.5f (%.5f) | %.3f (%.2f) | %.3f (%.2f) | %.3f | %.2f |\n", row.tilt_deg,
-                row.noise_px, spread.focal_px, row.focal_px, spread.xi, row.xi, spread.principal_px, row.principal_px,
-                spread.center_px, row.center_px, spread.rms_px, spread.in_sigmas);
+    std::printf("| %.0f | %.1f | %.2f (%.2f) | %.5f (%.5f) | %.3f (%.2f) | %.3f (%.2f) | %.3f | %.2f |\n",
+                row.tilt_deg, row.noise_px, spread.focal_px, row.focal_px, spread.xi, row.xi,
+                spread.principal_px, row.principal_px, spread.center_px, row.center_px, spread.rms_px,
+                spread.in_sigmas);
     EXPECT_LE(spread.focal_px, 1.2 * row.focal_px) << row.tilt_deg << ' ' << row.noise_px;
     EXPECT_LE(spread.xi, 1.2 * row.xi) << row.tilt_deg << ' ' << row.noise_px;
     EXPECT_LE(spread.principal_px, 1.2 * row.principal_px) << row.tilt_deg << ' ' << row.noise_px;

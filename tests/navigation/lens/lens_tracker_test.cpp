@@ -62,8 +62,8 @@ TEST(LensTracker, FollowsATurningLens) {
 TEST(LensTracker, IsNotMovedByDarknessOrInstruments) {
   RimTruth truth;
   truth.scene = [](double angle_deg, double) {
-    if (angle_deg > 20 && angle_deg < 120) return 3.0;                            // dark
-    if (std::abs(turn_between_deg(angle_deg, -60)) < 8) return 240.0;             // shaft
+    if (angle_deg > 20 && angle_deg < 120) return 3.0;                 // dark
+    if (std::abs(turn_between_deg(angle_deg, -60)) < 8) return 240.0;  // shaft
     return 80.0;
   };
   const RimPicture picture = draw(truth);
@@ -85,8 +85,8 @@ TEST(LensTracker, KeepsTheMarkWhenADarkInstrumentDentsTheRim) {
   }
 }
 
-// A mark that is gone from a clean rim, one that is covered and one in the dark are told apart, and after the time
-// allowed the angle is stale.
+// A mark that is gone from a clean rim, one that is covered and one in the dark are told apart, and after the
+// time allowed the angle is stale.
 TEST(LensTracker, SaysWhyTheMarkIsNotFoundAndWhenItIsStale) {
   LensTracker tracker;
   std::int64_t now_ns = 0;
@@ -98,7 +98,9 @@ TEST(LensTracker, SaysWhyTheMarkIsNotFoundAndWhenItIsStale) {
   for (int frame = 0; frame < 8; ++frame) ASSERT_EQ(show(plain).mark, MarkState::Found);
 
   RimTruth dark = plain;
-  dark.scene = [](double angle_deg, double) { return std::abs(turn_between_deg(angle_deg, 205)) < 30 ? 2.0 : 90.0; };
+  dark.scene = [](double angle_deg, double) {
+    return std::abs(turn_between_deg(angle_deg, 205)) < 30 ? 2.0 : 90.0;
+  };
   LensObservation seen = show(dark);
   EXPECT_EQ(seen.mark, MarkState::Dark);
   EXPECT_FALSE(seen.is_stale);

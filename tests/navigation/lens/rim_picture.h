@@ -1,4 +1,5 @@
-// Pictures of a round view with a lens mark, drawn from their truth: circle, angle and polarity of the mark, light.
+// Pictures of a round view with a lens mark, drawn from their truth: circle, angle and polarity of the mark,
+// light.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,7 +24,8 @@ struct RimTruth {
   double noise = 1.5;  // grey values, 1 sigma
   unsigned seed = 7;
   // Grey value of the scene at an angle and a share of the radius; the default is tissue with some texture.
-  std::function<double(double angle_deg, double radius_share)> scene = [](double angle_deg, double radius_share) {
+  std::function<double(double angle_deg, double radius_share)> scene = [](double angle_deg,
+                                                                          double radius_share) {
     return 90 + 25 * std::sin(0.07 * angle_deg) + 15 * std::cos(0.11 * angle_deg + 9 * radius_share);
   };
 };
@@ -33,7 +35,9 @@ inline double turn_between_deg(double a, double b) { return std::remainder(a - b
 struct RimPicture {
   RimTruth truth;
   std::vector<std::uint8_t> gray;
-  [[nodiscard]] camera::GrayView view() const { return {gray.data(), truth.width, truth.height, truth.width}; }
+  [[nodiscard]] camera::GrayView view() const {
+    return {gray.data(), truth.width, truth.height, truth.width};
+  }
 };
 
 // The rim is a smooth step two pixels wide in light, shown with a gamma of 2.2, as a camera would.
@@ -49,7 +53,8 @@ inline RimPicture draw(const RimTruth& truth) {
       double rim = truth.radius_px;
       if (truth.has_mark) {
         const double off = std::abs(turn_between_deg(angle_deg, truth.mark_angle_deg)) / truth.half_width_deg;
-        rim += (truth.is_bright_outward ? 1 : -1) * truth.radius_px * truth.height_share * std::max(0.0, 1 - off);
+        rim += (truth.is_bright_outward ? 1 : -1) * truth.radius_px * truth.height_share *
+               std::max(0.0, 1 - off);
       }
       const double open = std::clamp((rim - r) / 2 + 0.5, 0.0, 1.0);
       const double level = open > 0 ? truth.scene(angle_deg, r / truth.radius_px) : 0;
