@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -51,6 +52,7 @@ std::optional<int> likely_world(const std::vector<strokes::PoseRow>& rows, const
 
 std::vector<geometry::RigidTransform> fixed_from_tool(const Context& context,
                                                       const PivotArguments& arguments) {
+  const bool to_standard_output = arguments.output == "-";
   const auto rows = strokes::read_poses_file(arguments.poses);
   const PosesByFrame tool = poses_of(rows, arguments.marker_id);
   if (tool.empty()) {
@@ -62,7 +64,7 @@ std::vector<geometry::RigidTransform> fixed_from_tool(const Context& context,
 
   std::vector<geometry::RigidTransform> poses;
   if (!world) {
-    context.say("no world marker in view: the camera is taken as fixed");
+    if (!to_standard_output) context.say("no world marker in view: the camera is taken as fixed");
     for (const auto& [frame, pose] : tool) poses.push_back(pose);
     return poses;
   }
@@ -76,8 +78,10 @@ std::vector<geometry::RigidTransform> fixed_from_tool(const Context& context,
                        "markers " + std::to_string(*world) + " and " + std::to_string(arguments.marker_id) +
                            " are never seen in the same frame");
   }
-  context.say("world: marker " + std::to_string(*world) + ", " + std::to_string(poses.size()) +
-              " frames with both");
+  if (!to_standard_output) {
+    context.say("world: marker " + std::to_string(*world) + ", " + std::to_string(poses.size()) +
+                " frames with both");
+  }
   return poses;
 }
 
