@@ -124,9 +124,9 @@ Eigen::Vector3f BoneView::shade(const BonePixel& pixel, float exposure) const {
   Skin skin;
   skin.albedo_bgr = (1 + 0.05f * grain[0] + 0.06f * mottle[1]) * ((1 - red) * kBoneBgr + red * kRedBgr);
   // The film of fluid glitters: its highlights follow a rougher normal than the bone's own.
-  const Eigen::Vector3f smooth = mix(camera_normals_).normalized();
+  const Eigen::Vector3f smooth = unit(mix(camera_normals_));
   const Eigen::Vector3f rough =
-      (smooth + (0.10f * grain.tail<3>() + 0.13f * mottle.tail<3>()).matrix()).normalized();
+      unit(smooth + (0.10f * grain.tail<3>() + 0.13f * mottle.tail<3>()).matrix());
   skin.specular = 1.4f;
   skin.gloss_doublings = 7;
   return lit(mix(camera_vertices_), rough, skin, exposure);

@@ -12,6 +12,8 @@ namespace arthronaut::simulator {
 // Beside the lens, as the fibres of a real scope are.
 inline const Eigen::Vector3f kLightPosition{0.9f, -1.3f, 0.0f};
 
+inline Eigen::Vector3f unit(const Eigen::Vector3f& v) { return v * (1 / std::sqrt(v.squaredNorm())); }
+
 // Linear light sent to the lens by a surface point: Lambert and a Blinn highlight, both falling off with the squared
 // distance. exposure: what a white surface that faces the light sends at 1 mm.
 inline Eigen::Vector3f lit(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, const Skin& skin,
@@ -20,7 +22,7 @@ inline Eigen::Vector3f lit(const Eigen::Vector3f& point, const Eigen::Vector3f& 
   const float d2 = to_light.squaredNorm();
   const Eigen::Vector3f light_direction = to_light / std::sqrt(d2);
   const float irradiance = exposure / d2;
-  const Eigen::Vector3f half = (light_direction - point.normalized()).normalized();
+  const Eigen::Vector3f half = unit(light_direction - unit(point));
   float highlight = std::max(0.0f, normal.dot(half));
   for (int i = 0; i < skin.gloss_doublings; ++i) highlight *= highlight;
   // A little light comes back from all around the joint.

@@ -74,12 +74,13 @@ class SolidLayer {
 
   // Nearest solid along the ray that the bone does not hide.
   Signature trace(double x, double y, float bone_depth, SolidHit& nearest) const {
-    const Eigen::Vector3d direction = rays_.tangent(x, y).homogeneous();
+    Eigen::Vector3d direction(0, 0, 0);
     Signature signature = 0;
     nearest.depth_mm = 1e9;
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
       const Candidate& c = candidates_[i];
       if (x < c.left || x > c.right || y < c.top || y > c.bottom) continue;
+      if (direction.z() == 0) direction = rays_.tangent(x, y).homogeneous();
       SolidHit hit;
       if (c.solid->hit(direction, hit) && hit.depth_mm < nearest.depth_mm &&
           hit.depth_mm < bone_depth + c.solid->yields_mm) {
@@ -122,12 +123,11 @@ class SolidLayer {
       for (std::size_t i = 0; i < static_cast<std::size_t>(columns); ++i) {
         const int x = left_ + static_cast<int>(i);
         const Signature corner = above[i];
-        SolidHit hit;
-        const Signature center = trace(x, y, bone_depth(x, y), hit);
-        if (corner != above[i + 1] || corner != below[i] || corner != below[i + 1] || corner != center) {
+        if (corner != above[i + 1] || corner != below[i] || corner != below[i + 1]) {
           out[i] = supersample(x, y, out[i]);
-        } else if (center != 0) {
-          out[i] = shade(x, y, hit);
+        } else if (corner != 0) {
+          SolidHit hit;
+          if (trace(x, y, bone_depth(x, y), hit) != 0) out[i] = shade(x, y, hit);
         }
       }
       std::swap(above, below);
@@ -170,6 +170,14 @@ PixelArea visible_area(const camera::CameraModel& camera) {
           high(b.center_px.y(), camera.image_size_px().y()) - top};
 }
 
+// The capsule behind the bone: red, far and without detail. Without it the rim would stand on black.
+Eigen::Vector3f backdrop(const Eigen::Vector2d& tangent, float exposure) {
+  constexpr float kFarMm = 36;
+  static const Skin kTissue{{0.10f, 0.12f, 0.34f}, 0, 1};
+  const Eigen::Vector3f direction = tangent.homogeneous().cast<float>();
+  return lit(kFarMm * direction, -direction.normalized(), kTissue, exposure);
+}
+
 }  // namespace
 
 Renderer::Renderer(BoneView* bone, const SensorOptions& sensor) : bone_(bone), sensor_(sensor) {}
@@ -184,6 +192,7 @@ void Renderer::render(const Scene& scene, const camera::CameraModel& camera, dou
   const RayTable rays(camera, reach);
   const FieldStop stop(camera.boundary(), mark_angle_deg, sensor_.vignette_share);
 
+  const double visible_radius2 = std::pow(camera.boundary().radius_px + 4, 2);
   bone_pixels_.assign(static_cast<std::size_t>(area.width) * static_cast<std::size_t>(area.height), BonePixel{});
   light_.create(area.height, area.width, CV_32FC3);
   light_ = cv::Scalar::all(0);
@@ -196,9 +205,12 @@ void Renderer::render(const Scene& scene, const camera::CameraModel& camera, dou
         auto* out = light_.ptr<Eigen::Vector3f>(y);
         const BonePixel* row = bone_pixels_.data() + static_cast<std::ptrdiff_t>(y) * area.width;
         for (int x = 0; x < area.width; ++x) {
-          if (row[x].triangle >= 0 && stop.share_passed(x + area.left, y + area.top) > 0) {
-            out[x] = bone_->shade(row[x], scene.exposure);
-          }
+          // Light that the field stop will not pass need not be computed.
+          const double dx = x + area.left - camera.boundary().center_px.x();
+          const double dy = y + area.top - camera.boundary().center_px.y();
+          if (dx * dx + dy * dy > visible_radius2) continue;
+          out[x] = row[x].triangle >= 0 ? bone_->shade(row[x], scene.exposure)
+                                        : backdrop(rays.tangent(x + area.left, y + area.top), scene.exposure);
         }
       }
     });

@@ -12,8 +12,9 @@ Script calibrate_script(const SimulationOptions& options) {
   for (int i = 0; i < kPictures; ++i) {
     Moment moment;
     moment.mark_angle_deg = std::fmod(options.camera.reference_mark_angle_deg - 100 + 50 * i + 720, 360.0);
-    // Tilted by 25 to 34 degrees, away from the lens another way each time; turned in its plane anyhow.
-    const double azimuth = 2 * geometry::kPi * (i + random.between(-0.1, 0.1)) / kPictures;
+    // Tilted by 25 to 34 degrees, turned in its plane anyhow. The board comes nearest beside the lens mark, so that the
+    // mark stands before a bright board; as the lens turns, so does the tilt.
+    const double azimuth = geometry::rad_from_deg(moment.mark_angle_deg + random.between(-35, 35)) - geometry::kPi / 2;
     const double tilt = geometry::rad_from_deg(random.between(25, 34));
     const Eigen::Vector3d hinge(std::cos(azimuth), std::sin(azimuth), 0);
     const Eigen::Quaterniond facing_lens(Eigen::AngleAxisd(geometry::kPi, Eigen::Vector3d::UnitX()));

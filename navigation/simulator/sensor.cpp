@@ -16,6 +16,7 @@ constexpr double kToothHalfWidthDeg = 2.5, kToothDepthShare = 0.035;
 constexpr double kGamma = 2.2;
 constexpr int kQuantiles = 1024;
 constexpr int kTones = 4096;
+constexpr float kNoLight[3] = {0, 0, 0};
 
 // Quantiles of the normal distribution: a uniform index gives a normal deviate.
 const std::array<float, kQuantiles>& normal_quantiles() {
@@ -102,6 +103,7 @@ void expose(cv::Mat& light, const PixelArea& area, const SensorOptions& options,
   parallel_rows(frame.height, [&](int first, int end) {
     for (int y = first; y < end; ++y) {
       std::uint64_t state = Random(noise_seed * 0x100000001B3ULL + static_cast<std::uint64_t>(y)).bits() | 1;
+      const auto normal_deviate = [&](int channel) { return quantiles[(state >> (8 + 18 * channel)) & (kQuantiles - 1)]; };
       const bool in_rows = y >= area.top && y < area.top + area.height;
       const float* lit_row = in_rows ? light.ptr<float>(y - area.top) : nullptr;
       std::uint8_t* out = frame.bgr.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(3 * frame.width);
@@ -109,14 +111,13 @@ void expose(cv::Mat& light, const PixelArea& area, const SensorOptions& options,
         state ^= state << 13;
         state ^= state >> 7;
         state ^= state << 17;
-        const bool is_lit = lit_row && x >= area.left && x < area.left + area.width;
+        const float* light_here =
+            lit_row && x >= area.left && x < area.left + area.width ? lit_row + 3 * (x - area.left) : kNoLight;
         for (int channel = 0; channel < 3; ++channel) {
-          const float value = is_lit ? lit_row[3 * (x - area.left) + channel] : 0.0f;
-          const float root = std::sqrt(std::clamp(value, 0.0f, 1.0f)) * kTones;
+          const float root = std::sqrt(std::clamp(light_here[channel], 0.0f, 1.0f)) * kTones;
           const Tone& tone = tones[static_cast<std::size_t>(root + 0.5f)];
-          const float deviate = quantiles[(state >> (8 + 18 * channel)) & (kQuantiles - 1)];
           out[channel] = static_cast<std::uint8_t>(
-              std::clamp(tone.level + tone.noise_sigma * deviate + 0.5f, 0.0f, 255.0f));
+              std::clamp(tone.level + tone.noise_sigma * normal_deviate(channel) + 0.5f, 0.0f, 255.0f));
         }
       }
     }

@@ -30,7 +30,7 @@ RigidTransform bone_from_camera(const Vector3d& eye, const Vector3d& forward, co
   return frame_from_axes(x, z.cross(x), z, eye);
 }
 
-// A marker at `center` whose y axis is near `y` and whose normal is turned from `to_viewer` by tilt_rad at most.
+// A marker at `center` with that normal and its y axis near `y`.
 RigidTransform marker_facing(const Vector3d& center, const Vector3d& normal, const Vector3d& y) {
   const Vector3d z = normal.normalized(), x = y.cross(z).normalized();
   return frame_from_axes(x, z.cross(x), z, center);
@@ -60,6 +60,7 @@ class Stage {
     // Most places for the world marker fail one of the phases at once: many are tried.
     for (int attempt = 0; attempt < 1500; ++attempt) {
       Staging staging;
+      searches_widely_ = attempt % 3 == 2;
       if (place_world_marker(staging) && stage_drill(staging) && stage_pivot(staging) && stage_scratch(staging)) {
         return staging;
       }
@@ -75,8 +76,11 @@ class Stage {
   }
 
   bool place_world_marker(Staging& staging) {
-    const Vector3d near = options_.plan.entry_mm + anatomical(random_.between(-8, 6), random_.between(-8, 14),
-                                                              random_.between(-22, 0));
+    const Vector3d near =
+        options_.plan.entry_mm +
+        (searches_widely_
+             ? anatomical(random_.between(-8, 6), random_.between(-8, 14), random_.between(-22, 0))
+             : anatomical(random_.between(-2, 5), random_.between(-5, 2), random_.between(-23, -18)));
     const geometry::SurfacePoint spot = bone_.closest_point(near);
     // Near enough to where the guide's marker will be to be seen with it.
     if ((spot.point_mm - guide_marker_mm_).norm() > 24) return false;
@@ -98,12 +102,15 @@ class Stage {
     return true;
   }
 
-  // A lens position that sees the world marker well, looking between it and `other`.
-  std::optional<RigidTransform> random_view(const Staging& staging, const Vector3d& other, double min_back, double max_back) {
+  // A lens position that sees the world marker well, looking between it and `other`. usual: from the world marker to the
+  // lens in most knees.
+  std::optional<RigidTransform> random_view(const Staging& staging, const Vector3d& other, const Vector3d& usual,
+                                            double min_back, double max_back) {
     const RigidTransform& world = staging.bone_from_world_marker;
     const double back = random_.between(min_back, max_back);
-    Vector3d direction = world.rotate(Vector3d::UnitZ());
-    direction = (direction + 0.6 * Vector3d(random_.between(-1, 1), random_.between(-1, 1), random_.between(-1, 1)));
+    const Vector3d jitter(random_.between(-1, 1), random_.between(-1, 1), random_.between(-1, 1));
+    const Vector3d direction =
+        searches_widely_ ? world.rotate(Vector3d::UnitZ()) + 0.6 * jitter : usual.normalized() + 0.35 * jitter;
     const Vector3d eye = world.translation_mm + back * direction.normalized();
     if (bone_.signed_distance_mm(eye) < kMinClearanceMm) return std::nullopt;
     const double share = random_.between(0.35, 0.65);
@@ -174,7 +181,7 @@ class Stage {
     // How far off the guide is when its marker comes into view: the further the better, and 4 mm at least.
     double best_mm = 3.5;
     for (int attempt = 0; attempt < 200 && best_mm < 10; ++attempt) {
-      const auto view = random_view(staging, guide_marker_mm_, 19, 28);
+      const auto view = random_view(staging, guide_marker_mm_, anatomical(-4, 2, -25), 19, 28);
       if (!view) continue;
       double off_mm = 0;
       for (double off = 0; off <= 11; off += 1) {
@@ -217,7 +224,7 @@ class Stage {
 
   bool stage_scratch(Staging& staging) {
     for (int attempt = 0; attempt < 25; ++attempt) {
-      const auto view = random_view(staging, options_.plan.entry_mm, 24, 33);
+      const auto view = random_view(staging, options_.plan.entry_mm, anatomical(-14, -9, -22), 24, 33);
       if (!view) continue;
       auto strokes = find_strokes(staging, *view);
       double total = 0;
@@ -299,10 +306,11 @@ class Stage {
 
   bool stage_pivot(Staging& staging) {
     for (int attempt = 0; attempt < 150; ++attempt) {
-      const Vector3d tip =
-          bone_.closest_point(options_.plan.entry_mm + anatomical(random_.between(-6, 8), random_.between(-6, 18),
-                                                                  random_.between(-18, 4))).point_mm;
-      const auto view = random_view(staging, tip, 22, 33);
+      const Vector3d spread =
+          searches_widely_ ? anatomical(random_.between(-6, 8), random_.between(-6, 18), random_.between(-18, 4))
+                           : anatomical(-1, random_.between(-4, 10), random_.between(-6, 2));
+      const Vector3d tip = bone_.closest_point(options_.plan.entry_mm + spread).point_mm;
+      const auto view = random_view(staging, tip, anatomical(-7, -7, -26), 22, 33);
       if (!view) continue;
       const RigidTransform camera_from_bone = view->inverse();
       const Vector3d tip_in_camera = camera_from_bone * tip;
@@ -350,6 +358,7 @@ class Stage {
   const tools::WorldMarker& world_;
   Random random_;
   Vector3d lateral_;
+  bool searches_widely_ = false;  // else near where most knees have their places
   Vector3d guide_marker_mm_;  // about, with its point at the planned entry
 };
 
