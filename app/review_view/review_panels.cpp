@@ -80,8 +80,9 @@ void draw_achieved(const widgets::Ui& ui, const SessionReview& review) {
   draw_difference(ui, "As navigation measured it", recording::compare(achieved.planned, achieved.measured));
   if (achieved.truth)
     draw_difference(ui, "As it truly is (simulated)", recording::compare(achieved.planned, *achieved.truth));
-  widgets::text_in(ui.theme.body, widgets::kQuietText,
-                   "Depth " + widgets::fixed(achieved.depth_mm, 1) + " mm");
+  if (achieved.depth_mm > 1)
+    widgets::text_in(ui.theme.body, widgets::kQuietText,
+                     "Depth " + widgets::fixed(achieved.depth_mm, 1) + " mm");
 }
 
 }  // namespace
@@ -122,7 +123,7 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const Session
     const widgets::Rect left = row.cut_left(width / 2);
     widgets::number_block(ui, left, "Offset", widgets::fixed(theatre_view::offset_mm(at.guidance), 1), "mm",
                           theatre_view::sign_of_offset(at.guidance));
-    widgets::number_block(ui, row, "Angle", widgets::fixed(at.guidance.angle_deg, 1), "\u00B0",
+    widgets::number_block(ui, row, "Angle", widgets::fixed(at.guidance.angle_deg, 1) + "\u00B0", "",
                           theatre_view::sign_of_angle(at.guidance));
     widgets::Rect below{cursor.x, cursor.y + height, width, height};
     const widgets::Rect below_left = below.cut_left(width / 2);
@@ -140,7 +141,7 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const Session
     widgets::status_row(ui, widgets::Sign::Quiet, "Registration", "none");
   else if (registration->reliable)
     widgets::status_row(ui, widgets::Sign::Good, "Registration",
-                        "target \u00B1" + widgets::fixed(registration->predicted_tre_mm, 1) + " mm");
+                        "target " + widgets::plus_minus(registration->predicted_tre_mm) + " mm");
   else
     widgets::status_row(ui, widgets::Sign::Bad, "Registration",
                         registration->reasons.empty() ? "not reliable" : registration->reasons.front());

@@ -8,6 +8,19 @@
 
 namespace arthronaut::review_view {
 
+namespace {
+
+// "20261121-122356" as "2026-11-21  12:23:56"; other names as they are.
+std::string date_text(const std::string& name) {
+  const bool is_date =
+      name.size() >= 15 && name[8] == '-' && name.find_first_not_of("0123456789-") == std::string::npos;
+  if (!is_date) return name;
+  return name.substr(0, 4) + "-" + name.substr(4, 2) + "-" + name.substr(6, 2) + "  " + name.substr(9, 2) +
+         ":" + name.substr(11, 2) + ":" + name.substr(13);
+}
+
+}  // namespace
+
 ReviewView::ReviewView(std::function<void()> make_current, std::function<void()> wake)
     : wake_(std::move(wake)), pane_(std::move(make_current)) {}
 
@@ -176,7 +189,7 @@ void ReviewView::draw_sessions(const widgets::Ui& ui, const widgets::Rect& area)
   widgets::begin_panel(ui, "review.sessions", area, "Sessions of this case");
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
     const std::string name = sessions_[i].filename().string();
-    if (ImGui::Selectable(name.c_str(), chosen_ && *chosen_ == i)) choose(i);
+    if (ImGui::Selectable(date_text(name).c_str(), chosen_ && *chosen_ == i)) choose(i);
     ui.log.note("review.session." + name, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   }
   if (sessions_.empty()) widgets::text_in(ui.theme.body, widgets::kQuietText, "None yet");
@@ -201,6 +214,7 @@ void ReviewView::draw_picture(const widgets::Ui& ui, const widgets::Rect& area) 
     return widgets::text_centered(ui, area, ui.theme.strong, widgets::kBad, error);
   const camera::FramePtr picture = pictures_->picture(review_->session->frames()[cursor_.frame].index);
   video_.upload(picture);
+  ui.log.note_state("review_picture", picture != nullptr ? "shown" : "reading");
   if (video_.texture() == 0)
     return widgets::text_centered(ui, area, ui.theme.strong, widgets::kQuietText, "Reading the video");
   const float w = static_cast<float>(video_.width()), h = static_cast<float>(video_.height());
@@ -232,7 +246,10 @@ void ReviewView::show_scene() {
   const auto plan = review_->achieved ? std::optional(review_->achieved->planned) : model_->tunnel(bone);
   if (plan) scene::add_planned_tunnel(content, *plan, model_->drawn_length_mm(bone));
   if (review_->achieved)
-    scene::add_achieved_tunnel(content, review_->achieved->measured, review_->achieved->depth_mm);
+    // A depth of nought means that the guide alone was seen: the tunnel is drawn as long as planned.
+    scene::add_achieved_tunnel(
+        content, review_->achieved->measured,
+        review_->achieved->depth_mm > 1 ? review_->achieved->depth_mm : model_->drawn_length_mm(bone));
   if (session.registration() && session.registration()->has_pose) {
     const geometry::RigidTransform bone_from_marker = session.registration()->marker_from_bone.inverse();
     std::vector<Eigen::Vector3d> touched;

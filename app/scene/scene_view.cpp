@@ -173,7 +173,7 @@ void SceneView::show(const SceneContent& content) {
   s.scene->AddActor(s.solids);
   s.ghost_solids = actor_of(vtk_from_solid(ghost));
   s.ghost_solids->GetProperty()->SetAmbient(0.45);
-  s.ghost_solids->GetProperty()->SetOpacity(0.38);
+  s.ghost_solids->GetProperty()->SetOpacity(0.45);
   s.ghost_solids->GetProperty()->BackfaceCullingOn();
   s.ghost_solids->ForceOpaqueOn();
   s.ghost->AddActor(s.ghost_solids);

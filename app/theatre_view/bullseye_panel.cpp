@@ -63,8 +63,13 @@ void draw_guide(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, f
                            {at.x + out.y * size * 0.7F, at.y - out.x * size * 0.7F}, color);
     return;
   }
-  const ImVec2 tail{at.x + static_cast<float>(point.lean_right_deg) * per_mm,
-                    at.y - static_cast<float>(point.lean_up_deg) * per_mm};
+  // A lean that would leave the bullseye ends at its rim.
+  const float lean = static_cast<float>(std::hypot(point.lean_right_deg, point.lean_up_deg)) * per_mm;
+  const float shown =
+      lean > 0 ? std::min(1.F, std::max(radius - std::hypot(at.x - center.x, at.y - center.y), 0.F) / lean)
+               : 0;
+  const ImVec2 tail{at.x + static_cast<float>(point.lean_right_deg) * per_mm * shown,
+                    at.y - static_cast<float>(point.lean_up_deg) * per_mm * shown};
   draw.AddLine(at, tail, color, ui.theme.px(5));
   draw.AddCircle(at, ui.theme.px(15), color, 32, ui.theme.px(4));
   widgets::draw_sign(draw, at, ui.theme.px(9), sign);
@@ -109,18 +114,17 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Theatr
   widgets::Rect rest = area.inset(ui.theme.px(18));
   const bool valid = screen.display.guidance_is_valid;
   const guidance::GuidanceNumbers& g = screen.display.guidance;
-  const auto with_sigma = [&](const char* unit, double sigma) {
-    return unit + (" \u00B1 " + widgets::fixed(sigma, 1));
-  };
-  const auto block = [&](const char* name, double value, const std::string& unit, widgets::Sign sign) {
+  // `mark` stands with the number ("\u00B0"), `unit` after it.
+  const auto block = [&](const char* name, double value, const char* mark, const std::string& unit,
+                         widgets::Sign sign) {
     const widgets::Rect row = rest.cut_top(rest.height > 0 ? (area.height - ui.theme.px(36)) / 4 : 0);
     // No number at all where none is valid: an old one would be believed.
-    widgets::number_block(ui, row, name, valid ? widgets::fixed(value, 1) : "\u2013", valid ? unit : "",
-                          valid ? sign : widgets::Sign::Quiet);
+    widgets::number_block(ui, row, name, valid ? widgets::fixed(value, 1) + mark : "\u2013",
+                          valid ? unit : "", valid ? sign : widgets::Sign::Quiet);
     return row;
   };
   const widgets::Rect offset =
-      block("Offset", offset_mm(g), with_sigma("mm", g.sigma_offset_mm), sign_of_offset(g));
+      block("Offset", offset_mm(g), "", "mm " + widgets::plus_minus(g.sigma_offset_mm), sign_of_offset(g));
   if (valid) {
     const std::string text = direction_text(g.offset_anterior_mm, "anterior", "posterior") + "\n" +
                              direction_text(g.offset_proximal_mm, "proximal", "distal");
@@ -129,9 +133,9 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Theatr
     draw.AddText(font, font->FontSize, {offset.x + offset.width - width, offset.y}, widgets::kText,
                  text.c_str());
   }
-  block("Angle", g.angle_deg, with_sigma("\u00B0", g.sigma_angle_deg), sign_of_angle(g));
-  block("Depth", g.depth_mm, "mm", widgets::Sign::Quiet);
-  block("Remaining", g.remaining_mm, "mm", sign_of_remaining(g));
+  block("Angle", g.angle_deg, "\u00B0", widgets::plus_minus(g.sigma_angle_deg), sign_of_angle(g));
+  block("Depth", g.depth_mm, "", "mm", widgets::Sign::Quiet);
+  block("Remaining", g.remaining_mm, "", "mm", sign_of_remaining(g));
 }
 
 }  // namespace arthronaut::theatre_view

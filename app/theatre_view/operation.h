@@ -51,6 +51,7 @@ struct LiveFrame {
   pipeline::FrameResult result;
   scene::PlanOverlay overlay;  // empty when no pose of this frame stands
   double published_s = 0;      // steady clock
+  double stale_after_s = 0.2;  // how long it may stand on the screen as live
 };
 
 struct OperationStatus {

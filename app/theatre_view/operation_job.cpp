@@ -47,6 +47,10 @@ std::shared_ptr<LiveFrame> OperationJob::step() {
   auto live = std::make_shared<LiveFrame>();
   live->picture = prefetched_->next();
   if (live->picture == nullptr) return nullptr;
+  // A camera that stops must not go unnoticed. Recorded and simulated pictures come as the machine can make
+  // them.
+  constexpr double kDeviceStale_s = 0.2, kOtherStale_s = 2.0;
+  live->stale_after_s = source_->info().is_live ? kDeviceStale_s : kOtherStale_s;
   pipeline_.process(*live->picture, live->result);
   if (digitises_ && live->result.tip_is_valid) digitise(live->result);
   drilled_.add(live->result.guidance);

@@ -12,10 +12,6 @@ namespace {
 using guidance::GuidanceState;
 using Phase = OperationStatus::Phase;
 
-// A picture older than this on the screen is not live. Recorded and simulated pictures may come slowly on a
-// slow machine; half a second is still shorter than a hand needs to trust a frozen screen.
-constexpr double kStaleAfter_s = 0.5;
-
 std::string tenths(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.1f", value);
@@ -101,7 +97,7 @@ TheatreDisplay display_of(const OperationStatus* status, const pipeline::Pipelin
     return display;
   }
   const double age_s = now_s - status->live->published_s;
-  if (age_s > kStaleAfter_s) {
+  if (age_s > status->live->stale_after_s) {
     display.headline = "No new picture for " + tenths(age_s) + " s";
     display.detail = "What you see is not live";
     return display;

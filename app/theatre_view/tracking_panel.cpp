@@ -80,7 +80,7 @@ void draw_registration(const widgets::Ui& ui, const TheatreScreen& screen) {
     return widgets::status_row(ui, Sign::Bad, "Registration", why);
   }
   widgets::status_row(ui, Sign::Good, "Registration",
-                      "target \u00B1" + widgets::fixed(r.predicted_tre_mm, 1) + " mm, fit " +
+                      "target " + widgets::plus_minus(r.predicted_tre_mm) + " mm, fit " +
                           widgets::fixed(r.rms_mm, 1) + " mm");
 }
 

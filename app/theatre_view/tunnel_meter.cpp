@@ -6,7 +6,8 @@ namespace arthronaut::theatre_view {
 
 namespace {
 
-constexpr double kLeastDepth_mm = 5, kWindow_mm = 1;
+constexpr double kLeastDepth_mm = -1.5, kWindow_mm = 1;
+constexpr std::size_t kLeastPoses = 15;
 
 template <typename Value>
 double median_of(const std::vector<guidance::GuidanceNumbers>& poses, const Value& value) {
@@ -46,7 +47,7 @@ void TunnelMeter::add(const guidance::GuidanceNumbers& guidance) {
 }
 
 std::optional<recording::AchievedTunnel> TunnelMeter::measured(const tunnels::Tunnel& planned) const {
-  if (deepest_.empty()) return std::nullopt;
+  if (deepest_.size() < kLeastPoses) return std::nullopt;
   recording::AchievedTunnel achieved;
   achieved.planned = planned;
   achieved.measured = planned;  // bone and diameter: the drill is the planned one

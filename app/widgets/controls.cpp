@@ -219,4 +219,6 @@ std::string fixed(double value, int decimals) {
   return value < 0 && !is_zero ? "\u2212" + text : text;
 }
 
+std::string plus_minus(double sigma) { return "\u00B1 " + fixed(std::max(sigma, 0.1), 1); }
+
 }  // namespace arthronaut::widgets

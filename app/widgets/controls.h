@@ -53,5 +53,7 @@ void text_centered(const Ui& ui, const Rect& rect, ImFont* font, ImU32 color,
 
 // "1.2", "-0.4"; a minus sign of the width of the plus sign; never "-0.0".
 [[nodiscard]] std::string fixed(double value, int decimals);
+// "± 0.4" of a predicted error; never less than "± 0.1": nobody should read a nought there.
+[[nodiscard]] std::string plus_minus(double sigma);
 
 }  // namespace arthronaut::widgets

@@ -18,18 +18,18 @@ void WidgetLog::note_state(std::string_view key, std::string_view value) {
   const auto known = states_.find(key);
   if (known != states_.end() && known->second == value) return;
   states_.insert_or_assign(std::string(key), std::string(value));
-  std::printf("STATE %.*s %.*s\n", static_cast<int>(key.size()), key.data(), static_cast<int>(value.size()),
-              value.data());
-  std::fflush(stdout);
+  new_states_ += "STATE " + std::string(key) + " " + std::string(value) + "\n";
 }
 
 void WidgetLog::end_frame() {
   if (!prints_) return;
   if (frame_ != printed_) {
     std::printf("%sREADY\n", frame_.c_str());
-    std::fflush(stdout);
     printed_ = frame_;
   }
+  std::fputs(new_states_.c_str(), stdout);
+  std::fflush(stdout);
+  new_states_.clear();
   frame_.clear();
 }
 

@@ -1,7 +1,8 @@
-// What is on the screen and where, for tests that drive the window from outside. Printed when it changes:
+// What is on the screen and where, for tests that drive the window from outside. Printed when it changes and
+// has reached the screen, widgets before states:
 //   WIDGET name x y width height       window pixels
+//   READY                              the list above is complete
 //   STATE key value
-//   READY                              the list above is complete and on the screen
 #pragma once
 
 #include <imgui.h>
@@ -22,7 +23,7 @@ class WidgetLog {
 
  private:
   bool prints_;
-  std::string frame_, printed_;
+  std::string frame_, printed_, new_states_;
   std::map<std::string, std::string, std::less<>> states_;
 };
 

@@ -211,10 +211,10 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
     const std::string text = knee.name + "  \u2013  " + std::string(bones::to_text(knee.side)) + " knee";
     const float wide = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, text.c_str()).x;
     draw.AddText(ui.theme.strong, ui.theme.strong->FontSize,
-                 {area.x + area.width - wide - ui.theme.px(300), middle - ui.theme.strong->FontSize / 2},
+                 {area.x + area.width - wide - ui.theme.px(360), middle - ui.theme.strong->FontSize / 2},
                  widgets::kText, text.c_str());
   }
-  const float small = ui.theme.px(130);
+  const float small = ui.theme.px(156);
   ImGui::SetCursorScreenPos({area.x + area.width - 2 * small - ui.theme.px(22), middle - height / 2});
   widgets::action_button(ui, "app.keys", small, height);
   ImGui::SetCursorScreenPos({area.x + area.width - small - ui.theme.px(12), middle - height / 2});

@@ -45,13 +45,14 @@ TEST(TunnelMeter, FindsTheAxisOfTheDeepestPoses) {
   EXPECT_NEAR((achieved->measured.direction - direction).norm(), 0, 1e-9);
 }
 
-// A guide that only looked at the bone drilled nothing, and poses that do not stand do not count.
-TEST(TunnelMeter, NothingWithoutDepth) {
+// A guide that only hovered, or touched for a moment, drilled nothing; poses that do not stand do not count.
+TEST(TunnelMeter, NothingUnlessTheGuideStoodOnTheBone) {
   TunnelMeter meter;
-  meter.add(pose_at(4, plan().entry_mm, plan().direction));
+  for (int i = 0; i < 50; ++i) meter.add(pose_at(-4, plan().entry_mm, plan().direction));
+  for (int i = 0; i < 10; ++i) meter.add(pose_at(0, plan().entry_mm, plan().direction));
   guidance::GuidanceNumbers invalid = pose_at(30, plan().entry_mm, plan().direction);
   invalid.state = guidance::GuidanceState::GuideLost;
-  meter.add(invalid);
+  for (int i = 0; i < 50; ++i) meter.add(invalid);
   EXPECT_FALSE(meter.measured(plan()));
 }
 

@@ -35,8 +35,8 @@ std::pair<pid_t, int> start(const std::vector<std::string>& arguments, int from,
   const pid_t process = fork();
   if (process < 0) throw std::runtime_error("no process");
   if (process == 0) {
+    close(ends[0]);  // before dup2: it may be `from` itself
     dup2(ends[1], from);
-    close(ends[0]);
     if (ends[1] != from) close(ends[1]);
     for (const auto& [key, value] : environment) setenv(key.c_str(), value.c_str(), 1);
     const int nothing = open("/dev/null", O_RDWR);
@@ -127,6 +127,15 @@ bool RunningWorkstation::wait_for_state(const std::string& key, const std::strin
   const auto until = Clock::now() + std::chrono::duration<double>(seconds);
   while (Clock::now() < until) {
     if (state(key) == value) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return false;
+}
+
+bool RunningWorkstation::wait_for_widget(const std::string& name, double seconds) const {
+  const auto until = Clock::now() + std::chrono::duration<double>(seconds);
+  while (Clock::now() < until) {
+    if (widgets().contains(name)) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   return false;

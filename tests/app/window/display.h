@@ -52,6 +52,8 @@ class RunningWorkstation {
   // False when the state did not become so within the time.
   [[nodiscard]] bool wait_for_state(const std::string& key, const std::string& value,
                                     double seconds = 40) const;
+  // The list of widgets follows the states of the same frame: wait for what is to be used.
+  [[nodiscard]] bool wait_for_widget(const std::string& name, double seconds = 40) const;
   [[nodiscard]] std::string state(const std::string& key) const;
   [[nodiscard]] std::map<std::string, Area> widgets() const;  // of the last complete list
 

@@ -47,22 +47,31 @@ bool is_bone(const std::array<int, 3>& c) { return c[0] > 70 && c[0] > c[2] + 12
 TEST_F(Workstation, LeadsThroughItsThreeModes) {
   const VirtualDisplay display(1280, 720);
   RunningWorkstation app(display, folder_);
-  ASSERT_TRUE(app.wait_for_state("case", "open", 60));
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
   ASSERT_TRUE(app.wait_for_state("plan", "saved"));
-  ASSERT_TRUE(app.widgets().contains("plan.view"));
+  ASSERT_TRUE(app.wait_for_widget("plan.view"));
   const Picture before = app.screenshot();
   EXPECT_GT(share(before, app.widgets().at("plan.view"), is_bone), 0.05);
 
-  // Aiming changes plan and picture; undo brings the file back to what it was.
+  // Aiming changes plan and file; undo and redo walk between the two states exactly.
+  const auto aim = [&] {
+    app.press("Right");
+    ASSERT_TRUE(app.wait_for_state("undo", "Aim the femoral tunnel"));
+    ASSERT_TRUE(app.wait_for_state("plan", "saved"));
+  };
+  const auto undo = [&] {
+    app.press("ctrl+z");
+    ASSERT_TRUE(app.wait_for_state("redo", "Aim the femoral tunnel"));
+  };
+  aim();
+  const std::string plan_aimed = saved_plan();
+  undo();
   const std::string plan_before = saved_plan();
-  app.press("Right");
-  app.press("Right");
-  ASSERT_TRUE(app.wait_for_state("undo", "Aim the femoral tunnel"));
-  ASSERT_TRUE(app.wait_for_state("plan", "saved"));
-  EXPECT_NE(saved_plan(), plan_before);
-  app.press("ctrl+z");
-  ASSERT_TRUE(app.wait_for_state("undo", ""));
-  ASSERT_TRUE(app.wait_for_state("redo", "Aim the femoral tunnel"));
+  EXPECT_NE(plan_aimed, plan_before);
+  app.press("ctrl+y");
+  ASSERT_TRUE(app.wait_for_state("redo", ""));
+  EXPECT_EQ(saved_plan(), plan_aimed);
+  undo();
   EXPECT_EQ(saved_plan(), plan_before);
 
   // A drag over the bone turns it: many pixels change, the plan does not.
@@ -79,9 +88,10 @@ TEST_F(Workstation, LeadsThroughItsThreeModes) {
   ASSERT_TRUE(app.wait_for_state("mode", "navigate"));
   EXPECT_EQ(app.state("guidance"), "No picture");
   app.press("space");
-  ASSERT_TRUE(app.wait_for_state("picture", "live", 60));
+  ASSERT_TRUE(app.wait_for_state("picture", "live", 120));
   // Nothing is registered: no number may stand, and the reason does.
   ASSERT_TRUE(app.wait_for_state("guidance", "Not registered"));
+  ASSERT_TRUE(app.wait_for_widget("operate.video_panel"));
   const Picture live = app.screenshot();
   const auto is_lit = [](const std::array<int, 3>& c) { return c[0] + c[1] + c[2] > 120; };
   EXPECT_GT(share(live, app.widgets().at("operate.video_panel"), is_lit), 0.2);
@@ -105,12 +115,14 @@ TEST_P(WorkstationLayout, HoldsAtEverySize) {
   const auto [width, height] = GetParam();
   const VirtualDisplay display(width, height);
   RunningWorkstation app(display, folder_);
-  ASSERT_TRUE(app.wait_for_state("case", "open", 60));
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
   for (const auto& [mode, key] :
        {std::pair{"plan", "F1"}, std::pair{"navigate", "F2"}, std::pair{"review", "F3"}}) {
     app.press(key);
     ASSERT_TRUE(app.wait_for_state("mode", mode));
-    (void)app.screenshot();  // the frame with the mode's widgets is on the screen now, and so is its list
+    const std::map<std::string, std::string> own{
+        {"plan", "plan.undo"}, {"navigate", "operate.next"}, {"review", "review.play"}};
+    ASSERT_TRUE(app.wait_for_widget(own.at(mode)));
     const auto widgets = app.widgets();
     for (auto a = widgets.begin(); a != widgets.end(); ++a) {
       if (a->first.ends_with("_handle")) continue;  // lies on the 3D view on purpose
