@@ -24,6 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 using simulator::Phase;
 
+// Enough for a tip that is sure; the swing's own 130 frames would take as long again to render.
+constexpr int kPivotFrames = 70;
+
 // Keeps how deep the drill truly was in every frame: frames are rendered in another thread than they are tracked in.
 class WatchedOperation : public sources::FrameSource {
  public:
@@ -170,7 +173,9 @@ class Demo {
     pipeline::ViewTrackerOptions view;
     view.calibration = navigation_.pipeline.calibration;
     view.refractive_index = simulation_.refractive_index;
-    WatchedOperation source(simulation_, Phase::Pivot);
+    simulator::SimulationOptions swing = simulation_;
+    swing.frame_count = kPivotFrames;
+    WatchedOperation source(swing, Phase::Pivot);
     const pipeline::TrackedVideo tracked = pipeline::track_video(source, view, simulation_.tools);
     tools::ToolSet tools = simulation_.tools;
     const auto probe = std::find_if(tools.tools.begin(), tools.tools.end(), [](const auto& t) { return t.name == "probe"; });

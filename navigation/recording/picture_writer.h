@@ -1,6 +1,6 @@
 // Encodes pictures to a Matroska file in a thread of its own. H.264, constant quality 10 (fastest preset, no delay): on
-// path-traced arthroscopy at 1080p about 0.12 MB and 10 ms of one core a frame, and marker corners move by less than
-// 0.03 px. The file is readable up to the last half second when the program is killed.
+// path-traced arthroscopy at 1080p 0.12 MB a frame; the pose of a 4 mm marker then moves by 0.007 mm and 0.07 deg at
+// most. The file is readable up to the last half second when the program is killed.
 #pragma once
 
 #include <cstdint>

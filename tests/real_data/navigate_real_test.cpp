@@ -1,6 +1,7 @@
 // The whole theatre on the path-traced clips, with the real femur and the true camera: scratch, register from nothing, guide.
 // Runs through navigate_video, as the command does.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -8,6 +9,8 @@
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
 #include "navigation/pipeline/navigate_video.h"
+#include "navigation/recording/record_navigation.h"
+#include "navigation/recording/replay.h"
 #include "planning/bones/mesh_file.h"
 #include "planning/files/csv_table.h"
 #include "planning/files/json_document.h"
@@ -95,6 +98,28 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
               root_mean_square(offset_errors), root_mean_square(angle_errors), guided.last_guidance.tip_to_entry_mm,
               gt.number(last, "tip_to_entry_mm"), guided.last_guidance.axis_to_entry_mm,
               gt.number(last, "axis_to_entry_mm"), guided.last_guidance.angle_deg, gt.number(last, "angle_deg"));
+}
+
+// Frames that the recorder encodes itself, as it does for a camera, give nearly the poses that were tracked live: what the
+// loss costs is printed, and lies within what replay lets pass.
+TEST(NavigateReal, ReplaysEncodedFramesWithinTolerance) {
+  ARTHRONAUT_REQUIRE_DATA(guide_clip, "arthroscopy/guide_wet");
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("arthronaut_encoded_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  pipeline::NavigateOptions options = options_of(guide_clip, true_plan(guide_clip));
+  options.registration = registration::read_registration_file(guide_clip / "gt/registration_gt.json");
+  const auto video = sources::open_video(guide_clip / "clip.mkv");
+  (void)recording::record_navigation(*video, options, folder, recording::KeepVideo::Encode, {});
+  const recording::RecordedSession session(folder);
+  const recording::ReplaySummary replay = recording::replay_session(session, {});
+  std::printf("guide_wet, encoded: %.2f MB a frame; worst difference of a pose %.3f mm, %.3f deg, of guidance %.3f mm, "
+              "%.3f deg\n",
+              static_cast<double>(std::filesystem::file_size(session.video())) / 1e6 / 40, replay.worst_pose_mm,
+              replay.worst_pose_deg, replay.worst_offset_mm, replay.worst_angle_deg);
+  EXPECT_EQ(replay.replayed_frames, 40);
+  EXPECT_TRUE(replay.is_same()) << replay.differences.size() << " differences";
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
