@@ -1,4 +1,5 @@
 // From light to a frame: the round field stop with its tooth, the blur of the optics, the sensor's noise, gamma, 8 bits.
+// Inner header of the simulator: OpenCV's picture may stand in it.
 #pragma once
 
 #include <cstdint>
