@@ -1,4 +1,5 @@
-// Inner header. session.sqlite: a thin RAII layer over SQLite and the tables of a session. Used by the recorder and the reader alone.
+// Inner header: session.sqlite, a thin RAII layer over SQLite and the tables of a session. Used by the recorder and the
+// reader alone.
 #pragma once
 
 #include <sqlite3.h>
