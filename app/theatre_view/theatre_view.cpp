@@ -37,13 +37,8 @@ void TheatreView::open(const planning_view::PlanModel* model, const std::filesys
 
 void TheatreView::start(OperationSetup setup) {
   notice_.clear();
-  BoneState& bone = bones_[choices_.bone];
-  if (!bone.prepared.valid()) {
-    const geometry::TriangleMesh& mesh = model_->knee().bones.at(choices_.bone).mesh;
-    bone.prepared = std::async(std::launch::async, [mesh]() -> PreparedBonePtr {
-                      return std::make_shared<registration::PreparedBone>(mesh);
-                    }).share();
-  }
+  prepare_bone();
+  const BoneState& bone = bones_[choices_.bone];
   setup.prepared_bone = bone.prepared;
   setup.registration = bone.registration;
   if (bone.registration && bone.registration->reliable) setup.digitises = false;
@@ -52,7 +47,18 @@ void TheatreView::start(OperationSetup setup) {
   options_ = std::make_unique<pipeline::PipelineOptions>(setup.pipeline);
   operation_ = std::make_unique<Operation>(std::move(setup), wake_);
   status_ = operation_->status();
+  choices_.overlay_shown_at_s = Operation::now_s();
   look_along_plan();
+}
+
+void TheatreView::prepare_bone() {
+  BoneState& bone = bones_[choices_.bone];
+  if (!bone.prepared.valid()) {
+    const geometry::TriangleMesh& mesh = model_->knee().bones.at(choices_.bone).mesh;
+    bone.prepared = std::async(std::launch::async, [mesh]() -> PreparedBonePtr {
+                      return std::make_shared<registration::PreparedBone>(mesh);
+                    }).share();
+  }
 }
 
 void TheatreView::look_along_plan() {
@@ -150,6 +156,8 @@ void TheatreView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   } else {
     status_ = {};
   }
+  // The bone is made ready for registration as soon as this mode is looked at.
+  if (model_ != nullptr && model_->has_bone(choices_.bone)) prepare_bone();
   const double now = Operation::now_s();
   const OperationStatus* status = operation_ != nullptr ? &status_ : nullptr;
   const TheatreDisplay display = display_of(status, options_.get(), now);
@@ -178,6 +186,9 @@ void TheatreView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   draw_controls(ui, controls);
 
   ui.log.note_state("guidance", display.guidance_is_valid ? "valid" : display.headline);
+  ui.log.note_state("overlay", screen.overlay_opacity > 0.99F ? "full"
+                               : screen.overlay_opacity > 0   ? "faded"
+                                                              : "off");
   ui.log.note_state("next", screen.next_step);
   ui.log.note_state("registration", !status_.registration            ? "none"
                                     : status_.registration->reliable ? "reliable"

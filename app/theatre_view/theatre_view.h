@@ -38,6 +38,7 @@ class TheatreView {
   void take_next_step();
   void toggle_recording();
   void cycle_overlay();
+  void prepare_bone();
   void look_along_plan();
   void show_scene(const TheatreScreen& screen);
   [[nodiscard]] std::string next_step() const;

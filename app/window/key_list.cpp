@@ -14,9 +14,9 @@ void draw_key_list(const widgets::Ui& ui, std::string_view mode) {
   }
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImDrawList& draw = *ImGui::GetForegroundDrawList();
-  draw.AddRectFilled({0, 0}, size, IM_COL32(6, 8, 10, 215));
+  draw.AddRectFilled({0, 0}, size, IM_COL32(6, 8, 10, 244));
   const std::size_t columns = 2, rows = (shown.size() + columns - 1) / columns;
-  const float line = ui.theme.px(34), key_width = ui.theme.px(150), column_width = ui.theme.px(760);
+  const float line = ui.theme.px(34), key_width = ui.theme.px(150), column_width = ui.theme.px(900);
   const float left = (size.x - static_cast<float>(columns) * column_width) / 2;
   const float top = std::max((size.y - line * static_cast<float>(rows + 2)) / 2, ui.theme.px(10));
   draw.AddText(ui.theme.title, ui.theme.title->FontSize, {left, top}, widgets::kText, "Keys (F10 closes)");
