@@ -130,6 +130,14 @@ class Report {
     y_ += height + 10;
   }
 
+  // From the joint, onto the bone that was navigated; a case may hold one bone alone.
+  scene::View joint_view() const {
+    const auto& bones = content_.knee.bones;
+    const bool is_tibia = content_.session ? content_.session->header().bone == bones::BoneKind::Tibia
+                                           : !bones.contains(bones::BoneKind::Femur);
+    return is_tibia ? scene::View::Plateau : scene::View::Notch;
+  }
+
   std::vector<Eigen::Vector3d> touched_points() const {
     std::vector<Eigen::Vector3d> points;
     if (!content_.session || !content_.session->registration()) return points;
@@ -219,7 +227,7 @@ void Report::theatre_page() {
   begin_page("In theatre");
   if (!content_.session) {
     sentence("No session with a registration or a drilled tunnel is recorded in this case.");
-    pictures(scene::View::Notch, scene::View::Medial, false);
+    pictures(joint_view(), scene::View::Medial, false);
     return;
   }
   const auto& session = *content_.session;
@@ -245,7 +253,7 @@ void Report::theatre_page() {
   if (session.registration()) registration_section(*session.registration());
   if (content_.achieved) result_section(*content_.achieved);
   if (y_ > 195) begin_page("Pictures of the result");
-  pictures(scene::View::Notch, scene::View::Lateral, true);
+  pictures(joint_view(), scene::View::Lateral, true);
   if (content_.achieved) {
     sentence("Planned tunnel, and beside it the tunnel as drilled; dots: where the probe touched the bone.",
              {.size_pt = 8, .ink = kGray});

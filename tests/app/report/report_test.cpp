@@ -68,6 +68,20 @@ TEST_F(Report, OfAPlanAloneSaysThatNothingWasNavigated) {
   expect_contains(text, "OpenCV");
 }
 
+// One bone is a case too: neither page asks for a picture of the other.
+TEST_F(Report, OfOneBoneAlone) {
+  for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
+    auto one = knee_;
+    std::erase_if(one.bones, [&](const auto& bone) { return bone.first != kind; });
+    std::erase_if(one.plan.tunnels, [&](const auto& tunnel) { return tunnel.first != kind; });
+    const auto folder = knee_folder().parent_path() / (std::string(bones::to_text(kind)) + ".arthro");
+    cases::save_case(folder, one);
+    write_report(folder, pdf());
+    EXPECT_GE(page_count(pdf_info()), 2);
+    expect_contains(pdf_text(), std::string(bones::to_text(kind)));
+  }
+}
+
 // A session with a registration and a drilled tunnel: the comparison is the one that the geometry says.
 TEST_F(Report, ComparesPlannedAndAchieved) {
   const auto session_folder = cases::create_session_folder(knee_folder());
