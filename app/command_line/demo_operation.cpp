@@ -142,8 +142,20 @@ class Demo {
     std::vector<std::uint8_t> gray;
     while (const camera::FramePtr frame = source.next()) {
       camera::gray_from(*frame, gray);
-      pictures.push_back(calibration::observe_picture("still " + std::to_string(frame->index),
-                                                      {gray.data(), frame->width, frame->height, frame->width}));
+      auto picture = calibration::observe_picture("still " + std::to_string(frame->index),
+                                                  {gray.data(), frame->width, frame->height, frame->width});
+      // As in theatre: a still without board or mark is not used.
+      if (picture.board.found() && picture.lens.mark == lens::MarkState::Found) {
+        pictures.push_back(std::move(picture));
+      } else {
+        context_.say("          " + picture.name + " is left out: " +
+                     (picture.board.found() ? "lens mark " + std::string(lens::to_text(picture.lens.mark))
+                                            : picture.board.reason));
+      }
+    }
+    if (pictures.size() < 3) {
+      context_.say_unreliable("the calibration", {"fewer than three stills show board and lens mark"});
+      return false;
     }
     calibration::CalibrationOptions options;
     options.square_mm = simulation_.square_mm;
