@@ -10,7 +10,7 @@
 namespace arthronaut::simulator {
 namespace {
 
-constexpr int kLattice = 32;                       // a power of two
+constexpr int kLattice = 32;                         // a power of two
 constexpr float kGrainMm = 0.45f, kMottleMm = 2.3f;  // spacing of the fine and the middle noise
 constexpr float kRednessMm = 5.5f;
 
@@ -32,8 +32,8 @@ Eigen::Array4f BoneView::Noise::at(const Eigen::Array3f& position) const {
   const Eigen::Array3i low = floor.cast<int>();
   const auto index = [&](int dx, int dy, int dz) {
     const int mask = kLattice - 1;
-    return static_cast<std::size_t>((((low.z() + dz) & mask) * kLattice + ((low.y() + dy) & mask)) * kLattice +
-                                    ((low.x() + dx) & mask));
+    return static_cast<std::size_t>(
+        (((low.z() + dz) & mask) * kLattice + ((low.y() + dy) & mask)) * kLattice + ((low.x() + dx) & mask));
   };
   const auto row = [&](int dy, int dz) -> Eigen::Array4f {
     const Eigen::Array4f a = lattice_[index(0, dy, dz)];
@@ -75,10 +75,12 @@ void BoneView::look(const geometry::RigidTransform& camera_from_bone, const came
 void BoneView::draw(const PixelArea& area, int first_row, int end_row, std::vector<BonePixel>& pixels) const {
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const auto& [ia, ib, ic] = triangles_[t];
-    const Eigen::Vector2f a = pixels_[static_cast<std::size_t>(ia)], b = pixels_[static_cast<std::size_t>(ib)],
+    const Eigen::Vector2f a = pixels_[static_cast<std::size_t>(ia)],
+                          b = pixels_[static_cast<std::size_t>(ib)],
                           c = pixels_[static_cast<std::size_t>(ic)];
     const Eigen::Vector2f ab = b - a, ac = c - a;
-    // Outward triangles turn clockwise on a picture whose y points down, so this is negative for those that face us.
+    // Outward triangles turn clockwise on a picture whose y points down, so this is negative for those that
+    // face us.
     const float twice_area = ab.x() * ac.y() - ab.y() * ac.x();
     if (!(twice_area < -1e-6f)) continue;
     const float top = std::min({a.y(), b.y(), c.y()}), bottom = std::max({a.y(), b.y(), c.y()});
@@ -86,7 +88,8 @@ void BoneView::draw(const PixelArea& area, int first_row, int end_row, std::vect
     const int y1 = std::min(end_row - 1, static_cast<int>(std::floor(bottom)) - area.top);
     if (y0 > y1) continue;
     const int x0 = std::max(0, static_cast<int>(std::ceil(std::min({a.x(), b.x(), c.x()}))) - area.left);
-    const int x1 = std::min(area.width - 1, static_cast<int>(std::floor(std::max({a.x(), b.x(), c.x()}))) - area.left);
+    const int x1 =
+        std::min(area.width - 1, static_cast<int>(std::floor(std::max({a.x(), b.x(), c.x()}))) - area.left);
     if (x0 > x1) continue;
     const float za = camera_vertices_[static_cast<std::size_t>(ia)].z();
     const float zb = camera_vertices_[static_cast<std::size_t>(ib)].z() - za;
@@ -125,8 +128,7 @@ Eigen::Vector3f BoneView::shade(const BonePixel& pixel, float exposure) const {
   skin.albedo_bgr = (1 + 0.05f * grain[0] + 0.06f * mottle[1]) * ((1 - red) * kBoneBgr + red * kRedBgr);
   // The film of fluid glitters: its highlights follow a rougher normal than the bone's own.
   const Eigen::Vector3f smooth = unit(mix(camera_normals_));
-  const Eigen::Vector3f rough =
-      unit(smooth + (0.10f * grain.tail<3>() + 0.13f * mottle.tail<3>()).matrix());
+  const Eigen::Vector3f rough = unit(smooth + (0.10f * grain.tail<3>() + 0.13f * mottle.tail<3>()).matrix());
   skin.specular = 1.4f;
   skin.gloss_doublings = 7;
   return lit(mix(camera_vertices_), rough, skin, exposure);

@@ -28,12 +28,12 @@ class BoneView {
   // The seed varies where the tissue is red.
   BoneView(const geometry::TriangleMesh& mesh, std::uint64_t seed);
 
-  // Sets the pose for the calls that follow. Vertices are projected by the camera model, edges are straight in the
-  // picture between them: with edges of 1 mm the error stays below a tenth of a pixel.
+  // Sets the pose for the calls that follow. Vertices are projected by the camera model, edges are straight
+  // in the picture between them: with edges of 1 mm the error stays below a tenth of a pixel.
   void look(const geometry::RigidTransform& camera_from_bone, const camera::CameraModel& camera);
 
-  // Draws into rows [first_row, end_row) of an area's pixels (row-major, counted from the area's top). Rows can be drawn
-  // by several threads.
+  // Draws into rows [first_row, end_row) of an area's pixels (row-major, counted from the area's top). Rows
+  // can be drawn by several threads.
   void draw(const PixelArea& area, int first_row, int end_row, std::vector<BonePixel>& pixels) const;
   [[nodiscard]] Eigen::Vector3f shade(const BonePixel& pixel, float exposure) const;
 
@@ -50,10 +50,10 @@ class BoneView {
 
   Noise noise_;
   std::vector<std::array<std::int32_t, 3>> triangles_;
-  std::vector<Eigen::Vector3f> vertices_, normals_;                  // in the bone's frame
-  std::vector<float> redness_;                                       // by vertex
+  std::vector<Eigen::Vector3f> vertices_, normals_;  // in the bone's frame
+  std::vector<float> redness_;                       // by vertex
   std::vector<Eigen::Vector3f> camera_vertices_, camera_normals_;
-  std::vector<Eigen::Vector2f> pixels_;                              // NaN where the lens does not see
+  std::vector<Eigen::Vector2f> pixels_;  // NaN where the lens does not see
 };
 
 }  // namespace arthronaut::simulator

@@ -3,11 +3,12 @@
 namespace arthronaut::simulator {
 namespace {
 
-constexpr double kPlateMargin = 0.25;    // white around the marker, share of its size
-constexpr double kHandleMm = 90;         // behind the marker, out of every picture
-constexpr double kYieldsMm = 12;         // see Solid::yields_mm
+constexpr double kPlateMargin = 0.25;  // white around the marker, share of its size
+constexpr double kHandleMm = 90;       // behind the marker, out of every picture
+constexpr double kYieldsMm = 12;       // see Solid::yields_mm
 
-void add_plate(int marker_id, double size_mm, const geometry::RigidTransform& camera_from_marker, Solids& solids) {
+void add_plate(int marker_id, double size_mm, const geometry::RigidTransform& camera_from_marker,
+               Solids& solids) {
   PlateShape shape;
   shape.half_size_mm.setConstant((0.5 + kPlateMargin) * size_mm);
   shape.markers = {{Eigen::Vector2d::Zero(), size_mm, marker_cells(marker_id)}};
@@ -21,23 +22,26 @@ void add_rod(const geometry::RigidTransform& camera_from_marker, const Eigen::Ve
   solids.back()->yields_mm = yields_mm;
 }
 
-void add_probe(const Eigen::Vector3d& tip_mm, const geometry::RigidTransform& camera_from_marker, Solids& solids) {
+void add_probe(const Eigen::Vector3d& tip_mm, const geometry::RigidTransform& camera_from_marker,
+               Solids& solids) {
   constexpr double kShaftRadius = 1.5, kHookRadius = 0.6, kShaftBehindPlate = 2.4;
   // The shaft runs behind the plate along the marker's y; the hook bends from its end to the tip.
   const Eigen::Vector3d bend(tip_mm.x(), tip_mm.y() + 2.5, -kShaftBehindPlate);
   const Eigen::Vector3d hook_end = tip_mm + kHookRadius * (bend - tip_mm).normalized();
-  add_rod(camera_from_marker, bend, Eigen::Vector3d(tip_mm.x(), kHandleMm, -kShaftBehindPlate), kShaftRadius, kYieldsMm,
-          solids);
+  add_rod(camera_from_marker, bend, Eigen::Vector3d(tip_mm.x(), kHandleMm, -kShaftBehindPlate), kShaftRadius,
+          kYieldsMm, solids);
   add_rod(camera_from_marker, bend, hook_end, kHookRadius, 0, solids);
 }
 
-void add_guide(const tools::ToolAxis& axis, const geometry::RigidTransform& camera_from_marker, Solids& solids) {
+void add_guide(const tools::ToolAxis& axis, const geometry::RigidTransform& camera_from_marker,
+               Solids& solids) {
   constexpr double kSleeveRadius = 2.2, kDrillMm = 14;
   // The front part can vanish into the bone that it drills.
   const Eigen::Vector3d tip = axis.point_mm - kSleeveRadius * axis.direction;
   const Eigen::Vector3d middle = axis.point_mm - kDrillMm * axis.direction;
   add_rod(camera_from_marker, tip, middle, kSleeveRadius, 0, solids);
-  add_rod(camera_from_marker, middle, axis.point_mm - kHandleMm * axis.direction, kSleeveRadius, kYieldsMm, solids);
+  add_rod(camera_from_marker, middle, axis.point_mm - kHandleMm * axis.direction, kSleeveRadius, kYieldsMm,
+          solids);
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ inline const Eigen::Vector3f kLightPosition{0.9f, -1.3f, 0.0f};
 
 inline Eigen::Vector3f unit(const Eigen::Vector3f& v) { return v * (1 / std::sqrt(v.squaredNorm())); }
 
-// Linear light sent to the lens by a surface point: Lambert and a Blinn highlight, both falling off with the squared
-// distance. exposure: what a white surface that faces the light sends at 1 mm.
+// Linear light sent to the lens by a surface point: Lambert and a Blinn highlight, both falling off with the
+// squared distance. exposure: what a white surface that faces the light sends at 1 mm.
 inline Eigen::Vector3f lit(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, const Skin& skin,
                            float exposure) {
   const Eigen::Vector3f to_light = kLightPosition - point;

@@ -1,5 +1,5 @@
-// Splits rows between two threads. Each row's result must not depend on any other, so that the picture is the same
-// however it is split.
+// Splits rows between two threads. Each row's result must not depend on any other, so that the picture is the
+// same however it is split.
 #pragma once
 
 #include <thread>

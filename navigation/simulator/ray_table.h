@@ -1,5 +1,6 @@
-// The tangent coordinates (X/Z, Y/Z) of every pixel of one camera, a hundred times faster than asking it pixel by pixel:
-// the camera model is radial about its principal point, so a table over the squared radius holds all of it.
+// The tangent coordinates (X/Z, Y/Z) of every pixel of one camera, a hundred times faster than asking it
+// pixel by pixel: the camera model is radial about its principal point, so a table over the squared radius
+// holds all of it.
 #pragma once
 
 #include <Eigen/Core>

@@ -10,9 +10,10 @@
 namespace arthronaut::simulator {
 namespace {
 
-// Samples of a pixel whose parts differ. Points of the R2 sequence: along every direction of an edge they lie evenly, so
-// that an edge is placed to 1/64 px, which a square grid of as many samples does not do for edges along its rows.
-constexpr int kSamples = 36;
+// Samples of a pixel whose parts differ, in pairs about its centre. Points of the R2 sequence: along every
+// direction of an edge they lie evenly, so that an edge is placed to 1/64 px, which a square grid of as many
+// samples does not do for edges along its rows; in pairs, so that their mean is the centre.
+constexpr int kSamplePairs = 18;
 constexpr double kR2X = 0.7548776662466927, kR2Y = 0.5698402909980532;
 
 // Signature of what a ray meets: 0 is the background (bone or void).
@@ -25,8 +26,8 @@ struct Candidate {
 
 class SolidLayer {
  public:
-  SolidLayer(const Scene& scene, const camera::CameraModel& camera, const PixelArea& area, const RayTable& rays,
-             const std::vector<BonePixel>& bone_pixels)
+  SolidLayer(const Scene& scene, const camera::CameraModel& camera, const PixelArea& area,
+             const RayTable& rays, const std::vector<BonePixel>& bone_pixels)
       : area_(area), rays_(rays), bone_pixels_(bone_pixels), exposure_(scene.exposure) {
     for (const auto& solid : scene.solids) candidates_.push_back(bounds_of(*solid, camera));
     right_ = bottom_ = -1;
@@ -138,16 +139,18 @@ class SolidLayer {
   Eigen::Vector3f supersample(int x, int y, const Eigen::Vector3f& background) const {
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     double u = 0.5, v = 0.5;
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kSamplePairs; ++i) {
       u += kR2X;
       v += kR2Y;
       u -= std::floor(u);
       v -= std::floor(v);
-      SolidHit hit;
-      const double sx = x + u - 0.5, sy = y + v - 0.5;
-      sum += trace(sx, sy, bone_depth(x, y), hit) != 0 ? shade(sx, sy, hit) : background;
+      for (const double sign : {-1.0, 1.0}) {
+        SolidHit hit;
+        const double sx = x + sign * (u - 0.5), sy = y + sign * (v - 0.5);
+        sum += trace(sx, sy, bone_depth(x, y), hit) != 0 ? shade(sx, sy, hit) : background;
+      }
     }
-    return sum / kSamples;
+    return sum / (2 * kSamplePairs);
   }
 
   const PixelArea& area_;
@@ -161,7 +164,9 @@ class SolidLayer {
 // The field stop's surroundings, with room for the blur.
 PixelArea visible_area(const camera::CameraModel& camera) {
   const camera::Boundary& b = camera.boundary();
-  const auto low = [&](double center) { return std::max(0, static_cast<int>(std::floor(center - b.radius_px)) - 8); };
+  const auto low = [&](double center) {
+    return std::max(0, static_cast<int>(std::floor(center - b.radius_px)) - 8);
+  };
   const auto high = [&](double center, int size) {
     return std::min(size, static_cast<int>(std::ceil(center + b.radius_px)) + 8);
   };
@@ -187,13 +192,14 @@ void Renderer::render(const Scene& scene, const camera::CameraModel& camera, dou
   frame.width = camera.image_size_px().x();
   frame.height = camera.image_size_px().y();
   const PixelArea area = visible_area(camera);
-  const double reach = camera.boundary().radius_px + 40 +
-                       (camera.principal_point_px() - camera.boundary().center_px).norm();
+  const double reach =
+      camera.boundary().radius_px + 40 + (camera.principal_point_px() - camera.boundary().center_px).norm();
   const RayTable rays(camera, reach);
   const FieldStop stop(camera.boundary(), mark_angle_deg, sensor_.vignette_share);
 
   const double visible_radius2 = std::pow(camera.boundary().radius_px + 4, 2);
-  bone_pixels_.assign(static_cast<std::size_t>(area.width) * static_cast<std::size_t>(area.height), BonePixel{});
+  bone_pixels_.assign(static_cast<std::size_t>(area.width) * static_cast<std::size_t>(area.height),
+                      BonePixel{});
   light_.create(area.height, area.width, CV_32FC3);
   light_ = cv::Scalar::all(0);
   // 1. The bone. 2. The solids over it. 3. The field stop over both. 4. The sensor.

@@ -17,7 +17,8 @@ struct Scene {
   std::vector<std::unique_ptr<Solid>> solids;  // in the camera frame
   bool has_bone = false;
   geometry::RigidTransform camera_from_bone;
-  float exposure = 300;  // linear light of a white surface that faces the light at 1 mm; at d mm it is 1 / d^2 of that
+  float exposure =
+      300;  // linear light of a white surface that faces the light at 1 mm; at d mm it is 1 / d^2 of that
 };
 
 class Renderer {
@@ -26,8 +27,8 @@ class Renderer {
   Renderer(BoneView* bone, const SensorOptions& sensor);
 
   // Everything about the frame but its index and timestamp. The same arguments give the same bytes.
-  void render(const Scene& scene, const camera::CameraModel& camera, double mark_angle_deg, std::uint64_t noise_seed,
-              camera::Frame& frame);
+  void render(const Scene& scene, const camera::CameraModel& camera, double mark_angle_deg,
+              std::uint64_t noise_seed, camera::Frame& frame);
 
  private:
   BoneView* bone_;

@@ -21,7 +21,8 @@ geometry::RigidTransform tremor(std::uint64_t seed, double frame, double amplitu
   return geometry::exp(twist);
 }
 
-geometry::RigidTransform between(const geometry::RigidTransform& a, const geometry::RigidTransform& b, double share) {
+geometry::RigidTransform between(const geometry::RigidTransform& a, const geometry::RigidTransform& b,
+                                 double share) {
   return {a.rotation.slerp(share, b.rotation), (1 - share) * a.translation_mm + share * b.translation_mm};
 }
 

@@ -19,7 +19,8 @@ Script scratch_script(const SimulationOptions& options, const Staging& staging) 
   const auto add = [&](const geometry::RigidTransform& probe, bool touches) {
     const double frame = static_cast<double>(script.size());
     Moment moment;
-    moment.mark_angle_deg = options.camera.reference_mark_angle_deg + 25 * std::sin(frame / 55) + 6 * std::sin(frame / 17);
+    moment.mark_angle_deg =
+        options.camera.reference_mark_angle_deg + 25 * std::sin(frame / 55) + 6 * std::sin(frame / 17);
     moment.bone_from_camera = staging.bone_from_camera_scratch * tremor(options.seed + 12, frame, 0.2, 0.4);
     moment.bone_from_probe = probe;
     moment.tip_touches_bone = touches;

@@ -46,7 +46,8 @@ std::array<Tone, kTones + 1> make_tones(const SensorOptions& options) {
   for (int i = 0; i <= kTones; ++i) {
     const double root = static_cast<double>(i) / kTones;
     const double level = 255 * std::pow(root * root, 1 / kGamma);
-    const double variance = options.read_noise_levels * options.read_noise_levels + options.shot_noise_share * level;
+    const double variance =
+        options.read_noise_levels * options.read_noise_levels + options.shot_noise_share * level;
     tones[static_cast<std::size_t>(i)] = {static_cast<float>(level), static_cast<float>(std::sqrt(variance))};
   }
   return tones;
@@ -95,7 +96,8 @@ float FieldStop::share_passed(double x_px, double y_px) const {
 void expose(cv::Mat& light, const PixelArea& area, const SensorOptions& options, std::uint64_t noise_seed,
             camera::Frame& frame) {
   if (options.blur_sigma_px > 0) {
-    cv::GaussianBlur(light, light, {7, 7}, options.blur_sigma_px, options.blur_sigma_px, cv::BORDER_REPLICATE);
+    cv::GaussianBlur(light, light, {7, 7}, options.blur_sigma_px, options.blur_sigma_px,
+                     cv::BORDER_REPLICATE);
   }
   static const std::array<float, kQuantiles>& quantiles = normal_quantiles();
   const auto tones = make_tones(options);
@@ -103,16 +105,20 @@ void expose(cv::Mat& light, const PixelArea& area, const SensorOptions& options,
   parallel_rows(frame.height, [&](int first, int end) {
     for (int y = first; y < end; ++y) {
       std::uint64_t state = Random(noise_seed * 0x100000001B3ULL + static_cast<std::uint64_t>(y)).bits() | 1;
-      const auto normal_deviate = [&](int channel) { return quantiles[(state >> (8 + 18 * channel)) & (kQuantiles - 1)]; };
+      const auto normal_deviate = [&](int channel) {
+        return quantiles[(state >> (8 + 18 * channel)) & (kQuantiles - 1)];
+      };
       const bool in_rows = y >= area.top && y < area.top + area.height;
       const float* lit_row = in_rows ? light.ptr<float>(y - area.top) : nullptr;
-      std::uint8_t* out = frame.bgr.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(3 * frame.width);
+      std::uint8_t* out =
+          frame.bgr.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(3 * frame.width);
       for (int x = 0; x < frame.width; ++x, out += 3) {
         state ^= state << 13;
         state ^= state >> 7;
         state ^= state << 17;
-        const float* light_here =
-            lit_row && x >= area.left && x < area.left + area.width ? lit_row + 3 * (x - area.left) : kNoLight;
+        const float* light_here = lit_row && x >= area.left && x < area.left + area.width
+                                      ? lit_row + 3 * (x - area.left)
+                                      : kNoLight;
         for (int channel = 0; channel < 3; ++channel) {
           const float root = std::sqrt(std::clamp(light_here[channel], 0.0f, 1.0f)) * kTones;
           const Tone& tone = tones[static_cast<std::size_t>(root + 0.5f)];

@@ -1,5 +1,5 @@
-// From light to a frame: the round field stop with its tooth, the blur of the optics, the sensor's noise, gamma, 8 bits.
-// Inner header of the simulator: OpenCV's picture may stand in it.
+// From light to a frame: the round field stop with its tooth, the blur of the optics, the sensor's noise,
+// gamma, 8 bits. Inner header of the simulator: OpenCV's picture may stand in it.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,13 @@ namespace arthronaut::simulator {
 
 struct SensorOptions {
   double blur_sigma_px = 1.0;
-  double read_noise_levels = 2.0;     // grey levels
-  double shot_noise_share = 0.02;     // variance in grey levels squared for each grey level
-  double vignette_share = 0.25;       // of the light lost at the rim
+  double read_noise_levels = 2.0;  // grey levels
+  double shot_noise_share = 0.02;  // variance in grey levels squared for each grey level
+  double vignette_share = 0.25;    // of the light lost at the rim
 };
 
-// Share of the light that passes the field stop at a pixel, vignette included. The tooth is dark and points inwards.
+// Share of the light that passes the field stop at a pixel, vignette included. The tooth is dark and points
+// inwards.
 class FieldStop {
  public:
   FieldStop(const camera::Boundary& boundary, double mark_angle_deg, double vignette_share);
@@ -31,8 +32,8 @@ class FieldStop {
   double vignette_share_;
 };
 
-// `light` is the area's linear light (CV_32FC3) behind the field stop; it is blurred in place. The noise is a function of
-// noise_seed and the pixel alone.
+// `light` is the area's linear light (CV_32FC3) behind the field stop; it is blurred in place. The noise is a
+// function of noise_seed and the pixel alone.
 void expose(cv::Mat& light, const PixelArea& area, const SensorOptions& options, std::uint64_t noise_seed,
             camera::Frame& frame);
 

@@ -17,7 +17,8 @@ const geometry::TriangleMesh& bone_mesh(const SimulationOptions& options) {
   return options.bone == bones::BoneKind::Femur ? options.knee.femur.mesh : options.knee.tibia.mesh;
 }
 
-// Where the scripted surgeon truly drills: the plan, missed by as much as the options say, in a direction drawn by seed.
+// Where the scripted surgeon truly drills: the plan, missed by as much as the options say, in a direction
+// drawn by seed.
 tunnels::Tunnel aimed_tunnel(const SimulationOptions& options, const geometry::Surface& bone) {
   Random random(options.seed + 31);
   const Eigen::Vector3d axis = options.plan.direction.normalized();
@@ -25,7 +26,8 @@ tunnels::Tunnel aimed_tunnel(const SimulationOptions& options, const geometry::S
   const double where = random.between(0, 2 * geometry::kPi), hinge = random.between(0, 2 * geometry::kPi);
   tunnels::Tunnel aim = options.plan;
   aim.direction = Eigen::AngleAxisd(geometry::rad_from_deg(options.drill_error_deg),
-                                    Eigen::Vector3d(std::cos(hinge) * side + std::sin(hinge) * up)) * axis;
+                                    Eigen::Vector3d(std::cos(hinge) * side + std::sin(hinge) * up)) *
+                  axis;
   aim.entry_mm += options.drill_error_mm * (std::cos(where) * side + std::sin(where) * up);
   const auto measured = tunnels::measure(aim, bone);
   if (!measured.enters_bone) throw InvalidInput("simulator: the plan misses the bone");
@@ -68,23 +70,30 @@ struct SimulatedOperation::State {
     info.name = "simulated arthroscope";
     info.image_size_px = options.camera.image_size_px;
     info.frames_per_second = options.frames_per_second;
-    info.frame_count = options.frame_count > 0 ? options.frame_count : static_cast<std::int64_t>(script.size());
+    info.frame_count =
+        options.frame_count > 0 ? options.frame_count : static_cast<std::int64_t>(script.size());
   }
 
   Script write_script() const {
     switch (phase) {
-      case Phase::Calibrate: return calibrate_script(options);
-      case Phase::Pivot: return pivot_script(options, staging);
-      case Phase::Scratch: return scratch_script(options, staging);
-      case Phase::Drill: return drill_script(options, staging, aim, tunnels::measure(aim, bone).length_mm);
+      case Phase::Calibrate:
+        return calibrate_script(options);
+      case Phase::Pivot:
+        return pivot_script(options, staging);
+      case Phase::Scratch:
+        return scratch_script(options, staging);
+      case Phase::Drill:
+        return drill_script(options, staging, aim, tunnels::measure(aim, bone).length_mm);
     }
     throw InvalidInput("simulator: no such phase");
   }
 
-  const tools::Tool& tool() const { return phase == Phase::Drill ? guide_of(options) : probe_of(options.tools); }
+  const tools::Tool& tool() const {
+    return phase == Phase::Drill ? guide_of(options) : probe_of(options.tools);
+  }
 
-  // A white surface at the nearest marker stays below saturation all through the phase, as a camera's own control would
-  // have it; fixed for the phase, so that nothing flickers.
+  // A white surface at the nearest marker stays below saturation all through the phase, as a camera's own
+  // control would have it; fixed for the phase, so that nothing flickers.
   float fitting_exposure() const {
     constexpr double kBrightest = 0.85;
     double nearest_mm = 1e9;
@@ -109,8 +118,11 @@ struct SimulatedOperation::State {
 
   camera::FramePtr render(std::int64_t index) {
     const Moment& moment = moment_of(index);
-    truth = {.frame_index = index, .mark_angle_deg = std::fmod(moment.mark_angle_deg + 720, 360.0), .markers = {},
-             .camera_from_bone = moment.bone_from_camera.inverse(), .tip_touches_bone = moment.tip_touches_bone,
+    truth = {.frame_index = index,
+             .mark_angle_deg = std::fmod(moment.mark_angle_deg + 720, 360.0),
+             .markers = {},
+             .camera_from_bone = moment.bone_from_camera.inverse(),
+             .tip_touches_bone = moment.tip_touches_bone,
              .drilled_depth_mm = moment.drilled_depth_mm};
     Scene scene;
     scene.exposure = exposure;
@@ -129,7 +141,8 @@ struct SimulatedOperation::State {
     const camera::CameraModel model(options.camera, options.camera.lens_angle_rad(truth.mark_angle_deg),
                                     phase == Phase::Calibrate ? 1.0 : options.refractive_index);
     const auto frame = std::make_shared<camera::Frame>();
-    renderer.render(scene, model, truth.mark_angle_deg, options.seed * 1'000'003 + static_cast<std::uint64_t>(index), *frame);
+    renderer.render(scene, model, truth.mark_angle_deg,
+                    options.seed * 1'000'003 + static_cast<std::uint64_t>(index), *frame);
     frame->index = index;
     frame->timestamp_ns = index * 1'000'000'000 / options.frames_per_second;
     return frame;

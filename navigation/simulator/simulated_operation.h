@@ -1,5 +1,5 @@
-// A simulated arthroscope in a phantom knee, moved by a scripted surgeon: one more frame source, with the truth beside
-// it. Deterministic by seed. It renders on the CPU and needs no display.
+// A simulated arthroscope in a phantom knee, moved by a scripted surgeon: one more frame source, with the
+// truth beside it. Deterministic by seed. It renders on the CPU and needs no display.
 #pragma once
 
 #include <cstdint>
@@ -24,16 +24,16 @@ enum class Phase {
 
 struct SimulationOptions {
   phantom::PhantomKnee knee;
-  camera::Calibration camera;              // the true one; standard_camera() for the built-in scope
-  tools::ToolSet tools;                    // true geometry
+  camera::Calibration camera;  // the true one; standard_camera() for the built-in scope
+  tools::ToolSet tools;        // true geometry
   bones::BoneKind bone = bones::BoneKind::Femur;
-  tunnels::Tunnel plan;                    // what the scripted surgeon aims at in Drill
-  double refractive_index = 1.3345;        // in all phases but Calibrate
+  tunnels::Tunnel plan;              // what the scripted surgeon aims at in Drill
+  double refractive_index = 1.3345;  // in all phases but Calibrate
   std::uint64_t seed = 1;
   int frames_per_second = 30;
-  int frame_count = 0;                     // 0: the phase's own length; else its motion sampled in so many frames
+  int frame_count = 0;  // 0: the phase's own length; else its motion sampled in so many frames
   double drill_error_mm = 0.6, drill_error_deg = 1.0;  // how well the scripted surgeon aims
-  double square_mm = 1.5;                  // of the checkerboard
+  double square_mm = 1.5;                              // of the checkerboard
 };
 
 // What was true in a frame; poses are exact.
@@ -44,10 +44,10 @@ struct FrameTruth {
     int id = 0;
     geometry::RigidTransform camera_from_marker;
   };
-  std::vector<Marker> markers;             // those in the scene, seen or not
+  std::vector<Marker> markers;  // those in the scene, seen or not
   geometry::RigidTransform camera_from_bone;
   bool tip_touches_bone = false;
-  double drilled_depth_mm = 0;             // Drill: how deep the drill is beyond the bone's surface
+  double drilled_depth_mm = 0;  // Drill: how deep the drill is beyond the bone's surface
 };
 
 [[nodiscard]] camera::Calibration standard_camera();  // 1920 x 1080
@@ -62,7 +62,8 @@ class SimulatedOperation : public sources::FrameSource {
   // Truth of the frame that next() gave last; and of the whole scene.
   [[nodiscard]] const FrameTruth& truth() const;
   [[nodiscard]] geometry::RigidTransform marker_from_bone() const;
-  [[nodiscard]] tunnels::Tunnel drilled_tunnel() const;  // Drill: where the tunnel truly went, in the bone's frame
+  [[nodiscard]] tunnels::Tunnel drilled_tunnel()
+      const;  // Drill: where the tunnel truly went, in the bone's frame
 
  private:
   struct State;

@@ -21,7 +21,9 @@ struct LocalRay {
 class Plate : public Solid {
  public:
   Plate(const geometry::RigidTransform& camera_from_plate, const PlateShape& shape)
-      : shape_(shape), camera_from_plate_(camera_from_plate), rotation_(camera_from_plate.matrix()),
+      : shape_(shape),
+        camera_from_plate_(camera_from_plate),
+        rotation_(camera_from_plate.matrix()),
         origin_(camera_from_plate.inverse().translation_mm) {}
 
   bool hit(const Eigen::Vector3d& direction, SolidHit& hit) const override {
@@ -74,7 +76,8 @@ class Plate : public Solid {
     const double ticks = at.y() / shape_.tick_spacing_mm;
     const double nearest = std::round(ticks);
     const double length = std::fmod(std::abs(nearest), 5.0) == 0 ? 2.0 : 1.0;
-    return std::abs(ticks - nearest) * shape_.tick_spacing_mm < 0.06 && at.x() > shape_.half_size_mm.x() - length;
+    return std::abs(ticks - nearest) * shape_.tick_spacing_mm < 0.06 &&
+           at.x() > shape_.half_size_mm.x() - length;
   }
 
   bool hit_side(const LocalRay& ray, SolidHit& hit) const {
@@ -129,7 +132,8 @@ class Plate : public Solid {
 class Checkerboard : public Solid {
  public:
   Checkerboard(const geometry::RigidTransform& camera_from_board, double square_mm)
-      : rotation_(camera_from_board.matrix()), origin_(camera_from_board.inverse().translation_mm),
+      : rotation_(camera_from_board.matrix()),
+        origin_(camera_from_board.inverse().translation_mm),
         square_mm_(square_mm) {}
 
   bool hit(const Eigen::Vector3d& direction, SolidHit& hit) const override {
@@ -140,7 +144,8 @@ class Checkerboard : public Solid {
     const Eigen::Vector2d at = (origin_ + depth * local).head<2>() / square_mm_;
     hit.depth_mm = depth;
     hit.normal = rotation_.col(2) * (origin_.z() > 0 ? 1 : -1);
-    hit.region = (static_cast<long>(std::floor(at.x())) + static_cast<long>(std::floor(at.y()))) & 1 ? kPaper : kInk;
+    hit.region =
+        (static_cast<long>(std::floor(at.x())) + static_cast<long>(std::floor(at.y()))) & 1 ? kPaper : kInk;
     hit.skin = hit.region == kInk ? &kInkSkin : &kPaperSkin;
     return true;
   }
@@ -196,7 +201,8 @@ class Rod : public Solid {
     return depth > kNearestMm && accept(depth, direction, center, hit);
   }
 
-  bool accept(double depth, const Eigen::Vector3d& direction, const Eigen::Vector3d& axis_point, SolidHit& hit) const {
+  bool accept(double depth, const Eigen::Vector3d& direction, const Eigen::Vector3d& axis_point,
+              SolidHit& hit) const {
     hit.depth_mm = depth;
     hit.normal = (depth * direction - axis_point) / radius_;
     hit.region = 0;
@@ -219,8 +225,8 @@ MarkerCells marker_cells(int id) {
       cv::Mat picture;
       cv::aruco::drawMarker(dictionary, marker, 6, picture, 1);
       for (int i = 0; i < 36; ++i) {
-        drawn[static_cast<std::size_t>(marker)][static_cast<std::size_t>(i / 6)][static_cast<std::size_t>(i % 6)] =
-            picture.at<std::uint8_t>(i / 6, i % 6) > 0;
+        drawn[static_cast<std::size_t>(marker)][static_cast<std::size_t>(i / 6)]
+             [static_cast<std::size_t>(i % 6)] = picture.at<std::uint8_t>(i / 6, i % 6) > 0;
       }
     }
     return drawn;
@@ -228,16 +234,18 @@ MarkerCells marker_cells(int id) {
   return all.at(static_cast<std::size_t>(id));
 }
 
-std::unique_ptr<Solid> make_plate(const geometry::RigidTransform& camera_from_plate, const PlateShape& shape) {
+std::unique_ptr<Solid> make_plate(const geometry::RigidTransform& camera_from_plate,
+                                  const PlateShape& shape) {
   return std::make_unique<Plate>(camera_from_plate, shape);
 }
 
-std::unique_ptr<Solid> make_checkerboard(const geometry::RigidTransform& camera_from_board, double square_mm) {
+std::unique_ptr<Solid> make_checkerboard(const geometry::RigidTransform& camera_from_board,
+                                         double square_mm) {
   return std::make_unique<Checkerboard>(camera_from_board, square_mm);
 }
 
-std::unique_ptr<Solid> make_rod(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm, double radius_mm,
-                                const Skin& skin) {
+std::unique_ptr<Solid> make_rod(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm,
+                                double radius_mm, const Skin& skin) {
   return std::make_unique<Rod>(from_mm, to_mm, radius_mm, skin);
 }
 

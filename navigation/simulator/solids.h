@@ -1,6 +1,6 @@
-// The hard things in front of the simulated lens: printed plates (markers, screw heads, rulers, the checkerboard) and
-// round rods. All are met exactly, ray by ray, in the camera frame (mm), so that their edges lie where the camera model
-// puts them.
+// The hard things in front of the simulated lens: printed plates (markers, screw heads, rulers, the
+// checkerboard) and round rods. All are met exactly, ray by ray, in the camera frame (mm), so that their
+// edges lie where the camera model puts them.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,23 +15,25 @@ namespace arthronaut::simulator {
 // How a surface answers light; colours are linear, blue green red.
 struct Skin {
   Eigen::Vector3f albedo_bgr{0.5f, 0.5f, 0.5f};
-  float specular = 0;      // strength of the highlight
-  int gloss_doublings = 5; // the highlight's exponent is 2 to this power
+  float specular = 0;       // strength of the highlight
+  int gloss_doublings = 5;  // the highlight's exponent is 2 to this power
 };
 
 struct SolidHit {
   double depth_mm = 0;  // along the camera's z axis
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   const Skin* skin = nullptr;
-  int region = 0;       // differs between parts of a solid that look different
+  int region = 0;  // differs between parts of a solid that look different
 };
 
 class Solid {
  public:
   virtual ~Solid() = default;
-  // Where the ray `depth * direction` (direction.z == 1) enters the solid in front of the camera. False: it misses.
+  // Where the ray `depth * direction` (direction.z == 1) enters the solid in front of the camera. False: it
+  // misses.
   [[nodiscard]] virtual bool hit(const Eigen::Vector3d& direction, SolidHit& hit) const = 0;
-  // How far behind the bone's surface the solid is still drawn: what a surgeon clears out of the way by bending the knee.
+  // How far behind the bone's surface the solid is still drawn: what a surgeon clears out of the way by
+  // bending the knee.
   double yields_mm = 0;
   // Points in the camera frame whose hull holds the solid; empty: it may be anywhere in the picture.
   [[nodiscard]] virtual std::vector<Eigen::Vector3d> hull() const = 0;
@@ -51,10 +53,10 @@ struct PrintedMarker {
 // A flat plate whose printed face is z = 0 of its own frame, z towards the viewer, with thickness behind it.
 struct PlateShape {
   Eigen::Vector2d half_size_mm{3, 3};
-  bool is_round = false;         // a disc of radius half_size_mm.x()
+  bool is_round = false;  // a disc of radius half_size_mm.x()
   double thickness_mm = 0.8;
   std::vector<PrintedMarker> markers;
-  double tick_spacing_mm = 0;    // > 0: a ruler with ticks along its right edge
+  double tick_spacing_mm = 0;  // > 0: a ruler with ticks along its right edge
 };
 [[nodiscard]] std::unique_ptr<Solid> make_plate(const geometry::RigidTransform& camera_from_plate,
                                                 const PlateShape& shape);

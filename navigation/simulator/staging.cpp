@@ -13,12 +13,13 @@ namespace {
 using Eigen::Vector3d;
 using geometry::RigidTransform;
 
-constexpr double kMinSidePx = 80;              // of a marker's black square
+constexpr double kMinSidePx = 80;  // of a marker's black square
 constexpr double kMinTiltDeg = 8, kMaxTiltDeg = 52;
-constexpr double kViewShare = 0.93;            // of the view's radius that markers keep within
-constexpr double kMinClearanceMm = 5;          // of the lens from the bone
+constexpr double kViewShare = 0.93;    // of the view's radius that markers keep within
+constexpr double kMinClearanceMm = 5;  // of the lens from the bone
 
-RigidTransform frame_from_axes(const Vector3d& x, const Vector3d& y, const Vector3d& z, const Vector3d& origin) {
+RigidTransform frame_from_axes(const Vector3d& x, const Vector3d& y, const Vector3d& z,
+                               const Vector3d& origin) {
   Eigen::Matrix3d axes;
   axes << x, y, z;
   return {Eigen::Quaterniond(axes).normalized(), origin};
@@ -47,8 +48,12 @@ Vector3d turned_towards(const Vector3d& normal, const Vector3d& wanted, double l
 class Stage {
  public:
   Stage(const SimulationOptions& options, const geometry::Surface& bone)
-      : options_(options), bone_(bone), camera_(options.camera, 0, options.refractive_index),
-        probe_(probe_of(options.tools)), guide_(guide_of(options)), world_(world_marker_of(options)),
+      : options_(options),
+        bone_(bone),
+        camera_(options.camera, 0, options.refractive_index),
+        probe_(probe_of(options.tools)),
+        guide_(guide_of(options)),
+        world_(world_marker_of(options)),
         random_(options.seed * 7919 + 17) {
     const double lateral_x = options.knee.side == bones::Side::Right ? -1 : 1;
     lateral_ = {lateral_x, 0, 0};
@@ -61,11 +66,13 @@ class Stage {
     for (int attempt = 0; attempt < 1500; ++attempt) {
       Staging staging;
       searches_widely_ = attempt % 3 == 2;
-      if (place_world_marker(staging) && stage_drill(staging) && stage_pivot(staging) && stage_scratch(staging)) {
+      if (place_world_marker(staging) && stage_drill(staging) && stage_pivot(staging) &&
+          stage_scratch(staging)) {
         return staging;
       }
     }
-    throw InvalidInput("simulator: the arthroscope finds no place from which markers and planned entry can be seen");
+    throw InvalidInput(
+        "simulator: the arthroscope finds no place from which markers and planned entry can be seen");
   }
 
  private:
@@ -90,7 +97,8 @@ class Stage {
     if (spot.normal.dot(to_viewer) < std::cos(geometry::rad_from_deg(75))) return false;
     const Vector3d normal = turned_towards(spot.normal, to_viewer, geometry::rad_from_deg(30));
     const Vector3d y = Eigen::AngleAxisd(random_.between(-0.6, 0.6), normal) * anatomical(0, 1, 0.3);
-    staging.bone_from_world_marker = marker_facing(spot.point_mm + random_.between(1.6, 3.2) * spot.normal, normal, y);
+    staging.bone_from_world_marker =
+        marker_facing(spot.point_mm + random_.between(1.6, 3.2) * spot.normal, normal, y);
     // The whole face is above the bone.
     for (const double sx : {-1.0, 0.0, 1.0}) {
       for (const double sy : {-1.0, 0.0, 1.0}) {
@@ -102,19 +110,20 @@ class Stage {
     return true;
   }
 
-  // A lens position that sees the world marker well, looking between it and `other`. usual: from the world marker to the
-  // lens in most knees.
-  std::optional<RigidTransform> random_view(const Staging& staging, const Vector3d& other, const Vector3d& usual,
-                                            double min_back, double max_back) {
+  // A lens position that sees the world marker well, looking between it and `other`. usual: from the world
+  // marker to the lens in most knees.
+  std::optional<RigidTransform> random_view(const Staging& staging, const Vector3d& other,
+                                            const Vector3d& usual, double min_back, double max_back) {
     const RigidTransform& world = staging.bone_from_world_marker;
     const double back = random_.between(min_back, max_back);
     const Vector3d jitter(random_.between(-1, 1), random_.between(-1, 1), random_.between(-1, 1));
-    const Vector3d direction =
-        searches_widely_ ? world.rotate(Vector3d::UnitZ()) + 0.6 * jitter : usual.normalized() + 0.35 * jitter;
+    const Vector3d direction = searches_widely_ ? world.rotate(Vector3d::UnitZ()) + 0.6 * jitter
+                                                : usual.normalized() + 0.35 * jitter;
     const Vector3d eye = world.translation_mm + back * direction.normalized();
     if (bone_.signed_distance_mm(eye) < kMinClearanceMm) return std::nullopt;
     const double share = random_.between(0.35, 0.65);
-    const Vector3d forward = share * (world.translation_mm - eye).normalized() + (1 - share) * (other - eye).normalized();
+    const Vector3d forward =
+        share * (world.translation_mm - eye).normalized() + (1 - share) * (other - eye).normalized();
     const RigidTransform view = bone_from_camera(eye, forward, anatomical(0, 1, random_.between(0, 0.6)));
     Solids solids;
     add_world_marker(world_, view.inverse() * world, solids);
@@ -141,7 +150,8 @@ class Stage {
       if ((*pixel - boundary.center_px).norm() > kViewShare * boundary.radius_px) return false;
       corners[i] = *pixel;
       if (is_hidden(in_camera, solids, own)) return false;
-      if (bone_hides && is_behind_bone(bone_from_view, bone_from_marker * (0.5 * size_mm * corner))) return false;
+      if (bone_hides && is_behind_bone(bone_from_view, bone_from_marker * (0.5 * size_mm * corner)))
+        return false;
     }
     if (is_hidden(center, solids, own)) return false;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -153,7 +163,8 @@ class Stage {
   static bool is_hidden(const Vector3d& in_camera, const Solids& solids, std::size_t own) {
     for (std::size_t i = 0; i < solids.size(); ++i) {
       SolidHit hit;
-      if (i != own && solids[i]->hit(in_camera / in_camera.z(), hit) && hit.depth_mm < in_camera.z()) return true;
+      if (i != own && solids[i]->hit(in_camera / in_camera.z(), hit) && hit.depth_mm < in_camera.z())
+        return true;
     }
     return false;
   }
@@ -197,9 +208,11 @@ class Stage {
     return best_mm > 3.5;
   }
 
-  // How the probe is held with its tip at `tip` and its marker near `hold`: of the turns about the line from tip to
-  // marker, the one whose marker faces the viewer but for 18 degrees, which a pose from one square needs.
-  std::optional<ProbePose> hold_probe(const Vector3d& tip, const Vector3d& hold, const Vector3d& viewer) const {
+  // How the probe is held with its tip at `tip` and its marker near `hold`: of the turns about the line from
+  // tip to marker, the one whose marker faces the viewer but for 18 degrees, which a pose from one square
+  // needs.
+  std::optional<ProbePose> hold_probe(const Vector3d& tip, const Vector3d& hold,
+                                      const Vector3d& viewer) const {
     const Vector3d in_marker = -*probe_.tip_mm;  // from tip to marker, in the marker's frame
     const double length = in_marker.norm();
     const Vector3d u = (hold - tip).normalized(), center = tip + length * u;
@@ -213,7 +226,8 @@ class Stage {
       return std::cos(cone) * u + std::sin(cone) * (Eigen::AngleAxisd(turn, u) * side);
     };
     double turn = 0;
-    while (turn < 1.0 && geometry::angle_between_rad(normal_at(turn), to_viewer) < geometry::rad_from_deg(18)) turn += 0.02;
+    while (turn < 1.0 && geometry::angle_between_rad(normal_at(turn), to_viewer) < geometry::rad_from_deg(18))
+      turn += 0.02;
     const Vector3d z = normal_at(turn);
     // u = R in_marker / length with in_marker in the plane of the marker's y and z (x is small): solve for y.
     const Vector3d y = (length * u - in_marker.z() * z).normalized();
@@ -249,7 +263,8 @@ class Stage {
       std::vector<ProbePose> best;
       // Held so or so: the best of a few ways.
       for (int way = 0; way < 4; ++way) {
-        const Vector3d hold = view * Vector3d(random_.between(-9, 9), random_.between(-9, 9), random_.between(12, 18));
+        const Vector3d hold =
+            view * Vector3d(random_.between(-9, 9), random_.between(-9, 9), random_.between(12, 18));
         auto stroke = longest_stroke(staging, view, hold, is_row, across);
         if (stroke.size() > best.size()) best = std::move(stroke);
       }
@@ -262,8 +277,8 @@ class Stage {
   }
 
   // The longest run along one row or column of the picture, by share of the view's radius.
-  std::vector<ProbePose> longest_stroke(const Staging& staging, const RigidTransform& view, const Vector3d& hold,
-                                        bool is_row, double across) const {
+  std::vector<ProbePose> longest_stroke(const Staging& staging, const RigidTransform& view,
+                                        const Vector3d& hold, bool is_row, double across) const {
     constexpr int kRays = 150;
     const camera::Boundary& boundary = camera_.boundary();
     std::vector<ProbePose> stroke, best;
@@ -286,7 +301,8 @@ class Stage {
     return best;
   }
 
-  // Goes on to `point` in steps of 0.5 mm on the surface, or ends the stroke where the surface jumps or a marker is lost.
+  // Goes on to `point` in steps of 0.5 mm on the surface, or ends the stroke where the surface jumps or a
+  // marker is lost.
   template <class End>
   void extend(const Staging& staging, const RigidTransform& view, const Vector3d& hold, const Vector3d& point,
               std::vector<ProbePose>& stroke, End end_stroke) const {
@@ -296,10 +312,16 @@ class Stage {
       if (!stroke.empty()) {
         const Vector3d towards = (point - stroke.back().tip_mm).normalized();
         tip = bone_.closest_point(stroke.back().tip_mm + 0.5 * towards).point_mm;
-        if ((tip - stroke.back().tip_mm).norm() < 0.3) { end_stroke(); return; }
+        if ((tip - stroke.back().tip_mm).norm() < 0.3) {
+          end_stroke();
+          return;
+        }
       }
       const auto pose = hold_probe(tip, hold, view.translation_mm);
-      if (!pose || !sees_both(staging, view, probe_, pose->bone_from_marker)) { end_stroke(); return; }
+      if (!pose || !sees_both(staging, view, probe_, pose->bone_from_marker)) {
+        end_stroke();
+        return;
+      }
       stroke.push_back(*pose);
     }
   }
@@ -307,8 +329,9 @@ class Stage {
   bool stage_pivot(Staging& staging) {
     for (int attempt = 0; attempt < 150; ++attempt) {
       const Vector3d spread =
-          searches_widely_ ? anatomical(random_.between(-6, 8), random_.between(-6, 18), random_.between(-18, 4))
-                           : anatomical(-1, random_.between(-4, 10), random_.between(-6, 2));
+          searches_widely_
+              ? anatomical(random_.between(-6, 8), random_.between(-6, 18), random_.between(-18, 4))
+              : anatomical(-1, random_.between(-4, 10), random_.between(-6, 2));
       const Vector3d tip = bone_.closest_point(options_.plan.entry_mm + spread).point_mm;
       const auto view = random_view(staging, tip, anatomical(-7, -7, -26), 22, 33);
       if (!view) continue;
@@ -319,9 +342,10 @@ class Stage {
       const Vector3d mean = view->rotate((hold - tip_in_camera).normalized());
       for (const double cone_deg : {34.0, 31.0, 28.0, 25.0}) {
         auto swing = swing_about(tip, mean, cone_deg, view->translation_mm);
-        const bool all = !swing.empty() && std::all_of(swing.begin(), swing.end(), [&](const ProbePose& pose) {
-          return sees_both(staging, *view, probe_, pose.bone_from_marker);
-        });
+        const bool all =
+            !swing.empty() && std::all_of(swing.begin(), swing.end(), [&](const ProbePose& pose) {
+              return sees_both(staging, *view, probe_, pose.bone_from_marker);
+            });
         if (!all) continue;
         staging.bone_from_camera_pivot = *view;
         staging.pivot = std::move(swing);
@@ -359,7 +383,7 @@ class Stage {
   Random random_;
   Vector3d lateral_;
   bool searches_widely_ = false;  // else near where most knees have their places
-  Vector3d guide_marker_mm_;  // about, with its point at the planned entry
+  Vector3d guide_marker_mm_;      // about, with its point at the planned entry
 };
 
 }  // namespace
@@ -376,7 +400,9 @@ RigidTransform guide_pose(const tools::ToolAxis& axis, const Vector3d& point_mm,
       geometry::angle_between_rad(axis.direction, direction),
       bend.norm() > 1e-9 ? Vector3d(bend.normalized()) : Vector3d(axis.direction.unitOrthogonal())));
   const Vector3d center = point_mm - aligned * axis.point_mm;
-  const auto across = [&](const Vector3d& v) -> Vector3d { return (v - v.dot(direction) * direction).normalized(); };
+  const auto across = [&](const Vector3d& v) -> Vector3d {
+    return (v - v.dot(direction) * direction).normalized();
+  };
   const Vector3d is = across(aligned * Vector3d::UnitZ()), wanted = across(viewer_mm - center);
   const double turn = std::atan2(direction.dot(is.cross(wanted)), is.dot(wanted));
   const Eigen::Quaterniond rotation =
@@ -392,7 +418,8 @@ const tools::Tool& probe_of(const tools::ToolSet& tools) {
 }
 
 const tools::Tool& guide_of(const SimulationOptions& options) {
-  const std::string name = std::string(bones::to_text(options.bone)) == "femur" ? "femoral guide" : "tibial guide";
+  const std::string name =
+      std::string(bones::to_text(options.bone)) == "femur" ? "femoral guide" : "tibial guide";
   if (const tools::Tool* named = options.tools.find_tool(name); named && named->axis) return *named;
   for (const tools::Tool& tool : options.tools.tools) {
     if (tool.axis) return tool;
@@ -402,7 +429,8 @@ const tools::Tool& guide_of(const SimulationOptions& options) {
 
 const tools::WorldMarker& world_marker_of(const SimulationOptions& options) {
   if (const tools::WorldMarker* marker = options.tools.find_world_marker(options.bone)) return *marker;
-  throw InvalidInput("simulator: the tools hold no world marker for the " + std::string(bones::to_text(options.bone)));
+  throw InvalidInput("simulator: the tools hold no world marker for the " +
+                     std::string(bones::to_text(options.bone)));
 }
 
 }  // namespace arthronaut::simulator

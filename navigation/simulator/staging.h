@@ -1,6 +1,6 @@
-// Where things stand in the simulated operation: finds by search where the world marker sits on the bone, where the scope
-// looks from in each phase and how the tools are held, so that every marker is large, free and not too oblique. All poses
-// in the bone's frame (LPS, mm). Deterministic by seed.
+// Where things stand in the simulated operation: finds by search where the world marker sits on the bone,
+// where the scope looks from in each phase and how the tools are held, so that every marker is large, free
+// and not too oblique. All poses in the bone's frame (LPS, mm). Deterministic by seed.
 #pragma once
 
 #include <optional>
@@ -20,20 +20,26 @@ struct ProbePose {
 struct Staging {
   geometry::RigidTransform bone_from_world_marker;
   geometry::RigidTransform bone_from_camera_pivot, bone_from_camera_scratch, bone_from_camera_drill;
-  std::vector<ProbePose> pivot;                  // a closed swing about one tip
-  double pivot_cone_deg = 0;                     // half-angle
-  std::vector<std::vector<ProbePose>> strokes;   // tip on the surface, steps of 0.5 mm
+  std::vector<ProbePose> pivot;                 // a closed swing about one tip
+  double pivot_cone_deg = 0;                    // half-angle
+  std::vector<std::vector<ProbePose>> strokes;  // tip on the surface, steps of 0.5 mm
 };
 
-// Throws InvalidInput when the bone offers no such place (a plan that misses the notch, a marker that is too large).
+// Throws InvalidInput when the bone offers no such place (a plan that misses the notch, a marker that is too
+// large).
 [[nodiscard]] Staging stage_operation(const SimulationOptions& options, const geometry::Surface& bone);
 
-// The guide's pose when its point stands at `point` and its axis along `direction`, its marker turned towards `viewer`.
-[[nodiscard]] geometry::RigidTransform guide_pose(const tools::ToolAxis& axis, const Eigen::Vector3d& point_mm,
-                                                  const Eigen::Vector3d& direction, const Eigen::Vector3d& viewer_mm);
+// The guide's pose when its point stands at `point` and its axis along `direction`, its marker turned towards
+// `viewer`.
+[[nodiscard]] geometry::RigidTransform guide_pose(const tools::ToolAxis& axis,
+                                                  const Eigen::Vector3d& point_mm,
+                                                  const Eigen::Vector3d& direction,
+                                                  const Eigen::Vector3d& viewer_mm);
 
-[[nodiscard]] const tools::Tool& probe_of(const tools::ToolSet& tools);    // throws InvalidInput: none with a tip
-[[nodiscard]] const tools::Tool& guide_of(const SimulationOptions& options);  // throws InvalidInput: none with an axis
+[[nodiscard]] const tools::Tool& probe_of(
+    const tools::ToolSet& tools);  // throws InvalidInput: none with a tip
+[[nodiscard]] const tools::Tool& guide_of(
+    const SimulationOptions& options);  // throws InvalidInput: none with an axis
 [[nodiscard]] const tools::WorldMarker& world_marker_of(const SimulationOptions& options);
 
 }  // namespace arthronaut::simulator

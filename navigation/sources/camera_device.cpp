@@ -35,7 +35,8 @@ class CameraDevice : public FrameSource {
     if (next_index_ == 0) started_at_ = grabbed_at;
     auto frame = std::make_shared<camera::Frame>();
     frame->index = next_index_++;
-    frame->timestamp_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(grabbed_at - started_at_).count();
+    frame->timestamp_ns =
+        std::chrono::duration_cast<std::chrono::nanoseconds>(grabbed_at - started_at_).count();
     frame->width = picture.cols;
     frame->height = picture.rows;
     const cv::Mat packed = picture.isContinuous() ? picture : picture.clone();
@@ -52,6 +53,8 @@ class CameraDevice : public FrameSource {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> open_device(int device_index) { return std::make_unique<CameraDevice>(device_index); }
+std::unique_ptr<FrameSource> open_device(int device_index) {
+  return std::make_unique<CameraDevice>(device_index);
+}
 
 }  // namespace arthronaut::sources

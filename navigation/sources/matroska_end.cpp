@@ -63,7 +63,8 @@ bool matroska_breaks_off(const std::filesystem::path& file) {
     if (!reader.read_id(id) || !reader.read_size(size, unknown_size)) return true;
     const std::uint64_t body = reader.position();
     if (!unknown_size && size > reader.size() - body) return true;
-    // Segments and clusters are entered, so that a live recording, whose sizes are not known, is checked block by block.
+    // Segments and clusters are entered, so that a live recording, whose sizes are not known, is checked
+    // block by block.
     const bool enter = unknown_size || id == kSegmentId || id == kClusterId;
     reader.seek(enter ? body : body + size);
   }

@@ -22,12 +22,13 @@ std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
   return bytes;
 }
 
-// libjpeg fills what is missing with grey and says nothing that OpenCV passes on; libpng behaves alike for late rows.
+// libjpeg fills what is missing with grey and says nothing that OpenCV passes on; libpng behaves alike for
+// late rows.
 bool is_cut_off(const std::vector<std::uint8_t>& bytes) {
   const auto contains_at_end = [&](std::initializer_list<std::uint8_t> mark) {
     const std::size_t tail = std::min<std::size_t>(bytes.size(), 4096);
-    return std::search(bytes.end() - static_cast<std::ptrdiff_t>(tail), bytes.end(), mark.begin(), mark.end()) !=
-           bytes.end();
+    return std::search(bytes.end() - static_cast<std::ptrdiff_t>(tail), bytes.end(), mark.begin(),
+                       mark.end()) != bytes.end();
   };
   if (bytes.size() < 8) return true;
   if (bytes[0] == 0xFF && bytes[1] == 0xD8) return !contains_at_end({0xFF, 0xD9});
@@ -44,17 +45,25 @@ void read_picture_into(const std::filesystem::path& file, camera::Frame& frame) 
   const cv::Mat picture = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
   if (picture.empty()) throw InvalidInput(file, "", "is not a picture that can be decoded");
   if (picture.depth() != CV_8U) {
-    throw InvalidInput(file, "", "has " + std::to_string(8 * picture.elemSize1()) + " bits a channel; 8 are needed");
+    throw InvalidInput(file, "",
+                       "has " + std::to_string(8 * picture.elemSize1()) + " bits a channel; 8 are needed");
   }
   frame.width = picture.cols;
   frame.height = picture.rows;
   frame.bgr.resize(3 * picture.total());
   cv::Mat bgr(picture.rows, picture.cols, CV_8UC3, frame.bgr.data());
   switch (picture.channels()) {
-    case 1: cv::cvtColor(picture, bgr, cv::COLOR_GRAY2BGR); break;
-    case 3: picture.copyTo(bgr); break;
-    case 4: cv::cvtColor(picture, bgr, cv::COLOR_BGRA2BGR); break;
-    default: throw InvalidInput(file, "", "has " + std::to_string(picture.channels()) + " channels");
+    case 1:
+      cv::cvtColor(picture, bgr, cv::COLOR_GRAY2BGR);
+      break;
+    case 3:
+      picture.copyTo(bgr);
+      break;
+    case 4:
+      cv::cvtColor(picture, bgr, cv::COLOR_BGRA2BGR);
+      break;
+    default:
+      throw InvalidInput(file, "", "has " + std::to_string(picture.channels()) + " channels");
   }
 }
 
@@ -62,7 +71,8 @@ bool looks_like_picture(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  static constexpr std::array kPictures{".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".ppm", ".pgm", ".webp"};
+  static constexpr std::array kPictures{".png",  ".jpg", ".jpeg", ".bmp", ".tif",
+                                        ".tiff", ".ppm", ".pgm",  ".webp"};
   return std::find(kPictures.begin(), kPictures.end(), extension) != kPictures.end();
 }
 

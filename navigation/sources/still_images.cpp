@@ -97,7 +97,8 @@ class StillImages : public FrameSource {
       throw InvalidInput(pictures_[position], "", "has another size than the pictures before it");
     }
     frame->index = next_index_;
-    frame->timestamp_ns = static_cast<std::int64_t>(static_cast<double>(next_index_) / kFramesPerSecond * 1e9 + 0.5);
+    frame->timestamp_ns =
+        static_cast<std::int64_t>(static_cast<double>(next_index_) / kFramesPerSecond * 1e9 + 0.5);
     ++next_index_;
     return frame;
   }

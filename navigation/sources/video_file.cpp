@@ -35,8 +35,8 @@ std::string libav_message(int error) {
 
 class VideoFile : public FrameSource {
  public:
-  explicit VideoFile(const std::filesystem::path& file) : file_(file), packet_(av_packet_alloc()),
-                                                          picture_(av_frame_alloc()) {
+  explicit VideoFile(const std::filesystem::path& file)
+      : file_(file), packet_(av_packet_alloc()), picture_(av_frame_alloc()) {
     // What goes wrong is told once, by exception, with file and frame.
     av_log_set_level(AV_LOG_QUIET);
     open_container();
@@ -168,9 +168,9 @@ class VideoFile : public FrameSource {
     if (frame.width != info_.image_size_px.x() || frame.height != info_.image_size_px.y()) {
       fail("has another size than the frames before it");
     }
-    converter_.reset(sws_getCachedContext(converter_.release(), frame.width, frame.height,
-                                          static_cast<AVPixelFormat>(picture_->format), frame.width, frame.height,
-                                          AV_PIX_FMT_BGR24, SWS_BICUBIC, nullptr, nullptr, nullptr));
+    converter_.reset(sws_getCachedContext(
+        converter_.release(), frame.width, frame.height, static_cast<AVPixelFormat>(picture_->format),
+        frame.width, frame.height, AV_PIX_FMT_BGR24, SWS_BICUBIC, nullptr, nullptr, nullptr));
     if (!converter_) fail("has a pixel format that can't be converted");
     frame.bgr.resize(static_cast<std::size_t>(3) * frame.width * frame.height);
     std::uint8_t* const planes[] = {frame.bgr.data()};

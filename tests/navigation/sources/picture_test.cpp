@@ -63,8 +63,10 @@ TEST(ReadPicture, NamesWhatIsWrong) {
   const TemporaryFolder folder;
   std::ofstream(folder / "text.png") << "this is not a picture, it is a line of text";
   std::ofstream(folder / "empty.png");
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_picture(folder / "text.png"); }), HasSubstr("not a picture"));
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_picture(folder / "empty.png"); }), HasSubstr("empty"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_picture(folder / "text.png"); }),
+              HasSubstr("not a picture"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_picture(folder / "empty.png"); }),
+              HasSubstr("empty"));
   EXPECT_THROW((void)read_picture(folder / "absent.png"), IoError);
 }
 

@@ -18,7 +18,8 @@ void write_gray(const std::filesystem::path& file, int value, int width = 32) {
 // Numbered pictures come in order from the first that exists, 60 a second.
 TEST(StillImages, PlaysAPatternFromItsFirstNumber) {
   const TemporaryFolder folder;
-  for (int i = 7; i <= 11; ++i) write_gray(folder / ("f_" + std::string(i < 10 ? "000" : "00") + std::to_string(i) + ".png"), i);
+  for (int i = 7; i <= 11; ++i)
+    write_gray(folder / ("f_" + std::string(i < 10 ? "000" : "00") + std::to_string(i) + ".png"), i);
   write_gray(folder / "other_0008.png", 99);
   const auto source = open_video(folder / "f_%04d.png");
   EXPECT_EQ(source->info().frame_count, 5);
@@ -47,7 +48,8 @@ TEST(StillImages, SortsByNumber) {
 TEST(StillImages, RefusesAGap) {
   const TemporaryFolder folder;
   for (int i : {1, 2, 4}) write_gray(folder / ("f" + std::to_string(i) + ".png"), i);
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)open_video(folder / "f%d.png"); }), HasSubstr("picture 3"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)open_video(folder / "f%d.png"); }),
+              HasSubstr("picture 3"));
 }
 
 // A change of size in the middle is told with the picture's name.

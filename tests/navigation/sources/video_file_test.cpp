@@ -24,7 +24,8 @@ cv::Mat make_frame(int index) {
 }
 
 void write_video(const std::filesystem::path& file, const char* code) {
-  cv::VideoWriter writer(file.string(), cv::VideoWriter::fourcc(code[0], code[1], code[2], code[3]), 50, {320, 240});
+  cv::VideoWriter writer(file.string(), cv::VideoWriter::fourcc(code[0], code[1], code[2], code[3]), 50,
+                         {320, 240});
   ASSERT_TRUE(writer.isOpened());
   for (int i = 0; i < kFrames; ++i) writer.write(make_frame(i));
 }
@@ -75,8 +76,8 @@ TEST(VideoFile, EndsQuietlyWhenComplete) {
   }
 }
 
-// A copy that was interrupted gives its whole frames and then says at which frame it breaks off. OpenCV's reader ends as
-// if the video were complete.
+// A copy that was interrupted gives its whole frames and then says at which frame it breaks off. OpenCV's
+// reader ends as if the video were complete.
 TEST(VideoFile, TellsWhereItBreaksOff) {
   const TemporaryFolder folder;
   for (const auto& [name, code] : {std::pair{"v.mkv", "mp4v"}, {"v.avi", "MJPG"}}) {

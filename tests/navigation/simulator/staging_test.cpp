@@ -1,0 +1,76 @@
+#include "navigation/simulator/staging.h"
+
+#include <gtest/gtest.h>
+
+#include "planning/geometry/error.h"
+#include "tests/navigation/simulator/phantom_options.h"
+
+namespace arthronaut::simulator {
+namespace {
+
+double arc_mm(const std::vector<ProbePose>& stroke) {
+  double length = 0;
+  for (std::size_t i = 1; i < stroke.size(); ++i) length += (stroke[i].tip_mm - stroke[i - 1].tip_mm).norm();
+  return length;
+}
+
+// Every knee, of either side, has a stage: long strokes on the bone, a wide pivot, the world marker just
+// above the bone.
+TEST(Staging, FindsAPlaceInEveryKnee) {
+  for (const auto side : {bones::Side::Right, bones::Side::Left}) {
+    for (const std::uint64_t seed : {1u, 2u}) {
+      const SimulationOptions options = phantom_options(seed, side);
+      const geometry::Surface bone(options.knee.femur.mesh);
+      const Staging staging = stage_operation(options, bone);
+      const Eigen::Vector3d tip_in_probe = *probe_of(options.tools).tip_mm;
+      double length = 0;
+      for (const auto& stroke : staging.strokes) {
+        length += arc_mm(stroke);
+        for (const ProbePose& pose : stroke) {
+          EXPECT_LT(std::abs(bone.signed_distance_mm(pose.tip_mm)), 1e-3);
+          EXPECT_LT((pose.bone_from_marker * tip_in_probe - pose.tip_mm).norm(), 1e-9);
+        }
+      }
+      EXPECT_GE(length, 175) << seed;  // strokes of at least 200 steps of 0.5 mm at most
+      EXPECT_GE(staging.pivot_cone_deg, 25);
+      const double height = bone.signed_distance_mm(staging.bone_from_world_marker.translation_mm);
+      EXPECT_GT(height, 0.5);
+      EXPECT_LT(height, 5);
+    }
+  }
+}
+
+// The same options give the same stage.
+TEST(Staging, IsDeterministic) {
+  const SimulationOptions options = phantom_options();
+  const geometry::Surface bone(options.knee.femur.mesh);
+  const Staging first = stage_operation(options, bone), again = stage_operation(options, bone);
+  EXPECT_EQ(first.bone_from_world_marker.translation_mm, again.bone_from_world_marker.translation_mm);
+  EXPECT_EQ(first.bone_from_camera_drill.translation_mm, again.bone_from_camera_drill.translation_mm);
+  ASSERT_EQ(first.strokes.size(), again.strokes.size());
+}
+
+// Tools that lack what a phase needs are told by name.
+TEST(Staging, NamesTheToolThatIsMissing) {
+  SimulationOptions options = phantom_options();
+  const geometry::Surface bone(options.knee.femur.mesh);
+  options.tools.tools.clear();
+  EXPECT_THROW((void)stage_operation(options, bone), InvalidInput);
+  options.tools = tools::standard_tools();
+  options.tools.world_markers.clear();
+  EXPECT_THROW((void)stage_operation(options, bone), InvalidInput);
+}
+
+// The guide's point and axis lie where they were asked for, whoever looks at it.
+TEST(GuidePose, LaysTheAxisThroughThePoint) {
+  const tools::ToolAxis axis{{0, -24, -3.3}, -Eigen::Vector3d::UnitY()};
+  const Eigen::Vector3d point(3, -7, 11), direction = Eigen::Vector3d(0.7, -0.4, 0.6).normalized();
+  for (const Eigen::Vector3d& viewer : {Eigen::Vector3d(0, 0, 40), Eigen::Vector3d(-30, 5, -20)}) {
+    const geometry::RigidTransform pose = guide_pose(axis, point, direction, viewer);
+    EXPECT_LT((pose * axis.point_mm - point).norm(), 1e-9);
+    EXPECT_LT((pose.rotate(axis.direction) - direction).norm(), 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace arthronaut::simulator
