@@ -203,24 +203,23 @@ void Renderer::render(const Scene& scene, const camera::CameraModel& camera, dou
   light_.create(area.height, area.width, CV_32FC3);
   light_ = cv::Scalar::all(0);
   // 1. The bone. 2. The solids over it. 3. The field stop over both. 4. The sensor.
-  if (scene.has_bone && bone_) {
-    bone_->look(scene.camera_from_bone, camera);
-    parallel_rows(area.height, [&](int first, int end) {
-      bone_->draw(area, first, end, bone_pixels_);
-      for (int y = first; y < end; ++y) {
-        auto* out = light_.ptr<Eigen::Vector3f>(y);
-        const BonePixel* row = bone_pixels_.data() + static_cast<std::ptrdiff_t>(y) * area.width;
-        for (int x = 0; x < area.width; ++x) {
-          // Light that the field stop will not pass need not be computed.
-          const double dx = x + area.left - camera.boundary().center_px.x();
-          const double dy = y + area.top - camera.boundary().center_px.y();
-          if (dx * dx + dy * dy > visible_radius2) continue;
-          out[x] = row[x].triangle >= 0 ? bone_->shade(row[x], scene.exposure)
-                                        : backdrop(rays.tangent(x + area.left, y + area.top), scene.exposure);
-        }
+  const bool draws_bone = scene.has_bone && bone_;
+  if (draws_bone) bone_->look(scene.camera_from_bone, camera);
+  parallel_rows(area.height, [&](int first, int end) {
+    if (draws_bone) bone_->draw(area, first, end, bone_pixels_);
+    for (int y = first; y < end; ++y) {
+      auto* out = light_.ptr<Eigen::Vector3f>(y);
+      const BonePixel* row = bone_pixels_.data() + static_cast<std::ptrdiff_t>(y) * area.width;
+      for (int x = 0; x < area.width; ++x) {
+        // Light that the field stop will not pass need not be computed.
+        const double dx = x + area.left - camera.boundary().center_px.x();
+        const double dy = y + area.top - camera.boundary().center_px.y();
+        if (dx * dx + dy * dy > visible_radius2) continue;
+        out[x] = row[x].triangle >= 0 ? bone_->shade(row[x], scene.exposure)
+                                      : backdrop(rays.tangent(x + area.left, y + area.top), scene.exposure);
       }
-    });
-  }
+    }
+  });
   SolidLayer(scene, camera, area, rays, bone_pixels_).draw(light_);
   parallel_rows(area.height, [&](int first, int end) {
     for (int y = first; y < end; ++y) {

@@ -73,11 +73,10 @@ class Plate : public Solid {
     }
     if (shape_.tick_spacing_mm <= 0) return false;
     // Every fifth tick is twice as long.
-    const double ticks = at.y() / shape_.tick_spacing_mm;
+    const double ticks = at.x() / shape_.tick_spacing_mm;
     const double nearest = std::round(ticks);
     const double length = std::fmod(std::abs(nearest), 5.0) == 0 ? 2.0 : 1.0;
-    return std::abs(ticks - nearest) * shape_.tick_spacing_mm < 0.06 &&
-           at.x() > shape_.half_size_mm.x() - length;
+    return std::abs(ticks - nearest) * shape_.tick_spacing_mm < 0.06 && at.y() > shape_.half_size_mm.y() - length;
   }
 
   bool hit_side(const LocalRay& ray, SolidHit& hit) const {

@@ -56,7 +56,7 @@ struct PlateShape {
   bool is_round = false;  // a disc of radius half_size_mm.x()
   double thickness_mm = 0.8;
   std::vector<PrintedMarker> markers;
-  double tick_spacing_mm = 0;  // > 0: a ruler with ticks along its right edge
+  double tick_spacing_mm = 0;  // > 0: a ruler with ticks along its upper edge
 };
 [[nodiscard]] std::unique_ptr<Solid> make_plate(const geometry::RigidTransform& camera_from_plate,
                                                 const PlateShape& shape);
