@@ -1,6 +1,7 @@
 #include "navigation/simulator/renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "navigation/simulator/light.h"
@@ -16,12 +17,15 @@ namespace {
 constexpr int kSamplePairs = 18;
 constexpr double kR2X = 0.7548776662466927, kR2Y = 0.5698402909980532;
 
+constexpr int kBlockRows = 16;  // rows that are searched for solids as one
+
 // Signature of what a ray meets: 0 is the background (bone or void).
 using Signature = std::int32_t;
 
+// A solid and the pixels of each row of the area that it may cover, from first to last; none: last < first.
 struct Candidate {
   const Solid* solid = nullptr;
-  int left = 0, top = 0, right = -1, bottom = -1;  // pixels that it may cover, inclusive
+  std::vector<std::array<int, 2>> spans;
 };
 
 class SolidLayer {
@@ -29,58 +33,64 @@ class SolidLayer {
   SolidLayer(const Scene& scene, const camera::CameraModel& camera, const PixelArea& area,
              const RayTable& rays, const std::vector<BonePixel>& bone_pixels)
       : area_(area), rays_(rays), bone_pixels_(bone_pixels), exposure_(scene.exposure) {
-    for (const auto& solid : scene.solids) candidates_.push_back(bounds_of(*solid, camera));
-    right_ = bottom_ = -1;
-    left_ = area.left + area.width;
-    top_ = area.top + area.height;
-    for (const Candidate& c : candidates_) {
-      left_ = std::min(left_, c.left);
-      top_ = std::min(top_, c.top);
-      right_ = std::max(right_, c.right);
-      bottom_ = std::max(bottom_, c.bottom);
-    }
-    left_ = std::max(left_ - 2, area.left);
-    top_ = std::max(top_ - 2, area.top);
-    right_ = std::min(right_ + 2, area.left + area.width - 1);
-    bottom_ = std::min(bottom_ + 2, area.top + area.height - 1);
+    for (const auto& solid : scene.solids) candidates_.push_back(spans_of(*solid, camera));
   }
 
   // Draws over `light`, whose pixels hold the background.
   void draw(cv::Mat& light) const {
-    const int columns = right_ - left_ + 1, rows = bottom_ - top_ + 1;
-    if (columns <= 0 || rows <= 0) return;
-    parallel_rows(rows, [&](int first, int end) { draw_rows(first, end, columns, light); });
+    parallel_rows(area_.height, [&](int first, int end) { draw_rows(first, end, light); });
   }
 
  private:
-  static Candidate bounds_of(const Solid& solid, const camera::CameraModel& camera) {
-    const Candidate everywhere{&solid, -1 << 20, -1 << 20, 1 << 20, 1 << 20};
-    const auto hull = solid.hull();
-    if (hull.empty()) return everywhere;
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = -low;
-    // The lens bends straight lines, but never outside the box of enough points along them.
-    for (std::size_t i = 0; i < hull.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        for (int step = 0; step <= 4; ++step) {
-          const auto pixel = camera.project(hull[i] + 0.25 * step * (hull[j] - hull[i]));
-          if (!pixel) return everywhere;
-          low = low.cwiseMin(*pixel);
-          high = high.cwiseMax(*pixel);
-        }
+  Candidate spans_of(const Solid& solid, const camera::CameraModel& camera) const {
+    constexpr std::array<int, 2> kNone{1 << 20, -1};
+    const std::array<int, 2> whole_row{0, area_.width - 1};
+    Candidate candidate{&solid, {static_cast<std::size_t>(area_.height), kNone}};
+    const std::vector<Ball> balls = solid.cover();
+    if (balls.empty()) candidate.spans.assign(candidate.spans.size(), whole_row);
+    for (const Ball& ball : balls) {
+      if (is_out_of_sight(ball)) continue;
+      Eigen::Matrix<double, 2, 3> d_pixel_d_point;
+      const auto pixel = camera.project(ball.center_mm, d_pixel_d_point);
+      if (!pixel || ball.center_mm.z() < 3 * ball.radius_mm) {
+        candidate.spans.assign(candidate.spans.size(), whole_row);
+        break;
+      }
+      // To first order the ball reaches this far; the lens bends the rest by less than a third of it.
+      const double reach = 1.35 * d_pixel_d_point.norm() * ball.radius_mm + 3;
+      const Eigen::Vector2d at = *pixel - Eigen::Vector2d(area_.left, area_.top);
+      const int top = std::max(0, static_cast<int>(at.y() - reach));
+      const int bottom = std::min(area_.height - 1, static_cast<int>(at.y() + reach));
+      for (int y = top; y <= bottom; ++y) {
+        auto& span = candidate.spans[static_cast<std::size_t>(y)];
+        span = {std::min(span[0], std::max(0, static_cast<int>(at.x() - reach))),
+                std::max(span[1], std::min(area_.width - 1, static_cast<int>(at.x() + reach)))};
       }
     }
-    const auto clamped = [](double v) { return static_cast<int>(std::clamp(v, -1e6, 1e6)); };
-    return {&solid, clamped(low.x()) - 4, clamped(low.y()) - 4, clamped(high.x()) + 4, clamped(high.y()) + 4};
+    return candidate;
+  }
+
+  // Behind the lens, or further off its axis than any scope sees.
+  static bool is_out_of_sight(const Ball& ball) {
+    constexpr double kWidestDeg = 62;
+    const double distance = ball.center_mm.norm();
+    if (distance <= ball.radius_mm) return false;
+    const double half_angle = std::asin(ball.radius_mm / distance);
+    return std::atan2(ball.center_mm.head<2>().norm(), ball.center_mm.z()) - half_angle >
+           geometry::rad_from_deg(kWidestDeg);
   }
 
   // Nearest solid along the ray that the bone does not hide.
   Signature trace(double x, double y, float bone_depth, SolidHit& nearest) const {
+    const int column = static_cast<int>(x + 0.5) - area_.left;
+    const int row = std::clamp(static_cast<int>(y + 0.5) - area_.top, 0, area_.height - 1);
     Eigen::Vector3d direction(0, 0, 0);
     Signature signature = 0;
     nearest.depth_mm = 1e9;
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
       const Candidate& c = candidates_[i];
-      if (x < c.left || x > c.right || y < c.top || y > c.bottom) continue;
+      const auto& span = c.spans[static_cast<std::size_t>(row)];
+      if (column < span[0] || column > span[1]) continue;
       if (direction.z() == 0) direction = rays_.tangent(x, y).homogeneous();
       SolidHit hit;
       if (c.solid->hit(direction, hit) && hit.depth_mm < nearest.depth_mm &&
@@ -103,26 +113,49 @@ class SolidLayer {
         .depth_mm;
   }
 
-  // Signatures at the corners of the pixels of one row of corners; corner 0 is left of the first pixel.
-  void trace_corners(int y_row, int columns, std::vector<Signature>& corners) const {
+  // From the leftmost to the rightmost pixel that a solid may cover in a block of rows, with one to spare
+  // each way.
+  std::array<int, 2> span_of_block(int block) const {
+    std::array<int, 2> all{area_.width, -1};
+    const int first = std::max(0, block * kBlockRows - 1);
+    const int last = std::min(area_.height - 1, (block + 1) * kBlockRows);
+    for (const Candidate& candidate : candidates_) {
+      for (int row = first; row <= last; ++row) {
+        const auto& span = candidate.spans[static_cast<std::size_t>(row)];
+        all = {std::min(all[0], span[0]), std::max(all[1], span[1])};
+      }
+    }
+    return {std::max(0, all[0] - 1), std::min(area_.width - 1, all[1] + 1)};
+  }
+
+  // Signatures at the upper left corners of a row's pixels, in the span and one beyond it.
+  void trace_corners(int row, const std::array<int, 2>& span, std::vector<Signature>& corners) const {
     SolidHit ignored;
-    const int bone_row = std::clamp(y_row, area_.top, area_.top + area_.height - 1);
-    for (int i = 0; i <= columns; ++i) {
-      const int x = std::min(left_ + i, area_.left + area_.width - 1);
-      corners[static_cast<std::size_t>(i)] =
-          trace(left_ + i - 0.5, y_row - 0.5, bone_depth(x, bone_row), ignored);
+    const int bone_row = std::min(row, area_.height - 1);
+    for (int column = span[0]; column <= span[1] + 1; ++column) {
+      const int x = area_.left + column;
+      const float depth = bone_depth(area_.left + std::min(column, area_.width - 1), area_.top + bone_row);
+      corners[static_cast<std::size_t>(column)] = trace(x - 0.5, area_.top + row - 0.5, depth, ignored);
     }
   }
 
-  void draw_rows(int first, int end, int columns, cv::Mat& light) const {
-    std::vector<Signature> above(static_cast<std::size_t>(columns) + 1), below(above.size());
-    trace_corners(top_ + first, columns, above);
+  void draw_rows(int first, int end, cv::Mat& light) const {
+    std::vector<Signature> above(static_cast<std::size_t>(area_.width) + 1), below(above.size());
+    std::array<int, 2> span{0, -1};
     for (int row = first; row < end; ++row) {
-      const int y = top_ + row;
-      trace_corners(y + 1, columns, below);
-      auto* out = light.ptr<Eigen::Vector3f>(y - area_.top) + (left_ - area_.left);
-      for (std::size_t i = 0; i < static_cast<std::size_t>(columns); ++i) {
-        const int x = left_ + static_cast<int>(i);
+      if (row == first || row % kBlockRows == 0) {
+        span = span_of_block(row / kBlockRows);
+        trace_corners(row, span, above);
+      } else {
+        std::swap(above, below);
+      }
+      if (span[1] < span[0]) continue;
+      trace_corners(row + 1, span, below);
+      auto* out = light.ptr<Eigen::Vector3f>(row);
+      const int y = area_.top + row;
+      for (int column = span[0]; column <= span[1]; ++column) {
+        const auto i = static_cast<std::size_t>(column);
+        const int x = area_.left + column;
         const Signature corner = above[i];
         if (corner != above[i + 1] || corner != below[i] || corner != below[i + 1]) {
           out[i] = supersample(x, y, out[i]);
@@ -131,7 +164,6 @@ class SolidLayer {
           if (trace(x, y, bone_depth(x, y), hit) != 0) out[i] = shade(x, y, hit);
         }
       }
-      std::swap(above, below);
     }
   }
 
@@ -158,7 +190,6 @@ class SolidLayer {
   const std::vector<BonePixel>& bone_pixels_;
   float exposure_;
   std::vector<Candidate> candidates_;
-  int left_, top_, right_, bottom_;  // pixels that any solid may cover, inclusive
 };
 
 // The field stop's surroundings, with room for the blur.

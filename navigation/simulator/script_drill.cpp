@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "navigation/simulator/holding.h"
 #include "navigation/simulator/script.h"
 
 namespace arthronaut::simulator {

@@ -16,7 +16,6 @@ constexpr double kToothHalfWidthDeg = 2.5, kToothDepthShare = 0.035;
 constexpr double kGamma = 2.2;
 constexpr int kQuantiles = 1024;
 constexpr int kTones = 4096;
-constexpr float kNoLight[3] = {0, 0, 0};
 
 // Quantiles of the normal distribution: a uniform index gives a normal deviate.
 const std::array<float, kQuantiles>& normal_quantiles() {
@@ -39,6 +38,10 @@ const std::array<float, kQuantiles>& normal_quantiles() {
 struct Tone {
   float level = 0, noise_sigma = 0;  // grey levels
 };
+
+std::uint8_t to_byte(float level) {
+  return static_cast<std::uint8_t>(static_cast<int>(std::clamp(level + 0.5f, 0.0f, 255.0f)));
+}
 
 // By the square root of the light, so that the dark end, where gamma is steep, is finely divided.
 std::array<Tone, kTones + 1> make_tones(const SensorOptions& options) {
@@ -101,13 +104,14 @@ void expose(cv::Mat& light, const PixelArea& area, const SensorOptions& options,
   }
   static const std::array<float, kQuantiles>& quantiles = normal_quantiles();
   const auto tones = make_tones(options);
+  const auto tone_of = [&](float value) -> const Tone& {
+    const float root = std::sqrt(std::clamp(value, 0.0f, 1.0f)) * kTones;
+    return tones[static_cast<std::size_t>(static_cast<int>(root + 0.5f))];
+  };
   frame.bgr.resize(static_cast<std::size_t>(3) * static_cast<std::size_t>(frame.width * frame.height));
   parallel_rows(frame.height, [&](int first, int end) {
     for (int y = first; y < end; ++y) {
       std::uint64_t state = Random(noise_seed * 0x100000001B3ULL + static_cast<std::uint64_t>(y)).bits() | 1;
-      const auto normal_deviate = [&](int channel) {
-        return quantiles[(state >> (8 + 18 * channel)) & (kQuantiles - 1)];
-      };
       const bool in_rows = y >= area.top && y < area.top + area.height;
       const float* lit_row = in_rows ? light.ptr<float>(y - area.top) : nullptr;
       std::uint8_t* out =
@@ -116,14 +120,12 @@ void expose(cv::Mat& light, const PixelArea& area, const SensorOptions& options,
         state ^= state << 13;
         state ^= state >> 7;
         state ^= state << 17;
-        const float* light_here = lit_row && x >= area.left && x < area.left + area.width
-                                      ? lit_row + 3 * (x - area.left)
-                                      : kNoLight;
+        const bool is_lit = lit_row && x >= area.left && x < area.left + area.width;
         for (int channel = 0; channel < 3; ++channel) {
-          const float root = std::sqrt(std::clamp(light_here[channel], 0.0f, 1.0f)) * kTones;
-          const Tone& tone = tones[static_cast<std::size_t>(root + 0.5f)];
-          out[channel] = static_cast<std::uint8_t>(
-              std::clamp(tone.level + tone.noise_sigma * normal_deviate(channel) + 0.5f, 0.0f, 255.0f));
+          const float deviate = quantiles[(state >> (8 + 18 * channel)) & (kQuantiles - 1)];
+          // Half of the picture is dark: its level is that of no light.
+          const Tone& tone = is_lit ? tone_of(lit_row[3 * (x - area.left) + channel]) : tones[0];
+          out[channel] = to_byte(tone.level + tone.noise_sigma * deviate);
         }
       }
     }

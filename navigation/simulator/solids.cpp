@@ -31,17 +31,22 @@ class Plate : public Solid {
     return hit_face(ray, hit) || hit_side(ray, hit);
   }
 
-  std::vector<Eigen::Vector3d> hull() const override {
-    std::vector<Eigen::Vector3d> corners;
-    for (const double z : {0.0, -shape_.thickness_mm}) {
-      for (const double sx : {-1.0, 1.0}) {
-        for (const double sy : {-1.0, 1.0}) {
-          const double hy = shape_.is_round ? shape_.half_size_mm.x() : shape_.half_size_mm.y();
-          corners.push_back(camera_from_plate_ * Eigen::Vector3d(sx * shape_.half_size_mm.x(), sy * hy, z));
-        }
-      }
+  std::vector<Ball> cover() const override {
+    // Squares of the plate's width, side by side along it; both faces and their corners lie in each one's
+    // ball.
+    const double half_width = shape_.is_round ? shape_.half_size_mm.x() : shape_.half_size_mm.minCoeff();
+    const Eigen::Vector2d reach = shape_.is_round
+                                      ? Eigen::Vector2d(0, 0)
+                                      : Eigen::Vector2d((shape_.half_size_mm.array() - half_width).matrix());
+    const int count = 1 + static_cast<int>(std::ceil(reach.maxCoeff() / half_width));
+    std::vector<Ball> balls;
+    for (int i = 0; i < count; ++i) {
+      const double along = count == 1 ? 0 : -1 + 2.0 * i / (count - 1);
+      balls.push_back({camera_from_plate_ *
+                           Eigen::Vector3d(along * reach.x(), along * reach.y(), -0.5 * shape_.thickness_mm),
+                       std::hypot(std::sqrt(2.0) * half_width, 0.5 * shape_.thickness_mm)});
     }
-    return corners;
+    return balls;
   }
 
  private:
@@ -76,7 +81,8 @@ class Plate : public Solid {
     const double ticks = at.x() / shape_.tick_spacing_mm;
     const double nearest = std::round(ticks);
     const double length = std::fmod(std::abs(nearest), 5.0) == 0 ? 2.0 : 1.0;
-    return std::abs(ticks - nearest) * shape_.tick_spacing_mm < 0.06 && at.y() > shape_.half_size_mm.y() - length;
+    return std::abs(ticks - nearest) * shape_.tick_spacing_mm < 0.06 &&
+           at.y() > shape_.half_size_mm.y() - length;
   }
 
   bool hit_side(const LocalRay& ray, SolidHit& hit) const {
@@ -149,7 +155,7 @@ class Checkerboard : public Solid {
     return true;
   }
 
-  std::vector<Eigen::Vector3d> hull() const override { return {}; }
+  std::vector<Ball> cover() const override { return {}; }
 
  private:
   Eigen::Matrix3d rotation_;
@@ -181,14 +187,14 @@ class Rod : public Solid {
     return hit_end(direction, from_, hit) || hit_end(direction, from_ + length_ * along_, hit);
   }
 
-  std::vector<Eigen::Vector3d> hull() const override {
-    std::vector<Eigen::Vector3d> corners;
-    for (const Eigen::Vector3d& end : {from_, Eigen::Vector3d(from_ + length_ * along_)}) {
-      for (int i = 0; i < 8; ++i) {
-        corners.emplace_back(end + radius_ * Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
-      }
+  std::vector<Ball> cover() const override {
+    std::vector<Ball> balls;
+    const int count = 2 + static_cast<int>(length_ / radius_);
+    for (int i = 0; i < count; ++i) {
+      // Half-way between two centres the rod's surface is still inside: the spacing is at most one radius.
+      balls.push_back({from_ + length_ * i / (count - 1) * along_, 1.15 * radius_});
     }
-    return corners;
+    return balls;
   }
 
  private:

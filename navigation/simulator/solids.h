@@ -26,6 +26,11 @@ struct SolidHit {
   int region = 0;  // differs between parts of a solid that look different
 };
 
+struct Ball {
+  Eigen::Vector3d center_mm;
+  double radius_mm = 0;
+};
+
 class Solid {
  public:
   virtual ~Solid() = default;
@@ -35,8 +40,8 @@ class Solid {
   // How far behind the bone's surface the solid is still drawn: what a surgeon clears out of the way by
   // bending the knee.
   double yields_mm = 0;
-  // Points in the camera frame whose hull holds the solid; empty: it may be anywhere in the picture.
-  [[nodiscard]] virtual std::vector<Eigen::Vector3d> hull() const = 0;
+  // Balls in the camera frame that cover the solid; none: it may be anywhere in the picture.
+  [[nodiscard]] virtual std::vector<Ball> cover() const = 0;
 };
 
 // True for a white cell. Row 0 is the marker's top.

@@ -29,13 +29,6 @@ struct Staging {
 // large).
 [[nodiscard]] Staging stage_operation(const SimulationOptions& options, const geometry::Surface& bone);
 
-// The guide's pose when its point stands at `point` and its axis along `direction`, its marker turned towards
-// `viewer`.
-[[nodiscard]] geometry::RigidTransform guide_pose(const tools::ToolAxis& axis,
-                                                  const Eigen::Vector3d& point_mm,
-                                                  const Eigen::Vector3d& direction,
-                                                  const Eigen::Vector3d& viewer_mm);
-
 [[nodiscard]] const tools::Tool& probe_of(
     const tools::ToolSet& tools);  // throws InvalidInput: none with a tip
 [[nodiscard]] const tools::Tool& guide_of(

@@ -7,11 +7,21 @@
 namespace arthronaut::simulator {
 namespace {
 
+// One stage for all tests: it takes a while to find.
 class ScriptTest : public ::testing::Test {
  protected:
-  SimulationOptions options_ = phantom_options();
-  geometry::Surface bone_{options_.knee.femur.mesh};
-  Staging staging_ = stage_operation(options_, bone_);
+  struct Scene {
+    SimulationOptions options = phantom_options();
+    geometry::Surface bone{options.knee.femur.mesh};
+    Staging staging = stage_operation(options, bone);
+  };
+  static const Scene& scene() {
+    static const Scene only;
+    return only;
+  }
+  const SimulationOptions& options_ = scene().options;
+  const geometry::Surface& bone_ = scene().bone;
+  const Staging& staging_ = scene().staging;
   Eigen::Vector3d tip_in_probe_ = *probe_of(options_.tools).tip_mm;
 };
 

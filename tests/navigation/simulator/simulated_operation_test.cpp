@@ -108,7 +108,7 @@ TEST(SimulatedOperation, IsDeterministicAndOfOnePiece) {
 
 // Options out of range are told.
 TEST(SimulatedOperation, RefusesNonsense) {
-  SimulationOptions options = phantom_options();
+  SimulationOptions options;
   options.frames_per_second = 0;
   EXPECT_THROW(SimulatedOperation(options, Phase::Calibrate), InvalidInput);
 }
