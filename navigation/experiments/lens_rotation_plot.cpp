@@ -87,19 +87,23 @@ double fitting_top(double greatest) {
 void write_lens_rotation_plot(const std::filesystem::path& file, const LensRotationResult& result,
                               const std::string& title) {
   const auto frame_count = static_cast<std::int64_t>(result.frames.size());
-  double top_mm = 0.05, top_deg = 0.2, turn_deg = 10;
+  double top_mm = 0.05, top_deg = 0.2, least_deg = 0, most_deg = 10;
   for (const LensModeSummary& mode : result.modes) {
     top_mm = std::max(top_mm, mode.p95_mm);
     top_deg = std::max(top_deg, mode.p95_deg);
   }
-  for (const auto& frame : result.frames)
-    turn_deg = std::max(turn_deg, std::abs(frame.lens_angle_deg.value_or(0)));
+  for (const auto& frame : result.frames) {
+    least_deg = std::min(least_deg, frame.lens_angle_deg.value_or(0));
+    most_deg = std::max(most_deg, frame.lens_angle_deg.value_or(0));
+  }
   cv::Mat image(kTop + 3 * (kPanelHeight + kGap), kWidth, CV_8UC3, cv::Scalar::all(255));
   write_text(image, title, {kLeft, 30}, 0.75);
   Panel translation(image, 0, 0, fitting_top(top_mm), frame_count, "translation error, mm");
   Panel rotation(image, 1, 0, fitting_top(top_deg), frame_count, "rotation error, degrees");
-  Panel lens(image, 2, -fitting_top(turn_deg), fitting_top(turn_deg), frame_count,
-             "rotation of the lens, degrees, over frames");
+  // In steps of 10 degrees on the axis, which has four of them or a multiple.
+  const double low_deg = 40 * std::floor(least_deg / 40),
+               high_deg = low_deg + 40 * std::ceil((most_deg - low_deg) / 40);
+  Panel lens(image, 2, low_deg, high_deg, frame_count, "rotation of the lens, degrees, over frames");
   // The mode that matters is drawn last, over the others.
   for (const std::size_t mode : {std::size_t{1}, std::size_t{2}, std::size_t{0}}) {
     const auto at = [&](std::size_t i) {
