@@ -1,0 +1,113 @@
+#include "navigation/calibration/ruler_sightings.h"
+
+#include <algorithm>
+
+#include "navigation/camera/medium.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::calibration {
+namespace {
+
+// The medium to try when the stated one recognises nothing: that of the calibration if a fluid was stated, a
+// fluid if not. Anything between the two is recognised with either.
+double other_index(const RulerSightingsOptions& options) {
+  const double dry = options.calibration.refractive_index;
+  return options.refractive_index > 1.1 * dry ? dry : dry * camera::kSalineIndex;
+}
+
+bool both_tracked(const std::array<markers::MarkerObservation, 2>& markers) {
+  return markers[0].is_tracked() && markers[1].is_tracked();
+}
+
+}  // namespace
+
+struct RulerSightings::State {
+  explicit State(const RulerSightingsOptions& with)
+      : options(with), lens_tracker({.calibration = with.calibration}), other(other_index(with)) {
+    // Throws here rather than in the first frame.
+    (void)camera::CameraModel(options.calibration, 0, options.refractive_index);
+    const double size_mm = options.ruler.marker_size_mm;
+    const markers::DeclaredMarker declared[] = {{options.first_id, size_mm}, {options.second_id, size_mm}};
+    as_stated = markers::make_tracker(declared);
+    as_other = markers::make_tracker(declared);
+    sightings.reserve(options.most);
+  }
+
+  [[nodiscard]] double mark_angle_deg() const {
+    return options.follow_lens ? seen.lens.mark_angle_deg : options.calibration.reference_mark_angle_deg;
+  }
+
+  void find_markers(markers::MarkerTracker& tracker, const camera::GrayView& picture, double index,
+                    std::int64_t timestamp_ns) {
+    const camera::CameraModel camera(options.calibration,
+                                     options.calibration.lens_angle_rad(mark_angle_deg()), index);
+    const auto found = tracker.track(picture, camera, timestamp_ns);
+    std::copy(found.begin(), found.end(), seen.markers.begin());
+  }
+
+  // Most fundamental first: without the lens angle the markers' corners say nothing.
+  [[nodiscard]] std::string reason_against() const {
+    if (options.follow_lens && seen.lens.zoom_or_slip)
+      return "the round view is not where the calibration has it: was the scope zoomed or taken out of the "
+             "head?";
+    if (options.follow_lens && seen.lens.mark != lens::MarkState::Found)
+      return "lens mark: " + std::string(lens::to_text(seen.lens.mark));
+    for (const auto& marker : seen.markers)
+      if (!marker.is_tracked())
+        return "marker " + std::to_string(marker.id) + ": " + std::string(markers::to_text(marker.state));
+    return "";
+  }
+
+  RulerSightingsOptions options;
+  lens::LensTracker lens_tracker;
+  double other;  // index
+  std::unique_ptr<markers::MarkerTracker> as_stated, as_other;
+  std::vector<std::uint8_t> gray;
+  RulerLook seen;
+  std::vector<RulerSighting> sightings;
+  std::size_t frame_count = 0;
+};
+
+RulerSightings::RulerSightings(const RulerSightingsOptions& options)
+    : state_(std::make_unique<State>(options)) {}
+RulerSightings::~RulerSightings() = default;
+RulerSightings::RulerSightings(RulerSightings&&) noexcept = default;
+RulerSightings& RulerSightings::operator=(RulerSightings&&) noexcept = default;
+
+const RulerLook& RulerSightings::look(const camera::Frame& frame) {
+  State& s = *state_;
+  const Eigen::Vector2i& size = s.options.calibration.image_size_px;
+  if (frame.width != size.x() || frame.height != size.y())
+    throw InvalidInput("frame " + std::to_string(frame.index) + " is " + std::to_string(frame.width) + " x " +
+                       std::to_string(frame.height) + " pixels, but the camera was calibrated at " +
+                       std::to_string(size.x()) + " x " + std::to_string(size.y()));
+  camera::gray_from(frame, s.gray);
+  const camera::GrayView picture{s.gray.data(), frame.width, frame.height, frame.width};
+  ++s.frame_count;
+  s.seen.lens = s.lens_tracker.observe(picture, frame.timestamp_ns);
+  s.find_markers(*s.as_stated, picture, s.options.refractive_index, frame.timestamp_ns);
+  if (!both_tracked(s.seen.markers)) {
+    const auto stated = s.seen.markers;
+    s.find_markers(*s.as_other, picture, s.other, frame.timestamp_ns);
+    if (!both_tracked(s.seen.markers)) s.seen.markers = stated;  // its reasons are the ones to tell
+  }
+  s.seen.reason = s.reason_against();
+  s.seen.is_taken = s.seen.reason.empty() && !is_full();
+  if (s.seen.is_taken)
+    s.sightings.push_back({s.mark_angle_deg(), s.seen.markers[0].corners_px, s.seen.markers[1].corners_px});
+  else if (s.seen.reason.empty())
+    s.seen.reason = "enough frames were taken";
+  return s.seen;
+}
+
+void RulerSightings::clear() {
+  state_->sightings.clear();
+  state_->frame_count = 0;
+}
+
+const std::vector<RulerSighting>& RulerSightings::sightings() const { return state_->sightings; }
+std::size_t RulerSightings::frame_count() const { return state_->frame_count; }
+bool RulerSightings::is_full() const { return state_->sightings.size() >= state_->options.most; }
+const RulerSightingsOptions& RulerSightings::options() const { return state_->options; }
+
+}  // namespace arthronaut::calibration
