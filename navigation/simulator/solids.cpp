@@ -1,5 +1,6 @@
 #include "navigation/simulator/solids.h"
 
+#include <array>
 #include <cmath>
 #include <opencv2/aruco.hpp>
 
@@ -70,10 +71,12 @@ class Plate : public Solid {
 
   bool is_ink(const Eigen::Vector2d& at) const {
     for (const PrintedMarker& marker : shape_.markers) {
-      const double column = ((at.x() - marker.center_mm.x()) / marker.size_mm + 0.5) * 6;
-      const double row = (0.5 - (at.y() - marker.center_mm.y()) / marker.size_mm) * 6;
-      if (column >= 0 && column < 6 && row >= 0 && row < 6) {
-        return !marker.cells[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+      const int count = marker.cells.count;
+      const double column = ((at.x() - marker.center_mm.x()) / marker.size_mm + 0.5) * count;
+      const double row = (0.5 - (at.y() - marker.center_mm.y()) / marker.size_mm) * count;
+      if (column >= 0 && column < count && row >= 0 && row < count) {
+        const int cell = static_cast<int>(row) * count + static_cast<int>(column);
+        return !marker.cells.is_white[static_cast<std::size_t>(cell)];
       }
     }
     if (shape_.tick_spacing_mm <= 0) return false;
@@ -229,10 +232,9 @@ MarkerCells marker_cells(int id) {
     for (int marker = 0; marker < 50; ++marker) {
       cv::Mat picture;
       cv::aruco::drawMarker(dictionary, marker, 6, picture, 1);
-      for (int i = 0; i < 36; ++i) {
-        drawn[static_cast<std::size_t>(marker)][static_cast<std::size_t>(i / 6)]
-             [static_cast<std::size_t>(i % 6)] = picture.at<std::uint8_t>(i / 6, i % 6) > 0;
-      }
+      MarkerCells& cells = drawn[static_cast<std::size_t>(marker)];
+      cells.count = 6;
+      for (int i = 0; i < 36; ++i) cells.is_white.push_back(picture.at<std::uint8_t>(i / 6, i % 6) > 0);
     }
     return drawn;
   }();

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <memory>
 #include <vector>
 
@@ -44,15 +43,19 @@ class Solid {
   [[nodiscard]] virtual std::vector<Ball> cover() const = 0;
 };
 
-// True for a white cell. Row 0 is the marker's top.
-using MarkerCells = std::array<std::array<bool, 6>, 6>;
+// A printed square of count x count cells, its black border included; row 0 is the marker's top.
+struct MarkerCells {
+  int count = 0;
+  std::vector<bool> is_white;  // row by row
+  bool operator==(const MarkerCells&) const = default;
+};
 // The whole printed square of DICT_4X4_50, its black border included. id in 0..49.
 [[nodiscard]] MarkerCells marker_cells(int id);
 
 struct PrintedMarker {
   Eigen::Vector2d center_mm = Eigen::Vector2d::Zero();  // on the plate
   double size_mm = 4;
-  MarkerCells cells{};
+  MarkerCells cells;
 };
 
 // A flat plate whose printed face is z = 0 of its own frame, z towards the viewer, with thickness behind it.

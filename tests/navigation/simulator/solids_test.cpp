@@ -16,8 +16,11 @@ geometry::RigidTransform facing_at(double depth_mm) {
 TEST(MarkerCells, HaveABlackBorderAndDiffer) {
   for (int id = 0; id < 50; ++id) {
     const MarkerCells cells = marker_cells(id);
+    ASSERT_EQ(cells.count, 6);
     for (std::size_t i = 0; i < 6; ++i) {
-      EXPECT_FALSE(cells[0][i] || cells[5][i] || cells[i][0] || cells[i][5]) << id;
+      EXPECT_FALSE(cells.is_white[i] || cells.is_white[30 + i] || cells.is_white[6 * i] ||
+                   cells.is_white[6 * i + 5])
+          << id;
     }
     for (int other = 0; other < id; ++other) EXPECT_NE(cells, marker_cells(other));
   }
@@ -36,9 +39,8 @@ TEST(Plate, ShowsTheCellsOfItsMarker) {
       ASSERT_TRUE(plate->hit(direction, hit));
       EXPECT_NEAR(hit.depth_mm, 20, 1e-12);
       ASSERT_TRUE(plate->hit(Vector3d(2.5 / 20, 0, 1), beside));  // the white around it
-      const auto& cell =
-          shape.markers[0].cells[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
-      EXPECT_EQ(hit.region == beside.region, cell) << row << " " << column;
+      const bool is_white = shape.markers[0].cells.is_white[static_cast<std::size_t>(6 * row + column)];
+      EXPECT_EQ(hit.region == beside.region, is_white) << row << " " << column;
     }
   }
 }
