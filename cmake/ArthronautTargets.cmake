@@ -83,9 +83,6 @@ endfunction()
 
 # arthronaut_benchmark(registration SOURCES x_benchmark.cpp LIBS libs...): built with the tests, run by hand.
 function(arthronaut_benchmark name)
-  if(NOT ARTHRONAUT_BUILD_BENCHMARKS)
-    return()
-  endif()
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
   add_executable(${name}_benchmark ${ARG_SOURCES})
   target_link_libraries(${name}_benchmark PRIVATE arthronaut_compile_options ${ARG_LIBS} benchmark::benchmark_main)
