@@ -13,7 +13,7 @@ namespace {
 using experiments::RegistrationExperimentResult;
 
 struct ExperimentArguments {
-  std::string bone, noise = "dry", side = "right", space, unit, plot;
+  std::string bone, noise = "dry", side = "right", space, unit, plot, trial_folder;
   int trials = 10;
   std::uint64_t seed = 1;
   bool no_marker_prior = false;
@@ -58,19 +58,25 @@ void run(Context& context, const ExperimentArguments& arguments) {
   if (!arguments.space.empty()) mesh_options.space = bones::space_from_text(arguments.space);
   if (!arguments.unit.empty()) mesh_options.unit = bones::length_unit_from_text(arguments.unit);
   experiments::RegistrationExperimentOptions options;
-  options.noise = experiments::trial_noise_from_text(arguments.noise);
+  options.series.noise = experiments::trial_noise_from_text(arguments.noise);
   options.trial_count = arguments.trials;
-  options.seed = arguments.seed;
+  options.series.seed = arguments.seed;
   options.use_marker_prior = !arguments.no_marker_prior;
-  options.side = bones::side_from_text(arguments.side);
-  if (arguments.area_option->count() > 0) options.area_center_mm = arguments.area;
+  options.series.side = bones::side_from_text(arguments.side);
+  if (arguments.area_option->count() > 0) options.series.area_center_mm = arguments.area;
   const auto mesh = bones::read_mesh(arguments.bone, mesh_options);
+  if (!arguments.trial_folder.empty()) {
+    experiments::write_trials(arguments.trial_folder, experiments::TrialSeries(mesh, options.series),
+                              options.trial_count);
+    context.say(formatted("wrote %d trials; nothing was registered", options.trial_count));
+    return;
+  }
   RegistrationExperimentResult result;
   {
     Progress progress("registering", options.trial_count);
     result = experiments::run_registration_experiment(mesh, options, [&](int done) { progress.advance_to(done); });
   }
-  if (!arguments.plot.empty()) experiments::write_registration_plot(arguments.plot, result, options.noise);
+  if (!arguments.plot.empty()) experiments::write_registration_plot(arguments.plot, result, options.series.noise);
   say_result(context, result);
   if (result.reliable_but_wrong_count > 0) {
     context.say_unreliable("the experiment", {"a registration that was wrong took itself for reliable"});
@@ -99,6 +105,12 @@ void add_registration_experiment(CLI::App& experiment, Context& context) {
   command->add_option("--space", arguments->space, "Frame of the mesh when the file doesn't say: lps (default) or ras");
   command->add_option("--unit", arguments->unit, "Length unit of the mesh: mm, cm, m or in");
   command->add_option("--plot", arguments->plot, "PNG to draw the paper's plot into");
+  command
+      ->add_option("--write-trials", arguments->trial_folder,
+                   "Write the trials into this folder for other programs, instead of registering them: bone.ply, and "
+                   "for each trial its curves (trial_K.csv) and its truth (trial_K.json)")
+      ->excludes("--plot")
+      ->excludes("--no-marker-prior");
   command->callback([&context, arguments] { run(context, *arguments); });
 }
 

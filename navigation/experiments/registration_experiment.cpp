@@ -88,19 +88,17 @@ RegistrationExperimentResult run_registration_experiment(const geometry::Triangl
                                                          const std::function<void(int)>& progress) {
   if (options.trial_count < 1) throw InvalidInput("an experiment needs at least one trial");
   const registration::PreparedBone bone(mesh);
-  const geometry::Surface surface(mesh);
-  const auto wall = options.area_center_mm ? options.area_center_mm : find_lateral_notch_wall(mesh, surface, options.side);
-  if (!wall) throw InvalidInput("this bone shows no notch: name the middle of the area to digitise");
-  const Eigen::Vector3d target = surface.closest_point(*wall).point_mm;
+  const TrialSeries series(mesh, options.series);
+  const Eigen::Vector3d& target = series.target_mm();
 
   RegistrationExperimentResult result;
   result.control_points = choose_control_points(mesh, target);
   std::vector<geometry::RigidTransform> found_from_true;
   for (int i = 0; i < options.trial_count; ++i) {
-    const std::uint64_t seed = options.seed * 100'003 + static_cast<std::uint64_t>(i);
-    const Trial trial = make_trial(mesh, surface, target, setting_of(options.noise), seed);
+    const Trial trial = series.make(i);
     const double start = processor_seconds();
-    const auto found = registration::register_curves(bone, trial.curves, {seed, options.use_marker_prior, target});
+    const auto found =
+        registration::register_curves(bone, trial.curves, {series.seed_of(i), options.use_marker_prior, target});
     TrialOutcome outcome;
     outcome.seconds = processor_seconds() - start;
     outcome.has_pose = found.has_pose;

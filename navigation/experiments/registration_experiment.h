@@ -5,22 +5,17 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <vector>
 
-#include "navigation/experiments/registration_trial.h"
+#include "navigation/experiments/trial_series.h"
 #include "navigation/registration/registration.h"
 
 namespace arthronaut::experiments {
 
 struct RegistrationExperimentOptions {
-  TrialNoise noise = TrialNoise::Dry;
+  TrialSeriesOptions series;
   int trial_count = 10;
-  std::uint64_t seed = 1;
   bool use_marker_prior = true;
-  bones::Side side = bones::Side::Right;
-  // Middle of the digitised area and the target; else the lateral wall of the femur's notch.
-  std::optional<Eigen::Vector3d> area_center_mm;
 };
 
 struct TrialOutcome {
