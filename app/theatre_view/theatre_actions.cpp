@@ -79,6 +79,15 @@ void TheatreView::add_actions(widgets::Actions& actions) {
                {},
                [this] { return choices_.overlay_on; },
                [this] { cycle_overlay(); }});
+  actions.add({"operate.undistort",
+               "Undistorted",
+               "The picture without the lens' distortion: what is straight is straight",
+               GLFW_KEY_U,
+               0,
+               false,
+               {},
+               [this] { return choices_.undistorts; },
+               [this] { choices_.undistorts = !choices_.undistorts; }});
   actions.add({"operate.bone",
                "Other bone",
                "Navigate on the other bone",
@@ -124,7 +133,7 @@ void TheatreView::draw_controls(const widgets::Ui& ui, const widgets::Rect& area
   row(area.y, {"operate.next", "operate.scratch", "operate.drill", "operate.video", "operate.medium",
                "operate.stop"});
   row(area.y + height + gap, {"operate.digitise", "operate.clear", "operate.register", "operate.overlay",
-                              "operate.bone", "operate.record"});
+                              "operate.undistort", "operate.bone", "operate.record"});
 }
 
 }  // namespace arthronaut::theatre_view

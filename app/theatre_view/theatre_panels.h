@@ -3,7 +3,7 @@
 
 #include "app/theatre_view/theatre_display.h"
 #include "app/widgets/scene_pane.h"
-#include "app/widgets/video_texture.h"
+#include "app/widgets/undistorted_texture.h"
 
 namespace arthronaut::theatre_view {
 
@@ -16,12 +16,19 @@ struct TheatreScreen {
   double planned_length_mm = 0;
   std::shared_ptr<const geometry::Surface> surface = nullptr;  // of the bone; may be null
   float overlay_opacity = 1;                                   // 0: off
+  bool undistorts = false;                                     // shows the picture without the lens' distortion
   std::string title = "", next_step = "";                      // "Simulated operation", "register"
+};
+
+// The live picture on the graphics card.
+struct VideoTextures {
+  widgets::VideoTexture raw;
+  widgets::UndistortedTexture undistorted;
 };
 
 // The picture, cut to the round view, with the plan drawn on it.
 void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen,
-                widgets::VideoTexture& texture);
+                VideoTextures& textures);
 void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen);
 void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen);
 // Markers, lens, registration, probe, record: each with its state and the reason.

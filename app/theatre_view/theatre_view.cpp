@@ -168,6 +168,7 @@ void TheatreView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
     screen.surface = model_->shared_surface(choices_.bone);
   }
   screen.overlay_opacity = overlay_opacity(now);
+  screen.undistorts = choices_.undistorts;
   screen.title = operation_ != nullptr ? operation_->title() : "";
   screen.next_step = next_step();
 
@@ -189,6 +190,7 @@ void TheatreView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("overlay", screen.overlay_opacity > 0.99F ? "full"
                                : screen.overlay_opacity > 0   ? "faded"
                                                               : "off");
+  ui.log.note_state("view", choices_.undistorts ? "undistorted" : "as it came");
   ui.log.note_state("next", screen.next_step);
   ui.log.note_state("registration", !status_.registration            ? "none"
                                     : status_.registration->reliable ? "reliable"

@@ -58,13 +58,14 @@ class TheatreView {
     std::size_t video = 0;
     bool overlay_on = true;
     double overlay_shown_at_s = 0;
+    bool undistorts = false;
   };
 
   const planning_view::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
   std::function<void()> wake_;
   widgets::ScenePane pane_;
-  widgets::VideoTexture video_;
+  VideoTextures video_;
   std::map<bones::BoneKind, BoneState> bones_;
   Choices choices_;
   std::unique_ptr<Operation> operation_;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/theatre_view/picture_placement.h"
 #include "app/theatre_view/theatre_panels.h"
 
 namespace arthronaut::theatre_view {
@@ -8,24 +9,6 @@ namespace arthronaut::theatre_view {
 namespace {
 
 using scene::OverlayLine;
-
-// The part of the picture that is shown: the square about the round view, inside the image.
-struct Crop {
-  float x = 0, y = 0, width = 1, height = 1;
-};
-
-Crop crop_of(const TheatreScreen& screen, int width, int height) {
-  const camera::Calibration& calibration = screen.options->calibration;
-  const float w = static_cast<float>(width), h = static_cast<float>(height);
-  if (calibration.boundary.radius_px <= 0) return {0, 0, w, h};
-  constexpr double kMargin = 1.03;  // the rim moves a little as the lens turns
-  const float half = static_cast<float>(kMargin * calibration.boundary.radius_px);
-  const float cx = static_cast<float>(calibration.boundary.center_px.x()),
-              cy = static_cast<float>(calibration.boundary.center_px.y());
-  const float x0 = std::max(cx - half, 0.F), x1 = std::min(cx + half, w);
-  const float y0 = std::max(cy - half, 0.F), y1 = std::min(cy + half, h);
-  return {x0, y0, std::max(x1 - x0, 1.F), std::max(y1 - y0, 1.F)};
-}
 
 struct LineStyle {
   ImU32 color;
@@ -49,19 +32,50 @@ LineStyle style_of(const OverlayLine& line, float opacity, float scale) {
   return {widgets::kText, scale};
 }
 
-void draw_overlay(ImDrawList& draw, const widgets::Rect& picture, const Crop& crop,
-                  const scene::PlanOverlay& overlay, float opacity, float scale) {
-  const float zoom = picture.width / crop.width;
+void draw_overlay(ImDrawList& draw, const PicturePlacement& placement, const scene::PlanOverlay& overlay,
+                  float opacity, float scale) {
   std::vector<ImVec2> points;
   for (const OverlayLine& line : overlay) {
     points.clear();
-    // A pixel's middle is half a pixel inside its edge.
     for (const Eigen::Vector2d& p : line.points_px)
-      points.push_back({picture.x + (static_cast<float>(p.x()) + 0.5F - crop.x) * zoom,
-                        picture.y + (static_cast<float>(p.y()) + 0.5F - crop.y) * zoom});
+      if (const auto at = placement.on_screen(p)) points.push_back(*at);
     const LineStyle style = style_of(line, opacity, scale);
     draw.AddPolyline(points.data(), static_cast<int>(points.size()), style.color, 0, style.width);
   }
+}
+
+// The picture fills as much of the area as its shape allows; returns where its pixels stand.
+struct DrawnPicture {
+  widgets::Rect area;
+  PicturePlacement placement;
+};
+
+DrawnPicture draw_picture(const widgets::Rect& area, const TheatreScreen& screen, VideoTextures& textures) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const LiveFrame& live = *screen.status->live;
+  const ImU32 tint =
+      screen.display.is_live ? IM_COL32_WHITE : IM_COL32(120, 120, 120, 255);  // not live: visibly dimmed
+  const auto put = [&](std::uint32_t texture, const widgets::Rect& at, const ImVec2& uv_min, const ImVec2& uv_max) {
+    draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), at.min(), at.max(), uv_min,
+                  uv_max, tint);
+  };
+  textures.raw.upload(live.picture);
+  if (screen.undistorts) {
+    // Whole pixels: the texture is drawn one to one.
+    widgets::Rect square = widgets::fitted(area, 1);
+    square = {std::floor(square.x), std::floor(square.y), std::floor(square.width), std::floor(square.width)};
+    const int size_px = std::max(static_cast<int>(square.width), 1);
+    textures.undistorted.draw(live.picture, textures.raw, live.result.camera, size_px);
+    put(textures.undistorted.texture(), square, {0, 0}, {1, 1});
+    return {square, {square, live.result.camera, textures.undistorted.view()}};
+  }
+  const float w = static_cast<float>(textures.raw.width()), h = static_cast<float>(textures.raw.height());
+  const widgets::Rect part =
+      shown_part(screen.options->calibration, textures.raw.width(), textures.raw.height());
+  const widgets::Rect picture = widgets::fitted(area, part.width / part.height);
+  put(textures.raw.texture(), picture, {part.x / w, part.y / h},
+      {(part.x + part.width) / w, (part.y + part.height) / h});
+  return {picture, {picture, part}};
 }
 
 void draw_reason(const widgets::Ui& ui, const widgets::Rect& area, const TheatreDisplay& display) {
@@ -78,7 +92,7 @@ void draw_reason(const widgets::Ui& ui, const widgets::Rect& area, const Theatre
 }  // namespace
 
 void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen,
-                widgets::VideoTexture& texture) {
+                VideoTextures& textures) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddRectFilled(area.min(), area.max(), IM_COL32(0, 0, 0, 255), ui.theme.px(6));
   ui.log.note("operate.video_panel", area.min(), area.max());
@@ -91,19 +105,14 @@ void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const TheatreS
                            display.detail);
     return;
   }
-  texture.upload(screen.status->live->picture);
-  const Crop crop = crop_of(screen, texture.width(), texture.height());
-  const widgets::Rect picture = widgets::fitted(area, crop.width / crop.height);
-  const float w = static_cast<float>(texture.width()), h = static_cast<float>(texture.height());
-  const ImU32 tint =
-      display.is_live ? IM_COL32_WHITE : IM_COL32(120, 120, 120, 255);  // not live: visibly dimmed
-  draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture.texture())), picture.min(),
-                picture.max(), {crop.x / w, crop.y / h},
-                {(crop.x + crop.width) / w, (crop.y + crop.height) / h}, tint);
-  draw.PushClipRect(picture.min(), picture.max(), true);
+  const DrawnPicture picture = draw_picture(area, screen, textures);
+  draw.PushClipRect(picture.area.min(), picture.area.max(), true);
   if (display.overlay_is_valid && screen.overlay_opacity > 0)
-    draw_overlay(draw, picture, crop, screen.status->live->overlay, screen.overlay_opacity, ui.theme.scale);
+    draw_overlay(draw, picture.placement, screen.status->live->overlay, screen.overlay_opacity, ui.theme.scale);
   draw.PopClipRect();
+  if (screen.undistorts)
+    draw.AddText(ui.theme.strong, ui.theme.strong->FontSize, {area.x + ui.theme.px(14), area.y + ui.theme.px(9)},
+                 widgets::kQuietText, "Undistorted");
   if (!display.guidance_is_valid) draw_reason(ui, area, display);
 }
 
