@@ -144,17 +144,15 @@ class Demo {
       camera::gray_from(*frame, gray);
       auto picture = calibration::observe_picture("still " + std::to_string(frame->index),
                                                   {gray.data(), frame->width, frame->height, frame->width});
-      // As in theatre: a still without board or mark is not used.
-      if (picture.board.found() && picture.lens.mark == lens::MarkState::Found) {
+      // As in theatre: a still without a board is not used. One without a mark is: the others give its lens angle.
+      if (picture.board.found()) {
         pictures.push_back(std::move(picture));
       } else {
-        context_.say("          " + picture.name + " is left out: " +
-                     (picture.board.found() ? "lens mark " + std::string(lens::to_text(picture.lens.mark))
-                                            : picture.board.reason));
+        context_.say("          " + picture.name + " is left out: " + picture.board.reason);
       }
     }
     if (pictures.size() < 3) {
-      context_.say_unreliable("the calibration", {"fewer than three stills show board and lens mark"});
+      context_.say_unreliable("the calibration", {"fewer than three stills show a board"});
       return false;
     }
     calibration::CalibrationOptions options;
@@ -165,6 +163,7 @@ class Demo {
       context_.say_unreliable("the calibration", summary.reasons);
       return false;
     }
+    for (const std::string& note : summary.notes) context_.say("          " + note);
     camera::write_camera_file(cases::camera_file(options_.case_folder), summary.record);
     navigation_.pipeline.calibration = summary.record.calibration;
     const camera::Calibration& found = summary.record.calibration;

@@ -114,16 +114,22 @@ void set_constant(ceres::Problem& problem, Blocks& blocks, const AdjustmentOptio
     for (double& angle : blocks.angles) problem.SetParameterBlockConstant(&angle);
 }
 
-Eigen::MatrixXd covariance_of(ceres::Problem& problem, const Blocks& blocks) {
+void compute_covariance(ceres::Problem& problem, const Blocks& blocks, AdjustmentResult& result) {
   ceres::Covariance::Options options;
   options.algorithm_type = ceres::DENSE_SVD;
   options.null_space_rank = -1;
   ceres::Covariance covariance(options);
-  const std::vector<std::pair<const double*, const double*>> wanted = {{blocks.lens, blocks.lens}};
-  if (!covariance.Compute(wanted, &problem)) return {};
+  std::vector<std::pair<const double*, const double*>> wanted = {{blocks.lens, blocks.lens}};
+  for (const double& angle : blocks.angles) wanted.emplace_back(&angle, &angle);
+  if (!covariance.Compute(wanted, &problem)) return;
   Eigen::Matrix<double, 6, 6, Eigen::RowMajor> block;
-  if (!covariance.GetCovarianceBlock(blocks.lens, blocks.lens, block.data())) return {};
-  return block;
+  if (!covariance.GetCovarianceBlock(blocks.lens, blocks.lens, block.data())) return;
+  result.covariance = block;
+  for (const double& angle : blocks.angles) {
+    double variance = 0;
+    covariance.GetCovarianceBlock(&angle, &angle, &variance);
+    result.lens_angle_sigma_rad.push_back(std::sqrt(std::max(0.0, variance)));
+  }
 }
 
 // The scale of the corners' errors against their sigmas: from the median length, which outliers do not move.
@@ -183,6 +189,8 @@ AdjustmentResult adjust_at_scale(std::span<const Sighting> sightings, const Esti
   ceres::Solve(solver, &problem, &summary);
   if (!summary.IsSolutionUsable()) return result;
   result.converged = summary.termination_type == ceres::CONVERGENCE;
+  result.corner_scale = scale;
+  result.cost = summary.final_cost;
   blocks.store(result.estimate);
 
   double sum = 0;
@@ -197,7 +205,7 @@ AdjustmentResult adjust_at_scale(std::span<const Sighting> sightings, const Esti
     }
   }
   result.rms_px = std::sqrt(sum / static_cast<double>(corner_count));
-  if (!options.fix_intrinsics) result.covariance = covariance_of(problem, blocks);
+  if (options.with_covariance) compute_covariance(problem, blocks, result);
   return result;
 }
 
@@ -205,7 +213,10 @@ AdjustmentResult adjust_at_scale(std::span<const Sighting> sightings, const Esti
 
 AdjustmentResult adjust(std::span<const Sighting> sightings, const Estimate& start,
                         const AdjustmentOptions& options) {
-  const AdjustmentResult first = adjust_at_scale(sightings, start, options, 1.0);
+  if (options.corner_scale > 0) return adjust_at_scale(sightings, start, options, options.corner_scale);
+  AdjustmentOptions without = options;
+  without.with_covariance = false;
+  const AdjustmentResult first = adjust_at_scale(sightings, start, without, 1.0);
   if (first.rms_px < 0) return first;
   // Once more with the corners' true noise: it sets what counts as an outlier, the weight of corners against
   // mark and circle, and the covariance.

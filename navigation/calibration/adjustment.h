@@ -34,15 +34,22 @@ struct Estimate {
 struct AdjustmentOptions {
   bool fix_intrinsics = false;  // poses and lens angles alone
   bool turns = true;            // false: no lens angle is known, everything stands still
+  // The corners' noise over their sigmas. 0: found from the residuals, in a second pass.
+  double corner_scale = 0;
+  bool with_covariance = false;  // costs more than the adjustment
 };
 
 struct AdjustmentResult {
   bool converged = false;
   Estimate estimate;
-  double rms_px = -1;                                      // length of the residual vectors over all corners
+  double rms_px = -1;       // length of the residual vectors over all corners
+  double corner_scale = 0;  // that it was made with
+  double cost = 0;          // what was made least: half the sum of squares, in sigmas; outliers count less
   std::vector<std::vector<Eigen::Vector2d>> residuals_px;  // seen - expected, by picture
-  // Of (focal_px, xi, principal x, y, rotation centre x, y); scaled by the residuals; 0x0 when not computed.
+  // Of (focal_px, xi, principal x, y, rotation centre x, y); scaled by the residuals; 0x0 when not asked for
+  // or when the pictures leave it open.
   Eigen::MatrixXd covariance;
+  std::vector<double> lens_angle_sigma_rad;  // one a picture; empty with the covariance
 };
 
 [[nodiscard]] AdjustmentResult adjust(std::span<const Sighting> sightings, const Estimate& start,

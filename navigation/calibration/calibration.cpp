@@ -2,19 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <ctime>
-#include <numeric>
 
 #include "navigation/calibration/adjustment.h"
-#include "navigation/calibration/closed_form.h"
+#include "navigation/calibration/joint_solution.h"
 #include "navigation/calibration/verdict.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::calibration {
 namespace {
-
-// Below this the centre of rotation can't be told from the pictures and stays in the middle of the view.
-constexpr double kLeastMeasurableTurn_deg = 15;
 
 void check_contract(std::span<const CalibrationPicture> pictures, const CalibrationOptions& options) {
   if (!(options.square_mm > 0) || !std::isfinite(options.square_mm))
@@ -68,7 +65,7 @@ double median_radius_px(std::span<const CalibrationPicture> pictures) {
 }
 
 // Each picture in turn against the camera that the others give: RMS over all their corners, -1 when that
-// fails.
+// fails. A picture without which the rest would not tell the centre of rotation is not left out.
 double leave_one_out(std::span<const Sighting> sightings, const Estimate& estimate,
                      const AdjustmentOptions& options) {
   double sum = 0;
@@ -84,6 +81,7 @@ double leave_one_out(std::span<const Sighting> sightings, const Estimate& estima
       start.lens_angle_rad.push_back(estimate.lens_angle_rad[i]);
       start.camera_from_board.push_back(estimate.camera_from_board[i]);
     }
+    if (options.turns && measured_turn_deg(rest) < kLeastMeasurableTurn_deg) continue;
     const AdjustmentResult without = adjust(rest, start, options);
     of_one = without.estimate;
     of_one.lens_angle_rad = {estimate.lens_angle_rad[out]};
@@ -96,18 +94,44 @@ double leave_one_out(std::span<const Sighting> sightings, const Estimate& estima
     sum += held.rms_px * held.rms_px * static_cast<double>(corners);
     count += corners;
   }
-  return std::sqrt(sum / static_cast<double>(count));
+  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : -1;
 }
 
-// The widest difference of two mark angles; 0 when one of them is not known.
-double measured_turn_deg(std::span<const Sighting> sightings) {
-  double widest = 0;
-  for (const Sighting& a : sightings)
-    for (const Sighting& b : sightings) {
-      if (!a.has_angle || !b.has_angle) return 0;
-      widest = std::max(widest, std::abs(std::remainder(a.mark_angle_deg - b.mark_angle_deg, 360.0)));
-    }
-  return widest;
+// Where the optical axis meets each board; the corners' own mean is drawn far away by boards that run to the
+// horizon.
+double median_distance_mm(const CalibrationSummary& summary) {
+  std::vector<double> distances;
+  for (const auto& picture : summary.pictures) {
+    const Eigen::Vector3d normal = picture.camera_from_board.rotate(Eigen::Vector3d::UnitZ());
+    distances.push_back(std::abs(normal.dot(picture.camera_from_board.translation_mm) / normal.z()));
+  }
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return *middle;
+}
+
+// A picture whose mark was not found, or not believed, is named with the lens angle that the others give it.
+std::vector<std::string> notes_on(std::span<const CalibrationPicture> pictures, const JointSolution& joint) {
+  std::vector<std::string> notes;
+  if (!joint.options.turns) return notes;
+  const AdjustmentResult& result = joint.result;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    if (joint.sightings[i].has_angle) continue;
+    const bool was_seen = pictures[i].lens.mark == lens::MarkState::Found;
+    const double angle_deg = std::fmod(result.estimate.reference_mark_angle_deg + 720 +
+                                           geometry::deg_from_rad(result.estimate.lens_angle_rad[i]),
+                                       360.0);
+    char text[160];
+    std::snprintf(
+        text, sizeof text, "; its angle (%.0f degrees, +- %.1f) follows from the other pictures", angle_deg,
+        i < result.lens_angle_sigma_rad.size() ? geometry::deg_from_rad(result.lens_angle_sigma_rad[i])
+                                               : 180.0);
+    notes.push_back(pictures[i].name + ": lens mark: " +
+                    (was_seen ? "what looks like it contradicts the other pictures"
+                              : std::string(lens::to_text(pictures[i].lens.mark))) +
+                    text);
+  }
+  return notes;
 }
 
 double rms_of(const std::vector<Eigen::Vector2d>& residuals_px) {
@@ -141,16 +165,8 @@ CalibrationSummary calibrate(std::span<const CalibrationPicture> pictures,
     if (sightings.back().pixels.size() < 16)
       throw InvalidInput(picture.name + ": fewer than 16 corners of the board lie inside the round view");
   }
-  AdjustmentOptions adjustment;
-  adjustment.turns = measured_turn_deg(sightings) > kLeastMeasurableTurn_deg;
-
-  const std::vector<Estimate> starts = closed_form_starts(sightings, pictures.front().size_px);
-  AdjustmentResult best;
-  for (const Estimate& start : starts) {
-    AdjustmentResult result = adjust(sightings, start, adjustment);
-    if (result.rms_px >= 0 && (best.rms_px < 0 || result.rms_px < best.rms_px)) best = std::move(result);
-    if (best.rms_px >= 0 && best.rms_px < 0.5) break;
-  }
+  const JointSolution joint = solve_jointly(sightings, pictures.front().size_px);
+  const AdjustmentResult& best = joint.result;
   if (best.rms_px < 0) {
     summary.outcome = CalibrationSummary::Outcome::Failed;
     summary.reasons.push_back("no camera explains the pictures; are they of one flat checkerboard?");
@@ -168,7 +184,7 @@ CalibrationSummary calibrate(std::span<const CalibrationPicture> pictures,
   calibration.refractive_index = options.refractive_index;
   calibration.boundary = {found.circle_center_px, median_radius_px(pictures)};
   summary.record.covariance = best.covariance;
-  if (!adjustment.turns && best.covariance.rows() == 6) {
+  if (!joint.options.turns && best.covariance.rows() == 6) {
     const double guess_px = 0.03 * calibration.boundary.radius_px;
     summary.record.covariance.bottomRightCorner<2, 2>() = guess_px * guess_px * Eigen::Matrix2d::Identity();
   }
@@ -182,10 +198,14 @@ CalibrationSummary calibrate(std::span<const CalibrationPicture> pictures,
         geometry::angle_between_rad(pose.rotate(Eigen::Vector3d::UnitZ()), Eigen::Vector3d::UnitZ());
     const double tilt_deg = geometry::deg_from_rad(std::min(tilt_rad, geometry::kPi - tilt_rad));
     summary.pictures.push_back({pictures[i].name, rms_of(best.residuals_px[i]), tilt_deg,
-                                geometry::deg_from_rad(found.lens_angle_rad[i]), pose, best.residuals_px[i]});
+                                geometry::deg_from_rad(found.lens_angle_rad[i]), joint.sightings[i].has_angle,
+                                pose, best.residuals_px[i]});
   }
-  if (options.leave_one_out) summary.leave_one_out_rms_px = leave_one_out(sightings, found, adjustment);
-  summary.reasons = reasons_against(summary, sightings, adjustment.turns);
+  if (options.leave_one_out)
+    summary.leave_one_out_rms_px = leave_one_out(joint.sightings, found, joint.options);
+  summary.distance_mm = median_distance_mm(summary);
+  summary.notes = notes_on(pictures, joint);
+  summary.reasons = reasons_against(summary, joint.sightings, joint.options.turns);
   summary.outcome =
       summary.reasons.empty() ? CalibrationSummary::Outcome::Ok : CalibrationSummary::Outcome::Unreliable;
   return summary;

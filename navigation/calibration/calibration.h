@@ -49,14 +49,19 @@ struct CalibrationOptions {
 struct CalibrationSummary {
   enum class Outcome { NotRun, Ok, Unreliable, Failed } outcome = Outcome::NotRun;
   std::vector<std::string> reasons;  // why it is unreliable or failed, in plain words
+  // What else is worth knowing though it does no harm: a picture without a mark, with the lens angle that the
+  // others give it.
+  std::vector<std::string> notes;
   camera::CalibrationRecord record;  // meaningful unless Failed
   double rms_px = -1;                // over all corners
   double leave_one_out_rms_px = -1;  // -1 when not computed
+  double distance_mm = -1;           // of the boards from the lens along its axis, in the median
   struct Picture {
     std::string name;
     double rms_px = -1;
     double tilt_deg = 0;
     double lens_angle_deg = 0;
+    bool mark_is_used = false;  // else lens_angle_deg follows from the other pictures
     geometry::RigidTransform camera_from_board;
     std::vector<Eigen::Vector2d> residuals_px;  // in the order of corners_used()
   };

@@ -81,26 +81,56 @@ std::optional<Eigen::Vector2d> center_of_turning(std::span<const Eigen::Vector2d
   return Eigen::Vector2d(solution.head<2>());
 }
 
-std::vector<Estimate> closed_form_starts(std::span<const Sighting> sightings,
-                                         const Eigen::Vector2i& size_px) {
-  Estimate shared;
-  const bool turns =
-      std::all_of(sightings.begin(), sightings.end(), [](const Sighting& s) { return s.has_angle; });
-  shared.reference_mark_angle_deg = turns ? sightings.front().mark_angle_deg : 0;
-  std::vector<Eigen::Vector2d> circles;
-  for (const Sighting& seen : sightings) {
-    shared.lens_angle_rad.push_back(turns ? geometry::rad_from_deg(std::remainder(
-                                                seen.mark_angle_deg - shared.reference_mark_angle_deg, 360.0))
-                                          : 0.0);
-    circles.push_back(seen.has_circle ? seen.circle_center_px
+namespace {
+
+// Where the view's centre stands in each picture; the image's middle stands in for it.
+std::vector<Eigen::Vector2d> circle_centers(std::span<const Sighting> sightings,
+                                            const Eigen::Vector2i& size_px) {
+  std::vector<Eigen::Vector2d> centers;
+  for (const Sighting& seen : sightings)
+    centers.push_back(seen.has_circle ? seen.circle_center_px
                                       : Eigen::Vector2d(0.5 * (size_px.cast<double>().array() - 1)));
+  return centers;
+}
+
+// Lens angles, centre of rotation and the circle at lens angle 0, from marks and circles alone.
+Estimate turning_of(std::span<const Sighting> sightings, const std::vector<Eigen::Vector2d>& circles,
+                    bool turns) {
+  Estimate shared;
+  shared.lens_angle_rad.assign(sightings.size(), 0.0);
+  shared.rotation_center_px.setZero();
+  for (const auto& c : circles) shared.rotation_center_px += c / static_cast<double>(circles.size());
+  shared.circle_center_px = shared.rotation_center_px;
+  if (!turns) return shared;
+  const auto first =
+      std::find_if(sightings.begin(), sightings.end(), [](const Sighting& s) { return s.has_angle; });
+  shared.reference_mark_angle_deg = first->mark_angle_deg;
+  std::vector<Eigen::Vector2d> places;
+  std::vector<double> angles;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    if (!sightings[i].has_angle) continue;
+    shared.lens_angle_rad[i] = geometry::rad_from_deg(
+        std::remainder(sightings[i].mark_angle_deg - shared.reference_mark_angle_deg, 360.0));
+    places.push_back(circles[i]);
+    angles.push_back(shared.lens_angle_rad[i]);
   }
-  const auto center = turns ? center_of_turning(circles, shared.lens_angle_rad) : std::nullopt;
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const auto& c : circles) mean += c / static_cast<double>(circles.size());
-  shared.rotation_center_px = center.value_or(mean);
-  shared.circle_center_px =
-      turned(circles.front(), shared.rotation_center_px, -shared.lens_angle_rad.front());
+  shared.rotation_center_px = center_of_turning(places, angles).value_or(shared.rotation_center_px);
+  shared.circle_center_px = places.front();
+  const Eigen::Vector2d from = shared.circle_center_px - shared.rotation_center_px;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    if (sightings[i].has_angle) continue;
+    const Eigen::Vector2d to = circles[i] - shared.rotation_center_px;
+    shared.lens_angle_rad[i] = std::atan2(from.x() * to.y() - from.y() * to.x(), from.dot(to));
+  }
+  return shared;
+}
+
+}  // namespace
+
+std::vector<Estimate> closed_form_starts(std::span<const Sighting> sightings, const Eigen::Vector2i& size_px,
+                                         bool turns) {
+  const std::vector<Eigen::Vector2d> circles = circle_centers(sightings, size_px);
+  Estimate shared = turning_of(sightings, circles, turns);
   shared.principal_point_px = shared.circle_center_px;
 
   std::vector<Estimate> starts;

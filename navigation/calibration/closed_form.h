@@ -12,9 +12,10 @@
 namespace arthronaut::calibration {
 
 // Several, the likeliest first: with the closed form's distortion, then with assumed ones for pictures that
-// do not hold it (little distortion, boards that face the lens).
+// do not hold it (little distortion, boards that face the lens). `turns`: the lens angles are those of the
+// marks; a picture without one gets the angle at which its circle stands on its way about the centre.
 [[nodiscard]] std::vector<Estimate> closed_form_starts(std::span<const Sighting> sightings,
-                                                       const Eigen::Vector2i& size_px);
+                                                       const Eigen::Vector2i& size_px, bool turns);
 
 // The point about which these places turn by these angles, by least squares; nullopt when they hardly turn.
 [[nodiscard]] std::optional<Eigen::Vector2d> center_of_turning(std::span<const Eigen::Vector2d> places,

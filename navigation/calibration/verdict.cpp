@@ -13,7 +13,8 @@ std::string text(const char* format, double a, double b = 0) {
   return buffer;
 }
 
-// The largest difference between two of the lens angles, degrees.
+// The largest difference between two of the lens angles, degrees. Those that marks did not give count too:
+// how well they are known is in the covariance of the centre of rotation.
 double widest_turn_deg(const CalibrationSummary& summary) {
   double widest = 0;
   for (const auto& a : summary.pictures)
@@ -34,34 +35,20 @@ double reach_share(const CalibrationSummary& summary, std::span<const Sighting> 
   return *at / c.boundary.radius_px;
 }
 
-// Where the optical axis meets each board; the corners' own mean is drawn far away by boards that run to the
-// horizon.
-double median_distance_mm(const CalibrationSummary& summary) {
-  std::vector<double> distances;
-  for (const auto& picture : summary.pictures) {
-    const Eigen::Vector3d normal = picture.camera_from_board.rotate(Eigen::Vector3d::UnitZ());
-    distances.push_back(std::abs(normal.dot(picture.camera_from_board.translation_mm) / normal.z()));
-  }
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
-}
-
 }  // namespace
 
 std::vector<std::string> reasons_against(const CalibrationSummary& summary,
                                          std::span<const Sighting> sightings, bool turns) {
   std::vector<std::string> reasons;
   const camera::Calibration& c = summary.record.calibration;
-  for (std::size_t i = 0; i < sightings.size(); ++i) {
-    if (!sightings[i].has_circle)
-      reasons.push_back(summary.pictures[i].name + ": the round image border was not found");
-    else if (!sightings[i].has_angle)
-      reasons.push_back(summary.pictures[i].name + ": the lens mark was not found");
-  }
-  const bool has_angles =
-      std::all_of(sightings.begin(), sightings.end(), [](const Sighting& s) { return s.has_angle; });
-  if (!has_angles) {
+  const long marked =
+      std::count_if(sightings.begin(), sightings.end(), [](const Sighting& s) { return s.has_angle; });
+  if (marked < kFewestMarks) {
+    for (std::size_t i = 0; i < sightings.size(); ++i)
+      if (!sightings[i].has_angle)
+        reasons.push_back(summary.pictures[i].name + (sightings[i].has_circle
+                                                          ? ": the lens mark was not found"
+                                                          : ": the round image border was not found"));
     reasons.push_back("the lens angles are not known, so the centre of rotation is not");
   } else if (const double turn = widest_turn_deg(summary); turn < kLeastTurn_deg) {
     reasons.push_back(
@@ -77,7 +64,7 @@ std::vector<std::string> reasons_against(const CalibrationSummary& summary,
         text("all boards face the lens (tilted by %.0f degrees at most, needs %.0f), so the focal length is "
              "not known",
              tilt_deg, kLeastTilt_deg));
-  if (const double mm = median_distance_mm(summary); mm < kNearest_mm || mm > kFurthest_mm)
+  if (const double mm = summary.distance_mm; mm < kNearest_mm || mm > kFurthest_mm)
     reasons.push_back(text(
         "the boards would stand %.0f mm from the lens, which no arthroscope sees sharply: is the side of "
         "a square right?",

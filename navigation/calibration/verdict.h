@@ -14,9 +14,12 @@ namespace arthronaut::calibration {
 // focus on a board that fills its view.
 inline constexpr double kMostRms_px = 0.5;
 inline constexpr double kMostLeaveOneOutRms_px = 0.7;
-inline constexpr double kMostFocalSigma = 0.003;             // of the focal length
-inline constexpr double kMostCenterSigma_px = 1.5;           // of the rotation centre and the principal point
-inline constexpr double kLeastTilt_deg = 12;                 // of the most tilted board
+inline constexpr double kMostFocalSigma = 0.003;    // of the focal length
+inline constexpr double kMostCenterSigma_px = 1.5;  // of the rotation centre and the principal point
+inline constexpr double kLeastTilt_deg = 12;        // of the most tilted board
+// Pictures that show the lens mark. Two of them at different lens angles fix the centre of rotation, and with
+// it the angles of all others; how well is in the covariance, which has its own limits.
+inline constexpr long kFewestMarks = 2;
 inline constexpr double kLeastTurn_deg = 60;                 // between the two most different lens angles
 inline constexpr double kNearest_mm = 9, kFurthest_mm = 30;  // of the board from the lens
 

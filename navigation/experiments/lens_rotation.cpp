@@ -75,9 +75,8 @@ camera::Calibration calibrate_on_stills(const simulator::SimulationOptions& opti
     camera::gray_from(*frame, gray);
     auto picture = calibration::observe_picture("still " + std::to_string(frame->index),
                                                 {gray.data(), frame->width, frame->height, frame->width});
-    // A still on which board or mark is not found would be taken again.
-    if (picture.board.found() && picture.lens.mark == lens::MarkState::Found)
-      pictures.push_back(std::move(picture));
+    // A still on which the board is not found would be taken again.
+    if (picture.board.found()) pictures.push_back(std::move(picture));
   }
   calibration::CalibrationOptions calibration_options;
   calibration_options.square_mm = options.square_mm;
