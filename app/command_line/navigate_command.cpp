@@ -129,7 +129,8 @@ void navigate(Context& context, const NavigateArguments& arguments) {
   if (mesh == knee.bones.end()) {
     throw InvalidInput(arguments.case_folder, "", "the case has no " + arguments.bone);
   }
-  const registration::PreparedBone bone(mesh->second.mesh);
+  const registration::PreparedBone bone(mesh->second.mesh,
+                                        cases::prepared_bone_file(arguments.case_folder, options.pipeline.bone));
   options.bone = &bone;
   const auto source = sources::open_video(arguments.video);
   context.say("working medium: " + camera::medium_to_text(options.pipeline.refractive_index));

@@ -5,6 +5,7 @@
 #include "app/command_line/command.h"
 #include "navigation/registration/registration.h"
 #include "planning/bones/mesh_file.h"
+#include "planning/cases/case.h"
 
 namespace arthronaut::command_line {
 
@@ -18,6 +19,17 @@ struct RegisterArguments {
   std::uint64_t seed = 1;
 };
 
+// A mesh that lies in a case is kept ready in the case's cache.
+registration::PreparedBone prepare(const geometry::TriangleMesh& mesh, const std::filesystem::path& mesh_file) {
+  const std::filesystem::path folder = mesh_file.parent_path();
+  for (const bones::BoneKind kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
+    if (std::filesystem::exists(folder / "case.json") && mesh_file == cases::mesh_file(folder, kind)) {
+      return registration::PreparedBone(mesh, cases::prepared_bone_file(folder, kind));
+    }
+  }
+  return registration::PreparedBone(mesh);
+}
+
 void register_bone(Context& context, const RegisterArguments& arguments) {
   bones::MeshFileOptions mesh_options;
   if (!arguments.space.empty()) mesh_options.space = bones::space_from_text(arguments.space);
@@ -29,7 +41,7 @@ void register_bone(Context& context, const RegisterArguments& arguments) {
   options.seed = arguments.seed;
   options.use_marker_prior = !arguments.no_marker_prior;
   if (arguments.target_option->count() > 0) options.target_in_bone_mm = arguments.target;
-  const registration::PreparedBone bone(mesh);
+  const registration::PreparedBone bone = prepare(mesh, arguments.bone);
   const auto summary = registration::register_curves(bone, curves, options);
   registration::write_registration_file(arguments.output, summary);
   if (summary.has_pose && arguments.output != "-") {

@@ -46,7 +46,7 @@ void replay(Context& context, const ReplayArguments& arguments) {
   recording::ReplayOptions options;
   std::optional<registration::PreparedBone> bone;
   if (const auto found = knee.bones.find(session.header().bone); found != knee.bones.end()) {
-    options.bone = &bone.emplace(found->second.mesh);
+    options.bone = &bone.emplace(found->second.mesh, cases::prepared_bone_file(arguments.case_folder, found->first));
   }
   recording::ReplaySummary summary;
   {

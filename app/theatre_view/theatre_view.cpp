@@ -55,8 +55,11 @@ void TheatreView::prepare_bone() {
   BoneState& bone = bones_[choices_.bone];
   if (!bone.prepared.valid()) {
     const geometry::TriangleMesh& mesh = model_->knee().bones.at(choices_.bone).mesh;
-    bone.prepared = std::async(std::launch::async, [mesh]() -> PreparedBonePtr {
-                      return std::make_shared<registration::PreparedBone>(mesh);
+    const auto cache = case_folder_.empty() ? std::filesystem::path()
+                                            : cases::prepared_bone_file(case_folder_, choices_.bone);
+    bone.prepared = std::async(std::launch::async, [mesh, cache]() -> PreparedBonePtr {
+                      return cache.empty() ? std::make_shared<registration::PreparedBone>(mesh)
+                                           : std::make_shared<registration::PreparedBone>(mesh, cache);
                     }).share();
   }
 }

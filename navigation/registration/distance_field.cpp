@@ -149,6 +149,26 @@ DistanceField::DistanceField(const TriangleMesh& mesh, const DistanceFieldOption
   }
 }
 
+DistanceField::DistanceField(ByteReader& bytes) {
+  for (int axis = 0; axis < 3; ++axis) origin_mm_[axis] = bytes.read<double>();
+  for (int axis = 0; axis < 3; ++axis) size_[axis] = bytes.read<std::int32_t>();
+  spacing_mm_ = bytes.read<double>();
+  band_mm_ = bytes.read<double>();
+  nodes_ = bytes.read_many<std::int16_t>();
+  const bool is_grid = (size_.array() > 1).all() && spacing_mm_ > 0 && band_mm_ > 0;
+  if (!is_grid || std::uint64_t{nodes_.size()} != static_cast<std::uint64_t>(size_.cast<std::int64_t>().prod())) {
+    throw InvalidInput("no distance field");
+  }
+}
+
+void DistanceField::write_to(ByteWriter& bytes) const {
+  for (int axis = 0; axis < 3; ++axis) bytes.write(origin_mm_[axis]);
+  for (int axis = 0; axis < 3; ++axis) bytes.write(std::int32_t{size_[axis]});
+  bytes.write(spacing_mm_);
+  bytes.write(band_mm_);
+  bytes.write(nodes_);
+}
+
 DistanceField::Sample DistanceField::sample(const Eigen::Vector3d& point_mm) const {
   const Eigen::Vector3d cell = (point_mm - origin_mm_) / spacing_mm_;
   const Eigen::Vector3d floor = cell.array().floor();

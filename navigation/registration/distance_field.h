@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "navigation/registration/byte_stream.h"
 #include "planning/geometry/triangle_mesh.h"
 
 namespace arthronaut::registration {
@@ -21,6 +22,10 @@ class DistanceField {
   // The sign at each node is that of the angle-weighted pseudo-normal of the nearest face, edge or vertex, which is right
   // for closed, outward oriented meshes. Throws InvalidInput when the mesh is empty or holds a number that is not finite.
   explicit DistanceField(const geometry::TriangleMesh& mesh, const DistanceFieldOptions& options = {});
+
+  // As written by write_to. Throws InvalidInput when the bytes are not such.
+  explicit DistanceField(ByteReader& bytes);
+  void write_to(ByteWriter& bytes) const;
 
   [[nodiscard]] double spacing_mm() const { return spacing_mm_; }
   [[nodiscard]] const Eigen::Vector3d& origin_mm() const { return origin_mm_; }  // the first node

@@ -7,6 +7,8 @@
 #include <random>
 #include <unordered_map>
 
+#include "planning/geometry/error.h"
+
 namespace arthronaut::registration {
 
 namespace {
@@ -136,6 +138,31 @@ PairTable::PairTable(const geometry::TriangleMesh& mesh, const PairTableOptions&
     spacing_mm *= std::max(1.05, std::pow(excess, 0.25) * 1.02);  // the count falls with the fourth power
   }
   build_pairs();
+}
+
+PairTable::PairTable(ByteReader& bytes) : options_(bytes.read<PairTableOptions>()) {
+  const auto numbers = bytes.read_many<std::array<float, 6>>();
+  for (const auto& n : numbers) samples_.push_back({{n[0], n[1], n[2]}, {n[3], n[4], n[5]}});
+  distance_bin_count_ = bytes.read<std::int32_t>();
+  pairs_ = bytes.read_many<Pair>();
+  cell_start_ = bytes.read_many<std::uint32_t>();
+  if (cell_start_.size() != static_cast<std::size_t>(distance_bin_count_) * kCosineBins * kCosineBins + 1 ||
+      cell_start_.back() != pairs_.size()) {
+    throw InvalidInput("no pair table");
+  }
+}
+
+void PairTable::write_to(ByteWriter& bytes) const {
+  bytes.write(options_);
+  std::vector<std::array<float, 6>> numbers;
+  for (const SurfaceSample& sample : samples_) {
+    const Eigen::Vector3f &p = sample.point_mm, &n = sample.normal;
+    numbers.push_back({p.x(), p.y(), p.z(), n.x(), n.y(), n.z()});
+  }
+  bytes.write(numbers);
+  bytes.write(std::int32_t{distance_bin_count_});
+  bytes.write(pairs_);
+  bytes.write(cell_start_);
 }
 
 std::size_t PairTable::count_pairs() const {

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "navigation/registration/byte_stream.h"
 #include "planning/geometry/triangle_mesh.h"
 
 namespace arthronaut::registration {
@@ -42,6 +43,10 @@ struct PairTableOptions {
 class PairTable {
  public:
   PairTable(const geometry::TriangleMesh& mesh, const PairTableOptions& options = {});
+
+  // As written by write_to. Throws InvalidInput when the bytes are not such.
+  explicit PairTable(ByteReader& bytes);
+  void write_to(ByteWriter& bytes) const;
 
   [[nodiscard]] const std::vector<SurfaceSample>& samples() const { return samples_; }
   [[nodiscard]] double min_distance_mm() const { return options_.min_distance_mm; }

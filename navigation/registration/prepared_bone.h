@@ -1,6 +1,8 @@
 // What PreparedBone holds.
 #pragma once
 
+#include <utility>
+
 #include "navigation/registration/distance_field.h"
 #include "navigation/registration/pair_table.h"
 #include "navigation/registration/registration.h"
@@ -9,8 +11,10 @@
 namespace arthronaut::registration {
 
 struct PreparedBone::Data {
-  explicit Data(const geometry::TriangleMesh& mesh)
-      : field(mesh), coarse_field(field), pairs(mesh), surface(mesh), bounds(geometry::bounds_of(mesh)) {}
+  explicit Data(const geometry::TriangleMesh& mesh) : Data(mesh, DistanceField(mesh), PairTable(mesh)) {}
+  Data(const geometry::TriangleMesh& mesh, DistanceField distance_field, PairTable pair_table)
+      : field(std::move(distance_field)), coarse_field(field), pairs(std::move(pair_table)), surface(mesh),
+        bounds(geometry::bounds_of(mesh)) {}
 
   DistanceField field;
   CoarseDistanceField coarse_field;

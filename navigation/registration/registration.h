@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +22,9 @@ class PreparedBone {
  public:
   // mesh: closed, outward, mm. Throws InvalidInput when it is empty.
   explicit PreparedBone(const geometry::TriangleMesh& mesh);
+  // The same, and kept in a file for the next time. A file that is absent, broken, of another mesh or of another version is
+  // made again, and one that cannot be written is done without: a cache changes nothing but the time.
+  PreparedBone(const geometry::TriangleMesh& mesh, const std::filesystem::path& cache_file);
   ~PreparedBone();
   PreparedBone(PreparedBone&&) noexcept;
   PreparedBone& operator=(PreparedBone&&) noexcept;

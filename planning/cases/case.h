@@ -5,6 +5,7 @@
 //   femur.ply      bone meshes, binary PLY, LPS, mm
 //   camera.json, tools.json     copies of what this case is navigated with; absent until they are known
 //   sessions/ID/   one folder a session (navigation/recording)
+//   cache/         what can be made again from the rest; may be deleted at any time
 //
 // Every file is replaced atomically, so that a crash at any moment leaves the last saved state.
 #pragma once
@@ -45,6 +46,8 @@ void save_plan(const std::filesystem::path& folder, const Plan& plan);
 [[nodiscard]] std::filesystem::path camera_file(const std::filesystem::path& case_folder);
 [[nodiscard]] std::filesystem::path tools_file(const std::filesystem::path& case_folder);
 [[nodiscard]] std::filesystem::path mesh_file(const std::filesystem::path& case_folder, bones::BoneKind kind);
+// The bone made ready for registration.
+[[nodiscard]] std::filesystem::path prepared_bone_file(const std::filesystem::path& case_folder, bones::BoneKind kind);
 // The sessions' folders, oldest first.
 [[nodiscard]] std::vector<std::filesystem::path> session_folders(const std::filesystem::path& case_folder);
 // Now, as created_utc wants it: "2026-01-31T12:00:00Z".

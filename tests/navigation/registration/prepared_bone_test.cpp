@@ -1,0 +1,79 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "navigation/registration/prepared_bone.h"
+#include "planning/files/atomic_file.h"
+#include "tests/navigation/registration/phantom_bone.h"
+
+namespace arthronaut::registration {
+
+namespace {
+
+class PreparedBoneCache : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::remove_all(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  // What registering makes of the bone, to the last bit.
+  static Eigen::Vector3d found_with(const PreparedBone& bone) {
+    const auto trial = phantom_bone().trial(experiments::TrialNoise::Dry, 1);
+    return register_curves(bone, trial.curves, {1, true, phantom_bone().target_mm}).marker_from_bone.translation_mm;
+  }
+
+  // Small, so that it is made ready in no time.
+  static geometry::TriangleMesh octahedron() {
+    geometry::TriangleMesh mesh;
+    mesh.vertices_mm = {{15, 0, 0}, {-15, 0, 0}, {0, 15, 0}, {0, -15, 0}, {0, 0, 15}, {0, 0, -15}};
+    mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+    return mesh;
+  }
+
+  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "prepared_bone";
+  std::filesystem::path file_ = folder_ / "cache" / "femur.prepared";
+};
+
+}  // namespace
+
+// The first use writes the cache, the second reads it and leaves it alone, and both register alike.
+TEST_F(PreparedBoneCache, ReadsWhatItWrote) {
+  const Eigen::Vector3d fresh = found_with(*phantom_bone().prepared);
+  EXPECT_EQ(found_with(PreparedBone(phantom_bone().mesh, file_)), fresh);
+  ASSERT_TRUE(std::filesystem::exists(file_));
+  const auto written = std::filesystem::last_write_time(file_);
+  EXPECT_EQ(found_with(PreparedBone(phantom_bone().mesh, file_)), fresh);
+  EXPECT_EQ(std::filesystem::last_write_time(file_), written);
+}
+
+// A file that was cut off, or in which one byte is another, is made again without a word.
+TEST_F(PreparedBoneCache, MakesABrokenFileAgain) {
+  const PreparedBone first(octahedron(), file_);
+  const std::string good = files::read_text(file_);
+  std::string flipped = good;
+  flipped[good.size() / 2] ^= 1;
+  for (const std::string& broken : {good.substr(0, good.size() / 2), good.substr(0, 5), std::string(), flipped}) {
+    std::ofstream(file_, std::ios::binary) << broken;
+    const PreparedBone again(octahedron(), file_);
+    EXPECT_EQ(files::read_text(file_), good);
+  }
+}
+
+// A vertex moved by a hundredth of a millimetre is another bone.
+TEST_F(PreparedBoneCache, KnowsItsMesh) {
+  const PreparedBone first(octahedron(), file_);
+  const std::string before = files::read_text(file_);
+  geometry::TriangleMesh other = octahedron();
+  other.vertices_mm[0].x() += 0.01;
+  const PreparedBone second(other, file_);
+  EXPECT_NE(files::read_text(file_), before);
+}
+
+// Where nothing can be written, here below a file instead of a folder, the bone is prepared all the same.
+TEST_F(PreparedBoneCache, DoesWithoutAFileThatCannotBeWritten) {
+  std::filesystem::create_directories(folder_);
+  std::ofstream(folder_ / "cache") << "a file";
+  const PreparedBone bone(octahedron(), file_);
+  EXPECT_NEAR(bone.data().field.sample({0, 0, 15.5}).distance_mm, 0.5, 0.05);
+}
+
+}  // namespace arthronaut::registration
