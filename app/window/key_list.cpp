@@ -1,15 +1,15 @@
 #include "app/window/key_list.h"
 
-#include <vector>
+#include <algorithm>
 
 namespace arthronaut::window {
 
-void draw_key_list(const widgets::Ui& ui, std::string_view mode) {
-  const std::string_view prefix = mode == "plan" ? "plan." : mode == "navigate" ? "operate." : "review.";
+void draw_key_list(const widgets::Ui& ui, const std::vector<std::string_view>& prefixes) {
   std::vector<const widgets::Action*> shown;
   for (const widgets::Action& action : ui.actions.all()) {
-    const bool here =
-        action.id.starts_with("app.") || action.id.starts_with("mode.") || action.id.starts_with(prefix);
+    const bool here = std::any_of(prefixes.begin(), prefixes.end(), [&](std::string_view prefix) {
+      return action.id.starts_with(prefix);
+    });
     if (here && action.key != 0) shown.push_back(&action);
   }
   const ImVec2 size = ImGui::GetIO().DisplaySize;

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <string_view>
+#include <vector>
 
 #include "app/widgets/controls.h"
 
 namespace arthronaut::window {
 
-// mode: "plan", "navigate" or "review".
-void draw_key_list(const widgets::Ui& ui, std::string_view mode);
+// Of the actions whose id starts with one of the prefixes.
+void draw_key_list(const widgets::Ui& ui, const std::vector<std::string_view>& prefixes);
 
 }  // namespace arthronaut::window

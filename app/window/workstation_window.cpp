@@ -22,6 +22,8 @@ const char* name_of(Mode mode) {
   switch (mode) {
     case Mode::Plan:
       return "plan";
+    case Mode::SetUp:
+      return "set up";
     case Mode::Navigate:
       return "navigate";
     case Mode::Review:
@@ -46,6 +48,7 @@ WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
       planning_(
           [this] { window_.make_current(); },
           [this](const planning_view::PlanEdit& edit) { history_.apply(edit, GraphicsWindow::now_s()); }),
+      setup_([] { GraphicsWindow::wake(); }),
       theatre_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }),
       review_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }) {
   add_actions();
@@ -62,6 +65,9 @@ void WorkstationWindow::add_actions() {
                   [this, mode] { go_to(mode); }});
   };
   mode_action("mode.plan", "Plan", "Place the tunnels", GLFW_KEY_F1, Mode::Plan);
+  // F4 although it stands second: F2 and F3 are in the users' fingers.
+  mode_action("mode.setup", "Set up", "Camera, tools and fluid, before the operation", GLFW_KEY_F4,
+              Mode::SetUp);
   mode_action("mode.navigate", "Navigate", "In theatre", GLFW_KEY_F2, Mode::Navigate);
   mode_action("mode.review", "Review", "What happened", GLFW_KEY_F3, Mode::Review);
   actions_.add({"app.keys",
@@ -96,6 +102,7 @@ void WorkstationWindow::add_actions() {
                 {},
                 [this] { history_.redo(); }});
   planning_.add_actions(actions_, [this]() -> const planning_view::PlanModel* { return open_.model.get(); });
+  setup_.add_actions(actions_);
   theatre_.add_actions(actions_);
   review_.add_actions(actions_);
 }
@@ -108,13 +115,14 @@ void WorkstationWindow::run() {
     const double started = GraphicsWindow::now_s();
     frame(timeout);
     const bool woken = timeout > 0 && GraphicsWindow::now_s() - started < timeout;
-    settle = woken && !theatre_.is_busy() ? kFramesAfterInput : std::max(settle - 1, 0);
+    settle = woken && !theatre_.is_busy() && !setup_.is_busy() ? kFramesAfterInput : std::max(settle - 1, 0);
   }
   history_.settle_now();
 }
 
 bool WorkstationWindow::is_busy() const {
-  return opening_.valid() || theatre_.is_busy() || review_.is_busy() || history_.is_moving();
+  return opening_.valid() || (mode_ == Mode::SetUp && setup_.is_busy()) || theatre_.is_busy() ||
+         review_.is_busy() || history_.is_moving();
 }
 
 // poll -> queues and actions -> UI (with the scenes that are dirty) -> draw -> swap
@@ -139,24 +147,42 @@ void WorkstationWindow::take_opened_case() {
   }
   history_.open(open_.model.get(), open_.folder);
   planning_.reset(*open_.model);
+  setup_.open(open_.folder);
   theatre_.open(open_.model.get(), open_.folder);
   review_.open(open_.model.get(), open_.folder);
 }
 
 void WorkstationWindow::dispatch_keys() {
-  const std::string_view mode_prefix = mode_ == Mode::Plan       ? "plan."
-                                       : mode_ == Mode::Navigate ? "operate."
-                                                                 : "review.";
   for (const widgets::KeyPress& press : window_.keys()) {
     if (shows_keys_ && press.key == GLFW_KEY_ESCAPE) {
       shows_keys_ = false;
       continue;
     }
-    actions_.press(press, {"app.", "mode.", mode_prefix});
+    actions_.press(press, action_prefixes());
   }
 }
 
+std::vector<std::string_view> WorkstationWindow::action_prefixes() const {
+  std::vector<std::string_view> prefixes{"app.", "mode."};
+  switch (mode_) {
+    case Mode::Plan:
+      prefixes.push_back("plan.");
+      break;
+    case Mode::SetUp:
+      for (const std::string_view prefix : setup_.action_prefixes()) prefixes.push_back(prefix);
+      break;
+    case Mode::Navigate:
+      prefixes.push_back("operate.");
+      break;
+    case Mode::Review:
+      prefixes.push_back("review.");
+      break;
+  }
+  return prefixes;
+}
+
 void WorkstationWindow::go_to(Mode mode) {
+  if (mode_ == Mode::SetUp && mode != Mode::SetUp) setup_.leave();
   mode_ = mode;
   if (mode == Mode::Review) review_.refresh();
 }
@@ -180,11 +206,13 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
     draw_waiting(ui, inner);
   else if (mode_ == Mode::Plan)
     planning_.draw(ui, inner, *open_.model, history_.status());
+  else if (mode_ == Mode::SetUp)
+    setup_.draw(ui, inner);
   else if (mode_ == Mode::Navigate)
     theatre_.draw(ui, inner);
   else
     review_.draw(ui, inner);
-  if (shows_keys_) draw_key_list(ui, name_of(mode_));
+  if (shows_keys_) draw_key_list(ui, action_prefixes());
   ImGui::PopFont();
   ImGui::End();
   log_.note_state("mode", name_of(mode_));
@@ -201,7 +229,7 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
                widgets::kText, "Arthronaut");
   const float width = ui.theme.px(190), height = ui.theme.px(50);
   float x = area.x + ui.theme.px(230);
-  for (const char* id : {"mode.plan", "mode.navigate", "mode.review"}) {
+  for (const char* id : {"mode.plan", "mode.setup", "mode.navigate", "mode.review"}) {
     ImGui::SetCursorScreenPos({x, middle - height / 2});
     widgets::action_button(ui, id, width, height);
     x += width + ui.theme.px(10);

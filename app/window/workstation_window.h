@@ -7,6 +7,7 @@
 
 #include "app/planning_view/planning_view.h"
 #include "app/review_view/review_view.h"
+#include "app/setup_view/setup_view.h"
 #include "app/theatre_view/theatre_view.h"
 #include "app/widgets/graphics_window.h"
 #include "app/window/case_opening.h"
@@ -15,7 +16,7 @@
 
 namespace arthronaut::window {
 
-enum class Mode { Plan, Navigate, Review };
+enum class Mode { Plan, SetUp, Navigate, Review };
 
 class WorkstationWindow {
  public:
@@ -29,6 +30,8 @@ class WorkstationWindow {
   void frame(double timeout_s);
   void take_opened_case();
   void dispatch_keys();
+  // What the ids of the actions that work now start with.
+  [[nodiscard]] std::vector<std::string_view> action_prefixes() const;
   void go_to(Mode mode);
   void draw_screen(const widgets::Ui& ui);
   void draw_top_bar(const widgets::Ui& ui, const widgets::Rect& area);
@@ -44,6 +47,7 @@ class WorkstationWindow {
   OpenedCase open_;
   PlanHistory history_;
   planning_view::PlanningView planning_;
+  setup_view::SetupView setup_;
   theatre_view::TheatreView theatre_;
   review_view::ReviewView review_;
   Mode mode_ = Mode::Plan;

@@ -116,12 +116,14 @@ TEST_P(WorkstationLayout, HoldsAtEverySize) {
   const VirtualDisplay display(width, height);
   RunningWorkstation app(display, folder_);
   ASSERT_TRUE(app.wait_for_state("case", "open", 120));
-  for (const auto& [mode, key] :
-       {std::pair{"plan", "F1"}, std::pair{"navigate", "F2"}, std::pair{"review", "F3"}}) {
+  for (const auto& [mode, key] : {std::pair{"plan", "F1"}, std::pair{"set up", "F4"},
+                                  std::pair{"navigate", "F2"}, std::pair{"review", "F3"}}) {
     app.press(key);
     ASSERT_TRUE(app.wait_for_state("mode", mode));
-    const std::map<std::string, std::string> own{
-        {"plan", "plan.undo"}, {"navigate", "operate.next"}, {"review", "review.play"}};
+    const std::map<std::string, std::string> own{{"plan", "plan.undo"},
+                                                 {"set up", "setup.next"},
+                                                 {"navigate", "operate.next"},
+                                                 {"review", "review.play"}};
     ASSERT_TRUE(app.wait_for_widget(own.at(mode)));
     const auto widgets = app.widgets();
     for (auto a = widgets.begin(); a != widgets.end(); ++a) {

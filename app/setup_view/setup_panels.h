@@ -1,0 +1,42 @@
+// The parts that the three steps' screens share.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "app/setup_view/station.h"
+#include "app/widgets/video_texture.h"
+#include "navigation/camera/camera_model.h"
+
+namespace arthronaut::setup_view {
+
+// Where a picture stands on the screen, and which part of it.
+struct PicturePlace {
+  widgets::Rect screen;
+  Eigen::Vector2d from_px = Eigen::Vector2d::Zero();  // the part's top-left pixel
+  float zoom = 1;                                     // screen pixels a picture pixel
+  [[nodiscard]] ImVec2 at(const Eigen::Vector2d& pixel) const {
+    // A pixel's middle is half a pixel inside its edge.
+    return {screen.x + static_cast<float>(pixel.x() + 0.5 - from_px.x()) * zoom,
+            screen.y + static_cast<float>(pixel.y() + 0.5 - from_px.y()) * zoom};
+  }
+};
+
+// The picture on black, cut to the round view where that is known (radius 0: the whole of it); dimmed while
+// it is not live.
+PicturePlace draw_picture(const widgets::Ui& ui, const widgets::Rect& area, widgets::VideoTexture& texture,
+                          const camera::FramePtr& picture, const camera::Boundary& view, bool is_live);
+
+// Sign, headline and detail under the picture.
+void draw_band(const widgets::Ui& ui, const widgets::Rect& area, const Band& band);
+
+// Each row a status_row; what doesn't fit scrolls.
+void draw_rows(const widgets::Ui& ui, const char* name, const widgets::Rect& area, std::string_view title,
+               std::span<const Row> rows);
+
+// Which way the lens stood in each picture taken, and stands now: the shaded sectors are too near to a
+// picture taken. Angles as the mark's, degrees in image axes; now_deg NaN: not known.
+void draw_lens_dial(const widgets::Ui& ui, const widgets::Rect& area, std::span<const double> taken_deg,
+                    double now_deg, double too_near_deg);
+
+}  // namespace arthronaut::setup_view

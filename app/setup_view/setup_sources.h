@@ -1,0 +1,26 @@
+// Where the pictures for setting up can come from: the simulated arthroscope, folders of still pictures, the
+// case's videos, what the user named, camera devices.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "app/setup_view/frame_feed.h"
+
+namespace arthronaut::setup_view {
+
+enum class Purpose { Camera, Tools, Fluid };
+
+// Always at least the simulated arthroscope, which comes first. Looks into the file system, opens nothing.
+// Folders of stills (the case's own and those right inside it) are offered for the camera alone. `named` are
+// paths the user typed: a folder of pictures or a video; others are left out.
+[[nodiscard]] std::vector<FeedSource> sources_for(Purpose purpose, const std::filesystem::path& case_folder,
+                                                  const std::vector<std::filesystem::path>& named = {});
+
+// The pictures in a folder (*.png, *.jpg, *.jpeg, *.bmp, *.tif, *.tiff), by name.
+[[nodiscard]] std::vector<std::filesystem::path> pictures_of(const std::filesystem::path& folder);
+
+// The name that camera.json carries for the simulated arthroscope.
+inline constexpr const char* kSimulatedScope = "Simulated arthroscope";
+
+}  // namespace arthronaut::setup_view

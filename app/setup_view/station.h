@@ -1,0 +1,46 @@
+// What the three steps of setting up have in common: each works on the pictures of one source, leads through
+// itself by "next step", and ends with something that is adopted into the case or a verdict.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/setup_view/frame_feed.h"
+#include "app/setup_view/live_run.h"
+#include "app/widgets/controls.h"
+
+namespace arthronaut::setup_view {
+
+// One line of a panel: a state by shape, word and colour.
+struct Row {
+  widgets::Sign sign = widgets::Sign::Quiet;
+  std::string name, text;
+};
+
+// What stands under the picture: what is wanted now, or what is wrong.
+struct Band {
+  widgets::Sign sign = widgets::Sign::Quiet;
+  std::string headline, detail;
+};
+
+class Station {
+ public:
+  virtual ~Station() = default;
+  virtual void open(const std::filesystem::path& case_folder) = 0;  // another case; ends what runs
+  virtual void start(const FeedSource& source) = 0;                 // anew, from this source
+  virtual void stop() = 0;                                          // ends what runs and forgets it
+  virtual void release_source() = 0;                                // another mode may want the camera
+  virtual void add_actions(widgets::Actions& actions) = 0;          // all are named "setup.ID..."
+  virtual void draw(const widgets::Ui& ui, const widgets::Rect& area) = 0;
+  // The two rows of buttons; ids of actions.
+  [[nodiscard]] virtual std::vector<const char*> buttons() const = 0;
+  // Once has_run(). False: this step is done, the next one may begin.
+  [[nodiscard]] virtual bool take_next_step() = 0;
+  [[nodiscard]] virtual bool has_run() const = 0;           // a source was started
+  [[nodiscard]] virtual bool is_busy() const = 0;           // pictures or a result are to come
+  [[nodiscard]] virtual std::string next_step() const = 0;  // in words, once has_run()
+  [[nodiscard]] virtual Row adopted() const = 0;            // what the case has of this step
+};
+
+}  // namespace arthronaut::setup_view
