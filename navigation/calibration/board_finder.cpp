@@ -195,7 +195,9 @@ BoardDetection find_checkerboard(const camera::GrayView& picture) {
       sigma_px[node] = better->sigma_px;
     }
     corners = std::move(refined);
-    consistent = corners.size() >= kFewestCorners && lopsided < corners.size() / 4 && prune(corners, 1.5);
+    // Small squares beside the rim make a third of a board's corners lopsided; of a pattern that is no board,
+    // most.
+    consistent = corners.size() >= kFewestCorners && lopsided < corners.size() / 2 && prune(corners, 1.5);
   }
   if (!consistent) {
     detection.reason = "what looks like corners does not lie on one flat lattice";

@@ -18,6 +18,8 @@ void check_contract(std::span<const CalibrationPicture> pictures, const Calibrat
     throw InvalidInput("calibrate: the side of a square must be above 0 mm");
   if (!(options.refractive_index >= 1 && options.refractive_index <= 2))
     throw InvalidInput("calibrate: the refractive index must lie in [1, 2]");
+  if (!(options.distance_mm >= 0) || !std::isfinite(options.distance_mm))
+    throw InvalidInput("calibrate: the distance of the boards must not be below 0 mm");
   if (pictures.size() < 3)
     throw InvalidInput("calibrate: needs three pictures or more, has " + std::to_string(pictures.size()));
   for (const CalibrationPicture& picture : pictures) {
@@ -205,7 +207,7 @@ CalibrationSummary calibrate(std::span<const CalibrationPicture> pictures,
     summary.leave_one_out_rms_px = leave_one_out(joint.sightings, found, joint.options);
   summary.distance_mm = median_distance_mm(summary);
   summary.notes = notes_on(pictures, joint);
-  summary.reasons = reasons_against(summary, joint.sightings, joint.options.turns);
+  summary.reasons = reasons_against(summary, joint.sightings, options, joint.options.turns);
   summary.outcome =
       summary.reasons.empty() ? CalibrationSummary::Outcome::Ok : CalibrationSummary::Outcome::Unreliable;
   return summary;

@@ -43,6 +43,9 @@ struct CalibrationOptions {
   double square_mm = 0;           // required, > 0
   double refractive_index = 1.0;  // of the medium the pictures were taken in
   std::string scope_name, head_name;
+  // How far the boards stood from the lens, about, when somebody measured it; 0: nobody did. Nothing else can
+  // tell a square size that is wrong by less than the working distance varies.
+  double distance_mm = 0;
   bool leave_one_out = true;
 };
 

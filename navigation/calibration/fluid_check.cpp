@@ -97,6 +97,37 @@ double best_index(const std::function<double(double)>& misfit, double low, doubl
   return 0.5 * (low + high);
 }
 
+// The index is looked for in so many frames at most, spread over all: more would tell little and take
+// seconds.
+constexpr std::size_t kFramesForIndex = 60;
+
+std::vector<RulerSighting> spread(std::span<const RulerSighting> sightings) {
+  const std::size_t count = std::min(sightings.size(), kFramesForIndex);
+  std::vector<RulerSighting> chosen;
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(sightings[i * sightings.size() / count]);
+  return chosen;
+}
+
+// From the curvature of the sum of squares about its least value. Eight corners a frame, six of whose sixteen
+// coordinates the ruler's pose takes up.
+double index_sigma(const std::function<FrameErrors(double)>& under, double index) {
+  constexpr double kStep = 0.01;
+  const auto sum_at = [&](double at, std::size_t& frames) {
+    const FrameErrors errors = under(at);
+    frames = errors.square_px.size();
+    double sum = 0;
+    for (const double square : errors.square_px) sum += 8 * square;
+    return sum;
+  };
+  std::size_t frames = 0, frames_below = 0, frames_above = 0;
+  const double least = sum_at(index, frames), below = sum_at(index - kStep, frames_below),
+               above = sum_at(index + kStep, frames_above);
+  const double curvature = (below + above - 2 * least) / (kStep * kStep);
+  if (frames == 0 || frames != frames_below || frames != frames_above || !(curvature > 0)) return -1;
+  const double variance_px = least / (10.0 * static_cast<double>(frames));
+  return std::sqrt(2 * variance_px / curvature);
+}
+
 std::string text(const char* format, double a, double b) {
   char buffer[200];
   std::snprintf(buffer, sizeof buffer, format, a, b);
@@ -116,7 +147,16 @@ std::vector<std::string> reasons_against(const FluidCheckSummary& summary, const
   if (flat.median_mm > options.most_median_mm || flat.median_deg > options.most_median_deg)
     reasons.push_back(
         text("the ruler comes out wrong by %.2f mm and %.1f degrees", flat.median_mm, flat.median_deg));
-  if (std::abs(summary.best_index - options.refractive_index) > options.most_index_error)
+  const auto& best = summary.rows.front();
+  if (best.hypothesis != FluidHypothesis::FlatPort && best.rms_px < 0.8 * flat.rms_px)
+    reasons.push_back(
+        std::string(to_text(best.hypothesis)) +
+        text(" explains the frames better: the ruler fits to %.2f px, not %.2f", best.rms_px, flat.rms_px));
+  if (summary.index_sigma < 0 || summary.index_sigma > options.most_index_sigma)
+    reasons.push_back(
+        "the ruler was held where the models hardly differ: bring it nearer, tilt it, move it towards the "
+        "rim");
+  else if (std::abs(summary.best_index - options.refractive_index) > options.most_index_error)
     reasons.push_back(
         text("the pictures look like a refractive index of %.2f, not %.3f: another medium, or a port that "
              "is not flat",
@@ -153,9 +193,14 @@ FluidCheckSummary check_fluid(std::span<const RulerSighting> sightings, const Ru
   std::stable_sort(summary.rows.begin(), summary.rows.end(), [](const auto& a, const auto& b) {
     return (a.rms_px < 0 ? 1e9 : a.rms_px) < (b.rms_px < 0 ? 1e9 : b.rms_px);
   });
-  if (!sightings.empty())
-    summary.best_index =
-        best_index([&](double index) { return misfit_px(under(index, FluidModel::FlatPort)); }, 1.0, 1.5);
+  if (!sightings.empty()) {
+    const std::vector<RulerSighting> chosen = spread(sightings);
+    const auto flat_port = [&](double index) {
+      return errors_under(chosen, ruler, calibration, index, FluidModel::FlatPort);
+    };
+    summary.best_index = best_index([&](double index) { return misfit_px(flat_port(index)); }, 1.0, 1.5);
+    summary.index_sigma = index_sigma(flat_port, summary.best_index);
+  }
   summary.reasons = reasons_against(summary, options);
   return summary;
 }

@@ -44,6 +44,9 @@ struct FluidCheckSummary {
   std::vector<Row> rows;  // best (least rms_px) first
   std::size_t frame_count = 0;
   double best_index = 0;  // the working medium's index that a flat port explains the frames best with
+  // One sigma of it by the corners' scatter alone; -1: not known. Large where the ruler was held so that
+  // every index looks alike: small, in the middle of the view, facing the lens.
+  double index_sigma = -1;
   std::vector<std::string> reasons = {
       "the check was not run"};  // why the given medium can't be trusted; empty: it can
   [[nodiscard]] bool is_trusted() const { return reasons.empty(); }
@@ -54,6 +57,7 @@ struct FluidCheckOptions {
   std::size_t fewest_frames = 20;
   double most_median_mm = 0.15, most_median_deg = 1.5;
   double most_index_error = 0.03;  // of best_index from refractive_index
+  double most_index_sigma = 0.01;
 };
 
 // Does not throw on poor sightings: read the summary. Throws InvalidInput for an unusable calibration or

@@ -47,11 +47,8 @@ struct RulerSightings::State {
 
   // Most fundamental first: without the lens angle the markers' corners say nothing.
   [[nodiscard]] std::string reason_against() const {
-    if (options.follow_lens && seen.lens.zoom_or_slip)
-      return "the round view is not where the calibration has it: was the scope zoomed or taken out of the "
-             "head?";
-    if (options.follow_lens && seen.lens.mark != lens::MarkState::Found)
-      return "lens mark: " + std::string(lens::to_text(seen.lens.mark));
+    if (options.follow_lens && (seen.lens.zoom_or_slip || seen.lens.mark != lens::MarkState::Found))
+      return lens::reason_text(seen.lens);
     for (const auto& marker : seen.markers)
       if (!marker.is_tracked())
         return "marker " + std::to_string(marker.id) + ": " + std::string(markers::to_text(marker.state));

@@ -38,7 +38,8 @@ double reach_share(const CalibrationSummary& summary, std::span<const Sighting> 
 }  // namespace
 
 std::vector<std::string> reasons_against(const CalibrationSummary& summary,
-                                         std::span<const Sighting> sightings, bool turns) {
+                                         std::span<const Sighting> sightings,
+                                         const CalibrationOptions& options, bool turns) {
   std::vector<std::string> reasons;
   const camera::Calibration& c = summary.record.calibration;
   const long marked =
@@ -64,11 +65,17 @@ std::vector<std::string> reasons_against(const CalibrationSummary& summary,
         text("all boards face the lens (tilted by %.0f degrees at most, needs %.0f), so the focal length is "
              "not known",
              tilt_deg, kLeastTilt_deg));
-  if (const double mm = summary.distance_mm; mm < kNearest_mm || mm > kFurthest_mm)
+  const double mm = summary.distance_mm, ratio = options.distance_mm > 0 ? mm / options.distance_mm : 1;
+  if (ratio > kMostDistanceRatio || ratio < 1 / kMostDistanceRatio)
+    reasons.push_back(
+        text("the boards would stand %.0f mm from the lens, not %.0f mm as measured: is the side of a square "
+             "right?",
+             mm, options.distance_mm));
+  else if (options.distance_mm <= 0 && (mm < kNearest_mm || mm > kFurthest_mm))
     reasons.push_back(text(
-        "the boards would stand %.0f mm from the lens, which no arthroscope sees sharply: is the side of "
-        "a square right?",
-        mm));
+        "the boards would stand %.0f mm from the lens, where no arthroscope's calibration is taken (10 to "
+        "%.0f mm): is the side of a square right?",
+        mm, kFurthest_mm));
   if (const double reach = reach_share(summary, sightings); reach < 0.6)
     reasons.push_back(
         text("the board covers the middle of the view only (%.0f %% of its radius), so the distortion is not "

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "navigation/lens/angle_filter.h"
 #include "navigation/lens/mark.h"
@@ -14,10 +15,13 @@ namespace {
 constexpr double kInner = 0.92, kOuter = 1.075;
 constexpr double kAcceptFree = 0.86;   // score of a mark whose shape is not known yet
 constexpr double kAcceptKnown = 0.80;  // of one whose shape is
-constexpr double kClearLead = 0.06;    // by which the best candidate must lead
+// The best candidate leads clearly when its score does, or when the triangle leaves it this much less to
+// explain: a mark scores 0.99, the squares of a board and shadows at the rim 0.95 at most.
+constexpr double kClearLead = 0.06, kClearMisfitRatio = 5, kLeastMisfit = 0.02;
 constexpr int kFramesToLearn = 5;
 constexpr int kFramesToJump = 8;  // a mark far from where it was expected, before it is believed
-constexpr int kFramesToSlip = 6;
+constexpr int kFramesToSlip = 6;  // off the track before it is told; a clear rim needs two
+constexpr double kClearCoverage_deg = 240, kMostZoom = 0.005;
 
 // The shape of this scope's mark: the mean over the first clear sightings.
 struct LearntShape {
@@ -32,6 +36,11 @@ struct LearntShape {
     mean.height += (seen.shape.height - mean.height) / sightings;
   }
 };
+
+bool leads_clearly(const MarkCandidate& best, const MarkCandidate& second) {
+  return second.score <= best.score - kClearLead ||
+         1 - second.score > kLeastMisfit + kClearMisfitRatio * (1 - best.score);
+}
 
 // Where the circle stood, and for how many frames it has been off that.
 struct CircleTrack {
@@ -124,11 +133,19 @@ void LensTracker::State::watch_circle() {
     track.reference = seen;
   }
   ++track.frames;
-  const double off_px = (seen.center_px - track.reference.center_px).norm();
-  const bool is_off = off_px > allowed_px || std::abs(seen.radius_px / track.reference.radius_px - 1) > 0.005;
+  observation.off_track_px = (seen.center_px - track.reference.center_px).norm();
+  observation.radius_ratio = seen.radius_px / track.reference.radius_px;
+  const bool is_zoomed = std::abs(observation.radius_ratio - 1) > kMostZoom;
+  const bool is_off = is_zoomed || observation.off_track_px > allowed_px;
+  // A rim that is seen nearly all round is no mistake; half of one may be.
+  const int weight = observation.circle_coverage_deg > kClearCoverage_deg ? kFramesToSlip / 2 : 1;
   track.off_track =
-      is_off ? std::min(track.off_track + 1, 2 * kFramesToSlip) : std::max(track.off_track - 2, 0);
+      is_off ? std::min(track.off_track + weight, 2 * kFramesToSlip) : std::max(track.off_track - 2, 0);
   observation.zoom_or_slip = track.off_track >= kFramesToSlip;
+  if (!observation.zoom_or_slip)
+    observation.rim = RimState::OnTrack;
+  else if (is_off)
+    observation.rim = is_zoomed ? RimState::Zoomed : RimState::Slipped;
   if (!options.calibration && !is_off) {
     track.reference.center_px += 0.2 * (seen.center_px - track.reference.center_px);
     track.reference.radius_px += (seen.radius_px - track.reference.radius_px) / std::min(track.frames, 300);
@@ -174,13 +191,13 @@ MarkState LensTracker::State::choose_mark(MarkCandidate& chosen) {
       }
     }
     // Elsewhere than expected. Where it was expected the rim is clean: then it has moved. Else wait.
-    if (all.count > 1 && all.items[1].score > chosen.score - kClearLead) return MarkState::Ambiguous;
+    if (all.count > 1 && !leads_clearly(chosen, all.items[1])) return MarkState::Ambiguous;
     if (!believe_jump(chosen) && at_place != MarkState::NotSeen) return at_place;
     filter = {};
     return MarkState::Found;
   }
   // A lit tooth outside the rim can't be made by a scene; a dark dent can.
-  if (all.count > 1 && all.items[1].score > chosen.score - kClearLead) {
+  if (all.count > 1 && !leads_clearly(chosen, all.items[1])) {
     if (all.items[0].polarity == all.items[1].polarity) return MarkState::Ambiguous;
     if (chosen.polarity != MarkPolarity::BrightOutward) chosen = all.items[1];
   }
@@ -214,6 +231,24 @@ std::string_view to_text(MarkState state) {
       return "no mark on the rim";
   }
   return "unknown";
+}
+
+std::string reason_text(const LensObservation& lens) {
+  char text[160] = "";
+  const double larger_percent = 100 * (lens.radius_ratio - 1);
+  if (lens.rim == RimState::Zoomed)
+    std::snprintf(text, sizeof text, "the view is %.1f %% %s than calibrated: zoom back, or calibrate again",
+                  std::abs(larger_percent), larger_percent > 0 ? "larger" : "smaller");
+  else if (lens.rim == RimState::Slipped)
+    std::snprintf(text, sizeof text,
+                  "the view lies %.0f px beside its track: seat the scope in the coupler, or calibrate again",
+                  lens.off_track_px);
+  else if (lens.zoom_or_slip)
+    return "another zoom, or the coupler slipped";  // of a record, which holds no more
+  else if (lens.mark != MarkState::Found)
+    return "lens mark: " + std::string(to_text(lens.mark)) +
+           (lens.is_stale ? ", the lens angle is not known" : ", its last angle is held");
+  return text;
 }
 
 LensTracker::LensTracker(const LensTrackerOptions& options) : state_(std::make_unique<State>()) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "navigation/camera/camera_model.h"
@@ -22,6 +23,14 @@ enum class MarkState {
 };
 [[nodiscard]] std::string_view to_text(MarkState state);
 
+// The circle against the place that the calibration gives it at this lens angle (without one: against its own
+// past).
+enum class RimState {
+  OnTrack,
+  Zoomed,   // another radius: another zoom or focus, so another focal length
+  Slipped,  // another centre: the scope is not seated in the coupler as it was
+};
+
 enum class MarkPolarity { Unknown, DarkInward, BrightOutward };
 
 struct LensObservation {
@@ -35,8 +44,14 @@ struct LensObservation {
   double mark_sigma_deg = 360;  // grows while the mark is not found
   bool is_stale = true;         // no mark for longer than the options allow: intrinsics can't be trusted
   bool zoom_or_slip = false;    // radius or centre off their track: another zoom, or the coupler slipped
+  RimState rim = RimState::OnTrack;  // which of them; told from the second clear frame on, and while it lasts
+  double radius_ratio = 1;           // of the circle to that of the track, when last seen
+  double off_track_px = 0;           // of the circle's centre from the track, when last seen
   [[nodiscard]] bool has_angle() const { return mark == MarkState::Found || !is_stale; }
 };
+
+// What is wrong, in plain words for the screen, most serious first; empty while nothing is.
+[[nodiscard]] std::string reason_text(const LensObservation& lens);
 
 struct LensTrackerOptions {
   std::optional<camera::Calibration>

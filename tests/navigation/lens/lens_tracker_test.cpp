@@ -133,29 +133,69 @@ TEST(LensTracker, RefusesToChooseBetweenTwoMarks) {
   EXPECT_EQ(observe_still(picture.view()).mark, MarkState::Ambiguous);
 }
 
-// Another zoom and a slipped coupler are noticed within a few frames, against the calibration's track.
-TEST(LensTracker, NoticesZoomAndSlip) {
-  const RimTruth truth;
-  LensTrackerOptions options;
-  options.calibration.emplace();
-  options.calibration->image_size_px = {truth.width, truth.height};
-  options.calibration->rotation_center_px = {480, 270};
-  options.calibration->boundary = {truth.center_px, truth.radius_px};
-  options.calibration->reference_mark_angle_deg = truth.mark_angle_deg;
-  for (const bool is_zoom : {false, true}) {
-    LensTracker tracker(options);
-    LensObservation seen;
-    for (int frame = 0; frame < 40; ++frame) {
-      RimTruth now = truth;
-      if (frame >= 15 && is_zoom) now.radius_px *= 1.01;
-      if (frame >= 15 && !is_zoom) now.center_px.x() += 7;
-      const RimPicture picture = draw(now);
-      seen = tracker.observe(picture.view(), frame * 16'666'667LL);
-      if (frame < 15) {
-        EXPECT_FALSE(seen.zoom_or_slip) << frame;
+// Another zoom and a slipped coupler, under a mark of either polarity: told from the second frame on, in
+// every frame while they last, with words for the screen; and taken back when the scope is put right.
+TEST(LensTracker, NoticesZoomAndSlipInEveryFrame) {
+  struct Fault {
+    double zoom, shift_px;
+    RimState rim;
+    const char* words;
+  };
+  for (const bool outward : {false, true})
+    for (const Fault& fault :
+         {Fault{1.03, 0, RimState::Zoomed, "3.0 % larger"}, Fault{0.97, 0, RimState::Zoomed, "3.0 % smaller"},
+          Fault{1.01, 0, RimState::Zoomed, "1.0 % larger"}, Fault{1, 7, RimState::Slipped, "7 px beside"}}) {
+      RimTruth truth;
+      truth.is_bright_outward = outward;
+      LensTrackerOptions options;
+      options.calibration.emplace();
+      options.calibration->image_size_px = {truth.width, truth.height};
+      options.calibration->rotation_center_px = {480, 270};
+      options.calibration->boundary = {truth.center_px, truth.radius_px};
+      options.calibration->reference_mark_angle_deg = truth.mark_angle_deg;
+      RimTruth wrong = truth;
+      wrong.radius_px *= fault.zoom;
+      wrong.center_px.x() += fault.shift_px;
+      const RimPicture as_calibrated = draw(truth), off_track = draw(wrong);
+      LensTracker tracker(options);
+      for (int frame = 0; frame < 26; ++frame) {
+        const bool is_wrong = frame >= 8 && frame < 18;
+        const RimPicture& picture = is_wrong ? off_track : as_calibrated;
+        const LensObservation& seen = tracker.observe(picture.view(), frame * 16'666'667LL);
+        EXPECT_EQ(seen.mark, MarkState::Found) << frame;
+        if (frame < 8 || frame > 23) {
+          EXPECT_FALSE(seen.zoom_or_slip) << frame << ' ' << fault.words;
+          EXPECT_EQ(reason_text(seen), "") << frame;
+        } else if (frame > 8 && is_wrong) {
+          EXPECT_TRUE(seen.zoom_or_slip) << frame << ' ' << fault.words;
+          EXPECT_EQ(seen.rim, fault.rim) << frame;
+          EXPECT_NE(reason_text(seen).find(fault.words), std::string::npos) << reason_text(seen);
+        }
       }
     }
-    EXPECT_TRUE(seen.zoom_or_slip) << (is_zoom ? "zoom" : "slip");
+}
+
+// A mark that is gone: the words first say that its angle is held, then that it is not known. Both
+// polarities.
+TEST(LensTracker, SaysThatTheAngleIsHeldAndThenNotKnown) {
+  for (const bool outward : {false, true}) {
+    RimTruth truth;
+    truth.is_bright_outward = outward;
+    LensTracker tracker;
+    for (int frame = 0; frame < 8; ++frame) {
+      const RimPicture picture = draw(truth);
+      tracker.observe(picture.view(), frame * 16'666'667LL);
+    }
+    truth.has_mark = false;
+    const RimPicture picture = draw(truth);
+    const LensObservation held = tracker.observe(picture.view(), 200'000'000);
+    EXPECT_EQ(held.mark, MarkState::NotSeen);
+    EXPECT_TRUE(held.has_angle());
+    EXPECT_EQ(reason_text(held), "lens mark: no mark on the rim, its last angle is held");
+    const LensObservation& stale = tracker.observe(picture.view(), 1'500'000'000);
+    EXPECT_TRUE(stale.is_stale);
+    EXPECT_FALSE(stale.has_angle());
+    EXPECT_EQ(reason_text(stale), "lens mark: no mark on the rim, the lens angle is not known");
   }
 }
 
