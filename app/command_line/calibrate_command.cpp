@@ -42,11 +42,12 @@ std::vector<calibration::CalibrationPicture> observe(const std::vector<std::stri
   return pictures;
 }
 
-void say_result(const Context& context, const calibration::CalibrationSummary& summary) {
+void say_result(const Context& context, const calibration::CalibrationSummary& summary, double square_mm) {
   for (const auto& picture : summary.pictures)
-    context.say(line("%s: %zu corners, %.2f px, tilted by %.0f degrees, lens at %.1f degrees",
+    context.say(line("%s: %zu corners, %.2f px, tilted by %.0f degrees, lens at %.1f degrees%s",
                      picture.name.c_str(), picture.residuals_px.size(), picture.rms_px, picture.tilt_deg,
-                     picture.lens_angle_deg));
+                     picture.lens_angle_deg, picture.mark_is_used ? "" : " (without its mark)"));
+  for (const std::string& note : summary.notes) context.say(note);
   const camera::Calibration& c = summary.record.calibration;
   const Eigen::MatrixXd& covariance = summary.record.covariance;
   const auto sigma = [&](int k) { return covariance.rows() == 6 ? std::sqrt(covariance(k, k)) : 0.0; };
@@ -55,8 +56,12 @@ void say_result(const Context& context, const calibration::CalibrationSummary& s
   context.say(line("principal point (%.2f, %.2f) px (+- %.2f), centre of rotation (%.2f, %.2f) px (+- %.2f)",
                    c.principal_point_px.x(), c.principal_point_px.y(), std::max(sigma(2), sigma(3)),
                    c.rotation_center_px.x(), c.rotation_center_px.y(), std::max(sigma(4), sigma(5))));
-  context.say(line("corners miss the model by %.3f px (RMS), those of a picture left out by %.3f px",
-                   summary.rms_px, summary.leave_one_out_rms_px));
+  context.say(line("corners miss the model by %.3f px (RMS)", summary.rms_px) +
+              (summary.leave_one_out_rms_px >= 0
+                   ? line(", those of a picture left out by %.3f px", summary.leave_one_out_rms_px)
+                   : std::string()));
+  context.say(line("the boards stand %.0f mm from the lens, if their squares have sides of %g mm",
+                   summary.distance_mm, square_mm));
 }
 
 void run_calibrate(Context& context, CalibrateArguments& arguments) {
@@ -72,7 +77,7 @@ void run_calibrate(Context& context, CalibrateArguments& arguments) {
                        (summary.reasons.empty() ? std::string("failed") : summary.reasons.front()));
   if (!arguments.plot.empty()) calibration::write_residual_plot(arguments.plot, summary, pictures);
   camera::write_camera_file(arguments.output, summary.record);
-  if (arguments.output != "-") say_result(context, summary);
+  if (arguments.output != "-") say_result(context, summary, options.square_mm);
   if (!summary.reasons.empty()) context.say_unreliable("the calibration", summary.reasons);
 }
 
@@ -86,6 +91,10 @@ void add_calibrate_command(CLI::App& app, Context& context) {
   const auto arguments = std::make_shared<CalibrateArguments>();
   command->add_option("--square-mm", arguments->options.square_mm, "Side of one square of the board, mm")
       ->required()
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--distance-mm", arguments->options.distance_mm,
+                   "How far the boards stood from the lens, about, if measured: tells a wrong square size")
       ->check(CLI::PositiveNumber);
   add_medium_option(*command, arguments->medium_index,
                     "What the pictures were taken in: air (default), water, saline or a refractive index");

@@ -48,6 +48,7 @@ CLI::Option* add_vector_option(CLI::App& subcommand, const std::string& name, Ei
 
 // One a file: app/command_line/NAME_command.cpp.
 void add_calibrate_command(CLI::App& app, Context& context);
+void add_check_fluid_command(CLI::App& app, Context& context);
 void add_track_command(CLI::App& app, Context& context);
 void add_pivot_command(CLI::App& app, Context& context);
 void add_digitise_command(CLI::App& app, Context& context);

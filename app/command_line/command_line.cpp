@@ -67,6 +67,7 @@ int run_command_line(int argc, char** argv, const std::function<int(const Workst
   add_import_command(app, context);
   add_plan_command(app, context);
   add_calibrate_command(app, context);
+  add_check_fluid_command(app, context);
   add_track_command(app, context);
   add_pivot_command(app, context);
   add_digitise_command(app, context);

@@ -28,7 +28,7 @@ TEST_P(Subcommand, RefusesAnUnknownOption) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Subcommand,
-                         ::testing::Values("calibrate", "track", "pivot", "digitise", "register", "import", "plan",
+                         ::testing::Values("calibrate", "check-fluid", "track", "pivot", "digitise", "register", "import", "plan",
                                            "phantom", "navigate", "replay", "report", "markers", "demo"),
                          [](const auto& test) { return std::string(test.param); });
 
