@@ -33,7 +33,7 @@ const LinearLight& linear_light() {
   return table;
 }
 
-float sample_light(const camera::GrayView& picture, float x, float y) {
+float light_at(const camera::GrayView& picture, float x, float y) {
   const int ix = static_cast<int>(x), iy = static_cast<int>(y);
   const float fx = x - static_cast<float>(ix), fy = y - static_cast<float>(iy);
   const std::uint8_t* top = picture.row(iy) + ix;
@@ -43,27 +43,60 @@ float sample_light(const camera::GrayView& picture, float x, float y) {
          fy * ((1 - fx) * light[bottom[0]] + fx * light[bottom[1]]);
 }
 
-// The last radius at which the ray, with a pixel to spare for interpolation, is still in the picture.
-float reach_in_picture(const camera::GrayView& picture, const Eigen::Vector2f& center, float dx, float dy) {
-  float reach = 1e9F;
-  if (dx > 1e-6F) reach = std::min(reach, (static_cast<float>(picture.width - 2) - center.x()) / dx);
-  if (dx < -1e-6F) reach = std::min(reach, (1.0F - center.x()) / dx);
-  if (dy > 1e-6F) reach = std::min(reach, (static_cast<float>(picture.height - 2) - center.y()) / dy);
-  if (dy < -1e-6F) reach = std::min(reach, (1.0F - center.y()) / dy);
-  return reach;
-}
+// One ray. A noisy picture is averaged across it, over about as much of the rim as lies between two rays: the mark
+// keeps its shape, the noise does not.
+struct Ray {
+  const camera::GrayView& picture;
+  Eigen::Vector2f center;
+  float dx, dy;
+  int half_width = 0;  // pixels to each side
+
+  // The last radius at which all of the ray, with a pixel to spare for interpolation, is still in the picture.
+  [[nodiscard]] float reach() const {
+    const float spare = static_cast<float>(1 + half_width);
+    const float right = static_cast<float>(picture.width - 1) - spare;
+    const float bottom = static_cast<float>(picture.height - 1) - spare;
+    float most = 1e9F;
+    if (dx > 1e-6F) most = std::min(most, (right - center.x()) / dx);
+    if (dx < -1e-6F) most = std::min(most, (spare - center.x()) / dx);
+    if (dy > 1e-6F) most = std::min(most, (bottom - center.y()) / dy);
+    if (dy < -1e-6F) most = std::min(most, (spare - center.y()) / dy);
+    return most;
+  }
+
+  [[nodiscard]] int grey(float r) const {
+    int sum = 0;
+    for (int k = -half_width; k <= half_width; ++k) {
+      const Eigen::Vector2f at = point(r, k);
+      sum += picture.row(static_cast<int>(at.y() + 0.5F))[static_cast<int>(at.x() + 0.5F)];
+    }
+    return sum / (2 * half_width + 1);
+  }
+  [[nodiscard]] float light(float r) const {
+    float sum = 0;
+    for (int k = -half_width; k <= half_width; ++k) {
+      const Eigen::Vector2f at = point(r, k);
+      sum += light_at(picture, at.x(), at.y());
+    }
+    return sum / static_cast<float>(2 * half_width + 1);
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector2f point(float r, int across) const {
+    const float k = static_cast<float>(across);
+    return {center.x() + r * dx - k * dy, center.y() + r * dy + k * dx};
+  }
+};
 
 // Median grey value at the outer end of the rays, and how far it scatters.
-void measure_mask(const camera::GrayView& picture, const Eigen::Vector2f& center, float outer_px,
+void measure_mask(const camera::GrayView& picture, const Eigen::Vector2f& center, float outer_px, int half_width,
                   double& level, double& scatter) {
   std::array<int, 256> histogram{};
   int count = 0;
   for (int i = 0; i < kRayCount; i += 2) {
-    const float dx = directions().cosine[i], dy = directions().sine[i];
-    if (reach_in_picture(picture, center, dx, dy) < outer_px) continue;
-    const int x = static_cast<int>(center.x() + outer_px * dx + 0.5F);
-    const int y = static_cast<int>(center.y() + outer_px * dy + 0.5F);
-    ++histogram[picture.row(y)[x]];
+    const Ray ray{picture, center, directions().cosine[i], directions().sine[i], half_width};
+    if (ray.reach() < outer_px) continue;
+    ++histogram[static_cast<std::size_t>(ray.grey(outer_px))];
     ++count;
   }
   const auto quantile = [&](double share) {
@@ -76,15 +109,11 @@ void measure_mask(const camera::GrayView& picture, const Eigen::Vector2f& center
 }
 
 // Radius at which the light has risen half way, near a first lit sample at `first_px`.
-float locate_edge(const camera::GrayView& picture, const Eigen::Vector2f& center, float dx, float dy,
-                  float first_px, float reach_px, float dark_light, float& inside) {
+float locate_edge(const Ray& ray, float first_px, float reach_px, float dark_light, float& inside) {
   constexpr int kOutside = 4, kInside = 6;
   std::array<float, kOutside + kInside + 1> light;
   const float start = std::min(first_px + kOutside, reach_px);
-  for (std::size_t k = 0; k < light.size(); ++k) {
-    const float r = start - static_cast<float>(k);
-    light[k] = sample_light(picture, center.x() + r * dx, center.y() + r * dy);
-  }
+  for (std::size_t k = 0; k < light.size(); ++k) light[k] = ray.light(start - static_cast<float>(k));
   const std::size_t n = light.size();
   inside = (light[n - 1] + light[n - 2] + light[n - 3]) / 3;
   const float half = 0.5F * (dark_light + inside);
@@ -105,25 +134,33 @@ void measure_rim(const camera::GrayView& picture, const camera::Boundary& expect
   const float outer_px = static_cast<float>(expected.radius_px * outer);
   // Room for telling an edge from the end of the ray, whatever the size of the circle.
   const float inner_px = static_cast<float>(expected.radius_px * inner) - 8;
+  constexpr double kQuietScatter = 2;  // grey levels
+  constexpr int kNoisyHalfWidth = 3;
   double scatter = 0;
-  measure_mask(picture, center, outer_px, profile.dark_level, scatter);
+  int half_width = 0;
+  measure_mask(picture, center, outer_px, half_width, profile.dark_level, scatter);
+  if (scatter > kQuietScatter) {
+    half_width = kNoisyHalfWidth;
+    measure_mask(picture, center, outer_px, half_width, profile.dark_level, scatter);
+  }
   // A lit scene stands clear of the mask's own noise and of compression's ringing.
   const int lit = static_cast<int>(profile.dark_level + std::clamp(4.0 * scatter, 7.0, 30.0));
   const float dark_light = linear_light().value[static_cast<std::size_t>(profile.dark_level)];
 
+  // Averaged samples tell in twos what single ones tell in threes.
+  const float step_px = half_width > 0 ? 2 : 1;
+  const int lit_run = half_width > 0 ? 2 : 3;
   int dark = 0, clipped = 0;
   for (int i = 0; i < kRayCount; ++i) {
-    const float dx = directions().cosine[i], dy = directions().sine[i];
-    const float reach = reach_in_picture(picture, center, dx, dy);
+    const Ray ray{picture, center, directions().cosine[i], directions().sine[i], half_width};
+    const float reach = ray.reach();
     const float start = std::min(outer_px, reach);
     int run = 0;
     float first = -1;
-    for (float r = start; r >= inner_px; r -= 1) {
-      const int x = static_cast<int>(center.x() + r * dx + 0.5F),
-                y = static_cast<int>(center.y() + r * dy + 0.5F);
-      if (picture.row(y)[x] <= lit) {
+    for (float r = start; r >= inner_px; r -= step_px) {
+      if (ray.grey(r) <= lit) {
         run = 0;
-      } else if (++run == 3) {
+      } else if (++run == lit_run) {
         first = r + 2;
         break;
       }
@@ -137,7 +174,7 @@ void measure_rim(const camera::GrayView& picture, const camera::Boundary& expect
     } else {
       profile.state[i] = RayState::Edge;
       profile.radius_px[i] =
-          locate_edge(picture, center, dx, dy, first, reach, dark_light, profile.inside_light[i]);
+          locate_edge(ray, first, reach, dark_light, profile.inside_light[i]);
     }
   }
   profile.dark_share = static_cast<double>(dark) / kRayCount;
