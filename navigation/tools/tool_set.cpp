@@ -47,6 +47,10 @@ Tool read_tool(const files::JsonObject& entry, Owners& owners) {
   tool.size_mm = entry.positive_number("size_mm");
   if (entry.has("tip_mm")) tool.tip_mm = entry.vector3("tip_mm");
   if (entry.has("axis_point_mm") || entry.has("axis_direction")) tool.axis = read_axis(entry);
+  if (entry.has("residual_mm")) {
+    tool.residual_mm = entry.number("residual_mm");
+    if (*tool.residual_mm < 0) entry.fail("residual_mm", "must not be negative");
+  }
   return tool;
 }
 
@@ -127,6 +131,7 @@ void write_tools_file(const std::filesystem::path& file, const ToolSet& tools) {
       entry["axis_point_mm"] = files::to_json(tool.axis->point_mm);
       entry["axis_direction"] = files::to_json(tool.axis->direction);
     }
+    if (tool.residual_mm) entry["residual_mm"] = *tool.residual_mm;
     document["tools"].push_back(std::move(entry));
   }
   files::write_json(file, document);

@@ -28,6 +28,8 @@ struct Tool {
   double size_mm = 4;
   std::optional<Eigen::Vector3d> tip_mm;  // in the marker frame
   std::optional<ToolAxis> axis;
+  // RMS of the calibration that tip or axis come from; empty: not known.
+  std::optional<double> residual_mm = std::nullopt;
 };
 
 struct ToolSet {

@@ -37,7 +37,8 @@ class ToolsFile : public ::testing::Test {
 
 // What is written is what is read, to the last bit.
 TEST_F(ToolsFile, KeepsTheStandardToolsThroughARoundTrip) {
-  const ToolSet written = standard_tools();
+  ToolSet written = standard_tools();
+  written.tools.front().residual_mm = 0.0625;  // of its calibration; the others have none
   write_tools_file(file_, written);
   const ToolSet read = read_tools_file(file_);
   ASSERT_EQ(read.world_markers.size(), written.world_markers.size());
@@ -50,6 +51,7 @@ TEST_F(ToolsFile, KeepsTheStandardToolsThroughARoundTrip) {
   for (std::size_t i = 0; i < read.tools.size(); ++i) {
     EXPECT_EQ(read.tools[i].name, written.tools[i].name);
     EXPECT_EQ(read.tools[i].tip_mm, written.tools[i].tip_mm);
+    EXPECT_EQ(read.tools[i].residual_mm, written.tools[i].residual_mm);
     ASSERT_EQ(read.tools[i].axis.has_value(), written.tools[i].axis.has_value());
     if (read.tools[i].axis) {
       EXPECT_EQ(read.tools[i].axis->point_mm, written.tools[i].axis->point_mm);
