@@ -39,10 +39,10 @@ struct BoardView {
   double lens_angle_deg = 0;
 };
 
-// Corners with Gaussian noise, 0.92 of the view's radius at most, and what the lens tracker would report.
+// Corners with Gaussian noise, out to a share of the view's radius, and what the lens tracker would report.
 inline CalibrationPicture picture_of(const camera::Calibration& scope, const BoardView& view,
                                      double square_mm, double corner_sigma_px, double mark_sigma_deg,
-                                     std::mt19937& random) {
+                                     std::mt19937& random, double reach = 0.92) {
   std::normal_distribution<double> normal;
   const double alpha = geometry::rad_from_deg(view.lens_angle_deg);
   const camera::CameraModel model(scope, alpha, scope.refractive_index);
@@ -53,7 +53,7 @@ inline CalibrationPicture picture_of(const camera::Calibration& scope, const Boa
     for (int r = -30; r <= 30; ++r) {
       const auto pixel =
           model.project(view.camera_from_board * Eigen::Vector3d(c * square_mm, r * square_mm, 0));
-      if (!pixel || (*pixel - model.boundary().center_px).norm() > 0.92 * scope.boundary.radius_px) continue;
+      if (!pixel || (*pixel - model.boundary().center_px).norm() > reach * scope.boundary.radius_px) continue;
       picture.board.corners.push_back(
           {{c, r}, *pixel + corner_sigma_px * Eigen::Vector2d(normal(random), normal(random))});
     }
