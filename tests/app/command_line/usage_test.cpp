@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/app/command_line/program.h"
 
 namespace arthronaut {
@@ -30,7 +32,11 @@ TEST_P(Subcommand, RefusesAnUnknownOption) {
 INSTANTIATE_TEST_SUITE_P(All, Subcommand,
                          ::testing::Values("calibrate", "check-fluid", "track", "pivot", "digitise", "register", "import", "plan",
                                            "phantom", "navigate", "replay", "report", "markers", "demo"),
-                         [](const auto& test) { return std::string(test.param); });
+                         [](const auto& test) {
+                           std::string name = test.param;
+                           std::replace(name.begin(), name.end(), '-', '_');  // a name of a test has no hyphen
+                           return name;
+                         });
 
 TEST(CommandLine, SaysItsVersion) {
   const auto result = run_program({"--version"});
