@@ -11,9 +11,13 @@ namespace {
 
 using Kind = OverlayLine::Kind;
 
-bool is_free(const Eigen::Vector2d& pixel, std::span<const ClearDisc> clear) {
+// Whether the straight line between two pixels, which may be one and the same, keeps off all discs.
+bool is_free(const Eigen::Vector2d& from, const Eigen::Vector2d& to, std::span<const ClearDisc> clear) {
+  const Eigen::Vector2d along = to - from;
+  const double length2 = along.squaredNorm();
   return std::none_of(clear.begin(), clear.end(), [&](const ClearDisc& disc) {
-    return (pixel - disc.center_px).norm() < disc.radius_px;
+    const double share = length2 > 0 ? std::clamp((disc.center_px - from).dot(along) / length2, 0.0, 1.0) : 0;
+    return (from + share * along - disc.center_px).squaredNorm() < disc.radius_px * disc.radius_px;
   });
 }
 
@@ -21,20 +25,22 @@ std::optional<Eigen::Vector2d> drawn_pixel(const camera::CameraModel& camera,
                                            const Eigen::Vector3d& point_in_camera_mm,
                                            std::span<const ClearDisc> clear) {
   const auto pixel = camera.project(point_in_camera_mm);
-  if (!pixel || !camera.is_inside_view(*pixel) || !is_free(*pixel, clear)) return std::nullopt;
+  if (!pixel || !camera.is_inside_view(*pixel) || !is_free(*pixel, *pixel, clear)) return std::nullopt;
   return pixel;
 }
 
 // Collects pixels into lines; a new line begins where a pixel is missing or changes sides.
 class LineWriter {
  public:
-  LineWriter(PlanOverlay& overlay, Kind kind) : overlay_(overlay), line_{kind, false, {}} {}
+  LineWriter(PlanOverlay& overlay, Kind kind, std::span<const ClearDisc> clear)
+      : overlay_(overlay), clear_(clear), line_{kind, false, {}} {}
   ~LineWriter() { finish(); }
   LineWriter(const LineWriter&) = delete;
   LineWriter& operator=(const LineWriter&) = delete;
 
   void add(const std::optional<Eigen::Vector2d>& pixel, bool is_hidden) {
     if (!pixel) return finish();
+    if (!line_.points_px.empty() && !is_free(line_.points_px.back(), *pixel, clear_)) finish();
     if (is_hidden != line_.is_hidden && !line_.points_px.empty()) {
       line_.points_px.push_back(*pixel);  // the two lines meet
       finish();
@@ -49,6 +55,7 @@ class LineWriter {
 
  private:
   PlanOverlay& overlay_;
+  std::span<const ClearDisc> clear_;
   OverlayLine line_;
 };
 
@@ -121,7 +128,7 @@ PlanOverlay OverlayModel::project(const camera::CameraModel& camera,
   const Eigen::Vector3d eye = camera_from_bone.inverse().translation_mm;
   add_outline(overlay, camera, camera_from_bone, clear);
   for (const Path& path : paths_) {
-    LineWriter line(overlay, path.kind);
+    LineWriter line(overlay, path.kind, clear);
     for (const Eigen::Vector3d& point : path.points_mm) {
       const auto pixel = drawn_pixel(camera, camera_from_bone * point, clear);
       line.add(pixel, pixel && is_hidden(eye, point));
@@ -145,7 +152,8 @@ void OverlayModel::add_outline(PlanOverlay& overlay, const camera::CameraModel& 
     const Eigen::Vector3d& b = vertices_mm_[static_cast<std::size_t>(edge.to)];
     const auto pixel_a = drawn_pixel(camera, camera_from_bone * a, clear);
     const auto pixel_b = drawn_pixel(camera, camera_from_bone * b, clear);
-    if (!pixel_a || !pixel_b || is_hidden(eye, 0.5 * (a + b))) continue;
+    if (!pixel_a || !pixel_b || !is_free(*pixel_a, *pixel_b, clear) || is_hidden(eye, 0.5 * (a + b)))
+      continue;
     overlay.push_back({Kind::BoneOutline, false, {*pixel_a, *pixel_b}});
   }
 }
@@ -153,7 +161,7 @@ void OverlayModel::add_outline(PlanOverlay& overlay, const camera::CameraModel& 
 void add_curves(PlanOverlay& overlay, const camera::CameraModel& camera,
                 std::span<const Eigen::Vector3d> points_in_camera_mm, double max_hop_mm,
                 std::span<const ClearDisc> clear) {
-  LineWriter line(overlay, Kind::Curve);
+  LineWriter line(overlay, Kind::Curve, clear);
   for (std::size_t i = 0; i < points_in_camera_mm.size(); ++i) {
     if (i > 0 && (points_in_camera_mm[i] - points_in_camera_mm[i - 1]).norm() > max_hop_mm) line.finish();
     line.add(drawn_pixel(camera, points_in_camera_mm[i], clear), false);

@@ -25,7 +25,8 @@ struct OverlayLine {
 };
 using PlanOverlay = std::vector<OverlayLine>;
 
-// A place that nothing is drawn over: the tip of a tool.
+// A place that nothing is drawn over: the tip of a tool, a piece of its shaft. No line crosses it, not even
+// between two of its points.
 struct ClearDisc {
   Eigen::Vector2d center_px;
   double radius_px = 0;

@@ -76,7 +76,8 @@ GLuint new_texture() {
 }
 
 void set_vector(GLuint program, const char* name, const Eigen::Vector2d& value) {
-  glUniform2f(glGetUniformLocation(program, name), static_cast<float>(value.x()), static_cast<float>(value.y()));
+  glUniform2f(glGetUniformLocation(program, name), static_cast<float>(value.x()),
+              static_cast<float>(value.y()));
 }
 
 // What drawing into a texture changes, put back when it goes out of scope.

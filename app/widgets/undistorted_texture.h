@@ -1,5 +1,6 @@
-// The live picture without the lens' distortion, as an OpenGL texture. A fragment shader looks every pixel up in the
-// view's table; where the machine can't do that, the CPU does. On the thread that owns the context, which is current.
+// The live picture without the lens' distortion, as an OpenGL texture. A fragment shader looks every pixel up
+// in the view's table; where the machine can't do that, the CPU does. On the thread that owns the context,
+// which is current.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +19,14 @@ class UndistortedTexture {
   UndistortedTexture(const UndistortedTexture&) = delete;
   UndistortedTexture& operator=(const UndistortedTexture&) = delete;
 
-  // The frame as size_px x size_px pixels of the view, top row first in texture(). `video` holds the raw frame and
-  // `camera` is that of the frame. Leaves the OpenGL state as it was. Nothing is done for the frame, camera and size of
-  // the last call. Memory is taken when lens, medium or size change, not from frame to frame.
-  void draw(const camera::FramePtr& frame, const VideoTexture& video, const camera::CameraModel& camera, int size_px);
+  // The frame as size_px x size_px pixels of the view, top row first in texture(). `video` holds the raw
+  // frame and `camera` is that of the frame. Leaves the OpenGL state as it was. Nothing is done for the
+  // frame, camera and size of the last call. Memory is taken when lens, medium or size change, not from frame
+  // to frame.
+  void draw(const camera::FramePtr& frame, const VideoTexture& video, const camera::CameraModel& camera,
+            int size_px);
 
-  [[nodiscard]] std::uint32_t texture() const { return texture_; }          // 0 before the first draw()
+  [[nodiscard]] std::uint32_t texture() const { return texture_; }              // 0 before the first draw()
   [[nodiscard]] const camera::UndistortedView& view() const { return *view_; }  // after the first draw()
   [[nodiscard]] bool is_on_gpu() const { return program_ != 0; }
 

@@ -105,6 +105,20 @@ TEST(PlanOverlay, KeepsOffTheToolTipAndInsideTheView) {
     }
 }
 
+// A line whose points lie on either side of a tool's shaft does not cross it.
+TEST(PlanOverlay, NoLineCrossesAShaftBetweenItsPoints) {
+  const camera::CameraModel camera = scope();
+  const std::vector<Eigen::Vector3d> points{{-3, 0, 30}, {-1.5, 0, 30}, {0, 0, 30}, {1.5, 0, 30}, {3, 0, 30}};
+  // Between the third and the fourth point, on neither.
+  const Eigen::Vector2d between = *camera.project({0.75, 0, 30});
+  const ClearDisc shaft{between, 8};
+  PlanOverlay overlay;
+  add_curves(overlay, camera, points, 5, std::span(&shaft, 1));
+  ASSERT_EQ(overlay.size(), 2U);
+  EXPECT_EQ(overlay[0].points_px.size(), 3U);
+  EXPECT_EQ(overlay[1].points_px.size(), 2U);
+}
+
 // A curve breaks where the tip hopped.
 TEST(PlanOverlay, CurvesBreakAtHops) {
   const camera::CameraModel camera = scope();

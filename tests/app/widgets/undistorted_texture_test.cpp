@@ -82,8 +82,8 @@ TEST_F(UndistortedTextureTest, ShaderAndProcessorAgree) {
     long lit = 0, different = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
       lit += a[i] > 0 ? 1 : 0;
-      // Both weigh four pixels, the CPU in steps of 1/32 px: 5 levels/px are 0.2 levels of rounding, and one of each's
-      // own. The rim itself may fall either way.
+      // Both weigh four pixels, the CPU in steps of 1/32 px: 5 levels/px are 0.2 levels of rounding, and one
+      // of each's own. The rim itself may fall either way.
       different += std::abs(int{a[i]} - int{b[i]}) > 2 ? 1 : 0;
     }
     EXPECT_GT(lit, 3L * kSize_px * kSize_px / 2);
