@@ -3,7 +3,6 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <limits>
 #include <mutex>
 #include <thread>
 
@@ -48,13 +47,10 @@ class Operation::Worker {
  public:
   Worker(OperationSetup setup, std::function<void()> on_news)
       : setup_(std::move(setup)), on_news_(std::move(on_news)) {
-    status_.trail = std::make_shared<std::vector<Eigen::Vector3d>>();
-    status_.registration = setup_.registration;
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
   ~Worker() {
-    thread_.request_stop();
-    news_.notify_all();
+    request_stop();
     thread_.join();
     if (registering_.joinable()) registering_.join();
   }
@@ -75,19 +71,25 @@ class Operation::Worker {
   }
   const OperationSetup& setup() const { return setup_; }
 
-  void clear_curves(OperationJob& job) {
-    job.clear_curves();
-    if (online_ != nullptr) online_->clear();
-    best_tre_mm_ = std::numeric_limits<double>::infinity();
-    note_digitising(job);
+  void request_stop() {
+    is_stopping_ = true;
+    thread_.request_stop();
+    news_.notify_all();
   }
 
-  void start_registration(const OperationJob& job) {
-    const strokes::Curves curves = job.curves();
-    if (curves.empty() || is_registering_.exchange(true)) return;
+  void start_registration() {
+    if (setup_.registration->strokes_in_use().empty() || is_registering_.exchange(true)) return;
     update([](OperationStatus& s) { s.is_registering = true; });
     if (registering_.joinable()) registering_.join();
-    registering_ = std::jthread([this, curves] { run_registration(curves); });
+    registering_ = std::jthread([this] { run_registration(); });
+  }
+  void take_touch(OperationJob& job, bool is_control_point) {
+    job.set_digitising(false);
+    const std::string why_not = job.take_touch(is_control_point);
+    update([&](OperationStatus& s) {
+      s.digitises = false;
+      s.touch_notice = why_not.empty() ? "" : "No touch taken: " + why_not;
+    });
   }
   void start_recording(OperationJob& job, const std::filesystem::path& folder) {
     job.start_recording(folder);
@@ -98,11 +100,7 @@ class Operation::Worker {
     update([](OperationStatus& s) { s.recording.clear(); });
   }
   void note_digitising(const OperationJob& job) {
-    auto trail = std::make_shared<const std::vector<Eigen::Vector3d>>(job.trail());
-    update([&](OperationStatus& s) {
-      s.digitises = job.digitises();
-      s.trail = std::move(trail);
-    });
+    update([&](OperationStatus& s) { s.digitises = job.digitises(); });
   }
 
  private:
@@ -139,62 +137,23 @@ class Operation::Worker {
 
   void navigate(OperationJob& job, const std::stop_token& stop) {
     Pace pace;
-    std::size_t trail_size = 0;
     while (!stop.stop_requested()) {
       run_requests(job);
       std::shared_ptr<LiveFrame> live = job.step();
       if (live == nullptr) return;
       if (!job.source_info().is_live) wait_until(pace.due(live->picture->timestamp_ns), stop);
       publish(std::move(live));
-      register_along(job);
       if (!job.recording_error().empty()) {
         update([&](OperationStatus& s) {
           s.recording_error = job.recording_error();
           s.recording.clear();
         });
       }
-      // The trail is copied for the screen a few times a second, not for every point.
-      if (job.trail().size() > trail_size + 10) {
-        trail_size = job.trail().size();
-        note_digitising(job);
-      }
     }
-  }
-
-  void register_along(OperationJob& job) {
-    if (!job.digitises()) return;
-    if (online_ == nullptr) {
-      if (setup_.prepared_bone.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-      registration::OnlineOptions options;
-      if (setup_.plan) {
-        options.target_in_bone_mm = setup_.plan->entry_mm;
-        options.direction_in_bone = setup_.plan->direction;
-      }
-      online_ = std::make_unique<registration::RegistrationWorker>(setup_.prepared_bone.get(), options);
-    }
-    if (const strokes::Curves points = job.take_new_points(); !points.empty()) online_->add_points(points);
-    const auto latest = online_->latest();
-    if (online_revision_ == latest->revision) return;
-    online_revision_ = latest->revision;
-    // Taken over when it is confirmed first, and again when it has become clearly better.
-    const bool is_confirmed =
-        latest->state >= registration::OnlineState::Confirmed && latest->registration.reliable;
-    const bool is_better = latest->registration.predicted_tre_mm < 0.9 * best_tre_mm_;
-    if (is_confirmed && is_better) {
-      best_tre_mm_ = latest->registration.predicted_tre_mm;
-      job.set_registration(latest->registration, true);
-    }
-    update([&](OperationStatus& s) {
-      s.online = latest;
-      if (!is_confirmed || !is_better) return;
-      s.registration = latest->registration;
-      ++s.registration_count;
-    });
   }
 
   // After the last picture: registering what was touched is still possible.
   void wait_out(OperationJob& job, const std::stop_token& stop) {
-    note_digitising(job);
     while (!stop.stop_requested()) {
       run_requests(job);
       std::unique_lock lock(mutex_);
@@ -235,22 +194,10 @@ class Operation::Worker {
   }
 
   // The top of the registration thread.
-  void run_registration(const strokes::Curves& curves) {
-    registration::RegistrationSummary found;
-    try {
-      registration::RegistrationOptions options;
-      if (setup_.plan) options.target_in_bone_mm = setup_.plan->entry_mm;
-      found = registration::register_curves(*setup_.prepared_bone.get(), curves, options);
-    } catch (const std::exception& error) {
-      found.reasons = {error.what()};
-    }
-    post([found](OperationJob& job) { job.set_registration(found, true); });
+  void run_registration() {
+    setup_.registration->register_all([this] { return !is_stopping_; });
     is_registering_ = false;
-    update([&](OperationStatus& s) {
-      s.is_registering = false;
-      s.registration = found;
-      ++s.registration_count;
-    });
+    update([](OperationStatus& s) { s.is_registering = false; });
   }
 
   const OperationSetup setup_;
@@ -259,12 +206,9 @@ class Operation::Worker {
   std::condition_variable news_;
   std::vector<Request> requests_;
   OperationStatus status_;
-  std::atomic<bool> is_registering_ = false;
+  std::atomic<bool> is_registering_ = false, is_stopping_ = false;
   int frames_since_ = 0;
   Clock::time_point counted_from_ = Clock::now();
-  std::unique_ptr<registration::RegistrationWorker> online_;  // of the worker thread
-  std::uint64_t online_revision_ = 0;
-  double best_tre_mm_ = std::numeric_limits<double>::infinity();
   std::jthread registering_, thread_;
 };
 
@@ -283,12 +227,15 @@ void Operation::set_digitising(bool on) {
   });
 }
 
-void Operation::clear_curves() {
-  worker_->post([w = worker_.get()](OperationJob& job) { w->clear_curves(job); });
+void Operation::request_stop() { worker_->request_stop(); }
+
+void Operation::take_touch(bool is_control_point) {
+  worker_->post(
+      [w = worker_.get(), is_control_point](OperationJob& job) { w->take_touch(job, is_control_point); });
 }
 
 void Operation::register_curves() {
-  worker_->post([w = worker_.get()](OperationJob& job) { w->start_registration(job); });
+  worker_->post([w = worker_.get()](OperationJob&) { w->start_registration(); });
 }
 
 void Operation::start_recording(const std::filesystem::path& session_folder) {

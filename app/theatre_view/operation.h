@@ -1,33 +1,31 @@
 // One run of the navigation on one source, in a thread of its own: pictures in, live frames out, newest wins.
 // The window reads status() and asks for changes; nothing here knows the window.
 //
-// While the probe draws, a registration runs along; the moment it is confirmed it takes effect by itself.
-// register_curves() asks for one from all that was drawn.
+// What the probe draws goes to the bone's registration (bone_registration.h), and what is in force there
+// guides from the next picture on. register_curves() asks for a registration of all that was drawn.
 //
 // Threads: the worker takes frames, runs the pipeline, projects the overlay and is the one that talks to the
 // recorder; registrations run in threads of their own and hand their results to the worker. Every public
-// function may be called from any thread and none of them waits, but the destructor, which joins both.
-// States: starting -> running -> ended | failed.
+// function may be called from any thread and none of them waits, but the destructor, which joins both:
+// request_stop() first and destroy it elsewhere where that would freeze a screen. States: starting -> running
+// -> ended | failed.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/scene/plan_overlay.h"
+#include "app/theatre_view/bone_registration.h"
 #include "navigation/pipeline/navigation_pipeline.h"
 #include "navigation/recording/session.h"
-#include "navigation/registration/online_registration.h"
 #include "navigation/sources/frame_source.h"
 
 namespace arthronaut::theatre_view {
-
-using PreparedBonePtr = std::shared_ptr<const registration::PreparedBone>;
 
 struct OperationSetup {
   std::string title;                                                   // "Simulated operation: scratching"
@@ -37,9 +35,8 @@ struct OperationSetup {
   double planned_length_mm = 0;
   std::shared_ptr<const geometry::Surface> surface;
   std::shared_ptr<const geometry::TriangleMesh> drawn_bone;
-  std::shared_future<PreparedBonePtr> prepared_bone;              // for registration
-  std::optional<registration::RegistrationSummary> registration;  // from an earlier run
-  bool digitises = true;                                          // from the first frame
+  std::shared_ptr<BoneRegistration> registration;  // of the bone, not null
+  bool digitises = true;                           // from the first frame
   // Where the tunnel truly goes; the simulated source alone knows. Filled in by open_source, null else.
   std::shared_ptr<std::optional<tunnels::Tunnel>> truth;
   std::filesystem::path session_folder;  // recorded when not empty
@@ -60,14 +57,10 @@ struct OperationStatus {
   std::shared_ptr<const LiveFrame> live;  // the newest; null before the first
   double frames_per_second = 0;           // that were navigated, lately
   bool digitises = false;
-  std::shared_ptr<const std::vector<Eigen::Vector3d>>
-      trail;  // touched points, world-marker frame; never null
-  // The registration that runs while the probe draws, with what to touch next; null while it does not run.
-  std::shared_ptr<const registration::OnlineResult> online;
   bool is_registering = false;
-  std::optional<registration::RegistrationSummary> registration;
-  std::uint64_t registration_count = 0;  // counts results, so that a new one is noticed
-  std::filesystem::path recording;       // the session's folder while it is recorded, else empty
+  RegistrationStatus bone;          // of the bone's registration; filled in by who shows it
+  std::string touch_notice;         // why a touch was not taken; empty else
+  std::filesystem::path recording;  // the session's folder while it is recorded, else empty
   std::string recording_error;
 };
 
@@ -84,8 +77,13 @@ class Operation {
   [[nodiscard]] const std::string& title() const;
   [[nodiscard]] static double now_s();  // the clock of published_s
 
+  // From now on nothing of it takes effect any more; it ends as soon as it can.
+  void request_stop();
+
   void set_digitising(bool on);
-  void clear_curves();
+  // Takes the place where the tip stands still for a touch that verifies, or for the control point. The probe
+  // stops drawing: a touch must not be used in the fit.
+  void take_touch(bool is_control_point);
   void register_curves();  // nothing happens while one is running or nothing was touched
   void start_recording(const std::filesystem::path& session_folder);
   void stop_recording();

@@ -4,6 +4,7 @@
 #include <ctime>
 #include <utility>
 
+#include "app/theatre_view/tool_clearance.h"
 #include "arthronaut/version.h"
 #include "navigation/pipeline/prefetched_source.h"
 #include "planning/geometry/error.h"
@@ -11,12 +12,6 @@
 namespace arthronaut::theatre_view {
 
 namespace {
-
-constexpr double kTipClearance_px = 45;  // of 1080 lines: what is drawn keeps this far from a tool's tip
-
-const tools::Tool* guide_of(const pipeline::PipelineOptions& options) {
-  return options.tools.find_tool(options.guide_name);
-}
 
 std::string utc_now() {
   const std::time_t now = std::time(nullptr);
@@ -37,7 +32,7 @@ OperationJob::OperationJob(const OperationSetup& setup)
       overlay_(setup.surface, *setup.drawn_bone, setup.plan, setup.planned_length_mm),
       digitises_(setup.digitises) {
   pipeline_.set_plan(setup.plan, setup.planned_length_mm);
-  if (setup.registration) set_registration(*setup.registration, false);
+  follow_registration();
   if (!setup.session_folder.empty()) start_recording(setup.session_folder);
 }
 
@@ -51,29 +46,53 @@ std::shared_ptr<LiveFrame> OperationJob::step() {
   // them.
   constexpr double kDeviceStale_s = 0.2, kOtherStale_s = 2.0;
   live->stale_after_s = source_->info().is_live ? kDeviceStale_s : kOtherStale_s;
+  follow_registration();
   pipeline_.process(*live->picture, live->result);
-  if (digitises_ && live->result.tip_is_valid) digitise(live->result);
+  note_tip(live->result);
   drilled_.add(live->result.guidance);
   record(*live);
   project(*live);
   return live;
 }
 
-void OperationJob::digitise(const pipeline::FrameResult& result) {
-  pipeline::append_pose_rows(result, poses_);
-  trail_.push_back(result.tip_in_world_mm);
-  const strokes::StrokeOptions limits;
-  strokes::CurvePoint point{0, static_cast<double>(result.timestamp_ns) * 1e-9, result.tip_in_world_mm};
-  if (last_point_) {
-    const bool goes_on = *point.time_s - *last_point_->time_s <= limits.max_gap_s &&
-                         (point.position_mm - last_point_->position_mm).norm() <= limits.max_hop_mm;
-    point.curve = last_point_->curve + (goes_on ? 0 : 1);
+// What is in force guides from this picture on; an alarm takes it out of force.
+void OperationJob::follow_registration() {
+  RegistrationStatus status = setup_.registration->status();
+  drawn_ = std::move(status.drawn);
+  if (status.change_count == registration_count_) return;
+  registration_count_ = status.change_count;
+  registration_ = std::move(status.in_force);
+  if (registration_ == nullptr) return pipeline_.set_registration(std::nullopt);
+  pipeline_.set_registration(*registration_);
+  if (recorder_ == nullptr) return;
+  try {  // as in record()
+    recorder_->set_registration(*registration_, true);
+    recorder_->set_curves(setup_.registration->strokes_in_use());
+    if (!status.alarm.empty()) recorder_->add_event({last_timestamp_ns_, "alarm", status.alarm});
+  } catch (const IoError& error) {
+    recording_error_ = error.what();
+    recorder_.reset();
   }
-  last_point_ = point;
-  new_points_.push_back(point);
 }
 
-strokes::Curves OperationJob::take_new_points() { return std::exchange(new_points_, {}); }
+void OperationJob::note_tip(const pipeline::FrameResult& result) {
+  last_timestamp_ns_ = result.timestamp_ns;
+  const double time_s = static_cast<double>(result.timestamp_ns) * 1e-9;
+  tip_.add(time_s, result.tip_is_valid ? std::optional(result.tip_in_world_mm) : std::nullopt);
+  if (!digitises_ || !result.tip_is_valid) return;
+  setup_.registration->add_tip(time_s, result.tip_in_world_mm);
+  has_drawn_ = true;
+}
+
+std::string OperationJob::take_touch(bool is_control_point) {
+  const auto tip_mm = tip_.position_mm();
+  if (!tip_mm) return tip_.why_not();
+  if (is_control_point)
+    setup_.registration->touch_control_point(*tip_mm);
+  else
+    setup_.registration->add_touch(*tip_mm);
+  return "";
+}
 
 void OperationJob::record(const LiveFrame& live) {
   if (recorder_ == nullptr) return;
@@ -95,49 +114,14 @@ void OperationJob::project(LiveFrame& live) const {
   const pipeline::FrameResult& result = live.result;
   if (!result.camera_from_world.is_valid) return;
   const geometry::RigidTransform& camera_from_world = result.camera_from_world.target_from_source;
-  const std::vector<scene::ClearDisc> tips = tool_tips(result);
+  const std::vector<scene::ClearDisc> clear = clear_discs_of(result, setup_.pipeline.tools);
   if (registration_ && registration_->has_pose && registration_->reliable)
-    live.overlay = overlay_.project(result.camera, camera_from_world * registration_->marker_from_bone, tips);
+    live.overlay =
+        overlay_.project(result.camera, camera_from_world * registration_->marker_from_bone, clear);
   std::vector<Eigen::Vector3d> curves;
-  curves.reserve(trail_.size());
-  for (const Eigen::Vector3d& point : trail_) curves.push_back(camera_from_world * point);
-  scene::add_curves(live.overlay, result.camera, curves, strokes::StrokeOptions{}.max_hop_mm, tips);
-}
-
-std::vector<scene::ClearDisc> OperationJob::tool_tips(const pipeline::FrameResult& result) const {
-  std::vector<scene::ClearDisc> tips;
-  const geometry::RigidTransform& camera_from_world = result.camera_from_world.target_from_source;
-  const double radius = kTipClearance_px * result.camera.image_size_px().y() / 1080.0;
-  const auto add = [&](const Eigen::Vector3d& tip_in_world_mm) {
-    if (const auto pixel = result.camera.project(camera_from_world * tip_in_world_mm))
-      tips.push_back({*pixel, radius});
-  };
-  if (result.tip_is_valid) add(result.tip_in_world_mm);
-  const tools::Tool* guide = guide_of(setup_.pipeline);
-  if (guide == nullptr || !guide->axis) return tips;
-  for (const pipeline::ToolPose& tool : result.tools)
-    if (tool.marker_id == guide->marker_id && tool.world_from_tool.is_valid)
-      add(tool.world_from_tool.target_from_source * guide->axis->point_mm);
-  return tips;
-}
-
-void OperationJob::clear_curves() {
-  poses_.clear();
-  trail_.clear();
-  new_points_.clear();
-}
-
-strokes::Curves OperationJob::curves() const {
-  return strokes::digitise(poses_, setup_.pipeline.tools, setup_.pipeline.bone, setup_.pipeline.probe_name);
-}
-
-void OperationJob::set_registration(const registration::RegistrationSummary& registration,
-                                    bool found_in_this_session) {
-  registration_ = registration;
-  pipeline_.set_registration(registration);
-  if (recorder_ == nullptr) return;
-  recorder_->set_registration(registration, found_in_this_session);
-  if (found_in_this_session) recorder_->set_curves(curves());
+  curves.reserve(drawn_->size());
+  for (const strokes::CurvePoint& point : *drawn_) curves.push_back(camera_from_world * point.position_mm);
+  scene::add_curves(live.overlay, result.camera, curves, strokes::StrokeOptions{}.max_hop_mm, clear);
 }
 
 void OperationJob::start_recording(const std::filesystem::path& session_folder) {
@@ -159,7 +143,7 @@ void OperationJob::start_recording(const std::filesystem::path& session_folder) 
 
 void OperationJob::stop_recording() {
   if (recorder_ == nullptr) return;
-  if (!poses_.empty()) recorder_->set_curves(curves());
+  if (has_drawn_) recorder_->set_curves(setup_.registration->strokes_in_use());
   record_drilled_tunnel();
   recorder_->finish();
   recorder_.reset();

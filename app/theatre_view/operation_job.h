@@ -20,12 +20,9 @@ class OperationJob {
 
   void set_digitising(bool on) { digitises_ = on; }
   [[nodiscard]] bool digitises() const { return digitises_; }
-  void clear_curves();
-  [[nodiscard]] const std::vector<Eigen::Vector3d>& trail() const { return trail_; }
-  [[nodiscard]] strokes::Curves curves() const;
-  // Points that were drawn since the last call, numbered by stroke, for the registration that runs along.
-  [[nodiscard]] strokes::Curves take_new_points();
-  void set_registration(const registration::RegistrationSummary& registration, bool found_in_this_session);
+  // Hands the place where the tip stands still to the bone's registration. Returns why it could not; empty
+  // when done.
+  [[nodiscard]] std::string take_touch(bool is_control_point);
 
   [[nodiscard]] bool is_recording() const { return recorder_ != nullptr; }
   void start_recording(const std::filesystem::path& session_folder);  // throws IoError
@@ -35,22 +32,22 @@ class OperationJob {
   [[nodiscard]] const sources::SourceInfo& source_info() const;
 
  private:
-  void digitise(const pipeline::FrameResult& result);
+  void follow_registration();
+  void note_tip(const pipeline::FrameResult& result);
   void record(const LiveFrame& live);
   void record_drilled_tunnel();
   void project(LiveFrame& live) const;
-  [[nodiscard]] std::vector<scene::ClearDisc> tool_tips(const pipeline::FrameResult& result) const;
 
   OperationSetup setup_;
   std::unique_ptr<sources::FrameSource> source_, prefetched_;
   pipeline::NavigationPipeline pipeline_;
   scene::OverlayModel overlay_;
-  std::optional<registration::RegistrationSummary> registration_;
-  bool digitises_ = false;
-  std::vector<strokes::PoseRow> poses_;
-  std::vector<Eigen::Vector3d> trail_;
-  strokes::Curves new_points_;
-  std::optional<strokes::CurvePoint> last_point_;
+  RegistrationPtr registration_;                  // in force
+  std::uint64_t registration_count_ = 0;          // of its changes that were taken in
+  std::shared_ptr<const strokes::Curves> drawn_;  // what the overlay shows
+  bool digitises_ = false, has_drawn_ = false;
+  SteadyTip tip_;
+  std::int64_t last_timestamp_ns_ = 0;
   std::unique_ptr<recording::SessionRecorder> recorder_;
   std::string recording_error_;
   TunnelMeter drilled_;

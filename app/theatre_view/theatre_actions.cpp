@@ -1,5 +1,6 @@
 #include <GLFW/glfw3.h>
 
+#include "app/theatre_view/registration_words.h"
 #include "app/theatre_view/theatre_view.h"
 
 namespace arthronaut::theatre_view {
@@ -39,34 +40,29 @@ void TheatreView::add_actions(widgets::Actions& actions) {
                GLFW_KEY_ESCAPE,
                0,
                false,
-               [this] { return operation_ != nullptr; },
+               [this] { return operation_ != nullptr || !choices_.cameras.empty(); },
                {},
                [this] {
-                 operation_.reset();
-                 options_.reset();
+                 if (choices_.cameras.empty()) end_operation();
+                 choices_.cameras.clear();
                }});
+  actions.add({"operate.camera", "Camera", "Navigates with a camera that is connected", GLFW_KEY_K, 0, false,
+               [this] { return model_ != nullptr && model_->has_bone(choices_.bone); },
+               [this] { return !choices_.cameras.empty(); }, [this] { choose_camera(); }});
   actions.add({"operate.digitise", "Probe draws",
                "While on, where the probe's tip goes is kept for the registration", GLFW_KEY_D, 0, false,
                running, [this] { return is_running() && status_.digitises; },
                [this] { operation_->set_digitising(!status_.digitises); }});
-  actions.add({"operate.clear",
-               "Clear points",
-               "Forgets what the probe drew",
-               GLFW_KEY_C,
-               0,
-               false,
-               [this] { return operation_ != nullptr && !status_.trail->empty(); },
-               {},
-               [this] { operation_->clear_curves(); }});
-  actions.add({"operate.register",
-               "Register",
-               "Fits the bone to what the probe drew",
-               GLFW_KEY_R,
-               0,
-               false,
-               [this] { return operation_ != nullptr && !status_.trail->empty() && !status_.is_registering; },
-               {},
-               [this] { operation_->register_curves(); }});
+  actions.add(
+      {"operate.register",
+       "Register",
+       "Fits the bone to what the probe drew",
+       GLFW_KEY_R,
+       0,
+       false,
+       [this] { return operation_ != nullptr && !status_.bone.drawn->empty() && !status_.is_registering; },
+       {},
+       [this] { operation_->register_curves(); }});
   actions.add({"operate.record", "Record", "Keeps video, poses and decisions in the case", GLFW_KEY_R,
                GLFW_MOD_CONTROL, false, running, [this] { return !status_.recording.empty(); },
                [this] { toggle_recording(); }});
@@ -101,8 +97,7 @@ void TheatreView::add_actions(widgets::Actions& actions) {
                },
                {},
                [this] {
-                 operation_.reset();
-                 options_.reset();
+                 end_operation();
                  choices_.bone = choices_.bone == bones::BoneKind::Femur ? bones::BoneKind::Tibia
                                                                          : bones::BoneKind::Femur;
                  look_along_plan();
@@ -116,6 +111,117 @@ void TheatreView::add_actions(widgets::Actions& actions) {
                {},
                [this] { return choices_.saline; },
                [this] { choices_.saline = !choices_.saline; }});
+  add_registration_actions(actions);
+}
+
+void TheatreView::add_registration_actions(widgets::Actions& actions) {
+  const auto knows_bone = [this] { return bone_registration() != nullptr; };
+  const auto has_tip = [this] { return is_running(); };
+  const auto has_drawn = [this] { return bone_registration() != nullptr && !status_.bone.drawn->empty(); };
+  const auto select = [this](int step) {
+    choices_.stroke = neighbour_stroke(status_.bone, choices_.stroke, step);
+  };
+  actions.add({"operate.panel", "Registration", "Shows the registration or the way to the plan", GLFW_KEY_H,
+               0, false, [this] { return operation_ != nullptr; },
+               [this] { return layout(Operation::now_s()) == TheatreLayout::Register; },
+               [this] {
+                 choices_.layout = layout(Operation::now_s()) == TheatreLayout::Register
+                                       ? TheatreLayout::Guide
+                                       : TheatreLayout::Register;
+               }});
+  actions.add({"operate.take_back",
+               "Take back",
+               "Forgets the stroke drawn last",
+               GLFW_KEY_BACKSPACE,
+               0,
+               false,
+               has_drawn,
+               {},
+               [this] { bone_registration()->take_back_stroke(); }});
+  actions.add({"operate.stroke_up",
+               "Newer stroke",
+               "Selects the stroke drawn after this one",
+               GLFW_KEY_UP,
+               0,
+               true,
+               has_drawn,
+               {},
+               [select] { select(1); }});
+  actions.add({"operate.stroke_down",
+               "Older stroke",
+               "Selects the stroke drawn before this one",
+               GLFW_KEY_DOWN,
+               0,
+               true,
+               has_drawn,
+               {},
+               [select] { select(-1); }});
+  actions.add(
+      {"operate.leave_out", "Leave out", "Takes the selected stroke out of the fit, or back in", GLFW_KEY_X,
+       0, false, [this] { return neighbour_stroke(status_.bone, choices_.stroke, 0) >= 0; },
+       [this] { return status_.bone.left_out.contains(choices_.stroke); },
+       [this] {
+         choices_.stroke = neighbour_stroke(status_.bone, choices_.stroke, 0);
+         bone_registration()->leave_out(choices_.stroke, !status_.bone.left_out.contains(choices_.stroke));
+       }});
+  actions.add({"operate.touch",
+               "Verify touch",
+               "Measures how far the tip is from the bone, here; not used in the fit",
+               GLFW_KEY_T,
+               0,
+               false,
+               has_tip,
+               {},
+               [this] { operation_->take_touch(false); }});
+  actions.add(
+      {"operate.control_point", "Control point",
+       "A mark on the bone: touched first it is kept, later it tells whether the world marker has moved",
+       GLFW_KEY_P, 0, false, has_tip, [this] { return status_.bone.touches.has_control_point(); },
+       [this] { operation_->take_touch(true); }});
+  actions.add({"operate.forget_touches",
+               "Forget touches",
+               "Touches and control point were wrong, not the marker: takes an alarm away",
+               GLFW_KEY_T,
+               GLFW_MOD_SHIFT,
+               false,
+               [this] {
+                 return bone_registration() != nullptr &&
+                        (status_.bone.touches.touch_count() > 0 || status_.bone.touches.has_control_point());
+               },
+               {},
+               [this] { bone_registration()->forget_touches(); }});
+  actions.add({"operate.clear",
+               "Clear points",
+               "Forgets what the probe drew and the touches; after an alarm the registration too",
+               GLFW_KEY_C,
+               0,
+               false,
+               [this, knows_bone] {
+                 return knows_bone() && (!status_.bone.drawn->empty() || !status_.bone.alarm.empty());
+               },
+               {},
+               [this] { bone_registration()->clear(); }});
+  actions.add({"operate.earlier",
+               "Earlier",
+               "Goes back to the registration before",
+               GLFW_KEY_LEFT,
+               0,
+               false,
+               [this] { return status_.bone.entry_in_force.value_or(0) > 0; },
+               {},
+               [this] { bone_registration()->step_history(-1); }});
+  actions.add({"operate.later",
+               "Later",
+               "Goes on to the registration after",
+               GLFW_KEY_RIGHT,
+               0,
+               false,
+               [this] {
+                 return status_.bone.entry_in_force &&
+                        *status_.bone.entry_in_force + 1 < status_.bone.history->size();
+               },
+               {},
+               [this] { bone_registration()->step_history(1); }});
 }
 
 void TheatreView::draw_controls(const widgets::Ui& ui, const widgets::Rect& area) {
@@ -130,9 +236,9 @@ void TheatreView::draw_controls(const widgets::Ui& ui, const widgets::Rect& area
       x += width + gap;
     }
   };
-  row(area.y, {"operate.next", "operate.scratch", "operate.drill", "operate.video", "operate.medium",
-               "operate.stop"});
-  row(area.y + height + gap, {"operate.digitise", "operate.clear", "operate.register", "operate.overlay",
+  row(area.y, {"operate.next", "operate.scratch", "operate.drill", "operate.video", "operate.camera",
+               "operate.medium", "operate.stop"});
+  row(area.y + height + gap, {"operate.digitise", "operate.register", "operate.panel", "operate.overlay",
                               "operate.undistort", "operate.bone", "operate.record"});
 }
 

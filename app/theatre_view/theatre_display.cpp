@@ -29,7 +29,19 @@ void explain(TheatreDisplay& display, const OperationStatus& status,
   const pipeline::FrameResult& result = status.live->result;
   if (result.is_frozen) {
     display.headline = "Picture frozen";
-    display.detail = "The source sends the same picture again and again";
+    display.detail = "The source sends the same picture again and again: check cable and camera";
+    return;
+  }
+  if (!status.bone.alarm.empty()) {
+    display.headline = "World marker may have moved";
+    display.detail = status.bone.alarm +
+                     ". Touch the control point again; if it stays off, clear the points (C) and draw anew";
+    return;
+  }
+  if (!result.intrinsics_are_known) {
+    const LensTrouble trouble = trouble_of(result.lens);
+    display.headline = trouble.headline.empty() ? "Lens angle unknown" : trouble.headline;
+    display.detail = trouble.advice;
     return;
   }
   switch (result.guidance.state) {
@@ -46,8 +58,8 @@ void explain(TheatreDisplay& display, const OperationStatus& status,
       break;
     case GuidanceState::RegistrationUnreliable:
       display.headline = "Registration not reliable";
-      if (status.registration && !status.registration->reasons.empty())
-        display.detail = status.registration->reasons.front();
+      if (status.bone.in_force != nullptr && !status.bone.in_force->reasons.empty())
+        display.detail = status.bone.in_force->reasons.front();
       break;
     case GuidanceState::WorldMarkerLost:
       display.headline = "Bone marker lost";
@@ -61,7 +73,7 @@ void explain(TheatreDisplay& display, const OperationStatus& status,
       break;
     case GuidanceState::LensStale:
       display.headline = "Lens angle unknown";
-      display.detail = std::string(lens::to_text(result.lens.mark));
+      display.detail = trouble_of(result.lens).advice;
       break;
     case GuidanceState::Stale:
       display.headline = "Poses too old";
@@ -71,6 +83,36 @@ void explain(TheatreDisplay& display, const OperationStatus& status,
 }
 
 }  // namespace
+
+TheatreLayout layout_of(const OperationStatus* status, double since_guidance_s) {
+  constexpr double kHold_s = 2;
+  if (status == nullptr || since_guidance_s < kHold_s) return TheatreLayout::Guide;
+  const bool is_registered = status->bone.in_force != nullptr && status->bone.in_force->reliable;
+  return is_registered && !status->digitises ? TheatreLayout::Guide : TheatreLayout::Register;
+}
+
+LensTrouble trouble_of(const lens::LensObservation& lens) {
+  using lens::MarkState;
+  if (lens.zoom_or_slip)
+    return {"Zoom changed or coupler slipped",
+            "The round view has another size or place than at the calibration: set the zoom back, or "
+            "calibrate again"};
+  switch (lens.mark) {
+    case MarkState::Found:
+      return {};
+    case MarkState::NoCircle:
+      return {"Lens mark not found", "The round border is not seen: bring the whole view into the picture"};
+    case MarkState::Dark:
+      return {"Lens mark not found", "Too dark beside the border: give more light"};
+    case MarkState::Covered:
+      return {"Lens mark not found", "Something covers the mark: move the instrument from the border"};
+    case MarkState::Ambiguous:
+      return {"Lens mark not found", "Two marks look alike: turn the lens a little"};
+    case MarkState::NotSeen:
+      return {"Lens mark not found", "The border has no mark: is this the scope of the calibration?"};
+  }
+  return {};
+}
 
 TheatreDisplay display_of(const OperationStatus* status, const pipeline::PipelineOptions* options,
                           double now_s) {
@@ -106,6 +148,8 @@ TheatreDisplay display_of(const OperationStatus* status, const pipeline::Pipelin
   const pipeline::FrameResult& result = status->live->result;
   display.overlay_is_valid =
       result.camera_from_world.is_valid && result.intrinsics_are_known && !result.is_frozen;
+  // An alarm counts from this moment on, whatever the frame was computed with.
+  display.overlay_is_valid = display.overlay_is_valid && status->bone.alarm.empty();
   display.guidance_is_valid = display.overlay_is_valid && result.guidance.is_valid();
   if (display.guidance_is_valid)
     display.guidance = result.guidance;

@@ -19,6 +19,18 @@ struct TheatreDisplay {
   guidance::GuidanceNumbers guidance;  // meaningful when guidance_is_valid
 };
 
+// What fills the screen beside the picture: the registration that is being made, or the way to the plan.
+enum class TheatreLayout { Register, Guide };
+// since_guidance_s: how long ago guidance was valid last; infinite when it never was. A guide that is hidden
+// for a moment does not change the screen.
+[[nodiscard]] TheatreLayout layout_of(const OperationStatus* status, double since_guidance_s);
+
+// What is wrong with the lens, and what to do about it; empty while the mark is found on its track.
+struct LensTrouble {
+  std::string headline, advice;
+};
+[[nodiscard]] LensTrouble trouble_of(const lens::LensObservation& lens);
+
 // now_s on the clock of Operation::now_s(). status may be null: no operation was started.
 [[nodiscard]] TheatreDisplay display_of(const OperationStatus* status,
                                         const pipeline::PipelineOptions* options, double now_s);

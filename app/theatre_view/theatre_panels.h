@@ -16,8 +16,10 @@ struct TheatreScreen {
   double planned_length_mm = 0;
   std::shared_ptr<const geometry::Surface> surface = nullptr;  // of the bone; may be null
   float overlay_opacity = 1;                                   // 0: off
-  bool undistorts = false;                                     // shows the picture without the lens' distortion
-  std::string title = "", next_step = "";                      // "Simulated operation", "register"
+  TheatreLayout layout = TheatreLayout::Guide;
+  int selected_stroke = -1;
+  bool undistorts = false;                 // shows the picture without the lens' distortion
+  std::string title = "", next_step = "";  // "Simulated operation", "register"
 };
 
 // The live picture on the graphics card.
@@ -31,6 +33,9 @@ void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const TheatreS
                 VideoTextures& textures);
 void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen);
 void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen);
+// While the probe draws: how far the registration is, what to do next, and everything that can be taken back.
+// Needs a status.
+void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen);
 // Markers, lens, registration, probe, record: each with its state and the reason.
 void draw_tracking(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen);
 

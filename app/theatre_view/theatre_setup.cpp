@@ -93,18 +93,38 @@ std::vector<std::filesystem::path> videos_of(const std::filesystem::path& case_f
   return videos;
 }
 
-OperationSetup video_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
-                           const std::filesystem::path& case_folder, const std::filesystem::path& video,
-                           double refractive_index) {
+namespace {
+
+// With the case's own camera.json and tools.json.
+OperationSetup real_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
+                          const std::filesystem::path& case_folder, double refractive_index) {
   if (!model.has_bone(bone)) throw InvalidInput("the case has no " + std::string(bones::to_text(bone)));
   OperationSetup setup = setup_of(model, bone);
-  setup.title = video.filename().string();
   setup.pipeline.calibration = camera::read_camera_file(cases::camera_file(case_folder)).calibration;
   setup.pipeline.tools = tools::read_tools_file(cases::tools_file(case_folder));
   setup.pipeline.refractive_index = refractive_index;
   if (setup.pipeline.tools.find_world_marker(bone) == nullptr)
     throw InvalidInput("tools.json declares no world marker for the " + std::string(bones::to_text(bone)));
+  return setup;
+}
+
+}  // namespace
+
+OperationSetup video_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
+                           const std::filesystem::path& case_folder, const std::filesystem::path& video,
+                           double refractive_index) {
+  OperationSetup setup = real_setup(model, bone, case_folder, refractive_index);
+  setup.title = video.filename().string();
   setup.open_source = [video] { return sources::open_video(video); };
+  return setup;
+}
+
+OperationSetup camera_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
+                            const std::filesystem::path& case_folder, const CameraDevice& camera,
+                            double refractive_index) {
+  OperationSetup setup = real_setup(model, bone, case_folder, refractive_index);
+  setup.title = camera.name;
+  setup.open_source = [index = camera.index] { return sources::open_device(index); };
   return setup;
 }
 

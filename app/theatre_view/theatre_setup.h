@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/planning_view/plan_model.h"
+#include "app/theatre_view/camera_devices.h"
 #include "app/theatre_view/operation.h"
 
 namespace arthronaut::theatre_view {
@@ -25,5 +26,10 @@ enum class SimulatedPart { Scratch, Drill };
 [[nodiscard]] OperationSetup video_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
                                          const std::filesystem::path& case_folder,
                                          const std::filesystem::path& video, double refractive_index);
+
+// The same with a camera that is connected, /dev/videoN. It is opened on the worker.
+[[nodiscard]] OperationSetup camera_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
+                                          const std::filesystem::path& case_folder,
+                                          const CameraDevice& camera, double refractive_index);
 
 }  // namespace arthronaut::theatre_view

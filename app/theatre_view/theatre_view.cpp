@@ -1,8 +1,11 @@
 #include "app/theatre_view/theatre_view.h"
 
 #include <algorithm>
+#include <chrono>
+#include <utility>
 
 #include "app/scene/scene_camera.h"
+#include "app/theatre_view/registration_words.h"
 #include "navigation/camera/medium.h"
 #include "planning/geometry/error.h"
 
@@ -24,9 +27,10 @@ TheatreView::TheatreView(std::function<void()> make_current, std::function<void(
 TheatreView::~TheatreView() = default;
 
 void TheatreView::open(const planning_view::PlanModel* model, const std::filesystem::path& case_folder) {
-  operation_.reset();
-  options_.reset();
-  bones_.clear();
+  end_operation();
+  // A bone that is just being made ready would be waited for.
+  ending_.push_back(
+      std::async(std::launch::async, [bones = std::exchange(bones_, {})]() mutable { bones.clear(); }));
   choices_ = {};
   notice_.clear();
   model_ = model;
@@ -35,18 +39,36 @@ void TheatreView::open(const planning_view::PlanModel* model, const std::filesys
   if (model_ != nullptr) look_along_plan();
 }
 
-void TheatreView::start(OperationSetup setup) {
-  notice_.clear();
-  prepare_bone();
-  const BoneState& bone = bones_[choices_.bone];
-  setup.prepared_bone = bone.prepared;
-  setup.registration = bone.registration;
-  if (bone.registration && bone.registration->reliable) setup.digitises = false;
+void TheatreView::end_operation() {
+  options_.reset();
   part_.reset();
-  operation_.reset();  // ends and joins the one before
+  choices_.guidance_seen_s = -1e9;
+  std::erase_if(ending_, [](const auto& ending) {
+    return ending.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  });
+  if (operation_ == nullptr) return;
+  operation_->request_stop();
+  ending_.push_back(
+      std::async(std::launch::async, [ended = std::move(operation_)]() mutable { ended.reset(); }));
+}
+
+void TheatreView::start(OperationSetup setup) {
+  end_operation();
+  notice_.clear();
+  choices_.layout.reset();
+  choices_.cameras.clear();
+  BoneState& bone = bones_[choices_.bone];
+  if (bone.registration != nullptr) {
+    const RegistrationStatus known = bone.registration->status();
+    if (known.in_force != nullptr && known.in_force->reliable) setup.digitises = false;
+    // Made anew while nothing hangs on it: the plan, its target, may have changed.
+    if (known.drawn->empty() && known.history->empty()) bone.registration.reset();
+  }
+  prepare_bone();
+  setup.registration = bone.registration;
   options_ = std::make_unique<pipeline::PipelineOptions>(setup.pipeline);
   operation_ = std::make_unique<Operation>(std::move(setup), wake_);
-  status_ = operation_->status();
+  read_status();
   choices_.overlay_shown_at_s = Operation::now_s();
   look_along_plan();
 }
@@ -62,6 +84,14 @@ void TheatreView::prepare_bone() {
                                            : std::make_shared<registration::PreparedBone>(mesh, cache);
                     }).share();
   }
+  if (bone.registration == nullptr)
+    bone.registration = std::make_shared<BoneRegistration>(bone.prepared, model_->tunnel(choices_.bone),
+                                                           model_->shared_surface(choices_.bone));
+}
+
+BoneRegistration* TheatreView::bone_registration() const {
+  const auto found = bones_.find(choices_.bone);
+  return found == bones_.end() ? nullptr : found->second.registration.get();
 }
 
 void TheatreView::look_along_plan() {
@@ -92,6 +122,38 @@ void TheatreView::start_video() {
   }
 }
 
+void TheatreView::start_camera(const CameraDevice& camera) {
+  try {
+    OperationSetup setup = camera_setup(*model_, choices_.bone, case_folder_, camera,
+                                        choices_.saline ? camera::kSalineIndex : camera::kAirIndex);
+    end_operation();
+    // A device is free again only when the operation that had it has ended.
+    setup.open_source = [open = setup.open_source, before = ending_] {
+      for (const std::shared_future<void>& ending : before) ending.wait();
+      return open();
+    };
+    start(std::move(setup));
+  } catch (const std::runtime_error& error) {
+    notice_ = error.what();
+    choices_.cameras.clear();
+  }
+}
+
+void TheatreView::choose_camera() {
+  if (!choices_.cameras.empty()) {
+    choices_.camera = (choices_.camera + 1) % choices_.cameras.size();
+    return;
+  }
+  std::vector<CameraDevice> cameras = list_cameras();
+  if (cameras.empty()) {
+    notice_ = "No camera is connected: there is no /dev/video";
+    return;
+  }
+  if (cameras.size() == 1) return start_camera(cameras.front());
+  choices_.camera = 0;
+  choices_.cameras = std::move(cameras);
+}
+
 bool TheatreView::is_running() const { return operation_ != nullptr && status_.phase == Phase::Running; }
 
 bool TheatreView::can_simulate() const {
@@ -100,19 +162,25 @@ bool TheatreView::can_simulate() const {
 
 std::string TheatreView::next_step() const {
   if (model_ == nullptr) return "open a case";
+  if (!choices_.cameras.empty()) return "open " + choices_.cameras[choices_.camera].name;
   if (!model_->tunnel(choices_.bone)) return "plan the tunnel (F1)";
-  const bool registered = status_.registration && status_.registration->reliable;
+  if (!status_.bone.alarm.empty()) return "check the world marker";
+  const bool registered = status_.bone.in_force != nullptr && status_.bone.in_force->reliable;
   if (operation_ == nullptr || status_.phase == Phase::Failed)
     return can_simulate() ? "start the simulated operation" : "open the next video";
   if (status_.is_registering) return "wait for the registration";
-  if (!registered && status_.trail->size() >= kEnoughPoints) return "register what was touched";
+  // While the probe draws the registration runs along by itself.
+  const bool draws = is_running() && status_.digitises;
+  if (!registered && !draws && status_.bone.drawn->size() >= kEnoughPoints)
+    return "register what was touched";
   if (registered && (part_ == SimulatedPart::Scratch || !is_running()) && can_simulate()) return "drill";
   if (!is_running() && !videos_of(case_folder_).empty()) return "open the next video";
-  if (registered) return "follow the bullseye";
+  if (registered) return status_.digitises ? "verify by touches, or take the guide" : "follow the bullseye";
   return "touch the bone with the probe";
 }
 
 void TheatreView::take_next_step() {
+  if (!choices_.cameras.empty()) return start_camera(CameraDevice(choices_.cameras[choices_.camera]));
   const std::string step = next_step();
   if (step == "start the simulated operation") return start_simulation(SimulatedPart::Scratch);
   if (step == "register what was touched") return operation_->register_curves();
@@ -150,75 +218,126 @@ bool TheatreView::is_busy() const {
          (status_.phase == Phase::Running || status_.phase == Phase::Starting || status_.is_registering);
 }
 
-void TheatreView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
-  if (operation_ != nullptr) {
-    const std::uint64_t seen = status_.registration_count;
-    status_ = operation_->status();
-    if (status_.registration) bones_[choices_.bone].registration = status_.registration;
-    if (status_.registration_count != seen) choices_.overlay_shown_at_s = Operation::now_s();
-  } else {
-    status_ = {};
-  }
-  // The bone is made ready for registration as soon as this mode is looked at.
-  if (model_ != nullptr && model_->has_bone(choices_.bone)) prepare_bone();
-  const double now = Operation::now_s();
+void TheatreView::read_status() {
+  const std::uint64_t seen = status_.bone.change_count;
+  status_ = operation_ != nullptr ? operation_->status() : OperationStatus{};
+  if (BoneRegistration* bone = bone_registration()) status_.bone = bone->status();
+  if (status_.bone.change_count != seen) choices_.overlay_shown_at_s = Operation::now_s();
+}
+
+TheatreLayout TheatreView::layout(double now_s) const {
+  if (operation_ == nullptr) return TheatreLayout::Guide;
+  return choices_.layout.value_or(layout_of(&status_, now_s - choices_.guidance_seen_s));
+}
+
+TheatreScreen TheatreView::screen_of(const TheatreDisplay& display, double now_s) const {
   const OperationStatus* status = operation_ != nullptr ? &status_ : nullptr;
-  const TheatreDisplay display = display_of(status, options_.get(), now);
   TheatreScreen screen{status, options_.get(), display};
   if (model_ != nullptr && model_->has_bone(choices_.bone)) {
     screen.plan = model_->tunnel(choices_.bone);
     screen.planned_length_mm = screen.plan ? model_->drawn_length_mm(choices_.bone) : 0;
     screen.surface = model_->shared_surface(choices_.bone);
   }
-  screen.overlay_opacity = overlay_opacity(now);
+  screen.overlay_opacity = overlay_opacity(now_s);
+  screen.layout = layout(now_s);
+  screen.selected_stroke = choices_.stroke;
   screen.undistorts = choices_.undistorts;
   screen.title = operation_ != nullptr ? operation_->title() : "";
   screen.next_step = next_step();
+  return screen;
+}
+
+void TheatreView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
+  // The bone is made ready for registration as soon as this mode is looked at.
+  if (model_ != nullptr && model_->has_bone(choices_.bone)) prepare_bone();
+  read_status();
+  const double now = Operation::now_s();
+  TheatreDisplay display = display_of(operation_ != nullptr ? &status_ : nullptr, options_.get(), now);
+  if (operation_ == nullptr && !notice_.empty()) display.detail = notice_;
+  if (display.guidance_is_valid) choices_.guidance_seen_s = now;
+  const TheatreScreen screen = screen_of(display, now);
 
   const float gap = ui.theme.px(12);
   widgets::Rect rest = area;
   const widgets::Rect controls = rest.cut_bottom(ui.theme.px(100), gap);
   const widgets::Rect video = rest.cut_left(std::min(rest.height * 1.0F, rest.width * 0.5F), gap);
-  widgets::Rect right = rest.cut_right(rest.width * 0.45F, gap);
-  const widgets::Rect bullseye = rest.cut_top(rest.height * 0.54F, gap);
-  const widgets::Rect numbers = right.cut_top(right.height * 0.50F, gap);
   draw_video(ui, video, screen, video_);
-  draw_bullseye(ui, bullseye, screen);
-  draw_numbers(ui, numbers, screen);
-  draw_scene(ui, rest, screen);
-  draw_tracking(ui, right, screen);
+  if (!choices_.cameras.empty()) draw_cameras(ui, video);
+  if (screen.layout == TheatreLayout::Register) {
+    draw_registration(ui, rest.cut_right(rest.width * 0.5F, gap), screen);
+    const widgets::Rect tracking = rest.cut_bottom(rest.height * 0.42F, gap);
+    draw_scene(ui, rest, screen);
+    draw_tracking(ui, tracking, screen);
+  } else {
+    widgets::Rect right = rest.cut_right(rest.width * 0.45F, gap);
+    draw_bullseye(ui, rest.cut_top(rest.height * 0.54F, gap), screen);
+    draw_numbers(ui, right.cut_top(right.height * 0.46F, gap), screen);
+    draw_scene(ui, rest, screen);
+    draw_tracking(ui, right, screen);
+  }
   draw_controls(ui, controls);
+  note_states(ui, screen);
+}
 
-  ui.log.note_state("guidance", display.guidance_is_valid ? "valid" : display.headline);
+void TheatreView::note_states(const widgets::Ui& ui, const TheatreScreen& screen) const {
+  const RegistrationPtr& in_force = status_.bone.in_force;
+  ui.log.note_state("guidance", screen.display.guidance_is_valid ? "valid" : screen.display.headline);
   ui.log.note_state("overlay", screen.overlay_opacity > 0.99F ? "full"
                                : screen.overlay_opacity > 0   ? "faded"
                                                               : "off");
   ui.log.note_state("view", choices_.undistorts ? "undistorted" : "as it came");
   ui.log.note_state("next", screen.next_step);
-  ui.log.note_state("registration", !status_.registration            ? "none"
-                                    : status_.registration->reliable ? "reliable"
-                                                                     : "unreliable");
+  ui.log.note_state("notice", notice_);
+  ui.log.note_state("layout", screen.layout == TheatreLayout::Register ? "register" : "guide");
+  ui.log.note_state("registration", in_force == nullptr  ? "none"
+                                    : in_force->reliable ? "reliable"
+                                                         : "unreliable");
+  ui.log.note_state("registrations", std::to_string(status_.bone.history->size()));
+  ui.log.note_state("strokes", std::to_string(stroke_rows(status_.bone).size()));
   ui.log.note_state("recording", status_.recording.empty() ? "off" : "on");
-  ui.log.note_state("picture", !display.has_picture ? "none" : display.is_live ? "live" : "old");
+  ui.log.note_state("picture", !screen.display.has_picture ? "none"
+                               : screen.display.is_live    ? "live"
+                                                           : "old");
+}
+
+void TheatreView::draw_cameras(const widgets::Ui& ui, const widgets::Rect& area) const {
+  const float row = ui.theme.px(56);
+  widgets::Rect box = widgets::Rect{area.x, area.center().y, area.width, 0}.inset(0);
+  box.height = row * (static_cast<float>(choices_.cameras.size()) + 1.5F);
+  box.y = area.center().y - box.height / 2;
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddRectFilled(box.min(), box.max(), IM_COL32(10, 12, 15, 240));
+  widgets::text_centered(ui, box.cut_top(row), ui.theme.title, widgets::kText, "Which camera?");
+  for (std::size_t i = 0; i < choices_.cameras.size(); ++i) {
+    const widgets::Rect line = box.cut_top(row);
+    const bool is_selected = i == choices_.camera;
+    if (is_selected) draw.AddRectFilled(line.min(), line.max(), IM_COL32(28, 74, 104, 255));
+    widgets::text_centered(
+        ui, line, ui.theme.strong, is_selected ? widgets::kText : widgets::kQuietText,
+        choices_.cameras[i].name + "  (/dev/video" + std::to_string(choices_.cameras[i].index) + ")");
+  }
+  widgets::text_centered(ui, box, ui.theme.body, widgets::kQuietText,
+                         "K: the next one    Space: open it    Esc: none");
 }
 
 void TheatreView::show_scene(const TheatreScreen& screen) {
   scene::SceneContent content;
   content.bones.push_back({model_->drawn_mesh(choices_.bone), scene::kBoneColor, 1.0});
   if (screen.plan) scene::add_planned_tunnel(content, *screen.plan, screen.planned_length_mm);
-  const bool has_pose =
-      status_.registration && status_.registration->has_pose && status_.registration->reliable;
-  if (has_pose && screen.status != nullptr) {
-    const geometry::RigidTransform bone_from_marker = status_.registration->marker_from_bone.inverse();
-    std::vector<Eigen::Vector3d> touched;
-    for (const Eigen::Vector3d& point : *status_.trail) touched.push_back(bone_from_marker * point);
-    scene::add_curve_points(content, touched);
-    if (screen.display.overlay_is_valid && status_.live->result.tip_is_valid)
-      content.balls.push_back(
-          {bone_from_marker * status_.live->result.tip_in_world_mm, 2.5, scene::kGuideColor, false});
+  const RegistrationStatus& bone = status_.bone;
+  if (screen.status != nullptr && screen.surface != nullptr)
+    touched_.add_strokes(content, bone, *screen.surface,
+                         screen.layout == TheatreLayout::Register ? choices_.stroke : -1);
+  if (bone.in_force != nullptr && bone.in_force->reliable && screen.status != nullptr &&
+      screen.display.overlay_is_valid && status_.live->result.tip_is_valid)
+    content.balls.push_back({bone.in_force->marker_from_bone.inverse() * status_.live->result.tip_in_world_mm,
+                             2.5, scene::kGuideColor, false});
+  if (screen.layout == TheatreLayout::Register && bone.online != nullptr &&
+      bone.online->registration.has_pose) {
+    add_patches(content, bone.online->coach);
+    if (bone.online->coach.next_patch_in_bone_mm)
+      content.balls.push_back({*bone.online->coach.next_patch_in_bone_mm, 5, scene::kAchievedColor, false});
   }
-  if (status_.online != nullptr && status_.digitises && status_.online->coach.next_patch_in_bone_mm)
-    content.balls.push_back({*status_.online->coach.next_patch_in_bone_mm, 5, scene::kAchievedColor, false});
   if (screen.display.guidance_is_valid) {
     const guidance::GuidanceNumbers& g = screen.display.guidance;
     scene::add_guide(content, g.guide_point_mm, g.guide_direction, std::max(g.remaining_mm, 5.0));
@@ -231,11 +350,13 @@ void TheatreView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area, c
   show_scene(screen);
   pane_.draw(ui, "operate.view", area);
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const std::string label =
-      screen.display.guidance_is_valid ? "Drill guide and plan"
-      : status_.online != nullptr && status_.digitises && status_.online->coach.next_patch_in_bone_mm
-          ? "Orange ball: touch there next"
-          : "Plan; the guide is not known now";
+  const bool has_patches = screen.layout == TheatreLayout::Register && status_.bone.online != nullptr &&
+                           !status_.bone.online->coach.patches.empty();
+  const std::string label = screen.display.guidance_is_valid ? "Drill guide and plan"
+                            : has_patches                    ? "Green: touched. Orange: touch here next"
+                            : screen.layout == TheatreLayout::Register
+                                ? "Plan; what is touched will show here"
+                                : "Plan; the guide is not known now";
   const ImVec2 wide = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, label.c_str());
   draw.AddRectFilled(area.min(), {area.x + wide.x + ui.theme.px(28), area.y + wide.y + ui.theme.px(18)},
                      IM_COL32(12, 15, 19, 200), ui.theme.px(6));

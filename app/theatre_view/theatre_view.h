@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <map>
 #include <memory>
 
@@ -11,6 +12,7 @@
 #include "app/theatre_view/operation.h"
 #include "app/theatre_view/theatre_panels.h"
 #include "app/theatre_view/theatre_setup.h"
+#include "app/theatre_view/touched_picture.h"
 #include "app/widgets/scene_pane.h"
 
 namespace arthronaut::theatre_view {
@@ -35,8 +37,14 @@ class TheatreView {
   void start(OperationSetup setup);
   void start_simulation(SimulatedPart part);
   void start_video();
+  void start_camera(const CameraDevice& camera);
+  // One camera is opened at once, several are offered, none is told.
+  void choose_camera();
+  // Ends what runs: at once on the screen, in a thread of its own behind it.
+  void end_operation();
   void take_next_step();
   void toggle_recording();
+  void add_registration_actions(widgets::Actions& actions);
   void cycle_overlay();
   void prepare_bone();
   void look_along_plan();
@@ -44,13 +52,19 @@ class TheatreView {
   [[nodiscard]] std::string next_step() const;
   [[nodiscard]] bool can_simulate() const;
   [[nodiscard]] bool is_running() const;
+  [[nodiscard]] BoneRegistration* bone_registration() const;  // null before this mode was looked at
+  void read_status();
+  [[nodiscard]] TheatreLayout layout(double now_s) const;
+  [[nodiscard]] TheatreScreen screen_of(const TheatreDisplay& display, double now_s) const;
+  void note_states(const widgets::Ui& ui, const TheatreScreen& screen) const;
   [[nodiscard]] float overlay_opacity(double now_s) const;
   void draw_scene(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen);
   void draw_controls(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_cameras(const widgets::Ui& ui, const widgets::Rect& area) const;
 
   struct BoneState {  // what stays when one source ends and another starts
     std::shared_future<PreparedBonePtr> prepared;
-    std::optional<registration::RegistrationSummary> registration;
+    std::shared_ptr<BoneRegistration> registration;
   };
   struct Choices {
     bones::BoneKind bone = bones::BoneKind::Femur;
@@ -59,6 +73,11 @@ class TheatreView {
     bool overlay_on = true;
     double overlay_shown_at_s = 0;
     bool undistorts = false;
+    std::optional<TheatreLayout> layout;  // empty: as things stand
+    double guidance_seen_s = -1e9;        // when guidance was valid last
+    int stroke = -1;                      // selected
+    std::vector<CameraDevice> cameras;    // on offer now; empty: none
+    std::size_t camera = 0;               // of those
   };
 
   const planning_view::PlanModel* model_ = nullptr;
@@ -68,7 +87,9 @@ class TheatreView {
   VideoTextures video_;
   std::map<bones::BoneKind, BoneState> bones_;
   Choices choices_;
+  TouchedPicture touched_;
   std::unique_ptr<Operation> operation_;
+  std::vector<std::shared_future<void>> ending_;        // operations before, and bones of another case
   std::unique_ptr<pipeline::PipelineOptions> options_;  // of the operation
   OperationStatus status_;                              // of this frame
   std::optional<SimulatedPart> part_;                   // of the running simulation

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/theatre_view/registration_words.h"
 #include "app/theatre_view/theatre_panels.h"
 
 namespace arthronaut::theatre_view {
@@ -9,91 +10,83 @@ namespace {
 
 using widgets::Sign;
 
-bool is_needed(const pipeline::PipelineOptions& options, int marker_id) {
-  const auto* world = options.tools.find_world_marker(options.bone);
+// Why a tool that nobody needs now is not seen worries nobody.
+bool is_needed(const TheatreScreen& screen, int marker_id) {
+  const pipeline::PipelineOptions& options = *screen.options;
   const auto* probe = options.tools.find_tool(options.probe_name);
   const auto* guide = options.tools.find_tool(options.guide_name);
-  return (world != nullptr && world->marker_id == marker_id) ||
-         (probe != nullptr && probe->marker_id == marker_id) ||
-         (guide != nullptr && guide->marker_id == marker_id);
+  const auto* tool = screen.layout == TheatreLayout::Register ? probe : guide;
+  return tool != nullptr && tool->marker_id == marker_id;
 }
 
 void draw_markers(const widgets::Ui& ui, const TheatreScreen& screen) {
   const pipeline::FrameResult& result = screen.status->live->result;
+  const auto* world = screen.options->tools.find_world_marker(screen.options->bone);
   for (const markers::MarkerObservation& marker : result.markers) {
-    if (!is_needed(*screen.options, marker.id)) continue;
-    const bool stands = screen.display.is_live && result.stands_for(marker);
-    const auto* world = screen.options->tools.find_world_marker(screen.options->bone);
     const bool is_world = world != nullptr && world->marker_id == marker.id;
-    const bool is_plain_absence = marker.state == markers::MarkerState::NotSeen && !is_world;
-    std::string text =
-        !screen.display.is_live ? "no live picture" : std::string(markers::to_text(marker.state));
+    const bool stands = screen.display.is_live && result.stands_for(marker);
+    std::string text(markers::to_text(marker.state));
+    if (!screen.display.is_live) text = "no live picture";
     if (screen.display.is_live && marker.is_tracked() && !stands) text = "lens angle unknown";
-    widgets::status_row(ui,
-                        stands             ? Sign::Good
-                        : is_plain_absence ? Sign::Quiet
-                        : is_world         ? Sign::Bad
-                                           : Sign::Caution,
-                        marker_name(screen.options->tools, marker.id), text);
+    const Sign sign = stands                                            ? Sign::Good
+                      : is_world                                        ? Sign::Bad
+                      : is_needed(screen, marker.id)                    ? Sign::Caution
+                      : marker.state == markers::MarkerState::Duplicate ? Sign::Caution
+                                                                        : Sign::Quiet;
+    widgets::status_row(ui, sign, marker_name(screen.options->tools, marker.id), text);
   }
-  const lens::LensObservation& lens = result.lens;
-  const std::string angle = widgets::fixed(lens.mark_angle_deg, 0) + "\u00B0";
-  if (!screen.display.is_live)
-    widgets::status_row(ui, Sign::Quiet, "Lens mark", "no live picture");
-  else if (lens.mark == lens::MarkState::Found)
-    widgets::status_row(ui, lens.zoom_or_slip ? Sign::Caution : Sign::Good, "Lens mark",
-                        lens.zoom_or_slip ? "another zoom, or the coupler slipped" : angle);
-  else
-    widgets::status_row(
-        ui, result.intrinsics_are_known ? Sign::Caution : Sign::Bad, "Lens mark",
-        std::string(lens::to_text(lens.mark)) + (result.intrinsics_are_known ? ", last " + angle : ""));
 }
 
-// How far the registration is, and the one thing to do next.
-void draw_coach(const widgets::Ui& ui, const registration::Coach& coach) {
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float left = at.x + ui.theme.px(30),
-              width = std::max(ImGui::GetContentRegionAvail().x - ui.theme.px(30), 1.F);
-  const float height = ui.theme.px(12);
-  draw.AddRectFilled({left, at.y}, {left + width, at.y + height}, IM_COL32(14, 17, 21, 255), height / 2);
-  const float done = width * static_cast<float>(std::clamp(coach.progress, 0.0, 1.0));
-  if (done > height)
-    draw.AddRectFilled({left, at.y}, {left + done, at.y + height}, widgets::kAccent, height / 2);
-  ImGui::Dummy({width, height});
-  ImGui::Indent(ui.theme.px(30));
-  widgets::text_in(ui.theme.body, widgets::kText, coach.message);
-  ImGui::Unindent(ui.theme.px(30));
+void draw_lens(const widgets::Ui& ui, const TheatreScreen& screen) {
+  if (!screen.display.is_live) return widgets::status_row(ui, Sign::Quiet, "Lens mark", "no live picture");
+  const pipeline::FrameResult& result = screen.status->live->result;
+  const std::string angle = widgets::fixed(result.lens.mark_angle_deg, 0) + "\u00B0";
+  const LensTrouble trouble = trouble_of(result.lens);
+  if (trouble.headline.empty()) return widgets::status_row(ui, Sign::Good, "Lens mark", angle);
+  // The last angle serves for a moment; afterwards the camera is not known and nothing is measured.
+  widgets::status_row(ui, result.intrinsics_are_known ? Sign::Caution : Sign::Bad, trouble.headline,
+                      result.intrinsics_are_known ? "the last angle still serves: " + angle
+                                                  : "camera not known. " + trouble.advice);
 }
 
-void draw_registration(const widgets::Ui& ui, const TheatreScreen& screen) {
+void draw_registration_row(const widgets::Ui& ui, const TheatreScreen& screen) {
   const OperationStatus& status = *screen.status;
-  const std::string points = std::to_string(status.trail->size()) + " points";
+  const std::string points = std::to_string(status.bone.drawn->size()) + " points";
   widgets::status_row(ui, status.digitises ? Sign::Good : Sign::Quiet, "Probe draws",
                       status.digitises ? points : "off, " + points);
-  if (status.online != nullptr && status.digitises) draw_coach(ui, status.online->coach);
   if (status.is_registering) return widgets::status_row(ui, Sign::Quiet, "Registration", "running");
-  if (!status.registration) return widgets::status_row(ui, Sign::Quiet, "Registration", "none yet");
-  const registration::RegistrationSummary& r = *status.registration;
+  if (status.bone.in_force == nullptr)
+    return widgets::status_row(ui, Sign::Quiet, "Registration", "none yet");
+  const registration::RegistrationSummary& r = *status.bone.in_force;
   if (!r.has_pose || !r.reliable) {
     const std::string why = r.reasons.empty() ? "not reliable" : r.reasons.front();
     return widgets::status_row(ui, Sign::Bad, "Registration", why);
   }
   widgets::status_row(ui, Sign::Good, "Registration",
                       "target " + widgets::plus_minus(r.predicted_tre_mm) + " mm, fit " +
-                          widgets::fixed(r.rms_mm, 1) + " mm");
+                          widgets::fixed(r.rms_mm, 1) + " mm" +
+                          (status.bone.is_chosen ? ", an earlier one" : ""));
+}
+
+// The last touch, where the large number of the registration panel is not shown.
+void draw_touch_row(const widgets::Ui& ui, const TheatreScreen& screen) {
+  if (screen.layout == TheatreLayout::Register) return;
+  if (!screen.status->touch_notice.empty())
+    widgets::status_row(ui, Sign::Caution, screen.status->touch_notice, "");
+  else if (const auto touch = touch_of(screen.status->bone))
+    widgets::status_row(ui, touch->number.sign, touch->number.name, touch->number.text);
 }
 
 // Touch a place that you know: how far the tip is from the bone model, while both are known.
 void draw_probe(const widgets::Ui& ui, const TheatreScreen& screen) {
   const OperationStatus& status = *screen.status;
-  if (!screen.display.is_live || !status.registration || !status.registration->reliable ||
+  if (!screen.display.is_live || status.bone.in_force == nullptr || !status.bone.in_force->reliable ||
       screen.surface == nullptr)
     return;
   const pipeline::FrameResult& result = status.live->result;
   if (!result.tip_is_valid) return;
-  const double distance = screen.surface->signed_distance_mm(status.registration->marker_from_bone.inverse() *
-                                                             result.tip_in_world_mm);
+  const double distance = screen.surface->signed_distance_mm(
+      status.bone.in_force->marker_from_bone.inverse() * result.tip_in_world_mm);
   widgets::status_row(ui, Sign::Quiet, "Probe tip to bone", widgets::fixed(distance, 1) + " mm");
 }
 
@@ -119,8 +112,12 @@ void draw_tracking(const widgets::Ui& ui, const widgets::Rect& area, const Theat
   if (screen.status == nullptr) {
     widgets::text_in(ui.theme.body, widgets::kQuietText, screen.display.detail);
   } else {
-    if (screen.status->live != nullptr) draw_markers(ui, screen);
-    draw_registration(ui, screen);
+    if (screen.status->live != nullptr) {
+      draw_lens(ui, screen);
+      draw_markers(ui, screen);
+    }
+    draw_registration_row(ui, screen);
+    draw_touch_row(ui, screen);
     draw_probe(ui, screen);
     draw_record(ui, screen);
   }

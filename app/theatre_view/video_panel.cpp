@@ -55,9 +55,10 @@ DrawnPicture draw_picture(const widgets::Rect& area, const TheatreScreen& screen
   const LiveFrame& live = *screen.status->live;
   const ImU32 tint =
       screen.display.is_live ? IM_COL32_WHITE : IM_COL32(120, 120, 120, 255);  // not live: visibly dimmed
-  const auto put = [&](std::uint32_t texture, const widgets::Rect& at, const ImVec2& uv_min, const ImVec2& uv_max) {
-    draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), at.min(), at.max(), uv_min,
-                  uv_max, tint);
+  const auto put = [&](std::uint32_t texture, const widgets::Rect& at, const ImVec2& uv_min,
+                       const ImVec2& uv_max) {
+    draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), at.min(), at.max(),
+                  uv_min, uv_max, tint);
   };
   textures.raw.upload(live.picture);
   if (screen.undistorts) {
@@ -108,12 +109,15 @@ void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const TheatreS
   const DrawnPicture picture = draw_picture(area, screen, textures);
   draw.PushClipRect(picture.area.min(), picture.area.max(), true);
   if (display.overlay_is_valid && screen.overlay_opacity > 0)
-    draw_overlay(draw, picture.placement, screen.status->live->overlay, screen.overlay_opacity, ui.theme.scale);
+    draw_overlay(draw, picture.placement, screen.status->live->overlay, screen.overlay_opacity,
+                 ui.theme.scale);
   draw.PopClipRect();
   if (screen.undistorts)
-    draw.AddText(ui.theme.strong, ui.theme.strong->FontSize, {area.x + ui.theme.px(14), area.y + ui.theme.px(9)},
-                 widgets::kQuietText, "Undistorted");
-  if (!display.guidance_is_valid) draw_reason(ui, area, display);
+    draw.AddText(ui.theme.strong, ui.theme.strong->FontSize,
+                 {area.x + ui.theme.px(14), area.y + ui.theme.px(9)}, widgets::kQuietText, "Undistorted");
+  // While the bone is registered nothing guides, as it should be: the picture is needed whole.
+  const bool is_expected = screen.layout == TheatreLayout::Register && display.overlay_is_valid;
+  if (!display.guidance_is_valid && !is_expected) draw_reason(ui, area, display);
 }
 
 }  // namespace arthronaut::theatre_view

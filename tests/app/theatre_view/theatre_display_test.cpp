@@ -30,7 +30,6 @@ OperationStatus valid_status() {
   OperationStatus status;
   status.phase = Phase::Running;
   status.live = live;
-  status.trail = std::make_shared<std::vector<Eigen::Vector3d>>();
   return status;
 }
 
@@ -100,6 +99,58 @@ TEST(TheatreDisplay, EndAndFailureAreNotLive) {
   EXPECT_FALSE(failed.has_picture);
   EXPECT_EQ(failed.detail, "clip.mkv: frame 12 is cut off");
   EXPECT_FALSE(display_of(nullptr, nullptr, kNow_s).has_picture);
+}
+
+// An alarm hides everything from this moment on, even in a frame that was computed before it.
+TEST(TheatreDisplay, AnAlarmDropsGuidanceAtOnce) {
+  const auto display = display_after([](OperationStatus& status, LiveFrame&) {
+    status.bone.alarm = "the control point has moved by 2.1 mm";
+  });
+  EXPECT_TRUE(display.is_live);
+  EXPECT_FALSE(display.overlay_is_valid || display.guidance_is_valid);
+  EXPECT_EQ(display.headline, "World marker may have moved");
+  EXPECT_NE(display.detail.find("2.1 mm"), std::string::npos);
+}
+
+// Each trouble with the lens has its own name and says what to do; another zoom is said before a mark that is
+// hidden.
+TEST(TheatreDisplay, SaysWhatIsWrongWithTheLens) {
+  using lens::MarkState;
+  lens::LensObservation lens;
+  lens.mark = MarkState::Found;
+  EXPECT_TRUE(trouble_of(lens).headline.empty());
+  for (const MarkState state :
+       {MarkState::NoCircle, MarkState::Dark, MarkState::Covered, MarkState::Ambiguous, MarkState::NotSeen}) {
+    lens.mark = state;
+    EXPECT_EQ(trouble_of(lens).headline, "Lens mark not found");
+    EXPECT_NE(trouble_of(lens).advice.find(':'), std::string::npos) << to_text(state);
+  }
+  lens.zoom_or_slip = true;
+  EXPECT_NE(trouble_of(lens).headline.find("coupler"), std::string::npos);
+  const auto display = display_after([&](OperationStatus&, LiveFrame& live) {
+    live.result.intrinsics_are_known = false;
+    live.result.guidance.state = GuidanceState::LensStale;
+    live.result.lens = lens;
+  });
+  EXPECT_EQ(display.headline, trouble_of(lens).headline);
+  EXPECT_EQ(display.detail, trouble_of(lens).advice);
+}
+
+// The screen shows the registration while it is made, and the way to the plan when there is one to go; a
+// guide that was seen a moment ago keeps it.
+TEST(TheatreDisplay, TheLayoutFollowsWhatIsDone) {
+  constexpr double kLongAgo = 1e9;
+  EXPECT_EQ(layout_of(nullptr, kLongAgo), TheatreLayout::Guide);
+  OperationStatus status = valid_status();
+  status.digitises = true;
+  EXPECT_EQ(layout_of(&status, kLongAgo), TheatreLayout::Register);
+  EXPECT_EQ(layout_of(&status, 0.5), TheatreLayout::Guide);
+  auto registration = std::make_shared<registration::RegistrationSummary>();
+  registration->has_pose = registration->reliable = true;
+  status.bone.in_force = registration;
+  EXPECT_EQ(layout_of(&status, kLongAgo), TheatreLayout::Register) << "the probe still draws";
+  status.digitises = false;
+  EXPECT_EQ(layout_of(&status, kLongAgo), TheatreLayout::Guide);
 }
 
 // The reason names what the tracker said about the marker that is missing.

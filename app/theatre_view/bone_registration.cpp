@@ -1,0 +1,203 @@
+#include "app/theatre_view/bone_registration.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace arthronaut::theatre_view {
+
+namespace {
+
+// The strokes are copied for the screen a few times a second, not for every point.
+constexpr std::size_t kPointsBetweenCopies = 6;
+constexpr double kClearlyBetter = 0.9;
+
+}  // namespace
+
+BoneRegistration::BoneRegistration(std::shared_future<PreparedBonePtr> bone,
+                                   const std::optional<tunnels::Tunnel>& plan,
+                                   std::shared_ptr<const geometry::Surface> surface)
+    : bone_(std::move(bone)), plan_(plan), surface_(std::move(surface)) {}
+
+void BoneRegistration::start_worker() {
+  if (worker_ != nullptr || bone_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  registration::OnlineOptions options;
+  if (plan_) {
+    options.target_in_bone_mm = plan_->entry_mm;
+    options.direction_in_bone = plan_->direction;
+  }
+  worker_ = std::make_unique<registration::RegistrationWorker>(bone_.get(), options);
+  // What was drawn while the bone was being made ready.
+  if (!strokes_.points().empty()) worker_->add_points(strokes_.points());
+  for (const int curve : strokes_.left_out()) worker_->exclude_stroke(curve);
+}
+
+void BoneRegistration::publish_strokes(bool always) {
+  if (!always && strokes_.points().size() < status_.drawn->size() + kPointsBetweenCopies) return;
+  status_.drawn = std::make_shared<const strokes::Curves>(strokes_.points());
+  status_.left_out = strokes_.left_out();
+}
+
+void BoneRegistration::add_tip(double time_s, const Eigen::Vector3d& tip_in_marker_mm) {
+  const std::lock_guard lock(mutex_);
+  start_worker();
+  const strokes::CurvePoint point = strokes_.add(time_s, tip_in_marker_mm);
+  if (worker_ != nullptr) worker_->add_points(std::span(&point, 1));
+  publish_strokes(false);
+}
+
+void BoneRegistration::take_back_stroke() {
+  const std::lock_guard lock(mutex_);
+  const int count = strokes_.take_back();
+  for (int i = 0; worker_ != nullptr && i < count; ++i) worker_->undo_stroke();
+  publish_strokes(true);
+}
+
+void BoneRegistration::leave_out(int curve, bool is_left_out) {
+  const std::lock_guard lock(mutex_);
+  strokes_.leave_out(curve, is_left_out);
+  if (worker_ != nullptr) worker_->exclude_stroke(curve, is_left_out);
+  publish_strokes(true);
+}
+
+void BoneRegistration::clear() {
+  const std::lock_guard lock(mutex_);
+  const bool marker_has_moved = !status_.alarm.empty();
+  strokes_.clear();
+  status_.touches.clear();
+  if (worker_ != nullptr) worker_->clear();
+  status_.online.reset();
+  first_curve_ = strokes_.next_curve();
+  best_tre_mm_ = std::numeric_limits<double>::infinity();
+  if (marker_has_moved) {
+    chosen_.reset();
+    status_.entry_in_force.reset();
+  }
+  status_.is_chosen = false;
+  judge();
+  publish_strokes(true);
+}
+
+void BoneRegistration::add_touch(const Eigen::Vector3d& tip_in_marker_mm) {
+  const std::lock_guard lock(mutex_);
+  start_worker();
+  status_.touches.add_touch(tip_in_marker_mm);
+  if (worker_ != nullptr) worker_->add_touch(tip_in_marker_mm);
+  judge();
+}
+
+void BoneRegistration::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
+  const std::lock_guard lock(mutex_);
+  start_worker();
+  status_.touches.touch_control_point(tip_in_marker_mm);
+  if (worker_ != nullptr) worker_->touch_control_point(tip_in_marker_mm);
+  judge();
+}
+
+void BoneRegistration::forget_touches() {
+  const std::lock_guard lock(mutex_);
+  status_.touches.clear();
+  if (worker_ != nullptr) worker_->clear_touches();
+  judge();
+}
+
+void BoneRegistration::step_history(int by) {
+  const std::lock_guard lock(mutex_);
+  const std::size_t count = status_.history->size();
+  if (count == 0) return;
+  const std::size_t now = status_.entry_in_force.value_or(count);
+  const std::size_t next = by < 0 ? (now > 0 ? now - 1 : 0) : std::min(now + 1, count - 1);
+  if (status_.entry_in_force == next) return;
+  put_in_force(next);
+  status_.is_chosen = next + 1 < count;
+}
+
+void BoneRegistration::put_in_force(std::size_t entry) {
+  status_.entry_in_force = entry;
+  chosen_ = (*status_.history)[entry].registration;
+  judge();
+}
+
+// Distances of the touches, the alarm, and with it what is in force.
+void BoneRegistration::judge() {
+  status_.touches.judge(chosen_.get(), surface_.get());
+  std::string alarm = status_.touches.alarm();
+  if (alarm.empty() && status_.online != nullptr) alarm = status_.online->alarm;
+  const bool had_alarm = !status_.alarm.empty();
+  const RegistrationPtr before = status_.in_force;
+  status_.alarm = std::move(alarm);
+  if (status_.alarm.empty() || chosen_ == nullptr) {
+    status_.in_force = chosen_;
+  } else if (!had_alarm || status_.in_force == nullptr ||
+             status_.in_force->reasons != std::vector<std::string>{status_.alarm}) {
+    registration::RegistrationSummary doubtful = *chosen_;
+    doubtful.reliable = false;
+    doubtful.reasons = {status_.alarm};
+    status_.in_force = std::make_shared<const registration::RegistrationSummary>(std::move(doubtful));
+  }
+  if (status_.in_force != before) ++status_.change_count;
+}
+
+void BoneRegistration::take_in(const std::shared_ptr<const registration::OnlineResult>& online) {
+  if (status_.online != nullptr && status_.online->revision == online->revision) return;
+  // What was found before clear() reached the worker must not take effect any more.
+  if (!online->strokes.empty() && online->strokes.front().curve < first_curve_) return;
+  status_.online = online;
+  judge();
+  const registration::RegistrationSummary& found = online->registration;
+  if (online->state < registration::OnlineState::Confirmed || !found.reliable) return;
+  auto history = std::make_shared<std::vector<RegistrationEntry>>(*status_.history);
+  if (found.predicted_tre_mm >= kClearlyBetter * best_tre_mm_) {
+    history->back().state = std::max(history->back().state, online->state);  // touches may have verified it
+    status_.history = std::move(history);
+    return;
+  }
+  best_tre_mm_ = found.predicted_tre_mm;
+  add_entry({"while drawing", online->state, online->length_mm,
+             std::make_shared<const registration::RegistrationSummary>(found)});
+}
+
+void BoneRegistration::add_entry(const RegistrationEntry& entry) {
+  auto history = std::make_shared<std::vector<RegistrationEntry>>(*status_.history);
+  history->push_back(entry);
+  status_.history = std::move(history);
+  if (!status_.is_chosen) put_in_force(status_.history->size() - 1);
+}
+
+void BoneRegistration::register_all(const std::function<bool()>& is_wanted) {
+  registration::RegistrationOptions options;
+  if (plan_) options.target_in_bone_mm = plan_->entry_mm;
+  registration::RegistrationSummary found;
+  const strokes::Curves curves = strokes_in_use();
+  try {
+    found = registration::register_curves(*bone_.get(), curves, options);
+  } catch (const std::exception& error) {  // the top of the caller's thread: the reason stands on the screen
+    found.reasons = {error.what()};
+  }
+  const std::lock_guard lock(mutex_);
+  if (!is_wanted()) return;
+  status_.is_chosen = false;  // it was asked for just now
+  best_tre_mm_ = found.reliable ? found.predicted_tre_mm : std::numeric_limits<double>::infinity();
+  add_entry({"all points",
+             found.reliable ? registration::OnlineState::Confirmed : registration::OnlineState::Candidate,
+             status_.online != nullptr ? status_.online->length_mm : 0,
+             std::make_shared<const registration::RegistrationSummary>(std::move(found))});
+}
+
+strokes::Curves BoneRegistration::strokes_in_use() const {
+  const std::lock_guard lock(mutex_);
+  return strokes_.in_use();
+}
+
+RegistrationStatus BoneRegistration::status() {
+  const std::lock_guard lock(mutex_);
+  if (worker_ != nullptr) take_in(worker_->latest());
+  return status_;
+}
+
+void BoneRegistration::finish() {
+  const std::lock_guard lock(mutex_);
+  start_worker();
+  if (worker_ != nullptr) worker_->finish();
+}
+
+}  // namespace arthronaut::theatre_view

@@ -1,0 +1,109 @@
+// What is known of where one bone lies under its world marker: the strokes drawn so far, the registration
+// that runs along, the one that guidance uses, those before it, and the touches that verify it. Outlives the
+// sources: a video that ends takes nothing of it away.
+//
+// A registration takes effect by itself the moment it is confirmed, and again when it has become clearly
+// better (its predicted error a tenth smaller), unless the surgeon went back to an earlier one: a choice
+// stands until the newest is chosen again. A bumped world marker (alarm) makes what is in force unreliable at
+// once.
+//
+// Threads: every function may be called from any thread; none waits for a computation but register_all().
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/theatre_view/drawn_strokes.h"
+#include "app/theatre_view/touch_check.h"
+#include "navigation/registration/online_registration.h"
+#include "planning/tunnels/tunnel.h"
+
+namespace arthronaut::theatre_view {
+
+using PreparedBonePtr = std::shared_ptr<const registration::PreparedBone>;
+using RegistrationPtr = std::shared_ptr<const registration::RegistrationSummary>;
+
+// A registration that took effect, or would have.
+struct RegistrationEntry {
+  std::string origin;  // "while drawing", "all points"
+  registration::OnlineState state = registration::OnlineState::Candidate;
+  double length_mm = 0;  // of the strokes it was fitted to
+  RegistrationPtr registration;
+};
+
+struct RegistrationStatus {
+  std::shared_ptr<const strokes::Curves> drawn =
+      std::make_shared<strokes::Curves>();  // never null; all strokes
+  std::set<int> left_out;                   // strokes that are not used
+  std::shared_ptr<const registration::OnlineResult>
+      online;                      // null until the bone is ready and a point was drawn
+  RegistrationPtr in_force;        // null: none yet. Unreliable while there is an alarm
+  std::uint64_t change_count = 0;  // of in_force
+  std::shared_ptr<const std::vector<RegistrationEntry>> history =
+      std::make_shared<std::vector<RegistrationEntry>>();
+  std::optional<std::size_t> entry_in_force;  // of history
+  bool is_chosen = false;                     // by the surgeon: newer ones wait
+  std::string alarm;                          // why nothing is to be trusted; empty else
+  TouchCheck touches;
+};
+
+class BoneRegistration {
+ public:
+  // `bone` may still be in the making. plan and surface may be absent: then the target is the middle of what
+  // was touched, and touches are not judged.
+  BoneRegistration(std::shared_future<PreparedBonePtr> bone, const std::optional<tunnels::Tunnel>& plan,
+                   std::shared_ptr<const geometry::Surface> surface);
+
+  void add_tip(double time_s, const Eigen::Vector3d& tip_in_marker_mm);
+  void take_back_stroke();
+  void leave_out(int curve, bool is_left_out);
+  // Forgets strokes and touches. While there is an alarm the registration in force goes too: the marker has
+  // moved.
+  void clear();
+  void add_touch(const Eigen::Vector3d& tip_in_marker_mm);
+  void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm);
+  // The touches were wrong and not the marker: takes an alarm away.
+  void forget_touches();
+  // Makes another entry of the history the one in force: earlier < 0, later > 0; nothing happens at either
+  // end.
+  void step_history(int by);
+
+  // Fits all strokes in use, from nothing; takes up to half a second, more while the bone is being made
+  // ready. Takes effect unless is_wanted, called afterwards, says no.
+  void register_all(const std::function<bool()>& is_wanted);
+
+  [[nodiscard]] strokes::Curves strokes_in_use() const;
+  // Takes in what the registration that runs along has found meanwhile, and says all.
+  [[nodiscard]] RegistrationStatus status();
+  // Waits until all strokes and touches are worked in; for tests.
+  void finish();
+
+ private:
+  void start_worker();
+  void take_in(const std::shared_ptr<const registration::OnlineResult>& online);
+  void add_entry(const RegistrationEntry& entry);
+  void put_in_force(std::size_t entry);
+  void judge();
+  void publish_strokes(bool always);
+
+  const std::shared_future<PreparedBonePtr> bone_;
+  const std::optional<tunnels::Tunnel> plan_;
+  const std::shared_ptr<const geometry::Surface> surface_;
+  mutable std::mutex mutex_;  // guards the rest
+  DrawnStrokes strokes_;
+  RegistrationPtr chosen_;  // in force but for an alarm
+  RegistrationStatus status_;
+  int first_curve_ = 0;                                           // of the strokes since clear()
+  double best_tre_mm_ = std::numeric_limits<double>::infinity();  // of those that took effect since
+  std::unique_ptr<registration::RegistrationWorker> worker_;
+};
+
+}  // namespace arthronaut::theatre_view

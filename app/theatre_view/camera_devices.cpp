@@ -1,0 +1,30 @@
+#include "app/theatre_view/camera_devices.h"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+
+namespace arthronaut::theatre_view {
+
+std::vector<CameraDevice> list_cameras(const std::filesystem::path& devices,
+                                       const std::filesystem::path& names) {
+  constexpr std::string_view kPrefix = "video";
+  std::vector<CameraDevice> cameras;
+  std::error_code ignored;  // a machine without that folder has no camera
+  for (const auto& entry : std::filesystem::directory_iterator(devices, ignored)) {
+    const std::string file = entry.path().filename().string();
+    if (!file.starts_with(kPrefix)) continue;
+    CameraDevice camera;
+    const char* const end = file.data() + file.size();
+    const auto parsed = std::from_chars(file.data() + kPrefix.size(), end, camera.index);
+    if (parsed.ec != std::errc{} || parsed.ptr != end) continue;
+    std::ifstream name(names / file / "name");
+    if (!std::getline(name, camera.name) || camera.name.empty()) camera.name = entry.path().string();
+    cameras.push_back(std::move(camera));
+  }
+  std::sort(cameras.begin(), cameras.end(),
+            [](const CameraDevice& a, const CameraDevice& b) { return a.index < b.index; });
+  return cameras;
+}
+
+}  // namespace arthronaut::theatre_view

@@ -1,0 +1,102 @@
+#include "app/theatre_view/touch_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "navigation/registration/online_registration.h"
+
+namespace arthronaut::theatre_view {
+
+namespace {
+
+constexpr double kRest_s = 0.25, kRestRadius_mm = 1;
+constexpr std::size_t kLeastSamples = 3;
+constexpr int kViolationsToAlarm = 2;
+
+std::string tenths(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f", value);
+  return text.data();
+}
+
+}  // namespace
+
+void SteadyTip::add(double time_s, const std::optional<Eigen::Vector3d>& tip_in_marker_mm) {
+  if (!samples_.empty() && time_s < samples_.back().time_s) samples_.clear();
+  if (tip_in_marker_mm) samples_.push_back({time_s, *tip_in_marker_mm});
+  while (!samples_.empty() && samples_.front().time_s < time_s - kRest_s) samples_.pop_front();
+}
+
+std::optional<Eigen::Vector3d> SteadyTip::position_mm() const {
+  if (samples_.size() < kLeastSamples) return std::nullopt;
+  Eigen::Vector3d middle;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const Sample& sample : samples_) values.push_back(sample.tip_in_marker_mm[axis]);
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), at, values.end());
+    middle[axis] = *at;
+  }
+  for (const Sample& sample : samples_)
+    if ((sample.tip_in_marker_mm - middle).norm() > kRestRadius_mm) return std::nullopt;
+  return middle;
+}
+
+std::string SteadyTip::why_not() const {
+  if (position_mm()) return "";
+  return samples_.size() < kLeastSamples ? "the probe's tip is not known now: show probe and bone marker"
+                                         : "the probe moves: hold its tip still";
+}
+
+void TouchCheck::add_touch(const Eigen::Vector3d& tip_in_marker_mm) {
+  touches_mm_.push_back(tip_in_marker_mm);
+  last_ = Last::Kind::Touch;
+}
+
+void TouchCheck::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
+  if (!control_point_mm_) {
+    control_point_mm_ = tip_in_marker_mm;
+    last_ = Last::Kind::ControlSet;
+    return;
+  }
+  control_shift_mm_ = (tip_in_marker_mm - *control_point_mm_).norm();
+  // One that is back where it was takes the suspicion away.
+  control_violations_ =
+      control_shift_mm_ > registration::OnlineOptions{}.max_control_shift_mm ? control_violations_ + 1 : 0;
+  last_ = Last::Kind::ControlAgain;
+}
+
+void TouchCheck::clear() { *this = {}; }
+
+void TouchCheck::judge(const registration::RegistrationSummary* registration,
+                       const geometry::Surface* surface) {
+  residuals_mm_.clear();
+  if (registration == nullptr || !registration->has_pose || surface == nullptr) return;
+  const geometry::RigidTransform bone_from_marker = registration->marker_from_bone.inverse();
+  for (const Eigen::Vector3d& touch : touches_mm_)
+    residuals_mm_.push_back(surface->signed_distance_mm(bone_from_marker * touch));
+}
+
+TouchCheck::Last TouchCheck::last() const {
+  Last last{last_, static_cast<int>(touches_mm_.size()), std::nullopt};
+  if (last_ == Last::Kind::ControlAgain) last.distance_mm = control_shift_mm_;
+  if (last_ == Last::Kind::Touch && !residuals_mm_.empty()) last.distance_mm = residuals_mm_.back();
+  return last;
+}
+
+std::string TouchCheck::alarm() const {
+  if (control_violations_ >= kViolationsToAlarm)
+    return "the control point has moved by " + tenths(control_shift_mm_) + " mm";
+  const auto off = std::count_if(residuals_mm_.begin(), residuals_mm_.end(), [](double residual_mm) {
+    return std::abs(residual_mm) > registration::OnlineOptions{}.max_touch_error_mm;
+  });
+  if (off >= kViolationsToAlarm) return std::to_string(off) + " touches lie off the bone";
+  return off + control_violations_ >= kViolationsToAlarm
+             ? "the control point has moved by " + tenths(control_shift_mm_) +
+                   " mm and a touch lies off the bone"
+             : "";
+}
+
+}  // namespace arthronaut::theatre_view

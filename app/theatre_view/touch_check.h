@@ -1,0 +1,67 @@
+// Touches that verify a registration, and the control point that tells a bumped world marker. Judged by the
+// registration that guidance uses, whatever it came from; thresholds are those of
+// registration::OnlineOptions.
+#pragma once
+
+#include <Eigen/Core>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "navigation/registration/registration.h"
+#include "planning/geometry/surface.h"
+
+namespace arthronaut::theatre_view {
+
+// The tip at rest: a touch is where the tip stood for a moment, not where one frame saw it.
+class SteadyTip {
+ public:
+  // nullopt: the tip is not known in this frame.
+  void add(double time_s, const std::optional<Eigen::Vector3d>& tip_in_marker_mm);
+  // The median of the last quarter of a second when the tip was seen at least three times and kept within 1
+  // mm; else nullopt.
+  [[nodiscard]] std::optional<Eigen::Vector3d> position_mm() const;
+  // Why there is none, for the screen.
+  [[nodiscard]] std::string why_not() const;
+
+ private:
+  struct Sample {
+    double time_s;
+    Eigen::Vector3d tip_in_marker_mm;
+  };
+  std::deque<Sample> samples_;
+};
+
+class TouchCheck {
+ public:
+  struct Last {
+    enum class Kind { None, Touch, ControlSet, ControlAgain } kind = Kind::None;
+    int number = 0;                     // of the touch, from 1
+    std::optional<double> distance_mm;  // signed, to the bone; of the control point: how far it has wandered
+  };
+
+  void add_touch(const Eigen::Vector3d& tip_in_marker_mm);
+  void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm);
+  void clear();
+  // Distances anew, by another registration; none without a pose.
+  void judge(const registration::RegistrationSummary* registration, const geometry::Surface* surface);
+
+  [[nodiscard]] bool has_control_point() const { return control_point_mm_.has_value(); }
+  // Signed, mm, in the order of the touches; empty while there is no registration to judge by.
+  [[nodiscard]] const std::vector<double>& residuals_mm() const { return residuals_mm_; }
+  [[nodiscard]] std::size_t touch_count() const { return touches_mm_.size(); }
+  [[nodiscard]] Last last() const;
+  // "the control point has moved by 2.1 mm", "3 touches lie off the bone": two violations; empty else.
+  [[nodiscard]] std::string alarm() const;
+
+ private:
+  std::vector<Eigen::Vector3d> touches_mm_;
+  std::vector<double> residuals_mm_;
+  std::optional<Eigen::Vector3d> control_point_mm_;
+  double control_shift_mm_ = 0;
+  int control_violations_ = 0;
+  Last::Kind last_ = Last::Kind::None;
+};
+
+}  // namespace arthronaut::theatre_view

@@ -1,0 +1,200 @@
+#include "app/theatre_view/bone_registration.h"
+
+#include <gtest/gtest.h>
+
+#include "app/theatre_view/registration_words.h"
+#include "app/theatre_view/touched_picture.h"
+#include "tests/navigation/registration/phantom_bone.h"
+
+namespace arthronaut::theatre_view {
+namespace {
+
+using registration::phantom_bone;
+
+std::shared_future<PreparedBonePtr> ready_bone() {
+  std::promise<PreparedBonePtr> promise;
+  promise.set_value(phantom_bone().prepared);
+  return promise.get_future().share();
+}
+
+tunnels::Tunnel plan() {
+  tunnels::Tunnel tunnel;
+  tunnel.entry_mm = phantom_bone().target_mm;
+  tunnel.direction = Eigen::Vector3d(-0.8, 0, 0.6);
+  return tunnel;
+}
+
+class BoneRegistrationTest : public ::testing::Test {
+ protected:
+  // As the frames bring the tip: the strokes of a trial, a gap between them.
+  void draw(const strokes::Curves& curves) {
+    for (const strokes::CurvePoint& point : curves) {
+      time_s_ += last_curve_ == point.curve ? 1.0 / 60 : 1.0;
+      last_curve_ = point.curve;
+      bone_.add_tip(time_s_, point.position_mm);
+    }
+    bone_.finish();
+    (void)bone_.status();  // as every frame does
+  }
+  [[nodiscard]] Eigen::Vector3d on_bone(double dx_mm) const {
+    return trial_.marker_from_bone *
+           surface_->closest_point(phantom_bone().target_mm + Eigen::Vector3d(dx_mm, dx_mm, 3)).point_mm;
+  }
+
+  experiments::Trial trial_ = phantom_bone().trial(experiments::TrialNoise::Dry, 1);
+  std::shared_ptr<const geometry::Surface> surface_ =
+      std::make_shared<geometry::Surface>(phantom_bone().mesh);
+  BoneRegistration bone_{ready_bone(), plan(), surface_};
+  double time_s_ = 0;
+  int last_curve_ = -1;
+};
+
+// Nothing guides before it is confirmed; then it takes effect by itself, with the numbers of that moment in
+// the history.
+TEST_F(BoneRegistrationTest, AConfirmedRegistrationTakesEffectByItself) {
+  EXPECT_EQ(bone_.status().in_force, nullptr);
+  draw(trial_.curves);
+  const RegistrationStatus status = bone_.status();
+  ASSERT_NE(status.in_force, nullptr);
+  EXPECT_TRUE(status.in_force->reliable);
+  EXPECT_GT(status.change_count, 0U);
+  ASSERT_FALSE(status.history->empty());
+  EXPECT_EQ(status.history->back().registration, status.in_force);
+  const Eigen::Vector3d target = phantom_bone().target_mm;
+  EXPECT_LT((status.in_force->marker_from_bone * target - trial_.marker_from_bone * target).norm(), 0.6);
+  EXPECT_EQ(state_of(status).name, "Confirmed");
+  EXPECT_EQ(missing_of(status), "");
+  EXPECT_EQ(numbers_of(status).size(), 2U);
+  EXPECT_GE(stroke_rows(status).size(), 6U);
+}
+
+// While it collects, the words say what is missing.
+TEST_F(BoneRegistrationTest, SaysWhatIsMissingWhileItCollects) {
+  strokes::Curves little;
+  for (const strokes::CurvePoint& point : trial_.curves)
+    if (little.size() < trial_.curves.size() / 20) little.push_back(point);
+  draw(little);
+  const RegistrationStatus status = bone_.status();
+  EXPECT_EQ(status.in_force, nullptr);
+  EXPECT_TRUE(missing_of(status).starts_with("Missing: ")) << missing_of(status);
+  EXPECT_LT(progress_of(status), 1);
+}
+
+// A bumped marker: what is in force becomes unreliable at once with the reason; touches that were wrong can
+// be forgotten; clearing the points after an alarm drops the registration for good.
+TEST_F(BoneRegistrationTest, ABumpedMarkerTakesGuidanceAway) {
+  draw(trial_.curves);
+  const Eigen::Vector3d control = on_bone(0);
+  bone_.touch_control_point(control);
+  const Eigen::Vector3d bump(0, 0, 2.4);
+  bone_.touch_control_point(control + bump);
+  EXPECT_TRUE(bone_.status().in_force->reliable);
+  const std::uint64_t before = bone_.status().change_count;
+  bone_.touch_control_point(control + bump);
+  RegistrationStatus status = bone_.status();
+  EXPECT_FALSE(status.in_force->reliable);
+  EXPECT_EQ(status.in_force->reasons.front(), status.alarm);
+  EXPECT_GT(status.change_count, before);
+  EXPECT_EQ(state_of(status).sign, widgets::Sign::Bad);
+  EXPECT_EQ(progress_of(status), 0);
+
+  bone_.forget_touches();
+  bone_.finish();
+  EXPECT_TRUE(bone_.status().in_force->reliable);
+
+  bone_.touch_control_point(control);
+  for (int i = 0; i < 2; ++i) bone_.touch_control_point(control + bump);
+  EXPECT_FALSE(bone_.status().in_force->reliable);
+  bone_.clear();
+  bone_.finish();
+  status = bone_.status();
+  EXPECT_EQ(status.in_force, nullptr);
+  EXPECT_EQ(status.alarm, "");
+  EXPECT_FALSE(status.history->empty()) << "its numbers are kept";
+}
+
+// Touches on the bone that are not used in the fit verify it; their distance is the one that is shown large.
+TEST_F(BoneRegistrationTest, TouchesVerify) {
+  draw(trial_.curves);
+  for (const double dx_mm : {0.0, 4.0, -4.0}) bone_.add_touch(on_bone(dx_mm));
+  bone_.finish();
+  const RegistrationStatus status = bone_.status();
+  EXPECT_EQ(state_of(status).name, "Verified");
+  const auto touch = touch_of(status);
+  ASSERT_TRUE(touch);
+  EXPECT_EQ(touch->number.name, "Touch 3");
+  EXPECT_EQ(touch->number.sign, widgets::Sign::Good);
+}
+
+// Going back to an earlier registration holds against newer ones until the newest is chosen again.
+TEST_F(BoneRegistrationTest, AnEarlierRegistrationCanBeChosen) {
+  draw(trial_.curves);
+  bone_.register_all([] { return true; });
+  RegistrationStatus status = bone_.status();
+  ASSERT_GE(status.history->size(), 2U);
+  EXPECT_EQ(status.in_force, status.history->back().registration);
+  bone_.step_history(-1);
+  status = bone_.status();
+  EXPECT_TRUE(status.is_chosen);
+  EXPECT_EQ(status.in_force, (*status.history)[status.history->size() - 2].registration);
+  EXPECT_EQ(history_rows(status).size(), status.history->size());
+  bone_.step_history(1);
+  EXPECT_FALSE(bone_.status().is_chosen);
+}
+
+// What was asked for by an operation that has been stopped meanwhile does not take effect.
+TEST_F(BoneRegistrationTest, AStoppedRegistrationHasNoEffect) {
+  draw(trial_.curves);
+  const RegistrationStatus before = bone_.status();
+  bone_.register_all([] { return false; });
+  EXPECT_EQ(bone_.status().in_force, before.in_force);
+  EXPECT_EQ(bone_.status().history->size(), before.history->size());
+}
+
+// After clearing, nothing of the old strokes comes back, and new ones register anew.
+TEST_F(BoneRegistrationTest, ClearsAndStartsAgain) {
+  draw(trial_.curves);
+  bone_.clear();
+  RegistrationStatus status = bone_.status();
+  EXPECT_TRUE(status.drawn->empty());
+  EXPECT_TRUE(stroke_rows(status).empty());
+  EXPECT_NE(status.in_force, nullptr) << "without an alarm the registration stays";
+  const std::size_t entries = status.history->size();
+  draw(trial_.curves);
+  status = bone_.status();
+  EXPECT_GT(status.history->size(), entries);
+  EXPECT_EQ(status.in_force, status.history->back().registration);
+}
+
+// Strokes on the bone are thin and green, those off it thick and red, and one that is left out is grey.
+TEST_F(BoneRegistrationTest, ThePictureShowsHowFarStrokesLieOff) {
+  draw(trial_.curves);
+  RegistrationStatus status = bone_.status();
+  TouchedPicture picture;
+  scene::SceneContent content;
+  picture.add_strokes(content, status, *surface_, -1);
+  ASSERT_FALSE(content.lines.empty());
+  for (const scene::LineItem& line : content.lines) EXPECT_EQ(line.color, scene::kCurveColor);
+  auto off = std::make_shared<strokes::Curves>(*status.drawn);
+  for (strokes::CurvePoint& point :
+       *off)  // lifted off along the line of sight of a probe: far from everything
+    point.position_mm +=
+        4 * (point.position_mm - trial_.marker_from_bone * Eigen::Vector3d::Zero()).normalized();
+  status.drawn = off;
+  status.left_out = {0};
+  content = {};
+  picture.add_strokes(content, status, *surface_, -1);
+  long red = 0, grey = 0;
+  for (const scene::LineItem& line : content.lines) {
+    red += line.color == kOffColor ? 1 : 0;
+    grey += line.color == kLeftOutColor ? 1 : 0;
+  }
+  EXPECT_GT(red, 0);
+  EXPECT_GT(grey, 0);
+  content = {};
+  add_patches(content, status.online->coach);
+  EXPECT_EQ(content.rods.size(), status.online->coach.patches.size());
+}
+
+}  // namespace
+}  // namespace arthronaut::theatre_view
