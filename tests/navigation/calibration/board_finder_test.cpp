@@ -111,5 +111,26 @@ TEST(BoardFinder, RefusesWhatIsNoCheckerboard) {
   });
 }
 
+// Half the picture's size: squares of 10 px beside the rim, a third of whose corners are lopsided, cost
+// neither the board nor its index. And distortion twice as strong.
+TEST(BoardFinder, FindsSmallSquaresAndStrongDistortion) {
+  camera::Calibration small = true_scope();
+  small.image_size_px = {960, 540};
+  small.focal_px = 295;
+  small.principal_point_px = {481, 270.5};
+  small.rotation_center_px = {478, 268};
+  small.boundary = {{480, 269.8}, 265};
+  camera::Calibration strong = small;
+  strong.distortion_xi = -0.55;
+  for (const camera::Calibration& scope : {small, strong}) {
+    const BoardView view{board_pose(22, 30, 70, 20), 0};
+    const Comparison seen =
+        compare(find_checkerboard(draw_board(scope, view, 1.7, 2, 3).view()), scope, view, 1.7);
+    EXPECT_GT(static_cast<double>(seen.found), 0.5 * static_cast<double>(seen.visible));
+    EXPECT_TRUE(seen.lattice_is_consistent);
+    EXPECT_LT(seen.median_px, 0.15);
+  }
+}
+
 }  // namespace
 }  // namespace arthronaut::calibration
