@@ -82,19 +82,22 @@ std::vector<Row> result_rows(const calibration::CalibrationSummary& summary) {
   rows.push_back({Sign::Quiet, "Corners miss by", fixed(summary.rms_px, 2) + " px"});
   if (summary.leave_one_out_rms_px >= 0)
     rows.push_back({Sign::Quiet, "A picture left out", fixed(summary.leave_one_out_rms_px, 2) + " px"});
-  rows.push_back({Sign::Quiet, "Working distance", fixed(working_distance_mm(summary), 1) + " mm"});
+  rows.push_back({Sign::Quiet, "Working distance", fixed(summary.distance_mm, 1) + " mm"});
   return rows;
 }
 
-void judge_result(const CalibrateStatus& job, bool is_adopted, CalibrateDisplay& display) {
+void judge_result(const CalibrateStatus& job, const CalibrateContext& context, CalibrateDisplay& display) {
   const calibration::CalibrationSummary& summary = *job.summary;
   display.reasons = summary.reasons;
+  display.notes = summary.notes;
   if (summary.is_usable()) display.result = result_rows(summary);
   const bool is_good =
       summary.outcome == calibration::CalibrationSummary::Outcome::Ok && summary.reasons.empty();
-  display.can_adopt = is_good && !is_adopted;
-  if (is_adopted)
+  display.can_adopt = is_good && !context.is_adopted && context.kept_because.empty();
+  if (context.is_adopted)
     display.verdict = {Sign::Good, "Adopted", "This case is navigated with this calibration."};
+  else if (is_good && !context.kept_because.empty())
+    display.verdict = {Sign::Caution, "Not adopted", context.kept_because};
   else if (is_good)
     display.verdict = {Sign::Good, "Fit for guidance",
                        std::to_string(summary.pictures.size()) + " pictures. Space adopts it for this case."};
@@ -127,19 +130,8 @@ Band band_of(const CalibrateRunStatus& status, const CalibrateDisplay& display) 
 
 }  // namespace
 
-double working_distance_mm(const calibration::CalibrationSummary& summary) {
-  std::vector<double> distances;
-  for (const auto& picture : summary.pictures) {
-    const Eigen::Vector3d normal = picture.camera_from_board.rotate(Eigen::Vector3d::UnitZ());
-    distances.push_back(std::abs(normal.dot(picture.camera_from_board.translation_mm) / normal.z()));
-  }
-  if (distances.empty()) return 0;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
-}
-
-CalibrateDisplay calibrate_display(const CalibrateRunStatus& status, bool is_adopted, double now_s) {
+CalibrateDisplay calibrate_display(const CalibrateRunStatus& status, const CalibrateContext& context,
+                                   double now_s) {
   const CalibrateStatus& job = status.job;
   CalibrateDisplay display;
   display.has_picture = job.picture != nullptr && job.advice != nullptr;
@@ -152,12 +144,12 @@ CalibrateDisplay calibrate_display(const CalibrateRunStatus& status, bool is_ado
   display.can_take = is_free && display.is_live && job.advice->is_good();
   display.can_drop = is_free && !job.taken.empty();
   display.can_calibrate = is_free && job.taken.size() >= fewest;
-  if (job.summary != nullptr) judge_result(job, is_adopted, display);
+  if (job.summary != nullptr) judge_result(job, context, display);
   display.band = band_of(status, display);
 
   if (job.is_calibrating) {
     display.next_text = "wait for the calibration";
-  } else if (is_adopted) {
+  } else if (context.is_adopted) {
     display.next = CalibrateStep::Done;
     display.next_text = "go on to the tools";
   } else if (display.can_adopt) {

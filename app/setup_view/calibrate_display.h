@@ -27,6 +27,7 @@ struct CalibrateDisplay {
   std::vector<Row> result;           // numbers with their one-sigma; empty without a usable result
   Band verdict;                      // of the result; empty headline: there is none
   std::vector<std::string> reasons;  // against it, all of them
+  std::vector<std::string> notes;    // worth knowing, no harm
   bool can_take = false, can_drop = false, can_calibrate = false, can_adopt = false;
   CalibrateStep next = CalibrateStep::Wait;
   std::string next_text;
@@ -34,11 +35,13 @@ struct CalibrateDisplay {
 
 using CalibrateRunStatus = RunStatus<CalibrateStatus>;
 
-// is_adopted: this very result stands in the case already.
-[[nodiscard]] CalibrateDisplay calibrate_display(const CalibrateRunStatus& status, bool is_adopted,
-                                                 double now_s);
+// What the station knows beside the run.
+struct CalibrateContext {
+  bool is_adopted = false;        // this very result stands in the case already
+  std::string kept_because = "";  // why the case's camera.json may not be replaced; empty: it may
+};
 
-// How far the boards were from the lens, along the optical axis; the median over the pictures.
-[[nodiscard]] double working_distance_mm(const calibration::CalibrationSummary& summary);
+[[nodiscard]] CalibrateDisplay calibrate_display(const CalibrateRunStatus& status,
+                                                 const CalibrateContext& context, double now_s);
 
 }  // namespace arthronaut::setup_view

@@ -45,6 +45,7 @@ void CalibrateStation::start(const FeedSource& source) {
     form_.scope_name = kSimulatedScope;
   else if (form_.scope_name == kSimulatedScope)
     form_.scope_name.clear();
+  kept_because_ = camera_is_kept(source, case_folder_);
   const bool by_itself = takes_by_itself_;
   run_ = std::make_unique<Run>(
       source, [by_itself] { return std::make_unique<CalibrateJob>(by_itself); }, wake_);
@@ -85,7 +86,7 @@ void CalibrateStation::adopt() {
   }
 }
 
-bool CalibrateStation::take_next_step() {
+Then CalibrateStation::take_next_step() {
   switch (display_.next) {
     case CalibrateStep::Take:
       run_->post([](CalibrateJob& job) { job.take(); });
@@ -100,11 +101,11 @@ bool CalibrateStation::take_next_step() {
       run_->post([](CalibrateJob& job) { job.forget_result(); });
       break;
     case CalibrateStep::Done:
-      return false;
+      return Then::GoOn;
     case CalibrateStep::Wait:
       break;
   }
-  return true;
+  return Then::Stay;
 }
 
 void CalibrateStation::add_actions(widgets::Actions& actions) {
@@ -161,7 +162,8 @@ std::vector<const char*> CalibrateStation::buttons() const {
 void CalibrateStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if (run_ != nullptr) status_ = run_->status();
   const bool is_adopted = adopted_result_ != nullptr && adopted_result_ == status_.job.summary;
-  display_ = run_ != nullptr ? calibrate_display(status_, is_adopted, steady_now_s()) : CalibrateDisplay{};
+  display_ = run_ != nullptr ? calibrate_display(status_, {is_adopted, kept_because_}, steady_now_s())
+                             : CalibrateDisplay{};
   if (status_.job.summary != nullptr)
     draw_result(ui, area);
   else

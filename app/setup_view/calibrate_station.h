@@ -22,7 +22,7 @@ class CalibrateStation : public Station {
   void add_actions(widgets::Actions& actions) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
   [[nodiscard]] std::vector<const char*> buttons() const override;
-  [[nodiscard]] bool take_next_step() override;
+  [[nodiscard]] Then take_next_step() override;
   [[nodiscard]] bool has_run() const override { return run_ != nullptr; }
   [[nodiscard]] bool is_busy() const override;
   [[nodiscard]] std::string next_step() const override { return display_.next_text; }
@@ -56,6 +56,7 @@ class CalibrateStation : public Station {
   CalibrateDisplay display_;   // of this frame
   std::shared_ptr<const calibration::CalibrationSummary> adopted_result_;
   Row adopted_;
+  std::string kept_because_;  // see camera_is_kept()
   widgets::VideoTexture picture_, residuals_;
 };
 

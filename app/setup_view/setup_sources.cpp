@@ -5,8 +5,10 @@
 #include <cctype>
 #include <charconv>
 
+#include "navigation/camera/camera_file.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "navigation/simulator/simulated_ruler.h"
+#include "planning/cases/case.h"
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_knee.h"
 
@@ -21,7 +23,7 @@ constexpr std::array<std::string_view, 4> kVideos{".mp4", ".mkv", ".avi", ".mov"
 
 // The scripted surgeon's motions are sampled as coarsely as a machine without a GPU draws them.
 constexpr int kPivotFrames = 72;
-constexpr int kRulerFrames = 30, kRulerFramesPerSecond = 6;
+constexpr int kRulerFrames = 33, kRulerFramesPerSecond = 6;
 
 template <std::size_t Count>
 bool has_extension(const fs::path& file, const std::array<std::string_view, Count>& extensions) {
@@ -125,7 +127,42 @@ std::vector<int> camera_devices() {
   return devices;
 }
 
+// Whether the case's camera.json is of the simulated arthroscope. A file that can't be read is not.
+bool has_simulated_camera(const fs::path& case_folder) {
+  try {
+    return camera::read_camera_file(cases::camera_file(case_folder)).scope_name == kSimulatedScope;
+  } catch (const std::runtime_error&) {  // absent or broken: the one who uses it will say so
+    return false;
+  }
+}
+
 }  // namespace
+
+camera::Calibration camera_of(const FeedSource& source, const fs::path& case_folder) {
+  if (source.is_simulated && !has_simulated_camera(case_folder)) return simulator::standard_camera();
+  const fs::path file = cases::camera_file(case_folder);
+  if (!fs::exists(file)) throw InvalidInput("the case has no camera.json: calibrate the camera first (1)");
+  return camera::read_camera_file(file).calibration;
+}
+
+tools::ToolSet tools_of(const FeedSource& source, const fs::path& case_folder) {
+  const fs::path file = cases::tools_file(case_folder);
+  return source.is_simulated || !fs::exists(file) ? tools::standard_tools() : tools::read_tools_file(file);
+}
+
+std::string camera_is_kept(const FeedSource& source, const fs::path& case_folder) {
+  const bool may_be_replaced = !source.is_simulated || !fs::exists(cases::camera_file(case_folder)) ||
+                               has_simulated_camera(case_folder);
+  return may_be_replaced
+             ? ""
+             : "this case has the calibration of a real scope; a simulated one does not replace it";
+}
+
+std::string tools_are_kept(const FeedSource& source, const fs::path& case_folder) {
+  const bool may_be_replaced = !source.is_simulated || !fs::exists(cases::tools_file(case_folder)) ||
+                               has_simulated_camera(case_folder);
+  return may_be_replaced ? "" : "this case has its own tools.json; what is simulated does not replace it";
+}
 
 std::vector<fs::path> pictures_of(const fs::path& folder) { return files_of(folder, kPictures); }
 

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "app/setup_view/frame_feed.h"
+#include "navigation/camera/camera_model.h"
+#include "navigation/tools/tool_set.h"
 
 namespace arthronaut::setup_view {
 
@@ -22,5 +24,18 @@ enum class Purpose { Camera, Tools, Fluid };
 
 // The name that camera.json carries for the simulated arthroscope.
 inline constexpr const char* kSimulatedScope = "Simulated arthroscope";
+
+// What a source is tracked with: the case's camera.json; of the simulated arthroscope its own, unless the
+// case has adopted a calibration of it. Throws InvalidInput or IoError.
+[[nodiscard]] camera::Calibration camera_of(const FeedSource& source,
+                                            const std::filesystem::path& case_folder);
+// The case's tools.json, or the standard tools where it has none; the simulated arthroscope shows the
+// standard tools. Throws InvalidInput or IoError.
+[[nodiscard]] tools::ToolSet tools_of(const FeedSource& source, const std::filesystem::path& case_folder);
+
+// Why what was found with this source may not replace the files of this case: a simulated result is kept from
+// replacing that of a real scope or tool. Empty when it may.
+[[nodiscard]] std::string camera_is_kept(const FeedSource& source, const std::filesystem::path& case_folder);
+[[nodiscard]] std::string tools_are_kept(const FeedSource& source, const std::filesystem::path& case_folder);
 
 }  // namespace arthronaut::setup_view

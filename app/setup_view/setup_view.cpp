@@ -5,12 +5,18 @@
 #include <imgui_stdlib.h>
 
 #include "app/setup_view/calibrate_station.h"
+#include "app/setup_view/fluid_station.h"
+#include "app/setup_view/tool_station.h"
 
 namespace arthronaut::setup_view {
 
-SetupView::SetupView(const std::function<void()>& wake) {
+SetupView::SetupView(const std::function<void()>& wake, std::function<void()> go_on)
+    : go_on_(std::move(go_on)) {
   steps_.push_back(
       {Purpose::Camera, "setup.show_camera", "setup.camera.", std::make_unique<CalibrateStation>(wake)});
+  steps_.push_back({Purpose::Tools, "setup.show_tools", "setup.tools.", std::make_unique<ToolStation>(wake)});
+  steps_.push_back(
+      {Purpose::Fluid, "setup.show_fluid", "setup.fluid.", std::make_unique<FluidStation>(wake)});
 }
 
 SetupView::~SetupView() = default;
@@ -52,8 +58,11 @@ void SetupView::start() { step().station->start(step().sources.at(step().source)
 
 void SetupView::take_next_step() {
   if (!step().station->has_run()) return start();
-  if (step().station->take_next_step()) return;
-  if (shown_ + 1 < steps_.size()) show(shown_ + 1);
+  const Then then = step().station->take_next_step();
+  if (then == Then::StartAgain) return start();
+  if (then == Then::Stay) return;
+  if (shown_ + 1 < steps_.size()) return show(shown_ + 1);
+  go_on_();
 }
 
 std::string SetupView::next_step() const {
@@ -89,6 +98,8 @@ void SetupView::add_actions(widgets::Actions& actions) {
                  [this, index] { show(index); }});
   };
   show_action(0, "Camera", "Pictures of a checkerboard become camera.json", GLFW_KEY_1);
+  show_action(1, "Tools", "The probe's tip and the guides' axes, into tools.json", GLFW_KEY_2);
+  show_action(2, "Fluid check", "Whether the camera measures rightly in the fluid", GLFW_KEY_3);
   const auto add = [&](const char* id, const char* label, const char* tooltip, int key,
                        const std::function<void()>& run) {
     actions.add({id, label, tooltip, key, 0, false, {}, {}, run});

@@ -16,7 +16,8 @@ namespace arthronaut::setup_view {
 class SetupView {
  public:
   // wake: ends the window's wait for input; called from other threads.
-  explicit SetupView(const std::function<void()>& wake);
+  // go_on: called when the last part of setting up is done and the next step is wished.
+  SetupView(const std::function<void()>& wake, std::function<void()> go_on);
   ~SetupView();
 
   void open(const std::filesystem::path& case_folder);  // another case; ends what runs
@@ -57,6 +58,7 @@ class SetupView {
   void draw_controls(const widgets::Ui& ui, const widgets::Rect& area);
   [[nodiscard]] std::string next_step() const;
 
+  std::function<void()> go_on_;
   std::filesystem::path case_folder_;
   Typed typed_;
   std::vector<Step> steps_;

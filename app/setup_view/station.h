@@ -24,6 +24,18 @@ struct Band {
   std::string headline, detail;
 };
 
+// What follows on a step that was taken.
+enum class Then {
+  Stay,
+  StartAgain,  // from the first picture of the same source
+  GoOn,        // this part of setting up is done
+};
+
+// "0.03"; what is less than half a hundredth is "under 0.01": nobody should read a nought there.
+[[nodiscard]] inline std::string hundredths(double value) {
+  return value < 0.005 ? "under 0.01" : widgets::fixed(value, 2);
+}
+
 class Station {
  public:
   virtual ~Station() = default;
@@ -35,8 +47,7 @@ class Station {
   virtual void draw(const widgets::Ui& ui, const widgets::Rect& area) = 0;
   // The two rows of buttons; ids of actions.
   [[nodiscard]] virtual std::vector<const char*> buttons() const = 0;
-  // Once has_run(). False: this step is done, the next one may begin.
-  [[nodiscard]] virtual bool take_next_step() = 0;
+  [[nodiscard]] virtual Then take_next_step() = 0;          // once has_run()
   [[nodiscard]] virtual bool has_run() const = 0;           // a source was started
   [[nodiscard]] virtual bool is_busy() const = 0;           // pictures or a result are to come
   [[nodiscard]] virtual std::string next_step() const = 0;  // in words, once has_run()

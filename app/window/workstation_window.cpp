@@ -48,7 +48,7 @@ WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
       planning_(
           [this] { window_.make_current(); },
           [this](const planning_view::PlanEdit& edit) { history_.apply(edit, GraphicsWindow::now_s()); }),
-      setup_([] { GraphicsWindow::wake(); }),
+      setup_([] { GraphicsWindow::wake(); }, [this] { go_to(Mode::Navigate); }),
       theatre_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }),
       review_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }) {
   add_actions();

@@ -59,7 +59,7 @@ const Row& row_of(const std::vector<Row>& rows, const std::string& name) {
 
 // A good picture that is of now may be taken, and the step says so.
 TEST(CalibrateDisplay, OffersAGoodPicture) {
-  const CalibrateDisplay display = calibrate_display(running(), false, kNow_s);
+  const CalibrateDisplay display = calibrate_display(running(), {}, kNow_s);
   EXPECT_TRUE(display.is_live && display.can_take);
   EXPECT_FALSE(display.can_calibrate || display.can_adopt || display.can_drop);
   EXPECT_EQ(display.next, CalibrateStep::Take);
@@ -74,7 +74,7 @@ TEST(CalibrateDisplay, SaysEveryReasonOfARejection) {
   advice.rejections = {"the board covers 30 % of the view (needs 60 %)",
                        "it moves: 4.0 px since the last look"};
   advice.wanted = "Not yet: " + advice.rejections.front();
-  const CalibrateDisplay display = calibrate_display(running(advice), false, kNow_s);
+  const CalibrateDisplay display = calibrate_display(running(advice), {}, kNow_s);
   EXPECT_FALSE(display.can_take);
   EXPECT_EQ(display.band.sign, Sign::Caution);
   const std::string said = display.band.headline + display.band.detail;
@@ -88,21 +88,21 @@ TEST(CalibrateDisplay, SaysEveryReasonOfARejection) {
 TEST(CalibrateDisplay, OldPicturesAreNotLive) {
   CalibrateRunStatus hanging = running();
   hanging.looked_s = kNow_s - 5;
-  const CalibrateDisplay hung = calibrate_display(hanging, false, kNow_s);
+  const CalibrateDisplay hung = calibrate_display(hanging, {}, kNow_s);
   EXPECT_FALSE(hung.is_live || hung.can_take);
   EXPECT_EQ(hung.band.headline, "No new picture");
 
   CalibrateRunStatus failing = running();
   failing.phase = FeedPhase::Failed;
   failing.message = "clip.mkv: frame 12 is cut off";
-  const CalibrateDisplay failed = calibrate_display(failing, false, kNow_s);
+  const CalibrateDisplay failed = calibrate_display(failing, {}, kNow_s);
   EXPECT_FALSE(failed.is_live || failed.can_take);
   EXPECT_EQ(failed.band.sign, Sign::Bad);
   EXPECT_EQ(failed.band.detail, "clip.mkv: frame 12 is cut off");
 
   CalibrateRunStatus ending = running();
   ending.phase = FeedPhase::Ended;
-  EXPECT_FALSE(calibrate_display(ending, false, kNow_s).can_take);
+  EXPECT_FALSE(calibrate_display(ending, {}, kNow_s).can_take);
 }
 
 // Enough pictures lead to the calibration, the calibration to its adoption, that to the next step.
@@ -111,17 +111,17 @@ TEST(CalibrateDisplay, LeadsToAdoption) {
   advice.is_complete = true;
   CalibrateRunStatus status = running(advice);
   status.job.taken = {"picture 1", "picture 2", "picture 3"};
-  EXPECT_EQ(calibrate_display(status, false, kNow_s).next, CalibrateStep::Calibrate);
+  EXPECT_EQ(calibrate_display(status, {}, kNow_s).next, CalibrateStep::Calibrate);
   status.job.is_calibrating = true;
-  EXPECT_EQ(calibrate_display(status, false, kNow_s).next, CalibrateStep::Wait);
+  EXPECT_EQ(calibrate_display(status, {}, kNow_s).next, CalibrateStep::Wait);
 
   const CalibrateRunStatus done = calibrated(CalibrationSummary::Outcome::Ok, {});
-  const CalibrateDisplay display = calibrate_display(done, false, kNow_s);
+  const CalibrateDisplay display = calibrate_display(done, {}, kNow_s);
   EXPECT_TRUE(display.can_adopt);
   EXPECT_EQ(display.next, CalibrateStep::Adopt);
   EXPECT_EQ(display.verdict.sign, Sign::Good);
-  EXPECT_EQ(calibrate_display(done, true, kNow_s).next, CalibrateStep::Done);
-  EXPECT_FALSE(calibrate_display(done, true, kNow_s).can_adopt);
+  EXPECT_EQ(calibrate_display(done, {.is_adopted = true}, kNow_s).next, CalibrateStep::Done);
+  EXPECT_FALSE(calibrate_display(done, {.is_adopted = true}, kNow_s).can_adopt);
 }
 
 // A calibration that the module doubts can't be adopted, and every reason is said.
@@ -129,7 +129,7 @@ TEST(CalibrateDisplay, RefusesWhatIsUnreliable) {
   for (const auto outcome : {CalibrationSummary::Outcome::Unreliable, CalibrationSummary::Outcome::Failed,
                              CalibrationSummary::Outcome::NotRun}) {
     const CalibrateDisplay display =
-        calibrate_display(calibrated(outcome, {"all boards face the lens", "another"}), false, kNow_s);
+        calibrate_display(calibrated(outcome, {"all boards face the lens", "another"}), {}, kNow_s);
     EXPECT_FALSE(display.can_adopt);
     EXPECT_EQ(display.verdict.sign, Sign::Bad);
     EXPECT_EQ(display.verdict.detail, "all boards face the lens");
@@ -137,14 +137,21 @@ TEST(CalibrateDisplay, RefusesWhatIsUnreliable) {
     EXPECT_EQ(display.next, CalibrateStep::Resume);
   }
   // A reason speaks against adoption whatever the outcome says.
-  EXPECT_FALSE(
-      calibrate_display(calibrated(CalibrationSummary::Outcome::Ok, {"a"}), false, kNow_s).can_adopt);
+  EXPECT_FALSE(calibrate_display(calibrated(CalibrationSummary::Outcome::Ok, {"a"}), {}, kNow_s).can_adopt);
+}
+
+// A calibration of the simulated arthroscope does not replace that of a real one.
+TEST(CalibrateDisplay, KeepsWhatMayNotBeReplaced) {
+  const CalibrateDisplay display = calibrate_display(calibrated(CalibrationSummary::Outcome::Ok, {}),
+                                                     {.kept_because = "it is real"}, kNow_s);
+  EXPECT_FALSE(display.can_adopt);
+  EXPECT_EQ(display.verdict.detail, "it is real");
 }
 
 // An error is written with as many decimals as it needs: never as a nought.
 TEST(CalibrateDisplay, WritesErrorsThatCanBeRead) {
   const CalibrateDisplay display =
-      calibrate_display(calibrated(CalibrationSummary::Outcome::Ok, {}), false, kNow_s);
+      calibrate_display(calibrated(CalibrationSummary::Outcome::Ok, {}), {}, kNow_s);
   EXPECT_EQ(row_of(display.result, "Focal length").text, "580.25 \u00B1 0.02 px");
 }
 

@@ -95,8 +95,18 @@ TEST_F(Workstation, LeadsThroughItsThreeModes) {
   const Picture live = app.screenshot();
   const auto is_lit = [](const std::array<int, 3>& c) { return c[0] + c[1] + c[2] > 120; };
   EXPECT_GT(share(live, app.widgets().at("operate.video_panel"), is_lit), 0.2);
+  EXPECT_EQ(app.state("layout"), "register");
+  // The view without distortion is another picture of the same scene, as bright.
+  app.press("u");
+  ASSERT_TRUE(app.wait_for_state("view", "undistorted"));
+  EXPECT_GT(share(app.screenshot(), app.widgets().at("operate.video_panel"), is_lit), 0.2);
   app.press("Escape");
   ASSERT_TRUE(app.wait_for_state("picture", "none"));
+  // A machine without a camera says so in words.
+  if (!std::filesystem::exists("/dev/video0")) {
+    app.press("k");
+    ASSERT_TRUE(app.wait_for_state("notice", "No camera is connected: there is no /dev/video"));
+  }
 
   app.press("F3");
   ASSERT_TRUE(app.wait_for_state("mode", "review"));

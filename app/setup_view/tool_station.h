@@ -1,0 +1,54 @@
+// Step 4 of the operation: the probe's tip by pivoting, a guide's axis by turning; into the case's
+// tools.json.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "app/setup_view/setup_panels.h"
+#include "app/setup_view/tool_display.h"
+
+namespace arthronaut::setup_view {
+
+class ToolStation : public Station {
+ public:
+  // wake: ends the window's wait for input; called from other threads.
+  explicit ToolStation(std::function<void()> wake) : wake_(std::move(wake)) {}
+
+  void open(const std::filesystem::path& case_folder) override;
+  void start(const FeedSource& source) override;
+  void stop() override;
+  void release_source() override;
+  void add_actions(widgets::Actions& actions) override;
+  void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
+  [[nodiscard]] std::vector<const char*> buttons() const override;
+  [[nodiscard]] Then take_next_step() override;
+  [[nodiscard]] bool has_run() const override { return run_ != nullptr; }
+  [[nodiscard]] bool is_busy() const override;
+  [[nodiscard]] std::string next_step() const override { return display_.next_text; }
+  [[nodiscard]] Row adopted() const override { return adopted_; }
+
+ private:
+  using Run = LiveRun<ToolJob>;
+
+  void read_adopted();
+  void adopt();
+  [[nodiscard]] ToolChoice choice() const;
+  void draw_picture_with_markers(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_motion(const widgets::Ui& ui, const widgets::Rect& area);
+
+  std::filesystem::path case_folder_;
+  std::function<void()> wake_;
+  std::vector<ToolChoice> choices_;
+  std::size_t chosen_ = 0;
+  double refractive_index_;
+  std::unique_ptr<Run> run_;
+  ToolRunStatus status_;  // of this frame
+  ToolDisplay display_;   // of this frame
+  bool is_adopted_ = false;
+  Row adopted_;
+  std::string kept_because_;  // see tools_are_kept()
+  widgets::VideoTexture picture_;
+};
+
+}  // namespace arthronaut::setup_view

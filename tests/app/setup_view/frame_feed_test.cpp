@@ -1,0 +1,147 @@
+#include "app/setup_view/frame_feed.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "app/setup_view/setup_sources.h"
+#include "planning/cases/case.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::setup_view {
+namespace {
+
+// `count` numbered pictures, then the end, or what a broken file throws.
+class Numbers : public sources::FrameSource {
+ public:
+  Numbers(int count, bool breaks) : count_(count), breaks_(breaks) {}
+  [[nodiscard]] const sources::SourceInfo& info() const override { return info_; }
+  [[nodiscard]] camera::FramePtr next() override {
+    if (given_ == count_) {
+      if (breaks_) throw InvalidInput("clip.mkv: frame 2 is cut off");
+      return nullptr;
+    }
+    auto frame = std::make_shared<camera::Frame>();
+    frame->index = given_;
+    frame->timestamp_ns = given_++ * 10'000'000;
+    return frame;
+  }
+
+ private:
+  int count_, given_ = 0;
+  bool breaks_;
+  sources::SourceInfo info_;
+};
+
+FeedSource numbers(int count, bool breaks = false) {
+  FeedSource source;
+  source.open = [=] { return std::make_unique<Numbers>(count, breaks); };
+  return source;
+}
+
+// The next picture, however long the machine takes.
+camera::FramePtr wait_for_picture(FrameFeed& feed) {
+  for (int i = 0; i < 400; ++i)
+    if (camera::FramePtr frame = feed.next()) return frame;
+  return nullptr;
+}
+
+// Where every pose counts no picture is left out, however slow the worker is.
+TEST(FrameFeed, LeavesNothingOutWhereEveryPictureCounts) {
+  FeedSource source = numbers(5);
+  source.newest_wins = false;
+  FrameFeed feed(source);
+  for (int i = 0; i < 5; ++i) {
+    const camera::FramePtr frame = wait_for_picture(feed);
+    ASSERT_NE(frame, nullptr);
+    EXPECT_EQ(frame->index, i);
+  }
+  for (int i = 0; i < 400 && !feed.has_ended(); ++i) EXPECT_EQ(feed.next(), nullptr);
+  EXPECT_TRUE(feed.has_ended());
+}
+
+// A still stands, the very same picture again and again, until the next one is asked for; asking twice while
+// it is on its way does not skip one.
+TEST(FrameFeed, StillsStandUntilTheNextIsAskedFor) {
+  FeedSource source = numbers(3);
+  source.is_stills = true;
+  FrameFeed feed(source);
+  const camera::FramePtr first = wait_for_picture(feed);
+  ASSERT_NE(first, nullptr);
+  EXPECT_EQ(wait_for_picture(feed), first);
+  feed.advance();
+  feed.advance();
+  const camera::FramePtr second = wait_for_picture(feed);
+  ASSERT_NE(second, nullptr);
+  EXPECT_EQ(second->index, 1);
+}
+
+// What the source throws arrives at the worker, after the pictures before it, once; then it has ended.
+TEST(FrameFeed, HandsErrorsToTheWorker) {
+  FeedSource source = numbers(2, true);
+  source.newest_wins = false;
+  FrameFeed feed(source);
+  EXPECT_NE(wait_for_picture(feed), nullptr);
+  EXPECT_NE(wait_for_picture(feed), nullptr);
+  EXPECT_THROW((void)wait_for_picture(feed), InvalidInput);
+  for (int i = 0; i < 400 && !feed.has_ended(); ++i) (void)feed.next();
+  EXPECT_TRUE(feed.has_ended());
+}
+
+class Sources : public ::testing::Test {
+ protected:
+  Sources() : folder_(std::filesystem::path(::testing::TempDir()) / "setup_sources") {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_ / "board");
+    std::ofstream(folder_ / "board" / "b.PNG") << "x";
+    std::ofstream(folder_ / "board" / "a.jpg") << "x";
+    std::ofstream(folder_ / "knee.mkv") << "x";
+    std::ofstream(folder_ / "camera.json") << "x";
+  }
+  ~Sources() override { std::filesystem::remove_all(folder_); }
+  std::filesystem::path folder_;
+};
+
+// Pictures are offered for the camera alone, videos for everything, the simulated arthroscope first.
+TEST_F(Sources, AreFoundInTheCase) {
+  const auto for_camera = sources_for(Purpose::Camera, folder_);
+  ASSERT_GE(for_camera.size(), 3U);
+  EXPECT_EQ(for_camera[0].name, kSimulatedScope);
+  EXPECT_EQ(for_camera[1].name, "Pictures in board");
+  EXPECT_TRUE(for_camera[1].is_stills);
+  EXPECT_EQ(for_camera[2].name, "knee.mkv");
+  const auto for_tools = sources_for(Purpose::Tools, folder_);
+  EXPECT_EQ(for_tools[1].name, "knee.mkv");
+  const auto pictures = pictures_of(folder_ / "board");
+  ASSERT_EQ(pictures.size(), 2U);
+  EXPECT_EQ(pictures[0].filename(), "a.jpg");
+}
+
+// A picture that is none is told by its name, not swallowed.
+TEST_F(Sources, NameTheFileThatIsNoPicture) {
+  FrameFeed feed(sources_for(Purpose::Camera, folder_)[1]);
+  try {
+    (void)wait_for_picture(feed);
+    FAIL() << "no exception";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("a.jpg"), std::string::npos) << error.what();
+  }
+}
+
+// What is simulated is tracked with its own camera, and replaces neither camera nor tools of a real case.
+TEST_F(Sources, KeepRealFilesFromSimulatedOnes) {
+  const FeedSource simulated = sources_for(Purpose::Camera, folder_)[0];
+  EXPECT_GT(camera_of(simulated, folder_).focal_px, 0);  // this case's camera.json is broken
+  EXPECT_FALSE(camera_is_kept(simulated, folder_).empty());
+  const FeedSource video = sources_for(Purpose::Tools, folder_)[1];
+  EXPECT_THROW((void)camera_of(video, folder_), InvalidInput);
+  EXPECT_TRUE(camera_is_kept(video, folder_).empty());
+  std::filesystem::remove(folder_ / "camera.json");
+  EXPECT_TRUE(camera_is_kept(simulated, folder_).empty());
+  EXPECT_TRUE(tools_are_kept(simulated, folder_).empty());
+  tools::write_tools_file(cases::tools_file(folder_), tools::standard_tools());
+  EXPECT_FALSE(tools_are_kept(simulated, folder_).empty());
+}
+
+}  // namespace
+}  // namespace arthronaut::setup_view

@@ -1,0 +1,65 @@
+// Sets up a case in the real window by the pedal's key alone: the simulated arthroscope's board becomes
+// camera.json, its swung probe tools.json.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "navigation/camera/camera_file.h"
+#include "navigation/simulator/simulated_operation.h"
+#include "navigation/tools/tool_set.h"
+#include "tests/app/window/display.h"
+
+namespace arthronaut::test {
+namespace {
+
+TEST(SettingUp, LeadsToAnAdoptedCameraAndTip) {
+  if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
+  std::string pattern = (std::filesystem::temp_directory_path() / "arthronaut-setup-XXXXXX").string();
+  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+  const struct Folder {
+    std::filesystem::path path;
+    ~Folder() { std::filesystem::remove_all(path); }
+  } home{pattern};
+  const std::filesystem::path folder = home.path / "arthronaut" / "Phantom.arthro";
+
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, home.path);
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F4");
+  ASSERT_TRUE(app.wait_for_state("setup_next", "start Simulated arthroscope"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "camera.json"));
+
+  // Pictures that are good and held still are taken without a key.
+  app.press("space");
+  ASSERT_TRUE(app.wait_for_state("setup_next", "calibrate", 180));
+  app.press("space");
+  ASSERT_TRUE(app.wait_for_state("setup_verdict", "Fit for guidance", 120));
+  ASSERT_TRUE(app.wait_for_widget("setup.residuals"));
+  app.press("space");
+  ASSERT_TRUE(app.wait_for_state("setup_verdict", "Adopted"));
+  const camera::CalibrationRecord camera = camera::read_camera_file(folder / "camera.json");
+  const camera::Calibration truth = simulator::standard_camera();
+  // What is asked of a calibration from three pictures: focal length within 0.3 %.
+  EXPECT_NEAR(camera.calibration.focal_px, truth.focal_px, 0.003 * truth.focal_px);
+  EXPECT_EQ(camera.scope_name, "Simulated arthroscope");
+  EXPECT_EQ(camera.covariance.rows(), 6);
+
+  // The tip within a third of a millimetre of the built-in probe's.
+  app.press("space");
+  ASSERT_TRUE(app.wait_for_state("setup_step", "tools"));
+  app.press("space");
+  ASSERT_TRUE(app.wait_for_state("setup_verdict", "Fit for guidance", 240)) << app.state("setup_band");
+  ASSERT_TRUE(app.wait_for_widget("setup.motion"));
+  app.press("space");
+  ASSERT_TRUE(app.wait_for_state("setup_verdict", "Adopted"));
+  const tools::ToolSet adopted = tools::read_tools_file(folder / "tools.json");
+  const tools::Tool* probe = adopted.find_tool("probe");
+  ASSERT_NE(probe, nullptr);
+  EXPECT_TRUE(probe->residual_mm.has_value());
+  EXPECT_LT((*probe->tip_mm - *tools::standard_tools().find_tool("probe")->tip_mm).norm(), 0.35);
+
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(60), 0);
+}
+
+}  // namespace
+}  // namespace arthronaut::test
