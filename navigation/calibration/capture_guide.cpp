@@ -178,7 +178,7 @@ void CaptureGuide::judge() {
   else if (!has_mark(picture))
     reasons.push_back("the lens mark is not seen: " + std::string(lens::to_text(picture.lens.mark)));
   if (!picture.board.found()) {
-    reasons.push_back("no checkerboard is seen");
+    reasons.push_back("no checkerboard is seen: hold one 12 to 22 mm before the lens");
     return;
   }
   if (quality.corner_count < limits_.fewest_corners)

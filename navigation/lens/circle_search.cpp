@@ -41,9 +41,12 @@ void find_first_lights(const camera::GrayView& picture, int lit, std::vector<Eig
   points.clear();
   const int w = picture.width, h = picture.height;
   const int row_step = std::max(2, h / 90), column_step = std::max(2, w / 120);
+  // A rim on this side of a circle that is plausible; in a dark scene the rest of the line would cost the
+  // most.
+  const int reach = w * 6 / 10;
   for (int y = row_step / 2; y < h; y += row_step) {
-    const int left = first_light(picture.row(y), 1, w, lit);
-    const int right = first_light(picture.row(y) + w - 1, -1, w, lit);
+    const int left = first_light(picture.row(y), 1, reach, lit);
+    const int right = first_light(picture.row(y) + w - 1, -1, reach, lit);
     if (left >= 0) points.emplace_back(left, y);
     if (right >= 0) points.emplace_back(w - 1 - right, y);
   }

@@ -21,6 +21,9 @@ constexpr double kClearLead = 0.06, kClearMisfitRatio = 5, kLeastMisfit = 0.02;
 constexpr int kFramesToLearn = 5;
 constexpr int kFramesToJump = 8;  // a mark far from where it was expected, before it is believed
 constexpr int kFramesToSlip = 6;  // off the track before it is told; a clear rim needs two
+constexpr int kFramesBetweenSearches = 4;
+constexpr double kDarkShare = 0.4;    // of the rays: the scene is too dark to tell the rim
+constexpr double kNearEnough_px = 4;  // an error of the rays' centre that costs 0.02 px
 constexpr double kClearCoverage_deg = 240, kMostZoom = 0.005;
 
 // The shape of this scope's mark: the mean over the first clear sightings.
@@ -61,12 +64,15 @@ struct LensTracker::State {
   CircleTrack track;
   Eigen::Vector2i size_px{0, 0};
   bool has_circle = false;
+  camera::Boundary last_circle;  // that was found
+  int lost_frames = 0;           // since
   std::int64_t last_found_ns = 0;
   int jump_frames = 0;
   double jump_angle_deg = 0;
 
   void forget();
   bool find_circle(const camera::GrayView& frame);
+  bool search_and_fit(const camera::GrayView& frame);
   bool measure_and_fit(const camera::GrayView& frame, const camera::Boundary& expected, double gate_share);
   void watch_circle();
   void find_mark();
@@ -81,6 +87,7 @@ void LensTracker::State::forget() {
   shape = {};
   track = {};
   has_circle = false;
+  lost_frames = 0;
   jump_frames = 0;
 }
 
@@ -99,8 +106,23 @@ bool LensTracker::State::measure_and_fit(const camera::GrayView& frame, const ca
   return true;
 }
 
+bool LensTracker::State::search_and_fit(const camera::GrayView& frame) {
+  const std::optional<camera::Boundary> found = search_circle(frame, scratch);
+  if (!found || !measure_and_fit(frame, *found, 0.03)) return false;
+  // Rays about a centre that is a few pixels off see the rim as well; further off they are laid anew.
+  const bool is_near = (observation.circle.center_px - found->center_px).norm() < kNearEnough_px &&
+                       std::abs(observation.circle.radius_px - found->radius_px) < kNearEnough_px;
+  return is_near || measure_and_fit(frame, observation.circle, 0.015);
+}
+
 bool LensTracker::State::find_circle(const camera::GrayView& frame) {
-  if (has_circle && measure_and_fit(frame, observation.circle, 0.015)) return true;
+  // What hides the rim does so for seconds: to look for it from nothing in every frame would only cost time.
+  // But a rim that a lit scene loses at once may have jumped.
+  const bool is_time_to_search = lost_frames % kFramesBetweenSearches == kFramesBetweenSearches - 1;
+  if (has_circle && !is_time_to_search) {
+    if (measure_and_fit(frame, observation.circle, 0.015)) return true;
+    if (profile.dark_share > kDarkShare || lost_frames > 0) return false;
+  }
   if (!has_circle && options.calibration &&
       options.calibration->image_size_px == Eigen::Vector2i(frame.width, frame.height)) {
     const camera::Boundary at_rest = options.calibration->boundary;
@@ -108,12 +130,9 @@ bool LensTracker::State::find_circle(const camera::GrayView& frame) {
     // it.
     if (measure_and_fit(frame, at_rest, 0.03)) return measure_and_fit(frame, observation.circle, 0.015);
   }
-  const std::optional<camera::Boundary> from_nothing = search_circle(frame, scratch);
-  if (from_nothing && measure_and_fit(frame, *from_nothing, 0.03))
-    return measure_and_fit(frame, observation.circle, 0.015);
+  if (search_and_fit(frame)) return true;
   // Too little rim: go on with the circle as it was, for the sake of the mark.
-  if (has_circle) measure_rim(frame, observation.circle, kInner, kOuter, profile);
-  return false;
+  return has_circle && measure_and_fit(frame, last_circle, 0.015);
 }
 
 // Zoom changes the radius; a slipped coupler moves the centre off the track that the lens's turning gives it.
@@ -176,7 +195,7 @@ MarkState LensTracker::State::choose_mark(MarkCandidate& chosen) {
   MarkState at_place = MarkState::NotSeen;
   if (filter.is_running())
     at_place = judge_place(dents, filter.angle_deg(), known ? known->half_width_deg : 2.0);
-  else if (profile.dark_share > 0.4)
+  else if (profile.dark_share > kDarkShare)
     at_place = MarkState::Dark;
   if (all.count == 0 || all.items[0].score < accept) return at_place;
 
@@ -271,16 +290,18 @@ const LensObservation& LensTracker::observe(const camera::GrayView& frame, std::
   seen.timestamp_ns = timestamp_ns;
   state.filter.predict(elapsed_s);
 
-  const camera::Boundary before = seen.circle;
   seen.circle_found = state.find_circle(frame);
-  if (!seen.circle_found) seen.circle = before;
+  state.lost_frames = seen.circle_found ? 0 : state.lost_frames + 1;
+  if (seen.circle_found) state.last_circle = seen.circle;
+  seen.circle = state.last_circle;
   state.has_circle = state.has_circle || seen.circle_found;
   if (state.has_circle)
     state.find_mark();
   else
     seen.mark = MarkState::NoCircle;
   if (!seen.circle_found && seen.mark != MarkState::Found)
-    seen.mark = state.has_circle && state.profile.dark_share > 0.4 ? MarkState::Dark : MarkState::NoCircle;
+    seen.mark =
+        state.has_circle && state.profile.dark_share > kDarkShare ? MarkState::Dark : MarkState::NoCircle;
   state.watch_circle();
 
   seen.mark_angle_deg = state.filter.angle_deg();
