@@ -122,7 +122,7 @@ std::vector<StrokeRow> stroke_rows(const RegistrationStatus& status) {
   for (const registration::StrokeInfo& stroke : status.online->strokes) {
     if (stroke.length_mm < kShownLength_mm) continue;
     StrokeRow row{stroke.curve, status.left_out.contains(stroke.curve), {}};
-    row.text.name = "Stroke " + std::to_string(stroke.curve + 1);
+    row.text.name = "Stroke " + std::to_string(rows.size() + 1);
     row.text.text = widgets::fixed(stroke.length_mm, 0) + " mm";
     if (has_pose) row.text.text += ", " + mm(stroke.median_residual_mm, 1) + " off";
     row.text.sign = has_pose ? sign_of_residual(stroke.median_residual_mm) : Sign::Quiet;

@@ -172,12 +172,12 @@ void TheatreView::add_registration_actions(widgets::Actions& actions) {
                false,
                has_tip,
                {},
-               [this] { operation_->take_touch(false); }});
+               [this] { take_touch(false); }});
   actions.add(
       {"operate.control_point", "Control point",
        "A mark on the bone: touched first it is kept, later it tells whether the world marker has moved",
        GLFW_KEY_P, 0, false, has_tip, [this] { return status_.bone.touches.has_control_point(); },
-       [this] { operation_->take_touch(true); }});
+       [this] { take_touch(true); }});
   actions.add({"operate.forget_touches",
                "Forget touches",
                "Touches and control point were wrong, not the marker: takes an alarm away",

@@ -18,6 +18,7 @@ using Phase = OperationStatus::Phase;
 // AR can blind: what is drawn over the picture stands out for a while, then fades to a hint by itself.
 constexpr double kOverlayFull_s = 8, kOverlayFading_s = 2;
 constexpr float kOverlayFaded = 0.25F;
+constexpr double kGuideAway_s = 2;
 constexpr std::size_t kEnoughPoints = 150;
 
 }  // namespace
@@ -100,7 +101,7 @@ void TheatreView::look_along_plan() {
     return pane_.look(
         scene::look_from(scene::View::Anterior, model_->knee().side, model_->bounds(choices_.bone), 1));
   const scene::SceneCamera along =
-      scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm, 190, Eigen::Vector3d::UnitZ());
+      scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm, 150, Eigen::Vector3d::UnitZ());
   pane_.look(scene::orbited(along, {40, -30}, 600));  // a little from the side: depth is seen too
 }
 
@@ -190,6 +191,12 @@ void TheatreView::take_next_step() {
     return start_simulation(SimulatedPart::Scratch);
 }
 
+// The probe stops drawing with a touch; the screen stays, so that the distance is read in large.
+void TheatreView::take_touch(bool is_control_point) {
+  choices_.layout = layout(Operation::now_s());
+  operation_->take_touch(is_control_point);
+}
+
 void TheatreView::toggle_recording() {
   if (!status_.recording.empty()) return operation_->stop_recording();
   try {
@@ -254,7 +261,11 @@ void TheatreView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   const double now = Operation::now_s();
   TheatreDisplay display = display_of(operation_ != nullptr ? &status_ : nullptr, options_.get(), now);
   if (operation_ == nullptr && !notice_.empty()) display.detail = notice_;
-  if (display.guidance_is_valid) choices_.guidance_seen_s = now;
+  if (display.guidance_is_valid) {
+    // A guide that comes into view gets the screen, whatever was looked at before.
+    if (now - choices_.guidance_seen_s > kGuideAway_s) choices_.layout.reset();
+    choices_.guidance_seen_s = now;
+  }
   const TheatreScreen screen = screen_of(display, now);
 
   const float gap = ui.theme.px(12);
@@ -265,7 +276,7 @@ void TheatreView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if (!choices_.cameras.empty()) draw_cameras(ui, video);
   if (screen.layout == TheatreLayout::Register) {
     draw_registration(ui, rest.cut_right(rest.width * 0.5F, gap), screen);
-    const widgets::Rect tracking = rest.cut_bottom(rest.height * 0.42F, gap);
+    const widgets::Rect tracking = rest.cut_bottom(rest.height * 0.47F, gap);
     draw_scene(ui, rest, screen);
     draw_tracking(ui, tracking, screen);
   } else {
@@ -353,7 +364,7 @@ void TheatreView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area, c
   const bool has_patches = screen.layout == TheatreLayout::Register && status_.bone.online != nullptr &&
                            !status_.bone.online->coach.patches.empty();
   const std::string label = screen.display.guidance_is_valid ? "Drill guide and plan"
-                            : has_patches                    ? "Green: touched. Orange: touch here next"
+                            : has_patches                    ? "Green: touched. Orange: draw here"
                             : screen.layout == TheatreLayout::Register
                                 ? "Plan; what is touched will show here"
                                 : "Plan; the guide is not known now";

@@ -43,6 +43,7 @@ class TheatreView {
   // Ends what runs: at once on the screen, in a thread of its own behind it.
   void end_operation();
   void take_next_step();
+  void take_touch(bool is_control_point);
   void toggle_recording();
   void add_registration_actions(widgets::Actions& actions);
   void cycle_overlay();

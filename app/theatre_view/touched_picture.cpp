@@ -71,7 +71,8 @@ void TouchedPicture::add_strokes(scene::SceneContent& content, const Registratio
 }
 
 void add_patches(scene::SceneContent& content, const registration::Coach& coach) {
-  constexpr double kLift_mm = 0.1, kThickness_mm = 0.25, kHelps = 0.02;
+  // Above the drawn bone, which is coarser than the true one.
+  constexpr double kLift_mm = -0.3, kThickness_mm = 1.0, kHelps = 0.02;
   for (const registration::BonePatch& patch : coach.patches) {
     const bool helps = !patch.is_touched && patch.gain > kHelps;
     const scene::Color color = patch.is_touched ? scene::kCurveColor

@@ -21,6 +21,8 @@ std::string plain_key_name(int key) {
       return "Tab";
     case GLFW_KEY_ENTER:
       return "Enter";
+    case GLFW_KEY_BACKSPACE:
+      return "Backsp";
     case GLFW_KEY_ESCAPE:
       return "Esc";
     case GLFW_KEY_LEFT:

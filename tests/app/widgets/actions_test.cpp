@@ -52,6 +52,7 @@ TEST(Actions, KeysHaveNames) {
   EXPECT_EQ(key_name(GLFW_KEY_Z, GLFW_MOD_CONTROL), "Ctrl+Z");
   EXPECT_EQ(key_name(GLFW_KEY_F10, 0), "F10");
   EXPECT_EQ(key_name(GLFW_KEY_SPACE, GLFW_MOD_SHIFT), "Shift+Space");
+  EXPECT_EQ(key_name(GLFW_KEY_BACKSPACE, 0), "Backsp");
   EXPECT_EQ(key_name(0, 0), "");
 }
 
