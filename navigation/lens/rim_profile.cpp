@@ -43,15 +43,16 @@ float light_at(const camera::GrayView& picture, float x, float y) {
          fy * ((1 - fx) * light[bottom[0]] + fx * light[bottom[1]]);
 }
 
-// One ray. A noisy picture is averaged across it, over about as much of the rim as lies between two rays: the mark
-// keeps its shape, the noise does not.
+// One ray. A noisy picture is averaged across it, over about as much of the rim as lies between two rays: the
+// mark keeps its shape, the noise does not.
 struct Ray {
   const camera::GrayView& picture;
   Eigen::Vector2f center;
   float dx, dy;
   int half_width = 0;  // pixels to each side
 
-  // The last radius at which all of the ray, with a pixel to spare for interpolation, is still in the picture.
+  // The last radius at which all of the ray, with a pixel to spare for interpolation, is still in the
+  // picture.
   [[nodiscard]] float reach() const {
     const float spare = static_cast<float>(1 + half_width);
     const float right = static_cast<float>(picture.width - 1) - spare;
@@ -89,8 +90,8 @@ struct Ray {
 };
 
 // Median grey value at the outer end of the rays, and how far it scatters.
-void measure_mask(const camera::GrayView& picture, const Eigen::Vector2f& center, float outer_px, int half_width,
-                  double& level, double& scatter) {
+void measure_mask(const camera::GrayView& picture, const Eigen::Vector2f& center, float outer_px,
+                  int half_width, double& level, double& scatter) {
   std::array<int, 256> histogram{};
   int count = 0;
   for (int i = 0; i < kRayCount; i += 2) {
@@ -116,6 +117,10 @@ float locate_edge(const Ray& ray, float first_px, float reach_px, float dark_lig
   for (std::size_t k = 0; k < light.size(); ++k) light[k] = ray.light(start - static_cast<float>(k));
   const std::size_t n = light.size();
   inside = (light[n - 1] + light[n - 2] + light[n - 3]) / 3;
+  // A dark strip along the rim before a bright scene (a black square of a board) is scene, not mask: its
+  // light is level over some pixels, which that of a blurred edge never is.
+  const auto [least, most] = std::minmax({light[kOutside + 1], light[kOutside + 2], light[kOutside + 3]});
+  if (most < 1.3F * least && most < 0.4F * inside && least > 2 * dark_light) inside = most;
   const float half = 0.5F * (dark_light + inside);
   for (std::size_t k = 1; k < n; ++k)
     if (light[k] >= half && light[k - 1] < half) {
@@ -173,8 +178,7 @@ void measure_rim(const camera::GrayView& picture, const camera::Boundary& expect
       ++dark;
     } else {
       profile.state[i] = RayState::Edge;
-      profile.radius_px[i] =
-          locate_edge(ray, first, reach, dark_light, profile.inside_light[i]);
+      profile.radius_px[i] = locate_edge(ray, first, reach, dark_light, profile.inside_light[i]);
     }
   }
   profile.dark_share = static_cast<double>(dark) / kRayCount;
