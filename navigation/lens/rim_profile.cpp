@@ -117,10 +117,6 @@ float locate_edge(const Ray& ray, float first_px, float reach_px, float dark_lig
   for (std::size_t k = 0; k < light.size(); ++k) light[k] = ray.light(start - static_cast<float>(k));
   const std::size_t n = light.size();
   inside = (light[n - 1] + light[n - 2] + light[n - 3]) / 3;
-  // A dark strip along the rim before a bright scene (a black square of a board) is scene, not mask: its
-  // light is level over some pixels, which that of a blurred edge never is.
-  const auto [least, most] = std::minmax({light[kOutside + 1], light[kOutside + 2], light[kOutside + 3]});
-  if (most < 1.3F * least && most < 0.4F * inside && least > 2 * dark_light) inside = most;
   const float half = 0.5F * (dark_light + inside);
   for (std::size_t k = 1; k < n; ++k)
     if (light[k] >= half && light[k - 1] < half) {
@@ -128,6 +124,25 @@ float locate_edge(const Ray& ray, float first_px, float reach_px, float dark_lig
       return start - (static_cast<float>(k - 1) + share);
     }
   return first_px;
+}
+
+// From the first light of a ray to its edge is as far as the picture is blurred, and alike all round. Where
+// it is much further, a dark strip of the scene lies beside the rim (a black square of a board, a shadow):
+// its light begins where the mask ends. A dent in the mask itself, such as the mark, has no light before its
+// edge.
+void mend_dark_strips(const std::array<float, kRayCount>& first_px, RimProfile& profile) {
+  constexpr float kMostFurther_px = 1.5F;
+  std::array<float, kRayCount> gaps;
+  int count = 0;
+  for (int i = 0; i < kRayCount; ++i)
+    if (profile.state[i] == RayState::Edge)
+      gaps[static_cast<std::size_t>(count++)] = first_px[i] - profile.radius_px[i];
+  if (count == 0) return;
+  std::nth_element(gaps.begin(), gaps.begin() + count / 2, gaps.begin() + count);
+  const float usual = gaps[static_cast<std::size_t>(count / 2)];
+  for (int i = 0; i < kRayCount; ++i)
+    if (profile.state[i] == RayState::Edge && first_px[i] - profile.radius_px[i] > usual + kMostFurther_px)
+      profile.radius_px[i] = first_px[i] - usual;
 }
 
 }  // namespace
@@ -156,6 +171,7 @@ void measure_rim(const camera::GrayView& picture, const camera::Boundary& expect
   const float step_px = half_width > 0 ? 2 : 1;
   const int lit_run = half_width > 0 ? 2 : 3;
   int dark = 0, clipped = 0;
+  std::array<float, kRayCount> first_px{};
   for (int i = 0; i < kRayCount; ++i) {
     const Ray ray{picture, center, directions().cosine[i], directions().sine[i], half_width};
     const float reach = ray.reach();
@@ -178,9 +194,11 @@ void measure_rim(const camera::GrayView& picture, const camera::Boundary& expect
       ++dark;
     } else {
       profile.state[i] = RayState::Edge;
+      first_px[i] = first;
       profile.radius_px[i] = locate_edge(ray, first, reach, dark_light, profile.inside_light[i]);
     }
   }
+  mend_dark_strips(first_px, profile);
   profile.dark_share = static_cast<double>(dark) / kRayCount;
   profile.clipped_share = static_cast<double>(clipped) / kRayCount;
 }

@@ -58,8 +58,8 @@ TEST(LensTracker, FollowsATurningLens) {
   }
 }
 
-// A dim scene under a noisy sensor: the mark is found all the same, and nothing else is taken for it. 0.5 degrees: the
-// noise is a quarter of the scene's light.
+// A dim scene under a noisy sensor: the mark is found all the same, and nothing else is taken for it. 0.5
+// degrees: the noise is a quarter of the scene's light.
 TEST(LensTracker, SeesTheMarkThroughASensorsNoise) {
   for (int k = 0; k < 12; ++k) {
     RimTruth truth;
@@ -213,6 +213,27 @@ TEST(LensTracker, SaysThatTheAngleIsHeldAndThenNotKnown) {
     EXPECT_FALSE(stale.has_angle());
     EXPECT_EQ(reason_text(stale), "lens mark: no mark on the rim, the lens angle is not known");
   }
+}
+
+// A checkerboard runs past the view: its black squares beside the rim are dark, but scene, and no dents.
+// (Half a degree: squares that meet the mark's flanks take rays from them.)
+TEST(LensTracker, TellsTheMarkFromTheSquaresOfABoard) {
+  for (const bool outward : {false, true})
+    for (const double squares : {7.0, 13.0, 19.0})
+      for (const double angle_deg : {20.0, 271.0}) {
+        RimTruth truth;
+        truth.is_bright_outward = outward;
+        truth.mark_angle_deg = angle_deg;
+        truth.scene = [&](double at_deg, double share) {
+          const double x = share * std::cos(at_deg * M_PI / 180), y = share * std::sin(at_deg * M_PI / 180);
+          const auto column = static_cast<int>(std::floor(squares * x + 0.3));
+          return (column + static_cast<int>(std::floor(squares * y))) % 2 == 0 ? 30.0 : 140.0;
+        };
+        const RimPicture picture = draw(truth);
+        const LensObservation seen = observe_still(picture.view());
+        ASSERT_EQ(seen.mark, MarkState::Found) << to_text(seen.mark) << ' ' << squares << ' ' << angle_deg;
+        EXPECT_NEAR(turn_between_deg(seen.mark_angle_deg, angle_deg), 0, 0.5) << squares << ' ' << outward;
+      }
 }
 
 // No round view at all: a plain scene, a black picture, a picture too small to hold one.
