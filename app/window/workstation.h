@@ -1,4 +1,4 @@
-// The workstation: one window with plan, navigation and review mode.
+// The workstation: one window with plan, set-up, navigation and review mode.
 #pragma once
 
 #include <filesystem>
