@@ -2,10 +2,10 @@
 //
 // A declared code is accepted when at most one of its inner cells, and at most two of all cells, read wrong,
 // and the light of the cells follows the code (with a gain and a bias that may vary linearly over the
-// square). Codes of DICT_4X4_50 differ from each other, in any turn, in at least 4 of 16 cells, so that one
-// wrong cell never makes another marker of it. A square with random cells inside a dark border would pass
-// with a probability of 17 * 4 / 65536 = 0.1 % for each declared marker; nothing is reported that the edges
-// of the code do not confirm afterwards.
+// square). Codes of DICT_4X4_50 differ from each other and from themselves turned in at least 4 of 16 cells,
+// the standard markers 0 to 4 in at least 6, so that one wrong cell never makes another marker of it. A
+// square with random cells inside a dark border would pass with a probability of 17 * 4 / 65536 = 0.1 % for
+// each declared marker; nothing is reported that the edges of the code do not confirm afterwards.
 #pragma once
 
 #include <optional>

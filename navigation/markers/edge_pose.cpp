@@ -20,9 +20,9 @@ constexpr double kTukey = 4.685;
 constexpr double kCorrelatedEdges = 2.2;
 // What every edge of a side has wrong together (camera, print, compression), as an error of the corners.
 constexpr double kCommonCornerErrorPx = 0.015;
-// What the edges of a smeared, or of a partly covered, marker have wrong together: the hand does not move
-// evenly, and what covers it also shades what is beside it.
-constexpr double kCommonErrorPerBox = 0.08, kCommonErrorPerCover = 0.25;
+
+// Corners that another pose meets so closely do not tell it from this one; all edges together do, by so much.
+constexpr double kNearlySamePx = 1, kMinChiSquared = 16;
 
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
@@ -80,7 +80,7 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
   is_inlier.assign(measurements.size(), 0);
   Matrix7d normal;
   double bloom = bloom_prior.mean_px;
-  double scale = 1, squares = 0, weights = 0, px_squares = 0, boxes = 0;
+  double scale = 1, squares = 0, weights = 0, px_squares = 0;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const Eigen::Matrix3d rotation = pose.matrix();
     int count = 0;
@@ -102,7 +102,7 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
     normal(6, 6) = bloom_weight;
     Vector7d gradient = Vector7d::Zero();
     gradient[6] = bloom_weight * (bloom_prior.mean_px - bloom);
-    squares = weights = px_squares = boxes = 0;
+    squares = weights = px_squares = 0;
     result.inliers = 0;
     for (std::size_t i = 0; i < measurements.size(); ++i) {
       const EdgeMeasurement& measurement = measurements[i];
@@ -119,7 +119,6 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
       squares += robust * ratio * ratio;
       weights += robust;
       px_squares += row.residual_px * row.residual_px;
-      boxes += measurement.box_px;
       is_inlier[i] = 1;
       ++result.inliers;
     }
@@ -166,6 +165,24 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
       kCommonCornerErrorPx * kCommonCornerErrorPx * corner_normal.ldlt().solve(Matrix6d::Identity());
   if (!result.covariance.allFinite()) result.converged = false;
   return result;
+}
+
+bool may_be_tilted_back(const camera::CameraModel& camera, double size_mm,
+                        std::span<const EdgeSample> samples, std::span<const EdgeMeasurement> measurements,
+                        const EdgePose& fit, const Corners& corners_px, const BloomPrior& bloom,
+                        std::vector<char>& scratch) {
+  const auto corners = refine_square_pose(camera, corners_px, size_mm, tilted_back(fit.camera_from_marker));
+  if (!corners || corners->rms_px > kNearlySamePx) return false;
+  const EdgePose other =
+      fit_edge_pose(camera, size_mm, samples, measurements, corners->camera_from_marker, bloom, scratch);
+  if (!other.converged ||
+      geometry::rotation_angle_rad(fit.camera_from_marker.rotation.conjugate() *
+                                   other.camera_from_marker.rotation) < kHarmlessTiltRad) {
+    return false;
+  }
+  const double independent = std::min(fit.inliers, other.inliers) / kCorrelatedEdges;
+  const double noise = std::max(1.0, std::min(fit.scale, other.scale));
+  return independent * (other.scale * other.scale - fit.scale * fit.scale) < kMinChiSquared * noise * noise;
 }
 
 MeasuredCorners measured_corners(const camera::CameraModel& camera, double size_mm,

@@ -40,6 +40,15 @@ struct BloomPrior {
                                      const geometry::RigidTransform& start, const BloomPrior& bloom,
                                      std::vector<char>& is_inlier);
 
+// Whether the face could as well be tilted the other way about the line of sight, by more than is harmless,
+// for all that these edges tell. `corners_px`: where the fit has its corners.
+inline constexpr double kHarmlessTiltRad = 3 * geometry::kPi / 180;
+[[nodiscard]] bool may_be_tilted_back(const camera::CameraModel& camera, double size_mm,
+                                      std::span<const EdgeSample> samples,
+                                      std::span<const EdgeMeasurement> measurements, const EdgePose& fit,
+                                      const Corners& corners_px, const BloomPrior& bloom,
+                                      std::vector<char>& scratch);
+
 struct MeasuredCorners {
   Corners corners_px;
   double rms_px = 0;  // how far they are from the pose's corners

@@ -34,17 +34,17 @@ class EdgeTracker final : public MarkerTracker {
                                            std::int64_t timestamp_ns) override {
     check_frame_size(frame, camera);
     const LinearImage image(frame, light_);
+    const TrackedFrame tracked{image, camera, timestamp_ns, smear_, dense_};
     bool missing = false;
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       observations_[i] = MarkerObservation();
       observations_[i].id = tracks_[i].marker().id;
       const auto start = tracks_[i].predicted(timestamp_ns);
-      missing |=
-          !start || !tracks_[i].measure(image, camera, *start, false, timestamp_ns, smear_, observations_[i]);
+      missing |= !start || !tracks_[i].measure(tracked, *start, false, observations_[i]);
     }
     if (missing || frames_to_search_-- <= 0) {
       frames_to_search_ = options_.search_every_frames - 1;
-      search(frame, image, camera, timestamp_ns);
+      search(frame, tracked);
     }
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       if (tracks_[i].is_duplicate && observations_[i].is_tracked())
@@ -61,15 +61,16 @@ class EdgeTracker final : public MarkerTracker {
       observations_[i].id = tracks_[i].marker().id;
     }
     smear_ = CameraSmear();
+    smear_.gamma = options_.gamma;
+    smear_.bloom.sigma_px = options_.bloom_sigma_px;
     frames_to_search_ = 0;
   }
 
  private:
-  void search(const camera::GrayView& frame, const LinearImage& image, const camera::CameraModel& camera,
-              std::int64_t timestamp_ns) {
+  void search(const camera::GrayView& picture, const TrackedFrame& frame) {
     for (MarkerTrack& track : tracks_) track.is_duplicate = false;
-    for (const FoundSquare& square : search_.find(frame, camera)) {
-      const auto code = read_code(image, camera, square.tangent, codes_);
+    for (const FoundSquare& square : search_.find(picture, frame.camera)) {
+      const auto code = read_code(frame.image, frame.camera, square.tangent, codes_);
       if (!code) continue;
       MarkerTrack& track = tracks_[code->index];
       MarkerObservation& known = observations_[code->index];
@@ -77,19 +78,19 @@ class EdgeTracker final : public MarkerTracker {
         track.is_duplicate |= !is_same_place(square, known);
         continue;
       }
-      acquire(track, square, code->turn, image, camera, timestamp_ns, known);
+      acquire(track, square, code->turn, frame, known);
     }
   }
 
-  void acquire(MarkerTrack& track, const FoundSquare& square, int turn, const LinearImage& image,
-               const camera::CameraModel& camera, std::int64_t timestamp_ns, MarkerObservation& observation) {
+  static void acquire(MarkerTrack& track, const FoundSquare& square, int turn, const TrackedFrame& frame,
+                      MarkerObservation& observation) {
     Corners tangent;
     for (int i = 0; i < 4; ++i) tangent[i] = square.tangent[(turn + i) % 4];
     const auto homography = square_homography(tangent, track.marker().size_mm);
     if (!homography) return;
     for (const RigidTransform& start : poses_from_homography(*homography)) {
       if (!(start.translation_mm.z() > 0)) continue;
-      if (track.measure(image, camera, start, true, timestamp_ns, smear_, observation)) return;
+      if (track.measure(frame, start, true, observation)) return;
     }
   }
 
@@ -106,6 +107,7 @@ class EdgeTracker final : public MarkerTracker {
   std::vector<MarkerObservation> observations_;
   SquareSearch search_;
   CameraSmear smear_;
+  PhotogeometricFit dense_;
   int frames_to_search_ = 0;
 };
 

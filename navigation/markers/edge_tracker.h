@@ -15,7 +15,11 @@ namespace arthronaut::markers {
 struct EdgeTrackerOptions {
   // Grey level = light ^ (1 / gamma). Below the usual 2.2: blur happens in light, but noise is even in grey
   // levels. What is left of the blur's asymmetry is estimated with each pose (bloom).
+  // 1 takes edges where the grey levels put them: for pictures of unknown origin, to compare with other
+  // detectors.
   double gamma = 1.6;
+  double bloom_sigma_px =
+      0.2;  // how far the bloom may be from the camera's mean; hardly above 0 leaves it out
   int search_every_frames = 4;  // a search of the whole frame, for doubles, while every marker is tracked
 };
 

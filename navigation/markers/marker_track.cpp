@@ -10,10 +10,6 @@ namespace {
 using geometry::RigidTransform;
 using geometry::Vector6d;
 
-constexpr std::int64_t kForgetNs = 400'000'000;
-// Two sightings farther apart than this say nothing about the motion now.
-constexpr std::int64_t kMotionNs = 70'000'000;
-
 constexpr double kMinShare = 0.3;  // of the edges crossed along x, and along y
 constexpr double kMinMeanShare = 0.42;
 constexpr double kMaxScale = 8;  // residuals / their predicted sigmas
@@ -21,8 +17,13 @@ constexpr double kMaxRmsPx = 1.2;
 // A marker that comes from nowhere must be seen nearly whole: there is no motion to agree with.
 constexpr double kMinNewShare = 0.7;
 // Motions over the exposure that are tried when none is known.
-constexpr double kTriedLengthsPx[] = {7, 14};
+constexpr double kTriedLengthsPx[] = {8, 18};
 constexpr int kTriedDirections = 4;
+const PhotogeometricOptions kTriedFit{
+    .max_iterations = 5, .max_pixels = 300, .coarse_cells = 0.3, .max_way_cells = 3};
+const PhotogeometricOptions kUnsureFit{.coarse_cells = 0.3, .max_way_cells = 3};
+// A motion over the exposure from which on the dense fit is the better one, and what it must reach.
+constexpr double kSmearedPx = 3, kLittleSmearPx = 8, kUnconfirmed = 10, kMinDenseCellPx = 6;
 constexpr double kMaxSigmaMm = 0.25, kMaxSigmaRad = 1.5 * geometry::kPi / 180;
 constexpr int kMaxPasses = 4;
 constexpr double kMaxNewMotionPx = 5;
@@ -33,126 +34,225 @@ constexpr double kReachPredicted = 0.35, kReachFound = 0.45;
 constexpr double kMinCellPx = 3;
 constexpr double kMinFacing = 0.2;  // cosine of the face's normal to the line of sight: 78 degrees
 constexpr double kCornerSigmaPx = 0.05;
-constexpr double kMinAmbiguityRatio = 2, kHarmlessFlipRad = 3 * geometry::kPi / 180;
+constexpr double kSoft = 1.4;
+constexpr double kClearRatio = 10, kOtherNoise = 1.15;
+constexpr double kMinAmbiguityRatio = 2, kHarmlessFlipRad = kHarmlessTiltRad;
 
 double facing(const RigidTransform& pose) {
   return -pose.rotate(Eigen::Vector3d::UnitZ()).dot(pose.translation_mm.normalized());
-}
-
-// A motion in the image plane at the marker's depth, as a body twist.
-Vector6d twist_of(const Eigen::Vector2d& motion_px, const camera::CameraModel& camera,
-                  const RigidTransform& pose) {
-  const double mm_per_px = pose.translation_mm.z() / camera.central_focal_px();
-  Vector6d twist = Vector6d::Zero();
-  twist.head<3>() =
-      pose.rotation.conjugate() * Eigen::Vector3d(mm_per_px * motion_px.x(), mm_per_px * motion_px.y(), 0);
-  return twist;
-}
-
-// How the profiles want the motion changed, in pixels; nothing when they hardly tell.
-Eigen::Vector2d motion_step(const SmearTrend& trend) {
-  const double total = trend.motion_weight.trace();
-  if (total < 0.05) return Eigen::Vector2d::Zero();
-  const Eigen::Matrix2d damped = trend.motion_weight + 0.02 * total * Eigen::Matrix2d::Identity();
-  const Eigen::Vector2d step = damped.inverse() * trend.motion_gain;
-  return step * std::min(1.0, 4 / std::max(step.norm(), 1e-9));
 }
 
 double cell_px(const camera::CameraModel& camera, const RigidTransform& pose, double size_mm, int cells) {
   return camera.central_focal_px() * size_mm / cells / std::max(pose.translation_mm.z(), 1.0);
 }
 
-// From a motion that was worth some pixels.
-void learn_exposure(const Vector6d& expected, const Vector6d& found, double px_per_mm, CameraSmear& smear) {
-  const double square = expected.head<3>().squaredNorm();
-  if (square * px_per_mm * px_per_mm < 9) return;
-  const double ratio = std::clamp(found.head<3>().dot(expected.head<3>()) / square, 0.5, 1.5);
-  smear.exposure_share = std::clamp(smear.exposure_share * (1 + 0.2 * (ratio - 1)), 0.02, 1.0);
-}
-
-void learn(const SmearTrend& trend, double bloom_px, CameraSmear& smear) {
-  smear.bloom.mean_px += 0.1 * (bloom_px - smear.bloom.mean_px);
-  if (trend.sigma_weight > 1) {
-    smear.sigma_px = std::clamp(smear.sigma_px + 0.2 * trend.sigma_gain / trend.sigma_weight, 0.5, 3.0);
-  }
-}
-
 }  // namespace
 
 MarkerTrack::MarkerTrack(const DeclaredMarker& marker, const MarkerCode& code)
-    : marker_(marker), cells_(code.cells), samples_(edge_samples(code)) {
+    : marker_(marker), code_(code), cells_(code.cells), samples_(edge_samples(code)) {
   measurements_.reserve(samples_.size());
   is_inlier_.reserve(samples_.size());
 }
 
-std::optional<RigidTransform> MarkerTrack::predicted(std::int64_t timestamp_ns) const {
-  if (!last_ || timestamp_ns - last_->timestamp_ns > kForgetNs || timestamp_ns < last_->timestamp_ns)
-    return std::nullopt;
-  const std::int64_t step = before_ ? last_->timestamp_ns - before_->timestamp_ns : 0;
-  if (step <= 0 || step > kMotionNs || timestamp_ns - last_->timestamp_ns > kMotionNs)
-    return last_->camera_from_marker;
-  const Vector6d twist = geometry::log(before_->camera_from_marker.inverse() * last_->camera_from_marker);
-  const double share = static_cast<double>(timestamp_ns - last_->timestamp_ns) / static_cast<double>(step);
-  return last_->camera_from_marker * geometry::exp(share * twist);
-}
-
-Vector6d MarkerTrack::twist_to(const RigidTransform& pose, std::int64_t timestamp_ns) const {
-  if (!last_ || timestamp_ns <= last_->timestamp_ns || timestamp_ns - last_->timestamp_ns > kMotionNs) {
-    return Vector6d::Zero();
-  }
-  return geometry::log(last_->camera_from_marker.inverse() * pose);
-}
-
-bool MarkerTrack::measure(const LinearImage& image, const camera::CameraModel& camera,
-                          const RigidTransform& start, bool is_found, std::int64_t timestamp_ns,
-                          CameraSmear& smear, MarkerObservation& observation) {
+bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start, bool is_found,
+                          MarkerObservation& observation) {
   observation = MarkerObservation();
   observation.id = marker_.id;
-  const double cell = cell_px(camera, start, marker_.size_mm, cells_);
+  const double cell = cell_px(frame.camera, start, marker_.size_mm, cells_);
   if (cell < kMinCellPx) {
     observation.state = MarkerState::TooSmall;
     return false;
   }
+  Smear picture;
   SmearTrend trend;
+  const EdgePose fit = fit_edges(frame, start, is_found, picture, trend);
+  const double px_per_mm = cell * cells_ / marker_.size_mm;
+  // Without a past nothing is known of the motion, and edges alone may take a smear for another tilt.
+  const bool is_motion_known = !is_found && motion_.is_known_at(frame.timestamp_ns);
+  const double edges_motion_px = picture.motion.head<3>().norm() * px_per_mm;
+  if ((!is_motion_known || edges_motion_px > kSmearedPx) && cell > kMinDenseCellPx) {
+    const RigidTransform& from = fit.converged ? fit.camera_from_marker : start;
+    PhotogeometricPose dense =
+        fit_densely(frame, from, picture.motion, fit.converged ? PhotogeometricOptions() : kUnsureFit);
+    if (is_found && fit.converged && !dense.explains_picture())
+      dense = fit_densely(frame, from, picture.motion, kUnsureFit);
+    // What moves may also pass for out of focus.
+    if (!is_motion_known && (!dense.explains_picture() || dense.sigma_px > kSoft * frame.smear.sigma_px)) {
+      const PhotogeometricPose moving = try_motions(frame, from);
+      if (!dense.explains_picture() || (moving.explains_picture() && moving.noise_grey < dense.noise_grey))
+        dense = moving;
+    }
+    if (dense.is_usable()) report_dense(frame, dense, observation);
+    const bool is_sharp =
+        dense.explains_picture() && dense.pose.velocity.head<3>().norm() * px_per_mm < kSmearedPx;
+    if (observation.is_tracked() && !(is_sharp && fit.converged)) return true;
+    if (!is_sharp) {
+      if (!fit.converged) {
+        observation.state = reason_of_loss(frame.camera, start);
+        return false;
+      }
+      // Edges that the dense fit does not confirm are good enough to go on from, not to stand for.
+      report_edges(frame, fit, picture, is_found, observation);
+      if (!observation.is_tracked()) return false;
+      if (is_motion_known && edges_motion_px < kLittleSmearPx) {
+        observation.covariance *= kUnconfirmed;
+        return true;
+      }
+      observation.state = edges_motion_px > kSmearedPx ? MarkerState::Blur : MarkerState::Covered;
+      motion_.follow(observation.camera_from_marker, frame.timestamp_ns);
+      return false;
+    }
+  }
+  if (!fit.converged) {
+    observation.state = reason_of_loss(frame.camera, start);
+    return false;
+  }
+  report_edges(frame, fit, picture, is_found, observation);
+  if (!observation.is_tracked()) return false;
+  learn(trend, fit.bloom_px, frame.smear);
+  if (!is_found) {
+    learn_exposure(frame.smear.exposure_share * motion_.twist_to(fit.camera_from_marker, frame.timestamp_ns),
+                   picture.motion, px_per_mm, frame.smear);
+  }
+  return true;
+}
+
+EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform& start, bool is_found,
+                                Smear& picture, SmearTrend& trend) {
+  const double cell = cell_px(frame.camera, start, marker_.size_mm, cells_);
   ProfileOptions coarse;
   coarse.search_px =
       std::clamp(static_cast<int>(std::lround((is_found ? kReachFound : kReachPredicted) * cell)), 2, 16);
   coarse.stride = 2;
-  Smear picture{smear.sigma_px, is_found ? likely_motion(image, camera, start, coarse.search_px, smear)
-                                         : Vector6d(smear.exposure_share * twist_to(start, timestamp_ns))};
-  measure_edges(image, camera, start, marker_.size_mm, cells_, samples_, picture, coarse, measurements_,
-                trend);
+  const CameraSmear& smear = frame.smear;
+  picture = {smear.sigma_px,
+             is_found ? likely_motion(frame, start, coarse.search_px)
+                      : Vector6d(smear.exposure_share * motion_.twist_to(start, frame.timestamp_ns))};
+  measure_edges(frame.image, frame.camera, start, marker_.size_mm, cells_, samples_, picture, coarse,
+                measurements_, trend);
   EdgePose fit =
-      fit_edge_pose(camera, marker_.size_mm, samples_, measurements_, start, smear.bloom, is_inlier_);
+      fit_edge_pose(frame.camera, marker_.size_mm, samples_, measurements_, start, smear.bloom, is_inlier_);
   if (!fit.converged || fit.share[0] + fit.share[1] < kMinShare) {
-    observation.state = reason_of_loss(camera, start);
-    return false;
+    fit.converged = false;
+    return fit;
   }
-  if (!is_found) picture.motion = smear.exposure_share * twist_to(fit.camera_from_marker, timestamp_ns);
-  const Vector6d expected_motion = picture.motion;
+  if (!is_found)
+    picture.motion = smear.exposure_share * motion_.twist_to(fit.camera_from_marker, frame.timestamp_ns);
   for (int pass = 0; pass < kMaxPasses; ++pass) {
     const RigidTransform here = fit.camera_from_marker;
-    measure_edges(image, camera, here, marker_.size_mm, cells_, samples_, picture, {}, measurements_, trend);
-    fit = fit_edge_pose(camera, marker_.size_mm, samples_, measurements_, here, smear.bloom, is_inlier_);
-    if (!fit.converged) {
-      observation.state = reason_of_loss(camera, here);
-      return false;
-    }
+    measure_edges(frame.image, frame.camera, here, marker_.size_mm, cells_, samples_, picture, {},
+                  measurements_, trend);
+    fit =
+        fit_edge_pose(frame.camera, marker_.size_mm, samples_, measurements_, here, smear.bloom, is_inlier_);
+    if (!fit.converged) break;
     const Eigen::Vector2d longer = motion_step(trend);
-    picture.motion += twist_of(longer, camera, fit.camera_from_marker);
+    picture.motion += twist_of(longer, frame.camera, fit.camera_from_marker);
     const double moved = geometry::log(here.inverse() * fit.camera_from_marker).head<3>().norm();
     if (moved * cell * cells_ / marker_.size_mm < 0.5 && longer.norm() < 0.7) break;
   }
+  return fit;
+}
 
+PhotogeometricPose MarkerTrack::fit_densely(const TrackedFrame& frame, const RigidTransform& start,
+                                            const Vector6d& motion, const PhotogeometricOptions& options) {
+  PhotogeometricStart from;
+  from.pose = {start, motion, Vector6d::Zero()};
+  from.sigma_px = frame.smear.sigma_px;
+  from.gamma = frame.smear.gamma;
+  const double px_per_mm = frame.camera.central_focal_px() / start.translation_mm.z();
+  const double motion_px = px_per_mm * motion.head<3>().norm();
+  from.change_sigma_px = 2 + 0.35 * motion_px;
+  from.velocity_sigma_px = 2 + 0.2 * motion_px;
+  if (const auto change = motion_.change_to(start, frame.timestamp_ns)) {
+    from.pose.change = std::pow(frame.smear.exposure_share, 2) * *change;
+    from.change_sigma_px = 1.5 + 0.5 * px_per_mm * from.pose.change.head<3>().norm();
+  }
+  return frame.dense.refine(frame.image.view(), frame.camera, code_, samples_, marker_.size_mm, from,
+                            options);
+}
+
+PhotogeometricPose MarkerTrack::try_motions(const TrackedFrame& frame, const RigidTransform& start) {
+  PhotogeometricPose best;
+  for (const double length : kTriedLengthsPx) {
+    for (int direction = 0; direction < kTriedDirections; ++direction) {
+      const double angle = geometry::kPi * direction / kTriedDirections;
+      const Vector6d motion =
+          twist_of({length * std::cos(angle), length * std::sin(angle)}, frame.camera, start);
+      const PhotogeometricPose fit = fit_densely(frame, start, motion, kTriedFit);
+      if (!fit.is_usable() || (best.is_usable() && fit.noise_grey >= best.noise_grey)) continue;
+      best = fit;
+    }
+  }
+  if (!best.is_usable()) return best;
+  return fit_densely(frame, best.pose.camera_from_marker, best.pose.velocity, {.max_way_cells = 2});
+}
+
+void MarkerTrack::report_dense(const TrackedFrame& frame, const PhotogeometricPose& fit,
+                               MarkerObservation& observation) {
+  observation.camera_from_marker = fit.pose.camera_from_marker;
+  observation.covariance = fit.covariance;
+  // The motion is not followed in all six directions: what is left out changes about as much as what is seen.
+  const double ratio = fit.pose.change.head<2>().norm() / std::max(1e-6, fit.pose.velocity.head<2>().norm());
+  const Vector6d left_out = std::clamp(ratio, 0.4, 4.0) / 24 * fit.pose.velocity;
+  observation.covariance.diagonal() += left_out.cwiseAbs2();
+  // The corners as the edges by themselves would have them.
+  SmearTrend ignored;
+  measure_edges(frame.image, frame.camera, fit.pose.camera_from_marker, marker_.size_mm, cells_, samples_,
+                {frame.smear.sigma_px, fit.pose.velocity}, {}, measurements_, ignored);
+  is_inlier_.resize(measurements_.size());
+  for (std::size_t i = 0; i < measurements_.size(); ++i)
+    is_inlier_[i] =
+        measurements_[i].state == EdgeState::Found && std::abs(measurements_[i].offset_px) < kMaxRmsPx;
+  EdgePose edges;
+  edges.camera_from_marker = fit.pose.camera_from_marker;
+  edges.bloom_px = frame.smear.bloom.mean_px;
+  const MeasuredCorners corners =
+      measured_corners(frame.camera, marker_.size_mm, samples_, measurements_, is_inlier_, edges);
+  observation.corners_px = corners.corners_px;
+  observation.rms_px = corners.rms_px;
+  observation.ambiguity_ratio = kNoOtherPose;
+  observation.state = judge(fit, observation);
+  if (observation.is_tracked()) {
+    frame.smear.gamma += 0.1 * (fit.gamma - frame.smear.gamma);
+    const double px_per_mm = frame.camera.central_focal_px() / fit.pose.camera_from_marker.translation_mm.z();
+    learn_exposure(
+        frame.smear.exposure_share * motion_.twist_to(fit.pose.camera_from_marker, frame.timestamp_ns),
+        fit.pose.velocity, px_per_mm, frame.smear);
+  }
+  // The other pose that has nearly these corners must be told apart by how the picture looks there.
+  Corners exact;
+  const auto corners_mm = square_corners_mm(marker_.size_mm);
+  for (int k = 0; k < 4; ++k) {
+    const auto corner = frame.camera.project(fit.pose.camera_from_marker * corners_mm[k]);
+    if (!corner) return;
+    exact[k] = *corner;
+  }
+  const auto poses = solve_square(frame.camera, exact, marker_.size_mm);
+  if (!observation.is_tracked() || !poses || !poses->other) return;
+  const double corner_px =
+      std::hypot(kCornerSigmaPx, std::sqrt((poses->best.information * observation.covariance).trace() / 8));
+  observation.ambiguity_ratio = std::min(kNoOtherPose, poses->other->rms_px / corner_px);
+  if (observation.ambiguity_ratio >= kClearRatio) return;
+  const PhotogeometricPose other =
+      fit_densely(frame, poses->other->camera_from_marker, fit.pose.velocity, {});
+  if (!other.is_usable() || other.noise_grey > kOtherNoise * fit.noise_grey) return;
+  if (geometry::rotation_angle_rad(fit.pose.camera_from_marker.rotation.conjugate() *
+                                   other.pose.camera_from_marker.rotation) > kHarmlessFlipRad)
+    observation.state = MarkerState::Ambiguous;
+  if (!observation.is_tracked()) return;
+}
+
+void MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, const Smear& picture,
+                               bool is_found, MarkerObservation& observation) {
   observation.camera_from_marker = fit.camera_from_marker;
   observation.covariance = fit.covariance;
   const MeasuredCorners corners =
-      measured_corners(camera, marker_.size_mm, samples_, measurements_, is_inlier_, fit);
+      measured_corners(frame.camera, marker_.size_mm, samples_, measurements_, is_inlier_, fit);
   observation.corners_px = corners.corners_px;
   observation.rms_px = corners.rms_px;
   std::optional<SquarePose> other;
   observation.ambiguity_ratio = kNoOtherPose;
-  if (const auto poses = solve_square(camera, corners.corners_px, marker_.size_mm)) {
+  if (const auto poses = solve_square(frame.camera, corners.corners_px, marker_.size_mm)) {
     other = poses->other;
     if (other) {
       observation.ambiguity_ratio =
@@ -161,29 +261,30 @@ bool MarkerTrack::measure(const LinearImage& image, const camera::CameraModel& c
     if (is_found) observation.covariance += square_covariance(poses->best, kFoundCornerSigmaPx);
   }
   observation.state = judge(fit, observation, other, is_found);
+  if (observation.is_tracked() &&
+      may_be_tilted_back(frame.camera, marker_.size_mm, samples_, measurements_, fit, corners.corners_px,
+                         frame.smear.bloom, is_inlier_)) {
+    observation.state = MarkerState::Ambiguous;
+  }
   if (observation.state == MarkerState::Covered)
-    observation.state = reason_of_loss(camera, fit.camera_from_marker);
+    observation.state = reason_of_loss(frame.camera, fit.camera_from_marker);
   // A first sight through a strong smear is good enough to go on from, not to stand for.
+  const double cell = cell_px(frame.camera, fit.camera_from_marker, marker_.size_mm, cells_);
   if (is_found && observation.is_tracked() &&
       picture.motion.head<3>().norm() * cell * cells_ > kMaxNewMotionPx * marker_.size_mm) {
     observation.state = MarkerState::Blur;
-    follow_from(observation, timestamp_ns);
+    motion_.follow(observation.camera_from_marker, frame.timestamp_ns);
   }
-  if (!observation.is_tracked()) return false;
-  learn(trend, fit.bloom_px, smear);
-  if (!is_found) learn_exposure(expected_motion, picture.motion, cell * cells_ / marker_.size_mm, smear);
-  return true;
 }
 
-Vector6d MarkerTrack::likely_motion(const LinearImage& image, const camera::CameraModel& camera,
-                                    const RigidTransform& pose, int search_px, const CameraSmear& smear) {
+Vector6d MarkerTrack::likely_motion(const TrackedFrame& frame, const RigidTransform& pose, int search_px) {
   ProfileOptions sparse;
   sparse.search_px = search_px;
   sparse.stride = 4;
   SmearTrend ignored;
   const auto likeness = [&](const Vector6d& motion) {
-    measure_edges(image, camera, pose, marker_.size_mm, cells_, samples_, {smear.sigma_px, motion}, sparse,
-                  measurements_, ignored);
+    measure_edges(frame.image, frame.camera, pose, marker_.size_mm, cells_, samples_,
+                  {frame.smear.sigma_px, motion}, sparse, measurements_, ignored);
     double sum = 0;
     for (const EdgeMeasurement& measurement : measurements_) sum += std::max(0.0, measurement.likeness - 0.5);
     return sum;
@@ -194,7 +295,8 @@ Vector6d MarkerTrack::likely_motion(const LinearImage& image, const camera::Came
   for (const double length : kTriedLengthsPx) {
     for (int direction = 0; direction < kTriedDirections; ++direction) {
       const double angle = geometry::kPi * direction / kTriedDirections;
-      const Vector6d motion = twist_of({length * std::cos(angle), length * std::sin(angle)}, camera, pose);
+      const Vector6d motion =
+          twist_of({length * std::cos(angle), length * std::sin(angle)}, frame.camera, pose);
       const double sum = likeness(motion);
       if (sum > most) {
         most = sum;
@@ -203,6 +305,15 @@ Vector6d MarkerTrack::likely_motion(const LinearImage& image, const camera::Came
     }
   }
   return best;
+}
+
+MarkerState MarkerTrack::judge(const PhotogeometricPose& fit, const MarkerObservation& observation) const {
+  if (facing(fit.pose.camera_from_marker) < kMinFacing) return MarkerState::TooOblique;
+  const double sigma_mm = std::sqrt(observation.covariance.topLeftCorner<3, 3>().trace());
+  const double sigma_rad = std::sqrt(observation.covariance.bottomRightCorner<3, 3>().trace());
+  if (!fit.explains_picture() || !(sigma_mm < kMaxSigmaMm) || !(sigma_rad < kMaxSigmaRad))
+    return MarkerState::Doubtful;
+  return MarkerState::Tracked;
 }
 
 MarkerState MarkerTrack::judge(const EdgePose& fit, const MarkerObservation& observation,
@@ -248,17 +359,11 @@ void MarkerTrack::follow(const MarkerObservation& observation, std::int64_t time
   const bool is_measured = observation.is_tracked() || observation.state == MarkerState::Ambiguous ||
                            observation.state == MarkerState::Duplicate;
   if (!is_measured) return;
-  follow_from(observation, timestamp_ns);
-}
-
-void MarkerTrack::follow_from(const MarkerObservation& observation, std::int64_t timestamp_ns) {
-  before_ = last_;
-  last_ = Sighting{observation.camera_from_marker, timestamp_ns};
+  motion_.follow(observation.camera_from_marker, timestamp_ns);
 }
 
 void MarkerTrack::forget() {
-  last_.reset();
-  before_.reset();
+  motion_ = MarkerMotion();
   is_duplicate = false;
 }
 

@@ -7,17 +7,22 @@
 #include <vector>
 
 #include "navigation/camera/camera_model.h"
+#include "navigation/markers/camera_smear.h"
 #include "navigation/markers/edge_pose.h"
 #include "navigation/markers/edge_profiles.h"
+#include "navigation/markers/marker_motion.h"
 #include "navigation/markers/marker_tracker.h"
+#include "navigation/markers/photogeometric.h"
 
 namespace arthronaut::markers {
 
-// What the picture is smeared by: the same for all markers of a camera, learnt while they are tracked.
-struct CameraSmear {
-  double sigma_px = 1.2;
-  double exposure_share = 0.5;  // of the time between frames
-  BloomPrior bloom;
+// One frame, and what all markers of the camera share.
+struct TrackedFrame {
+  const LinearImage& image;
+  const camera::CameraModel& camera;
+  std::int64_t timestamp_ns = 0;
+  CameraSmear& smear;
+  PhotogeometricFit& dense;
 };
 
 class MarkerTrack {
@@ -25,13 +30,14 @@ class MarkerTrack {
   MarkerTrack(const DeclaredMarker& marker, const MarkerCode& code);
 
   // Where the marker should be at this time; nullopt when it was never seen or too long ago.
-  [[nodiscard]] std::optional<geometry::RigidTransform> predicted(std::int64_t timestamp_ns) const;
+  [[nodiscard]] std::optional<geometry::RigidTransform> predicted(std::int64_t timestamp_ns) const {
+    return motion_.predicted(timestamp_ns);
+  }
 
-  // Measures the marker around this pose, to `reach` cells to either side. Fills the observation; true when
-  // tracked.
-  bool measure(const LinearImage& image, const camera::CameraModel& camera,
-               const geometry::RigidTransform& start, bool is_found, std::int64_t timestamp_ns,
-               CameraSmear& smear, MarkerObservation& observation);
+  // Measures the marker around this pose. Fills the observation; true when tracked. `is_found`: the pose
+  // comes from a search and not from the frames before.
+  bool measure(const TrackedFrame& frame, const geometry::RigidTransform& start, bool is_found,
+               MarkerObservation& observation);
 
   // The observation of this frame is final: remembers it.
   void follow(const MarkerObservation& observation, std::int64_t timestamp_ns);
@@ -41,31 +47,39 @@ class MarkerTrack {
   bool is_duplicate = false;  // as of the last search of the whole frame
 
  private:
-  struct Sighting {
-    geometry::RigidTransform camera_from_marker;
-    std::int64_t timestamp_ns = 0;
-  };
-  // Twist from one frame to the next if the marker goes on from the last sighting to this pose; zero when not
-  // known.
-  [[nodiscard]] geometry::Vector6d twist_to(const geometry::RigidTransform& pose,
-                                            std::int64_t timestamp_ns) const;
   // The smear under which the picture looks most like the marker at this pose, when nothing is known of the
   // motion: the motion over the exposure as a body twist.
-  [[nodiscard]] geometry::Vector6d likely_motion(const LinearImage& image, const camera::CameraModel& camera,
-                                                 const geometry::RigidTransform& pose, int search_px,
-                                                 const CameraSmear& smear);
-  void follow_from(const MarkerObservation& observation, std::int64_t timestamp_ns);
+  [[nodiscard]] geometry::Vector6d likely_motion(const TrackedFrame& frame,
+                                                 const geometry::RigidTransform& pose, int search_px);
+  // Edge profiles: refines the pose and the motion of `picture`.
+  [[nodiscard]] EdgePose fit_edges(const TrackedFrame& frame, const geometry::RigidTransform& start,
+                                   bool is_found, Smear& picture, SmearTrend& trend);
+  // Dense fit from a pose and a motion.
+  [[nodiscard]] PhotogeometricPose fit_densely(const TrackedFrame& frame,
+                                               const geometry::RigidTransform& start,
+                                               const geometry::Vector6d& motion,
+                                               const PhotogeometricOptions& options);
+  // The same with motions from a grid, where none is known; the best, usable or not.
+  [[nodiscard]] PhotogeometricPose try_motions(const TrackedFrame& frame,
+                                               const geometry::RigidTransform& start);
+  // From here on the pose in the observation is judged: what the edges say, and the dense fit where there is
+  // one.
+  void report_edges(const TrackedFrame& frame, const EdgePose& fit, const Smear& picture, bool is_found,
+                    MarkerObservation& observation);
+  void report_dense(const TrackedFrame& frame, const PhotogeometricPose& fit, MarkerObservation& observation);
   [[nodiscard]] MarkerState judge(const EdgePose& fit, const MarkerObservation& observation,
                                   const std::optional<SquarePose>& other, bool is_found) const;
+  [[nodiscard]] MarkerState judge(const PhotogeometricPose& fit, const MarkerObservation& observation) const;
   [[nodiscard]] MarkerState reason_of_loss(const camera::CameraModel& camera,
                                            const geometry::RigidTransform& pose) const;
 
   DeclaredMarker marker_;
+  MarkerCode code_;
   int cells_;
   std::vector<EdgeSample> samples_;
   std::vector<EdgeMeasurement> measurements_;
   std::vector<char> is_inlier_;
-  std::optional<Sighting> last_, before_;
+  MarkerMotion motion_;
 };
 
 }  // namespace arthronaut::markers

@@ -135,6 +135,16 @@ std::array<RigidTransform, 2> poses_from_homography(const Eigen::Matrix3d& h) {
   return poses;
 }
 
+RigidTransform tilted_back(const RigidTransform& camera_from_marker) {
+  const Eigen::Vector3d normal = camera_from_marker.rotate(Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d to_eye = -camera_from_marker.translation_mm.normalized();
+  const Eigen::Vector3d axis = normal.cross(to_eye);
+  if (axis.norm() < 1e-9) return camera_from_marker;
+  const Eigen::AngleAxisd turn(2 * geometry::angle_between_rad(normal, to_eye), axis.normalized());
+  return {(Eigen::Quaterniond(turn) * camera_from_marker.rotation).normalized(),
+          camera_from_marker.translation_mm};
+}
+
 std::optional<SquarePose> refine_square_pose(const camera::CameraModel& camera, const Corners& corners_px,
                                              double size_mm, const RigidTransform& start) {
   const auto corners_mm = square_corners_mm(size_mm);

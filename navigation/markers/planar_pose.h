@@ -27,6 +27,9 @@ using Corners =
 [[nodiscard]] std::array<geometry::RigidTransform, 2> poses_from_homography(
     const Eigen::Matrix3d& homography);
 
+// The pose whose face is tilted the other way about the line of sight: near the other planar solution.
+[[nodiscard]] geometry::RigidTransform tilted_back(const geometry::RigidTransform& camera_from_marker);
+
 struct SquarePose {
   geometry::RigidTransform camera_from_marker;
   geometry::Matrix6d information = geometry::Matrix6d::Zero();  // J^T J in 1/px^2, body twist (v mm, w rad)

@@ -1,5 +1,6 @@
 #include "tests/navigation/markers/rendered_marker.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -8,12 +9,19 @@ namespace arthronaut::markers {
 namespace {
 
 constexpr int kSub = 3;
+constexpr int kMoments = 16;  // of an exposure with motion
 constexpr float kWhite = 0.75F, kBlack = 0.05F, kTissue = 0.18F;
 constexpr double kMargin = 0.2;  // white beyond the square, as a share of its side
 
-float light_at(const std::vector<PlacedMarker>& markers, const Eigen::Vector3d& ray) {
-  for (const PlacedMarker& marker : markers) {
-    const geometry::RigidTransform marker_from_camera = marker.camera_from_marker.inverse();
+// Of one marker at one moment.
+struct Shown {
+  const PlacedMarker* marker;
+  geometry::RigidTransform marker_from_camera;
+};
+
+float light_at(const std::vector<Shown>& shown, const Eigen::Vector3d& ray) {
+  for (const auto& [shown_marker, marker_from_camera] : shown) {
+    const PlacedMarker& marker = *shown_marker;
     const Eigen::Vector3d direction = marker_from_camera.rotate(ray);
     const double along = -marker_from_camera.translation_mm.z() / direction.z();
     if (!(along > 0) || direction.z() >= 0) continue;  // behind, or its back
@@ -65,6 +73,18 @@ RenderedPicture::RenderedPicture(const camera::CameraModel& camera, const std::v
       return (ray * (center.norm() / ray.norm()) - center).norm() < 1.2 * marker.size_mm;
     });
   };
+  const bool is_moving = std::any_of(markers.begin(), markers.end(),
+                                     [](const PlacedMarker& marker) { return !marker.velocity.isZero(); });
+  const int moments = is_moving ? kMoments : 1;
+  std::vector<std::vector<Shown>> shown(moments);
+  for (int k = 0; k < moments; ++k) {
+    const double t = (k + 0.5) / moments - 0.5;
+    for (const PlacedMarker& marker : markers) {
+      const auto there =
+          marker.camera_from_marker * geometry::exp(t * marker.velocity + 0.5 * t * t * marker.change);
+      shown[k].push_back({&marker, there.inverse()});
+    }
+  }
   std::vector<float> light(static_cast<std::size_t>(width_) * height_, 0.0F);
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
@@ -76,7 +96,8 @@ RenderedPicture::RenderedPicture(const camera::CameraModel& camera, const std::v
       for (int k = 0; k < kSub * kSub; ++k) {
         const Eigen::Vector2d pixel(x + (k % kSub + 0.5) / kSub - 0.5, y + (k / kSub + 0.5) / kSub - 0.5);
         const auto ray = camera.ray(pixel);
-        if (ray) sum += light_at(markers, *ray);
+        for (int moment = 0; ray && moment < moments; ++moment)
+          sum += light_at(shown[moment], *ray) / moments;
       }
       light[y * width_ + x] = sum / (kSub * kSub);
     }
@@ -95,6 +116,27 @@ void RenderedPicture::cover(int left, int top, int right, int bottom, std::uint8
   for (int y = std::max(0, top); y < std::min(height_, bottom); ++y) {
     for (int x = std::max(0, left); x < std::min(width_, right); ++x) grey_[y * width_ + x] = grey;
   }
+}
+
+void RenderedPicture::shine(double x, double y, double sigma_px, double grey) {
+  for (int row = 0; row < height_; ++row) {
+    for (int column = 0; column < width_; ++column) {
+      const double away = std::hypot(column - x, row - y) / sigma_px;
+      std::uint8_t& pixel = grey_[row * width_ + column];
+      pixel = static_cast<std::uint8_t>(std::min(255.0, pixel + grey * std::exp(-0.5 * away * away)));
+    }
+  }
+}
+
+geometry::Vector6d motion_of(const camera::CameraModel& camera,
+                             const geometry::RigidTransform& camera_from_marker,
+                             const Eigen::Vector2d& motion_px) {
+  Eigen::Matrix<double, 2, 3> d_pixel;
+  (void)camera.project(camera_from_marker.translation_mm, d_pixel);
+  const Eigen::Matrix2d warp = (d_pixel * camera_from_marker.matrix()).leftCols<2>();
+  geometry::Vector6d twist = geometry::Vector6d::Zero();
+  twist.head<2>() = warp.inverse() * motion_px;
+  return twist;
 }
 
 camera::CameraModel small_scope() {

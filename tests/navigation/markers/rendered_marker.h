@@ -16,6 +16,9 @@ struct PlacedMarker {
   MarkerCode code;
   double size_mm = 4;
   geometry::RigidTransform camera_from_marker;
+  // While the shutter is open it stands at camera_from_marker * exp(t velocity + t^2 / 2 change), t from -0.5
+  // to 0.5. Body twists.
+  geometry::Vector6d velocity = geometry::Vector6d::Zero(), change = geometry::Vector6d::Zero();
 };
 
 struct PictureOptions {
@@ -25,12 +28,19 @@ struct PictureOptions {
   unsigned seed = 1;
 };
 
+// The body twist that moves a marker by this much in the picture, at its centre.
+[[nodiscard]] geometry::Vector6d motion_of(const camera::CameraModel& camera,
+                                           const geometry::RigidTransform& camera_from_marker,
+                                           const Eigen::Vector2d& motion_px);
+
 class RenderedPicture {
  public:
   RenderedPicture(const camera::CameraModel& camera, const std::vector<PlacedMarker>& markers,
                   const PictureOptions& options = {});
 
   [[nodiscard]] camera::GrayView view() const { return {grey_.data(), width_, height_, width_}; }
+  // Adds light of a Gaussian spot, in grey levels at its middle.
+  void shine(double x, double y, double sigma_px, double grey);
   // Paints over everything within these bounds (pixels).
   void cover(int left, int top, int right, int bottom, std::uint8_t grey);
 

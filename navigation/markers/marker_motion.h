@@ -1,0 +1,35 @@
+// How a marker moved over the last frames, and what that says of the next.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::markers {
+
+class MarkerMotion {
+ public:
+  // The marker stands here at this time; later than the calls before.
+  void follow(const geometry::RigidTransform& camera_from_marker, std::int64_t timestamp_ns);
+
+  // Where it should be; nullopt when it was never seen or too long ago.
+  [[nodiscard]] std::optional<geometry::RigidTransform> predicted(std::int64_t timestamp_ns) const;
+  // Its last sighting is so recent that it tells of the motion now.
+  [[nodiscard]] bool is_known_at(std::int64_t timestamp_ns) const;
+  // Body twist (v mm, w rad) from the last sighting to this pose; zero when not known.
+  [[nodiscard]] geometry::Vector6d twist_to(const geometry::RigidTransform& pose,
+                                            std::int64_t timestamp_ns) const;
+  // How that twist differs from the one before; nullopt when not known.
+  [[nodiscard]] std::optional<geometry::Vector6d> change_to(const geometry::RigidTransform& pose,
+                                                            std::int64_t timestamp_ns) const;
+
+ private:
+  struct Sighting {
+    geometry::RigidTransform camera_from_marker;
+    std::int64_t timestamp_ns = 0;
+  };
+  std::optional<Sighting> last_, before_;
+};
+
+}  // namespace arthronaut::markers
