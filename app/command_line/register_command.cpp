@@ -12,9 +12,11 @@ namespace arthronaut::command_line {
 namespace {
 
 struct RegisterArguments {
-  std::string bone, curves, output, space, unit;
+  std::string bone, curves, output, space, unit, cartilage;
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
   CLI::Option* target_option = nullptr;
+  Eigen::Vector3d entry = Eigen::Vector3d::Zero();
+  CLI::Option* entry_option = nullptr;
   bool no_marker_prior = false;
   std::uint64_t seed = 1;
 };
@@ -41,6 +43,10 @@ void register_bone(Context& context, const RegisterArguments& arguments) {
   options.seed = arguments.seed;
   options.use_marker_prior = !arguments.no_marker_prior;
   if (arguments.target_option->count() > 0) options.target_in_bone_mm = arguments.target;
+  if (arguments.entry_option->count() > 0) options.plan_entry_in_bone_mm = arguments.entry;
+  if (!arguments.cartilage.empty()) {
+    options.covered.emplace().points_mm = bones::read_mesh(arguments.cartilage, mesh_options).vertices_mm;
+  }
   const registration::PreparedBone bone = prepare(mesh, arguments.bone);
   const auto summary = registration::register_curves(bone, curves, options);
   registration::write_registration_file(arguments.output, summary);
@@ -49,6 +55,9 @@ void register_bone(Context& context, const RegisterArguments& arguments) {
     std::snprintf(line, sizeof line, "%d points, rms %.2f mm, %.0f %% on the bone, predicted error %.2f mm",
                   summary.point_count, summary.rms_mm, 100 * summary.inlier_fraction, summary.predicted_tre_mm);
     context.say(line);
+  }
+  if (arguments.output != "-") {
+    for (const std::string& assumption : summary.assumptions) context.say(assumption);
   }
   if (!summary.reliable) context.say_unreliable("the registration", summary.reasons);
 }
@@ -65,6 +74,12 @@ void add_register_command(CLI::App& app, Context& context) {
   arguments->target_option = add_vector_option(*command, "--target", arguments->target,
                                                "Point of the bone, mm, where the predicted error is given; default: "
                                                "the centroid of the points");
+  arguments->entry_option = add_vector_option(*command, "--plan-entry", arguments->entry,
+                                              "Entry of the planned tunnel, mm: the strokes are looked for within a "
+                                              "probe's reach of it first, then on the whole bone");
+  command->add_option("--cartilage", arguments->cartilage,
+                      "Mesh of what is covered by cartilage that the bone's mesh lacks, or has too much: the strokes within "
+                      "4 mm of its vertices lie off the bone by one thickness, which is solved, or they are left out");
   command->add_flag("--no-marker-prior", arguments->no_marker_prior,
                     "Don't assume that the world marker sits on the bone");
   command->add_option("--seed", arguments->seed, "Seed of the random search; the same seed gives the same result");

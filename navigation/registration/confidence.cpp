@@ -55,13 +55,49 @@ double misfit_of(const std::vector<double>& residuals_mm, double white_noise_mm)
   return std::sqrt(std::max(0.0, square - white_noise_mm * white_noise_mm));
 }
 
-std::vector<std::string> doubts(const RegistrationSummary& summary, const TouchedCurves& touched) {
-  constexpr double kMinLength_mm = 40, kMinInliers = 0.5, kMaxError_mm = 1.5, kMinRatio = 1.15;
+double shared_misfit_of(const std::vector<double>& residuals_mm, const TouchedPoints& points) {
+  constexpr double kSamePlace_mm = 1.5, kTouch_mm = 1.0;  // further off is lifted or no touch of this bone
+  constexpr int kMinPairs = 30, kUnrelated = 4;
+  double product_sum = 0, sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < residuals_mm.size(); ++i) {
+    if (std::abs(residuals_mm[i]) > kTouch_mm) continue;
+    for (std::size_t j = i + 1; j < residuals_mm.size(); ++j) {
+      // Stretches that follow one another still share errors of the tip.
+      if (points.stretches[j] < points.stretches[i] + kUnrelated || std::abs(residuals_mm[j]) > kTouch_mm) continue;
+      if ((points.positions_mm[i] - points.positions_mm[j]).squaredNorm() > kSamePlace_mm * kSamePlace_mm) continue;
+      product_sum += residuals_mm[i] * residuals_mm[j];
+      sum += residuals_mm[i] + residuals_mm[j];
+      ++count;
+    }
+  }
+  if (count < kMinPairs) return 0;
+  const double mean = sum / (2 * count);
+  return std::sqrt(std::max(0.0, product_sum / count - mean * mean));
+}
+
+// The whole miss, less what the slow errors that come with such white noise make of it.
+double excess_misfit_mm(const RegistrationSummary& summary, double white_noise_mm) {
+  return summary.misfit_mm - 0.75 * white_noise_mm + summary.shared_misfit_mm;
+}
+
+// Measured on five femora: the right bone gives an excess of up to 0.12, 0.38 and 0.5 mm at a white noise of 0.07, 0.15 and
+// 0.20 mm, another person's 0.62, 0.49 and mostly 0.5 mm and more.
+double max_excess_mm(double white_noise_mm) { return 0.22 + 1.2 * white_noise_mm; }
+
+// In independent measurements' log likelihood. The more the points miss the surface, the less their likelihood means.
+double lead_needed(double excess_misfit_mm) {
+  constexpr double kClean = 3, kCleanMisfit_mm = 0.30, kPerMm = 90;
+  return kClean + kPerMm * std::max(0.0, excess_misfit_mm - kCleanMisfit_mm);
+}
+
+std::vector<std::string> doubts(const RegistrationSummary& summary, const TouchedCurves& touched, double lead) {
+  constexpr double kMinLength_mm = 40, kMinInliers = 0.5, kMaxError_mm = 1.5;
   std::vector<std::string> reasons;
   if (touched.length_mm < kMinLength_mm) {
     reasons.push_back("too little was touched: draw at least 100 mm of strokes");
   }
-  if (misfits(summary.misfit_mm, touched.white_noise_mm)) {
+  if (misfits(summary, touched.white_noise_mm)) {
     char text[160];
     std::snprintf(text, sizeof text,
                   "the points miss the surface by %.2f mm, more than the tip's noise of %.2f mm explains: "
@@ -73,7 +109,7 @@ std::vector<std::string> doubts(const RegistrationSummary& summary, const Touche
   if (summary.predicted_tre_mm > kMaxError_mm) {
     reasons.push_back("the touched patch does not hold the bone fast: touch other faces of the notch too");
   }
-  if (summary.runner_up_ratio < kMinRatio) {
+  if (lead < lead_needed(excess_misfit_mm(summary, touched.white_noise_mm))) {
     reasons.push_back("two poses fit almost alike: touch other faces of the notch too");
   }
   return reasons;
@@ -131,9 +167,13 @@ double white_noise_of(const std::vector<strokes::OrientedPoint>& oriented) {
   return *middle;
 }
 
-// Measured on three femora: the right bone gives up to 0.14, 0.32 and 0.45 mm at a white noise of 0.07, 0.15 and 0.20 mm,
-// a wrong one 0.38 mm and more.
-bool misfits(double misfit_mm, double white_noise_mm) { return misfit_mm > 0.22 + 0.75 * white_noise_mm; }
+bool misfits(const RegistrationSummary& summary, double white_noise_mm) {
+  return excess_misfit_mm(summary, white_noise_mm) > max_excess_mm(white_noise_mm);
+}
+
+bool fits_amply(const RegistrationSummary& summary, double white_noise_mm) {
+  return excess_misfit_mm(summary, white_noise_mm) < 0.67 * max_excess_mm(white_noise_mm);
+}
 
 RegistrationSummary summarise(const PreparedBone::Data& bone, const PosePool& pool, const TouchedCurves& touched,
                               const RegistrationOptions& options) {
@@ -160,7 +200,10 @@ RegistrationSummary summarise(const PreparedBone::Data& bone, const PosePool& po
     summary.point_residuals_mm.push_back(is_known ? distance_mm : bone.surface.signed_distance_mm(p));
   }
   summary.misfit_mm = misfit_of(summary.point_residuals_mm, touched.white_noise_mm);
-  summary.reasons = doubts(summary, touched);
+  summary.shared_misfit_mm = shared_misfit_of(best.residuals_mm, touched.points);
+  constexpr double kClearLead = 1e3;
+  const double lead = pool.runner_up() ? lead_of(best.cost, pool.runner_up()->cost, touched.points) : kClearLead;
+  summary.reasons = doubts(summary, touched, lead);
   summary.reliable = summary.reasons.empty();
   return summary;
 }

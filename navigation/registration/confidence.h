@@ -21,8 +21,10 @@ struct TouchedCurves {
 [[nodiscard]] RegistrationSummary summarise(const PreparedBone::Data& bone, const PosePool& pool,
                                             const TouchedCurves& touched, const RegistrationOptions& options);
 
-// The misfit is more than slow errors of a good tracker make of this white noise.
-[[nodiscard]] bool misfits(double misfit_mm, double white_noise_mm);
+// The points miss the surface by more than a good tracker's errors make of this white noise: it is another bone's.
+[[nodiscard]] bool misfits(const RegistrationSummary& summary, double white_noise_mm);
+// By less than two thirds of that.
+[[nodiscard]] bool fits_amply(const RegistrationSummary& summary, double white_noise_mm);
 
 // Covariance of a twist of the bone frame about `pivot_mm` (bone frame). Robust ("sandwich"): the curvature of the cost on
 // both sides, and between them how much the pull of whole stretches of path scatters, which holds correlated errors and

@@ -171,15 +171,15 @@ void DistanceField::write_to(ByteWriter& bytes) const {
 
 DistanceField::Sample DistanceField::sample(const Eigen::Vector3d& point_mm) const {
   const Eigen::Vector3d cell = (point_mm - origin_mm_) / spacing_mm_;
-  const Eigen::Vector3d floor = cell.array().floor();
   // Written so that a number that is not finite ends here too.
-  if (!((floor.array() >= 0).all() && (floor.array() + 1 < size_.cast<double>().array()).all())) {
+  if (!(cell.x() >= 0 && cell.y() >= 0 && cell.z() >= 0 && cell.x() < size_.x() - 1 && cell.y() < size_.y() - 1 &&
+        cell.z() < size_.z() - 1)) {
     return {band_mm_, Eigen::Vector3d::Zero()};
   }
-  const Eigen::Vector3d f = cell - floor, g = Eigen::Vector3d::Ones() - f;
+  const int x = static_cast<int>(cell.x()), y = static_cast<int>(cell.y()), z = static_cast<int>(cell.z());
+  const Eigen::Vector3d f(cell.x() - x, cell.y() - y, cell.z() - z), g = Eigen::Vector3d::Ones() - f;
   const auto nx = static_cast<std::size_t>(size_.x()), nxy = nx * static_cast<std::size_t>(size_.y());
-  const std::int16_t* n =
-      &nodes_[index(static_cast<int>(floor.x()), static_cast<int>(floor.y()), static_cast<int>(floor.z()))];
+  const std::int16_t* n = &nodes_[index(x, y, z)];
   const double n000 = n[0], n100 = n[1], n010 = n[nx], n110 = n[nx + 1], n001 = n[nxy], n101 = n[nxy + 1],
                n011 = n[nxy + nx], n111 = n[nxy + nx + 1];
   const double x00 = g.x() * n000 + f.x() * n100, x10 = g.x() * n010 + f.x() * n110;

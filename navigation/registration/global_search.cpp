@@ -39,7 +39,7 @@ class Search {
 
   void add_pair(const CurvePair& pair) {
     add_ordered_pair(pair);
-    add_ordered_pair({pair.second, pair.first, pair.second_tangent, pair.first_tangent});
+    if (options_.both_ways) add_ordered_pair({pair.second, pair.first, pair.second_tangent, pair.first_tangent});
   }
 
   // Best first, near twins left out.
@@ -75,6 +75,7 @@ class Search {
     const Eigen::Vector3f curve_middle = 0.5f * (pair.first + pair.second);
     const std::vector<SurfaceSample>& samples = bone_.pairs.samples();
     for (const PairTable::Match& match : matches_) {
+      if (options_.reachable && !((*options_.reachable)[match.first] && (*options_.reachable)[match.second])) continue;
       const SurfaceSample &first = samples[match.first], &second = samples[match.second];
       const Eigen::Vector3f surface_e = (second.point_mm - first.point_mm).normalized();
       const Eigen::Vector3f normal = (first.normal - first.normal.dot(surface_e) * surface_e).normalized();

@@ -14,7 +14,9 @@ struct GlobalSearchOptions {
   std::uint64_t seed = 1;
   bool use_marker_prior = true;
   int curve_pair_count = 8;
+  bool both_ways = true;  // each pair of curve points with its ends exchanged too; else half the work, and half the finds
   std::size_t keep_count = 24;  // different hypotheses to hand on
+  const std::vector<bool>* reachable = nullptr;  // by sample of the pair table: others are left out
 };
 
 struct Hypothesis {

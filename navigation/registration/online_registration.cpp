@@ -10,6 +10,7 @@
 #include "navigation/registration/curve_registration.h"
 #include "navigation/registration/global_search.h"
 #include "navigation/registration/pose_pool.h"
+#include "navigation/registration/reachable_region.h"
 #include "navigation/strokes/stroke_tangents.h"
 
 namespace arthronaut::registration {
@@ -49,19 +50,11 @@ std::string formatted(const char* format, double value) {
 
 }  // namespace
 
-std::string_view to_text(OnlineState state) {
-  switch (state) {
-    case OnlineState::Collecting: return "collecting";
-    case OnlineState::Candidate: return "candidate";
-    case OnlineState::Confirmed: return "confirmed";
-    case OnlineState::Verified: return "verified";
-  }
-  return "unknown";
-}
-
 struct OnlineRegistration::State {
   State(std::shared_ptr<const PreparedBone> prepared, const OnlineOptions& online_options)
-      : bone(std::move(prepared)), options(online_options), pool(bone->data(), prior_of(online_options)) {}
+      : bone(std::move(prepared)), options(online_options), pool(bone->data(), prior_of(online_options)) {
+    if (options.target_in_bone_mm) reachable = find_reachable_samples(bone->data(), *options.target_in_bone_mm);
+  }
 
   static MarkerPrior prior_of(const OnlineOptions& options) {
     MarkerPrior prior;
@@ -81,20 +74,29 @@ struct OnlineRegistration::State {
   void judge_state();
   void advise();
   void describe_strokes();
-  [[nodiscard]] double length_in_use_mm() const;
+  [[nodiscard]] double length_in_use_mm() const {
+    double length_mm = 0;
+    for (const Stroke& stroke : strokes) length_mm += stroke.is_excluded ? 0.0 : stroke.length_mm;
+    return length_mm;
+  }
   [[nodiscard]] Eigen::Vector3d target_mm() const;
-  [[nodiscard]] int violation_count() const;
+  [[nodiscard]] int violation_count() const {
+    int count = control_violations;
+    for (const Touch& touch : result.touches) count += std::abs(touch.residual_mm) > options.max_touch_error_mm;
+    return count;
+  }
   [[nodiscard]] int agreement_count() const;
 
   std::shared_ptr<const PreparedBone> bone;
   OnlineOptions options;
+  std::vector<bool> reachable;  // samples of the bone, by the tunnel's entry; empty without one
   std::vector<Stroke> strokes;
   PosePool pool;
   TouchedPoints points;  // of the last solution
   double solved_length_mm = 0;
   double unmeasured_mm = 0;         // at most so much stroke was drawn since the strokes were last measured
   bool is_changed = false;          // strokes were excluded, undone or cleared since the last solution
-  bool is_other_side = false;       // as the last check, before a confirmation, told
+  SideVerdict side = SideVerdict::Own;  // as the last check, before a confirmation, told
   double side_checked_mm = 0;       // the stroke length then; 0 when there was none
   bool is_judged = true;            // false: touches came in since the last update
   std::vector<RigidTransform> solutions;  // marker_from_bone, each with new stroke, newest last
@@ -122,12 +124,6 @@ void OnlineRegistration::State::prepare_strokes() {
   }
 }
 
-double OnlineRegistration::State::length_in_use_mm() const {
-  double length_mm = 0;
-  for (const Stroke& stroke : strokes) length_mm += stroke.is_excluded ? 0.0 : stroke.length_mm;
-  return length_mm;
-}
-
 Eigen::Vector3d OnlineRegistration::State::target_mm() const {
   if (options.target_in_bone_mm) return *options.target_in_bone_mm;
   return pool.empty() ? Eigen::Vector3d::Zero() : pool.best().bone_from_marker * points.centroid_mm;
@@ -149,7 +145,10 @@ void OnlineRegistration::State::solve() {
     search.use_marker_prior = options.use_marker_prior;
     const bool is_found = result.state != OnlineState::Collecting;
     search.curve_pair_count = is_found ? kPairsAfterwards : kPairsWhileCollecting;
-    search.keep_count = is_found ? 6 : 40;
+    search.keep_count = is_found ? 4 : 40;
+    // Where the plan is first, then everywhere, in turn.
+    if (!is_found && !reachable.empty() && result.revision % 2 == 1) search.reachable = &reachable;
+    search.both_ways = !is_found;
     pool.add(search_globally(bone->data(), oriented, points, search), points, search.seed);
     pool.refine_all(points, kIterations);
   }
@@ -191,15 +190,15 @@ int OnlineRegistration::State::agreement_count() const {
 // Which side's bone it is shows late: with few strokes the wrong one fits too. So it is asked once when all else would
 // confirm, and again when half as much again was drawn.
 void OnlineRegistration::State::check_side() {
-  const bool is_due = side_checked_mm == 0 || result.length_mm > 1.5 * side_checked_mm || is_other_side;
+  const bool is_due = side_checked_mm == 0 || result.length_mm > 1.5 * side_checked_mm || side != SideVerdict::Own;
   if (is_due && agreement_count() >= kAgreeingSolutions && result.registration.reliable) {
-    is_other_side =
-        mirror_image_fits_better(bone->data(), curves_in_use(), registration_options(), result.registration);
+    const SearchOutcome found{.summary = result.registration, .cost = pool.best().cost};
+    side = judge_side(bone->data(), curves_in_use(), registration_options(), found);
     side_checked_mm = result.length_mm;
   }
-  if (!is_other_side || !result.registration.has_pose) return;
+  if (side == SideVerdict::Own || !result.registration.has_pose) return;
   result.registration.reliable = false;
-  result.registration.reasons.insert(result.registration.reasons.begin(), std::string(kOtherSideReason));
+  result.registration.reasons.insert(result.registration.reasons.begin(), std::string(reason_against(side)));
 }
 
 void OnlineRegistration::State::judge_touches() {
@@ -208,12 +207,6 @@ void OnlineRegistration::State::judge_touches() {
   for (Touch& touch : result.touches) {
     touch.residual_mm = bone->data().surface.signed_distance_mm(bone_from_marker * touch.point_in_marker_mm);
   }
-}
-
-int OnlineRegistration::State::violation_count() const {
-  int count = control_violations;
-  for (const Touch& touch : result.touches) count += std::abs(touch.residual_mm) > options.max_touch_error_mm;
-  return count;
 }
 
 void OnlineRegistration::State::judge_state() {
@@ -365,7 +358,7 @@ void OnlineRegistration::clear() {
   state_->strokes.clear();
   state_->solutions.clear();
   state_->pool.clear();
-  state_->is_other_side = false;
+  state_->side = SideVerdict::Own;
   state_->side_checked_mm = 0;
   state_->is_changed = true;
 }

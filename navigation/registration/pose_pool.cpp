@@ -11,7 +11,7 @@ using geometry::RigidTransform;
 
 constexpr std::size_t kCoarsePointCount = 120, kPolishPointCount = 400;
 constexpr std::size_t kPoolSize = 8;
-constexpr int kPolishIterations = 3;
+constexpr int kPolishIterations = 3, kIterationsToJudge = 2;
 
 DistanceFunction distance_in(const DistanceField& field) {
   return [&field](const Eigen::Vector3d& p) { return field.sample(p); };
@@ -31,6 +31,10 @@ DistanceFunction distance_to(const PreparedBone::Data& bone) {
 }
 
 }  // namespace
+
+double lead_of(double cost, double rival_cost, const TouchedPoints& points) {
+  return (rival_cost - cost) * points.weight_sum / kCorrelationLength_mm;
+}
 
 bool are_different(const RigidTransform& a, const RigidTransform& b, const Eigen::Vector3d& centroid_mm) {
   constexpr double kDistance_mm = 3.0, kAngle_deg = 5.0;
@@ -52,10 +56,20 @@ void PosePool::add(const std::vector<Hypothesis>& hypotheses, const TouchedPoint
 }
 
 void PosePool::refine_all(const TouchedPoints& points, int iterations) {
-  for (RefinedPose& pose : poses_) {
-    pose = refine(distance_in(bone_.field), points, pose.bone_from_marker, pose.model, prior_, iterations);
+  const int first_iterations = std::min(iterations, kIterationsToJudge);
+  for (const int part : {first_iterations, iterations - first_iterations}) {
+    if (part == 0) continue;
+    for (RefinedPose& pose : poses_) {
+      pose = refine(distance_in(bone_.field), points, pose.bone_from_marker, pose.model, prior_, part);
+    }
+    rank(points.centroid_mm, kPoolSize);
+    drop_hopeless(points);
   }
-  rank(points.centroid_mm, kPoolSize);
+}
+
+void PosePool::drop_hopeless(const TouchedPoints& points) {
+  constexpr double kHopeless = 25;
+  while (poses_.size() > 2 && lead_of(poses_.front().cost, poses_.back().cost, points) > kHopeless) poses_.pop_back();
 }
 
 void PosePool::polish(const TouchedPoints& points) {

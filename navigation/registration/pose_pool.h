@@ -11,6 +11,9 @@
 
 namespace arthronaut::registration {
 
+// How much better one cost explains the points than another, in independent measurements' log likelihood.
+[[nodiscard]] double lead_of(double cost, double rival_cost, const TouchedPoints& points);
+
 // Poses that put the touched area elsewhere (by more than 3 mm or 5 degrees), not refinements of one another.
 [[nodiscard]] bool are_different(const geometry::RigidTransform& a, const geometry::RigidTransform& b,
                                  const Eigen::Vector3d& centroid_mm);
@@ -21,10 +24,13 @@ class PosePool {
 
   // Refines hypotheses roughly on few points, and lets the best into the pool.
   void add(const std::vector<Hypothesis>& hypotheses, const TouchedPoints& points, std::uint64_t seed);
-  // Refines all poses of the pool on the points, ranks them, and drops twins and all but the best few.
+  // Refines all poses of the pool on the points, ranks them, and drops twins and all but the best few. Of those that have
+  // fallen behind beyond hope only the foremost is kept, as the runner-up.
   void refine_all(const TouchedPoints& points, int iterations);
   // Fits the best against the mesh itself, which takes out the grid's rounding.
   void polish(const TouchedPoints& points);
+  // Puts another pose in the best one's place.
+  void replace_best(RefinedPose pose) { poses_.front() = std::move(pose); }
   void clear() { poses_.clear(); }
 
   [[nodiscard]] bool empty() const { return poses_.empty(); }
@@ -34,6 +40,7 @@ class PosePool {
 
  private:
   void rank(const Eigen::Vector3d& centroid_mm, std::size_t max_count);
+  void drop_hopeless(const TouchedPoints& points);
 
   const PreparedBone::Data& bone_;
   MarkerPrior prior_;

@@ -19,9 +19,14 @@ struct NormalEquations {
 
   void add(const Eigen::Vector3d& arm_mm, const Eigen::Vector3d& gradient, double residual_mm, double weight) {
     Vector6d row;
-    row << gradient, arm_mm.cross(gradient);
-    matrix.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
-    right -= weight * residual_mm * row;
+    row.head<3>() = gradient;
+    row.tail<3>() = arm_mm.cross(gradient);
+    // By hand, since these few products are most of the time of a fit.
+    for (int j = 0; j < 6; ++j) {
+      const double weighted = weight * row[j];
+      for (int i = j; i < 6; ++i) matrix(i, j) += weighted * row[i];
+      right[j] -= weighted * residual_mm;
+    }
   }
 
   // Slightly damped, so that a motion which nothing holds stays where it is; steps are kept within reason.
@@ -164,13 +169,14 @@ RefinedPose refine(const DistanceFunction& distance, const TouchedPoints& points
     for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
       const Eigen::Vector3d p = rotation * points.positions_mm[i] + refined.bone_from_marker.translation_mm;
       const DistanceField::Sample sample = distance(p);
-      refined.residuals_mm[i] = sample.distance_mm;
-      const Explanation explanation = explain(sample.distance_mm, refined.model);
+      const double residual_mm = sample.distance_mm - points.offset_mm(i);
+      refined.residuals_mm[i] = residual_mm;
+      const Explanation explanation = explain(residual_mm, refined.model);
       cost += points.weights[i] * explanation.negative_log_density;
       const double contact = explanation.contact * contact_information, soft = explanation.soft * soft_information;
       const double weight = contact + soft;
       if (weight < 1e-9) continue;
-      equations.add(p - pivot, sample.gradient, sample.distance_mm - kSoftHeight_mm * soft / weight,
+      equations.add(p - pivot, sample.gradient, residual_mm - kSoftHeight_mm * soft / weight,
                     points.weights[i] * weight);
     }
     if (prior.use) {

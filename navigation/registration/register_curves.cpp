@@ -3,10 +3,12 @@
 #include <random>
 
 #include "navigation/registration/confidence.h"
+#include "navigation/registration/covered_region.h"
 #include "navigation/registration/curve_checks.h"
 #include "navigation/registration/curve_registration.h"
 #include "navigation/registration/global_search.h"
 #include "navigation/registration/pose_pool.h"
+#include "navigation/registration/reachable_region.h"
 #include "navigation/registration/registration.h"
 #include "navigation/strokes/stroke_tangents.h"
 
@@ -14,14 +16,14 @@ namespace arthronaut::registration {
 
 namespace {
 
-constexpr int kMaxRounds = 7, kMirrorRounds = 2;
+constexpr int kMaxRounds = 7;
 
 // How much better the best pose explains the points than the best different one, in units of independent measurements.
-double lead_of(const PosePool& pool, const TouchedPoints& points) {
+double lead_of_best(const PosePool& pool, const TouchedPoints& points) {
   if (pool.empty()) return 0;
   constexpr double kNoRival = 100;
   if (pool.runner_up() == nullptr) return kNoRival;
-  return (pool.runner_up()->cost - pool.best().cost) * points.weight_sum / kCorrelationLength_mm;
+  return lead_of(pool.best().cost, pool.runner_up()->cost, points);
 }
 
 // Starts around a pose, some millimetres and degrees away: a rival that lies near it is easily missed by the search, and
@@ -50,6 +52,28 @@ std::vector<Hypothesis> neighbours_of(const geometry::RigidTransform& bone_from_
   return neighbours;
 }
 
+std::string describe_reach(const PreparedBone::Data& bone, const std::vector<bool>& reachable,
+                           const Eigen::Vector3d& touched_mm) {
+  constexpr float kNear_mm = 12;
+  for (std::size_t i = 0; i < reachable.size(); ++i) {
+    const float away_mm = (bone.pairs.samples()[i].point_mm - touched_mm.cast<float>()).norm();
+    if (reachable[i] && away_mm < kNear_mm) return "the strokes lie within reach of the planned entry";
+  }
+  return "the strokes lie out of reach of the planned entry: the whole bone was searched";
+}
+
+// What the thickness is uncertain by, the pose is too.
+void add_cover(const CoverFit& cover, const Eigen::Vector3d& target_mm, RegistrationSummary& summary) {
+  summary.assumptions.push_back(cover.assumption);
+  if (!cover.has_bare) {
+    summary.reliable = false;
+    summary.reasons.push_back("all strokes lie on the covered region: touch what is bare too");
+  }
+  if (!cover.is_solved) return;
+  summary.covariance += cover.sigma_mm * cover.sigma_mm * cover.drift_per_mm * cover.drift_per_mm.transpose();
+  summary.predicted_tre_mm = predicted_error_mm(summary, target_mm);
+}
+
 // The curves as they would be had the bone been its own mirror image. The marker's face stays its face.
 strokes::Curves mirrored(strokes::Curves curves) {
   for (strokes::CurvePoint& point : curves) point.position_mm.x() = -point.position_mm.x();
@@ -58,26 +82,33 @@ strokes::Curves mirrored(strokes::Curves curves) {
 
 }  // namespace
 
-RegistrationSummary search_and_summarise(const PreparedBone::Data& bone, const strokes::Curves& curves,
-                                         const RegistrationOptions& options, int max_rounds) {
+SearchOutcome search_and_summarise(const PreparedBone::Data& bone, const strokes::Curves& curves,
+                                   const RegistrationOptions& options, int max_rounds) {
   constexpr std::size_t kPointCount = 800;
   constexpr int kPairsEachRound = 8, kIterationsEachRound = 5, kFinalIterations = 12;
   constexpr std::size_t kHypothesesEachRound = 24;
   // Found beyond doubt: no need to search on.
   constexpr double kClearLead = 25, kClearLeadLater = 12;
 
-  const TouchedPoints points = choose_points(curves, kPointCount);
+  TouchedPoints points = choose_points(curves, kPointCount);
   const std::vector<strokes::OrientedPoint> oriented = strokes::oriented_points(curves);
   MarkerPrior prior;
   prior.use = options.use_marker_prior;
   PosePool pool(bone, prior);
+  std::vector<bool> reachable;
+  if (options.plan_entry_in_bone_mm) reachable = find_reachable_samples(bone, *options.plan_entry_in_bone_mm);
   for (int round = 0; round < max_rounds; ++round) {
     const std::uint64_t seed = options.seed * kMaxRounds + static_cast<std::uint64_t>(round);
+    const bool is_near_plan = round == 0 && options.plan_entry_in_bone_mm;
     pool.add(search_globally(bone, oriented, points,
-                             {seed, options.use_marker_prior, kPairsEachRound, kHypothesesEachRound}),
+                             {.seed = seed,
+                              .use_marker_prior = options.use_marker_prior,
+                              .curve_pair_count = kPairsEachRound,
+                              .keep_count = kHypothesesEachRound,
+                              .reachable = is_near_plan ? &reachable : nullptr}),
              points, seed);
     pool.refine_all(points, kIterationsEachRound);
-    if (lead_of(pool, points) > (round == 0 ? kClearLead : kClearLeadLater)) break;
+    if (lead_of_best(pool, points) > (round == 0 ? kClearLead : kClearLeadLater)) break;
   }
   if (!pool.empty()) {
     const std::uint64_t seed = options.seed * kMaxRounds;
@@ -85,13 +116,53 @@ RegistrationSummary search_and_summarise(const PreparedBone::Data& bone, const s
     pool.refine_all(points, kFinalIterations);
     pool.polish(points);
   }
-  return summarise(bone, pool, {curves, points, strokes::stroke_length_mm(curves), white_noise_of(oriented)}, options);
+  CoverFit cover;
+  if (options.covered && !pool.empty()) {
+    cover = fit_cover(bone, points, pool.best(), *options.covered, prior);
+    points = cover.points;
+    pool.replace_best(cover.pose);
+  }
+  const double white_noise_mm = white_noise_of(oriented);
+  SearchOutcome outcome;
+  outcome.summary = summarise(bone, pool, {curves, points, strokes::stroke_length_mm(curves), white_noise_mm}, options);
+  if (options.covered && outcome.summary.has_pose) {
+    const Eigen::Vector3d centroid_mm = pool.best().bone_from_marker * points.centroid_mm;
+    add_cover(cover, options.target_in_bone_mm.value_or(centroid_mm), outcome.summary);
+  }
+  if (options.plan_entry_in_bone_mm && !pool.empty()) {
+    outcome.summary.assumptions.push_back(
+        describe_reach(bone, reachable, pool.best().bone_from_marker * points.centroid_mm));
+  }
+  outcome.fits = outcome.summary.has_pose && !misfits(outcome.summary, white_noise_mm);
+  if (!pool.empty()) outcome.cost = pool.best().cost;
+  outcome.measurements = points.weight_sum / kCorrelationLength_mm;
+  constexpr double kManyMeasurements = 60;
+  outcome.fits_amply = outcome.summary.has_pose && fits_amply(outcome.summary, white_noise_mm) &&
+                       outcome.measurements > kManyMeasurements;
+  return outcome;
 }
 
-bool mirror_image_fits_better(const PreparedBone::Data& bone, const strokes::Curves& curves,
-                              const RegistrationOptions& options, const RegistrationSummary& found) {
-  const RegistrationSummary image = search_and_summarise(bone, mirrored(curves), options, kMirrorRounds);
-  return image.reliable && image.misfit_mm < found.misfit_mm;
+std::string_view reason_against(SideVerdict verdict) {
+  switch (verdict) {
+    case SideVerdict::Own: return "";
+    case SideVerdict::Other: return "the curves fit the mirror image of this bone: it is the bone of the other side";
+    case SideVerdict::Unclear: break;
+  }
+  return "the mirror image of this bone fits almost alike: is it the right side? Touch other faces of the notch too";
+}
+
+SideVerdict judge_side(const PreparedBone::Data& bone, const strokes::Curves& curves,
+                       const RegistrationOptions& options, const SearchOutcome& found) {
+  // A few strokes can't give a clear lead: there, less of one is telling enough. The own side has to lead by more, since a
+  // bone that is much like its mirror image fits the wrong way round by chance.
+  constexpr double kOtherLead = 3, kOtherLeadOfEach = 0.05, kOwnLead = 6, kOwnLeadOfEach = 0.07;
+  const int rounds = found.summary.reliable ? 2 : 3;  // to name the right reason is worth a little more
+  const SearchOutcome image = search_and_summarise(bone, mirrored(curves), options, rounds);
+  const double image_lead = (found.cost - image.cost) * image.measurements;
+  const double other_lead = std::min(kOtherLead, kOtherLeadOfEach * image.measurements);
+  if (image.fits && image_lead > other_lead) return SideVerdict::Other;
+  const double own_lead = std::min(kOwnLead, kOwnLeadOfEach * image.measurements);
+  return image_lead > -own_lead ? SideVerdict::Unclear : SideVerdict::Own;
 }
 
 RegistrationSummary register_curves(const PreparedBone& prepared, const strokes::Curves& curves,
@@ -102,11 +173,14 @@ RegistrationSummary register_curves(const PreparedBone& prepared, const strokes:
   summary.reasons = objections_to(curves, bone.bounds.size_mm().norm());
   if (!summary.reasons.empty()) return summary;
 
-  summary = search_and_summarise(bone, curves, options, kMaxRounds);
-  if (!summary.reliable && mirror_image_fits_better(bone, curves, options, summary)) {
-    summary.reasons.insert(summary.reasons.begin(), std::string(kOtherSideReason));
+  SearchOutcome found = search_and_summarise(bone, curves, options, kMaxRounds);
+  if (!found.summary.has_pose || (found.summary.reliable && found.fits_amply)) return found.summary;
+  const SideVerdict side = judge_side(bone, curves, options, found);
+  if (side == SideVerdict::Other || (side == SideVerdict::Unclear && found.summary.reliable)) {
+    found.summary.reliable = false;
+    found.summary.reasons.insert(found.summary.reasons.begin(), std::string(reason_against(side)));
   }
-  return summary;
+  return found.summary;
 }
 
 double predicted_error_mm(const RegistrationSummary& registration, const Eigen::Vector3d& point_in_bone_mm) {

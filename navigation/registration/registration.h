@@ -36,16 +36,27 @@ class PreparedBone {
   std::unique_ptr<const Data> data_;
 };
 
+// The part of the bone that cartilage covers where the mesh is bare bone, or the other way round.
+struct CoveredRegion {
+  std::vector<Eigen::Vector3d> points_mm;  // bone frame; the region is what lies within reach of one of them
+  double reach_mm = 4;
+};
+
 struct RegistrationOptions {
   std::uint64_t seed = 1;
   bool use_marker_prior = true;                      // the world marker sits on the bone
   std::optional<Eigen::Vector3d> target_in_bone_mm;  // where predicted_tre_mm holds; else the centroid of the points
+  // The planned tunnel's entry: strokes are looked for within reach of it first, and everywhere when they don't lie there.
+  std::optional<Eigen::Vector3d> plan_entry_in_bone_mm = std::nullopt;
+  // Its thickness is solved, or it is left out when the strokes don't hold it; the assumptions say which.
+  std::optional<CoveredRegion> covered = std::nullopt;
 };
 
 struct RegistrationSummary {
   bool has_pose = false;  // false: nothing was found, the pose below is meaningless
   bool reliable = false;
   std::vector<std::string> reasons = {"no registration was run"};  // why it is not reliable; empty when it is
+  std::vector<std::string> assumptions;  // what was taken for granted or left out, in plain words
   geometry::RigidTransform marker_from_bone;
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // of the body twist of marker_from_bone, correlated errors in
   double rms_mm = 0;            // of the inliers
@@ -58,6 +69,9 @@ struct RegistrationSummary {
   // What the residuals hold beyond the tip's own white noise, root mean square: slow errors of tracking, and above all
   // a bone that is another one than the mesh's. Judged inside the bone, where lifting and soft tissue don't reach.
   double misfit_mm = 0;
+  // What the residuals of different stretches of stroke share where they cross: the shape's own miss, since errors of the
+  // tip differ from stretch to stretch.
+  double shared_misfit_mm = 0;
 };
 
 // Deterministic for a seed. Never throws on poor data: read the summary.

@@ -14,16 +14,20 @@ constexpr int kVersion = 1;
 RegistrationSummary read_registration_file(const std::filesystem::path& file) {
   const files::JsonObject document = files::read_json(file, kFormat, kVersion);
   RegistrationSummary summary;
-  summary.has_pose = true;
-  summary.marker_from_bone = document.rigid_transform("marker_from_bone");
+  // Other programs' files have a pose and don't say so.
+  summary.has_pose = !document.has("has_pose") || document.boolean("has_pose");
+  if (summary.has_pose) summary.marker_from_bone = document.rigid_transform("marker_from_bone");
   summary.rms_mm = document.number("rms_mm");
   summary.inlier_fraction = document.number("inlier_fraction");
   summary.point_count = static_cast<int>(document.integer("point_count"));
   summary.reliable = document.boolean("reliable");
   summary.reasons = document.texts("reasons");
+  if (summary.reliable && !summary.has_pose) document.fail("reliable", "must be false where no pose was found");
   summary.predicted_tre_mm = document.number("predicted_tre_mm");
   if (document.has("runner_up_ratio")) summary.runner_up_ratio = document.number("runner_up_ratio");
   if (document.has("misfit_mm")) summary.misfit_mm = document.number("misfit_mm");
+  if (document.has("shared_misfit_mm")) summary.shared_misfit_mm = document.number("shared_misfit_mm");
+  if (document.has("assumptions")) summary.assumptions = document.texts("assumptions");
   if (document.has("covariance")) {
     const std::vector<double> entries = document.numbers("covariance");
     if (entries.size() != 36) document.fail("covariance", "must hold 36 numbers");
@@ -36,6 +40,7 @@ void write_registration_file(const std::filesystem::path& file, const Registrati
   nlohmann::ordered_json document;
   document["format"] = kFormat;
   document["version"] = kVersion;
+  document["has_pose"] = registration.has_pose;  // the format wants a pose in any case: without one it is the identity
   document["marker_from_bone"] = files::to_json(registration.marker_from_bone);
   document["rms_mm"] = registration.rms_mm;
   document["inlier_fraction"] = registration.inlier_fraction;
@@ -45,6 +50,8 @@ void write_registration_file(const std::filesystem::path& file, const Registrati
   document["predicted_tre_mm"] = registration.predicted_tre_mm;
   document["runner_up_ratio"] = registration.runner_up_ratio;
   document["misfit_mm"] = registration.misfit_mm;
+  document["shared_misfit_mm"] = registration.shared_misfit_mm;
+  document["assumptions"] = registration.assumptions;
   std::vector<double> entries;
   for (int i = 0; i < 36; ++i) entries.push_back(registration.covariance(i / 6, i % 6));
   document["covariance"] = entries;

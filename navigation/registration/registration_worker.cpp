@@ -9,6 +9,16 @@
 
 namespace arthronaut::registration {
 
+std::string_view to_text(OnlineState state) {
+  switch (state) {
+    case OnlineState::Collecting: return "collecting";
+    case OnlineState::Candidate: return "candidate";
+    case OnlineState::Confirmed: return "confirmed";
+    case OnlineState::Verified: return "verified";
+  }
+  return "unknown";
+}
+
 // One thread owns the core. What comes in waits in a list under a lock that nobody holds for longer than it takes to
 // append to it or to swap it; what comes out is one pointer, exchanged whole.
 struct RegistrationWorker::State {

@@ -64,6 +64,7 @@ TouchedPoints draw_points(const TouchedPoints& points, std::size_t count, std::u
   for (std::size_t i = 0; i < count; ++i) {
     std::swap(order[i], order[i + random() % (order.size() - i)]);
     drawn.positions_mm.push_back(points.positions_mm[order[i]]);
+    if (!points.offsets_mm.empty()) drawn.offsets_mm.push_back(points.offsets_mm[order[i]]);
   }
   weigh(drawn);
   return drawn;

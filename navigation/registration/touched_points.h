@@ -18,6 +18,9 @@ struct TouchedPoints {
   // Consecutive points of about 12 mm of path share a stretch: errors hang together within it, little beyond. Numbered
   // from 0 by point; empty in a random draw.
   std::vector<int> stretches;
+  std::vector<double> offsets_mm;  // by point: how far off the mesh the touched surface lies; empty: nowhere
+
+  [[nodiscard]] double offset_mm(std::size_t point) const { return offsets_mm.empty() ? 0.0 : offsets_mm[point]; }
 };
 
 [[nodiscard]] TouchedPoints choose_points(const strokes::Curves& curves, std::size_t max_count);

@@ -79,6 +79,48 @@ TEST(RealRegistration, AnotherPersonsFemurIsRefused) {
   }
 }
 
+// Everything that cannot hold a real femur is refused, each with its own reason.
+TEST(RealRegistration, RefusesWithTheRightReason) {
+  ARTHRONAUT_REQUIRE_DATA(folder, "bones/mri-femora");
+  const auto mesh = bones::read_mesh(folder / "1_RIGHT_femur_Nov_02_2021.vtk");
+  geometry::TriangleMesh image = mesh;
+  for (Eigen::Vector3d& vertex : image.vertices_mm) vertex.x() = -vertex.x();
+  for (auto& triangle : image.triangles) std::swap(triangle[1], triangle[2]);
+  const registration::PreparedBone bone(mesh), mirrored(image),
+      other(bones::read_mesh(folder / "3_RIGHT_femur_Nov_02_2021.vtk"));
+  const geometry::Surface surface(mesh);
+  const auto wall = experiments::find_lateral_notch_wall(mesh, surface, bones::Side::Right);
+  ASSERT_TRUE(wall.has_value());
+  const auto trial_of = [&](double radius_mm) {
+    auto setting = experiments::setting_of(experiments::TrialNoise::Dry);
+    setting.area_radius_mm = radius_mm;
+    return experiments::make_trial(mesh, surface, *wall, setting, 1);
+  };
+  const auto trial = trial_of(16), patch = trial_of(3);
+  const auto expect = [](const registration::PreparedBone& on, const strokes::Curves& curves, const std::string& words) {
+    const auto found = registration::register_curves(on, curves);
+    EXPECT_FALSE(found.reliable) << words;
+    std::string all;
+    for (const std::string& reason : found.reasons) all += reason + "; ";
+    EXPECT_NE(all.find(words), std::string::npos) << "wanted: " << words << "; said: " << all;
+  };
+  expect(mirrored, trial.curves, "other side");
+  expect(other, trial.curves, "this patient's bone");
+  expect(bone, patch.curves, "patch");
+  expect(bone, {trial.curves.begin(), trial.curves.begin() + 10}, "only 10 points");
+  strokes::Curves line, ball = patch.curves, metres = trial.curves, equal = trial.curves;
+  const Eigen::Vector3d along = (trial.curves[40].position_mm - trial.curves[0].position_mm).normalized();
+  for (int i = 0; i < 200; ++i) line.push_back({0, i / 60.0, trial.curves[0].position_mm + 0.1 * i * along});
+  const Eigen::Vector3d center = trial.marker_from_bone * (*wall - 15 * surface.closest_point(*wall).normal);
+  for (auto& point : ball) point.position_mm = center + 15 * (point.position_mm - center).normalized();
+  for (auto& point : metres) point.position_mm *= 1e-3;
+  for (auto& point : equal) point.position_mm = {3, 4, 5};
+  expect(bone, line, "straight line");
+  expect(bone, ball, "patch");
+  expect(bone, metres, "metres");
+  expect(bone, equal, "the same");
+}
+
 // True poses and the true registration give the numbers that the renderer wrote, in every frame.
 TEST(RealGuidance, TruePosesGiveTheTrueNumbers) {
   ARTHRONAUT_REQUIRE_DATA(set, "arthroscopy/guide_wet");

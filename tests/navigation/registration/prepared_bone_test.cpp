@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "navigation/registration/prepared_bone.h"
+#include "navigation/registration/reachable_region.h"
 #include "planning/files/atomic_file.h"
 #include "tests/navigation/registration/phantom_bone.h"
 
@@ -74,6 +76,29 @@ TEST_F(PreparedBoneCache, DoesWithoutAFileThatCannotBeWritten) {
   std::ofstream(folder_ / "cache") << "a file";
   const PreparedBone bone(octahedron(), file_);
   EXPECT_NEAR(bone.data().field.sample({0, 0, 15.5}).distance_mm, 0.5, 0.05);
+}
+
+// What lies at the entry and looks the same way can be touched; what is far away, or not there, cannot.
+TEST(ReachableRegion, IsNearTheEntryAndOpen) {
+  const PhantomBone& bone = phantom_bone();
+  const auto reachable = find_reachable_samples(bone.prepared->data(), bone.target_mm);
+  const auto& samples = bone.prepared->data().pairs.samples();
+  ASSERT_EQ(reachable.size(), samples.size());
+  const Eigen::Vector3f normal = bone.surface->closest_point(bone.target_mm).normal.cast<float>();
+  int near_count = 0, open_count = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const float away_mm = (samples[i].point_mm - bone.target_mm.cast<float>()).norm();
+    if (away_mm > 41) {
+      EXPECT_FALSE(reachable[i]);
+    }
+    if (away_mm > 8 || samples[i].normal.dot(normal) < 0.7f) continue;
+    ++near_count;
+    open_count += reachable[i];
+  }
+  EXPECT_GT(near_count, 5);
+  EXPECT_GT(open_count, 0.9 * near_count);
+  const auto nowhere = find_reachable_samples(bone.prepared->data(), bone.target_mm + Eigen::Vector3d(500, 0, 0));
+  EXPECT_EQ(std::count(nowhere.begin(), nowhere.end(), true), 0);
 }
 
 }  // namespace arthronaut::registration

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 
+#include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "tests/navigation/registration/phantom_bone.h"
 
@@ -179,6 +181,60 @@ TEST(RegisterCurves, PredictedErrorGrowsAwayFromTheTouchedArea) {
   EXPECT_GT(predicted_error_mm(found, bone.target_mm + Eigen::Vector3d(0, 0, 60)), found.predicted_tre_mm);
 }
 
+// Cartilage of 2 mm on everything beyond 9 mm of the notch's middle, on a mesh of bare bone: told of the region, the
+// thickness comes out within 0.3 mm, and the error at the target stays that of bare bone.
+TEST(RegisterCurves, SolvesTheThicknessOfCartilage) {
+  constexpr double kThickness_mm = 2, kBare_mm = 9;
+  const PhantomBone& bone = phantom_bone();
+  auto trial = bone.trial(TrialNoise::Dry, 2);
+  for (auto& point : trial.curves) {
+    const Eigen::Vector3d p = trial.marker_from_bone.inverse() * point.position_mm;
+    if ((p - bone.target_mm).norm() < kBare_mm) continue;
+    point.position_mm = trial.marker_from_bone * (p + kThickness_mm * bone.surface->closest_point(p).normal);
+  }
+  CoveredRegion region;
+  for (const Eigen::Vector3d& vertex : bone.mesh.vertices_mm) {
+    const double away_mm = (vertex - bone.target_mm).norm();
+    if (away_mm > kBare_mm + region.reach_mm && away_mm < 30) region.points_mm.push_back(vertex);
+  }
+  RegistrationOptions options{1, true, bone.target_mm};
+  options.covered = region;
+  const auto found = register_curves(*bone.prepared, trial.curves, options);
+  ASSERT_EQ(found.assumptions.size(), 1u);
+  double thickness_mm = 0;
+  ASSERT_EQ(std::sscanf(found.assumptions[0].c_str(), "the covered region lies %lf", &thickness_mm), 1)
+      << found.assumptions[0];
+  EXPECT_NEAR(thickness_mm, kThickness_mm, 0.3);
+  EXPECT_LT(target_error_mm(found, trial, bone.target_mm), 0.5);
+}
+
+// Where all strokes lie on the covered region, nothing holds its thickness, and that is said.
+TEST(RegisterCurves, DoubtsStrokesOnCartilageAlone) {
+  const PhantomBone& bone = phantom_bone();
+  RegistrationOptions options{1, true, bone.target_mm};
+  options.covered.emplace().points_mm = bone.mesh.vertices_mm;
+  const auto found = register_curves(*bone.prepared, bone.trial(TrialNoise::Dry, 3).curves, options);
+  EXPECT_FALSE(found.reliable);
+  EXPECT_THAT(found.reasons, Contains(HasSubstr("covered region")));
+  EXPECT_THAT(found.assumptions, Contains(HasSubstr("taken to lie on the mesh")));
+}
+
+// A plan whose entry is where the strokes are helps; one on the far side of the bone does no harm, and is said.
+TEST(RegisterCurves, LooksNearThePlanFirst) {
+  const PhantomBone& bone = phantom_bone();
+  const auto trial = bone.trial(TrialNoise::ExVivo, 4);
+  RegistrationOptions options{1, false, bone.target_mm};
+  const geometry::Bounds bounds = geometry::bounds_of(bone.mesh);
+  const Eigen::Vector3d far =
+      bone.surface->closest_point({bounds.center_mm().x(), bounds.min_mm.y(), bounds.max_mm.z() - 5}).point_mm;
+  for (const auto& [entry, words] : {std::pair{bone.target_mm, "within reach"}, std::pair{far, "out of reach"}}) {
+    options.plan_entry_in_bone_mm = entry;
+    const auto found = register_curves(*bone.prepared, trial.curves, options);
+    EXPECT_LT(target_error_mm(found, trial, bone.target_mm), 1.0) << words;
+    EXPECT_THAT(found.assumptions, Contains(HasSubstr(words)));
+  }
+}
+
 // registration.json keeps all that guidance needs.
 TEST(RegistrationFile, RoundTrip) {
   const PhantomBone& bone = phantom_bone();
@@ -194,6 +250,25 @@ TEST(RegistrationFile, RoundTrip) {
   EXPECT_EQ(read.point_count, found.point_count);
   EXPECT_LT((read.marker_from_bone.translation_mm - found.marker_from_bone.translation_mm).norm(), 1e-9);
   EXPECT_NEAR(predicted_error_mm(read, bone.target_mm), found.predicted_tre_mm, 1e-6);
+}
+
+// That nothing was found survives the file, and the file still has all that the format promises.
+TEST(RegistrationFile, SaysThatNoPoseWasFound) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "registration_none.json";
+  write_registration_file(file, register_curves(*phantom_bone().prepared, {}));
+  const auto read = read_registration_file(file);
+  EXPECT_FALSE(read.has_pose);
+  EXPECT_FALSE(read.reliable);
+  EXPECT_THAT(read.reasons, Contains(HasSubstr("only 0 points")));
+  EXPECT_THAT(files::read_text(file), HasSubstr("marker_from_bone"));
+}
+
+// A file that claims to be sure of no pose is refused.
+TEST(RegistrationFile, RefusesToBeSureOfNoPose) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "registration_sure.json";
+  std::ofstream(file) << R"({"format": "arthronaut.registration", "version": 1, "has_pose": false, "rms_mm": 0,
+    "inlier_fraction": 0, "point_count": 5, "reliable": true, "reasons": [], "predicted_tre_mm": 0})";
+  EXPECT_THROW((void)read_registration_file(file), InvalidInput);
 }
 
 // A covariance of the wrong size is refused with its place.
