@@ -125,6 +125,7 @@ Band band_of(const CalibrateRunStatus& status, const CalibrateDisplay& display) 
   std::string detail;  // what the headline does not say yet
   for (const std::string& reason : advice.rejections)
     if (advice.wanted.find(reason) == std::string::npos) detail += (detail.empty() ? "" : "; ") + reason;
+  if (advice.is_complete && !detail.empty()) detail = "This one is not taken: " + detail;
   return {advice.is_good() || advice.is_complete ? Sign::Good : Sign::Caution, advice.wanted, detail};
 }
 
@@ -136,7 +137,7 @@ CalibrateDisplay calibrate_display(const CalibrateRunStatus& status, const Calib
   CalibrateDisplay display;
   display.has_picture = job.picture != nullptr && job.advice != nullptr;
   display.is_live = display.has_picture && status.phase == FeedPhase::Running && !status.awaits_still &&
-                    now_s - status.looked_s < kLiveFor_s;
+                    (status.is_stills || now_s - status.looked_s < kLiveFor_s);
   const bool is_free = !job.is_calibrating;
   const bool is_enough = job.advice != nullptr && job.advice->is_complete;
   const auto fewest = static_cast<std::size_t>(calibration::CaptureLimits{}.fewest_pictures);

@@ -38,7 +38,7 @@ void CalibrateStation::draw_live_picture(const widgets::Ui& ui, const widgets::R
   draw.PushClipRect(place.screen.min(), place.screen.max(), true);
   // Corners by shape too: rings where the picture may be taken, crosses where not.
   const bool is_good = job.advice->is_good() || job.took_this;
-  const float radius = ui.theme.px(5), line = ui.theme.px(2);
+  const float radius = ui.theme.px(4), line = ui.theme.px(1.5F);
   const ImU32 color = is_good ? widgets::kGood : widgets::kCaution;
   for (const calibration::BoardCorner& corner : job.advice->picture.board.corners) {
     const ImVec2 at = place.at(corner.pixel);

@@ -32,8 +32,10 @@ void CalibrateStation::read_adopted() {
     const camera::CalibrationRecord record = camera::read_camera_file(file);
     if (form_.scope_name.empty()) form_.scope_name = record.scope_name;
     if (form_.head_name.empty()) form_.head_name = record.head_name;
-    adopted_ = {widgets::Sign::Good, "Camera",
-                record.date_utc.empty() ? "calibrated" : "calibrated " + record.date_utc.substr(0, 10)};
+    const bool is_simulated = record.scope_name == kSimulatedScope;
+    adopted_ = {is_simulated ? widgets::Sign::Caution : widgets::Sign::Good, "Camera",
+                std::string(is_simulated ? "simulated" : "calibrated") +
+                    (record.date_utc.empty() ? "" : ", " + record.date_utc.substr(0, 10))};
   } catch (const std::runtime_error& error) {
     adopted_ = {widgets::Sign::Bad, "Camera", error.what()};
   }

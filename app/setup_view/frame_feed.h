@@ -5,6 +5,7 @@
 // being made.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <stop_token>
@@ -17,6 +18,7 @@ namespace arthronaut::setup_view {
 struct FeedSource {
   std::string name;                                             // "Simulated arthroscope", for the screen
   std::function<std::unique_ptr<sources::FrameSource>()> open;  // called on the feed's thread
+  std::filesystem::path path;                                   // of a file or folder; empty else
   bool is_simulated = false;
   // Single pictures: each stands, and is given again and again, until advance() asks for the next one.
   bool is_stills = false;

@@ -32,7 +32,8 @@ struct RunStatus {
   std::string message;  // why the source failed
   Status job;
   double looked_s = 0;        // when the newest picture was looked at, on the clock of steady_now_s()
-  bool awaits_still = false;  // of single pictures: the next one is on its way
+  bool is_stills = false;     // single pictures: each stands as long as it takes
+  bool awaits_still = false;  // ... and the next one is on its way
 };
 
 [[nodiscard]] inline double steady_now_s() {
@@ -141,6 +142,7 @@ class LiveRun {
               : feed.has_started() ? FeedPhase::Running
                                    : FeedPhase::Starting);
     const std::lock_guard lock(mutex_);
+    status_.is_stills = source_.is_stills;
     status_.awaits_still = feed.awaits_still();
   }
   void set_phase(FeedPhase phase) {

@@ -99,6 +99,7 @@ FeedSource simulated(Purpose purpose) {
 FeedSource stills(const fs::path& folder) {
   FeedSource source;
   source.name = "Pictures in " + folder.filename().string();
+  source.path = folder;
   source.open = [folder] { return std::make_unique<PictureFolder>(folder); };
   source.is_stills = true;
   return source;
@@ -107,6 +108,7 @@ FeedSource stills(const fs::path& folder) {
 FeedSource video(const fs::path& file, Purpose purpose) {
   FeedSource source;
   source.name = file.filename().string();
+  source.path = file;
   source.open = [file] { return sources::open_video(file); };
   source.newest_wins = purpose == Purpose::Camera;
   return source;
@@ -162,6 +164,14 @@ std::string tools_are_kept(const FeedSource& source, const fs::path& case_folder
   const bool may_be_replaced = !source.is_simulated || !fs::exists(cases::tools_file(case_folder)) ||
                                has_simulated_camera(case_folder);
   return may_be_replaced ? "" : "this case has its own tools.json; what is simulated does not replace it";
+}
+
+std::optional<std::size_t> index_of(const std::vector<FeedSource>& sources, const fs::path& path) {
+  const auto found = std::find_if(sources.begin(), sources.end(), [&](const FeedSource& source) {
+    return !path.empty() && source.path == path;
+  });
+  if (found == sources.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - sources.begin());
 }
 
 std::vector<fs::path> pictures_of(const fs::path& folder) { return files_of(folder, kPictures); }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "app/setup_view/frame_feed.h"
@@ -18,6 +19,10 @@ enum class Purpose { Camera, Tools, Fluid };
 // paths the user typed: a folder of pictures or a video; others are left out.
 [[nodiscard]] std::vector<FeedSource> sources_for(Purpose purpose, const std::filesystem::path& case_folder,
                                                   const std::vector<std::filesystem::path>& named = {});
+
+// Which of these was made from this path; nullopt: none.
+[[nodiscard]] std::optional<std::size_t> index_of(const std::vector<FeedSource>& sources,
+                                                  const std::filesystem::path& path);
 
 // The pictures in a folder (*.png, *.jpg, *.jpeg, *.bmp, *.tif, *.tiff), by name.
 [[nodiscard]] std::vector<std::filesystem::path> pictures_of(const std::filesystem::path& folder);

@@ -73,16 +73,20 @@ std::string SetupView::next_step() const {
 // A path that was typed becomes the chosen source, when it is one.
 void SetupView::take_typed_path() {
   typed_.is_open = false;
-  typed_.paths.emplace_back(typed_.text);
-  const std::size_t before = step().sources.size();
+  std::filesystem::path path = typed_.text;
+  if (!path.has_filename()) path = path.parent_path();  // "pictures/"
+  typed_.paths.push_back(path);
+  const std::size_t chosen = step().source;
   find_sources();
-  typed_.refused = step().sources.size() == before;
+  const std::optional<std::size_t> found = index_of(step().sources, path);
+  typed_.refused = !found.has_value();
   if (typed_.refused) {
     typed_.paths.pop_back();
-    return;
+    find_sources();
+  } else if (*found != chosen) {
+    step().station->stop();
   }
-  step().station->stop();
-  step().source = typed_.paths.size();  // named sources follow the simulated one
+  step().source = found.value_or(chosen % step().sources.size());
 }
 
 void SetupView::add_actions(widgets::Actions& actions) {
@@ -184,9 +188,9 @@ void SetupView::draw_path_field(const widgets::Ui& ui, const widgets::Rect& area
   ImGui::SetCursorScreenPos(area.min());
   ImGui::SetNextItemWidth(area.width);
   if (typed_.wants_focus) ImGui::SetKeyboardFocusHere();
-  const bool is_entered =
-      ImGui::InputTextWithHint("##path", "path of a video or of a folder of pictures, then Enter",
-                               &typed_.text, ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool is_entered = ImGui::InputTextWithHint(
+      "##path", "path of a video or of a folder of pictures, then Enter", &typed_.text,
+      ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   ui.log.note("setup.path_field", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   if (is_entered) return take_typed_path();
   if (!typed_.wants_focus && ImGui::IsItemDeactivated()) typed_.is_open = false;

@@ -42,6 +42,7 @@ std::vector<Row> tip_rows(const tools::PivotCalibrationSummary& tip) {
   rows.push_back({Sign::Quiet, "Left out",
                   std::to_string(tip.pose_count - tip.inlier_count) + " of " +
                       std::to_string(tip.pose_count) + " poses"});
+  if (!tip.is_usable()) return rows;  // a tip that can't be stood for is not shown
   rows.push_back({Sign::Quiet, "Tip from the marker", point_text(tip.tip_in_tool_mm)});
   return rows;
 }
@@ -64,6 +65,7 @@ std::vector<Row> axis_rows(const tools::SpinCalibrationSummary& axis) {
   rows.push_back({Sign::Quiet, "Left out",
                   std::to_string(axis.pose_count - axis.inlier_count) + " of " +
                       std::to_string(axis.pose_count) + " poses"});
+  if (!axis.is_usable()) return rows;  // an axis that can't be stood for is not shown
   rows.push_back({Sign::Quiet, "Axis from the marker", point_text(axis.axis_point_in_tool_mm)});
   rows.push_back({Sign::Quiet, "Direction",
                   fixed(axis.axis_direction_in_tool.x(), 3) + ",  " +

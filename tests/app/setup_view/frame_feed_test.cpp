@@ -117,6 +117,19 @@ TEST_F(Sources, AreFoundInTheCase) {
   EXPECT_EQ(pictures[0].filename(), "a.jpg");
 }
 
+// A path that was named is found among what is offered, wherever it stands; for tools a folder of pictures is
+// none.
+TEST_F(Sources, AreFoundByTheirPath) {
+  const std::vector<std::filesystem::path> named{folder_ / "board", folder_ / "knee.mkv",
+                                                 folder_ / "nothing"};
+  const auto for_tools = sources_for(Purpose::Tools, folder_, named);
+  EXPECT_FALSE(index_of(for_tools, folder_ / "board").has_value());
+  EXPECT_EQ(index_of(for_tools, folder_ / "knee.mkv"), 1U);
+  EXPECT_FALSE(index_of(for_tools, folder_ / "nothing").has_value());
+  EXPECT_FALSE(index_of(for_tools, {}).has_value());
+  EXPECT_EQ(index_of(sources_for(Purpose::Camera, folder_, named), folder_ / "knee.mkv"), 2U);
+}
+
 // A picture that is none is told by its name, not swallowed.
 TEST_F(Sources, NameTheFileThatIsNoPicture) {
   FrameFeed feed(sources_for(Purpose::Camera, folder_)[1]);

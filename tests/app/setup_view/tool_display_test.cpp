@@ -62,6 +62,7 @@ TEST(ToolDisplay, RefusesANarrowCone) {
   EXPECT_EQ(display.verdict.detail, "the cone is 9 degrees (needs 20)");
   EXPECT_EQ(row_of(display.numbers, "Cone").sign, Sign::Caution);
   EXPECT_EQ(row_of(display.numbers, "Residual").sign, Sign::Good);
+  EXPECT_THROW((void)row_of(display.numbers, "Tip from the marker"), std::runtime_error);
   // While the tool still moves it is "not yet"; once the pictures have ended it is a refusal.
   EXPECT_EQ(display.verdict.sign, Sign::Caution);
   ToolRunStatus over = narrow;
