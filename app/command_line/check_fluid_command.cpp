@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -83,7 +84,7 @@ calibration::RulerSightingsOptions options_of(const CheckFluidArguments& argumen
 FluidCheckSummary check(const CheckFluidArguments& arguments, calibration::RulerSightingsOptions options,
                         std::vector<std::string>& losses, std::size_t& frame_count) {
   const auto source = sources::open_video(arguments.video);
-  options.most = std::max<std::size_t>(options.most, source->info().frame_count);
+  options.most = std::numeric_limits<std::size_t>::max();
   calibration::RulerSightings sightings(options);
   Progress progress("looking for the ruler", static_cast<long>(source->info().frame_count));
   while (const camera::FramePtr frame = source->next()) {

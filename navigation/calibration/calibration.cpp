@@ -200,8 +200,8 @@ CalibrationSummary calibrate(std::span<const CalibrationPicture> pictures,
         geometry::angle_between_rad(pose.rotate(Eigen::Vector3d::UnitZ()), Eigen::Vector3d::UnitZ());
     const double tilt_deg = geometry::deg_from_rad(std::min(tilt_rad, geometry::kPi - tilt_rad));
     summary.pictures.push_back({pictures[i].name, rms_of(best.residuals_px[i]), tilt_deg,
-                                geometry::deg_from_rad(found.lens_angle_rad[i]), joint.sightings[i].has_angle,
-                                pose, best.residuals_px[i]});
+                                geometry::deg_from_rad(found.lens_angle_rad[i]), pictures[i].lens.mark,
+                                joint.sightings[i].has_angle, pose, best.residuals_px[i]});
   }
   if (options.leave_one_out)
     summary.leave_one_out_rms_px = leave_one_out(joint.sightings, found, joint.options);

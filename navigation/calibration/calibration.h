@@ -64,6 +64,7 @@ struct CalibrationSummary {
     double rms_px = -1;
     double tilt_deg = 0;
     double lens_angle_deg = 0;
+    lens::MarkState mark = lens::MarkState::NoCircle;
     bool mark_is_used = false;  // else lens_angle_deg follows from the other pictures
     geometry::RigidTransform camera_from_board;
     std::vector<Eigen::Vector2d> residuals_px;  // in the order of corners_used()

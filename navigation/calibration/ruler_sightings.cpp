@@ -30,7 +30,7 @@ struct RulerSightings::State {
     const markers::DeclaredMarker declared[] = {{options.first_id, size_mm}, {options.second_id, size_mm}};
     as_stated = markers::make_tracker(declared);
     as_other = markers::make_tracker(declared);
-    sightings.reserve(options.most);
+    sightings.reserve(std::min<std::size_t>(options.most, 300));
   }
 
   [[nodiscard]] double mark_angle_deg() const {

@@ -47,9 +47,8 @@ std::vector<std::string> reasons_against(const CalibrationSummary& summary,
   if (marked < kFewestMarks) {
     for (std::size_t i = 0; i < sightings.size(); ++i)
       if (!sightings[i].has_angle)
-        reasons.push_back(summary.pictures[i].name + (sightings[i].has_circle
-                                                          ? ": the lens mark was not found"
-                                                          : ": the round image border was not found"));
+        reasons.push_back(summary.pictures[i].name + ": the lens mark was not found (" +
+                          std::string(lens::to_text(summary.pictures[i].mark)) + ")");
     reasons.push_back("the lens angles are not known, so the centre of rotation is not");
   } else if (const double turn = widest_turn_deg(summary); turn < kLeastTurn_deg) {
     reasons.push_back(

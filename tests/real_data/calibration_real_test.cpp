@@ -10,6 +10,7 @@
 #include "navigation/calibration/calibration.h"
 #include "navigation/calibration/fluid_check.h"
 #include "navigation/calibration/held_out.h"
+#include "navigation/calibration/ruler_sightings.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
 #include "navigation/markers/marker_tracker.h"
@@ -39,12 +40,16 @@ std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& fold
   return files;
 }
 
-calibration::CalibrationSummary calibrate_cal_air(const std::filesystem::path& folder) {
+std::vector<calibration::CalibrationPicture> observe_cal_air(const std::filesystem::path& folder) {
   std::vector<calibration::CalibrationPicture> pictures;
   for (const auto& file : pictures_in(folder, "cal_")) pictures.push_back(observe(file));
+  return pictures;
+}
+
+calibration::CalibrationSummary calibrate_cal_air(const std::filesystem::path& folder) {
   calibration::CalibrationOptions options;
   options.square_mm = 1.5;
-  return calibration::calibrate(pictures, options);
+  return calibration::calibrate(observe_cal_air(folder), options);
 }
 
 // The ruler's markers in every frame of the clip, the intrinsics following the lens mark (or standing still).
@@ -109,6 +114,73 @@ TEST(CalibrationOnPictures, FindsTheTrueCamera) {
     EXPECT_GT(held.corner_count, 400U);
     EXPECT_GT(held.rms_px, 0);
     EXPECT_LE(held.rms_px, 0.35);
+  }
+}
+
+// Any one of the three pictures without its mark: the same camera, reliable, and the picture is named.
+TEST(CalibrationOnPictures, NeedsNoMarkInOneOfThree) {
+  ARTHRONAUT_REQUIRE_DATA(folder, "arthroscopy/cal_air");
+  const std::vector<calibration::CalibrationPicture> seen = observe_cal_air(folder);
+  const camera::Calibration truth = camera::read_camera_file(folder / "camera.json").calibration;
+  for (std::size_t lost = 0; lost < seen.size(); ++lost) {
+    std::vector<calibration::CalibrationPicture> pictures = seen;
+    pictures[lost].lens.mark = lens::MarkState::Covered;
+    pictures[lost].lens.mark_angle_deg = 0;
+    calibration::CalibrationOptions options;
+    options.square_mm = 1.5;
+    const calibration::CalibrationSummary summary = calibration::calibrate(pictures, options);
+    EXPECT_EQ(summary.outcome, calibration::CalibrationSummary::Outcome::Ok) << lost;
+    ASSERT_EQ(summary.notes.size(), 1U);
+    EXPECT_TRUE(summary.notes.front().starts_with(pictures[lost].name)) << summary.notes.front();
+    EXPECT_NEAR(summary.record.calibration.focal_px / truth.focal_px, 1, 0.003);
+    EXPECT_LT((summary.record.calibration.rotation_center_px - truth.rotation_center_px).norm(), 1.5);
+  }
+}
+
+// The boards stand 16 mm from the lens in the median. Squares half, twice or 25.4 times their size put them
+// where none is held; half as much again (24 mm) does not, and only a measured distance tells it. The camera
+// is the same each time.
+TEST(CalibrationOnPictures, TellsAWrongSquareSizeByTheDistance) {
+  ARTHRONAUT_REQUIRE_DATA(folder, "arthroscopy/cal_air");
+  const std::vector<calibration::CalibrationPicture> pictures = observe_cal_air(folder);
+  const auto outcome_of = [&](double factor, double distance_mm) {
+    calibration::CalibrationOptions options;
+    options.square_mm = 1.5 * factor;
+    options.distance_mm = distance_mm;
+    options.leave_one_out = false;
+    const auto summary = calibration::calibrate(pictures, options);
+    EXPECT_NEAR(summary.distance_mm, 15.95 * factor, 0.1 * factor);
+    EXPECT_NEAR(summary.record.calibration.focal_px, 571.3, 0.2);
+    return summary.outcome;
+  };
+  using Outcome = calibration::CalibrationSummary::Outcome;
+  EXPECT_EQ(outcome_of(1, 0), Outcome::Ok);
+  for (const double factor : {0.5, 2.0, 25.4})
+    EXPECT_EQ(outcome_of(factor, 0), Outcome::Unreliable) << factor;
+  EXPECT_EQ(outcome_of(1.5, 0), Outcome::Ok);
+  EXPECT_EQ(outcome_of(1.5, 16), Outcome::Unreliable);
+  EXPECT_EQ(outcome_of(1, 16), Outcome::Ok);
+}
+
+// The self-check on the clip, saline stated and air stated: the first is trusted, the second is not, and both
+// find the same index.
+TEST(FluidCheckOnAClip, TrustsTheRightMediumAlone) {
+  ARTHRONAUT_REQUIRE_DATA(wet, "arthroscopy/ruler_wet");
+  for (const double stated : {camera::kSalineIndex, camera::kAirIndex}) {
+    calibration::RulerSightingsOptions options;
+    options.calibration = camera::read_camera_file(wet / "camera.json").calibration;
+    options.refractive_index = stated;
+    calibration::RulerSightings sightings(options);
+    const auto source = sources::open_video(wet / "clip.mkv");
+    while (const camera::FramePtr frame = source->next()) sightings.look(*frame);
+    EXPECT_GE(sightings.sightings().size(), 57U);
+    calibration::FluidCheckOptions limits;
+    limits.refractive_index = stated;
+    const auto check =
+        calibration::check_fluid(sightings.sightings(), options.ruler, options.calibration, limits);
+    EXPECT_EQ(check.is_trusted(), stated == camera::kSalineIndex);
+    EXPECT_NEAR(check.best_index, camera::kSalineIndex, 0.01);
+    EXPECT_LT(check.index_sigma, 0.005);
   }
 }
 
