@@ -80,8 +80,10 @@ void BoneRegistration::clear() {
 void BoneRegistration::add_touch(const Eigen::Vector3d& tip_in_marker_mm) {
   const std::lock_guard lock(mutex_);
   start_worker();
+  // The same place touched again verifies nothing more.
+  if (worker_ != nullptr && status_.touches.is_new_place(tip_in_marker_mm))
+    worker_->add_touch(tip_in_marker_mm);
   status_.touches.add_touch(tip_in_marker_mm);
-  if (worker_ != nullptr) worker_->add_touch(tip_in_marker_mm);
   judge();
 }
 

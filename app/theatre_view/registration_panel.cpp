@@ -83,8 +83,10 @@ void draw_lists(const widgets::Ui& ui, const RegistrationStatus& status, int sel
   }
   const std::vector<SignedText> history = history_rows(status);
   if (history.empty()) return;
+  const std::string used =
+      status.entry_in_force ? ", in use: " + std::to_string(*status.entry_in_force + 1) : "";
   widgets::text_in(ui.theme.strong, widgets::kAccent,
-                   status.is_chosen ? "Registrations: an earlier one is in use" : "Registrations");
+                   "Registrations" + used + (status.is_chosen ? " (chosen)" : ""));
   draw_rows(
       ui, history, kShownHistory, [&](std::size_t i) { return status.entry_in_force == i; },
       [&](const SignedText& row) { widgets::status_row(ui, row.sign, row.name, row.text); });

@@ -40,7 +40,7 @@ SignedText state_of(const RegistrationStatus& status) {
     case OnlineState::Candidate:
       return {Sign::Caution, "Candidate, not confirmed yet", advice};
     case OnlineState::Confirmed:
-      return {Sign::Good, "Confirmed", advice};
+      return {Sign::Good, "Confirmed", "Touch three places that you know, to verify."};
     case OnlineState::Verified:
       return {Sign::Good, "Verified", "The touches lie on the bone."};
   }
@@ -109,10 +109,11 @@ std::optional<TouchText> touch_of(const RegistrationStatus& status) {
     return TouchText{{Sign::Quiet, name, "kept"}, "Judged when there is a registration."};
   const double off_mm = std::abs(*last.distance_mm);
   const bool is_inside = *last.distance_mm < 0;
-  return TouchText{{sign_of_residual(off_mm), name, mm(off_mm, 1)},
-                   off_mm < 0.5 ? "On the bone model."
-                   : is_inside  ? "Inside the bone model."
-                                : "Above the bone model."};
+  std::string sentence = off_mm < 0.5 ? "On the bone model."
+                         : is_inside  ? "Inside the bone model."
+                                      : "Above the bone model.";
+  if (!last.is_new_place) sentence += " Another place says more.";
+  return TouchText{{sign_of_residual(off_mm), name, mm(off_mm, 1)}, sentence};
 }
 
 std::vector<StrokeRow> stroke_rows(const RegistrationStatus& status) {

@@ -51,8 +51,16 @@ std::string SteadyTip::why_not() const {
 }
 
 void TouchCheck::add_touch(const Eigen::Vector3d& tip_in_marker_mm) {
+  last_is_new_place_ = is_new_place(tip_in_marker_mm);
   touches_mm_.push_back(tip_in_marker_mm);
   last_ = Last::Kind::Touch;
+}
+
+bool TouchCheck::is_new_place(const Eigen::Vector3d& tip_in_marker_mm) const {
+  constexpr double kApart_mm = 3;
+  return std::none_of(touches_mm_.begin(), touches_mm_.end(), [&](const Eigen::Vector3d& touch) {
+    return (touch - tip_in_marker_mm).norm() < kApart_mm;
+  });
 }
 
 void TouchCheck::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
@@ -80,7 +88,7 @@ void TouchCheck::judge(const registration::RegistrationSummary* registration,
 }
 
 TouchCheck::Last TouchCheck::last() const {
-  Last last{last_, static_cast<int>(touches_mm_.size()), std::nullopt};
+  Last last{last_, static_cast<int>(touches_mm_.size()), last_is_new_place_, std::nullopt};
   if (last_ == Last::Kind::ControlAgain) last.distance_mm = control_shift_mm_;
   if (last_ == Last::Kind::Touch && !residuals_mm_.empty()) last.distance_mm = residuals_mm_.back();
   return last;

@@ -38,12 +38,15 @@ class TouchCheck {
   struct Last {
     enum class Kind { None, Touch, ControlSet, ControlAgain } kind = Kind::None;
     int number = 0;                     // of the touch, from 1
+    bool is_new_place = true;           // of a touch: away from those before
     std::optional<double> distance_mm;  // signed, to the bone; of the control point: how far it has wandered
   };
 
   void add_touch(const Eigen::Vector3d& tip_in_marker_mm);
   void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm);
   void clear();
+  // Whether a touch here says more than those before it: none of them lies within 3 mm.
+  [[nodiscard]] bool is_new_place(const Eigen::Vector3d& tip_in_marker_mm) const;
   // Distances anew, by another registration; none without a pose.
   void judge(const registration::RegistrationSummary* registration, const geometry::Surface* surface);
 
@@ -58,6 +61,7 @@ class TouchCheck {
  private:
   std::vector<Eigen::Vector3d> touches_mm_;
   std::vector<double> residuals_mm_;
+  bool last_is_new_place_ = true;
   std::optional<Eigen::Vector3d> control_point_mm_;
   double control_shift_mm_ = 0;
   int control_violations_ = 0;

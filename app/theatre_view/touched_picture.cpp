@@ -66,7 +66,7 @@ void TouchedPicture::add_strokes(scene::SceneContent& content, const Registratio
     if (goes_on)
       content.lines.back().points_mm.push_back(to.in_bone_mm);
     else
-      content.lines.push_back({{from.in_bone_mm, to.in_bone_mm}, pen.diameter_mm, false, pen.color, false});
+      content.lines.push_back({{from.in_bone_mm, to.in_bone_mm}, pen.diameter_mm, false, pen.color, true});
   }
 }
 

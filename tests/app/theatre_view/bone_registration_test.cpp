@@ -116,13 +116,17 @@ TEST_F(BoneRegistrationTest, ABumpedMarkerTakesGuidanceAway) {
 // Touches on the bone that are not used in the fit verify it; their distance is the one that is shown large.
 TEST_F(BoneRegistrationTest, TouchesVerify) {
   draw(trial_.curves);
-  for (const double dx_mm : {0.0, 4.0, -4.0}) bone_.add_touch(on_bone(dx_mm));
+  for (int i = 0; i < 3; ++i) bone_.add_touch(on_bone(0));
+  bone_.finish();
+  EXPECT_EQ(state_of(bone_.status()).name, "Confirmed") << "one place, touched three times";
+  EXPECT_FALSE(bone_.status().touches.last().is_new_place);
+  for (const double dx_mm : {4.0, -4.0}) bone_.add_touch(on_bone(dx_mm));
   bone_.finish();
   const RegistrationStatus status = bone_.status();
   EXPECT_EQ(state_of(status).name, "Verified");
   const auto touch = touch_of(status);
   ASSERT_TRUE(touch);
-  EXPECT_EQ(touch->number.name, "Touch 3");
+  EXPECT_EQ(touch->number.name, "Touch 5");
   EXPECT_EQ(touch->number.sign, widgets::Sign::Good);
 }
 
