@@ -108,24 +108,27 @@ std::vector<RulerSighting> spread(std::span<const RulerSighting> sightings) {
   return chosen;
 }
 
-// From the curvature of the sum of squares about its least value. Eight corners a frame, six of whose sixteen
-// coordinates the ruler's pose takes up.
-double index_sigma(const std::function<FrameErrors(double)>& under, double index) {
-  constexpr double kStep = 0.01;
-  const auto sum_at = [&](double at, std::size_t& frames) {
+// From the curvature of the sum of squares about its least value, over two steps of 0.03. Eight corners a
+// frame, six of whose sixteen coordinates the ruler's pose takes up. A frame that fits badly (a corner in
+// glare, a pose that went astray) counts as much as three sigmas, no more.
+double index_sigma(const std::function<FrameErrors(double)>& under, double index, std::size_t frames) {
+  constexpr double kStep = 0.03;
+  const double usual = quantile(under(index).square_px, 0.5);
+  if (usual <= 0) return -1;
+  const auto mean_at = [&](double at) {
     const FrameErrors errors = under(at);
-    frames = errors.square_px.size();
-    double sum = 0;
-    for (const double square : errors.square_px) sum += 8 * square;
-    return sum;
+    double sum = 9 * usual * static_cast<double>(frames - errors.square_px.size());
+    for (const double square : errors.square_px) sum += std::min(square, 9 * usual);
+    return sum / static_cast<double>(frames);
   };
-  std::size_t frames = 0, frames_below = 0, frames_above = 0;
-  const double least = sum_at(index, frames), below = sum_at(index - kStep, frames_below),
-               above = sum_at(index + kStep, frames_above);
-  const double curvature = (below + above - 2 * least) / (kStep * kStep);
-  if (frames == 0 || frames != frames_below || frames != frames_above || !(curvature > 0)) return -1;
-  const double variance_px = least / (10.0 * static_cast<double>(frames));
-  return std::sqrt(2 * variance_px / curvature);
+  // Where the steps lead most frames to their limit, smaller ones.
+  for (double step = kStep; step > 1e-3; step /= 2) {
+    const double least = mean_at(index), below = mean_at(index - step), above = mean_at(index + step);
+    if (std::min(below, above) > 4 * usual && step > 2e-3) continue;
+    const double curvature = 8 * static_cast<double>(frames) * (below + above - 2 * least) / (step * step);
+    return curvature > 0 ? std::sqrt(2 * (0.8 * least) / curvature) : -1;
+  }
+  return -1;
 }
 
 std::string text(const char* format, double a, double b) {
@@ -199,7 +202,7 @@ FluidCheckSummary check_fluid(std::span<const RulerSighting> sightings, const Ru
       return errors_under(chosen, ruler, calibration, index, FluidModel::FlatPort);
     };
     summary.best_index = best_index([&](double index) { return misfit_px(flat_port(index)); }, 1.0, 1.5);
-    summary.index_sigma = index_sigma(flat_port, summary.best_index);
+    summary.index_sigma = index_sigma(flat_port, summary.best_index, chosen.size());
   }
   summary.reasons = reasons_against(summary, options);
   return summary;

@@ -80,6 +80,19 @@ TEST(FluidCheck, NoticesThatNothingIsRefracted) {
   EXPECT_NEAR(summary.best_index, 1.0, 0.02);
 }
 
+// What the scatter leaves of the index: a little at a tenth of a pixel; with corners 4 px off, too much to
+// tell media apart, and said so instead of a wrong index.
+TEST(FluidCheck, KnowsHowWellTheIndexIsKnown) {
+  const auto sharp = check_fluid(sightings_in(camera::kSalineIndex, camera::FluidModel::FlatPort, 0.1), {},
+                                 true_scope(), {});
+  EXPECT_GT(sharp.index_sigma, 0);
+  EXPECT_LT(sharp.index_sigma, 0.003);
+  EXPECT_LT(std::abs(sharp.best_index - camera::kSalineIndex), 4 * sharp.index_sigma);
+  const auto coarse =
+      check_fluid(sightings_in(camera::kSalineIndex, camera::FluidModel::FlatPort, 4), {}, true_scope(), {});
+  EXPECT_THAT(coarse.reasons, Contains(HasSubstr("hardly differ")));
+}
+
 // Nothing seen: no verdict but the reason.
 TEST(FluidCheck, SaysThatTooLittleWasSeen) {
   EXPECT_THAT(check_fluid({}, {}, true_scope(), {}).reasons, Contains(HasSubstr("0 frames only")));
