@@ -90,9 +90,11 @@ camera::Frame draw_residuals(const CalibrationSummary& summary,
                 c.focal_px, c.distortion_xi, c.principal_point_px.x(), c.principal_point_px.y(),
                 c.rotation_center_px.x(), c.rotation_center_px.y());
   write(canvas, {kMargin, 40}, text);
-  std::snprintf(text, sizeof text,
-                "RMS %.3f px   left out %.3f px   lines: residuals x %.0f   + principal point   x centre",
-                summary.rms_px, summary.leave_one_out_rms_px, kMagnified);
+  char left_out[40] = "";
+  if (summary.leave_one_out_rms_px >= 0)
+    std::snprintf(left_out, sizeof left_out, "   left out %.3f px", summary.leave_one_out_rms_px);
+  std::snprintf(text, sizeof text, "RMS %.3f px%s   lines: residuals x %.0f   + principal point   x centre",
+                summary.rms_px, left_out, kMagnified);
   write(canvas, {kMargin, 70}, text);
   draw_field(canvas, summary, pictures);
   draw_scatter(canvas, summary);

@@ -9,12 +9,13 @@
 namespace arthronaut {
 namespace {
 
-using ::testing::HasSubstr;
 using test::run_program;
+using ::testing::HasSubstr;
 
 class Subcommand : public ::testing::TestWithParam<const char*> {};
 
-// Every subcommand of the interface exists, explains itself and shows an example that starts with its own name.
+// Every subcommand of the interface exists, explains itself and shows an example that starts with its own
+// name.
 TEST_P(Subcommand, HelpsWithAnExample) {
   const auto result = run_program({GetParam(), "--help"});
   EXPECT_EQ(result.exit_code, 0);
@@ -30,11 +31,13 @@ TEST_P(Subcommand, RefusesAnUnknownOption) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Subcommand,
-                         ::testing::Values("calibrate", "check-fluid", "track", "pivot", "digitise", "register", "import", "plan",
-                                           "phantom", "navigate", "replay", "report", "markers", "demo"),
+                         ::testing::Values("calibrate", "check-fluid", "track", "pivot", "digitise",
+                                           "register", "import", "plan", "phantom", "navigate", "replay",
+                                           "report", "markers", "demo"),
                          [](const auto& test) {
                            std::string name = test.param;
-                           std::replace(name.begin(), name.end(), '-', '_');  // a name of a test has no hyphen
+                           std::replace(name.begin(), name.end(), '-',
+                                        '_');  // a name of a test has no hyphen
                            return name;
                          });
 
