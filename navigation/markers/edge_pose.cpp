@@ -148,7 +148,7 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
   for (int axis = 0; axis < 2; ++axis)
     result.share[axis] = seen[axis] > 0 ? double(agreeing[axis]) / seen[axis] : 0;
 
-  const double inflation = kCorrelatedEdges * std::max(1.0, result.scale * result.scale);
+  const double inflation = kCorrelatedEdges * std::max(0.25, result.scale * result.scale);
   result.covariance = inflation * Matrix7d(normal.ldlt().solve(Matrix7d::Identity())).topLeftCorner<6, 6>();
   // The common error of the corners, spread over the directions that the corners determine.
   Matrix6d corner_normal = Matrix6d::Zero();

@@ -70,7 +70,7 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
   // Without a past nothing is known of the motion, and edges alone may take a smear for another tilt.
   const bool is_motion_known = !is_found && motion_.is_known_at(frame.timestamp_ns);
   const double edges_motion_px = picture.motion.head<3>().norm() * px_per_mm;
-  if ((!is_motion_known || edges_motion_px > kSmearedPx) && cell > kMinDenseCellPx) {
+  if (frame.dense && (!is_motion_known || edges_motion_px > kSmearedPx) && cell > kMinDenseCellPx) {
     const RigidTransform& from = fit.converged ? fit.camera_from_marker : start;
     PhotogeometricPose dense =
         fit_densely(frame, from, picture.motion, fit.converged ? PhotogeometricOptions() : kUnsureFit);
@@ -167,8 +167,8 @@ PhotogeometricPose MarkerTrack::fit_densely(const TrackedFrame& frame, const Rig
     from.pose.change = std::pow(frame.smear.exposure_share, 2) * *change;
     from.change_sigma_px = 1.5 + 0.5 * px_per_mm * from.pose.change.head<3>().norm();
   }
-  return frame.dense.refine(frame.image.view(), frame.camera, code_, samples_, marker_.size_mm, from,
-                            options);
+  return frame.dense->refine(frame.image.view(), frame.camera, code_, samples_, marker_.size_mm, from,
+                             options);
 }
 
 PhotogeometricPose MarkerTrack::try_motions(const TrackedFrame& frame, const RigidTransform& start) {

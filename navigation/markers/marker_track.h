@@ -22,7 +22,7 @@ struct TrackedFrame {
   const camera::CameraModel& camera;
   std::int64_t timestamp_ns = 0;
   CameraSmear& smear;
-  PhotogeometricFit& dense;
+  PhotogeometricFit* dense = nullptr;  // none: edge profiles alone
 };
 
 class MarkerTrack {

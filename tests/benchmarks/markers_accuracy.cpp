@@ -10,12 +10,19 @@
 #include <opencv2/aruco.hpp>
 #include <opencv2/core.hpp>
 
+#include "navigation/lens/lens_tracker.h"
 #include "navigation/markers/code_reader.h"
+#include "navigation/markers/edge_tracker.h"
 #include "navigation/markers/square_search.h"
 #include "tests/real_data/marker_accuracy.h"
 
 namespace arthronaut::real_data {
 namespace {
+
+std::unique_ptr<markers::MarkerTracker> make_without_dense_fit(
+    std::span<const markers::DeclaredMarker> declared) {
+  return markers::make_edge_tracker(declared, markers::codes_4x4_50(), {.fit_densely = false});
+}
 
 using TrackerMaker = std::unique_ptr<markers::MarkerTracker> (*)(std::span<const markers::DeclaredMarker>);
 
@@ -82,6 +89,12 @@ void print_times(const std::filesystem::path& folder) {
   time_each_picture(clip, [&](const camera::GrayView& picture) {
     (void)both->track(picture, clip.camera(), clip.timestamp_ns());
   }).print("own: two markers declared, both in view");
+  lens::LensTracker lens({.calibration = clip.calibration()});
+  both->reset();
+  time_each_picture(clip, [&](const camera::GrayView& picture) {
+    (void)lens.observe(picture, clip.timestamp_ns());
+    (void)both->track(picture, clip.camera(), clip.timestamp_ns());
+  }).print("own: the same, with circle and lens mark");
   markers::SquareSearch search;
   std::vector<markers::MarkerCode> codes = markers::codes_4x4_50();
   codes.resize(5);
@@ -109,6 +122,7 @@ int run(const std::filesystem::path& folder) {
       "mm | whole %% | "
       "covered %% | wrong | normalised error |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   const std::pair<const char*, TrackerMaker> trackers[] = {{"own", markers::make_tracker},
+                                                           {"edges alone", make_without_dense_fit},
                                                            {"ArUco", markers::make_aruco_tracker}};
   for (const char* name : {"probe_wet", "ruler_wet", "guide_wet", "hard"}) {
     MarkerClip clip(folder / name);

@@ -1,0 +1,123 @@
+// The tracker on sequences that nothing was tuned on: the simulator's ruler with other seeds, in 720p, with
+// other sizes of marker, in other media, and with a shutter that stays open while the ruler moves.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+
+#include "navigation/markers/marker_tracker.h"
+#include "navigation/simulator/simulated_ruler.h"
+
+namespace arthronaut::markers {
+namespace {
+
+struct Sequence {
+  const char* name;
+  std::uint64_t seed;
+  double size_mm, refractive_index;
+  bool is_720p;
+  int exposures;  // pictures averaged to one, in light
+};
+std::ostream& operator<<(std::ostream& out, const Sequence& sequence) { return out << sequence.name; }
+
+camera::Calibration camera_of(const Sequence& sequence) {
+  camera::Calibration camera = simulator::standard_camera();
+  if (!sequence.is_720p) return camera;
+  const double scale = 2.0 / 3;
+  const auto scaled = [&](const Eigen::Vector2d& p) {
+    return Eigen::Vector2d((p.array() + 0.5) * scale - 0.5);
+  };
+  camera.image_size_px = {1280, 720};
+  camera.focal_px *= scale;
+  camera.principal_point_px = scaled(camera.principal_point_px);
+  camera.rotation_center_px = scaled(camera.rotation_center_px);
+  camera.boundary = {scaled(camera.boundary.center_px), scale * camera.boundary.radius_px};
+  return camera;
+}
+
+// Mean light of several frames, as a sensor would collect it.
+class Shutter {
+ public:
+  void open(std::size_t pixels) { light_.assign(pixels, 0); }
+  void add(const std::vector<std::uint8_t>& gray, int exposures) {
+    for (std::size_t i = 0; i < gray.size(); ++i)
+      light_[i] += kLight[gray[i]] / static_cast<float>(exposures);
+  }
+  void close(std::vector<std::uint8_t>& gray) const {
+    for (std::size_t i = 0; i < gray.size(); ++i)
+      gray[i] = static_cast<std::uint8_t>(std::lround(255 * std::pow(light_[i] / 255, 1 / kGamma)));
+  }
+
+ private:
+  static constexpr double kGamma = 2.2;
+  inline static const std::array<float, 256> kLight = [] {
+    std::array<float, 256> light{};
+    for (int i = 0; i < 256; ++i) light[i] = static_cast<float>(255 * std::pow(i / 255.0, kGamma));
+    return light;
+  }();
+  std::vector<float> light_;
+};
+
+class Sequences : public ::testing::TestWithParam<Sequence> {};
+
+// No pose that stands is wrong, nearly all are there, and no error is larger than its covariance says. It may
+// be much smaller: the covariance holds what compression and real tissue add, which the simulator does not
+// draw.
+TEST_P(Sequences, AreTrackedWithTrueCovariance) {
+  const Sequence& sequence = GetParam();
+  constexpr int kFrames = 8;
+  simulator::RulerOptions options;
+  options.camera = camera_of(sequence);
+  options.seed = sequence.seed;
+  options.size_mm = sequence.size_mm;
+  options.refractive_index = sequence.refractive_index;
+  options.frame_count = 250;  // of which the first are looked at: twice the usual speed
+  simulator::SimulatedRuler ruler(options);
+  const auto tracker = make_tracker(
+      std::vector<DeclaredMarker>{{options.first_id, options.size_mm}, {options.second_id, options.size_mm}});
+  Shutter shutter;
+  std::vector<std::uint8_t> gray;
+  double squares = 0;
+  int tracked = 0;
+  for (int i = 0; i < kFrames; ++i) {
+    simulator::FrameTruth truth;
+    for (int k = 0; k < sequence.exposures; ++k) {
+      const auto frame = ruler.next();
+      ASSERT_TRUE(frame);
+      if (k == sequence.exposures / 2) truth = ruler.truth();
+      camera::gray_from(*frame, gray);
+      if (k == 0) shutter.open(gray.size());
+      shutter.add(gray, sequence.exposures);
+    }
+    if (sequence.exposures > 1) shutter.close(gray);
+    const camera::CameraModel camera(options.camera, options.camera.lens_angle_rad(truth.mark_angle_deg),
+                                     options.refractive_index);
+    const Eigen::Vector2i size = camera.image_size_px();
+    const auto seen = tracker->track({gray.data(), size.x(), size.y(), size.x()}, camera, i * 33'333'333LL);
+    for (std::size_t m = 0; m < seen.size(); ++m) {
+      if (!seen[m].is_tracked()) continue;
+      ++tracked;
+      const geometry::Vector6d error =
+          geometry::log(seen[m].camera_from_marker.inverse() * truth.markers[m].camera_from_marker);
+      EXPECT_LT(geometry::deg_from_rad(error.tail<3>().norm()), 5);
+      EXPECT_LT(error.head<3>().norm(), 1);
+      squares += error.dot(seen[m].covariance.inverse() * error) / 6;
+    }
+  }
+  EXPECT_GE(tracked, 2 * kFrames - 1);
+  std::printf("%s: %d of %d, normalised error %.2f\n", sequence.name, tracked, 2 * kFrames,
+              squares / tracked);
+  EXPECT_LT(squares / tracked, 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Drawn, Sequences,
+                         ::testing::Values(Sequence{"saline", 21, 2.89, 1.3345, false, 1},
+                                           Sequence{"air", 22, 4, 1, false, 1},
+                                           Sequence{"water720p", 23, 4, 1.333, true, 1},
+                                           Sequence{"small720p", 24, 2.2, 1.3345, true, 1},
+                                           Sequence{"longShutter", 25, 4, 1.3345, true, 5}),
+                         [](const auto& sequence) { return std::string(sequence.param.name); });
+
+}  // namespace
+}  // namespace arthronaut::markers
