@@ -71,6 +71,9 @@ void BoneRegistration::clear() {
   if (marker_has_moved) {
     chosen_.reset();
     status_.entry_in_force.reset();
+    auto history = std::make_shared<std::vector<RegistrationEntry>>(*status_.history);
+    for (RegistrationEntry& entry : *history) entry.is_void = true;
+    status_.history = std::move(history);
   }
   status_.is_chosen = false;
   judge();
@@ -108,7 +111,7 @@ void BoneRegistration::step_history(int by) {
   if (count == 0) return;
   const std::size_t now = status_.entry_in_force.value_or(count);
   const std::size_t next = by < 0 ? (now > 0 ? now - 1 : 0) : std::min(now + 1, count - 1);
-  if (status_.entry_in_force == next) return;
+  if (status_.entry_in_force == next || (*status_.history)[next].is_void) return;
   put_in_force(next);
   status_.is_chosen = next + 1 < count;
 }

@@ -37,6 +37,7 @@ struct RegistrationEntry {
   registration::OnlineState state = registration::OnlineState::Candidate;
   double length_mm = 0;  // of the strokes it was fitted to
   RegistrationPtr registration;
+  bool is_void = false;  // the world marker has moved since: it can't be taken again
 };
 
 struct RegistrationStatus {

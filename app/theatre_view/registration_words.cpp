@@ -62,7 +62,7 @@ std::string missing_of(const RegistrationStatus& status) {
 
 std::vector<SignedText> numbers_of(const RegistrationStatus& status) {
   const registration::RegistrationSummary* pose = pose_of(status);
-  if (pose == nullptr) return {};
+  if (pose == nullptr || !status.alarm.empty()) return {};  // an alarm belies them
   const double error_mm = pose->predicted_tre_mm;
   const bool runs_along = status.online != nullptr && pose == &status.online->registration;
   std::vector<SignedText> rows;
@@ -156,6 +156,10 @@ std::vector<SignedText> history_rows(const RegistrationStatus& status) {
                        : widgets::plus_minus(entry.registration->predicted_tre_mm) + " mm, fit " +
                              mm(entry.registration->rms_mm, 1) +
                              (entry.state == OnlineState::Verified ? ", verified" : "");
+    if (entry.is_void) {
+      row.sign = Sign::Quiet;
+      row.text = "the marker has moved since";
+    }
     rows.push_back(row);
   }
   return rows;

@@ -96,13 +96,13 @@ TouchCheck::Last TouchCheck::last() const {
 
 std::string TouchCheck::alarm() const {
   if (control_violations_ >= kViolationsToAlarm)
-    return "the control point has moved by " + tenths(control_shift_mm_) + " mm";
+    return "The control point has moved by " + tenths(control_shift_mm_) + " mm";
   const auto off = std::count_if(residuals_mm_.begin(), residuals_mm_.end(), [](double residual_mm) {
     return std::abs(residual_mm) > registration::OnlineOptions{}.max_touch_error_mm;
   });
   if (off >= kViolationsToAlarm) return std::to_string(off) + " touches lie off the bone";
   return off + control_violations_ >= kViolationsToAlarm
-             ? "the control point has moved by " + tenths(control_shift_mm_) +
+             ? "The control point has moved by " + tenths(control_shift_mm_) +
                    " mm and a touch lies off the bone"
              : "";
 }

@@ -55,7 +55,7 @@ class TouchCheck {
   [[nodiscard]] const std::vector<double>& residuals_mm() const { return residuals_mm_; }
   [[nodiscard]] std::size_t touch_count() const { return touches_mm_.size(); }
   [[nodiscard]] Last last() const;
-  // "the control point has moved by 2.1 mm", "3 touches lie off the bone": two violations; empty else.
+  // "The control point has moved by 2.1 mm", "3 touches lie off the bone": two violations; empty else.
   [[nodiscard]] std::string alarm() const;
 
  private:

@@ -110,7 +110,10 @@ TEST_F(BoneRegistrationTest, ABumpedMarkerTakesGuidanceAway) {
   status = bone_.status();
   EXPECT_EQ(status.in_force, nullptr);
   EXPECT_EQ(status.alarm, "");
-  EXPECT_FALSE(status.history->empty()) << "its numbers are kept";
+  ASSERT_FALSE(status.history->empty()) << "its numbers are kept";
+  EXPECT_TRUE(status.history->back().is_void);
+  bone_.step_history(-1);
+  EXPECT_EQ(bone_.status().in_force, nullptr) << "it can't be taken again";
 }
 
 // Touches on the bone that are not used in the fit verify it; their distance is the one that is shown large.

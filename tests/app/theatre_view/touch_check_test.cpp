@@ -75,7 +75,7 @@ TEST(TouchCheck, AControlPointTellsABumpedMarker) {
   check.touch_control_point({3, 4, 7.1});
   EXPECT_EQ(check.alarm(), "");
   check.touch_control_point({3, 4, 7.2});
-  EXPECT_EQ(check.alarm(), "the control point has moved by 2.2 mm");
+  EXPECT_EQ(check.alarm(), "The control point has moved by 2.2 mm");
   check.touch_control_point({3, 4, 5.1});
   EXPECT_EQ(check.alarm(), "");
 }
