@@ -155,7 +155,7 @@ SideVerdict judge_side(const PreparedBone::Data& bone, const strokes::Curves& cu
                        const RegistrationOptions& options, const SearchOutcome& found) {
   // A few strokes can't give a clear lead: there, less of one is telling enough. The own side has to lead by more, since a
   // bone that is much like its mirror image fits the wrong way round by chance.
-  constexpr double kOtherLead = 3, kOtherLeadOfEach = 0.05, kOwnLead = 6, kOwnLeadOfEach = 0.07;
+  constexpr double kOtherLead = 3, kOtherLeadOfEach = 0.05, kOwnLead = 8, kOwnLeadOfEach = 0.1;
   const int rounds = found.summary.reliable ? 2 : 3;  // to name the right reason is worth a little more
   const SearchOutcome image = search_and_summarise(bone, mirrored(curves), options, rounds);
   const double image_lead = (found.cost - image.cost) * image.measurements;

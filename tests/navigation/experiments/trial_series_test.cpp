@@ -1,0 +1,55 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "navigation/experiments/trial_series.h"
+#include "planning/bones/mesh_file.h"
+#include "planning/files/json_document.h"
+#include "planning/geometry/error.h"
+#include "planning/phantom/phantom_knee.h"
+
+namespace arthronaut::experiments {
+
+// What is written is all that another program needs: the truth takes the curves back onto the bone that lies beside them.
+// Dry tips are off by 0.1 mm white and 0.1 mm slow noise in each coordinate, 0.25 mm in all.
+TEST(TrialSeries, WritesTrialsThatOtherProgramsCanRun) {
+  const auto knee = phantom::make_phantom_knee();
+  TrialSeriesOptions options;
+  options.area_center_mm = knee.femoral_tunnel.entry_mm;
+  const TrialSeries series(knee.femur.mesh, options);
+  const auto folder = std::filesystem::path(testing::TempDir()) / "trials";
+  std::filesystem::remove_all(folder);
+  write_trials(folder, series, 2);
+  const geometry::Surface surface(bones::read_mesh(folder / "bone.ply"));
+  for (const std::string name : {"trial_0", "trial_1"}) {
+    const auto curves = strokes::read_curves_file(folder / (name + ".csv"));
+    const auto truth = files::read_json(folder / (name + ".json"), "arthronaut.trial", 1);
+    const auto bone_from_marker = truth.rigid_transform("marker_from_bone").inverse();
+    EXPECT_LT((truth.vector3("target_mm") - series.target_mm()).norm(), 1e-6);
+    ASSERT_GT(curves.size(), 1000u);
+    for (const strokes::CurvePoint& point : curves) {
+      ASSERT_LT(std::abs(surface.signed_distance_mm(bone_from_marker * point.position_mm)), 1.0);
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "trial_2.json"));
+}
+
+// The same number gives the same trial, another number another one.
+TEST(TrialSeries, IsDeterministic) {
+  const auto knee = phantom::make_phantom_knee();
+  TrialSeriesOptions options;
+  options.area_center_mm = knee.femoral_tunnel.entry_mm;
+  const TrialSeries series(knee.femur.mesh, options);
+  EXPECT_EQ(series.make(3).curves.back().position_mm, series.make(3).curves.back().position_mm);
+  EXPECT_NE(series.make(3).curves.back().position_mm, series.make(4).curves.back().position_mm);
+}
+
+// A ball has no notch to digitise.
+TEST(TrialSeries, RefusesABoneWithoutNotch) {
+  geometry::TriangleMesh octahedron;
+  octahedron.vertices_mm = {{30, 0, 0}, {-30, 0, 0}, {0, 30, 0}, {0, -30, 0}, {0, 0, 30}, {0, 0, -30}};
+  octahedron.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  EXPECT_THROW(TrialSeries(octahedron, {}), InvalidInput);
+}
+
+}  // namespace arthronaut::experiments
