@@ -52,6 +52,13 @@ void explain(TheatreDisplay& display, const OperationStatus& status,
       display.detail = "Plan the tunnel of this bone first";
       break;
     case GuidanceState::NoRegistration:
+      // Nothing can be touched while the marker is lost: that comes first.
+      if (!result.camera_from_world.is_valid) {
+        display.headline = "Bone marker lost";
+        if (const auto* marker = options.tools.find_world_marker(options.bone))
+          display.detail = reason_of_marker(result, marker->marker_id);
+        break;
+      }
       display.headline = "Not registered";
       display.detail =
           status.is_registering ? "Registering now" : "Touch the bone with the probe, then register";

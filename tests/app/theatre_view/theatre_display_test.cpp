@@ -153,6 +153,19 @@ TEST(TheatreDisplay, TheLayoutFollowsWhatIsDone) {
   EXPECT_EQ(layout_of(&status, kLongAgo), TheatreLayout::Guide);
 }
 
+// Before there is a registration the lost marker is what keeps one from being made, so it is said first.
+TEST(TheatreDisplay, ALostMarkerIsSaidBeforeAMissingRegistration) {
+  const auto display = display_after([](OperationStatus&, LiveFrame& live) {
+    live.result.guidance.state = GuidanceState::NoRegistration;
+    live.result.camera_from_world.is_valid = false;
+    live.result.markers.resize(1);
+    live.result.markers[0].id = 0;
+    live.result.markers[0].state = markers::MarkerState::Covered;
+  });
+  EXPECT_EQ(display.headline, "Bone marker lost");
+  EXPECT_EQ(display.detail, std::string(markers::to_text(markers::MarkerState::Covered)));
+}
+
 // The reason names what the tracker said about the marker that is missing.
 TEST(TheatreDisplay, NamesTheReasonOfTheMarker) {
   const TheatreDisplay display = display_after([](OperationStatus&, LiveFrame& live) {
