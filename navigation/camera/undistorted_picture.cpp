@@ -28,7 +28,8 @@ void UndistortedPicture::turn(const CameraModel& camera) {
   principal_point_px_ = camera.principal_point_px();
   circle_px_ = camera.boundary().center_px;
   const Eigen::Vector2f center = principal_point_px_.cast<float>(), circle = circle_px_.cast<float>();
-  const float radius = camera.boundary().radius_px > 0 ? static_cast<float>(camera.boundary().radius_px) : 1e9F;
+  const float radius =
+      camera.boundary().radius_px > 0 ? static_cast<float>(camera.boundary().radius_px) : 1e9F;
   for (std::size_t i = 0; i < map_px_.size(); i += 2) {
     const float x = arms_px_[i] + center.x(), y = arms_px_[i + 1] + center.y();
     const float dx = x - circle.x(), dy = y - circle.y();
@@ -43,7 +44,8 @@ const std::vector<std::uint8_t>& UndistortedPicture::draw(const Frame& frame, co
                                                           int size_px) {
   const bool is_new = view_ != view || size_px_ != size_px;
   if (is_new) enlarge_table(view, size_px);
-  if (is_new || principal_point_px_ != camera.principal_point_px() || circle_px_ != camera.boundary().center_px)
+  if (is_new || principal_point_px_ != camera.principal_point_px() ||
+      circle_px_ != camera.boundary().center_px)
     turn(camera);
   const cv::Mat raw(frame.height, frame.width, CV_8UC3, const_cast<std::uint8_t*>(frame.bgr.data()));
   const cv::Mat map(size_px, size_px, CV_32FC2, map_px_.data());

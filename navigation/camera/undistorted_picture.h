@@ -1,4 +1,5 @@
-// The undistorted view of a frame, made on the CPU: for machines whose graphics can't, and to test those that can.
+// The undistorted view of a frame, made on the CPU: for machines whose graphics can't, and to test those that
+// can.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +13,9 @@ namespace arthronaut::camera {
 
 class UndistortedPicture {
  public:
-  // The square of the view as size_px x size_px BGR pixels, rows packed; black outside the round view. `camera` must fit
-  // the view. Valid until the next call. Memory is taken when view or size change, not from frame to frame.
+  // The square of the view as size_px x size_px BGR pixels, rows packed; black outside the round view.
+  // `camera` must fit the view. Valid until the next call. Memory is taken when view or size change, not from
+  // frame to frame.
   const std::vector<std::uint8_t>& draw(const Frame& frame, const CameraModel& camera,
                                         const std::shared_ptr<const UndistortedView>& view, int size_px);
 

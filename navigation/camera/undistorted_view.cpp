@@ -59,7 +59,8 @@ std::optional<Eigen::Vector2d> UndistortedView::view_from_pixel(const CameraMode
   return *tangent / half_extent_;
 }
 
-Eigen::Vector2d UndistortedView::pixel_from_view(const CameraModel& camera, const Eigen::Vector2d& view) const {
+Eigen::Vector2d UndistortedView::pixel_from_view(const CameraModel& camera,
+                                                 const Eigen::Vector2d& view) const {
   const Eigen::Array2d place = ((view.array() + 1) / 2).max(0.0).min(1.0) * (kNodes - 1);
   const Eigen::Array2i cell = place.cast<int>().min(kNodes - 2);
   const Eigen::Array2d share = place - cell.cast<double>();

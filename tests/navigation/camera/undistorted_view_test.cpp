@@ -63,7 +63,8 @@ TEST(UndistortedView, OneTableServesEveryLensAngle) {
   }
 }
 
-// What is straight in space is straight on the screen, to less than half a pixel; places of the overlay are exact.
+// What is straight in space is straight on the screen, to less than half a pixel; places of the overlay are
+// exact.
 TEST(UndistortedView, StraightStaysStraight) {
   const CameraModel camera(scope(), 0.7, kSalineIndex);
   const UndistortedView view(camera);
@@ -136,8 +137,8 @@ Frame picture_of_thread(const CameraModel& camera, double distance_from_axis) {
   return frame;
 }
 
-// The picture made on the CPU: the thread's middle, row by row, lies on one straight line where the model says, after
-// the lens was turned as well; what is outside the round view is black.
+// The picture made on the CPU: the thread's middle, row by row, lies on one straight line where the model
+// says, after the lens was turned as well; what is outside the round view is black.
 TEST(UndistortedPicture, StraightensAThread) {
   UndistortedPicture picture;
   const auto view = std::make_shared<UndistortedView>(CameraModel(scope(), 0, kSalineIndex));
@@ -152,8 +153,11 @@ TEST(UndistortedPicture, StraightensAThread) {
     for (int row = 250; row < 650; row += 10) {
       double weight = 0, sum = 0;
       const double expected =
-          ((off_axis - 0.2 * place_of(0, row).y() * view->half_extent()) / view->half_extent() + 1) / 2 * kSize_px - 0.5;
-      for (int column = static_cast<int>(expected) - 30; column <= static_cast<int>(expected) + 30; ++column) {
+          ((off_axis - 0.2 * place_of(0, row).y() * view->half_extent()) / view->half_extent() + 1) / 2 *
+              kSize_px -
+          0.5;
+      for (int column = static_cast<int>(expected) - 30; column <= static_cast<int>(expected) + 30;
+           ++column) {
         const double dark = 200.0 - bgr[3 * static_cast<std::size_t>(row * kSize_px + column)];
         weight += dark;
         sum += dark * column;
