@@ -124,12 +124,12 @@ void CalibrateStation::draw_result(const widgets::Ui& ui, const widgets::Rect& a
   }
   draw_band(ui, verdict, display_.verdict);
   std::vector<Row> against;
-  for (const std::string& reason : display_.reasons) against.push_back({Sign::Bad, "", reason});
-  for (const std::string& note : display_.notes) against.push_back({Sign::Caution, "", note});
+  for (const std::string& reason : display_.reasons) against.push_back({Sign::Bad, "Reason", reason});
+  for (const std::string& note : display_.notes) against.push_back({Sign::Caution, "Note", note});
   widgets::Rect right = numbers;
   const widgets::Rect form = right.cut_bottom(ui.theme.px(230), gap);
   if (!against.empty())
-    draw_rows(ui, "setup.reasons", right.cut_bottom(right.height * 0.45F, gap),
+    draw_rows(ui, "setup.reasons", right.cut_bottom(right.height * 0.38F, gap),
               display_.reasons.empty() ? "Worth knowing" : "Why refused", against);
   draw_rows(ui, "setup.result", right, "Result, \u00B1 one sigma", display_.result);
   draw_form(ui, form);

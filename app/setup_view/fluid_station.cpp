@@ -97,7 +97,7 @@ void FluidStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   draw_band(ui, verdict, display_.verdict.headline.empty() ? none : display_.verdict);
   draw_models(ui, rest.cut_top(rest.height * 0.5F, gap));
   std::vector<Row> rows = display_.numbers;
-  for (const std::string& reason : display_.reasons) rows.push_back({widgets::Sign::Bad, "", reason});
+  for (const std::string& reason : display_.reasons) rows.push_back({widgets::Sign::Bad, "Reason", reason});
   draw_rows(ui, "setup.numbers", rest, display_.reasons.empty() ? "Numbers" : "Why not", rows);
   ui.log.note_state("setup_band", run_ != nullptr ? display_.band.headline : "no source");
   ui.log.note_state("setup_verdict", display_.verdict.headline);
