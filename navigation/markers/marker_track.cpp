@@ -14,6 +14,8 @@ constexpr double kMinShare = 0.3;  // of the edges crossed along x, and along y
 constexpr double kMinMeanShare = 0.42;
 constexpr double kMaxScale = 8;  // residuals / their predicted sigmas
 constexpr double kMaxRmsPx = 1.2;
+// The corners that single edges make under a dense fit lie no farther from it, or it fits something else.
+constexpr double kMaxDenseRmsPx = 1.1;
 // A marker that comes from nowhere must be seen nearly whole: there is no motion to agree with.
 constexpr double kMinNewShare = 0.7;
 // Motions over the exposure that are tried when none is known.
@@ -99,7 +101,7 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
         return true;
       }
       observation.state = edges_motion_px > kSmearedPx ? MarkerState::Blur : MarkerState::Covered;
-      motion_.follow(observation.camera_from_marker, frame.timestamp_ns);
+      go_on_from(fit, frame.timestamp_ns);
       return false;
     }
   }
@@ -251,9 +253,13 @@ void MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, c
   observation.corners_px = corners.corners_px;
   observation.rms_px = corners.rms_px;
   std::optional<SquarePose> other;
+  bool is_contradicted = false;
   observation.ambiguity_ratio = kNoOtherPose;
   if (const auto poses = solve_square(frame.camera, corners.corners_px, marker_.size_mm)) {
     other = poses->other;
+    // The edges settled on one tilt, the corners that they make speak for the other one.
+    is_contradicted = geometry::rotation_angle_rad(fit.camera_from_marker.rotation.conjugate() *
+                                                   poses->best.camera_from_marker.rotation) > kHarmlessFlipRad;
     if (other) {
       observation.ambiguity_ratio =
           std::min(kNoOtherPose, other->rms_px / std::max(observation.rms_px, kCornerSigmaPx));
@@ -261,6 +267,7 @@ void MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, c
     if (is_found) observation.covariance += square_covariance(poses->best, kFoundCornerSigmaPx);
   }
   observation.state = judge(fit, observation, other, is_found);
+  if (observation.is_tracked() && is_contradicted) observation.state = MarkerState::Doubtful;
   if (observation.is_tracked() &&
       may_be_tilted_back(frame.camera, marker_.size_mm, samples_, measurements_, fit, corners.corners_px,
                          frame.smear.bloom, is_inlier_)) {
@@ -273,7 +280,7 @@ void MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, c
   if (is_found && observation.is_tracked() &&
       picture.motion.head<3>().norm() * cell * cells_ > kMaxNewMotionPx * marker_.size_mm) {
     observation.state = MarkerState::Blur;
-    motion_.follow(observation.camera_from_marker, frame.timestamp_ns);
+    go_on_from(fit, frame.timestamp_ns);
   }
 }
 
@@ -307,11 +314,21 @@ Vector6d MarkerTrack::likely_motion(const TrackedFrame& frame, const RigidTransf
   return best;
 }
 
+void MarkerTrack::go_on_from(const EdgePose& fit, std::int64_t timestamp_ns) {
+  const double misfit = std::max(1.0, fit.scale) / (fit.share[0] + fit.share[1]);
+  if (first_sight_.timestamp_ns == timestamp_ns && misfit >= first_sight_.misfit) return;
+  first_sight_ = {timestamp_ns, misfit};
+  motion_.follow(fit.camera_from_marker, timestamp_ns);
+}
+
 MarkerState MarkerTrack::judge(const PhotogeometricPose& fit, const MarkerObservation& observation) const {
   if (facing(fit.pose.camera_from_marker) < kMinFacing) return MarkerState::TooOblique;
   const double sigma_mm = std::sqrt(observation.covariance.topLeftCorner<3, 3>().trace());
   const double sigma_rad = std::sqrt(observation.covariance.bottomRightCorner<3, 3>().trace());
-  if (!fit.explains_picture() || !(sigma_mm < kMaxSigmaMm) || !(sigma_rad < kMaxSigmaRad))
+  // Exactly 0: no side of the square was seen by edges, so nothing confirms the corners.
+  const bool is_confirmed = observation.rms_px > 0 && observation.rms_px < kMaxDenseRmsPx;
+  if (!fit.explains_picture() || !is_confirmed ||
+      !(sigma_mm < kMaxSigmaMm) || !(sigma_rad < kMaxSigmaRad))
     return MarkerState::Doubtful;
   return MarkerState::Tracked;
 }

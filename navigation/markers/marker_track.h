@@ -67,6 +67,9 @@ class MarkerTrack {
   void report_edges(const TrackedFrame& frame, const EdgePose& fit, const Smear& picture, bool is_found,
                     MarkerObservation& observation);
   void report_dense(const TrackedFrame& frame, const PhotogeometricPose& fit, MarkerObservation& observation);
+  // A first sight that is good enough to go on from, not to stand for; of several in one frame, the one whose edges
+  // agree best.
+  void go_on_from(const EdgePose& fit, std::int64_t timestamp_ns);
   [[nodiscard]] MarkerState judge(const EdgePose& fit, const MarkerObservation& observation,
                                   const std::optional<SquarePose>& other, bool is_found) const;
   [[nodiscard]] MarkerState judge(const PhotogeometricPose& fit, const MarkerObservation& observation) const;
@@ -80,6 +83,10 @@ class MarkerTrack {
   std::vector<EdgeMeasurement> measurements_;
   std::vector<char> is_inlier_;
   MarkerMotion motion_;
+  struct FirstSight {
+    std::int64_t timestamp_ns = -1;
+    double misfit = 0;
+  } first_sight_;
 };
 
 }  // namespace arthronaut::markers
