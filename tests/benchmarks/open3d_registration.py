@@ -102,17 +102,17 @@ def run(folder):
             seconds.append(time.process_time() - start)
             errors.append(target_error_mm(document, found))
         right = [error for error in errors if error < SUCCESS_MM]
-        median = f"{statistics.median(right):.3f}" if right else "-"
-        print(f"| {document['noise']} | {name} | {len(right)} of {len(errors)} | {median} | "
-              f"{1e3 * statistics.median(seconds):.0f} |", flush=True)
+        of_the_right = f"{statistics.median(right):.2f}" if right else "none"
+        print(f"| {document['noise']} | {name} | {len(right)} of {len(errors)} | {statistics.median(errors):.2f} | "
+              f"{of_the_right} | {1e3 * statistics.median(seconds):.0f} |", flush=True)
 
 
 def main():
     if len(sys.argv) < 2:
         sys.exit("usage: open3d_registration.py FOLDER...")
     o3d.utility.random.seed(1)
-    print("| noise | method | target within 2 mm | target error of those, median mm | ms of processor time, median |")
-    print("|---|---|---|---|---|")
+    print("| noise | method | success | median error, mm | of the successes | ms, median |")
+    print("|---|---|---|---|---|---|")
     for folder in sys.argv[1:]:
         run(pathlib.Path(folder))
 
