@@ -192,8 +192,11 @@ int OnlineRegistration::State::agreement_count() const {
 void OnlineRegistration::State::check_side() {
   const bool is_due = side_checked_mm == 0 || result.length_mm > 1.5 * side_checked_mm || side != SideVerdict::Own;
   if (is_due && agreement_count() >= kAgreeingSolutions && result.registration.reliable) {
-    const SearchOutcome found{.summary = result.registration, .cost = pool.best().cost};
-    side = judge_side(bone->data(), curves_in_use(), registration_options(), found);
+    // Costs compare only between searches of the same kind, over the same points.
+    constexpr int kRounds = 2;
+    const strokes::Curves curves = curves_in_use();
+    const SearchOutcome own = search_and_summarise(bone->data(), curves, registration_options(), kRounds);
+    side = judge_side(bone->data(), curves, registration_options(), own);
     side_checked_mm = result.length_mm;
   }
   if (side == SideVerdict::Own || !result.registration.has_pose) return;

@@ -111,8 +111,8 @@ class OnlineRegistration {
   void clear();
 
   // Solves again when enough was drawn or anything changed; otherwise returns what is known. About 6 ms once a candidate is
-  // there, more while collecting, and some 100 ms when the side is checked: before the first confirmation, and again when
-  // half as much again was drawn.
+  // there, more while collecting, and some 200 ms when the side is checked: before the first confirmation, again when half
+  // as much again was drawn, and with each update while the side is in doubt.
   const OnlineResult& update();
 
   [[nodiscard]] const OnlineResult& result() const;
