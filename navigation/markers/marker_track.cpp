@@ -15,7 +15,7 @@ constexpr double kMinMeanShare = 0.42;
 constexpr double kMaxScale = 8;  // residuals / their predicted sigmas
 constexpr double kMaxRmsPx = 1.2;
 // The corners that single edges make under a dense fit lie no farther from it, or it fits something else.
-constexpr double kMaxDenseRmsPx = 1.1;
+constexpr double kMaxDenseRmsPx = 1.1, kMaxLoneRmsPx = 0.5;
 // A marker that comes from nowhere must be seen nearly whole: there is no motion to agree with.
 constexpr double kMinNewShare = 0.7;
 // Motions over the exposure that are tried when none is known.
@@ -85,6 +85,9 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
         dense = moving;
     }
     if (dense.is_usable()) report_dense(frame, dense, observation);
+    // With no edge pose to agree with, the corners have to be its own all the more.
+    if (!fit.converged && observation.is_tracked() && observation.rms_px > kMaxLoneRmsPx)
+      observation.state = MarkerState::Doubtful;
     const bool is_sharp =
         dense.explains_picture() && dense.pose.velocity.head<3>().norm() * px_per_mm < kSmearedPx;
     if (observation.is_tracked() && !(is_sharp && fit.converged)) return true;

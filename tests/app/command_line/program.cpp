@@ -32,12 +32,14 @@ std::string contents_of(const fs::path& file) {
     const rlimit limit{bytes, bytes};
     ::setrlimit(RLIMIT_FSIZE, &limit);
   }
+  // Opened before rights are given up: the program may lie in a home that is closed to others.
+  const int program = ::open(ARTHRONAUT_PROGRAM, O_RDONLY | O_CLOEXEC);
   constexpr unsigned kNobody = 65534;
   if (limits.as_nobody && ::geteuid() == 0 && (::setgid(kNobody) != 0 || ::setuid(kNobody) != 0)) ::_exit(126);
   std::vector<char*> words{const_cast<char*>(ARTHRONAUT_PROGRAM)};
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
-  ::execv(ARTHRONAUT_PROGRAM, words.data());
+  ::fexecve(program, words.data(), environ);
   ::_exit(127);
 }
 
