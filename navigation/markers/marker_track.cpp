@@ -84,10 +84,15 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
       if (!dense.explains_picture() || (moving.explains_picture() && moving.noise_grey < dense.noise_grey))
         dense = moving;
     }
-    if (dense.is_usable()) report_dense(frame, dense, observation);
     // With no edge pose to agree with, the corners have to be its own all the more.
-    if (!fit.converged && observation.is_tracked() && observation.rms_px > kMaxLoneRmsPx)
-      observation.state = MarkerState::Doubtful;
+    if (dense.is_usable())
+      report_dense(frame, dense, fit.converged ? kMaxDenseRmsPx : kMaxLoneRmsPx, observation);
+    if (observation.is_tracked()) {
+      frame.smear.gamma += 0.1 * (dense.gamma - frame.smear.gamma);
+      learn_exposure(
+          frame.smear.exposure_share * motion_.twist_to(dense.pose.camera_from_marker, frame.timestamp_ns),
+          dense.pose.velocity, px_per_mm, frame.smear);
+    }
     const bool is_sharp =
         dense.explains_picture() && dense.pose.velocity.head<3>().norm() * px_per_mm < kSmearedPx;
     if (observation.is_tracked() && !(is_sharp && fit.converged)) return true;
@@ -104,7 +109,7 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
         return true;
       }
       observation.state = edges_motion_px > kSmearedPx ? MarkerState::Blur : MarkerState::Covered;
-      go_on_from(fit, frame.timestamp_ns);
+      go_on_from(fit);
       return false;
     }
   }
@@ -192,7 +197,7 @@ PhotogeometricPose MarkerTrack::try_motions(const TrackedFrame& frame, const Rig
   return fit_densely(frame, best.pose.camera_from_marker, best.pose.velocity, {.max_way_cells = 2});
 }
 
-void MarkerTrack::report_dense(const TrackedFrame& frame, const PhotogeometricPose& fit,
+void MarkerTrack::report_dense(const TrackedFrame& frame, const PhotogeometricPose& fit, double max_rms_px,
                                MarkerObservation& observation) {
   observation.camera_from_marker = fit.pose.camera_from_marker;
   observation.covariance = fit.covariance;
@@ -216,14 +221,7 @@ void MarkerTrack::report_dense(const TrackedFrame& frame, const PhotogeometricPo
   observation.corners_px = corners.corners_px;
   observation.rms_px = corners.rms_px;
   observation.ambiguity_ratio = kNoOtherPose;
-  observation.state = judge(fit, observation);
-  if (observation.is_tracked()) {
-    frame.smear.gamma += 0.1 * (fit.gamma - frame.smear.gamma);
-    const double px_per_mm = frame.camera.central_focal_px() / fit.pose.camera_from_marker.translation_mm.z();
-    learn_exposure(
-        frame.smear.exposure_share * motion_.twist_to(fit.pose.camera_from_marker, frame.timestamp_ns),
-        fit.pose.velocity, px_per_mm, frame.smear);
-  }
+  observation.state = judge(fit, max_rms_px, observation);
   // The other pose that has nearly these corners must be told apart by how the picture looks there.
   Corners exact;
   const auto corners_mm = square_corners_mm(marker_.size_mm);
@@ -244,7 +242,6 @@ void MarkerTrack::report_dense(const TrackedFrame& frame, const PhotogeometricPo
   if (geometry::rotation_angle_rad(fit.pose.camera_from_marker.rotation.conjugate() *
                                    other.pose.camera_from_marker.rotation) > kHarmlessFlipRad)
     observation.state = MarkerState::Ambiguous;
-  if (!observation.is_tracked()) return;
 }
 
 void MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, const Smear& picture,
@@ -283,7 +280,7 @@ void MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, c
   if (is_found && observation.is_tracked() &&
       picture.motion.head<3>().norm() * cell * cells_ > kMaxNewMotionPx * marker_.size_mm) {
     observation.state = MarkerState::Blur;
-    go_on_from(fit, frame.timestamp_ns);
+    go_on_from(fit);
   }
 }
 
@@ -317,21 +314,19 @@ Vector6d MarkerTrack::likely_motion(const TrackedFrame& frame, const RigidTransf
   return best;
 }
 
-void MarkerTrack::go_on_from(const EdgePose& fit, std::int64_t timestamp_ns) {
+void MarkerTrack::go_on_from(const EdgePose& fit) {
   const double misfit = std::max(1.0, fit.scale) / (fit.share[0] + fit.share[1]);
-  if (first_sight_.timestamp_ns == timestamp_ns && misfit >= first_sight_.misfit) return;
-  first_sight_ = {timestamp_ns, misfit};
-  motion_.follow(fit.camera_from_marker, timestamp_ns);
+  if (!guess_ || misfit < guess_->misfit) guess_ = Guess{fit.camera_from_marker, misfit};
 }
 
-MarkerState MarkerTrack::judge(const PhotogeometricPose& fit, const MarkerObservation& observation) const {
+MarkerState MarkerTrack::judge(const PhotogeometricPose& fit, double max_rms_px,
+                               const MarkerObservation& observation) const {
   if (facing(fit.pose.camera_from_marker) < kMinFacing) return MarkerState::TooOblique;
   const double sigma_mm = std::sqrt(observation.covariance.topLeftCorner<3, 3>().trace());
   const double sigma_rad = std::sqrt(observation.covariance.bottomRightCorner<3, 3>().trace());
   // Exactly 0: no side of the square was seen by edges, so nothing confirms the corners.
-  const bool is_confirmed = observation.rms_px > 0 && observation.rms_px < kMaxDenseRmsPx;
-  if (!fit.explains_picture() || !is_confirmed ||
-      !(sigma_mm < kMaxSigmaMm) || !(sigma_rad < kMaxSigmaRad))
+  const bool is_confirmed = observation.rms_px > 0 && observation.rms_px < max_rms_px;
+  if (!fit.explains_picture() || !is_confirmed || !(sigma_mm < kMaxSigmaMm) || !(sigma_rad < kMaxSigmaRad))
     return MarkerState::Doubtful;
   return MarkerState::Tracked;
 }
@@ -378,12 +373,16 @@ MarkerState MarkerTrack::reason_of_loss(const camera::CameraModel& camera, const
 void MarkerTrack::follow(const MarkerObservation& observation, std::int64_t timestamp_ns) {
   const bool is_measured = observation.is_tracked() || observation.state == MarkerState::Ambiguous ||
                            observation.state == MarkerState::Duplicate;
-  if (!is_measured) return;
-  motion_.follow(observation.camera_from_marker, timestamp_ns);
+  if (is_measured)
+    motion_.follow(observation.camera_from_marker, timestamp_ns);
+  else if (guess_)
+    motion_.follow(guess_->camera_from_marker, timestamp_ns);
+  guess_.reset();
 }
 
 void MarkerTrack::forget() {
   motion_ = MarkerMotion();
+  guess_.reset();
   is_duplicate = false;
 }
 

@@ -66,13 +66,16 @@ class MarkerTrack {
   // one.
   void report_edges(const TrackedFrame& frame, const EdgePose& fit, const Smear& picture, bool is_found,
                     MarkerObservation& observation);
-  void report_dense(const TrackedFrame& frame, const PhotogeometricPose& fit, MarkerObservation& observation);
-  // A first sight that is good enough to go on from, not to stand for; of several in one frame, the one whose edges
+  void report_dense(const TrackedFrame& frame, const PhotogeometricPose& fit, double max_rms_px,
+                    MarkerObservation& observation);
+  // A pose that is good enough to go on from, not to stand for; of several in one frame, the one whose edges
   // agree best.
-  void go_on_from(const EdgePose& fit, std::int64_t timestamp_ns);
+  void go_on_from(const EdgePose& fit);
   [[nodiscard]] MarkerState judge(const EdgePose& fit, const MarkerObservation& observation,
                                   const std::optional<SquarePose>& other, bool is_found) const;
-  [[nodiscard]] MarkerState judge(const PhotogeometricPose& fit, const MarkerObservation& observation) const;
+  // max_rms_px: how far the corners that single edges make may lie from the fit.
+  [[nodiscard]] MarkerState judge(const PhotogeometricPose& fit, double max_rms_px,
+                                  const MarkerObservation& observation) const;
   [[nodiscard]] MarkerState reason_of_loss(const camera::CameraModel& camera,
                                            const geometry::RigidTransform& pose) const;
 
@@ -83,10 +86,11 @@ class MarkerTrack {
   std::vector<EdgeMeasurement> measurements_;
   std::vector<char> is_inlier_;
   MarkerMotion motion_;
-  struct FirstSight {
-    std::int64_t timestamp_ns = -1;
+  struct Guess {
+    geometry::RigidTransform camera_from_marker;
     double misfit = 0;
-  } first_sight_;
+  };
+  std::optional<Guess> guess_;  // of this frame, until it is final
 };
 
 }  // namespace arthronaut::markers
