@@ -87,6 +87,7 @@ void LensTracker::State::forget() {
   shape = {};
   track = {};
   has_circle = false;
+  last_circle = {};
   lost_frames = 0;
   jump_frames = 0;
 }

@@ -79,15 +79,6 @@ class Fit {
   double covered_sum_ = 0, bare_sum_ = 0;
 };
 
-// The small motion of the bone frame, about its origin, from one pose to another.
-geometry::Vector6d twist_between(const geometry::RigidTransform& from, const geometry::RigidTransform& to) {
-  const geometry::RigidTransform moved = to * from.inverse();
-  const Eigen::AngleAxisd turn(moved.rotation);
-  geometry::Vector6d twist;
-  twist << moved.translation_mm, turn.angle() * turn.axis();
-  return twist;
-}
-
 std::string formatted(const char* format, double first, double second) {
   char text[160];
   std::snprintf(text, sizeof text, format, first, second);
@@ -129,7 +120,7 @@ CoverFit fit_cover(const PreparedBone::Data& bone, const TouchedPoints& points, 
     if (curvature > 0 && is_inside) {
       result.thickness_mm += std::clamp(0.5 * (before - after) / (curvature * kStep_mm), -kStep_mm, kStep_mm);
       result.sigma_mm = 1 / std::sqrt(curvature);
-      result.drift_per_mm = twist_between(near[0].bone_from_marker, near[2].bone_from_marker) / (2 * kStep_mm);
+      result.drift_per_mm = geometry::log(near[2].bone_from_marker * near[0].bone_from_marker.inverse()) / (2 * kStep_mm);
       result.is_solved = result.sigma_mm < kMaxSigma_mm;
     }
   }

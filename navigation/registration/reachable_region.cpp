@@ -41,9 +41,9 @@ bool is_free_way(const CoarseDistanceField& field, const SurfaceSample& sample, 
 
 std::vector<bool> find_reachable_samples(const PreparedBone::Data& bone, const Eigen::Vector3d& entry_in_bone_mm) {
   const std::vector<SurfaceSample>& samples = bone.pairs.samples();
-  std::vector<bool> reachable(samples.size(), false);
   const geometry::SurfacePoint entry = bone.surface.closest_point(entry_in_bone_mm);
-  if ((entry.point_mm - entry_in_bone_mm).norm() > kMaxEntryDistance_mm) return reachable;
+  if ((entry.point_mm - entry_in_bone_mm).norm() > kMaxEntryDistance_mm) return {};
+  std::vector<bool> reachable(samples.size(), false);
   const std::vector<Eigen::Vector3f> directions = directions_about(entry.normal);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const SurfaceSample& sample = samples[i];

@@ -9,7 +9,7 @@
 namespace arthronaut::registration {
 
 // One for each sample of bone.pairs. Within 40 mm of the entry, facing a direction less than 80 degrees from the outward
-// normal there along which nothing of the bone stands in the way for 40 mm. All false when the entry is not on the bone.
+// normal there along which nothing of the bone stands in the way for 40 mm. Empty when the entry is not on the bone.
 [[nodiscard]] std::vector<bool> find_reachable_samples(const PreparedBone::Data& bone,
                                                        const Eigen::Vector3d& entry_in_bone_mm);
 

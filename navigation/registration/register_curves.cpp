@@ -55,6 +55,7 @@ std::vector<Hypothesis> neighbours_of(const geometry::RigidTransform& bone_from_
 std::string describe_reach(const PreparedBone::Data& bone, const std::vector<bool>& reachable,
                            const Eigen::Vector3d& touched_mm) {
   constexpr float kNear_mm = 12;
+  if (reachable.empty()) return "the planned entry is not on this bone: the whole bone was searched";
   for (std::size_t i = 0; i < reachable.size(); ++i) {
     const float away_mm = (bone.pairs.samples()[i].point_mm - touched_mm.cast<float>()).norm();
     if (reachable[i] && away_mm < kNear_mm) return "the strokes lie within reach of the planned entry";
@@ -99,7 +100,7 @@ SearchOutcome search_and_summarise(const PreparedBone::Data& bone, const strokes
   if (options.plan_entry_in_bone_mm) reachable = find_reachable_samples(bone, *options.plan_entry_in_bone_mm);
   for (int round = 0; round < max_rounds; ++round) {
     const std::uint64_t seed = options.seed * kMaxRounds + static_cast<std::uint64_t>(round);
-    const bool is_near_plan = round == 0 && options.plan_entry_in_bone_mm;
+    const bool is_near_plan = round == 0 && !reachable.empty();
     pool.add(search_globally(bone, oriented, points,
                              {.seed = seed,
                               .use_marker_prior = options.use_marker_prior,
