@@ -48,6 +48,7 @@ void BoneRegistration::add_tip(double time_s, const Eigen::Vector3d& tip_in_mark
 void BoneRegistration::take_back_stroke() {
   const std::lock_guard lock(mutex_);
   const int count = strokes_.take_back();
+  ++removals_;
   for (int i = 0; worker_ != nullptr && i < count; ++i) worker_->undo_stroke();
   publish_strokes(true);
 }
@@ -55,6 +56,7 @@ void BoneRegistration::take_back_stroke() {
 void BoneRegistration::leave_out(int curve, bool is_left_out) {
   const std::lock_guard lock(mutex_);
   strokes_.leave_out(curve, is_left_out);
+  ++removals_;
   if (worker_ != nullptr) worker_->exclude_stroke(curve, is_left_out);
   publish_strokes(true);
 }
@@ -67,6 +69,7 @@ void BoneRegistration::clear() {
   if (worker_ != nullptr) worker_->clear();
   status_.online.reset();
   first_curve_ = strokes_.next_curve();
+  ++removals_;
   best_tre_mm_ = std::numeric_limits<double>::infinity();
   if (marker_has_moved) {
     chosen_.reset();
@@ -172,14 +175,20 @@ void BoneRegistration::register_all(const std::function<bool()>& is_wanted) {
   registration::RegistrationOptions options;
   if (plan_) options.target_in_bone_mm = plan_->entry_mm;
   registration::RegistrationSummary found;
-  const strokes::Curves curves = strokes_in_use();
+  strokes::Curves curves;
+  int removals = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    curves = strokes_.in_use();
+    removals = removals_;
+  }
   try {
     found = registration::register_curves(*bone_.get(), curves, options);
   } catch (const std::exception& error) {  // the top of the caller's thread: the reason stands on the screen
     found.reasons = {error.what()};
   }
   const std::lock_guard lock(mutex_);
-  if (!is_wanted()) return;
+  if (!is_wanted() || removals_ != removals) return;
   status_.is_chosen = false;  // it was asked for just now
   best_tre_mm_ = found.reliable ? found.predicted_tre_mm : std::numeric_limits<double>::infinity();
   add_entry({"all points",

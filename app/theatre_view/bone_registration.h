@@ -78,7 +78,8 @@ class BoneRegistration {
   void step_history(int by);
 
   // Fits all strokes in use, from nothing; takes up to half a second, more while the bone is being made
-  // ready. Takes effect unless is_wanted, called afterwards, says no.
+  // ready. Takes effect unless is_wanted, called afterwards, says no, or strokes were cleared, taken back or
+  // left out meanwhile: then it would be of strokes that nobody sees any more.
   void register_all(const std::function<bool()>& is_wanted);
 
   [[nodiscard]] strokes::Curves strokes_in_use() const;
@@ -103,6 +104,7 @@ class BoneRegistration {
   RegistrationPtr chosen_;  // in force but for an alarm
   RegistrationStatus status_;
   int first_curve_ = 0;                                           // of the strokes since clear()
+  int removals_ = 0;  // how often strokes were cleared, taken back, left out or in
   double best_tre_mm_ = std::numeric_limits<double>::infinity();  // of those that took effect since
   std::unique_ptr<registration::RegistrationWorker> worker_;
 };

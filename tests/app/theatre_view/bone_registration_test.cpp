@@ -27,12 +27,15 @@ tunnels::Tunnel plan() {
 class BoneRegistrationTest : public ::testing::Test {
  protected:
   // As the frames bring the tip: the strokes of a trial, a gap between them.
-  void draw(const strokes::Curves& curves) {
+  void draw_on(BoneRegistration& bone, const strokes::Curves& curves) {
     for (const strokes::CurvePoint& point : curves) {
       time_s_ += last_curve_ == point.curve ? 1.0 / 60 : 1.0;
       last_curve_ = point.curve;
-      bone_.add_tip(time_s_, point.position_mm);
+      bone.add_tip(time_s_, point.position_mm);
     }
+  }
+  void draw(const strokes::Curves& curves) {
+    draw_on(bone_, curves);
     bone_.finish();
     (void)bone_.status();  // as every frame does
   }
@@ -156,6 +159,30 @@ TEST_F(BoneRegistrationTest, AStoppedRegistrationHasNoEffect) {
   bone_.register_all([] { return false; });
   EXPECT_EQ(bone_.status().in_force, before.in_force);
   EXPECT_EQ(bone_.status().history->size(), before.history->size());
+}
+
+// What was fitted to strokes that are gone when the fit is done must never show: clearing, taking back or
+// leaving out while the fit waits for its bone makes it void.
+TEST_F(BoneRegistrationTest, ARegistrationOfOldStrokesHasNoEffect) {
+  const std::vector<std::function<void(BoneRegistration&)>> changes{
+      [](BoneRegistration& bone) { bone.clear(); },
+      [](BoneRegistration& bone) { bone.take_back_stroke(); },
+      [](BoneRegistration& bone) { bone.leave_out(0, true); },
+      [](BoneRegistration&) {},  // nothing changes: it takes effect
+  };
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    BoneRegistration* during = nullptr;
+    // A deferred future runs in the fit's own call, right after the strokes were taken.
+    const std::shared_future<PreparedBonePtr> bone = std::async(std::launch::deferred, [&]() {
+                                                       changes[i](*during);
+                                                       return PreparedBonePtr(phantom_bone().prepared);
+                                                     }).share();
+    BoneRegistration tried(bone, plan(), surface_);
+    during = &tried;
+    draw_on(tried, trial_.curves);
+    tried.register_all([] { return true; });
+    EXPECT_EQ(tried.status().history->empty(), i + 1 < changes.size()) << "change " << i;
+  }
 }
 
 // After clearing, nothing of the old strokes comes back, and new ones register anew.
