@@ -42,12 +42,15 @@ void measure_inliers(const RefinedPose& best, const TouchedPoints& points, Regis
   summary.inlier_fraction = inlier_weight / std::max(points.weight_sum, 1e-9);
 }
 
-double misfit_of(const std::vector<double>& residuals_mm, double white_noise_mm) {
+double misfit_of(const std::vector<double>& residuals_mm, const TouchedCurves& touched) {
   constexpr double kDeepest_mm = 1.5;  // deeper is no touch of this bone at all
+  const double white_noise_mm = touched.white_noise_mm;
   double square_sum = 0;
   int count = 0;
-  for (const double residual : residuals_mm) {
-    if (residual >= 0 || residual < -kDeepest_mm) continue;
+  for (std::size_t i = 0; i < residuals_mm.size(); ++i) {
+    const double residual = residuals_mm[i];
+    const bool is_left_out = !touched.offsets_mm.empty() && !touched.offsets_mm[i];
+    if (residual >= 0 || residual < -kDeepest_mm || is_left_out) continue;
     square_sum += residual * residual;
     ++count;
   }
@@ -193,13 +196,14 @@ RegistrationSummary summarise(const PreparedBone::Data& bone, const PosePool& po
   summary.runner_up_ratio =
       pool.runner_up() ? std::min(kNoRival, std::exp(pool.runner_up()->cost - best.cost)) : kNoRival;
   measure_inliers(best, touched.points, summary);
-  for (const strokes::CurvePoint& point : touched.curves) {
-    const Eigen::Vector3d p = best.bone_from_marker * point.position_mm;
+  for (std::size_t i = 0; i < touched.curves.size(); ++i) {
+    const Eigen::Vector3d p = best.bone_from_marker * touched.curves[i].position_mm;
     const double distance_mm = bone.field.sample(p).distance_mm;
     const bool is_known = std::abs(distance_mm) < bone.field.band_mm();
-    summary.point_residuals_mm.push_back(is_known ? distance_mm : bone.surface.signed_distance_mm(p));
+    const double offset_mm = touched.offsets_mm.empty() ? 0.0 : touched.offsets_mm[i].value_or(0.0);
+    summary.point_residuals_mm.push_back((is_known ? distance_mm : bone.surface.signed_distance_mm(p)) - offset_mm);
   }
-  summary.misfit_mm = misfit_of(summary.point_residuals_mm, touched.white_noise_mm);
+  summary.misfit_mm = misfit_of(summary.point_residuals_mm, touched);
   summary.shared_misfit_mm = shared_misfit_of(best.residuals_mm, touched.points);
   constexpr double kClearLead = 1e3;
   const double lead = pool.runner_up() ? lead_of(best.cost, pool.runner_up()->cost, touched.points) : kClearLead;

@@ -14,6 +14,8 @@ struct TouchedCurves {
   const TouchedPoints& points;  // chosen from them
   double length_mm = 0;
   double white_noise_mm = 0;    // of the tip, one coordinate, from the strokes alone
+  // By point of the curves, how far off the mesh it touched; nullopt: not known, left out. Empty: on the mesh, all of them.
+  std::vector<std::optional<double>> offsets_mm = {};
 };
 [[nodiscard]] double white_noise_of(const std::vector<strokes::OrientedPoint>& oriented);
 

@@ -80,6 +80,11 @@ void PosePool::polish(const TouchedPoints& points) {
   poses_.front().bone_from_marker = polished.bone_from_marker;
 }
 
+void PosePool::replace(std::vector<RefinedPose> poses, const Eigen::Vector3d& centroid_mm) {
+  poses_ = std::move(poses);
+  rank(centroid_mm, kPoolSize);
+}
+
 void PosePool::rank(const Eigen::Vector3d& centroid_mm, std::size_t max_count) {
   std::stable_sort(poses_.begin(), poses_.end(),
                    [](const RefinedPose& l, const RefinedPose& r) { return l.cost < r.cost; });

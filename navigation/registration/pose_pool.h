@@ -29,12 +29,13 @@ class PosePool {
   void refine_all(const TouchedPoints& points, int iterations);
   // Fits the best against the mesh itself, which takes out the grid's rounding.
   void polish(const TouchedPoints& points);
-  // Puts another pose in the best one's place.
-  void replace_best(RefinedPose pose) { poses_.front() = std::move(pose); }
+  // Other poses in place of those in the pool; ranked, twins dropped.
+  void replace(std::vector<RefinedPose> poses, const Eigen::Vector3d& centroid_mm);
   void clear() { poses_.clear(); }
 
   [[nodiscard]] bool empty() const { return poses_.empty(); }
   [[nodiscard]] const RefinedPose& best() const { return poses_.front(); }
+  [[nodiscard]] const std::vector<RefinedPose>& poses() const { return poses_; }
   [[nodiscard]] const MarkerPrior& prior() const { return prior_; }
   [[nodiscard]] const RefinedPose* runner_up() const { return poses_.size() > 1 ? &poses_[1] : nullptr; }
 

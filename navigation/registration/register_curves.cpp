@@ -63,6 +63,15 @@ std::string describe_reach(const PreparedBone::Data& bone, const std::vector<boo
   return "the strokes lie out of reach of the planned entry: the whole bone was searched";
 }
 
+std::vector<std::optional<double>> offsets_of(const strokes::Curves& curves, const CoverFit& cover, const CoverMap& map,
+                                              const geometry::RigidTransform& bone_from_marker) {
+  std::vector<std::optional<double>> offsets_mm;
+  for (const strokes::CurvePoint& point : curves) {
+    offsets_mm.push_back(cover.offset_mm(map, bone_from_marker * point.position_mm));
+  }
+  return offsets_mm;
+}
+
 // What the thickness is uncertain by, the pose is too.
 void add_cover(const CoverFit& cover, const Eigen::Vector3d& target_mm, RegistrationSummary& summary) {
   summary.assumptions.push_back(cover.assumption);
@@ -117,15 +126,22 @@ SearchOutcome search_and_summarise(const PreparedBone::Data& bone, const strokes
     pool.refine_all(points, kFinalIterations);
     pool.polish(points);
   }
-  CoverFit cover;
-  if (options.covered && !pool.empty()) {
-    cover = fit_cover(bone, points, pool.best(), *options.covered, prior);
-    points = cover.points;
-    pool.replace_best(cover.pose);
-  }
   const double white_noise_mm = white_noise_of(oriented);
   SearchOutcome outcome;
-  outcome.summary = summarise(bone, pool, {curves, points, strokes::stroke_length_mm(curves), white_noise_mm}, options);
+  outcome.measurements = points.weight_sum / kCorrelationLength_mm;
+  if (!pool.empty()) outcome.cost = pool.best().cost;
+  CoverFit cover;
+  std::vector<std::optional<double>> offsets_mm;
+  if (options.covered && !pool.empty()) {
+    const CoverMap map(*options.covered);
+    cover = fit_cover(bone, pool, points, map);
+    points = cover.points;
+    pool.polish(points);
+    offsets_mm = offsets_of(curves, cover, map, pool.best().bone_from_marker);
+    outcome.cost = cover.cost;  // not of fewer points where the region was left out
+  }
+  outcome.summary = summarise(
+      bone, pool, {curves, points, strokes::stroke_length_mm(curves), white_noise_mm, std::move(offsets_mm)}, options);
   if (options.covered && outcome.summary.has_pose) {
     const Eigen::Vector3d centroid_mm = pool.best().bone_from_marker * points.centroid_mm;
     add_cover(cover, options.target_in_bone_mm.value_or(centroid_mm), outcome.summary);
@@ -135,8 +151,6 @@ SearchOutcome search_and_summarise(const PreparedBone::Data& bone, const strokes
         describe_reach(bone, reachable, pool.best().bone_from_marker * points.centroid_mm));
   }
   outcome.fits = outcome.summary.has_pose && !misfits(outcome.summary, white_noise_mm);
-  if (!pool.empty()) outcome.cost = pool.best().cost;
-  outcome.measurements = points.weight_sum / kCorrelationLength_mm;
   constexpr double kManyMeasurements = 60;
   outcome.fits_amply = outcome.summary.has_pose && fits_amply(outcome.summary, white_noise_mm) &&
                        outcome.measurements > kManyMeasurements;

@@ -63,7 +63,9 @@ struct RegistrationSummary {
   double inlier_fraction = 0;
   int point_count = 0;
   double predicted_tre_mm = 0;  // one sigma, at the target
-  std::vector<double> point_residuals_mm;  // signed distance of each curve point to the bone, in the order given
+  // Signed distance of each curve point to what was touched, in the order given: to the bone's mesh, and on a covered
+  // region whose thickness was solved, to a surface that far off the mesh. On one that was left out, to the mesh.
+  std::vector<double> point_residuals_mm;
   // How near the best different solution came: its robust cost over the best one's; large is good.
   double runner_up_ratio = 0;
   // What the residuals hold beyond the tip's own white noise, root mean square: slow errors of tracking, and above all
