@@ -19,16 +19,29 @@ BoneRegistration::BoneRegistration(std::shared_future<PreparedBonePtr> bone,
     : bone_(std::move(bone)), plan_(plan), surface_(std::move(surface)) {}
 
 void BoneRegistration::start_worker() {
-  if (worker_ != nullptr || bone_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  if (worker_ != nullptr || !status_.bone_trouble.empty()) return;
+  if (bone_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   registration::OnlineOptions options;
   if (plan_) {
     options.target_in_bone_mm = plan_->entry_mm;
     options.direction_in_bone = plan_->direction;
   }
-  worker_ = std::make_unique<registration::RegistrationWorker>(bone_.get(), options);
-  // What was drawn while the bone was being made ready.
+  try {  // the top of the thread that made the bone ready: the reason stands on the screen
+    worker_ = std::make_unique<registration::RegistrationWorker>(bone_.get(), options);
+  } catch (const std::exception& error) {
+    status_.bone_trouble = error.what();
+    return;
+  }
+  // What was drawn and touched while the bone was being made ready.
   if (!strokes_.points().empty()) worker_->add_points(strokes_.points());
   for (const int curve : strokes_.left_out()) worker_->exclude_stroke(curve);
+  TouchCheck seen;
+  for (const Eigen::Vector3d& touch : status_.touches.touches_mm()) {
+    if (seen.is_new_place(touch)) worker_->add_touch(touch);
+    seen.add_touch(touch);
+  }
+  for (const Eigen::Vector3d& touch : status_.touches.control_touches_mm())
+    worker_->touch_control_point(touch);
 }
 
 void BoneRegistration::publish_strokes(bool always) {
@@ -160,7 +173,7 @@ void BoneRegistration::take_in(const std::shared_ptr<const registration::OnlineR
     return;
   }
   best_tre_mm_ = found.predicted_tre_mm;
-  add_entry({"while drawing", online->state, online->length_mm,
+  add_entry({"while drawing", online->state,
              std::make_shared<const registration::RegistrationSummary>(found)});
 }
 
@@ -193,7 +206,6 @@ void BoneRegistration::register_all(const std::function<bool()>& is_wanted) {
   best_tre_mm_ = found.reliable ? found.predicted_tre_mm : std::numeric_limits<double>::infinity();
   add_entry({"all points",
              found.reliable ? registration::OnlineState::Confirmed : registration::OnlineState::Candidate,
-             status_.online != nullptr ? status_.online->length_mm : 0,
              std::make_shared<const registration::RegistrationSummary>(std::move(found))});
 }
 
@@ -204,6 +216,7 @@ strokes::Curves BoneRegistration::strokes_in_use() const {
 
 RegistrationStatus BoneRegistration::status() {
   const std::lock_guard lock(mutex_);
+  start_worker();
   if (worker_ != nullptr) take_in(worker_->latest());
   return status_;
 }

@@ -35,7 +35,6 @@ using RegistrationPtr = std::shared_ptr<const registration::RegistrationSummary>
 struct RegistrationEntry {
   std::string origin;  // "while drawing", "all points"
   registration::OnlineState state = registration::OnlineState::Candidate;
-  double length_mm = 0;  // of the strokes it was fitted to
   RegistrationPtr registration;
   bool is_void = false;  // the world marker has moved since: it can't be taken again
 };
@@ -54,11 +53,12 @@ struct RegistrationStatus {
   bool is_chosen = false;                     // by the surgeon: newer ones wait
   std::string alarm;                          // why nothing is to be trusted; empty else
   TouchCheck touches;
+  std::string bone_trouble;  // why the bone could not be made ready: nothing can be registered; empty else
 };
 
 class BoneRegistration {
  public:
-  // `bone` may still be in the making. plan and surface may be absent: then the target is the middle of what
+  // `bone` may still be in the making; one that throws leaves its reason in the status. plan and surface may be absent: then the target is the middle of what
   // was touched, and touches are not judged.
   BoneRegistration(std::shared_future<PreparedBonePtr> bone, const std::optional<tunnels::Tunnel>& plan,
                    std::shared_ptr<const geometry::Surface> surface);
@@ -83,7 +83,8 @@ class BoneRegistration {
   void register_all(const std::function<bool()>& is_wanted);
 
   [[nodiscard]] strokes::Curves strokes_in_use() const;
-  // Takes in what the registration that runs along has found meanwhile, and says all.
+  // Takes in what the registration that runs along has found meanwhile, and says all. Starts it once the bone
+  // is ready, with all that was drawn and touched before.
   [[nodiscard]] RegistrationStatus status();
   // Waits until all strokes and touches are worked in; for tests.
   void finish();

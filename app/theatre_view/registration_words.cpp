@@ -29,6 +29,8 @@ SignedText state_of(const RegistrationStatus& status) {
     return {
         Sign::Bad, "World marker may have moved",
         status.alarm + ". Touch the control point again; if it stays off, clear the points and draw anew."};
+  if (!status.bone_trouble.empty())
+    return {Sign::Bad, "The bone can't be registered", status.bone_trouble};
   if (status.online == nullptr)
     return {Sign::Quiet, "Collecting",
             status.drawn->empty() ? "Draw strokes on the bone with the probe."

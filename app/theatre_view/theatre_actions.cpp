@@ -186,7 +186,7 @@ void TheatreView::add_registration_actions(widgets::Actions& actions) {
                false,
                [this] {
                  return bone_registration() != nullptr &&
-                        (status_.bone.touches.touch_count() > 0 || status_.bone.touches.has_control_point());
+                        (!status_.bone.touches.touches_mm().empty() || status_.bone.touches.has_control_point());
                },
                {},
                [this] { bone_registration()->forget_touches(); }});

@@ -60,8 +60,9 @@ void explain(TheatreDisplay& display, const OperationStatus& status,
         break;
       }
       display.headline = "Not registered";
-      display.detail =
-          status.is_registering ? "Registering now" : "Touch the bone with the probe, then register";
+      display.detail = !status.bone.bone_trouble.empty() ? status.bone.bone_trouble
+                       : status.is_registering           ? "Registering now"
+                                                         : "Touch the bone with the probe, then register";
       break;
     case GuidanceState::RegistrationUnreliable:
       display.headline = "Registration not reliable";

@@ -61,6 +61,10 @@ void TheatreView::start(OperationSetup setup) {
   BoneState& bone = bones_[choices_.bone];
   if (bone.registration != nullptr) {
     const RegistrationStatus known = bone.registration->status();
+    if (!known.bone_trouble.empty()) bone = {};  // tried again
+  }
+  if (bone.registration != nullptr) {
+    const RegistrationStatus known = bone.registration->status();
     if (known.in_force != nullptr && known.in_force->reliable) setup.digitises = false;
     // Made anew while nothing hangs on it: the plan, its target, may have changed.
     if (known.drawn->empty() && known.history->empty()) bone.registration.reset();

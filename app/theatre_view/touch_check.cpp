@@ -1,10 +1,9 @@
 #include "app/theatre_view/touch_check.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "app/widgets/controls.h"
 #include "navigation/registration/online_registration.h"
 
 namespace arthronaut::theatre_view {
@@ -14,12 +13,6 @@ namespace {
 constexpr double kRest_s = 0.25, kRestRadius_mm = 1;
 constexpr std::size_t kLeastSamples = 3;
 constexpr int kViolationsToAlarm = 2;
-
-std::string tenths(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f", value);
-  return text.data();
-}
 
 }  // namespace
 
@@ -64,12 +57,12 @@ bool TouchCheck::is_new_place(const Eigen::Vector3d& tip_in_marker_mm) const {
 }
 
 void TouchCheck::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
-  if (!control_point_mm_) {
-    control_point_mm_ = tip_in_marker_mm;
+  control_touches_mm_.push_back(tip_in_marker_mm);
+  if (control_touches_mm_.size() == 1) {
     last_ = Last::Kind::ControlSet;
     return;
   }
-  control_shift_mm_ = (tip_in_marker_mm - *control_point_mm_).norm();
+  control_shift_mm_ = (tip_in_marker_mm - control_touches_mm_.front()).norm();
   // One that is back where it was takes the suspicion away.
   control_violations_ =
       control_shift_mm_ > registration::OnlineOptions{}.max_control_shift_mm ? control_violations_ + 1 : 0;
@@ -96,13 +89,13 @@ TouchCheck::Last TouchCheck::last() const {
 
 std::string TouchCheck::alarm() const {
   if (control_violations_ >= kViolationsToAlarm)
-    return "The control point has moved by " + tenths(control_shift_mm_) + " mm";
+    return "The control point has moved by " + widgets::fixed(control_shift_mm_, 1) + " mm";
   const auto off = std::count_if(residuals_mm_.begin(), residuals_mm_.end(), [](double residual_mm) {
     return std::abs(residual_mm) > registration::OnlineOptions{}.max_touch_error_mm;
   });
   if (off >= kViolationsToAlarm) return std::to_string(off) + " touches lie off the bone";
   return off + control_violations_ >= kViolationsToAlarm
-             ? "The control point has moved by " + tenths(control_shift_mm_) +
+             ? "The control point has moved by " + widgets::fixed(control_shift_mm_, 1) +
                    " mm and a touch lies off the bone"
              : "";
 }

@@ -50,19 +50,20 @@ class TouchCheck {
   // Distances anew, by another registration; none without a pose.
   void judge(const registration::RegistrationSummary* registration, const geometry::Surface* surface);
 
-  [[nodiscard]] bool has_control_point() const { return control_point_mm_.has_value(); }
+  [[nodiscard]] bool has_control_point() const { return !control_touches_mm_.empty(); }
+  // In the order they came, in the marker's frame; the first one of the control point is the one kept.
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& touches_mm() const { return touches_mm_; }
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& control_touches_mm() const { return control_touches_mm_; }
   // Signed, mm, in the order of the touches; empty while there is no registration to judge by.
   [[nodiscard]] const std::vector<double>& residuals_mm() const { return residuals_mm_; }
-  [[nodiscard]] std::size_t touch_count() const { return touches_mm_.size(); }
   [[nodiscard]] Last last() const;
   // "The control point has moved by 2.1 mm", "3 touches lie off the bone": two violations; empty else.
   [[nodiscard]] std::string alarm() const;
 
  private:
-  std::vector<Eigen::Vector3d> touches_mm_;
+  std::vector<Eigen::Vector3d> touches_mm_, control_touches_mm_;
   std::vector<double> residuals_mm_;
   bool last_is_new_place_ = true;
-  std::optional<Eigen::Vector3d> control_point_mm_;
   double control_shift_mm_ = 0;
   int control_violations_ = 0;
   Last::Kind last_ = Last::Kind::None;

@@ -55,6 +55,8 @@ void draw_registration_row(const widgets::Ui& ui, const TheatreScreen& screen) {
   widgets::status_row(ui, status.digitises ? Sign::Good : Sign::Quiet, "Probe draws",
                       status.digitises ? points : "off, " + points);
   if (status.is_registering) return widgets::status_row(ui, Sign::Quiet, "Registration", "running");
+  if (!status.bone.bone_trouble.empty())
+    return widgets::status_row(ui, Sign::Bad, "Registration", status.bone.bone_trouble);
   if (status.bone.in_force == nullptr)
     return widgets::status_row(ui, Sign::Quiet, "Registration", "none yet");
   const registration::RegistrationSummary& r = *status.bone.in_force;

@@ -185,6 +185,43 @@ TEST_F(BoneRegistrationTest, ARegistrationOfOldStrokesHasNoEffect) {
   }
 }
 
+// A bone that becomes ready late takes in what was drawn and touched before, with no call but the screen's;
+// the control point is the one that was kept then.
+TEST_F(BoneRegistrationTest, ABoneThatIsReadyLateTakesInWhatCameBefore) {
+  std::promise<PreparedBonePtr> promise;
+  BoneRegistration late(promise.get_future().share(), plan(), surface_);
+  draw_on(late, trial_.curves);
+  for (const double dx_mm : {0.0, 0.0, 4.0, -4.0}) late.add_touch(on_bone(dx_mm));
+  late.touch_control_point(on_bone(0));
+  EXPECT_EQ(late.status().online, nullptr);
+  EXPECT_EQ(state_of(late.status()).text, "The bone is being made ready; go on drawing.");
+  promise.set_value(phantom_bone().prepared);
+  (void)late.status();
+  late.finish();
+  const RegistrationStatus status = late.status();
+  ASSERT_NE(status.online, nullptr);
+  EXPECT_TRUE(status.online->registration.has_pose);
+  EXPECT_EQ(status.online->touches.size(), 3U) << "one place touched twice counts once";
+  for (int i = 0; i < 2; ++i) late.touch_control_point(on_bone(0) + Eigen::Vector3d(0, 0, 2));
+  late.finish();
+  EXPECT_NE(late.status().online->alarm, "") << "compared with the one of before";
+}
+
+// A bone that cannot be made ready says why, once and for all; nothing else fails.
+TEST_F(BoneRegistrationTest, ABoneThatFailsSaysWhy) {
+  std::promise<PreparedBonePtr> promise;
+  BoneRegistration broken(promise.get_future().share(), plan(), surface_);
+  promise.set_exception(std::make_exception_ptr(std::runtime_error("the mesh is empty")));
+  draw_on(broken, trial_.curves);
+  broken.add_touch(on_bone(0));
+  const RegistrationStatus status = broken.status();
+  EXPECT_EQ(status.bone_trouble, "the mesh is empty");
+  EXPECT_EQ(state_of(status).text, "the mesh is empty");
+  EXPECT_EQ(state_of(status).sign, widgets::Sign::Bad);
+  broken.register_all([] { return true; });
+  EXPECT_EQ(broken.status().in_force->reasons.front(), "the mesh is empty");
+}
+
 // After clearing, nothing of the old strokes comes back, and new ones register anew.
 TEST_F(BoneRegistrationTest, ClearsAndStartsAgain) {
   draw(trial_.curves);
