@@ -12,7 +12,7 @@ namespace {
 constexpr double kThinnest_mm = -4, kThickest_mm = 5;
 // The contact's law is about half a millimetre wide: coarser steps could pass the right thickness by.
 constexpr double kCoarseStep_mm = 0.5, kFineStep_mm = 0.25;
-constexpr int kCoarseIterations = 4, kFineIterations = 15;
+constexpr int kCoarseIterations = 6, kFineIterations = 15;
 // The thickness is held when it is known this well, and enough was touched on both sides of the border.
 constexpr double kMaxSigma_mm = 0.4, kMinMeasurements = 4;
 
@@ -83,12 +83,14 @@ class Fit {
   // From 0 outwards, each from the one before: the pose moves along with the thickness.
   void search_coarsely() {
     const RefinedPose start = result_.pose;
+    profile_ = {{0.0, start.cost}};
     for (const double step_mm : {kCoarseStep_mm, -kCoarseStep_mm}) {
       RefinedPose pose = start;
       for (double thickness = step_mm; thickness >= kThinnest_mm && thickness <= kThickest_mm; thickness += step_mm) {
         pose.model = {};
         assign(pose);
         pose = refined(pose, thickness, kCoarseIterations);
+        profile_.push_back({thickness, pose.cost});
         if (pose.cost >= result_.pose.cost) continue;
         result_.pose = pose;
         result_.thickness_mm = thickness;
@@ -117,7 +119,7 @@ class Fit {
     const bool is_inside = result_.thickness_mm > kThinnest_mm && result_.thickness_mm < kThickest_mm;
     if (curvature > 0 && is_inside) {
       result_.thickness_mm += std::clamp(-0.5 * rise / (curvature * kFineStep_mm), -kFineStep_mm, kFineStep_mm);
-      result_.sigma_mm = 1 / std::sqrt(curvature);
+      result_.sigma_mm = std::max(1 / std::sqrt(curvature), width_of_profile(measurements));
       result_.drift_per_mm =
           geometry::log(near[2].bone_from_marker * near[0].bone_from_marker.inverse()) / (2 * kFineStep_mm);
       result_.is_held = result_.touches_both() && result_.sigma_mm < kMaxSigma_mm;
@@ -125,10 +127,29 @@ class Fit {
     result_.pose = refined(near[1], result_.thickness_mm, kFineIterations);
   }
 
+  // By how much the thicknesses scatter that are about as likely. Where the likelihood is flat or has several tops, one of
+  // them alone looks sharper than what is known.
+  [[nodiscard]] double width_of_profile(double measurements) const {
+    double sum = 0, square_sum = 0;
+    for (const auto& [thickness, cost] : profile_) {
+      const double weight = std::exp(std::min(0.0, (result_.pose.cost - cost) * measurements));
+      const double away = thickness - result_.thickness_mm;
+      sum += weight;
+      square_sum += weight * away * away;
+    }
+    // The thickness itself is one of them.
+    return std::sqrt(square_sum / (1 + sum));
+  }
+
+  struct Likelihood {
+    double thickness_mm, cost;
+  };
+
   const PreparedBone::Data& bone_;
   const CoverMap& map_;
   const MarkerPrior& prior_;
   PoseFit result_;
+  std::vector<Likelihood> profile_;  // of the coarse search
 };
 
 TouchedPoints bare_points(const PoseFit& fit) {
@@ -154,14 +175,17 @@ std::string formatted(const char* format, double first, double second) {
 
 }  // namespace
 
-CoverMap::CoverMap(const CoveredRegion& region) : reach_mm_(region.reach_mm) {
+CoverMap::CoverMap(const PreparedBone::Data& bone, const CoveredRegion& region) : bone_(bone), reach_mm_(region.reach_mm) {
   if (!(reach_mm_ > 0)) return;
   for (const Eigen::Vector3d& point : region.points_mm) cells_[key_of(cell_of(point, reach_mm_))].push_back(point);
 }
 
 bool CoverMap::covers(const Eigen::Vector3d& point_in_bone_mm) const {
   if (cells_.empty() || !point_in_bone_mm.allFinite()) return false;
-  const Eigen::Array3i middle = cell_of(point_in_bone_mm, reach_mm_);
+  // A lifted tip, or one on thick cartilage, is over the same place as one on the bone.
+  const DistanceField::Sample sample = bone_.field.sample(point_in_bone_mm);
+  const Eigen::Vector3d place_mm = point_in_bone_mm - sample.distance_mm * sample.gradient;
+  const Eigen::Array3i middle = cell_of(place_mm, reach_mm_);
   constexpr std::array<int, 3> kSteps{0, -1, 1};  // the middle first, where it is found most often
   for (const int x : kSteps) {
     for (const int y : kSteps) {
@@ -169,7 +193,7 @@ bool CoverMap::covers(const Eigen::Vector3d& point_in_bone_mm) const {
         const auto cell = cells_.find(key_of(middle + Eigen::Array3i(x, y, z)));
         if (cell == cells_.end()) continue;
         const bool is_near = std::any_of(cell->second.begin(), cell->second.end(), [&](const Eigen::Vector3d& point) {
-          return (point - point_in_bone_mm).squaredNorm() < reach_mm_ * reach_mm_;
+          return (point - place_mm).squaredNorm() < reach_mm_ * reach_mm_;
         });
         if (is_near) return true;
       }

@@ -14,13 +14,15 @@
 
 namespace arthronaut::registration {
 
-// The region made ready to be asked. Immutable; a reach that is not above 0 makes it empty.
+// The region made ready to be asked. Immutable; a reach that is not above 0 makes it empty. The bone must outlive it.
 class CoverMap {
  public:
-  explicit CoverMap(const CoveredRegion& region);
+  CoverMap(const PreparedBone::Data& bone, const CoveredRegion& region);
+  // Whether the place of the bone under (or over) a point is covered.
   [[nodiscard]] bool covers(const Eigen::Vector3d& point_in_bone_mm) const;
 
  private:
+  const PreparedBone::Data& bone_;
   double reach_mm_;
   std::unordered_map<std::uint64_t, std::vector<Eigen::Vector3d>> cells_;  // as wide as the reach
 };

@@ -1,8 +1,11 @@
 // The parts of register_curves that registering on the fly needs too.
 #pragma once
 
+#include <optional>
 #include <string_view>
+#include <vector>
 
+#include "navigation/registration/covered_region.h"
 #include "navigation/registration/prepared_bone.h"
 
 namespace arthronaut::registration {
@@ -10,6 +13,16 @@ namespace arthronaut::registration {
 // Whose side's bone was touched, judged by how well its mirror image fits beside it.
 enum class SideVerdict { Own, Unclear, Other };
 [[nodiscard]] std::string_view reason_against(SideVerdict verdict);  // empty for Own
+
+// What all searches with the same options share, made once.
+struct SearchSetting {
+  SearchSetting(const PreparedBone::Data& searched_bone, const RegistrationOptions& registration_options);
+
+  const PreparedBone::Data& bone;
+  RegistrationOptions options;
+  std::vector<bool> reachable;    // samples of the bone, by the planned entry; empty without one that is on the bone
+  std::optional<CoverMap> cover;  // of options.covered
+};
 
 struct SearchOutcome {
   RegistrationSummary summary;
@@ -20,11 +33,11 @@ struct SearchOutcome {
 };
 
 // Global search, refinement and verdict. max_rounds bounds the search where no pose leads clearly.
-[[nodiscard]] SearchOutcome search_and_summarise(const PreparedBone::Data& bone, const strokes::Curves& curves,
-                                                 const RegistrationOptions& options, int max_rounds);
+[[nodiscard]] SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::Curves& curves,
+                                                 int max_rounds);
 
 // found: on the bone itself.
-[[nodiscard]] SideVerdict judge_side(const PreparedBone::Data& bone, const strokes::Curves& curves,
-                                     const RegistrationOptions& options, const SearchOutcome& found);
+[[nodiscard]] SideVerdict judge_side(const SearchSetting& setting, const strokes::Curves& curves,
+                                     const SearchOutcome& found);
 
 }  // namespace arthronaut::registration

@@ -195,8 +195,9 @@ void OnlineRegistration::State::check_side() {
     // Costs compare only between searches of the same kind, over the same points.
     constexpr int kRounds = 2;
     const strokes::Curves curves = curves_in_use();
-    const SearchOutcome own = search_and_summarise(bone->data(), curves, registration_options(), kRounds);
-    side = judge_side(bone->data(), curves, registration_options(), own);
+    const SearchSetting setting(bone->data(), registration_options());
+    const SearchOutcome own = search_and_summarise(setting, curves, kRounds);
+    side = judge_side(setting, curves, own);
     side_checked_mm = result.length_mm;
   }
   if (side == SideVerdict::Own || !result.registration.has_pose) return;

@@ -92,8 +92,15 @@ strokes::Curves mirrored(strokes::Curves curves) {
 
 }  // namespace
 
-SearchOutcome search_and_summarise(const PreparedBone::Data& bone, const strokes::Curves& curves,
-                                   const RegistrationOptions& options, int max_rounds) {
+SearchSetting::SearchSetting(const PreparedBone::Data& searched_bone, const RegistrationOptions& registration_options)
+    : bone(searched_bone), options(registration_options) {
+  if (options.plan_entry_in_bone_mm) reachable = find_reachable_samples(bone, *options.plan_entry_in_bone_mm);
+  if (options.covered) cover.emplace(bone, *options.covered);
+}
+
+SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::Curves& curves, int max_rounds) {
+  const PreparedBone::Data& bone = setting.bone;
+  const RegistrationOptions& options = setting.options;
   constexpr std::size_t kPointCount = 800;
   constexpr int kPairsEachRound = 8, kIterationsEachRound = 5, kFinalIterations = 12;
   constexpr std::size_t kHypothesesEachRound = 24;
@@ -105,17 +112,15 @@ SearchOutcome search_and_summarise(const PreparedBone::Data& bone, const strokes
   MarkerPrior prior;
   prior.use = options.use_marker_prior;
   PosePool pool(bone, prior);
-  std::vector<bool> reachable;
-  if (options.plan_entry_in_bone_mm) reachable = find_reachable_samples(bone, *options.plan_entry_in_bone_mm);
   for (int round = 0; round < max_rounds; ++round) {
     const std::uint64_t seed = options.seed * kMaxRounds + static_cast<std::uint64_t>(round);
-    const bool is_near_plan = round == 0 && !reachable.empty();
+    const bool is_near_plan = round == 0 && !setting.reachable.empty();
     pool.add(search_globally(bone, oriented, points,
                              {.seed = seed,
                               .use_marker_prior = options.use_marker_prior,
                               .curve_pair_count = kPairsEachRound,
                               .keep_count = kHypothesesEachRound,
-                              .reachable = is_near_plan ? &reachable : nullptr}),
+                              .reachable = is_near_plan ? &setting.reachable : nullptr}),
              points, seed);
     pool.refine_all(points, kIterationsEachRound);
     if (lead_of_best(pool, points) > (round == 0 ? kClearLead : kClearLeadLater)) break;
@@ -132,23 +137,22 @@ SearchOutcome search_and_summarise(const PreparedBone::Data& bone, const strokes
   if (!pool.empty()) outcome.cost = pool.best().cost;
   CoverFit cover;
   std::vector<std::optional<double>> offsets_mm;
-  if (options.covered && !pool.empty()) {
-    const CoverMap map(*options.covered);
-    cover = fit_cover(bone, pool, points, map);
+  if (setting.cover && !pool.empty()) {
+    cover = fit_cover(bone, pool, points, *setting.cover);
     points = cover.points;
     pool.polish(points);
-    offsets_mm = offsets_of(curves, cover, map, pool.best().bone_from_marker);
+    offsets_mm = offsets_of(curves, cover, *setting.cover, pool.best().bone_from_marker);
     outcome.cost = cover.cost;  // not of fewer points where the region was left out
   }
   outcome.summary = summarise(
       bone, pool, {curves, points, strokes::stroke_length_mm(curves), white_noise_mm, std::move(offsets_mm)}, options);
-  if (options.covered && outcome.summary.has_pose) {
+  if (setting.cover && outcome.summary.has_pose) {
     const Eigen::Vector3d centroid_mm = pool.best().bone_from_marker * points.centroid_mm;
     add_cover(cover, options.target_in_bone_mm.value_or(centroid_mm), outcome.summary);
   }
   if (options.plan_entry_in_bone_mm && !pool.empty()) {
     outcome.summary.assumptions.push_back(
-        describe_reach(bone, reachable, pool.best().bone_from_marker * points.centroid_mm));
+        describe_reach(bone, setting.reachable, pool.best().bone_from_marker * points.centroid_mm));
   }
   outcome.fits = outcome.summary.has_pose && !misfits(outcome.summary, white_noise_mm);
   constexpr double kManyMeasurements = 60;
@@ -166,13 +170,12 @@ std::string_view reason_against(SideVerdict verdict) {
   return "the mirror image of this bone fits almost alike: is it the right side? Touch other faces of the notch too";
 }
 
-SideVerdict judge_side(const PreparedBone::Data& bone, const strokes::Curves& curves,
-                       const RegistrationOptions& options, const SearchOutcome& found) {
+SideVerdict judge_side(const SearchSetting& setting, const strokes::Curves& curves, const SearchOutcome& found) {
   // A few strokes can't give a clear lead: there, less of one is telling enough. The own side has to lead by more, since a
   // bone that is much like its mirror image fits the wrong way round by chance.
   constexpr double kOtherLead = 3, kOtherLeadOfEach = 0.05, kOwnLead = 8, kOwnLeadOfEach = 0.1;
   const int rounds = found.summary.reliable ? 2 : 3;  // to name the right reason is worth a little more
-  const SearchOutcome image = search_and_summarise(bone, mirrored(curves), options, rounds);
+  const SearchOutcome image = search_and_summarise(setting, mirrored(curves), rounds);
   const double image_lead = (found.cost - image.cost) * image.measurements;
   const double other_lead = std::min(kOtherLead, kOtherLeadOfEach * image.measurements);
   if (image.fits && image_lead > other_lead) return SideVerdict::Other;
@@ -188,9 +191,10 @@ RegistrationSummary register_curves(const PreparedBone& prepared, const strokes:
   summary.reasons = objections_to(curves, bone.bounds.size_mm().norm());
   if (!summary.reasons.empty()) return summary;
 
-  SearchOutcome found = search_and_summarise(bone, curves, options, kMaxRounds);
+  const SearchSetting setting(bone, options);
+  SearchOutcome found = search_and_summarise(setting, curves, kMaxRounds);
   if (!found.summary.has_pose || (found.summary.reliable && found.fits_amply)) return found.summary;
-  const SideVerdict side = judge_side(bone, curves, options, found);
+  const SideVerdict side = judge_side(setting, curves, found);
   if (side == SideVerdict::Other || (side == SideVerdict::Unclear && found.summary.reliable)) {
     found.summary.reliable = false;
     found.summary.reasons.insert(found.summary.reasons.begin(), std::string(reason_against(side)));
