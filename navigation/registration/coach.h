@@ -6,13 +6,17 @@
 
 namespace arthronaut::registration {
 
-// The parts of the bone within reach of what was touched, each with what a stroke of 15 mm there would do for the
-// predicted error at the target.
-[[nodiscard]] std::vector<BonePatch> find_patches(const PreparedBone::Data& bone, const RefinedPose& pose,
-                                                  const TouchedPoints& points, const MarkerPrior& prior,
-                                                  const Eigen::Vector3d& target_mm);
+// What the advice goes by beside what is published.
+struct CoachFacts {
+  const PreparedBone::Data& bone;
+  const PosePool& pool;
+  const TouchedPoints& points;
+  Eigen::Vector3d target_mm;
+  int agreeing_solutions, agreeing_solutions_wanted;
+  double refine_every_mm;
+};
 
-// "the front and outer side": where a patch faces and lies in the words of the knee; LPS.
-[[nodiscard]] std::string describe_place(const BonePatch& patch, const Eigen::Vector3d& touched_centroid_in_bone_mm);
+// How far it is to a confirmation, what is missing, and where the next stroke helps most.
+[[nodiscard]] Coach advise(const OnlineResult& result, const CoachFacts& facts);
 
 }  // namespace arthronaut::registration

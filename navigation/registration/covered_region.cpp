@@ -13,6 +13,7 @@ constexpr double kThinnest_mm = -4, kThickest_mm = 5;
 // The contact's law is about half a millimetre wide: coarser steps could pass the right thickness by.
 constexpr double kCoarseStep_mm = 0.5, kFineStep_mm = 0.25;
 constexpr int kCoarseIterations = 6, kFineIterations = 15;
+constexpr std::size_t kCoarsePointCount = 250, kMaxPoses = 8;
 // The thickness is held when it is known this well, and enough was touched on both sides of the border.
 constexpr double kMaxSigma_mm = 0.4, kMinMeasurements = 4;
 
@@ -25,138 +26,185 @@ Eigen::Array3i cell_of(const Eigen::Vector3d& point_mm, double width_mm) {
   return (point_mm.array() / width_mm).floor().cast<int>();
 }
 
-// One pose of the pool with the thickness that suits it best.
-struct PoseFit {
-  RefinedPose pose;
-  TouchedPoints points;
-  std::vector<bool> is_covered;
-  double covered_sum = 0, bare_sum = 0;
-  bool is_held = false;
-  double thickness_mm = 0, sigma_mm = 0;
-  geometry::Vector6d drift_per_mm = geometry::Vector6d::Zero();
-
+// Which of the points lie on the region, as a pose puts them.
+struct Assignment {
+  Assignment(const CoverMap& map, const TouchedPoints& points,
+             const geometry::RigidTransform& bone_from_marker) {
+    for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
+      is_covered.push_back(map.covers(bone_from_marker * points.positions_mm[i]));
+      (is_covered.back() ? covered_sum : bare_sum) += points.weights[i];
+    }
+  }
   [[nodiscard]] bool touches_bare() const { return bare_sum > kMinMeasurements * kCorrelationLength_mm; }
   [[nodiscard]] bool touches_both() const {
     return touches_bare() && covered_sum > kMinMeasurements * kCorrelationLength_mm;
   }
+
+  std::vector<bool> is_covered;
+  double covered_sum = 0, bare_sum = 0;
+};
+
+// One pose with the thickness that suits it best.
+struct PoseFit {
+  RefinedPose pose;
+  TouchedPoints points;
+  Assignment assignment;
+  bool is_held = false;
+  double thickness_mm = 0, sigma_mm = 0, profile_width_mm = 0;
+  geometry::Vector6d drift_per_mm = geometry::Vector6d::Zero();
 };
 
 class Fit {
  public:
-  Fit(const PreparedBone::Data& bone, const TouchedPoints& points, const CoverMap& map, const MarkerPrior& prior)
-      : bone_(bone), map_(map), prior_(prior) {
-    result_.points = points;
-  }
+  Fit(const PreparedBone::Data& bone, const CoverMap& map, const MarkerPrior& prior,
+      const TouchedPoints& points)
+      : bone_(bone), map_(map), prior_(prior), points_(points) {}
 
-  [[nodiscard]] PoseFit from(const RefinedPose& start) {
-    assign(start);
-    result_.pose = refined(start, 0, kFineIterations);
-    if (!result_.touches_bare() || result_.covered_sum <= 0) return result_;
-    search_coarsely();
+  [[nodiscard]] PoseFit from(const RefinedPose& start) const {
+    PoseFit fit = started(start, 0);
+    if (!has_cover_to_fit(fit)) return fit;
+    search_coarsely(fit);
     // What lies on the region shows better from here.
-    assign(result_.pose);
-    search_finely();
-    return result_;
+    fit.assignment = Assignment(map_, points_, fit.pose.bone_from_marker);
+    search_finely(fit);
+    return fit;
+  }
+  [[nodiscard]] PoseFit on_from(const RefinedPose& pose, double thickness_mm, double profile_width_mm) const {
+    PoseFit fit = started(pose, thickness_mm);
+    if (!has_cover_to_fit(fit)) return started(pose, 0);
+    fit.thickness_mm = thickness_mm;
+    fit.profile_width_mm = profile_width_mm;
+    search_finely(fit);
+    return fit;
   }
 
  private:
-  void assign(const RefinedPose& pose) {
-    const TouchedPoints& points = result_.points;
-    result_.is_covered.clear();
-    result_.covered_sum = result_.bare_sum = 0;
-    for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
-      result_.is_covered.push_back(map_.covers(pose.bone_from_marker * points.positions_mm[i]));
-      (result_.is_covered.back() ? result_.covered_sum : result_.bare_sum) += points.weights[i];
-    }
+  [[nodiscard]] static bool has_cover_to_fit(const PoseFit& fit) {
+    return fit.assignment.touches_bare() && fit.assignment.covered_sum > 0;
   }
 
-  [[nodiscard]] RefinedPose refined(const RefinedPose& start, double thickness_mm, int iterations) {
-    TouchedPoints& points = result_.points;
+  [[nodiscard]] PoseFit started(const RefinedPose& start, double thickness_mm) const {
+    PoseFit fit{start, points_, Assignment(map_, points_, start.bone_from_marker)};
+    fit.pose = refined(fit.points, fit.assignment, start, thickness_mm, kFineIterations);
+    return fit;
+  }
+
+  // Leaves the offsets in the points.
+  [[nodiscard]] RefinedPose refined(TouchedPoints& points, const Assignment& assignment,
+                                    const RefinedPose& start, double thickness_mm, int iterations) const {
     points.offsets_mm.assign(points.positions_mm.size(), 0.0);
     for (std::size_t i = 0; i < points.offsets_mm.size(); ++i) {
-      if (result_.is_covered[i]) points.offsets_mm[i] = thickness_mm;
+      if (assignment.is_covered[i]) points.offsets_mm[i] = thickness_mm;
     }
-    return refine([this](const Eigen::Vector3d& p) { return bone_.field.sample(p); }, points, start.bone_from_marker,
-                  start.model, prior_, iterations);
+    return refine([this](const Eigen::Vector3d& p) { return bone_.field.sample(p); }, points,
+                  start.bone_from_marker, start.model, prior_, iterations);
   }
 
-  // From 0 outwards, each from the one before: the pose moves along with the thickness.
-  void search_coarsely() {
-    const RefinedPose start = result_.pose;
-    profile_ = {{0.0, start.cost}};
+  // On a part of the points; from 0 outwards, each from the one before: the pose moves along with the
+  // thickness.
+  void search_coarsely(PoseFit& fit) const {
+    TouchedPoints points = draw_points(points_, kCoarsePointCount, 1);
+    const auto at = [&](const RefinedPose& start, double thickness_mm) {
+      RefinedPose wide = start;
+      wide.model = {};
+      const Assignment assignment(map_, points, start.bone_from_marker);
+      return refined(points, assignment, wide, thickness_mm, kCoarseIterations);
+    };
+    RefinedPose best = at(fit.pose, 0);
+    std::vector<Likelihood> profile{{0, best.cost}};
     for (const double step_mm : {kCoarseStep_mm, -kCoarseStep_mm}) {
-      RefinedPose pose = start;
-      for (double thickness = step_mm; thickness >= kThinnest_mm && thickness <= kThickest_mm; thickness += step_mm) {
-        pose.model = {};
-        assign(pose);
-        pose = refined(pose, thickness, kCoarseIterations);
-        profile_.push_back({thickness, pose.cost});
-        if (pose.cost >= result_.pose.cost) continue;
-        result_.pose = pose;
-        result_.thickness_mm = thickness;
+      RefinedPose pose = fit.pose;
+      for (double thickness = step_mm; thickness >= kThinnest_mm && thickness <= kThickest_mm;
+           thickness += step_mm) {
+        pose = at(pose, thickness);
+        profile.push_back({thickness, pose.cost});
+        if (pose.cost >= best.cost) continue;
+        best = pose;
+        fit.thickness_mm = thickness;
       }
     }
+    fit.pose.bone_from_marker = best.bone_from_marker;
+    fit.pose.model = best.model;
+    fit.profile_width_mm = width_of(profile, {fit.thickness_mm, best.cost});
   }
 
   // A parabola through the likelihood around the best gives its place and its width.
-  void search_finely() {
-    std::array<RefinedPose, 3> near;  // a step thinner, here, a step thicker
-    const auto at = [&](int side) {
-      return refined(result_.pose, result_.thickness_mm + side * kFineStep_mm, kFineIterations);
+  void search_finely(PoseFit& fit) const {
+    const auto at = [&](const RefinedPose& start, double thickness_mm) {
+      return refined(fit.points, fit.assignment, start, thickness_mm, kFineIterations);
     };
-    near = {at(-1), at(0), at(1)};
-    while (near[0].cost < near[1].cost && result_.thickness_mm > kThinnest_mm) {
-      result_.thickness_mm -= kFineStep_mm;
-      near = {at(-1), std::move(near[0]), std::move(near[1])};
+    const auto beside = [&](int side) { return at(fit.pose, fit.thickness_mm + side * kFineStep_mm); };
+    fit.pose = at(fit.pose, fit.thickness_mm);
+    std::array<RefinedPose, 3> near{beside(-1), fit.pose, beside(1)};  // a step thinner, here, a step thicker
+    while (near[0].cost < near[1].cost && fit.thickness_mm > kThinnest_mm) {
+      fit.thickness_mm -= kFineStep_mm;
+      near = {beside(-1), std::move(near[0]), std::move(near[1])};
     }
-    while (near[2].cost < near[1].cost && result_.thickness_mm < kThickest_mm) {
-      result_.thickness_mm += kFineStep_mm;
-      near = {std::move(near[1]), std::move(near[2]), at(1)};
+    while (near[2].cost < near[1].cost && fit.thickness_mm < kThickest_mm) {
+      fit.thickness_mm += kFineStep_mm;
+      near = {std::move(near[1]), std::move(near[2]), beside(1)};
     }
-    const double measurements = result_.points.weight_sum / kCorrelationLength_mm;
-    const double rise = (near[2].cost - near[0].cost) * measurements;
-    const double curvature = (near[0].cost - 2 * near[1].cost + near[2].cost) * measurements / (kFineStep_mm * kFineStep_mm);
-    const bool is_inside = result_.thickness_mm > kThinnest_mm && result_.thickness_mm < kThickest_mm;
+    const double rise = (near[2].cost - near[0].cost) * measurements();
+    const double curvature =
+        (near[0].cost - 2 * near[1].cost + near[2].cost) * measurements() / (kFineStep_mm * kFineStep_mm);
+    const bool is_inside = fit.thickness_mm > kThinnest_mm && fit.thickness_mm < kThickest_mm;
     if (curvature > 0 && is_inside) {
-      result_.thickness_mm += std::clamp(-0.5 * rise / (curvature * kFineStep_mm), -kFineStep_mm, kFineStep_mm);
-      result_.sigma_mm = std::max(1 / std::sqrt(curvature), width_of_profile(measurements));
-      result_.drift_per_mm =
+      fit.thickness_mm += std::clamp(-0.5 * rise / (curvature * kFineStep_mm), -kFineStep_mm, kFineStep_mm);
+      fit.sigma_mm = std::max(1 / std::sqrt(curvature), fit.profile_width_mm);
+      fit.drift_per_mm =
           geometry::log(near[2].bone_from_marker * near[0].bone_from_marker.inverse()) / (2 * kFineStep_mm);
-      result_.is_held = result_.touches_both() && result_.sigma_mm < kMaxSigma_mm;
+      fit.is_held = fit.assignment.touches_both() && fit.sigma_mm < kMaxSigma_mm;
     }
-    result_.pose = refined(near[1], result_.thickness_mm, kFineIterations);
-  }
-
-  // By how much the thicknesses scatter that are about as likely. Where the likelihood is flat or has several tops, one of
-  // them alone looks sharper than what is known.
-  [[nodiscard]] double width_of_profile(double measurements) const {
-    double sum = 0, square_sum = 0;
-    for (const auto& [thickness, cost] : profile_) {
-      const double weight = std::exp(std::min(0.0, (result_.pose.cost - cost) * measurements));
-      const double away = thickness - result_.thickness_mm;
-      sum += weight;
-      square_sum += weight * away * away;
-    }
-    // The thickness itself is one of them.
-    return std::sqrt(square_sum / (1 + sum));
+    fit.pose = at(near[1], fit.thickness_mm);
   }
 
   struct Likelihood {
     double thickness_mm, cost;
   };
 
+  // By how much the thicknesses scatter that are about as likely. Where the likelihood is flat or has several
+  // tops, one of them alone looks sharper than what is known.
+  [[nodiscard]] double width_of(const std::vector<Likelihood>& profile, const Likelihood& best) const {
+    double sum = 0, square_sum = 0;
+    for (const Likelihood& one : profile) {
+      const double weight = std::exp((best.cost - one.cost) * measurements());
+      const double away = one.thickness_mm - best.thickness_mm;
+      sum += weight;
+      square_sum += weight * away * away;
+    }
+    return std::sqrt(square_sum / sum);
+  }
+
+  [[nodiscard]] double measurements() const { return points_.weight_sum / kCorrelationLength_mm; }
+
   const PreparedBone::Data& bone_;
   const CoverMap& map_;
   const MarkerPrior& prior_;
-  PoseFit result_;
-  std::vector<Likelihood> profile_;  // of the coarse search
+  const TouchedPoints& points_;
 };
+
+// The best of each place, best first, less what has fallen behind beyond hope.
+std::vector<PoseFit> ranked(std::vector<PoseFit> fits, const TouchedPoints& points) {
+  constexpr double kHopeless = 25;
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const PoseFit& l, const PoseFit& r) { return l.pose.cost < r.pose.cost; });
+  std::vector<PoseFit> kept;
+  for (PoseFit& fit : fits) {
+    if (kept.size() == kMaxPoses) break;
+    if (kept.size() > 1 && lead_of(kept.front().pose.cost, fit.pose.cost, points) > kHopeless) break;
+    const bool is_new = std::all_of(kept.begin(), kept.end(), [&](const PoseFit& other) {
+      return are_different(fit.pose.bone_from_marker, other.pose.bone_from_marker, points.centroid_mm);
+    });
+    if (is_new) kept.push_back(std::move(fit));
+  }
+  return kept;
+}
 
 TouchedPoints bare_points(const PoseFit& fit) {
   const TouchedPoints& points = fit.points;
   TouchedPoints bare;
   for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
-    if (fit.is_covered[i]) continue;
+    if (fit.assignment.is_covered[i]) continue;
     bare.positions_mm.push_back(points.positions_mm[i]);
     bare.weights.push_back(points.weights[i]);
     bare.stretches.push_back(points.stretches[i]);
@@ -173,11 +221,43 @@ std::string formatted(const char* format, double first, double second) {
   return text;
 }
 
+// What the best says about the region; the others are put beside it.
+CoverFit summarised(const std::vector<PoseFit>& fits, PosePool& pool, const TouchedPoints& points) {
+  const PoseFit& best = fits.front();
+  CoverFit cover;
+  cover.cost = best.pose.cost;
+  cover.has_bare = best.assignment.touches_bare();
+  cover.is_solved = best.is_held;
+  cover.is_left_out = best.assignment.covered_sum > 0 && cover.has_bare && !best.is_held;
+  cover.thickness_mm = best.thickness_mm;
+  cover.sigma_mm = best.sigma_mm;
+  cover.drift_per_mm = best.drift_per_mm;
+  cover.points = cover.is_left_out ? bare_points(best) : best.points;
+  std::vector<RefinedPose> poses;
+  for (const PoseFit& fit : fits) poses.push_back(fit.pose);
+  pool.replace(std::move(poses), points.centroid_mm);
+  if (cover.is_left_out) pool.refine_all(cover.points, kFineIterations);
+  if (best.assignment.covered_sum <= 0) {
+    cover.assumption = "no stroke lies on the covered region";
+  } else if (!cover.has_bare) {
+    cover.assumption = "the covered region was taken to lie on the mesh: nothing but it was touched";
+  } else if (cover.is_solved) {
+    cover.assumption =
+        formatted("the covered region lies %.1f mm off the mesh, one sigma %.1f mm: solved from the strokes",
+                  cover.thickness_mm, cover.sigma_mm);
+  } else {
+    cover.assumption = "the covered region was left out: the strokes don't hold its thickness";
+  }
+  return cover;
+}
+
 }  // namespace
 
-CoverMap::CoverMap(const PreparedBone::Data& bone, const CoveredRegion& region) : bone_(bone), reach_mm_(region.reach_mm) {
+CoverMap::CoverMap(const PreparedBone::Data& bone, const CoveredRegion& region)
+    : bone_(bone), reach_mm_(region.reach_mm) {
   if (!(reach_mm_ > 0)) return;
-  for (const Eigen::Vector3d& point : region.points_mm) cells_[key_of(cell_of(point, reach_mm_))].push_back(point);
+  for (const Eigen::Vector3d& point : region.points_mm)
+    cells_[key_of(cell_of(point, reach_mm_))].push_back(point);
 }
 
 bool CoverMap::covers(const Eigen::Vector3d& point_in_bone_mm) const {
@@ -192,9 +272,10 @@ bool CoverMap::covers(const Eigen::Vector3d& point_in_bone_mm) const {
       for (const int z : kSteps) {
         const auto cell = cells_.find(key_of(middle + Eigen::Array3i(x, y, z)));
         if (cell == cells_.end()) continue;
-        const bool is_near = std::any_of(cell->second.begin(), cell->second.end(), [&](const Eigen::Vector3d& point) {
-          return (point - place_mm).squaredNorm() < reach_mm_ * reach_mm_;
-        });
+        const bool is_near =
+            std::any_of(cell->second.begin(), cell->second.end(), [&](const Eigen::Vector3d& point) {
+              return (point - place_mm).squaredNorm() < reach_mm_ * reach_mm_;
+            });
         if (is_near) return true;
       }
     }
@@ -202,44 +283,47 @@ bool CoverMap::covers(const Eigen::Vector3d& point_in_bone_mm) const {
   return false;
 }
 
-std::optional<double> CoverFit::offset_mm(const CoverMap& map, const Eigen::Vector3d& point_in_bone_mm) const {
+std::optional<double> CoverFit::offset_mm(const CoverMap& map,
+                                          const Eigen::Vector3d& point_in_bone_mm) const {
   if ((!is_solved && !is_left_out) || !map.covers(point_in_bone_mm)) return 0.0;
   if (is_left_out) return std::nullopt;
   return thickness_mm;
 }
 
-CoverFit fit_cover(const PreparedBone::Data& bone, PosePool& pool, const TouchedPoints& points, const CoverMap& map) {
-  CoverFit cover;
-  cover.points = points;
-  if (pool.empty()) return cover;
-  std::vector<PoseFit> fits;
-  for (const RefinedPose& pose : pool.poses()) fits.push_back(Fit(bone, points, map, pool.prior()).from(pose));
-  const PoseFit& best = *std::min_element(fits.begin(), fits.end(), [](const PoseFit& l, const PoseFit& r) {
-    return l.pose.cost < r.pose.cost;
-  });
-  cover.cost = best.pose.cost;
-  cover.has_bare = best.touches_bare();
-  cover.is_solved = best.is_held;
-  cover.is_left_out = best.covered_sum > 0 && cover.has_bare && !best.is_held;
-  cover.thickness_mm = best.thickness_mm;
-  cover.sigma_mm = best.sigma_mm;
-  cover.drift_per_mm = best.drift_per_mm;
-  cover.points = cover.is_left_out ? bare_points(best) : best.points;
-  std::vector<RefinedPose> poses;
-  for (PoseFit& fit : fits) poses.push_back(fit.pose);
-  pool.replace(std::move(poses), points.centroid_mm);
-  if (cover.is_left_out) pool.refine_all(cover.points, kFineIterations);
-  if (best.covered_sum <= 0) {
-    cover.assumption = "no stroke lies on the covered region";
-  } else if (!cover.has_bare) {
-    cover.assumption = "the covered region was taken to lie on the mesh: nothing but it was touched";
-  } else if (cover.is_solved) {
-    cover.assumption = formatted("the covered region lies %.1f mm off the mesh, one sigma %.1f mm: solved from the strokes",
-                                 cover.thickness_mm, cover.sigma_mm);
-  } else {
-    cover.assumption = "the covered region was left out: the strokes don't hold its thickness";
+std::vector<std::optional<double>> CoverFit::offsets_mm(
+    const CoverMap& map, const strokes::Curves& curves,
+    const geometry::RigidTransform& bone_from_marker) const {
+  std::vector<std::optional<double>> offsets_mm;
+  for (const strokes::CurvePoint& point : curves) {
+    offsets_mm.push_back(offset_mm(map, bone_from_marker * point.position_mm));
   }
-  return cover;
+  return offsets_mm;
+}
+
+void CoverFit::add_to(RegistrationSummary& summary, const Eigen::Vector3d& target_in_bone_mm) const {
+  summary.assumptions.push_back(assumption);
+  if (!has_bare) {
+    summary.reliable = false;
+    summary.reasons.push_back("all strokes lie on the covered region: touch what is bare too");
+  }
+  if (!is_solved) return;
+  // What the thickness is uncertain by, the pose is too.
+  summary.covariance += sigma_mm * sigma_mm * drift_per_mm * drift_per_mm.transpose();
+  summary.predicted_tre_mm = predicted_error_mm(summary, target_in_bone_mm);
+}
+
+CoverFit CoverFitter::fit(PosePool& pool, const TouchedPoints& points, bool anew) {
+  const Fit fit(bone_, map_, prior_, points);
+  std::vector<PoseFit> fits;
+  for (const Known& known : known_)
+    fits.push_back(fit.on_from(known.pose, known.thickness_mm, known.profile_width_mm));
+  if (anew || known_.empty()) {
+    for (const RefinedPose& pose : pool.poses()) fits.push_back(fit.from(pose));
+  }
+  fits = ranked(std::move(fits), points);
+  known_.clear();
+  for (const PoseFit& one : fits) known_.push_back({one.pose, one.thickness_mm, one.profile_width_mm});
+  return summarised(fits, pool, points);
 }
 
 }  // namespace arthronaut::registration

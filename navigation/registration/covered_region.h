@@ -1,5 +1,6 @@
-// Where the mesh is bone and the probe touches cartilage, or the other way round: the touched surface lies off the mesh by
-// one thickness over a region. The thickness is solved with the pose when the strokes hold it, else the region is left out.
+// Where the mesh is bone and the probe touches cartilage, or the other way round: the touched surface lies
+// off the mesh by one thickness over a region. The thickness is solved with the pose when the strokes hold
+// it, else the region is left out.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,8 @@
 
 namespace arthronaut::registration {
 
-// The region made ready to be asked. Immutable; a reach that is not above 0 makes it empty. The bone must outlive it.
+// The region made ready to be asked. Immutable; a reach that is not above 0 makes it empty. The bone must
+// outlive it.
 class CoverMap {
  public:
   CoverMap(const PreparedBone::Data& bone, const CoveredRegion& region);
@@ -28,23 +30,55 @@ class CoverMap {
 };
 
 struct CoverFit {
-  TouchedPoints points;      // with their offsets; without the region where it was left out
+  TouchedPoints points;  // with their offsets; without the region where it was left out
   bool is_solved = false;
   bool is_left_out = false;  // neither: no stroke lies on the region, or none beside it
   bool has_bare = true;      // false: all strokes lie on the region, and nothing was done about it
   double thickness_mm = 0, sigma_mm = 0;  // one sigma, from how the likelihood falls with the thickness
-  geometry::Vector6d drift_per_mm = geometry::Vector6d::Zero();  // twist of the bone frame about its origin, by thickness
-  double cost = 0;         // as RefinedPose::cost, over all points with the likeliest thickness, solved or not: compares
+  geometry::Vector6d drift_per_mm =
+      geometry::Vector6d::Zero();  // twist of the bone frame about its origin, by thickness
+  double cost =
+      0;  // as RefinedPose::cost, over all points with the likeliest thickness, solved or not: compares
   std::string assumption;  // in plain words
 
   // How far off the mesh the probe touches at a place of the bone; nullopt where that is not known.
-  [[nodiscard]] std::optional<double> offset_mm(const CoverMap& map, const Eigen::Vector3d& point_in_bone_mm) const;
+  [[nodiscard]] std::optional<double> offset_mm(const CoverMap& map,
+                                                const Eigen::Vector3d& point_in_bone_mm) const;
+  // The same, by point of the curves.
+  [[nodiscard]] std::vector<std::optional<double>> offsets_mm(
+      const CoverMap& map, const strokes::Curves& curves,
+      const geometry::RigidTransform& bone_from_marker) const;
+  // Says what was assumed, and adds what the thickness leaves uncertain to the covariance and to the error at
+  // the target.
+  void add_to(RegistrationSummary& summary, const Eigen::Vector3d& target_in_bone_mm) const;
 };
 
-// Gives each pose of the pool the thickness that suits it best and refines it with it, so that the poses compare; the
-// thickness is sought between -4 and 5 mm. Where the best one's is not held, all are refined without the points that it puts
-// on the region. Nothing is done to an empty pool.
-[[nodiscard]] CoverFit fit_cover(const PreparedBone::Data& bone, PosePool& pool, const TouchedPoints& points,
-                                 const CoverMap& map);
+// Gives each pose of a pool the thickness that suits it best and refines it with it, so that the poses
+// compare; the thickness is sought between -4 and 5 mm. Where the best one's is not held, all are refined
+// without the points that it puts on the region.
+class CoverFitter {
+ public:
+  // All three must outlive it.
+  CoverFitter(const PreparedBone::Data& bone, const CoverMap& map, const MarkerPrior& prior)
+      : bone_(bone), map_(map), prior_(prior) {}
+
+  // Follows the poses that it found the last time as points come in; anew, or the first time, it tries all
+  // thicknesses with each pose of the pool as well. The best of all are left in the pool, which must not be
+  // empty. For 500 points 3 ms a pose anew, a tenth of it else.
+  [[nodiscard]] CoverFit fit(PosePool& pool, const TouchedPoints& points, bool anew);
+  void forget() { known_.clear(); }
+
+ private:
+  struct Known {
+    RefinedPose pose;
+    double thickness_mm = 0;
+    double profile_width_mm = 0;  // how far the likely thicknesses were spread when all were tried
+  };
+
+  const PreparedBone::Data& bone_;
+  const CoverMap& map_;
+  const MarkerPrior& prior_;
+  std::vector<Known> known_;  // best first
+};
 
 }  // namespace arthronaut::registration

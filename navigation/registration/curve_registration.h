@@ -20,7 +20,8 @@ struct SearchSetting {
 
   const PreparedBone::Data& bone;
   RegistrationOptions options;
-  std::vector<bool> reachable;    // samples of the bone, by the planned entry; empty without one that is on the bone
+  std::vector<bool>
+      reachable;  // samples of the bone, by the planned entry; empty without one that is on the bone
   std::optional<CoverMap> cover;  // of options.covered
 };
 

@@ -11,7 +11,7 @@
 #include "navigation/registration/global_search.h"
 #include "navigation/registration/pose_pool.h"
 #include "navigation/registration/reachable_region.h"
-#include "navigation/strokes/stroke_tangents.h"
+#include "navigation/registration/stroke_set.h"
 
 namespace arthronaut::registration {
 
@@ -25,15 +25,6 @@ constexpr double kMinLengthToSearch_mm = 25;
 constexpr int kPairsWhileCollecting = 6, kPairsAfterwards = 1;
 constexpr int kIterations = 6;
 constexpr int kAgreeingSolutions = 3;
-
-struct Stroke {
-  strokes::Curves points;
-  bool is_excluded = false;
-  // Of the first `prepared_count` points.
-  std::size_t prepared_count = 0;
-  std::vector<strokes::OrientedPoint> oriented;
-  double length_mm = 0;
-};
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -50,10 +41,30 @@ std::string formatted(const char* format, double value) {
 
 }  // namespace
 
+std::string_view to_text(OnlineState state) {
+  switch (state) {
+    case OnlineState::Collecting:
+      return "collecting";
+    case OnlineState::Candidate:
+      return "candidate";
+    case OnlineState::Confirmed:
+      return "confirmed";
+    case OnlineState::Verified:
+      return "verified";
+  }
+  return "unknown";
+}
+
 struct OnlineRegistration::State {
   State(std::shared_ptr<const PreparedBone> prepared, const OnlineOptions& online_options)
-      : bone(std::move(prepared)), options(online_options), pool(bone->data(), prior_of(online_options)) {
-    if (options.target_in_bone_mm) reachable = find_reachable_samples(bone->data(), *options.target_in_bone_mm);
+      : bone(std::move(prepared)),
+        options(online_options),
+        setting(bone->data(), options_of(online_options)),
+        pool(bone->data(), prior_of(online_options)),
+        standing(pool) {
+    if (setting.cover) fitter.emplace(bone->data(), *setting.cover, pool.prior());
+    if (options.target_in_bone_mm)
+      reachable = find_reachable_samples(bone->data(), *options.target_in_bone_mm);
   }
 
   static MarkerPrior prior_of(const OnlineOptions& options) {
@@ -62,43 +73,49 @@ struct OnlineRegistration::State {
     return prior;
   }
 
-  [[nodiscard]] strokes::Curves curves_in_use() const;
-  [[nodiscard]] RegistrationOptions registration_options() const {
-    return {options.seed, options.use_marker_prior, options.target_in_bone_mm};
+  static RegistrationOptions options_of(const OnlineOptions& options) {
+    RegistrationOptions registering{options.seed, options.use_marker_prior, options.target_in_bone_mm};
+    registering.covered = options.covered;
+    return registering;
   }
-  void prepare_strokes();
+
   void check_side();
   void solve();
+  void fit_cover();
   void remember_solution();
   void judge_touches();
   void judge_state();
-  void advise();
   void describe_strokes();
-  [[nodiscard]] double length_in_use_mm() const {
-    double length_mm = 0;
-    for (const Stroke& stroke : strokes) length_mm += stroke.is_excluded ? 0.0 : stroke.length_mm;
-    return length_mm;
-  }
   [[nodiscard]] Eigen::Vector3d target_mm() const;
+  // How far off the mesh the bone is touched there; nullopt where that is not known.
+  [[nodiscard]] std::optional<double> offset_mm(const Eigen::Vector3d& point_in_bone_mm) const {
+    return setting.cover ? cover.offset_mm(*setting.cover, point_in_bone_mm) : 0.0;
+  }
   [[nodiscard]] int violation_count() const {
     int count = control_violations;
-    for (const Touch& touch : result.touches) count += std::abs(touch.residual_mm) > options.max_touch_error_mm;
+    for (const Touch& touch : result.touches) {
+      count += touch.tells && std::abs(touch.residual_mm) > options.max_touch_error_mm;
+    }
     return count;
   }
   [[nodiscard]] int agreement_count() const;
 
   std::shared_ptr<const PreparedBone> bone;
   OnlineOptions options;
+  SearchSetting setting;
   std::vector<bool> reachable;  // samples of the bone, by the tunnel's entry; empty without one
-  std::vector<Stroke> strokes;
-  PosePool pool;
-  TouchedPoints points;  // of the last solution
+  StrokeSet strokes;
+  PosePool pool;      // of the search, which knows the mesh alone
+  PosePool standing;  // of the last solution: the same, or with a cover its poses with their thicknesses
+  std::optional<CoverFitter> fitter;
+  TouchedPoints points;       // of the last solution
+  CoverFit cover;             // of the last solution; nothing of it holds without options.covered
+  double cover_tried_mm = 0;  // the stroke length when all thicknesses were tried the last time
   double solved_length_mm = 0;
-  double unmeasured_mm = 0;         // at most so much stroke was drawn since the strokes were last measured
-  bool is_changed = false;          // strokes were excluded, undone or cleared since the last solution
-  SideVerdict side = SideVerdict::Own;  // as the last check, before a confirmation, told
-  double side_checked_mm = 0;       // the stroke length then; 0 when there was none
-  bool is_judged = true;            // false: touches came in since the last update
+  bool is_changed = false;                // strokes were excluded, undone or cleared since the last solution
+  SideVerdict side = SideVerdict::Own;    // as the last check, before a confirmation, told
+  double side_checked_mm = 0;             // the stroke length then; 0 when there was none
+  bool is_judged = true;                  // false: touches came in since the last update
   std::vector<RigidTransform> solutions;  // marker_from_bone, each with new stroke, newest last
   std::optional<Eigen::Vector3d> control_point_mm;
   double control_shift_mm = 0;
@@ -107,38 +124,30 @@ struct OnlineRegistration::State {
   std::vector<HistoryEntry> history;
 };
 
-strokes::Curves OnlineRegistration::State::curves_in_use() const {
-  strokes::Curves curves;
-  for (const Stroke& stroke : strokes) {
-    if (!stroke.is_excluded) curves.insert(curves.end(), stroke.points.begin(), stroke.points.end());
-  }
-  return curves;
-}
-
-void OnlineRegistration::State::prepare_strokes() {
-  for (Stroke& stroke : strokes) {
-    if (stroke.prepared_count == stroke.points.size()) continue;
-    stroke.prepared_count = stroke.points.size();
-    stroke.oriented = strokes::oriented_points(stroke.points);
-    stroke.length_mm = strokes::stroke_length_mm(stroke.points);
-  }
-}
-
 Eigen::Vector3d OnlineRegistration::State::target_mm() const {
   if (options.target_in_bone_mm) return *options.target_in_bone_mm;
-  return pool.empty() ? Eigen::Vector3d::Zero() : pool.best().bone_from_marker * points.centroid_mm;
+  return standing.empty() ? Eigen::Vector3d::Zero() : standing.best().bone_from_marker * points.centroid_mm;
+}
+
+// To try all thicknesses takes long: that is done until something is found, and later on now and then.
+void OnlineRegistration::State::fit_cover() {
+  constexpr double kLengthRatio = 1.25;
+  const double length_mm = strokes.length_in_use_mm();
+  const bool anew =
+      result.state == OnlineState::Collecting || is_changed || length_mm > kLengthRatio * cover_tried_mm;
+  if (anew) cover_tried_mm = length_mm;
+  cover = fitter->fit(standing, points, anew);
+  points = cover.points;
 }
 
 void OnlineRegistration::State::solve() {
-  const strokes::Curves curves = curves_in_use();
+  const strokes::Curves curves = strokes.curves_in_use();
   points = choose_points(curves, kPointCount);
-  std::vector<strokes::OrientedPoint> oriented;
-  for (const Stroke& stroke : strokes) {
-    if (!stroke.is_excluded) oriented.insert(oriented.end(), stroke.oriented.begin(), stroke.oriented.end());
-  }
+  const std::vector<strokes::OrientedPoint> oriented = strokes.oriented_in_use();
   const std::vector<std::string> objections = objections_to(curves, bone->data().bounds.size_mm().norm());
-  if (length_in_use_mm() < kMinLengthToSearch_mm || !objections.empty()) {
+  if (strokes.length_in_use_mm() < kMinLengthToSearch_mm || !objections.empty()) {
     pool.clear();
+    if (fitter) fitter->forget();
   } else {
     GlobalSearchOptions search;
     search.seed = options.seed + result.revision;  // other pairs each time
@@ -152,17 +161,27 @@ void OnlineRegistration::State::solve() {
     pool.add(search_globally(bone->data(), oriented, points, search), points, search.seed);
     pool.refine_all(points, kIterations);
   }
-  result.registration = summarise(bone->data(), pool, {curves, points, length_in_use_mm(), white_noise_of(oriented)},
-                                  registration_options());
+  standing.replace(pool.poses(), points.centroid_mm);
+  std::vector<std::optional<double>> offsets_mm;
+  if (fitter && !standing.empty()) {
+    fit_cover();
+    offsets_mm = cover.offsets_mm(*setting.cover, curves, standing.best().bone_from_marker);
+  }
+  const TouchedCurves touched{curves, points, strokes.length_in_use_mm(), white_noise_of(oriented),
+                              std::move(offsets_mm)};
+  result.registration = summarise(bone->data(), standing, touched, setting.options);
+  if (fitter && !standing.empty()) cover.add_to(result.registration, target_mm());
   if (!result.registration.has_pose) {
     result.registration.reasons = objections;
-    if (objections.empty()) result.registration.reasons = {"no pose was found yet that puts the strokes on the bone"};
+    if (objections.empty())
+      result.registration.reasons = {"no pose was found yet that puts the strokes on the bone"};
     return;
   }
   const Eigen::Matrix3d turn = result.registration.covariance.bottomRightCorner<3, 3>();
   Eigen::Matrix3d across = Eigen::Matrix3d::Identity();
   if (options.direction_in_bone) across = geometry::cross_matrix(options.direction_in_bone->normalized());
-  result.predicted_angle_deg = geometry::deg_from_rad(std::sqrt((across * turn * across.transpose()).trace()));
+  result.predicted_angle_deg =
+      geometry::deg_from_rad(std::sqrt((across * turn * across.transpose()).trace()));
 }
 
 void OnlineRegistration::State::remember_solution() {
@@ -187,15 +206,15 @@ int OnlineRegistration::State::agreement_count() const {
   return count;
 }
 
-// Which side's bone it is shows late: with few strokes the wrong one fits too. So it is asked once when all else would
-// confirm, and again when half as much again was drawn.
+// Which side's bone it is shows late: with few strokes the wrong one fits too. So it is asked once when all
+// else would confirm, and again when half as much again was drawn.
 void OnlineRegistration::State::check_side() {
-  const bool is_due = side_checked_mm == 0 || result.length_mm > 1.5 * side_checked_mm || side != SideVerdict::Own;
+  const bool is_due =
+      side_checked_mm == 0 || result.length_mm > 1.5 * side_checked_mm || side != SideVerdict::Own;
   if (is_due && agreement_count() >= kAgreeingSolutions && result.registration.reliable) {
     // Costs compare only between searches of the same kind, over the same points.
     constexpr int kRounds = 2;
-    const strokes::Curves curves = curves_in_use();
-    const SearchSetting setting(bone->data(), registration_options());
+    const strokes::Curves curves = strokes.curves_in_use();
     const SearchOutcome own = search_and_summarise(setting, curves, kRounds);
     side = judge_side(setting, curves, own);
     side_checked_mm = result.length_mm;
@@ -209,7 +228,10 @@ void OnlineRegistration::State::judge_touches() {
   if (!result.registration.has_pose) return;
   const RigidTransform bone_from_marker = result.registration.marker_from_bone.inverse();
   for (Touch& touch : result.touches) {
-    touch.residual_mm = bone->data().surface.signed_distance_mm(bone_from_marker * touch.point_in_marker_mm);
+    const Eigen::Vector3d p = bone_from_marker * touch.point_in_marker_mm;
+    const std::optional<double> offset = offset_mm(p);
+    touch.tells = offset.has_value();
+    touch.residual_mm = bone->data().surface.signed_distance_mm(p) - offset.value_or(0.0);
   }
 }
 
@@ -221,11 +243,13 @@ void OnlineRegistration::State::judge_state() {
   result.state = OnlineState::Collecting;
   result.alarm.clear();
   if (!registration.has_pose) return;
-  if (registration.runner_up_ratio < kCandidateRatio || registration.inlier_fraction < kCandidateInliers) return;
+  if (registration.runner_up_ratio < kCandidateRatio || registration.inlier_fraction < kCandidateInliers)
+    return;
   result.state = OnlineState::Candidate;
   if (violation_count() >= kViolationsToDrop) {
     result.alarm = control_violations > 0
-                       ? formatted("the world marker may have moved: the control point is off by %.1f mm", control_shift_mm)
+                       ? formatted("the world marker may have moved: the control point is off by %.1f mm",
+                                   control_shift_mm)
                        : formatted("the world marker may have moved: %.0f touches lie off the bone",
                                    static_cast<double>(violation_count()));
     return;
@@ -233,59 +257,18 @@ void OnlineRegistration::State::judge_state() {
   if (!registration.reliable || agreement_count() < kAgreeingSolutions) return;
   result.state = OnlineState::Confirmed;
   std::vector<double> misses_mm;
-  for (const Touch& touch : result.touches) misses_mm.push_back(std::abs(touch.residual_mm));
+  for (const Touch& touch : result.touches) {
+    if (touch.tells) misses_mm.push_back(std::abs(touch.residual_mm));
+  }
   if (std::ssize(misses_mm) < kTouchesToVerify) return;
   const bool all_lie_on = *std::max_element(misses_mm.begin(), misses_mm.end()) < kMaxVerifiedTouch_mm;
   if (all_lie_on && median(misses_mm) < kMaxVerifiedMedian_mm) result.state = OnlineState::Verified;
 }
 
-void OnlineRegistration::State::advise() {
-  constexpr double kLengthWanted_mm = 100, kErrorWanted_mm = 1.2;
-  Coach coach;
-  const RegistrationSummary& registration = result.registration;
-  if (result.length_mm < kLengthWanted_mm) {
-    coach.missing.push_back(formatted("%.0f mm more of stroke", std::ceil(kLengthWanted_mm - result.length_mm)));
-  }
-  const double length_done = std::min(1.0, result.length_mm / kLengthWanted_mm);
-  if (!registration.has_pose) {
-    coach.progress = 0.3 * length_done;
-    coach.missing.insert(coach.missing.end(), registration.reasons.begin(), registration.reasons.end());
-    result.coach = std::move(coach);
-    return;
-  }
-  coach.missing.insert(coach.missing.end(), registration.reasons.begin(), registration.reasons.end());
-  const double agreeing = std::min(kAgreeingSolutions, agreement_count());
-  if (agreeing < kAgreeingSolutions) {
-    coach.missing.push_back(formatted("%.0f mm more of stroke on which the result stays put",
-                                      (kAgreeingSolutions - agreeing) * options.refine_every_mm));
-  }
-  const double error_done = std::min(1.0, kErrorWanted_mm / std::max(registration.predicted_tre_mm, 1e-3));
-  coach.progress = 0.3 * length_done + 0.3 * error_done + 0.2 * agreeing / kAgreeingSolutions +
-                   (registration.reliable ? 0.2 : 0.0);
-  coach.patches = find_patches(bone->data(), pool.best(), points, pool.prior(), target_mm());
-  const auto next = std::max_element(coach.patches.begin(), coach.patches.end(),
-                                     [](const BonePatch& l, const BonePatch& r) { return l.gain < r.gain; });
-  if (next != coach.patches.end() && next->gain > 0.02) coach.next_patch_in_bone_mm = next->point_in_bone_mm;
-  if (!result.alarm.empty()) {
-    coach.message = "Check the world marker: " + result.alarm + ".";
-    coach.progress = 0;
-  } else if (result.state == OnlineState::Verified) {
-    coach.message = "Verified.";
-    coach.progress = 1;
-  } else if (result.state == OnlineState::Confirmed) {
-    coach.message = "Confirmed. Touch three places that you know, to verify.";
-    coach.progress = 1;
-  } else if (coach.next_patch_in_bone_mm) {
-    coach.message = "Draw the next stroke " +
-                    describe_place(*next, pool.best().bone_from_marker * points.centroid_mm) + ": it helps most.";
-  }
-  result.coach = std::move(coach);
-}
-
 void OnlineRegistration::State::describe_strokes() {
   result.strokes.clear();
   const RigidTransform bone_from_marker = result.registration.marker_from_bone.inverse();
-  for (const Stroke& stroke : strokes) {
+  for (const Stroke& stroke : strokes.all()) {
     StrokeInfo info;
     info.curve = stroke.points.front().curve;
     info.point_count = static_cast<int>(stroke.points.size());
@@ -294,7 +277,8 @@ void OnlineRegistration::State::describe_strokes() {
     if (result.registration.has_pose) {
       std::vector<double> misses_mm;
       for (const strokes::CurvePoint& point : stroke.points) {
-        misses_mm.push_back(std::abs(bone->data().field.sample(bone_from_marker * point.position_mm).distance_mm));
+        const Eigen::Vector3d p = bone_from_marker * point.position_mm;
+        misses_mm.push_back(std::abs(bone->data().field.sample(p).distance_mm - offset_mm(p).value_or(0.0)));
       }
       info.median_residual_mm = median(std::move(misses_mm));
     }
@@ -307,28 +291,16 @@ OnlineRegistration::OnlineRegistration(std::shared_ptr<const PreparedBone> bone,
 OnlineRegistration::~OnlineRegistration() = default;
 
 void OnlineRegistration::add_points(std::span<const strokes::CurvePoint> points) {
-  for (const strokes::CurvePoint& point : points) {
-    auto& strokes = state_->strokes;
-    if (strokes.empty() || strokes.back().points.front().curve != point.curve) strokes.emplace_back();
-    strokes::Curves& stroke = strokes.back().points;
-    if (!stroke.empty()) state_->unmeasured_mm += (point.position_mm - stroke.back().position_mm).norm();
-    stroke.push_back(point);
-  }
+  state_->strokes.add_points(points);
 }
 
 bool OnlineRegistration::exclude_stroke(int curve, bool is_excluded) {
-  bool found = false;
-  for (Stroke& stroke : state_->strokes) {
-    if (stroke.points.front().curve != curve) continue;
-    stroke.is_excluded = is_excluded;
-    found = state_->is_changed = true;
-  }
-  return found;
+  if (!state_->strokes.exclude(curve, is_excluded)) return false;
+  return state_->is_changed = true;
 }
 
 bool OnlineRegistration::undo_stroke() {
-  if (state_->strokes.empty()) return false;
-  state_->strokes.pop_back();
+  if (!state_->strokes.undo()) return false;
   return state_->is_changed = true;
 }
 
@@ -362,6 +334,7 @@ void OnlineRegistration::clear() {
   state_->strokes.clear();
   state_->solutions.clear();
   state_->pool.clear();
+  if (state_->fitter) state_->fitter->forget();
   state_->side = SideVerdict::Own;
   state_->side_checked_mm = 0;
   state_->is_changed = true;
@@ -369,12 +342,13 @@ void OnlineRegistration::clear() {
 
 const OnlineResult& OnlineRegistration::update() {
   State& state = *state_;
-  // Measuring a stroke with its noise taken out costs more than adding up the steps of its points, which is never less.
-  const double missing_mm = state.options.refine_every_mm - (state.length_in_use_mm() - state.solved_length_mm);
-  if (state.unmeasured_mm < missing_mm && !state.is_changed && state.is_judged) return state.result;
-  state.prepare_strokes();
-  state.unmeasured_mm = 0;
-  const double length_mm = state.length_in_use_mm();
+  // Measuring a stroke with its noise taken out costs more than adding up the steps of its points, which is
+  // never less.
+  const double missing_mm =
+      state.options.refine_every_mm - (state.strokes.length_in_use_mm() - state.solved_length_mm);
+  if (state.strokes.unmeasured_mm() < missing_mm && !state.is_changed && state.is_judged) return state.result;
+  state.strokes.measure();
+  const double length_mm = state.strokes.length_in_use_mm();
   const bool has_new_stroke = length_mm - state.solved_length_mm >= state.options.refine_every_mm;
   if (!has_new_stroke && !state.is_changed && state.is_judged) return state.result;
 
@@ -391,13 +365,15 @@ const OnlineResult& OnlineRegistration::update() {
   state.is_judged = true;
   state.judge_touches();
   state.judge_state();
-  state.advise();
+  state.result.coach =
+      advise(state.result, {state.bone->data(), state.standing, state.points, state.target_mm(),
+                            state.agreement_count(), kAgreeingSolutions, state.options.refine_every_mm});
   if (!state.history.empty()) state.history.back().state = state.result.state;
   return state.result;
 }
 
 const OnlineResult& OnlineRegistration::result() const { return state_->result; }
 const std::vector<HistoryEntry>& OnlineRegistration::history() const { return state_->history; }
-strokes::Curves OnlineRegistration::curves_in_use() const { return state_->curves_in_use(); }
+strokes::Curves OnlineRegistration::curves_in_use() const { return state_->strokes.curves_in_use(); }
 
 }  // namespace arthronaut::registration

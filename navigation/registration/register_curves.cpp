@@ -63,27 +63,6 @@ std::string describe_reach(const PreparedBone::Data& bone, const std::vector<boo
   return "the strokes lie out of reach of the planned entry: the whole bone was searched";
 }
 
-std::vector<std::optional<double>> offsets_of(const strokes::Curves& curves, const CoverFit& cover, const CoverMap& map,
-                                              const geometry::RigidTransform& bone_from_marker) {
-  std::vector<std::optional<double>> offsets_mm;
-  for (const strokes::CurvePoint& point : curves) {
-    offsets_mm.push_back(cover.offset_mm(map, bone_from_marker * point.position_mm));
-  }
-  return offsets_mm;
-}
-
-// What the thickness is uncertain by, the pose is too.
-void add_cover(const CoverFit& cover, const Eigen::Vector3d& target_mm, RegistrationSummary& summary) {
-  summary.assumptions.push_back(cover.assumption);
-  if (!cover.has_bare) {
-    summary.reliable = false;
-    summary.reasons.push_back("all strokes lie on the covered region: touch what is bare too");
-  }
-  if (!cover.is_solved) return;
-  summary.covariance += cover.sigma_mm * cover.sigma_mm * cover.drift_per_mm * cover.drift_per_mm.transpose();
-  summary.predicted_tre_mm = predicted_error_mm(summary, target_mm);
-}
-
 // The curves as they would be had the bone been its own mirror image. The marker's face stays its face.
 strokes::Curves mirrored(strokes::Curves curves) {
   for (strokes::CurvePoint& point : curves) point.position_mm.x() = -point.position_mm.x();
@@ -138,17 +117,17 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
   CoverFit cover;
   std::vector<std::optional<double>> offsets_mm;
   if (setting.cover && !pool.empty()) {
-    cover = fit_cover(bone, pool, points, *setting.cover);
+    cover = CoverFitter(bone, *setting.cover, prior).fit(pool, points, true);
     points = cover.points;
     pool.polish(points);
-    offsets_mm = offsets_of(curves, cover, *setting.cover, pool.best().bone_from_marker);
+    offsets_mm = cover.offsets_mm(*setting.cover, curves, pool.best().bone_from_marker);
     outcome.cost = cover.cost;  // not of fewer points where the region was left out
   }
   outcome.summary = summarise(
       bone, pool, {curves, points, strokes::stroke_length_mm(curves), white_noise_mm, std::move(offsets_mm)}, options);
   if (setting.cover && outcome.summary.has_pose) {
     const Eigen::Vector3d centroid_mm = pool.best().bone_from_marker * points.centroid_mm;
-    add_cover(cover, options.target_in_bone_mm.value_or(centroid_mm), outcome.summary);
+    cover.add_to(outcome.summary, options.target_in_bone_mm.value_or(centroid_mm));
   }
   if (options.plan_entry_in_bone_mm && !pool.empty()) {
     outcome.summary.assumptions.push_back(

@@ -9,20 +9,11 @@
 
 namespace arthronaut::registration {
 
-std::string_view to_text(OnlineState state) {
-  switch (state) {
-    case OnlineState::Collecting: return "collecting";
-    case OnlineState::Candidate: return "candidate";
-    case OnlineState::Confirmed: return "confirmed";
-    case OnlineState::Verified: return "verified";
-  }
-  return "unknown";
-}
-
-// One thread owns the core. What comes in waits in a list under a lock that nobody holds for longer than it takes to
-// append to it or to swap it; what comes out is one pointer, exchanged whole.
+// One thread owns the core. What comes in waits in a list under a lock that nobody holds for longer than it
+// takes to append to it or to swap it; what comes out is one pointer, exchanged whole.
 struct RegistrationWorker::State {
-  State(std::shared_ptr<const PreparedBone> bone, const OnlineOptions& options) : core(std::move(bone), options) {
+  State(std::shared_ptr<const PreparedBone> bone, const OnlineOptions& options)
+      : core(std::move(bone), options) {
     published.store(std::make_shared<const OnlineResult>(core.result()));
     thread = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
@@ -46,7 +37,8 @@ struct RegistrationWorker::State {
       for (const auto& item : work) {
         const std::uint64_t before = core.result().revision;
         item(core);
-        if (core.update().revision != before) published.store(std::make_shared<const OnlineResult>(core.result()));
+        if (core.update().revision != before)
+          published.store(std::make_shared<const OnlineResult>(core.result()));
       }
       work.clear();
       lock.lock();

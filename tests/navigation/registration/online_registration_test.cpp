@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/navigation/registration/phantom_bone.h"
 
 namespace arthronaut::registration {
@@ -10,6 +12,7 @@ namespace arthronaut::registration {
 namespace {
 
 using experiments::TrialNoise;
+using geometry::RigidTransform;
 
 OnlineOptions options_for(const PhantomBone& bone) {
   OnlineOptions options;
@@ -134,6 +137,73 @@ TEST(OnlineRegistration, NeverConfirmsTheMirroredBone) {
     OnlineRegistration online(bone.prepared, options_for(bone));
     for (const OnlineState state : draw(online, curves)) EXPECT_LT(state, OnlineState::Confirmed);
   }
+}
+
+// Cartilage of 2 mm that the mesh lacks, and of 2 mm that the probe lacks: confirmed on the way, with the thickness in what
+// was assumed; a touch on the region lies on what is to be touched there.
+TEST(OnlineRegistration, SolvesTheThicknessOfCartilageWhileScratching) {
+  const PhantomBone& bone = phantom_bone();
+  for (const double thickness_mm : {2.0, -2.0}) {
+    CoveredTrial covered = covered_trial(bone, bone.trial(TrialNoise::Dry, 1), thickness_mm);
+    covered.trial.curves.resize(600);
+    OnlineOptions options = options_for(bone);
+    options.covered = covered.region;
+    OnlineRegistration online(bone.prepared, options);
+    EXPECT_EQ(draw(online, covered.trial.curves).back(), OnlineState::Confirmed);
+    const RegistrationSummary& found = online.result().registration;
+    ASSERT_EQ(found.assumptions.size(), 1u);
+    EXPECT_NEAR(thickness_in(found.assumptions[0]), thickness_mm, 0.3) << found.assumptions[0];
+    const RigidTransform& truth = covered.trial.marker_from_bone;
+    EXPECT_LT((found.marker_from_bone * bone.target_mm - truth * bone.target_mm).norm(), 0.4);
+    for (const StrokeInfo& stroke : online.result().strokes) EXPECT_LT(stroke.median_residual_mm, 0.4);
+
+    const geometry::SurfacePoint place = bone.surface->closest_point(bone.target_mm + Eigen::Vector3d(0, 0, 12));
+    for (int i = 0; i < 3; ++i) online.add_touch(truth * (place.point_mm + thickness_mm * place.normal));
+    EXPECT_EQ(online.update().state, OnlineState::Verified);
+  }
+}
+
+// What was excluded or undone has no say in the thickness: without the strokes on it, the region is as if never touched.
+TEST(OnlineRegistration, ExcludedStrokesHaveNoSayInTheThickness) {
+  constexpr int kOnCover = 100;
+  const PhantomBone& bone = phantom_bone();
+  CoveredTrial covered = covered_trial(bone, bone.trial(TrialNoise::Dry, 3), 2);
+  strokes::Curves& curves = covered.trial.curves;
+  for (std::size_t i = 0; i < curves.size(); ++i) curves[i].curve += covered.is_on_cover[i] ? kOnCover : 0;
+  std::stable_sort(curves.begin(), curves.end(), [](const auto& l, const auto& r) { return l.curve < r.curve; });
+  const int last = curves.back().curve;
+  OnlineOptions options = options_for(bone);
+  options.covered = covered.region;
+  OnlineRegistration online(bone.prepared, options);
+  constexpr std::size_t kAtOnce = 100;
+  for (std::size_t i = 0; i < curves.size(); i += kAtOnce) {
+    online.add_points({curves.data() + i, std::min(kAtOnce, curves.size() - i)});
+    online.update();
+  }
+  const auto assumption = [&online] {
+    const auto& assumptions = online.result().registration.assumptions;
+    return assumptions.empty() ? std::string() : assumptions.front();
+  };
+  EXPECT_NEAR(thickness_in(assumption()), 2, 0.3) << assumption();
+  EXPECT_TRUE(online.undo_stroke());
+  for (int curve = kOnCover; curve < last; ++curve) EXPECT_TRUE(online.exclude_stroke(curve));
+  online.update();
+  EXPECT_THAT(assumption(), testing::AnyOf(testing::HasSubstr("no stroke lies on"), testing::HasSubstr("left out")));
+  for (int curve = kOnCover; curve < last; ++curve) EXPECT_TRUE(online.exclude_stroke(curve, false));
+  online.update();
+  EXPECT_NEAR(thickness_in(assumption()), 2, 0.3) << assumption();
+}
+
+// A region whose thickness is free confirms no bone of the other side.
+TEST(OnlineRegistration, NeverConfirmsTheMirroredBoneWithCartilage) {
+  const PhantomBone& bone = phantom_bone();
+  CoveredTrial covered = covered_trial(bone, bone.trial(TrialNoise::Dry, 1), 2);
+  covered.trial.curves.resize(500);
+  for (auto& point : covered.trial.curves) point.position_mm.x() = -point.position_mm.x();
+  OnlineOptions options = options_for(bone);
+  options.covered = covered.region;
+  OnlineRegistration online(bone.prepared, options);
+  for (const OnlineState state : draw(online, covered.trial.curves)) EXPECT_LT(state, OnlineState::Confirmed);
 }
 
 // The worker's result is the core's, whatever the threads do, and what is published is never torn.

@@ -42,8 +42,8 @@ inline const PhantomBone& phantom_bone() {
   return bone;
 }
 
-// Strokes on a bone that beyond `bare_mm` of the target is covered, by cartilage that the mesh lacks (thickness above 0) or
-// has too much (below 0).
+// Strokes on a bone that beyond `bare_mm` of the target is covered, by cartilage that the mesh lacks
+// (thickness above 0) or has too much (below 0).
 struct CoveredTrial {
   experiments::Trial trial;
   CoveredRegion region;
@@ -63,7 +63,8 @@ inline CoveredTrial covered_trial(const PhantomBone& bone, experiments::Trial tr
   }
   for (const Eigen::Vector3d& vertex : bone.mesh.vertices_mm) {
     const double away_mm = (vertex - bone.target_mm).norm();
-    if (away_mm > bare_mm + covered.region.reach_mm && away_mm < kEnd_mm) covered.region.points_mm.push_back(vertex);
+    if (away_mm > bare_mm + covered.region.reach_mm && away_mm < kEnd_mm)
+      covered.region.points_mm.push_back(vertex);
   }
   return covered;
 }
