@@ -10,14 +10,7 @@ namespace {
 using widgets::fixed;
 using widgets::Sign;
 
-// A look takes 50 to 200 ms; a picture that is much older is no longer what the camera sees.
-constexpr double kLiveFor_s = 2.0;
-
 std::string percent(double share) { return fixed(100 * share, 0) + " %"; }
-
-Row limited(const std::string& name, bool is_good, const std::string& value, const std::string& limit) {
-  return {is_good ? Sign::Good : Sign::Caution, name, value + "  (" + limit + ")"};
-}
 
 std::vector<Row> quality_rows(const calibration::CaptureAdvice& advice) {
   const calibration::CaptureLimits limits;
@@ -137,7 +130,7 @@ CalibrateDisplay calibrate_display(const CalibrateRunStatus& status, const Calib
   CalibrateDisplay display;
   display.has_picture = job.picture != nullptr && job.advice != nullptr;
   display.is_live = display.has_picture && status.phase == FeedPhase::Running && !status.awaits_still &&
-                    (status.is_stills || now_s - status.looked_s < kLiveFor_s);
+                    (status.is_stills || status.is_of_now(now_s));
   const bool is_free = !job.is_calibrating;
   const bool is_enough = job.advice != nullptr && job.advice->is_complete;
   const auto fewest = static_cast<std::size_t>(calibration::CaptureLimits{}.fewest_pictures);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "app/setup_view/calibrate_station.h"
+#include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::setup_view {
 
@@ -32,16 +33,16 @@ void CalibrateStation::draw_live_picture(const widgets::Ui& ui, const widgets::R
   const camera::Boundary view = job.advice != nullptr && job.advice->picture.lens.circle_found
                                     ? job.advice->picture.lens.circle
                                     : camera::Boundary{};
-  const PicturePlace place = draw_picture(ui, area, picture_, job.picture, view, display_.is_live);
+  const widgets::PicturePlacement place = draw_picture(ui, area, picture_, job.picture, view, display_.is_live);
   if (!display_.has_picture) return;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw.PushClipRect(place.screen.min(), place.screen.max(), true);
+  draw.PushClipRect(place.area().min(), place.area().max(), true);
   // Corners by shape too: rings where the picture may be taken, crosses where not.
   const bool is_good = job.advice->is_good() || job.took_this;
   const float radius = ui.theme.px(4), line = ui.theme.px(1.5F);
   const ImU32 color = is_good ? widgets::kGood : widgets::kCaution;
   for (const calibration::BoardCorner& corner : job.advice->picture.board.corners) {
-    const ImVec2 at = place.at(corner.pixel);
+    const ImVec2 at = place.on_screen(corner.pixel).value_or(ImVec2{});
     if (is_good) {
       draw.AddCircle(at, radius, color, 12, line);
     } else {
@@ -51,10 +52,10 @@ void CalibrateStation::draw_live_picture(const widgets::Ui& ui, const widgets::R
   }
   const lens::LensObservation& lens = job.advice->picture.lens;
   if (lens.circle_found && lens.mark == lens::MarkState::Found) {
-    const double angle = lens.mark_angle_deg * 3.14159265358979 / 180;
+    const double angle = geometry::rad_from_deg(lens.mark_angle_deg);
     const Eigen::Vector2d mark =
         lens.circle.center_px + lens.circle.radius_px * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-    draw.AddCircle(place.at(mark), ui.theme.px(24), widgets::kAccent, 32, ui.theme.px(3));
+    draw.AddCircle(place.on_screen(mark).value_or(ImVec2{}), ui.theme.px(24), widgets::kAccent, 32, ui.theme.px(3));
   }
   draw.PopClipRect();
 }

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "app/setup_view/setup_sources.h"
+#include "app/setup_view/case_calibration.h"
 #include "navigation/camera/camera_file.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
@@ -47,14 +47,14 @@ void CalibrateStation::start(const FeedSource& source) {
     form_.scope_name = kSimulatedScope;
   else if (form_.scope_name == kSimulatedScope)
     form_.scope_name.clear();
-  kept_because_ = camera_is_kept(source, case_folder_);
+  kept_because_ = camera_is_kept(source.is_simulated, case_folder_);
   const bool by_itself = takes_by_itself_;
   run_ = std::make_unique<Run>(
       source, [by_itself] { return std::make_unique<CalibrateJob>(by_itself); }, wake_);
 }
 
 void CalibrateStation::stop() {
-  run_.reset();
+  if (run_ != nullptr) ending_.end(std::move(run_));
   status_ = {};
   display_ = {};
   adopted_result_.reset();

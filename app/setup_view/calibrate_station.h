@@ -7,13 +7,15 @@
 
 #include "app/setup_view/calibrate_display.h"
 #include "app/setup_view/setup_panels.h"
+#include "navigation/sources/background_end.h"
 
 namespace arthronaut::setup_view {
 
 class CalibrateStation : public Station {
  public:
-  // wake: ends the window's wait for input; called from other threads.
-  explicit CalibrateStation(std::function<void()> wake) : wake_(std::move(wake)) {}
+  // wake: ends the window's wait for input; called from other threads. ending: takes what is stopped.
+  CalibrateStation(std::function<void()> wake, sources::BackgroundEnd& ending)
+      : wake_(std::move(wake)), ending_(ending) {}
 
   void open(const std::filesystem::path& case_folder) override;
   void start(const FeedSource& source) override;
@@ -49,6 +51,7 @@ class CalibrateStation : public Station {
 
   std::filesystem::path case_folder_;
   std::function<void()> wake_;
+  sources::BackgroundEnd& ending_;
   Form form_;
   bool takes_by_itself_ = true;
   std::unique_ptr<Run> run_;

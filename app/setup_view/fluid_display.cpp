@@ -11,8 +11,6 @@ namespace {
 using widgets::fixed;
 using widgets::Sign;
 
-constexpr double kLiveFor_s = 2.0;
-
 std::string pair_text(double mm, double deg) {
   if (mm < 0 || deg < 0) return "\u2013";
   return hundredths(mm) + " mm,  " + hundredths(deg) + "\u00B0";
@@ -66,8 +64,7 @@ Band band_of(const FluidRunStatus& status, const FluidDisplay& display) {
 FluidDisplay fluid_display(const FluidRunStatus& status, double now_s) {
   const FluidStatus& job = status.job;
   FluidDisplay display;
-  display.is_live =
-      job.picture != nullptr && status.phase == FeedPhase::Running && now_s - status.looked_s < kLiveFor_s;
+  display.is_live = job.picture != nullptr && status.is_of_now(now_s);
   display.progress = job.summary != nullptr ? 1 : std::clamp(job.seconds / kFluidCheck_s, 0.0, 1.0);
   if (job.summary != nullptr) judge(job, display);
   display.band = band_of(status, display);

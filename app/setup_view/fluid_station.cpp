@@ -2,7 +2,7 @@
 
 #include <GLFW/glfw3.h>
 
-#include "app/setup_view/setup_sources.h"
+#include "app/setup_view/case_calibration.h"
 #include "navigation/camera/medium.h"
 
 namespace arthronaut::setup_view {
@@ -20,7 +20,7 @@ void FluidStation::start(const FeedSource& source) {
       source,
       [source, folder = case_folder_, index = refractive_index_] {
         calibration::RulerSightingsOptions options;
-        options.calibration = camera_of(source, folder);
+        options.calibration = camera_of(source.is_simulated, folder);
         options.refractive_index = index;
         return std::make_unique<FluidJob>(options);
       },
@@ -28,7 +28,7 @@ void FluidStation::start(const FeedSource& source) {
 }
 
 void FluidStation::stop() {
-  run_.reset();
+  if (run_ != nullptr) ending_.end(std::move(run_));
   status_ = {};
   display_ = {};
 }
@@ -105,9 +105,9 @@ void FluidStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
 
 void FluidStation::draw_picture_with_ruler(const widgets::Ui& ui, const widgets::Rect& area) {
   const FluidStatus& job = status_.job;
-  const PicturePlace place = draw_picture(ui, area, picture_, job.picture, job.view, display_.is_live);
+  const widgets::PicturePlacement place = draw_picture(ui, area, picture_, job.picture, job.view, display_.is_live);
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw.PushClipRect(place.screen.min(), place.screen.max(), true);
+  draw.PushClipRect(place.area().min(), place.area().max(), true);
   if (display_.is_live && job.summary == nullptr)
     for (const markers::MarkerObservation& marker : job.look.markers)
       if (marker.is_tracked()) draw_marker(ui, place, marker.corners_px);

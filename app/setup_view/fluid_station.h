@@ -6,13 +6,15 @@
 
 #include "app/setup_view/fluid_display.h"
 #include "app/setup_view/setup_panels.h"
+#include "navigation/sources/background_end.h"
 
 namespace arthronaut::setup_view {
 
 class FluidStation : public Station {
  public:
-  // wake: ends the window's wait for input; called from other threads.
-  explicit FluidStation(std::function<void()> wake) : wake_(std::move(wake)) {}
+  // wake: ends the window's wait for input; called from other threads. ending: takes what is stopped.
+  FluidStation(std::function<void()> wake, sources::BackgroundEnd& ending)
+      : wake_(std::move(wake)), ending_(ending) {}
 
   void open(const std::filesystem::path& case_folder) override;
   void start(const FeedSource& source) override;
@@ -35,6 +37,7 @@ class FluidStation : public Station {
 
   std::filesystem::path case_folder_;
   std::function<void()> wake_;
+  sources::BackgroundEnd& ending_;
   double refractive_index_ = 1;
   std::unique_ptr<Run> run_;
   FluidRunStatus status_;  // of this frame

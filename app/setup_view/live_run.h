@@ -1,12 +1,12 @@
-// A job on the pictures of a source, in a thread of its own. The window reads status() and posts requests; it
-// never waits but in the destructor, for the step that is being done.
+// A job on the pictures of a source, in a thread of its own. The window reads status() and posts requests. The
+// destructor waits for the step that is being done: sources::BackgroundEnd takes that off the screen's thread.
 //
 // A Job is thread-free, so that tests call it directly:
-//   struct Status;                            // cheap to copy
-//   void look(const camera::FramePtr&);       // one picture
-//   bool work();                              // does what takes long and was asked for; false: there was
-//   nothing bool wants_next_still() const;            // of single pictures: this one is done with Status
-//   status() const;
+//   struct Status;                        // cheap to copy
+//   void look(const camera::FramePtr&);   // one picture
+//   bool work();                          // does what takes long and was asked for; false: there was nothing
+//   bool wants_next_still() const;        // of single pictures: this one is done with
+//   Status status() const;
 //
 // A source that fails ends the pictures, not the job: what was collected can still be used.
 #pragma once
@@ -34,6 +34,10 @@ struct RunStatus {
   double looked_s = 0;        // when the newest picture was looked at, on the clock of steady_now_s()
   bool is_stills = false;     // single pictures: each stands as long as it takes
   bool awaits_still = false;  // ... and the next one is on its way
+  // A look takes 50 to 200 ms; a picture that is much older is no longer what the camera sees.
+  [[nodiscard]] bool is_of_now(double now_s) const {
+    return phase == FeedPhase::Running && now_s - looked_s < 2.0;
+  }
 };
 
 [[nodiscard]] inline double steady_now_s() {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "app/setup_view/setup_panels.h"
+#include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::setup_view {
 
@@ -18,11 +19,11 @@ void ring_label(const widgets::Ui& ui, const ImVec2& center, float radius, doubl
 
 }  // namespace
 
-void draw_marker(const widgets::Ui& ui, const PicturePlace& place,
+void draw_marker(const widgets::Ui& ui, const widgets::PicturePlacement& place,
                  const std::array<Eigen::Vector2d, 4>& corners_px) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   std::array<ImVec2, 4> corners;
-  for (std::size_t i = 0; i < 4; ++i) corners[i] = place.at(corners_px[i]);
+  for (std::size_t i = 0; i < 4; ++i) corners[i] = place.on_screen(corners_px[i]).value_or(ImVec2{});
   draw.AddPolyline(corners.data(), 4, widgets::kGood, ImDrawFlags_Closed, ui.theme.px(3));
   draw.AddCircleFilled(corners[0], ui.theme.px(6), widgets::kGood);  // top left as printed
 }
@@ -63,7 +64,8 @@ void draw_cone(const widgets::Ui& ui, const widgets::Rect& area, const tools::Pi
 }
 
 void draw_turn(const widgets::Ui& ui, const widgets::Rect& area, double turned_deg, double wanted_deg) {
-  constexpr float kTop = -1.5707963F, kRadPerDeg = 0.017453293F;
+  // The angle on the screen of so many degrees of turn; it starts at the top.
+  const auto at = [](double deg) { return static_cast<float>(geometry::rad_from_deg(deg - 90)); };
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const ImVec2 center = area.center();
   const float radius = 0.5F * std::min(area.width, area.height) - ui.theme.px(40);
@@ -72,11 +74,10 @@ void draw_turn(const widgets::Ui& ui, const widgets::Rect& area, double turned_d
   draw.AddCircle(center, radius, IM_COL32(14, 17, 21, 255), 96, width);
   const bool is_enough = turned_deg >= wanted_deg;
   if (turned_deg > 1) {
-    draw.PathArcTo(center, radius, kTop, kTop + static_cast<float>(std::min(turned_deg, 360.0)) * kRadPerDeg,
-                   96);
+    draw.PathArcTo(center, radius, at(0), at(std::min(turned_deg, 360.0)), 96);
     draw.PathStroke(is_enough ? widgets::kGood : widgets::kCaution, 0, width);
   }
-  const float limit = kTop + static_cast<float>(wanted_deg) * kRadPerDeg;
+  const float limit = at(wanted_deg);
   const ImVec2 way{std::cos(limit), std::sin(limit)};
   draw.AddLine({center.x + way.x * (radius - width), center.y + way.y * (radius - width)},
                {center.x + way.x * (radius + width), center.y + way.y * (radius + width)}, widgets::kText,

@@ -20,33 +20,22 @@ ImVec2 on_circle(const ImVec2& center, float radius, double angle_deg) {
 
 }  // namespace
 
-PicturePlace draw_picture(const widgets::Ui& ui, const widgets::Rect& area, widgets::VideoTexture& texture,
-                          const camera::FramePtr& picture, const camera::Boundary& view, bool is_live) {
+widgets::PicturePlacement draw_picture(const widgets::Ui& ui, const widgets::Rect& area,
+                                       widgets::VideoTexture& texture, const camera::FramePtr& picture,
+                                       const camera::Boundary& view, bool is_live) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddRectFilled(area.min(), area.max(), IM_COL32(0, 0, 0, 255), ui.theme.px(6));
   ui.log.note("setup.picture", area.min(), area.max());
-  PicturePlace place{area};
-  if (picture == nullptr) return place;
+  if (picture == nullptr) return {area, area};
   texture.upload(picture);
   const float w = static_cast<float>(texture.width()), h = static_cast<float>(texture.height());
-  float x0 = 0, y0 = 0, x1 = w, y1 = h;
-  if (view.radius_px > 0) {
-    constexpr double kMargin = 1.04;
-    const Eigen::Vector2d half = Eigen::Vector2d::Constant(kMargin * view.radius_px);
-    const Eigen::Vector2f low = (view.center_px - half).cast<float>(),
-                          high = (view.center_px + half).cast<float>();
-    x0 = std::clamp(low.x(), 0.F, w - 1);
-    y0 = std::clamp(low.y(), 0.F, h - 1);
-    x1 = std::clamp(high.x(), x0 + 1, w);
-    y1 = std::clamp(high.y(), y0 + 1, h);
-  }
-  place.screen = widgets::fitted(area, (x1 - x0) / (y1 - y0));
-  place.from_px = {x0, y0};
-  place.zoom = place.screen.width / (x1 - x0);
+  const widgets::Rect part = widgets::shown_part(view, texture.width(), texture.height());
+  const widgets::Rect screen = widgets::fitted(area, part.width / part.height);
   const ImU32 tint = is_live ? IM_COL32_WHITE : IM_COL32(120, 120, 120, 255);
-  draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture.texture())),
-                place.screen.min(), place.screen.max(), {x0 / w, y0 / h}, {x1 / w, y1 / h}, tint);
-  return place;
+  draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture.texture())), screen.min(),
+                screen.max(), {part.x / w, part.y / h},
+                {(part.x + part.width) / w, (part.y + part.height) / h}, tint);
+  return {screen, part};
 }
 
 void draw_band(const widgets::Ui& ui, const widgets::Rect& area, const Band& band) {

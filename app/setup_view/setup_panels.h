@@ -6,28 +6,18 @@
 #include <span>
 
 #include "app/setup_view/station.h"
+#include "app/widgets/picture_placement.h"
 #include "app/widgets/video_texture.h"
 #include "navigation/camera/camera_model.h"
 #include "navigation/tools/pivot_calibration.h"
 
 namespace arthronaut::setup_view {
 
-// Where a picture stands on the screen, and which part of it.
-struct PicturePlace {
-  widgets::Rect screen;
-  Eigen::Vector2d from_px = Eigen::Vector2d::Zero();  // the part's top-left pixel
-  float zoom = 1;                                     // screen pixels a picture pixel
-  [[nodiscard]] ImVec2 at(const Eigen::Vector2d& pixel) const {
-    // A pixel's middle is half a pixel inside its edge.
-    return {screen.x + static_cast<float>(pixel.x() + 0.5 - from_px.x()) * zoom,
-            screen.y + static_cast<float>(pixel.y() + 0.5 - from_px.y()) * zoom};
-  }
-};
-
 // The picture on black, cut to the round view where that is known (radius 0: the whole of it); dimmed while
 // it is not live.
-PicturePlace draw_picture(const widgets::Ui& ui, const widgets::Rect& area, widgets::VideoTexture& texture,
-                          const camera::FramePtr& picture, const camera::Boundary& view, bool is_live);
+widgets::PicturePlacement draw_picture(const widgets::Ui& ui, const widgets::Rect& area,
+                                       widgets::VideoTexture& texture, const camera::FramePtr& picture,
+                                       const camera::Boundary& view, bool is_live);
 
 // Sign, headline and detail under the picture.
 void draw_band(const widgets::Ui& ui, const widgets::Rect& area, const Band& band);
@@ -42,7 +32,7 @@ void draw_lens_dial(const widgets::Ui& ui, const widgets::Rect& area, std::span<
                     double now_deg, double too_near_deg);
 
 // The outline of a marker on the picture; a dot on its top-left corner as printed.
-void draw_marker(const widgets::Ui& ui, const PicturePlace& place,
+void draw_marker(const widgets::Ui& ui, const widgets::PicturePlacement& place,
                  const std::array<Eigen::Vector2d, 4>& corners_px);
 
 // How the shaft was tilted in each pose, as seen along its mean direction, with rings at 10, 20 and 30

@@ -10,13 +10,15 @@
 
 namespace arthronaut::setup_view {
 
-SetupView::SetupView(const std::function<void()>& wake, std::function<void()> go_on)
-    : go_on_(std::move(go_on)) {
+SetupView::SetupView(const std::function<void()>& wake, std::function<void()> go_on,
+                     const sources::DeviceTurns& turns)
+    : go_on_(std::move(go_on)), turns_(turns) {
+  steps_.push_back({Purpose::Camera, "setup.show_camera", "setup.camera.",
+                    std::make_unique<CalibrateStation>(wake, ending_)});
   steps_.push_back(
-      {Purpose::Camera, "setup.show_camera", "setup.camera.", std::make_unique<CalibrateStation>(wake)});
-  steps_.push_back({Purpose::Tools, "setup.show_tools", "setup.tools.", std::make_unique<ToolStation>(wake)});
+      {Purpose::Tools, "setup.show_tools", "setup.tools.", std::make_unique<ToolStation>(wake, ending_)});
   steps_.push_back(
-      {Purpose::Fluid, "setup.show_fluid", "setup.fluid.", std::make_unique<FluidStation>(wake)});
+      {Purpose::Fluid, "setup.show_fluid", "setup.fluid.", std::make_unique<FluidStation>(wake, ending_)});
 }
 
 SetupView::~SetupView() = default;
@@ -24,11 +26,19 @@ SetupView::~SetupView() = default;
 void SetupView::open(const std::filesystem::path& case_folder) {
   case_folder_ = case_folder;
   typed_ = {};
+  is_read_ = false;
   for (Step& one : steps_) {
-    one.station->open(case_folder);
+    one.station->stop();
     one.source = 0;
   }
-  show(0);
+  shown_ = 0;
+}
+
+void SetupView::enter() {
+  if (!is_read_)
+    for (Step& one : steps_) one.station->open(case_folder_);
+  is_read_ = true;
+  find_sources();
 }
 
 void SetupView::leave() {
@@ -44,7 +54,7 @@ void SetupView::show(std::size_t index) {
 }
 
 void SetupView::find_sources() {
-  step().sources = sources_for(step().purpose, case_folder_, typed_.paths);
+  step().sources = sources_for(step().purpose, case_folder_, turns_, typed_.paths);
   step().source %= step().sources.size();
 }
 

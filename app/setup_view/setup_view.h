@@ -10,6 +10,7 @@
 
 #include "app/setup_view/setup_sources.h"
 #include "app/setup_view/station.h"
+#include "navigation/sources/background_end.h"
 
 namespace arthronaut::setup_view {
 
@@ -17,10 +18,14 @@ class SetupView {
  public:
   // wake: ends the window's wait for input; called from other threads.
   // go_on: called when the last part of setting up is done and the next step is wished.
-  SetupView(const std::function<void()>& wake, std::function<void()> go_on);
+  // turns: shared with whatever else opens cameras.
+  SetupView(const std::function<void()>& wake, std::function<void()> go_on, const sources::DeviceTurns& turns);
   ~SetupView();
 
-  void open(const std::filesystem::path& case_folder);  // another case; ends what runs
+  // Another case; ends what runs. Nothing of it is read before enter().
+  void open(const std::filesystem::path& case_folder);
+  // This mode comes to the front: sees anew what the case and the machine have.
+  void enter();
   // Another mode comes to the front: cameras and files are let go, what was taken stays.
   void leave();
   void add_actions(widgets::Actions& actions);
@@ -59,7 +64,10 @@ class SetupView {
   [[nodiscard]] std::string next_step() const;
 
   std::function<void()> go_on_;
+  sources::DeviceTurns turns_;
+  sources::BackgroundEnd ending_;  // what the stations have stopped
   std::filesystem::path case_folder_;
+  bool is_read_ = false;  // the stations know the case
   Typed typed_;
   std::vector<Step> steps_;
   std::size_t shown_ = 0;

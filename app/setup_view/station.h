@@ -36,6 +36,12 @@ enum class Then {
   return value < 0.005 ? "under 0.01" : widgets::fixed(value, 2);
 }
 
+// A value beside its limit: "0.3 mm  (at most 0.5)".
+[[nodiscard]] inline Row limited(const std::string& name, bool is_good, const std::string& value,
+                                 const std::string& limit) {
+  return {is_good ? widgets::Sign::Good : widgets::Sign::Caution, name, value + "  (" + limit + ")"};
+}
+
 class Station {
  public:
   virtual ~Station() = default;

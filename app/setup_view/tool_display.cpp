@@ -9,12 +9,6 @@ namespace {
 using widgets::fixed;
 using widgets::Sign;
 
-constexpr double kLiveFor_s = 2.0;
-
-Row limited(const std::string& name, bool is_good, const std::string& value, const std::string& limit) {
-  return {is_good ? Sign::Good : Sign::Caution, name, value + "  (" + limit + ")"};
-}
-
 std::string point_text(const Eigen::Vector3d& point) {
   return fixed(point.x(), 2) + ",  " + fixed(point.y(), 2) + ",  " + fixed(point.z(), 2) + " mm";
 }
@@ -115,8 +109,7 @@ ToolDisplay tool_display(const ToolRunStatus& status, const ToolChoice& choice, 
                          double now_s) {
   const ToolStatus& job = status.job;
   ToolDisplay display;
-  display.is_live =
-      job.picture != nullptr && status.phase == FeedPhase::Running && now_s - status.looked_s < kLiveFor_s;
+  display.is_live = job.picture != nullptr && status.is_of_now(now_s);
   for (const ToolStatus::Seen& marker : job.markers)
     display.markers.push_back({!display.is_live ? Sign::Quiet
                                : marker.stands  ? Sign::Good

@@ -2,7 +2,7 @@
 
 #include <GLFW/glfw3.h>
 
-#include "app/setup_view/setup_sources.h"
+#include "app/setup_view/case_calibration.h"
 #include "navigation/camera/medium.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
@@ -49,7 +49,7 @@ ToolChoice ToolStation::choice() const { return choices_.empty() ? ToolChoice{"p
 
 void ToolStation::start(const FeedSource& source) {
   stop();
-  kept_because_ = tools_are_kept(source, case_folder_);
+  kept_because_ = tools_are_kept(source.is_simulated, case_folder_);
   run_ = std::make_unique<Run>(
       source,
       [source, folder = case_folder_, index = refractive_index_, choice = choice()] {
@@ -57,18 +57,18 @@ void ToolStation::start(const FeedSource& source) {
           throw InvalidInput(
               "the simulated arthroscope shows no guide that turns: choose another source (O)");
         pipeline::ViewTrackerOptions view;
-        view.calibration = camera_of(source, folder);
+        view.calibration = camera_of(source.is_simulated, folder);
         view.refractive_index = index;
-        return std::make_unique<ToolJob>(view, tools_of(source, folder), choice);
+        return std::make_unique<ToolJob>(view, tools_of(source.is_simulated, folder), choice);
       },
       wake_);
 }
 
 void ToolStation::stop() {
-  run_.reset();
+  if (run_ != nullptr) ending_.end(std::move(run_));
   status_ = {};
   display_ = {};
-  is_adopted_ = false;
+  adopted_result_.reset();
 }
 
 void ToolStation::release_source() {
@@ -86,7 +86,7 @@ void ToolStation::adopt() {
     const tools::ToolSet known =
         std::filesystem::exists(file) ? tools::read_tools_file(file) : tools::standard_tools();
     tools::write_tools_file(file, with_result(known, choice().tool_name, *result));
-    is_adopted_ = true;
+    adopted_result_ = result;
     run_->post([result](ToolJob& job) { job.settle(result); });
     read_adopted();
   } catch (const std::runtime_error& error) {
@@ -129,10 +129,7 @@ void ToolStation::add_actions(widgets::Actions& actions) {
   add(
       "setup.tools.clear", "Clear poses", "Forgets the poses and takes new ones", GLFW_KEY_C,
       [this] { return run_ != nullptr && status_.job.pose_count > 0; },
-      [this] {
-        is_adopted_ = false;
-        run_->post([](ToolJob& job) { job.clear(); });
-      });
+      [this] { run_->post([](ToolJob& job) { job.clear(); }); });
   add(
       "setup.tools.adopt", "Adopt", "This case is navigated with the result", GLFW_KEY_ENTER,
       [this] { return run_ != nullptr && display_.can_adopt; }, [this] { adopt(); });
@@ -144,7 +141,8 @@ std::vector<const char*> ToolStation::buttons() const {
 
 void ToolStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if (run_ != nullptr) status_ = run_->status();
-  display_ = run_ != nullptr ? tool_display(status_, choice(), {is_adopted_, kept_because_}, steady_now_s())
+  const bool is_adopted = adopted_result_ != nullptr && adopted_result_ == status_.job.result;
+  display_ = run_ != nullptr ? tool_display(status_, choice(), {is_adopted, kept_because_}, steady_now_s())
                              : ToolDisplay{};
   const float gap = ui.theme.px(12);
   widgets::Rect rest = area;
@@ -168,10 +166,10 @@ void ToolStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
 }
 
 void ToolStation::draw_picture_with_markers(const widgets::Ui& ui, const widgets::Rect& area) {
-  const PicturePlace place =
+  const widgets::PicturePlacement place =
       draw_picture(ui, area, picture_, status_.job.picture, status_.job.view, display_.is_live);
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw.PushClipRect(place.screen.min(), place.screen.max(), true);
+  draw.PushClipRect(place.area().min(), place.area().max(), true);
   for (const ToolStatus::Seen& marker : status_.job.markers)
     if (marker.stands && display_.is_live) draw_marker(ui, place, marker.corners_px);
   draw.PopClipRect();

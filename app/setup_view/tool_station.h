@@ -6,14 +6,16 @@
 #include <memory>
 
 #include "app/setup_view/setup_panels.h"
+#include "navigation/sources/background_end.h"
 #include "app/setup_view/tool_display.h"
 
 namespace arthronaut::setup_view {
 
 class ToolStation : public Station {
  public:
-  // wake: ends the window's wait for input; called from other threads.
-  explicit ToolStation(std::function<void()> wake) : wake_(std::move(wake)) {}
+  // wake: ends the window's wait for input; called from other threads. ending: takes what is stopped.
+  ToolStation(std::function<void()> wake, sources::BackgroundEnd& ending)
+      : wake_(std::move(wake)), ending_(ending) {}
 
   void open(const std::filesystem::path& case_folder) override;
   void start(const FeedSource& source) override;
@@ -39,13 +41,14 @@ class ToolStation : public Station {
 
   std::filesystem::path case_folder_;
   std::function<void()> wake_;
+  sources::BackgroundEnd& ending_;
   std::vector<ToolChoice> choices_;
   std::size_t chosen_ = 0;
   double refractive_index_;
   std::unique_ptr<Run> run_;
   ToolRunStatus status_;  // of this frame
   ToolDisplay display_;   // of this frame
-  bool is_adopted_ = false;
+  std::shared_ptr<const ToolResult> adopted_result_;
   Row adopted_;
   std::string kept_because_;  // see tools_are_kept()
   widgets::VideoTexture picture_;

@@ -30,6 +30,7 @@ void BoneRegistration::start_worker() {
     worker_ = std::make_unique<registration::RegistrationWorker>(bone_.get(), options);
   } catch (const std::exception& error) {
     status_.bone_trouble = error.what();
+    published_.reset();
     return;
   }
   // What was drawn and touched while the bone was being made ready.
@@ -46,6 +47,7 @@ void BoneRegistration::start_worker() {
 
 void BoneRegistration::publish_strokes(bool always) {
   if (!always && strokes_.points().size() < status_.drawn->size() + kPointsBetweenCopies) return;
+  published_.reset();
   status_.drawn = std::make_shared<const strokes::Curves>(strokes_.points());
   status_.left_out = strokes_.left_out();
 }
@@ -81,7 +83,6 @@ void BoneRegistration::clear() {
   status_.touches.clear();
   if (worker_ != nullptr) worker_->clear();
   status_.online.reset();
-  first_curve_ = strokes_.next_curve();
   ++removals_;
   best_tre_mm_ = std::numeric_limits<double>::infinity();
   if (marker_has_moved) {
@@ -140,6 +141,7 @@ void BoneRegistration::put_in_force(std::size_t entry) {
 
 // Distances of the touches, the alarm, and with it what is in force.
 void BoneRegistration::judge() {
+  published_.reset();
   status_.touches.judge(chosen_.get(), surface_.get());
   std::string alarm = status_.touches.alarm();
   if (alarm.empty() && status_.online != nullptr) alarm = status_.online->alarm;
@@ -160,8 +162,10 @@ void BoneRegistration::judge() {
 
 void BoneRegistration::take_in(const std::shared_ptr<const registration::OnlineResult>& online) {
   if (status_.online != nullptr && status_.online->revision == online->revision) return;
-  // What was found before clear() reached the worker must not take effect any more.
-  if (!online->strokes.empty() && online->strokes.front().curve < first_curve_) return;
+  // What was found with strokes that are gone or left out since, before the worker heard of it, must not take
+  // effect any more.
+  for (const registration::StrokeInfo& stroke : online->strokes)
+    if (!stroke.is_excluded && !strokes_.uses(stroke.curve)) return;
   status_.online = online;
   judge();
   const registration::RegistrationSummary& found = online->registration;
@@ -180,6 +184,7 @@ void BoneRegistration::take_in(const std::shared_ptr<const registration::OnlineR
 void BoneRegistration::add_entry(const RegistrationEntry& entry) {
   auto history = std::make_shared<std::vector<RegistrationEntry>>(*status_.history);
   history->push_back(entry);
+  published_.reset();
   status_.history = std::move(history);
   if (!status_.is_chosen) put_in_force(status_.history->size() - 1);
 }
@@ -214,11 +219,12 @@ strokes::Curves BoneRegistration::strokes_in_use() const {
   return strokes_.in_use();
 }
 
-RegistrationStatus BoneRegistration::status() {
+std::shared_ptr<const RegistrationStatus> BoneRegistration::status() {
   const std::lock_guard lock(mutex_);
   start_worker();
   if (worker_ != nullptr) take_in(worker_->latest());
-  return status_;
+  if (published_ == nullptr) published_ = std::make_shared<const RegistrationStatus>(status_);
+  return published_;
 }
 
 void BoneRegistration::finish() {

@@ -84,8 +84,9 @@ class BoneRegistration {
 
   [[nodiscard]] strokes::Curves strokes_in_use() const;
   // Takes in what the registration that runs along has found meanwhile, and says all. Starts it once the bone
-  // is ready, with all that was drawn and touched before.
-  [[nodiscard]] RegistrationStatus status();
+  // is ready, with all that was drawn and touched before. The same object as long as nothing has changed; never
+  // null.
+  [[nodiscard]] std::shared_ptr<const RegistrationStatus> status();
   // Waits until all strokes and touches are worked in; for tests.
   void finish();
 
@@ -104,7 +105,7 @@ class BoneRegistration {
   DrawnStrokes strokes_;
   RegistrationPtr chosen_;  // in force but for an alarm
   RegistrationStatus status_;
-  int first_curve_ = 0;                                           // of the strokes since clear()
+  std::shared_ptr<const RegistrationStatus> published_;  // a copy of status_; null: it has changed since
   int removals_ = 0;  // how often strokes were cleared, taken back, left out or in
   double best_tre_mm_ = std::numeric_limits<double>::infinity();  // of those that took effect since
   std::unique_ptr<registration::RegistrationWorker> worker_;

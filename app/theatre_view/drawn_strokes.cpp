@@ -62,6 +62,14 @@ void DrawnStrokes::clear() {
   is_cut_ = true;
 }
 
+bool DrawnStrokes::uses(int curve) const {
+  // In drawing order the numbers grow.
+  const auto found =
+      std::lower_bound(points_.begin(), points_.end(), curve,
+                       [](const strokes::CurvePoint& point, int wanted) { return point.curve < wanted; });
+  return found != points_.end() && found->curve == curve && !left_out_.contains(curve);
+}
+
 strokes::Curves DrawnStrokes::in_use() const {
   strokes::Curves curves;
   for (auto first = points_.begin(); first != points_.end();) {

@@ -18,7 +18,8 @@ class DrawnStrokes {
   void leave_out(int curve, bool is_left_out);
   void clear();
 
-  [[nodiscard]] int next_curve() const { return next_curve_; }
+  // Whether there is such a stroke and it is not left out.
+  [[nodiscard]] bool uses(int curve) const;
   [[nodiscard]] const strokes::Curves& points() const { return points_; }
   [[nodiscard]] const std::set<int>& left_out() const { return left_out_; }
   // Whole strokes that count, in drawing order, for a registration.

@@ -69,6 +69,11 @@ class Operation::Worker {
     const std::lock_guard lock(mutex_);
     return status_;
   }
+  bool is_busy() const {
+    const std::lock_guard lock(mutex_);
+    return status_.phase == OperationStatus::Phase::Running ||
+           status_.phase == OperationStatus::Phase::Starting || status_.is_registering;
+  }
   const OperationSetup& setup() const { return setup_; }
 
   void request_stop() {
@@ -217,6 +222,7 @@ Operation::Operation(OperationSetup setup, std::function<void()> on_news)
 Operation::~Operation() = default;
 
 OperationStatus Operation::status() const { return worker_->status(); }
+bool Operation::is_busy() const { return worker_->is_busy(); }
 const std::string& Operation::title() const { return worker_->setup().title; }
 double Operation::now_s() { return seconds_of(Clock::now()); }
 

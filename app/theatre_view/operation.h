@@ -58,7 +58,8 @@ struct OperationStatus {
   double frames_per_second = 0;           // that were navigated, lately
   bool digitises = false;
   bool is_registering = false;
-  RegistrationStatus bone;          // of the bone's registration; filled in by who shows it
+  // Of the bone's registration, never null; filled in by who shows it.
+  std::shared_ptr<const RegistrationStatus> bone = std::make_shared<RegistrationStatus>();
   std::string touch_notice;         // why a touch was not taken; empty else
   std::filesystem::path recording;  // the session's folder while it is recorded, else empty
   std::string recording_error;
@@ -74,6 +75,7 @@ class Operation {
   Operation& operator=(const Operation&) = delete;
 
   [[nodiscard]] OperationStatus status() const;
+  [[nodiscard]] bool is_busy() const;  // pictures or a registration are to come
   [[nodiscard]] const std::string& title() const;
   [[nodiscard]] static double now_s();  // the clock of published_s
 

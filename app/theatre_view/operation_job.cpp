@@ -57,18 +57,18 @@ std::shared_ptr<LiveFrame> OperationJob::step() {
 
 // What is in force guides from this picture on; an alarm takes it out of force.
 void OperationJob::follow_registration() {
-  RegistrationStatus status = setup_.registration->status();
-  drawn_ = std::move(status.drawn);
-  if (status.change_count == registration_count_) return;
-  registration_count_ = status.change_count;
-  registration_ = std::move(status.in_force);
+  const std::shared_ptr<const RegistrationStatus> status = setup_.registration->status();
+  drawn_ = status->drawn;
+  if (status->change_count == registration_count_) return;
+  registration_count_ = status->change_count;
+  registration_ = status->in_force;
   if (registration_ == nullptr) return pipeline_.set_registration(std::nullopt);
   pipeline_.set_registration(*registration_);
   if (recorder_ == nullptr) return;
   try {  // as in record()
     recorder_->set_registration(*registration_, true);
     recorder_->set_curves(setup_.registration->strokes_in_use());
-    if (!status.alarm.empty()) recorder_->add_event({last_timestamp_ns_, "alarm", status.alarm});
+    if (!status->alarm.empty()) recorder_->add_event({last_timestamp_ns_, "alarm", status->alarm});
   } catch (const IoError& error) {
     recording_error_ = error.what();
     recorder_.reset();

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 
-#include "app/theatre_view/registration_words.h"
 #include "app/theatre_view/theatre_panels.h"
 
 namespace arthronaut::theatre_view {
@@ -21,8 +20,8 @@ void draw_bar(const widgets::Ui& ui, double progress, widgets::Sign sign) {
   ImGui::Dummy({width, height});
 }
 
-void draw_state(const widgets::Ui& ui, const RegistrationStatus& status) {
-  const SignedText state = state_of(status);
+void draw_state(const widgets::Ui& ui, const RegistrationWords& words) {
+  const SignedText& state = words.state;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float radius = ui.theme.px(12);
   widgets::draw_sign(*ImGui::GetWindowDrawList(), {at.x + radius, at.y + ui.theme.title->FontSize / 2},
@@ -32,16 +31,14 @@ void draw_state(const widgets::Ui& ui, const RegistrationStatus& status) {
                    state.sign == widgets::Sign::Quiet ? widgets::kText : widgets::color_of(state.sign),
                    state.name);
   ImGui::Unindent(3 * radius);
-  draw_bar(ui, progress_of(status), state.sign);
+  draw_bar(ui, words.progress, state.sign);
   widgets::text_in(ui.theme.strong, widgets::kText, state.text);
-  if (const std::string missing = missing_of(status); !missing.empty())
-    widgets::text_in(ui.theme.body, widgets::kQuietText, missing);
-  for (const SignedText& row : numbers_of(status)) widgets::status_row(ui, row.sign, row.name, row.text);
+  if (!words.missing.empty()) widgets::text_in(ui.theme.body, widgets::kQuietText, words.missing);
+  for (const SignedText& row : words.numbers) widgets::status_row(ui, row.sign, row.name, row.text);
 }
 
-void draw_touch(const widgets::Ui& ui, const RegistrationStatus& status, const std::string& notice) {
+void draw_touch(const widgets::Ui& ui, const std::optional<TouchText>& touch, const std::string& notice) {
   if (!notice.empty()) widgets::status_row(ui, widgets::Sign::Caution, notice, "");
-  const auto touch = touch_of(status);
   if (!touch) return;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = std::max(ImGui::GetContentRegionAvail().x, 1.F);
@@ -73,15 +70,16 @@ void draw_rows(const widgets::Ui& ui, const std::vector<Row>& rows, std::size_t 
   }
 }
 
-void draw_lists(const widgets::Ui& ui, const RegistrationStatus& status, int selected_stroke) {
-  const std::vector<StrokeRow> strokes = stroke_rows(status);
+void draw_lists(const widgets::Ui& ui, const RegistrationStatus& status, const RegistrationWords& words,
+                int selected_stroke) {
+  const std::vector<StrokeRow>& strokes = words.strokes;
   if (!strokes.empty()) {
     widgets::text_in(ui.theme.strong, widgets::kAccent, "Strokes (Up, Down)");
     draw_rows(
         ui, strokes, kShownStrokes, [&](std::size_t i) { return strokes[i].curve == selected_stroke; },
         [&](const StrokeRow& row) { widgets::status_row(ui, row.text.sign, row.text.name, row.text.text); });
   }
-  const std::vector<SignedText> history = history_rows(status);
+  const std::vector<SignedText>& history = words.history;
   if (history.empty()) return;
   const std::string used =
       status.entry_in_force ? ", in use: " + std::to_string(*status.entry_in_force + 1) : "";
@@ -104,9 +102,9 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const T
   widgets::Rect buttons = rest.cut_bottom((height + gap) * kButtons.size() - gap, ui.theme.px(12));
   widgets::begin_panel(ui, "operate.registration", rest);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui.theme.px(8), ui.theme.px(7)});
-  draw_state(ui, screen.status->bone);
-  draw_touch(ui, screen.status->bone, screen.status->touch_notice);
-  draw_lists(ui, screen.status->bone, screen.selected_stroke);
+  draw_state(ui, screen.words);
+  draw_touch(ui, screen.words.touch, screen.status->touch_notice);
+  draw_lists(ui, *screen.status->bone, screen.words, screen.selected_stroke);
   ImGui::PopStyleVar();
   widgets::end_panel();
   const float width = (buttons.width - gap) / 2;

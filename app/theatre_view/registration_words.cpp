@@ -138,8 +138,7 @@ std::vector<StrokeRow> stroke_rows(const RegistrationStatus& status) {
   return rows;
 }
 
-int neighbour_stroke(const RegistrationStatus& status, int curve, int step) {
-  const std::vector<StrokeRow> rows = stroke_rows(status);
+int neighbour_stroke(const std::vector<StrokeRow>& rows, int curve, int step) {
   if (rows.empty()) return -1;
   const auto found =
       std::find_if(rows.begin(), rows.end(), [&](const StrokeRow& row) { return row.curve == curve; });
@@ -165,6 +164,11 @@ std::vector<SignedText> history_rows(const RegistrationStatus& status) {
     rows.push_back(row);
   }
   return rows;
+}
+
+RegistrationWords words_of(const RegistrationStatus& status) {
+  return {state_of(status), progress_of(status), missing_of(status), numbers_of(status),
+          touch_of(status), stroke_rows(status), history_rows(status)};
 }
 
 widgets::Sign sign_of_residual(double residual_mm) {

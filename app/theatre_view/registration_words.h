@@ -42,11 +42,22 @@ struct StrokeRow {
 [[nodiscard]] std::vector<StrokeRow> stroke_rows(const RegistrationStatus& status);
 // The stroke above or below another in that list; the newest when there is no such stroke. -1 when there is
 // none.
-[[nodiscard]] int neighbour_stroke(const RegistrationStatus& status, int curve, int step);
+[[nodiscard]] int neighbour_stroke(const std::vector<StrokeRow>& rows, int curve, int step);
 
-// One row an entry of the history: name "2  while drawing", text "± 0.6 mm at the tunnel, fit 0.3 mm, 120
-// mm".
+// One row an entry of the history: name "2  while drawing", text "± 0.6 mm, fit 0.3 mm".
 [[nodiscard]] std::vector<SignedText> history_rows(const RegistrationStatus& status);
+
+// All of the above at once, to be kept until the status changes.
+struct RegistrationWords {
+  SignedText state;
+  double progress = 0;
+  std::string missing;
+  std::vector<SignedText> numbers;
+  std::optional<TouchText> touch;
+  std::vector<StrokeRow> strokes;
+  std::vector<SignedText> history;
+};
+[[nodiscard]] RegistrationWords words_of(const RegistrationStatus& status);
 
 // How far a touched point may lie off the bone to be good; beyond caution it is bad.
 [[nodiscard]] widgets::Sign sign_of_residual(double residual_mm);

@@ -1,6 +1,5 @@
 #include <GLFW/glfw3.h>
 
-#include "app/theatre_view/registration_words.h"
 #include "app/theatre_view/theatre_view.h"
 
 namespace arthronaut::theatre_view {
@@ -31,7 +30,7 @@ void TheatreView::add_actions(widgets::Actions& actions) {
                GLFW_KEY_O,
                0,
                false,
-               [this] { return model_ != nullptr && !videos_of(case_folder_).empty(); },
+               [this] { return model_ != nullptr; },
                {},
                [this] { start_video(); }});
   actions.add({"operate.stop",
@@ -60,7 +59,7 @@ void TheatreView::add_actions(widgets::Actions& actions) {
        GLFW_KEY_R,
        0,
        false,
-       [this] { return operation_ != nullptr && !status_.bone.drawn->empty() && !status_.is_registering; },
+       [this] { return operation_ != nullptr && !status_.bone->drawn->empty() && !status_.is_registering; },
        {},
        [this] { operation_->register_curves(); }});
   actions.add({"operate.record", "Record", "Keeps video, poses and decisions in the case", GLFW_KEY_R,
@@ -117,9 +116,9 @@ void TheatreView::add_actions(widgets::Actions& actions) {
 void TheatreView::add_registration_actions(widgets::Actions& actions) {
   const auto knows_bone = [this] { return bone_registration() != nullptr; };
   const auto has_tip = [this] { return is_running(); };
-  const auto has_drawn = [this] { return bone_registration() != nullptr && !status_.bone.drawn->empty(); };
+  const auto has_drawn = [this] { return bone_registration() != nullptr && !status_.bone->drawn->empty(); };
   const auto select = [this](int step) {
-    choices_.stroke = neighbour_stroke(status_.bone, choices_.stroke, step);
+    choices_.stroke = neighbour_stroke(words_.strokes, choices_.stroke, step);
   };
   actions.add({"operate.panel", "Registration", "Shows the registration or the way to the plan", GLFW_KEY_H,
                0, false, [this] { return operation_ != nullptr; },
@@ -158,11 +157,11 @@ void TheatreView::add_registration_actions(widgets::Actions& actions) {
                [select] { select(-1); }});
   actions.add(
       {"operate.leave_out", "Leave out", "Takes the selected stroke out of the fit, or back in", GLFW_KEY_X,
-       0, false, [this] { return neighbour_stroke(status_.bone, choices_.stroke, 0) >= 0; },
-       [this] { return status_.bone.left_out.contains(choices_.stroke); },
+       0, false, [this] { return neighbour_stroke(words_.strokes, choices_.stroke, 0) >= 0; },
+       [this] { return status_.bone->left_out.contains(choices_.stroke); },
        [this] {
-         choices_.stroke = neighbour_stroke(status_.bone, choices_.stroke, 0);
-         bone_registration()->leave_out(choices_.stroke, !status_.bone.left_out.contains(choices_.stroke));
+         choices_.stroke = neighbour_stroke(words_.strokes, choices_.stroke, 0);
+         bone_registration()->leave_out(choices_.stroke, !status_.bone->left_out.contains(choices_.stroke));
        }});
   actions.add({"operate.touch",
                "Verify touch",
@@ -176,7 +175,7 @@ void TheatreView::add_registration_actions(widgets::Actions& actions) {
   actions.add(
       {"operate.control_point", "Control point",
        "A mark on the bone: touched first it is kept, later it tells whether the world marker has moved",
-       GLFW_KEY_P, 0, false, has_tip, [this] { return status_.bone.touches.has_control_point(); },
+       GLFW_KEY_P, 0, false, has_tip, [this] { return status_.bone->touches.has_control_point(); },
        [this] { take_touch(true); }});
   actions.add({"operate.forget_touches",
                "Forget touches",
@@ -186,7 +185,7 @@ void TheatreView::add_registration_actions(widgets::Actions& actions) {
                false,
                [this] {
                  return bone_registration() != nullptr &&
-                        (!status_.bone.touches.touches_mm().empty() || status_.bone.touches.has_control_point());
+                        (!status_.bone->touches.touches_mm().empty() || status_.bone->touches.has_control_point());
                },
                {},
                [this] { bone_registration()->forget_touches(); }});
@@ -197,7 +196,7 @@ void TheatreView::add_registration_actions(widgets::Actions& actions) {
                0,
                false,
                [this, knows_bone] {
-                 return knows_bone() && (!status_.bone.drawn->empty() || !status_.bone.alarm.empty());
+                 return knows_bone() && (!status_.bone->drawn->empty() || !status_.bone->alarm.empty());
                },
                {},
                [this] { bone_registration()->clear(); }});
@@ -207,7 +206,7 @@ void TheatreView::add_registration_actions(widgets::Actions& actions) {
                GLFW_KEY_LEFT,
                0,
                false,
-               [this] { return status_.bone.entry_in_force.value_or(0) > 0; },
+               [this] { return status_.bone->entry_in_force.value_or(0) > 0; },
                {},
                [this] { bone_registration()->step_history(-1); }});
   actions.add({"operate.later",
@@ -217,8 +216,8 @@ void TheatreView::add_registration_actions(widgets::Actions& actions) {
                0,
                false,
                [this] {
-                 return status_.bone.entry_in_force &&
-                        *status_.bone.entry_in_force + 1 < status_.bone.history->size();
+                 return status_.bone->entry_in_force &&
+                        *status_.bone->entry_in_force + 1 < status_.bone->history->size();
                },
                {},
                [this] { bone_registration()->step_history(1); }});

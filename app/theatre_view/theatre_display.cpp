@@ -32,9 +32,9 @@ void explain(TheatreDisplay& display, const OperationStatus& status,
     display.detail = "The source sends the same picture again and again: check cable and camera";
     return;
   }
-  if (!status.bone.alarm.empty()) {
+  if (!status.bone->alarm.empty()) {
     display.headline = "World marker may have moved";
-    display.detail = status.bone.alarm +
+    display.detail = status.bone->alarm +
                      ". Touch the control point again; if it stays off, clear the points (C) and draw anew";
     return;
   }
@@ -60,14 +60,14 @@ void explain(TheatreDisplay& display, const OperationStatus& status,
         break;
       }
       display.headline = "Not registered";
-      display.detail = !status.bone.bone_trouble.empty() ? status.bone.bone_trouble
+      display.detail = !status.bone->bone_trouble.empty() ? status.bone->bone_trouble
                        : status.is_registering           ? "Registering now"
                                                          : "Touch the bone with the probe, then register";
       break;
     case GuidanceState::RegistrationUnreliable:
       display.headline = "Registration not reliable";
-      if (status.bone.in_force != nullptr && !status.bone.in_force->reasons.empty())
-        display.detail = status.bone.in_force->reasons.front();
+      if (status.bone->in_force != nullptr && !status.bone->in_force->reasons.empty())
+        display.detail = status.bone->in_force->reasons.front();
       break;
     case GuidanceState::WorldMarkerLost:
       display.headline = "Bone marker lost";
@@ -95,7 +95,7 @@ void explain(TheatreDisplay& display, const OperationStatus& status,
 TheatreLayout layout_of(const OperationStatus* status, double since_guidance_s) {
   constexpr double kHold_s = 2;
   if (status == nullptr || since_guidance_s < kHold_s) return TheatreLayout::Guide;
-  const bool is_registered = status->bone.in_force != nullptr && status->bone.in_force->reliable;
+  const bool is_registered = status->bone->in_force != nullptr && status->bone->in_force->reliable;
   return is_registered && !status->digitises ? TheatreLayout::Guide : TheatreLayout::Register;
 }
 
@@ -157,7 +157,7 @@ TheatreDisplay display_of(const OperationStatus* status, const pipeline::Pipelin
   display.overlay_is_valid =
       result.camera_from_world.is_valid && result.intrinsics_are_known && !result.is_frozen;
   // An alarm counts from this moment on, whatever the frame was computed with.
-  display.overlay_is_valid = display.overlay_is_valid && status->bone.alarm.empty();
+  display.overlay_is_valid = display.overlay_is_valid && status->bone->alarm.empty();
   display.guidance_is_valid = display.overlay_is_valid && result.guidance.is_valid();
   if (display.guidance_is_valid)
     display.guidance = result.guidance;

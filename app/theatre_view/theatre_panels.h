@@ -1,8 +1,8 @@
 // The panels of the theatre screen. Each reads and draws; none of them keeps a pose.
 #pragma once
 
+#include "app/theatre_view/registration_words.h"
 #include "app/theatre_view/theatre_display.h"
-#include "app/widgets/scene_pane.h"
 #include "app/widgets/undistorted_texture.h"
 
 namespace arthronaut::theatre_view {
@@ -12,9 +12,12 @@ struct TheatreScreen {
   const OperationStatus* status = nullptr;             // null: no operation
   const pipeline::PipelineOptions* options = nullptr;  // of the operation; null with status
   const TheatreDisplay& display;
+  const RegistrationWords& words;  // of status->bone
   std::optional<tunnels::Tunnel> plan = std::nullopt;
   double planned_length_mm = 0;
-  std::shared_ptr<const geometry::Surface> surface = nullptr;  // of the bone; may be null
+  std::uint64_t plan_revision = 0;
+  std::shared_ptr<const geometry::Surface> surface = nullptr;           // of the bone; may be null
+  std::shared_ptr<const geometry::TriangleMesh> drawn_bone = nullptr;  // with surface
   float overlay_opacity = 1;                                   // 0: off
   TheatreLayout layout = TheatreLayout::Guide;
   int selected_stroke = -1;

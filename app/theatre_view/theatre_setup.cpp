@@ -1,8 +1,5 @@
 #include "app/theatre_view/theatre_setup.h"
 
-#include <algorithm>
-#include <array>
-
 #include "navigation/camera/medium.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "planning/geometry/error.h"
@@ -27,9 +24,10 @@ OperationSetup setup_of(const planning_view::PlanModel& model, bones::BoneKind b
   return setup;
 }
 
-landmarks::Landmarks landmarks_of(const cases::Case& knee, bones::BoneKind bone) {
+const landmarks::Landmarks& landmarks_of(const cases::Case& knee, bones::BoneKind bone) {
+  static const landmarks::Landmarks kNone;
   const auto found = knee.landmarks.find(bone);
-  return found == knee.landmarks.end() ? landmarks::Landmarks{} : found->second;
+  return found == knee.landmarks.end() ? kNone : found->second;
 }
 
 phantom::PhantomKnee phantom_of(const cases::Case& knee) {
@@ -82,17 +80,6 @@ OperationSetup simulated_setup(const planning_view::PlanModel& model, bones::Bon
   return setup;
 }
 
-std::vector<std::filesystem::path> videos_of(const std::filesystem::path& case_folder) {
-  constexpr std::array<std::string_view, 4> kVideos{".mp4", ".mkv", ".avi", ".mov"};
-  std::vector<std::filesystem::path> videos;
-  std::error_code ignored;  // a folder that can't be read has no videos to offer
-  for (const auto& entry : std::filesystem::directory_iterator(case_folder, ignored))
-    if (std::find(kVideos.begin(), kVideos.end(), entry.path().extension().string()) != kVideos.end())
-      videos.push_back(entry.path());
-  std::sort(videos.begin(), videos.end());
-  return videos;
-}
-
 namespace {
 
 // With the case's own camera.json and tools.json.
@@ -120,11 +107,12 @@ OperationSetup video_setup(const planning_view::PlanModel& model, bones::BoneKin
 }
 
 OperationSetup camera_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
-                            const std::filesystem::path& case_folder, const CameraDevice& camera,
+                            const std::filesystem::path& case_folder,
+                            const sources::ConnectedCamera& camera, const sources::DeviceTurns& turns,
                             double refractive_index) {
   OperationSetup setup = real_setup(model, bone, case_folder, refractive_index);
   setup.title = camera.name;
-  setup.open_source = [index = camera.index] { return sources::open_device(index); };
+  setup.open_source = [turns, index = camera.index] { return turns.open(index); };
   return setup;
 }
 

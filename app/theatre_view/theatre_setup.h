@@ -3,11 +3,11 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "app/planning_view/plan_model.h"
-#include "app/theatre_view/camera_devices.h"
 #include "app/theatre_view/operation.h"
+#include "navigation/sources/connected_cameras.h"
+#include "navigation/sources/device_turns.h"
 
 namespace arthronaut::theatre_view {
 
@@ -19,17 +19,16 @@ enum class SimulatedPart { Scratch, Drill };
 [[nodiscard]] OperationSetup simulated_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
                                              SimulatedPart part);
 
-// Videos that lie in the case's folder: *.mp4, *.mkv, *.avi, *.mov, by name.
-[[nodiscard]] std::vector<std::filesystem::path> videos_of(const std::filesystem::path& case_folder);
 // A recorded video with the case's camera.json and tools.json. Throws IoError or InvalidInput when those are
 // missing or broken: the message says which.
 [[nodiscard]] OperationSetup video_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
                                          const std::filesystem::path& case_folder,
                                          const std::filesystem::path& video, double refractive_index);
 
-// The same with a camera that is connected, /dev/videoN. It is opened on the worker.
+// The same with a camera that is connected, /dev/videoN. It is opened on the worker, in its turn.
 [[nodiscard]] OperationSetup camera_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
                                           const std::filesystem::path& case_folder,
-                                          const CameraDevice& camera, double refractive_index);
+                                          const sources::ConnectedCamera& camera,
+                                          const sources::DeviceTurns& turns, double refractive_index);
 
 }  // namespace arthronaut::theatre_view

@@ -1,12 +1,11 @@
 #include "app/theatre_view/theatre_view.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "app/scene/scene_camera.h"
-#include "app/theatre_view/registration_words.h"
 #include "navigation/camera/medium.h"
+#include "navigation/sources/source_files.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::theatre_view {
@@ -23,15 +22,15 @@ constexpr std::size_t kEnoughPoints = 150;
 
 }  // namespace
 
-TheatreView::TheatreView(std::function<void()> make_current, std::function<void()> wake)
-    : wake_(std::move(wake)), pane_(std::move(make_current)) {}
+TheatreView::TheatreView(std::function<void()> make_current, std::function<void()> wake,
+                         const sources::DeviceTurns& turns)
+    : wake_(std::move(wake)), turns_(turns), scene_(std::move(make_current)) {}
 TheatreView::~TheatreView() = default;
 
 void TheatreView::open(const planning_view::PlanModel* model, const std::filesystem::path& case_folder) {
   end_operation();
   // A bone that is just being made ready would be waited for.
-  ending_.push_back(
-      std::async(std::launch::async, [bones = std::exchange(bones_, {})]() mutable { bones.clear(); }));
+  ending_.end(std::exchange(bones_, {}));
   choices_ = {};
   notice_.clear();
   model_ = model;
@@ -40,17 +39,18 @@ void TheatreView::open(const planning_view::PlanModel* model, const std::filesys
   if (model_ != nullptr) look_along_plan();
 }
 
+void TheatreView::enter() { choices_.videos = sources::videos_in(case_folder_); }
+
 void TheatreView::end_operation() {
   options_.reset();
   part_.reset();
   choices_.guidance_seen_s = -1e9;
-  std::erase_if(ending_, [](const auto& ending) {
-    return ending.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-  });
   if (operation_ == nullptr) return;
   operation_->request_stop();
-  ending_.push_back(
-      std::async(std::launch::async, [ended = std::move(operation_)]() mutable { ended.reset(); }));
+  ending_.end(std::move(operation_));
+  const auto bone = status_.bone;
+  status_ = {};
+  status_.bone = bone;
 }
 
 void TheatreView::start(OperationSetup setup) {
@@ -60,14 +60,11 @@ void TheatreView::start(OperationSetup setup) {
   choices_.cameras.clear();
   BoneState& bone = bones_[choices_.bone];
   if (bone.registration != nullptr) {
-    const RegistrationStatus known = bone.registration->status();
-    if (!known.bone_trouble.empty()) bone = {};  // tried again
-  }
-  if (bone.registration != nullptr) {
-    const RegistrationStatus known = bone.registration->status();
-    if (known.in_force != nullptr && known.in_force->reliable) setup.digitises = false;
+    const std::shared_ptr<const RegistrationStatus> known = bone.registration->status();
+    if (known->in_force != nullptr && known->in_force->reliable) setup.digitises = false;
     // Made anew while nothing hangs on it: the plan, its target, may have changed.
-    if (known.drawn->empty() && known.history->empty()) bone.registration.reset();
+    if (known->drawn->empty() && known->history->empty()) bone.registration.reset();
+    if (!known->bone_trouble.empty()) bone = {};  // tried again
   }
   prepare_bone();
   setup.registration = bone.registration;
@@ -102,11 +99,11 @@ BoneRegistration* TheatreView::bone_registration() const {
 void TheatreView::look_along_plan() {
   const auto tunnel = model_->tunnel(choices_.bone);
   if (!tunnel)
-    return pane_.look(
+    return scene_.look(
         scene::look_from(scene::View::Anterior, model_->knee().side, model_->bounds(choices_.bone), 1));
   const scene::SceneCamera along =
       scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm, 150, Eigen::Vector3d::UnitZ());
-  pane_.look(scene::orbited(along, {40, -30}, 600));  // a little from the side: depth is seen too
+  scene_.look(scene::orbited(along, {40, -30}, 600));  // a little from the side: depth is seen too
 }
 
 void TheatreView::start_simulation(SimulatedPart part) {
@@ -115,11 +112,14 @@ void TheatreView::start_simulation(SimulatedPart part) {
 }
 
 void TheatreView::start_video() {
-  const auto videos = videos_of(case_folder_);
-  if (videos.empty()) return;
-  choices_.video %= videos.size();
+  enter();
+  if (choices_.videos.empty()) {
+    notice_ = "There is no video in the folder of the case";
+    return;
+  }
+  choices_.video %= choices_.videos.size();
   try {
-    start(video_setup(*model_, choices_.bone, case_folder_, videos[choices_.video],
+    start(video_setup(*model_, choices_.bone, case_folder_, choices_.videos[choices_.video],
                       choices_.saline ? camera::kSalineIndex : camera::kAirIndex));
     ++choices_.video;
   } catch (const std::runtime_error& error) {  // a file that cannot be used is a notice on this screen
@@ -127,17 +127,10 @@ void TheatreView::start_video() {
   }
 }
 
-void TheatreView::start_camera(const CameraDevice& camera) {
+void TheatreView::start_camera(const sources::ConnectedCamera& camera) {
   try {
-    OperationSetup setup = camera_setup(*model_, choices_.bone, case_folder_, camera,
-                                        choices_.saline ? camera::kSalineIndex : camera::kAirIndex);
-    end_operation();
-    // A device is free again only when the operation that had it has ended.
-    setup.open_source = [open = setup.open_source, before = ending_] {
-      for (const std::shared_future<void>& ending : before) ending.wait();
-      return open();
-    };
-    start(std::move(setup));
+    start(camera_setup(*model_, choices_.bone, case_folder_, camera, turns_,
+                       choices_.saline ? camera::kSalineIndex : camera::kAirIndex));
   } catch (const std::runtime_error& error) {
     notice_ = error.what();
     choices_.cameras.clear();
@@ -149,7 +142,7 @@ void TheatreView::choose_camera() {
     choices_.camera = (choices_.camera + 1) % choices_.cameras.size();
     return;
   }
-  std::vector<CameraDevice> cameras = list_cameras();
+  std::vector<sources::ConnectedCamera> cameras = sources::connected_cameras();
   if (cameras.empty()) {
     notice_ = "No camera is connected: there is no /dev/video";
     return;
@@ -169,23 +162,23 @@ std::string TheatreView::next_step() const {
   if (model_ == nullptr) return "open a case";
   if (!choices_.cameras.empty()) return "open " + choices_.cameras[choices_.camera].name;
   if (!model_->tunnel(choices_.bone)) return "plan the tunnel (F1)";
-  if (!status_.bone.alarm.empty()) return "check the world marker";
-  const bool registered = status_.bone.in_force != nullptr && status_.bone.in_force->reliable;
+  if (!status_.bone->alarm.empty()) return "check the world marker";
+  const bool registered = status_.bone->in_force != nullptr && status_.bone->in_force->reliable;
   if (operation_ == nullptr || status_.phase == Phase::Failed)
     return can_simulate() ? "start the simulated operation" : "open the next video";
   if (status_.is_registering) return "wait for the registration";
   // While the probe draws the registration runs along by itself.
   const bool draws = is_running() && status_.digitises;
-  if (!registered && !draws && status_.bone.drawn->size() >= kEnoughPoints)
+  if (!registered && !draws && status_.bone->drawn->size() >= kEnoughPoints)
     return "register what was touched";
   if (registered && (part_ == SimulatedPart::Scratch || !is_running()) && can_simulate()) return "drill";
-  if (!is_running() && !videos_of(case_folder_).empty()) return "open the next video";
+  if (!is_running() && !choices_.videos.empty()) return "open the next video";
   if (registered) return status_.digitises ? "verify by touches, or take the guide" : "follow the bullseye";
   return "touch the bone with the probe";
 }
 
 void TheatreView::take_next_step() {
-  if (!choices_.cameras.empty()) return start_camera(CameraDevice(choices_.cameras[choices_.camera]));
+  if (!choices_.cameras.empty()) return start_camera(sources::ConnectedCamera(choices_.cameras[choices_.camera]));
   const std::string step = next_step();
   if (step == "start the simulated operation") return start_simulation(SimulatedPart::Scratch);
   if (step == "register what was touched") return operation_->register_curves();
@@ -224,16 +217,16 @@ void TheatreView::cycle_overlay() {
   choices_.overlay_shown_at_s = now;
 }
 
-bool TheatreView::is_busy() const {
-  return operation_ != nullptr &&
-         (status_.phase == Phase::Running || status_.phase == Phase::Starting || status_.is_registering);
-}
+bool TheatreView::is_busy() const { return operation_ != nullptr && operation_->is_busy(); }
 
 void TheatreView::read_status() {
-  const std::uint64_t seen = status_.bone.change_count;
-  status_ = operation_ != nullptr ? operation_->status() : OperationStatus{};
-  if (BoneRegistration* bone = bone_registration()) status_.bone = bone->status();
-  if (status_.bone.change_count != seen) choices_.overlay_shown_at_s = Operation::now_s();
+  const std::shared_ptr<const RegistrationStatus> seen = status_.bone;
+  if (operation_ != nullptr) status_ = operation_->status();
+  BoneRegistration* const bone = bone_registration();
+  status_.bone = bone != nullptr ? bone->status() : std::make_shared<RegistrationStatus>();
+  if (status_.bone == seen) return;
+  words_ = words_of(*status_.bone);
+  if (status_.bone->change_count != seen->change_count) choices_.overlay_shown_at_s = Operation::now_s();
 }
 
 TheatreLayout TheatreView::layout(double now_s) const {
@@ -243,11 +236,13 @@ TheatreLayout TheatreView::layout(double now_s) const {
 
 TheatreScreen TheatreView::screen_of(const TheatreDisplay& display, double now_s) const {
   const OperationStatus* status = operation_ != nullptr ? &status_ : nullptr;
-  TheatreScreen screen{status, options_.get(), display};
+  TheatreScreen screen{status, options_.get(), display, words_};
   if (model_ != nullptr && model_->has_bone(choices_.bone)) {
     screen.plan = model_->tunnel(choices_.bone);
     screen.planned_length_mm = screen.plan ? model_->drawn_length_mm(choices_.bone) : 0;
+    screen.plan_revision = model_->revision();
     screen.surface = model_->shared_surface(choices_.bone);
+    screen.drawn_bone = model_->drawn_mesh(choices_.bone);
   }
   screen.overlay_opacity = overlay_opacity(now_s);
   screen.layout = layout(now_s);
@@ -281,13 +276,13 @@ void TheatreView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if (screen.layout == TheatreLayout::Register) {
     draw_registration(ui, rest.cut_right(rest.width * 0.5F, gap), screen);
     const widgets::Rect tracking = rest.cut_bottom(rest.height * 0.47F, gap);
-    draw_scene(ui, rest, screen);
+    scene_.draw(ui, rest, screen);
     draw_tracking(ui, tracking, screen);
   } else {
     widgets::Rect right = rest.cut_right(rest.width * 0.45F, gap);
     draw_bullseye(ui, rest.cut_top(rest.height * 0.54F, gap), screen);
     draw_numbers(ui, right.cut_top(right.height * 0.46F, gap), screen);
-    draw_scene(ui, rest, screen);
+    scene_.draw(ui, rest, screen);
     draw_tracking(ui, right, screen);
   }
   draw_controls(ui, controls);
@@ -295,7 +290,7 @@ void TheatreView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
 }
 
 void TheatreView::note_states(const widgets::Ui& ui, const TheatreScreen& screen) const {
-  const RegistrationPtr& in_force = status_.bone.in_force;
+  const RegistrationPtr& in_force = status_.bone->in_force;
   ui.log.note_state("guidance", screen.display.guidance_is_valid ? "valid" : screen.display.headline);
   ui.log.note_state("overlay", screen.overlay_opacity > 0.99F ? "full"
                                : screen.overlay_opacity > 0   ? "faded"
@@ -307,8 +302,8 @@ void TheatreView::note_states(const widgets::Ui& ui, const TheatreScreen& screen
   ui.log.note_state("registration", in_force == nullptr  ? "none"
                                     : in_force->reliable ? "reliable"
                                                          : "unreliable");
-  ui.log.note_state("registrations", std::to_string(status_.bone.history->size()));
-  ui.log.note_state("strokes", std::to_string(stroke_rows(status_.bone).size()));
+  ui.log.note_state("registrations", std::to_string(status_.bone->history->size()));
+  ui.log.note_state("strokes", std::to_string(words_.strokes.size()));
   ui.log.note_state("recording", status_.recording.empty() ? "off" : "on");
   ui.log.note_state("picture", !screen.display.has_picture ? "none"
                                : screen.display.is_live    ? "live"
@@ -333,51 +328,6 @@ void TheatreView::draw_cameras(const widgets::Ui& ui, const widgets::Rect& area)
   }
   widgets::text_centered(ui, box, ui.theme.body, widgets::kQuietText,
                          "K: the next one    Space: open it    Esc: none");
-}
-
-void TheatreView::show_scene(const TheatreScreen& screen) {
-  scene::SceneContent content;
-  content.bones.push_back({model_->drawn_mesh(choices_.bone), scene::kBoneColor, 1.0});
-  if (screen.plan) scene::add_planned_tunnel(content, *screen.plan, screen.planned_length_mm);
-  const RegistrationStatus& bone = status_.bone;
-  if (screen.status != nullptr && screen.surface != nullptr)
-    touched_.add_strokes(content, bone, *screen.surface,
-                         screen.layout == TheatreLayout::Register ? choices_.stroke : -1);
-  if (bone.in_force != nullptr && bone.in_force->reliable && screen.status != nullptr &&
-      screen.display.overlay_is_valid && status_.live->result.tip_is_valid)
-    content.balls.push_back({bone.in_force->marker_from_bone.inverse() * status_.live->result.tip_in_world_mm,
-                             2.5, scene::kGuideColor, false});
-  if (screen.layout == TheatreLayout::Register && bone.online != nullptr &&
-      bone.online->registration.has_pose) {
-    add_patches(content, bone.online->coach);
-    if (bone.online->coach.next_patch_in_bone_mm)
-      content.balls.push_back({*bone.online->coach.next_patch_in_bone_mm, 5, scene::kAchievedColor, false});
-  }
-  if (screen.display.guidance_is_valid) {
-    const guidance::GuidanceNumbers& g = screen.display.guidance;
-    scene::add_guide(content, g.guide_point_mm, g.guide_direction, std::max(g.remaining_mm, 5.0));
-  }
-  pane_.show(content);
-}
-
-void TheatreView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen) {
-  if (model_ == nullptr || !model_->has_bone(choices_.bone)) return;
-  show_scene(screen);
-  pane_.draw(ui, "operate.view", area);
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const bool has_patches = screen.layout == TheatreLayout::Register && status_.bone.online != nullptr &&
-                           !status_.bone.online->coach.patches.empty();
-  const std::string label = screen.display.guidance_is_valid ? "Drill guide and plan"
-                            : has_patches                    ? "Green: touched. Orange: draw here"
-                            : screen.layout == TheatreLayout::Register
-                                ? "Plan; what is touched will show here"
-                                : "Plan; the guide is not known now";
-  const ImVec2 wide = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, label.c_str());
-  draw.AddRectFilled(area.min(), {area.x + wide.x + ui.theme.px(28), area.y + wide.y + ui.theme.px(18)},
-                     IM_COL32(12, 15, 19, 200), ui.theme.px(6));
-  draw.AddText(ui.theme.strong, ui.theme.strong->FontSize,
-               {area.x + ui.theme.px(14), area.y + ui.theme.px(9)},
-               screen.display.guidance_is_valid ? widgets::kQuietText : widgets::kCaution, label.c_str());
 }
 
 }  // namespace arthronaut::theatre_view

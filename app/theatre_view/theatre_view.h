@@ -11,21 +11,25 @@
 #include "app/planning_view/plan_model.h"
 #include "app/theatre_view/operation.h"
 #include "app/theatre_view/theatre_panels.h"
+#include "app/theatre_view/theatre_scene.h"
 #include "app/theatre_view/theatre_setup.h"
-#include "app/theatre_view/touched_picture.h"
-#include "app/widgets/scene_pane.h"
+#include "navigation/sources/background_end.h"
 
 namespace arthronaut::theatre_view {
 
 class TheatreView {
  public:
-  // wake: ends the window's wait for input; called from other threads.
-  TheatreView(std::function<void()> make_current, std::function<void()> wake);
+  // wake: ends the window's wait for input; called from other threads. turns: shared with whatever else opens
+  // cameras.
+  TheatreView(std::function<void()> make_current, std::function<void()> wake,
+              const sources::DeviceTurns& turns);
   ~TheatreView();
 
   // Another case; ends what runs. The model is read whenever an operation is started; it outlives this view's
   // use.
   void open(const planning_view::PlanModel* model, const std::filesystem::path& case_folder);
+  // This mode comes to the front: sees anew which videos the case has.
+  void enter();
   void add_actions(widgets::Actions& actions);
   void draw(const widgets::Ui& ui, const widgets::Rect& area);
   // While true the screen must be drawn again soon: pictures are coming, or the overlay fades.
@@ -37,7 +41,7 @@ class TheatreView {
   void start(OperationSetup setup);
   void start_simulation(SimulatedPart part);
   void start_video();
-  void start_camera(const CameraDevice& camera);
+  void start_camera(const sources::ConnectedCamera& camera);
   // One camera is opened at once, several are offered, none is told.
   void choose_camera();
   // Ends what runs: at once on the screen, in a thread of its own behind it.
@@ -49,7 +53,6 @@ class TheatreView {
   void cycle_overlay();
   void prepare_bone();
   void look_along_plan();
-  void show_scene(const TheatreScreen& screen);
   [[nodiscard]] std::string next_step() const;
   [[nodiscard]] bool can_simulate() const;
   [[nodiscard]] bool is_running() const;
@@ -59,7 +62,6 @@ class TheatreView {
   [[nodiscard]] TheatreScreen screen_of(const TheatreDisplay& display, double now_s) const;
   void note_states(const widgets::Ui& ui, const TheatreScreen& screen) const;
   [[nodiscard]] float overlay_opacity(double now_s) const;
-  void draw_scene(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen);
   void draw_controls(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_cameras(const widgets::Ui& ui, const widgets::Rect& area) const;
 
@@ -70,29 +72,31 @@ class TheatreView {
   struct Choices {
     bones::BoneKind bone = bones::BoneKind::Femur;
     bool saline = true;
-    std::size_t video = 0;
+    std::vector<std::filesystem::path> videos;  // of the case, when this mode was entered
+    std::size_t video = 0;                      // the next of those
     bool overlay_on = true;
     double overlay_shown_at_s = 0;
     bool undistorts = false;
     std::optional<TheatreLayout> layout;  // empty: as things stand
     double guidance_seen_s = -1e9;        // when guidance was valid last
     int stroke = -1;                      // selected
-    std::vector<CameraDevice> cameras;    // on offer now; empty: none
+    std::vector<sources::ConnectedCamera> cameras;  // on offer now; empty: none
     std::size_t camera = 0;               // of those
   };
 
   const planning_view::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
   std::function<void()> wake_;
-  widgets::ScenePane pane_;
+  sources::DeviceTurns turns_;
+  TheatreScene scene_;
   VideoTextures video_;
   std::map<bones::BoneKind, BoneState> bones_;
   Choices choices_;
-  TouchedPicture touched_;
   std::unique_ptr<Operation> operation_;
-  std::vector<std::shared_future<void>> ending_;        // operations before, and bones of another case
+  sources::BackgroundEnd ending_;                       // operations before, and bones of another case
   std::unique_ptr<pipeline::PipelineOptions> options_;  // of the operation
   OperationStatus status_;                              // of this frame
+  RegistrationWords words_;                             // of status_.bone
   std::optional<SimulatedPart> part_;                   // of the running simulation
   std::string notice_;
 };

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/theatre_view/registration_words.h"
 #include "app/theatre_view/theatre_panels.h"
 
 namespace arthronaut::theatre_view {
@@ -51,15 +50,15 @@ void draw_lens(const widgets::Ui& ui, const TheatreScreen& screen) {
 
 void draw_registration_row(const widgets::Ui& ui, const TheatreScreen& screen) {
   const OperationStatus& status = *screen.status;
-  const std::string points = std::to_string(status.bone.drawn->size()) + " points";
+  const std::string points = std::to_string(status.bone->drawn->size()) + " points";
   widgets::status_row(ui, status.digitises ? Sign::Good : Sign::Quiet, "Probe draws",
                       status.digitises ? points : "off, " + points);
   if (status.is_registering) return widgets::status_row(ui, Sign::Quiet, "Registration", "running");
-  if (!status.bone.bone_trouble.empty())
-    return widgets::status_row(ui, Sign::Bad, "Registration", status.bone.bone_trouble);
-  if (status.bone.in_force == nullptr)
+  if (!status.bone->bone_trouble.empty())
+    return widgets::status_row(ui, Sign::Bad, "Registration", status.bone->bone_trouble);
+  if (status.bone->in_force == nullptr)
     return widgets::status_row(ui, Sign::Quiet, "Registration", "none yet");
-  const registration::RegistrationSummary& r = *status.bone.in_force;
+  const registration::RegistrationSummary& r = *status.bone->in_force;
   if (!r.has_pose || !r.reliable) {
     const std::string why = r.reasons.empty() ? "not reliable" : r.reasons.front();
     return widgets::status_row(ui, Sign::Bad, "Registration", why);
@@ -67,7 +66,7 @@ void draw_registration_row(const widgets::Ui& ui, const TheatreScreen& screen) {
   widgets::status_row(ui, Sign::Good, "Registration",
                       "target " + widgets::plus_minus(r.predicted_tre_mm) + " mm, fit " +
                           widgets::fixed(r.rms_mm, 1) + " mm" +
-                          (status.bone.is_chosen ? ", an earlier one" : ""));
+                          (status.bone->is_chosen ? ", an earlier one" : ""));
 }
 
 // The last touch, where the large number of the registration panel is not shown.
@@ -75,20 +74,20 @@ void draw_touch_row(const widgets::Ui& ui, const TheatreScreen& screen) {
   if (screen.layout == TheatreLayout::Register) return;
   if (!screen.status->touch_notice.empty())
     widgets::status_row(ui, Sign::Caution, screen.status->touch_notice, "");
-  else if (const auto touch = touch_of(screen.status->bone))
+  else if (const auto& touch = screen.words.touch)
     widgets::status_row(ui, touch->number.sign, touch->number.name, touch->number.text);
 }
 
 // Touch a place that you know: how far the tip is from the bone model, while both are known.
 void draw_probe(const widgets::Ui& ui, const TheatreScreen& screen) {
   const OperationStatus& status = *screen.status;
-  if (!screen.display.is_live || status.bone.in_force == nullptr || !status.bone.in_force->reliable ||
+  if (!screen.display.is_live || status.bone->in_force == nullptr || !status.bone->in_force->reliable ||
       screen.surface == nullptr)
     return;
   const pipeline::FrameResult& result = status.live->result;
   if (!result.tip_is_valid) return;
   const double distance = screen.surface->signed_distance_mm(
-      status.bone.in_force->marker_from_bone.inverse() * result.tip_in_world_mm);
+      status.bone->in_force->marker_from_bone.inverse() * result.tip_in_world_mm);
   widgets::status_row(ui, Sign::Quiet, "Probe tip to bone", widgets::fixed(distance, 1) + " mm");
 }
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/theatre_view/picture_placement.h"
+#include "app/widgets/picture_placement.h"
 #include "app/theatre_view/theatre_panels.h"
 
 namespace arthronaut::theatre_view {
@@ -32,22 +32,20 @@ LineStyle style_of(const OverlayLine& line, float opacity, float scale) {
   return {widgets::kText, scale};
 }
 
-void draw_overlay(ImDrawList& draw, const PicturePlacement& placement, const scene::PlanOverlay& overlay,
+void draw_overlay(ImDrawList& draw, const widgets::PicturePlacement& placement, const scene::PlanOverlay& overlay,
                   float opacity, float scale) {
-  std::vector<ImVec2> points;
   for (const OverlayLine& line : overlay) {
-    points.clear();
     for (const Eigen::Vector2d& p : line.points_px)
-      if (const auto at = placement.on_screen(p)) points.push_back(*at);
+      if (const auto at = placement.on_screen(p)) draw.PathLineTo(*at);
     const LineStyle style = style_of(line, opacity, scale);
-    draw.AddPolyline(points.data(), static_cast<int>(points.size()), style.color, 0, style.width);
+    draw.PathStroke(style.color, 0, style.width);
   }
 }
 
 // The picture fills as much of the area as its shape allows; returns where its pixels stand.
 struct DrawnPicture {
   widgets::Rect area;
-  PicturePlacement placement;
+  widgets::PicturePlacement placement;
 };
 
 DrawnPicture draw_picture(const widgets::Rect& area, const TheatreScreen& screen, VideoTextures& textures) {
@@ -72,7 +70,7 @@ DrawnPicture draw_picture(const widgets::Rect& area, const TheatreScreen& screen
   }
   const float w = static_cast<float>(textures.raw.width()), h = static_cast<float>(textures.raw.height());
   const widgets::Rect part =
-      shown_part(screen.options->calibration, textures.raw.width(), textures.raw.height());
+      widgets::shown_part(screen.options->calibration.boundary, textures.raw.width(), textures.raw.height());
   const widgets::Rect picture = widgets::fitted(area, part.width / part.height);
   put(textures.raw.texture(), picture, {part.x / w, part.y / h},
       {(part.x + part.width) / w, (part.y + part.height) / h});

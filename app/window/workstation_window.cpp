@@ -48,8 +48,8 @@ WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
       planning_(
           [this] { window_.make_current(); },
           [this](const planning_view::PlanEdit& edit) { history_.apply(edit, GraphicsWindow::now_s()); }),
-      setup_([] { GraphicsWindow::wake(); }, [this] { go_to(Mode::Navigate); }),
-      theatre_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }),
+      setup_([] { GraphicsWindow::wake(); }, [this] { go_to(Mode::Navigate); }, camera_turns_),
+      theatre_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }, camera_turns_),
       review_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }) {
   add_actions();
 }
@@ -115,14 +115,18 @@ void WorkstationWindow::run() {
     const double started = GraphicsWindow::now_s();
     frame(timeout);
     const bool woken = timeout > 0 && GraphicsWindow::now_s() - started < timeout;
-    settle = woken && !theatre_.is_busy() && !setup_.is_busy() ? kFramesAfterInput : std::max(settle - 1, 0);
+    settle = woken && !pictures_come() ? kFramesAfterInput : std::max(settle - 1, 0);
   }
   history_.settle_now();
 }
 
+// What a station of Set up last knew of its run is of when it was last drawn.
+bool WorkstationWindow::pictures_come() const {
+  return (mode_ == Mode::SetUp && setup_.is_busy()) || theatre_.is_busy();
+}
+
 bool WorkstationWindow::is_busy() const {
-  return opening_.valid() || (mode_ == Mode::SetUp && setup_.is_busy()) || theatre_.is_busy() ||
-         review_.is_busy() || history_.is_moving();
+  return opening_.valid() || pictures_come() || review_.is_busy() || history_.is_moving();
 }
 
 // poll -> queues and actions -> UI (with the scenes that are dirty) -> draw -> swap
@@ -184,6 +188,8 @@ std::vector<std::string_view> WorkstationWindow::action_prefixes() const {
 void WorkstationWindow::go_to(Mode mode) {
   if (mode_ == Mode::SetUp && mode != Mode::SetUp) setup_.leave();
   mode_ = mode;
+  if (mode == Mode::SetUp) setup_.enter();
+  if (mode == Mode::Navigate) theatre_.enter();
   if (mode == Mode::Review) review_.refresh();
 }
 

@@ -37,6 +37,7 @@ class WorkstationWindow {
   void draw_top_bar(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_status_bar(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_waiting(const widgets::Ui& ui, const widgets::Rect& area);
+  [[nodiscard]] bool pictures_come() const;  // in the mode that is shown, or recorded behind it
   [[nodiscard]] bool is_busy() const;
 
   WorkstationOptions options_;
@@ -46,6 +47,7 @@ class WorkstationWindow {
   std::future<OpenedCase> opening_;
   OpenedCase open_;
   PlanHistory history_;
+  sources::DeviceTurns camera_turns_;  // of Set up and Navigate
   planning_view::PlanningView planning_;
   setup_view::SetupView setup_;
   theatre_view::TheatreView theatre_;

@@ -1,6 +1,6 @@
 #include "navigation/sources/frame_source.h"
 
-#include "navigation/sources/picture.h"
+#include "navigation/sources/source_files.h"
 #include "navigation/sources/still_images.h"
 #include "navigation/sources/video_file.h"
 #include "planning/geometry/error.h"

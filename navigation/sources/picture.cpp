@@ -1,8 +1,6 @@
 #include "navigation/sources/picture.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -65,15 +63,6 @@ void read_picture_into(const std::filesystem::path& file, camera::Frame& frame) 
     default:
       throw InvalidInput(file, "", "has " + std::to_string(picture.channels()) + " channels");
   }
-}
-
-bool looks_like_picture(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  static constexpr std::array kPictures{".png",  ".jpg", ".jpeg", ".bmp", ".tif",
-                                        ".tiff", ".ppm", ".pgm",  ".webp"};
-  return std::find(kPictures.begin(), kPictures.end(), extension) != kPictures.end();
 }
 
 camera::Frame read_picture(const std::filesystem::path& file) {

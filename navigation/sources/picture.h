@@ -10,7 +10,4 @@ namespace arthronaut::sources {
 // As read_picture(), with index and timestamp left to the caller.
 void read_picture_into(const std::filesystem::path& file, camera::Frame& frame);
 
-// By its extension: a picture rather than a video.
-[[nodiscard]] bool looks_like_picture(const std::filesystem::path& file);
-
 }  // namespace arthronaut::sources

@@ -4,8 +4,8 @@
 
 #include <fstream>
 
+#include "app/setup_view/case_calibration.h"
 #include "app/setup_view/setup_sources.h"
-#include "planning/cases/case.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::setup_view {
@@ -88,6 +88,8 @@ TEST(FrameFeed, HandsErrorsToTheWorker) {
   EXPECT_TRUE(feed.has_ended());
 }
 
+const sources::DeviceTurns kTurns;
+
 class Sources : public ::testing::Test {
  protected:
   // A folder for each test: they run side by side.
@@ -107,17 +109,14 @@ class Sources : public ::testing::Test {
 
 // Pictures are offered for the camera alone, videos for everything, the simulated arthroscope first.
 TEST_F(Sources, AreFoundInTheCase) {
-  const auto for_camera = sources_for(Purpose::Camera, folder_);
+  const auto for_camera = sources_for(Purpose::Camera, folder_, kTurns);
   ASSERT_GE(for_camera.size(), 3U);
   EXPECT_EQ(for_camera[0].name, kSimulatedScope);
   EXPECT_EQ(for_camera[1].name, "Pictures in board");
   EXPECT_TRUE(for_camera[1].is_stills);
   EXPECT_EQ(for_camera[2].name, "knee.mkv");
-  const auto for_tools = sources_for(Purpose::Tools, folder_);
+  const auto for_tools = sources_for(Purpose::Tools, folder_, kTurns);
   EXPECT_EQ(for_tools[1].name, "knee.mkv");
-  const auto pictures = pictures_of(folder_ / "board");
-  ASSERT_EQ(pictures.size(), 2U);
-  EXPECT_EQ(pictures[0].filename(), "a.jpg");
 }
 
 // A path that was named is found among what is offered, wherever it stands; for tools a folder of pictures is
@@ -125,38 +124,23 @@ TEST_F(Sources, AreFoundInTheCase) {
 TEST_F(Sources, AreFoundByTheirPath) {
   const std::vector<std::filesystem::path> named{folder_ / "board", folder_ / "knee.mkv",
                                                  folder_ / "nothing"};
-  const auto for_tools = sources_for(Purpose::Tools, folder_, named);
+  const auto for_tools = sources_for(Purpose::Tools, folder_, kTurns, named);
   EXPECT_FALSE(index_of(for_tools, folder_ / "board").has_value());
   EXPECT_EQ(index_of(for_tools, folder_ / "knee.mkv"), 1U);
   EXPECT_FALSE(index_of(for_tools, folder_ / "nothing").has_value());
   EXPECT_FALSE(index_of(for_tools, {}).has_value());
-  EXPECT_EQ(index_of(sources_for(Purpose::Camera, folder_, named), folder_ / "knee.mkv"), 2U);
+  EXPECT_EQ(index_of(sources_for(Purpose::Camera, folder_, kTurns, named), folder_ / "knee.mkv"), 2U);
 }
 
 // A picture that is none is told by its name, not swallowed.
 TEST_F(Sources, NameTheFileThatIsNoPicture) {
-  FrameFeed feed(sources_for(Purpose::Camera, folder_)[1]);
+  FrameFeed feed(sources_for(Purpose::Camera, folder_, kTurns)[1]);
   try {
     (void)wait_for_picture(feed);
     FAIL() << "no exception";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("a.jpg"), std::string::npos) << error.what();
   }
-}
-
-// What is simulated is tracked with its own camera, and replaces neither camera nor tools of a real case.
-TEST_F(Sources, KeepRealFilesFromSimulatedOnes) {
-  const FeedSource simulated = sources_for(Purpose::Camera, folder_)[0];
-  EXPECT_GT(camera_of(simulated, folder_).focal_px, 0);  // this case's camera.json is broken
-  EXPECT_FALSE(camera_is_kept(simulated, folder_).empty());
-  const FeedSource video = sources_for(Purpose::Tools, folder_)[1];
-  EXPECT_THROW((void)camera_of(video, folder_), InvalidInput);
-  EXPECT_TRUE(camera_is_kept(video, folder_).empty());
-  std::filesystem::remove(folder_ / "camera.json");
-  EXPECT_TRUE(camera_is_kept(simulated, folder_).empty());
-  EXPECT_TRUE(tools_are_kept(simulated, folder_).empty());
-  tools::write_tools_file(cases::tools_file(folder_), tools::standard_tools());
-  EXPECT_FALSE(tools_are_kept(simulated, folder_).empty());
 }
 
 }  // namespace

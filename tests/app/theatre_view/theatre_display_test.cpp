@@ -104,7 +104,9 @@ TEST(TheatreDisplay, EndAndFailureAreNotLive) {
 // An alarm hides everything from this moment on, even in a frame that was computed before it.
 TEST(TheatreDisplay, AnAlarmDropsGuidanceAtOnce) {
   const auto display = display_after([](OperationStatus& status, LiveFrame&) {
-    status.bone.alarm = "the control point has moved by 2.1 mm";
+    RegistrationStatus bone;
+    bone.alarm = "the control point has moved by 2.1 mm";
+    status.bone = std::make_shared<const RegistrationStatus>(bone);
   });
   EXPECT_TRUE(display.is_live);
   EXPECT_FALSE(display.overlay_is_valid || display.guidance_is_valid);
@@ -147,7 +149,9 @@ TEST(TheatreDisplay, TheLayoutFollowsWhatIsDone) {
   EXPECT_EQ(layout_of(&status, 0.5), TheatreLayout::Guide);
   auto registration = std::make_shared<registration::RegistrationSummary>();
   registration->has_pose = registration->reliable = true;
-  status.bone.in_force = registration;
+  RegistrationStatus bone;
+  bone.in_force = registration;
+  status.bone = std::make_shared<const RegistrationStatus>(bone);
   EXPECT_EQ(layout_of(&status, kLongAgo), TheatreLayout::Register) << "the probe still draws";
   status.digitises = false;
   EXPECT_EQ(layout_of(&status, kLongAgo), TheatreLayout::Guide);

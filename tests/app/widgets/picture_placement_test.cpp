@@ -1,8 +1,8 @@
-#include "app/theatre_view/picture_placement.h"
+#include "app/widgets/picture_placement.h"
 
 #include <gtest/gtest.h>
 
-namespace arthronaut::theatre_view {
+namespace arthronaut::widgets {
 namespace {
 
 camera::Calibration scope() {
@@ -19,7 +19,7 @@ camera::Calibration scope() {
 // The picture as it came: the corner of the shown part stands in the corner of the area, half a pixel aside,
 // and scale is the same both ways.
 TEST(PicturePlacement, PutsTheRoundViewIntoTheArea) {
-  const widgets::Rect part = shown_part(scope(), 1920, 1080);
+  const Rect part = shown_part(scope().boundary, 1920, 1080);
   EXPECT_FLOAT_EQ(part.x, 445);
   EXPECT_FLOAT_EQ(part.width, 1030);
   EXPECT_FLOAT_EQ(part.y, 25);
@@ -37,7 +37,7 @@ TEST(PicturePlacement, PutsTheRoundViewIntoTheArea) {
 TEST(PicturePlacement, LiesOnTheUndistortedPicture) {
   const camera::CameraModel camera(scope(), 0.9, 1.3345);
   const camera::UndistortedView view(camera::CameraModel(scope(), 0, 1.3345));
-  const widgets::Rect area{100, 50, 800, 800};
+  const Rect area{100, 50, 800, 800};
   const PicturePlacement placement(area, camera, view);
   const auto middle = placement.on_screen(camera.principal_point_px());
   ASSERT_TRUE(middle);
@@ -53,4 +53,4 @@ TEST(PicturePlacement, LiesOnTheUndistortedPicture) {
 }
 
 }  // namespace
-}  // namespace arthronaut::theatre_view
+}  // namespace arthronaut::widgets

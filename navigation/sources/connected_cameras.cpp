@@ -1,20 +1,20 @@
-#include "app/theatre_view/camera_devices.h"
+#include "navigation/sources/connected_cameras.h"
 
 #include <algorithm>
 #include <charconv>
 #include <fstream>
 
-namespace arthronaut::theatre_view {
+namespace arthronaut::sources {
 
-std::vector<CameraDevice> list_cameras(const std::filesystem::path& devices,
+std::vector<ConnectedCamera> connected_cameras(const std::filesystem::path& devices,
                                        const std::filesystem::path& names) {
   constexpr std::string_view kPrefix = "video";
-  std::vector<CameraDevice> cameras;
+  std::vector<ConnectedCamera> cameras;
   std::error_code ignored;  // a machine without that folder has no camera
   for (const auto& entry : std::filesystem::directory_iterator(devices, ignored)) {
     const std::string file = entry.path().filename().string();
     if (!file.starts_with(kPrefix)) continue;
-    CameraDevice camera;
+    ConnectedCamera camera;
     const char* const end = file.data() + file.size();
     const auto parsed = std::from_chars(file.data() + kPrefix.size(), end, camera.index);
     if (parsed.ec != std::errc{} || parsed.ptr != end) continue;
@@ -23,8 +23,8 @@ std::vector<CameraDevice> list_cameras(const std::filesystem::path& devices,
     cameras.push_back(std::move(camera));
   }
   std::sort(cameras.begin(), cameras.end(),
-            [](const CameraDevice& a, const CameraDevice& b) { return a.index < b.index; });
+            [](const ConnectedCamera& a, const ConnectedCamera& b) { return a.index < b.index; });
   return cameras;
 }
 
-}  // namespace arthronaut::theatre_view
+}  // namespace arthronaut::sources

@@ -1,15 +1,15 @@
-#include "app/theatre_view/camera_devices.h"
+#include "navigation/sources/connected_cameras.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <fstream>
 
-namespace arthronaut::theatre_view {
+namespace arthronaut::sources {
 namespace {
 
 // Video devices alone, by number, with the name that the system has for them.
-TEST(CameraDevices, ListsWhatTheSystemHas) {
+TEST(ConnectedCameras, ListsWhatTheSystemHas) {
   std::string pattern = (std::filesystem::temp_directory_path() / "arthronaut-cameras-XXXXXX").string();
   ASSERT_NE(mkdtemp(pattern.data()), nullptr);
   const std::filesystem::path folder = pattern;
@@ -17,15 +17,15 @@ TEST(CameraDevices, ListsWhatTheSystemHas) {
     std::ofstream(folder / name) << "";
   std::filesystem::create_directories(folder / "names" / "video2");
   std::ofstream(folder / "names" / "video2" / "name") << "Capture card\n";
-  const auto cameras = list_cameras(folder, folder / "names");
+  const auto cameras = connected_cameras(folder, folder / "names");
   ASSERT_EQ(cameras.size(), 2U);
   EXPECT_EQ(cameras[0].index, 2);
   EXPECT_EQ(cameras[0].name, "Capture card");
   EXPECT_EQ(cameras[1].index, 10);
   EXPECT_EQ(cameras[1].name, (folder / "video10").string());
   std::filesystem::remove_all(folder);
-  EXPECT_TRUE(list_cameras(folder, folder).empty());
+  EXPECT_TRUE(connected_cameras(folder, folder).empty());
 }
 
 }  // namespace
-}  // namespace arthronaut::theatre_view
+}  // namespace arthronaut::sources

@@ -1,23 +1,23 @@
-#include "app/theatre_view/picture_placement.h"
+#include "app/widgets/picture_placement.h"
 
-namespace arthronaut::theatre_view {
+namespace arthronaut::widgets {
 
-widgets::Rect shown_part(const camera::Calibration& calibration, int width_px, int height_px) {
+Rect shown_part(const camera::Boundary& view, int width_px, int height_px) {
   const float width = static_cast<float>(width_px), height = static_cast<float>(height_px);
-  if (calibration.boundary.radius_px <= 0) return {0, 0, width, height};
+  if (view.radius_px <= 0) return {0, 0, width, height};
   constexpr double kMargin = 1.03;
-  const float half = static_cast<float>(kMargin * calibration.boundary.radius_px);
-  const float x = static_cast<float>(calibration.boundary.center_px.x()),
-              y = static_cast<float>(calibration.boundary.center_px.y());
+  const float half = static_cast<float>(kMargin * view.radius_px);
+  const float x = static_cast<float>(view.center_px.x()),
+              y = static_cast<float>(view.center_px.y());
   const float left = std::max(x - half, 0.F), right = std::min(x + half, width);
   const float top = std::max(y - half, 0.F), bottom = std::min(y + half, height);
   return {left, top, std::max(right - left, 1.F), std::max(bottom - top, 1.F)};
 }
 
-PicturePlacement::PicturePlacement(const widgets::Rect& area, const widgets::Rect& part)
+PicturePlacement::PicturePlacement(const Rect& area, const Rect& part)
     : area_(area), part_(part) {}
 
-PicturePlacement::PicturePlacement(const widgets::Rect& area, const camera::CameraModel& camera,
+PicturePlacement::PicturePlacement(const Rect& area, const camera::CameraModel& camera,
                                    const camera::UndistortedView& view)
     : area_(area), camera_(&camera), view_(&view) {}
 
@@ -34,4 +34,4 @@ std::optional<ImVec2> PicturePlacement::on_screen(const Eigen::Vector2d& raw_pix
                 area_.y + static_cast<float>(place->y() + 1) / 2 * area_.height};
 }
 
-}  // namespace arthronaut::theatre_view
+}  // namespace arthronaut::widgets

@@ -5,16 +5,16 @@
 #include <string>
 #include <vector>
 
-namespace arthronaut::theatre_view {
+namespace arthronaut::sources {
 
-struct CameraDevice {
+struct ConnectedCamera {
   int index = 0;     // of /dev/videoN
   std::string name;  // "Capture card"; "/dev/video0" where the system tells none
 };
 
 // By index; empty when there is none. The folders are given for tests alone.
-[[nodiscard]] std::vector<CameraDevice> list_cameras(
+[[nodiscard]] std::vector<ConnectedCamera> connected_cameras(
     const std::filesystem::path& devices = "/dev",
     const std::filesystem::path& names = "/sys/class/video4linux");
 
-}  // namespace arthronaut::theatre_view
+}  // namespace arthronaut::sources

@@ -1,0 +1,72 @@
+#include "app/theatre_view/theatre_scene.h"
+
+#include <algorithm>
+
+namespace arthronaut::theatre_view {
+
+TheatreScene::Shown TheatreScene::shown_of(const TheatreScreen& screen) {
+  Shown shown;
+  shown.drawn_bone = screen.drawn_bone;
+  shown.plan_revision = screen.plan_revision;
+  shown.layout = screen.layout;
+  shown.selected_stroke = screen.layout == TheatreLayout::Register ? screen.selected_stroke : -1;
+  if (screen.status == nullptr) return shown;
+  shown.bone = screen.status->bone;
+  const RegistrationPtr& in_force = shown.bone->in_force;
+  const std::shared_ptr<const LiveFrame>& live = screen.status->live;
+  if (in_force != nullptr && in_force->reliable && screen.display.overlay_is_valid &&
+      live->result.tip_is_valid)
+    shown.tip = live;
+  if (screen.display.guidance_is_valid) shown.guide = live;
+  return shown;
+}
+
+void TheatreScene::show(const TheatreScreen& screen) {
+  Shown shown = shown_of(screen);
+  if (shown == shown_) return;
+  shown_ = std::move(shown);
+  scene::SceneContent content;
+  content.bones.push_back({screen.drawn_bone, scene::kBoneColor, 1.0});
+  if (screen.plan) scene::add_planned_tunnel(content, *screen.plan, screen.planned_length_mm);
+  if (shown_.bone != nullptr) {
+    const RegistrationStatus& bone = *shown_.bone;
+    touched_.add_strokes(content, bone, *screen.surface, shown_.selected_stroke);
+    if (shown_.tip != nullptr)
+      content.balls.push_back(
+          {bone.in_force->marker_from_bone.inverse() * shown_.tip->result.tip_in_world_mm, 2.5,
+           scene::kGuideColor, false});
+    if (shown_.layout == TheatreLayout::Register && bone.online != nullptr &&
+        bone.online->registration.has_pose) {
+      add_patches(content, bone.online->coach);
+      if (bone.online->coach.next_patch_in_bone_mm)
+        content.balls.push_back(
+            {*bone.online->coach.next_patch_in_bone_mm, 5, scene::kAchievedColor, false});
+    }
+  }
+  if (shown_.guide != nullptr) {
+    const guidance::GuidanceNumbers& g = screen.display.guidance;
+    scene::add_guide(content, g.guide_point_mm, g.guide_direction, std::max(g.remaining_mm, 5.0));
+  }
+  pane_.show(content);
+}
+
+void TheatreScene::draw(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen) {
+  if (screen.drawn_bone == nullptr) return;
+  show(screen);
+  pane_.draw(ui, "operate.view", area);
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const bool has_patches = screen.layout == TheatreLayout::Register && shown_.bone != nullptr &&
+                           shown_.bone->online != nullptr && !shown_.bone->online->coach.patches.empty();
+  const char* label = screen.display.guidance_is_valid ? "Drill guide and plan"
+                      : has_patches                    ? "Green: touched. Orange: draw here"
+                      : screen.layout == TheatreLayout::Register ? "Plan; what is touched will show here"
+                                                                 : "Plan; the guide is not known now";
+  const ImVec2 wide = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, label);
+  draw.AddRectFilled(area.min(), {area.x + wide.x + ui.theme.px(28), area.y + wide.y + ui.theme.px(18)},
+                     IM_COL32(12, 15, 19, 200), ui.theme.px(6));
+  draw.AddText(ui.theme.strong, ui.theme.strong->FontSize,
+               {area.x + ui.theme.px(14), area.y + ui.theme.px(9)},
+               screen.display.guidance_is_valid ? widgets::kQuietText : widgets::kCaution, label);
+}
+
+}  // namespace arthronaut::theatre_view
