@@ -44,7 +44,7 @@ class EdgeTracker final : public MarkerTracker {
     }
     if (missing || frames_to_search_-- <= 0) {
       frames_to_search_ = options_.search_every_frames - 1;
-      search(frame, tracked);
+      search(tracked);
     }
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       if (tracks_[i].is_duplicate && observations_[i].is_tracked())
@@ -67,9 +67,9 @@ class EdgeTracker final : public MarkerTracker {
   }
 
  private:
-  void search(const camera::GrayView& picture, const TrackedFrame& frame) {
+  void search(const TrackedFrame& frame) {
     for (MarkerTrack& track : tracks_) track.is_duplicate = false;
-    for (const FoundSquare& square : search_.find(picture, frame.camera)) {
+    for (const FoundSquare& square : search_.find(frame.image.view(), frame.camera)) {
       const auto code = read_code(frame.image, frame.camera, square.tangent, codes_);
       if (!code) continue;
       MarkerTrack& track = tracks_[code->index];

@@ -33,20 +33,22 @@ inline Normal normal_at(float x) {
   return {a.density + share * (b.density - a.density), a.cumulative + share * (b.cumulative - a.cumulative)};
 }
 
-// Shares of the cells before, here and after in a place smeared along one axis, and their derivatives by the
-// place and by the logarithm of sigma. `place` counts cells from the line before.
+// What the two lines at the ends of a cell make of the three cells along one axis: each line lets the next
+// cell in by the share of the smear that reaches over it. `place` counts cells from the first line.
 struct Shares {
-  float share[3], by_place[3], by_smear[3];
+  float level[2], by_place[2], by_smear[2];
 };
 
 inline Shares shares_of(float place, float scale) {
-  const float z0 = place * scale, z1 = (place - 1) * scale;
-  const Normal first = normal_at(z0), second = normal_at(z1);
-  const float d0 = first.density * scale, d1 = second.density * scale;
-  const float s0 = -z0 * first.density, s1 = -z1 * second.density;
-  return {{1 - first.cumulative, first.cumulative - second.cumulative, second.cumulative},
-          {-d0, d0 - d1, d1},
-          {-s0, s0 - s1, s1}};
+  Shares shares;
+  for (int line = 0; line < 2; ++line) {
+    const float z = (place - static_cast<float>(line)) * scale;
+    const Normal at = normal_at(z);
+    shares.level[line] = at.cumulative;
+    shares.by_place[line] = at.density * scale;
+    shares.by_smear[line] = -z * at.density;
+  }
+  return shares;
 }
 
 }  // namespace
@@ -82,30 +84,65 @@ ExposedCode::Blurred ExposedCode::blurred(float column, float row, float sigma_x
   const auto r = static_cast<int>(std::clamp(row, -1.0F, last + 0.99F) + 1) - 1;
   const float beside = column - static_cast<float>(c), below = row - static_cast<float>(r);
   const float scale_x = 1 / sigma_x, scale_y = 1 / sigma_y;
+  const bool is_near_column = std::min(beside, 1 - beside) * scale_x < kReach;
+  const bool is_near_row = std::min(below, 1 - below) * scale_y < kReach;
   Blurred result;
-  // Far from every line there is nothing but the cell.
-  if (std::min(beside, 1 - beside) * scale_x >= kReach && std::min(below, 1 - below) * scale_y >= kReach) {
-    result.level = bright_[(r + 2) * width_ + c + 2];
+  if (is_near_column && is_near_row) {
+    const Shares across = shares_of(beside, scale_x), down = shares_of(below, scale_y);
+    float level_above = 0, by_column_above = 0, by_smear_above = 0;
+    for (int k = 0; k < 3; ++k) {
+      const float* cell = &bright_[(r + 1 + k) * width_ + c + 1];
+      const float rises[2] = {cell[1] - cell[0], cell[2] - cell[1]};
+      const auto mixed = [&rises](const float* shares) {
+        return shares[0] * rises[0] + shares[1] * rises[1];
+      };
+      const float level = cell[0] + mixed(across.level);
+      const float by_column = mixed(across.by_place), by_smear = mixed(across.by_smear);
+      if (k == 0) {
+        result.level = level;
+        result.by_column = by_column;
+        result.by_smear = by_smear;
+      } else {
+        const float rise = level - level_above;
+        result.level += down.level[k - 1] * rise;
+        result.by_row += down.by_place[k - 1] * rise;
+        result.by_column += down.level[k - 1] * (by_column - by_column_above);
+        result.by_smear += down.level[k - 1] * (by_smear - by_smear_above) + down.by_smear[k - 1] * rise;
+      }
+      level_above = level;
+      by_column_above = by_column;
+      by_smear_above = by_smear;
+    }
     return result;
   }
-  const Shares across = shares_of(beside, scale_x), down = shares_of(below, scale_y);
-  for (int k = 0; k < 3; ++k) {
-    const float* cell = &bright_[(r + 1 + k) * width_ + c + 1];
-    const auto mixed = [cell](const float* shares) {
-      return shares[0] * cell[0] + shares[1] * cell[1] + shares[2] * cell[2];
-    };
-    const float level = mixed(across.share);
-    result.level += down.share[k] * level;
-    result.by_column += down.share[k] * mixed(across.by_place);
-    result.by_row += down.by_place[k] * level;
-    result.by_smear += down.share[k] * mixed(across.by_smear) + down.by_smear[k] * level;
+  // Near the lines of one axis alone, as most pixels are, or far from every line: three cells in a row, and
+  // of their two lines those that part dark from bright.
+  const float* cell = &bright_[(r + 2) * width_ + c + 2];
+  result.level = *cell;
+  if (!is_near_column && !is_near_row) return result;
+  const int next = is_near_column ? 1 : width_;
+  const float place = is_near_column ? beside : below, scale = is_near_column ? scale_x : scale_y;
+  float slope = 0;
+  result.level = cell[-next];
+  for (int line = 0; line < 2; ++line) {
+    const float rise = cell[line * next] - cell[(line - 1) * next];
+    if (rise == 0) continue;
+    const float z = (place - static_cast<float>(line)) * scale;
+    const Normal at = normal_at(z);
+    result.level += rise * at.cumulative;
+    slope += rise * at.density * scale;
+    result.by_smear -= rise * z * at.density;
   }
+  (is_near_column ? result.by_column : result.by_row) = slope;
   return result;
 }
 
 ExposedCode::Level ExposedCode::at(const Eigen::Vector3f& ray, float sigma_x, float sigma_y) const {
   Level mean;
   const float middle = 0.5F * static_cast<float>(cells_);
+  // In the plane: along x, along y, about the normal; out of it: along the normal, about x, about y.
+  Eigen::Vector4f in_plane = Eigen::Vector4f::Zero(), out_of_plane = Eigen::Vector4f::Zero();
+  Eigen::Vector4f by_velocity = Eigen::Vector4f::Zero(), by_change = Eigen::Vector4f::Zero();
   for (int k = 0; k < moment_count_; ++k) {
     const Moment& moment = moments_[k];
     const Eigen::Vector3f direction = moment.marker_from_camera * ray;
@@ -120,23 +157,20 @@ ExposedCode::Level ExposedCode::at(const Eigen::Vector3f& ray, float sigma_x, fl
     // tilts moves along the line of sight.
     const float gx = -here.by_column * cells_per_mm_, gy = here.by_row * cells_per_mm_;
     const float gz = (gx * dx + gy * dy) / moment.eye.z();
-    const float turned = gy * x - gx * y;
-    mean.by_pose[0] += gx;
-    mean.by_pose[1] += gy;
-    mean.by_pose[2] += gz;
-    mean.by_pose[3] += gz * y;
-    mean.by_pose[4] -= gz * x;
-    mean.by_pose[5] += turned;
-    const Eigen::Vector3f in_plane(gx, gy, turned);
-    mean.by_velocity += moment.time * in_plane;
-    mean.by_change += 0.5F * moment.time * moment.time * in_plane;
+    const Eigen::Vector4f moved(gx, gy, gy * x - gx * y, 0);
+    in_plane += moved;
+    by_velocity += moment.time * moved;
+    by_change += 0.5F * moment.time * moment.time * moved;
+    out_of_plane += gz * Eigen::Vector4f(1, y, -x, 0);
   }
   const float share = 1 / static_cast<float>(moment_count_);
   mean.level *= share;
   mean.by_smear *= share;
-  mean.by_pose *= share;
-  mean.by_velocity *= share;
-  mean.by_change *= share;
+  mean.by_pose.head<2>() = share * in_plane.head<2>();
+  mean.by_pose.segment<3>(2) = share * out_of_plane.head<3>();
+  mean.by_pose[5] = share * in_plane[2];
+  mean.by_velocity = share * by_velocity.head<3>();
+  mean.by_change = share * by_change.head<3>();
   return mean;
 }
 

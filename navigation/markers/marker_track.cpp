@@ -4,20 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "navigation/markers/verdict.h"
+
 namespace arthronaut::markers {
 namespace {
 
 using geometry::RigidTransform;
 using geometry::Vector6d;
 
-constexpr double kMinShare = 0.3;  // of the edges crossed along x, and along y
-constexpr double kMinMeanShare = 0.42;
-constexpr double kMaxScale = 8;  // residuals / their predicted sigmas
-constexpr double kMaxRmsPx = 1.2;
 // The corners that single edges make under a dense fit lie no farther from it, or it fits something else.
 constexpr double kMaxDenseRmsPx = 1.1, kMaxLoneRmsPx = 0.5;
-// A marker that comes from nowhere must be seen nearly whole: there is no motion to agree with.
-constexpr double kMinNewShare = 0.7;
 // Motions over the exposure that are tried when none is known.
 constexpr double kTriedLengthsPx[] = {8, 18};
 constexpr int kTriedDirections = 4;
@@ -26,7 +22,6 @@ const PhotogeometricOptions kTriedFit{
 const PhotogeometricOptions kUnsureFit{.coarse_cells = 0.3, .max_way_cells = 3};
 // A motion over the exposure from which on the dense fit is the better one, and what it must reach.
 constexpr double kSmearedPx = 3, kLittleSmearPx = 8, kUnconfirmed = 10, kMinDenseCellPx = 6;
-constexpr double kMaxSigmaMm = 0.25, kMaxSigmaRad = 1.5 * geometry::kPi / 180;
 constexpr int kMaxPasses = 4;
 constexpr double kMaxNewMotionPx = 5;
 // At first sight the motion is a guess: so much more may be wrong with each corner.
@@ -34,15 +29,11 @@ constexpr double kFoundCornerSigmaPx = 0.15;
 // How far the edges are looked for, in cells; less than half, or the next edge answers.
 constexpr double kReachPredicted = 0.35, kReachFound = 0.45;
 constexpr double kMinCellPx = 3;
-constexpr double kMinFacing = 0.2;  // cosine of the face's normal to the line of sight: 78 degrees
+// Two starts that lead so near to each other lead to the same.
+constexpr double kSameEdgesPx = 0.1, kSameMotionPx = 0.5;
 constexpr double kCornerSigmaPx = 0.05;
 constexpr double kSoft = 1.4;
 constexpr double kClearRatio = 10, kOtherNoise = 1.15;
-constexpr double kMinAmbiguityRatio = 2, kHarmlessFlipRad = kHarmlessTiltRad;
-
-double facing(const RigidTransform& pose) {
-  return -pose.rotate(Eigen::Vector3d::UnitZ()).dot(pose.translation_mm.normalized());
-}
 
 double cell_px(const camera::CameraModel& camera, const RigidTransform& pose, double size_mm, int cells) {
   return camera.central_focal_px() * size_mm / cells / std::max(pose.translation_mm.z(), 1.0);
@@ -68,6 +59,27 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
   Smear picture;
   SmearTrend trend;
   const EdgePose fit = fit_edges(frame, start, is_found, picture, trend);
+  // Both poses that the corners of a square allow often lead to one pose of its edges.
+  if (is_found && fit.converged && refused_) {
+    const double px_per_mm = cell * cells_ / marker_.size_mm;
+    const Vector6d apart =
+        geometry::log(refused_->edges.camera_from_marker.inverse() * fit.camera_from_marker);
+    const Vector6d apart_moving = refused_->motion - picture.motion;
+    if (px_per_mm * (apart.head<3>().norm() + marker_.size_mm * apart.tail<3>().norm()) < kSameEdgesPx &&
+        px_per_mm * apart_moving.head<3>().norm() < kSameMotionPx) {
+      observation = refused_->observation;
+      return false;
+    }
+  }
+  if (measure_from_edges(frame, start, is_found, fit, picture, trend, observation)) return true;
+  if (is_found && fit.converged) refused_ = Refused{fit, picture.motion, observation};
+  return false;
+}
+
+bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTransform& start, bool is_found,
+                                     const EdgePose& fit, const Smear& picture, const SmearTrend& trend,
+                                     MarkerObservation& observation) {
+  const double cell = cell_px(frame.camera, start, marker_.size_mm, cells_);
   const double px_per_mm = cell * cells_ / marker_.size_mm;
   // Without a past nothing is known of the motion, and edges alone may take a smear for another tilt.
   const bool is_motion_known = !is_found && motion_.is_known_at(frame.timestamp_ns);
@@ -98,7 +110,7 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
     if (observation.is_tracked() && !(is_sharp && fit.converged)) return true;
     if (!is_sharp) {
       if (!fit.converged) {
-        observation.state = reason_of_loss(frame.camera, start);
+        observation.state = reason_of_loss(start, measurements_, cell);
         return false;
       }
       // Edges that the dense fit does not confirm are good enough to go on from, not to stand for.
@@ -114,7 +126,7 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
     }
   }
   if (!fit.converged) {
-    observation.state = reason_of_loss(frame.camera, start);
+    observation.state = reason_of_loss(start, measurements_, cell);
     return false;
   }
   report_edges(frame, fit, picture, is_found, observation);
@@ -142,7 +154,7 @@ EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform&
                 measurements_, trend);
   EdgePose fit =
       fit_edge_pose(frame.camera, marker_.size_mm, samples_, measurements_, start, smear.bloom, is_inlier_);
-  if (!fit.converged || fit.share[0] + fit.share[1] < kMinShare) {
+  if (!fit.converged || fit.share[0] + fit.share[1] < kMinEdgeShare) {
     fit.converged = false;
     return fit;
   }
@@ -212,7 +224,7 @@ void MarkerTrack::report_dense(const TrackedFrame& frame, const PhotogeometricPo
   is_inlier_.resize(measurements_.size());
   for (std::size_t i = 0; i < measurements_.size(); ++i)
     is_inlier_[i] =
-        measurements_[i].state == EdgeState::Found && std::abs(measurements_[i].offset_px) < kMaxRmsPx;
+        measurements_[i].state == EdgeState::Found && std::abs(measurements_[i].offset_px) < kMaxEdgeRmsPx;
   EdgePose edges;
   edges.camera_from_marker = fit.pose.camera_from_marker;
   edges.bloom_px = frame.smear.bloom.mean_px;
@@ -222,6 +234,9 @@ void MarkerTrack::report_dense(const TrackedFrame& frame, const PhotogeometricPo
   observation.rms_px = corners.rms_px;
   observation.ambiguity_ratio = kNoOtherPose;
   observation.state = judge(fit, max_rms_px, observation);
+  if (observation.is_tracked() && explained_ && are_unlike(*explained_, fit.pose.camera_from_marker))
+    observation.state = MarkerState::Doubtful;
+  if (!observation.is_tracked() && fit.explains_picture()) explained_ = fit.pose.camera_from_marker;
   // The other pose that has nearly these corners must be told apart by how the picture looks there.
   Corners exact;
   const auto corners_mm = square_corners_mm(marker_.size_mm);
@@ -239,8 +254,7 @@ void MarkerTrack::report_dense(const TrackedFrame& frame, const PhotogeometricPo
   const PhotogeometricPose other =
       fit_densely(frame, poses->other->camera_from_marker, fit.pose.velocity, {});
   if (!other.is_usable() || other.noise_grey > kOtherNoise * fit.noise_grey) return;
-  if (geometry::rotation_angle_rad(fit.pose.camera_from_marker.rotation.conjugate() *
-                                   other.pose.camera_from_marker.rotation) > kHarmlessFlipRad)
+  if (are_unlike(fit.pose.camera_from_marker, other.pose.camera_from_marker))
     observation.state = MarkerState::Ambiguous;
 }
 
@@ -258,8 +272,7 @@ void MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, c
   if (const auto poses = solve_square(frame.camera, corners.corners_px, marker_.size_mm)) {
     other = poses->other;
     // The edges settled on one tilt, the corners that they make speak for the other one.
-    is_contradicted = geometry::rotation_angle_rad(fit.camera_from_marker.rotation.conjugate() *
-                                                   poses->best.camera_from_marker.rotation) > kHarmlessFlipRad;
+    is_contradicted = are_unlike(fit.camera_from_marker, poses->best.camera_from_marker);
     if (other) {
       observation.ambiguity_ratio =
           std::min(kNoOtherPose, other->rms_px / std::max(observation.rms_px, kCornerSigmaPx));
@@ -273,10 +286,10 @@ void MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, c
                          frame.smear.bloom, is_inlier_)) {
     observation.state = MarkerState::Ambiguous;
   }
-  if (observation.state == MarkerState::Covered)
-    observation.state = reason_of_loss(frame.camera, fit.camera_from_marker);
-  // A first sight through a strong smear is good enough to go on from, not to stand for.
   const double cell = cell_px(frame.camera, fit.camera_from_marker, marker_.size_mm, cells_);
+  if (observation.state == MarkerState::Covered)
+    observation.state = reason_of_loss(fit.camera_from_marker, measurements_, cell);
+  // A first sight through a strong smear is good enough to go on from, not to stand for.
   if (is_found && observation.is_tracked() &&
       picture.motion.head<3>().norm() * cell * cells_ > kMaxNewMotionPx * marker_.size_mm) {
     observation.state = MarkerState::Blur;
@@ -319,57 +332,6 @@ void MarkerTrack::go_on_from(const EdgePose& fit) {
   if (!guess_ || misfit < guess_->misfit) guess_ = Guess{fit.camera_from_marker, misfit};
 }
 
-MarkerState MarkerTrack::judge(const PhotogeometricPose& fit, double max_rms_px,
-                               const MarkerObservation& observation) const {
-  if (facing(fit.pose.camera_from_marker) < kMinFacing) return MarkerState::TooOblique;
-  const double sigma_mm = std::sqrt(observation.covariance.topLeftCorner<3, 3>().trace());
-  const double sigma_rad = std::sqrt(observation.covariance.bottomRightCorner<3, 3>().trace());
-  // Exactly 0: no side of the square was seen by edges, so nothing confirms the corners.
-  const bool is_confirmed = observation.rms_px > 0 && observation.rms_px < max_rms_px;
-  if (!fit.explains_picture() || !is_confirmed || !(sigma_mm < kMaxSigmaMm) || !(sigma_rad < kMaxSigmaRad))
-    return MarkerState::Doubtful;
-  return MarkerState::Tracked;
-}
-
-MarkerState MarkerTrack::judge(const EdgePose& fit, const MarkerObservation& observation,
-                               const std::optional<SquarePose>& other, bool is_found) const {
-  if (is_found && std::min(fit.share[0], fit.share[1]) < kMinNewShare) return MarkerState::Covered;
-  if (std::min(fit.share[0], fit.share[1]) < kMinShare || fit.share[0] + fit.share[1] < 2 * kMinMeanShare) {
-    return MarkerState::Covered;
-  }
-  if (facing(fit.camera_from_marker) < kMinFacing) return MarkerState::TooOblique;
-  const double sigma_mm = std::sqrt(fit.covariance.topLeftCorner<3, 3>().trace());
-  const double sigma_rad = std::sqrt(fit.covariance.bottomRightCorner<3, 3>().trace());
-  if (fit.scale > kMaxScale || observation.rms_px > kMaxRmsPx || !(sigma_mm < kMaxSigmaMm) ||
-      !(sigma_rad < kMaxSigmaRad)) {
-    return MarkerState::Doubtful;
-  }
-  if (other && observation.ambiguity_ratio < kMinAmbiguityRatio &&
-      geometry::rotation_angle_rad(fit.camera_from_marker.rotation.conjugate() *
-                                   other->camera_from_marker.rotation) > kHarmlessFlipRad) {
-    return MarkerState::Ambiguous;
-  }
-  return MarkerState::Tracked;
-}
-
-// By what most of the edges that are missing at the supposed pose look like.
-MarkerState MarkerTrack::reason_of_loss(const camera::CameraModel& camera, const RigidTransform& pose) const {
-  int out = 0, saturated = 0, total = 0;
-  double box = 0;
-  for (const EdgeMeasurement& measurement : measurements_) {
-    ++total;
-    out += measurement.state == EdgeState::OutOfView;
-    saturated += measurement.state == EdgeState::Saturated;
-    box = std::max(box, measurement.box_px);
-  }
-  if (total == 0) return MarkerState::NotSeen;
-  if (out > 0.25 * total) return MarkerState::OutOfView;
-  if (facing(pose) < kMinFacing) return MarkerState::TooOblique;
-  if (saturated > 0.2 * total) return MarkerState::Glare;
-  if (box > 0.8 * cell_px(camera, pose, marker_.size_mm, cells_)) return MarkerState::Blur;
-  return MarkerState::Covered;
-}
-
 void MarkerTrack::follow(const MarkerObservation& observation, std::int64_t timestamp_ns) {
   const bool is_measured = observation.is_tracked() || observation.state == MarkerState::Ambiguous ||
                            observation.state == MarkerState::Duplicate;
@@ -378,11 +340,15 @@ void MarkerTrack::follow(const MarkerObservation& observation, std::int64_t time
   else if (guess_)
     motion_.follow(guess_->camera_from_marker, timestamp_ns);
   guess_.reset();
+  refused_.reset();
+  explained_.reset();
 }
 
 void MarkerTrack::forget() {
   motion_ = MarkerMotion();
   guess_.reset();
+  refused_.reset();
+  explained_.reset();
   is_duplicate = false;
 }
 

@@ -51,6 +51,10 @@ class MarkerTrack {
   // motion: the motion over the exposure as a body twist.
   [[nodiscard]] geometry::Vector6d likely_motion(const TrackedFrame& frame,
                                                  const geometry::RigidTransform& pose, int search_px);
+  // measure(), from the edges on.
+  bool measure_from_edges(const TrackedFrame& frame, const geometry::RigidTransform& start, bool is_found,
+                          const EdgePose& fit, const Smear& picture, const SmearTrend& trend,
+                          MarkerObservation& observation);
   // Edge profiles: refines the pose and the motion of `picture`.
   [[nodiscard]] EdgePose fit_edges(const TrackedFrame& frame, const geometry::RigidTransform& start,
                                    bool is_found, Smear& picture, SmearTrend& trend);
@@ -71,13 +75,6 @@ class MarkerTrack {
   // A pose that is good enough to go on from, not to stand for; of several in one frame, the one whose edges
   // agree best.
   void go_on_from(const EdgePose& fit);
-  [[nodiscard]] MarkerState judge(const EdgePose& fit, const MarkerObservation& observation,
-                                  const std::optional<SquarePose>& other, bool is_found) const;
-  // max_rms_px: how far the corners that single edges make may lie from the fit.
-  [[nodiscard]] MarkerState judge(const PhotogeometricPose& fit, double max_rms_px,
-                                  const MarkerObservation& observation) const;
-  [[nodiscard]] MarkerState reason_of_loss(const camera::CameraModel& camera,
-                                           const geometry::RigidTransform& pose) const;
 
   DeclaredMarker marker_;
   MarkerCode code_;
@@ -91,6 +88,15 @@ class MarkerTrack {
     double misfit = 0;
   };
   std::optional<Guess> guess_;  // of this frame, until it is final
+  // What a search led to in this frame that did not stand: another start that leads there is the same.
+  struct Refused {
+    EdgePose edges;
+    geometry::Vector6d motion;
+    MarkerObservation observation;
+  };
+  std::optional<Refused> refused_;
+  // A pose that explained this frame's picture and yet did not stand: another one that does is no better.
+  std::optional<geometry::RigidTransform> explained_;
 };
 
 }  // namespace arthronaut::markers

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "navigation/markers/product_sum.h"
+
 namespace arthronaut::markers {
 namespace {
 
@@ -16,15 +18,16 @@ using geometry::Vector6d;
 // and the light: bias and gain as polynomials of the place.
 constexpr int kVelocity = 6, kChange = 9, kSmear = 12, kGamma = 13, kLight = 14;
 constexpr int kBiasTerms = 10, kGainTerms = 6, kLightTerms = kBiasTerms + kGainTerms;  // cubic, quadratic
-constexpr int kCount = kLight + kLightTerms, kPadded = 32;
-static_assert(kCount <= kPadded - 1);
+constexpr int kCount = kLight + kLightTerms;
 using Vector = Eigen::Matrix<double, kCount, 1>;
 using Matrix = Eigen::Matrix<double, kCount, kCount>;
 using Light = Eigen::Matrix<float, kLightTerms, 1>;
 
 constexpr int kStepsToASide = 4;  // pixels taken across an edge, to either side of it
 constexpr int kMinPixels = 120, kMinEdges = 20;
-constexpr int kBoundEdges = 15;      // edges that the unknowns fit by themselves
+constexpr int kBoundEdges = 15;  // edges that the unknowns fit by themselves
+constexpr int kRoughPixels = 300, kRoughStride = 3;
+constexpr double kRoughlySettledPx = 0.3;
 constexpr int kLikelyPixels = 2048;  // memory set aside
 constexpr int kSaturated = 250;
 constexpr double kTukey = 4.685;
@@ -39,6 +42,10 @@ constexpr float kMinLight = 0.3F;
 constexpr double kMomentsPerSigma = 1.6;  // moments of the exposure lie so many sigma apart, at most
 constexpr double kSettledPx = 0.04, kSettledEnoughPx = 0.4;
 constexpr int kCoarseIterations = 2, kMinIterations = 3;
+// From here on a fit is given up that at the rate at which it gets better would not get there in time.
+constexpr int kHopefulIterations = 5;
+// Residuals that still get smaller, though the pose stands, mean that what covers is not out yet.
+constexpr double kSettledShare = 0.95;
 constexpr double kMinLikeness = 0.9;
 // Fits to something else reach a likeness of 0.99 and a noise of 5 on recorded clips; good ones 0.998 and 4.
 constexpr double kGoodShare = 0.65, kGoodLikeness = 0.9975, kGoodNoiseGrey = 4.7;
@@ -97,20 +104,21 @@ PhotogeometricFit::PhotogeometricFit() {
   residuals_.reserve(kLikelyPixels);
   weights_.reserve(kLikelyPixels);
   levels_.reserve(kLikelyPixels);
+  light_.reserve(kLikelyPixels);
   sorted_.reserve(kLikelyPixels);
   edge_gradients_.resize(2 * (kMaxCells + 1) * kMaxCells);
 }
 
 void PhotogeometricFit::take_pixels(const camera::GrayView& frame, const camera::CameraModel& camera,
                                     int cells, std::span<const EdgeSample> samples, double size_mm,
-                                    const PhotogeometricStart& start, const PhotogeometricOptions& options) {
-  pixels_.clear();
+                                    const PhotogeometricStart& start, const PhotogeometricOptions& options,
+                                    std::size_t first, std::size_t every) {
   const RigidTransform& pose = start.pose.camera_from_marker;
   const Eigen::Matrix3d rotation = pose.matrix();
   const double sigma_cells = std::hypot(start.sigma_px, kPixelSigmaPx) * cells / size_mm;
   const std::size_t stride =
       (samples.size() * (2 * kStepsToASide + 1) + options.max_pixels - 1) / options.max_pixels;
-  for (std::size_t s = 0; s < samples.size(); s += stride) {
+  for (std::size_t s = first * stride; s < samples.size(); s += every * stride) {
     const EdgeSample& sample = samples[s];
     const Eigen::Vector3d place(sample.x * size_mm, sample.y * size_mm, 0);
     Eigen::Matrix<double, 2, 3> d_pixel;
@@ -150,15 +158,18 @@ struct PhotogeometricFit::State {
   ExposedCode exposed;
   ExposedPose pose;
   double smear = 0;  // logarithm of the factor on the pixels' sigmas
+  float smear_factor = 1;
   double gamma = 1;
   Light light = Light::Zero();
-  double coarse = 0;  // smear on purpose, in cells
+  float coarse = 0;  // smear on purpose, in cells
   double noise = kMinNoiseGrey;
 
   [[nodiscard]] ExposedCode::Level level_at(const Pixel& pixel) const {
-    const auto factor = static_cast<float>(std::exp(smear)), wide = static_cast<float>(coarse);
-    return exposed.at(pixel.ray, std::hypot(factor * pixel.sigma_x, wide),
-                      std::hypot(factor * pixel.sigma_y, wide));
+    const auto wider = [this](float sigma) {
+      const float smeared = smear_factor * sigma;
+      return coarse > 0 ? std::sqrt(smeared * smeared + coarse * coarse) : smeared;
+    };
+    return exposed.at(pixel.ray, wider(pixel.sigma_x), wider(pixel.sigma_y));
   }
   bool apply(const Vector& step) {
     if (!step.allFinite() || step.head<3>().norm() > 3 || step.segment<3>(3).norm() > 0.5) return false;
@@ -168,6 +179,7 @@ struct PhotogeometricFit::State {
       pose.change[i < 2 ? i : 5] += step[kChange + i];
     }
     smear = std::clamp(smear + step[kSmear], -0.7, 0.9);
+    smear_factor = static_cast<float>(std::exp(smear));
     gamma = std::clamp(gamma + step[kGamma], 1.0, 3.0);
     light += step.tail<kLightTerms>().cast<float>();
     return pose.camera_from_marker.translation_mm.z() > 0;
@@ -198,14 +210,13 @@ struct PhotogeometricFit::Linearised {
 void PhotogeometricFit::guess_light(State& state) {
   const std::size_t count = pixels_.size();
   const auto gamma = static_cast<float>(state.gamma);
-  const auto light_of = [&](std::size_t i) { return 255 * std::pow(pixels_[i].grey / 255, gamma); };
   const auto row_of = [&](std::size_t i) {
     const Terms terms = terms_at(pixels_[i].place);
     Light row;
-    row << terms.head<kBiasTerms>(), levels_[i] * terms.head<kGainTerms>();
+    row << terms.head<kBiasTerms>(), levels_[i].level * terms.head<kGainTerms>();
     return row;
   };
-  for (std::size_t i = 0; i < count; ++i) levels_[i] = state.level_at(pixels_[i]).level;
+  for (std::size_t i = 0; i < count; ++i) light_[i] = 255 * std::pow(pixels_[i].grey / 255, gamma);
   for (int pass = 0; pass < 3; ++pass) {
     using Square = Eigen::Matrix<float, kLightTerms, kLightTerms>;
     Square normal = 1e-2F * Square::Identity();
@@ -213,12 +224,12 @@ void PhotogeometricFit::guess_light(State& state) {
     for (std::size_t i = 0; i < count; ++i) {
       const Light row = row_of(i);
       normal.noalias() += (weights_[i] * row) * row.transpose();
-      right += weights_[i] * light_of(i) * row;
+      right += weights_[i] * light_[i] * row;
     }
     state.light = normal.ldlt().solve(right);
     sorted_.clear();
     for (std::size_t i = 0; i < count; ++i) {
-      residuals_[i] = light_of(i) - state.light.dot(row_of(i));
+      residuals_[i] = light_[i] - state.light.dot(row_of(i));
       sorted_.push_back(std::abs(residuals_[i]));
     }
     const auto scale = static_cast<float>(std::max(kMinNoiseLight, 1.8 * median_of(sorted_)));
@@ -227,21 +238,23 @@ void PhotogeometricFit::guess_light(State& state) {
 }
 
 void PhotogeometricFit::linearise(const State& state, bool is_first, Linearised& result) {
+  static_assert(kCount <= kRow);
   result = Linearised();
-  Eigen::Matrix<float, kRow, kRow> products = Eigen::Matrix<float, kRow, kRow>::Zero();
+  ProductSum<kRow> products;
   for (Row& gradient : edge_gradients_) gradient.setZero();
   sorted_.clear();
   const auto gamma = static_cast<float>(state.gamma);
   const auto noise = static_cast<float>(state.noise);
   for (std::size_t i = 0; i < pixels_.size(); ++i) {
     const Pixel& pixel = pixels_[i];
-    const ExposedCode::Level level = state.level_at(pixel);
+    const ExposedCode::Level& level = levels_[i];
     const Terms terms = terms_at(pixel.place);
     const float gain = state.light.tail<kGainTerms>().dot(terms.head<kGainTerms>());
     const float bias = state.light.head<kBiasTerms>().dot(terms.head<kBiasTerms>());
-    const float logarithm = std::log(std::max(kMinLight, bias + gain * level.level) / 255);
+    const float light = std::max(kMinLight, bias + gain * level.level);
+    const float logarithm = std::log(light / 255);
     const float modelled = 255 * std::exp(logarithm / gamma);
-    const float slope = modelled / (gamma * 255 * std::exp(logarithm));
+    const float slope = modelled / (gamma * light);
     const float residual = pixel.grey - modelled;
     sorted_.push_back(std::abs(residual));
     const float weight = is_first ? weights_[i] : tukey_weight(residual / noise);
@@ -256,28 +269,30 @@ void PhotogeometricFit::linearise(const State& state, bool is_first, Linearised&
     row[kGamma] = -modelled * logarithm / (gamma * gamma);
     row.segment<kBiasTerms>(kLight) = slope * terms.head<kBiasTerms>();
     row.segment<kGainTerms>(kLight + kBiasTerms) = slope * level.level * terms.head<kGainTerms>();
-    products.noalias() += (weight * row) * row.transpose();
+    products.add(std::sqrt(weight) * row);
     edge_gradients_[pixel.edge] += weight * residual * row;
   }
   result.scale = 1.4826 * median_of(sorted_);
-  result.products = products.topLeftCorner<kCount, kCount>().cast<double>();
+  result.products = products.take().topLeftCorner<kCount, kCount>().cast<double>();
   for (const Row& part : edge_gradients_) result.pull += part.head<kCount>().cast<double>();
 }
 
 bool PhotogeometricFit::scattered_covariance(const Linearised& at, double certainty,
                                              geometry::Matrix6d& covariance) const {
-  const Matrix inverse = at.normal.ldlt().solve(Matrix::Identity());
-  Matrix scatter = at.prior.asDiagonal();
+  // Of the inverse only what belongs to the pose is needed.
+  const Eigen::Matrix<double, kCount, 6> inverse =
+      at.normal.ldlt().solve(Eigen::Matrix<double, kCount, 6>::Identity());
+  geometry::Matrix6d scatter = inverse.transpose() * at.prior.asDiagonal() * inverse;
   int edges = 0;
   for (const Row& part : edge_gradients_) {
     if (part.isZero()) continue;
     ++edges;
-    const Vector pull = certainty * part.head<kCount>().cast<double>();
+    const Vector6d pull = inverse.transpose() * (certainty * part.head<kCount>().cast<double>());
     scatter.noalias() += pull * pull.transpose();
   }
   if (edges < kMinEdges) return false;
   const double small_sample = edges / static_cast<double>(edges - kBoundEdges);
-  covariance = kSharedErrors * small_sample * (inverse * scatter * inverse).topLeftCorner<6, 6>();
+  covariance = kSharedErrors * small_sample * scatter;
   return covariance.allFinite();
 }
 
@@ -287,12 +302,24 @@ PhotogeometricPose PhotogeometricFit::refine(const camera::GrayView& frame, cons
                                              const PhotogeometricOptions& options) {
   PhotogeometricPose result;
   result.outcome = PhotogeometricPose::Outcome::OutOfView;
-  take_pixels(frame, camera, code.cells, samples, size_mm, start, options);
-  const std::size_t count = pixels_.size();
-  if (count < kMinPixels) return result;
-  residuals_.resize(count);
-  levels_.resize(count);
-  weights_.assign(count, 1.0F);
+  pixels_.clear();
+  const auto take_more = [&](std::size_t first, std::size_t every) {
+    take_pixels(frame, camera, code.cells, samples, size_mm, start, options, first, every);
+    residuals_.resize(pixels_.size());
+    levels_.resize(pixels_.size());
+    light_.resize(pixels_.size());
+    weights_.resize(pixels_.size(), 1.0F);
+  };
+  weights_.clear();
+  // The way to the result takes a part of the pixels, the last iterations all of them.
+  bool is_rough = options.max_pixels > kRoughPixels;
+  take_more(0, is_rough ? kRoughStride : 1);
+  const auto take_all = [&] {
+    for (int first = 1; is_rough && first < kRoughStride; ++first) take_more(first, kRoughStride);
+    is_rough = false;
+  };
+  if (pixels_.size() < kMinPixels) take_all();
+  if (pixels_.size() < kMinPixels) return result;
 
   const double px_per_mm = camera.central_focal_px() / start.pose.camera_from_marker.translation_mm.z();
   const double cell_px = px_per_mm * size_mm / code.cells;
@@ -306,26 +333,34 @@ PhotogeometricPose PhotogeometricFit::refine(const camera::GrayView& frame, cons
   State state{.exposed = ExposedCode(code, size_mm), .pose = start.pose, .gamma = start.gamma};
   Linearised at;
   const int coarse_iterations = options.coarse_cells > 0 ? kCoarseIterations : 0;
-  double moved_px = 0, certainty = 0;
+  double moved_px = 0, certainty = 0, last_scale = 1e9;
   for (int iteration = 0;; ++iteration) {
-    state.coarse = iteration < coarse_iterations ? options.coarse_cells : 0;
+    state.coarse = iteration < coarse_iterations ? static_cast<float>(options.coarse_cells) : 0;
     const double moment_px =
         kMomentsPerSigma * (start.sigma_px * std::exp(state.smear) + state.coarse * cell_px);
     state.exposed.move(
         state.pose,
         static_cast<int>(std::ceil(motion_px(state.pose.velocity, size_mm, px_per_mm) / moment_px)));
+    for (std::size_t i = 0; i < pixels_.size(); ++i) levels_[i] = state.level_at(pixels_[i]);
     if (iteration == 0) guess_light(state);
     linearise(state, iteration == 0, at);
     at.prior = prior;
     // While the code is smeared on purpose, what else smears it stays as it is.
     if (state.coarse > 0) at.prior.segment<kLight - kVelocity>(kVelocity) *= 1e6;
-    certainty = 1 / (kCorrelatedPixels * state.noise * state.noise);
+    certainty = (is_rough ? kRoughStride : 1) / (kCorrelatedPixels * state.noise * state.noise);
     at.normal = certainty * at.products;
     at.normal.diagonal() += at.prior;
     at.normal.diagonal().array() += 1e-9;
-    result.iterations = iteration;
-    const bool is_settled = iteration >= coarse_iterations + kMinIterations && moved_px < kSettledPx;
+    const double falls = std::min(1.0, at.scale / last_scale);
+    last_scale = at.scale;
+    const bool is_settled = !is_rough && iteration >= coarse_iterations + kMinIterations &&
+                            moved_px < kSettledPx && falls > kSettledShare;
     if (is_settled || iteration == options.max_iterations) break;
+    if (iteration >= coarse_iterations + kHopefulIterations &&
+        at.scale * std::pow(falls, options.max_iterations - iteration) > kMaxNoiseGrey) {
+      result.outcome = PhotogeometricPose::Outcome::Unlike;
+      return result;
+    }
 
     // A high scale in the beginning lets a start that is off come in; a low one later keeps out what covers.
     state.noise = std::clamp(at.scale, kMinNoiseGrey, state.coarse > 0 ? 3 * kMaxNoiseGrey : kMaxNoiseGrey);
@@ -333,6 +368,9 @@ PhotogeometricPose PhotogeometricFit::refine(const camera::GrayView& frame, cons
     result.outcome = PhotogeometricPose::Outcome::NotSettled;
     if (!state.apply(step)) return result;
     moved_px = motion_px(step.head<6>(), size_mm, px_per_mm);
+    if (iteration >= coarse_iterations &&
+        (moved_px < kRoughlySettledPx || iteration >= coarse_iterations + kHopefulIterations))
+      take_all();
   }
   if (!scattered_covariance(at, certainty, result.covariance)) return result;
   const Vector6d way = geometry::log(start.pose.camera_from_marker.inverse() * state.pose.camera_from_marker);
@@ -343,7 +381,7 @@ PhotogeometricPose PhotogeometricFit::refine(const camera::GrayView& frame, cons
   result.sigma_px = start.sigma_px * std::exp(state.smear);
   result.gamma = state.gamma;
   result.noise_grey = state.noise;
-  result.inlier_share = static_cast<double>(at.used) / static_cast<double>(count);
+  result.inlier_share = static_cast<double>(at.used) / static_cast<double>(pixels_.size());
   result.likeness = at.code_share.likeness();
   result.outcome = result.likeness > kMinLikeness ? PhotogeometricPose::Outcome::Converged
                                                   : PhotogeometricPose::Outcome::Unlike;

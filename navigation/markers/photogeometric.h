@@ -42,8 +42,8 @@ struct PhotogeometricPose {
     NotRun,
     Converged,
     OutOfView,   // too little of the marker can be looked at
-    NotSettled,  // the iteration did not converge
-    Unlike,      // the picture does not look like the marker there
+    NotSettled,  // the iteration ran away, went too far or was still on its way at the end
+    Unlike,      // the picture does not look like the marker there, nor was about to
   } outcome = Outcome::NotRun;
   ExposedPose pose;  // meaningful only if is_usable(), as all below
   // Body twist (v mm, w rad). From the scatter of what the marker's edges say one by one: what the pixels of
@@ -53,7 +53,6 @@ struct PhotogeometricPose {
   double likeness = 0;      // correlation of picture and model over the pixels that are not covered
   double noise_grey = 0;    // robust scale of the residuals
   double inlier_share = 0;  // of the pixels
-  int iterations = 0;
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Converged; }
   // The code and nothing else is what the picture shows there: good enough to stand for.
   [[nodiscard]] bool explains_picture() const;
@@ -80,7 +79,7 @@ class PhotogeometricFit {
   struct Linearised;  // the least squares there
   void take_pixels(const camera::GrayView& frame, const camera::CameraModel& camera, int cells,
                    std::span<const EdgeSample> samples, double size_mm, const PhotogeometricStart& start,
-                   const PhotogeometricOptions& options);
+                   const PhotogeometricOptions& options, std::size_t first, std::size_t every);
   void guess_light(State& state);
   void linearise(const State& state, bool is_first, Linearised& result);
   // Of all unknowns, from how far the edges disagree; false when there are too few edges.
@@ -89,7 +88,8 @@ class PhotogeometricFit {
   static constexpr int kRow = 32;  // the unknowns, padded
   using Row = Eigen::Matrix<float, kRow, 1>;
   std::vector<Pixel> pixels_;
-  std::vector<float> residuals_, weights_, levels_, sorted_;
+  std::vector<ExposedCode::Level> levels_;  // of the pixels, as the fit stands
+  std::vector<float> residuals_, weights_, light_, sorted_;
   std::vector<Row> edge_gradients_;  // by edge
 };
 

@@ -1,0 +1,32 @@
+// Whether a measured pose stands, and what to say when it does not.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "navigation/markers/edge_pose.h"
+#include "navigation/markers/marker_tracker.h"
+#include "navigation/markers/photogeometric.h"
+#include "navigation/markers/planar_pose.h"
+
+namespace arthronaut::markers {
+
+inline constexpr double kMinEdgeShare = 0.3;  // of the edges crossed along x, and along y
+inline constexpr double kMaxEdgeRmsPx = 1.2;  // how far an edge, or a corner, may lie from the pose
+
+// Turned from each other by more than does no harm.
+[[nodiscard]] bool are_unlike(const geometry::RigidTransform& a, const geometry::RigidTransform& b);
+
+// What the edges say. The observation holds the corners that they make; `other` is the second pose that the
+// corners allow; `is_found`: nothing is known from frames before.
+[[nodiscard]] MarkerState judge(const EdgePose& fit, const MarkerObservation& observation,
+                                const std::optional<SquarePose>& other, bool is_found);
+// What the dense fit says. The observation holds its covariance; max_rms_px: how far the corners that single
+// edges make may lie from the fit.
+[[nodiscard]] MarkerState judge(const PhotogeometricPose& fit, double max_rms_px,
+                                const MarkerObservation& observation);
+// By what most of the edges that are missing at the supposed pose look like.
+[[nodiscard]] MarkerState reason_of_loss(const geometry::RigidTransform& camera_from_marker,
+                                         std::span<const EdgeMeasurement> measurements, double cell_px);
+
+}  // namespace arthronaut::markers
