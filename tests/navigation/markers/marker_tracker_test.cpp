@@ -192,16 +192,27 @@ TEST_F(MarkerTracking, RefusesBadDeclarationsAndFrames) {
 }
 
 // After the first frames nothing is allocated: neither while tracking, nor when a marker is lost and searched
-// for.
+// for, nor under a smear of 12 px or after half a second without a marker, when all its pixels are fitted.
 TEST_F(MarkerTracking, AllocatesNothingAfterWarmUp) {
-  const auto both = picture({placed(0, world_), placed(2, probe_)}), one = picture({placed(2, probe_)});
+  const auto both = picture({placed(0, world_), placed(2, probe_)}), one = picture({placed(2, probe_)}),
+             none = picture({});
+  PlacedMarker moving = placed(2, probe_);
+  moving.velocity = motion_of(camera_, probe_, {9, 8});
+  const auto smeared = picture({placed(0, world_), moving});
   const auto tracker = make_tracker(declared_);
   for (int frame = 0; frame < 12; ++frame)
     (void)tracker->track((frame % 4 ? both : one).view(), camera_, frame * kFrameNs);
+  int smeared_tracked = 0;
   start_counting_allocations();
-  for (int frame = 12; frame < 40; ++frame)
-    (void)tracker->track((frame % 4 ? both : one).view(), camera_, frame * kFrameNs);
+  for (int frame = 12; frame < 100; ++frame) {
+    const bool is_smeared = frame >= 40 && (frame < 44 || frame > 90), is_gone = frame >= 50 && frame < 80;
+    const auto& shown = is_smeared ? smeared : is_gone ? none : frame % 4 ? both : one;
+    const auto seen = tracker->track(shown.view(), camera_, frame * kFrameNs);
+    smeared_tracked += is_smeared && seen[1].is_tracked();
+    EXPECT_TRUE(frame != 80 || seen[1].is_tracked());
+  }
   EXPECT_EQ(stop_counting_allocations(), 0);
+  EXPECT_GT(smeared_tracked, 4);
 }
 
 // What the tools declare is declared to the tracker, world markers first.
