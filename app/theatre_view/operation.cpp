@@ -224,6 +224,7 @@ Operation::~Operation() = default;
 OperationStatus Operation::status() const { return worker_->status(); }
 bool Operation::is_busy() const { return worker_->is_busy(); }
 const std::string& Operation::title() const { return worker_->setup().title; }
+const std::string& Operation::calibration() const { return worker_->setup().calibration; }
 double Operation::now_s() { return seconds_of(Clock::now()); }
 
 void Operation::set_digitising(bool on) {

@@ -28,7 +28,8 @@
 namespace arthronaut::theatre_view {
 
 struct OperationSetup {
-  std::string title;                                                   // "Simulated operation: scratching"
+  std::string title;                                                   // "Simulated operation: probe"
+  std::string calibration;                                             // in use, in words
   std::function<std::unique_ptr<sources::FrameSource>()> open_source;  // called on the worker
   pipeline::PipelineOptions pipeline;
   std::optional<tunnels::Tunnel> plan;
@@ -77,6 +78,7 @@ class Operation {
   [[nodiscard]] OperationStatus status() const;
   [[nodiscard]] bool is_busy() const;  // pictures or a registration are to come
   [[nodiscard]] const std::string& title() const;
+  [[nodiscard]] const std::string& calibration() const;
   [[nodiscard]] static double now_s();  // the clock of published_s
 
   // From now on nothing of it takes effect any more; it ends as soon as it can.

@@ -22,7 +22,8 @@ struct TheatreScreen {
   TheatreLayout layout = TheatreLayout::Guide;
   int selected_stroke = -1;
   bool undistorts = false;                 // shows the picture without the lens' distortion
-  std::string title = "", next_step = "";  // "Simulated operation", "register"
+  std::string_view title = "", calibration = "";  // of the operation: "Simulated operation: probe"
+  std::string next_step = "";                     // "register what was touched"
 };
 
 // The live picture on the graphics card.

@@ -1,5 +1,6 @@
 #include "app/theatre_view/theatre_setup.h"
 
+#include "app/setup_view/case_calibration.h"
 #include "navigation/camera/medium.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "planning/geometry/error.h"
@@ -7,6 +8,8 @@
 namespace arthronaut::theatre_view {
 
 namespace {
+
+constexpr int kPlacesToTouch = 4;  // three verify, one is the control point
 
 std::string guide_name_of(bones::BoneKind bone) {
   return bone == bones::BoneKind::Femur ? "femoral guide" : "tibial guide";
@@ -55,17 +58,19 @@ std::string missing_for_simulation(const planning_view::PlanModel& model, bones:
 }
 
 OperationSetup simulated_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
-                               SimulatedPart part) {
+                               const std::filesystem::path& case_folder, SimulatedPart part) {
   OperationSetup setup = setup_of(model, bone);
   setup.title = part == SimulatedPart::Scratch ? "Simulated operation: probe" : "Simulated operation: drill";
-  setup.pipeline.calibration = simulator::standard_camera();
-  setup.pipeline.tools = tools::standard_tools();
+  setup.pipeline.calibration = setup_view::camera_of(true, case_folder);
+  setup.pipeline.tools = setup_view::tools_of(true, case_folder);
+  setup.calibration = setup_view::calibration_in_words(true, case_folder);
   setup.pipeline.refractive_index = camera::kSalineIndex;
   setup.digitises = part == SimulatedPart::Scratch;
   simulator::SimulationOptions simulation;
   simulation.knee = phantom_of(model.knee());
-  simulation.camera = setup.pipeline.calibration;
-  simulation.tools = setup.pipeline.tools;
+  simulation.camera = simulator::standard_camera();
+  simulation.tools = tools::standard_tools();
+  simulation.rest_count = kPlacesToTouch;
   simulation.bone = bone;
   simulation.plan = *setup.plan;
   simulation.refractive_index = setup.pipeline.refractive_index;
@@ -89,6 +94,7 @@ OperationSetup real_setup(const planning_view::PlanModel& model, bones::BoneKind
   OperationSetup setup = setup_of(model, bone);
   setup.pipeline.calibration = camera::read_camera_file(cases::camera_file(case_folder)).calibration;
   setup.pipeline.tools = tools::read_tools_file(cases::tools_file(case_folder));
+  setup.calibration = setup_view::calibration_in_words(false, case_folder);
   setup.pipeline.refractive_index = refractive_index;
   if (setup.pipeline.tools.find_world_marker(bone) == nullptr)
     throw InvalidInput("tools.json declares no world marker for the " + std::string(bones::to_text(bone)));

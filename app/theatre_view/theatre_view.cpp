@@ -107,8 +107,12 @@ void TheatreView::look_along_plan() {
 }
 
 void TheatreView::start_simulation(SimulatedPart part) {
-  start(simulated_setup(*model_, choices_.bone, part));
-  part_ = part;
+  try {
+    start(simulated_setup(*model_, choices_.bone, case_folder_, part));
+    part_ = part;
+  } catch (const std::runtime_error& error) {  // as in start_video()
+    notice_ = error.what();
+  }
 }
 
 void TheatreView::start_video() {
@@ -248,7 +252,10 @@ TheatreScreen TheatreView::screen_of(const TheatreDisplay& display, double now_s
   screen.layout = layout(now_s);
   screen.selected_stroke = choices_.stroke;
   screen.undistorts = choices_.undistorts;
-  screen.title = operation_ != nullptr ? operation_->title() : "";
+  if (operation_ != nullptr) {
+    screen.title = operation_->title();
+    screen.calibration = operation_->calibration();
+  }
   screen.next_step = next_step();
   return screen;
 }
@@ -297,6 +304,7 @@ void TheatreView::note_states(const widgets::Ui& ui, const TheatreScreen& screen
                                                               : "off");
   ui.log.note_state("view", choices_.undistorts ? "undistorted" : "as it came");
   ui.log.note_state("next", screen.next_step);
+  ui.log.note_state("calibration", screen.calibration);
   ui.log.note_state("notice", notice_);
   ui.log.note_state("layout", screen.layout == TheatreLayout::Register ? "register" : "guide");
   ui.log.note_state("registration", in_force == nullptr  ? "none"

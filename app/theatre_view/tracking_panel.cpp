@@ -121,6 +121,7 @@ void draw_tracking(const widgets::Ui& ui, const widgets::Rect& area, const Theat
     draw_touch_row(ui, screen);
     draw_probe(ui, screen);
     draw_record(ui, screen);
+    widgets::status_row(ui, Sign::Quiet, screen.title, screen.calibration);
   }
   ImGui::PopStyleVar();
   widgets::end_panel();

@@ -25,7 +25,8 @@ using Script = std::vector<Moment>;
 [[nodiscard]] Script calibrate_script(const SimulationOptions& options);
 // The probe swings about its tip, which rests in a dimple of the bone.
 [[nodiscard]] Script pivot_script(const SimulationOptions& options, const Staging& staging);
-// The tip draws stroke after stroke on the bone, and is lifted from each to the next.
+// The tip draws stroke after stroke on the bone, and is lifted from each to the next; then it rests at a few
+// places far from one another, and at the first of them once more.
 [[nodiscard]] Script scratch_script(const SimulationOptions& options, const Staging& staging);
 // The guide comes from 9 mm off and 11 degrees aslant to `aim`, rests, and the drill goes in.
 [[nodiscard]] Script drill_script(const SimulationOptions& options, const Staging& staging,

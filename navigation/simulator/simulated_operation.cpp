@@ -57,8 +57,9 @@ struct SimulatedOperation::State {
         bone(bone_mesh(o)),
         bone_view(bone_mesh(o), o.seed),
         renderer(&bone_view, SensorOptions{}) {
-    if (options.frames_per_second < 1 || options.frame_count < 0) {
-      throw InvalidInput("simulator: frames_per_second must be above 0 and frame_count not below 0");
+    if (options.frames_per_second < 1 || options.frame_count < 0 || options.rest_count < 0) {
+      throw InvalidInput(
+          "simulator: frames_per_second must be above 0, frame_count and rest_count not below 0");
     }
     // The board alone needs no place in the knee.
     if (phase != Phase::Calibrate) {

@@ -53,8 +53,9 @@ struct SimulatedRuler::State {
     ruler.half_size_mm = {kHalfLengthMm, kHalfWidthMm};
     ruler.tick_spacing_mm = 1;
     const Eigen::Vector2d first(-0.5 * options.spacing_mm, 0);
-    ruler.markers = {{first, options.size_mm, marker_cells(options.first_id)},
-                     {-first, options.size_mm, marker_cells(options.second_id)}};
+    const auto printed = [&](int id) { return options.printed ? options.printed(id) : marker_cells(id); };
+    ruler.markers = {{first, options.size_mm, printed(options.first_id)},
+                     {-first, options.size_mm, printed(options.second_id)}};
     // The ruler's frame lies half-way between its markers'.
     geometry::RigidTransform camera_from_ruler = truth.markers[0].camera_from_marker;
     camera_from_ruler.translation_mm = camera_from_ruler * Eigen::Vector3d(0.5 * options.spacing_mm, 0, 0);

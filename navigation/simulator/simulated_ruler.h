@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "navigation/simulator/simulated_operation.h"
+#include "navigation/simulator/solids.h"
 
 namespace arthronaut::simulator {
 
@@ -19,6 +21,8 @@ struct RulerOptions {
   int first_id = 5, second_id = 6;  // the markers, x along the ruler
   double size_mm = 2.89;
   double spacing_mm = 10;  // between the markers' centres
+  // What is printed for an id; the project's own markers when empty.
+  std::function<MarkerCells(int id)> printed;
 };
 
 class SimulatedRuler : public sources::FrameSource {

@@ -53,6 +53,32 @@ TEST_F(ScriptTest, ScratchStaysOnTheBone) {
   EXPECT_GE(touching, 180);
 }
 
+// After the strokes the tip rests where it was asked to: for more than the quarter of a second that a touch
+// takes, on the bone, at places of their own (3 mm apart), and at the first one once more; the strokes before
+// are the same as without.
+TEST_F(ScriptTest, ScratchRestsAtPlacesToTouch) {
+  const Script strokes = scratch_script(options_, staging_);
+  SimulationOptions resting = options_;
+  resting.rest_count = 4;
+  const Script script = scratch_script(resting, staging_);
+  ASSERT_GT(script.size(), strokes.size());
+  std::vector<Eigen::Vector3d> places;
+  int still = 0;
+  for (std::size_t i = strokes.size(); i < script.size(); ++i) {
+    const Eigen::Vector3d tip = *script[i].bone_from_probe * tip_in_probe_;
+    const Eigen::Vector3d before = *script[i - 1].bone_from_probe * tip_in_probe_;
+    still = (tip - before).norm() < 1e-9 ? still + 1 : 0;
+    if (still != options_.frames_per_second / 2) continue;
+    EXPECT_TRUE(script[i].tip_touches_bone);
+    EXPECT_LT(std::abs(bone_.signed_distance_mm(tip)), 1e-3);
+    places.push_back(tip);
+  }
+  ASSERT_EQ(places.size(), 5U);
+  EXPECT_LT((places.front() - places.back()).norm(), 1e-9);
+  for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t b = 0; b < a; ++b) EXPECT_GT((places[a] - places[b]).norm(), 3);
+}
+
 // The guide ends on the line it aims at and stays there while the drill goes in.
 TEST_F(ScriptTest, DrillEndsOnItsAim) {
   const auto& axis = *guide_of(options_).axis;
