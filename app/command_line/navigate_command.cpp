@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "app/command_line/cartilage_option.h"
 #include "app/command_line/command.h"
 #include "app/command_line/medium_option.h"
 #include "app/command_line/tracking_report.h"
@@ -23,6 +24,7 @@ struct NavigateArguments {
   std::optional<double> medium_index;
   bool fixed_lens = false, no_copy = false;
   CLI::Option* probe_option = nullptr;
+  CartilageArguments cartilage;
 };
 
 // A session that did not come to its end is removed: a command that fails leaves nothing behind.
@@ -107,6 +109,7 @@ void say_registration(const Context& context, const pipeline::NavigationSummary&
   context.say(format("registration (%s): rms %.2f mm over %d points, predicted error %.2f mm at the target, %s",
                      summary.registration_was_found ? "found" : "given", r.rms_mm, r.point_count, r.predicted_tre_mm,
                      r.reliable ? "reliable" : "not reliable"));
+  for (const std::string& assumption : r.assumptions) context.say("  " + assumption);
 }
 
 void say_guidance(const Context& context, const pipeline::NavigationSummary& summary) {
@@ -132,6 +135,13 @@ void navigate(Context& context, const NavigateArguments& arguments) {
   const registration::PreparedBone bone(mesh->second.mesh,
                                         cases::prepared_bone_file(arguments.case_folder, options.pipeline.bone));
   options.bone = &bone;
+  const bones::BoneKind kind = options.pipeline.bone;
+  const auto cartilage = arguments.cartilage.mesh.empty() ? cases::load_cartilage(arguments.case_folder, kind)
+                                                          : read_cartilage(arguments.cartilage);
+  if (cartilage) {
+    options.covered.emplace().points_mm = cartilage->vertices_mm;
+    context.say(std::string("cartilage: ") + (arguments.cartilage.mesh.empty() ? "of the case" : "given"));
+  }
   const auto source = sources::open_video(arguments.video);
   context.say("working medium: " + camera::medium_to_text(options.pipeline.refractive_index));
 
@@ -148,6 +158,7 @@ void navigate(Context& context, const NavigateArguments& arguments) {
   }
   adopt(arguments.camera, cases::camera_file(arguments.case_folder));
   adopt(arguments.tools, cases::tools_file(arguments.case_folder));
+  if (!arguments.cartilage.mesh.empty()) cases::save_cartilage(arguments.case_folder, kind, *cartilage);
   session.keep();
 
   say_statistics(context, summary.statistics);
@@ -179,6 +190,10 @@ void add_navigate_command(CLI::App& app, Context& context) {
   command->add_option("--registration", arguments->registration,
                       "registration.json to guide by. Default: the newest reliable one of the case for this world "
                       "marker; strokes of the probe give a new one");
+  add_cartilage_option(*command, arguments->cartilage.mesh, "; copied into the case. Default: the case's");
+  command->add_option("--space", arguments->cartilage.space,
+                      "Frame of the cartilage's mesh when its file doesn't say: lps (default) or ras");
+  command->add_option("--unit", arguments->cartilage.unit, "Length unit of the cartilage's mesh: mm (default), cm, m or in");
   arguments->probe_option = command->add_option("--probe", arguments->probe, "Name of the touch probe in the tools")
                                 ->capture_default_str();
   command->add_option("--guide", arguments->guide,

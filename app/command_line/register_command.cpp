@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/command_line/cartilage_option.h"
 #include "app/command_line/command.h"
 #include "navigation/registration/registration.h"
 #include "planning/bones/mesh_file.h"
@@ -45,7 +46,8 @@ void register_bone(Context& context, const RegisterArguments& arguments) {
   if (arguments.target_option->count() > 0) options.target_in_bone_mm = arguments.target;
   if (arguments.entry_option->count() > 0) options.plan_entry_in_bone_mm = arguments.entry;
   if (!arguments.cartilage.empty()) {
-    options.covered.emplace().points_mm = bones::read_mesh(arguments.cartilage, mesh_options).vertices_mm;
+    options.covered.emplace().points_mm =
+        read_cartilage({arguments.cartilage, arguments.space, arguments.unit}).vertices_mm;
   }
   const registration::PreparedBone bone = prepare(mesh, arguments.bone);
   const auto summary = registration::register_curves(bone, curves, options);
@@ -77,9 +79,7 @@ void add_register_command(CLI::App& app, Context& context) {
   arguments->entry_option = add_vector_option(*command, "--plan-entry", arguments->entry,
                                               "Entry of the planned tunnel, mm: the strokes are looked for within a "
                                               "probe's reach of it first, then on the whole bone");
-  command->add_option("--cartilage", arguments->cartilage,
-                      "Mesh of what is covered by cartilage that the bone's mesh lacks, or has too much: the strokes within "
-                      "4 mm of its vertices lie off the bone by one thickness, which is solved, or they are left out");
+  add_cartilage_option(*command, arguments->cartilage);
   command->add_flag("--no-marker-prior", arguments->no_marker_prior,
                     "Don't assume that the world marker sits on the bone");
   command->add_option("--seed", arguments->seed, "Seed of the random search; the same seed gives the same result");

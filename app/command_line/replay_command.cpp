@@ -47,6 +47,9 @@ void replay(Context& context, const ReplayArguments& arguments) {
   std::optional<registration::PreparedBone> bone;
   if (const auto found = knee.bones.find(session.header().bone); found != knee.bones.end()) {
     options.bone = &bone.emplace(found->second.mesh, cases::prepared_bone_file(arguments.case_folder, found->first));
+    if (const auto cartilage = cases::load_cartilage(arguments.case_folder, found->first)) {
+      options.covered.emplace().points_mm = cartilage->vertices_mm;
+    }
   }
   recording::ReplaySummary summary;
   {

@@ -77,6 +77,7 @@ class Operation {
     tried_points_ = summary_.curves.size();
     registration::RegistrationOptions options;
     options.seed = options_.seed;
+    options.covered = options_.covered;
     if (options_.plan) options.target_in_bone_mm = options_.plan->entry_mm;
     const RegistrationSummary found = registration::register_curves(*options_.bone, summary_.curves, options);
     if (!found.reliable && options_.registration && options_.registration->reliable) {

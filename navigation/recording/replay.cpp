@@ -141,6 +141,7 @@ void compare_registration(const RecordedSession& session, const EventPlayer& pla
   const registration::RegistrationSummary& then = *player.found();
   registration::RegistrationOptions registering;
   registering.seed = options.seed;
+  registering.covered = options.covered;
   if (player.plan().plan) registering.target_in_bone_mm = player.plan().plan->entry_mm;
   const auto now = registration::register_curves(*options.bone, registered_curves(session), registering);
   const auto differs = [&](const char* detail) {

@@ -3,6 +3,7 @@
 //   case.json      format "arthronaut.case": side, bones, sources
 //   plan.json      format "arthronaut.plan": tunnels
 //   femur.ply      bone meshes, binary PLY, LPS, mm
+//   femur_cartilage.ply         surface of what cartilage covers, where it was declared for the registration
 //   camera.json, tools.json     copies of what this case is navigated with; absent until they are known
 //   sessions/ID/   one folder a session (navigation/recording)
 //   cache/         what can be made again from the rest; may be deleted at any time
@@ -48,6 +49,13 @@ void save_plan(const std::filesystem::path& folder, const Plan& plan);
 [[nodiscard]] std::filesystem::path mesh_file(const std::filesystem::path& case_folder, bones::BoneKind kind);
 // The bone made ready for registration.
 [[nodiscard]] std::filesystem::path prepared_bone_file(const std::filesystem::path& case_folder, bones::BoneKind kind);
+// What cartilage covers that the bone's mesh lacks, or has too much: a surface of its own, of which the vertices count. A
+// case without one declares none. load_cartilage throws as load_case, save_cartilage IoError.
+[[nodiscard]] std::filesystem::path cartilage_file(const std::filesystem::path& case_folder, bones::BoneKind kind);
+[[nodiscard]] std::optional<geometry::TriangleMesh> load_cartilage(const std::filesystem::path& case_folder,
+                                                                   bones::BoneKind kind);
+void save_cartilage(const std::filesystem::path& case_folder, bones::BoneKind kind,
+                    const geometry::TriangleMesh& cartilage);
 // The sessions' folders, oldest first.
 [[nodiscard]] std::vector<std::filesystem::path> session_folders(const std::filesystem::path& case_folder);
 // Now, as created_utc wants it: "2026-01-31T12:00:00Z".

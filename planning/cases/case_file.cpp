@@ -92,6 +92,16 @@ Case load_case(const fs::path& folder) {
   return result;
 }
 
+std::optional<geometry::TriangleMesh> load_cartilage(const fs::path& case_folder, bones::BoneKind kind) {
+  const fs::path file = cartilage_file(case_folder, kind);
+  if (!fs::exists(file)) return std::nullopt;
+  return bones::read_mesh(file, {.space = bones::Space::LPS, .unit = bones::LengthUnit::Millimetre});
+}
+
+void save_cartilage(const fs::path& case_folder, bones::BoneKind kind, const geometry::TriangleMesh& cartilage) {
+  bones::write_mesh_ply(cartilage_file(case_folder, kind), cartilage);
+}
+
 void save_plan(const fs::path& folder, const Plan& plan) {
   auto tunnels = nlohmann::ordered_json::array();
   for (const auto& [kind, tunnel] : plan.tunnels) {

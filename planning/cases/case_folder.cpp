@@ -21,6 +21,10 @@ fs::path prepared_bone_file(const fs::path& case_folder, bones::BoneKind kind) {
   return case_folder / "cache" / (std::string(bones::to_text(kind)) + ".prepared");
 }
 
+fs::path cartilage_file(const fs::path& case_folder, bones::BoneKind kind) {
+  return case_folder / (std::string(bones::to_text(kind)) + "_cartilage.ply");
+}
+
 std::vector<fs::path> session_folders(const fs::path& case_folder) {
   std::vector<fs::path> folders;
   const fs::path sessions = case_folder / "sessions";

@@ -49,6 +49,17 @@ class CaseFolder : public ::testing::Test {
   std::filesystem::path folder_ = temporary_ / "Knee.arthro";
 };
 
+// A region of cartilage is part of the case only where it was declared, bone by bone; saving the case leaves it alone.
+TEST_F(CaseFolder, KeepsTheCartilageOfABone) {
+  EXPECT_FALSE(load_cartilage(folder_, BoneKind::Femur).has_value());
+  const geometry::TriangleMesh patch = test::box({8, 3, 5});  // smaller than any bone
+  save_cartilage(folder_, BoneKind::Femur, patch);
+  save_case(folder_, example());
+  ASSERT_TRUE(load_cartilage(folder_, BoneKind::Femur).has_value());
+  EXPECT_EQ(load_cartilage(folder_, BoneKind::Femur)->vertices_mm, patch.vertices_mm);
+  EXPECT_FALSE(load_cartilage(folder_, BoneKind::Tibia).has_value());
+}
+
 // Every bit of a case comes back: coordinates, marks, words with umlauts and quotes.
 TEST_F(CaseFolder, ComesBackAsItWasSaved) {
   const Case saved = example(), loaded = load_case(folder_);
