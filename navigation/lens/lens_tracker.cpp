@@ -72,7 +72,7 @@ struct LensTracker::State {
 
   void forget();
   bool find_circle(const camera::GrayView& frame);
-  bool search_and_fit(const camera::GrayView& frame);
+  bool fit_near(const camera::GrayView& frame, const camera::Boundary& found);
   bool measure_and_fit(const camera::GrayView& frame, const camera::Boundary& expected, double gate_share);
   void watch_circle();
   void find_mark();
@@ -107,12 +107,11 @@ bool LensTracker::State::measure_and_fit(const camera::GrayView& frame, const ca
   return true;
 }
 
-bool LensTracker::State::search_and_fit(const camera::GrayView& frame) {
-  const std::optional<camera::Boundary> found = search_circle(frame, scratch);
-  if (!found || !measure_and_fit(frame, *found, 0.03)) return false;
+bool LensTracker::State::fit_near(const camera::GrayView& frame, const camera::Boundary& found) {
+  if (!measure_and_fit(frame, found, 0.03)) return false;
   // Rays about a centre that is a few pixels off see the rim as well; further off they are laid anew.
-  const bool is_near = (observation.circle.center_px - found->center_px).norm() < kNearEnough_px &&
-                       std::abs(observation.circle.radius_px - found->radius_px) < kNearEnough_px;
+  const bool is_near = (observation.circle.center_px - found.center_px).norm() < kNearEnough_px &&
+                       std::abs(observation.circle.radius_px - found.radius_px) < kNearEnough_px;
   return is_near || measure_and_fit(frame, observation.circle, 0.015);
 }
 
@@ -120,7 +119,8 @@ bool LensTracker::State::find_circle(const camera::GrayView& frame) {
   // What hides the rim does so for seconds: to look for it from nothing in every frame would only cost time.
   // But a rim that a lit scene loses at once may have jumped.
   const bool is_time_to_search = lost_frames % kFramesBetweenSearches == kFramesBetweenSearches - 1;
-  if (has_circle && !is_time_to_search) {
+  const bool is_measured = has_circle && !is_time_to_search;
+  if (is_measured) {
     if (measure_and_fit(frame, observation.circle, 0.015)) return true;
     if (profile.dark_share > kDarkShare || lost_frames > 0) return false;
   }
@@ -131,9 +131,11 @@ bool LensTracker::State::find_circle(const camera::GrayView& frame) {
     // it.
     if (measure_and_fit(frame, at_rest, 0.03)) return measure_and_fit(frame, observation.circle, 0.015);
   }
-  if (search_and_fit(frame)) return true;
+  const std::optional<camera::Boundary> found = search_circle(frame, scratch);
+  if (found && fit_near(frame, *found)) return true;
   // Too little rim: go on with the circle as it was, for the sake of the mark.
-  return has_circle && measure_and_fit(frame, last_circle, 0.015);
+  const bool is_measured_still = is_measured && !found;
+  return has_circle && !is_measured_still && measure_and_fit(frame, last_circle, 0.015);
 }
 
 // Zoom changes the radius; a slipped coupler moves the centre off the track that the lens's turning gives it.

@@ -236,6 +236,24 @@ TEST(LensTracker, TellsTheMarkFromTheSquaresOfABoard) {
       }
 }
 
+// After a reset nothing is left of the picture before it: in the dark there is no circle, not even the old
+// one.
+TEST(LensTracker, ForgetsTheCircleOnReset) {
+  LensTracker tracker;
+  const RimTruth truth;
+  const RimPicture picture = draw(truth);
+  expect_found(tracker.observe(picture.view(), 0), truth);
+  tracker.reset();
+  const std::vector<std::uint8_t> black(static_cast<std::size_t>(picture.view().width) *
+                                        picture.view().height);
+  const LensObservation& seen = tracker.observe(
+      {black.data(), picture.view().width, picture.view().height, picture.view().width}, 16'666'667);
+  EXPECT_FALSE(seen.circle_found);
+  EXPECT_EQ(seen.circle.radius_px, 0);
+  EXPECT_EQ(seen.mark, MarkState::NoCircle);
+  EXPECT_TRUE(seen.is_stale);
+}
+
 // No round view at all: a plain scene, a black picture, a picture too small to hold one.
 TEST(LensTracker, FindsNoCircleWhereThereIsNone) {
   for (const int level : {0, 90}) {
