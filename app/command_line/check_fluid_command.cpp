@@ -61,10 +61,10 @@ calibration::RulerSightingsOptions options_of(const CheckFluidArguments& argumen
   std::vector<int> ids = arguments.ids;
   const auto declared = markers::declared_markers(tools::read_tools_file(arguments.tools));
   if (!arguments.ruler.empty()) {
-    const experiments::Ruler ruler = experiments::read_ruler_file(arguments.ruler);
-    ids = {ruler.first_id, ruler.second_id};
-    options.ruler.first_from_second = ruler.first_from_second;
-    options.refractive_index = ruler.refractive_index;
+    const experiments::RulerInFluid seen = experiments::read_ruler_file(arguments.ruler);
+    ids = {seen.ruler.first_id, seen.ruler.second_id};
+    options.ruler.first_from_second = seen.ruler.first_from_second;
+    options.refractive_index = seen.refractive_index;
   }
   if (ids.empty()) {
     if (declared.size() != 2)
@@ -73,9 +73,9 @@ calibration::RulerSightingsOptions options_of(const CheckFluidArguments& argumen
                              " markers: say with --markers which two are the ruler's");
     ids = {declared[0].id, declared[1].id};
   }
-  options.first_id = ids[0];
-  options.second_id = ids[1];
-  options.ruler.marker_size_mm = common_size_mm(arguments.tools, declared, ids[0], ids[1]);
+  options.ruler.first_id = ids[0];
+  options.ruler.second_id = ids[1];
+  options.ruler.size_mm = common_size_mm(arguments.tools, declared, ids[0], ids[1]);
   options.refractive_index = arguments.medium_index.value_or(options.refractive_index);
   return options;
 }
@@ -151,7 +151,7 @@ void run_check_fluid(Context& context, const CheckFluidArguments& arguments) {
     files::write_json(arguments.output, document_of(summary, frame_count, options.refractive_index));
   if (arguments.output != "-") {
     context.say(line("%zu frames, the ruler's markers %d and %d together in %zu", frame_count,
-                     options.first_id, options.second_id, summary.frame_count));
+                     options.ruler.first_id, options.ruler.second_id, summary.frame_count));
     if (summary.frame_count > 0) say_table(context, summary, options.refractive_index);
     if (summary.is_trusted()) context.say("the stated medium, behind a flat port, can be trusted");
   }

@@ -15,6 +15,7 @@
 #include "navigation/simulator/simulated_operation.h"
 #include "navigation/tools/pivot_calibration.h"
 #include "planning/cases/case.h"
+#include "planning/geometry/quantile.h"
 #include "planning/phantom/phantom_case.h"
 
 namespace arthronaut::command_line {
@@ -50,12 +51,6 @@ class WatchedOperation : public sources::FrameSource {
   std::map<std::int64_t, double> depth_mm_;
 };
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Robust mean of guidance while the drill ran.
 class DrillRecord {
  public:
@@ -78,8 +73,8 @@ class DrillRecord {
     achieved.planned = achieved.measured = planned;
     for (int i = 0; i < 3; ++i) {
       const auto axis = static_cast<std::size_t>(i);
-      achieved.measured.entry_mm[i] = median(point_[axis]);
-      achieved.measured.direction[i] = median(direction_[axis]);
+      achieved.measured.entry_mm[i] = geometry::median(point_[axis]);
+      achieved.measured.direction[i] = geometry::median(direction_[axis]);
     }
     achieved.measured.direction.normalize();
     const tunnels::TunnelGeometry geometry = tunnels::measure(achieved.measured, bone);
@@ -87,8 +82,8 @@ class DrillRecord {
     achieved.depth_mm = std::round(depth_mm_);
     achieved.timestamp_ns = timestamp_ns_;
     achieved.pose_count = count();
-    achieved.sigma_offset_mm = median(sigma_offset_);
-    achieved.sigma_angle_deg = median(sigma_angle_);
+    achieved.sigma_offset_mm = geometry::median(sigma_offset_);
+    achieved.sigma_angle_deg = geometry::median(sigma_angle_);
     return achieved;
   }
 

@@ -1,7 +1,6 @@
 #include "app/command_line/lens_rotation_command.h"
 
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -9,6 +8,7 @@
 #include "navigation/camera/camera_file.h"
 #include "navigation/experiments/lens_rotation.h"
 #include "navigation/tools/tool_set.h"
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
@@ -25,15 +25,8 @@ struct LensRotationArguments {
   std::optional<double> medium;
 };
 
-template <typename... Values>
-std::string formatted(const char* format, Values... values) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
 // The ruler's markers as the tools declare them must be those of the truth.
-void check_tools(const std::string& file, const experiments::Ruler& ruler) {
+void check_tools(const std::string& file, const calibration::Ruler& ruler) {
   const tools::ToolSet set = tools::read_tools_file(file);
   for (const int id : {ruler.first_id, ruler.second_id}) {
     double size_mm = 0;
@@ -47,8 +40,8 @@ void check_tools(const std::string& file, const experiments::Ruler& ruler) {
 }
 
 LensRotationResult run_on_clip(Context& context, const LensRotationArguments& arguments) {
-  experiments::Ruler ruler = experiments::read_ruler_file(arguments.truth);
-  if (!arguments.tools.empty()) check_tools(arguments.tools, ruler);
+  experiments::RulerInFluid ruler = experiments::read_ruler_file(arguments.truth);
+  if (!arguments.tools.empty()) check_tools(arguments.tools, ruler.ruler);
   if (arguments.medium) ruler.refractive_index = *arguments.medium;
   const camera::Calibration camera = camera::read_camera_file(arguments.camera).calibration;
   const auto source = sources::open_video(arguments.video);
@@ -65,7 +58,7 @@ LensRotationResult run_simulated(Context& context, const LensRotationArguments& 
                                                     [&](int done) { progress.advance_to(done); });
   }
   context.say(
-      formatted("simulator, seed %llu; camera calibrated from its stills: focal length %.2f px (true %.2f)",
+      files::format("simulator, seed %llu; camera calibrated from its stills: focal length %.2f px (true %.2f)",
                 static_cast<unsigned long long>(arguments.seed), simulated.calibrated.focal_px,
                 simulated.truth.focal_px));
   return simulated.result;
@@ -76,12 +69,12 @@ void run(Context& context, const LensRotationArguments& arguments) {
   const LensRotationResult result =
       on_clip ? run_on_clip(context, arguments) : run_simulated(context, arguments);
   context.say(
-      formatted("%zu frames, the lens turned over %.0f deg", result.frames.size(), result.rotation_deg));
+      files::format("%zu frames, the lens turned over %.0f deg", result.frames.size(), result.rotation_deg));
   context.say("                       frames   translation, mm     rotation, deg");
   context.say("                                median    95 %      median    95 %");
   for (std::size_t i = 0; i < experiments::kLensModes.size(); ++i) {
     const experiments::LensModeSummary& mode = result.modes[i];
-    context.say(formatted("%-22s %6d   %6.3f   %6.3f     %6.3f   %6.3f",
+    context.say(files::format("%-22s %6d   %6.3f   %6.3f     %6.3f   %6.3f",
                           std::string(to_text(experiments::kLensModes[i])).c_str(), mode.frame_count,
                           mode.median_mm, mode.p95_mm, mode.median_deg, mode.p95_deg));
   }

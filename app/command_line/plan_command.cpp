@@ -1,7 +1,6 @@
-#include <cstdio>
-
 #include "app/command_line/command.h"
 #include "planning/cases/case.h"
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
 #include "planning/tunnels/aim.h"
@@ -22,25 +21,19 @@ struct PlanArguments {
   bool at_footprint = false, customary = false, list = false;
 };
 
-std::string text(const char* format, auto... values) {
-  char buffer[256];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
-
 void describe(const Context& context, const cases::Case& knee, const tunnels::Tunnel& tunnel,
               const geometry::Surface& surface) {
   const auto measured = tunnels::measure(tunnel, surface);
   const auto& e = tunnel.entry_mm;
   const auto& d = tunnel.direction;
-  context.say(text("%s tunnel, %.1f mm", std::string(bones::to_text(tunnel.bone)).c_str(), tunnel.diameter_mm));
-  context.say(text("  entry      %.3f, %.3f, %.3f mm", e.x(), e.y(), e.z()));
-  context.say(text("  direction  %.5f, %.5f, %.5f", d.x(), d.y(), d.z()));
+  context.say(files::format("%s tunnel, %.1f mm", std::string(bones::to_text(tunnel.bone)).c_str(), tunnel.diameter_mm));
+  context.say(files::format("  entry      %.3f, %.3f, %.3f mm", e.x(), e.y(), e.z()));
+  context.say(files::format("  direction  %.5f, %.5f, %.5f", d.x(), d.y(), d.z()));
   if (measured.enters_bone) {
     const auto& x = measured.exit_mm;
-    context.say(text("  length     %.2f mm inside bone", measured.length_mm));
-    context.say(text("  exit       %.3f, %.3f, %.3f mm", x.x(), x.y(), x.z()));
-    context.say(text("  wall       %.2f mm at the thinnest", measured.wall_mm));
+    context.say(files::format("  length     %.2f mm inside bone", measured.length_mm));
+    context.say(files::format("  exit       %.3f, %.3f, %.3f mm", x.x(), x.y(), x.z()));
+    context.say(files::format("  wall       %.2f mm at the thinnest", measured.wall_mm));
   }
   const auto marks = knee.landmarks.find(tunnel.bone);
   const auto surroundings =
@@ -71,7 +64,7 @@ tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case
   const auto nearest = surface.closest_point(tunnel.entry_mm);
   const double off_mm = (nearest.point_mm - tunnel.entry_mm).norm();
   if (off_mm > kSnapMm) {
-    throw InvalidInput(text("plan: --entry lies %.1f mm off the bone, more than %.0f mm", off_mm, kSnapMm));
+    throw InvalidInput(files::format("plan: --entry lies %.1f mm off the bone, more than %.0f mm", off_mm, kSnapMm));
   }
   tunnel.entry_mm = nearest.point_mm;
   if (arguments.customary) {

@@ -1,8 +1,5 @@
 #include "app/command_line/tracking_report.h"
 
-#include <cstdarg>
-#include <cstdio>
-
 namespace arthronaut::command_line {
 
 namespace {
@@ -13,15 +10,6 @@ std::string share(long part, long whole) {
 }
 
 }  // namespace
-
-std::string format(const char* pattern, ...) {
-  char text[256];
-  va_list values;
-  va_start(values, pattern);
-  std::vsnprintf(text, sizeof text, pattern, values);
-  va_end(values);
-  return text;
-}
 
 void say_statistics(const Context& context, const pipeline::ViewStatistics& statistics) {
   for (const pipeline::MarkerStatistics& marker : statistics.markers) {

@@ -5,12 +5,12 @@
 
 #include "app/command_line/command.h"
 #include "navigation/pipeline/track_video.h"
+#include "planning/files/format.h"
 
 namespace arthronaut::command_line {
 
 void say_statistics(const Context& context, const pipeline::ViewStatistics& statistics);
 
-// printf into a string.
-[[nodiscard]] std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+using files::format;
 
 }  // namespace arthronaut::command_line

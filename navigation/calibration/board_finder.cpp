@@ -6,6 +6,7 @@
 #include "navigation/calibration/conformal_map.h"
 #include "navigation/calibration/lattice.h"
 #include "navigation/calibration/saddles.h"
+#include "planning/geometry/quantile.h"
 
 namespace arthronaut::calibration {
 namespace {
@@ -33,13 +34,6 @@ std::map<LatticeNode, double> misfits(const PixelAt& corners, const ConformalMap
   return result;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Takes out what the rest does not support: mis-indexed or chance saddles. False when nothing consistent
 // remains.
 bool prune(PixelAt& corners, double least_limit_px, int passes = 6) {
@@ -49,7 +43,7 @@ bool prune(PixelAt& corners, double least_limit_px, int passes = 6) {
     const auto misfit = misfits(corners, *map);
     std::vector<double> values;
     for (const auto& [node, px] : misfit) values.push_back(px);
-    const double limit = std::max(least_limit_px, 5 * median(values));
+    const double limit = std::max(least_limit_px, 5 * geometry::median(values, 0));
     const std::size_t before = corners.size();
     std::erase_if(corners, [&](const auto& item) { return misfit.at(item.first) > limit; });
     if (corners.size() < kFewestCorners) return false;
@@ -147,7 +141,7 @@ bool has_flat_squares(const PixelAt& corners, const SmoothPicture& picture) {
         picture.bilinear(near_corner.x(), near_corner.y()) - picture.bilinear(other.x(), other.y());
     if (std::abs(contrast) > 5) unlike.push_back(std::abs(rise / contrast - 1));
   }
-  return unlike.size() < 6 || median(unlike) < 0.3;
+  return unlike.size() < 6 || geometry::median(unlike) < 0.3;
 }
 
 }  // namespace

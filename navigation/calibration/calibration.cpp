@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <ctime>
 
 #include "navigation/calibration/adjustment.h"
 #include "navigation/calibration/joint_solution.h"
 #include "navigation/calibration/verdict.h"
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
+#include "planning/geometry/quantile.h"
 
 namespace arthronaut::calibration {
 namespace {
@@ -61,9 +62,7 @@ double median_radius_px(std::span<const CalibrationPicture> pictures) {
   std::vector<double> radii;
   for (const CalibrationPicture& picture : pictures)
     if (picture.lens.circle_found) radii.push_back(picture.lens.circle.radius_px);
-  if (radii.empty()) return 0.5 * pictures.front().size_px.cast<double>().norm();
-  std::nth_element(radii.begin(), radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2), radii.end());
-  return radii[radii.size() / 2];
+  return geometry::median(std::move(radii), 0.5 * pictures.front().size_px.cast<double>().norm());
 }
 
 // Each picture in turn against the camera that the others give: RMS over all their corners, -1 when that
@@ -107,9 +106,7 @@ double median_distance_mm(const CalibrationSummary& summary) {
     const Eigen::Vector3d normal = picture.camera_from_board.rotate(Eigen::Vector3d::UnitZ());
     distances.push_back(std::abs(normal.dot(picture.camera_from_board.translation_mm) / normal.z()));
   }
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  return geometry::median(std::move(distances));
 }
 
 // A picture whose mark was not found, or not believed, is named with the lens angle that the others give it.
@@ -123,15 +120,14 @@ std::vector<std::string> notes_on(std::span<const CalibrationPicture> pictures, 
     const double angle_deg = std::fmod(result.estimate.reference_mark_angle_deg + 720 +
                                            geometry::deg_from_rad(result.estimate.lens_angle_rad[i]),
                                        360.0);
-    char text[160];
-    std::snprintf(
-        text, sizeof text, "; its angle (%.0f degrees, +- %.1f) follows from the other pictures", angle_deg,
-        i < result.lens_angle_sigma_rad.size() ? geometry::deg_from_rad(result.lens_angle_sigma_rad[i])
-                                               : 180.0);
+    const double sigma_deg = i < result.lens_angle_sigma_rad.size()
+                                 ? geometry::deg_from_rad(result.lens_angle_sigma_rad[i])
+                                 : 180.0;
     notes.push_back(pictures[i].name + ": lens mark: " +
                     (was_seen ? "what looks like it contradicts the other pictures"
                               : std::string(lens::to_text(pictures[i].lens.mark))) +
-                    text);
+                    files::format("; its angle (%.0f degrees, +- %.1f) follows from the other pictures",
+                                  angle_deg, sigma_deg));
   }
   return notes;
 }

@@ -3,26 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
 #include "navigation/calibration/conformal_map.h"
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
+#include "planning/geometry/quantile.h"
 
 namespace arthronaut::calibration {
 namespace {
-
-std::string text(const char* format, double a, double b = 0) {
-  char buffer[160];
-  std::snprintf(buffer, sizeof buffer, format, a, b);
-  return buffer;
-}
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Cells of a grid over the round view that have a corner in them or beside them.
 double coverage_of(const CalibrationPicture& picture) {
@@ -82,7 +71,7 @@ double edge_width_of(const camera::GrayView& frame, const CalibrationPicture& pi
     for (const auto& next : {std::pair{node.first + 1, node.second}, std::pair{node.first, node.second + 1}})
       if (const auto other = at.find(next); other != at.end())
         if (const auto width = edge_width_at(frame, pixel, other->second)) widths.push_back(*width);
-  return widths.size() < 8 ? 0 : median(widths);
+  return widths.size() < 8 ? 0 : geometry::median(widths);
 }
 
 double saturated_share(const camera::GrayView& frame, const CalibrationPicture& picture) {
@@ -130,7 +119,7 @@ std::optional<double> motion_between(const CalibrationPicture& before, const Cal
       nearest = std::min(nearest, (other.pixel - now.board.corners[k].pixel).squaredNorm());
     shifts.push_back(std::sqrt(nearest));
   }
-  return median(shifts);
+  return geometry::median(shifts);
 }
 
 bool has_mark(const CalibrationPicture& picture) { return picture.lens.mark == lens::MarkState::Found; }
@@ -182,23 +171,23 @@ void CaptureGuide::judge() {
     return;
   }
   if (quality.corner_count < limits_.fewest_corners)
-    reasons.push_back(text("only %.0f corners are seen (needs %.0f)",
-                           static_cast<double>(quality.corner_count),
-                           static_cast<double>(limits_.fewest_corners)));
+    reasons.push_back(files::format("only %.0f corners are seen (needs %.0f)",
+                                    static_cast<double>(quality.corner_count),
+                                    static_cast<double>(limits_.fewest_corners)));
   if (quality.coverage < limits_.least_coverage)
-    reasons.push_back(text("the board covers %.0f %% of the view (needs %.0f %%)", 100 * quality.coverage,
-                           100 * limits_.least_coverage));
+    reasons.push_back(files::format("the board covers %.0f %% of the view (needs %.0f %%)",
+                                    100 * quality.coverage, 100 * limits_.least_coverage));
   if (quality.edge_width_px > limits_.widest_edge_px)
-    reasons.push_back(text("blurred: edges are %.1f px wide (at most %.1f)", quality.edge_width_px,
-                           limits_.widest_edge_px));
+    reasons.push_back(files::format("blurred: edges are %.1f px wide (at most %.1f)", quality.edge_width_px,
+                                    limits_.widest_edge_px));
   if (quality.saturated > limits_.most_saturated)
-    reasons.push_back(text("glare: %.0f %% of the view is white (at most %.0f %%)", 100 * quality.saturated,
-                           100 * limits_.most_saturated));
+    reasons.push_back(files::format("glare: %.0f %% of the view is white (at most %.0f %%)",
+                                    100 * quality.saturated, 100 * limits_.most_saturated));
   if (quality.motion_px && *quality.motion_px > limits_.most_motion_px)
-    reasons.push_back(text("it moves: %.1f px since the last look", *quality.motion_px));
+    reasons.push_back(files::format("it moves: %.1f px since the last look", *quality.motion_px));
   if (quality.turn_deg && *quality.turn_deg < limits_.least_turn_deg)
-    reasons.push_back(text("the lens stands %.0f degrees from a picture taken (needs %.0f)",
-                           *quality.turn_deg, limits_.least_turn_deg));
+    reasons.push_back(files::format("the lens stands %.0f degrees from a picture taken (needs %.0f)",
+                                    *quality.turn_deg, limits_.least_turn_deg));
 }
 
 double CaptureGuide::span_deg(const CalibrationPicture* with) const {

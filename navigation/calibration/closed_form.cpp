@@ -5,19 +5,15 @@
 #include <cmath>
 
 #include "navigation/calibration/conformal_map.h"
+#include "planning/geometry/quantile.h"
 
 namespace arthronaut::calibration {
-namespace {
 
-Eigen::Vector2d turned(const Eigen::Vector2d& point, const Eigen::Vector2d& center, double angle_rad) {
+Eigen::Vector2d turned_about(const Eigen::Vector2d& center, const Eigen::Vector2d& point, double angle_rad) {
   return center + Eigen::Rotation2Dd(angle_rad) * (point - center);
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+namespace {
 
 // The picture's corners undistorted about a given principal point and distortion, and their homography.
 std::optional<ConformalCamera> camera_given(const Sighting& seen, const Eigen::Vector2d& principal_px,
@@ -138,7 +134,7 @@ std::vector<Estimate> closed_form_starts(std::span<const Sighting> sightings, co
     auto start = start_from(sightings, shared, principal, lambda, focal_px);
     if (!start) return;
     start->principal_point_px =
-        turned(principal.front(), shared.rotation_center_px, -shared.lens_angle_rad.front());
+        turned_about(shared.rotation_center_px, principal.front(), -shared.lens_angle_rad.front());
     starts.push_back(*start);
   };
 
@@ -154,14 +150,14 @@ std::vector<Estimate> closed_form_starts(std::span<const Sighting> sightings, co
       principal[i] = camera->principal_point_px;
   }
   if (!lambdas.empty()) {
-    add(principal, median(lambdas), 0);
-    add(circles, median(lambdas), 0);
+    add(principal, geometry::median(lambdas), 0);
+    add(circles, geometry::median(lambdas), 0);
   }
   for (const double share : {0.0, -0.1, -0.25}) add(circles, share / (0.25 * half_size * half_size), 0);
   // Boards that all face the lens leave the focal length open: assume fields of view, the verdict says the
   // rest.
   for (const double focal_share : {0.55, 1.0, 2.0})
-    add(circles, lambdas.empty() ? 0.0 : std::min(0.0, median(lambdas)), focal_share * half_size);
+    add(circles, lambdas.empty() ? 0.0 : std::min(0.0, geometry::median(lambdas)), focal_share * half_size);
   return starts;
 }
 

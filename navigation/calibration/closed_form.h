@@ -21,4 +21,8 @@ namespace arthronaut::calibration {
 [[nodiscard]] std::optional<Eigen::Vector2d> center_of_turning(std::span<const Eigen::Vector2d> places,
                                                                std::span<const double> angles_rad);
 
+// The place that a turn about a centre takes a point to; positive from +x towards +y.
+[[nodiscard]] Eigen::Vector2d turned_about(const Eigen::Vector2d& center, const Eigen::Vector2d& point,
+                                           double angle_rad);
+
 }  // namespace arthronaut::calibration

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 
 #include "navigation/calibration/plane_pose.h"
+#include "planning/files/format.h"
+#include "planning/geometry/quantile.h"
 
 namespace arthronaut::calibration {
 namespace {
@@ -24,7 +25,7 @@ struct FrameErrors {
 // One frame under one camera: both markers by themselves, then the ruler as one body.
 void add_errors(const RulerSighting& seen, const Ruler& ruler, const camera::CameraModel& model,
                 FrameErrors& errors) {
-  const auto corners = marker_corners_mm(ruler.marker_size_mm);
+  const auto corners = marker_corners_mm(ruler.size_mm);
   const auto first = solve_plane_pose(corners, seen.first_px, model);
   const auto second = solve_plane_pose(corners, seen.second_px, model);
   if (!first || !second) return;
@@ -41,14 +42,6 @@ void add_errors(const RulerSighting& seen, const Ruler& ruler, const camera::Cam
     errors.square_px.push_back(whole->rms_px * whole->rms_px);
 }
 
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return -1;
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 FrameErrors errors_under(std::span<const RulerSighting> sightings, const Ruler& ruler,
                          const camera::Calibration& calibration, double index, camera::FluidModel fluid) {
   FrameErrors errors;
@@ -62,16 +55,16 @@ FrameErrors errors_under(std::span<const RulerSighting> sightings, const Ruler& 
 
 // The median resists frames with a corner in glare.
 double misfit_px(const FrameErrors& errors) {
-  return std::sqrt(std::max(0.0, quantile(errors.square_px, 0.5)));
+  return std::sqrt(std::max(0.0, geometry::quantile(errors.square_px, 0.5, 0)));
 }
 
 FluidCheckSummary::Row row_of(FluidHypothesis hypothesis, const FrameErrors& errors) {
   return {hypothesis,
           errors.square_px.empty() ? -1 : misfit_px(errors),
-          quantile(errors.mm, 0.5),
-          quantile(errors.deg, 0.5),
-          quantile(errors.mm, 0.95),
-          quantile(errors.deg, 0.95)};
+          geometry::quantile(errors.mm, 0.5, -1),
+          geometry::quantile(errors.deg, 0.5, -1),
+          geometry::quantile(errors.mm, 0.95, -1),
+          geometry::quantile(errors.deg, 0.95, -1)};
 }
 
 // Golden section over the working medium's index. The misfit has one valley between air and glass.
@@ -113,7 +106,7 @@ std::vector<RulerSighting> spread(std::span<const RulerSighting> sightings) {
 // glare, a pose that went astray) counts as much as three sigmas, no more.
 double index_sigma(const std::function<FrameErrors(double)>& under, double index, std::size_t frames) {
   constexpr double kStep = 0.03;
-  const double usual = quantile(under(index).square_px, 0.5);
+  const double usual = geometry::quantile(under(index).square_px, 0.5);
   if (usual <= 0) return -1;
   const auto mean_at = [&](double at) {
     const FrameErrors errors = under(at);
@@ -131,39 +124,33 @@ double index_sigma(const std::function<FrameErrors(double)>& under, double index
   return -1;
 }
 
-std::string text(const char* format, double a, double b) {
-  char buffer[200];
-  std::snprintf(buffer, sizeof buffer, format, a, b);
-  return buffer;
-}
-
 std::vector<std::string> reasons_against(const FluidCheckSummary& summary, const FluidCheckOptions& options) {
   std::vector<std::string> reasons;
   if (summary.frame_count < options.fewest_frames)
-    reasons.push_back(text("the ruler's two markers were seen together in %.0f frames only (needs %.0f)",
-                           static_cast<double>(summary.frame_count),
-                           static_cast<double>(options.fewest_frames)));
+    reasons.push_back(
+        files::format("the ruler's two markers were seen together in %.0f frames only (needs %.0f)",
+                      static_cast<double>(summary.frame_count), static_cast<double>(options.fewest_frames)));
   if (summary.rows.front().rms_px < 0) return reasons;
   const auto& flat = *std::find_if(
       summary.rows.begin(), summary.rows.end(),
       [](const FluidCheckSummary::Row& row) { return row.hypothesis == FluidHypothesis::FlatPort; });
   if (flat.median_mm > options.most_median_mm || flat.median_deg > options.most_median_deg)
-    reasons.push_back(
-        text("the ruler comes out wrong by %.2f mm and %.1f degrees", flat.median_mm, flat.median_deg));
+    reasons.push_back(files::format("the ruler comes out wrong by %.2f mm and %.1f degrees", flat.median_mm,
+                                    flat.median_deg));
   const auto& best = summary.rows.front();
   if (best.hypothesis != FluidHypothesis::FlatPort && best.rms_px < 0.8 * flat.rms_px)
-    reasons.push_back(
-        std::string(to_text(best.hypothesis)) +
-        text(" explains the frames better: the ruler fits to %.2f px, not %.2f", best.rms_px, flat.rms_px));
+    reasons.push_back(std::string(to_text(best.hypothesis)) +
+                      files::format(" explains the frames better: the ruler fits to %.2f px, not %.2f",
+                                    best.rms_px, flat.rms_px));
   if (summary.index_sigma < 0 || summary.index_sigma > options.most_index_sigma)
     reasons.push_back(
         "the ruler was held where the models hardly differ: bring it nearer, tilt it, move it towards the "
         "rim");
   else if (std::abs(summary.best_index - options.refractive_index) > options.most_index_error)
-    reasons.push_back(
-        text("the pictures look like a refractive index of %.2f, not %.3f: another medium, or a port that "
-             "is not flat",
-             summary.best_index, options.refractive_index));
+    reasons.push_back(files::format(
+        "the pictures look like a refractive index of %.2f, not %.3f: another medium, or a port that "
+        "is not flat",
+        summary.best_index, options.refractive_index));
   return reasons;
 }
 

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "navigation/calibration/ruler.h"
 #include "navigation/camera/camera_model.h"
-#include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::calibration {
 
@@ -20,11 +20,6 @@ namespace arthronaut::calibration {
 struct RulerSighting {
   double mark_angle_deg = 0;
   std::array<Eigen::Vector2d, 4> first_px, second_px;
-};
-
-struct Ruler {
-  double marker_size_mm = 2.89;
-  geometry::RigidTransform first_from_second{Eigen::Quaterniond::Identity(), {10, 0, 0}};
 };
 
 enum class FluidHypothesis {

@@ -81,8 +81,8 @@ bool is_suspicious(std::span<const Sighting> sightings, const Estimate& e) {
     if (seen.has_angle &&
         std::abs(std::remainder(seen.mark_angle_deg - mark_deg, 360.0)) > kSuspiciousMark_deg)
       return true;
-    const Eigen::Vector2d circle = e.rotation_center_px + Eigen::Rotation2Dd(e.lens_angle_rad[i]) *
-                                                              (e.circle_center_px - e.rotation_center_px);
+    const Eigen::Vector2d circle =
+        turned_about(e.rotation_center_px, e.circle_center_px, e.lens_angle_rad[i]);
     if (seen.has_circle && (seen.circle_center_px - circle).norm() > kSuspiciousCircle_px) return true;
   }
   return false;
@@ -108,7 +108,6 @@ bool disbelieve_one(JointSolution& joint, const Eigen::Vector2i& size_px) {
     if (!joint.sightings[i].has_angle) continue;
     JointSolution without = joint;
     without.sightings[i].has_angle = false;
-    without.disbelieved.push_back(i);
     if (measured_turn_deg(without.sightings) < kLeastMeasurableTurn_deg) continue;
     without.result = solve(without.sightings, size_px, without.options);
     if (without.result.rms_px < 0) continue;

@@ -22,8 +22,7 @@ struct JointSolution {
   AdjustmentResult result;  // with covariance; rms_px below 0: no camera explains the pictures
   // As given, has_angle taken from those whose mark is not believed.
   std::vector<Sighting> sightings;
-  std::vector<std::size_t> disbelieved;  // their places
-  AdjustmentOptions options;             // that it was made with
+  AdjustmentOptions options;  // that it was made with
 };
 
 [[nodiscard]] JointSolution solve_jointly(std::span<const Sighting> sightings,

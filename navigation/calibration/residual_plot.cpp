@@ -1,10 +1,10 @@
 #include "navigation/calibration/residual_plot.h"
 
-#include <cstdio>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "planning/files/atomic_file.h"
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::calibration {
@@ -63,13 +63,13 @@ void draw_scatter(cv::Mat& canvas, const CalibrationSummary& summary) {
     for (const Eigen::Vector2d& r : summary.pictures[i].residuals_px)
       cv::circle(canvas, cv::Point2d(middle) + at(kPxPerPx * r), 1, colour(i), cv::FILLED, cv::LINE_AA);
   int y = 690;
-  char text[200];
   for (std::size_t i = 0; i < summary.pictures.size() && y < kHeight - 20; ++i, y += 26) {
     const auto& picture = summary.pictures[i];
-    std::snprintf(text, sizeof text, "%.18s: %.2f px, %zu corners, tilt %.0f deg, lens %.0f deg",
-                  std::filesystem::path(picture.name).filename().c_str(), picture.rms_px,
-                  picture.residuals_px.size(), picture.tilt_deg, picture.lens_angle_deg);
-    write(canvas, {970, y}, text, colour(i));
+    write(canvas, {970, y},
+          files::format("%.18s: %.2f px, %zu corners, tilt %.0f deg, lens %.0f deg",
+                        std::filesystem::path(picture.name).filename().c_str(), picture.rms_px,
+                        picture.residuals_px.size(), picture.tilt_deg, picture.lens_angle_deg),
+          colour(i));
   }
 }
 
@@ -84,18 +84,16 @@ camera::Frame draw_residuals(const CalibrationSummary& summary,
   cv::Mat canvas(kHeight, kWidth, CV_8UC3, frame.bgr.data());
   canvas = kPaper;
   const camera::Calibration& c = summary.record.calibration;
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "f %.1f px   xi %.4f   principal point (%.1f, %.1f)   rotation centre (%.1f, %.1f)",
-                c.focal_px, c.distortion_xi, c.principal_point_px.x(), c.principal_point_px.y(),
-                c.rotation_center_px.x(), c.rotation_center_px.y());
-  write(canvas, {kMargin, 40}, text);
-  char left_out[40] = "";
-  if (summary.leave_one_out_rms_px >= 0)
-    std::snprintf(left_out, sizeof left_out, "   left out %.3f px", summary.leave_one_out_rms_px);
-  std::snprintf(text, sizeof text, "RMS %.3f px%s   lines: residuals x %.0f   + principal point   x centre",
-                summary.rms_px, left_out, kMagnified);
-  write(canvas, {kMargin, 70}, text);
+  write(canvas, {kMargin, 40},
+        files::format("f %.1f px   xi %.4f   principal point (%.1f, %.1f)   rotation centre (%.1f, %.1f)",
+                      c.focal_px, c.distortion_xi, c.principal_point_px.x(), c.principal_point_px.y(),
+                      c.rotation_center_px.x(), c.rotation_center_px.y()));
+  const std::string left_out = summary.leave_one_out_rms_px >= 0
+                                   ? files::format("   left out %.3f px", summary.leave_one_out_rms_px)
+                                   : "";
+  write(canvas, {kMargin, 70},
+        files::format("RMS %.3f px%s   lines: residuals x %.0f   + principal point   x centre",
+                      summary.rms_px, left_out.c_str(), kMagnified));
   draw_field(canvas, summary, pictures);
   draw_scatter(canvas, summary);
   return frame;

@@ -26,8 +26,9 @@ struct RulerSightings::State {
       : options(with), lens_tracker({.calibration = with.calibration}), other(other_index(with)) {
     // Throws here rather than in the first frame.
     (void)camera::CameraModel(options.calibration, 0, options.refractive_index);
-    const double size_mm = options.ruler.marker_size_mm;
-    const markers::DeclaredMarker declared[] = {{options.first_id, size_mm}, {options.second_id, size_mm}};
+    const Ruler& ruler = options.ruler;
+    const markers::DeclaredMarker declared[] = {{ruler.first_id, ruler.size_mm},
+                                                {ruler.second_id, ruler.size_mm}};
     as_stated = markers::make_tracker(declared);
     as_other = markers::make_tracker(declared);
     sightings.reserve(std::min<std::size_t>(options.most, 300));

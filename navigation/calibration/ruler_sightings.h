@@ -25,7 +25,6 @@ struct RulerSightingsOptions {
   camera::Calibration calibration;
   double refractive_index = 1.3345;  // of the medium that is said to be there
   Ruler ruler;
-  int first_id = 5, second_id = 6;
   bool follow_lens = true;  // false: the lens stays at the reference angle, the mark is not needed
   // Sightings kept; later ones are looked at and shown, but not added. Five seconds of 60 frames.
   std::size_t most = 300;

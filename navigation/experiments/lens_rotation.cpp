@@ -11,33 +11,26 @@
 #include "planning/files/atomic_file.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
+#include "planning/geometry/quantile.h"
 
 namespace arthronaut::experiments {
 
 namespace {
 
-// The value below which `share` of the values lie.
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  const auto rank = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank), values.end());
-  return values[rank];
-}
-
-pipeline::ViewTracker make_view_tracker(const camera::Calibration& camera, const Ruler& ruler,
+pipeline::ViewTracker make_view_tracker(const camera::Calibration& camera, const RulerInFluid& seen,
                                         LensMode mode) {
   pipeline::ViewTrackerOptions options;
   options.calibration = camera;
-  options.refractive_index = ruler.refractive_index;
+  options.refractive_index = seen.refractive_index;
   options.follow_lens = mode != LensMode::NotFollowing;
   if (mode == LensMode::FocalRule) options.fluid_model = camera::FluidModel::FocalRule;
   const std::array<markers::DeclaredMarker, 2> declared{
-      markers::DeclaredMarker{ruler.first_id, ruler.size_mm},
-      markers::DeclaredMarker{ruler.second_id, ruler.size_mm}};
+      markers::DeclaredMarker{seen.ruler.first_id, seen.ruler.size_mm},
+      markers::DeclaredMarker{seen.ruler.second_id, seen.ruler.size_mm}};
   return {options, markers::make_tracker(declared)};
 }
 
-std::optional<RulerError> error_of(const pipeline::View& view, const Ruler& ruler) {
+std::optional<RulerError> error_of(const pipeline::View& view, const calibration::Ruler& ruler) {
   const auto &first = view.markers[0], &second = view.markers[1];
   if (!view.stands_for(first) || !view.stands_for(second)) return std::nullopt;
   const auto measured = first.camera_from_marker.inverse() * second.camera_from_marker;
@@ -62,8 +55,9 @@ void summarise(LensRotationResult& result) {
       mm.push_back(frame.errors[mode]->translation_mm);
       deg.push_back(frame.errors[mode]->rotation_deg);
     }
-    result.modes[mode] = {static_cast<int>(mm.size()), quantile(mm, 0.5), quantile(mm, 0.95),
-                          quantile(deg, 0.5), quantile(deg, 0.95)};
+    result.modes[mode] = {static_cast<int>(mm.size()), geometry::quantile(mm, 0.5, 0),
+                          geometry::quantile(mm, 0.95, 0), geometry::quantile(deg, 0.5, 0),
+                          geometry::quantile(deg, 0.95, 0)};
   }
 }
 
@@ -100,26 +94,27 @@ std::string_view to_text(LensMode mode) {
   return "?";
 }
 
-Ruler read_ruler_file(const std::filesystem::path& file) {
+RulerInFluid read_ruler_file(const std::filesystem::path& file) {
   const files::JsonObject document = files::read_json(file, "arthronaut-acceptance.ruler", 1);
   const std::vector<double> ids = document.numbers("markers");
   if (ids.size() != 2) document.fail("markers", "must be two ids");
-  Ruler ruler;
+  RulerInFluid seen;
+  calibration::Ruler& ruler = seen.ruler;
   ruler.first_id = static_cast<int>(ids[0]);
   ruler.second_id = static_cast<int>(ids[1]);
   ruler.size_mm = document.positive_number("size_mm");
   ruler.first_from_second = document.rigid_transform("marker" + std::to_string(ruler.first_id) +
                                                      "_from_marker" + std::to_string(ruler.second_id));
-  ruler.refractive_index = camera::refractive_index_from_text(document.text("medium"));
-  return ruler;
+  seen.refractive_index = camera::refractive_index_from_text(document.text("medium"));
+  return seen;
 }
 
 LensRotationResult run_lens_rotation(sources::FrameSource& source, const camera::Calibration& camera,
-                                     const Ruler& ruler, const std::function<void(int)>& progress) {
+                                     const RulerInFluid& seen, const std::function<void(int)>& progress) {
   // One view tracker a mode, in the order of kLensModes.
-  std::array trackers{make_view_tracker(camera, ruler, LensMode::Following),
-                      make_view_tracker(camera, ruler, LensMode::NotFollowing),
-                      make_view_tracker(camera, ruler, LensMode::FocalRule)};
+  std::array trackers{make_view_tracker(camera, seen, LensMode::Following),
+                      make_view_tracker(camera, seen, LensMode::NotFollowing),
+                      make_view_tracker(camera, seen, LensMode::FocalRule)};
   LensRotationResult result;
   pipeline::View view;
   // The mark's angle jumps from 360 to 0; the lens's does not.
@@ -129,7 +124,7 @@ LensRotationResult run_lens_rotation(sources::FrameSource& source, const camera:
     row.index = frame->index;
     for (std::size_t mode = 0; mode < kLensModes.size(); ++mode) {
       trackers[mode].observe(*frame, view);
-      row.errors[mode] = error_of(view, ruler);
+      row.errors[mode] = error_of(view, seen.ruler);
       if (mode == 0 && view.lens.has_angle()) {
         const double angle_deg = geometry::deg_from_rad(camera.lens_angle_rad(view.lens.mark_angle_deg));
         unwrapped_deg += std::remainder(angle_deg - unwrapped_deg, 360.0);
@@ -159,8 +154,8 @@ SimulatedLensRotation simulate_lens_rotation(int frame_count, std::uint64_t seed
   scene.seed = seed;
   scene.frame_count = frame_count;
   simulator::SimulatedRuler source(scene);
-  const Ruler ruler{scene.first_id, scene.second_id, scene.size_mm, source.first_from_second(),
-                    scene.refractive_index};
+  const RulerInFluid ruler{{scene.first_id, scene.second_id, scene.size_mm, source.first_from_second()},
+                           scene.refractive_index};
   simulated.result = run_lens_rotation(source, simulated.calibrated, ruler, progress);
   return simulated;
 }

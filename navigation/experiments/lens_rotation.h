@@ -10,22 +10,19 @@
 #include <string>
 #include <vector>
 
+#include "navigation/calibration/ruler.h"
 #include "navigation/camera/camera_model.h"
 #include "navigation/sources/frame_source.h"
-#include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::experiments {
 
-// Two markers at a known pose to each other.
-struct Ruler {
-  int first_id = 5, second_id = 6;
-  double size_mm = 2.89;
-  geometry::RigidTransform first_from_second{Eigen::Quaterniond::Identity(), {10, 0, 0}};
+struct RulerInFluid {
+  calibration::Ruler ruler;
   double refractive_index = 1.3345;  // of the fluid it was seen in
 };
 // A file of format "arthronaut-acceptance.ruler": {"markers": [a, b], "size_mm", "marker<a>_from_marker<b>",
 // "medium"}. Throws IoError or InvalidInput.
-[[nodiscard]] Ruler read_ruler_file(const std::filesystem::path& file);
+[[nodiscard]] RulerInFluid read_ruler_file(const std::filesystem::path& file);
 
 // How the camera is taken to behave.
 enum class LensMode {
@@ -61,7 +58,7 @@ struct LensRotationResult {
 // Progress: called with the number of frames done. Throws what the source throws, InvalidInput for a camera
 // that is not of the frames' size.
 [[nodiscard]] LensRotationResult run_lens_rotation(sources::FrameSource& source,
-                                                   const camera::Calibration& camera, const Ruler& ruler,
+                                                   const camera::Calibration& camera, const RulerInFluid& seen,
                                                    const std::function<void(int)>& progress = {});
 
 // The simulator's own: a camera calibrated from the simulator's stills, then `frame_count` frames of its

@@ -1,32 +1,18 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "navigation/experiments/lens_rotation.h"
-#include "planning/files/atomic_file.h"
-#include "planning/geometry/error.h"
+#include "navigation/experiments/plot.h"
+#include "planning/files/format.h"
 
 namespace arthronaut::experiments {
 
 namespace {
 
 constexpr int kWidth = 1200, kPanelHeight = 230, kGap = 50, kLeft = 90, kRight = 30, kTop = 90;
-const cv::Scalar kInk(40, 40, 40), kGrid(222, 222, 222);
 const std::array<cv::Scalar, 3> kModeColors{cv::Scalar(170, 110, 40), cv::Scalar(40, 120, 220),
                                             cv::Scalar(110, 160, 60)};
-
-void write_text(cv::Mat& image, const std::string& text, cv::Point at, double size = 0.5,
-                const cv::Scalar& color = kInk) {
-  cv::putText(image, text, at, cv::FONT_HERSHEY_SIMPLEX, size, color, 1, cv::LINE_AA);
-}
-
-std::string formatted(const char* format, double value) {
-  char text[120];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 // One diagram over the frames: y from low to high.
 class Panel {
@@ -42,7 +28,7 @@ class Panel {
       const double value = low + (high - low) * line / 4;
       const int y = row_of(value);
       cv::line(image_, {kLeft, y}, {kWidth - kRight, y}, kGrid);
-      write_text(image_, formatted(high - low > 10 ? "%.0f" : "%.2f", value), {kLeft - 62, y + 5}, 0.45);
+      write_text(image_, files::format("%.*f", high - low > 10 ? 0 : 2, value), {kLeft - 62, y + 5}, 0.45);
     }
     write_text(image_, title, {kLeft, top_ - 10}, 0.55);
   }
@@ -123,9 +109,7 @@ void write_lens_rotation_plot(const std::filesystem::path& file, const LensRotat
   lens.draw(kInk, [&](std::size_t i) {
     return i < result.frames.size() ? result.frames[i].lens_angle_deg : std::optional<double>{};
   });
-  files::write_atomically(file, [&](const std::filesystem::path& temporary) {
-    if (!cv::imwrite(temporary.string(), image)) throw IoError(file, "the picture could not be written");
-  });
+  write_plot(file, image);
 }
 
 }  // namespace arthronaut::experiments

@@ -5,6 +5,7 @@
 #include <ctime>
 
 #include "planning/geometry/error.h"
+#include "planning/geometry/quantile.h"
 
 namespace arthronaut::experiments {
 
@@ -14,13 +15,6 @@ double processor_seconds() {
   std::timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Vertices of the bone 25 to 50 mm from the area, as far from one another as can be.
@@ -76,9 +70,9 @@ void count_outcomes(RegistrationExperimentResult& result) {
     result.reliable_but_wrong_count += trial.reliable && !is_right;
     result.doubted_though_right_count += !trial.reliable && is_right;
   }
-  result.median_target_error_mm = median(std::move(errors));
-  result.median_error_ratio = median(std::move(ratios));
-  result.median_seconds = median(std::move(seconds));
+  result.median_target_error_mm = geometry::median(std::move(errors), 0);
+  result.median_error_ratio = geometry::median(std::move(ratios), 0);
+  result.median_seconds = geometry::median(std::move(seconds), 0);
 }
 
 }  // namespace

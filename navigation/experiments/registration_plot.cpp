@@ -1,29 +1,17 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "navigation/experiments/registration_experiment.h"
-#include "planning/files/atomic_file.h"
-#include "planning/geometry/error.h"
+#include "navigation/experiments/plot.h"
+#include "planning/files/format.h"
 
 namespace arthronaut::experiments {
 
 namespace {
 
-const cv::Scalar kInk(40, 40, 40), kGrid(220, 220, 220), kSpread(170, 110, 40), kError(40, 120, 220);
+const cv::Scalar kSpread(170, 110, 40), kError(40, 120, 220);
 constexpr int kWidth = 1000, kHeight = 640, kLeft = 90, kRight = 30, kTop = 90, kBottom = 90;
-
-void write_text(cv::Mat& image, const std::string& text, cv::Point at, double size = 0.6) {
-  cv::putText(image, text, at, cv::FONT_HERSHEY_SIMPLEX, size, kInk, 1, cv::LINE_AA);
-}
-
-std::string formatted(const char* format, double value) {
-  char text[120];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 }  // namespace
 
@@ -41,7 +29,7 @@ void write_registration_plot(const std::filesystem::path& file, const Registrati
     const double mm = top_mm * line / 5;
     const int y = base - height_of(mm);
     cv::line(image, {kLeft, y}, {kWidth - kRight, y}, kGrid);
-    write_text(image, formatted("%.2f", mm), {kLeft - 60, y + 5}, 0.5);
+    write_text(image, files::format("%.2f", mm), {kLeft - 60, y + 5}, 0.5);
   }
   const int count = std::max<int>(1, static_cast<int>(result.control_points.size()));
   const int step = (kWidth - kLeft - kRight) / count, bar = step / 3;
@@ -50,22 +38,20 @@ void write_registration_plot(const std::filesystem::path& file, const Registrati
     const int x = kLeft + i * step + step / 6;
     cv::rectangle(image, {x, base - height_of(control.spread_rms_mm)}, {x + bar - 2, base}, kSpread, cv::FILLED);
     cv::rectangle(image, {x + bar, base - height_of(control.error_rms_mm)}, {x + 2 * bar - 2, base}, kError, cv::FILLED);
-    write_text(image, formatted("%.0f mm", control.distance_mm), {x, base + 24}, 0.5);
+    write_text(image, files::format("%.0f mm", control.distance_mm), {x, base + 24}, 0.5);
   }
   cv::line(image, {kLeft, base}, {kWidth - kRight, base}, kInk);
   write_text(image, "Registration, " + std::string(to_text(noise)) +
-                        formatted(" noise, %.0f trials", static_cast<double>(result.trials.size())) +
-                        formatted(", %.0f reliable", static_cast<double>(result.reliable_count)),
+                        files::format(" noise, %.0f trials", static_cast<double>(result.trials.size())) +
+                        files::format(", %.0f reliable", static_cast<double>(result.reliable_count)),
              {kLeft, 32}, 0.75);
   cv::rectangle(image, {kLeft, 50}, {kLeft + 16, 66}, kSpread, cv::FILLED);
-  write_text(image, formatted("RMS about the centroid of the trials (all: %.2f mm)", result.spread_rms_mm),
+  write_text(image, files::format("RMS about the centroid of the trials (all: %.2f mm)", result.spread_rms_mm),
              {kLeft + 24, 64}, 0.5);
   cv::rectangle(image, {kLeft + 450, 50}, {kLeft + 466, 66}, kError, cv::FILLED);
-  write_text(image, formatted("RMS error against the truth (all: %.2f mm)", result.error_rms_mm), {kLeft + 474, 64}, 0.5);
+  write_text(image, files::format("RMS error against the truth (all: %.2f mm)", result.error_rms_mm), {kLeft + 474, 64}, 0.5);
   write_text(image, "control points, by distance from the middle of the digitised area; mm", {kLeft, kHeight - 24}, 0.55);
-  files::write_atomically(file, [&](const std::filesystem::path& temporary) {
-    if (!cv::imwrite(temporary.string(), image)) throw IoError(file.string() + ": the picture could not be written");
-  });
+  write_plot(file, image);
 }
 
 }  // namespace arthronaut::experiments

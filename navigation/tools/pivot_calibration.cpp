@@ -4,11 +4,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <random>
 
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
+#include "planning/geometry/quantile.h"
 
 namespace arthronaut::tools {
 namespace {
@@ -71,12 +72,6 @@ void residuals_of(const std::vector<Pose>& poses, const Fit& fit, std::vector<do
   }
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double angle_between(const Pose& a, const Pose& b) {
   return geometry::rotation_angle_rad(Eigen::Quaterniond(a.rotation.transpose() * b.rotation));
 }
@@ -97,7 +92,7 @@ std::optional<Fit> least_median_fit(const std::vector<Pose>& poses, std::uint32_
     const auto fit = fit_tip(triple, {1, 1, 1});
     if (!fit) continue;
     residuals_of(poses, *fit, residuals);
-    const double middle = median(residuals);
+    const double middle = geometry::median(residuals);
     if (middle < best_median) {
       best_median = middle;
       best = fit;
@@ -113,7 +108,7 @@ std::optional<Fit> reweighted_fit(const std::vector<Pose>& poses, Fit fit, std::
   std::vector<double> residuals;
   for (int i = 0; i < kReweightings; ++i) {
     residuals_of(poses, fit, residuals);
-    const double cut = kTukey * std::max(kMinScaleMm, median(residuals) / kMedianRadius);
+    const double cut = kTukey * std::max(kMinScaleMm, geometry::median(residuals) / kMedianRadius);
     weights.resize(poses.size());
     for (std::size_t k = 0; k < poses.size(); ++k) {
       const double ratio = residuals[k] / cut;
@@ -181,12 +176,6 @@ double half_change_mm(const std::vector<Pose>& poses, const std::vector<double>&
   return std::max((a->tip - b->tip).norm(), (a->pivot - b->pivot).norm());
 }
 
-std::string text_of(const char* format, double a, double b) {
-  char line[160];
-  std::snprintf(line, sizeof line, format, a, b);
-  return line;
-}
-
 void judge(const PivotCalibrationOptions& options, PivotCalibrationSummary& summary) {
   using Outcome = PivotCalibrationSummary::Outcome;
   summary.outcome = Outcome::Ok;
@@ -196,34 +185,35 @@ void judge(const PivotCalibrationOptions& options, PivotCalibrationSummary& summ
   };
   if (summary.inlier_count < options.min_inlier_share * summary.pose_count) {
     refuse(Outcome::TooManyOutliers,
-           text_of("only %.0f of %.0f poses agree on one tip", summary.inlier_count, summary.pose_count));
+           files::format("only %d of %d poses agree on one tip", summary.inlier_count, summary.pose_count));
   }
   if (summary.cone_deg < options.min_cone_deg) {
     refuse(Outcome::ConeTooNarrow,
-           text_of("the tool was swung through a cone of %.1f deg to each side; %.0f deg are needed",
-                   summary.cone_deg, options.min_cone_deg));
+           files::format("the tool was swung through a cone of %.1f deg to each side; %.0f deg are needed",
+                         summary.cone_deg, options.min_cone_deg));
   }
   if (summary.distinct_count < options.min_distinct_poses) {
-    refuse(Outcome::TipUncertain, text_of("only %.0f distinct orientations; %.0f are needed",
-                                          summary.distinct_count, options.min_distinct_poses));
+    refuse(Outcome::TipUncertain, files::format("only %d distinct orientations; %d are needed",
+                                                summary.distinct_count, options.min_distinct_poses));
   }
   if (summary.rms_mm > options.max_rms_mm) {
     refuse(Outcome::ResidualTooLarge,
-           text_of("the tip did not stay in place: %.2f mm left over, at most %.2f mm allowed",
-                   summary.rms_mm, options.max_rms_mm));
+           files::format("the tip did not stay in place: %.2f mm left over, at most %.2f mm allowed",
+                         summary.rms_mm, options.max_rms_mm));
   }
   if (summary.sigma_mm > options.max_sigma_mm) {
-    refuse(Outcome::TipUncertain, text_of("the tip is uncertain by %.2f mm, at most %.2f mm allowed",
-                                          summary.sigma_mm, options.max_sigma_mm));
+    refuse(Outcome::TipUncertain, files::format("the tip is uncertain by %.2f mm, at most %.2f mm allowed",
+                                                summary.sigma_mm, options.max_sigma_mm));
   }
   if (summary.bias_mm > options.max_bias_mm) {
-    refuse(Outcome::TipUncertain, text_of("noise shortens the tip by about %.2f mm, at most %.2f mm allowed",
-                                          summary.bias_mm, options.max_bias_mm));
+    refuse(Outcome::TipUncertain,
+           files::format("noise shortens the tip by about %.2f mm, at most %.2f mm allowed", summary.bias_mm,
+                         options.max_bias_mm));
   }
   if (summary.half_change_mm > options.max_half_change_mm) {
     refuse(Outcome::TipUncertain,
-           text_of("the two halves of the motion differ by %.2f mm, at most %.2f mm allowed",
-                   summary.half_change_mm, options.max_half_change_mm));
+           files::format("the two halves of the motion differ by %.2f mm, at most %.2f mm allowed",
+                         summary.half_change_mm, options.max_half_change_mm));
   }
   summary.message = summary.is_usable() ? "The tip is known." : summary.reasons.front();
 }

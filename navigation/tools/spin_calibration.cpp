@@ -4,9 +4,10 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
+#include "planning/geometry/quantile.h"
 
 namespace arthronaut::tools {
 namespace {
@@ -60,12 +61,6 @@ double offset_mm(const Axis& axis, const RigidTransform& pose) {
   return (apart - axis.in_fixed * axis.in_fixed.dot(apart)).norm();
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // The sector that the spin covers: the full circle less the widest gap.
 double turn_deg(const Axis& axis, std::span<const RigidTransform> poses, const std::vector<bool>& use) {
   const Eigen::Vector3d spoke = axis.in_tool.unitOrthogonal();
@@ -82,12 +77,9 @@ double turn_deg(const Axis& axis, std::span<const RigidTransform> poses, const s
   return 360 - widest;
 }
 
-void refuse(SpinCalibrationSummary& summary, SpinCalibrationSummary::Outcome outcome, const char* format,
-            double value, double limit) {
-  char line[160];
-  std::snprintf(line, sizeof line, format, value, limit);
+void refuse(SpinCalibrationSummary& summary, SpinCalibrationSummary::Outcome outcome, std::string reason) {
   if (summary.is_usable()) summary.outcome = outcome;
-  summary.reasons.emplace_back(line);
+  summary.reasons.push_back(std::move(reason));
 }
 
 }  // namespace
@@ -103,8 +95,8 @@ SpinCalibrationSummary calibrate_spin(std::span<const RigidTransform> fixed_from
   summary.pose_count = static_cast<int>(fixed_from_tool.size());
   summary.outcome = Outcome::Ok;
   if (summary.pose_count < options.min_poses) {
-    refuse(summary, Outcome::TooFewPoses, "only %.0f poses; %.0f are needed", summary.pose_count,
-           options.min_poses);
+    refuse(summary, Outcome::TooFewPoses,
+           files::format("only %d poses; %d are needed", summary.pose_count, options.min_poses));
     summary.message = summary.reasons.front();
     return summary;
   }
@@ -118,8 +110,8 @@ SpinCalibrationSummary calibrate_spin(std::span<const RigidTransform> fixed_from
       angles.push_back(wobble_rad(axis, pose));
       offsets.push_back(offset_mm(axis, pose));
     }
-    const double angle_limit = options.outlier_factor * std::max(1e-4, median(angles));
-    const double offset_limit = options.outlier_factor * std::max(1e-3, median(offsets));
+    const double angle_limit = options.outlier_factor * std::max(1e-4, geometry::median(angles));
+    const double offset_limit = options.outlier_factor * std::max(1e-3, geometry::median(offsets));
     for (std::size_t i = 0; i < use.size(); ++i)
       use[i] = angles[i] <= angle_limit && offsets[i] <= offset_limit;
     axis = fit_axis(fixed_from_tool, use);
@@ -142,17 +134,19 @@ SpinCalibrationSummary calibrate_spin(std::span<const RigidTransform> fixed_from
   summary.direction_sigma_deg = 1.3 * summary.wobble_deg / std::sqrt(static_cast<double>(n));
 
   if (summary.turn_deg < options.min_turn_deg) {
-    refuse(summary, Outcome::TurnTooSmall, "the guide was turned by %.0f deg; %.0f deg are needed",
-           summary.turn_deg, options.min_turn_deg);
+    refuse(summary, Outcome::TurnTooSmall,
+           files::format("the guide was turned by %.0f deg; %.0f deg are needed", summary.turn_deg,
+                         options.min_turn_deg));
   }
   if (summary.rms_mm > options.max_rms_mm) {
     refuse(summary, Outcome::ResidualTooLarge,
-           "the axis did not stay in place: %.2f mm left over, at most %.2f mm allowed", summary.rms_mm,
-           options.max_rms_mm);
+           files::format("the axis did not stay in place: %.2f mm left over, at most %.2f mm allowed",
+                         summary.rms_mm, options.max_rms_mm));
   }
   if (summary.direction_sigma_deg > options.max_direction_sigma_deg) {
-    refuse(summary, Outcome::AxisUncertain, "the axis is uncertain by %.2f deg, at most %.2f deg allowed",
-           summary.direction_sigma_deg, options.max_direction_sigma_deg);
+    refuse(summary, Outcome::AxisUncertain,
+           files::format("the axis is uncertain by %.2f deg, at most %.2f deg allowed",
+                         summary.direction_sigma_deg, options.max_direction_sigma_deg));
   }
   summary.message = summary.is_usable() ? "The axis is known." : summary.reasons.front();
   return summary;

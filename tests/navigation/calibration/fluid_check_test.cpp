@@ -35,7 +35,7 @@ std::vector<RulerSighting> sightings_in(double index, camera::FluidModel fluid, 
     bool visible = true;
     for (int marker = 0; marker < 2; ++marker)
       for (std::size_t k = 0; k < 4; ++k) {
-        const double h = 0.5 * ruler.marker_size_mm;
+        const double h = 0.5 * ruler.size_mm;
         const Eigen::Vector3d corner(k == 0 || k == 3 ? -h : h, k < 2 ? h : -h, 0);
         const auto pixel =
             model.project(camera_from_first * (marker == 0 ? corner : ruler.first_from_second * corner));

@@ -87,7 +87,7 @@ TEST(RulerSightings, ThrowsOnBrokenContracts) {
   small.width = small.height = 64;
   small.bgr.assign(3 * 64 * 64, 0);
   EXPECT_THROW(RulerSightings(options).look(small), InvalidInput);
-  options.second_id = options.first_id;
+  options.ruler.second_id = options.ruler.first_id;
   EXPECT_THROW(RulerSightings{options}, InvalidInput);
   options = options_for(scene, 0.5);
   EXPECT_THROW(RulerSightings{options}, InvalidInput);

@@ -55,13 +55,14 @@ TEST_F(LensRotationTest, FollowingTheLensIsWorthIt) {
 
 // The truth of a recorded ruler is read as it stands.
 TEST_F(LensRotationTest, ReadsARuler) {
-  const Ruler ruler = read_ruler_file(write(R"({"format": "arthronaut-acceptance.ruler", "version": 1,
+  const RulerInFluid seen = read_ruler_file(write(R"({"format": "arthronaut-acceptance.ruler", "version": 1,
       "markers": [7, 9], "size_mm": 3.5, "medium": "water",
       "marker7_from_marker9": {"q_wxyz": [1, 0, 0, 0], "t_mm": [0, 12, 0]}})"));
+  const calibration::Ruler& ruler = seen.ruler;
   EXPECT_EQ(ruler.first_id, 7);
   EXPECT_EQ(ruler.second_id, 9);
   EXPECT_EQ(ruler.size_mm, 3.5);
-  EXPECT_EQ(ruler.refractive_index, 1.333);
+  EXPECT_EQ(seen.refractive_index, 1.333);
   EXPECT_EQ(ruler.first_from_second.translation_mm, Eigen::Vector3d(0, 12, 0));
 }
 

@@ -1,0 +1,17 @@
+// Medians and other quantiles of a list.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+namespace arthronaut::geometry {
+
+inline constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
+// The value below which this share of the list lies: the one at rank share * (count - 1), rounded down. Share
+// in [0, 1]. `of_none`: that of an empty list.
+[[nodiscard]] double quantile(std::vector<double> values, double share, double of_none = kNotKnown);
+// The one in the middle; of an even number the upper one.
+[[nodiscard]] double median(std::vector<double> values, double of_none = kNotKnown);
+
+}  // namespace arthronaut::geometry
