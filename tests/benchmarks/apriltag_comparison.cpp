@@ -7,40 +7,26 @@
 #include <apriltag/tag16h5.h>
 #include <apriltag/tag36h11.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "navigation/markers/marker_tracker.h"
 #include "navigation/markers/planar_pose.h"
-#include "navigation/simulator/renderer.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "navigation/simulator/simulated_ruler.h"
+#include "planning/geometry/quantile.h"
+#include "tests/real_data/pose_error.h"
 
 namespace arthronaut {
 namespace {
 
 constexpr int kIds[] = {5, 6};
-constexpr double kSizeMm = 2.89, kSpacingMm = 10, kSaline = 1.3345;
-constexpr double kWrongDeg = 5, kWrongMm = 1;
-
-double thread_cpu_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return -1;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
+constexpr double kSizeMm = 2.89;
 
 // A way to read two markers: what is printed, and where it is seen.
 class Reader {
@@ -139,64 +125,35 @@ struct Row {
   std::vector<double> rotation_deg, translation_mm, relative_deg, relative_mm, ms;
   int asked = 0, found = 0, wrong = 0;
 
-  static double angle_deg(const geometry::RigidTransform& error) {
-    return geometry::deg_from_rad(geometry::rotation_angle_rad(error.rotation));
-  }
-
   void add(const std::array<std::optional<geometry::RigidTransform>, 2>& seen,
            const std::array<geometry::RigidTransform, 2>& truth) {
     for (std::size_t i = 0; i < 2; ++i) {
       ++asked;
       if (!seen[i]) continue;
       ++found;
-      const geometry::RigidTransform error = truth[i].inverse() * *seen[i];
-      const double off_mm = (seen[i]->translation_mm - truth[i].translation_mm).norm();
-      rotation_deg.push_back(angle_deg(error));
-      translation_mm.push_back(off_mm);
-      wrong += rotation_deg.back() > kWrongDeg || off_mm > kWrongMm;
+      const real_data::PoseError error = real_data::pose_error(*seen[i], truth[i]);
+      rotation_deg.push_back(error.rotation_deg);
+      translation_mm.push_back(error.translation_mm);
+      wrong += error.is_wrong();
     }
     if (!seen[0] || !seen[1]) return;
-    const geometry::RigidTransform relative = seen[0]->inverse() * *seen[1];
-    const geometry::RigidTransform expected = truth[0].inverse() * truth[1];
-    relative_deg.push_back(angle_deg(expected.inverse() * relative));
-    relative_mm.push_back((relative.translation_mm - expected.translation_mm).norm());
+    const real_data::PoseError error =
+        real_data::pose_error(seen[0]->inverse() * *seen[1], truth[0].inverse() * truth[1]);
+    relative_deg.push_back(error.rotation_deg);
+    relative_mm.push_back(error.translation_mm);
   }
 
   void print() const {
     std::printf(
         "| %s | %.3f / %.3f | %.4f / %.4f | %.3f / %.3f | %.4f / %.4f | %.1f | %d | %.1f / %.1f |\n",
-        name.c_str(), quantile(rotation_deg, 0.5), quantile(rotation_deg, 0.95), quantile(translation_mm, 0.5),
-        quantile(translation_mm, 0.95), quantile(relative_deg, 0.5), quantile(relative_deg, 0.95),
-        quantile(relative_mm, 0.5), quantile(relative_mm, 0.95), 100.0 * found / std::max(1, asked), wrong,
-        quantile(ms, 0.5), quantile(ms, 0.99));
+        name.c_str(), geometry::quantile(rotation_deg, 0.5), geometry::quantile(rotation_deg, 0.95), geometry::quantile(translation_mm, 0.5),
+        geometry::quantile(translation_mm, 0.95), geometry::quantile(relative_deg, 0.5), geometry::quantile(relative_deg, 0.95),
+        geometry::quantile(relative_mm, 0.5), geometry::quantile(relative_mm, 0.95), 100.0 * found / std::max(1, asked), wrong,
+        geometry::quantile(ms, 0.5), geometry::quantile(ms, 0.99));
   }
 };
 
-simulator::Scene scene_of(const Reader& reader, const std::array<geometry::RigidTransform, 2>& truth) {
-  simulator::PlateShape ruler;
-  ruler.half_size_mm = {30, 4.5};
-  ruler.tick_spacing_mm = 1;
-  ruler.markers = {{{-0.5 * kSpacingMm, 0}, kSizeMm, reader.cells(kIds[0])},
-                   {{0.5 * kSpacingMm, 0}, kSizeMm, reader.cells(kIds[1])}};
-  geometry::RigidTransform camera_from_ruler = truth[0];
-  camera_from_ruler.translation_mm = 0.5 * (truth[0].translation_mm + truth[1].translation_mm);
-  simulator::Scene scene;
-  scene.exposure = static_cast<float>(0.85 * camera_from_ruler.translation_mm.squaredNorm());
-  scene.solids.push_back(simulator::make_plate(camera_from_ruler, ruler));
-  return scene;
-}
-
 void run(int frame_count, std::uint64_t seed) {
-  simulator::RulerOptions options;
-  options.camera = simulator::standard_camera();
-  options.seed = seed;
-  options.frame_count = frame_count;
-  options.first_id = kIds[0];
-  options.second_id = kIds[1];
-  options.size_mm = kSizeMm;
-  options.spacing_mm = kSpacingMm;
-  simulator::SimulatedRuler motion(options);
-
   std::vector<Row> rows(5);
   const auto set = [&](std::size_t i, const char* name, std::unique_ptr<Reader> reader) {
     rows[i].name = name;
@@ -208,26 +165,30 @@ void run(int frame_count, std::uint64_t seed) {
   set(3, "tag36h11", std::make_unique<AprilTagReader>(tag36h11_create(), tag36h11_destroy, 1.F));
   set(4, "tag36h11, half size", std::make_unique<AprilTagReader>(tag36h11_create(), tag36h11_destroy, 2.F));
 
-  simulator::Renderer renderer(nullptr, simulator::SensorOptions{});
-  camera::Frame frame;
-  for (auto own = motion.next(); own; own = motion.next()) {
-    const simulator::FrameTruth& at = motion.truth();
-    const std::array<geometry::RigidTransform, 2> truth{at.markers[0].camera_from_marker,
-                                                        at.markers[1].camera_from_marker};
-    const camera::CameraModel camera(options.camera, options.camera.lens_angle_rad(at.mark_angle_deg), kSaline);
+  // Both sizes of a family read the same pictures.
+  for (const std::vector<std::size_t>& family : {std::vector<std::size_t>{0}, {1, 2}, {3, 4}}) {
+    simulator::RulerOptions options;
+    options.camera = simulator::standard_camera();
+    options.seed = seed;
+    options.frame_count = frame_count;
+    options.first_id = kIds[0];
+    options.second_id = kIds[1];
+    options.size_mm = kSizeMm;
+    options.printed = [&](int id) { return rows[family.front()].reader->cells(id); };
+    simulator::SimulatedRuler ruler(options);
     std::vector<std::uint8_t> luma;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      // Both sizes of a family read the same picture.
-      if (i == 0 || i == 1 || i == 3) {
-        renderer.render(scene_of(*rows[i].reader, truth), camera, at.mark_angle_deg,
-                        seed * 1'000'003 + static_cast<std::uint64_t>(at.frame_index), frame);
-        camera::gray_from(frame, luma);
+    for (auto frame = ruler.next(); frame; frame = ruler.next()) {
+      const simulator::FrameTruth& at = ruler.truth();
+      const camera::CameraModel camera(options.camera, options.camera.lens_angle_rad(at.mark_angle_deg),
+                                       options.refractive_index);
+      camera::gray_from(*frame, luma);
+      const camera::GrayView picture{luma.data(), frame->width, frame->height, frame->width};
+      for (const std::size_t i : family) {
+        const double start = real_data::thread_cpu_ms();
+        const auto seen = rows[i].reader->read(picture, camera, frame->timestamp_ns);
+        rows[i].ms.push_back(real_data::thread_cpu_ms() - start);
+        rows[i].add(seen, {at.markers[0].camera_from_marker, at.markers[1].camera_from_marker});
       }
-      const camera::GrayView picture{luma.data(), frame.width, frame.height, frame.width};
-      const double start = thread_cpu_ms();
-      const auto seen = rows[i].reader->read(picture, camera, own->timestamp_ns);
-      rows[i].ms.push_back(thread_cpu_ms() - start);
-      rows[i].add(seen, truth);
     }
   }
   std::printf(

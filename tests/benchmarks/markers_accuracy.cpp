@@ -14,6 +14,7 @@
 #include "navigation/markers/code_reader.h"
 #include "navigation/markers/edge_tracker.h"
 #include "navigation/markers/square_search.h"
+#include "planning/geometry/quantile.h"
 #include "tests/real_data/marker_accuracy.h"
 
 namespace arthronaut::real_data {
@@ -27,7 +28,7 @@ std::unique_ptr<markers::MarkerTracker> make_without_dense_fit(
 using TrackerMaker = std::unique_ptr<markers::MarkerTracker> (*)(std::span<const markers::DeclaredMarker>);
 
 void print_row(const char* clip, const char* tracker, const ClipAccuracy& a) {
-  const auto q = [](const std::vector<double>& values, double share) { return quantile(values, share); };
+  const auto q = [](const std::vector<double>& values, double share) { return geometry::quantile(values, share); };
   std::printf(
       "| %s | %s | %.3f / %.3f | %.4f / %.4f | %+.4f | %.3f / %.3f | %.4f / %.4f | %.4f / %.4f | %.1f | %.1f "
       "| %d | %.2f |\n",
@@ -41,8 +42,8 @@ void print_row(const char* clip, const char* tracker, const ClipAccuracy& a) {
 struct Timing {
   std::vector<double> ms;
   void print(const char* what) const {
-    std::printf("| %s | %.2f | %.2f | %.2f |\n", what, quantile(ms, 0.5), quantile(ms, 0.95),
-                quantile(ms, 0.99));
+    std::printf("| %s | %.2f | %.2f | %.2f |\n", what, geometry::quantile(ms, 0.5), geometry::quantile(ms, 0.95),
+                geometry::quantile(ms, 0.99));
   }
 };
 

@@ -9,17 +9,11 @@
 #include "navigation/lens/lens_tracker.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/files/csv_table.h"
+#include "planning/geometry/quantile.h"
 #include "tests/real_data/real_data.h"
 
 namespace arthronaut {
 namespace {
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 1e9;
-  const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-  return values[at];
-}
 
 struct ClipErrors {
   std::vector<double> angle_deg, center_px;  // of the frames where the mark was found
@@ -48,9 +42,9 @@ ClipErrors track(const std::filesystem::path& folder) {
                                    .norm());
   }
   std::cout << folder.filename().string() << ": mark found in " << errors.angle_deg.size() << " of "
-            << errors.frames << " frames, angle error median " << quantile(errors.angle_deg, 0.5) << ", 95 % "
-            << quantile(errors.angle_deg, 0.95) << " deg, circle centre median "
-            << quantile(errors.center_px, 0.5) << " px\n";
+            << errors.frames << " frames, angle error median " << geometry::quantile(errors.angle_deg, 0.5) << ", 95 % "
+            << geometry::quantile(errors.angle_deg, 0.95) << " deg, circle centre median "
+            << geometry::quantile(errors.center_px, 0.5) << " px\n";
   return errors;
 }
 
@@ -63,9 +57,9 @@ TEST_P(LensOnClips, FollowsTheMark) {
   const ClipErrors errors = track(folder);
   ASSERT_GT(errors.frames, 0U);
   EXPECT_GE(errors.found_share(), 0.99);
-  EXPECT_LE(quantile(errors.angle_deg, 0.5), 0.15);
-  EXPECT_LE(quantile(errors.angle_deg, 0.95), 0.5);
-  EXPECT_LE(quantile(errors.center_px, 0.5), 0.3);
+  EXPECT_LE(geometry::quantile(errors.angle_deg, 0.5), 0.15);
+  EXPECT_LE(geometry::quantile(errors.angle_deg, 0.95), 0.5);
+  EXPECT_LE(geometry::quantile(errors.center_px, 0.5), 0.3);
 }
 INSTANTIATE_TEST_SUITE_P(Clips, LensOnClips, testing::Values("ruler_wet", "probe_wet", "guide_wet", "hard"));
 

@@ -1,14 +1,11 @@
 #include "tests/real_data/marker_accuracy.h"
 
 #include <Eigen/LU>
-#include <ctime>
 #include <optional>
 
 namespace arthronaut::real_data {
 
 namespace {
-
-constexpr double kWrongDeg = 5, kWrongMm = 1;
 
 struct Pair {
   geometry::RigidTransform measured, truth;
@@ -21,7 +18,7 @@ void add_marker(const markers::MarkerObservation& seen, const TrueMarker& truth,
   accuracy.translation_mm.push_back(error.translation_mm);
   accuracy.depth_mm.push_back(seen.camera_from_marker.translation_mm.z() -
                               truth.camera_from_marker.translation_mm.z());
-  accuracy.wrong_count += error.rotation_deg > kWrongDeg || error.translation_mm > kWrongMm;
+  accuracy.wrong_count += error.is_wrong();
   const geometry::Vector6d twist =
       geometry::log(seen.camera_from_marker.inverse() * truth.camera_from_marker);
   squares += twist.dot(seen.covariance.inverse() * twist) / 6;
@@ -40,12 +37,6 @@ void add_relative(const MarkerClip& clip, int tool_id, const Pair& world, const 
 }
 
 }  // namespace
-
-double thread_cpu_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 ClipAccuracy measure_accuracy(MarkerClip& clip, markers::MarkerTracker& tracker) {
   return measure_accuracy(clip, tracker, clip.calibration());

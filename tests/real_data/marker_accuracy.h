@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tests/real_data/marker_clip.h"
+#include "tests/real_data/pose_error.h"
 
 namespace arthronaut::real_data {
 
@@ -28,8 +29,5 @@ struct ClipAccuracy {
 // The same with another calibration of the same scope.
 [[nodiscard]] ClipAccuracy measure_accuracy(MarkerClip& clip, markers::MarkerTracker& tracker,
                                             const camera::Calibration& calibration);
-
-// Processor time of this thread in ms: what a quiet core would take, whatever else the machine does.
-[[nodiscard]] double thread_cpu_ms();
 
 }  // namespace arthronaut::real_data

@@ -91,17 +91,4 @@ std::vector<std::vector<std::uint8_t>> MarkerClip::all_pictures() {
   return pictures;
 }
 
-PoseError pose_error(const geometry::RigidTransform& measured, const geometry::RigidTransform& truth) {
-  return {
-      geometry::deg_from_rad(geometry::rotation_angle_rad(measured.rotation.conjugate() * truth.rotation)),
-      (measured.translation_mm - truth.translation_mm).norm()};
-}
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto at = static_cast<std::size_t>(std::min<double>(values.size() - 1, share * values.size()));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[at];
-}
-
 }  // namespace arthronaut::real_data

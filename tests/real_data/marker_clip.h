@@ -1,4 +1,4 @@
-// A path-traced clip with its truth, frame by frame, and how far a tracker's poses are from it.
+// A path-traced clip with its truth, frame by frame.
 #pragma once
 
 #include <array>
@@ -62,14 +62,5 @@ class MarkerClip {
   std::unique_ptr<Video> video_;
   std::size_t next_ = 0;
 };
-
-struct PoseError {
-  double rotation_deg = 0, translation_mm = 0;
-};
-[[nodiscard]] PoseError pose_error(const geometry::RigidTransform& measured,
-                                   const geometry::RigidTransform& truth);
-
-// Of an unsorted list; NaN for an empty one.
-[[nodiscard]] double quantile(std::vector<double> values, double share);
 
 }  // namespace arthronaut::real_data

@@ -9,6 +9,7 @@
 #include "navigation/markers/code_reader.h"
 #include "navigation/markers/edge_tracker.h"
 #include "navigation/markers/square_search.h"
+#include "planning/geometry/quantile.h"
 #include "tests/real_data/marker_accuracy.h"
 #include "tests/real_data/real_data.h"
 
@@ -75,13 +76,13 @@ TEST(RealMarkers, AreTwiceAsExactAsTheReferenceTracker) {
   const ClipAccuracy own = measure_accuracy(clip, *markers::make_tracker(declared));
   clip.rewind();
   const ClipAccuracy reference = measure_accuracy(clip, *markers::make_aruco_tracker(declared));
-  EXPECT_LT(quantile(own.rotation_deg, 0.5), 0.5 * quantile(reference.rotation_deg, 0.5));
-  EXPECT_LT(quantile(own.translation_mm, 0.5), 0.5 * quantile(reference.translation_mm, 0.5));
+  EXPECT_LT(geometry::quantile(own.rotation_deg, 0.5), 0.5 * geometry::quantile(reference.rotation_deg, 0.5));
+  EXPECT_LT(geometry::quantile(own.translation_mm, 0.5), 0.5 * geometry::quantile(reference.translation_mm, 0.5));
   // The two markers of the ruler, 10 mm apart, over 140 degrees of lens rotation: the project's own limits.
-  EXPECT_LT(quantile(own.relative_rotation_deg, 0.5), 0.15);
-  EXPECT_LT(quantile(own.relative_rotation_deg, 0.95), 0.5);
-  EXPECT_LT(quantile(own.relative_translation_mm, 0.5), 0.03);
-  EXPECT_LT(quantile(own.relative_translation_mm, 0.95), 0.07);
+  EXPECT_LT(geometry::quantile(own.relative_rotation_deg, 0.5), 0.15);
+  EXPECT_LT(geometry::quantile(own.relative_rotation_deg, 0.95), 0.5);
+  EXPECT_LT(geometry::quantile(own.relative_translation_mm, 0.5), 0.03);
+  EXPECT_LT(geometry::quantile(own.relative_translation_mm, 0.95), 0.07);
   EXPECT_EQ(reference.wrong_count, 0);
 }
 
@@ -91,9 +92,9 @@ TEST(RealMarkers, HoldTheProbeTip) {
   MarkerClip clip(folder);
   const ClipAccuracy own =
       measure_accuracy(clip, *markers::make_tracker(markers::declared_markers(clip.tools())));
-  EXPECT_LT(quantile(own.relative_rotation_deg, 0.5), 0.15);
-  EXPECT_LT(quantile(own.tip_mm, 0.5), 0.06);
-  EXPECT_LT(quantile(own.tip_mm, 0.95), 0.15);
+  EXPECT_LT(geometry::quantile(own.relative_rotation_deg, 0.5), 0.15);
+  EXPECT_LT(geometry::quantile(own.tip_mm, 0.5), 0.06);
+  EXPECT_LT(geometry::quantile(own.tip_mm, 0.95), 0.15);
   EXPECT_GT(own.normalised_error, 0.5);
   EXPECT_LT(own.normalised_error, 2);
 }
@@ -167,9 +168,9 @@ TEST(RealPhotographs, AgreeWithSubPixelCorners) {
     }
   }
   std::printf("video: %d of %d frames, corners %.2f px from cornerSubPix\n", both, theirs,
-              quantile(distances_px, 0.5));
+              geometry::quantile(distances_px, 0.5));
   EXPECT_GE(both, theirs - 1);
-  EXPECT_LT(quantile(distances_px, 0.5), 0.3);
+  EXPECT_LT(geometry::quantile(distances_px, 0.5), 0.3);
 }
 
 }  // namespace
