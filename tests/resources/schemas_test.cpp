@@ -1,0 +1,132 @@
+// The schemas say what the files are that the program writes and reads.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "navigation/camera/camera_file.h"
+#include "navigation/registration/registration.h"
+#include "navigation/tools/tool_set.h"
+#include "planning/cases/case.h"
+#include "planning/geometry/error.h"
+#include "planning/phantom/phantom_case.h"
+#include "tests/resources/json_schema.h"
+
+namespace arthronaut {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class Schemas : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / "arthronaut_schemas_test";
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static json read(const fs::path& file) {
+    std::ifstream in(file);
+    return json::parse(in);
+  }
+  static json schema_of(const std::string& name) {
+    return read(fs::path(ARTHRONAUT_SCHEMAS) / (name + ".schema.json"));
+  }
+  static std::string violations_of(const json& document, const std::string& name) {
+    std::string text;
+    for (const std::string& violation : violations(document, schema_of(name))) text += violation + "\n";
+    return text;
+  }
+  // As written it fits; without any of what the schema calls required it fits no more, and the reader refuses
+  // it.
+  template <class Read>
+  void expect_described(const fs::path& file, const std::string& name, const Read& read_again) {
+    const json written = read(file);
+    EXPECT_EQ(violations_of(written, name), "") << name;
+    for (const std::string key : schema_of(name).at("required")) {
+      json broken = written;
+      broken.erase(key);
+      EXPECT_NE(violations_of(broken, name), "") << key;
+      std::ofstream(file) << broken;
+      EXPECT_THROW(read_again(), InvalidInput) << name << " without " << key;
+    }
+    std::ofstream(file) << written;
+    EXPECT_NO_THROW(read_again());
+  }
+
+  fs::path folder_;
+};
+
+// A camera with everything a calibration knows, and one in a fluid that has a number only.
+TEST_F(Schemas, DescribeTheCamera) {
+  const fs::path file = folder_ / "camera.json";
+  camera::CalibrationRecord record;
+  record.calibration.image_size_px = {1920, 1080};
+  record.calibration.focal_px = 980;
+  record.calibration.principal_point_px = {955, 542};
+  record.calibration.distortion_xi = -0.4;
+  record.calibration.rotation_center_px = {960, 540};
+  record.calibration.boundary = {{960, 540}, 520};
+  record.covariance = Eigen::MatrixXd::Identity(6, 6);
+  record.rms_px = 0.2;
+  for (const double index : {1.0, 1.35}) {
+    record.calibration.refractive_index = index;
+    camera::write_camera_file(file, record);
+    expect_described(file, "camera", [&] { (void)camera::read_camera_file(file); });
+  }
+}
+
+// The built-in tools: with tips, with axes.
+TEST_F(Schemas, DescribeTheTools) {
+  const fs::path file = folder_ / "tools.json";
+  tools::write_tools_file(file, tools::standard_tools());
+  expect_described(file, "tools", [&] { (void)tools::read_tools_file(file); });
+}
+
+// The phantom: both bones, their landmarks, both tunnels.
+TEST_F(Schemas, DescribeTheCaseAndItsPlan) {
+  cases::save_case(folder_, phantom::case_of(phantom::make_phantom_knee(), "phantom"));
+  for (const char* name : {"case", "plan"})
+    expect_described(folder_ / (std::string(name) + ".json"), name, [&] { (void)cases::load_case(folder_); });
+}
+
+// A registration that stands, and one that found nothing.
+TEST_F(Schemas, DescribeTheRegistration) {
+  const fs::path file = folder_ / "registration.json";
+  registration::RegistrationSummary found;
+  found.has_pose = found.reliable = true;
+  found.reasons.clear();
+  found.assumptions = {"the cartilage is 2 mm thick"};
+  found.point_count = 400;
+  found.inlier_fraction = 0.9;
+  for (const registration::RegistrationSummary& summary : {found, registration::RegistrationSummary()}) {
+    registration::write_registration_file(file, summary);
+    EXPECT_EQ(violations_of(read(file), "registration"), "");
+  }
+  registration::write_registration_file(file, found);
+  expect_described(file, "registration", [&] { (void)registration::read_registration_file(file); });
+}
+
+// The check itself: wrong types, numbers out of bounds, members that nobody described.
+TEST_F(Schemas, CatchWhatIsWrong) {
+  const fs::path file = folder_ / "tools.json";
+  tools::write_tools_file(file, tools::standard_tools());
+  const json good = read(file);
+  const auto broken = [&](const char* place, const json& value) {
+    json document = good;
+    document[json::json_pointer(place)] = value;
+    return violations_of(document, "tools");
+  };
+  EXPECT_NE(broken("/version", 2), "");
+  EXPECT_NE(broken("/world_markers/0/size_mm", 0), "");
+  EXPECT_NE(broken("/world_markers/0/marker_id", 50), "");
+  EXPECT_NE(broken("/world_markers/0/bone", "patella"), "");
+  EXPECT_NE(broken("/tools/0/name", 7), "");
+  EXPECT_NE(broken("/tools/0/tip_mm", json::array({1, 2})), "");
+  EXPECT_NE(broken("/tools/0/colour", "red"), "");
+}
+
+}  // namespace
+}  // namespace arthronaut
