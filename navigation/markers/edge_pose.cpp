@@ -19,7 +19,7 @@ constexpr double kTukey = 4.685;
 // Neighbouring profiles share pixels and what is wrong with them: so many of them count as one.
 constexpr double kCorrelatedEdges = 2.2;
 // What every edge of a side has wrong together (camera, print, compression), as an error of the corners.
-constexpr double kCommonCornerErrorPx = 0.015;
+constexpr double kCommonCornerErrorPx = 0.010;
 
 // Corners that another pose meets so closely do not tell it from this one; all edges together do, by so much.
 constexpr double kNearlySamePx = 1, kMinChiSquared = 16;
