@@ -15,8 +15,9 @@ constexpr double kClearlyBetter = 0.9;
 
 BoneRegistration::BoneRegistration(std::shared_future<PreparedBonePtr> bone,
                                    const std::optional<tunnels::Tunnel>& plan,
-                                   std::shared_ptr<const geometry::Surface> surface)
-    : bone_(std::move(bone)), plan_(plan), surface_(std::move(surface)) {}
+                                   std::shared_ptr<const geometry::Surface> surface,
+                                   std::optional<registration::CoveredRegion> covered)
+    : bone_(std::move(bone)), plan_(plan), surface_(std::move(surface)), covered_(std::move(covered)) {}
 
 void BoneRegistration::start_worker() {
   if (worker_ != nullptr || !status_.bone_trouble.empty()) return;
@@ -26,6 +27,7 @@ void BoneRegistration::start_worker() {
     options.target_in_bone_mm = plan_->entry_mm;
     options.direction_in_bone = plan_->direction;
   }
+  options.covered = covered_;
   try {  // the top of the thread that made the bone ready: the reason stands on the screen
     worker_ = std::make_unique<registration::RegistrationWorker>(bone_.get(), options);
   } catch (const std::exception& error) {
@@ -142,7 +144,7 @@ void BoneRegistration::put_in_force(std::size_t entry) {
 // Distances of the touches, the alarm, and with it what is in force.
 void BoneRegistration::judge() {
   published_.reset();
-  status_.touches.judge(chosen_.get(), surface_.get());
+  status_.touches.judge(chosen_.get(), surface_.get(), covered_);
   std::string alarm = status_.touches.alarm();
   if (alarm.empty() && status_.online != nullptr) alarm = status_.online->alarm;
   const bool had_alarm = !status_.alarm.empty();
@@ -192,6 +194,7 @@ void BoneRegistration::add_entry(const RegistrationEntry& entry) {
 void BoneRegistration::register_all(const std::function<bool()>& is_wanted) {
   registration::RegistrationOptions options;
   if (plan_) options.target_in_bone_mm = plan_->entry_mm;
+  options.covered = covered_;
   registration::RegistrationSummary found;
   strokes::Curves curves;
   int removals = 0;

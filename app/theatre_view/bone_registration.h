@@ -61,7 +61,8 @@ class BoneRegistration {
   // `bone` may still be in the making; one that throws leaves its reason in the status. plan and surface may be absent: then the target is the middle of what
   // was touched, and touches are not judged.
   BoneRegistration(std::shared_future<PreparedBonePtr> bone, const std::optional<tunnels::Tunnel>& plan,
-                   std::shared_ptr<const geometry::Surface> surface);
+                   std::shared_ptr<const geometry::Surface> surface,
+                   std::optional<registration::CoveredRegion> covered = std::nullopt);
 
   void add_tip(double time_s, const Eigen::Vector3d& tip_in_marker_mm);
   void take_back_stroke();
@@ -101,6 +102,7 @@ class BoneRegistration {
   const std::shared_future<PreparedBonePtr> bone_;
   const std::optional<tunnels::Tunnel> plan_;
   const std::shared_ptr<const geometry::Surface> surface_;
+  const std::optional<registration::CoveredRegion> covered_;
   mutable std::mutex mutex_;  // guards the rest
   DrawnStrokes strokes_;
   RegistrationPtr chosen_;  // in force but for an alarm

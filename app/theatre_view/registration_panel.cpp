@@ -34,6 +34,7 @@ void draw_state(const widgets::Ui& ui, const RegistrationWords& words) {
   draw_bar(ui, words.progress, state.sign);
   widgets::text_in(ui.theme.strong, widgets::kText, state.text);
   if (!words.missing.empty()) widgets::text_in(ui.theme.body, widgets::kQuietText, words.missing);
+  if (!words.assumed.empty()) widgets::text_in(ui.theme.body, widgets::kQuietText, words.assumed);
   for (const SignedText& row : words.numbers) widgets::status_row(ui, row.sign, row.name, row.text);
 }
 

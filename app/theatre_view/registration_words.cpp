@@ -62,6 +62,14 @@ std::string missing_of(const RegistrationStatus& status) {
   return text;
 }
 
+std::string assumed_of(const RegistrationStatus& status) {
+  const registration::RegistrationSummary* pose = pose_of(status);
+  std::string text;
+  if (pose == nullptr) return text;
+  for (const std::string& item : pose->assumptions) text += (text.empty() ? "Assumed: " : "; ") + item;
+  return text;
+}
+
 std::vector<SignedText> numbers_of(const RegistrationStatus& status) {
   const registration::RegistrationSummary* pose = pose_of(status);
   if (pose == nullptr || !status.alarm.empty()) return {};  // an alarm belies them
@@ -107,6 +115,8 @@ std::optional<TouchText> touch_of(const RegistrationStatus& status) {
       break;
   }
   const std::string name = "Touch " + std::to_string(last.number);
+  if (last.is_on_unknown_cover)
+    return TouchText{{Sign::Quiet, name, "tells nothing"}, "Cartilage of unknown thickness: touch bare bone."};
   if (!last.distance_mm)
     return TouchText{{Sign::Quiet, name, "kept"}, "Judged when there is a registration."};
   const double off_mm = std::abs(*last.distance_mm);
@@ -167,8 +177,8 @@ std::vector<SignedText> history_rows(const RegistrationStatus& status) {
 }
 
 RegistrationWords words_of(const RegistrationStatus& status) {
-  return {state_of(status), progress_of(status), missing_of(status), numbers_of(status),
-          touch_of(status), stroke_rows(status), history_rows(status)};
+  return {state_of(status),   progress_of(status), missing_of(status),  assumed_of(status),
+          numbers_of(status), touch_of(status),    stroke_rows(status), history_rows(status)};
 }
 
 widgets::Sign sign_of_residual(double residual_mm) {

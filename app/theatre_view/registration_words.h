@@ -21,6 +21,9 @@ struct SignedText {
 [[nodiscard]] double progress_of(const RegistrationStatus& status);
 // "Missing: 34 mm more of stroke; ..."; empty when nothing is.
 [[nodiscard]] std::string missing_of(const RegistrationStatus& status);
+// "Assumed: the covered region lies 2.0 mm off the mesh, ..."; of the same pose as the numbers. Empty when
+// nothing was.
+[[nodiscard]] std::string assumed_of(const RegistrationStatus& status);
 // Predicted error at the tunnel, and how near the next best pose comes; of the pose that runs along, else of
 // the one in force. Empty without a pose.
 [[nodiscard]] std::vector<SignedText> numbers_of(const RegistrationStatus& status);
@@ -51,7 +54,7 @@ struct StrokeRow {
 struct RegistrationWords {
   SignedText state;
   double progress = 0;
-  std::string missing;
+  std::string missing, assumed;
   std::vector<SignedText> numbers;
   std::optional<TouchText> touch;
   std::vector<StrokeRow> strokes;

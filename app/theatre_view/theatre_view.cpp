@@ -86,9 +86,20 @@ void TheatreView::prepare_bone() {
                                            : std::make_shared<registration::PreparedBone>(mesh, cache);
                     }).share();
   }
-  if (bone.registration == nullptr)
-    bone.registration = std::make_shared<BoneRegistration>(bone.prepared, model_->tunnel(choices_.bone),
-                                                           model_->shared_surface(choices_.bone));
+  if (bone.registration != nullptr) return;
+  std::optional<registration::CoveredRegion> covered;
+  try {
+    if (!case_folder_.empty())
+      if (const auto cartilage = cases::load_cartilage(case_folder_, choices_.bone))
+        covered.emplace().points_mm = cartilage->vertices_mm;
+  } catch (const std::runtime_error&) {  // without what it declares the bone would be registered wrongly
+    std::promise<PreparedBonePtr> broken;
+    broken.set_exception(std::current_exception());
+    bone.prepared = broken.get_future().share();
+  }
+  bone.registration =
+      std::make_shared<BoneRegistration>(bone.prepared, model_->tunnel(choices_.bone),
+                                         model_->shared_surface(choices_.bone), std::move(covered));
 }
 
 BoneRegistration* TheatreView::bone_registration() const {

@@ -72,26 +72,38 @@ void TouchCheck::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
 void TouchCheck::clear() { *this = {}; }
 
 void TouchCheck::judge(const registration::RegistrationSummary* registration,
-                       const geometry::Surface* surface) {
+                       const geometry::Surface* surface,
+                       const std::optional<registration::CoveredRegion>& covered) {
   residuals_mm_.clear();
   if (registration == nullptr || !registration->has_pose || surface == nullptr) return;
   const geometry::RigidTransform bone_from_marker = registration->marker_from_bone.inverse();
-  for (const Eigen::Vector3d& touch : touches_mm_)
-    residuals_mm_.push_back(surface->signed_distance_mm(bone_from_marker * touch));
+  for (const Eigen::Vector3d& touch : touches_mm_) {
+    const Eigen::Vector3d p = bone_from_marker * touch;
+    std::optional<double> residual_mm = surface->signed_distance_mm(p);
+    if (covered) {
+      const auto offset_mm =
+          registration::cover_offset_mm(*registration, *covered, surface->closest_point(p).point_mm);
+      residual_mm = offset_mm ? std::optional(*residual_mm - *offset_mm) : std::nullopt;
+    }
+    residuals_mm_.push_back(residual_mm);
+  }
 }
 
 TouchCheck::Last TouchCheck::last() const {
-  Last last{last_, static_cast<int>(touches_mm_.size()), last_is_new_place_, std::nullopt};
+  Last last{last_, static_cast<int>(touches_mm_.size()), last_is_new_place_, std::nullopt, false};
   if (last_ == Last::Kind::ControlAgain) last.distance_mm = control_shift_mm_;
-  if (last_ == Last::Kind::Touch && !residuals_mm_.empty()) last.distance_mm = residuals_mm_.back();
+  if (last_ == Last::Kind::Touch && !residuals_mm_.empty()) {
+    last.distance_mm = residuals_mm_.back();
+    last.is_on_unknown_cover = !last.distance_mm;
+  }
   return last;
 }
 
 std::string TouchCheck::alarm() const {
   if (control_violations_ >= kViolationsToAlarm)
     return "The control point has moved by " + widgets::fixed(control_shift_mm_, 1) + " mm";
-  const auto off = std::count_if(residuals_mm_.begin(), residuals_mm_.end(), [](double residual_mm) {
-    return std::abs(residual_mm) > registration::OnlineOptions{}.max_touch_error_mm;
+  const auto off = std::count_if(residuals_mm_.begin(), residuals_mm_.end(), [](const auto& residual_mm) {
+    return residual_mm && std::abs(*residual_mm) > registration::OnlineOptions{}.max_touch_error_mm;
   });
   if (off >= kViolationsToAlarm) return std::to_string(off) + " touches lie off the bone";
   return off + control_violations_ >= kViolationsToAlarm

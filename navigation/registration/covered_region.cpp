@@ -290,6 +290,18 @@ std::optional<double> CoverFit::offset_mm(const CoverMap& map,
   return thickness_mm;
 }
 
+std::optional<double> cover_offset_mm(const RegistrationSummary& registration, const CoveredRegion& region,
+                                      const Eigen::Vector3d& place_in_bone_mm) {
+  if (registration.cover_use == CoverUse::None) return 0.0;
+  const double square_reach = region.reach_mm > 0 ? region.reach_mm * region.reach_mm : 0.0;
+  const bool is_covered = std::any_of(
+      region.points_mm.begin(), region.points_mm.end(),
+      [&](const Eigen::Vector3d& point) { return (point - place_in_bone_mm).squaredNorm() < square_reach; });
+  if (!is_covered) return 0.0;
+  if (registration.cover_use == CoverUse::LeftOut) return std::nullopt;
+  return registration.cover_thickness_mm;
+}
+
 std::vector<std::optional<double>> CoverFit::offsets_mm(
     const CoverMap& map, const strokes::Curves& curves,
     const geometry::RigidTransform& bone_from_marker) const {
@@ -301,6 +313,8 @@ std::vector<std::optional<double>> CoverFit::offsets_mm(
 }
 
 void CoverFit::add_to(RegistrationSummary& summary, const Eigen::Vector3d& target_in_bone_mm) const {
+  summary.cover_use = is_solved ? CoverUse::Solved : is_left_out ? CoverUse::LeftOut : CoverUse::None;
+  if (is_solved) summary.cover_thickness_mm = thickness_mm;
   summary.assumptions.push_back(assumption);
   if (!has_bare) {
     summary.reliable = false;

@@ -35,10 +35,10 @@ struct CoverFit {
   bool is_left_out = false;  // neither: no stroke lies on the region, or none beside it
   bool has_bare = true;      // false: all strokes lie on the region, and nothing was done about it
   double thickness_mm = 0, sigma_mm = 0;  // one sigma, from how the likelihood falls with the thickness
-  geometry::Vector6d drift_per_mm =
-      geometry::Vector6d::Zero();  // twist of the bone frame about its origin, by thickness
-  double cost =
-      0;  // as RefinedPose::cost, over all points with the likeliest thickness, solved or not: compares
+  // Twist of the bone frame about its origin, by thickness.
+  geometry::Vector6d drift_per_mm = geometry::Vector6d::Zero();
+  // As RefinedPose::cost, over all points with the likeliest thickness, whether it was solved or not: compares.
+  double cost = 0;
   std::string assumption;  // in plain words
 
   // How far off the mesh the probe touches at a place of the bone; nullopt where that is not known.

@@ -52,11 +52,16 @@ struct RegistrationOptions {
   std::optional<CoveredRegion> covered = std::nullopt;
 };
 
+// What a registration made of the covered region. None: without one, or it was taken to lie on the mesh.
+enum class CoverUse { None, Solved, LeftOut };
+
 struct RegistrationSummary {
   bool has_pose = false;  // false: nothing was found, the pose below is meaningless
   bool reliable = false;
   std::vector<std::string> reasons = {"no registration was run"};  // why it is not reliable; empty when it is
   std::vector<std::string> assumptions;  // what was taken for granted or left out, in plain words
+  CoverUse cover_use = CoverUse::None;
+  double cover_thickness_mm = 0;  // where it was solved: how far off the mesh the probe touches there
   geometry::RigidTransform marker_from_bone;
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // of the body twist of marker_from_bone, correlated errors in
   double rms_mm = 0;            // of the inliers
@@ -83,7 +88,13 @@ struct RegistrationSummary {
 // One-sigma error in mm that the covariance predicts at a point of the bone frame.
 [[nodiscard]] double predicted_error_mm(const RegistrationSummary& registration, const Eigen::Vector3d& point_in_bone_mm);
 
-// registration.json
+// How far off the mesh the probe touches at a place of the bone's surface, by a registration that was told of the region;
+// nullopt where that is not known.
+[[nodiscard]] std::optional<double> cover_offset_mm(const RegistrationSummary& registration,
+                                                    const CoveredRegion& region,
+                                                    const Eigen::Vector3d& place_in_bone_mm);
+
+// registration.json; without the use of the cover, which the assumptions tell.
 [[nodiscard]] RegistrationSummary read_registration_file(const std::filesystem::path& file);
 void write_registration_file(const std::filesystem::path& file, const RegistrationSummary& registration);
 

@@ -289,5 +289,29 @@ TEST_F(BoneRegistrationTest, ThePictureShowsHowFarStrokesLieOff) {
   EXPECT_EQ(content.rods.size(), status.online->coach.patches.size());
 }
 
+// Cartilage of 2 mm on a bone that was segmented bare: what was assumed about it stands on the screen, and touches
+// on it lie where they should.
+TEST_F(BoneRegistrationTest, SaysWhatWasAssumedAboutCartilage) {
+  const auto covered = registration::covered_trial(phantom_bone(), trial_, 2);
+  BoneRegistration bone(ready_bone(), plan(), surface_, covered.region);
+  EXPECT_EQ(assumed_of(*bone.status()), "");
+  draw_on(bone, {covered.trial.curves.begin(), covered.trial.curves.begin() + 600});
+  bone.finish();
+  const std::string assumed = assumed_of(*bone.status()), words = "Assumed: ";
+  ASSERT_TRUE(assumed.starts_with(words)) << assumed;
+  EXPECT_NEAR(registration::thickness_in(assumed.substr(words.size())), 2, 0.3) << assumed;
+  ASSERT_NE(bone.status()->in_force, nullptr);
+  for (const double up_mm : {12.0, 16.0}) {
+    const geometry::SurfacePoint place =
+        surface_->closest_point(phantom_bone().target_mm + Eigen::Vector3d(0, 0, up_mm));
+    bone.add_touch(trial_.marker_from_bone * (place.point_mm + 2 * place.normal));
+    EXPECT_NEAR(bone.status()->touches.last().distance_mm.value(), 0, 0.4);
+  }
+  EXPECT_EQ(bone.status()->alarm, "");
+  bone.register_all([] { return true; });
+  EXPECT_TRUE(bone.status()->in_force->reliable);
+  EXPECT_EQ(bone.status()->in_force->assumptions.size(), 1U);
+}
+
 }  // namespace
 }  // namespace arthronaut::theatre_view

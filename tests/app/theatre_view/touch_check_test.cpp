@@ -47,7 +47,7 @@ TEST(TouchCheck, TwoTouchesOffTheBoneRaiseTheAlarm) {
   check.add_touch({0, 0, 0.4});
   check.add_touch({5, 0, 2.5});
   check.judge(&registration, &surface);
-  EXPECT_NEAR(check.residuals_mm()[0], 0.4, 1e-9);
+  EXPECT_NEAR(check.residuals_mm()[0].value(), 0.4, 1e-9);
   EXPECT_NEAR(*check.last().distance_mm, 2.5, 1e-9);
   EXPECT_EQ(check.alarm(), "");
   check.add_touch({0, 5, -1.8});
@@ -60,6 +60,31 @@ TEST(TouchCheck, TwoTouchesOffTheBoneRaiseTheAlarm) {
   check.judge(nullptr, &surface);
   EXPECT_EQ(check.alarm(), "");
   EXPECT_TRUE(check.residuals_mm().empty());
+}
+
+// On cartilage that the model lacks a touch should lie as far off the bone as its thickness; where that is not
+// known, a touch says nothing and alarms nobody.
+TEST(TouchCheck, TouchesOnCartilageAreJudgedByItsThickness) {
+  const geometry::Surface surface(block());
+  const registration::CoveredRegion covered{{{0, 0, 0}, {5, 0, 0}}, 4};
+  auto registration = fitted();
+  TouchCheck check;
+  check.add_touch({0, 0, 2.1});
+  check.add_touch({5, 0, 1.9});
+  registration.cover_use = registration::CoverUse::Solved;
+  registration.cover_thickness_mm = 2;
+  check.judge(&registration, &surface, covered);
+  EXPECT_NEAR(check.residuals_mm()[0].value(), 0.1, 1e-9);
+  EXPECT_NEAR(check.last().distance_mm.value(), -0.1, 1e-9);
+  EXPECT_EQ(check.alarm(), "");
+  registration.cover_use = registration::CoverUse::LeftOut;
+  check.judge(&registration, &surface, covered);
+  EXPECT_FALSE(check.last().distance_mm.has_value());
+  EXPECT_TRUE(check.last().is_on_unknown_cover);
+  EXPECT_EQ(check.alarm(), "");
+  registration.cover_use = registration::CoverUse::None;
+  check.judge(&registration, &surface, covered);
+  EXPECT_EQ(check.alarm(), "2 touches lie off the bone");
 }
 
 // The control point is kept first and compared later; it raises the alarm at the second time it is off,
