@@ -27,6 +27,7 @@ class CalibrateStation : public Station {
   [[nodiscard]] Then take_next_step() override;
   [[nodiscard]] bool has_run() const override { return run_ != nullptr; }
   [[nodiscard]] bool is_busy() const override;
+  [[nodiscard]] bool awaits_text() const override { return form_.wants_focus; }
   [[nodiscard]] std::string next_step() const override { return display_.next_text; }
   [[nodiscard]] Row adopted() const override { return adopted_; }
 

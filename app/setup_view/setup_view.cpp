@@ -45,6 +45,8 @@ void SetupView::leave() {
   for (Step& one : steps_) one.station->release_source();
 }
 
+bool SetupView::awaits_text() const { return typed_.wants_focus || step().station->awaits_text(); }
+
 bool SetupView::is_busy() const { return step().station->is_busy(); }
 
 void SetupView::show(std::size_t index) {

@@ -32,6 +32,8 @@ class SetupView {
   // The prefixes of the ids of the actions that work now.
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const;
   void draw(const widgets::Ui& ui, const widgets::Rect& area);
+  // A text field was opened in this frame and has not the keyboard yet.
+  [[nodiscard]] bool awaits_text() const;
   [[nodiscard]] bool is_busy() const;  // the screen must be drawn again soon
 
  private:

@@ -51,6 +51,7 @@ class Station {
   virtual void release_source() = 0;                                // another mode may want the camera
   virtual void add_actions(widgets::Actions& actions) = 0;          // all are named "setup.ID..."
   virtual void draw(const widgets::Ui& ui, const widgets::Rect& area) = 0;
+  [[nodiscard]] virtual bool awaits_text() const { return false; }  // see SetupView::awaits_text()
   // The two rows of buttons; ids of actions.
   [[nodiscard]] virtual std::vector<const char*> buttons() const = 0;
   [[nodiscard]] virtual Then take_next_step() = 0;          // once has_run()

@@ -6,6 +6,7 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 
+#include "app/widgets/key_queue.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::widgets {
@@ -13,13 +14,45 @@ namespace arthronaut::widgets {
 struct GraphicsWindow::State {
   GLFWwindow* window = nullptr;
   Theme theme;
-  std::vector<KeyPress> arriving, keys;
+  KeyQueue queue;
+  std::vector<KeyEvent> dealt;
+  std::vector<KeyPress> keys;
+  int frames_to_hold = 0;
 
-  static void on_key(GLFWwindow* window, int key, int /*scancode*/, int action, int mods) {
-    if (action == GLFW_RELEASE) return;
+  static State& of(GLFWwindow* window) { return *static_cast<State*>(glfwGetWindowUserPointer(window)); }
+  static void on_key(GLFWwindow* window, int key, int scancode, int action, int mods) {
+    const auto kind = action == GLFW_RELEASE  ? KeyEvent::Kind::Release
+                      : action == GLFW_REPEAT ? KeyEvent::Kind::Repeat
+                                              : KeyEvent::Kind::Press;
+    of(window).queue.add({kind, key, scancode, mods, 0});
+  }
+  static void on_letter(GLFWwindow* window, unsigned codepoint) {
+    of(window).queue.add({KeyEvent::Kind::Text, 0, 0, 0, codepoint});
+  }
+  void deal_keys() {
+    keys.clear();
+    dealt.clear();
+    if (frames_to_hold > 0 && !ImGui::GetIO().WantTextInput) {
+      --frames_to_hold;
+      return;
+    }
+    frames_to_hold = 0;
+    queue.take_frame(dealt);
     constexpr int kOurs = GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT;
-    static_cast<State*>(glfwGetWindowUserPointer(window))
-        ->arriving.push_back({key, mods & kOurs, action == GLFW_REPEAT});
+    for (const KeyEvent& event : dealt) {
+      if (event.kind == KeyEvent::Kind::Text) {
+        ImGui_ImplGlfw_CharCallback(window, event.codepoint);
+        continue;
+      }
+      const bool is_release = event.kind == KeyEvent::Kind::Release;
+      const bool is_repeat = event.kind == KeyEvent::Kind::Repeat;
+      ImGui_ImplGlfw_KeyCallback(window, event.key, event.scancode,
+                                 is_release  ? GLFW_RELEASE
+                                 : is_repeat ? GLFW_REPEAT
+                                             : GLFW_PRESS,
+                                 event.mods);
+      if (!is_release) keys.push_back({event.key, event.mods & kOurs, is_repeat});
+    }
   }
 };
 
@@ -57,12 +90,13 @@ GraphicsWindow::GraphicsWindow(const std::string& title) : state_(std::make_uniq
   glewInit();
   glfwSetWindowSizeLimits(state_->window, 960, 540, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwSetWindowUserPointer(state_->window, state_.get());
-  // Before ImGui's own callbacks, which call the ones that they find.
-  glfwSetKeyCallback(state_->window, &State::on_key);
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;  // the layout is ours: nothing to remember
   ImGui_ImplGlfw_InitForOpenGL(state_->window, true);
+  // In the place of ImGui's own, which are called when a key's frame has come.
+  glfwSetKeyCallback(state_->window, &State::on_key);
+  glfwSetCharCallback(state_->window, &State::on_letter);
   ImGui_ImplOpenGL3_Init("#version 330 core");
   int frame_width = 0, frame_height = 0;
   glfwGetFramebufferSize(state_->window, &frame_width, &frame_height);
@@ -79,7 +113,7 @@ GraphicsWindow::~GraphicsWindow() {
 
 void GraphicsWindow::begin_frame(double timeout_s) {
   State& s = *state_;
-  if (timeout_s > 0)
+  if (timeout_s > 0 && s.queue.is_empty())
     glfwWaitEventsTimeout(timeout_s);
   else
     glfwPollEvents();
@@ -91,11 +125,10 @@ void GraphicsWindow::begin_frame(double timeout_s) {
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
   }
+  s.deal_keys();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
-  s.keys.clear();
-  std::swap(s.keys, s.arriving);
   if (ImGui::GetIO().WantTextInput) s.keys.clear();
 }
 
@@ -112,6 +145,11 @@ void GraphicsWindow::end_frame() {
   glClear(GL_COLOR_BUFFER_BIT);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   glfwSwapBuffers(state_->window);
+}
+
+void GraphicsWindow::await_text_field() {
+  constexpr int kFramesToFocus = 6;  // ImGui takes two
+  if (!ImGui::GetIO().WantTextInput) state_->frames_to_hold = kFramesToFocus;
 }
 
 const std::vector<KeyPress>& GraphicsWindow::keys() const { return state_->keys; }

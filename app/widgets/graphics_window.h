@@ -26,10 +26,13 @@ class GraphicsWindow {
   GraphicsWindow(const GraphicsWindow&) = delete;
   GraphicsWindow& operator=(const GraphicsWindow&) = delete;
 
-  // Waits for input at most `timeout_s` (0: does not wait), or until wake(), then starts a frame.
+  // Waits for input at most `timeout_s` (0: does not wait), or until wake(), then starts a frame. Keys are dealt
+  // out as KeyQueue does; while some wait there is no wait for input.
   void begin_frame(double timeout_s);
   void end_frame();
-  // Keys pressed since the last frame, unless a text field has them.
+  // A text field is about to take the keyboard: what is typed waits for it, a few frames at most.
+  void await_text_field();
+  // Keys pressed in this frame, unless a text field has them.
   [[nodiscard]] const std::vector<KeyPress>& keys() const;
   [[nodiscard]] bool should_close() const;
   void make_current() const;

@@ -163,6 +163,8 @@ void WorkstationWindow::dispatch_keys() {
       continue;
     }
     actions_.press(press, action_prefixes());
+    // What is typed after the key that opens a text field is meant for the field.
+    if (mode_ == Mode::SetUp && setup_.awaits_text()) window_.await_text_field();
   }
 }
 

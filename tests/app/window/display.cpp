@@ -159,6 +159,8 @@ void RunningWorkstation::hand(const std::string& arguments) const {
 
 void RunningWorkstation::press(const std::string& key) const { hand("key " + key); }
 
+void RunningWorkstation::type(const std::string& text) const { hand("type --delay 0 '" + text + "'"); }
+
 void RunningWorkstation::click(const std::string& widget) const {
   const auto all = widgets();
   const auto found = all.find(widget);

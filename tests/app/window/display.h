@@ -58,6 +58,7 @@ class RunningWorkstation {
   [[nodiscard]] std::map<std::string, Area> widgets() const;  // of the last complete list
 
   void press(const std::string& key) const;  // as xdotool names it
+  void type(const std::string& text) const;  // as fast as it goes
   void click(const std::string& widget) const;
   void drag(int x0, int y0, int x1, int y1) const;
   [[nodiscard]] Picture screenshot() const;

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <fstream>
+
 #include "navigation/camera/camera_file.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "navigation/tools/tool_set.h"
@@ -57,6 +59,31 @@ TEST(SettingUp, LeadsToAnAdoptedCameraAndTip) {
   EXPECT_TRUE(probe->residual_mm.has_value());
   EXPECT_LT((*probe->tip_mm - *tools::standard_tools().find_tool("probe")->tip_mm).norm(), 0.35);
 
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(60), 0);
+}
+
+// Keys that are shorter than a frame arrive in a text field, in their order, from the one on that opened it.
+TEST(SettingUp, TakesATypedPathAtAnySpeed) {
+  if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
+  std::string pattern = (std::filesystem::temp_directory_path() / "arthronaut-typed-XXXXXX").string();
+  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+  const struct Folder {
+    std::filesystem::path path;
+    ~Folder() { std::filesystem::remove_all(path); }
+  } home{pattern};
+  std::filesystem::create_directories(home.path / "board");
+  std::ofstream(home.path / "board" / "1.png") << "x";
+
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, home.path);
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F4");
+  ASSERT_TRUE(app.wait_for_state("setup_source", "Simulated arthroscope"));
+  app.press("p");
+  app.type((home.path / "boardxy").string());
+  app.press("BackSpace BackSpace Return");
+  EXPECT_TRUE(app.wait_for_state("setup_source", "Pictures in board")) << app.state("setup_source");
   app.press("ctrl+q");
   EXPECT_EQ(app.wait_for_exit(60), 0);
 }

@@ -1,0 +1,46 @@
+#include "app/widgets/key_queue.h"
+
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+
+namespace arthronaut::widgets {
+
+namespace {
+
+using Kind = KeyEvent::Kind;
+
+bool is_modifier(int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
+
+// A press that does something to a text: Backspace, arrows, Enter, Ctrl+A.
+bool edits(const KeyEvent& event) {
+  if (event.kind == Kind::Text || event.kind == Kind::Release || is_modifier(event.key)) return false;
+  return event.key >= GLFW_KEY_ESCAPE || (event.mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT)) != 0;
+}
+
+// Whether an event would undo or overtake another one of the same frame.
+bool clashes(const KeyEvent& event, const KeyEvent& before) {
+  // A key that is held must not go on after it is let go: its repeats don't queue up.
+  if (event.kind == Kind::Repeat && event.key == before.key) return false;
+  if (event.kind == Kind::Text) return edits(before);
+  if (edits(event) && (before.kind == Kind::Text || edits(before))) return true;
+  // A modifier that is let go must not be gone when the key it was pressed for is looked at.
+  if (event.kind == Kind::Release && is_modifier(event.key)) return before.kind == Kind::Press;
+  return event.key == before.key;
+}
+
+}  // namespace
+
+void KeyQueue::take_frame(std::vector<KeyEvent>& events) {
+  events.clear();
+  while (!waiting_.empty()) {
+    const KeyEvent& next = waiting_.front();
+    if (std::any_of(events.begin(), events.end(),
+                    [&](const KeyEvent& before) { return clashes(next, before); }))
+      return;
+    events.push_back(next);
+    waiting_.pop_front();
+  }
+}
+
+}  // namespace arthronaut::widgets
