@@ -3,10 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 #include "planning/bones/mesh_formats.h"
 #include "planning/files/atomic_file.h"
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::bones {
@@ -45,10 +45,8 @@ bool is_size_of_bone(double size_mm) { return size_mm >= kSmallestBone_mm && siz
 
 // Why a mesh without a stated unit is refused, and what would make a bone of it.
 std::string wrong_size(double size) {
-  char number[32];
-  std::snprintf(number, sizeof number, "%.3g", size);
   std::string text =
-      std::string("is ") + number + " mm large if it is in millimetres, which no bone of the knee is";
+      files::format("is %.3g", size) + " mm large if it is in millimetres, which no bone of the knee is";
   std::string fitting;
   for (const auto& unit : kUnits) {
     if (!is_size_of_bone(size * unit.mm)) continue;

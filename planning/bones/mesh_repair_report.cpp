@@ -1,6 +1,6 @@
-#include <cstdio>
 
 #include "planning/bones/mesh_repair.h"
+#include "planning/files/format.h"
 
 namespace arthronaut::bones {
 
@@ -12,12 +12,6 @@ constexpr double kDoubtfulFilledFraction = 0.2;
 
 std::string counted(std::size_t count, const std::string& singular, const std::string& plural) {
   return std::to_string(count) + " " + (count == 1 ? singular : plural);
-}
-
-std::string formatted(const char* format, double value) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
 }
 
 }  // namespace
@@ -46,8 +40,8 @@ std::vector<std::string> MeshRepairReport::lines() const {
   }
   if (holes_filled > 0) {
     result.push_back(counted(holes_filled, "hole", "holes") + " filled, the largest with an edge of " +
-                     formatted("%.1f mm", largest_hole_mm) +
-                     formatted(" (%.1f %% of the surface is filled in)", 100 * filled_area_fraction));
+                     files::format("%.1f mm", largest_hole_mm) +
+                     files::format(" (%.1f %% of the surface is filled in)", 100 * filled_area_fraction));
   }
   if (was_inside_out) {
     result.push_back("was inside out: turned");
@@ -62,8 +56,8 @@ std::vector<std::string> MeshRepairReport::doubts() const {
   if (!is_closed) result.push_back("the surface is not closed");
   if (filled_area_fraction > kDoubtfulFilledFraction) {
     result.push_back(
-        formatted("%.0f %% of the surface is filled in: it was open, and this may be no whole bone",
-                  100 * filled_area_fraction));
+        files::format("%.0f %% of the surface is filled in: it was open, and this may be no whole bone",
+                      100 * filled_area_fraction));
   }
   if (2 * triangles_of_other_parts > triangles_now) {
     result.push_back("much of the mesh (" + std::to_string(triangles_of_other_parts) +

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/images/bone_surface.h"
 #include "planning/images/volume_file.h"
@@ -50,10 +50,8 @@ std::optional<T> only_one(const std::vector<std::string>& words, T first, T seco
 }
 
 std::string formatted_size(const Eigen::Vector3d& size) {
-  char text[120];
-  std::snprintf(text, sizeof text, "%.1f x %.1f x %.1f mm (left-right x front-back x up-down)", size.x(),
-                size.y(), size.z());
-  return text;
+  return files::format("%.1f x %.1f x %.1f mm (left-right x front-back x up-down)", size.x(), size.y(),
+                       size.z());
 }
 
 ImportedBone finished(BoneKind kind, const std::string& source, const geometry::TriangleMesh& mesh,
@@ -125,10 +123,11 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   }
   const Volume volume = read_volume(source, {options.series});
   const Eigen::Vector3d spacing = volume.spacing_mm();
-  char text[160];
-  std::snprintf(text, sizeof text, "%d x %d x %d voxels of %.3g x %.3g x %.3g mm, ", volume.size.x(),
-                volume.size.y(), volume.size.z(), spacing.x(), spacing.y(), spacing.z());
-  result.lines.push_back(volume.format + ", " + text + axes_in_words(volume));
+  result.lines.push_back(volume.format + ", " +
+                         files::format("%d x %d x %d voxels of %.3g x %.3g x %.3g mm, ", volume.size.x(),
+                                       volume.size.y(), volume.size.z(), spacing.x(), spacing.y(),
+                                       spacing.z()) +
+                         axes_in_words(volume));
   result.lines.insert(result.lines.end(), volume.notes.begin(), volume.notes.end());
 
   const auto labels = labels_of(volume);

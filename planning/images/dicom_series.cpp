@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
+#include "planning/geometry/quantile.h"
 #include "planning/images/dicom_slice.h"
 #include "planning/images/volume_bytes.h"
 
@@ -15,12 +16,6 @@ using Slices = std::vector<DicomSlice>;
 // Slices lie where their positions say, to the rounding of scanners' headers; a missing slice is 100 % off.
 constexpr double kPositionTolerance_fraction = 0.05;
 constexpr std::size_t kMostFiles = 50000;
-
-std::string formatted(const char* format, double a, double b = 0) {
-  char text[160];
-  std::snprintf(text, sizeof text, format, a, b);
-  return text;
-}
 
 Slices images_below(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
@@ -112,7 +107,7 @@ void keep_first_echo(Slices& slices, std::vector<std::string>& notes) {
   if (count == slices.size() || count < 2) return;
   std::erase_if(slices, [first = first_ms](const DicomSlice& s) { return *s.echo_time_ms != first; });
   notes.push_back("of " + std::to_string(echoes.size()) + " echoes the first was taken" +
-                  formatted(" (echo time %.3g ms)", first_ms));
+                  files::format(" (echo time %.3g ms)", first_ms));
 }
 
 bool has_position_twice(const Slices& sorted) {
@@ -132,10 +127,7 @@ Eigen::Vector3d slice_step_mm(const Slices& sorted) {
   std::vector<double> gaps;
   for (std::size_t i = 0; i + 1 < sorted.size(); ++i)
     gaps.push_back(sorted[i + 1].depth_mm() - sorted[i].depth_mm());
-  std::vector<double> by_size = gaps;
-  std::nth_element(by_size.begin(), by_size.begin() + static_cast<std::ptrdiff_t>(by_size.size() / 2),
-                   by_size.end());
-  const double usual = by_size[by_size.size() / 2];
+  const double usual = geometry::median(gaps);
   const Eigen::Vector3d step =
       (sorted.back().position_mm - sorted.front().position_mm) / static_cast<double>(sorted.size() - 1);
   for (std::size_t i = 0; i < gaps.size(); ++i) {
@@ -143,7 +135,7 @@ Eigen::Vector3d slice_step_mm(const Slices& sorted) {
     if (std::abs(gaps[i] - usual) > kPositionTolerance_fraction * usual) {
       throw InvalidInput(
           next.file, "",
-          formatted("lies %.2f mm from the slice before it, the others %.2f mm apart", gaps[i], usual) +
+          files::format("lies %.2f mm from the slice before it, the others %.2f mm apart", gaps[i], usual) +
               ": a slice is missing or one too many (" + sorted[i].file.filename().string() + ")");
     }
   }
@@ -152,8 +144,8 @@ Eigen::Vector3d slice_step_mm(const Slices& sorted) {
     const Eigen::Vector3d expected = sorted.front().position_mm + static_cast<double>(i + 1) * step;
     if ((next.position_mm - expected).norm() > kPositionTolerance_fraction * usual + 0.02) {
       throw InvalidInput(next.file, "",
-                         formatted("lies %.2f mm beside the line of the other slices",
-                                   (next.position_mm - expected).norm()));
+                         files::format("lies %.2f mm beside the line of the other slices",
+                                       (next.position_mm - expected).norm()));
     }
   }
   return step;

@@ -1,8 +1,8 @@
 #include "planning/tunnels/plan_checks.h"
 
 #include <cmath>
-#include <cstdio>
 
+#include "planning/files/format.h"
 #include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::tunnels {
@@ -11,18 +11,10 @@ namespace {
 
 using Verdict = PlanCheck::Verdict;
 
-std::string number(double value, const char* unit) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%.1f %s", value, unit);
-  return text;
-}
+std::string number(double value, const char* unit) { return files::format("%.1f %s", value, unit); }
 
 // Without a needless ".0": limits are round numbers mostly.
-std::string limit(double value, const char* unit) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%g %s", value, unit);
-  return text;
-}
+std::string limit(double value, const char* unit) { return files::format("%g %s", value, unit); }
 
 PlanCheck check_length(const Tunnel& tunnel, const TunnelGeometry& geometry, const PlanNorms& norms) {
   PlanCheck check{Verdict::Fine, "Length", number(geometry.length_mm, "mm"), ""};
