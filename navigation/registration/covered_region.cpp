@@ -12,7 +12,7 @@ namespace {
 constexpr double kThinnest_mm = -4, kThickest_mm = 5;
 // The contact's law is about half a millimetre wide: coarser steps could pass the right thickness by.
 constexpr double kCoarseStep_mm = 0.5, kFineStep_mm = 0.25;
-constexpr int kCoarseIterations = 6, kFineIterations = 15;
+constexpr int kCoarseIterations = 6, kFineIterations = 8;
 constexpr std::size_t kCoarsePointCount = 250, kMaxPoses = 8;
 // The thickness is held when it is known this well, and enough was touched on both sides of the border.
 constexpr double kMaxSigma_mm = 0.4, kMinMeasurements = 4;

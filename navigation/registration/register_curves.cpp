@@ -135,7 +135,8 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
   }
   outcome.fits = outcome.summary.has_pose && !misfits(outcome.summary, white_noise_mm);
   constexpr double kManyMeasurements = 60;
-  outcome.fits_amply = outcome.summary.has_pose && fits_amply(outcome.summary, white_noise_mm) &&
+  // A thickness that is free, or points that are left out, let other shapes fit well too.
+  outcome.fits_amply = !setting.cover && outcome.summary.has_pose && fits_amply(outcome.summary, white_noise_mm) &&
                        outcome.measurements > kManyMeasurements;
   return outcome;
 }
