@@ -197,6 +197,7 @@ void Report::registration_section(const registration::RegistrationSummary& regis
                     {"Points that fit", number(100 * registration.inlier_fraction, " %", 0)},
                     {"Predicted error at the target, one sigma", number(registration.predicted_tre_mm, " mm", 2)}});
   for (const auto& reason : registration.reasons) sentence("– " + reason, {.ink = kWarning});
+  for (const auto& assumption : registration.assumptions) sentence("– assumed: " + assumption);
   sentence("A small distance of the points does not prove a small error at the tunnel: the predicted error is the figure "
            "to go by.", {.size_pt = 8, .ink = kGray});
 }
