@@ -23,10 +23,9 @@ struct TouchedCurves {
 [[nodiscard]] RegistrationSummary summarise(const PreparedBone::Data& bone, const PosePool& pool,
                                             const TouchedCurves& touched, const RegistrationOptions& options);
 
-// The points miss the surface by more than a good tracker's errors make of this white noise: it is another bone's.
-[[nodiscard]] bool misfits(const RegistrationSummary& summary, double white_noise_mm);
-// By less than two thirds of that.
-[[nodiscard]] bool fits_amply(const RegistrationSummary& summary, double white_noise_mm);
+// By how much the points miss the surface, over what a good tracker's errors make of this white noise at most. Above 1 it is
+// another bone's surface.
+[[nodiscard]] double share_of_bearable_misfit(const RegistrationSummary& summary, double white_noise_mm);
 
 // Covariance of a twist of the bone frame about `pivot_mm` (bone frame). Robust ("sandwich"): the curvature of the cost on
 // both sides, and between them how much the pull of whole stretches of path scatters, which holds correlated errors and

@@ -27,7 +27,10 @@ struct CurvePair {
 constexpr float kMinMarkerHeight_mm = -0.2f, kMaxMarkerHeight_mm = 4.5f;
 constexpr float kMinMarkerCosine = 0.70f;
 
-constexpr float kScoreReach_mm = 1.5f;
+// A marker that the camera sees is not inside the bone, whatever it is fixed to.
+constexpr float kMinSeenHeight_mm = -1.0f;
+
+constexpr float kScoreReach_mm = 1.5f, kBuried_mm = 2.0f, kBuriedPenalty = 0.7f;
 
 class Search {
  public:
@@ -86,6 +89,7 @@ class Search {
       RoughPose pose;
       pose.rotation = surface_axes * curve_axes;
       pose.translation_mm = 0.5f * (first.point_mm + second.point_mm) - pose.rotation * curve_middle;
+      if (bone_.coarse_field.nearest_mm(pose.translation_mm) < kMinSeenHeight_mm) continue;
       if (options_.use_marker_prior && !marker_may_be_there(pose)) continue;
       pose.score = score_of(pose);
       if (pose.score > 0) keep(pose);
@@ -115,6 +119,7 @@ class Search {
       }
       const float distance = bone_.coarse_field.nearest_mm(pose.rotation * test_points_[i] + pose.translation_mm);
       score += std::max(0.0f, 1 - distance * distance / (kScoreReach_mm * kScoreReach_mm));
+      if (distance < -kBuried_mm) score -= kBuriedPenalty;
     }
     return score;
   }

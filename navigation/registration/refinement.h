@@ -2,7 +2,8 @@
 //
 // What the tip tells is not symmetric: it never goes into the bone, but it is lifted off, and it rides on soft tissue. So
 // each residual (signed distance to the bone) is explained by one of three: contact, a normal law about 0; soft tissue, a
-// normal law about 0.9 mm; lifted, anything. Their shares and the contact's spread are found with the pose (EM).
+// normal law about 0.9 mm; lifted, any height above the bone, and hardly ever inside it. Their shares and the
+// contact's spread are found with the pose (EM).
 #pragma once
 
 #include <functional>

@@ -133,11 +133,13 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
     outcome.summary.assumptions.push_back(
         describe_reach(bone, setting.reachable, pool.best().bone_from_marker * points.centroid_mm));
   }
-  outcome.fits = outcome.summary.has_pose && !misfits(outcome.summary, white_noise_mm);
-  constexpr double kManyMeasurements = 60;
+  const double misfit_share =
+      outcome.summary.has_pose ? share_of_bearable_misfit(outcome.summary, white_noise_mm) : 1e9;
+  constexpr double kManyMeasurements = 60, kSmallShare = 0.8, kAmpleLead = 20, kBorderlineShare = 1.15;
+  outcome.fits = misfit_share < kBorderlineShare;
   // A thickness that is free, or points that are left out, let other shapes fit well too.
-  outcome.fits_amply = !setting.cover && outcome.summary.has_pose && fits_amply(outcome.summary, white_noise_mm) &&
-                       outcome.measurements > kManyMeasurements;
+  outcome.fits_amply = !setting.cover && misfit_share < kSmallShare &&
+                       outcome.measurements > kManyMeasurements && lead_of_best(pool, points) > kAmpleLead;
   return outcome;
 }
 
@@ -154,7 +156,7 @@ SideVerdict judge_side(const SearchSetting& setting, const strokes::Curves& curv
   // A few strokes can't give a clear lead: there, less of one is telling enough. The own side has to lead by more, since a
   // bone that is much like its mirror image fits the wrong way round by chance.
   constexpr double kOtherLead = 3, kOtherLeadOfEach = 0.05, kOwnLead = 8, kOwnLeadOfEach = 0.1;
-  const int rounds = found.summary.reliable ? 2 : 3;  // to name the right reason is worth a little more
+  const int rounds = found.summary.reliable ? 3 : kMaxRounds;  // to name the right reason is worth a little more
   const SearchOutcome image = search_and_summarise(setting, mirrored(curves), rounds);
   const double image_lead = (found.cost - image.cost) * image.measurements;
   const double other_lead = std::min(kOtherLead, kOtherLeadOfEach * image.measurements);
