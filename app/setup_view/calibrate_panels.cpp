@@ -33,7 +33,8 @@ void CalibrateStation::draw_live_picture(const widgets::Ui& ui, const widgets::R
   const camera::Boundary view = job.advice != nullptr && job.advice->picture.lens.circle_found
                                     ? job.advice->picture.lens.circle
                                     : camera::Boundary{};
-  const widgets::PicturePlacement place = draw_picture(ui, area, picture_, job.picture, view, display_.is_live);
+  const widgets::PicturePlacement place =
+      draw_picture(ui, area, picture_, job.picture, view, display_.is_live);
   if (!display_.has_picture) return;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.PushClipRect(place.area().min(), place.area().max(), true);
@@ -55,7 +56,8 @@ void CalibrateStation::draw_live_picture(const widgets::Ui& ui, const widgets::R
     const double angle = geometry::rad_from_deg(lens.mark_angle_deg);
     const Eigen::Vector2d mark =
         lens.circle.center_px + lens.circle.radius_px * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-    draw.AddCircle(place.on_screen(mark).value_or(ImVec2{}), ui.theme.px(24), widgets::kAccent, 32, ui.theme.px(3));
+    draw.AddCircle(place.on_screen(mark).value_or(ImVec2{}), ui.theme.px(24), widgets::kAccent, 32,
+                   ui.theme.px(3));
   }
   draw.PopClipRect();
 }

@@ -57,16 +57,16 @@ std::string calibration_in_words(bool is_simulated, const fs::path& case_folder)
 }
 
 std::string camera_is_kept(bool is_simulated, const fs::path& case_folder) {
-  const bool may_be_replaced = !is_simulated || !fs::exists(cases::camera_file(case_folder)) ||
-                               has_simulated_camera(case_folder);
+  const bool may_be_replaced =
+      !is_simulated || !fs::exists(cases::camera_file(case_folder)) || has_simulated_camera(case_folder);
   return may_be_replaced
              ? ""
              : "this case has the calibration of a real scope; a simulated one does not replace it";
 }
 
 std::string tools_are_kept(bool is_simulated, const fs::path& case_folder) {
-  const bool may_be_replaced = !is_simulated || !fs::exists(cases::tools_file(case_folder)) ||
-                               has_simulated_camera(case_folder);
+  const bool may_be_replaced =
+      !is_simulated || !fs::exists(cases::tools_file(case_folder)) || has_simulated_camera(case_folder);
   return may_be_replaced ? "" : "this case has its own tools.json; what is simulated does not replace it";
 }
 

@@ -105,7 +105,8 @@ void FluidStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
 
 void FluidStation::draw_picture_with_ruler(const widgets::Ui& ui, const widgets::Rect& area) {
   const FluidStatus& job = status_.job;
-  const widgets::PicturePlacement place = draw_picture(ui, area, picture_, job.picture, job.view, display_.is_live);
+  const widgets::PicturePlacement place =
+      draw_picture(ui, area, picture_, job.picture, job.view, display_.is_live);
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.PushClipRect(place.area().min(), place.area().max(), true);
   if (display_.is_live && job.summary == nullptr)

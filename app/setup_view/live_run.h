@@ -1,5 +1,6 @@
-// A job on the pictures of a source, in a thread of its own. The window reads status() and posts requests. The
-// destructor waits for the step that is being done: sources::BackgroundEnd takes that off the screen's thread.
+// A job on the pictures of a source, in a thread of its own. The window reads status() and posts requests.
+// The destructor waits for the step that is being done: sources::BackgroundEnd takes that off the screen's
+// thread.
 //
 // A Job is thread-free, so that tests call it directly:
 //   struct Status;                        // cheap to copy

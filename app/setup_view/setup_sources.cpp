@@ -103,7 +103,8 @@ std::vector<FeedSource> sources_for(Purpose purpose, const fs::path& case_folder
                                     const sources::DeviceTurns& turns, const std::vector<fs::path>& named) {
   std::vector<FeedSource> offered{simulated(purpose)};
   const auto offer_stills = [&](const fs::path& folder) {
-    if (purpose == Purpose::Camera && !sources::pictures_in(folder).empty()) offered.push_back(stills(folder));
+    if (purpose == Purpose::Camera && !sources::pictures_in(folder).empty())
+      offered.push_back(stills(folder));
   };
   std::error_code ignored;
   for (const fs::path& path : named) {

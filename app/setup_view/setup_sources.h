@@ -15,7 +15,8 @@ enum class Purpose { Camera, Tools, Fluid };
 
 // Always at least the simulated arthroscope, which comes first. Looks into the file system, opens nothing.
 // Folders of stills (the case's own and those right inside it) are offered for the camera alone. `named` are
-// paths the user typed: a folder of pictures or a video; others are left out. Cameras are opened in their turn.
+// paths the user typed: a folder of pictures or a video; others are left out. Cameras are opened in their
+// turn.
 [[nodiscard]] std::vector<FeedSource> sources_for(Purpose purpose, const std::filesystem::path& case_folder,
                                                   const sources::DeviceTurns& turns,
                                                   const std::vector<std::filesystem::path>& named = {});

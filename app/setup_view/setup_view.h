@@ -19,7 +19,8 @@ class SetupView {
   // wake: ends the window's wait for input; called from other threads.
   // go_on: called when the last part of setting up is done and the next step is wished.
   // turns: shared with whatever else opens cameras.
-  SetupView(const std::function<void()>& wake, std::function<void()> go_on, const sources::DeviceTurns& turns);
+  SetupView(const std::function<void()>& wake, std::function<void()> go_on,
+            const sources::DeviceTurns& turns);
   ~SetupView();
 
   // Another case; ends what runs. Nothing of it is read before enter().

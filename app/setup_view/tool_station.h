@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "app/setup_view/setup_panels.h"
-#include "navigation/sources/background_end.h"
 #include "app/setup_view/tool_display.h"
+#include "navigation/sources/background_end.h"
 
 namespace arthronaut::setup_view {
 

@@ -179,8 +179,8 @@ void BoneRegistration::take_in(const std::shared_ptr<const registration::OnlineR
     return;
   }
   best_tre_mm_ = found.predicted_tre_mm;
-  add_entry({"while drawing", online->state,
-             std::make_shared<const registration::RegistrationSummary>(found)});
+  add_entry(
+      {"while drawing", online->state, std::make_shared<const registration::RegistrationSummary>(found)});
 }
 
 void BoneRegistration::add_entry(const RegistrationEntry& entry) {

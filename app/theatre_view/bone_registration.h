@@ -58,8 +58,8 @@ struct RegistrationStatus {
 
 class BoneRegistration {
  public:
-  // `bone` may still be in the making; one that throws leaves its reason in the status. plan and surface may be absent: then the target is the middle of what
-  // was touched, and touches are not judged.
+  // `bone` may still be in the making; one that throws leaves its reason in the status. plan and surface may
+  // be absent: then the target is the middle of what was touched, and touches are not judged.
   BoneRegistration(std::shared_future<PreparedBonePtr> bone, const std::optional<tunnels::Tunnel>& plan,
                    std::shared_ptr<const geometry::Surface> surface,
                    std::optional<registration::CoveredRegion> covered = std::nullopt);
@@ -85,8 +85,8 @@ class BoneRegistration {
 
   [[nodiscard]] strokes::Curves strokes_in_use() const;
   // Takes in what the registration that runs along has found meanwhile, and says all. Starts it once the bone
-  // is ready, with all that was drawn and touched before. The same object as long as nothing has changed; never
-  // null.
+  // is ready, with all that was drawn and touched before. The same object as long as nothing has changed;
+  // never null.
   [[nodiscard]] std::shared_ptr<const RegistrationStatus> status();
   // Waits until all strokes and touches are worked in; for tests.
   void finish();

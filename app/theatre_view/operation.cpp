@@ -223,6 +223,7 @@ Operation::~Operation() = default;
 
 OperationStatus Operation::status() const { return worker_->status(); }
 bool Operation::is_busy() const { return worker_->is_busy(); }
+const pipeline::PipelineOptions& Operation::options() const { return worker_->setup().pipeline; }
 const std::string& Operation::title() const { return worker_->setup().title; }
 const std::string& Operation::calibration() const { return worker_->setup().calibration; }
 double Operation::now_s() { return seconds_of(Clock::now()); }

@@ -77,6 +77,7 @@ class Operation {
 
   [[nodiscard]] OperationStatus status() const;
   [[nodiscard]] bool is_busy() const;  // pictures or a registration are to come
+  [[nodiscard]] const pipeline::PipelineOptions& options() const;
   [[nodiscard]] const std::string& title() const;
   [[nodiscard]] const std::string& calibration() const;
   [[nodiscard]] static double now_s();  // the clock of published_s

@@ -20,7 +20,10 @@ const registration::RegistrationSummary* pose_of(const RegistrationStatus& statu
   return status.in_force != nullptr && status.in_force->has_pose ? status.in_force.get() : nullptr;
 }
 
-std::string mm(double value, int decimals) { return widgets::fixed(value, decimals) + " mm"; }
+// Nobody should read a nought where something was measured.
+std::string tenths_of_mm(double value) {
+  return (value < 0.05 ? std::string("under 0.1") : widgets::fixed(value, 1)) + " mm";
+}
 
 }  // namespace
 
@@ -29,8 +32,7 @@ SignedText state_of(const RegistrationStatus& status) {
     return {
         Sign::Bad, "World marker may have moved",
         status.alarm + ". Touch the control point again; if it stays off, clear the points and draw anew."};
-  if (!status.bone_trouble.empty())
-    return {Sign::Bad, "The bone can't be registered", status.bone_trouble};
+  if (!status.bone_trouble.empty()) return {Sign::Bad, "The bone can't be registered", status.bone_trouble};
   if (status.online == nullptr)
     return {Sign::Quiet, "Collecting",
             status.drawn->empty() ? "Draw strokes on the bone with the probe."
@@ -108,7 +110,7 @@ std::optional<TouchText> touch_of(const RegistrationStatus& status) {
                        "Touch it again whenever the marker may have been hit."};
     case Kind::ControlAgain: {
       const bool is_good = *last.distance_mm <= limits.max_control_shift_mm;
-      return TouchText{{is_good ? Sign::Good : Sign::Bad, "Control point", mm(*last.distance_mm, 1)},
+      return TouchText{{is_good ? Sign::Good : Sign::Bad, "Control point", tenths_of_mm(*last.distance_mm)},
                        is_good ? "It is where it was." : "It has moved: touch it once more."};
     }
     case Kind::Touch:
@@ -116,7 +118,8 @@ std::optional<TouchText> touch_of(const RegistrationStatus& status) {
   }
   const std::string name = "Touch " + std::to_string(last.number);
   if (last.is_on_unknown_cover)
-    return TouchText{{Sign::Quiet, name, "tells nothing"}, "Cartilage of unknown thickness: touch bare bone."};
+    return TouchText{{Sign::Quiet, name, "tells nothing"},
+                     "Cartilage of unknown thickness: touch bare bone."};
   if (!last.distance_mm)
     return TouchText{{Sign::Quiet, name, "kept"}, "Judged when there is a registration."};
   const double off_mm = std::abs(*last.distance_mm);
@@ -125,7 +128,7 @@ std::optional<TouchText> touch_of(const RegistrationStatus& status) {
                          : is_inside  ? "Inside the bone model."
                                       : "Above the bone model.";
   if (!last.is_new_place) sentence += " Another place says more.";
-  return TouchText{{sign_of_residual(off_mm), name, mm(off_mm, 1)}, sentence};
+  return TouchText{{sign_of_residual(off_mm), name, tenths_of_mm(off_mm)}, sentence};
 }
 
 std::vector<StrokeRow> stroke_rows(const RegistrationStatus& status) {
@@ -137,7 +140,7 @@ std::vector<StrokeRow> stroke_rows(const RegistrationStatus& status) {
     StrokeRow row{stroke.curve, status.left_out.contains(stroke.curve), {}};
     row.text.name = "Stroke " + std::to_string(rows.size() + 1);
     row.text.text = widgets::fixed(stroke.length_mm, 0) + " mm";
-    if (has_pose) row.text.text += ", " + mm(stroke.median_residual_mm, 1) + " off";
+    if (has_pose) row.text.text += ", " + tenths_of_mm(stroke.median_residual_mm) + " off";
     row.text.sign = has_pose ? sign_of_residual(stroke.median_residual_mm) : Sign::Quiet;
     if (row.is_left_out) {
       row.text.sign = Sign::Quiet;
@@ -165,7 +168,7 @@ std::vector<SignedText> history_rows(const RegistrationStatus& status) {
     SignedText row{counts ? Sign::Good : Sign::Bad, std::to_string(i + 1) + "  " + entry.origin, ""};
     row.text = !counts ? "not reliable"
                        : widgets::plus_minus(entry.registration->predicted_tre_mm) + " mm, fit " +
-                             mm(entry.registration->rms_mm, 1) +
+                             tenths_of_mm(entry.registration->rms_mm) +
                              (entry.state == OnlineState::Verified ? ", verified" : "");
     if (entry.is_void) {
       row.sign = Sign::Quiet;

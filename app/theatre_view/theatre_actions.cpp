@@ -184,8 +184,8 @@ void TheatreView::add_registration_actions(widgets::Actions& actions) {
                GLFW_MOD_SHIFT,
                false,
                [this] {
-                 return bone_registration() != nullptr &&
-                        (!status_.bone->touches.touches_mm().empty() || status_.bone->touches.has_control_point());
+                 return bone_registration() != nullptr && (!status_.bone->touches.touches_mm().empty() ||
+                                                           status_.bone->touches.has_control_point());
                },
                {},
                [this] { bone_registration()->forget_touches(); }});

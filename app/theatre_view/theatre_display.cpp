@@ -1,9 +1,7 @@
 #include "app/theatre_view/theatre_display.h"
 
 #include <Eigen/Geometry>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace arthronaut::theatre_view {
 
@@ -11,12 +9,6 @@ namespace {
 
 using guidance::GuidanceState;
 using Phase = OperationStatus::Phase;
-
-std::string tenths(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f", value);
-  return text.data();
-}
 
 std::string reason_of_marker(const pipeline::FrameResult& result, int marker_id) {
   for (const markers::MarkerObservation& marker : result.markers)
@@ -61,8 +53,8 @@ void explain(TheatreDisplay& display, const OperationStatus& status,
       }
       display.headline = "Not registered";
       display.detail = !status.bone->bone_trouble.empty() ? status.bone->bone_trouble
-                       : status.is_registering           ? "Registering now"
-                                                         : "Touch the bone with the probe, then register";
+                       : status.is_registering            ? "Registering now"
+                                                          : "Touch the bone with the probe, then register";
       break;
     case GuidanceState::RegistrationUnreliable:
       display.headline = "Registration not reliable";
@@ -148,7 +140,7 @@ TheatreDisplay display_of(const OperationStatus* status, const pipeline::Pipelin
   }
   const double age_s = now_s - status->live->published_s;
   if (age_s > status->live->stale_after_s) {
-    display.headline = "No new picture for " + tenths(age_s) + " s";
+    display.headline = "No new picture for " + widgets::fixed(age_s, 1) + " s";
     display.detail = "What you see is not live";
     return display;
   }

@@ -16,12 +16,12 @@ struct TheatreScreen {
   std::optional<tunnels::Tunnel> plan = std::nullopt;
   double planned_length_mm = 0;
   std::uint64_t plan_revision = 0;
-  std::shared_ptr<const geometry::Surface> surface = nullptr;           // of the bone; may be null
+  std::shared_ptr<const geometry::Surface> surface = nullptr;          // of the bone; may be null
   std::shared_ptr<const geometry::TriangleMesh> drawn_bone = nullptr;  // with surface
-  float overlay_opacity = 1;                                   // 0: off
+  float overlay_opacity = 1;                                           // 0: off
   TheatreLayout layout = TheatreLayout::Guide;
   int selected_stroke = -1;
-  bool undistorts = false;                 // shows the picture without the lens' distortion
+  bool undistorts = false;                        // shows the picture without the lens' distortion
   std::string_view title = "", calibration = "";  // of the operation: "Simulated operation: probe"
   std::string next_step = "";                     // "register what was touched"
 };

@@ -32,15 +32,13 @@ void TheatreScene::show(const TheatreScreen& screen) {
     const RegistrationStatus& bone = *shown_.bone;
     touched_.add_strokes(content, bone, *screen.surface, shown_.selected_stroke);
     if (shown_.tip != nullptr)
-      content.balls.push_back(
-          {bone.in_force->marker_from_bone.inverse() * shown_.tip->result.tip_in_world_mm, 2.5,
-           scene::kGuideColor, false});
+      content.balls.push_back({bone.in_force->marker_from_bone.inverse() * shown_.tip->result.tip_in_world_mm,
+                               2.5, scene::kGuideColor, false});
     if (shown_.layout == TheatreLayout::Register && bone.online != nullptr &&
         bone.online->registration.has_pose) {
       add_patches(content, bone.online->coach);
       if (bone.online->coach.next_patch_in_bone_mm)
-        content.balls.push_back(
-            {*bone.online->coach.next_patch_in_bone_mm, 5, scene::kAchievedColor, false});
+        content.balls.push_back({*bone.online->coach.next_patch_in_bone_mm, 5, scene::kAchievedColor, false});
     }
   }
   if (shown_.guide != nullptr) {
@@ -57,8 +55,8 @@ void TheatreScene::draw(const widgets::Ui& ui, const widgets::Rect& area, const 
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const bool has_patches = screen.layout == TheatreLayout::Register && shown_.bone != nullptr &&
                            shown_.bone->online != nullptr && !shown_.bone->online->coach.patches.empty();
-  const char* label = screen.display.guidance_is_valid ? "Drill guide and plan"
-                      : has_patches                    ? "Green: touched. Orange: draw here"
+  const char* label = screen.display.guidance_is_valid           ? "Drill guide and plan"
+                      : has_patches                              ? "Green: touched. Orange: draw here"
                       : screen.layout == TheatreLayout::Register ? "Plan; what is touched will show here"
                                                                  : "Plan; the guide is not known now";
   const ImVec2 wide = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, label);

@@ -1,5 +1,5 @@
-// The bone in 3D beside the video: the plan, the guide or the probe's tip, and what was touched. The picture is
-// made anew only when something that it shows has changed.
+// The bone in 3D beside the video: the plan, the guide or the probe's tip, and what was touched. The picture
+// is made anew only when something that it shows has changed.
 #pragma once
 
 #include <cstdint>

@@ -113,9 +113,8 @@ OperationSetup video_setup(const planning_view::PlanModel& model, bones::BoneKin
 }
 
 OperationSetup camera_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
-                            const std::filesystem::path& case_folder,
-                            const sources::ConnectedCamera& camera, const sources::DeviceTurns& turns,
-                            double refractive_index) {
+                            const std::filesystem::path& case_folder, const sources::ConnectedCamera& camera,
+                            const sources::DeviceTurns& turns, double refractive_index) {
   OperationSetup setup = real_setup(model, bone, case_folder, refractive_index);
   setup.title = camera.name;
   setup.open_source = [turns, index = camera.index] { return turns.open(index); };

@@ -15,8 +15,9 @@ enum class SimulatedPart { Scratch, Drill };
 
 // Why the simulated operation can't run on this bone of the case: no plan, no landmarks. Empty when it can.
 [[nodiscard]] std::string missing_for_simulation(const planning_view::PlanModel& model, bones::BoneKind bone);
-// Precondition: missing_for_simulation() is empty. The standard scope and the standard tools in saline, tracked
-// with what Set up has adopted of them for this case. Throws IoError or InvalidInput when that is broken.
+// Precondition: missing_for_simulation() is empty. The standard scope and the standard tools in saline,
+// tracked with what Set up has adopted of them for this case. Throws IoError or InvalidInput when that is
+// broken.
 [[nodiscard]] OperationSetup simulated_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
                                              const std::filesystem::path& case_folder, SimulatedPart part);
 

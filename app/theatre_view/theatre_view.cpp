@@ -42,7 +42,6 @@ void TheatreView::open(const planning_view::PlanModel* model, const std::filesys
 void TheatreView::enter() { choices_.videos = sources::videos_in(case_folder_); }
 
 void TheatreView::end_operation() {
-  options_.reset();
   part_.reset();
   choices_.guidance_seen_s = -1e9;
   if (operation_ == nullptr) return;
@@ -68,7 +67,6 @@ void TheatreView::start(OperationSetup setup) {
   }
   prepare_bone();
   setup.registration = bone.registration;
-  options_ = std::make_unique<pipeline::PipelineOptions>(setup.pipeline);
   operation_ = std::make_unique<Operation>(std::move(setup), wake_);
   read_status();
   choices_.overlay_shown_at_s = Operation::now_s();
@@ -193,7 +191,8 @@ std::string TheatreView::next_step() const {
 }
 
 void TheatreView::take_next_step() {
-  if (!choices_.cameras.empty()) return start_camera(sources::ConnectedCamera(choices_.cameras[choices_.camera]));
+  if (!choices_.cameras.empty())
+    return start_camera(sources::ConnectedCamera(choices_.cameras[choices_.camera]));
   const std::string step = next_step();
   if (step == "start the simulated operation") return start_simulation(SimulatedPart::Scratch);
   if (step == "register what was touched") return operation_->register_curves();
@@ -251,7 +250,7 @@ TheatreLayout TheatreView::layout(double now_s) const {
 
 TheatreScreen TheatreView::screen_of(const TheatreDisplay& display, double now_s) const {
   const OperationStatus* status = operation_ != nullptr ? &status_ : nullptr;
-  TheatreScreen screen{status, options_.get(), display, words_};
+  TheatreScreen screen{status, operation_ != nullptr ? &operation_->options() : nullptr, display, words_};
   if (model_ != nullptr && model_->has_bone(choices_.bone)) {
     screen.plan = model_->tunnel(choices_.bone);
     screen.planned_length_mm = screen.plan ? model_->drawn_length_mm(choices_.bone) : 0;
@@ -276,7 +275,8 @@ void TheatreView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if (model_ != nullptr && model_->has_bone(choices_.bone)) prepare_bone();
   read_status();
   const double now = Operation::now_s();
-  TheatreDisplay display = display_of(operation_ != nullptr ? &status_ : nullptr, options_.get(), now);
+  TheatreDisplay display = operation_ != nullptr ? display_of(&status_, &operation_->options(), now)
+                                                 : display_of(nullptr, nullptr, now);
   if (operation_ == nullptr && !notice_.empty()) display.detail = notice_;
   if (display.guidance_is_valid) {
     // A guide that comes into view gets the screen, whatever was looked at before.

@@ -77,11 +77,11 @@ class TheatreView {
     bool overlay_on = true;
     double overlay_shown_at_s = 0;
     bool undistorts = false;
-    std::optional<TheatreLayout> layout;  // empty: as things stand
-    double guidance_seen_s = -1e9;        // when guidance was valid last
-    int stroke = -1;                      // selected
+    std::optional<TheatreLayout> layout;            // empty: as things stand
+    double guidance_seen_s = -1e9;                  // when guidance was valid last
+    int stroke = -1;                                // selected
     std::vector<sources::ConnectedCamera> cameras;  // on offer now; empty: none
-    std::size_t camera = 0;               // of those
+    std::size_t camera = 0;                         // of those
   };
 
   const planning_view::PlanModel* model_ = nullptr;
@@ -93,11 +93,10 @@ class TheatreView {
   std::map<bones::BoneKind, BoneState> bones_;
   Choices choices_;
   std::unique_ptr<Operation> operation_;
-  sources::BackgroundEnd ending_;                       // operations before, and bones of another case
-  std::unique_ptr<pipeline::PipelineOptions> options_;  // of the operation
-  OperationStatus status_;                              // of this frame
-  RegistrationWords words_;                             // of status_.bone
-  std::optional<SimulatedPart> part_;                   // of the running simulation
+  sources::BackgroundEnd ending_;      // operations before, and bones of another case
+  OperationStatus status_;             // of this frame
+  RegistrationWords words_;            // of status_.bone
+  std::optional<SimulatedPart> part_;  // of the running simulation
   std::string notice_;
 };
 

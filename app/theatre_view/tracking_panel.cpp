@@ -9,7 +9,6 @@ namespace {
 
 using widgets::Sign;
 
-// Why a tool that nobody needs now is not seen worries nobody.
 bool is_needed(const TheatreScreen& screen, int marker_id) {
   const pipeline::PipelineOptions& options = *screen.options;
   const auto* probe = options.tools.find_tool(options.probe_name);
@@ -23,6 +22,9 @@ void draw_markers(const widgets::Ui& ui, const TheatreScreen& screen) {
   const auto* world = screen.options->tools.find_world_marker(screen.options->bone);
   for (const markers::MarkerObservation& marker : result.markers) {
     const bool is_world = world != nullptr && world->marker_id == marker.id;
+    // A tool that nobody needs now is worth a line only while it is seen.
+    const bool is_seen = marker.state != markers::MarkerState::NotSeen;
+    if (!is_world && !is_seen && !is_needed(screen, marker.id)) continue;
     const bool stands = screen.display.is_live && result.stands_for(marker);
     std::string text(markers::to_text(marker.state));
     if (!screen.display.is_live) text = "no live picture";

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/widgets/picture_placement.h"
 #include "app/theatre_view/theatre_panels.h"
+#include "app/widgets/picture_placement.h"
 
 namespace arthronaut::theatre_view {
 
@@ -32,8 +32,8 @@ LineStyle style_of(const OverlayLine& line, float opacity, float scale) {
   return {widgets::kText, scale};
 }
 
-void draw_overlay(ImDrawList& draw, const widgets::PicturePlacement& placement, const scene::PlanOverlay& overlay,
-                  float opacity, float scale) {
+void draw_overlay(ImDrawList& draw, const widgets::PicturePlacement& placement,
+                  const scene::PlanOverlay& overlay, float opacity, float scale) {
   for (const OverlayLine& line : overlay) {
     for (const Eigen::Vector2d& p : line.points_px)
       if (const auto at = placement.on_screen(p)) draw.PathLineTo(*at);

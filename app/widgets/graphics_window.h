@@ -26,8 +26,8 @@ class GraphicsWindow {
   GraphicsWindow(const GraphicsWindow&) = delete;
   GraphicsWindow& operator=(const GraphicsWindow&) = delete;
 
-  // Waits for input at most `timeout_s` (0: does not wait), or until wake(), then starts a frame. Keys are dealt
-  // out as KeyQueue does; while some wait there is no wait for input.
+  // Waits for input at most `timeout_s` (0: does not wait), or until wake(), then starts a frame. Keys are
+  // dealt out as KeyQueue does; while some wait there is no wait for input.
   void begin_frame(double timeout_s);
   void end_frame();
   // A text field is about to take the keyboard: what is typed waits for it, a few frames at most.

@@ -1,6 +1,6 @@
-// Keys and typed letters in the order they came, dealt out so that a screen sees every one of them. ImGui looks
-// once a frame at which keys are down: a key that is pressed and let go between two frames would not exist, and
-// one that follows letters would come before them.
+// Keys and typed letters in the order they came, dealt out so that a screen sees every one of them. ImGui
+// looks once a frame at which keys are down: a key that is pressed and let go between two frames would not
+// exist, and one that follows letters would come before them.
 #pragma once
 
 #include <deque>

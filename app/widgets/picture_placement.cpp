@@ -7,15 +7,13 @@ Rect shown_part(const camera::Boundary& view, int width_px, int height_px) {
   if (view.radius_px <= 0) return {0, 0, width, height};
   constexpr double kMargin = 1.03;
   const float half = static_cast<float>(kMargin * view.radius_px);
-  const float x = static_cast<float>(view.center_px.x()),
-              y = static_cast<float>(view.center_px.y());
+  const float x = static_cast<float>(view.center_px.x()), y = static_cast<float>(view.center_px.y());
   const float left = std::max(x - half, 0.F), right = std::min(x + half, width);
   const float top = std::max(y - half, 0.F), bottom = std::min(y + half, height);
   return {left, top, std::max(right - left, 1.F), std::max(bottom - top, 1.F)};
 }
 
-PicturePlacement::PicturePlacement(const Rect& area, const Rect& part)
-    : area_(area), part_(part) {}
+PicturePlacement::PicturePlacement(const Rect& area, const Rect& part) : area_(area), part_(part) {}
 
 PicturePlacement::PicturePlacement(const Rect& area, const camera::CameraModel& camera,
                                    const camera::UndistortedView& view)

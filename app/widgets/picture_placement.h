@@ -10,8 +10,8 @@
 
 namespace arthronaut::widgets {
 
-// The part of the raw picture that is shown: the square about the round view, inside the image; all of it for a
-// view of radius 0. The rim moves a little as the lens turns, so a margin is left.
+// The part of the raw picture that is shown: the square about the round view, inside the image; all of it for
+// a view of radius 0. The rim moves a little as the lens turns, so a margin is left.
 [[nodiscard]] Rect shown_part(const camera::Boundary& view, int width_px, int height_px);
 
 class PicturePlacement {
@@ -19,8 +19,7 @@ class PicturePlacement {
   // As it came: `part` of the raw picture fills `area`, which has the same aspect.
   PicturePlacement(const Rect& area, const Rect& part);
   // Undistorted: the view's square fills `area`, also a square. Camera and view outlive this.
-  PicturePlacement(const Rect& area, const camera::CameraModel& camera,
-                   const camera::UndistortedView& view);
+  PicturePlacement(const Rect& area, const camera::CameraModel& camera, const camera::UndistortedView& view);
 
   // nullopt where the model has no ray.
   [[nodiscard]] std::optional<ImVec2> on_screen(const Eigen::Vector2d& raw_pixel) const;

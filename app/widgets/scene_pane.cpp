@@ -50,7 +50,7 @@ PaneInput ScenePane::draw(const Ui& ui, const char* name, const Rect& rect,
                         ImGui::IsMouseReleased(ImGuiMouseButton_Left);
     drags_handle_ = false;
   }
-  if (!is_held_) follow_mouse(input);
+  follow_mouse(input);
   ui.log.note(name, rect.min(), rect.max());
   ImGui::PopID();
   render(ui, rect);

@@ -28,8 +28,6 @@ class ScenePane {
   void show(const scene::SceneContent& content);
   void look(const scene::SceneCamera& camera) { camera_ = camera; }
   [[nodiscard]] const scene::SceneCamera& camera() const { return camera_; }
-  // Turning by the mouse can be switched off where the program holds the camera.
-  void set_held(bool held) { is_held_ = held; }
 
   // Left drag turns, right or middle drag shifts, the wheel zooms; a press where is_handle(pixel) holds drags
   // the handle instead. While nothing moves the picture is drawn once more at twice the size, for smooth
@@ -43,7 +41,7 @@ class ScenePane {
 
   scene::SceneView view_;
   scene::SceneCamera camera_, drawn_camera_;
-  bool is_held_ = false, drags_handle_ = false, changed_ = true;
+  bool drags_handle_ = false, changed_ = true;
   float press_travel_px_ = 0;
   double changed_at_s_ = 0;
 };

@@ -3,6 +3,7 @@
 #include <GL/glew.h>
 
 #include <array>
+#include <optional>
 
 namespace arthronaut::widgets {
 
@@ -165,7 +166,9 @@ void UndistortedTexture::draw(const camera::FramePtr& frame, const VideoTexture&
                               const camera::CameraModel& camera, int size_px) {
   const bool fits = view_ != nullptr && view_->fits(camera);
   if (frame == nullptr || (frame == drawn_ && fits && size_px == size_px_)) return;
-  const KeptState kept;
+  // On the CPU a new frame touches no more than the bound texture, which draw_on_cpu() puts back.
+  std::optional<KeptState> kept;
+  if (program_ != 0 || texture_ == 0 || size_px != size_px_) kept.emplace();
   set_up();
   if (!fits) {
     view_ = std::make_shared<camera::UndistortedView>(camera);
@@ -201,11 +204,14 @@ void UndistortedTexture::draw_on_gpu(const VideoTexture& video, const camera::Ca
 
 void UndistortedTexture::draw_on_cpu(const camera::Frame& frame, const camera::CameraModel& camera) {
   const std::vector<std::uint8_t>& bgr = picture_.draw(frame, camera, view_, size_px_);
+  GLint bound = 0;
+  glGetIntegerv(GL_TEXTURE_BINDING_2D, &bound);
   glBindTexture(GL_TEXTURE_2D, texture_);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size_px_, size_px_, GL_BGR, GL_UNSIGNED_BYTE, bgr.data());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(bound));
 }
 
 }  // namespace arthronaut::widgets

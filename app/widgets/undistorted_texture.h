@@ -28,6 +28,7 @@ class UndistortedTexture {
 
   [[nodiscard]] std::uint32_t texture() const { return texture_; }              // 0 before the first draw()
   [[nodiscard]] const camera::UndistortedView& view() const { return *view_; }  // after the first draw()
+  // For tests: else both sides of a comparison could be the CPU's.
   [[nodiscard]] bool is_on_gpu() const { return program_ != 0; }
 
  private:

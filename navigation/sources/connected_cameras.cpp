@@ -7,7 +7,7 @@
 namespace arthronaut::sources {
 
 std::vector<ConnectedCamera> connected_cameras(const std::filesystem::path& devices,
-                                       const std::filesystem::path& names) {
+                                               const std::filesystem::path& names) {
   constexpr std::string_view kPrefix = "video";
   std::vector<ConnectedCamera> cameras;
   std::error_code ignored;  // a machine without that folder has no camera

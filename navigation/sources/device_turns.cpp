@@ -53,8 +53,8 @@ DeviceTurns::DeviceTurns(Opener opener, double patience_s)
 std::unique_ptr<FrameSource> DeviceTurns::open(int device_index) const {
   {
     std::unique_lock lock(state_->mutex);
-    const bool is_free = state_->given_back.wait_for(
-        lock, state_->patience_s, [&] { return !state_->taken.contains(device_index); });
+    const bool is_free = state_->given_back.wait_for(lock, state_->patience_s,
+                                                     [&] { return !state_->taken.contains(device_index); });
     if (!is_free)
       throw DeviceError("camera " + std::to_string(device_index) +
                         " is in use: stop what shows it, in Set up or in Navigate");

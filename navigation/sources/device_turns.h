@@ -1,8 +1,8 @@
 // One reader a camera: a device is opened again only when the source that had it is gone. Every part of the
 // program that opens devices shares one DeviceTurns; copies share their turns.
 //
-// Threads: open() may be called from any thread but the screen's, since it waits. A source gives its turn back
-// when it is destroyed, on whatever thread that happens.
+// Threads: open() may be called from any thread but the screen's, since it waits. A source gives its turn
+// back when it is destroyed, on whatever thread that happens.
 #pragma once
 
 #include <functional>
@@ -18,8 +18,8 @@ class DeviceTurns {
   // Letting go of a device takes a picture or two, 5 s where a driver is slow.
   explicit DeviceTurns(Opener opener = open_device, double patience_s = 5);
 
-  // Waits while the device is still read, patience_s at most. Throws DeviceError when it is read on ("camera 0
-  // is in use"), and what the opener throws.
+  // Waits while the device is still read, patience_s at most. Throws DeviceError when it is read on ("camera
+  // 0 is in use"), and what the opener throws.
   [[nodiscard]] std::unique_ptr<FrameSource> open(int device_index) const;
 
  private:

@@ -95,7 +95,8 @@ class Sources : public ::testing::Test {
   // A folder for each test: they run side by side.
   Sources()
       : folder_(std::filesystem::path(::testing::TempDir()) /
-                ("setup_sources_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()))) {
+                ("setup_sources_" +
+                 std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()))) {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_ / "board");
     std::ofstream(folder_ / "board" / "b.PNG") << "x";

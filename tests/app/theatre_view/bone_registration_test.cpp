@@ -165,8 +165,7 @@ TEST_F(BoneRegistrationTest, AStoppedRegistrationHasNoEffect) {
 // leaving out while the fit waits for its bone makes it void.
 TEST_F(BoneRegistrationTest, ARegistrationOfOldStrokesHasNoEffect) {
   const std::vector<std::function<void(BoneRegistration&)>> changes{
-      [](BoneRegistration& bone) { bone.clear(); },
-      [](BoneRegistration& bone) { bone.take_back_stroke(); },
+      [](BoneRegistration& bone) { bone.clear(); }, [](BoneRegistration& bone) { bone.take_back_stroke(); },
       [](BoneRegistration& bone) { bone.leave_out(0, true); },
       [](BoneRegistration&) {},  // nothing changes: it takes effect
   };
@@ -289,8 +288,8 @@ TEST_F(BoneRegistrationTest, ThePictureShowsHowFarStrokesLieOff) {
   EXPECT_EQ(content.rods.size(), status.online->coach.patches.size());
 }
 
-// Cartilage of 2 mm on a bone that was segmented bare: what was assumed about it stands on the screen, and touches
-// on it lie where they should.
+// Cartilage of 2 mm on a bone that was segmented bare: what was assumed about it stands on the screen, and
+// touches on it lie where they should.
 TEST_F(BoneRegistrationTest, SaysWhatWasAssumedAboutCartilage) {
   const auto covered = registration::covered_trial(phantom_bone(), trial_, 2);
   BoneRegistration bone(ready_bone(), plan(), surface_, covered.region);

@@ -10,8 +10,8 @@
 namespace arthronaut::theatre_view {
 namespace {
 
-// The simulation is tracked with the camera and the tools that Set up adopted of it, and with what is built in
-// before that; the words on the screen say which.
+// The simulation is tracked with the camera and the tools that Set up adopted of it, and with what is built
+// in before that; the words on the screen say which.
 TEST(TheatreSetup, TheSimulationIsTrackedWithWhatSetUpAdopted) {
   const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "theatre_setup";
   std::filesystem::remove_all(folder);

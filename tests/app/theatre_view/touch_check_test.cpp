@@ -62,8 +62,8 @@ TEST(TouchCheck, TwoTouchesOffTheBoneRaiseTheAlarm) {
   EXPECT_TRUE(check.residuals_mm().empty());
 }
 
-// On cartilage that the model lacks a touch should lie as far off the bone as its thickness; where that is not
-// known, a touch says nothing and alarms nobody.
+// On cartilage that the model lacks a touch should lie as far off the bone as its thickness; where that is
+// not known, a touch says nothing and alarms nobody.
 TEST(TouchCheck, TouchesOnCartilageAreJudgedByItsThickness) {
   const geometry::Surface surface(block());
   const registration::CoveredRegion covered{{{0, 0, 0}, {5, 0, 0}}, 4};

@@ -57,7 +57,8 @@ TEST(DeviceTurns, SaysThatADeviceIsInUse) {
       },
       kShort_s);
   const std::unique_ptr<FrameSource> first = turns.open(0);
-  EXPECT_NE(message_of<DeviceError>([&] { (void)turns.open(0); }).find("camera 0 is in use"), std::string::npos);
+  EXPECT_NE(message_of<DeviceError>([&] { (void)turns.open(0); }).find("camera 0 is in use"),
+            std::string::npos);
   EXPECT_NE(turns.open(1), nullptr);
   for (int i = 0; i < 2; ++i)
     EXPECT_EQ(message_of<DeviceError>([&] { (void)turns.open(7); }), "camera 7: can't be opened");
