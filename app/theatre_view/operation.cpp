@@ -93,7 +93,7 @@ class Operation::Worker {
     const std::string why_not = job.take_touch(is_control_point);
     update([&](OperationStatus& s) {
       s.digitises = false;
-      s.touch_notice = why_not.empty() ? "" : "No touch taken: " + why_not;
+      s.touch_notice = why_not;
     });
   }
   void start_recording(OperationJob& job, const std::filesystem::path& folder) {

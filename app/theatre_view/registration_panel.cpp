@@ -39,7 +39,7 @@ void draw_state(const widgets::Ui& ui, const RegistrationWords& words) {
 }
 
 void draw_touch(const widgets::Ui& ui, const std::optional<TouchText>& touch, const std::string& notice) {
-  if (!notice.empty()) widgets::status_row(ui, widgets::Sign::Caution, notice, "");
+  if (!notice.empty()) widgets::status_row(ui, widgets::Sign::Caution, "No touch taken", notice);
   if (!touch) return;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = std::max(ImGui::GetContentRegionAvail().x, 1.F);

@@ -75,7 +75,7 @@ void draw_registration_row(const widgets::Ui& ui, const TheatreScreen& screen) {
 void draw_touch_row(const widgets::Ui& ui, const TheatreScreen& screen) {
   if (screen.layout == TheatreLayout::Register) return;
   if (!screen.status->touch_notice.empty())
-    widgets::status_row(ui, Sign::Caution, screen.status->touch_notice, "");
+    widgets::status_row(ui, Sign::Caution, "No touch taken", screen.status->touch_notice);
   else if (const auto& touch = screen.words.touch)
     widgets::status_row(ui, touch->number.sign, touch->number.name, touch->number.text);
 }
