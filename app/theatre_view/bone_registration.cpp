@@ -54,10 +54,11 @@ void BoneRegistration::publish_strokes(bool always) {
   status_.left_out = strokes_.left_out();
 }
 
-void BoneRegistration::add_tip(double time_s, const Eigen::Vector3d& tip_in_marker_mm) {
+void BoneRegistration::add_tip(double time_s, const Eigen::Vector3d& tip_in_marker_mm,
+                               const std::optional<Eigen::Vector3d>& shaft_direction) {
   const std::lock_guard lock(mutex_);
   start_worker();
-  const strokes::CurvePoint point = strokes_.add(time_s, tip_in_marker_mm);
+  const strokes::CurvePoint point = strokes_.add(time_s, tip_in_marker_mm, shaft_direction);
   if (worker_ != nullptr) worker_->add_points(std::span(&point, 1));
   publish_strokes(false);
 }

@@ -64,7 +64,9 @@ class BoneRegistration {
                    std::shared_ptr<const geometry::Surface> surface,
                    std::optional<registration::CoveredRegion> covered = std::nullopt);
 
-  void add_tip(double time_s, const Eigen::Vector3d& tip_in_marker_mm);
+  // shaft_direction: see strokes::CurvePoint.
+  void add_tip(double time_s, const Eigen::Vector3d& tip_in_marker_mm,
+               const std::optional<Eigen::Vector3d>& shaft_direction = std::nullopt);
   void take_back_stroke();
   void leave_out(int curve, bool is_left_out);
   // Forgets strokes and touches. While there is an alarm the registration in force goes too: the marker has

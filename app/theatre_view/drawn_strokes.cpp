@@ -20,7 +20,8 @@ bool is_long_enough(Iterator first, Iterator end) {
 
 }  // namespace
 
-strokes::CurvePoint DrawnStrokes::add(double time_s, const Eigen::Vector3d& tip_in_marker_mm) {
+strokes::CurvePoint DrawnStrokes::add(double time_s, const Eigen::Vector3d& tip_in_marker_mm,
+                                      const std::optional<Eigen::Vector3d>& shaft_direction) {
   if (!is_cut_ && !points_.empty()) {
     const strokes::CurvePoint& last = points_.back();
     is_cut_ = time_s - last.time_s.value_or(time_s) > kLimits.max_gap_s ||
@@ -29,7 +30,7 @@ strokes::CurvePoint DrawnStrokes::add(double time_s, const Eigen::Vector3d& tip_
   }
   if (is_cut_) ++next_curve_;
   is_cut_ = false;
-  points_.push_back({next_curve_ - 1, time_s, tip_in_marker_mm});
+  points_.push_back({next_curve_ - 1, time_s, tip_in_marker_mm, shaft_direction});
   return points_.back();
 }
 

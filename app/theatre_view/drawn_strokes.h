@@ -11,7 +11,8 @@ class DrawnStrokes {
  public:
   // The tip was here. Goes on with the stroke at hand, or starts a new one after a gap, a hop or take_back().
   // Returns the point with its stroke's number; numbers are never used twice.
-  strokes::CurvePoint add(double time_s, const Eigen::Vector3d& tip_in_marker_mm);
+  strokes::CurvePoint add(double time_s, const Eigen::Vector3d& tip_in_marker_mm,
+                          const std::optional<Eigen::Vector3d>& shaft_direction = std::nullopt);
   // Forgets the last stroke that is long enough to count, and the crumbs after it. Returns how many strokes
   // went.
   int take_back();

@@ -80,7 +80,7 @@ void OperationJob::note_tip(const pipeline::FrameResult& result) {
   const double time_s = static_cast<double>(result.timestamp_ns) * 1e-9;
   tip_.add(time_s, result.tip_is_valid ? std::optional(result.tip_in_world_mm) : std::nullopt);
   if (!digitises_ || !result.tip_is_valid) return;
-  setup_.registration->add_tip(time_s, result.tip_in_world_mm);
+  setup_.registration->add_tip(time_s, result.tip_in_world_mm, result.shaft_in_world);
   has_drawn_ = true;
 }
 

@@ -74,6 +74,8 @@ struct NavigationPipeline::State {
     const geometry::TrackedPose& world_from_probe = result.tools[*probe].world_from_tool;
     const Eigen::Vector3d& tip_in_probe_mm = *options.tools.tools[*probe].tip_mm;
     result.tip_in_world_mm = world_from_probe.target_from_source * tip_in_probe_mm;
+    const std::optional<Eigen::Vector3d> shaft_in_probe = tools::shaft_direction(options.tools.tools[*probe]);
+    if (shaft_in_probe) result.shaft_in_world = world_from_probe.target_from_source.rotate(*shaft_in_probe);
     // d tip / d body twist = R [I, -[tip]x].
     Eigen::Matrix<double, 3, 6> jacobian;
     jacobian << Eigen::Matrix3d::Identity(), -geometry::cross_matrix(tip_in_probe_mm);

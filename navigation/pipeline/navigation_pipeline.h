@@ -45,6 +45,7 @@ struct FrameResult : View {                              // markers: world marke
   std::vector<ToolPose> tools;                           // world_from_tool of each tool, in the order of the tool set
   bool tip_is_valid = false;
   Eigen::Vector3d tip_in_world_mm = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Vector3d> shaft_in_world;  // see tools::shaft_direction
   Eigen::Matrix3d tip_covariance_mm2 = Eigen::Matrix3d::Zero();
   guidance::GuidanceNumbers guidance;
   double processing_ms = 0;                              // of process(): not part of what replay compares

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "navigation/registration/probe_way.h"
+
 namespace arthronaut::registration {
 
 using geometry::cross_matrix;
@@ -204,6 +206,10 @@ RegistrationSummary summarise(const PreparedBone::Data& bone, const PosePool& po
   constexpr double kClearLead = 1e3;
   const double lead = pool.runner_up() ? lead_of(best.cost, pool.runner_up()->cost, touched.points) : kClearLead;
   summary.reasons = doubts(summary, touched, lead);
+  if (!ProbeWay(bone, touched.points).is_possible(best.bone_from_marker.matrix().cast<float>(),
+                                                  best.bone_from_marker.translation_mm.cast<float>())) {
+    summary.reasons.push_back("the probe would have come through the bone: is it this patient's bone, and the right side?");
+  }
   summary.reliable = summary.reasons.empty();
   return summary;
 }

@@ -96,8 +96,11 @@ class Fit {
     for (std::size_t i = 0; i < points.offsets_mm.size(); ++i) {
       if (assignment.is_covered[i]) points.offsets_mm[i] = thickness_mm;
     }
+    // With the thickness in the points nothing is buried any more.
+    ContactModel law = start.model;
+    law.buried_density_per_mm = ContactModel::kRarelyBuried_per_mm;
     return refine([this](const Eigen::Vector3d& p) { return bone_.field.sample(p); }, points,
-                  start.bone_from_marker, start.model, prior_, iterations);
+                  start.bone_from_marker, law, prior_, iterations);
   }
 
   // On a part of the points; from 0 outwards, each from the one before: the pose moves along with the

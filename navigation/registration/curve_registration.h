@@ -18,6 +18,9 @@ enum class SideVerdict { Own, Unclear, Other };
 struct SearchSetting {
   SearchSetting(const PreparedBone::Data& searched_bone, const RegistrationOptions& registration_options);
 
+  // The residuals' law while the thickness of a declared cover is not known yet.
+  [[nodiscard]] ContactModel start_law() const;
+
   const PreparedBone::Data& bone;
   RegistrationOptions options;
   std::vector<bool>

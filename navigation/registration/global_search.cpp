@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "navigation/registration/probe_way.h"
+
 namespace arthronaut::registration {
 
 namespace {
@@ -35,7 +37,7 @@ constexpr float kScoreReach_mm = 1.5f, kBuried_mm = 2.0f, kBuriedPenalty = 0.7f;
 class Search {
  public:
   Search(const PreparedBone::Data& bone, const TouchedPoints& points, const GlobalSearchOptions& options)
-      : bone_(bone), options_(options), center_(points.centroid_mm.cast<float>()) {
+      : bone_(bone), options_(options), probe_way_(bone, points), center_(points.centroid_mm.cast<float>()) {
     const TouchedPoints drawn = draw_points(points, kTestPointCount, options.seed);
     for (const Eigen::Vector3d& p : drawn.positions_mm) test_points_.push_back(p.cast<float>());
   }
@@ -92,7 +94,7 @@ class Search {
       if (bone_.coarse_field.nearest_mm(pose.translation_mm) < kMinSeenHeight_mm) continue;
       if (options_.use_marker_prior && !marker_may_be_there(pose)) continue;
       pose.score = score_of(pose);
-      if (pose.score > 0) keep(pose);
+      if (pose.score > 0 && probe_way_.is_possible(pose.rotation, pose.translation_mm)) keep(pose);
     }
   }
 
@@ -119,7 +121,7 @@ class Search {
       }
       const float distance = bone_.coarse_field.nearest_mm(pose.rotation * test_points_[i] + pose.translation_mm);
       score += std::max(0.0f, 1 - distance * distance / (kScoreReach_mm * kScoreReach_mm));
-      if (distance < -kBuried_mm) score -= kBuriedPenalty;
+      if (distance < -kBuried_mm && !options_.may_be_buried) score -= kBuriedPenalty;
     }
     return score;
   }
@@ -144,6 +146,7 @@ class Search {
 
   const PreparedBone::Data& bone_;
   const GlobalSearchOptions& options_;
+  ProbeWay probe_way_;
   Eigen::Vector3f center_;
   std::vector<Eigen::Vector3f> test_points_;
   std::vector<PairTable::Match> matches_;

@@ -60,7 +60,7 @@ struct OnlineRegistration::State {
       : bone(std::move(prepared)),
         options(online_options),
         setting(bone->data(), options_of(online_options)),
-        pool(bone->data(), prior_of(online_options)),
+        pool(bone->data(), prior_of(online_options), setting.start_law()),
         standing(pool) {
     if (setting.cover) fitter.emplace(bone->data(), *setting.cover, pool.prior());
     if (options.target_in_bone_mm)
@@ -155,6 +155,7 @@ void OnlineRegistration::State::solve() {
     const bool is_found = result.state != OnlineState::Collecting;
     search.curve_pair_count = is_found ? kPairsAfterwards : kPairsWhileCollecting;
     search.keep_count = is_found ? 4 : 40;
+    search.may_be_buried = setting.cover.has_value();
     // Where the plan is first, then everywhere, in turn.
     if (!is_found && !reachable.empty() && result.revision % 2 == 1) search.reachable = &reachable;
     search.both_ways = !is_found;

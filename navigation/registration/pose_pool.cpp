@@ -50,7 +50,7 @@ void PosePool::add(const std::vector<Hypothesis>& hypotheses, const TouchedPoint
   }
   for (const Hypothesis& hypothesis : hypotheses) {
     const RigidTransform near = approach(bone_.field, coarse_points, hypothesis.bone_from_marker);
-    poses_.push_back(refine(distance_in(bone_.field), coarse_points, near, {}, prior_, 6));
+    poses_.push_back(refine(distance_in(bone_.field), coarse_points, near, start_, prior_, 6));
   }
   rank(points.centroid_mm, kPoolSize);
 }

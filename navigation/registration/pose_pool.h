@@ -20,7 +20,9 @@ namespace arthronaut::registration {
 
 class PosePool {
  public:
-  PosePool(const PreparedBone::Data& bone, const MarkerPrior& prior) : bone_(bone), prior_(prior) {}
+  // start: the law of the residuals that new poses are refined from.
+  PosePool(const PreparedBone::Data& bone, const MarkerPrior& prior, const ContactModel& start = {})
+      : bone_(bone), prior_(prior), start_(start) {}
 
   // Refines hypotheses roughly on few points, and lets the best into the pool.
   void add(const std::vector<Hypothesis>& hypotheses, const TouchedPoints& points, std::uint64_t seed);
@@ -45,6 +47,7 @@ class PosePool {
 
   const PreparedBone::Data& bone_;
   MarkerPrior prior_;
+  ContactModel start_;
   std::vector<RefinedPose> poses_;  // best first, different from one another
 };
 

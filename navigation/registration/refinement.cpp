@@ -55,18 +55,18 @@ void move(RigidTransform& bone_from_marker, const Vector6d& twist, const Eigen::
 bool is_small(const Vector6d& twist) { return twist.head<3>().norm() < 1e-4 && twist.tail<3>().norm() < 1e-5; }
 
 // Laws of the three explanations. Lifts are alike up to the field's band, and all beyond it count as the last of them. Into the
-// bone goes nothing but a gross error, twenty times rarer than a lift: a pose that buries strokes can't explain them away.
+// bone goes nothing but a gross error: a pose that buries strokes can't explain them away.
 constexpr double kSoftHeight_mm = 0.9, kSoftSigma_mm = 0.37;
-constexpr double kLiftedDensity_per_mm = 0.2, kBuriedDensity_per_mm = 0.01, kLiftOnset_mm = 0.15;
+constexpr double kLiftedDensity_per_mm = 0.2, kLiftOnset_mm = 0.15;
 constexpr double kMinSigma_mm = 0.06, kMaxSigma_mm = 0.6;
 
 double normal_density(double x, double sigma) {
   return std::exp(-0.5 * x * x / (sigma * sigma)) / (sigma * 2.5066282746310002);
 }
 
-double lifted_density_per_mm(double residual_mm) {
+double lifted_density_per_mm(double residual_mm, double buried_density_per_mm) {
   const double share_above = 1 / (1 + std::exp(-residual_mm / kLiftOnset_mm));
-  return kBuriedDensity_per_mm + (kLiftedDensity_per_mm - kBuriedDensity_per_mm) * share_above;
+  return buried_density_per_mm + (kLiftedDensity_per_mm - buried_density_per_mm) * share_above;
 }
 
 struct Explanation {
@@ -78,7 +78,7 @@ Explanation explain(double residual_mm, const ContactModel& model) {
   const double soft_sigma = std::hypot(kSoftSigma_mm, model.contact_sigma_mm);
   const double contact = (1 - model.soft_share - model.lifted_share) * normal_density(residual_mm, model.contact_sigma_mm);
   const double soft = model.soft_share * normal_density(residual_mm - kSoftHeight_mm, soft_sigma);
-  const double lifted = model.lifted_share * lifted_density_per_mm(residual_mm);
+  const double lifted = model.lifted_share * lifted_density_per_mm(residual_mm, model.buried_density_per_mm);
   const double sum = contact + soft + lifted;
   return {contact / sum, soft / sum, lifted / sum, -std::log(sum)};
 }
@@ -95,7 +95,7 @@ ContactModel updated_model(const TouchedPoints& points, const std::vector<double
     lifted += points.weights[i] * explanation.lifted;
     square_sum += points.weights[i] * explanation.contact * residuals_mm[i] * residuals_mm[i];
   }
-  ContactModel updated;
+  ContactModel updated = model;
   updated.contact_sigma_mm = std::clamp(std::sqrt(square_sum / contact), kMinSigma_mm, kMaxSigma_mm);
   updated.soft_share = soft / (contact + soft + lifted);
   updated.lifted_share = lifted / (contact + soft + lifted);

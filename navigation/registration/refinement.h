@@ -22,6 +22,10 @@ struct ContactModel {
   double contact_sigma_mm = 0.4;
   double soft_share = 0.10;
   double lifted_share = 0.10;
+  // Of a lifted point inside the bone, by mm: a gross error, twenty times rarer than a lift. As likely as a lift where the mesh
+  // may hold cartilage that is not there.
+  double buried_density_per_mm = kRarelyBuried_per_mm;
+  static constexpr double kRarelyBuried_per_mm = 0.01, kOftenBuried_per_mm = 0.2;
 };
 
 // Errors along a stroke hang together: about this much of path makes one independent measurement. Costs and weights

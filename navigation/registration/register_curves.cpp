@@ -65,7 +65,10 @@ std::string describe_reach(const PreparedBone::Data& bone, const std::vector<boo
 
 // The curves as they would be had the bone been its own mirror image. The marker's face stays its face.
 strokes::Curves mirrored(strokes::Curves curves) {
-  for (strokes::CurvePoint& point : curves) point.position_mm.x() = -point.position_mm.x();
+  for (strokes::CurvePoint& point : curves) {
+    point.position_mm.x() = -point.position_mm.x();
+    if (point.shaft_direction) point.shaft_direction->x() = -point.shaft_direction->x();
+  }
   return curves;
 }
 
@@ -75,6 +78,12 @@ SearchSetting::SearchSetting(const PreparedBone::Data& searched_bone, const Regi
     : bone(searched_bone), options(registration_options) {
   if (options.plan_entry_in_bone_mm) reachable = find_reachable_samples(bone, *options.plan_entry_in_bone_mm);
   if (options.covered) cover.emplace(bone, *options.covered);
+}
+
+ContactModel SearchSetting::start_law() const {
+  ContactModel law;
+  if (cover) law.buried_density_per_mm = ContactModel::kOftenBuried_per_mm;
+  return law;
 }
 
 SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::Curves& curves, int max_rounds) {
@@ -90,7 +99,7 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
   const std::vector<strokes::OrientedPoint> oriented = strokes::oriented_points(curves);
   MarkerPrior prior;
   prior.use = options.use_marker_prior;
-  PosePool pool(bone, prior);
+  PosePool pool(bone, prior, setting.start_law());
   for (int round = 0; round < max_rounds; ++round) {
     const std::uint64_t seed = options.seed * kMaxRounds + static_cast<std::uint64_t>(round);
     const bool is_near_plan = round == 0 && !setting.reachable.empty();
@@ -99,6 +108,7 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
                               .use_marker_prior = options.use_marker_prior,
                               .curve_pair_count = kPairsEachRound,
                               .keep_count = kHypothesesEachRound,
+                              .may_be_buried = setting.cover.has_value(),
                               .reachable = is_near_plan ? &setting.reachable : nullptr}),
              points, seed);
     pool.refine_all(points, kIterationsEachRound);

@@ -38,7 +38,9 @@ TouchedPoints choose_points(const strokes::Curves& curves, std::size_t max_count
   TouchedPoints points;
   const std::size_t count = std::min(curves.size(), max_count);
   for (std::size_t i = 0; i < count; ++i) {
-    points.positions_mm.push_back(curves[i * curves.size() / count].position_mm);
+    const strokes::CurvePoint& point = curves[i * curves.size() / count];
+    points.positions_mm.push_back(point.position_mm);
+    points.shaft_directions.push_back(point.shaft_direction);
   }
   weigh(points);
   constexpr double kStretch_mm = 12.0;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "navigation/strokes/curves.h"
@@ -19,6 +20,9 @@ struct TouchedPoints {
   // from 0 by point; empty in a random draw.
   std::vector<int> stretches;
   std::vector<double> offsets_mm;  // by point: how far off the mesh the touched surface lies; empty: nowhere
+
+  // By point, world-marker frame; empty after draw_points. See strokes::CurvePoint.
+  std::vector<std::optional<Eigen::Vector3d>> shaft_directions;
 
   [[nodiscard]] double offset_mm(std::size_t point) const { return offsets_mm.empty() ? 0.0 : offsets_mm[point]; }
 };

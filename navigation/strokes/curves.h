@@ -16,12 +16,17 @@ struct CurvePoint {
   int curve = 0;
   std::optional<double> time_s;
   Eigen::Vector3d position_mm = Eigen::Vector3d::Zero();  // world-marker frame
+  // Unit, from the tip towards the handle, world-marker frame: the way the probe came. Empty: not known.
+  std::optional<Eigen::Vector3d> shaft_direction = std::nullopt;
 };
 using Curves = std::vector<CurvePoint>;
 
-// curves.csv. Throws IoError or InvalidInput.
+// curves.csv. The columns shaft_x, shaft_y and shaft_z are read where they are there, and written when asked for; their cells
+// are empty where the direction is not known. Throws IoError or InvalidInput.
+enum class ShaftColumns { LeaveOut, Write };
 [[nodiscard]] Curves read_curves_file(const std::filesystem::path& file);
-void write_curves_file(const std::filesystem::path& file, const Curves& curves);
+void write_curves_file(const std::filesystem::path& file, const Curves& curves,
+                       ShaftColumns shaft = ShaftColumns::LeaveOut);
 
 struct StrokeOptions {
   double max_gap_s = 0.1;        // a stroke ends where tracking was gone for longer

@@ -10,7 +10,7 @@ class StrokeCutter {
  public:
   explicit StrokeCutter(const StrokeOptions& options) : options_(options) {}
 
-  void add(double time_s, const Eigen::Vector3d& tip_mm) {
+  void add(double time_s, const Eigen::Vector3d& tip_mm, const std::optional<Eigen::Vector3d>& shaft_direction) {
     if (!stroke_.empty()) {
       const bool gap = time_s - *stroke_.back().time_s > options_.max_gap_s;
       const double hop_mm = (tip_mm - stroke_.back().position_mm).norm();
@@ -20,7 +20,7 @@ class StrokeCutter {
         length_mm_ += hop_mm;
       }
     }
-    stroke_.push_back({next_curve_, time_s, tip_mm});
+    stroke_.push_back({next_curve_, time_s, tip_mm, shaft_direction});
   }
 
   Curves take() {
@@ -56,6 +56,7 @@ Curves digitise(const std::vector<PoseRow>& poses, const tools::ToolSet& tools, 
   if (tool == nullptr) throw InvalidInput("the tools declare no tool named \"" + std::string(tool_name) + "\"");
   if (!tool->tip_mm) throw InvalidInput("the tool \"" + std::string(tool_name) + "\" has no tip_mm");
 
+  const std::optional<Eigen::Vector3d> shaft_in_tool = tools::shaft_direction(*tool);
   StrokeCutter cutter(options);
   for (std::size_t first = 0; first < poses.size();) {
     const PoseRow* world_row = nullptr;
@@ -68,7 +69,9 @@ Curves digitise(const std::vector<PoseRow>& poses, const tools::ToolSet& tools, 
     if (world_row != nullptr && tool_row != nullptr) {
       const geometry::RigidTransform world_from_tool =
           world_row->camera_from_marker.inverse() * tool_row->camera_from_marker;
-      cutter.add(poses[first].time_s, world_from_tool * *tool->tip_mm);
+      std::optional<Eigen::Vector3d> shaft_in_world;
+      if (shaft_in_tool) shaft_in_world = world_from_tool.rotation * *shaft_in_tool;
+      cutter.add(poses[first].time_s, world_from_tool * *tool->tip_mm, shaft_in_world);
     }
     first = next;
   }

@@ -56,6 +56,12 @@ Tool read_tool(const files::JsonObject& entry, Owners& owners) {
 
 }  // namespace
 
+std::optional<Eigen::Vector3d> shaft_direction(const Tool& tool) {
+  constexpr double kMinLength_mm = 1e-6;
+  if (!tool.tip_mm || tool.tip_mm->norm() < kMinLength_mm) return std::nullopt;
+  return -tool.tip_mm->normalized();
+}
+
 const Tool* ToolSet::find_tool(std::string_view name) const {
   for (const Tool& tool : tools) {
     if (tool.name == name) return &tool;

@@ -32,6 +32,10 @@ struct Tool {
   std::optional<double> residual_mm = std::nullopt;
 };
 
+// Of a tool with a tip, about: unit, in the marker frame, from the tip towards the marker, which sits on the handle's side.
+// Empty without a tip, or when it lies in the marker itself.
+[[nodiscard]] std::optional<Eigen::Vector3d> shaft_direction(const Tool& tool);
+
 struct ToolSet {
   std::vector<WorldMarker> world_markers;
   std::vector<Tool> tools;

@@ -21,6 +21,30 @@ TEST(CurvesFile, RoundTripKeepsOrderAndEmptyTimes) {
   }
 }
 
+// The way the probe came is written when asked for, with empty cells where it is not known; a plain file has none.
+TEST(CurvesFile, ShaftsAreWrittenWhenAskedFor) {
+  const Eigen::Vector3d shaft = Eigen::Vector3d(1, -2, 0.5).normalized();
+  const Curves curves{{0, 0.25, {1, 2, 3}, shaft}, {0, 0.5, {2, 2, 3}, std::nullopt}};
+  const auto file = std::filesystem::path(testing::TempDir()) / "curves_shafts.csv";
+  write_curves_file(file, curves, ShaftColumns::Write);
+  const Curves read = read_curves_file(file);
+  ASSERT_EQ(read.size(), 2u);
+  ASSERT_TRUE(read[0].shaft_direction.has_value());
+  EXPECT_LT((*read[0].shaft_direction - shaft).norm(), 1e-5);
+  EXPECT_FALSE(read[1].shaft_direction.has_value());
+  write_curves_file(file, curves);
+  EXPECT_FALSE(read_curves_file(file)[0].shaft_direction.has_value());
+}
+
+// A direction has length 1, and all of its numbers.
+TEST(CurvesFile, RefusesShaftsThatAreNoDirections) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "curves_no_direction.csv";
+  for (const char* cells : {"0.5,0.5,0", "1,0,", "0,0,0"}) {
+    std::ofstream(file) << "curve,time_s,x_mm,y_mm,z_mm,shaft_x,shaft_y,shaft_z\n0,0,1,2,3," << cells << "\n";
+    EXPECT_THROW((void)read_curves_file(file), InvalidInput) << cells;
+  }
+}
+
 // A number that is not finite is refused.
 TEST(CurvesFile, RefusesNumbersThatAreNotFinite) {
   const auto file = std::filesystem::path(testing::TempDir()) / "curves_inf.csv";

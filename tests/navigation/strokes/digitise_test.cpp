@@ -73,6 +73,8 @@ TEST(Digitise, TipIsSeenFromTheWorldMarker) {
   for (std::size_t i = 0; i < tips.size(); ++i) {
     EXPECT_EQ(curves[i].curve, 0);
     EXPECT_LT((curves[i].position_mm - tips[i]).norm(), 1e-9);
+    ASSERT_TRUE(curves[i].shaft_direction.has_value());
+    EXPECT_NEAR(curves[i].shaft_direction->norm(), 1, 1e-9);
   }
 }
 
