@@ -61,17 +61,15 @@ class Fit {
       : bone_(bone), map_(map), prior_(prior), points_(points) {}
 
   [[nodiscard]] PoseFit from(const RefinedPose& start) const {
-    PoseFit fit = started(start, 0);
-    if (!has_cover_to_fit(fit)) return fit;
-    search_coarsely(fit);
-    // What lies on the region shows better from here.
-    fit.assignment = Assignment(map_, points_, fit.pose.bone_from_marker);
-    search_finely(fit);
-    return fit;
+    // Where the mesh has too much, half of the points are buried until the thickness is known; where it lacks some, a law that
+    // lets points be buried goes astray. Which it is shows afterwards.
+    PoseFit as_lacking = from_law(start, ContactModel::kRarelyBuried_per_mm);
+    PoseFit as_too_much = from_law(start, ContactModel::kOftenBuried_per_mm);
+    return as_too_much.pose.cost < as_lacking.pose.cost ? as_too_much : as_lacking;
   }
   [[nodiscard]] PoseFit on_from(const RefinedPose& pose, double thickness_mm, double profile_width_mm) const {
-    PoseFit fit = started(pose, thickness_mm);
-    if (!has_cover_to_fit(fit)) return started(pose, 0);
+    PoseFit fit = started(with_buried(pose, ContactModel::kRarelyBuried_per_mm), thickness_mm);
+    if (!has_cover_to_fit(fit)) return on_bare_bone(pose);
     fit.thickness_mm = thickness_mm;
     fit.profile_width_mm = profile_width_mm;
     search_finely(fit);
@@ -79,6 +77,24 @@ class Fit {
   }
 
  private:
+  // With the right thickness in the points nothing is buried; before it is known, anything may be.
+  [[nodiscard]] static RefinedPose with_buried(RefinedPose pose, double density_per_mm) {
+    pose.model.buried_density_per_mm = density_per_mm;
+    return pose;
+  }
+  [[nodiscard]] PoseFit from_law(const RefinedPose& start, double buried_density_per_mm) const {
+    PoseFit fit = started(with_buried(start, buried_density_per_mm), 0);
+    if (!has_cover_to_fit(fit)) return on_bare_bone(start);
+    search_coarsely(fit);
+    fit.pose = with_buried(fit.pose, ContactModel::kRarelyBuried_per_mm);
+    // What lies on the region shows better from here.
+    fit.assignment = Assignment(map_, points_, fit.pose.bone_from_marker);
+    search_finely(fit);
+    return fit;
+  }
+  [[nodiscard]] PoseFit on_bare_bone(const RefinedPose& start) const {
+    return started(with_buried(start, ContactModel::kRarelyBuried_per_mm), 0);
+  }
   [[nodiscard]] static bool has_cover_to_fit(const PoseFit& fit) {
     return fit.assignment.touches_bare() && fit.assignment.covered_sum > 0;
   }
@@ -96,11 +112,8 @@ class Fit {
     for (std::size_t i = 0; i < points.offsets_mm.size(); ++i) {
       if (assignment.is_covered[i]) points.offsets_mm[i] = thickness_mm;
     }
-    // With the thickness in the points nothing is buried any more.
-    ContactModel law = start.model;
-    law.buried_density_per_mm = ContactModel::kRarelyBuried_per_mm;
     return refine([this](const Eigen::Vector3d& p) { return bone_.field.sample(p); }, points,
-                  start.bone_from_marker, law, prior_, iterations);
+                  start.bone_from_marker, start.model, prior_, iterations);
   }
 
   // On a part of the points; from 0 outwards, each from the one before: the pose moves along with the
@@ -110,6 +123,7 @@ class Fit {
     const auto at = [&](const RefinedPose& start, double thickness_mm) {
       RefinedPose wide = start;
       wide.model = {};
+      wide.model.buried_density_per_mm = fit.pose.model.buried_density_per_mm;
       const Assignment assignment(map_, points, start.bone_from_marker);
       return refined(points, assignment, wide, thickness_mm, kCoarseIterations);
     };
