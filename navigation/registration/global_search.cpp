@@ -32,7 +32,7 @@ constexpr float kMinMarkerCosine = 0.70f;
 // A marker that the camera sees is not inside the bone, whatever it is fixed to.
 constexpr float kMinSeenHeight_mm = -1.0f;
 
-constexpr float kScoreReach_mm = 1.5f, kBuried_mm = 2.0f, kBuriedPenalty = 0.7f;
+constexpr float kScoreReach_mm = 1.5f;
 
 class Search {
  public:
@@ -121,7 +121,6 @@ class Search {
       }
       const float distance = bone_.coarse_field.nearest_mm(pose.rotation * test_points_[i] + pose.translation_mm);
       score += std::max(0.0f, 1 - distance * distance / (kScoreReach_mm * kScoreReach_mm));
-      if (distance < -kBuried_mm && !options_.may_be_buried) score -= kBuriedPenalty;
     }
     return score;
   }

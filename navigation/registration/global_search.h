@@ -16,7 +16,6 @@ struct GlobalSearchOptions {
   int curve_pair_count = 8;
   bool both_ways = true;  // each pair of curve points with its ends exchanged too; else half the work, and half the finds
   std::size_t keep_count = 24;  // different hypotheses to hand on
-  bool may_be_buried = false;  // points inside the bone count no worse than lifted ones: its mesh may hold what is not there
   const std::vector<bool>* reachable = nullptr;  // by sample of the pair table: others are left out
 };
 

@@ -155,7 +155,6 @@ void OnlineRegistration::State::solve() {
     const bool is_found = result.state != OnlineState::Collecting;
     search.curve_pair_count = is_found ? kPairsAfterwards : kPairsWhileCollecting;
     search.keep_count = is_found ? 4 : 40;
-    search.may_be_buried = setting.cover.has_value();
     // Where the plan is first, then everywhere, in turn.
     if (!is_found && !reachable.empty() && result.revision % 2 == 1) search.reachable = &reachable;
     search.both_ways = !is_found;

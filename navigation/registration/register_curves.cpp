@@ -108,7 +108,6 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
                               .use_marker_prior = options.use_marker_prior,
                               .curve_pair_count = kPairsEachRound,
                               .keep_count = kHypothesesEachRound,
-                              .may_be_buried = setting.cover.has_value(),
                               .reachable = is_near_plan ? &setting.reachable : nullptr}),
              points, seed);
     pool.refine_all(points, kIterationsEachRound);
