@@ -1,4 +1,4 @@
-// What the experiments' plots are drawn with. Inside the module.
+// Inner header: what the experiments' plots are drawn with.
 #pragma once
 
 #include <filesystem>
