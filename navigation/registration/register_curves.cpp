@@ -144,8 +144,8 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
   }
   const double misfit_share =
       outcome.summary.has_pose ? share_of_bearable_misfit(outcome.summary, white_noise_mm) : 1e9;
-  constexpr double kManyMeasurements = 60, kSmallShare = 0.8, kAmpleLead = 20, kBorderlineShare = 1.15;
-  outcome.fits = misfit_share < kBorderlineShare;
+  constexpr double kManyMeasurements = 60, kSmallShare = 0.8, kAmpleLead = 20;
+  outcome.fits = misfit_share <= 1;
   // A thickness that is free, or points that are left out, let other shapes fit well too.
   outcome.fits_amply = !setting.cover && misfit_share < kSmallShare &&
                        outcome.measurements > kManyMeasurements && lead_of_best(pool, points) > kAmpleLead;
