@@ -43,12 +43,13 @@ void CalibrateStation::draw_live_picture(const widgets::Ui& ui, const widgets::R
   const float radius = ui.theme.px(4), line = ui.theme.px(1.5F);
   const ImU32 color = is_good ? widgets::kGood : widgets::kCaution;
   for (const calibration::BoardCorner& corner : job.advice->picture.board.corners) {
-    const ImVec2 at = place.on_screen(corner.pixel).value_or(ImVec2{});
+    const auto at = place.on_screen(corner.pixel);
+    if (!at) continue;
     if (is_good) {
-      draw.AddCircle(at, radius, color, 12, line);
+      draw.AddCircle(*at, radius, color, 12, line);
     } else {
-      draw.AddLine({at.x - radius, at.y}, {at.x + radius, at.y}, color, line);
-      draw.AddLine({at.x, at.y - radius}, {at.x, at.y + radius}, color, line);
+      draw.AddLine({at->x - radius, at->y}, {at->x + radius, at->y}, color, line);
+      draw.AddLine({at->x, at->y - radius}, {at->x, at->y + radius}, color, line);
     }
   }
   const lens::LensObservation& lens = job.advice->picture.lens;
@@ -56,8 +57,8 @@ void CalibrateStation::draw_live_picture(const widgets::Ui& ui, const widgets::R
     const double angle = geometry::rad_from_deg(lens.mark_angle_deg);
     const Eigen::Vector2d mark =
         lens.circle.center_px + lens.circle.radius_px * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-    draw.AddCircle(place.on_screen(mark).value_or(ImVec2{}), ui.theme.px(24), widgets::kAccent, 32,
-                   ui.theme.px(3));
+    if (const auto at = place.on_screen(mark))
+      draw.AddCircle(*at, ui.theme.px(24), widgets::kAccent, 32, ui.theme.px(3));
   }
   draw.PopClipRect();
 }

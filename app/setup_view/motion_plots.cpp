@@ -23,7 +23,11 @@ void draw_marker(const widgets::Ui& ui, const widgets::PicturePlacement& place,
                  const std::array<Eigen::Vector2d, 4>& corners_px) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   std::array<ImVec2, 4> corners;
-  for (std::size_t i = 0; i < 4; ++i) corners[i] = place.on_screen(corners_px[i]).value_or(ImVec2{});
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto corner = place.on_screen(corners_px[i]);
+    if (!corner) return;
+    corners[i] = *corner;
+  }
   draw.AddPolyline(corners.data(), 4, widgets::kGood, ImDrawFlags_Closed, ui.theme.px(3));
   draw.AddCircleFilled(corners[0], ui.theme.px(6), widgets::kGood);  // top left as printed
 }

@@ -17,7 +17,7 @@ struct Shaft {
 
 std::optional<Shaft> shaft_of(const tools::Tool& tool) {
   if (tool.axis) return Shaft{tool.axis->point_mm, -tool.axis->direction.normalized()};
-  if (tool.tip_mm && tool.tip_mm->norm() > 1e-6) return Shaft{*tool.tip_mm, -tool.tip_mm->normalized()};
+  if (const auto direction = tools::shaft_direction(tool)) return Shaft{*tool.tip_mm, *direction};
   return std::nullopt;
 }
 

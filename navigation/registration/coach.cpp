@@ -1,10 +1,10 @@
 #include "navigation/registration/coach.h"
+#include "planning/files/format.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace arthronaut::registration {
 
@@ -24,12 +24,6 @@ double target_error_mm(const Matrix6d& information, const Eigen::Vector3d& arm_m
   Eigen::Matrix<double, 3, 6> move;
   move << Eigen::Matrix3d::Identity(), -cross_matrix(arm_mm);
   return std::sqrt((move * information.ldlt().solve(move.transpose())).trace());
-}
-
-std::string formatted(const char* format, double value) {
-  char text[160];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
 }
 
 // The parts of the bone within reach of what was touched, each with what a stroke of 15 mm there would do for
@@ -113,7 +107,7 @@ Coach advise(const OnlineResult& result, const CoachFacts& facts) {
   const RegistrationSummary& registration = result.registration;
   if (result.length_mm < kLengthWanted_mm) {
     coach.missing.push_back(
-        formatted("%.0f mm more of stroke", std::ceil(kLengthWanted_mm - result.length_mm)));
+        files::format("%.0f mm more of stroke", std::ceil(kLengthWanted_mm - result.length_mm)));
   }
   const double length_done = std::min(1.0, result.length_mm / kLengthWanted_mm);
   coach.missing.insert(coach.missing.end(), registration.reasons.begin(), registration.reasons.end());
@@ -124,7 +118,7 @@ Coach advise(const OnlineResult& result, const CoachFacts& facts) {
   const double wanted = facts.agreeing_solutions_wanted,
                agreeing = std::min<double>(wanted, facts.agreeing_solutions);
   if (agreeing < wanted) {
-    coach.missing.push_back(formatted("%.0f mm more of stroke on which the result stays put",
+    coach.missing.push_back(files::format("%.0f mm more of stroke on which the result stays put",
                                       (wanted - agreeing) * facts.refine_every_mm));
   }
   const double error_done = std::min(1.0, kErrorWanted_mm / std::max(registration.predicted_tre_mm, 1e-3));

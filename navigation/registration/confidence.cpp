@@ -3,9 +3,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "navigation/registration/probe_way.h"
+#include "planning/files/format.h"
 
 namespace arthronaut::registration {
 
@@ -103,12 +103,9 @@ std::vector<std::string> doubts(const RegistrationSummary& summary, const Touche
     reasons.push_back("too little was touched: draw at least 100 mm of strokes");
   }
   if (share_of_bearable_misfit(summary, touched.white_noise_mm) > 1) {
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "the points miss the surface by %.2f mm, more than the tip's noise of %.2f mm explains: "
-                  "is it this patient's bone?",
-                  summary.misfit_mm, touched.white_noise_mm);
-    reasons.push_back(text);
+    reasons.push_back(files::format("the points miss the surface by %.2f mm, more than the tip's noise of %.2f mm explains: "
+                                    "is it this patient's bone?",
+                                    summary.misfit_mm, touched.white_noise_mm));
   }
   if (summary.inlier_fraction < kMinInliers) reasons.push_back("too few of the points lie on this bone");
   if (summary.predicted_tre_mm > kMaxError_mm) {

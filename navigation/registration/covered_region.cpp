@@ -1,9 +1,10 @@
 #include "navigation/registration/covered_region.h"
+#include "navigation/registration/cell_key.h"
+#include "planning/files/format.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace arthronaut::registration {
 
@@ -17,13 +18,8 @@ constexpr std::size_t kCoarsePointCount = 250, kMaxPoses = 8;
 // The thickness is held when it is known this well, and enough was touched on both sides of the border.
 constexpr double kMaxSigma_mm = 0.4, kMinMeasurements = 4;
 
-std::uint64_t key_of(const Eigen::Array3i& cell) {
-  const auto part = [](int c) { return static_cast<std::uint64_t>(c + (1 << 20)) & 0x1fffff; };
-  return part(cell.x()) | part(cell.y()) << 21 | part(cell.z()) << 42;
-}
-
-Eigen::Array3i cell_of(const Eigen::Vector3d& point_mm, double width_mm) {
-  return (point_mm.array() / width_mm).floor().cast<int>();
+Eigen::Vector3i cell_of(const Eigen::Vector3d& point_mm, double width_mm) {
+  return (point_mm / width_mm).array().floor().cast<int>();
 }
 
 // Which of the points lie on the region, as a pose puts them.
@@ -232,12 +228,6 @@ TouchedPoints bare_points(const PoseFit& fit) {
   return bare;
 }
 
-std::string formatted(const char* format, double first, double second) {
-  char text[160];
-  std::snprintf(text, sizeof text, format, first, second);
-  return text;
-}
-
 // What the best says about the region; the others are put beside it.
 CoverFit summarised(const std::vector<PoseFit>& fits, PosePool& pool, const TouchedPoints& points) {
   const PoseFit& best = fits.front();
@@ -260,7 +250,7 @@ CoverFit summarised(const std::vector<PoseFit>& fits, PosePool& pool, const Touc
     cover.assumption = "the covered region was taken to lie on the mesh: nothing but it was touched";
   } else if (cover.is_solved) {
     cover.assumption =
-        formatted("the covered region lies %.1f mm off the mesh, one sigma %.1f mm: solved from the strokes",
+        files::format("the covered region lies %.1f mm off the mesh, one sigma %.1f mm: solved from the strokes",
                   cover.thickness_mm, cover.sigma_mm);
   } else {
     cover.assumption = "the covered region was left out: the strokes don't hold its thickness";
@@ -274,7 +264,7 @@ CoverMap::CoverMap(const PreparedBone::Data& bone, const CoveredRegion& region)
     : bone_(bone), reach_mm_(region.reach_mm) {
   if (!(reach_mm_ > 0)) return;
   for (const Eigen::Vector3d& point : region.points_mm)
-    cells_[key_of(cell_of(point, reach_mm_))].push_back(point);
+    cells_[cell_key(cell_of(point, reach_mm_))].push_back(point);
 }
 
 bool CoverMap::covers(const Eigen::Vector3d& point_in_bone_mm) const {
@@ -282,12 +272,12 @@ bool CoverMap::covers(const Eigen::Vector3d& point_in_bone_mm) const {
   // A lifted tip, or one on thick cartilage, is over the same place as one on the bone.
   const DistanceField::Sample sample = bone_.field.sample(point_in_bone_mm);
   const Eigen::Vector3d place_mm = point_in_bone_mm - sample.distance_mm * sample.gradient;
-  const Eigen::Array3i middle = cell_of(place_mm, reach_mm_);
+  const Eigen::Vector3i middle = cell_of(place_mm, reach_mm_);
   constexpr std::array<int, 3> kSteps{0, -1, 1};  // the middle first, where it is found most often
   for (const int x : kSteps) {
     for (const int y : kSteps) {
       for (const int z : kSteps) {
-        const auto cell = cells_.find(key_of(middle + Eigen::Array3i(x, y, z)));
+        const auto cell = cells_.find(cell_key(middle + Eigen::Vector3i(x, y, z)));
         if (cell == cells_.end()) continue;
         const bool is_near =
             std::any_of(cell->second.begin(), cell->second.end(), [&](const Eigen::Vector3d& point) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "navigation/registration/coach.h"
 #include "navigation/registration/confidence.h"
@@ -12,6 +11,7 @@
 #include "navigation/registration/pose_pool.h"
 #include "navigation/registration/reachable_region.h"
 #include "navigation/registration/stroke_set.h"
+#include "planning/files/format.h"
 
 namespace arthronaut::registration {
 
@@ -31,12 +31,6 @@ double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
-}
-
-std::string formatted(const char* format, double value) {
-  char text[160];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
 }
 
 }  // namespace
@@ -248,9 +242,9 @@ void OnlineRegistration::State::judge_state() {
   result.state = OnlineState::Candidate;
   if (violation_count() >= kViolationsToDrop) {
     result.alarm = control_violations > 0
-                       ? formatted("the world marker may have moved: the control point is off by %.1f mm",
+                       ? files::format("the world marker may have moved: the control point is off by %.1f mm",
                                    control_shift_mm)
-                       : formatted("the world marker may have moved: %.0f touches lie off the bone",
+                       : files::format("the world marker may have moved: %.0f touches lie off the bone",
                                    static_cast<double>(violation_count()));
     return;
   }

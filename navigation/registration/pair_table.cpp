@@ -7,6 +7,7 @@
 #include <random>
 #include <unordered_map>
 
+#include "navigation/registration/cell_key.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::registration {
@@ -52,7 +53,7 @@ class SpacedSet {
     for (int z = -1; z <= 1; ++z) {
       for (int y = -1; y <= 1; ++y) {
         for (int x = -1; x <= 1; ++x) {
-          const auto it = cells_.find(key(cell + Eigen::Vector3i(x, y, z)));
+          const auto it = cells_.find(cell_key(cell + Eigen::Vector3i(x, y, z)));
           if (it == cells_.end()) continue;
           for (const std::size_t other : it->second) {
             // The other side of a thin wall is another place.
@@ -62,7 +63,7 @@ class SpacedSet {
         }
       }
     }
-    cells_[key(cell)].push_back(samples_.size());
+    cells_[cell_key(cell)].push_back(samples_.size());
     samples_.push_back(sample);
     return true;
   }
@@ -70,11 +71,6 @@ class SpacedSet {
   std::vector<SurfaceSample> take() { return std::move(samples_); }
 
  private:
-  static std::uint64_t key(const Eigen::Vector3i& cell) {
-    const auto part = [](int c) { return static_cast<std::uint64_t>(c + (1 << 20)) & 0x1fffff; };
-    return part(cell.x()) | part(cell.y()) << 21 | part(cell.z()) << 42;
-  }
-
   float spacing_mm_;
   std::vector<SurfaceSample> samples_;
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> cells_;

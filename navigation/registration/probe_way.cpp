@@ -34,12 +34,8 @@ double ProbeWay::share_through_bone(const Eigen::Matrix3f& rotation, const Eigen
 }
 
 bool ProbeWay::is_possible(const Eigen::Matrix3f& rotation, const Eigen::Vector3f& translation_mm) const {
-  constexpr std::size_t kOneIn = 2;
-  std::size_t count = 0;
-  for (const Shaft& shaft : shafts_) {
-    if (leads_through_bone(shaft, rotation, translation_mm) && ++count * kOneIn > shafts_.size()) return false;
-  }
-  return true;
+  constexpr double kMaxShare = 0.5;
+  return share_through_bone(rotation, translation_mm) <= kMaxShare;
 }
 
 }  // namespace arthronaut::registration

@@ -6,18 +6,15 @@
 #include <random>
 #include <unordered_map>
 
+#include "navigation/registration/cell_key.h"
+
 namespace arthronaut::registration {
 
 namespace {
 
 void weigh(TouchedPoints& points) {
-  constexpr double kCell_mm = 1.0;
-  const auto key = [](const Eigen::Vector3d& p) {
-    const auto part = [](double c) {
-      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(c / kCell_mm)) + (1 << 20)) & 0x1fffff;
-    };
-    return part(p.x()) | part(p.y()) << 21 | part(p.z()) << 42;
-  };
+  // Cells of 1 mm.
+  const auto key = [](const Eigen::Vector3d& p_mm) { return cell_key(p_mm.array().floor().cast<int>()); };
   std::unordered_map<std::uint64_t, int> count;
   for (const Eigen::Vector3d& p : points.positions_mm) ++count[key(p)];
   points.weights.clear();
