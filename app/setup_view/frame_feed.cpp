@@ -108,6 +108,7 @@ camera::FramePtr FrameFeed::next() {
 
 void FrameFeed::advance() {
   const std::lock_guard lock(state_->mutex);
+  if (state_->is_fresh) return;  // nobody has looked at the one that came
   state_->is_standing = false;
   state_->changed.notify_all();
 }
