@@ -3,9 +3,11 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "navigation/registration/probe_way.h"
 #include "planning/files/format.h"
+#include "planning/geometry/quantile.h"
 
 namespace arthronaut::registration {
 
@@ -161,12 +163,9 @@ Matrix6d covariance_about(const RefinedPose& pose, const TouchedPoints& points, 
 }
 
 double white_noise_of(const std::vector<strokes::OrientedPoint>& oriented) {
-  if (oriented.empty()) return 0;
   std::vector<double> noise_mm;
   for (const strokes::OrientedPoint& point : oriented) noise_mm.push_back(point.fit_rms_mm);
-  const auto middle = noise_mm.begin() + static_cast<std::ptrdiff_t>(noise_mm.size() / 2);
-  std::nth_element(noise_mm.begin(), middle, noise_mm.end());
-  return *middle;
+  return geometry::median(std::move(noise_mm), 0);
 }
 
 double share_of_bearable_misfit(const RegistrationSummary& summary, double white_noise_mm) {
