@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "app/setup_view/case_calibration.h"
+#include "app/case_calibration/case_calibration.h"
 #include "navigation/camera/camera_file.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
@@ -32,7 +32,7 @@ void CalibrateStation::read_adopted() {
     const camera::CalibrationRecord record = camera::read_camera_file(file);
     if (form_.scope_name.empty()) form_.scope_name = record.scope_name;
     if (form_.head_name.empty()) form_.head_name = record.head_name;
-    const bool is_simulated = record.scope_name == kSimulatedScope;
+    const bool is_simulated = record.scope_name == case_calibration::kSimulatedScope;
     adopted_ = {is_simulated ? widgets::Sign::Caution : widgets::Sign::Good, "Camera",
                 std::string(is_simulated ? "simulated" : "calibrated") +
                     (record.date_utc.empty() ? "" : ", " + record.date_utc.substr(0, 10))};
@@ -44,10 +44,10 @@ void CalibrateStation::read_adopted() {
 void CalibrateStation::start(const FeedSource& source) {
   stop();
   if (source.is_simulated)
-    form_.scope_name = kSimulatedScope;
-  else if (form_.scope_name == kSimulatedScope)
+    form_.scope_name = case_calibration::kSimulatedScope;
+  else if (form_.scope_name == case_calibration::kSimulatedScope)
     form_.scope_name.clear();
-  kept_because_ = camera_is_kept(source.is_simulated, case_folder_);
+  kept_because_ = case_calibration::camera_is_kept(source.is_simulated, case_folder_);
   const bool by_itself = takes_by_itself_;
   run_ = std::make_unique<Run>(
       source, [by_itself] { return std::make_unique<CalibrateJob>(by_itself); }, wake_);

@@ -60,7 +60,7 @@ class CalibrateStation : public Station {
   CalibrateDisplay display_;   // of this frame
   std::shared_ptr<const calibration::CalibrationSummary> adopted_result_;
   Row adopted_;
-  std::string kept_because_;  // see camera_is_kept()
+  std::string kept_because_;  // see case_calibration::camera_is_kept()
   widgets::VideoTexture picture_, residuals_;
 };
 

@@ -2,7 +2,7 @@
 
 #include <GLFW/glfw3.h>
 
-#include "app/setup_view/case_calibration.h"
+#include "app/case_calibration/case_calibration.h"
 #include "navigation/camera/medium.h"
 
 namespace arthronaut::setup_view {
@@ -20,7 +20,7 @@ void FluidStation::start(const FeedSource& source) {
       source,
       [source, folder = case_folder_, index = refractive_index_] {
         calibration::RulerSightingsOptions options;
-        options.calibration = camera_of(source.is_simulated, folder);
+        options.calibration = case_calibration::camera_of(source.is_simulated, folder);
         options.refractive_index = index;
         return std::make_unique<FluidJob>(options);
       },

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "app/setup_view/case_calibration.h"
+#include "app/case_calibration/case_calibration.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "navigation/simulator/simulated_ruler.h"
 #include "navigation/sources/connected_cameras.h"
@@ -63,7 +63,7 @@ std::unique_ptr<sources::FrameSource> open_simulation(Purpose purpose) {
 
 FeedSource simulated(Purpose purpose) {
   FeedSource source;
-  source.name = kSimulatedScope;
+  source.name = case_calibration::kSimulatedScope;
   source.open = [purpose] { return open_simulation(purpose); };
   source.is_simulated = true;
   source.is_stills = purpose == Purpose::Camera;

@@ -2,7 +2,7 @@
 
 #include <GLFW/glfw3.h>
 
-#include "app/setup_view/case_calibration.h"
+#include "app/case_calibration/case_calibration.h"
 #include "navigation/camera/medium.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
@@ -49,7 +49,7 @@ ToolChoice ToolStation::choice() const { return choices_.empty() ? ToolChoice{"p
 
 void ToolStation::start(const FeedSource& source) {
   stop();
-  kept_because_ = tools_are_kept(source.is_simulated, case_folder_);
+  kept_because_ = case_calibration::tools_are_kept(source.is_simulated, case_folder_);
   run_ = std::make_unique<Run>(
       source,
       [source, folder = case_folder_, index = refractive_index_, choice = choice()] {
@@ -57,9 +57,10 @@ void ToolStation::start(const FeedSource& source) {
           throw InvalidInput(
               "the simulated arthroscope shows no guide that turns: choose another source (O)");
         pipeline::ViewTrackerOptions view;
-        view.calibration = camera_of(source.is_simulated, folder);
+        view.calibration = case_calibration::camera_of(source.is_simulated, folder);
         view.refractive_index = index;
-        return std::make_unique<ToolJob>(view, tools_of(source.is_simulated, folder), choice);
+        return std::make_unique<ToolJob>(view, case_calibration::tools_of(source.is_simulated, folder),
+                                         choice);
       },
       wake_);
 }

@@ -50,7 +50,7 @@ class ToolStation : public Station {
   ToolDisplay display_;   // of this frame
   std::shared_ptr<const ToolResult> adopted_result_;
   Row adopted_;
-  std::string kept_because_;  // see tools_are_kept()
+  std::string kept_because_;  // see case_calibration::tools_are_kept()
   widgets::VideoTexture picture_;
 };
 

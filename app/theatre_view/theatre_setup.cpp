@@ -1,6 +1,6 @@
 #include "app/theatre_view/theatre_setup.h"
 
-#include "app/setup_view/case_calibration.h"
+#include "app/case_calibration/case_calibration.h"
 #include "navigation/camera/medium.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "planning/geometry/error.h"
@@ -61,9 +61,9 @@ OperationSetup simulated_setup(const planning_view::PlanModel& model, bones::Bon
                                const std::filesystem::path& case_folder, SimulatedPart part) {
   OperationSetup setup = setup_of(model, bone);
   setup.title = part == SimulatedPart::Scratch ? "Simulated operation: probe" : "Simulated operation: drill";
-  setup.pipeline.calibration = setup_view::camera_of(true, case_folder);
-  setup.pipeline.tools = setup_view::tools_of(true, case_folder);
-  setup.calibration = setup_view::calibration_in_words(true, case_folder);
+  setup.pipeline.calibration = case_calibration::camera_of(true, case_folder);
+  setup.pipeline.tools = case_calibration::tools_of(true, case_folder);
+  setup.calibration = case_calibration::calibration_in_words(true, case_folder);
   setup.pipeline.refractive_index = camera::kSalineIndex;
   setup.digitises = part == SimulatedPart::Scratch;
   simulator::SimulationOptions simulation;
@@ -94,7 +94,7 @@ OperationSetup real_setup(const planning_view::PlanModel& model, bones::BoneKind
   OperationSetup setup = setup_of(model, bone);
   setup.pipeline.calibration = camera::read_camera_file(cases::camera_file(case_folder)).calibration;
   setup.pipeline.tools = tools::read_tools_file(cases::tools_file(case_folder));
-  setup.calibration = setup_view::calibration_in_words(false, case_folder);
+  setup.calibration = case_calibration::calibration_in_words(false, case_folder);
   setup.pipeline.refractive_index = refractive_index;
   if (setup.pipeline.tools.find_world_marker(bone) == nullptr)
     throw InvalidInput("tools.json declares no world marker for the " + std::string(bones::to_text(bone)));

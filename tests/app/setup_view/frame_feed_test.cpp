@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "app/setup_view/case_calibration.h"
+#include "app/case_calibration/case_calibration.h"
 #include "app/setup_view/setup_sources.h"
 #include "planning/geometry/error.h"
 
@@ -112,7 +112,7 @@ class Sources : public ::testing::Test {
 TEST_F(Sources, AreFoundInTheCase) {
   const auto for_camera = sources_for(Purpose::Camera, folder_, kTurns);
   ASSERT_GE(for_camera.size(), 3U);
-  EXPECT_EQ(for_camera[0].name, kSimulatedScope);
+  EXPECT_EQ(for_camera[0].name, case_calibration::kSimulatedScope);
   EXPECT_EQ(for_camera[1].name, "Pictures in board");
   EXPECT_TRUE(for_camera[1].is_stills);
   EXPECT_EQ(for_camera[2].name, "knee.mkv");

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/setup_view/case_calibration.h"
+#include "app/case_calibration/case_calibration.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "planning/phantom/phantom_case.h"
@@ -29,7 +29,7 @@ TEST(TheatreSetup, TheSimulationIsTrackedWithWhatSetUpAdopted) {
   camera::CalibrationRecord record;
   record.calibration = built_in;
   record.calibration.focal_px += 1;
-  record.scope_name = setup_view::kSimulatedScope;
+  record.scope_name = case_calibration::kSimulatedScope;
   record.date_utc = "2026-11-21T10:00:00Z";
   camera::write_camera_file(cases::camera_file(folder), record);
   tools::ToolSet tools = tools::standard_tools();

@@ -1,4 +1,4 @@
-#include "app/setup_view/case_calibration.h"
+#include "app/case_calibration/case_calibration.h"
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
 
-namespace arthronaut::setup_view {
+namespace arthronaut::case_calibration {
 
 namespace {
 
@@ -70,4 +70,4 @@ std::string tools_are_kept(bool is_simulated, const fs::path& case_folder) {
   return may_be_replaced ? "" : "this case has its own tools.json; what is simulated does not replace it";
 }
 
-}  // namespace arthronaut::setup_view
+}  // namespace arthronaut::case_calibration

@@ -8,7 +8,7 @@
 #include "navigation/camera/camera_model.h"
 #include "navigation/tools/tool_set.h"
 
-namespace arthronaut::setup_view {
+namespace arthronaut::case_calibration {
 
 // The name that camera.json carries for the simulated arthroscope.
 inline constexpr const char* kSimulatedScope = "Simulated arthroscope";
@@ -28,4 +28,4 @@ inline constexpr const char* kSimulatedScope = "Simulated arthroscope";
 [[nodiscard]] std::string camera_is_kept(bool is_simulated, const std::filesystem::path& case_folder);
 [[nodiscard]] std::string tools_are_kept(bool is_simulated, const std::filesystem::path& case_folder);
 
-}  // namespace arthronaut::setup_view
+}  // namespace arthronaut::case_calibration

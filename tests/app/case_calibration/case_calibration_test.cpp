@@ -1,4 +1,4 @@
-#include "app/setup_view/case_calibration.h"
+#include "app/case_calibration/case_calibration.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
 
-namespace arthronaut::setup_view {
+namespace arthronaut::case_calibration {
 namespace {
 
 constexpr bool kSimulated = true, kReal = false;
@@ -91,4 +91,4 @@ TEST_F(CaseCalibration, ABrokenFileIsTold) {
 }
 
 }  // namespace
-}  // namespace arthronaut::setup_view
+}  // namespace arthronaut::case_calibration
