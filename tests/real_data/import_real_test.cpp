@@ -12,7 +12,7 @@
 #include "planning/images/bone_import.h"
 #include "planning/images/dicom_slice.h"
 #include "planning/images/volume_file.h"
-#include "tests/planning/files/temporary_folder.h"
+#include "tests/message_of.h"
 #include "tests/real_data/real_data.h"
 
 namespace arthronaut::images {

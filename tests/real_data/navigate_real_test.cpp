@@ -1,7 +1,6 @@
 // The whole theatre on the path-traced clips, with the real femur and the true camera: scratch, register from nothing, guide.
 // Runs through navigate_video, as the command does.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -15,6 +14,7 @@
 #include "planning/files/csv_table.h"
 #include "planning/files/json_document.h"
 #include "tests/real_data/real_data.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut {
 namespace {
@@ -104,14 +104,12 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
 // loss costs is printed, and lies within what replay lets pass.
 TEST(NavigateReal, ReplaysEncodedFramesWithinTolerance) {
   ARTHRONAUT_REQUIRE_DATA(guide_clip, "arthroscopy/guide_wet");
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("arthronaut_encoded_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+  const test::TemporaryFolder folder;
   pipeline::NavigateOptions options = options_of(guide_clip, true_plan(guide_clip));
   options.registration = registration::read_registration_file(guide_clip / "gt/registration_gt.json");
   const auto video = sources::open_video(guide_clip / "clip.mkv");
-  (void)recording::record_navigation(*video, options, folder, recording::KeepVideo::Encode, {});
-  const recording::RecordedSession session(folder);
+  (void)recording::record_navigation(*video, options, folder.path(), recording::KeepVideo::Encode, {});
+  const recording::RecordedSession session(folder.path());
   const recording::ReplaySummary replay = recording::replay_session(session, {});
   std::printf("guide_wet, encoded: %.2f MB a frame; worst difference of a pose %.3f mm, %.3f deg, of guidance %.3f mm, "
               "%.3f deg\n",
@@ -119,7 +117,6 @@ TEST(NavigateReal, ReplaysEncodedFramesWithinTolerance) {
               replay.worst_pose_deg, replay.worst_offset_mm, replay.worst_angle_deg);
   EXPECT_EQ(replay.replayed_frames, 40);
   EXPECT_TRUE(replay.is_same()) << replay.differences.size() << " differences";
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -1,12 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <string>
 
 #include "navigation/sources/frame_source.h"
 #include "planning/geometry/error.h"
+#include "tests/navigation/sources/cut_file.h"
 #include "tests/real_data/real_data.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::sources {
 namespace {
@@ -29,11 +30,9 @@ TEST(RealSources, DecodesTheProbeClip) {
 // Half of the clip plays to where it breaks off and then says so.
 TEST(RealSources, TellsWhereHalfAClipBreaksOff) {
   ARTHRONAUT_REQUIRE_DATA(clip, "arthroscopy/guide_wet/clip.mkv");
-  const std::filesystem::path half = std::filesystem::temp_directory_path() / "arthronaut_half_clip.mkv";
-  std::filesystem::copy_file(clip, half, std::filesystem::copy_options::overwrite_existing);
-  std::filesystem::permissions(half, std::filesystem::perms::owner_write, std::filesystem::perm_options::add);
-  std::filesystem::resize_file(half, std::filesystem::file_size(half) / 2);
-  const auto source = open_video(half);
+  const test::TemporaryFolder folder;
+  copy_beginning(clip, folder / "half.mkv", 0.5);
+  const auto source = open_video(folder / "half.mkv");
   int frames = 0;
   std::string message;
   try {
@@ -41,7 +40,6 @@ TEST(RealSources, TellsWhereHalfAClipBreaksOff) {
   } catch (const InvalidInput& error) {
     message = error.what();
   }
-  std::filesystem::remove(half);
   EXPECT_GT(frames, 5);
   EXPECT_LT(frames, 40);
   EXPECT_NE(message.find("frame " + std::to_string(frames)), std::string::npos) << message;

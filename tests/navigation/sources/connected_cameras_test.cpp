@@ -1,21 +1,21 @@
 #include "navigation/sources/connected_cameras.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
+
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::sources {
 namespace {
 
 // Video devices alone, by number, with the name that the system has for them.
 TEST(ConnectedCameras, ListsWhatTheSystemHas) {
-  std::string pattern = (std::filesystem::temp_directory_path() / "arthronaut-cameras-XXXXXX").string();
-  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-  const std::filesystem::path folder = pattern;
+  const test::TemporaryFolder temporary;
+  const std::filesystem::path folder = temporary / "dev";
+  std::filesystem::create_directories(folder / "names" / "video2");
   for (const char* name : {"video10", "video2", "video", "videoX", "video3b", "null"})
     std::ofstream(folder / name) << "";
-  std::filesystem::create_directories(folder / "names" / "video2");
   std::ofstream(folder / "names" / "video2" / "name") << "Capture card\n";
   const auto cameras = connected_cameras(folder, folder / "names");
   ASSERT_EQ(cameras.size(), 2U);

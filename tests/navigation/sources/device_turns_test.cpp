@@ -6,10 +6,12 @@
 #include <thread>
 
 #include "planning/geometry/error.h"
-#include "tests/navigation/sources/temporary_folder.h"
+#include "tests/message_of.h"
 
 namespace arthronaut::sources {
 namespace {
+
+using test::message_of;
 
 constexpr double kLong_s = 60, kShort_s = 0.01;
 

@@ -1,14 +1,19 @@
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
 #include "navigation/sources/frame_source.h"
 #include "planning/geometry/error.h"
-#include "tests/navigation/sources/temporary_folder.h"
+#include "tests/message_of.h"
+#include "tests/navigation/sources/cut_file.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::sources {
 namespace {
 
+using test::message_of;
+using test::TemporaryFolder;
 using ::testing::HasSubstr;
 
 cv::Mat make_picture(int type) {

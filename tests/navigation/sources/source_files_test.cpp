@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/navigation/sources/temporary_folder.h"
+#include <fstream>
+
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::sources {
 namespace {
+
+using test::TemporaryFolder;
 
 // By extension in either case, by name, and files alone.
 TEST(SourceFiles, AreListedByKindAndName) {

@@ -4,11 +4,14 @@
 
 #include "navigation/sources/frame_source.h"
 #include "planning/geometry/error.h"
-#include "tests/navigation/sources/temporary_folder.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::sources {
 namespace {
 
+using test::message_of;
+using test::TemporaryFolder;
 using ::testing::HasSubstr;
 
 void write_gray(const std::filesystem::path& file, int value, int width = 32) {

@@ -1,15 +1,18 @@
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "navigation/sources/frame_source.h"
 #include "planning/geometry/error.h"
-#include "tests/navigation/sources/temporary_folder.h"
+#include "tests/navigation/sources/cut_file.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::sources {
 namespace {
 
+using test::TemporaryFolder;
 using ::testing::HasSubstr;
 
 constexpr int kFrames = 30;
@@ -32,15 +35,17 @@ void write_video(const std::filesystem::path& file, const char* code) {
 
 struct Played {
   int frames = 0;
-  std::string message;  // of the InvalidInput that ended it
+  std::string message;  // of the InvalidInput that ended it; empty where none did
 };
 
 Played play(const std::filesystem::path& file) {
   Played played;
-  played.message = message_of<InvalidInput>([&] {
+  try {
     const auto source = open_video(file);
     while (source->next()) ++played.frames;
-  });
+  } catch (const InvalidInput& error) {
+    played.message = error.what();
+  }
   return played;
 }
 

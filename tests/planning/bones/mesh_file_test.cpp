@@ -6,9 +6,10 @@
 #include <algorithm>
 
 #include "planning/geometry/error.h"
+#include "tests/message_of.h"
 #include "tests/planning/bones/mesh_text_forms.h"
-#include "tests/planning/files/temporary_folder.h"
 #include "tests/planning/geometry/shapes.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::bones {
 namespace {
@@ -219,7 +220,7 @@ TEST(MeshFile, WhatCannotBeReadBackIsNotWritten) {
   mesh.triangles[3][0] = 42;
   EXPECT_THROW(write_mesh_ply(folder / "bone.ply", mesh), InvalidInput);
   EXPECT_THROW(write_mesh_stl(folder / "bone.stl", mesh), InvalidInput);
-  EXPECT_EQ(folder.file_count(), 0U);
+  EXPECT_EQ(folder.names().size(), 0U);
 }
 
 TEST(MeshFile, WordsAreParsedStrictly) {

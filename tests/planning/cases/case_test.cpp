@@ -9,8 +9,9 @@
 #include "planning/bones/mesh_file.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
-#include "tests/planning/files/temporary_folder.h"
+#include "tests/message_of.h"
 #include "tests/planning/geometry/shapes.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::cases {
 namespace {

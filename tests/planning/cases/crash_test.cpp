@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "planning/cases/case.h"
-#include "tests/planning/files/temporary_folder.h"
 #include "tests/planning/geometry/shapes.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::cases {
 namespace {

@@ -10,7 +10,8 @@
 #include <fstream>
 
 #include "planning/geometry/error.h"
-#include "tests/planning/files/temporary_folder.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::files {
 namespace {
@@ -28,7 +29,7 @@ TEST(AtomicFile, WritesReplacesAndReadsBack) {
   EXPECT_EQ(read_text(folder / "x.bin"), bytes);
   write_atomically(folder / "x.bin", "");
   EXPECT_EQ(read_text(folder / "x.bin"), "");
-  EXPECT_EQ(folder.file_count(), 1U);
+  EXPECT_EQ(folder.names().size(), 1U);
 }
 
 TEST(AtomicFile, MissingThingsAreIoErrorsThatNameTheFile) {
@@ -40,7 +41,7 @@ TEST(AtomicFile, MissingThingsAreIoErrorsThatNameTheFile) {
   // A folder of the target's name cannot be replaced, and nothing is left beside it.
   std::filesystem::create_directory(folder / "x");
   EXPECT_THAT(message_of<IoError>([&] { write_atomically(folder / "x", "1"); }), HasSubstr("cannot replace"));
-  EXPECT_EQ(folder.file_count(), 1U);
+  EXPECT_EQ(folder.names().size(), 1U);
 }
 
 // /proc refuses new files even to root, as a folder without write permission does to everybody else.
@@ -78,7 +79,7 @@ TEST(AtomicFile, ADiskThatFillsUpLeavesTheOldContents) {
   ::waitpid(child, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 42);
   EXPECT_EQ(read_text(folder / "plan.json"), "old");
-  EXPECT_EQ(folder.file_count(), 1U);
+  EXPECT_EQ(folder.names().size(), 1U);
 }
 
 // The writer of a PDF or a mesh that fails: its exception passes, its half file goes.
@@ -91,7 +92,7 @@ TEST(AtomicFile, AWriterThatThrowsLeavesNothing) {
                                   throw InvalidInput("no");
                                 }),
                InvalidInput);
-  EXPECT_EQ(folder.file_count(), 0U);
+  EXPECT_EQ(folder.names().size(), 0U);
   // A writer that writes nothing at all is an error of the target too.
   EXPECT_THAT(
       message_of<IoError>([&] { write_atomically(folder / "a.pdf", [](const std::filesystem::path&) {}); }),

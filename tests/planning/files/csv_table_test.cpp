@@ -7,7 +7,7 @@
 #include <random>
 
 #include "planning/geometry/error.h"
-#include "tests/planning/files/temporary_folder.h"
+#include "tests/message_of.h"
 
 namespace arthronaut::files {
 namespace {

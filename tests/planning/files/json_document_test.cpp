@@ -7,7 +7,8 @@
 #include <random>
 
 #include "planning/geometry/error.h"
-#include "tests/planning/files/temporary_folder.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::files {
 namespace {
@@ -83,7 +84,7 @@ TEST(JsonDocument, WritesWholeAndFiniteOrNothing) {
   document["x"][1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(message_of<InvalidInput>([&] { write_json(folder / "a.json", document); }), HasSubstr("x[1]"));
   EXPECT_EQ(read_json(folder / "a.json", kFormat, 1).numbers("x")[1], 0.1);
-  EXPECT_EQ(folder.file_count(), 1U);
+  EXPECT_EQ(folder.names().size(), 1U);
 }
 
 // Text that is not UTF-8, from a file name say, must not end the program.

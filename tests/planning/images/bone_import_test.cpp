@@ -4,9 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "planning/geometry/error.h"
+#include "tests/message_of.h"
 #include "tests/planning/bones/mesh_text_forms.h"
-#include "tests/planning/files/temporary_folder.h"
 #include "tests/planning/geometry/shapes.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::images {
 namespace {

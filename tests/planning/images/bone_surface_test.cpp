@@ -8,7 +8,7 @@
 #include "planning/geometry/rigid_transform.h"
 #include "planning/geometry/surface.h"
 #include "planning/images/voxel_mask.h"
-#include "tests/planning/files/temporary_folder.h"
+#include "tests/message_of.h"
 
 namespace arthronaut::images {
 namespace {

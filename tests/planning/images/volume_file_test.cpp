@@ -7,8 +7,9 @@
 
 #include "planning/geometry/error.h"
 #include "planning/images/volume_bytes.h"
-#include "tests/planning/files/temporary_folder.h"
+#include "tests/message_of.h"
 #include "tests/planning/images/volume_forms.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::images {
 namespace {
