@@ -35,9 +35,8 @@ void BoneRegistration::start_worker() {
     published_.reset();
     return;
   }
-  // What was drawn and touched while the bone was being made ready.
-  if (!strokes_.points().empty()) worker_->add_points(strokes_.points());
-  for (const int curve : strokes_.left_out()) worker_->exclude_stroke(curve);
+  // What was drawn and touched while the bone was being made ready; nothing more may come.
+  if (!strokes_.points().empty()) worker_->take_up(strokes_.points(), strokes_.left_out());
   TouchCheck seen;
   for (const Eigen::Vector3d& touch : status_.touches.touches_mm()) {
     if (seen.is_new_place(touch)) worker_->add_touch(touch);
@@ -165,6 +164,14 @@ void BoneRegistration::judge() {
 
 void BoneRegistration::take_in(const std::shared_ptr<const registration::OnlineResult>& online) {
   if (status_.online != nullptr && status_.online->revision == online->revision) return;
+  if (!online->failure.empty()) {
+    status_.bone_trouble = online->failure;
+    worker_.reset();
+    published_.reset();
+    return;
+  }
+  // What was drawn before the worker began is still being worked in.
+  if (online->revision == 0 && !strokes_.points().empty()) return;
   // What was found with strokes that are gone or left out since, before the worker heard of it, must not take
   // effect any more.
   for (const registration::StrokeInfo& stroke : online->strokes)

@@ -44,7 +44,7 @@ struct RegistrationStatus {
       std::make_shared<strokes::Curves>();  // never null; all strokes
   std::set<int> left_out;                   // strokes that are not used
   std::shared_ptr<const registration::OnlineResult>
-      online;                      // null until the bone is ready and a point was drawn
+      online;                      // null until the bone is ready and what was drawn by then is judged
   RegistrationPtr in_force;        // null: none yet. Unreliable while there is an alarm
   std::uint64_t change_count = 0;  // of in_force
   std::shared_ptr<const std::vector<RegistrationEntry>> history =
@@ -87,8 +87,8 @@ class BoneRegistration {
 
   [[nodiscard]] strokes::Curves strokes_in_use() const;
   // Takes in what the registration that runs along has found meanwhile, and says all. Starts it once the bone
-  // is ready, with all that was drawn and touched before. The same object as long as nothing has changed;
-  // never null.
+  // is ready, with all that was drawn and touched before, which is judged at once though nothing more is
+  // drawn. The same object as long as nothing has changed; never null.
   [[nodiscard]] std::shared_ptr<const RegistrationStatus> status();
   // Waits until all strokes and touches are worked in; for tests.
   void finish();

@@ -110,6 +110,7 @@ struct OnlineRegistration::State {
   SideVerdict side = SideVerdict::Own;    // as the last check, before a confirmation, told
   double side_checked_mm = 0;             // the stroke length then; 0 when there was none
   bool is_judged = true;                  // false: touches came in since the last update
+  bool judges_all = false;                // the next update is to
   std::vector<RigidTransform> solutions;  // marker_from_bone, each with new stroke, newest last
   std::optional<Eigen::Vector3d> control_point_mm;
   double control_shift_mm = 0;
@@ -203,8 +204,8 @@ int OnlineRegistration::State::agreement_count() const {
 // Which side's bone it is shows late: with few strokes the wrong one fits too. So it is asked once when all
 // else would confirm, and again when half as much again was drawn.
 void OnlineRegistration::State::check_side() {
-  const bool is_due =
-      side_checked_mm == 0 || result.length_mm > 1.5 * side_checked_mm || side != SideVerdict::Own;
+  const bool is_due = side_checked_mm == 0 || judges_all || result.length_mm > 1.5 * side_checked_mm ||
+                      side != SideVerdict::Own;
   if (is_due && agreement_count() >= kAgreeingSolutions && result.registration.reliable) {
     // Costs compare only between searches of the same kind, over the same points.
     constexpr int kRounds = 2;
@@ -243,9 +244,9 @@ void OnlineRegistration::State::judge_state() {
   if (violation_count() >= kViolationsToDrop) {
     result.alarm = control_violations > 0
                        ? files::format("the world marker may have moved: the control point is off by %.1f mm",
-                                   control_shift_mm)
+                                       control_shift_mm)
                        : files::format("the world marker may have moved: %.0f touches lie off the bone",
-                                   static_cast<double>(violation_count()));
+                                       static_cast<double>(violation_count()));
     return;
   }
   if (!registration.reliable || agreement_count() < kAgreeingSolutions) return;
@@ -284,9 +285,11 @@ OnlineRegistration::OnlineRegistration(std::shared_ptr<const PreparedBone> bone,
     : state_(std::make_unique<State>(std::move(bone), options)) {}
 OnlineRegistration::~OnlineRegistration() = default;
 
-void OnlineRegistration::add_points(std::span<const strokes::CurvePoint> points) {
-  state_->strokes.add_points(points);
+void OnlineRegistration::add_points(std::span<const strokes::CurvePoint> points, bool is_excluded) {
+  state_->strokes.add_points(points, is_excluded);
 }
+
+void OnlineRegistration::judge_all() { state_->judges_all = true; }
 
 bool OnlineRegistration::exclude_stroke(int curve, bool is_excluded) {
   if (!state_->strokes.exclude(curve, is_excluded)) return false;
@@ -340,22 +343,25 @@ const OnlineResult& OnlineRegistration::update() {
   // never less.
   const double missing_mm =
       state.options.refine_every_mm - (state.strokes.length_in_use_mm() - state.solved_length_mm);
-  if (state.strokes.unmeasured_mm() < missing_mm && !state.is_changed && state.is_judged) return state.result;
+  const bool is_asked = state.is_changed || state.judges_all;
+  if (state.strokes.unmeasured_mm() < missing_mm && !is_asked && state.is_judged) return state.result;
   state.strokes.measure();
   const double length_mm = state.strokes.length_in_use_mm();
   const bool has_new_stroke = length_mm - state.solved_length_mm >= state.options.refine_every_mm;
-  if (!has_new_stroke && !state.is_changed && state.is_judged) return state.result;
+  if (!has_new_stroke && !is_asked && state.is_judged) return state.result;
 
   ++state.result.revision;
-  if (has_new_stroke || state.is_changed) {
+  if (has_new_stroke || is_asked) {
     state.solve();
     state.solved_length_mm = state.result.length_mm = length_mm;
     if (state.is_changed) state.solutions.clear();  // agreement has to be earned again
+    // Of hardly more stroke than the last solution: it takes that one's place and earns no agreement.
+    if (!has_new_stroke && !state.solutions.empty()) state.solutions.pop_back();
     state.remember_solution();
     state.check_side();
     state.describe_strokes();
   }
-  state.is_changed = false;
+  state.is_changed = state.judges_all = false;
   state.is_judged = true;
   state.judge_touches();
   state.judge_state();

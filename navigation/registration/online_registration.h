@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -83,7 +84,8 @@ struct OnlineResult {
   double length_mm = 0;  // of the strokes in use
   std::vector<StrokeInfo> strokes;
   std::vector<Touch> touches;
-  std::string alarm;  // empty, or why the state was taken back: "the world marker may have moved: ..."
+  std::string alarm;    // empty, or why the state was taken back: "the world marker may have moved: ..."
+  std::string failure;  // of a worker: why it has ended and works in nothing any more; empty else
 };
 
 // What a registration said when it was replaced or taken back.
@@ -100,8 +102,11 @@ class OnlineRegistration {
   OnlineRegistration(std::shared_ptr<const PreparedBone> bone, const OnlineOptions& options);
   ~OnlineRegistration();
 
-  // In drawing order; a new curve number starts a new stroke. Cheap.
-  void add_points(std::span<const strokes::CurvePoint> points);
+  // In drawing order; a new curve number starts a new stroke, which is in use or excluded. Cheap.
+  void add_points(std::span<const strokes::CurvePoint> points, bool is_excluded = false);
+  // The next update solves with all that was drawn, however little of it is new, and asks again which side's
+  // bone it is: when nothing more may come.
+  void judge_all();
   // Takes a stroke out of the fit, or back in; false when there is no such stroke.
   bool exclude_stroke(int curve, bool is_excluded = true);
   // Forgets the stroke drawn last; false when there is none.
@@ -131,13 +136,17 @@ class OnlineRegistration {
   std::unique_ptr<State> state_;
 };
 
-// The same on a thread of its own. Every member may be called from any thread and returns at once.
+// The same on a thread of its own, which also makes the core. Every member may be called from any thread and
+// returns at once.
 class RegistrationWorker {
  public:
   RegistrationWorker(std::shared_ptr<const PreparedBone> bone, const OnlineOptions& options);
   ~RegistrationWorker();  // stops after the piece of work in hand
 
   void add_points(std::span<const strokes::CurvePoint> points);
+  // What was drawn before there was a worker. Worked in point by point, as if it were drawn now, and then all
+  // of it is judged (judge_all()): only that is published.
+  void take_up(std::span<const strokes::CurvePoint> points, const std::set<int>& excluded_curves);
   void exclude_stroke(int curve, bool is_excluded = true);
   void undo_stroke();
   void add_touch(const Eigen::Vector3d& tip_in_marker_mm);

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <functional>
+#include <iterator>
 #include <mutex>
 #include <stop_token>
 #include <thread>
@@ -12,48 +14,80 @@ namespace arthronaut::registration {
 // One thread owns the core. What comes in waits in a list under a lock that nobody holds for longer than it
 // takes to append to it or to swap it; what comes out is one pointer, exchanged whole.
 struct RegistrationWorker::State {
-  State(std::shared_ptr<const PreparedBone> bone, const OnlineOptions& options)
-      : core(std::move(bone), options) {
-    published.store(std::make_shared<const OnlineResult>(core.result()));
-    thread = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  // What the core is asked to do, and whether what comes of it is published: a step on the way is not.
+  struct Piece {
+    std::function<void(OnlineRegistration&)> work;
+    bool is_published = true;
+  };
+
+  State(std::shared_ptr<const PreparedBone> bone, const OnlineOptions& options) {
+    published.store(std::make_shared<const OnlineResult>());
+    thread = std::jthread(
+        [this, bone = std::move(bone), options](const std::stop_token& stop) { run(bone, options, stop); });
   }
 
   void post(std::function<void(OnlineRegistration&)> work) {
+    std::vector<Piece> pieces;
+    pieces.push_back({std::move(work)});
+    post(std::move(pieces));
+  }
+
+  void post(std::vector<Piece> pieces) {
     {
       const std::lock_guard lock(mutex);
-      waiting.push_back(std::move(work));
+      if (has_ended) return;
+      std::move(pieces.begin(), pieces.end(), std::back_inserter(waiting));
       is_idle = false;
     }
     wake.notify_one();
   }
 
-  void run(const std::stop_token& stop) {
-    std::vector<std::function<void(OnlineRegistration&)>> work;
+  // The top of the thread. The core is made here: the search for the part of the bone that the plan lets a
+  // probe reach is nothing for a frame of the screen to wait for.
+  void run(const std::shared_ptr<const PreparedBone>& bone, const OnlineOptions& options,
+           const std::stop_token& stop) {
+    try {
+      OnlineRegistration core(bone, options);
+      work_in(core, stop);
+    } catch (const std::exception& error) {  // whatever goes wrong is said by the result
+      OnlineResult ended;
+      ended.revision = published.load()->revision + 1;
+      ended.failure = error.what();
+      published.store(std::make_shared<const OnlineResult>(std::move(ended)));
+    }
+    const std::lock_guard lock(mutex);
+    has_ended = true;
+    idle.notify_all();
+  }
+
+  void work_in(OnlineRegistration& core, const std::stop_token& stop) {
+    std::vector<Piece> work;
     std::unique_lock lock(mutex);
-    while (wake.wait(lock, stop, [this] { return !waiting.empty(); })) {
+    while (true) {
+      is_idle = waiting.empty();
+      if (is_idle) idle.notify_all();
+      if (!wake.wait(lock, stop, [this] { return !waiting.empty(); })) return;
       work.swap(waiting);
       lock.unlock();
       // One by one, so that what comes out doesn't depend on how much had come in meanwhile.
-      for (const auto& item : work) {
-        const std::uint64_t before = core.result().revision;
-        item(core);
-        if (core.update().revision != before)
+      for (const Piece& piece : work) {
+        if (stop.stop_requested()) return;
+        piece.work(core);
+        const std::uint64_t revision = core.update().revision;
+        if (piece.is_published && revision != published.load()->revision)
           published.store(std::make_shared<const OnlineResult>(core.result()));
       }
       work.clear();
       lock.lock();
-      is_idle = waiting.empty();
-      if (is_idle) idle.notify_all();
-      if (stop.stop_requested()) break;
     }
   }
 
-  OnlineRegistration core;  // touched by the thread alone once it runs
   std::atomic<std::shared_ptr<const OnlineResult>> published;
   std::mutex mutex;
   std::condition_variable_any wake, idle;
-  std::vector<std::function<void(OnlineRegistration&)>> waiting;
-  bool is_idle = true;
+  std::vector<Piece> waiting;
+  bool is_idle = false;  // the core is made and all is worked in
+  bool has_ended = false;
   std::jthread thread;  // last: stops and joins before the rest goes
 };
 
@@ -65,6 +99,21 @@ void RegistrationWorker::add_points(std::span<const strokes::CurvePoint> points)
   state_->post([points = strokes::Curves(points.begin(), points.end())](OnlineRegistration& core) {
     core.add_points(points);
   });
+}
+
+void RegistrationWorker::take_up(std::span<const strokes::CurvePoint> points,
+                                 const std::set<int>& excluded_curves) {
+  std::vector<State::Piece> pieces;
+  pieces.reserve(points.size() + 1);
+  for (const strokes::CurvePoint& point : points) {
+    const bool is_excluded = excluded_curves.contains(point.curve);
+    pieces.push_back({[point, is_excluded](OnlineRegistration& core) {
+                        core.add_points({&point, 1}, is_excluded);
+                      },
+                      false});
+  }
+  pieces.push_back({[](OnlineRegistration& core) { core.judge_all(); }});
+  state_->post(std::move(pieces));
 }
 
 void RegistrationWorker::exclude_stroke(int curve, bool is_excluded) {
@@ -95,7 +144,7 @@ std::shared_ptr<const OnlineResult> RegistrationWorker::latest() const { return 
 
 void RegistrationWorker::finish() {
   std::unique_lock lock(state_->mutex);
-  state_->idle.wait(lock, [this] { return state_->is_idle; });
+  state_->idle.wait(lock, [this] { return state_->is_idle || state_->has_ended; });
 }
 
 }  // namespace arthronaut::registration

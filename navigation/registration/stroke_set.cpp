@@ -2,9 +2,10 @@
 
 namespace arthronaut::registration {
 
-void StrokeSet::add_points(std::span<const strokes::CurvePoint> points) {
+void StrokeSet::add_points(std::span<const strokes::CurvePoint> points, bool is_excluded) {
   for (const strokes::CurvePoint& point : points) {
-    if (strokes_.empty() || strokes_.back().points.front().curve != point.curve) strokes_.emplace_back();
+    if (strokes_.empty() || strokes_.back().points.front().curve != point.curve)
+      strokes_.emplace_back().is_excluded = is_excluded;
     strokes::Curves& stroke = strokes_.back().points;
     if (!stroke.empty()) unmeasured_mm_ += (point.position_mm - stroke.back().position_mm).norm();
     stroke.push_back(point);

@@ -21,8 +21,9 @@ struct Stroke {
 
 class StrokeSet {
  public:
-  // In drawing order; a new curve number starts a new stroke. Cheap.
-  void add_points(std::span<const strokes::CurvePoint> points);
+  // In drawing order; a new curve number starts a new stroke, which is in use or excluded from its first
+  // point on. Cheap.
+  void add_points(std::span<const strokes::CurvePoint> points, bool is_excluded = false);
   // false when there is no such stroke.
   bool exclude(int curve, bool is_excluded);
   // Forgets the stroke drawn last; false when there is none.

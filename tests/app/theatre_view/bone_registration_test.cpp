@@ -228,6 +228,35 @@ TEST_F(BoneRegistrationTest, ABoneThatIsReadyLateTakesInWhatCameBefore) {
   EXPECT_NE(late.status()->online->alarm, "") << "compared with the one of before";
 }
 
+// Strokes that were all drawn before the bone was ready are judged as those drawn live, with all of them and
+// one of them left out, and take effect: nobody draws on and nobody presses a key.
+TEST_F(BoneRegistrationTest, StrokesThatWereDrawnBeforeTheBoneWasReadyConfirm) {
+  for (const bool leaves_out : {false, true}) {
+    std::promise<PreparedBonePtr> promise;
+    BoneRegistration late(promise.get_future().share(), plan(), surface_);
+    draw_on(late, trial_.curves);
+    const int last = late.status()->drawn->back().curve;
+    if (leaves_out) late.leave_out(last, true);
+    promise.set_value(phantom_bone().prepared);
+    (void)late.status();  // as every frame of the screen does
+    late.finish();
+    const RegistrationStatus status = *late.status();
+    EXPECT_EQ(state_of(status).name, "Confirmed");
+    ASSERT_NE(status.in_force, nullptr);
+    EXPECT_TRUE(status.in_force->reliable);
+    const std::size_t left_out_count =
+        leaves_out ? static_cast<std::size_t>(
+                         std::count_if(status.drawn->begin(), status.drawn->end(),
+                                       [last](const auto& point) { return point.curve == last; }))
+                   : 0;
+    EXPECT_EQ(status.in_force->point_residuals_mm.size(), status.drawn->size() - left_out_count)
+        << "every point has a say, to the last one";
+    EXPECT_EQ(status.online->strokes.back().is_excluded, leaves_out);
+    const Eigen::Vector3d target = phantom_bone().target_mm;
+    EXPECT_LT((status.in_force->marker_from_bone * target - trial_.marker_from_bone * target).norm(), 0.6);
+  }
+}
+
 // A bone that cannot be made ready says why, once and for all; nothing else fails.
 TEST_F(BoneRegistrationTest, ABoneThatFailsSaysWhy) {
   std::promise<PreparedBonePtr> promise;

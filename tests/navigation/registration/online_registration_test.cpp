@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <ctime>
 
 #include "tests/navigation/registration/phantom_bone.h"
 
@@ -204,6 +205,79 @@ TEST(OnlineRegistration, NeverConfirmsTheMirroredBoneWithCartilage) {
   options.covered = covered.region;
   OnlineRegistration online(bone.prepared, options);
   for (const OnlineState state : draw(online, covered.trial.curves)) EXPECT_LT(state, OnlineState::Confirmed);
+}
+
+// What was drawn is judged to its last point when that is asked for, and a solution of hardly more stroke is no further
+// witness: two solutions stay two, and don't confirm.
+TEST(OnlineRegistration, JudgesAllWhenAsked) {
+  const PhantomBone& bone = phantom_bone();
+  auto curves = bone.trial(TrialNoise::Dry, 1).curves;
+  curves.resize(700);
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  draw(online, curves);
+  const std::uint64_t before = online.result().revision;
+  online.judge_all();
+  EXPECT_EQ(online.update().revision, before + 1);
+  EXPECT_EQ(online.result().state, OnlineState::Confirmed);
+  EXPECT_EQ(online.result().registration.point_residuals_mm.size(), curves.size());
+
+  OnlineRegistration at_once(bone.prepared, options_for(bone));
+  at_once.add_points(curves);
+  for (int i = 0; i < 5; ++i) {
+    at_once.judge_all();
+    EXPECT_LT(at_once.update().state, OnlineState::Confirmed) << "one piece of stroke, asked of again and again";
+  }
+}
+
+// Strokes handed over at once go through the same as strokes drawn one after the other; a mirrored bone is not
+// confirmed either way.
+TEST(RegistrationWorker, TakesUpWhatWasDrawnBefore) {
+  const PhantomBone& bone = phantom_bone();
+  auto curves = bone.trial(TrialNoise::Dry, 1).curves;
+  curves.resize(700);
+  OnlineRegistration core(bone.prepared, options_for(bone));
+  draw(core, curves);
+  core.judge_all();
+  core.update();
+  RegistrationWorker worker(bone.prepared, options_for(bone));
+  worker.take_up(curves, {});
+  worker.finish();
+  EXPECT_EQ(worker.latest()->state, OnlineState::Confirmed);
+  EXPECT_EQ(worker.latest()->revision, core.result().revision);
+  EXPECT_EQ(worker.latest()->registration.marker_from_bone.translation_mm,
+            core.result().registration.marker_from_bone.translation_mm);
+
+  for (auto& point : curves) point.position_mm.x() = -point.position_mm.x();
+  RegistrationWorker mirrored(bone.prepared, options_for(bone));
+  mirrored.take_up(curves, {});
+  mirrored.finish();
+  EXPECT_LT(mirrored.latest()->state, OnlineState::Confirmed);
+}
+
+// A thread of the screen that starts a worker computes nothing: the core, with the part of the bone that the plan lets a
+// probe reach, is made by the worker's own thread. Told by the processor time of the calling thread alone, which other
+// threads don't touch, and by the least of ten; half of the core's leaves ample room for starting a thread.
+TEST(RegistrationWorker, IsStartedWithoutComputing) {
+  const PhantomBone& bone = phantom_bone();
+  const auto least_s = [](const auto& make) {
+    const auto spent_s = [] {
+      timespec time{};
+      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+      return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+    };
+    double least = 1e9;
+    for (int i = 0; i < 10; ++i) {
+      const double before = spent_s();
+      const auto made = make();
+      least = std::min(least, spent_s() - before);
+    }
+    return least;
+  };
+  const double core_s =
+      least_s([&] { return std::make_unique<OnlineRegistration>(bone.prepared, options_for(bone)); });
+  const double worker_s =
+      least_s([&] { return std::make_unique<RegistrationWorker>(bone.prepared, options_for(bone)); });
+  EXPECT_LT(worker_s, 0.5 * core_s);
 }
 
 // The worker's result is the core's, whatever the threads do, and what is published is never torn.
