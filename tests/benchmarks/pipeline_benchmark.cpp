@@ -10,6 +10,7 @@
 #include "navigation/pipeline/navigation_pipeline.h"
 #include "navigation/recording/video_encoder.h"
 #include "navigation/sources/frame_source.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut {
 namespace {
@@ -53,14 +54,14 @@ BENCHMARK(process_frame)->Unit(benchmark::kMillisecond);
 void encode_frame(benchmark::State& state) {
   if (!std::filesystem::exists(clip_folder())) return state.SkipWithError("needs the recorded data");
   const auto frames = clip_frames();
-  const auto file = std::filesystem::temp_directory_path() / "arthronaut_benchmark.mkv";
+  const test::TemporaryFolder folder;
+  const auto file = folder / "clip.mkv";
   recording::VideoEncoder encoder(file, frames.front()->width, frames.front()->height, 60);
   std::size_t index = 0;
   for (auto _ : state) encoder.encode(*frames[index++ % frames.size()]);
   encoder.finish();
   state.counters["MB_per_frame"] =
       static_cast<double>(std::filesystem::file_size(file)) / 1e6 / static_cast<double>(index);
-  std::filesystem::remove(file);
 }
 BENCHMARK(encode_frame)->Unit(benchmark::kMillisecond);
 

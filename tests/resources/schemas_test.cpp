@@ -11,6 +11,7 @@
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
 #include "tests/resources/json_schema.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut {
 namespace {
@@ -20,13 +21,6 @@ using nlohmann::json;
 
 class Schemas : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / "arthronaut_schemas_test";
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   static json read(const fs::path& file) {
     std::ifstream in(file);
     return json::parse(in);
@@ -56,7 +50,7 @@ class Schemas : public ::testing::Test {
     EXPECT_NO_THROW(read_again());
   }
 
-  fs::path folder_;
+  const test::TemporaryFolder folder_;
 };
 
 // A camera with everything a calibration knows, and one in a fluid that has a number only.
@@ -87,9 +81,10 @@ TEST_F(Schemas, DescribeTheTools) {
 
 // The phantom: both bones, their landmarks, both tunnels.
 TEST_F(Schemas, DescribeTheCaseAndItsPlan) {
-  cases::save_case(folder_, phantom::case_of(phantom::make_phantom_knee(), "phantom"));
+  cases::save_case(folder_.path(), phantom::case_of(phantom::make_phantom_knee(), "phantom"));
   for (const char* name : {"case", "plan"})
-    expect_described(folder_ / (std::string(name) + ".json"), name, [&] { (void)cases::load_case(folder_); });
+    expect_described(folder_ / (std::string(name) + ".json"), name,
+                     [&] { (void)cases::load_case(folder_.path()); });
 }
 
 // A registration that stands, and one that found nothing.

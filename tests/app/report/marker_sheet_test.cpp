@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "planning/geometry/error.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::report {
 
@@ -19,12 +20,6 @@ constexpr double kMmPerPx = 25.4 / kDpi;
 
 class MarkerSheet : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   std::filesystem::path file() const { return folder_ / "markers.pdf"; }
 
   // The page as a printer would see it.
@@ -37,7 +32,7 @@ class MarkerSheet : public ::testing::Test {
   }
 
  private:
-  std::filesystem::path folder_;
+  const test::TemporaryFolder folder_;
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::report {
 
@@ -20,14 +21,9 @@ namespace {
 class Report : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) / "report_test" /
-              ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
     knee_ = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 3.0}), "Knee of Ærø");
     cases::save_case(knee_folder(), knee_);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   std::filesystem::path knee_folder() const { return folder_ / "Knee.arthro"; }
   std::filesystem::path pdf() const { return folder_ / "report.pdf"; }
 
@@ -42,7 +38,7 @@ class Report : public ::testing::Test {
     EXPECT_EQ(std::system((command + " > " + file.string()).c_str()), 0) << command;
     return files::read_text(file);
   }
-  std::filesystem::path folder_;
+  const test::TemporaryFolder folder_;
 };
 
 int page_count(const std::string& info) {

@@ -6,6 +6,8 @@
 
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::camera {
 
@@ -13,23 +15,12 @@ namespace {
 
 class CameraFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   std::filesystem::path file() const { return folder_ / "camera.json"; }
 
   // The message of the InvalidInput that reading `text` must throw.
   std::string refusal(const std::string& text) const {
     std::ofstream(file()) << text;
-    try {
-      (void)read_camera_file(file());
-    } catch (const InvalidInput& error) {
-      return error.what();
-    }
-    return "was accepted";
+    return test::message_of<InvalidInput>([&] { (void)read_camera_file(file()); });
   }
 
   static CalibrationRecord example() {
@@ -50,7 +41,7 @@ class CameraFile : public ::testing::Test {
   }
 
  private:
-  std::filesystem::path folder_;
+  const test::TemporaryFolder folder_;
 };
 
 std::string with(std::string text, const std::string& from, const std::string& to) {

@@ -7,26 +7,19 @@
 #include <fstream>
 
 #include "planning/geometry/error.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::experiments {
 namespace {
 
 class LensRotationTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ =
-        std::filesystem::path(::testing::TempDir()) /
-        ("lens_rotation_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path write(const std::string& text) const {
     std::ofstream(folder_ / "ruler.json") << text;
     return folder_ / "ruler.json";
   }
 
-  std::filesystem::path folder_;
+  const test::TemporaryFolder folder_;
 };
 
 // With a camera calibrated from its own stills, following the lens keeps the relative pose within the paper's

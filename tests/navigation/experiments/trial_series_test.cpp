@@ -7,6 +7,7 @@
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_knee.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::experiments {
 
@@ -17,9 +18,8 @@ TEST(TrialSeries, WritesTrialsThatOtherProgramsCanRun) {
   TrialSeriesOptions options;
   options.area_center_mm = knee.femoral_tunnel.entry_mm;
   const TrialSeries series(knee.femur.mesh, options);
-  const auto folder = std::filesystem::path(testing::TempDir()) / "trials";
-  std::filesystem::remove_all(folder);
-  write_trials(folder, series, 2);
+  const test::TemporaryFolder folder;
+  write_trials(folder.path(), series, 2);
   const geometry::Surface surface(bones::read_mesh(folder / "bone.ply"));
   for (const std::string name : {"trial_0", "trial_1"}) {
     const auto curves = strokes::read_curves_file(folder / (name + ".csv"));

@@ -9,6 +9,7 @@
 #include "navigation/recording/session.h"
 #include "planning/geometry/error.h"
 #include "tests/navigation/recording/recorded_frames.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut {
 namespace {
@@ -17,15 +18,8 @@ namespace fs = std::filesystem;
 
 class RecordedVideo : public ::testing::Test {
  protected:
-  RecordedVideo() {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~RecordedVideo() override { fs::remove_all(folder_); }
-
-  fs::path folder_ = fs::temp_directory_path() /
-                     ("arthronaut_video_" + std::to_string(::getpid()) + "_" +
-                      ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  const test::TemporaryFolder temporary_;
+  const fs::path& folder_ = temporary_.path();
 };
 
 // Smooth shading with an edge that moves: what an arthroscope shows, small.

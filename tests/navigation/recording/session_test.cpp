@@ -13,6 +13,7 @@
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "tests/navigation/recording/recorded_frames.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut {
 namespace {
@@ -21,15 +22,8 @@ namespace fs = std::filesystem;
 
 class Session : public ::testing::Test {
  protected:
-  Session() {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~Session() override { fs::remove_all(folder_); }
-
-  fs::path folder_ = fs::temp_directory_path() /
-                     ("arthronaut_session_" + std::to_string(::getpid()) + "_" +
-                      ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  const test::TemporaryFolder temporary_;
+  const fs::path& folder_ = temporary_.path();
   pipeline::PipelineOptions options_ = test::scripted_options();
 };
 

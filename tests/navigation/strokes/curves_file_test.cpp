@@ -4,13 +4,15 @@
 
 #include "navigation/strokes/curves.h"
 #include "planning/geometry/error.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::strokes {
 
 // Points come back in order, with their curve and with or without a time.
 TEST(CurvesFile, RoundTripKeepsOrderAndEmptyTimes) {
   const Curves curves{{0, 0.25, {1, 2, 3}}, {0, std::nullopt, {-1.5, 2.25, 3}}, {7, 1.0, {0, 0, -9.125}}};
-  const auto file = std::filesystem::path(testing::TempDir()) / "curves_round_trip.csv";
+  const test::TemporaryFolder folder;
+  const auto file = folder / "curves.csv";
   write_curves_file(file, curves);
   const Curves read = read_curves_file(file);
   ASSERT_EQ(read.size(), curves.size());
@@ -25,7 +27,8 @@ TEST(CurvesFile, RoundTripKeepsOrderAndEmptyTimes) {
 TEST(CurvesFile, ShaftsAreWrittenWhenAskedFor) {
   const Eigen::Vector3d shaft = Eigen::Vector3d(1, -2, 0.5).normalized();
   const Curves curves{{0, 0.25, {1, 2, 3}, shaft}, {0, 0.5, {2, 2, 3}, std::nullopt}};
-  const auto file = std::filesystem::path(testing::TempDir()) / "curves_shafts.csv";
+  const test::TemporaryFolder folder;
+  const auto file = folder / "curves.csv";
   write_curves_file(file, curves, ShaftColumns::Write);
   const Curves read = read_curves_file(file);
   ASSERT_EQ(read.size(), 2u);
@@ -38,7 +41,8 @@ TEST(CurvesFile, ShaftsAreWrittenWhenAskedFor) {
 
 // A direction has length 1, and all of its numbers.
 TEST(CurvesFile, RefusesShaftsThatAreNoDirections) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "curves_no_direction.csv";
+  const test::TemporaryFolder folder;
+  const auto file = folder / "curves.csv";
   for (const char* cells : {"0.5,0.5,0", "1,0,", "0,0,0"}) {
     std::ofstream(file) << "curve,time_s,x_mm,y_mm,z_mm,shaft_x,shaft_y,shaft_z\n0,0,1,2,3," << cells << "\n";
     EXPECT_THROW((void)read_curves_file(file), InvalidInput) << cells;
@@ -47,7 +51,8 @@ TEST(CurvesFile, RefusesShaftsThatAreNoDirections) {
 
 // A number that is not finite is refused.
 TEST(CurvesFile, RefusesNumbersThatAreNotFinite) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "curves_inf.csv";
+  const test::TemporaryFolder folder;
+  const auto file = folder / "curves.csv";
   std::ofstream(file) << "curve,time_s,x_mm,y_mm,z_mm\n0,0,1,inf,3\n";
   EXPECT_THROW((void)read_curves_file(file), InvalidInput);
 }

@@ -6,6 +6,8 @@
 #include <fstream>
 
 #include "planning/geometry/error.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::strokes {
 
@@ -13,19 +15,11 @@ namespace {
 
 constexpr const char* kHeader = "frame,time_s,marker_id,qw,qx,qy,qz,tx_mm,ty_mm,tz_mm,rms_px,mark_angle_deg\n";
 
-std::filesystem::path file_with(const std::string& name, const std::string& text) {
-  const auto file = std::filesystem::path(testing::TempDir()) / name;
-  std::ofstream(file) << text;
-  return file;
-}
-
-std::string error_of(const std::filesystem::path& file) {
-  try {
-    (void)read_poses_file(file);
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
+// With which a file of this name and text is refused.
+std::string error_of(const std::string& name, const std::string& text) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / name) << text;
+  return test::message_of<InvalidInput>([&] { (void)read_poses_file(folder / name); });
 }
 
 }  // namespace
@@ -42,7 +36,8 @@ TEST(PosesFile, RoundTripKeepsPosesAndEmptyMarkAngles) {
   second = first;
   second.frame = 4;
   second.mark_angle_deg = 271.3;
-  const auto file = std::filesystem::path(testing::TempDir()) / "poses_round_trip.csv";
+  const test::TemporaryFolder folder;
+  const auto file = folder / "poses.csv";
   write_poses_file(file, {first, second});
   const auto rows = read_poses_file(file);
   ASSERT_EQ(rows.size(), 2u);
@@ -56,13 +51,13 @@ TEST(PosesFile, RoundTripKeepsPosesAndEmptyMarkAngles) {
 
 // A number that is no rotation, time that runs backwards, a missing column: each is refused with its place.
 TEST(PosesFile, RefusesWhatBreaksTheContract) {
-  EXPECT_THAT(error_of(file_with("norm.csv", std::string(kHeader) + "0,0,0,0.9,0,0,0,1,2,3,0.1,\n")),
+  EXPECT_THAT(error_of("norm.csv", std::string(kHeader) + "0,0,0,0.9,0,0,0,1,2,3,0.1,\n"),
               testing::AllOf(testing::HasSubstr("norm.csv"), testing::HasSubstr("qw"), testing::HasSubstr("norm")));
-  EXPECT_THAT(error_of(file_with("time.csv", std::string(kHeader) + "0,0.5,0,1,0,0,0,1,2,3,0.1,\n1,0.4,0,1,0,0,0,1,2,3,0.1,\n")),
+  EXPECT_THAT(error_of("time.csv", std::string(kHeader) + "0,0.5,0,1,0,0,0,1,2,3,0.1,\n1,0.4,0,1,0,0,0,1,2,3,0.1,\n"),
               testing::HasSubstr("backwards"));
-  EXPECT_THAT(error_of(file_with("nan.csv", std::string(kHeader) + "0,0,0,1,0,0,0,nan,2,3,0.1,\n")),
+  EXPECT_THAT(error_of("nan.csv", std::string(kHeader) + "0,0,0,1,0,0,0,nan,2,3,0.1,\n"),
               testing::HasSubstr("tx_mm"));
-  EXPECT_THAT(error_of(file_with("column.csv", "frame,time_s,marker_id\n0,0,0\n")), testing::HasSubstr("qw"));
+  EXPECT_THAT(error_of("column.csv", "frame,time_s,marker_id\n0,0,0\n"), testing::HasSubstr("qw"));
   EXPECT_THROW((void)read_poses_file("/nowhere/poses.csv"), IoError);
 }
 

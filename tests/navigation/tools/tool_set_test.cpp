@@ -6,33 +6,25 @@
 #include <fstream>
 
 #include "planning/geometry/error.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::tools {
 namespace {
 
 class ToolsFile : public ::testing::Test {
  protected:
-  ToolsFile()
-      : file_(std::filesystem::path(::testing::TempDir()) /
-              (std::string("tools_") + ::testing::UnitTest::GetInstance()->current_test_info()->name() +
-               ".json")) {}
-  ~ToolsFile() override { std::filesystem::remove(file_); }
-
   void write(const std::string& world, const std::string& tools) {
     std::ofstream(file_) << R"({"format": "arthronaut.tools", "version": 1, "world_markers": [)" << world
                          << R"(], "tools": [)" << tools << "]}";
   }
-  // The message with which the file is refused; empty when it is read.
+  // The message with which the file is refused.
   std::string refusal() {
-    try {
-      (void)read_tools_file(file_);
-    } catch (const InvalidInput& error) {
-      return error.what();
-    }
-    return "";
+    return test::message_of<InvalidInput>([&] { (void)read_tools_file(file_); });
   }
 
-  std::filesystem::path file_;
+  const test::TemporaryFolder folder_;
+  const std::filesystem::path file_ = folder_ / "tools.json";
 };
 
 // What is written is what is read, to the last bit.
