@@ -1,6 +1,8 @@
 #include "app/window/case_opening.h"
 
+#include <chrono>
 #include <cstdlib>
+#include <utility>
 
 #include "planning/cases/case.h"
 #include "planning/phantom/phantom_case.h"
@@ -25,6 +27,31 @@ OpenedCase open_case(const std::filesystem::path& folder) {
     cases::save_case(chosen, phantom::case_of(phantom::make_phantom_knee(), "Phantom knee"));
   }
   return {chosen, std::make_unique<planning_view::PlanModel>(cases::load_case(chosen))};
+}
+
+CaseOpening::CaseOpening(const std::filesystem::path& folder, std::function<void()> on_end)
+    : opening_(std::async(std::launch::async, [folder, on_end = std::move(on_end)] {
+        const struct AtEnd {
+          const std::function<void()>& call;
+          ~AtEnd() { call(); }
+        } at_end{on_end};
+        return open_case(folder);
+      })) {}
+
+CaseOpening::~CaseOpening() {
+  if (opening_.valid()) opening_.wait();  // what it calls at its end must still be there
+}
+
+bool CaseOpening::take() {
+  if (!opening_.valid() || opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return false;
+  try {  // the top of the opening thread: a case that cannot be read is said on the screen
+    open_ = opening_.get();
+  } catch (const std::exception& error) {
+    failure_ = error.what();
+    return false;
+  }
+  return true;
 }
 
 }  // namespace arthronaut::window

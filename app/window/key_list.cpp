@@ -7,9 +7,8 @@ namespace arthronaut::window {
 void draw_key_list(const widgets::Ui& ui, const std::vector<std::string_view>& prefixes) {
   std::vector<const widgets::Action*> shown;
   for (const widgets::Action& action : ui.actions.all()) {
-    const bool here = std::any_of(prefixes.begin(), prefixes.end(), [&](std::string_view prefix) {
-      return action.id.starts_with(prefix);
-    });
+    const bool here = std::any_of(prefixes.begin(), prefixes.end(),
+                                  [&](std::string_view prefix) { return action.id.starts_with(prefix); });
     if (here && action.key != 0) shown.push_back(&action);
   }
   const ImVec2 size = ImGui::GetIO().DisplaySize;

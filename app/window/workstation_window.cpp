@@ -37,14 +37,8 @@ const char* name_of(Mode mode) {
 WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
     : options_(options),
       window_("Arthronaut"),
+      case_(options.case_folder, [] { GraphicsWindow::wake(); }),
       log_(options.list_widgets),
-      opening_(std::async(std::launch::async,
-                          [folder = options.case_folder] {
-                            const struct Waker {
-                              ~Waker() { GraphicsWindow::wake(); }
-                            } waker;
-                            return open_case(folder);
-                          })),
       planning_(
           [this] { window_.make_current(); },
           [this](const planning_view::PlanEdit& edit) { history_.apply(edit, GraphicsWindow::now_s()); }),
@@ -54,12 +48,8 @@ WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
   add_actions();
 }
 
-WorkstationWindow::~WorkstationWindow() {
-  if (opening_.valid()) opening_.wait();  // its end wakes the window, which must still be there
-}
-
 void WorkstationWindow::add_actions() {
-  const auto is_open = [this] { return open_.model != nullptr; };
+  const auto is_open = [this] { return case_.model() != nullptr; };
   const auto mode_action = [&](const char* id, const char* label, const char* tooltip, int key, Mode mode) {
     actions_.add({id, label, tooltip, key, 0, false, is_open, [this, mode] { return mode_ == mode; },
                   [this, mode] { go_to(mode); }});
@@ -101,7 +91,7 @@ void WorkstationWindow::add_actions() {
                 [this] { return history_.can_redo(); },
                 {},
                 [this] { history_.redo(); }});
-  planning_.add_actions(actions_, [this]() -> const planning_view::PlanModel* { return open_.model.get(); });
+  planning_.add_actions(actions_, [this]() -> const planning_view::PlanModel* { return case_.model(); });
   setup_.add_actions(actions_);
   theatre_.add_actions(actions_);
   review_.add_actions(actions_);
@@ -126,7 +116,7 @@ bool WorkstationWindow::pictures_come() const {
 }
 
 bool WorkstationWindow::is_busy() const {
-  return opening_.valid() || pictures_come() || review_.is_busy() || history_.is_moving();
+  return case_.is_busy() || pictures_come() || review_.is_busy() || history_.is_moving();
 }
 
 // poll -> queues and actions -> UI (with the scenes that are dirty) -> draw -> swap
@@ -142,18 +132,12 @@ void WorkstationWindow::frame(double timeout_s) {
 }
 
 void WorkstationWindow::take_opened_case() {
-  if (!opening_.valid() || opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  try {  // the top of the opening job: a case that cannot be read is said on the screen
-    open_ = opening_.get();
-  } catch (const std::exception& error) {
-    failure_ = error.what();
-    return;
-  }
-  history_.open(open_.model.get(), open_.folder);
-  planning_.reset(*open_.model);
-  setup_.open(open_.folder);
-  theatre_.open(open_.model.get(), open_.folder);
-  review_.open(open_.model.get(), open_.folder);
+  if (!case_.take()) return;
+  history_.open(case_.model(), case_.folder());
+  planning_.reset(*case_.model());
+  setup_.open(case_.folder());
+  theatre_.open(case_.model(), case_.folder());
+  review_.open(case_.model(), case_.folder());
 }
 
 void WorkstationWindow::dispatch_keys() {
@@ -210,10 +194,10 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   draw_top_bar(ui, area.cut_top(ui.theme.px(72)));
   draw_status_bar(ui, area.cut_bottom(ui.theme.px(40)));
   widgets::Rect inner = area.inset(ui.theme.px(12));
-  if (open_.model == nullptr)
+  if (case_.model() == nullptr)
     draw_waiting(ui, inner);
   else if (mode_ == Mode::Plan)
-    planning_.draw(ui, inner, *open_.model, history_.status());
+    planning_.draw(ui, inner, *case_.model(), history_.status());
   else if (mode_ == Mode::SetUp)
     setup_.draw(ui, inner);
   else if (mode_ == Mode::Navigate)
@@ -224,7 +208,7 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   ImGui::PopFont();
   ImGui::End();
   log_.note_state("mode", name_of(mode_));
-  log_.note_state("case", open_.model != nullptr ? "open" : failure_.empty() ? "opening" : "failed");
+  log_.note_state("case", case_.model() != nullptr ? "open" : case_.failure().empty() ? "opening" : "failed");
 }
 
 void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect& area) {
@@ -242,8 +226,8 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
     widgets::action_button(ui, id, width, height);
     x += width + ui.theme.px(10);
   }
-  if (open_.model != nullptr) {
-    const cases::Case& knee = open_.model->knee();
+  if (case_.model() != nullptr) {
+    const cases::Case& knee = case_.model()->knee();
     const std::string text = knee.name + "  \u2013  " + std::string(bones::to_text(knee.side)) + " knee";
     const float wide = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, text.c_str()).x;
     draw.AddText(ui.theme.strong, ui.theme.strong->FontSize,
@@ -263,21 +247,22 @@ void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Re
   const ImFont* font = ui.theme.body;
   const float y = area.y + (area.height - font->FontSize) / 2;
   draw.AddText(font, font->FontSize, {area.x + ui.theme.px(20), y}, widgets::kQuietText, kNotice);
-  const std::string notice = !failure_.empty()         ? failure_
+  const std::string notice = !case_.failure().empty()  ? case_.failure()
                              : mode_ == Mode::Navigate ? theatre_.notice()
                              : mode_ == Mode::Review   ? review_.notice()
                                                        : std::string();
-  const std::string text = !notice.empty()          ? notice
-                           : open_.model != nullptr ? open_.folder.string()
-                                                    : std::string();
+  const std::string text = !notice.empty()            ? notice
+                           : case_.model() != nullptr ? case_.folder().string()
+                                                      : std::string();
   const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
   draw.AddText(font, font->FontSize, {area.x + area.width - wide - ui.theme.px(20), y},
                notice.empty() ? widgets::kQuietText : widgets::kCaution, text.c_str());
 }
 
 void WorkstationWindow::draw_waiting(const widgets::Ui& ui, const widgets::Rect& area) {
-  widgets::text_centered(ui, area, ui.theme.title, failure_.empty() ? widgets::kText : widgets::kBad,
-                         failure_.empty() ? "Opening the case" : "The case cannot be opened: " + failure_);
+  widgets::text_centered(
+      ui, area, ui.theme.title, case_.failure().empty() ? widgets::kText : widgets::kBad,
+      case_.failure().empty() ? "Opening the case" : "The case cannot be opened: " + case_.failure());
 }
 
 }  // namespace arthronaut::window

@@ -1,9 +1,8 @@
 // The whole window: modes, bars, the open case, and the loop that keeps the frame order.
 #pragma once
 
-#include <future>
-#include <memory>
-#include <string>
+#include <string_view>
+#include <vector>
 
 #include "app/planning_view/planning_view.h"
 #include "app/review_view/review_view.h"
@@ -21,7 +20,6 @@ enum class Mode { Plan, SetUp, Navigate, Review };
 class WorkstationWindow {
  public:
   explicit WorkstationWindow(const WorkstationOptions& options);
-  ~WorkstationWindow();
   // Until the window closes or the frames are up.
   void run();
 
@@ -42,10 +40,9 @@ class WorkstationWindow {
 
   WorkstationOptions options_;
   widgets::GraphicsWindow window_;
+  CaseOpening case_;
   widgets::Actions actions_;
   widgets::WidgetLog log_;
-  std::future<OpenedCase> opening_;
-  OpenedCase open_;
   PlanHistory history_;
   sources::DeviceTurns camera_turns_;  // of Set up and Navigate
   planning_view::PlanningView planning_;
@@ -54,7 +51,6 @@ class WorkstationWindow {
   review_view::ReviewView review_;
   Mode mode_ = Mode::Plan;
   bool shows_keys_ = false, quits_ = false;
-  std::string failure_;
 };
 
 }  // namespace arthronaut::window
