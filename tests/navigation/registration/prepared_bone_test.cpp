@@ -7,6 +7,7 @@
 #include "navigation/registration/reachable_region.h"
 #include "planning/files/atomic_file.h"
 #include "tests/navigation/registration/phantom_bone.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::registration {
 
@@ -14,9 +15,6 @@ namespace {
 
 class PreparedBoneCache : public testing::Test {
  protected:
-  void SetUp() override { std::filesystem::remove_all(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   // What registering makes of the bone, to the last bit.
   static Eigen::Vector3d found_with(const PreparedBone& bone) {
     const auto trial = phantom_bone().trial(experiments::TrialNoise::Dry, 1);
@@ -31,8 +29,8 @@ class PreparedBoneCache : public testing::Test {
     return mesh;
   }
 
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "prepared_bone";
-  std::filesystem::path file_ = folder_ / "cache" / "femur.prepared";
+  const test::TemporaryFolder folder_;
+  const std::filesystem::path file_ = folder_ / "cache" / "femur.prepared";
 };
 
 }  // namespace
@@ -72,7 +70,6 @@ TEST_F(PreparedBoneCache, KnowsItsMesh) {
 
 // Where nothing can be written, here below a file instead of a folder, the bone is prepared all the same.
 TEST_F(PreparedBoneCache, DoesWithoutAFileThatCannotBeWritten) {
-  std::filesystem::create_directories(folder_);
   std::ofstream(folder_ / "cache") << "a file";
   const PreparedBone bone(octahedron(), file_);
   EXPECT_NEAR(bone.data().field.sample({0, 0, 15.5}).distance_mm, 0.5, 0.05);

@@ -7,23 +7,21 @@
 
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
+#include "planning/geometry/quantile.h"
 #include "tests/navigation/registration/phantom_bone.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::registration {
 
 namespace {
 
 using experiments::TrialNoise;
+using geometry::median;
 using testing::Contains;
 using testing::HasSubstr;
 
 double target_error_mm(const RegistrationSummary& found, const experiments::Trial& trial, const Eigen::Vector3d& target) {
   return found.has_pose ? (found.marker_from_bone * target - trial.marker_from_bone * target).norm() : 1e9;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 }  // namespace
@@ -298,7 +296,8 @@ TEST(RegistrationFile, RoundTrip) {
   auto found = register_curves(*bone.prepared, bone.trial(TrialNoise::Dry, 1).curves, {1, true, bone.target_mm});
   found.reliable = false;
   found.reasons = {"two poses", "one \"patch\""};
-  const auto file = std::filesystem::path(testing::TempDir()) / "registration.json";
+  const test::TemporaryFolder folder;
+  const auto file = folder / "registration.json";
   write_registration_file(file, found);
   const auto read = read_registration_file(file);
   EXPECT_TRUE(read.has_pose);
@@ -311,7 +310,8 @@ TEST(RegistrationFile, RoundTrip) {
 
 // That nothing was found survives the file, and the file still has all that the format promises.
 TEST(RegistrationFile, SaysThatNoPoseWasFound) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "registration_none.json";
+  const test::TemporaryFolder folder;
+  const auto file = folder / "registration.json";
   write_registration_file(file, register_curves(*phantom_bone().prepared, {}));
   const auto read = read_registration_file(file);
   EXPECT_FALSE(read.has_pose);
@@ -322,7 +322,8 @@ TEST(RegistrationFile, SaysThatNoPoseWasFound) {
 
 // A file that claims to be sure of no pose is refused.
 TEST(RegistrationFile, RefusesToBeSureOfNoPose) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "registration_sure.json";
+  const test::TemporaryFolder folder;
+  const auto file = folder / "registration.json";
   std::ofstream(file) << R"({"format": "arthronaut.registration", "version": 1, "has_pose": false, "rms_mm": 0,
     "inlier_fraction": 0, "point_count": 5, "reliable": true, "reasons": [], "predicted_tre_mm": 0})";
   EXPECT_THROW((void)read_registration_file(file), InvalidInput);
@@ -330,7 +331,8 @@ TEST(RegistrationFile, RefusesToBeSureOfNoPose) {
 
 // A covariance of the wrong size is refused with its place.
 TEST(RegistrationFile, RefusesABrokenCovariance) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "registration_broken.json";
+  const test::TemporaryFolder folder;
+  const auto file = folder / "registration.json";
   std::ofstream(file) << R"({"format": "arthronaut.registration", "version": 1,
     "marker_from_bone": {"q_wxyz": [1, 0, 0, 0], "t_mm": [0, 0, 0]}, "rms_mm": 0.1, "inlier_fraction": 1,
     "point_count": 5, "reliable": true, "reasons": [], "predicted_tre_mm": 0.1, "covariance": [1, 2]})";
