@@ -6,6 +6,7 @@
 
 #include "planning/files/atomic_file.h"
 #include "tests/app/command_line/marker_clip.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut {
 namespace {

@@ -11,6 +11,7 @@
 #include "planning/files/atomic_file.h"
 #include "tests/app/command_line/program.h"
 #include "tests/navigation/calibration/board_scene.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut {
 namespace {

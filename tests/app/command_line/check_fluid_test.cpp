@@ -9,6 +9,7 @@
 #include "navigation/simulator/simulated_ruler.h"
 #include "planning/files/json_document.h"
 #include "tests/app/command_line/program.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut {
 namespace {

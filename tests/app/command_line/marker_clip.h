@@ -4,6 +4,7 @@
 #include <string>
 
 #include "tests/app/command_line/program.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::test {
 

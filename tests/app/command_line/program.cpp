@@ -5,10 +5,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
+
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::test {
 
@@ -62,27 +62,7 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const Progr
   return result;
 }
 
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (fs::temp_directory_path() / "arthronaut_XXXXXX").string();
-  if (!::mkdtemp(name.data())) std::abort();
-  folder_ = name;
-  fs::permissions(folder_, fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read | fs::perms::others_exec,
-                  fs::perm_options::add);
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
-}
-
-std::vector<std::string> TemporaryFolder::names() const {
-  std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-void write_file(const std::string& file, const std::string& contents) {
+void write_file(const std::filesystem::path& file, const std::string& contents) {
   std::ofstream(file, std::ios::binary) << contents;
 }
 

@@ -21,22 +21,6 @@ struct ProgramLimits {
 
 ProgramResult run_program(const std::vector<std::string>& arguments, const ProgramLimits& limits = {});
 
-// A folder that is gone when the test is over. Others may look into it.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
-  [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
-  // Names of all that lies in it.
-  [[nodiscard]] std::vector<std::string> names() const;
-
- private:
-  std::filesystem::path folder_;
-};
-
-void write_file(const std::string& file, const std::string& contents);
+void write_file(const std::filesystem::path& file, const std::string& contents);
 
 }  // namespace arthronaut::test

@@ -7,6 +7,7 @@
 
 #include "navigation/strokes/poses_file.h"
 #include "tests/app/command_line/marker_clip.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut {
 namespace {
