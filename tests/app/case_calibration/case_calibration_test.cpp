@@ -8,6 +8,7 @@
 #include "navigation/simulator/simulated_operation.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::case_calibration {
 namespace {
@@ -16,16 +17,6 @@ constexpr bool kSimulated = true, kReal = false;
 
 class CaseCalibration : public ::testing::Test {
  protected:
-  // A folder for each test: they run side by side.
-  CaseCalibration()
-      : folder_(std::filesystem::path(::testing::TempDir()) /
-                ("case_calibration_" +
-                 std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  ~CaseCalibration() override { std::filesystem::remove_all(folder_); }
-
   void adopt_camera(const std::string& scope_name, double focal_px) const {
     camera::CalibrationRecord record;
     record.calibration = simulator::standard_camera();
@@ -44,7 +35,8 @@ class CaseCalibration : public ::testing::Test {
     }
     tools::write_tools_file(cases::tools_file(folder_), tools);
   }
-  std::filesystem::path folder_;
+  const test::TemporaryFolder temporary_;
+  const std::filesystem::path& folder_ = temporary_.path();
 };
 
 // Without anything adopted the simulation is tracked with what is built in, and a real scope with nothing.

@@ -7,6 +7,7 @@
 #include "app/case_calibration/case_calibration.h"
 #include "app/setup_view/setup_sources.h"
 #include "planning/geometry/error.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::setup_view {
 namespace {
@@ -92,20 +93,15 @@ const sources::DeviceTurns kTurns;
 
 class Sources : public ::testing::Test {
  protected:
-  // A folder for each test: they run side by side.
-  Sources()
-      : folder_(std::filesystem::path(::testing::TempDir()) /
-                ("setup_sources_" +
-                 std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()))) {
-    std::filesystem::remove_all(folder_);
+  Sources() {
     std::filesystem::create_directories(folder_ / "board");
     std::ofstream(folder_ / "board" / "b.PNG") << "x";
     std::ofstream(folder_ / "board" / "a.jpg") << "x";
     std::ofstream(folder_ / "knee.mkv") << "x";
     std::ofstream(folder_ / "camera.json") << "x";
   }
-  ~Sources() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path folder_;
+  const test::TemporaryFolder temporary_;
+  const std::filesystem::path& folder_ = temporary_.path();
 };
 
 // Pictures are offered for the camera alone, videos for everything, the simulated arthroscope first.

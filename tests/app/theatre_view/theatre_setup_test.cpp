@@ -6,6 +6,7 @@
 #include "navigation/camera/camera_file.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "planning/phantom/phantom_case.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::theatre_view {
 namespace {
@@ -13,12 +14,10 @@ namespace {
 // The simulation is tracked with the camera and the tools that Set up adopted of it, and with what is built
 // in before that; the words on the screen say which.
 TEST(TheatreSetup, TheSimulationIsTrackedWithWhatSetUpAdopted) {
-  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "theatre_setup";
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  phantom::PhantomOptions coarse;
-  coarse.edge_length_mm = 2.5;
-  const planning_view::PlanModel model(phantom::case_of(phantom::make_phantom_knee(coarse), "test"));
+  const test::TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
+  const planning_view::PlanModel model(
+      phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 2.5}), "test"));
   const auto setup = [&] {
     return simulated_setup(model, bones::BoneKind::Femur, folder, SimulatedPart::Scratch);
   };
@@ -41,7 +40,6 @@ TEST(TheatreSetup, TheSimulationIsTrackedWithWhatSetUpAdopted) {
   EXPECT_NEAR(adopted.pipeline.tools.find_tool("probe")->tip_mm->x(),
               tools::standard_tools().find_tool("probe")->tip_mm->x() + 0.1, 1e-9);
   EXPECT_TRUE(adopted.calibration.starts_with("camera of 2026-11-21, 0 of ")) << adopted.calibration;
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
