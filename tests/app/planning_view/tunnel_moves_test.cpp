@@ -4,20 +4,13 @@
 
 #include "app/planning_view/anatomical_text.h"
 #include "planning/geometry/rigid_transform.h"
+#include "tests/planning/geometry/shapes.h"
 
 namespace arthronaut::planning_view {
 namespace {
 
 // A slab of bone in front of an anterior camera: its front face lies at y = 0, the bone behind it.
-geometry::Surface slab() {
-  geometry::TriangleMesh mesh;
-  for (int i = 0; i < 8; ++i)
-    mesh.vertices_mm.push_back(
-        {(i & 1) != 0 ? 50.0 : -50.0, (i & 2) != 0 ? 30.0 : 0.0, (i & 4) != 0 ? 50.0 : -50.0});
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return geometry::Surface(mesh);
-}
+geometry::Surface slab() { return geometry::Surface(test::box({50, 15, 50}, {0, 15, 0})); }
 
 // The camera looks posteriorly: +x is to the right of the picture, +z up.
 scene::SceneCamera anterior() { return scene::look_along({0, 1, 0}, {0, 0, 0}, 200, {0, 0, 1}); }

@@ -8,20 +8,13 @@
 #include "app/theatre_view/operation_job.h"
 #include "app/theatre_view/theatre_display.h"
 #include "navigation/simulator/simulated_operation.h"
+#include "tests/planning/geometry/shapes.h"
 
 namespace arthronaut::theatre_view {
 namespace {
 
 // A block of bone; what matters here are the pictures.
-geometry::TriangleMesh block() {
-  geometry::TriangleMesh mesh;
-  for (int i = 0; i < 8; ++i)
-    mesh.vertices_mm.push_back(
-        {(i & 1) != 0 ? 20.0 : -20.0, (i & 2) != 0 ? 20.0 : -20.0, (i & 4) != 0 ? 0.0 : -30.0});
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
-}
+geometry::TriangleMesh block() { return test::box({20, 20, 15}, {0, 0, -15}); }
 
 // The same grey picture again and again, 60 times a second.
 class FrozenSource : public sources::FrameSource {

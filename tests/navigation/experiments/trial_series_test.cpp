@@ -7,6 +7,7 @@
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_knee.h"
+#include "tests/planning/geometry/shapes.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::experiments {
@@ -46,10 +47,7 @@ TEST(TrialSeries, IsDeterministic) {
 
 // A ball has no notch to digitise.
 TEST(TrialSeries, RefusesABoneWithoutNotch) {
-  geometry::TriangleMesh octahedron;
-  octahedron.vertices_mm = {{30, 0, 0}, {-30, 0, 0}, {0, 30, 0}, {0, -30, 0}, {0, 0, 30}, {0, 0, -30}};
-  octahedron.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  EXPECT_THROW(TrialSeries(octahedron, {}), InvalidInput);
+  EXPECT_THROW(TrialSeries(test::octahedron(30), {}), InvalidInput);
 }
 
 }  // namespace arthronaut::experiments

@@ -10,19 +10,14 @@
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
 #include "tests/navigation/registration/phantom_bone.h"
+#include "tests/planning/geometry/shapes.h"
 
 namespace arthronaut::registration {
 
 namespace {
 
 // A cube of side 20 mm about the origin: sharp edges, where signs go wrong first.
-geometry::TriangleMesh cube() {
-  geometry::TriangleMesh mesh;
-  for (int i = 0; i < 8; ++i) mesh.vertices_mm.push_back({i & 1 ? 10.0 : -10.0, i & 2 ? 10.0 : -10.0, i & 4 ? 10.0 : -10.0});
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
-}
+geometry::TriangleMesh cube() { return test::box(Eigen::Vector3d::Constant(10)); }
 
 double distance_to_cube(const Eigen::Vector3d& p) {
   const Eigen::Vector3d q = p.cwiseAbs().array() - 10;

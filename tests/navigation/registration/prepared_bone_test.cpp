@@ -7,6 +7,7 @@
 #include "navigation/registration/reachable_region.h"
 #include "planning/files/atomic_file.h"
 #include "tests/navigation/registration/phantom_bone.h"
+#include "tests/planning/geometry/shapes.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::registration {
@@ -22,12 +23,7 @@ class PreparedBoneCache : public testing::Test {
   }
 
   // Small, so that it is made ready in no time.
-  static geometry::TriangleMesh octahedron() {
-    geometry::TriangleMesh mesh;
-    mesh.vertices_mm = {{15, 0, 0}, {-15, 0, 0}, {0, 15, 0}, {0, -15, 0}, {0, 0, 15}, {0, 0, -15}};
-    mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-    return mesh;
-  }
+  static geometry::TriangleMesh octahedron() { return test::octahedron(15); }
 
   const test::TemporaryFolder folder_;
   const std::filesystem::path file_ = folder_ / "cache" / "femur.prepared";

@@ -9,15 +9,26 @@
 
 namespace arthronaut::test {
 
-// Outward. Corners at +-half_mm.
-inline geometry::TriangleMesh box(const Eigen::Vector3d& half_mm) {
+// Outward. Corners at +-half_mm from the middle.
+inline geometry::TriangleMesh box(const Eigen::Vector3d& half_mm,
+                                  const Eigen::Vector3d& middle_mm = Eigen::Vector3d::Zero()) {
   geometry::TriangleMesh mesh;
   for (int i = 0; i < 8; ++i) {
-    mesh.vertices_mm.emplace_back(i & 1 ? half_mm.x() : -half_mm.x(), i & 2 ? half_mm.y() : -half_mm.y(),
-                                  i & 4 ? half_mm.z() : -half_mm.z());
+    const Eigen::Vector3d corner(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+    mesh.vertices_mm.push_back(middle_mm + corner.cwiseProduct(half_mm));
   }
   mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+// Outward. Corners on the axes.
+inline geometry::TriangleMesh octahedron(double radius_mm) {
+  geometry::TriangleMesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {1, -1})
+      mesh.vertices_mm.push_back(side * radius_mm * Eigen::Vector3d::Unit(axis));
+  mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
   return mesh;
 }
 
