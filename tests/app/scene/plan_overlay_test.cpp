@@ -5,36 +5,22 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "tests/app/scope.h"
+#include "tests/planning/geometry/shapes.h"
+
 namespace arthronaut::scene {
 namespace {
 
 using Kind = OverlayLine::Kind;
 
 // A block of bone, 40 x 40 x 30 mm, whose front face lies at z = 0.
-geometry::TriangleMesh block() {
-  geometry::TriangleMesh mesh;
-  for (int i = 0; i < 8; ++i)
-    mesh.vertices_mm.push_back(
-        {(i & 1) != 0 ? 20.0 : -20.0, (i & 2) != 0 ? 20.0 : -20.0, (i & 4) != 0 ? 30.0 : 0.0});
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
-}
+geometry::TriangleMesh block() { return test::box({20, 20, 15}, {0, 0, 15}); }
 
-camera::CameraModel scope() {
-  camera::Calibration calibration;
-  calibration.image_size_px = {1920, 1080};
-  calibration.focal_px = 590;
-  calibration.principal_point_px = {962, 541};
-  calibration.rotation_center_px = {958, 538};
-  calibration.distortion_xi = -0.3;
-  calibration.boundary = {{960, 540}, 531};
-  return camera::CameraModel(calibration, 0.3, 1.3345);
-}
+camera::CameraModel turned_scope() { return camera::CameraModel(test::scope(), 0.3, 1.3345); }
 
 struct Scene {
   std::shared_ptr<const geometry::Surface> surface = std::make_shared<geometry::Surface>(block());
-  camera::CameraModel camera = scope();
+  camera::CameraModel camera = turned_scope();
   geometry::RigidTransform camera_from_bone{
       Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitY())), {1, -2, 35}};
   tunnels::Tunnel plan;
@@ -107,7 +93,7 @@ TEST(PlanOverlay, KeepsOffTheToolTipAndInsideTheView) {
 
 // A line whose points lie on either side of a tool's shaft does not cross it.
 TEST(PlanOverlay, NoLineCrossesAShaftBetweenItsPoints) {
-  const camera::CameraModel camera = scope();
+  const camera::CameraModel camera = turned_scope();
   const std::vector<Eigen::Vector3d> points{{-3, 0, 30}, {-1.5, 0, 30}, {0, 0, 30}, {1.5, 0, 30}, {3, 0, 30}};
   // Between the third and the fourth point, on neither.
   const Eigen::Vector2d between = *camera.project({0.75, 0, 30});
@@ -121,7 +107,7 @@ TEST(PlanOverlay, NoLineCrossesAShaftBetweenItsPoints) {
 
 // A curve breaks where the tip hopped.
 TEST(PlanOverlay, CurvesBreakAtHops) {
-  const camera::CameraModel camera = scope();
+  const camera::CameraModel camera = turned_scope();
   const std::vector<Eigen::Vector3d> points{{0, 0, 30}, {1, 0, 30}, {2, 0, 30}, {8, 0, 30}, {9, 0, 30}};
   PlanOverlay overlay;
   add_curves(overlay, camera, points, 1.5, {});

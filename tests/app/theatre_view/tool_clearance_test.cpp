@@ -5,24 +5,15 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "tests/app/scope.h"
+
 namespace arthronaut::theatre_view {
 namespace {
-
-camera::Calibration scope() {
-  camera::Calibration calibration;
-  calibration.image_size_px = {1920, 1080};
-  calibration.focal_px = 590;
-  calibration.principal_point_px = {962, 541};
-  calibration.rotation_center_px = {958, 538};
-  calibration.distortion_xi = -0.3;
-  calibration.boundary = {{960, 540}, 531};
-  return calibration;
-}
 
 // The femoral guide before the camera, its shaft across the picture.
 pipeline::FrameResult frame_with_guide() {
   pipeline::FrameResult result;
-  result.camera = camera::CameraModel(scope(), 0, 1.3345);
+  result.camera = camera::CameraModel(test::scope(), 0, 1.3345);
   result.intrinsics_are_known = true;
   result.markers.resize(1);
   result.markers[0].id = 3;

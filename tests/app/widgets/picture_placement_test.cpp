@@ -2,19 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/app/scope.h"
+
 namespace arthronaut::widgets {
 namespace {
 
-camera::Calibration scope() {
-  camera::Calibration calibration;
-  calibration.image_size_px = {1920, 1080};
-  calibration.focal_px = 590;
-  calibration.principal_point_px = {962, 541};
-  calibration.rotation_center_px = {958, 538};
-  calibration.distortion_xi = -0.3;
-  calibration.boundary = {{960, 540}, 500};
-  return calibration;
-}
+using test::scope;
 
 // The picture as it came: the corner of the shown part stands in the corner of the area, half a pixel aside,
 // and scale is the same both ways.

@@ -9,21 +9,15 @@
 #include "app/scene/offscreen_context.h"
 #include "navigation/camera/medium.h"
 #include "planning/geometry/error.h"
+#include "tests/app/scope.h"
 
 namespace arthronaut::widgets {
 namespace {
 
 constexpr int kSize_px = 600;
 
-camera::CameraModel scope(double lens_angle_rad) {
-  camera::Calibration calibration;
-  calibration.image_size_px = {960, 540};
-  calibration.focal_px = 295;
-  calibration.principal_point_px = {487, 265};
-  calibration.rotation_center_px = {479, 269};
-  calibration.distortion_xi = -0.3;
-  calibration.boundary = {{480, 270}, 265};
-  return camera::CameraModel(calibration, lens_angle_rad, camera::kSalineIndex);
+camera::CameraModel small_scope(double lens_angle_rad) {
+  return camera::CameraModel(test::scope(0.5), lens_angle_rad, camera::kSalineIndex);
 }
 
 // Smooth stripes, a different period in each colour.
@@ -69,7 +63,7 @@ TEST_F(UndistortedTextureTest, ShaderAndProcessorAgree) {
   const camera::FramePtr frames[] = {stripes(), stripes()};
   const camera::UndistortedView* view = nullptr;
   for (const int turn : {0, 1}) {
-    const camera::CameraModel camera = scope(1.8 * turn);
+    const camera::CameraModel camera = small_scope(1.8 * turn);
     const camera::FramePtr& frame = frames[turn];
     video.upload(frame);
     on_gpu.draw(frame, video, camera, kSize_px);
@@ -101,7 +95,7 @@ TEST_F(UndistortedTextureTest, KeepsTheStateOfOthers) {
   glEnable(GL_BLEND);
   glViewport(3, 4, 50, 60);
   glActiveTexture(GL_TEXTURE1);
-  texture.draw(frame, video, scope(0), kSize_px);
+  texture.draw(frame, video, small_scope(0), kSize_px);
   GLint viewport[4] = {}, unit = 0, program = -1;
   glGetIntegerv(GL_VIEWPORT, viewport);
   glGetIntegerv(GL_ACTIVE_TEXTURE, &unit);
