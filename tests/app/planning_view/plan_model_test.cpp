@@ -11,9 +11,7 @@ namespace {
 using bones::BoneKind;
 
 cases::Case phantom() {
-  phantom::PhantomOptions options;
-  options.edge_length_mm = 2.5;
-  return phantom::case_of(phantom::make_phantom_knee(options), "test");
+  return phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 2.5}), "test");
 }
 
 // What the panel shows follows the plan at once, and the revision counts the changes.

@@ -12,12 +12,9 @@ namespace arthronaut::scene {
 namespace {
 
 const cases::Case& knee() {
-  static const cases::Case phantom = [] {
-    phantom::PhantomOptions options;
-    options.edge_length_mm = 2.5;
-    return phantom::case_of(phantom::make_phantom_knee(options), "test");
-  }();
-  return phantom;
+  static const cases::Case coarse =
+      phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 2.5}), "test");
+  return coarse;
 }
 
 PictureRequest request_of(View view) {

@@ -2,13 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include "tests/app/setup_view/row_of.h"
 
 namespace arthronaut::setup_view {
 namespace {
 
 using calibration::CalibrationSummary;
 using calibration::CaptureAdvice;
+using test::row_of;
 using widgets::Sign;
 
 constexpr double kNow_s = 100;
@@ -49,12 +50,6 @@ CalibrateRunStatus calibrated(CalibrationSummary::Outcome outcome, std::vector<s
   summary->rms_px = 0.2;
   status.job.summary = summary;
   return status;
-}
-
-const Row& row_of(const std::vector<Row>& rows, const std::string& name) {
-  const auto found = std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.name == name; });
-  if (found == rows.end()) throw std::runtime_error("no row " + name);
-  return *found;
 }
 
 // A good picture that is of now may be taken, and the step says so.

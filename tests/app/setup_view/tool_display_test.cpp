@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/app/setup_view/row_of.h"
+
 namespace arthronaut::setup_view {
 namespace {
 
+using test::row_of;
 using tools::PivotCalibrationSummary;
 using widgets::Sign;
 
@@ -32,12 +35,6 @@ ToolRunStatus with_tip(PivotCalibrationSummary::Outcome outcome, std::vector<std
   result->tip.sigma_mm = 0.02;
   status.job.result = result;
   return status;
-}
-
-const Row& row_of(const std::vector<Row>& rows, const std::string& name) {
-  for (const Row& row : rows)
-    if (row.name == name) return row;
-  throw std::runtime_error("no row " + name);
 }
 
 // A picture that does not count says why, and which marker is missing.
