@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "planning/geometry/quantile.h"
 #include "tests/navigation/calibration/board_scene.h"
 
 namespace arthronaut::calibration {
@@ -41,9 +42,7 @@ Comparison compare(const BoardDetection& detection, const camera::Calibration& s
   }
   result.rms_px = std::sqrt(sum / static_cast<double>(errors.size()));
   result.rms_in_sigmas = std::sqrt(sum_in_sigmas / static_cast<double>(errors.size()));
-  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),
-                   errors.end());
-  result.median_px = errors[errors.size() / 2];
+  result.median_px = geometry::median(errors);
   std::printf("%zu of %zu corners, median %.3f px, rms %.3f px, %.2f sigmas\n", result.found, result.visible,
               result.median_px, result.rms_px, result.rms_in_sigmas);
   for (const auto& [node, lattice] : true_node) {
