@@ -79,7 +79,7 @@ void CalibrateStation::draw_taken(const widgets::Ui& ui, const widgets::Rect& ar
       calibration::CaptureLimits{}.least_turn_deg);
   ImGui::SetCursorScreenPos({at.x, at.y + room.y - 2 * line - ui.theme.px(4)});
   widgets::text_in(ui.theme.body, widgets::kQuietText,
-                   "Lens: arrow now, numbers taken. Turn out of the grey.");
+                   "Arrow: the lens now. Numbers: taken. Turn it out of the grey.");
   widgets::end_panel();
 }
 

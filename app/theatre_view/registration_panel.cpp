@@ -75,7 +75,10 @@ void draw_lists(const widgets::Ui& ui, const RegistrationStatus& status, const R
                 int selected_stroke) {
   const std::vector<StrokeRow>& strokes = words.strokes;
   if (!strokes.empty()) {
-    widgets::text_in(ui.theme.strong, widgets::kAccent, "Strokes (Up, Down)");
+    const std::string count = strokes.size() > kShownStrokes ? ", " + std::to_string(kShownStrokes) + " of " +
+                                                                   std::to_string(strokes.size())
+                                                             : "";
+    widgets::text_in(ui.theme.strong, widgets::kAccent, "Strokes" + count + " (Up, Down)");
     draw_rows(
         ui, strokes, kShownStrokes, [&](std::size_t i) { return strokes[i].curve == selected_stroke; },
         [&](const StrokeRow& row) { widgets::status_row(ui, row.text.sign, row.text.name, row.text.text); });

@@ -72,6 +72,10 @@ std::string assumed_of(const RegistrationStatus& status) {
   return text;
 }
 
+bool is_verified(const RegistrationStatus& status) {
+  return status.entry_in_force && (*status.history)[*status.entry_in_force].state == OnlineState::Verified;
+}
+
 std::vector<SignedText> numbers_of(const RegistrationStatus& status) {
   const registration::RegistrationSummary* pose = pose_of(status);
   if (pose == nullptr || !status.alarm.empty()) return {};  // an alarm belies them

@@ -24,6 +24,8 @@ struct SignedText {
 // "Assumed: the covered region lies 2.0 mm off the mesh, ..."; of the same pose as the numbers. Empty when
 // nothing was.
 [[nodiscard]] std::string assumed_of(const RegistrationStatus& status);
+// Whether touches that it was not fitted to lie on the bone, by the registration that guides.
+[[nodiscard]] bool is_verified(const RegistrationStatus& status);
 // Predicted error at the tunnel, and how near the next best pose comes; of the pose that runs along, else of
 // the one in force. Empty without a pose.
 [[nodiscard]] std::vector<SignedText> numbers_of(const RegistrationStatus& status);

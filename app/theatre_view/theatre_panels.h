@@ -12,7 +12,8 @@ struct TheatreScreen {
   const OperationStatus* status = nullptr;             // null: no operation
   const pipeline::PipelineOptions* options = nullptr;  // of the operation; null with status
   const TheatreDisplay& display;
-  const RegistrationWords& words;  // of status->bone
+  const RegistrationWords& words;                 // of status->bone
+  bones::BoneKind bone = bones::BoneKind::Femur;  // that is navigated
   std::optional<tunnels::Tunnel> plan = std::nullopt;
   double planned_length_mm = 0;
   std::uint64_t plan_revision = 0;

@@ -4,6 +4,26 @@
 
 namespace arthronaut::theatre_view {
 
+namespace {
+
+// Where to draw next is shown until that is settled: afterwards nothing asks for more.
+bool asks_for_strokes(TheatreLayout layout, const RegistrationStatus* bone) {
+  return layout == TheatreLayout::Register && bone != nullptr && bone->online != nullptr &&
+         bone->online->registration.has_pose && bone->online->state < registration::OnlineState::Confirmed;
+}
+
+// Which bone it is, and what of it is seen.
+std::string caption_of(const TheatreScreen& screen, bool asks) {
+  const std::string bone = screen.bone == bones::BoneKind::Femur ? "Femur" : "Tibia";
+  if (screen.display.guidance_is_valid) return bone + ": drill guide and plan";
+  if (asks) return bone + ". Green: touched. Orange: draw here";
+  if (screen.layout == TheatreLayout::Guide) return bone + ": plan; the guide is not known now";
+  const bool has_strokes = screen.status != nullptr && !screen.status->bone->drawn->empty();
+  return bone + (has_strokes ? ": plan, and what was touched" : ": plan; what is touched will show here");
+}
+
+}  // namespace
+
 TheatreScene::Shown TheatreScene::shown_of(const TheatreScreen& screen) {
   Shown shown;
   shown.drawn_bone = screen.drawn_bone;
@@ -34,8 +54,7 @@ void TheatreScene::show(const TheatreScreen& screen) {
     if (shown_.tip != nullptr)
       content.balls.push_back({bone.in_force->marker_from_bone.inverse() * shown_.tip->result.tip_in_world_mm,
                                2.5, scene::kGuideColor, false});
-    if (shown_.layout == TheatreLayout::Register && bone.online != nullptr &&
-        bone.online->registration.has_pose) {
+    if (asks_for_strokes(shown_.layout, &bone)) {
       add_patches(content, bone.online->coach);
       if (bone.online->coach.next_patch_in_bone_mm)
         content.balls.push_back({*bone.online->coach.next_patch_in_bone_mm, 5, scene::kAchievedColor, false});
@@ -53,18 +72,15 @@ void TheatreScene::draw(const widgets::Ui& ui, const widgets::Rect& area, const 
   show(screen);
   pane_.draw(ui, "operate.view", area);
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const bool has_patches = screen.layout == TheatreLayout::Register && shown_.bone != nullptr &&
-                           shown_.bone->online != nullptr && !shown_.bone->online->coach.patches.empty();
-  const char* label = screen.display.guidance_is_valid           ? "Drill guide and plan"
-                      : has_patches                              ? "Green: touched. Orange: draw here"
-                      : screen.layout == TheatreLayout::Register ? "Plan; what is touched will show here"
-                                                                 : "Plan; the guide is not known now";
-  const ImVec2 wide = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, label);
+  const std::string label = caption_of(screen, asks_for_strokes(shown_.layout, shown_.bone.get()));
+  // A guide that is not known is amiss only while it is to be followed.
+  const bool is_missed = shown_.layout == TheatreLayout::Guide && !screen.display.guidance_is_valid;
+  const ImVec2 wide = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, label.c_str());
   draw.AddRectFilled(area.min(), {area.x + wide.x + ui.theme.px(28), area.y + wide.y + ui.theme.px(18)},
                      IM_COL32(12, 15, 19, 200), ui.theme.px(6));
   draw.AddText(ui.theme.strong, ui.theme.strong->FontSize,
                {area.x + ui.theme.px(14), area.y + ui.theme.px(9)},
-               screen.display.guidance_is_valid ? widgets::kQuietText : widgets::kCaution, label);
+               is_missed ? widgets::kCaution : widgets::kText, label.c_str());
 }
 
 }  // namespace arthronaut::theatre_view

@@ -19,6 +19,8 @@ constexpr double kOverlayFull_s = 8, kOverlayFading_s = 2;
 constexpr float kOverlayFaded = 0.25F;
 constexpr double kGuideAway_s = 2;
 constexpr std::size_t kEnoughPoints = 150;
+constexpr const char* kDrill = "drill";
+constexpr const char* kVerifyOrDrill = "verify by touches, or drill";
 
 }  // namespace
 
@@ -184,7 +186,8 @@ std::string TheatreView::next_step() const {
   const bool draws = is_running() && status_.digitises;
   if (!registered && !draws && status_.bone->drawn->size() >= kEnoughPoints)
     return "register what was touched";
-  if (registered && (part_ == SimulatedPart::Scratch || !is_running()) && can_simulate()) return "drill";
+  if (registered && (part_ == SimulatedPart::Scratch || !is_running()) && can_simulate())
+    return is_running() && !is_verified(*status_.bone) ? kVerifyOrDrill : kDrill;
   if (!is_running() && !choices_.videos.empty()) return "open the next video";
   if (registered) return status_.digitises ? "verify by touches, or take the guide" : "follow the bullseye";
   return "touch the bone with the probe";
@@ -196,7 +199,7 @@ void TheatreView::take_next_step() {
   const std::string step = next_step();
   if (step == "start the simulated operation") return start_simulation(SimulatedPart::Scratch);
   if (step == "register what was touched") return operation_->register_curves();
-  if (step == "drill") return start_simulation(SimulatedPart::Drill);
+  if (step == kDrill || step == kVerifyOrDrill) return start_simulation(SimulatedPart::Drill);
   if (step == "open the next video") return start_video();
   if (step == "touch the bone with the probe" && status_.phase == Phase::Ended && can_simulate())
     return start_simulation(SimulatedPart::Scratch);
@@ -250,7 +253,8 @@ TheatreLayout TheatreView::layout(double now_s) const {
 
 TheatreScreen TheatreView::screen_of(const TheatreDisplay& display, double now_s) const {
   const OperationStatus* status = operation_ != nullptr ? &status_ : nullptr;
-  TheatreScreen screen{status, operation_ != nullptr ? &operation_->options() : nullptr, display, words_};
+  TheatreScreen screen{status, operation_ != nullptr ? &operation_->options() : nullptr, display, words_,
+                       choices_.bone};
   if (model_ != nullptr && model_->has_bone(choices_.bone)) {
     screen.plan = model_->tunnel(choices_.bone);
     screen.planned_length_mm = screen.plan ? model_->drawn_length_mm(choices_.bone) : 0;

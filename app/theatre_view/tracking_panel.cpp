@@ -30,6 +30,7 @@ void draw_markers(const widgets::Ui& ui, const TheatreScreen& screen) {
     if (!screen.display.is_live) text = "no live picture";
     if (screen.display.is_live && marker.is_tracked() && !stands) text = "lens angle unknown";
     const Sign sign = stands                                            ? Sign::Good
+                      : !screen.display.is_live                         ? Sign::Quiet
                       : is_world                                        ? Sign::Bad
                       : is_needed(screen, marker.id)                    ? Sign::Caution
                       : marker.state == markers::MarkerState::Duplicate ? Sign::Caution
@@ -53,8 +54,8 @@ void draw_lens(const widgets::Ui& ui, const TheatreScreen& screen) {
 void draw_registration_row(const widgets::Ui& ui, const TheatreScreen& screen) {
   const OperationStatus& status = *screen.status;
   const std::string points = std::to_string(status.bone->drawn->size()) + " points";
-  widgets::status_row(ui, status.digitises ? Sign::Good : Sign::Quiet, "Probe draws",
-                      status.digitises ? points : "off, " + points);
+  const bool draws = status.digitises && screen.display.is_live;
+  widgets::status_row(ui, draws ? Sign::Good : Sign::Quiet, "Probe draws", draws ? points : "off, " + points);
   if (status.is_registering) return widgets::status_row(ui, Sign::Quiet, "Registration", "running");
   if (!status.bone->bone_trouble.empty())
     return widgets::status_row(ui, Sign::Bad, "Registration", status.bone->bone_trouble);
@@ -68,6 +69,7 @@ void draw_registration_row(const widgets::Ui& ui, const TheatreScreen& screen) {
   widgets::status_row(ui, Sign::Good, "Registration",
                       "target " + widgets::plus_minus(r.predicted_tre_mm) + " mm, fit " +
                           widgets::fixed(r.rms_mm, 1) + " mm" +
+                          (is_verified(*status.bone) ? ", verified" : ", not verified by touches") +
                           (status.bone->is_chosen ? ", an earlier one" : ""));
 }
 

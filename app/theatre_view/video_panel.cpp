@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "app/theatre_view/theatre_panels.h"
 #include "app/widgets/picture_placement.h"
@@ -35,9 +36,16 @@ LineStyle style_of(const OverlayLine& line, float opacity, float scale) {
 void draw_overlay(ImDrawList& draw, const widgets::PicturePlacement& placement,
                   const scene::PlanOverlay& overlay, float opacity, float scale) {
   for (const OverlayLine& line : overlay) {
-    for (const Eigen::Vector2d& p : line.points_px)
-      if (const auto at = placement.on_screen(p)) draw.PathLineTo(*at);
     const LineStyle style = style_of(line, opacity, scale);
+    // A probe at rest trembles about one place: a line through all that is nothing but spikes.
+    const float least = line.kind == OverlayLine::Kind::Curve ? 2 * style.width : 0;
+    std::optional<ImVec2> last;
+    for (const Eigen::Vector2d& p : line.points_px) {
+      const auto at = placement.on_screen(p);
+      if (!at || (last && std::hypot(at->x - last->x, at->y - last->y) < least)) continue;
+      draw.PathLineTo(*at);
+      last = at;
+    }
     draw.PathStroke(style.color, 0, style.width);
   }
 }

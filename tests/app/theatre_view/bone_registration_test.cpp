@@ -126,10 +126,12 @@ TEST_F(BoneRegistrationTest, TouchesVerify) {
   bone_.finish();
   EXPECT_EQ(state_of(*bone_.status()).name, "Confirmed") << "one place, touched three times";
   EXPECT_FALSE(bone_.status()->touches.last().is_new_place);
+  EXPECT_FALSE(is_verified(*bone_.status()));
   for (const double dx_mm : {4.0, -4.0}) bone_.add_touch(on_bone(dx_mm));
   bone_.finish();
   const RegistrationStatus status = *bone_.status();
   EXPECT_EQ(state_of(status).name, "Verified");
+  EXPECT_TRUE(is_verified(status));
   const auto touch = touch_of(status);
   ASSERT_TRUE(touch);
   EXPECT_EQ(touch->number.name, "Touch 5");
