@@ -1,9 +1,9 @@
 #include "app/window/plan_history.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "planning/phantom/phantom_case.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::window {
 namespace {
@@ -13,16 +13,11 @@ using bones::BoneKind;
 class PlanHistoryTest : public ::testing::Test {
  protected:
   PlanHistoryTest() : model_(knee()) {
-    std::string pattern = (std::filesystem::temp_directory_path() / "arthronaut-history-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
     cases::save_case(folder_, model_.knee());
     history_.open(&model_, folder_);
   }
-  ~PlanHistoryTest() override { std::filesystem::remove_all(folder_); }
   static cases::Case knee() {
-    phantom::PhantomOptions options;
-    options.edge_length_mm = 4;
-    return phantom::case_of(phantom::make_phantom_knee(options), "test");
+    return phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "test");
   }
   [[nodiscard]] planning_view::PlanEdit wider(double by_mm, bool continues) const {
     tunnels::Tunnel tunnel = *model_.tunnel(BoneKind::Femur);
@@ -33,8 +28,9 @@ class PlanHistoryTest : public ::testing::Test {
     return cases::load_case(folder_).plan.tunnels.at(BoneKind::Femur).diameter_mm;
   }
 
+  const test::TemporaryFolder temporary_;
+  const std::filesystem::path& folder_ = temporary_.path();
   planning_view::PlanModel model_;
-  std::filesystem::path folder_;
   PlanHistory history_;
   const double start_mm_ = model_.tunnel(BoneKind::Femur)->diameter_mm;
 };

@@ -1,7 +1,6 @@
 // Sets up a case in the real window by the pedal's key alone: the simulated arthroscope's board becomes
 // camera.json, its swung probe tools.json.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 
@@ -9,22 +8,18 @@
 #include "navigation/simulator/simulated_operation.h"
 #include "navigation/tools/tool_set.h"
 #include "tests/app/window/display.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::test {
 namespace {
 
 TEST(SettingUp, LeadsToAnAdoptedCameraAndTip) {
   if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
-  std::string pattern = (std::filesystem::temp_directory_path() / "arthronaut-setup-XXXXXX").string();
-  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-  const struct Folder {
-    std::filesystem::path path;
-    ~Folder() { std::filesystem::remove_all(path); }
-  } home{pattern};
-  const std::filesystem::path folder = home.path / "arthronaut" / "Phantom.arthro";
+  const TemporaryFolder home;
+  const std::filesystem::path folder = home / "arthronaut" / "Phantom.arthro";
 
   const VirtualDisplay display(1280, 720);
-  RunningWorkstation app(display, home.path);
+  RunningWorkstation app(display, home.path());
   ASSERT_TRUE(app.wait_for_state("case", "open", 120));
   app.press("F4");
   ASSERT_TRUE(app.wait_for_state("setup_next", "start Simulated arthroscope"));
@@ -66,22 +61,17 @@ TEST(SettingUp, LeadsToAnAdoptedCameraAndTip) {
 // Keys that are shorter than a frame arrive in a text field, in their order, from the one on that opened it.
 TEST(SettingUp, TakesATypedPathAtAnySpeed) {
   if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
-  std::string pattern = (std::filesystem::temp_directory_path() / "arthronaut-typed-XXXXXX").string();
-  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-  const struct Folder {
-    std::filesystem::path path;
-    ~Folder() { std::filesystem::remove_all(path); }
-  } home{pattern};
-  std::filesystem::create_directories(home.path / "board");
-  std::ofstream(home.path / "board" / "1.png") << "x";
+  const TemporaryFolder home;
+  std::filesystem::create_directories(home / "board");
+  std::ofstream(home / "board" / "1.png") << "x";
 
   const VirtualDisplay display(1280, 720);
-  RunningWorkstation app(display, home.path);
+  RunningWorkstation app(display, home.path());
   ASSERT_TRUE(app.wait_for_state("case", "open", 120));
   app.press("F4");
   ASSERT_TRUE(app.wait_for_state("setup_source", "Simulated arthroscope"));
   app.press("p");
-  app.type((home.path / "boardxy").string());
+  app.type((home / "boardxy").string());
   app.press("BackSpace BackSpace Return");
   EXPECT_TRUE(app.wait_for_state("setup_source", "Pictures in board")) << app.state("setup_source");
   app.press("ctrl+q");

@@ -1,12 +1,12 @@
 // Drives the real window from outside, as a user does. Slow machines are waited for: what is tested is what
 // happens, not how fast.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <sstream>
 
 #include "tests/app/window/display.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut::test {
 namespace {
@@ -15,12 +15,6 @@ class Workstation : public ::testing::Test {
  protected:
   void SetUp() override {
     if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
-    std::string pattern = (std::filesystem::temp_directory_path() / "arthronaut-window-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override {
-    if (!folder_.empty()) std::filesystem::remove_all(folder_);
   }
   [[nodiscard]] std::string saved_plan() const {
     std::ifstream stream(folder_ / "arthronaut" / "Phantom.arthro" / "plan.json");
@@ -28,7 +22,7 @@ class Workstation : public ::testing::Test {
     text << stream.rdbuf();
     return text.str();
   }
-  std::filesystem::path folder_;
+  const TemporaryFolder folder_;
 };
 
 // The share of an area's pixels for which `holds`.
@@ -46,7 +40,7 @@ bool is_bone(const std::array<int, 3>& c) { return c[0] > 70 && c[0] > c[2] + 12
 // review, quit.
 TEST_F(Workstation, LeadsThroughItsThreeModes) {
   const VirtualDisplay display(1280, 720);
-  RunningWorkstation app(display, folder_);
+  RunningWorkstation app(display, folder_.path());
   ASSERT_TRUE(app.wait_for_state("case", "open", 120));
   ASSERT_TRUE(app.wait_for_state("plan", "saved"));
   ASSERT_TRUE(app.wait_for_widget("plan.view"));
@@ -124,7 +118,7 @@ class WorkstationLayout : public Workstation, public ::testing::WithParamInterfa
 TEST_P(WorkstationLayout, HoldsAtEverySize) {
   const auto [width, height] = GetParam();
   const VirtualDisplay display(width, height);
-  RunningWorkstation app(display, folder_);
+  RunningWorkstation app(display, folder_.path());
   ASSERT_TRUE(app.wait_for_state("case", "open", 120));
   for (const auto& [mode, key] : {std::pair{"plan", "F1"}, std::pair{"set up", "F4"},
                                   std::pair{"navigate", "F2"}, std::pair{"review", "F3"}}) {
