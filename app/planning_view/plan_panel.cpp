@@ -53,7 +53,7 @@ void draw_history(const widgets::Ui& ui, const PlanStatus& status) {
 
 }  // namespace
 
-void draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model,
+void draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const plan_model::PlanModel& model,
                      bones::BoneKind bone, const PlanStatus& status) {
   widgets::begin_panel(ui, "plan.panel", area);
   widgets::text_in(ui.theme.title, widgets::kText,

@@ -28,13 +28,13 @@ std::optional<BoneKind> only_bone_of(scene::View view) {
 PlanningView::PlanningView(std::function<void()> make_current, std::function<void(const PlanEdit&)> edit)
     : pane_(std::move(make_current)), edit_(std::move(edit)) {}
 
-void PlanningView::reset(const PlanModel& model) {
+void PlanningView::reset(const plan_model::PlanModel& model) {
   state_ = {};
   if (!model.has_bone(BoneKind::Femur)) state_.bone = BoneKind::Tibia;
   look_from(model, scene::View::Anterior);
 }
 
-void PlanningView::look_from(const PlanModel& model, scene::View view) {
+void PlanningView::look_from(const plan_model::PlanModel& model, scene::View view) {
   state_.looked_from = view;
   state_.only = only_bone_of(view);
   if (state_.only && !model.has_bone(*state_.only)) state_.only.reset();
@@ -43,24 +43,25 @@ void PlanningView::look_from(const PlanModel& model, scene::View view) {
   state_.shown_revision = 0;
 }
 
-void PlanningView::apply(const PlanModel& model, const std::string& what, bool continues,
+void PlanningView::apply(const plan_model::PlanModel& model, const std::string& what, bool continues,
                          const Move& move) const {
   if (!model.has_bone(state_.bone)) return;
   if (const auto tunnel = move(model))
     edit_({state_.bone, tunnel, what + " " + tunnel_name(state_.bone) + " tunnel", continues});
 }
 
-void PlanningView::add_actions(widgets::Actions& actions, std::function<const PlanModel*()> model) {
+void PlanningView::add_actions(widgets::Actions& actions,
+                               std::function<const plan_model::PlanModel*()> model) {
   const auto has_tunnel = [this, model] {
     return model() != nullptr && model()->tunnel(state_.bone).has_value();
   };
   const auto is_open = [model] { return model() != nullptr; };
   const auto move_action =
       [&](const char* id, const char* label, const char* tooltip, int key, int mods, const char* what,
-          std::function<tunnels::Tunnel(const PlanModel&, const tunnels::Tunnel&)> move) {
+          std::function<tunnels::Tunnel(const plan_model::PlanModel&, const tunnels::Tunnel&)> move) {
         actions.add({id, label, tooltip, key, mods, true, has_tunnel, {}, [this, model, what, move] {
                        apply(*model(), what, true,
-                             [&](const PlanModel& m) { return move(m, *m.tunnel(state_.bone)); });
+                             [&](const plan_model::PlanModel& m) { return move(m, *m.tunnel(state_.bone)); });
                      }});
       };
   add_view_actions(actions, model);
@@ -83,12 +84,14 @@ void PlanningView::add_actions(widgets::Actions& actions, std::function<const Pl
   actions.add({"plan.place", "Place entry", "Then click where the tunnel is to begin on the bone", GLFW_KEY_P,
                0, false, is_open, [this] { return state_.places_entry; },
                [this] { state_.places_entry = !state_.places_entry; }});
-  move_action(
-      "plan.wider", "Wider", "Half a millimetre more", GLFW_KEY_EQUAL, 0, "Change the diameter of the",
-      [](const PlanModel&, const tunnels::Tunnel& t) { return with_diameter(t, t.diameter_mm + 0.5); });
-  move_action(
-      "plan.narrower", "Narrower", "Half a millimetre less", GLFW_KEY_MINUS, 0, "Change the diameter of the",
-      [](const PlanModel&, const tunnels::Tunnel& t) { return with_diameter(t, t.diameter_mm - 0.5); });
+  move_action("plan.wider", "Wider", "Half a millimetre more", GLFW_KEY_EQUAL, 0,
+              "Change the diameter of the", [](const plan_model::PlanModel&, const tunnels::Tunnel& t) {
+                return with_diameter(t, t.diameter_mm + 0.5);
+              });
+  move_action("plan.narrower", "Narrower", "Half a millimetre less", GLFW_KEY_MINUS, 0,
+              "Change the diameter of the", [](const plan_model::PlanModel&, const tunnels::Tunnel& t) {
+                return with_diameter(t, t.diameter_mm - 0.5);
+              });
   struct Arrow {
     const char *id, *word;
     int key;
@@ -100,15 +103,15 @@ void PlanningView::add_actions(widgets::Actions& actions, std::function<const Pl
   for (const Arrow& arrow : arrows) {
     move_action((std::string("plan.aim_") + arrow.id).c_str(), (std::string("Aim ") + arrow.word).c_str(),
                 "The far end of the tunnel moves that way by 1 degree", arrow.key, 0, "Aim the",
-                [this, arrow](const PlanModel&, const tunnels::Tunnel& t) {
+                [this, arrow](const plan_model::PlanModel&, const tunnels::Tunnel& t) {
                   return turned(t, pane_.camera(), arrow.right_up);
                 });
-    move_action((std::string("plan.slide_") + arrow.id).c_str(),
-                (std::string("Slide entry ") + arrow.word).c_str(),
-                "The entry moves over the bone by half a millimetre", arrow.key, GLFW_MOD_SHIFT,
-                "Move the entry of the", [this, arrow](const PlanModel& m, const tunnels::Tunnel& t) {
-                  return with_entry_slid(t, pane_.camera(), 0.5 * arrow.right_up, m.surface(state_.bone));
-                });
+    move_action(
+        (std::string("plan.slide_") + arrow.id).c_str(), (std::string("Slide entry ") + arrow.word).c_str(),
+        "The entry moves over the bone by half a millimetre", arrow.key, GLFW_MOD_SHIFT,
+        "Move the entry of the", [this, arrow](const plan_model::PlanModel& m, const tunnels::Tunnel& t) {
+          return with_entry_slid(t, pane_.camera(), 0.5 * arrow.right_up, m.surface(state_.bone));
+        });
   }
   actions.add(
       {"plan.remove",
@@ -124,7 +127,8 @@ void PlanningView::add_actions(widgets::Actions& actions, std::function<const Pl
        }});
 }
 
-void PlanningView::add_view_actions(widgets::Actions& actions, std::function<const PlanModel*()> model) {
+void PlanningView::add_view_actions(widgets::Actions& actions,
+                                    std::function<const plan_model::PlanModel*()> model) {
   struct Side {
     const char *id, *label;
     int key;
@@ -159,7 +163,7 @@ void PlanningView::add_view_actions(widgets::Actions& actions, std::function<con
                }});
 }
 
-void PlanningView::draw(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model,
+void PlanningView::draw(const widgets::Ui& ui, const widgets::Rect& area, const plan_model::PlanModel& model,
                         const PlanStatus& status) {
   widgets::Rect rest = area;
   const widgets::Rect panel = rest.cut_right(ui.theme.px(470), ui.theme.px(12));
@@ -179,7 +183,8 @@ void PlanningView::draw(const widgets::Ui& ui, const widgets::Rect& area, const 
   ui.log.note_state("redo", status.redo_what);
 }
 
-void PlanningView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model) {
+void PlanningView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area,
+                              const plan_model::PlanModel& model) {
   state_.aspect = area.width / std::max(area.height, 1.F);
   if (state_.shown_revision == 0 || state_.shown_revision != model.revision()) {
     scene::SceneContent content;
@@ -211,40 +216,42 @@ void PlanningView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area, 
   use_pane_input(model, input);
 }
 
-std::optional<Eigen::Vector3d> PlanningView::aim_handle(const PlanModel& model) const {
+std::optional<Eigen::Vector3d> PlanningView::aim_handle(const plan_model::PlanModel& model) const {
   const auto tunnel = model.tunnel(state_.bone);
   if (!tunnel) return std::nullopt;
   return tunnel->entry_mm + (model.drawn_length_mm(state_.bone) + kAimHandleBeyond_mm) * tunnel->direction;
 }
 
-void PlanningView::use_pane_input(const PlanModel& model, const widgets::PaneInput& input) {
+void PlanningView::use_pane_input(const plan_model::PlanModel& model, const widgets::PaneInput& input) {
   if (!model.has_bone(state_.bone)) return;
   const scene::SceneRay ray = scene::ray_through(pane_.camera(), input.mouse_px, input.size_px);
   if (input.handle_pressed) state_.has_dragged = false;
   if (input.handle_dragged && state_.dragged == Handle::Entry) {
-    apply(model, "Drag the entry of the", state_.has_dragged, [&](const PlanModel& m) {
+    apply(model, "Drag the entry of the", state_.has_dragged, [&](const plan_model::PlanModel& m) {
       return with_entry_at(*m.tunnel(state_.bone), ray, m.surface(state_.bone));
     });
     state_.has_dragged = true;
   }
   if (input.handle_dragged && state_.dragged == Handle::Aim) {
     const auto handle = aim_handle(model);
-    apply(model, "Drag the aim of the", state_.has_dragged,
-          [&](const PlanModel& m) { return aimed(*m.tunnel(state_.bone), pane_.camera(), ray, *handle); });
+    apply(model, "Drag the aim of the", state_.has_dragged, [&](const plan_model::PlanModel& m) {
+      return aimed(*m.tunnel(state_.bone), pane_.camera(), ray, *handle);
+    });
     state_.has_dragged = true;
   }
   if (input.was_clicked && state_.places_entry) {
-    apply(model, "Place the entry of the", false, [&](const PlanModel& m) -> std::optional<tunnels::Tunnel> {
-      const auto tunnel = m.tunnel(state_.bone);
-      return tunnel ? with_entry_at(*tunnel, ray, m.surface(state_.bone))
-                    : first_tunnel(state_.bone, ray, m.surface(state_.bone));
-    });
+    apply(model, "Place the entry of the", false,
+          [&](const plan_model::PlanModel& m) -> std::optional<tunnels::Tunnel> {
+            const auto tunnel = m.tunnel(state_.bone);
+            return tunnel ? with_entry_at(*tunnel, ray, m.surface(state_.bone))
+                          : first_tunnel(state_.bone, ray, m.surface(state_.bone));
+          });
     state_.places_entry = false;
   }
 }
 
 void PlanningView::draw_handles(const widgets::Ui& ui, const widgets::Rect& area,
-                                const PlanModel& model) const {
+                                const plan_model::PlanModel& model) const {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.PushClipRect(area.min(), area.max(), true);
   const Eigen::Vector2d size(area.width, area.height);

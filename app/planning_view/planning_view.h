@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "app/planning_view/plan_model.h"
+#include "app/plan_model/plan_model.h"
 #include "app/widgets/controls.h"
 #include "app/widgets/scene_pane.h"
 
@@ -34,21 +34,23 @@ class PlanningView {
 
   // plan.* actions; they live as long as this view. `model` may change between calls, null while no case is
   // open.
-  void add_actions(widgets::Actions& actions, std::function<const PlanModel*()> model);
-  void draw(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model,
+  void add_actions(widgets::Actions& actions, std::function<const plan_model::PlanModel*()> model);
+  void draw(const widgets::Ui& ui, const widgets::Rect& area, const plan_model::PlanModel& model,
             const PlanStatus& status);
   // Another case is open.
-  void reset(const PlanModel& model);
+  void reset(const plan_model::PlanModel& model);
 
  private:
-  using Move = std::function<std::optional<tunnels::Tunnel>(const PlanModel&)>;
-  void add_view_actions(widgets::Actions& actions, std::function<const PlanModel*()> model);
-  void apply(const PlanModel& model, const std::string& what, bool continues, const Move& move) const;
-  void look_from(const PlanModel& model, scene::View view);
-  void draw_bones(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model);
-  void use_pane_input(const PlanModel& model, const widgets::PaneInput& input);
-  void draw_handles(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model) const;
-  [[nodiscard]] std::optional<Eigen::Vector3d> aim_handle(const PlanModel& model) const;
+  using Move = std::function<std::optional<tunnels::Tunnel>(const plan_model::PlanModel&)>;
+  void add_view_actions(widgets::Actions& actions, std::function<const plan_model::PlanModel*()> model);
+  void apply(const plan_model::PlanModel& model, const std::string& what, bool continues,
+             const Move& move) const;
+  void look_from(const plan_model::PlanModel& model, scene::View view);
+  void draw_bones(const widgets::Ui& ui, const widgets::Rect& area, const plan_model::PlanModel& model);
+  void use_pane_input(const plan_model::PlanModel& model, const widgets::PaneInput& input);
+  void draw_handles(const widgets::Ui& ui, const widgets::Rect& area,
+                    const plan_model::PlanModel& model) const;
+  [[nodiscard]] std::optional<Eigen::Vector3d> aim_handle(const plan_model::PlanModel& model) const;
 
   enum class Handle { None, Entry, Aim };
   struct ViewState {
@@ -68,7 +70,7 @@ class PlanningView {
 };
 
 // The column of numbers, checks and buttons beside the bones.
-void draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const PlanModel& model,
+void draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const plan_model::PlanModel& model,
                      bones::BoneKind bone, const PlanStatus& status);
 
 }  // namespace arthronaut::planning_view

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <array>
 
+#include "app/readings/readings.h"
 #include "app/review_view/review_view.h"
-#include "app/theatre_view/theatre_display.h"
 
 namespace arthronaut::review_view {
 
@@ -121,10 +121,10 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const Session
     const float width = ImGui::GetContentRegionAvail().x, height = ui.theme.px(104);
     widgets::Rect row{cursor.x, cursor.y, width, height};
     const widgets::Rect left = row.cut_left(width / 2);
-    widgets::number_block(ui, left, "Offset", widgets::fixed(theatre_view::offset_mm(at.guidance), 1), "mm",
-                          theatre_view::sign_of_offset(at.guidance));
+    widgets::number_block(ui, left, "Offset", widgets::fixed(readings::offset_mm(at.guidance), 1), "mm",
+                          readings::sign_of_offset(at.guidance));
     widgets::number_block(ui, row, "Angle", widgets::fixed(at.guidance.angle_deg, 1) + "\u00B0", "",
-                          theatre_view::sign_of_angle(at.guidance));
+                          readings::sign_of_angle(at.guidance));
     widgets::Rect below{cursor.x, cursor.y + height, width, height};
     const widgets::Rect below_left = below.cut_left(width / 2);
     widgets::number_block(ui, below_left, "Depth", widgets::fixed(at.guidance.depth_mm, 1), "mm",

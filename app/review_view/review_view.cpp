@@ -24,7 +24,7 @@ std::string date_text(const std::string& name) {
 ReviewView::ReviewView(std::function<void()> make_current, std::function<void()> wake)
     : wake_(std::move(wake)), pane_(std::move(make_current)) {}
 
-void ReviewView::open(const planning_view::PlanModel* model, const std::filesystem::path& case_folder) {
+void ReviewView::open(const plan_model::PlanModel* model, const std::filesystem::path& case_folder) {
   model_ = model;
   case_folder_ = case_folder;
   sessions_.clear();

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "app/planning_view/plan_model.h"
+#include "app/plan_model/plan_model.h"
 #include "app/review_view/picture_fetcher.h"
 #include "app/review_view/session_review.h"
 #include "app/widgets/controls.h"
@@ -30,7 +30,7 @@ class ReviewView {
  public:
   ReviewView(std::function<void()> make_current, std::function<void()> wake);
 
-  void open(const planning_view::PlanModel* model, const std::filesystem::path& case_folder);
+  void open(const plan_model::PlanModel* model, const std::filesystem::path& case_folder);
   void refresh();  // reads the list of sessions again; chooses the newest where none is chosen
   void add_actions(widgets::Actions& actions);
   void draw(const widgets::Ui& ui, const widgets::Rect& area);
@@ -48,7 +48,7 @@ class ReviewView {
   void draw_scene(const widgets::Ui& ui, const widgets::Rect& area);
   void show_scene();
 
-  const planning_view::PlanModel* model_ = nullptr;
+  const plan_model::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
   std::function<void()> wake_;
   widgets::ScenePane pane_;

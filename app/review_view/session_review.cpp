@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "app/theatre_view/theatre_display.h"
+#include "app/readings/readings.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::review_view {
@@ -39,7 +39,7 @@ SessionReview read_review(const std::filesystem::path& session_folder) {
   const tools::ToolSet tools = session.pipeline_options().tools;
   const auto marker_track = [&](int id) {
     review.tracks.push_back(
-        track_of(session, theatre_view::marker_name(tools, id), [id](const recording::RecordedFrame& frame) {
+        track_of(session, readings::marker_name(tools, id), [id](const recording::RecordedFrame& frame) {
           return std::any_of(frame.poses.begin(), frame.poses.end(),
                              [id](const strokes::PoseRow& row) { return row.marker_id == id; });
         }));

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/readings/readings.h"
 #include "app/theatre_view/theatre_panels.h"
 
 namespace arthronaut::theatre_view {
@@ -104,7 +105,8 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Theat
   draw_target(ui, draw, center, radius);
   draw_directions(ui, draw, area, center, radius, point.anterior_is_right);
   draw_guide(ui, draw, center, radius, point,
-             worse(sign_of_offset(screen.display.guidance), sign_of_angle(screen.display.guidance)));
+             worse(readings::sign_of_offset(screen.display.guidance),
+                   readings::sign_of_angle(screen.display.guidance)));
 }
 
 void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const TheatreScreen& screen) {
@@ -124,7 +126,8 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Theatr
     return row;
   };
   const widgets::Rect offset =
-      block("Offset", offset_mm(g), "", "mm " + widgets::plus_minus(g.sigma_offset_mm), sign_of_offset(g));
+      block("Offset", readings::offset_mm(g), "", "mm " + widgets::plus_minus(g.sigma_offset_mm),
+            readings::sign_of_offset(g));
   if (valid) {
     const std::string text = direction_text(g.offset_anterior_mm, "anterior", "posterior") + "\n" +
                              direction_text(g.offset_proximal_mm, "proximal", "distal");
@@ -133,9 +136,9 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Theatr
     draw.AddText(font, font->FontSize, {offset.x + offset.width - width, offset.y}, widgets::kText,
                  text.c_str());
   }
-  block("Angle", g.angle_deg, "\u00B0", widgets::plus_minus(g.sigma_angle_deg), sign_of_angle(g));
+  block("Angle", g.angle_deg, "\u00B0", widgets::plus_minus(g.sigma_angle_deg), readings::sign_of_angle(g));
   block("Depth", g.depth_mm, "", "mm", widgets::Sign::Quiet);
-  block("Remaining", g.remaining_mm, "", "mm", sign_of_remaining(g));
+  block("Remaining", g.remaining_mm, "", "mm", readings::sign_of_remaining(g));
 }
 
 }  // namespace arthronaut::theatre_view

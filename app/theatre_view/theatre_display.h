@@ -35,19 +35,6 @@ struct LensTrouble {
 [[nodiscard]] TheatreDisplay display_of(const OperationStatus* status,
                                         const pipeline::PipelineOptions* options, double now_s);
 
-// Good: offset under 1 mm, angle under 2 degrees and a predicted offset error under 1 mm. Caution: under 2 mm
-// and 4 degrees. Bad: anything else. The program's own thresholds (methods: quantities of guidance).
-[[nodiscard]] widgets::Sign sign_of_offset(const guidance::GuidanceNumbers& guidance);
-[[nodiscard]] widgets::Sign sign_of_angle(const guidance::GuidanceNumbers& guidance);
-// Bad where less than 2 mm of the planned length remain, caution below 5 mm.
-[[nodiscard]] widgets::Sign sign_of_remaining(const guidance::GuidanceNumbers& guidance);
-
-// Length of the offset in the plane across the plan.
-[[nodiscard]] double offset_mm(const guidance::GuidanceNumbers& guidance);
-
-// "probe", "femur marker", ... of a declared marker.
-[[nodiscard]] std::string marker_name(const tools::ToolSet& tools, int marker_id);
-
 // The bullseye's point: where the guide's axis crosses the plane through the entry, seen along the plan with
 // the proximal direction up; mm, x to the right. And how the guide leans there, in degrees the same way.
 struct BullseyePoint {

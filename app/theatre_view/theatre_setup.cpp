@@ -15,7 +15,7 @@ std::string guide_name_of(bones::BoneKind bone) {
   return bone == bones::BoneKind::Femur ? "femoral guide" : "tibial guide";
 }
 
-OperationSetup setup_of(const planning_view::PlanModel& model, bones::BoneKind bone) {
+OperationSetup setup_of(const plan_model::PlanModel& model, bones::BoneKind bone) {
   OperationSetup setup;
   setup.pipeline.bone = bone;
   setup.pipeline.side = model.knee().side;
@@ -48,7 +48,7 @@ phantom::PhantomKnee phantom_of(const cases::Case& knee) {
 
 }  // namespace
 
-std::string missing_for_simulation(const planning_view::PlanModel& model, bones::BoneKind bone) {
+std::string missing_for_simulation(const plan_model::PlanModel& model, bones::BoneKind bone) {
   if (!model.has_bone(bone)) return "the case has no " + std::string(bones::to_text(bone));
   if (!model.has_bone(bones::BoneKind::Femur) || !model.has_bone(bones::BoneKind::Tibia))
     return "the case has only one bone";
@@ -57,7 +57,7 @@ std::string missing_for_simulation(const planning_view::PlanModel& model, bones:
   return known.contains("native_footprint") ? "" : "the landmarks of the bone are not known";
 }
 
-OperationSetup simulated_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
+OperationSetup simulated_setup(const plan_model::PlanModel& model, bones::BoneKind bone,
                                const std::filesystem::path& case_folder, SimulatedPart part) {
   OperationSetup setup = setup_of(model, bone);
   setup.title = part == SimulatedPart::Scratch ? "Simulated operation: probe" : "Simulated operation: drill";
@@ -88,7 +88,7 @@ OperationSetup simulated_setup(const planning_view::PlanModel& model, bones::Bon
 namespace {
 
 // With the case's own camera.json and tools.json.
-OperationSetup real_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
+OperationSetup real_setup(const plan_model::PlanModel& model, bones::BoneKind bone,
                           const std::filesystem::path& case_folder, double refractive_index) {
   if (!model.has_bone(bone)) throw InvalidInput("the case has no " + std::string(bones::to_text(bone)));
   OperationSetup setup = setup_of(model, bone);
@@ -103,7 +103,7 @@ OperationSetup real_setup(const planning_view::PlanModel& model, bones::BoneKind
 
 }  // namespace
 
-OperationSetup video_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
+OperationSetup video_setup(const plan_model::PlanModel& model, bones::BoneKind bone,
                            const std::filesystem::path& case_folder, const std::filesystem::path& video,
                            double refractive_index) {
   OperationSetup setup = real_setup(model, bone, case_folder, refractive_index);
@@ -112,7 +112,7 @@ OperationSetup video_setup(const planning_view::PlanModel& model, bones::BoneKin
   return setup;
 }
 
-OperationSetup camera_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
+OperationSetup camera_setup(const plan_model::PlanModel& model, bones::BoneKind bone,
                             const std::filesystem::path& case_folder, const sources::ConnectedCamera& camera,
                             const sources::DeviceTurns& turns, double refractive_index) {
   OperationSetup setup = real_setup(model, bone, case_folder, refractive_index);

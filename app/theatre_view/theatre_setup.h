@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "app/planning_view/plan_model.h"
+#include "app/plan_model/plan_model.h"
 #include "app/theatre_view/operation.h"
 #include "navigation/sources/connected_cameras.h"
 #include "navigation/sources/device_turns.h"
@@ -14,21 +14,21 @@ namespace arthronaut::theatre_view {
 enum class SimulatedPart { Scratch, Drill };
 
 // Why the simulated operation can't run on this bone of the case: no plan, no landmarks. Empty when it can.
-[[nodiscard]] std::string missing_for_simulation(const planning_view::PlanModel& model, bones::BoneKind bone);
+[[nodiscard]] std::string missing_for_simulation(const plan_model::PlanModel& model, bones::BoneKind bone);
 // Precondition: missing_for_simulation() is empty. The standard scope and the standard tools in saline,
 // tracked with what Set up has adopted of them for this case. Throws IoError or InvalidInput when that is
 // broken.
-[[nodiscard]] OperationSetup simulated_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
+[[nodiscard]] OperationSetup simulated_setup(const plan_model::PlanModel& model, bones::BoneKind bone,
                                              const std::filesystem::path& case_folder, SimulatedPart part);
 
 // A recorded video with the case's camera.json and tools.json. Throws IoError or InvalidInput when those are
 // missing or broken: the message says which.
-[[nodiscard]] OperationSetup video_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
+[[nodiscard]] OperationSetup video_setup(const plan_model::PlanModel& model, bones::BoneKind bone,
                                          const std::filesystem::path& case_folder,
                                          const std::filesystem::path& video, double refractive_index);
 
 // The same with a camera that is connected, /dev/videoN. It is opened on the worker, in its turn.
-[[nodiscard]] OperationSetup camera_setup(const planning_view::PlanModel& model, bones::BoneKind bone,
+[[nodiscard]] OperationSetup camera_setup(const plan_model::PlanModel& model, bones::BoneKind bone,
                                           const std::filesystem::path& case_folder,
                                           const sources::ConnectedCamera& camera,
                                           const sources::DeviceTurns& turns, double refractive_index);

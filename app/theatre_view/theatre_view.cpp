@@ -29,7 +29,7 @@ TheatreView::TheatreView(std::function<void()> make_current, std::function<void(
     : wake_(std::move(wake)), turns_(turns), scene_(std::move(make_current)) {}
 TheatreView::~TheatreView() = default;
 
-void TheatreView::open(const planning_view::PlanModel* model, const std::filesystem::path& case_folder) {
+void TheatreView::open(const plan_model::PlanModel* model, const std::filesystem::path& case_folder) {
   end_operation();
   // A bone that is just being made ready would be waited for.
   ending_.end(std::exchange(bones_, {}));

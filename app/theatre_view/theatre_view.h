@@ -8,7 +8,7 @@
 #include <map>
 #include <memory>
 
-#include "app/planning_view/plan_model.h"
+#include "app/plan_model/plan_model.h"
 #include "app/theatre_view/operation.h"
 #include "app/theatre_view/theatre_panels.h"
 #include "app/theatre_view/theatre_scene.h"
@@ -27,7 +27,7 @@ class TheatreView {
 
   // Another case; ends what runs. The model is read whenever an operation is started; it outlives this view's
   // use.
-  void open(const planning_view::PlanModel* model, const std::filesystem::path& case_folder);
+  void open(const plan_model::PlanModel* model, const std::filesystem::path& case_folder);
   // This mode comes to the front: sees anew which videos the case has.
   void enter();
   void add_actions(widgets::Actions& actions);
@@ -84,7 +84,7 @@ class TheatreView {
     std::size_t camera = 0;                         // of those
   };
 
-  const planning_view::PlanModel* model_ = nullptr;
+  const plan_model::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
   std::function<void()> wake_;
   sources::DeviceTurns turns_;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/readings/readings.h"
 #include "app/theatre_view/theatre_panels.h"
 
 namespace arthronaut::theatre_view {
@@ -35,7 +36,7 @@ void draw_markers(const widgets::Ui& ui, const TheatreScreen& screen) {
                       : is_needed(screen, marker.id)                    ? Sign::Caution
                       : marker.state == markers::MarkerState::Duplicate ? Sign::Caution
                                                                         : Sign::Quiet;
-    widgets::status_row(ui, sign, marker_name(screen.options->tools, marker.id), text);
+    widgets::status_row(ui, sign, readings::marker_name(screen.options->tools, marker.id), text);
   }
 }
 

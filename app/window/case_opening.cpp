@@ -26,7 +26,7 @@ OpenedCase open_case(const std::filesystem::path& folder) {
     std::filesystem::create_directories(chosen);
     cases::save_case(chosen, phantom::case_of(phantom::make_phantom_knee(), "Phantom knee"));
   }
-  return {chosen, std::make_unique<planning_view::PlanModel>(cases::load_case(chosen))};
+  return {chosen, std::make_unique<plan_model::PlanModel>(cases::load_case(chosen))};
 }
 
 CaseOpening::CaseOpening(const std::filesystem::path& folder, std::function<void()> on_end)

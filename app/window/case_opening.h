@@ -7,13 +7,13 @@
 #include <memory>
 #include <string>
 
-#include "app/planning_view/plan_model.h"
+#include "app/plan_model/plan_model.h"
 
 namespace arthronaut::window {
 
 struct OpenedCase {
   std::filesystem::path folder;
-  std::unique_ptr<planning_view::PlanModel> model;
+  std::unique_ptr<plan_model::PlanModel> model;
 };
 
 // Where the built-in case lives: $XDG_DATA_HOME/arthronaut/Phantom.arthro, else ~/.local/share/..., so that
@@ -36,7 +36,7 @@ class CaseOpening {
   bool take();
   [[nodiscard]] bool is_busy() const { return opening_.valid(); }
   // Null until it is open.
-  [[nodiscard]] planning_view::PlanModel* model() const { return open_.model.get(); }
+  [[nodiscard]] plan_model::PlanModel* model() const { return open_.model.get(); }
   [[nodiscard]] const std::filesystem::path& folder() const { return open_.folder; }  // empty until then
   [[nodiscard]] const std::string& failure() const { return failure_; }  // why it can't be opened; empty else
 

@@ -24,7 +24,7 @@ std::string clock_text() {
 
 }  // namespace
 
-void PlanHistory::open(planning_view::PlanModel* model, const std::filesystem::path& case_folder) {
+void PlanHistory::open(plan_model::PlanModel* model, const std::filesystem::path& case_folder) {
   model_ = model;
   case_folder_ = case_folder;
   history_ = model != nullptr ? std::make_unique<commands::History>([this] { save(); }) : nullptr;

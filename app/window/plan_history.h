@@ -15,7 +15,7 @@ namespace arthronaut::window {
 class PlanHistory {
  public:
   // Another case: forgets the steps. The model outlives this history's use of it. Null closes.
-  void open(planning_view::PlanModel* model, const std::filesystem::path& case_folder);
+  void open(plan_model::PlanModel* model, const std::filesystem::path& case_folder);
 
   void apply(const planning_view::PlanEdit& edit, double now_s);
   void undo();
@@ -33,7 +33,7 @@ class PlanHistory {
   void save();
   void describe();
 
-  planning_view::PlanModel* model_ = nullptr;
+  plan_model::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
   std::unique_ptr<commands::History> history_;
   std::string movement_;  // what the open movement does, and of which bone

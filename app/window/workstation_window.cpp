@@ -91,7 +91,7 @@ void WorkstationWindow::add_actions() {
                 [this] { return history_.can_redo(); },
                 {},
                 [this] { history_.redo(); }});
-  planning_.add_actions(actions_, [this]() -> const planning_view::PlanModel* { return case_.model(); });
+  planning_.add_actions(actions_, [this]() -> const plan_model::PlanModel* { return case_.model(); });
   setup_.add_actions(actions_);
   theatre_.add_actions(actions_);
   review_.add_actions(actions_);

@@ -207,21 +207,5 @@ TEST(Bullseye, PointIsWhereTheAxisMissesTheEntry) {
   EXPECT_NEAR(leaning.up_mm, 0, 1e-9);
 }
 
-// The signs turn where the header says.
-TEST(TheatreSigns, FollowTheThresholds) {
-  guidance::GuidanceNumbers g;
-  g.axis_to_entry_mm = 0.9;
-  g.sigma_offset_mm = 0.4;
-  EXPECT_EQ(sign_of_offset(g), widgets::Sign::Good);
-  g.sigma_offset_mm = 1.5;  // a small number that nobody knows well is not good
-  EXPECT_EQ(sign_of_offset(g), widgets::Sign::Caution);
-  g.sigma_offset_mm = 2.5;
-  EXPECT_EQ(sign_of_offset(g), widgets::Sign::Bad);
-  g.angle_deg = 3;
-  EXPECT_EQ(sign_of_angle(g), widgets::Sign::Caution);
-  g.remaining_mm = 1;
-  EXPECT_EQ(sign_of_remaining(g), widgets::Sign::Bad);
-}
-
 }  // namespace
 }  // namespace arthronaut::theatre_view

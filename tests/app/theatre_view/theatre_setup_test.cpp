@@ -16,7 +16,7 @@ namespace {
 TEST(TheatreSetup, TheSimulationIsTrackedWithWhatSetUpAdopted) {
   const test::TemporaryFolder temporary;
   const std::filesystem::path& folder = temporary.path();
-  const planning_view::PlanModel model(
+  const plan_model::PlanModel model(
       phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 2.5}), "test"));
   const auto setup = [&] {
     return simulated_setup(model, bones::BoneKind::Femur, folder, SimulatedPart::Scratch);

@@ -30,7 +30,7 @@ class PlanHistoryTest : public ::testing::Test {
 
   const test::TemporaryFolder temporary_;
   const std::filesystem::path& folder_ = temporary_.path();
-  planning_view::PlanModel model_;
+  plan_model::PlanModel model_;
   PlanHistory history_;
   const double start_mm_ = model_.tunnel(BoneKind::Femur)->diameter_mm;
 };

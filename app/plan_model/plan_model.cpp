@@ -1,9 +1,9 @@
-#include "app/planning_view/plan_model.h"
+#include "app/plan_model/plan_model.h"
 
 #include "app/scene/scene_content.h"
 #include "planning/geometry/error.h"
 
-namespace arthronaut::planning_view {
+namespace arthronaut::plan_model {
 
 namespace {
 
@@ -75,4 +75,4 @@ void PlanModel::measure(bones::BoneKind kind) {
   bone.measured = planned ? tunnels::measure(*planned, *bone.surface) : tunnels::TunnelGeometry{};
 }
 
-}  // namespace arthronaut::planning_view
+}  // namespace arthronaut::plan_model

@@ -1,11 +1,11 @@
-#include "app/planning_view/plan_model.h"
+#include "app/plan_model/plan_model.h"
 
 #include <gtest/gtest.h>
 
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
 
-namespace arthronaut::planning_view {
+namespace arthronaut::plan_model {
 namespace {
 
 using bones::BoneKind;
@@ -39,4 +39,4 @@ TEST(PlanModel, RefusesACaseWithoutBones) {
 }
 
 }  // namespace
-}  // namespace arthronaut::planning_view
+}  // namespace arthronaut::plan_model

@@ -13,7 +13,7 @@
 #include "planning/geometry/surface.h"
 #include "planning/tunnels/plan_checks.h"
 
-namespace arthronaut::planning_view {
+namespace arthronaut::plan_model {
 
 class PlanModel {
  public:
@@ -60,4 +60,4 @@ class PlanModel {
   std::uint64_t revision_ = 1;
 };
 
-}  // namespace arthronaut::planning_view
+}  // namespace arthronaut::plan_model
