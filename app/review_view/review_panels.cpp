@@ -55,10 +55,12 @@ void draw_events(const widgets::Ui& ui, ImDrawList& draw, const widgets::Rect& a
     const float x = scale.x_of(std::min(static_cast<std::size_t>(at - frames.begin()), frames.size() - 1));
     draw.AddLine({x, area.y}, {x, y + ui.theme.px(6)}, widgets::kCaution, ui.theme.px(1.5F));
     const float width = ui.theme.body->CalcTextSizeA(ui.theme.body->FontSize, 1e9F, 0, event.kind.c_str()).x;
-    if (x < free_from || x + width > area.x + area.width) continue;  // names never lie over each other
-    draw.AddText(ui.theme.body, ui.theme.body->FontSize, {x + ui.theme.px(4), y + ui.theme.px(4)},
-                 widgets::kCaution, event.kind.c_str());
-    free_from = x + width + ui.theme.px(16);
+    const bool fits_right = x + width + ui.theme.px(4) <= area.x + area.width;
+    const float text_x = fits_right ? x + ui.theme.px(4) : x - width - ui.theme.px(4);
+    if (text_x < free_from) continue;  // names never lie over each other
+    draw.AddText(ui.theme.body, ui.theme.body->FontSize, {text_x, y + ui.theme.px(4)}, widgets::kCaution,
+                 event.kind.c_str());
+    free_from = text_x + width + ui.theme.px(12);
   }
 }
 

@@ -10,13 +10,13 @@ namespace arthronaut::review_view {
 
 namespace {
 
-// "20261121-122356" as "2026-11-21  12:23:56"; other names as they are.
+// "20261121-122356" as "2026-11-21  12:23:56 UTC"; other names as they are.
 std::string date_text(const std::string& name) {
   const bool is_date =
       name.size() >= 15 && name[8] == '-' && name.find_first_not_of("0123456789-") == std::string::npos;
   if (!is_date) return name;
   return name.substr(0, 4) + "-" + name.substr(4, 2) + "-" + name.substr(6, 2) + "  " + name.substr(9, 2) +
-         ":" + name.substr(11, 2) + ":" + name.substr(13);
+         ":" + name.substr(11, 2) + ":" + name.substr(13) + " UTC";
 }
 
 }  // namespace
@@ -85,7 +85,7 @@ void ReviewView::take_opened() {
     pictures_ = std::make_unique<PictureFetcher>(review_->folder, wake_);
   const bones::BoneKind bone = review_->session->header().bone;
   if (model_->has_bone(bone)) {
-    const auto tunnel = model_->tunnel(bone);
+    const std::optional<tunnels::Tunnel>& tunnel = review_->plan.plan;
     const geometry::Bounds bounds = model_->bounds(bone);
     pane_.look(tunnel ? scene::orbited(scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm,
                                                          190, {0, 0, 1}),
@@ -235,6 +235,10 @@ void ReviewView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area) {
     shown_frame_ = cursor_.frame;
   }
   pane_.draw(ui, "review.view", area);
+  const bool is_femur = review_->session->header().bone == bones::BoneKind::Femur;
+  widgets::caption(ui, area, widgets::kText,
+                   std::string(is_femur ? "Femur" : "Tibia") + (review_->plan.plan ? ". Blue: planned" : "") +
+                       (review_->achieved ? ". Banded: achieved" : ""));
 }
 
 void ReviewView::show_scene() {
@@ -243,13 +247,13 @@ void ReviewView::show_scene() {
   const bones::BoneKind bone = session.header().bone;
   scene::SceneContent content;
   content.bones.push_back({model_->drawn_mesh(bone), scene::kBoneColor, 1.0});
-  const auto plan = review_->achieved ? std::optional(review_->achieved->planned) : model_->tunnel(bone);
-  if (plan) scene::add_planned_tunnel(content, *plan, model_->drawn_length_mm(bone));
+  const recording::RecordedSession::PlanChange& plan = review_->plan;
+  if (plan.plan) scene::add_planned_tunnel(content, *plan.plan, plan.planned_length_mm);
   if (review_->achieved)
     // A depth of nought means that the guide alone was seen: the tunnel is drawn as long as planned.
     scene::add_achieved_tunnel(
         content, review_->achieved->measured,
-        review_->achieved->depth_mm > 1 ? review_->achieved->depth_mm : model_->drawn_length_mm(bone));
+        review_->achieved->depth_mm > 1 ? review_->achieved->depth_mm : plan.planned_length_mm);
   if (session.registration() && session.registration()->has_pose) {
     const geometry::RigidTransform bone_from_marker = session.registration()->marker_from_bone.inverse();
     std::vector<Eigen::Vector3d> touched;

@@ -51,6 +51,8 @@ SessionReview read_review(const std::filesystem::path& session_folder) {
                                    [](const recording::RecordedFrame& f) { return f.intrinsics_are_known; }));
   review.tracks.push_back(
       track_of(session, "Guidance", [](const recording::RecordedFrame& f) { return f.guidance.is_valid(); }));
+  for (const recording::SessionEvent& event : session.events())
+    if (event.kind == recording::kPlanEvent) review.plan = session.plan_of(event);
   const std::filesystem::path achieved = session_folder / "achieved.json";
   if (!std::filesystem::exists(achieved)) return review;
   try {  // a broken achieved.json must not hide the session: its reason is shown in its place

@@ -27,6 +27,8 @@ struct SessionReview {
   std::filesystem::path folder;
   std::shared_ptr<const recording::RecordedSession> session;
   std::vector<TimeTrack> tracks;
+  // That guided, the last one; no tunnel when there was none. Not what the case plans by now.
+  recording::RecordedSession::PlanChange plan;
   std::optional<recording::AchievedTunnel> achieved;
   std::string achieved_problem;  // why achieved.json could not be read; empty when it was or is not there
 };

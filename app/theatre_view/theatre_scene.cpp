@@ -71,16 +71,10 @@ void TheatreScene::draw(const widgets::Ui& ui, const widgets::Rect& area, const 
   if (screen.drawn_bone == nullptr) return;
   show(screen);
   pane_.draw(ui, "operate.view", area);
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const std::string label = caption_of(screen, asks_for_strokes(shown_.layout, shown_.bone.get()));
   // A guide that is not known is amiss only while it is to be followed.
   const bool is_missed = shown_.layout == TheatreLayout::Guide && !screen.display.guidance_is_valid;
-  const ImVec2 wide = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, label.c_str());
-  draw.AddRectFilled(area.min(), {area.x + wide.x + ui.theme.px(28), area.y + wide.y + ui.theme.px(18)},
-                     IM_COL32(12, 15, 19, 200), ui.theme.px(6));
-  draw.AddText(ui.theme.strong, ui.theme.strong->FontSize,
-               {area.x + ui.theme.px(14), area.y + ui.theme.px(9)},
-               is_missed ? widgets::kCaution : widgets::kText, label.c_str());
+  widgets::caption(ui, area, is_missed ? widgets::kCaution : widgets::kText,
+                   caption_of(screen, asks_for_strokes(shown_.layout, shown_.bone.get())));
 }
 
 }  // namespace arthronaut::theatre_view

@@ -67,10 +67,10 @@ void draw_registration_row(const widgets::Ui& ui, const TheatreScreen& screen) {
     const std::string why = r.reasons.empty() ? "not reliable" : r.reasons.front();
     return widgets::status_row(ui, Sign::Bad, "Registration", why);
   }
+  // In one line on the smallest screen: how well it fits stands in the registration panel.
   widgets::status_row(ui, Sign::Good, "Registration",
-                      "target " + widgets::plus_minus(r.predicted_tre_mm) + " mm, fit " +
-                          widgets::fixed(r.rms_mm, 1) + " mm" +
-                          (is_verified(*status.bone) ? ", verified" : ", not verified by touches") +
+                      widgets::plus_minus(r.predicted_tre_mm) + " mm, " +
+                          (is_verified(*status.bone) ? "verified" : "not verified") +
                           (status.bone->is_chosen ? ", an earlier one" : ""));
 }
 

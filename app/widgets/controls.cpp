@@ -211,6 +211,15 @@ void text_centered(const Ui& ui, const Rect& rect, ImFont* font, ImU32 color, st
     draw_text(draw, font, {rect.x + (rect.width - text_size(font, lines[i]).x) / 2, y}, color, lines[i]);
 }
 
+void caption(const Ui& ui, const Rect& picture, ImU32 color, std::string_view text) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const ImVec2 size = text_size(ui.theme.strong, text);
+  const float beside = ui.theme.px(14), above = ui.theme.px(9);
+  draw.AddRectFilled(picture.min(), {picture.x + size.x + 2 * beside, picture.y + size.y + 2 * above},
+                     IM_COL32(12, 15, 19, 200), ui.theme.px(6));
+  draw_text(draw, ui.theme.strong, {picture.x + beside, picture.y + above}, color, text);
+}
+
 std::string fixed(double value, int decimals) {
   std::array<char, 64> buffer{};
   std::snprintf(buffer.data(), buffer.size(), "%.*f", decimals, std::abs(value));

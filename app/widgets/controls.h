@@ -51,6 +51,9 @@ void text_in(ImFont* font, ImU32 color, std::string_view text);  // wraps in the
 void text_centered(const Ui& ui, const Rect& rect, ImFont* font, ImU32 color,
                    std::string_view text);  // wraps
 
+// What a picture shows, in its upper left corner.
+void caption(const Ui& ui, const Rect& picture, ImU32 color, std::string_view text);
+
 // "1.2", "-0.4"; a minus sign of the width of the plus sign; never "-0.0".
 [[nodiscard]] std::string fixed(double value, int decimals);
 // "± 0.4" of a predicted error; never less than "± 0.1": nobody should read a nought there.
