@@ -14,6 +14,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// A touch that was not taken is news for as long as it takes to read.
+constexpr auto kNoticeStays = std::chrono::seconds(8);
+
 double seconds_of(Clock::time_point time) {
   return std::chrono::duration<double>(time.time_since_epoch()).count();
 }
@@ -95,6 +98,7 @@ class Operation::Worker {
       s.digitises = false;
       s.touch_notice = why_not;
     });
+    touch_asked_ = Clock::now();
   }
   void start_recording(OperationJob& job, const std::filesystem::path& folder) {
     job.start_recording(folder);
@@ -186,6 +190,7 @@ class Operation::Worker {
     update([&](OperationStatus& s) {
       s.live = std::move(live);
       if (rate) s.frames_per_second = *rate;
+      if (now - touch_asked_ > kNoticeStays) s.touch_notice.clear();
     });
   }
 
@@ -213,7 +218,7 @@ class Operation::Worker {
   OperationStatus status_;
   std::atomic<bool> is_registering_ = false, is_stopping_ = false;
   int frames_since_ = 0;
-  Clock::time_point counted_from_ = Clock::now();
+  Clock::time_point counted_from_ = Clock::now(), touch_asked_;
   std::jthread registering_, thread_;
 };
 

@@ -61,7 +61,7 @@ struct OperationStatus {
   bool is_registering = false;
   // Of the bone's registration, never null; filled in by who shows it.
   std::shared_ptr<const RegistrationStatus> bone = std::make_shared<RegistrationStatus>();
-  std::string touch_notice;         // why a touch was not taken; empty else
+  std::string touch_notice;         // why a touch was not taken a moment ago; empty else
   std::filesystem::path recording;  // the session's folder while it is recorded, else empty
   std::string recording_error;
 };
