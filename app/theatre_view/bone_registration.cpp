@@ -10,6 +10,7 @@ namespace {
 // The strokes are copied for the screen a few times a second, not for every point.
 constexpr std::size_t kPointsBetweenCopies = 6;
 constexpr double kClearlyBetter = 0.9;
+constexpr const char* kWhileDrawing = "while drawing";
 
 }  // namespace
 
@@ -179,6 +180,16 @@ void BoneRegistration::take_in(const std::shared_ptr<const registration::OnlineR
   status_.online = online;
   judge();
   const registration::RegistrationSummary& found = online->registration;
+  const RegistrationEntry* guiding =
+      status_.entry_in_force ? &(*status_.history)[*status_.entry_in_force] : nullptr;
+  if (online->side_is_in_doubt && guiding != nullptr && guiding->origin == kWhileDrawing &&
+      guiding->registration->reliable) {
+    status_.is_chosen = false;
+    best_tre_mm_ = std::numeric_limits<double>::infinity();
+    add_entry(
+        {kWhileDrawing, online->state, std::make_shared<const registration::RegistrationSummary>(found)});
+    return;
+  }
   if (online->state < registration::OnlineState::Confirmed || !found.reliable) return;
   auto history = std::make_shared<std::vector<RegistrationEntry>>(*status_.history);
   if (found.predicted_tre_mm >= kClearlyBetter * best_tre_mm_) {
@@ -187,8 +198,7 @@ void BoneRegistration::take_in(const std::shared_ptr<const registration::OnlineR
     return;
   }
   best_tre_mm_ = found.predicted_tre_mm;
-  add_entry(
-      {"while drawing", online->state, std::make_shared<const registration::RegistrationSummary>(found)});
+  add_entry({kWhileDrawing, online->state, std::make_shared<const registration::RegistrationSummary>(found)});
 }
 
 void BoneRegistration::add_entry(const RegistrationEntry& entry) {

@@ -214,7 +214,8 @@ void OnlineRegistration::State::check_side() {
     side = judge_side(setting, curves, own);
     side_checked_mm = result.length_mm;
   }
-  if (side == SideVerdict::Own || !result.registration.has_pose) return;
+  result.side_is_in_doubt = side != SideVerdict::Own && result.registration.has_pose;
+  if (!result.side_is_in_doubt) return;
   result.registration.reliable = false;
   result.registration.reasons.insert(result.registration.reasons.begin(), std::string(reason_against(side)));
 }
