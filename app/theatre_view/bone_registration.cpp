@@ -182,7 +182,7 @@ void BoneRegistration::take_in(const std::shared_ptr<const registration::OnlineR
   const registration::RegistrationSummary& found = online->registration;
   const RegistrationEntry* guiding =
       status_.entry_in_force ? &(*status_.history)[*status_.entry_in_force] : nullptr;
-  if (online->side_is_in_doubt && guiding != nullptr && guiding->origin == kWhileDrawing &&
+  if (online->bone_is_in_doubt && guiding != nullptr && guiding->origin == kWhileDrawing &&
       guiding->registration->reliable) {
     status_.is_chosen = false;
     best_tre_mm_ = std::numeric_limits<double>::infinity();

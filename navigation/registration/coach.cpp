@@ -105,7 +105,7 @@ Coach advise(const OnlineResult& result, const CoachFacts& facts) {
   constexpr double kLengthWanted_mm = 100, kErrorWanted_mm = 1.2;
   Coach coach;
   const RegistrationSummary& registration = result.registration;
-  if (result.length_mm < kLengthWanted_mm) {
+  if (!registration.has_pose && result.length_mm < kLengthWanted_mm) {
     coach.missing.push_back(
         files::format("%.0f mm more of stroke", std::ceil(kLengthWanted_mm - result.length_mm)));
   }

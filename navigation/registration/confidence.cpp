@@ -17,6 +17,7 @@ using geometry::Vector6d;
 
 namespace {
 
+constexpr double kMinLength_mm = 100;
 constexpr double kMeasuredShare = 0.7;
 constexpr double kBoneSize_mm = 30, kBoneTurn_rad = 3;
 
@@ -59,7 +60,10 @@ double misfit_of(const std::vector<double>& residuals_mm, const TouchedCurves& t
     ++count;
   }
   const double square = count > 0 ? square_sum / count : 0.0;
-  return std::sqrt(std::max(0.0, square - white_noise_mm * white_noise_mm));
+  // The six parameters of the pose took up a part of the miss, the more the fewer measurements there are.
+  const double measurements = touched.points.weight_sum / kCorrelationLength_mm;
+  const double taken_up = measurements / std::max(measurements - 6, 1.0);
+  return std::sqrt(taken_up * std::max(0.0, square - white_noise_mm * white_noise_mm));
 }
 
 double shared_misfit_of(const std::vector<double>& residuals_mm, const TouchedPoints& points) {
@@ -92,17 +96,21 @@ double excess_misfit_mm(const RegistrationSummary& summary, double white_noise_m
 // and 0.20 mm, another person's 0.47, 0.42 and mostly 0.35 mm and more.
 double max_excess_mm(double white_noise_mm) { return 0.28 + 0.8 * white_noise_mm; }
 
-// In independent measurements' log likelihood. The more the points miss the surface, the less their likelihood means.
-double lead_needed(double excess_misfit_mm) {
-  constexpr double kClean = 5, kCleanMisfit_mm = 0.30, kPerMm = 90;
-  return kClean + kPerMm * std::max(0.0, excess_misfit_mm - kCleanMisfit_mm);
+// The lead over the next pose that a pose needs, in independent measurements' log likelihood. One that the strokes hold
+// loosely, or miss, leads by chance: on another person's femur too. Measured there, on strokes of which half are off the bone.
+constexpr double kClearLead = 5;
+double lead_needed(double excess_misfit_mm, double predicted_error_mm) {
+  constexpr double kAtOneMm = 1.45, kMisfit_mm = 0.074, kPower = 2.6;
+  return std::max(kClearLead,
+                  kAtOneMm * std::exp(excess_misfit_mm / kMisfit_mm) * std::pow(predicted_error_mm, kPower));
 }
 
 std::vector<std::string> doubts(const RegistrationSummary& summary, const TouchedCurves& touched, double lead) {
-  constexpr double kMinLength_mm = 40, kMinInliers = 0.5, kMaxError_mm = 1.2;
+  constexpr double kMinInliers = 0.5, kMaxError_mm = 1.2;
   std::vector<std::string> reasons;
-  if (touched.length_mm < kMinLength_mm) {
-    reasons.push_back("too little was touched: draw at least 100 mm of strokes");
+  if (!is_long_enough(touched)) {
+    reasons.push_back(files::format("too little was touched: draw %.0f mm more of stroke",
+                                    std::ceil(kMinLength_mm - touched.length_mm)));
   }
   if (share_of_bearable_misfit(summary, touched.white_noise_mm) > 1) {
     reasons.push_back(files::format("the points miss the surface by %.2f mm, more than the tip's noise of %.2f mm explains: "
@@ -113,8 +121,12 @@ std::vector<std::string> doubts(const RegistrationSummary& summary, const Touche
   if (summary.predicted_tre_mm > kMaxError_mm) {
     reasons.push_back("the touched patch does not hold the bone fast: touch other faces of the notch too");
   }
-  if (lead < lead_needed(excess_misfit_mm(summary, touched.white_noise_mm))) {
+  if (lead < kClearLead) {
     reasons.push_back("two poses fit almost alike: touch other faces of the notch too");
+  } else if (lead < lead_needed(excess_misfit_mm(summary, touched.white_noise_mm), summary.predicted_tre_mm)) {
+    reasons.push_back(files::format("strokes that miss the surface by %.2f mm fit another bone too: draw more of them, "
+                                    "on other faces of the notch too",
+                                    summary.misfit_mm));
   }
   return reasons;
 }
@@ -162,6 +174,8 @@ Matrix6d covariance_about(const RefinedPose& pose, const TouchedPoints& points, 
   return inverse * pull * inverse;
 }
 
+bool is_long_enough(const TouchedCurves& touched) { return touched.length_mm >= kMinLength_mm; }
+
 double white_noise_of(const std::vector<strokes::OrientedPoint>& oriented) {
   std::vector<double> noise_mm;
   for (const strokes::OrientedPoint& point : oriented) noise_mm.push_back(point.fit_rms_mm);
@@ -199,8 +213,8 @@ RegistrationSummary summarise(const PreparedBone::Data& bone, const PosePool& po
   }
   summary.misfit_mm = misfit_of(summary.point_residuals_mm, touched);
   summary.shared_misfit_mm = shared_misfit_of(best.residuals_mm, touched.points);
-  constexpr double kClearLead = 1e3;
-  const double lead = pool.runner_up() ? lead_of(best.cost, pool.runner_up()->cost, touched.points) : kClearLead;
+  constexpr double kLeadAlone = 25;  // that no other was found says no more
+  const double lead = pool.runner_up() ? lead_of(best.cost, pool.runner_up()->cost, touched.points) : kLeadAlone;
   summary.reasons = doubts(summary, touched, lead);
   if (!ProbeWay(bone, touched.points).is_possible(best.bone_from_marker.matrix().cast<float>(),
                                                   best.bone_from_marker.translation_mm.cast<float>())) {

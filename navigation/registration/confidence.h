@@ -17,6 +17,8 @@ struct TouchedCurves {
   // By point of the curves, how far off the mesh it touched; nullopt: not known, left out. Empty: on the mesh, all of them.
   std::vector<std::optional<double>> offsets_mm = {};
 };
+// A pose of less is not to be relied on, and says little about the bone.
+[[nodiscard]] bool is_long_enough(const TouchedCurves& touched);
 [[nodiscard]] double white_noise_of(const std::vector<strokes::OrientedPoint>& oriented);
 
 // The best pose of the pool with all that can be said about it. An empty pool gives a summary without a pose.

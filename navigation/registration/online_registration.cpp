@@ -24,7 +24,7 @@ constexpr double kMinLengthToSearch_mm = 25;
 // Pairs to search with at each update: many while nothing is found, one as a watchdog later.
 constexpr int kPairsWhileCollecting = 6, kPairsAfterwards = 1;
 constexpr int kIterations = 6;
-constexpr int kAgreeingSolutions = 3;
+constexpr int kAgreeingSolutions = 5;
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -136,10 +136,13 @@ void OnlineRegistration::State::fit_cover() {
 }
 
 void OnlineRegistration::State::solve() {
+  result.bone_is_in_doubt = false;
   const strokes::Curves curves = strokes.curves_in_use();
   points = choose_points(curves, kPointCount);
   const std::vector<strokes::OrientedPoint> oriented = strokes.oriented_in_use();
-  const std::vector<std::string> objections = objections_to(curves, bone->data().bounds.size_mm().norm());
+  // While drawing, few points are no objection: more are coming, and the length says how many are missing.
+  const std::vector<std::string> objections =
+      objections_to(curves, bone->data().bounds.size_mm().norm(), {.min_point_count = 1});
   if (strokes.length_in_use_mm() < kMinLengthToSearch_mm || !objections.empty()) {
     pool.clear();
     if (fitter) fitter->forget();
@@ -162,8 +165,8 @@ void OnlineRegistration::State::solve() {
     fit_cover();
     offsets_mm = cover.offsets_mm(*setting.cover, curves, standing.best().bone_from_marker);
   }
-  const TouchedCurves touched{curves, points, strokes.length_in_use_mm(), white_noise_of(oriented),
-                              std::move(offsets_mm)};
+  const double white_noise_mm = white_noise_of(oriented);
+  const TouchedCurves touched{curves, points, strokes.length_in_use_mm(), white_noise_mm, std::move(offsets_mm)};
   result.registration = summarise(bone->data(), standing, touched, setting.options);
   if (fitter && !standing.empty()) cover.add_to(result.registration, target_mm());
   if (!result.registration.has_pose) {
@@ -172,6 +175,8 @@ void OnlineRegistration::State::solve() {
       result.registration.reasons = {"no pose was found yet that puts the strokes on the bone"};
     return;
   }
+  result.bone_is_in_doubt =
+      is_long_enough(touched) && share_of_bearable_misfit(result.registration, white_noise_mm) > 1;
   const Eigen::Matrix3d turn = result.registration.covariance.bottomRightCorner<3, 3>();
   Eigen::Matrix3d across = Eigen::Matrix3d::Identity();
   if (options.direction_in_bone) across = geometry::cross_matrix(options.direction_in_bone->normalized());
@@ -180,7 +185,7 @@ void OnlineRegistration::State::solve() {
 }
 
 void OnlineRegistration::State::remember_solution() {
-  constexpr std::size_t kRemembered = 5;
+  constexpr std::size_t kRemembered = kAgreeingSolutions;
   if (!result.registration.has_pose) return;
   solutions.push_back(result.registration.marker_from_bone);
   if (solutions.size() > kRemembered) solutions.erase(solutions.begin());
@@ -214,8 +219,8 @@ void OnlineRegistration::State::check_side() {
     side = judge_side(setting, curves, own);
     side_checked_mm = result.length_mm;
   }
-  result.side_is_in_doubt = side != SideVerdict::Own && result.registration.has_pose;
-  if (!result.side_is_in_doubt) return;
+  if (side == SideVerdict::Own || !result.registration.has_pose) return;
+  result.bone_is_in_doubt = true;
   result.registration.reliable = false;
   result.registration.reasons.insert(result.registration.reasons.begin(), std::string(reason_against(side)));
 }

@@ -158,7 +158,8 @@ std::string_view reason_against(SideVerdict verdict) {
     case SideVerdict::Other: return "the curves fit the mirror image of this bone: it is the bone of the other side";
     case SideVerdict::Unclear: break;
   }
-  return "the mirror image of this bone fits almost alike: is it the right side? Touch other faces of the notch too";
+  return "the mirror image of this bone fits almost alike: is it this patient's bone, and the right side? Touch other faces of "
+         "the notch too";
 }
 
 SideVerdict judge_side(const SearchSetting& setting, const strokes::Curves& curves, const SearchOutcome& found) {
@@ -186,10 +187,12 @@ RegistrationSummary register_curves(const PreparedBone& prepared, const strokes:
   SearchOutcome found = search_and_summarise(setting, curves, kMaxRounds);
   if (!found.summary.has_pose || (found.summary.reliable && found.fits_amply)) return found.summary;
   const SideVerdict side = judge_side(setting, curves, found);
-  if (side == SideVerdict::Other || (side == SideVerdict::Unclear && found.summary.reliable)) {
-    found.summary.reliable = false;
-    found.summary.reasons.insert(found.summary.reasons.begin(), std::string(reason_against(side)));
-  }
+  if (side == SideVerdict::Own) return found.summary;
+  found.summary.reliable = false;
+  // What misses its own surface may be anybody's bone, whatever its mirror image does.
+  std::vector<std::string>& reasons = found.summary.reasons;
+  const bool is_first = side == SideVerdict::Other || found.fits;
+  reasons.insert(is_first ? reasons.begin() : reasons.end(), std::string(reason_against(side)));
   return found.summary;
 }
 

@@ -74,7 +74,8 @@ struct RegistrationSummary {
   // How near the best different solution came: its robust cost over the best one's; large is good.
   double runner_up_ratio = 0;
   // What the residuals hold beyond the tip's own white noise, root mean square: slow errors of tracking, and above all
-  // a bone that is another one than the mesh's. Judged inside the bone, where lifting and soft tissue don't reach.
+  // a bone that is another one than the mesh's. Judged inside the bone, where lifting and soft tissue don't reach. What the
+  // pose took up of it, which is much with few strokes, is put back.
   double misfit_mm = 0;
   // What the residuals of different stretches of stroke share where they cross: the shape's own miss, since errors of the
   // tip differ from stretch to stretch.
