@@ -166,8 +166,8 @@ SideVerdict judge_side(const SearchSetting& setting, const strokes::Curves& curv
   // A few strokes can't give a clear lead: there, less of one is telling enough. The own side has to lead by more, since a
   // bone that is much like its mirror image fits the wrong way round by chance.
   constexpr double kOtherLead = 3, kOtherLeadOfEach = 0.05, kOwnLead = 8, kOwnLeadOfEach = 0.1;
-  const int rounds = found.summary.reliable ? 3 : kMaxRounds;  // to name the right reason is worth a little more
-  const SearchOutcome image = search_and_summarise(setting, mirrored(curves), rounds);
+  constexpr int kRounds = 3;
+  const SearchOutcome image = search_and_summarise(setting, mirrored(curves), kRounds);
   const double image_lead = (found.cost - image.cost) * image.measurements;
   const double other_lead = std::min(kOtherLead, kOtherLeadOfEach * image.measurements);
   if (image.fits && image_lead > other_lead) return SideVerdict::Other;
@@ -185,7 +185,7 @@ RegistrationSummary register_curves(const PreparedBone& prepared, const strokes:
 
   const SearchSetting setting(bone, options);
   SearchOutcome found = search_and_summarise(setting, curves, kMaxRounds);
-  if (!found.summary.has_pose || (found.summary.reliable && found.fits_amply)) return found.summary;
+  if (!found.summary.has_pose || found.fits_amply) return found.summary;
   const SideVerdict side = judge_side(setting, curves, found);
   if (side == SideVerdict::Own) return found.summary;
   found.summary.reliable = false;
