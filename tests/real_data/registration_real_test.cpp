@@ -77,6 +77,12 @@ TEST(RealRegistration, AnotherPersonsFemurIsRefused) {
       EXPECT_FALSE(registration::register_curves(other_bone, trial.curves, {seed, true, *wall}).reliable);
     }
   }
+  // Few strokes, half of them off the bone, fit the other femur well now and then, and here with no rival in sight.
+  const auto hard = experiments::setting_of(experiments::TrialNoise::Hard);
+  for (const std::uint64_t seed : {13008, 13009, 13010, 13011}) {
+    const auto trial = experiments::make_trial(mesh, surface, *wall, hard, seed);
+    EXPECT_FALSE(registration::register_curves(other_bone, trial.curves, {seed, true, *wall}).reliable) << seed;
+  }
 }
 
 // Everything that cannot hold a real femur is refused, each with its own reason.
