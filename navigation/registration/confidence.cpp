@@ -96,13 +96,15 @@ double excess_misfit_mm(const RegistrationSummary& summary, double white_noise_m
 // and 0.20 mm, another person's 0.47, 0.42 and mostly 0.35 mm and more.
 double max_excess_mm(double white_noise_mm) { return 0.28 + 0.8 * white_noise_mm; }
 
-// The lead over the next pose that a pose needs, in independent measurements' log likelihood. One that the strokes hold
-// loosely, or miss, leads by chance: on another person's femur too. Measured there, on strokes of which half are off the bone.
+// The lead over the next pose that a pose needs, in independent measurements' log likelihood. One that few strokes hold
+// loosely, or that misses them, leads by chance: on another person's femur too. Measured there, on 290 mm of strokes of which half
+// are off the bone, and on twice as many.
 constexpr double kClearLead = 5;
-double lead_needed(double excess_misfit_mm, double predicted_error_mm) {
-  constexpr double kAtOneMm = 1.45, kMisfit_mm = 0.074, kPower = 2.6;
-  return std::max(kClearLead,
-                  kAtOneMm * std::exp(excess_misfit_mm / kMisfit_mm) * std::pow(predicted_error_mm, kPower));
+double lead_needed(double excess_misfit_mm, double predicted_error_mm, double length_mm) {
+  constexpr double kAtOneMm = 1.45, kMisfit_mm = 0.074, kPower = 2.6, kLength_mm = 290;
+  const double few = kLength_mm / length_mm;
+  return std::max(kClearLead, kAtOneMm * few * few * std::exp(excess_misfit_mm / kMisfit_mm) *
+                                  std::pow(predicted_error_mm, kPower));
 }
 
 std::vector<std::string> doubts(const RegistrationSummary& summary, const TouchedCurves& touched, double lead) {
@@ -123,7 +125,8 @@ std::vector<std::string> doubts(const RegistrationSummary& summary, const Touche
   }
   if (lead < kClearLead) {
     reasons.push_back("two poses fit almost alike: touch other faces of the notch too");
-  } else if (lead < lead_needed(excess_misfit_mm(summary, touched.white_noise_mm), summary.predicted_tre_mm)) {
+  } else if (lead < lead_needed(excess_misfit_mm(summary, touched.white_noise_mm), summary.predicted_tre_mm,
+                                touched.length_mm)) {
     reasons.push_back(files::format("strokes that miss the surface by %.2f mm fit another bone too: draw more of them, "
                                     "on other faces of the notch too",
                                     summary.misfit_mm));
