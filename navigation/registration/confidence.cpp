@@ -97,11 +97,11 @@ double excess_misfit_mm(const RegistrationSummary& summary, double white_noise_m
 double max_excess_mm(double white_noise_mm) { return 0.28 + 0.8 * white_noise_mm; }
 
 // The lead over the next pose that a pose needs, in independent measurements' log likelihood. One that few strokes hold
-// loosely, or that misses them, leads by chance: on another person's femur too. Measured there, on 290 mm of strokes of which half
+// loosely, or that misses them, leads by chance: on another person's femur too. Measured there, on 400 mm of strokes of which half
 // are off the bone, and on twice as many.
 constexpr double kClearLead = 5;
 double lead_needed(double excess_misfit_mm, double predicted_error_mm, double length_mm) {
-  constexpr double kAtOneMm = 1.45, kMisfit_mm = 0.074, kPower = 2.6, kLength_mm = 290;
+  constexpr double kAtOneMm = 1.45, kMisfit_mm = 0.074, kPower = 2.6, kLength_mm = 400;
   const double few = kLength_mm / length_mm;
   return std::max(kClearLead, kAtOneMm * few * few * std::exp(excess_misfit_mm / kMisfit_mm) *
                                   std::pow(predicted_error_mm, kPower));

@@ -166,9 +166,10 @@ SideVerdict judge_side(const SearchSetting& setting, const strokes::Curves& curv
   // A few strokes can't give a clear lead: there, less of one is telling enough. The own side has to lead by more, since a
   // bone that is much like its mirror image fits the wrong way round by chance.
   constexpr double kOtherLead = 3, kOtherLeadOfEach = 0.05, kOwnLead = 8, kOwnLeadOfEach = 0.1;
-  // To name the right reason is worth a little more, above all where the search has no marker to go by.
+  // To name the right reason is worth a little more, above all where the search has no marker to go by or a thickness is free.
   constexpr int kRounds = 3, kRoundsToName = 4;
-  const int rounds = found.summary.reliable ? kRounds : setting.options.use_marker_prior ? kRoundsToName : kMaxRounds;
+  const bool is_easy = setting.options.use_marker_prior && !setting.cover;
+  const int rounds = found.summary.reliable ? kRounds : is_easy ? kRoundsToName : kMaxRounds;
   const SearchOutcome image = search_and_summarise(setting, mirrored(curves), rounds);
   const double image_lead = (found.cost - image.cost) * image.measurements;
   const double other_lead = std::min(kOtherLead, kOtherLeadOfEach * image.measurements);
