@@ -5,7 +5,8 @@
 
 int main(int argc, char** argv) {
   using namespace arthronaut;
-  // A file over the size limit is then an error of write(), told like a full disk, instead of the end of the program.
+  // A file over the size limit is then an error of write(), told like a full disk, instead of the end of the
+  // program.
   std::signal(SIGXFSZ, SIG_IGN);
   return command_line::run_command_line(argc, argv, [](const command_line::WorkstationRequest& request) {
     return window::run_workstation(

@@ -21,7 +21,8 @@ void Progress::advance_to(long done) {
   const int percent = static_cast<int>(total_ > 0 ? 100 * done / total_ : done / 10);
   if (percent == last_percent_) return;
   last_percent_ = percent;
-  std::cerr << "\r\033[K" << what_ << ' ' << (total_ > 0 ? percent : done) << (total_ > 0 ? " %" : "") << std::flush;
+  std::cerr << "\r\033[K" << what_ << ' ' << (total_ > 0 ? percent : done) << (total_ > 0 ? " %" : "")
+            << std::flush;
 }
 
 void Context::say(const std::string& line) const {
@@ -34,8 +35,8 @@ void Context::say_unreliable(const std::string& what, const std::vector<std::str
   exit_code = kUnreliable;
 }
 
-CLI::App* add_subcommand(CLI::App& app, Context& context, const std::string& name, const std::string& description,
-                         const std::string& example) {
+CLI::App* add_subcommand(CLI::App& app, Context& context, const std::string& name,
+                         const std::string& description, const std::string& example) {
   CLI::App* subcommand = app.add_subcommand(name, description);
   subcommand->footer("Example:\n  " + example);
   subcommand->add_flag("--verbose", context.verbose, "Say more");

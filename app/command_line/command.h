@@ -1,7 +1,9 @@
-// The command line: one file a subcommand, each of which adds itself to the parser and does its work in one function.
+// The command line: one file a subcommand, each of which adds itself to the parser and does its work in one
+// function.
 //
-// Exit codes: 0 done and reliable; 1 internal error; 2 wrong usage; 3 unreadable or invalid input; 4 done, but the
-// result is not reliable (it is written, with its reasons). Exceptions end in run_command_line, nowhere else.
+// Exit codes: 0 done and reliable; 1 internal error; 2 wrong usage; 3 unreadable or invalid input; 4 done,
+// but the result is not reliable (it is written, with its reasons). Exceptions end in run_command_line,
+// nowhere else.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -33,15 +35,16 @@ class Progress {
 struct Context {
   int exit_code = kDone;
   bool quiet = false, verbose = false;
-  // A line for the user on standard output unless --quiet. Results asked for with "-o -" are not sent through here.
+  // A line for the user on standard output unless --quiet. Results asked for with "-o -" are not sent through
+  // here.
   void say(const std::string& line) const;
   // The reasons of an unreliable result, on standard error, and exit code 4.
   void say_unreliable(const std::string& what, const std::vector<std::string>& reasons);
 };
 
 // Adds a subcommand with the options that all have (--verbose, --quiet) and an example under its help.
-CLI::App* add_subcommand(CLI::App& app, Context& context, const std::string& name, const std::string& description,
-                         const std::string& example);
+CLI::App* add_subcommand(CLI::App& app, Context& context, const std::string& name,
+                         const std::string& description, const std::string& example);
 // Adds an option that takes "x,y,z" (mm or a direction), which may start with a minus sign.
 CLI::Option* add_vector_option(CLI::App& subcommand, const std::string& name, Eigen::Vector3d& value,
                                const std::string& description);
@@ -70,8 +73,9 @@ struct WorkstationRequest {
   bool list_widgets = false;
 };
 
-// The whole program: parses, dispatches, turns every exception into its exit code and one line on standard error.
-// open_workstation is called when no subcommand was given, and returns the exit code.
-int run_command_line(int argc, char** argv, const std::function<int(const WorkstationRequest&)>& open_workstation);
+// The whole program: parses, dispatches, turns every exception into its exit code and one line on standard
+// error. open_workstation is called when no subcommand was given, and returns the exit code.
+int run_command_line(int argc, char** argv,
+                     const std::function<int(const WorkstationRequest&)>& open_workstation);
 
 }  // namespace arthronaut::command_line

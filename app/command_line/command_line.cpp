@@ -13,15 +13,15 @@ namespace arthronaut::command_line {
 
 namespace {
 
-// "--target -74.5,16.1,-9.7": joins an option and a value that starts with a minus sign, which the parser would take
-// for another option.
+// "--target -74.5,16.1,-9.7": joins an option and a value that starts with a minus sign, which the parser
+// would take for another option.
 std::vector<std::string> joined_negative_values(int argc, char** argv) {
   std::vector<std::string> arguments;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
-    const bool is_negative_number =
-        argument.size() > 1 && argument[0] == '-' &&
-        (std::isdigit(static_cast<unsigned char>(argument[1])) != 0 || (argument[1] == '.' && argument.size() > 2));
+    const bool is_negative_number = argument.size() > 1 && argument[0] == '-' &&
+                                    (std::isdigit(static_cast<unsigned char>(argument[1])) != 0 ||
+                                     (argument[1] == '.' && argument.size() > 2));
     if (is_negative_number && !arguments.empty() && arguments.back().starts_with("--") &&
         arguments.back().find('=') == std::string::npos) {
       arguments.back() += "=" + argument;
@@ -33,7 +33,8 @@ std::vector<std::string> joined_negative_values(int argc, char** argv) {
 }
 
 // No subcommand: the window. A word that is neither a subcommand nor a folder is a slip of the keyboard.
-int open_window(const WorkstationRequest& request, const std::function<int(const WorkstationRequest&)>& open) {
+int open_window(const WorkstationRequest& request,
+                const std::function<int(const WorkstationRequest&)>& open) {
   if (!request.case_folder.empty() && !std::filesystem::exists(request.case_folder)) {
     std::cerr << "arthronaut: \"" << request.case_folder
               << "\" is neither a subcommand nor a case folder; see arthronaut --help\n";
@@ -49,19 +50,24 @@ int report_error(const std::exception& error, int exit_code) {
 
 }  // namespace
 
-int run_command_line(int argc, char** argv, const std::function<int(const WorkstationRequest&)>& open_workstation) {
+int run_command_line(int argc, char** argv,
+                     const std::function<int(const WorkstationRequest&)>& open_workstation) {
   CLI::App app{
-      "Arthronaut plans and navigates the reconstruction of the anterior cruciate ligament by the arthroscope's own\n"
+      "Arthronaut plans and navigates the reconstruction of the anterior cruciate ligament by the "
+      "arthroscope's own\n"
       "video. Research software, not a medical device. Without a subcommand it opens the workstation."};
   app.name("arthronaut");
   app.set_version_flag("--version", std::string("arthronaut ") + kProgramVersion);
   app.require_subcommand(0, 1);
-  app.footer("Exit codes: 0 done and reliable; 1 internal error; 2 wrong usage; 3 unreadable or invalid input;\n"
-             "4 done, but the result is not reliable (it is written, with its reasons).");
+  app.footer(
+      "Exit codes: 0 done and reliable; 1 internal error; 2 wrong usage; 3 unreadable or invalid input;\n"
+      "4 done, but the result is not reliable (it is written, with its reasons).");
   WorkstationRequest request;
   app.add_option("case", request.case_folder, "Case folder to open in the workstation");
-  app.add_option("--frames", request.frames, "Close the workstation after so many frames")->check(CLI::NonNegativeNumber);
-  app.add_flag("--list-widgets", request.list_widgets, "Print where the workstation's widgets are, for tests");
+  app.add_option("--frames", request.frames, "Close the workstation after so many frames")
+      ->check(CLI::NonNegativeNumber);
+  app.add_flag("--list-widgets", request.list_widgets,
+               "Print where the workstation's widgets are, for tests");
 
   Context context;
   add_import_command(app, context);
@@ -95,7 +101,8 @@ int run_command_line(int argc, char** argv, const std::function<int(const Workst
     if (app.get_subcommands().empty()) return open_window(request, open_workstation);
     return context.exit_code;
   } catch (const CLI::ParseError& error) {
-    const bool asked_for = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);  // --help, --version
+    const bool asked_for =
+        error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);  // --help, --version
     app.exit(error);
     return asked_for ? kDone : kWrongUsage;
   } catch (const InvalidInput& error) {

@@ -18,7 +18,8 @@ struct DemoArguments {
 // Without a name of the user's: the first of demo.arthro, demo-2.arthro, ... that is not there.
 fs::path folder_of(const DemoArguments& arguments) {
   if (!arguments.output.empty()) {
-    if (fs::exists(arguments.output)) throw InvalidInput(arguments.output, "", "exists already; nothing was written");
+    if (fs::exists(arguments.output))
+      throw InvalidInput(arguments.output, "", "exists already; nothing was written");
     return arguments.output;
   }
   fs::path folder = "demo.arthro";
@@ -29,16 +30,19 @@ fs::path folder_of(const DemoArguments& arguments) {
 }  // namespace
 
 void add_demo_command(CLI::App& app, Context& context) {
-  CLI::App* command = add_subcommand(app, context, "demo",
-                                     "The whole workflow on the built-in phantom and the simulated arthroscope, from "
-                                     "plan to report",
-                                     "arthronaut demo -o demo.arthro --side left --seed 3");
+  CLI::App* command =
+      add_subcommand(app, context, "demo",
+                     "The whole workflow on the built-in phantom and the simulated arthroscope, from "
+                     "plan to report",
+                     "arthronaut demo -o demo.arthro --side left --seed 3");
   const auto arguments = std::make_shared<DemoArguments>();
-  command->add_option("-o,--output", arguments->output, "Case folder to write; default: demo.arthro, or the next free name");
+  command->add_option("-o,--output", arguments->output,
+                      "Case folder to write; default: demo.arthro, or the next free name");
   command->add_option("--side", arguments->side, "left or right")
       ->check(CLI::IsMember({"left", "right"}))
       ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "Another knee and another hand for each seed")->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Another knee and another hand for each seed")
+      ->capture_default_str();
   command->callback([&context, arguments] {
     run_demo(context, {.case_folder = folder_of(*arguments),
                        .seed = arguments->seed,

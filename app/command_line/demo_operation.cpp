@@ -28,7 +28,8 @@ using simulator::Phase;
 // Enough for a tip that is sure; the swing's own 130 frames would take as long again to render.
 constexpr int kPivotFrames = 70;
 
-// Keeps how deep the drill truly was in every frame: frames are rendered in another thread than they are tracked in.
+// Keeps how deep the drill truly was in every frame: frames are rendered in another thread than they are
+// tracked in.
 class WatchedOperation : public sources::FrameSource {
  public:
   WatchedOperation(const simulator::SimulationOptions& options, Phase phase) : operation_(options, phase) {}
@@ -68,7 +69,8 @@ class DrillRecord {
   [[nodiscard]] int count() const { return static_cast<int>(sigma_offset_.size()); }
 
   // Precondition: count() > 0. The depth is read off the drill's scale, to the millimetre.
-  [[nodiscard]] recording::AchievedTunnel achieved(const tunnels::Tunnel& planned, const geometry::Surface& bone) const {
+  [[nodiscard]] recording::AchievedTunnel achieved(const tunnels::Tunnel& planned,
+                                                   const geometry::Surface& bone) const {
     recording::AchievedTunnel achieved;
     achieved.planned = achieved.measured = planned;
     for (int i = 0; i < 3; ++i) {
@@ -115,7 +117,8 @@ class Demo {
   }
 
   void plan() {
-    step("Plan: a " + std::string(bones::to_text(options_.side)) + " phantom knee with its anatomical tunnels");
+    step("Plan: a " + std::string(bones::to_text(options_.side)) +
+         " phantom knee with its anatomical tunnels");
     simulation_.knee = phantom::make_phantom_knee({.side = options_.side, .seed = options_.seed});
     simulation_.camera = simulator::standard_camera();
     simulation_.tools = tools::standard_tools();
@@ -124,10 +127,11 @@ class Demo {
     const geometry::TriangleMesh& mesh = simulation_.knee.femur.mesh;
     femur_ = std::make_unique<geometry::Surface>(mesh);
     planned_length_mm_ = tunnels::measure(simulation_.plan, *femur_).length_mm;
-    cases::save_case(options_.case_folder, phantom::case_of(simulation_.knee, options_.case_folder.stem().string()));
+    cases::save_case(options_.case_folder,
+                     phantom::case_of(simulation_.knee, options_.case_folder.stem().string()));
     fs::create_directory(options_.case_folder / "pictures");
-    context_.say(format("          femur of %zu triangles; tunnel of %.1f mm, diameter %.1f mm", mesh.triangles.size(),
-                        planned_length_mm_, simulation_.plan.diameter_mm));
+    context_.say(format("          femur of %zu triangles; tunnel of %.1f mm, diameter %.1f mm",
+                        mesh.triangles.size(), planned_length_mm_, simulation_.plan.diameter_mm));
   }
 
   bool calibrate() {
@@ -139,7 +143,8 @@ class Demo {
       camera::gray_from(*frame, gray);
       auto picture = calibration::observe_picture("still " + std::to_string(frame->index),
                                                   {gray.data(), frame->width, frame->height, frame->width});
-      // As in theatre: a still without a board is not used. One without a mark is: the others give its lens angle.
+      // As in theatre: a still without a board is not used. One without a mark is: the others give its lens
+      // angle.
       if (picture.board.found()) {
         pictures.push_back(std::move(picture));
       } else {
@@ -162,11 +167,13 @@ class Demo {
     camera::write_camera_file(cases::camera_file(options_.case_folder), summary.record);
     navigation_.pipeline.calibration = summary.record.calibration;
     const camera::Calibration& found = summary.record.calibration;
-    context_.say(format("          %zu stills, rms %.2f px; focal length %+.2f %%, principal point %.1f px from the truth",
-                        pictures.size(), summary.rms_px, 100 * (found.focal_px / simulation_.camera.focal_px - 1),
-                        (found.principal_point_px - simulation_.camera.turned(
-                             simulation_.camera.principal_point_px,
-                             simulation_.camera.lens_angle_rad(found.reference_mark_angle_deg))).norm()));
+    context_.say(format(
+        "          %zu stills, rms %.2f px; focal length %+.2f %%, principal point %.1f px from the truth",
+        pictures.size(), summary.rms_px, 100 * (found.focal_px / simulation_.camera.focal_px - 1),
+        (found.principal_point_px -
+         simulation_.camera.turned(simulation_.camera.principal_point_px,
+                                   simulation_.camera.lens_angle_rad(found.reference_mark_angle_deg)))
+            .norm()));
     if (summary.outcome == calibration::CalibrationSummary::Outcome::Unreliable) {
       context_.say_unreliable("the calibration", summary.reasons);
     }
@@ -184,7 +191,8 @@ class Demo {
     WatchedOperation source(swing, Phase::Pivot);
     const pipeline::TrackedVideo tracked = pipeline::track_video(source, view, simulation_.tools);
     tools::ToolSet tools = simulation_.tools;
-    const auto probe = std::find_if(tools.tools.begin(), tools.tools.end(), [](const auto& t) { return t.name == "probe"; });
+    const auto probe =
+        std::find_if(tools.tools.begin(), tools.tools.end(), [](const auto& t) { return t.name == "probe"; });
     const int world_id = tools.find_world_marker(simulation_.bone)->marker_id;
     std::map<std::int64_t, geometry::RigidTransform> camera_from_world;
     for (const strokes::PoseRow& row : tracked.rows) {
@@ -198,8 +206,9 @@ class Demo {
     }
     const tools::PivotCalibrationSummary summary = tools::calibrate_pivot(world_from_probe);
     if (summary.has_tip()) {
-      context_.say(format("          %d poses, rms %.3f mm, cone %.0f deg; tip %.3f mm from the truth", summary.pose_count,
-                          summary.rms_mm, summary.cone_deg, (summary.tip_in_tool_mm - *probe->tip_mm).norm()));
+      context_.say(format("          %d poses, rms %.3f mm, cone %.0f deg; tip %.3f mm from the truth",
+                          summary.pose_count, summary.rms_mm, summary.cone_deg,
+                          (summary.tip_in_tool_mm - *probe->tip_mm).norm()));
     }
     if (summary.is_usable()) {
       probe->tip_mm = summary.tip_in_tool_mm;
@@ -219,14 +228,17 @@ class Demo {
     step("Scratch: the probe draws on the notch wall, and the femur is found from nothing");
     const registration::PreparedBone bone(simulation_.knee.femur.mesh);
     navigation_.bone = &bone;
-    const pipeline::NavigationSummary summary = navigate(Phase::Scratch, "scratch", [](auto&, const auto&) {});
+    const pipeline::NavigationSummary summary =
+        navigate(Phase::Scratch, "scratch", [](auto&, const auto&) {});
     navigation_.bone = nullptr;
     navigation_.registration = summary.registration;
     if (summary.registration && summary.registration->has_pose) {
       const Eigen::Vector3d& entry = simulation_.plan.entry_mm;
-      context_.say(format("          strokes of %.0f mm; rms %.2f mm, predicted error at the entry %.2f mm, true error %.2f mm",
-                          summary.stroke_length_mm, summary.registration->rms_mm, summary.registration->predicted_tre_mm,
-                          (summary.registration->marker_from_bone * entry - true_marker_from_bone_ * entry).norm()));
+      context_.say(format(
+          "          strokes of %.0f mm; rms %.2f mm, predicted error at the entry %.2f mm, true error %.2f "
+          "mm",
+          summary.stroke_length_mm, summary.registration->rms_mm, summary.registration->predicted_tre_mm,
+          (summary.registration->marker_from_bone * entry - true_marker_from_bone_ * entry).norm()));
     }
     if (!summary.reasons.empty()) context_.say_unreliable("the registration", summary.reasons);
   }
@@ -234,8 +246,8 @@ class Demo {
   bool drill() {
     step("Drill: the guide is led to the plan, and the tunnel is drilled");
     DrillRecord record;
-    const pipeline::NavigationSummary summary =
-        navigate(Phase::Drill, "drill", [&](const WatchedOperation& source, const pipeline::FrameResult& result) {
+    const pipeline::NavigationSummary summary = navigate(
+        Phase::Drill, "drill", [&](const WatchedOperation& source, const pipeline::FrameResult& result) {
           const double depth_mm = source.depth_mm(result.frame_index);
           if (depth_mm > 0 && result.guidance.is_valid()) record.add(result.guidance, depth_mm);
         });
@@ -275,7 +287,8 @@ class Demo {
     if (phase == Phase::Drill) true_tunnel_ = source.operation().drilled_tunnel();
     if (last_frame) {
       write_frame_picture(options_.case_folder / "pictures" / (name + ".png"), *last_frame, last_result,
-                          summary.registration, simulation_.knee.femur.mesh, simulation_.plan, planned_length_mm_);
+                          summary.registration, simulation_.knee.femur.mesh, simulation_.plan,
+                          planned_length_mm_);
     }
     return summary;
   }
@@ -302,8 +315,8 @@ class Demo {
   Context& context_;
   DemoOptions options_;
   std::chrono::steady_clock::time_point started_;
-  simulator::SimulationOptions simulation_;   // the truth
-  pipeline::NavigateOptions navigation_;      // what the theatre has found so far
+  simulator::SimulationOptions simulation_;  // the truth
+  pipeline::NavigateOptions navigation_;     // what the theatre has found so far
   std::unique_ptr<geometry::Surface> femur_;
   double planned_length_mm_ = 0;
   fs::path last_session_;

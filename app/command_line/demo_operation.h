@@ -14,8 +14,8 @@ struct DemoOptions {
   bones::Side side = bones::Side::Right;
 };
 
-// Says each step with its numbers, and those against the truth of the simulation. Sets the exit code to 4, with the reasons,
-// when a step is not reliable. When it throws, the case folder is gone again.
+// Says each step with its numbers, and those against the truth of the simulation. Sets the exit code to 4,
+// with the reasons, when a step is not reliable. When it throws, the case folder is gone again.
 void run_demo(Context& context, const DemoOptions& options);
 
 }  // namespace arthronaut::command_line

@@ -46,10 +46,12 @@ void draw(scene::Image& image, const scene::OverlayLine& line) {
 void write_frame_picture(const std::filesystem::path& file, const camera::Frame& frame,
                          const pipeline::FrameResult& result,
                          const std::optional<registration::RegistrationSummary>& registration,
-                         const geometry::TriangleMesh& bone, const tunnels::Tunnel& plan, double planned_length_mm) {
+                         const geometry::TriangleMesh& bone, const tunnels::Tunnel& plan,
+                         double planned_length_mm) {
   scene::Image image = image_of(frame);
   if (registration && registration->has_pose && result.camera_from_world.is_valid) {
-    const scene::OverlayModel overlay(std::make_shared<geometry::Surface>(bone), bone, plan, planned_length_mm);
+    const scene::OverlayModel overlay(std::make_shared<geometry::Surface>(bone), bone, plan,
+                                      planned_length_mm);
     const auto lines = overlay.project(
         result.camera, result.camera_from_world.target_from_source * registration->marker_from_bone, {});
     for (const scene::OverlayLine& line : lines) draw(image, line);

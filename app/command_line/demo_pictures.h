@@ -11,11 +11,12 @@
 
 namespace arthronaut::command_line {
 
-// PNG. The plan is drawn where registration and world marker of this frame put it; without them the frame alone. Throws
-// IoError.
+// PNG. The plan is drawn where registration and world marker of this frame put it; without them the frame
+// alone. Throws IoError.
 void write_frame_picture(const std::filesystem::path& file, const camera::Frame& frame,
                          const pipeline::FrameResult& result,
                          const std::optional<registration::RegistrationSummary>& registration,
-                         const geometry::TriangleMesh& bone, const tunnels::Tunnel& plan, double planned_length_mm);
+                         const geometry::TriangleMesh& bone, const tunnels::Tunnel& plan,
+                         double planned_length_mm);
 
 }  // namespace arthronaut::command_line

@@ -19,8 +19,9 @@ void digitise(Context& context, const DigitiseArguments& arguments) {
   const auto tools = tools::read_tools_file(arguments.tools);
   const auto curves =
       strokes::digitise(poses, tools, bones::bone_kind_from_text(arguments.bone), arguments.tool);
-  strokes::write_curves_file(arguments.output, curves,
-                             arguments.with_shaft ? strokes::ShaftColumns::Write : strokes::ShaftColumns::LeaveOut);
+  strokes::write_curves_file(
+      arguments.output, curves,
+      arguments.with_shaft ? strokes::ShaftColumns::Write : strokes::ShaftColumns::LeaveOut);
   if (arguments.output != "-") {
     char line[120];
     std::snprintf(line, sizeof line, "%zu points on %d strokes, %.0f mm", curves.size(),
@@ -28,7 +29,8 @@ void digitise(Context& context, const DigitiseArguments& arguments) {
     context.say(line);
   }
   if (curves.empty()) {
-    context.say_unreliable("the curves", {"the world marker and the tool were never seen together over a stroke"});
+    context.say_unreliable("the curves",
+                           {"the world marker and the tool were never seen together over a stroke"});
   }
 }
 
@@ -44,9 +46,11 @@ void add_digitise_command(CLI::App& app, Context& context) {
   command->add_option("--bone", arguments->bone, "femur or tibia: whose world marker the tip is seen from")
       ->check(CLI::IsMember({"femur", "tibia"}));
   command->add_option("--tool", arguments->tool, "Name of the tool that touches the bone");
-  command->add_flag("--with-shaft", arguments->with_shaft,
-                    "Write where the probe's shaft was too; register then rules out what leads it through the bone");
-  command->add_option("-o,--output", arguments->output, "curves.csv to write; - is standard output")->required();
+  command->add_flag(
+      "--with-shaft", arguments->with_shaft,
+      "Write where the probe's shaft was too; register then rules out what leads it through the bone");
+  command->add_option("-o,--output", arguments->output, "curves.csv to write; - is standard output")
+      ->required();
   command->callback([&context, arguments] { digitise(context, *arguments); });
 }
 

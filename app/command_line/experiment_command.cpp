@@ -5,8 +5,9 @@
 namespace arthronaut::command_line {
 
 void add_experiment_command(CLI::App& app, Context& context) {
-  CLI::App* experiment = add_subcommand(app, context, "experiment", "The experiments of the paper, run again",
-                                        "arthronaut experiment registration --bone femur.ply --trials 10 --noise dry");
+  CLI::App* experiment =
+      add_subcommand(app, context, "experiment", "The experiments of the paper, run again",
+                     "arthronaut experiment registration --bone femur.ply --trials 10 --noise dry");
   experiment->require_subcommand(1);
   add_lens_rotation_experiment(*experiment, context);
   add_registration_experiment(*experiment, context);

@@ -57,10 +57,10 @@ LensRotationResult run_simulated(Context& context, const LensRotationArguments& 
     simulated = experiments::simulate_lens_rotation(arguments.frames, arguments.seed,
                                                     [&](int done) { progress.advance_to(done); });
   }
-  context.say(
-      files::format("simulator, seed %llu; camera calibrated from its stills: focal length %.2f px (true %.2f)",
-                static_cast<unsigned long long>(arguments.seed), simulated.calibrated.focal_px,
-                simulated.truth.focal_px));
+  context.say(files::format(
+      "simulator, seed %llu; camera calibrated from its stills: focal length %.2f px (true %.2f)",
+      static_cast<unsigned long long>(arguments.seed), simulated.calibrated.focal_px,
+      simulated.truth.focal_px));
   return simulated.result;
 }
 
@@ -75,8 +75,8 @@ void run(Context& context, const LensRotationArguments& arguments) {
   for (std::size_t i = 0; i < experiments::kLensModes.size(); ++i) {
     const experiments::LensModeSummary& mode = result.modes[i];
     context.say(files::format("%-22s %6d   %6.3f   %6.3f     %6.3f   %6.3f",
-                          std::string(to_text(experiments::kLensModes[i])).c_str(), mode.frame_count,
-                          mode.median_mm, mode.p95_mm, mode.median_deg, mode.p95_deg));
+                              std::string(to_text(experiments::kLensModes[i])).c_str(), mode.frame_count,
+                              mode.median_mm, mode.p95_mm, mode.median_deg, mode.p95_deg));
   }
   if (!arguments.output.empty()) {
     const fs::path folder = arguments.output;

@@ -9,12 +9,16 @@ void add_markers_command(CLI::App& app, Context& context) {
     report::MarkerSheetOptions sheet;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* sub = add_subcommand(app, context, "markers", "Write a printable sheet of markers and a checkerboard at true size",
+  CLI::App* sub = add_subcommand(app, context, "markers",
+                                 "Write a printable sheet of markers and a checkerboard at true size",
                                  "arthronaut markers -o markers.pdf --size-mm 4");
   sub->add_option("-o,--output", arguments->output, "PDF to write")->required();
-  sub->add_option("--ids", arguments->sheet.ids, "Marker ids of DICT_4X4_50")->delimiter(',')->capture_default_str();
+  sub->add_option("--ids", arguments->sheet.ids, "Marker ids of DICT_4X4_50")
+      ->delimiter(',')
+      ->capture_default_str();
   sub->add_option("--size-mm", arguments->sheet.size_mm, "Side of the black square")->capture_default_str();
-  sub->add_option("--square-mm", arguments->sheet.square_mm, "Side of the checkerboard's squares")->capture_default_str();
+  sub->add_option("--square-mm", arguments->sheet.square_mm, "Side of the checkerboard's squares")
+      ->capture_default_str();
   sub->callback([arguments, &context] {
     report::write_marker_sheet(arguments->output, arguments->sheet);
     context.say("Wrote " + arguments->output + ": check the 50 mm rule after printing.");

@@ -5,7 +5,8 @@
 
 namespace arthronaut::command_line {
 
-CLI::Option* add_medium_option(CLI::App& subcommand, std::optional<double>& index, const std::string& description) {
+CLI::Option* add_medium_option(CLI::App& subcommand, std::optional<double>& index,
+                               const std::string& description) {
   const auto parse = [&index](const CLI::results_t& results) {
     try {
       index = camera::refractive_index_from_text(results.front());

@@ -53,7 +53,8 @@ fs::path file_to_use(const std::string& given, const fs::path& of_case, const st
 }
 
 void adopt(const std::string& given, const fs::path& of_case) {
-  if (given.empty() || fs::absolute(given).lexically_normal() == fs::absolute(of_case).lexically_normal()) return;
+  if (given.empty() || fs::absolute(given).lexically_normal() == fs::absolute(of_case).lexically_normal())
+    return;
   files::write_atomically(of_case, files::read_text(given));
 }
 
@@ -61,7 +62,8 @@ pipeline::PipelineOptions pipeline_options(const NavigateArguments& arguments, c
   pipeline::PipelineOptions options;
   const fs::path folder = arguments.case_folder;
   options.calibration =
-      camera::read_camera_file(file_to_use(arguments.camera, cases::camera_file(folder), "--camera")).calibration;
+      camera::read_camera_file(file_to_use(arguments.camera, cases::camera_file(folder), "--camera"))
+          .calibration;
   options.tools = tools::read_tools_file(file_to_use(arguments.tools, cases::tools_file(folder), "--tools"));
   options.refractive_index = arguments.medium_index.value_or(
       options.calibration.refractive_index == camera::kAirIndex ? camera::kSalineIndex
@@ -106,23 +108,27 @@ pipeline::NavigateOptions navigate_options(const Context& context, const Navigat
 void say_registration(const Context& context, const pipeline::NavigationSummary& summary) {
   if (!summary.registration || !summary.registration->has_pose) return context.say("registration: none");
   const registration::RegistrationSummary& r = *summary.registration;
-  context.say(format("registration (%s): rms %.2f mm over %d points, predicted error %.2f mm at the target, %s",
-                     summary.registration_was_found ? "found" : "given", r.rms_mm, r.point_count, r.predicted_tre_mm,
-                     r.reliable ? "reliable" : "not reliable"));
+  context.say(
+      format("registration (%s): rms %.2f mm over %d points, predicted error %.2f mm at the target, %s",
+             summary.registration_was_found ? "found" : "given", r.rms_mm, r.point_count, r.predicted_tre_mm,
+             r.reliable ? "reliable" : "not reliable"));
   for (const std::string& assumption : r.assumptions) context.say("  " + assumption);
 }
 
 void say_guidance(const Context& context, const pipeline::NavigationSummary& summary) {
   const guidance::GuidanceNumbers& g = summary.last_guidance;
-  if (!g.is_valid()) return context.say("guidance: none; at the end: " + std::string(guidance::to_text(summary.last_state)));
-  context.say(format("guidance in %ld of %ld frames; the last: guide to entry %.2f mm, axis to entry %.2f mm, "
-                     "angle %.2f deg",
-                     summary.frames_with_guidance, summary.statistics.frame_count, g.tip_to_entry_mm, g.axis_to_entry_mm,
-                     g.angle_deg));
-  context.say(format("  offset %.2f mm anterior, %.2f mm proximal; depth %.1f mm, remaining %.1f mm; "
-                     "one sigma %.2f mm, %.2f deg",
-                     g.offset_anterior_mm, g.offset_proximal_mm, g.depth_mm, g.remaining_mm, g.sigma_offset_mm,
-                     g.sigma_angle_deg));
+  if (!g.is_valid())
+    return context.say("guidance: none; at the end: " + std::string(guidance::to_text(summary.last_state)));
+  context.say(
+      format("guidance in %ld of %ld frames; the last: guide to entry %.2f mm, axis to entry %.2f mm, "
+             "angle %.2f deg",
+             summary.frames_with_guidance, summary.statistics.frame_count, g.tip_to_entry_mm,
+             g.axis_to_entry_mm, g.angle_deg));
+  context.say(
+      format("  offset %.2f mm anterior, %.2f mm proximal; depth %.1f mm, remaining %.1f mm; "
+             "one sigma %.2f mm, %.2f deg",
+             g.offset_anterior_mm, g.offset_proximal_mm, g.depth_mm, g.remaining_mm, g.sigma_offset_mm,
+             g.sigma_angle_deg));
 }
 
 void navigate(Context& context, const NavigateArguments& arguments) {
@@ -132,8 +138,8 @@ void navigate(Context& context, const NavigateArguments& arguments) {
   if (mesh == knee.bones.end()) {
     throw InvalidInput(arguments.case_folder, "", "the case has no " + arguments.bone);
   }
-  const registration::PreparedBone bone(mesh->second.mesh,
-                                        cases::prepared_bone_file(arguments.case_folder, options.pipeline.bone));
+  const registration::PreparedBone bone(
+      mesh->second.mesh, cases::prepared_bone_file(arguments.case_folder, options.pipeline.bone));
   options.bone = &bone;
   const bones::BoneKind kind = options.pipeline.bone;
   const auto cartilage = arguments.cartilage.mesh.empty() ? cases::load_cartilage(arguments.case_folder, kind)
@@ -153,8 +159,9 @@ void navigate(Context& context, const NavigateArguments& arguments) {
     pipeline::NavigationObserver observer;
     observer.on_frame = [&](const auto&, const auto&) { progress.advance_to(++done); };
     summary = recording::record_navigation(
-        *source, options, session.folder(), arguments.no_copy ? recording::KeepVideo::Refer : recording::KeepVideo::Copy,
-        arguments.video, observer);
+        *source, options, session.folder(),
+        arguments.no_copy ? recording::KeepVideo::Refer : recording::KeepVideo::Copy, arguments.video,
+        observer);
   }
   adopt(arguments.camera, cases::camera_file(arguments.case_folder));
   adopt(arguments.tools, cases::tools_file(arguments.case_folder));
@@ -173,34 +180,43 @@ void navigate(Context& context, const NavigateArguments& arguments) {
 
 void add_navigate_command(CLI::App& app, Context& context) {
   CLI::App* command = add_subcommand(
-      app, context, "navigate", "Track, digitise, register and guide on a recorded video; writes a session into the case",
+      app, context, "navigate",
+      "Track, digitise, register and guide on a recorded video; writes a session into the case",
       "arthronaut navigate knee.arthro --video scratch.mkv --camera camera.json --tools tools.json");
   const auto arguments = std::make_shared<NavigateArguments>();
   command->add_option("CASE", arguments->case_folder, "Case folder")->required();
-  command->add_option("--video", arguments->video, "Video file, or a pattern of still images such as f_%04d.png")
+  command
+      ->add_option("--video", arguments->video, "Video file, or a pattern of still images such as f_%04d.png")
       ->required();
-  command->add_option("--camera", arguments->camera, "camera.json; copied into the case. Default: the case's");
+  command->add_option("--camera", arguments->camera,
+                      "camera.json; copied into the case. Default: the case's");
   command->add_option("--tools", arguments->tools, "tools.json; copied into the case. Default: the case's");
-  add_medium_option(*command, arguments->medium_index,
-                    "What the scope looks through: air, water, saline or a refractive index. Default: saline when the "
-                    "camera was calibrated in air, else the medium of the calibration");
+  add_medium_option(
+      *command, arguments->medium_index,
+      "What the scope looks through: air, water, saline or a refractive index. Default: saline when the "
+      "camera was calibrated in air, else the medium of the calibration");
   command->add_option("--bone", arguments->bone, "femur or tibia")
       ->check(CLI::IsMember({"femur", "tibia"}))
       ->capture_default_str();
-  command->add_option("--registration", arguments->registration,
-                      "registration.json to guide by. Default: the newest reliable one of the case for this world "
-                      "marker; strokes of the probe give a new one");
+  command->add_option(
+      "--registration", arguments->registration,
+      "registration.json to guide by. Default: the newest reliable one of the case for this world "
+      "marker; strokes of the probe give a new one");
   add_cartilage_option(*command, arguments->cartilage.mesh, "; copied into the case. Default: the case's");
   command->add_option("--space", arguments->cartilage.space,
                       "Frame of the cartilage's mesh when its file doesn't say: lps (default) or ras");
-  command->add_option("--unit", arguments->cartilage.unit, "Length unit of the cartilage's mesh: mm (default), cm, m or in");
-  arguments->probe_option = command->add_option("--probe", arguments->probe, "Name of the touch probe in the tools")
-                                ->capture_default_str();
-  command->add_option("--guide", arguments->guide,
-                      "Name of the drill guide in the tools. Default: femoral guide or tibial guide, by the bone");
+  command->add_option("--unit", arguments->cartilage.unit,
+                      "Length unit of the cartilage's mesh: mm (default), cm, m or in");
+  arguments->probe_option =
+      command->add_option("--probe", arguments->probe, "Name of the touch probe in the tools")
+          ->capture_default_str();
+  command->add_option(
+      "--guide", arguments->guide,
+      "Name of the drill guide in the tools. Default: femoral guide or tibial guide, by the bone");
   command->add_flag("--fixed-lens", arguments->fixed_lens,
                     "The lens stays at the calibration's reference angle; the lens mark is not needed");
-  command->add_flag("--no-copy", arguments->no_copy, "Keep only the video's path in the session, not a copy of it");
+  command->add_flag("--no-copy", arguments->no_copy,
+                    "Keep only the video's path in the session, not a copy of it");
   command->callback([&context, arguments] { navigate(context, *arguments); });
 }
 

@@ -11,18 +11,21 @@ void add_phantom_command(CLI::App& app, Context& context) {
     std::uint64_t seed = 1;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* sub = add_subcommand(app, context, "phantom", "Write the built-in knee as a case folder: meshes, landmarks, plan",
+  CLI::App* sub = add_subcommand(app, context, "phantom",
+                                 "Write the built-in knee as a case folder: meshes, landmarks, plan",
                                  "arthronaut phantom -o Phantom.arthro --side left --seed 3");
   sub->add_option("-o,--output", arguments->output, "Case folder to write")->required();
-  sub->add_option("--side", arguments->side, "left or right")->check(CLI::IsMember({"left", "right"}))->capture_default_str();
+  sub->add_option("--side", arguments->side, "left or right")
+      ->check(CLI::IsMember({"left", "right"}))
+      ->capture_default_str();
   sub->add_option("--seed", arguments->seed, "Another knee for each seed")->capture_default_str();
   sub->callback([arguments, &context] {
     const std::filesystem::path folder = arguments->output;
     if (std::filesystem::exists(folder / "case.json")) {
       throw InvalidInput(folder, "", "holds a case already; nothing was written");
     }
-    const auto knee = phantom::make_phantom_knee(
-        {.side = bones::side_from_text(arguments->side), .seed = arguments->seed});
+    const auto knee =
+        phantom::make_phantom_knee({.side = bones::side_from_text(arguments->side), .seed = arguments->seed});
     cases::save_case(folder, phantom::case_of(knee, folder.stem().string()));
     context.say("Wrote " + folder.string() + ": a " + arguments->side + " knee with its plan.");
   });

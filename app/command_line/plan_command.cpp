@@ -26,7 +26,8 @@ void describe(const Context& context, const cases::Case& knee, const tunnels::Tu
   const auto measured = tunnels::measure(tunnel, surface);
   const auto& e = tunnel.entry_mm;
   const auto& d = tunnel.direction;
-  context.say(files::format("%s tunnel, %.1f mm", std::string(bones::to_text(tunnel.bone)).c_str(), tunnel.diameter_mm));
+  context.say(files::format("%s tunnel, %.1f mm", std::string(bones::to_text(tunnel.bone)).c_str(),
+                            tunnel.diameter_mm));
   context.say(files::format("  entry      %.3f, %.3f, %.3f mm", e.x(), e.y(), e.z()));
   context.say(files::format("  direction  %.5f, %.5f, %.5f", d.x(), d.y(), d.z()));
   if (measured.enters_bone) {
@@ -36,12 +37,12 @@ void describe(const Context& context, const cases::Case& knee, const tunnels::Tu
     context.say(files::format("  wall       %.2f mm at the thinnest", measured.wall_mm));
   }
   const auto marks = knee.landmarks.find(tunnel.bone);
-  const auto surroundings =
-      tunnels::surroundings_of(knee.bones.at(tunnel.bone).mesh, tunnel.bone,
-                               marks == knee.landmarks.end() ? landmarks::Landmarks{} : marks->second, knee.side);
+  const auto surroundings = tunnels::surroundings_of(
+      knee.bones.at(tunnel.bone).mesh, tunnel.bone,
+      marks == knee.landmarks.end() ? landmarks::Landmarks{} : marks->second, knee.side);
   for (const auto& check : tunnels::check_plan(tunnel, measured, surroundings)) {
-    const bool is_amiss =
-        check.verdict == tunnels::PlanCheck::Verdict::Look || check.verdict == tunnels::PlanCheck::Verdict::Wrong;
+    const bool is_amiss = check.verdict == tunnels::PlanCheck::Verdict::Look ||
+                          check.verdict == tunnels::PlanCheck::Verdict::Wrong;
     const std::string source = is_amiss && !check.source.empty() ? " [" + check.source + "]" : "";
     context.say((is_amiss ? "  ! " : "    ") + check.name + ": " + check.text + source);
   }
@@ -49,7 +50,9 @@ void describe(const Context& context, const cases::Case& knee, const tunnels::Tu
 
 tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case& knee, bones::BoneKind kind,
                                const geometry::Surface& surface, bool has_entry) {
-  tunnels::Tunnel tunnel{.bone = kind, .entry_mm = arguments.entry_mm, .direction = arguments.direction.normalized(),
+  tunnels::Tunnel tunnel{.bone = kind,
+                         .entry_mm = arguments.entry_mm,
+                         .direction = arguments.direction.normalized(),
                          .diameter_mm = arguments.diameter_mm};
   if (arguments.at_footprint || arguments.customary) {
     const auto marks = knee.landmarks.find(kind);
@@ -64,7 +67,8 @@ tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case
   const auto nearest = surface.closest_point(tunnel.entry_mm);
   const double off_mm = (nearest.point_mm - tunnel.entry_mm).norm();
   if (off_mm > kSnapMm) {
-    throw InvalidInput(files::format("plan: --entry lies %.1f mm off the bone, more than %.0f mm", off_mm, kSnapMm));
+    throw InvalidInput(
+        files::format("plan: --entry lies %.1f mm off the bone, more than %.0f mm", off_mm, kSnapMm));
   }
   tunnel.entry_mm = nearest.point_mm;
   if (arguments.customary) {
@@ -81,24 +85,32 @@ tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case
 
 void add_plan_command(CLI::App& app, Context& context) {
   const auto arguments = std::make_shared<PlanArguments>();
-  CLI::App* sub = add_subcommand(app, context, "plan", "Place a tunnel, or show the plan when no bone is given",
-                                 "arthronaut plan Knee.arthro --bone femur --entry -10.1,12.9,-0.3 --direction "
-                                 "-0.83,-0.37,0.41 --diameter-mm 9");
+  CLI::App* sub =
+      add_subcommand(app, context, "plan", "Place a tunnel, or show the plan when no bone is given",
+                     "arthronaut plan Knee.arthro --bone femur --entry -10.1,12.9,-0.3 --direction "
+                     "-0.83,-0.37,0.41 --diameter-mm 9");
   sub->add_option("case", arguments->case_folder, "Case folder")->required();
-  auto* bone = sub->add_option("--bone", arguments->bone, "femur or tibia")->check(CLI::IsMember({"femur", "tibia"}));
-  auto* entry = add_vector_option(*sub, "--entry", arguments->entry_mm, "Entry on the joint side, mm, LPS")->needs(bone);
+  auto* bone =
+      sub->add_option("--bone", arguments->bone, "femur or tibia")->check(CLI::IsMember({"femur", "tibia"}));
+  auto* entry = add_vector_option(*sub, "--entry", arguments->entry_mm, "Entry on the joint side, mm, LPS")
+                    ->needs(bone);
   auto* direction =
-      add_vector_option(*sub, "--direction", arguments->direction, "Direction of drilling, into the bone")->needs(bone);
-  auto* footprint = sub->add_flag("--at-footprint", arguments->at_footprint, "Enter at the native footprint's centre")
-                        ->needs(bone)
-                        ->excludes(entry);
-  sub->add_option("--diameter-mm", arguments->diameter_mm, "Diameter")->check(CLI::Range(3.0, 15.0))->capture_default_str();
-  auto* customary = sub->add_flag("--default", arguments->customary,
-                                  "Through the native footprint in the customary direction, fitted to the bone")
-                        ->needs(bone)
-                        ->excludes(entry)
-                        ->excludes(direction)
-                        ->excludes(footprint);
+      add_vector_option(*sub, "--direction", arguments->direction, "Direction of drilling, into the bone")
+          ->needs(bone);
+  auto* footprint =
+      sub->add_flag("--at-footprint", arguments->at_footprint, "Enter at the native footprint's centre")
+          ->needs(bone)
+          ->excludes(entry);
+  sub->add_option("--diameter-mm", arguments->diameter_mm, "Diameter")
+      ->check(CLI::Range(3.0, 15.0))
+      ->capture_default_str();
+  auto* customary =
+      sub->add_flag("--default", arguments->customary,
+                    "Through the native footprint in the customary direction, fitted to the bone")
+          ->needs(bone)
+          ->excludes(entry)
+          ->excludes(direction)
+          ->excludes(footprint);
   sub->add_flag("--list", arguments->list, "Show the plan")->excludes(direction)->excludes(customary);
   entry->needs(direction);
   footprint->needs(direction);
@@ -115,7 +127,8 @@ void add_plan_command(CLI::App& app, Context& context) {
       }
       return;
     }
-    if (!arguments->customary && arguments->direction.norm() < 1e-9) throw InvalidInput("plan: --direction must not be zero");
+    if (!arguments->customary && arguments->direction.norm() < 1e-9)
+      throw InvalidInput("plan: --direction must not be zero");
     const auto kind = bones::bone_kind_from_text(arguments->bone);
     const auto bone_of_case = knee.bones.find(kind);
     if (bone_of_case == knee.bones.end()) {

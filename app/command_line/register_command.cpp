@@ -23,7 +23,8 @@ struct RegisterArguments {
 };
 
 // A mesh that lies in a case is kept ready in the case's cache.
-registration::PreparedBone prepare(const geometry::TriangleMesh& mesh, const std::filesystem::path& mesh_file) {
+registration::PreparedBone prepare(const geometry::TriangleMesh& mesh,
+                                   const std::filesystem::path& mesh_file) {
   const std::filesystem::path folder = mesh_file.parent_path();
   for (const bones::BoneKind kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
     if (std::filesystem::exists(folder / "case.json") && mesh_file == cases::mesh_file(folder, kind)) {
@@ -55,7 +56,8 @@ void register_bone(Context& context, const RegisterArguments& arguments) {
   if (summary.has_pose && arguments.output != "-") {
     char line[160];
     std::snprintf(line, sizeof line, "%d points, rms %.2f mm, %.0f %% on the bone, predicted error %.2f mm",
-                  summary.point_count, summary.rms_mm, 100 * summary.inlier_fraction, summary.predicted_tre_mm);
+                  summary.point_count, summary.rms_mm, 100 * summary.inlier_fraction,
+                  summary.predicted_tre_mm);
     context.say(line);
   }
   if (arguments.output != "-") {
@@ -67,25 +69,32 @@ void register_bone(Context& context, const RegisterArguments& arguments) {
 }  // namespace
 
 void add_register_command(CLI::App& app, Context& context) {
-  CLI::App* command = add_subcommand(
-      app, context, "register", "Find where the bone lies from the curves touched on it, with no initial guess",
-      "arthronaut register --bone femur.ply --curves curves.csv --target -74.5,16.1,-9.7 -o registration.json");
+  CLI::App* command =
+      add_subcommand(app, context, "register",
+                     "Find where the bone lies from the curves touched on it, with no initial guess",
+                     "arthronaut register --bone femur.ply --curves curves.csv --target -74.5,16.1,-9.7 -o "
+                     "registration.json");
   const auto arguments = std::make_shared<RegisterArguments>();
   command->add_option("--bone", arguments->bone, "Surface mesh of the bone")->required();
   command->add_option("--curves", arguments->curves, "curves.csv as written by digitise")->required();
-  arguments->target_option = add_vector_option(*command, "--target", arguments->target,
-                                               "Point of the bone, mm, where the predicted error is given; default: "
-                                               "the centroid of the points");
-  arguments->entry_option = add_vector_option(*command, "--plan-entry", arguments->entry,
-                                              "Entry of the planned tunnel, mm: the strokes are looked for within a "
-                                              "probe's reach of it first, then on the whole bone");
+  arguments->target_option =
+      add_vector_option(*command, "--target", arguments->target,
+                        "Point of the bone, mm, where the predicted error is given; default: "
+                        "the centroid of the points");
+  arguments->entry_option =
+      add_vector_option(*command, "--plan-entry", arguments->entry,
+                        "Entry of the planned tunnel, mm: the strokes are looked for within a "
+                        "probe's reach of it first, then on the whole bone");
   add_cartilage_option(*command, arguments->cartilage);
   command->add_flag("--no-marker-prior", arguments->no_marker_prior,
                     "Don't assume that the world marker sits on the bone");
-  command->add_option("--seed", arguments->seed, "Seed of the random search; the same seed gives the same result");
-  command->add_option("--space", arguments->space, "Frame of the mesh when the file doesn't say: lps (default) or ras");
+  command->add_option("--seed", arguments->seed,
+                      "Seed of the random search; the same seed gives the same result");
+  command->add_option("--space", arguments->space,
+                      "Frame of the mesh when the file doesn't say: lps (default) or ras");
   command->add_option("--unit", arguments->unit, "Length unit of the mesh: mm, cm, m or in");
-  command->add_option("-o,--output", arguments->output, "registration.json to write; - is standard output")->required();
+  command->add_option("-o,--output", arguments->output, "registration.json to write; - is standard output")
+      ->required();
   command->callback([&context, arguments] { register_bone(context, *arguments); });
 }
 

@@ -30,15 +30,17 @@ std::string formatted(const char* format, Values... values) {
 
 void say_result(const Context& context, const RegistrationExperimentResult& result) {
   const int count = static_cast<int>(result.trials.size());
-  context.say(formatted("success (target error below %.0f mm): %d of %d", RegistrationExperimentResult::success_mm,
-                        result.success_count, count));
-  context.say(formatted("reliable: %d; reliable but wrong: %d; doubted though right: %d", result.reliable_count,
-                        result.reliable_but_wrong_count, result.doubted_though_right_count));
+  context.say(formatted("success (target error below %.0f mm): %d of %d",
+                        RegistrationExperimentResult::success_mm, result.success_count, count));
+  context.say(formatted("reliable: %d; reliable but wrong: %d; doubted though right: %d",
+                        result.reliable_count, result.reliable_but_wrong_count,
+                        result.doubted_though_right_count));
   context.say(formatted("target error, median: %.3f mm; error / predicted error, median: %.2f",
                         result.median_target_error_mm, result.median_error_ratio));
-  context.say(formatted("far control points, reliable trials: RMS about the centroid %.3f mm, RMS error against the "
-                        "truth %.3f mm",
-                        result.spread_rms_mm, result.error_rms_mm));
+  context.say(
+      formatted("far control points, reliable trials: RMS about the centroid %.3f mm, RMS error against the "
+                "truth %.3f mm",
+                result.spread_rms_mm, result.error_rms_mm));
   context.say(formatted("one registration, median: %.0f ms of one core", 1e3 * result.median_seconds));
   if (!context.verbose) return;
   for (const experiments::ControlPoint& control : result.control_points) {
@@ -74,9 +76,11 @@ void run(Context& context, const ExperimentArguments& arguments) {
   RegistrationExperimentResult result;
   {
     Progress progress("registering", options.trial_count);
-    result = experiments::run_registration_experiment(mesh, options, [&](int done) { progress.advance_to(done); });
+    result =
+        experiments::run_registration_experiment(mesh, options, [&](int done) { progress.advance_to(done); });
   }
-  if (!arguments.plot.empty()) experiments::write_registration_plot(arguments.plot, result, options.series.noise);
+  if (!arguments.plot.empty())
+    experiments::write_registration_plot(arguments.plot, result, options.series.noise);
   say_result(context, result);
   if (result.reliable_but_wrong_count > 0) {
     context.say_unreliable("the experiment", {"a registration that was wrong took itself for reliable"});
@@ -88,27 +92,33 @@ void run(Context& context, const ExperimentArguments& arguments) {
 void add_registration_experiment(CLI::App& experiment, Context& context) {
   CLI::App* command = add_subcommand(
       experiment, context, "registration",
-      "The paper's second experiment: registrations of made-up strokes on any bone, their spread and their error",
+      "The paper's second experiment: registrations of made-up strokes on any bone, their spread and their "
+      "error",
       "arthronaut experiment registration --bone femur.ply --trials 10 --noise dry --plot registration.png");
   const auto arguments = std::make_shared<ExperimentArguments>();
-  command->add_option("--bone", arguments->bone, "Surface mesh of a femur, or of any bone with --area")->required();
+  command->add_option("--bone", arguments->bone, "Surface mesh of a femur, or of any bone with --area")
+      ->required();
   command->add_option("--trials", arguments->trials, "Number of trials")->check(CLI::PositiveNumber);
   command->add_option("--noise", arguments->noise, "dry, ex-vivo or hard")
       ->check(CLI::IsMember({"dry", "ex-vivo", "hard"}));
   command->add_option("--seed", arguments->seed, "Seed of the trials; the same seed gives the same figures");
-  command->add_option("--side", arguments->side, "Which knee: left or right")->check(CLI::IsMember({"left", "right"}));
-  arguments->area_option = add_vector_option(*command, "--area", arguments->area,
-                                             "Middle of the digitised area and target, mm; default: the lateral wall "
-                                             "of the femur's notch");
+  command->add_option("--side", arguments->side, "Which knee: left or right")
+      ->check(CLI::IsMember({"left", "right"}));
+  arguments->area_option =
+      add_vector_option(*command, "--area", arguments->area,
+                        "Middle of the digitised area and target, mm; default: the lateral wall "
+                        "of the femur's notch");
   command->add_flag("--no-marker-prior", arguments->no_marker_prior,
                     "Don't assume that the world marker sits on the bone");
-  command->add_option("--space", arguments->space, "Frame of the mesh when the file doesn't say: lps (default) or ras");
+  command->add_option("--space", arguments->space,
+                      "Frame of the mesh when the file doesn't say: lps (default) or ras");
   command->add_option("--unit", arguments->unit, "Length unit of the mesh: mm, cm, m or in");
   command->add_option("--plot", arguments->plot, "PNG to draw the paper's plot into");
   command
-      ->add_option("--write-trials", arguments->trial_folder,
-                   "Write the trials into this folder for other programs, instead of registering them: bone.ply, and "
-                   "for each trial its curves (trial_K.csv) and its truth (trial_K.json)")
+      ->add_option(
+          "--write-trials", arguments->trial_folder,
+          "Write the trials into this folder for other programs, instead of registering them: bone.ply, and "
+          "for each trial its curves (trial_K.csv) and its truth (trial_K.json)")
       ->excludes("--plot")
       ->excludes("--no-marker-prior");
   command->callback([&context, arguments] { run(context, *arguments); });

@@ -46,7 +46,8 @@ void replay(Context& context, const ReplayArguments& arguments) {
   recording::ReplayOptions options;
   std::optional<registration::PreparedBone> bone;
   if (const auto found = knee.bones.find(session.header().bone); found != knee.bones.end()) {
-    options.bone = &bone.emplace(found->second.mesh, cases::prepared_bone_file(arguments.case_folder, found->first));
+    options.bone =
+        &bone.emplace(found->second.mesh, cases::prepared_bone_file(arguments.case_folder, found->first));
     if (const auto cartilage = cases::load_cartilage(arguments.case_folder, found->first)) {
       options.covered.emplace().points_mm = cartilage->vertices_mm;
     }
@@ -61,33 +62,36 @@ void replay(Context& context, const ReplayArguments& arguments) {
     if (!summary.is_same()) context.exit_code = kUnreliable;
     return;
   }
-  context.say(format("session %s: %ld of %ld frames replayed%s", session.header().id.c_str(), summary.replayed_frames,
-                     summary.recorded_frames,
+  context.say(format("session %s: %ld of %ld frames replayed%s", session.header().id.c_str(),
+                     summary.replayed_frames, summary.recorded_frames,
                      session.was_finished() ? "" : " (the recording was cut off and never finished)"));
   context.say(format("largest differences: pose %.6f mm, %.6f deg; tip %.6f mm; guidance %.6f mm, %.6f deg",
-                     summary.worst_pose_mm, summary.worst_pose_deg, summary.worst_tip_mm, summary.worst_offset_mm,
-                     summary.worst_angle_deg));
+                     summary.worst_pose_mm, summary.worst_pose_deg, summary.worst_tip_mm,
+                     summary.worst_offset_mm, summary.worst_angle_deg));
   if (summary.registration_mm) {
-    context.say(format("registration found again: %.4f mm from the recorded one at the target", *summary.registration_mm));
+    context.say(format("registration found again: %.4f mm from the recorded one at the target",
+                       *summary.registration_mm));
   }
   for (const recording::Difference& difference : summary.differences) context.say(line_of(difference));
   if (summary.is_same()) return context.say("the same");
-  context.say_unreliable("the replay", {summary.replayed_frames == 0
-                                            ? "no frame could be replayed"
-                                            : std::to_string(summary.differences.size()) +
-                                                  " differences above tolerance"});
+  context.say_unreliable("the replay",
+                         {summary.replayed_frames == 0
+                              ? "no frame could be replayed"
+                              : std::to_string(summary.differences.size()) + " differences above tolerance"});
 }
 
 }  // namespace
 
 void add_replay_command(CLI::App& app, Context& context) {
-  CLI::App* command = add_subcommand(app, context, "replay",
-                                     "Run a recorded session again through today's pipeline and report every difference",
-                                     "arthronaut replay knee.arthro --session 20260102-030405 -o differences.csv");
+  CLI::App* command =
+      add_subcommand(app, context, "replay",
+                     "Run a recorded session again through today's pipeline and report every difference",
+                     "arthronaut replay knee.arthro --session 20260102-030405 -o differences.csv");
   const auto arguments = std::make_shared<ReplayArguments>();
   command->add_option("CASE", arguments->case_folder, "Case folder")->required();
   command->add_option("--session", arguments->session, "The session's folder name; default: the newest");
-  command->add_option("-o,--output", arguments->output, "Table of all differences to write (CSV); - is standard output");
+  command->add_option("-o,--output", arguments->output,
+                      "Table of all differences to write (CSV); - is standard output");
   command->callback([&context, arguments] { replay(context, *arguments); });
 }
 

@@ -8,8 +8,9 @@ void add_report_command(CLI::App& app, Context& context) {
     std::string case_folder, output;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* sub = add_subcommand(app, context, "report", "Write the report: plan, theatre, planned against achieved",
-                                 "arthronaut report Knee.arthro -o report.pdf");
+  CLI::App* sub =
+      add_subcommand(app, context, "report", "Write the report: plan, theatre, planned against achieved",
+                     "arthronaut report Knee.arthro -o report.pdf");
   sub->add_option("case", arguments->case_folder, "Case folder")->required();
   sub->add_option("-o,--output", arguments->output, "PDF to write")->required();
   sub->callback([arguments, &context] {

@@ -39,9 +39,10 @@ void track(Context& context, const TrackArguments& arguments) {
 }  // namespace
 
 void add_track_command(CLI::App& app, Context& context) {
-  CLI::App* command = add_subcommand(app, context, "track", "Marker poses in every frame of a video",
-                                     "arthronaut track --camera camera.json --tools tools.json --medium saline "
-                                     "-o poses.csv clip.mkv");
+  CLI::App* command =
+      add_subcommand(app, context, "track", "Marker poses in every frame of a video",
+                     "arthronaut track --camera camera.json --tools tools.json --medium saline "
+                     "-o poses.csv clip.mkv");
   const auto arguments = std::make_shared<TrackArguments>();
   command->add_option("--camera", arguments->camera, "camera.json of the arthroscope")->required();
   command->add_option("--tools", arguments->tools, "tools.json: the markers and their sizes")->required();
@@ -50,8 +51,10 @@ void add_track_command(CLI::App& app, Context& context) {
                     "default: the medium of the calibration");
   command->add_flag("--fixed-lens", arguments->fixed_lens,
                     "The lens stays at the calibration's reference angle; the lens mark is not needed");
-  command->add_option("-o,--output", arguments->output, "poses.csv to write; - is standard output")->required();
-  command->add_option("VIDEO", arguments->video, "Video file, or a pattern of still images such as f_%04d.png")
+  command->add_option("-o,--output", arguments->output, "poses.csv to write; - is standard output")
+      ->required();
+  command
+      ->add_option("VIDEO", arguments->video, "Video file, or a pattern of still images such as f_%04d.png")
       ->required();
   command->callback([&context, arguments] { track(context, *arguments); });
 }

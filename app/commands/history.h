@@ -1,7 +1,8 @@
-// Undo and redo of everything a planner does. Doing is redo: a step is executed by the history and only by it.
+// Undo and redo of everything a planner does. Doing is redo: a step is executed by the history and only by
+// it.
 //
-// GUI-free. One thread. Every executed, undone or redone step ends in one call of the save function, so that what is on
-// disk is always the last state; a crash resumes there.
+// GUI-free. One thread. Every executed, undone or redone step ends in one call of the save function, so that
+// what is on disk is always the last state; a crash resumes there.
 #pragma once
 
 #include <functional>
@@ -27,7 +28,8 @@ class Step {
 
 class History {
  public:
-  // save is called after each change of the model; what it throws reaches the caller, the model keeps the change.
+  // save is called after each change of the model; what it throws reaches the caller, the model keeps the
+  // change.
   explicit History(std::function<void()> save);
 
   // Executes the step. While a drag is open, it is taken into the drag's one step and not yet saved.
@@ -47,8 +49,8 @@ class History {
  private:
   std::function<void()> save_;
   std::vector<std::unique_ptr<Step>> steps_;
-  std::size_t position_ = 0;       // steps_[0, position_) are done
-  std::size_t drag_start_ = 0;     // position_ when the drag began
+  std::size_t position_ = 0;    // steps_[0, position_) are done
+  std::size_t drag_start_ = 0;  // position_ when the drag began
   bool is_dragging_ = false;
 };
 

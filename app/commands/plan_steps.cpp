@@ -35,9 +35,11 @@ class SetTunnel : public Step {
 
 }  // namespace
 
-std::unique_ptr<Step> set_tunnel(TunnelSetter set, bones::BoneKind bone, std::optional<tunnels::Tunnel> before,
-                                 std::optional<tunnels::Tunnel> after, std::string description) {
-  return std::make_unique<SetTunnel>(std::move(set), bone, std::move(before), std::move(after), std::move(description));
+std::unique_ptr<Step> set_tunnel(TunnelSetter set, bones::BoneKind bone,
+                                 std::optional<tunnels::Tunnel> before, std::optional<tunnels::Tunnel> after,
+                                 std::string description) {
+  return std::make_unique<SetTunnel>(std::move(set), bone, std::move(before), std::move(after),
+                                     std::move(description));
 }
 
 }  // namespace arthronaut::commands

@@ -32,8 +32,10 @@ void draw_marker(PdfDocument& pdf, double x_mm, double y_mm, double size_mm, int
       while (to < kCells && cells.at<std::uint8_t>(row, to) == 0) ++to;
       if (to > from) {
         // A twentieth of a cell of overlap downwards closes the seam; the last row keeps the true outline.
-        const double overlap = row + 1 < kCells && cells.at<std::uint8_t>(row + 1, from) == 0 ? 0.05 * cell : 0;
-        pdf.filled_rectangle(x_mm + from * cell, y_mm + row * cell, (to - from) * cell, cell + overlap, {0, 0, 0});
+        const double overlap =
+            row + 1 < kCells && cells.at<std::uint8_t>(row + 1, from) == 0 ? 0.05 * cell : 0;
+        pdf.filled_rectangle(x_mm + from * cell, y_mm + row * cell, (to - from) * cell, cell + overlap,
+                             {0, 0, 0});
       }
       from = to + 1;
     }
@@ -59,13 +61,16 @@ void begin_page(PdfDocument& pdf, const std::string& title, const std::string& n
 
 void draw_markers(PdfDocument& pdf, const MarkerSheetOptions& options) {
   begin_page(pdf, "Markers, DICT_4X4_50, " + mm_text(options.size_mm),
-             "The size is the side of the whole black square. Leave a white margin of two cells all round. Ids: 0 femur, "
-             "1 tibia, 2 touch probe, 3 femoral guide, 4 tibial guide. Matt paper or engraving; glare hides corners.");
+             "The size is the side of the whole black square. Leave a white margin of two cells all round. "
+             "Ids: 0 femur, "
+             "1 tibia, 2 touch probe, 3 femoral guide, 4 tibial guide. Matt paper or engraving; glare hides "
+             "corners.");
   const double pitch = std::max(options.size_mm * (1 + 4.0 / kCells) + 3, 12.0);
   double y = 42;
   for (const int id : options.ids) {
-    if (y + pitch > 225) throw InvalidInput("markers: " + std::to_string(options.ids.size()) + " ids of " +
-                                            mm_text(options.size_mm) + " do not fit the page");
+    if (y + pitch > 225)
+      throw InvalidInput("markers: " + std::to_string(options.ids.size()) + " ids of " +
+                         mm_text(options.size_mm) + " do not fit the page");
     pdf.text(20, y + options.size_mm / 2 + 1, "id " + std::to_string(id), {.size_pt = 9});
     for (int copy = 0; copy < options.copies; ++copy) {
       const double x = 40 + copy * pitch;
@@ -75,8 +80,10 @@ void draw_markers(PdfDocument& pdf, const MarkerSheetOptions& options) {
     y += pitch;
   }
   y += 6;
-  pdf.text(20, y, "Ruler: ids 5 and 6, " + mm_text(options.ruler_size_mm) + ", centres " +
-                      mm_text(options.ruler_distance_mm) + " apart", {.size_pt = 9});
+  pdf.text(20, y,
+           "Ruler: ids 5 and 6, " + mm_text(options.ruler_size_mm) + ", centres " +
+               mm_text(options.ruler_distance_mm) + " apart",
+           {.size_pt = 9});
   for (int i = 0; i < 2; ++i) {
     draw_marker(pdf, 40 + i * options.ruler_distance_mm, y + 6, options.ruler_size_mm, 5 + i);
   }
@@ -84,7 +91,8 @@ void draw_markers(PdfDocument& pdf, const MarkerSheetOptions& options) {
 
 void draw_checkerboard(PdfDocument& pdf, double square_mm) {
   begin_page(pdf, "Checkerboard, squares of " + mm_text(square_mm),
-             "For the calibration of the arthroscope: glue it flat. The board may run past the view; how many squares it "
+             "For the calibration of the arthroscope: glue it flat. The board may run past the view; how "
+             "many squares it "
              "has does not matter, their size does.");
   const int columns = static_cast<int>(std::min(60.0, 150 / square_mm)), rows = columns;
   for (int row = 0; row < rows; ++row) {
@@ -98,10 +106,13 @@ void draw_checkerboard(PdfDocument& pdf, double square_mm) {
 
 void write_marker_sheet(const std::filesystem::path& file, const MarkerSheetOptions& options) {
   for (const int id : options.ids) {
-    if (id < 0 || id > 49) throw InvalidInput("markers: id " + std::to_string(id) + " is not in DICT_4X4_50 (0 to 49)");
+    if (id < 0 || id > 49)
+      throw InvalidInput("markers: id " + std::to_string(id) + " is not in DICT_4X4_50 (0 to 49)");
   }
-  for (const double size : {options.size_mm, options.ruler_size_mm, options.ruler_distance_mm, options.square_mm}) {
-    if (!(size > 0.1 && size <= 100)) throw InvalidInput("markers: a size must lie above 0.1 and up to 100 mm");
+  for (const double size :
+       {options.size_mm, options.ruler_size_mm, options.ruler_distance_mm, options.square_mm}) {
+    if (!(size > 0.1 && size <= 100))
+      throw InvalidInput("markers: a size must lie above 0.1 and up to 100 mm");
   }
   if (options.ruler_distance_mm < options.ruler_size_mm) {
     throw InvalidInput("markers: the ruler's markers overlap");

@@ -1,5 +1,5 @@
-// Printable sheets at true size: markers of the tools, the two-marker ruler, a checkerboard; each with a 50 mm rule to
-// check the printer with.
+// Printable sheets at true size: markers of the tools, the two-marker ruler, a checkerboard; each with a 50
+// mm rule to check the printer with.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,8 @@ struct MarkerSheetOptions {
   double size_mm = 4.0;                    // side of the black square
   double ruler_size_mm = 2.89;             // markers 5 and 6, centres ruler_distance_mm apart
   double ruler_distance_mm = 10.0;
-  double square_mm = 1.5;                  // of the checkerboard
-  int copies = 6;                          // of each marker
+  double square_mm = 1.5;  // of the checkerboard
+  int copies = 6;          // of each marker
 };
 
 // Throws InvalidInput for ids outside 0..49 and sizes that are not above 0 or do not fit the page; IoError.

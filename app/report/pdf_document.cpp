@@ -48,7 +48,8 @@ struct PdfDocument::Pdf {
   ~Pdf() { HPDF_Free(document); }
 
   HPDF_Font load(const char* file) {
-    const char* name = std::filesystem::exists(file) ? HPDF_LoadTTFontFromFile(document, file, HPDF_TRUE) : nullptr;
+    const char* name =
+        std::filesystem::exists(file) ? HPDF_LoadTTFontFromFile(document, file, HPDF_TRUE) : nullptr;
     if (name == nullptr) throw IoError(file, "cannot be read (package fonts-dejavu-core)");
     return HPDF_GetFont(document, name, "UTF-8");
   }
@@ -119,7 +120,8 @@ double PdfDocument::paragraph(double x_mm, double y_mm, double width_mm, std::st
   return y_mm;
 }
 
-void PdfDocument::line(double x0_mm, double y0_mm, double x1_mm, double y1_mm, double width_mm, const Ink& ink) {
+void PdfDocument::line(double x0_mm, double y0_mm, double x1_mm, double y1_mm, double width_mm,
+                       const Ink& ink) {
   HPDF_Page_SetRGBStroke(pdf_->page, static_cast<HPDF_REAL>(ink.red), static_cast<HPDF_REAL>(ink.green),
                          static_cast<HPDF_REAL>(ink.blue));
   HPDF_Page_SetLineWidth(pdf_->page, points(width_mm));
@@ -129,21 +131,24 @@ void PdfDocument::line(double x0_mm, double y0_mm, double x1_mm, double y1_mm, d
   pdf_->check();
 }
 
-void PdfDocument::filled_rectangle(double x_mm, double y_mm, double width_mm, double height_mm, const Ink& ink) {
+void PdfDocument::filled_rectangle(double x_mm, double y_mm, double width_mm, double height_mm,
+                                   const Ink& ink) {
   HPDF_Page_SetRGBFill(pdf_->page, static_cast<HPDF_REAL>(ink.red), static_cast<HPDF_REAL>(ink.green),
                        static_cast<HPDF_REAL>(ink.blue));
-  HPDF_Page_Rectangle(pdf_->page, points(x_mm), from_top(y_mm + height_mm), points(width_mm), points(height_mm));
+  HPDF_Page_Rectangle(pdf_->page, points(x_mm), from_top(y_mm + height_mm), points(width_mm),
+                      points(height_mm));
   HPDF_Page_Fill(pdf_->page);
   pdf_->check();
 }
 
-double PdfDocument::image(double x_mm, double y_mm, double width_mm, const std::vector<std::uint8_t>& rgb, int width,
-                          int height) {
+double PdfDocument::image(double x_mm, double y_mm, double width_mm, const std::vector<std::uint8_t>& rgb,
+                          int width, int height) {
   const HPDF_Image image = HPDF_LoadRawImageFromMem(pdf_->document, rgb.data(), static_cast<HPDF_UINT>(width),
                                                     static_cast<HPDF_UINT>(height), HPDF_CS_DEVICE_RGB, 8);
   pdf_->check();
   const double height_mm = width_mm * height / width;
-  HPDF_Page_DrawImage(pdf_->page, image, points(x_mm), from_top(y_mm + height_mm), points(width_mm), points(height_mm));
+  HPDF_Page_DrawImage(pdf_->page, image, points(x_mm), from_top(y_mm + height_mm), points(width_mm),
+                      points(height_mm));
   pdf_->check();
   return height_mm;
 }
@@ -161,7 +166,8 @@ double PdfDocument::table(double x_mm, double y_mm, const std::vector<double>& w
     }
     double x = x_mm, bottom = y_mm + line_height_mm(style);
     for (std::size_t c = 0; c < rows[r].size() && c < widths_mm.size(); ++c) {
-      const double below = paragraph(x + kPadMm, y_mm + line_height_mm(style), widths_mm[c] - 2 * kPadMm, rows[r][c], style);
+      const double below =
+          paragraph(x + kPadMm, y_mm + line_height_mm(style), widths_mm[c] - 2 * kPadMm, rows[r][c], style);
       bottom = std::max(bottom, below);
       x += widths_mm[c];
     }
@@ -175,7 +181,8 @@ void PdfDocument::save(const std::filesystem::path& file) {
   pdf_->check();
   files::write_atomically(file, [this](const std::filesystem::path& temporary) {
     HPDF_SaveToFile(pdf_->document, temporary.c_str());
-    if (pdf_->failure.status != HPDF_OK) throw IoError(temporary, "cannot write the PDF (disk full or read-only?)");
+    if (pdf_->failure.status != HPDF_OK)
+      throw IoError(temporary, "cannot write the PDF (disk full or read-only?)");
   });
 }
 

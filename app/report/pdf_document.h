@@ -36,14 +36,17 @@ class PdfDocument {
   // Draws on the last page. y is the text's baseline.
   void text(double x_mm, double y_mm, std::string_view text, const TextStyle& style = {});
   // Breaks at spaces; returns the baseline below the last line.
-  double paragraph(double x_mm, double y_mm, double width_mm, std::string_view text, const TextStyle& style = {});
+  double paragraph(double x_mm, double y_mm, double width_mm, std::string_view text,
+                   const TextStyle& style = {});
   [[nodiscard]] double text_width_mm(std::string_view text, const TextStyle& style = {});
-  void line(double x0_mm, double y0_mm, double x1_mm, double y1_mm, double width_mm = 0.2, const Ink& ink = kGray);
+  void line(double x0_mm, double y0_mm, double x1_mm, double y1_mm, double width_mm = 0.2,
+            const Ink& ink = kGray);
   void filled_rectangle(double x_mm, double y_mm, double width_mm, double height_mm, const Ink& ink = kBlack);
   // rgb: 3 * width * height bytes, top row first. Scaled to width_mm; returns the height in mm.
-  double image(double x_mm, double y_mm, double width_mm, const std::vector<std::uint8_t>& rgb, int width, int height);
-  // Rows of cells in columns of the given widths; the first row is the heading. Returns the y below the table. Cells that
-  // are too long are broken into lines. Starts a new page where the page ends.
+  double image(double x_mm, double y_mm, double width_mm, const std::vector<std::uint8_t>& rgb, int width,
+               int height);
+  // Rows of cells in columns of the given widths; the first row is the heading. Returns the y below the
+  // table. Cells that are too long are broken into lines. Starts a new page where the page ends.
   double table(double x_mm, double y_mm, const std::vector<double>& widths_mm,
                const std::vector<std::vector<std::string>>& rows);
 

@@ -22,7 +22,8 @@ namespace {
 
 constexpr double kLeftMm = 20, kWidthMm = 170;
 constexpr const char* kResearchSentence =
-    "Made by research software that is not a medical device. The figures are for research and teaching; they support no "
+    "Made by research software that is not a medical device. The figures are for research and teaching; they "
+    "support no "
     "clinical claim and no decision about a patient.";
 
 std::string number(double value, const char* unit, int decimals = 1) {
@@ -53,7 +54,8 @@ struct Content {
 };
 
 Content gather(const std::filesystem::path& folder) {
-  Content content{.folder = folder, .knee = cases::load_case(folder), .session = nullptr, .achieved = std::nullopt};
+  Content content{
+      .folder = folder, .knee = cases::load_case(folder), .session = nullptr, .achieved = std::nullopt};
   const auto sessions = cases::session_folders(folder);
   for (auto it = sessions.rbegin(); it != sessions.rend(); ++it) {
     const auto achieved_file = *it / "achieved.json";
@@ -91,8 +93,10 @@ class Report {
     ++page_;
     pdf_.text(kLeftMm, 20, title, {.size_pt = 16, .bold = true, .ink = kAccent});
     pdf_.line(kLeftMm, 289, kLeftMm + kWidthMm, 289);
-    pdf_.text(kLeftMm, 293, content_.knee.name + " · page " + std::to_string(page_) +
-                                " · research software, not a medical device", {.size_pt = 7.5, .ink = kGray});
+    pdf_.text(kLeftMm, 293,
+              content_.knee.name + " · page " + std::to_string(page_) +
+                  " · research software, not a medical device",
+              {.size_pt = 7.5, .ink = kGray});
     y_ = 28;
   }
   void heading(const std::string& text) {
@@ -170,8 +174,8 @@ void Report::plan_page() {
   if (content_.knee.plan.tunnels.empty()) {
     sentence("No tunnel is planned.");
   } else {
-    std::vector<std::vector<std::string>> rows = {{"Bone", "Entry, mm (LPS)", "Direction", "Diameter", "Length in bone",
-                                                   "Least wall", "Exit, mm (LPS)"}};
+    std::vector<std::vector<std::string>> rows = {{"Bone", "Entry, mm (LPS)", "Direction", "Diameter",
+                                                   "Length in bone", "Least wall", "Exit, mm (LPS)"}};
     for (const auto& [kind, tunnel] : content_.knee.plan.tunnels) {
       const auto bone = content_.knee.bones.find(kind);
       tunnels::TunnelGeometry geometry;
@@ -179,9 +183,10 @@ void Report::plan_page() {
         geometry = tunnels::measure(tunnel, geometry::Surface(bone->second.mesh));
       }
       const bool in_bone = geometry.enters_bone;
-      rows.push_back({std::string(bones::to_text(kind)), point(tunnel.entry_mm), point(tunnel.direction, 2),
-                      number(tunnel.diameter_mm, " mm"), in_bone ? number(geometry.length_mm, " mm") : "misses the bone",
-                      in_bone ? number(geometry.wall_mm, " mm") : "–", in_bone ? point(geometry.exit_mm) : "–"});
+      rows.push_back(
+          {std::string(bones::to_text(kind)), point(tunnel.entry_mm), point(tunnel.direction, 2),
+           number(tunnel.diameter_mm, " mm"), in_bone ? number(geometry.length_mm, " mm") : "misses the bone",
+           in_bone ? number(geometry.wall_mm, " mm") : "–", in_bone ? point(geometry.exit_mm) : "–"});
     }
     table({16, 34, 32, 18, 20, 18, 32}, rows);
   }
@@ -190,16 +195,20 @@ void Report::plan_page() {
 
 void Report::registration_section(const registration::RegistrationSummary& registration) {
   heading("Registration of the bone");
-  table({70, 100}, {{"Quantity", "Value"},
-                    {"Verdict", registration.reliable ? "reliable" : "NOT RELIABLE"},
-                    {"Touched points", std::to_string(registration.point_count)},
-                    {"Distance of the points to the bone, RMS", number(registration.rms_mm, " mm", 2)},
-                    {"Points that fit", number(100 * registration.inlier_fraction, " %", 0)},
-                    {"Predicted error at the target, one sigma", number(registration.predicted_tre_mm, " mm", 2)}});
+  table({70, 100},
+        {{"Quantity", "Value"},
+         {"Verdict", registration.reliable ? "reliable" : "NOT RELIABLE"},
+         {"Touched points", std::to_string(registration.point_count)},
+         {"Distance of the points to the bone, RMS", number(registration.rms_mm, " mm", 2)},
+         {"Points that fit", number(100 * registration.inlier_fraction, " %", 0)},
+         {"Predicted error at the target, one sigma", number(registration.predicted_tre_mm, " mm", 2)}});
   for (const auto& reason : registration.reasons) sentence("– " + reason, {.ink = kWarning});
   for (const auto& assumption : registration.assumptions) sentence("– assumed: " + assumption);
-  sentence("A small distance of the points does not prove a small error at the tunnel: the predicted error is the figure "
-           "to go by.", {.size_pt = 8, .ink = kGray});
+  sentence(
+      "A small distance of the points does not prove a small error at the tunnel: the predicted error is the "
+      "figure "
+      "to go by.",
+      {.size_pt = 8, .ink = kGray});
 }
 
 void Report::result_section(const recording::AchievedTunnel& achieved) {
@@ -215,10 +224,12 @@ void Report::result_section(const recording::AchievedTunnel& achieved) {
     rows.push_back({"As it truly lies (simulator), against the plan", number(planned_true.entry_mm, " mm", 2),
                     number(planned_true.axis_to_entry_mm, " mm", 2), number(planned_true.angle_deg, "°", 2)});
     rows.push_back({"Error of navigation: measured against true", number(measured_true.entry_mm, " mm", 2),
-                    number(measured_true.axis_to_entry_mm, " mm", 2), number(measured_true.angle_deg, "°", 2)});
+                    number(measured_true.axis_to_entry_mm, " mm", 2),
+                    number(measured_true.angle_deg, "°", 2)});
   }
   table({86, 28, 28, 28}, rows);
-  sentence("Depth reached " + number(achieved.depth_mm, " mm") + ". Predicted error of these figures, one sigma: " +
+  sentence("Depth reached " + number(achieved.depth_mm, " mm") +
+               ". Predicted error of these figures, one sigma: " +
                number(achieved.sigma_offset_mm, " mm", 2) + ", " + number(achieved.sigma_angle_deg, "°", 2) +
                ". Median of " + std::to_string(achieved.pose_count) + " poses of the guide while drilling.",
            {.size_pt = 8.5, .ink = kGray});
@@ -241,16 +252,16 @@ void Report::theatre_page() {
     with_mark += frame.lens.mark == lens::MarkState::Found;
   }
   const double frames = std::max<double>(1, static_cast<double>(session.frames().size()));
-  table({70, 100},
-        {{"Session", ""},
-         {"Id", header.id},
-         {"Started", header.started_utc},
-         {"Bone", std::string(bones::to_text(header.bone))},
-         {"Video", header.source},
-         {"Medium", camera::medium_to_text(header.refractive_index)},
-         {"Frames", std::to_string(session.frames().size()) + (session.was_finished() ? "" : " (cut off by a crash)")},
-         {"World marker tracked", number(100 * with_world / frames, " % of the frames")},
-         {"Lens mark found", number(100 * with_mark / frames, " % of the frames")}});
+  table({70, 100}, {{"Session", ""},
+                    {"Id", header.id},
+                    {"Started", header.started_utc},
+                    {"Bone", std::string(bones::to_text(header.bone))},
+                    {"Video", header.source},
+                    {"Medium", camera::medium_to_text(header.refractive_index)},
+                    {"Frames", std::to_string(session.frames().size()) +
+                                   (session.was_finished() ? "" : " (cut off by a crash)")},
+                    {"World marker tracked", number(100 * with_world / frames, " % of the frames")},
+                    {"Lens mark found", number(100 * with_mark / frames, " % of the frames")}});
   if (session.registration()) registration_section(*session.registration());
   if (content_.achieved) result_section(*content_.achieved);
   if (y_ > 195) begin_page("Pictures of the result");
@@ -272,16 +283,20 @@ void Report::settings() {
           {{"Quantity", "Value"},
            {"Focal length", number(c.focal_px, " px", 2)},
            {"Distortion xi", number(c.distortion_xi, "", 4)},
-           {"Principal point", number(c.principal_point_px.x(), ", ", 1) + number(c.principal_point_px.y(), " px", 1)},
-           {"Centre of rotation", number(c.rotation_center_px.x(), ", ", 1) + number(c.rotation_center_px.y(), " px", 1)},
-           {"Reprojection error of the calibration", record.rms_px >= 0 ? number(record.rms_px, " px", 2) : "not recorded"},
+           {"Principal point",
+            number(c.principal_point_px.x(), ", ", 1) + number(c.principal_point_px.y(), " px", 1)},
+           {"Centre of rotation",
+            number(c.rotation_center_px.x(), ", ", 1) + number(c.rotation_center_px.y(), " px", 1)},
+           {"Reprojection error of the calibration",
+            record.rms_px >= 0 ? number(record.rms_px, " px", 2) : "not recorded"},
            {"Calibrated in", camera::medium_to_text(c.refractive_index)},
            {"Date", record.date_utc.empty() ? "not recorded" : record.date_utc},
            {"Scope, head", record.scope_name + (record.head_name.empty() ? "" : ", " + record.head_name)}});
   }
   if (content_.session) {
     heading("Tools");
-    std::vector<std::vector<std::string>> rows = {{"Tool", "Marker", "Size", "Tip or axis in its marker's frame, mm"}};
+    std::vector<std::vector<std::string>> rows = {
+        {"Tool", "Marker", "Size", "Tip or axis in its marker's frame, mm"}};
     const auto options = content_.session->pipeline_options();
     for (const auto& world : options.tools.world_markers) {
       rows.push_back({std::string(bones::to_text(world.bone)) + " (world)", std::to_string(world.marker_id),
@@ -290,7 +305,8 @@ void Report::settings() {
     for (const auto& tool : options.tools.tools) {
       std::string where;
       if (tool.tip_mm) where = "tip " + point(*tool.tip_mm, 2);
-      if (tool.axis) where = "axis through " + point(tool.axis->point_mm, 2) + " along " + point(tool.axis->direction, 3);
+      if (tool.axis)
+        where = "axis through " + point(tool.axis->point_mm, 2) + " along " + point(tool.axis->direction, 3);
       rows.push_back({tool.name, std::to_string(tool.marker_id), number(tool.size_mm, " mm", 2), where});
     }
     table({40, 20, 24, 86}, rows);

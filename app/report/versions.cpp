@@ -12,9 +12,9 @@
 namespace arthronaut::report {
 
 std::vector<std::pair<std::string, std::string>> versions() {
-  const std::string eigen = std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) + "." +
-                            std::to_string(EIGEN_MINOR_VERSION);
-  return {{"Arthronaut", kProgramVersion}, {"OpenCV", CV_VERSION},         {"VTK", VTK_VERSION},
+  const std::string eigen = std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) +
+                            "." + std::to_string(EIGEN_MINOR_VERSION);
+  return {{"Arthronaut", kProgramVersion}, {"OpenCV", CV_VERSION},          {"VTK", VTK_VERSION},
           {"CGAL", CGAL_VERSION_STR},      {"Ceres", CERES_VERSION_STRING}, {"Eigen", eigen},
           {"SQLite", sqlite3_libversion()}};
 }

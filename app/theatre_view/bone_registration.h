@@ -4,9 +4,9 @@
 //
 // A registration takes effect by itself the moment it is confirmed, and again when it has become clearly
 // better (its predicted error a tenth smaller), unless the surgeon went back to an earlier one: a choice
-// stands until the newest is chosen again. Strokes drawn since that bring the bone in doubt (they miss its surface,
-// or fit its mirror image as well) take it back, whoever chose it, until it is confirmed anew. A bumped world marker (alarm) makes what is in force unreliable at
-// once.
+// stands until the newest is chosen again. Strokes drawn since that bring the bone in doubt (they miss its
+// surface, or fit its mirror image as well) take it back, whoever chose it, until it is confirmed anew. A
+// bumped world marker (alarm) makes what is in force unreliable at once.
 //
 // Threads: every function may be called from any thread; none waits for a computation but register_all().
 #pragma once

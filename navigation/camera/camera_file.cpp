@@ -47,7 +47,8 @@ CalibrationRecord read_camera_file(const std::filesystem::path& file) {
   Calibration& c = record.calibration;
   const auto size = root.vector2("image_size_px");
   c.image_size_px = size.cast<int>();
-  if (c.image_size_px.cast<double>() != size || c.image_size_px.minCoeff() <= 0 || c.image_size_px.maxCoeff() > 16384) {
+  if (c.image_size_px.cast<double>() != size || c.image_size_px.minCoeff() <= 0 ||
+      c.image_size_px.maxCoeff() > 16384) {
     root.fail("image_size_px", "must hold two whole numbers from 1 to 16384");
   }
   c.focal_px = root.positive_number("focal_px");

@@ -22,7 +22,8 @@ CameraModel::CameraModel(const Calibration& calibration, double lens_angle_rad, 
                          FluidModel fluid_model)
     : image_size_(calibration.image_size_px),
       center_(calibration.turned(calibration.principal_point_px, lens_angle_rad)),
-      boundary_{calibration.turned(calibration.boundary.center_px, lens_angle_rad), calibration.boundary.radius_px},
+      boundary_{calibration.turned(calibration.boundary.center_px, lens_angle_rad),
+                calibration.boundary.radius_px},
       focal_(calibration.focal_px),
       aspect_(calibration.aspect_ratio),
       xi_(calibration.distortion_xi),
@@ -36,10 +37,12 @@ CameraModel::CameraModel(const Calibration& calibration, double lens_angle_rad, 
   require(aspect_ > 0 && std::isfinite(aspect_), "aspect_ratio must be above 0");
   require(xi_ >= -2 && xi_ <= 1, "distortion_xi must lie in [-2, 1]");
   require(image_size_.x() > 0 && image_size_.y() > 0, "image_size_px must be above 0");
-  require(refractive_index >= 0.9 && refractive_index <= 2, "the medium's refractive index must lie in [0.9, 2]");
+  require(refractive_index >= 0.9 && refractive_index <= 2,
+          "the medium's refractive index must lie in [0.9, 2]");
   require(calibration.refractive_index >= 0.9 && calibration.refractive_index <= 2,
           "the calibration's refractive index must lie in [0.9, 2]");
-  require(center_.allFinite() && std::isfinite(lens_angle_rad), "principal point and lens angle must be finite");
+  require(center_.allFinite() && std::isfinite(lens_angle_rad),
+          "principal point and lens angle must be finite");
 }
 
 std::optional<Eigen::Vector2d> CameraModel::project(const Eigen::Vector3d& point_in_camera_mm) const {
@@ -47,7 +50,8 @@ std::optional<Eigen::Vector2d> CameraModel::project(const Eigen::Vector3d& point
   return project(point_in_camera_mm, ignored);
 }
 
-// The closed form of the header, and its derivative: with S = W + D, a = n^2 - 1, b = a + 4 n^2 xi, v = (X, Y)
+// The closed form of the header, and its derivative: with S = W + D, a = n^2 - 1, b = a + 4 n^2 xi, v = (X,
+// Y)
 //   du/dv = 2nf (I / S + (a / W + b / D) v v^T / S^2),   du/dZ = -2nf Z (1 / W + 1 / D) v / S^2.
 // The focal rule is the same with no refraction and n f in place of f.
 std::optional<Eigen::Vector2d> CameraModel::project(const Eigen::Vector3d& point_in_camera_mm,
@@ -75,7 +79,8 @@ std::optional<Eigen::Vector2d> CameraModel::undistort(const Eigen::Vector2d& pix
   return undistort(pixel, ignored);
 }
 
-// With m the tangent coordinates in the calibration's medium, Snell's law gives t = m / sqrt(n^2 + (n^2 - 1) |m|^2).
+// With m the tangent coordinates in the calibration's medium, Snell's law gives t = m / sqrt(n^2 + (n^2 - 1)
+// |m|^2).
 std::optional<Eigen::Vector2d> CameraModel::undistort(const Eigen::Vector2d& pixel,
                                                       Eigen::Matrix2d& d_tangent_d_pixel) const {
   const bool refracts = fluid_model_ == FluidModel::FlatPort;
@@ -86,7 +91,8 @@ std::optional<Eigen::Vector2d> CameraModel::undistort(const Eigen::Vector2d& pix
   if (!(denominator > 0)) return std::nullopt;  // a ray at 90 degrees or beyond
   const double g = 1 / denominator;
   const Eigen::Vector2d m = g * distorted;
-  Eigen::Matrix2d jacobian = g * Eigen::Matrix2d::Identity() - (2 * xi_ * g * g) * distorted * distorted.transpose();
+  Eigen::Matrix2d jacobian =
+      g * Eigen::Matrix2d::Identity() - (2 * xi_ * g * g) * distorted * distorted.transpose();
   Eigen::Vector2d tangent = m;
   if (refracts) {
     const double n2 = index_ratio_ * index_ratio_;
@@ -109,7 +115,8 @@ std::optional<Eigen::Vector3d> CameraModel::ray(const Eigen::Vector2d& pixel) co
 double CameraModel::central_focal_px() const { return focal_ * index_ratio_; }
 
 bool CameraModel::is_inside_view(const Eigen::Vector2d& pixel) const {
-  return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= image_size_.x() - 1 && pixel.y() <= image_size_.y() - 1 &&
+  return pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= image_size_.x() - 1 &&
+         pixel.y() <= image_size_.y() - 1 &&
          (boundary_.radius_px <= 0 ||
           (pixel - boundary_.center_px).squaredNorm() <= boundary_.radius_px * boundary_.radius_px);
 }

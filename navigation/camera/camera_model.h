@@ -1,13 +1,15 @@
-// The one camera model of the program: division-model distortion, a lens that turns in the camera head, and a flat
-// port in any medium. Everything that projects or looks through the arthroscope uses this class, on raw pixels.
+// The one camera model of the program: division-model distortion, a lens that turns in the camera head, and a
+// flat port in any medium. Everything that projects or looks through the arthroscope uses this class, on raw
+// pixels.
 //
-// Pixels follow OpenCV: x right, y down, the centre of the top-left pixel is (0, 0). The camera frame is x right,
-// y down, z out of the lens, aligned with the image (not with the lens), in mm.
+// Pixels follow OpenCV: x right, y down, the centre of the top-left pixel is (0, 0). The camera frame is x
+// right, y down, z out of the lens, aligned with the image (not with the lens), in mm.
 //
 // Equations (n = refractive index of the working medium / index of the medium of the calibration):
 //   c(alpha) = q + Rot(alpha) (c0 - q),   f, xi constant                         (lens rotation)
-//   x_d = (u - c) / (f, f * aspect),   x_u = x_d / (1 + xi |x_d|^2)               (division model, Fitzgibbon 2001)
-//   sin(theta_calibration) = n sin(theta_working)                                 (flat port, entrance pupil at the window)
+//   x_d = (u - c) / (f, f * aspect),   x_u = x_d / (1 + xi |x_d|^2)               (division model, Fitzgibbon
+//   2001) sin(theta_calibration) = n sin(theta_working)                                 (flat port, entrance
+//   pupil at the window)
 // The composition has the closed form u = c + 2 n f (X, Y) / (W + D) with
 //   W = sqrt(Z^2 - (n^2 - 1) R^2),  D = sqrt(Z^2 - (n^2 - 1 + 4 n^2 xi) R^2),  R^2 = X^2 + Y^2.
 #pragma once
@@ -26,10 +28,10 @@ struct Boundary {
 // What a calibration finds: camera.json. Valid for one scope in one head, at any lens angle.
 struct Calibration {
   Eigen::Vector2i image_size_px{0, 0};
-  double focal_px = 0;          // in the medium of the calibration
-  double aspect_ratio = 1;      // focal length along y / along x
+  double focal_px = 0;                                           // in the medium of the calibration
+  double aspect_ratio = 1;                                       // focal length along y / along x
   Eigen::Vector2d principal_point_px = Eigen::Vector2d::Zero();  // at lens angle 0
-  double distortion_xi = 0;     // division model on normalised coordinates; negative for barrel
+  double distortion_xi = 0;  // division model on normalised coordinates; negative for barrel
   Eigen::Vector2d rotation_center_px = Eigen::Vector2d::Zero();
   double reference_mark_angle_deg = 0;  // the mark angle at which the lens angle is 0
   Boundary boundary;                    // at lens angle 0
@@ -37,7 +39,8 @@ struct Calibration {
 
   // Where principal point and boundary stand when the mark is seen at this angle (image axes, degrees).
   [[nodiscard]] double lens_angle_rad(double mark_angle_deg) const;
-  [[nodiscard]] Eigen::Vector2d turned(const Eigen::Vector2d& point_at_angle_0_px, double lens_angle_rad) const;
+  [[nodiscard]] Eigen::Vector2d turned(const Eigen::Vector2d& point_at_angle_0_px,
+                                       double lens_angle_rad) const;
 };
 
 // How the working medium changes the camera.
@@ -54,16 +57,18 @@ class CameraModel {
   CameraModel(const Calibration& calibration, double lens_angle_rad, double refractive_index,
               FluidModel fluid_model = FluidModel::FlatPort);
 
-  // Pixel of a point in the camera frame; nullopt when no ray through the port reaches it (behind the lens, beyond the
-  // critical angle, or where a pincushion lens folds). The result may lie outside the image or the boundary.
+  // Pixel of a point in the camera frame; nullopt when no ray through the port reaches it (behind the lens,
+  // beyond the critical angle, or where a pincushion lens folds). The result may lie outside the image or the
+  // boundary.
   [[nodiscard]] std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& point_in_camera_mm) const;
   // The same with the Jacobian d pixel / d point.
   [[nodiscard]] std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& point_in_camera_mm,
                                                        Eigen::Matrix<double, 2, 3>& d_pixel_d_point) const;
-  // Unit ray in the camera frame and working medium; nullopt where the model has no ray (total reflection, xi fold).
+  // Unit ray in the camera frame and working medium; nullopt where the model has no ray (total reflection, xi
+  // fold).
   [[nodiscard]] std::optional<Eigen::Vector3d> ray(const Eigen::Vector2d& pixel) const;
-  // Tangent-plane coordinates (X/Z, Y/Z) of the pixel's ray: straight lines in space are straight here. nullopt as ray,
-  // and for rays at 90 degrees or more.
+  // Tangent-plane coordinates (X/Z, Y/Z) of the pixel's ray: straight lines in space are straight here.
+  // nullopt as ray, and for rays at 90 degrees or more.
   [[nodiscard]] std::optional<Eigen::Vector2d> undistort(const Eigen::Vector2d& pixel) const;
   // The same with d tangent / d pixel.
   [[nodiscard]] std::optional<Eigen::Vector2d> undistort(const Eigen::Vector2d& pixel,
@@ -80,7 +85,8 @@ class CameraModel {
   [[nodiscard]] FluidModel fluid_model() const { return fluid_model_; }
   [[nodiscard]] const Boundary& boundary() const { return boundary_; }  // at this lens angle
   [[nodiscard]] const Eigen::Vector2i& image_size_px() const { return image_size_; }
-  [[nodiscard]] bool is_inside_view(const Eigen::Vector2d& pixel) const;  // of the boundary circle and the image
+  [[nodiscard]] bool is_inside_view(
+      const Eigen::Vector2d& pixel) const;  // of the boundary circle and the image
 
  private:
   Eigen::Vector2i image_size_{0, 0};

@@ -58,7 +58,8 @@ struct LensRotationResult {
 // Progress: called with the number of frames done. Throws what the source throws, InvalidInput for a camera
 // that is not of the frames' size.
 [[nodiscard]] LensRotationResult run_lens_rotation(sources::FrameSource& source,
-                                                   const camera::Calibration& camera, const RulerInFluid& seen,
+                                                   const camera::Calibration& camera,
+                                                   const RulerInFluid& seen,
                                                    const std::function<void(int)>& progress = {});
 
 // The simulator's own: a camera calibrated from the simulator's stills, then `frame_count` frames of its

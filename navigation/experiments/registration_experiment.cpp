@@ -18,7 +18,8 @@ double processor_seconds() {
 }
 
 // Vertices of the bone 25 to 50 mm from the area, as far from one another as can be.
-std::vector<ControlPoint> choose_control_points(const geometry::TriangleMesh& mesh, const Eigen::Vector3d& center_mm) {
+std::vector<ControlPoint> choose_control_points(const geometry::TriangleMesh& mesh,
+                                                const Eigen::Vector3d& center_mm) {
   constexpr std::size_t kCount = 8;
   constexpr double kNearest_mm = 25, kFarthest_mm = 50;
   std::vector<ControlPoint> chosen;
@@ -44,10 +45,12 @@ std::vector<ControlPoint> choose_control_points(const geometry::TriangleMesh& me
 }
 
 // bone_from_bone: where each reliable trial's registration puts the bone's own points.
-void measure_control_point(ControlPoint& control, const std::vector<geometry::RigidTransform>& found_from_true) {
+void measure_control_point(ControlPoint& control,
+                           const std::vector<geometry::RigidTransform>& found_from_true) {
   if (found_from_true.empty()) return;
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
-  for (const auto& t : found_from_true) centroid += t * control.point_mm / static_cast<double>(found_from_true.size());
+  for (const auto& t : found_from_true)
+    centroid += t * control.point_mm / static_cast<double>(found_from_true.size());
   double spread = 0, error = 0;
   for (const auto& t : found_from_true) {
     spread += (t * control.point_mm - centroid).squaredNorm();
@@ -64,7 +67,8 @@ void count_outcomes(RegistrationExperimentResult& result) {
     seconds.push_back(trial.seconds);
     if (trial.has_pose) errors.push_back(trial.target_error_mm);
     const bool is_right = trial.has_pose && trial.target_error_mm < RegistrationExperimentResult::success_mm;
-    if (is_right && trial.predicted_error_mm > 0) ratios.push_back(trial.target_error_mm / trial.predicted_error_mm);
+    if (is_right && trial.predicted_error_mm > 0)
+      ratios.push_back(trial.target_error_mm / trial.predicted_error_mm);
     result.success_count += is_right;
     result.reliable_count += trial.reliable;
     result.reliable_but_wrong_count += trial.reliable && !is_right;
@@ -91,8 +95,8 @@ RegistrationExperimentResult run_registration_experiment(const geometry::Triangl
   for (int i = 0; i < options.trial_count; ++i) {
     const Trial trial = series.make(i);
     const double start = processor_seconds();
-    const auto found =
-        registration::register_curves(bone, trial.curves, {series.seed_of(i), options.use_marker_prior, target});
+    const auto found = registration::register_curves(bone, trial.curves,
+                                                     {series.seed_of(i), options.use_marker_prior, target});
     TrialOutcome outcome;
     outcome.seconds = processor_seconds() - start;
     outcome.has_pose = found.has_pose;

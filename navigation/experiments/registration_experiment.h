@@ -1,5 +1,6 @@
-// The paper's registration experiment on any bone: many made-up trials, how far the results scatter about their mean at
-// control points far from what was touched (the paper's figure), and how far they are from the truth.
+// The paper's registration experiment on any bone: many made-up trials, how far the results scatter about
+// their mean at control points far from what was touched (the paper's figure), and how far they are from the
+// truth.
 #pragma once
 
 #include <cstdint>
@@ -20,17 +21,17 @@ struct RegistrationExperimentOptions {
 
 struct TrialOutcome {
   bool has_pose = false, reliable = false;
-  double target_error_mm = 0;     // against the truth
+  double target_error_mm = 0;  // against the truth
   double predicted_error_mm = 0;
-  double seconds = 0;             // of the processor, for one registration
+  double seconds = 0;  // of the processor, for one registration
   std::vector<std::string> reasons;
 };
 
 struct ControlPoint {
   Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();
-  double distance_mm = 0;       // from the middle of the digitised area
-  double spread_rms_mm = 0;     // about the centroid of the reliable trials: precision, the paper's figure
-  double error_rms_mm = 0;      // of the reliable trials, against the truth: accuracy
+  double distance_mm = 0;    // from the middle of the digitised area
+  double spread_rms_mm = 0;  // about the centroid of the reliable trials: precision, the paper's figure
+  double error_rms_mm = 0;   // of the reliable trials, against the truth: accuracy
 };
 
 struct RegistrationExperimentResult {
@@ -40,13 +41,13 @@ struct RegistrationExperimentResult {
   double median_target_error_mm = 0;           // of the trials with a pose
   double median_error_ratio = 0;               // error / predicted error, of the trials within success_mm
   double median_seconds = 0;
-  int success_count = 0;                       // target error below success_mm
+  int success_count = 0;  // target error below success_mm
   int reliable_count = 0, reliable_but_wrong_count = 0, doubted_though_right_count = 0;
   static constexpr double success_mm = 2.0;
 };
 
-// progress gets the number of trials done. Deterministic by seed but for the times. Throws InvalidInput when the options
-// break their contract or no notch is found and no area given.
+// progress gets the number of trials done. Deterministic by seed but for the times. Throws InvalidInput when
+// the options break their contract or no notch is found and no area given.
 [[nodiscard]] RegistrationExperimentResult run_registration_experiment(
     const geometry::TriangleMesh& mesh, const RegistrationExperimentOptions& options,
     const std::function<void(int)>& progress = {});

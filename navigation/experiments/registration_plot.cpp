@@ -2,8 +2,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "navigation/experiments/registration_experiment.h"
 #include "navigation/experiments/plot.h"
+#include "navigation/experiments/registration_experiment.h"
 #include "planning/files/format.h"
 
 namespace arthronaut::experiments {
@@ -36,21 +36,27 @@ void write_registration_plot(const std::filesystem::path& file, const Registrati
   for (int i = 0; i < static_cast<int>(result.control_points.size()); ++i) {
     const ControlPoint& control = result.control_points[static_cast<std::size_t>(i)];
     const int x = kLeft + i * step + step / 6;
-    cv::rectangle(image, {x, base - height_of(control.spread_rms_mm)}, {x + bar - 2, base}, kSpread, cv::FILLED);
-    cv::rectangle(image, {x + bar, base - height_of(control.error_rms_mm)}, {x + 2 * bar - 2, base}, kError, cv::FILLED);
+    cv::rectangle(image, {x, base - height_of(control.spread_rms_mm)}, {x + bar - 2, base}, kSpread,
+                  cv::FILLED);
+    cv::rectangle(image, {x + bar, base - height_of(control.error_rms_mm)}, {x + 2 * bar - 2, base}, kError,
+                  cv::FILLED);
     write_text(image, files::format("%.0f mm", control.distance_mm), {x, base + 24}, 0.5);
   }
   cv::line(image, {kLeft, base}, {kWidth - kRight, base}, kInk);
-  write_text(image, "Registration, " + std::string(to_text(noise)) +
-                        files::format(" noise, %.0f trials", static_cast<double>(result.trials.size())) +
-                        files::format(", %.0f reliable", static_cast<double>(result.reliable_count)),
+  write_text(image,
+             "Registration, " + std::string(to_text(noise)) +
+                 files::format(" noise, %.0f trials", static_cast<double>(result.trials.size())) +
+                 files::format(", %.0f reliable", static_cast<double>(result.reliable_count)),
              {kLeft, 32}, 0.75);
   cv::rectangle(image, {kLeft, 50}, {kLeft + 16, 66}, kSpread, cv::FILLED);
-  write_text(image, files::format("RMS about the centroid of the trials (all: %.2f mm)", result.spread_rms_mm),
+  write_text(image,
+             files::format("RMS about the centroid of the trials (all: %.2f mm)", result.spread_rms_mm),
              {kLeft + 24, 64}, 0.5);
   cv::rectangle(image, {kLeft + 450, 50}, {kLeft + 466, 66}, kError, cv::FILLED);
-  write_text(image, files::format("RMS error against the truth (all: %.2f mm)", result.error_rms_mm), {kLeft + 474, 64}, 0.5);
-  write_text(image, "control points, by distance from the middle of the digitised area; mm", {kLeft, kHeight - 24}, 0.55);
+  write_text(image, files::format("RMS error against the truth (all: %.2f mm)", result.error_rms_mm),
+             {kLeft + 474, 64}, 0.5);
+  write_text(image, "control points, by distance from the middle of the digitised area; mm",
+             {kLeft, kHeight - 24}, 0.55);
   write_plot(file, image);
 }
 

@@ -19,10 +19,10 @@ using geometry::kPi;
 class Random {
  public:
   explicit Random(std::uint64_t seed) : bits_(seed * 0x9e3779b97f4a7c15ULL + 1) {}
-  double uniform(double low, double high) { return low + (high - low) * static_cast<double>(bits_() >> 11) * 0x1p-53; }
-  double normal() {
-    return std::sqrt(-2 * std::log(uniform(1e-12, 1))) * std::cos(uniform(0, 2 * kPi));
+  double uniform(double low, double high) {
+    return low + (high - low) * static_cast<double>(bits_() >> 11) * 0x1p-53;
   }
+  double normal() { return std::sqrt(-2 * std::log(uniform(1e-12, 1))) * std::cos(uniform(0, 2 * kPi)); }
   std::size_t index(std::size_t count) { return bits_() % count; }
   Eigen::Vector3d direction() { return Eigen::Vector3d(normal(), normal(), normal()).normalized(); }
 
@@ -118,9 +118,12 @@ geometry::RigidTransform place_marker(const geometry::TriangleMesh& mesh, const 
 
 std::string_view to_text(TrialNoise noise) {
   switch (noise) {
-    case TrialNoise::Dry: return "dry";
-    case TrialNoise::ExVivo: return "ex-vivo";
-    case TrialNoise::Hard: return "hard";
+    case TrialNoise::Dry:
+      return "dry";
+    case TrialNoise::ExVivo:
+      return "ex-vivo";
+    case TrialNoise::Hard:
+      return "hard";
   }
   return "unknown";
 }
@@ -167,7 +170,9 @@ Trial make_trial(const geometry::TriangleMesh& mesh, const geometry::Surface& su
       const Eigen::Vector3d white(random.normal(), random.normal(), random.normal());
       strokes::CurvePoint point;
       point.curve = curve;
-      point.time_s = (static_cast<double>(curve) * static_cast<double>(path.size() + 60) + static_cast<double>(i)) / 60.0;
+      point.time_s =
+          (static_cast<double>(curve) * static_cast<double>(path.size() + 60) + static_cast<double>(i)) /
+          60.0;
       point.position_mm = path[i].point_mm + heights_mm[i] * path[i].normal + setting.white_mm * white +
                           setting.slow_mm * slow.at(path_mm);
       touched_mm.push_back(path[i].point_mm);
@@ -175,11 +180,13 @@ Trial make_trial(const geometry::TriangleMesh& mesh, const geometry::Surface& su
     }
   }
   trial.marker_from_bone = place_marker(mesh, surface, touched_mm, random);
-  for (strokes::CurvePoint& point : trial.curves) point.position_mm = trial.marker_from_bone * point.position_mm;
+  for (strokes::CurvePoint& point : trial.curves)
+    point.position_mm = trial.marker_from_bone * point.position_mm;
   return trial;
 }
 
-// The notch is where, above the distal end, a place outside the bone has bone to its left, to its right and in front.
+// The notch is where, above the distal end, a place outside the bone has bone to its left, to its right and
+// in front.
 std::optional<Eigen::Vector3d> find_lateral_notch_wall(const geometry::TriangleMesh& mesh,
                                                        const geometry::Surface& surface, bones::Side side) {
   constexpr double kMaxHalfWidth_mm = 20, kMaxRoof_mm = 25;

@@ -1,5 +1,5 @@
-// The trials of one registration experiment, each made when it is asked for; and the same trials as files, so that other
-// programs can be run on the very same ones.
+// The trials of one registration experiment, each made when it is asked for; and the same trials as files, so
+// that other programs can be run on the very same ones.
 #pragma once
 
 #include <filesystem>
@@ -37,9 +37,10 @@ class TrialSeries {
   Eigen::Vector3d target_mm_;
 };
 
-// Into the folder, which is made when it isn't there: bone.ply (mm, LPS), trial_K.csv (curves.csv) and trial_K.json
-// ("arthronaut.trial": the true marker_from_bone, target_mm in the bone frame, the noise and the seed), K from 0.
-// Throws IoError.
+// Into the folder, which is made when it isn't there: bone.ply (mm, LPS), trial_K.csv (curves.csv) and
+// trial_K.json
+// ("arthronaut.trial": the true marker_from_bone, target_mm in the bone frame, the noise and the seed), K
+// from 0. Throws IoError.
 void write_trials(const std::filesystem::path& folder, const TrialSeries& series, int trial_count);
 
 }  // namespace arthronaut::experiments

@@ -32,8 +32,8 @@ Eigen::Vector3d laid_into_plane(const Eigen::Vector3d& axis, const Eigen::Vector
   return length > 1e-6 ? Eigen::Vector3d(in_plane / length) : Eigen::Vector3d::Zero();
 }
 
-// Where the guide's axis crosses the plane through the entry across the plan; a guide that lies almost in that plane
-// crosses it nowhere near, and its nearest point is taken instead.
+// Where the guide's axis crosses the plane through the entry across the plan; a guide that lies almost in
+// that plane crosses it nowhere near, and its nearest point is taken instead.
 Eigen::Vector3d crossing_of(const Eigen::Vector3d& guide_point, const Eigen::Vector3d& guide_direction,
                             const Eigen::Vector3d& entry, const Eigen::Vector3d& plan_direction) {
   const double advance = guide_direction.dot(plan_direction);
@@ -46,14 +46,22 @@ Eigen::Vector3d crossing_of(const Eigen::Vector3d& guide_point, const Eigen::Vec
 
 std::string_view to_text(GuidanceState state) {
   switch (state) {
-    case GuidanceState::Valid: return "valid";
-    case GuidanceState::NoPlan: return "no plan";
-    case GuidanceState::NoRegistration: return "no registration";
-    case GuidanceState::RegistrationUnreliable: return "registration not reliable";
-    case GuidanceState::WorldMarkerLost: return "world marker not seen";
-    case GuidanceState::GuideLost: return "drill guide not seen";
-    case GuidanceState::LensStale: return "lens mark not seen";
-    case GuidanceState::Stale: return "pose too old";
+    case GuidanceState::Valid:
+      return "valid";
+    case GuidanceState::NoPlan:
+      return "no plan";
+    case GuidanceState::NoRegistration:
+      return "no registration";
+    case GuidanceState::RegistrationUnreliable:
+      return "registration not reliable";
+    case GuidanceState::WorldMarkerLost:
+      return "world marker not seen";
+    case GuidanceState::GuideLost:
+      return "drill guide not seen";
+    case GuidanceState::LensStale:
+      return "lens mark not seen";
+    case GuidanceState::Stale:
+      return "pose too old";
   }
   return "unknown";
 }
@@ -90,8 +98,9 @@ GuidanceNumbers compute_guidance(const GuidanceInput& input) {
   numbers.offset_anterior_mm = offset.dot(laid_into_plane(-Eigen::Vector3d::UnitY(), plan_direction));
   numbers.offset_proximal_mm = offset.dot(laid_into_plane(Eigen::Vector3d::UnitZ(), plan_direction));
 
-  // Predicted error of the guide's axis at the entry: the registration's at that point, and the tracked pose's seen
-  // through the guide's axis. Both are body twists (v, w): a point p of the body moves by v - [p]x w.
+  // Predicted error of the guide's axis at the entry: the registration's at that point, and the tracked
+  // pose's seen through the guide's axis. Both are body twists (v, w): a point p of the body moves by v -
+  // [p]x w.
   const geometry::Matrix6d& tracking = marker_from_guide.covariance;
   const Eigen::Vector3d entry_in_guide = bone_from_guide.inverse() * entry;
   Eigen::Matrix<double, 3, 6> move;
@@ -99,12 +108,13 @@ GuidanceNumbers compute_guidance(const GuidanceInput& input) {
   const double registration_mm = registration::predicted_error_mm(*input.registration, entry);
   numbers.sigma_offset_mm =
       std::sqrt(registration_mm * registration_mm + (move * tracking * move.transpose()).trace());
-  const Eigen::Matrix3d across_plan = cross_matrix(plan_direction), across_guide = cross_matrix(input.axis->direction);
+  const Eigen::Matrix3d across_plan = cross_matrix(plan_direction),
+                        across_guide = cross_matrix(input.axis->direction);
   const Eigen::Matrix3d turn_registration = input.registration->covariance.bottomRightCorner<3, 3>();
   const Eigen::Matrix3d turn_tracking = tracking.bottomRightCorner<3, 3>();
-  numbers.sigma_angle_deg = geometry::deg_from_rad(
-      std::sqrt((across_plan * turn_registration * across_plan.transpose()).trace() +
-                (across_guide * turn_tracking * across_guide.transpose()).trace()));
+  numbers.sigma_angle_deg =
+      geometry::deg_from_rad(std::sqrt((across_plan * turn_registration * across_plan.transpose()).trace() +
+                                       (across_guide * turn_tracking * across_guide.transpose()).trace()));
   return numbers;
 }
 

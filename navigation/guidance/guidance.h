@@ -1,4 +1,5 @@
-// The numbers of the drill guide relative to the plan. One function for the screen, the command line and the report.
+// The numbers of the drill guide relative to the plan. One function for the screen, the command line and the
+// report.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +20,7 @@ enum class GuidanceState {
   WorldMarkerLost,
   GuideLost,
   LensStale,
-  Stale,          // the newest pose is too old
+  Stale,  // the newest pose is too old
 };
 [[nodiscard]] std::string_view to_text(GuidanceState state);
 
@@ -42,16 +43,16 @@ struct GuidanceNumbers {
   // Everything below is meaningful when is_valid() and lies in the bone frame (LPS, mm).
   Eigen::Vector3d guide_point_mm = Eigen::Vector3d::Zero();
   Eigen::Vector3d guide_direction = Eigen::Vector3d::UnitZ();
-  double tip_to_entry_mm = 0;        // guide point to planned entry
-  double axis_to_entry_mm = 0;       // planned entry to the guide's axis
-  double angle_deg = 0;              // guide's axis to the plan's
-  // The axis' offset where it crosses the plane through the entry across the plan, in two anatomical axes: the bone's
-  // anterior(+)/posterior(-) and proximal(+)/distal(-) directions laid into that plane.
+  double tip_to_entry_mm = 0;   // guide point to planned entry
+  double axis_to_entry_mm = 0;  // planned entry to the guide's axis
+  double angle_deg = 0;         // guide's axis to the plan's
+  // The axis' offset where it crosses the plane through the entry across the plan, in two anatomical axes:
+  // the bone's anterior(+)/posterior(-) and proximal(+)/distal(-) directions laid into that plane.
   double offset_anterior_mm = 0;
   double offset_proximal_mm = 0;
-  double depth_mm = 0;               // of the guide point beyond the entry along the plan; negative before it
-  double remaining_mm = 0;           // planned length - depth
-  double sigma_offset_mm = 0;        // predicted, one sigma
+  double depth_mm = 0;         // of the guide point beyond the entry along the plan; negative before it
+  double remaining_mm = 0;     // planned length - depth
+  double sigma_offset_mm = 0;  // predicted, one sigma
   double sigma_angle_deg = 0;
   [[nodiscard]] bool is_valid() const { return state == GuidanceState::Valid; }
 };

@@ -1,5 +1,5 @@
-// The queue between two stages that each have a thread of their own. Lossless: a full queue makes the producer wait (push)
-// or tells it so (try_push). States: open -> closed, never back.
+// The queue between two stages that each have a thread of their own. Lossless: a full queue makes the
+// producer wait (push) or tells it so (try_push). States: open -> closed, never back.
 //
 // Threads: any may call anything; meant for one producer and one consumer.
 #pragma once

@@ -45,13 +45,13 @@ class Operation {
   }
 
  private:
-  [[nodiscard]] bool can_register() const {
-    return can_digitise_ && options_.bone != nullptr;
-  }
+  [[nodiscard]] bool can_register() const { return can_digitise_ && options_.bone != nullptr; }
 
-  // While the guide is held into the view without a registration to guide by. Looking once in half a second is enough.
+  // While the guide is held into the view without a registration to guide by. Looking once in half a second
+  // is enough.
   [[nodiscard]] bool wants_registration() {
-    if (!can_register() || !options_.plan || !guide_ || (summary_.registration && summary_.registration->reliable)) {
+    if (!can_register() || !options_.plan || !guide_ ||
+        (summary_.registration && summary_.registration->reliable)) {
       return false;
     }
     bool guide_is_seen = false;
@@ -81,7 +81,8 @@ class Operation {
     if (options_.plan) options.target_in_bone_mm = options_.plan->entry_mm;
     const RegistrationSummary found = registration::register_curves(*options_.bone, summary_.curves, options);
     if (!found.reliable && options_.registration && options_.registration->reliable) {
-      // A few strokes to check a known registration are no reason to lose it; many that fit nowhere are one to say so.
+      // A few strokes to check a known registration are no reason to lose it; many that fit nowhere are one
+      // to say so.
       if (tried_length_mm_ >= options_.retry_after_mm) summary_.reasons = found.reasons;
       return;
     }
@@ -99,8 +100,9 @@ class Operation {
     } else if (summary_.statistics.frames_with_unknown_lens == summary_.statistics.frame_count) {
       reasons.emplace_back("the lens mark was not seen, so the camera is not known in any frame");
     } else if (!summary_.registration) {
-      reasons.emplace_back(summary_.curves.empty() ? "there is no registration and the probe drew nothing to find one by"
-                                                   : "there is no bone to register the strokes to");
+      reasons.emplace_back(summary_.curves.empty()
+                               ? "there is no registration and the probe drew nothing to find one by"
+                               : "there is no bone to register the strokes to");
     } else if (!summary_.registration->reliable) {
       reasons = summary_.registration->reasons;
     }

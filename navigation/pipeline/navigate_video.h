@@ -1,5 +1,5 @@
-// A whole operation from a recorded video: tracks, digitises what the probe draws, registers, guides. What `arthronaut
-// navigate` does; `replay` does it again.
+// A whole operation from a recorded video: tracks, digitises what the probe draws, registers, guides. What
+// `arthronaut navigate` does; `replay` does it again.
 #pragma once
 
 #include <functional>
@@ -26,8 +26,8 @@ struct NavigateOptions {
   std::optional<registration::CoveredRegion> covered = std::nullopt;  // of the bone
   std::uint64_t seed = 1;
   strokes::StrokeOptions strokes;
-  // While the guide is seen and no reliable registration exists, one is tried whenever the probe has drawn this much
-  // more; below it there is nothing to find.
+  // While the guide is seen and no reliable registration exists, one is tried whenever the probe has drawn
+  // this much more; below it there is nothing to find.
   double retry_after_mm = 40;
 };
 
@@ -52,8 +52,8 @@ struct NavigationSummary {
   std::vector<std::string> reasons;  // why the result is not reliable; empty when it is
 };
 
-// Deterministic for a video, options and seed. Decoding runs in a thread of its own. Throws InvalidInput when the options
-// break their contract or a frame has another size than the camera's, and what the source throws.
+// Deterministic for a video, options and seed. Decoding runs in a thread of its own. Throws InvalidInput when
+// the options break their contract or a frame has another size than the camera's, and what the source throws.
 [[nodiscard]] NavigationSummary navigate_video(sources::FrameSource& source, const NavigateOptions& options,
                                                const NavigationObserver& observer = {});
 

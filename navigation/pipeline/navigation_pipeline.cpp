@@ -30,7 +30,8 @@ std::size_t world_marker_index(const PipelineOptions& options) {
   for (std::size_t i = 0; i < world_markers.size(); ++i) {
     if (world_markers[i].bone == options.bone) return i;
   }
-  throw InvalidInput("the tools declare no world marker for the " + std::string(bones::to_text(options.bone)));
+  throw InvalidInput("the tools declare no world marker for the " +
+                     std::string(bones::to_text(options.bone)));
 }
 
 ViewTrackerOptions view_options(const PipelineOptions& options) {
@@ -68,8 +69,8 @@ struct NavigationPipeline::State {
   }
 
   void place_tip(FrameResult& result) const {
-    result.tip_is_valid = probe && options.tools.tools[*probe].tip_mm &&
-                          result.tools[*probe].world_from_tool.is_valid;
+    result.tip_is_valid =
+        probe && options.tools.tools[*probe].tip_mm && result.tools[*probe].world_from_tool.is_valid;
     if (!result.tip_is_valid) return;
     const geometry::TrackedPose& world_from_probe = result.tools[*probe].world_from_tool;
     const Eigen::Vector3d& tip_in_probe_mm = *options.tools.tools[*probe].tip_mm;

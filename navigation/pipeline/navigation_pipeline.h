@@ -1,5 +1,5 @@
-// One frame in, everything that is known about it out: lens, markers, tip, guidance. Thread-free and deterministic: the
-// window's worker thread, the command line, replay and tests all call the same process().
+// One frame in, everything that is known about it out: lens, markers, tip, guidance. Thread-free and
+// deterministic: the window's worker thread, the command line, replay and tests all call the same process().
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct PipelineOptions {
   camera::Calibration calibration;
   double refractive_index = 1.0;  // of the working medium
   camera::FluidModel fluid_model = camera::FluidModel::FlatPort;
-  bool follow_lens = true;        // false: intrinsics stay at lens angle 0 (for comparison only)
+  bool follow_lens = true;  // false: intrinsics stay at lens angle 0 (for comparison only)
   tools::ToolSet tools;
   bones::BoneKind bone = bones::BoneKind::Femur;  // whose world marker is the world
   bones::Side side = bones::Side::Right;
@@ -38,30 +38,33 @@ struct ToolPose {
   geometry::TrackedPose world_from_tool;
 };
 
-// What one frame says. Immutable once published. Everything of the base is about the picture alone; what follows is about
-// the knee and is valid only in a live picture whose intrinsics are known.
-struct FrameResult : View {                              // markers: world markers first, then the tools'
-  geometry::TrackedPose camera_from_world;               // the world marker of the bone
-  std::vector<ToolPose> tools;                           // world_from_tool of each tool, in the order of the tool set
+// What one frame says. Immutable once published. Everything of the base is about the picture alone; what
+// follows is about the knee and is valid only in a live picture whose intrinsics are known.
+struct FrameResult : View {                 // markers: world markers first, then the tools'
+  geometry::TrackedPose camera_from_world;  // the world marker of the bone
+  std::vector<ToolPose> tools;              // world_from_tool of each tool, in the order of the tool set
   bool tip_is_valid = false;
   Eigen::Vector3d tip_in_world_mm = Eigen::Vector3d::Zero();
   std::optional<Eigen::Vector3d> shaft_in_world;  // see tools::shaft_direction
   Eigen::Matrix3d tip_covariance_mm2 = Eigen::Matrix3d::Zero();
   guidance::GuidanceNumbers guidance;
-  double processing_ms = 0;                              // of process(): not part of what replay compares
+  double processing_ms = 0;  // of process(): not part of what replay compares
 };
 
 class NavigationPipeline {
  public:
-  // Throws InvalidInput when options break their contract (no world marker for the bone, unusable calibration).
+  // Throws InvalidInput when options break their contract (no world marker for the bone, unusable
+  // calibration).
   explicit NavigationPipeline(const PipelineOptions& options);
-  // The same with another way to find the markers, which must observe declared_markers(options.tools) in that order.
+  // The same with another way to find the markers, which must observe declared_markers(options.tools) in that
+  // order.
   NavigationPipeline(const PipelineOptions& options, std::unique_ptr<markers::MarkerTracker> markers);
   ~NavigationPipeline();
 
-  // Frames in order of time. `result` is reused from call to call so that nothing is allocated after the first frames.
-  // Throws InvalidInput when the frame's size is not the camera's; never on what a picture shows. A marker that is lost,
-  // a lens angle that is not known or a frozen picture makes poses, tip and guidance invalid in this very frame.
+  // Frames in order of time. `result` is reused from call to call so that nothing is allocated after the
+  // first frames. Throws InvalidInput when the frame's size is not the camera's; never on what a picture
+  // shows. A marker that is lost, a lens angle that is not known or a frozen picture makes poses, tip and
+  // guidance invalid in this very frame.
   void process(const camera::Frame& frame, FrameResult& result);
 
   // What guidance is computed from. Takes effect with the next frame.

@@ -1,4 +1,5 @@
-// A frame source whose frames are made (decoded, rendered) in a thread of their own, a few ahead of who asks for them.
+// A frame source whose frames are made (decoded, rendered) in a thread of their own, a few ahead of who asks
+// for them.
 #pragma once
 
 #include <memory>
@@ -7,8 +8,9 @@
 
 namespace arthronaut::pipeline {
 
-// Wraps any source; gives the same frames in the same order, and throws at next() what the wrapped source threw, after the
-// frames before it. One thread at a time calls next(). The destructor waits for the frame that is being made.
+// Wraps any source; gives the same frames in the same order, and throws at next() what the wrapped source
+// threw, after the frames before it. One thread at a time calls next(). The destructor waits for the frame
+// that is being made.
 class PrefetchedSource : public sources::FrameSource {
  public:
   // `source` must outlive this and must not be used by anybody else meanwhile.

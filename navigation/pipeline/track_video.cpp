@@ -25,13 +25,17 @@ std::vector<std::string> reasons_of(const TrackedVideo& video) {
   if (s.frame_count == 0) reasons.emplace_back("the video has no frame");
   if (!video.rows.empty() || s.frame_count == 0) return reasons;
   if (s.frames_with_unknown_lens == s.frame_count) {
-    reasons.emplace_back("the lens mark was not seen, so the lens angle and with it the camera are not known");
+    reasons.emplace_back(
+        "the lens mark was not seen, so the lens angle and with it the camera are not known");
     return reasons;
   }
   reasons.emplace_back("no declared marker was tracked in any frame");
-  const auto is_doubtful = [](const MarkerStatistics& m) { return m.main_loss == markers::MarkerState::Doubtful; };
+  const auto is_doubtful = [](const MarkerStatistics& m) {
+    return m.main_loss == markers::MarkerState::Doubtful;
+  };
   if (std::any_of(s.markers.begin(), s.markers.end(), is_doubtful)) {
-    reasons.emplace_back("markers were seen, but their corners fit no pose: are camera, medium and sizes right?");
+    reasons.emplace_back(
+        "markers were seen, but their corners fit no pose: are camera, medium and sizes right?");
   }
   return reasons;
 }

@@ -10,7 +10,9 @@ namespace arthronaut::pipeline {
 
 namespace {
 
-std::string size_text(int width, int height) { return std::to_string(width) + " x " + std::to_string(height); }
+std::string size_text(int width, int height) {
+  return std::to_string(width) + " x " + std::to_string(height);
+}
 
 }  // namespace
 
@@ -27,14 +29,15 @@ struct ViewTracker::State {
   void follow_lens(View& view) {
     mark_was_seen = mark_was_seen || view.lens.mark == lens::MarkState::Found;
     const bool angle_is_usable = options.follow_lens && mark_was_seen;
-    const double angle_rad = angle_is_usable ? options.calibration.lens_angle_rad(view.lens.mark_angle_deg) : 0;
+    const double angle_rad =
+        angle_is_usable ? options.calibration.lens_angle_rad(view.lens.mark_angle_deg) : 0;
     view.camera =
         camera::CameraModel(options.calibration, angle_rad, options.refractive_index, options.fluid_model);
     view.intrinsics_are_known = !options.follow_lens || is_angle_known(view.lens);
   }
 
-  // A scope whose principal point lies on the axis of rotation needs no mark; for others the chord that two sigma of
-  // the angle span must stay small.
+  // A scope whose principal point lies on the axis of rotation needs no mark; for others the chord that two
+  // sigma of the angle span must stay small.
   [[nodiscard]] bool is_angle_known(const lens::LensObservation& lens) const {
     if (lens.zoom_or_slip) return false;
     if (lens.has_angle() && mark_was_seen) return true;
@@ -45,7 +48,8 @@ struct ViewTracker::State {
 
   // Equal pictures cost a comparison of all bytes, different ones that of the first few.
   [[nodiscard]] bool is_frozen(std::int64_t timestamp_ns) {
-    const bool same = gray.size() == last_gray.size() && std::memcmp(gray.data(), last_gray.data(), gray.size()) == 0;
+    const bool same =
+        gray.size() == last_gray.size() && std::memcmp(gray.data(), last_gray.data(), gray.size()) == 0;
     if (!same || timestamp_ns < picture_since_ns) picture_since_ns = timestamp_ns;
     return static_cast<double>(timestamp_ns - picture_since_ns) * 1e-9 >= options.frozen_after_s;
   }
@@ -68,8 +72,9 @@ void ViewTracker::observe(const camera::Frame& frame, View& view) {
   State& s = *state_;
   const Eigen::Vector2i& size = s.options.calibration.image_size_px;
   if (frame.width != size.x() || frame.height != size.y()) {
-    throw InvalidInput("frame " + std::to_string(frame.index) + " is " + size_text(frame.width, frame.height) +
-                       " pixels, but the camera was calibrated at " + size_text(size.x(), size.y()));
+    throw InvalidInput("frame " + std::to_string(frame.index) + " is " +
+                       size_text(frame.width, frame.height) + " pixels, but the camera was calibrated at " +
+                       size_text(size.x(), size.y()));
   }
   std::swap(s.gray, s.last_gray);
   camera::gray_from(frame, s.gray);

@@ -1,5 +1,5 @@
-// The eyes of the pipeline: one picture in; lens angle, camera of this very frame and marker poses out. It knows no bone
-// and no plan, so `arthronaut track` uses it alone.
+// The eyes of the pipeline: one picture in; lens angle, camera of this very frame and marker poses out. It
+// knows no bone and no plan, so `arthronaut track` uses it alone.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,10 @@ struct ViewTrackerOptions {
   camera::Calibration calibration;
   double refractive_index = 1.0;  // of the working medium
   camera::FluidModel fluid_model = camera::FluidModel::FlatPort;
-  bool follow_lens = true;        // false: the intrinsics stay at lens angle 0
-  double frozen_after_s = 0.3;    // the same picture for this long is no live picture
-  // How far the principal point may be unknown (2 sigma) before poses are doubtful. 3 px are 0.23 deg at the standard scope.
+  bool follow_lens = true;      // false: the intrinsics stay at lens angle 0
+  double frozen_after_s = 0.3;  // the same picture for this long is no live picture
+  // How far the principal point may be unknown (2 sigma) before poses are doubtful. 3 px are 0.23 deg at the
+  // standard scope.
   double max_principal_point_error_px = 3.0;
 };
 
@@ -28,8 +29,8 @@ struct View {
   std::int64_t frame_index = 0;
   std::int64_t timestamp_ns = 0;
   lens::LensObservation lens;
-  // The lens angle is known well enough for this scope: a mark lost for too long, or a rim off its track (another zoom, a
-  // slipped coupler), makes it false, and no pose of this frame is to be trusted.
+  // The lens angle is known well enough for this scope: a mark lost for too long, or a rim off its track
+  // (another zoom, a slipped coupler), makes it false, and no pose of this frame is to be trusted.
   bool intrinsics_are_known = false;
   bool is_frozen = false;                           // the same picture again and again
   camera::CameraModel camera;                       // of this frame
@@ -47,8 +48,9 @@ class ViewTracker {
   ViewTracker(const ViewTrackerOptions& options, std::unique_ptr<markers::MarkerTracker> markers);
   ~ViewTracker();
 
-  // Frames in order of time. `view` is reused from call to call. Throws InvalidInput when the frame's size is not that of
-  // the calibration; never on what a picture shows. Allocates nothing of its own after the first frames.
+  // Frames in order of time. `view` is reused from call to call. Throws InvalidInput when the frame's size is
+  // not that of the calibration; never on what a picture shows. Allocates nothing of its own after the first
+  // frames.
   void observe(const camera::Frame& frame, View& view);
 
  private:

@@ -33,9 +33,10 @@ tunnels::Tunnel tunnel_from(const files::JsonObject& node, bones::BoneKind bone)
 
 TunnelDifference compare(const tunnels::Tunnel& reference, const tunnels::Tunnel& other) {
   const Eigen::Vector3d to_entry = reference.entry_mm - other.entry_mm;
-  return {.entry_mm = to_entry.norm(),
-          .axis_to_entry_mm = to_entry.cross(other.direction).norm(),
-          .angle_deg = geometry::deg_from_rad(geometry::angle_between_rad(reference.direction, other.direction))};
+  return {
+      .entry_mm = to_entry.norm(),
+      .axis_to_entry_mm = to_entry.cross(other.direction).norm(),
+      .angle_deg = geometry::deg_from_rad(geometry::angle_between_rad(reference.direction, other.direction))};
 }
 
 AchievedTunnel read_achieved_file(const std::filesystem::path& file) {

@@ -1,5 +1,5 @@
-// The tunnel as drilled, in a session's achieved.json (format "arthronaut.achieved", version 1): as navigation measured
-// it, what was planned, and, from the simulator alone, what was true.
+// The tunnel as drilled, in a session's achieved.json (format "arthronaut.achieved", version 1): as
+// navigation measured it, what was planned, and, from the simulator alone, what was true.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,9 @@ struct AchievedTunnel {
 
 // How one tunnel lies to another of the same bone.
 struct TunnelDifference {
-  double entry_mm = 0;           // between the entries
-  double axis_to_entry_mm = 0;   // reference entry to the other's axis
-  double angle_deg = 0;          // between the axes
+  double entry_mm = 0;          // between the entries
+  double axis_to_entry_mm = 0;  // reference entry to the other's axis
+  double angle_deg = 0;         // between the axes
 };
 [[nodiscard]] TunnelDifference compare(const tunnels::Tunnel& reference, const tunnels::Tunnel& other);
 

@@ -28,8 +28,8 @@ std::optional<KnownRegistration> registration_of(const std::filesystem::path& fo
 
 }  // namespace
 
-std::optional<KnownRegistration> find_registration(const std::filesystem::path& case_folder, bones::BoneKind bone,
-                                                   const tools::ToolSet& tools) {
+std::optional<KnownRegistration> find_registration(const std::filesystem::path& case_folder,
+                                                   bones::BoneKind bone, const tools::ToolSet& tools) {
   std::vector<std::filesystem::path> folders = cases::session_folders(case_folder);
   std::reverse(folders.begin(), folders.end());
   for (const std::filesystem::path& folder : folders) {

@@ -15,9 +15,11 @@ struct KnownRegistration {
   std::filesystem::path session_folder;
 };
 
-// The newest reliable registration that a session of the case found for this bone with this very world marker (id and
-// size). Nobody can tell from files whether the marker has been moved since. Sessions that cannot be read are passed over.
+// The newest reliable registration that a session of the case found for this bone with this very world marker
+// (id and size). Nobody can tell from files whether the marker has been moved since. Sessions that cannot be
+// read are passed over.
 [[nodiscard]] std::optional<KnownRegistration> find_registration(const std::filesystem::path& case_folder,
-                                                                 bones::BoneKind bone, const tools::ToolSet& tools);
+                                                                 bones::BoneKind bone,
+                                                                 const tools::ToolSet& tools);
 
 }  // namespace arthronaut::recording

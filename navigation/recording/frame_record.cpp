@@ -73,7 +73,8 @@ template <typename Visit>
 void for_each_row(Statement& rows, std::vector<RecordedFrame>& frames, const Visit& visit) {
   auto frame = frames.begin();
   while (rows.step()) {
-    frame = std::find_if(frame, frames.end(), [&](const RecordedFrame& f) { return f.index == rows.integer(0); });
+    frame =
+        std::find_if(frame, frames.end(), [&](const RecordedFrame& f) { return f.index == rows.integer(0); });
     if (frame == frames.end()) return;
     visit(rows, *frame);
   }
@@ -82,8 +83,7 @@ void for_each_row(Statement& rows, std::vector<RecordedFrame>& frames, const Vis
 }  // namespace
 
 FrameInserter::FrameInserter(SessionDatabase& database)
-    : frame_(database.prepare(
-          "INSERT INTO frames VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")),
+    : frame_(database.prepare("INSERT INTO frames VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")),
       marker_(database.prepare("INSERT INTO markers VALUES(?,?,?,?,?,?,?,?,?,?,?,?)")),
       guidance_(database.prepare("INSERT INTO guidance VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")) {}
 
@@ -128,8 +128,10 @@ void FrameInserter::insert(const pipeline::FrameResult& result) {
 std::vector<RecordedFrame> read_frames(SessionDatabase& database) {
   std::vector<RecordedFrame> frames;
   Statement rows = database.prepare(
-      "SELECT frame, timestamp_ns, circle_found, circle_x_px, circle_y_px, circle_radius_px, circle_coverage_deg,"
-      " mark_state, mark_polarity, mark_angle_deg, mark_sigma_deg, lens_is_stale, zoom_or_slip, intrinsics_are_known,"
+      "SELECT frame, timestamp_ns, circle_found, circle_x_px, circle_y_px, circle_radius_px, "
+      "circle_coverage_deg,"
+      " mark_state, mark_polarity, mark_angle_deg, mark_sigma_deg, lens_is_stale, zoom_or_slip, "
+      "intrinsics_are_known,"
       " is_frozen, tip_is_valid, tip_x_mm, tip_y_mm, tip_z_mm FROM frames ORDER BY frame");
   while (rows.step()) frames.push_back(frame_at(rows));
 

@@ -14,10 +14,12 @@ enum class KeepVideo {
   Encode,  // the source has no file: its pictures
 };
 
-// Records plan, given and found registrations, frames, curves and the open formats into `folder`, which exists and is
-// empty. `video` is the source's file or pattern (unused for Encode). Throws what navigate_video throws and IoError.
+// Records plan, given and found registrations, frames, curves and the open formats into `folder`, which
+// exists and is empty. `video` is the source's file or pattern (unused for Encode). Throws what
+// navigate_video throws and IoError.
 [[nodiscard]] pipeline::NavigationSummary record_navigation(
-    sources::FrameSource& source, const pipeline::NavigateOptions& options, const std::filesystem::path& folder,
-    KeepVideo keep, const std::filesystem::path& video, const pipeline::NavigationObserver& observer = {});
+    sources::FrameSource& source, const pipeline::NavigateOptions& options,
+    const std::filesystem::path& folder, KeepVideo keep, const std::filesystem::path& video,
+    const pipeline::NavigationObserver& observer = {});
 
 }  // namespace arthronaut::recording

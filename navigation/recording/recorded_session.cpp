@@ -52,7 +52,9 @@ const SessionHeader& RecordedSession::header() const { return state_->header; }
 bool RecordedSession::was_finished() const { return state_->was_finished; }
 const std::vector<RecordedFrame>& RecordedSession::frames() const { return state_->frames; }
 const std::vector<SessionEvent>& RecordedSession::events() const { return state_->events; }
-const std::vector<std::int64_t>& RecordedSession::frame_of_picture() const { return state_->frame_of_picture; }
+const std::vector<std::int64_t>& RecordedSession::frame_of_picture() const {
+  return state_->frame_of_picture;
+}
 const strokes::Curves& RecordedSession::curves() const { return state_->curves; }
 const std::optional<registration::RegistrationSummary>& RecordedSession::registration() const {
   return state_->registration;

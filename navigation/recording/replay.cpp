@@ -31,7 +31,8 @@ class FrameComparison {
   static std::string pose_of(int marker_id) { return "pose of marker " + std::to_string(marker_id); }
 
   static const strokes::PoseRow* find(const std::vector<strokes::PoseRow>& rows, int marker_id) {
-    const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.marker_id == marker_id; });
+    const auto row =
+        std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.marker_id == marker_id; });
     return row == rows.end() ? nullptr : &*row;
   }
 
@@ -39,7 +40,8 @@ class FrameComparison {
     if (!now) return differs(pose_of(then.marker_id), "had a pose and has none now");
     const geometry::RigidTransform& a = then.camera_from_marker;
     const geometry::RigidTransform& b = now->camera_from_marker;
-    amount(pose_of(then.marker_id), (a.translation_mm - b.translation_mm).norm(), "mm", summary_.worst_pose_mm);
+    amount(pose_of(then.marker_id), (a.translation_mm - b.translation_mm).norm(), "mm",
+           summary_.worst_pose_mm);
     amount(pose_of(then.marker_id),
            geometry::deg_from_rad(geometry::rotation_angle_rad(a.rotation.conjugate() * b.rotation)), "deg",
            summary_.worst_pose_deg);
@@ -58,7 +60,8 @@ class FrameComparison {
       differs("guidance", "was \"" + std::string(guidance::to_text(then.state)) + "\" and is \"" +
                               std::string(guidance::to_text(now.state)) + "\" now");
     } else if (then.is_valid()) {
-      amount("guidance offset", std::abs(then.axis_to_entry_mm - now.axis_to_entry_mm), "mm", summary_.worst_offset_mm);
+      amount("guidance offset", std::abs(then.axis_to_entry_mm - now.axis_to_entry_mm), "mm",
+             summary_.worst_offset_mm);
       amount("guidance depth", std::abs(then.depth_mm - now.depth_mm), "mm", summary_.worst_offset_mm);
       amount("guidance angle", std::abs(then.angle_deg - now.angle_deg), "deg", summary_.worst_angle_deg);
     }
@@ -122,7 +125,8 @@ Eigen::Vector3d centroid(const strokes::Curves& curves) {
   return sum / static_cast<double>(curves.size());
 }
 
-// What was registered. curves.csv is rounded; where the recorded poses give the same strokes, they give them exactly.
+// What was registered. curves.csv is rounded; where the recorded poses give the same strokes, they give them
+// exactly.
 strokes::Curves registered_curves(const RecordedSession& session) {
   const pipeline::PipelineOptions options = session.pipeline_options();
   const tools::Tool* probe = options.tools.find_tool(options.probe_name);
@@ -135,8 +139,8 @@ strokes::Curves registered_curves(const RecordedSession& session) {
   return curves.size() == session.curves().size() ? curves : session.curves();
 }
 
-void compare_registration(const RecordedSession& session, const EventPlayer& player, const ReplayOptions& options,
-                          ReplaySummary& summary) {
+void compare_registration(const RecordedSession& session, const EventPlayer& player,
+                          const ReplayOptions& options, ReplaySummary& summary) {
   if (!options.bone || !player.found() || session.curves().empty()) return;
   const registration::RegistrationSummary& then = *player.found();
   registration::RegistrationOptions registering;
@@ -147,12 +151,15 @@ void compare_registration(const RecordedSession& session, const EventPlayer& pla
   const auto differs = [&](const char* detail) {
     summary.differences.push_back({-1, "registration", 0, "", detail});
   };
-  if (then.reliable != now.reliable) differs(now.reliable ? "is reliable now and was not" : "was reliable and is not now");
-  // registration.json always holds a transform, also where none was found: only a reliable one is worth comparing.
+  if (then.reliable != now.reliable)
+    differs(now.reliable ? "is reliable now and was not" : "was reliable and is not now");
+  // registration.json always holds a transform, also where none was found: only a reliable one is worth
+  // comparing.
   if (!then.reliable || !now.reliable) return;
   const Eigen::Vector3d target_in_bone =
       registering.target_in_bone_mm.value_or(then.marker_from_bone.inverse() * centroid(session.curves()));
-  const double error_mm = (then.marker_from_bone * target_in_bone - now.marker_from_bone * target_in_bone).norm();
+  const double error_mm =
+      (then.marker_from_bone * target_in_bone - now.marker_from_bone * target_in_bone).norm();
   summary.registration_mm = error_mm;
   if (error_mm > std::max(options.registration_tolerance_mm, then.predicted_tre_mm)) {
     summary.differences.push_back({-1, "registration at the target", error_mm, "mm", ""});
@@ -177,7 +184,8 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   while (const camera::FramePtr frame = prefetched.next()) {
     player.play_before(frame->index);
     pipeline.process(*frame, result);
-    recorded = std::find_if(recorded, session.frames().end(), [&](const auto& f) { return f.index == frame->index; });
+    recorded = std::find_if(recorded, session.frames().end(),
+                            [&](const auto& f) { return f.index == frame->index; });
     if (recorded == session.frames().end()) break;
     comparison.compare(*recorded, result);
     ++summary.replayed_frames;

@@ -1,6 +1,6 @@
-// Runs a recorded session through today's pipeline and says what differs. The registrations and plans of the session take
-// effect at the frames where they did, so that a difference in guidance comes from tracking alone; the registration itself
-// is found again from the recorded curves.
+// Runs a recorded session through today's pipeline and says what differs. The registrations and plans of the
+// session take effect at the frames where they did, so that a difference in guidance comes from tracking
+// alone; the registration itself is found again from the recorded curves.
 #pragma once
 
 #include <functional>
@@ -18,8 +18,8 @@ struct ReplayOptions {
   std::uint64_t seed = 1;
   // What passes for the same, on a copied video: far above rounding, far below anything that matters.
   double tolerance_mm = 1e-3, tolerance_deg = 1e-3;
-  // On frames that the recorder encoded itself, whose pixels are not quite those that were tracked: three times the worst
-  // difference seen on simulated and path-traced clips (0.03 mm, 0.12 deg).
+  // On frames that the recorder encoded itself, whose pixels are not quite those that were tracked: three
+  // times the worst difference seen on simulated and path-traced clips (0.03 mm, 0.12 deg).
   double reencoded_tolerance_mm = 0.1, reencoded_tolerance_deg = 0.4;
   // A registration found again may differ by this much, or by its own predicted error where that is larger.
   double registration_tolerance_mm = 0.1;
@@ -29,8 +29,8 @@ struct Difference {
   std::int64_t frame = -1;  // -1: of the session as a whole
   std::string what;         // "pose of marker 2", "tip", "guidance angle", "registration", ...
   double amount = 0;
-  std::string unit;         // "mm", "deg"; empty: present in one and absent in the other, or another state
-  std::string detail;       // in words, where there is no amount
+  std::string unit;    // "mm", "deg"; empty: present in one and absent in the other, or another state
+  std::string detail;  // in words, where there is no amount
 };
 
 struct ReplaySummary {

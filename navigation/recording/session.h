@@ -1,12 +1,15 @@
-// A session on disk: what happened in theatre, so that a crash loses at most one second and everything can be run again.
+// A session on disk: what happened in theatre, so that a crash loses at most one second and everything can be
+// run again.
 //
 //   session.json        format "arthronaut.session": bone, medium, tools' roles, source, versions
 //   session.sqlite      WAL while it is written; frames, poses, marker states, tips, guidance, events
-//   video.*             the video as it came: a file source is copied; frames of a device or the simulator are encoded.
-//                       pictures/ holds copied stills; an absolute path stands in session.json when copying was declined
+//   video.*             the video as it came: a file source is copied; frames of a device or the simulator
+//   are encoded.
+//                       pictures/ holds copied stills; an absolute path stands in session.json when copying
+//                       was declined
 //   registration_N.json each registration at the moment it took effect
-//   poses.csv curves.csv registration.json guidance.csv     the same in open formats, written when the session ends
-//   camera.json tools.json                                  what it was navigated with
+//   poses.csv curves.csv registration.json guidance.csv     the same in open formats, written when the
+//   session ends camera.json tools.json                                  what it was navigated with
 #pragma once
 
 #include <cstdint>
@@ -24,14 +27,14 @@
 namespace arthronaut::recording {
 
 struct SessionHeader {
-  std::string id;          // the folder's name
-  std::string started_utc; // ISO 8601
+  std::string id;           // the folder's name
+  std::string started_utc;  // ISO 8601
   bones::BoneKind bone = bones::BoneKind::Femur;
   bones::Side side = bones::Side::Right;
   double refractive_index = 1;
   std::string probe_name, guide_name;
-  std::string source;      // name of the frame source
-  std::string video;       // path or pattern within the folder, or an absolute one; empty when no video was kept
+  std::string source;  // name of the frame source
+  std::string video;   // path or pattern within the folder, or an absolute one; empty when no video was kept
   bool video_is_reencoded = false;  // by append_picture(): tracking it again gives slightly other poses
   std::string program_version;
 };
@@ -40,18 +43,21 @@ struct SessionEvent {
   std::int64_t timestamp_ns = 0;
   std::string kind;  // "stroke begin", "registration", "tunnel drilled", "note", ...
   std::string text;  // free text or JSON
-  std::int64_t after_frame = -1;  // index of the last frame before it, -1 before the first; the recorder fills it in
+  std::int64_t after_frame =
+      -1;  // index of the last frame before it, -1 before the first; the recorder fills it in
 };
 
 // Event kinds that the recorder itself writes and that replay obeys.
-inline constexpr std::string_view kPlanEvent = "plan";                             // text: JSON; empty: no plan
-inline constexpr std::string_view kRegistrationEvent = "registration";             // text: file name; found here
-inline constexpr std::string_view kGivenRegistrationEvent = "registration given";  // text: file name; from elsewhere
-inline constexpr std::string_view kDroppedPicturesEvent = "pictures dropped";      // text: how many
+inline constexpr std::string_view kPlanEvent = "plan";                  // text: JSON; empty: no plan
+inline constexpr std::string_view kRegistrationEvent = "registration";  // text: file name; found here
+inline constexpr std::string_view kGivenRegistrationEvent =
+    "registration given";  // text: file name; from elsewhere
+inline constexpr std::string_view kDroppedPicturesEvent = "pictures dropped";  // text: how many
 
-// Writes while the operation goes on. Calls hand over to a writer thread by a bounded, lossless queue (more than a minute
-// of frames; only a disk that hangs for longer makes a call wait); the writer commits at least twice a second. Pictures
-// go through a queue and a thread of their own. An error of the disk reaches the next call, or finish(), as IoError.
+// Writes while the operation goes on. Calls hand over to a writer thread by a bounded, lossless queue (more
+// than a minute of frames; only a disk that hangs for longer makes a call wait); the writer commits at least
+// twice a second. Pictures go through a queue and a thread of their own. An error of the disk reaches the
+// next call, or finish(), as IoError.
 //
 // Threads: one thread at a time calls the recorder. States: writing -> finished.
 class SessionRecorder {
@@ -63,22 +69,24 @@ class SessionRecorder {
   SessionRecorder(const SessionRecorder&) = delete;
   SessionRecorder& operator=(const SessionRecorder&) = delete;
 
-  // Keeps the video of a file source: copies it (or every still of a printf pattern) as it is. Waits for the disk.
+  // Keeps the video of a file source: copies it (or every still of a printf pattern) as it is. Waits for the
+  // disk.
   void copy_video(const std::filesystem::path& video_or_pattern);
   // Keeps only where the video is.
   void refer_to_video(const std::filesystem::path& video_or_pattern);
-  // The frame's picture, for sources that are not files. Encoded nearly losslessly (see picture_writer.h). Waits while
-  // half a second of pictures is waiting: for sources that can wait.
+  // The frame's picture, for sources that are not files. Encoded nearly losslessly (see picture_writer.h).
+  // Waits while half a second of pictures is waiting: for sources that can wait.
   void append_picture(const camera::FramePtr& frame);
-  // The same for a live source: never waits; false when the encoder cannot keep up and the picture is left out. How many
-  // were left out is an event of the session.
+  // The same for a live source: never waits; false when the encoder cannot keep up and the picture is left
+  // out. How many were left out is an event of the session.
   bool try_append_picture(const camera::FramePtr& frame);
 
   void append(const pipeline::FrameResult& result);
   void add_event(const SessionEvent& event);
   // What guidance is computed from, from the next frame on.
   void set_plan(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm);
-  void set_registration(const registration::RegistrationSummary& registration, bool found_in_this_session = true);
+  void set_registration(const registration::RegistrationSummary& registration,
+                        bool found_in_this_session = true);
   // Replaces the curves. Kept on disk at once.
   void set_curves(const strokes::Curves& curves);
   // Commits, writes the open formats, closes. Throws IoError.
@@ -125,7 +133,8 @@ class RecordedSession {
   };
   [[nodiscard]] PlanChange plan_of(const SessionEvent& event) const;
   [[nodiscard]] registration::RegistrationSummary registration_of(const SessionEvent& event) const;
-  // Which frame each picture of an encoded video shows; empty when the video is the source's own: picture = frame.
+  // Which frame each picture of an encoded video shows; empty when the video is the source's own: picture =
+  // frame.
   [[nodiscard]] const std::vector<std::int64_t>& frame_of_picture() const;
   [[nodiscard]] const strokes::Curves& curves() const;
   [[nodiscard]] const std::optional<registration::RegistrationSummary>& registration() const;
@@ -138,8 +147,9 @@ class RecordedSession {
   std::unique_ptr<State> state_;
 };
 
-// The recorded pictures with the frame indices and timestamps they had. Throws IoError or InvalidInput; InvalidInput when no
-// video was kept. It ends with the last recorded frame, or where the video of a session cut off by a crash ends.
+// The recorded pictures with the frame indices and timestamps they had. Throws IoError or InvalidInput;
+// InvalidInput when no video was kept. It ends with the last recorded frame, or where the video of a session
+// cut off by a crash ends.
 [[nodiscard]] std::unique_ptr<sources::FrameSource> open_recorded_video(const RecordedSession& session);
 
 }  // namespace arthronaut::recording

@@ -60,7 +60,8 @@ Statement& Statement::bind(int position, double value) {
 }
 
 Statement& Statement::bind(int position, std::string_view value) {
-  check(sqlite3_bind_text(statement_, position, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT));
+  check(sqlite3_bind_text(statement_, position, value.data(), static_cast<int>(value.size()),
+                          SQLITE_TRANSIENT));
   return *this;
 }
 
@@ -118,10 +119,12 @@ SessionDatabase SessionDatabase::open(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) throw IoError(file, "no such file");
   SessionDatabase database(file, SQLITE_OPEN_READWRITE);
   Statement version = database.prepare("PRAGMA user_version");
-  if (!version.step() || version.integer(0) < 1) throw InvalidInput(file, "", "is not the record of a session");
+  if (!version.step() || version.integer(0) < 1)
+    throw InvalidInput(file, "", "is not the record of a session");
   if (version.integer(0) > kSchemaVersion) {
-    throw InvalidInput(file, "", "was written by a newer Arthronaut (version " + std::to_string(version.integer(0)) +
-                                     ", this one reads up to " + std::to_string(kSchemaVersion) + ")");
+    throw InvalidInput(file, "",
+                       "was written by a newer Arthronaut (version " + std::to_string(version.integer(0)) +
+                           ", this one reads up to " + std::to_string(kSchemaVersion) + ")");
   }
   return database;
 }

@@ -1,5 +1,5 @@
-// Inner header: session.sqlite, a thin RAII layer over SQLite and the tables of a session. Used by the recorder and the
-// reader alone.
+// Inner header: session.sqlite, a thin RAII layer over SQLite and the tables of a session. Used by the
+// recorder and the reader alone.
 #pragma once
 
 #include <sqlite3.h>
@@ -11,7 +11,8 @@
 
 namespace arthronaut::recording {
 
-// A prepared statement, bound by position from 1, read by column from 0. NaN cannot be stored: SQLite reads it as NULL.
+// A prepared statement, bound by position from 1, read by column from 0. NaN cannot be stored: SQLite reads
+// it as NULL.
 class Statement {
  public:
   Statement(sqlite3* database, const std::filesystem::path& file, std::string_view sql);
@@ -48,8 +49,8 @@ class SessionDatabase {
  public:
   // A new database in WAL mode with its tables.
   static SessionDatabase create(const std::filesystem::path& file);
-  // An existing one; what a crash left in the WAL is taken in. Works in a read-only folder. Throws InvalidInput when the
-  // file is no session or of a newer version.
+  // An existing one; what a crash left in the WAL is taken in. Works in a read-only folder. Throws
+  // InvalidInput when the file is no session or of a newer version.
   static SessionDatabase open(const std::filesystem::path& file);
   ~SessionDatabase();
   SessionDatabase(SessionDatabase&& other) noexcept;

@@ -66,13 +66,15 @@ SessionHeader read_session_header(const std::filesystem::path& folder, pipeline:
   options.probe_name = header.probe_name;
   options.guide_name = header.guide_name;
   options.follow_lens = json.boolean("follow_lens");
-  options.fluid_model = json.boolean("flat_port") ? camera::FluidModel::FlatPort : camera::FluidModel::FocalRule;
+  options.fluid_model =
+      json.boolean("flat_port") ? camera::FluidModel::FlatPort : camera::FluidModel::FocalRule;
   return header;
 }
 
 void write_guidance_file(const std::filesystem::path& file, const std::vector<RecordedFrame>& frames) {
   std::string text =
-      "frame,time_s,state,tip_to_entry_mm,axis_to_entry_mm,angle_deg,offset_anterior_mm,offset_proximal_mm,depth_mm,"
+      "frame,time_s,state,tip_to_entry_mm,axis_to_entry_mm,angle_deg,offset_anterior_mm,offset_proximal_mm,"
+      "depth_mm,"
       "remaining_mm,sigma_offset_mm,sigma_angle_deg,point_x_mm,point_y_mm,point_z_mm,direction_x,direction_y,"
       "direction_z\n";
   for (const RecordedFrame& frame : frames) {
@@ -83,9 +85,10 @@ void write_guidance_file(const std::filesystem::path& file, const std::vector<Re
     text += guidance::to_text(g.state);
     if (g.is_valid()) {
       for (const double value :
-           {g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg, g.offset_anterior_mm, g.offset_proximal_mm, g.depth_mm,
-            g.remaining_mm, g.sigma_offset_mm, g.sigma_angle_deg, g.guide_point_mm.x(), g.guide_point_mm.y(),
-            g.guide_point_mm.z(), g.guide_direction.x(), g.guide_direction.y(), g.guide_direction.z()}) {
+           {g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg, g.offset_anterior_mm, g.offset_proximal_mm,
+            g.depth_mm, g.remaining_mm, g.sigma_offset_mm, g.sigma_angle_deg, g.guide_point_mm.x(),
+            g.guide_point_mm.y(), g.guide_point_mm.z(), g.guide_direction.x(), g.guide_direction.y(),
+            g.guide_direction.z()}) {
         append_number(text, value);
       }
     } else {

@@ -11,8 +11,8 @@ namespace arthronaut::recording {
 [[nodiscard]] std::filesystem::path header_file(const std::filesystem::path& session_folder);
 [[nodiscard]] std::filesystem::path database_file(const std::filesystem::path& session_folder);
 
-// session.json. `options` gives and takes what the header does not hold: fluid model and whether the lens is followed;
-// camera and tools travel in their own files.
+// session.json. `options` gives and takes what the header does not hold: fluid model and whether the lens is
+// followed; camera and tools travel in their own files.
 void write_session_header(const std::filesystem::path& folder, const SessionHeader& header,
                           const pipeline::PipelineOptions& options);
 [[nodiscard]] SessionHeader read_session_header(const std::filesystem::path& folder,
@@ -23,6 +23,7 @@ void write_guidance_file(const std::filesystem::path& file, const std::vector<Re
 
 // The text of a plan event.
 [[nodiscard]] std::string plan_to_text(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm);
-[[nodiscard]] RecordedSession::PlanChange plan_from_text(const std::string& text, const std::filesystem::path& name);
+[[nodiscard]] RecordedSession::PlanChange plan_from_text(const std::string& text,
+                                                         const std::filesystem::path& name);
 
 }  // namespace arthronaut::recording

@@ -20,7 +20,8 @@ namespace arthronaut::recording {
 namespace {
 
 constexpr std::size_t kWaitingMessages = 4096;
-constexpr auto kCommitEvery = std::chrono::milliseconds(400);  // below the half second that the header promises
+constexpr auto kCommitEvery =
+    std::chrono::milliseconds(400);  // below the half second that the header promises
 constexpr const char* kEncodedVideo = "video.mkv";
 constexpr double kEncodedFramesPerSecond = 60;
 
@@ -32,7 +33,8 @@ struct RegistrationFile {
   std::string name;
   registration::RegistrationSummary registration;
 };
-using Message = std::variant<pipeline::FrameResult, SessionEvent, EncodedPicture, RegistrationFile, strokes::Curves>;
+using Message =
+    std::variant<pipeline::FrameResult, SessionEvent, EncodedPicture, RegistrationFile, strokes::Curves>;
 
 // Carries out messages in the writer thread.
 class DatabaseWriter {
@@ -58,7 +60,11 @@ class DatabaseWriter {
  private:
   void put(const pipeline::FrameResult& result) { frames_.insert(result); }
   void put(const SessionEvent& event) {
-    event_.bind(1, event.after_frame).bind(2, event.timestamp_ns).bind(3, event.kind).bind(4, event.text).run();
+    event_.bind(1, event.after_frame)
+        .bind(2, event.timestamp_ns)
+        .bind(3, event.kind)
+        .bind(4, event.text)
+        .run();
   }
   void put(const EncodedPicture& picture) { picture_.bind(1, picture.picture).bind(2, picture.frame).run(); }
   void put(const RegistrationFile& file) {
@@ -77,7 +83,8 @@ class DatabaseWriter {
 }  // namespace
 
 struct SessionRecorder::State {
-  State(const std::filesystem::path& to, const SessionHeader& with, const pipeline::PipelineOptions& with_options)
+  State(const std::filesystem::path& to, const SessionHeader& with,
+        const pipeline::PipelineOptions& with_options)
       : folder(to),
         header(with),
         options(with_options),
@@ -220,7 +227,8 @@ void SessionRecorder::set_curves(const strokes::Curves& curves) { state_->send(c
 
 void SessionRecorder::finish() {
   if (state_->finished) return;
-  if (state_->dropped_count > 0) state_->send_event(kDroppedPicturesEvent, std::to_string(state_->dropped_count));
+  if (state_->dropped_count > 0)
+    state_->send_event(kDroppedPicturesEvent, std::to_string(state_->dropped_count));
   state_->finished = true;
   state_->join_and_report();
   if (state_->pictures) state_->pictures->finish();

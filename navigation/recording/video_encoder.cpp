@@ -29,7 +29,8 @@ struct FreeLibav {
 template <class T>
 using LibavPtr = std::unique_ptr<T, FreeLibav>;
 
-// A key frame every half second: review jumps to any moment, and a cluster, the unit that reaches the disk, is no longer.
+// A key frame every half second: review jumps to any moment, and a cluster, the unit that reaches the disk,
+// is no longer.
 constexpr int kFramesPerKeyFrame = 30;
 constexpr const char* kClusterMs = "250";
 constexpr const char* kQuality = "10";
@@ -41,7 +42,8 @@ struct VideoEncoder::State {
       : file(to), packet(av_packet_alloc()), picture(av_frame_alloc()) {
     av_log_set_level(AV_LOG_QUIET);  // what goes wrong is told by exception
     AVFormatContext* created = nullptr;
-    check(avformat_alloc_output_context2(&created, nullptr, "matroska", file.c_str()), "cannot start the video");
+    check(avformat_alloc_output_context2(&created, nullptr, "matroska", file.c_str()),
+          "cannot start the video");
     container.reset(created);
     open_encoder(width, height, frames_per_second);
     open_file();
@@ -132,7 +134,8 @@ VideoEncoder::~VideoEncoder() = default;
 void VideoEncoder::encode(const camera::Frame& picture) {
   State& s = *state_;
   if (picture.width != s.picture->width || picture.height != s.picture->height) {
-    throw InvalidInput(s.file, "frame " + std::to_string(picture.index), "is of another size than those before it");
+    throw InvalidInput(s.file, "frame " + std::to_string(picture.index),
+                       "is of another size than those before it");
   }
   s.check(av_frame_make_writable(s.picture.get()), "cannot encode");
   const std::uint8_t* const rows[1] = {picture.bgr.data()};

@@ -21,7 +21,8 @@ void copy_one(const fs::path& from, const fs::path& to) {
 
 // Whether `name` is one that the pattern's "%d" or "%0Nd" makes.
 bool matches(const std::string& name, const std::string& head, const std::string& tail) {
-  if (name.size() <= head.size() + tail.size() || !name.starts_with(head) || !name.ends_with(tail)) return false;
+  if (name.size() <= head.size() + tail.size() || !name.starts_with(head) || !name.ends_with(tail))
+    return false;
   const std::string number = name.substr(head.size(), name.size() - head.size() - tail.size());
   return number.find_first_not_of("0123456789") == std::string::npos;
 }

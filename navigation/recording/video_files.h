@@ -6,8 +6,8 @@
 
 namespace arthronaut::recording {
 
-// Copies a video file, or every still of a printf pattern, into the folder as it is; gives the path or pattern relative to
-// the folder. Throws IoError.
+// Copies a video file, or every still of a printf pattern, into the folder as it is; gives the path or
+// pattern relative to the folder. Throws IoError.
 [[nodiscard]] std::string copy_video_into(const std::filesystem::path& session_folder,
                                           const std::filesystem::path& video_or_pattern);
 

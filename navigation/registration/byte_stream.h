@@ -1,4 +1,5 @@
-// Plain values as bytes in memory and back, as this machine lays them out: for caches, which no other machine reads.
+// Plain values as bytes in memory and back, as this machine lays them out: for caches, which no other machine
+// reads.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// One number for a cell of a regular grid over the bone, to look it up by: each index within a million either side of 0.
+// One number for a cell of a regular grid over the bone, to look it up by: each index within a million either
+// side of 0.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,10 +1,12 @@
 #include "navigation/registration/coach.h"
-#include "planning/files/format.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "navigation/registration/confidence.h"
+#include "planning/files/format.h"
 
 namespace arthronaut::registration {
 
@@ -102,14 +104,13 @@ std::string describe_place(const BonePatch& patch, const Eigen::Vector3d& touche
 }  // namespace
 
 Coach advise(const OnlineResult& result, const CoachFacts& facts) {
-  constexpr double kLengthWanted_mm = 100, kErrorWanted_mm = 1.2;
   Coach coach;
   const RegistrationSummary& registration = result.registration;
-  if (!registration.has_pose && result.length_mm < kLengthWanted_mm) {
+  if (!registration.has_pose && result.length_mm < kMinLength_mm) {
     coach.missing.push_back(
-        files::format("%.0f mm more of stroke", std::ceil(kLengthWanted_mm - result.length_mm)));
+        files::format("%.0f mm more of stroke", std::ceil(kMinLength_mm - result.length_mm)));
   }
-  const double length_done = std::min(1.0, result.length_mm / kLengthWanted_mm);
+  const double length_done = std::min(1.0, result.length_mm / kMinLength_mm);
   coach.missing.insert(coach.missing.end(), registration.reasons.begin(), registration.reasons.end());
   if (!registration.has_pose) {
     coach.progress = 0.3 * length_done;
@@ -119,9 +120,9 @@ Coach advise(const OnlineResult& result, const CoachFacts& facts) {
                agreeing = std::min<double>(wanted, facts.agreeing_solutions);
   if (agreeing < wanted) {
     coach.missing.push_back(files::format("%.0f mm more of stroke on which the result stays put",
-                                      (wanted - agreeing) * facts.refine_every_mm));
+                                          (wanted - agreeing) * facts.refine_every_mm));
   }
-  const double error_done = std::min(1.0, kErrorWanted_mm / std::max(registration.predicted_tre_mm, 1e-3));
+  const double error_done = std::min(1.0, kMaxError_mm / std::max(registration.predicted_tre_mm, 1e-3));
   coach.progress =
       0.3 * length_done + 0.3 * error_done + 0.2 * agreeing / wanted + (registration.reliable ? 0.2 : 0.0);
   coach.patches = find_patches(facts);

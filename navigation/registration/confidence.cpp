@@ -17,7 +17,6 @@ using geometry::Vector6d;
 
 namespace {
 
-constexpr double kMinLength_mm = 100;
 constexpr double kMeasuredShare = 0.7;
 constexpr double kBoneSize_mm = 30, kBoneTurn_rad = 3;
 
@@ -75,8 +74,10 @@ double shared_misfit_of(const std::vector<double>& residuals_mm, const TouchedPo
     if (std::abs(residuals_mm[i]) > kTouch_mm) continue;
     for (std::size_t j = i + 1; j < residuals_mm.size(); ++j) {
       // Stretches that follow one another still share errors of the tip.
-      if (points.stretches[j] < points.stretches[i] + kUnrelated || std::abs(residuals_mm[j]) > kTouch_mm) continue;
-      if ((points.positions_mm[i] - points.positions_mm[j]).squaredNorm() > kSamePlace_mm * kSamePlace_mm) continue;
+      if (points.stretches[j] < points.stretches[i] + kUnrelated || std::abs(residuals_mm[j]) > kTouch_mm)
+        continue;
+      if ((points.positions_mm[i] - points.positions_mm[j]).squaredNorm() > kSamePlace_mm * kSamePlace_mm)
+        continue;
       product_sum += residuals_mm[i] * residuals_mm[j];
       sum += residuals_mm[i] + residuals_mm[j];
       ++count;
@@ -92,13 +93,13 @@ double excess_misfit_mm(const RegistrationSummary& summary, double white_noise_m
   return summary.misfit_mm - 0.75 * white_noise_mm + summary.shared_misfit_mm;
 }
 
-// Measured on five femora: the right bone gives an excess of up to 0.12, 0.38 and mostly 0.45 mm at a white noise of 0.07, 0.15
-// and 0.20 mm, another person's 0.47, 0.42 and mostly 0.35 mm and more.
+// Measured on five femora: the right bone gives an excess of up to 0.12, 0.38 and mostly 0.45 mm at a white
+// noise of 0.07, 0.15 and 0.20 mm, another person's 0.47, 0.42 and mostly 0.35 mm and more.
 double max_excess_mm(double white_noise_mm) { return 0.28 + 0.8 * white_noise_mm; }
 
-// The lead over the next pose that a pose needs, in independent measurements' log likelihood. One that few strokes hold
-// loosely, or that misses them, leads by chance: on another person's femur too. Measured there, on 400 mm of strokes of which half
-// are off the bone, and on twice as many.
+// The lead over the next pose that a pose needs, in independent measurements' log likelihood. One that few
+// strokes hold loosely, or that misses them, leads by chance: on another person's femur too. Measured there,
+// on 400 mm of strokes of which half are off the bone, and on twice as many.
 constexpr double kClearLead = 5;
 double lead_needed(double excess_misfit_mm, double predicted_error_mm, double length_mm) {
   constexpr double kAtOneMm = 1.45, kMisfit_mm = 0.074, kPower = 2.6, kLength_mm = 400;
@@ -107,17 +108,19 @@ double lead_needed(double excess_misfit_mm, double predicted_error_mm, double le
                                   std::pow(predicted_error_mm, kPower));
 }
 
-std::vector<std::string> doubts(const RegistrationSummary& summary, const TouchedCurves& touched, double lead) {
-  constexpr double kMinInliers = 0.5, kMaxError_mm = 1.2;
+std::vector<std::string> doubts(const RegistrationSummary& summary, const TouchedCurves& touched,
+                                double lead) {
+  constexpr double kMinInliers = 0.5;
   std::vector<std::string> reasons;
-  if (!is_long_enough(touched)) {
+  if (touched.length_mm < kMinLength_mm) {
     reasons.push_back(files::format("too little was touched: draw %.0f mm more of stroke",
                                     std::ceil(kMinLength_mm - touched.length_mm)));
   }
   if (share_of_bearable_misfit(summary, touched.white_noise_mm) > 1) {
-    reasons.push_back(files::format("the points miss the surface by %.2f mm, more than the tip's noise of %.2f mm explains: "
-                                    "is it this patient's bone?",
-                                    summary.misfit_mm, touched.white_noise_mm));
+    reasons.push_back(files::format(
+        "the points miss the surface by %.2f mm, more than the tip's noise of %.2f mm explains: "
+        "is it this patient's bone?",
+        summary.misfit_mm, touched.white_noise_mm));
   }
   if (summary.inlier_fraction < kMinInliers) reasons.push_back("too few of the points lie on this bone");
   if (summary.predicted_tre_mm > kMaxError_mm) {
@@ -127,17 +130,19 @@ std::vector<std::string> doubts(const RegistrationSummary& summary, const Touche
     reasons.push_back("two poses fit almost alike: touch other faces of the notch too");
   } else if (lead < lead_needed(excess_misfit_mm(summary, touched.white_noise_mm), summary.predicted_tre_mm,
                                 touched.length_mm)) {
-    reasons.push_back(files::format("strokes that miss the surface by %.2f mm fit another bone too: draw more of them, "
-                                    "on other faces of the notch too",
-                                    summary.misfit_mm));
+    reasons.push_back(
+        files::format("strokes that miss the surface by %.2f mm fit another bone too: draw more of them, "
+                      "on other faces of the notch too",
+                      summary.misfit_mm));
   }
   return reasons;
 }
 
 }  // namespace
 
-Matrix6d covariance_about(const RefinedPose& pose, const TouchedPoints& points, const PreparedBone::Data& bone,
-                          const MarkerPrior& prior, const Eigen::Vector3d& pivot_mm) {
+Matrix6d covariance_about(const RefinedPose& pose, const TouchedPoints& points,
+                          const PreparedBone::Data& bone, const MarkerPrior& prior,
+                          const Eigen::Vector3d& pivot_mm) {
   Matrix6d held = Matrix6d::Zero(), pull = Matrix6d::Zero();
   double curvature = 0, information = 1e-9;
   Vector6d stretch_pull = Vector6d::Zero();
@@ -177,8 +182,6 @@ Matrix6d covariance_about(const RefinedPose& pose, const TouchedPoints& points, 
   return inverse * pull * inverse;
 }
 
-bool is_long_enough(const TouchedCurves& touched) { return touched.length_mm >= kMinLength_mm; }
-
 double white_noise_of(const std::vector<strokes::OrientedPoint>& oriented) {
   std::vector<double> noise_mm;
   for (const strokes::OrientedPoint& point : oriented) noise_mm.push_back(point.fit_rms_mm);
@@ -189,8 +192,8 @@ double share_of_bearable_misfit(const RegistrationSummary& summary, double white
   return excess_misfit_mm(summary, white_noise_mm) / max_excess_mm(white_noise_mm);
 }
 
-RegistrationSummary summarise(const PreparedBone::Data& bone, const PosePool& pool, const TouchedCurves& touched,
-                              const RegistrationOptions& options) {
+RegistrationSummary summarise(const PreparedBone::Data& bone, const PosePool& pool,
+                              const TouchedCurves& touched, const RegistrationOptions& options) {
   RegistrationSummary summary;
   summary.point_count = static_cast<int>(touched.curves.size());
   if (pool.empty()) {
@@ -212,16 +215,20 @@ RegistrationSummary summarise(const PreparedBone::Data& bone, const PosePool& po
     const double distance_mm = bone.field.sample(p).distance_mm;
     const bool is_known = std::abs(distance_mm) < bone.field.band_mm();
     const double offset_mm = touched.offsets_mm.empty() ? 0.0 : touched.offsets_mm[i].value_or(0.0);
-    summary.point_residuals_mm.push_back((is_known ? distance_mm : bone.surface.signed_distance_mm(p)) - offset_mm);
+    summary.point_residuals_mm.push_back((is_known ? distance_mm : bone.surface.signed_distance_mm(p)) -
+                                         offset_mm);
   }
   summary.misfit_mm = misfit_of(summary.point_residuals_mm, touched);
   summary.shared_misfit_mm = shared_misfit_of(best.residuals_mm, touched.points);
   constexpr double kLeadAlone = 25;  // that no other was found says no more
-  const double lead = pool.runner_up() ? lead_of(best.cost, pool.runner_up()->cost, touched.points) : kLeadAlone;
+  const double lead =
+      pool.runner_up() ? lead_of(best.cost, pool.runner_up()->cost, touched.points) : kLeadAlone;
   summary.reasons = doubts(summary, touched, lead);
-  if (!ProbeWay(bone, touched.points).is_possible(best.bone_from_marker.matrix().cast<float>(),
-                                                  best.bone_from_marker.translation_mm.cast<float>())) {
-    summary.reasons.push_back("the probe would have come through the bone: is it this patient's bone, and the right side?");
+  if (!ProbeWay(bone, touched.points)
+           .is_possible(best.bone_from_marker.matrix().cast<float>(),
+                        best.bone_from_marker.translation_mm.cast<float>())) {
+    summary.reasons.push_back(
+        "the probe would have come through the bone: is it this patient's bone, and the right side?");
   }
   summary.reliable = summary.reasons.empty();
   return summary;

@@ -1,10 +1,11 @@
 #include "navigation/registration/covered_region.h"
-#include "navigation/registration/cell_key.h"
-#include "planning/files/format.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "navigation/registration/cell_key.h"
+#include "planning/files/format.h"
 
 namespace arthronaut::registration {
 
@@ -57,8 +58,8 @@ class Fit {
       : bone_(bone), map_(map), prior_(prior), points_(points) {}
 
   [[nodiscard]] PoseFit from(const RefinedPose& start) const {
-    // Where the mesh has too much, half of the points are buried until the thickness is known; where it lacks some, a law that
-    // lets points be buried goes astray. Which it is shows afterwards.
+    // Where the mesh has too much, half of the points are buried until the thickness is known; where it lacks
+    // some, a law that lets points be buried goes astray. Which it is shows afterwards.
     PoseFit as_lacking = from_law(start, ContactModel::kRarelyBuried_per_mm);
     PoseFit as_too_much = from_law(start, ContactModel::kOftenBuried_per_mm);
     return as_too_much.pose.cost < as_lacking.pose.cost ? as_too_much : as_lacking;
@@ -249,9 +250,9 @@ CoverFit summarised(const std::vector<PoseFit>& fits, PosePool& pool, const Touc
   } else if (!cover.has_bare) {
     cover.assumption = "the covered region was taken to lie on the mesh: nothing but it was touched";
   } else if (cover.is_solved) {
-    cover.assumption =
-        files::format("the covered region lies %.1f mm off the mesh, one sigma %.1f mm: solved from the strokes",
-                  cover.thickness_mm, cover.sigma_mm);
+    cover.assumption = files::format(
+        "the covered region lies %.1f mm off the mesh, one sigma %.1f mm: solved from the strokes",
+        cover.thickness_mm, cover.sigma_mm);
   } else {
     cover.assumption = "the covered region was left out: the strokes don't hold its thickness";
   }

@@ -37,7 +37,8 @@ struct CoverFit {
   double thickness_mm = 0, sigma_mm = 0;  // one sigma, from how the likelihood falls with the thickness
   // Twist of the bone frame about its origin, by thickness.
   geometry::Vector6d drift_per_mm = geometry::Vector6d::Zero();
-  // As RefinedPose::cost, over all points with the likeliest thickness, whether it was solved or not: compares.
+  // As RefinedPose::cost, over all points with the likeliest thickness, whether it was solved or not:
+  // compares.
   double cost = 0;
   std::string assumption;  // in plain words
 

@@ -15,17 +15,22 @@ using geometry::TriangleMesh;
 
 std::array<Eigen::Vector3d, 3> corners_of(const TriangleMesh& mesh, std::int32_t triangle) {
   const auto& indices = mesh.triangles[static_cast<std::size_t>(triangle)];
-  return {mesh.vertices_mm[static_cast<std::size_t>(indices[0])], mesh.vertices_mm[static_cast<std::size_t>(indices[1])],
+  return {mesh.vertices_mm[static_cast<std::size_t>(indices[0])],
+          mesh.vertices_mm[static_cast<std::size_t>(indices[1])],
           mesh.vertices_mm[static_cast<std::size_t>(indices[2])]};
 }
 
-// Finds each node's nearest triangle: exactly beside the surface, then outwards from node to node in order of distance,
-// each node trying its neighbour's triangle. Nodes beyond the band are never touched.
+// Finds each node's nearest triangle: exactly beside the surface, then outwards from node to node in order of
+// distance, each node trying its neighbour's triangle. Nodes beyond the band are never touched.
 class NearestTriangles {
  public:
   NearestTriangles(const TriangleMesh& mesh, const Eigen::Vector3d& origin_mm, double spacing_mm,
                    const Eigen::Vector3i& size, double band_mm)
-      : mesh_(mesh), origin_mm_(origin_mm), spacing_mm_(spacing_mm), size_(size), band_mm_(band_mm),
+      : mesh_(mesh),
+        origin_mm_(origin_mm),
+        spacing_mm_(spacing_mm),
+        size_(size),
+        band_mm_(band_mm),
         buckets_(static_cast<std::size_t>(band_mm / bucket_mm()) + 2) {
     const auto count = static_cast<std::size_t>(size.x()) * static_cast<std::size_t>(size.y()) *
                        static_cast<std::size_t>(size.z());
@@ -47,7 +52,8 @@ class NearestTriangles {
   [[nodiscard]] std::int32_t triangle_at(std::size_t node) const { return triangle_[node]; }
   [[nodiscard]] Eigen::Vector3d position_mm(std::size_t node) const {
     const auto nx = static_cast<std::size_t>(size_.x()), ny = static_cast<std::size_t>(size_.y());
-    return origin_mm_ + spacing_mm_ * Eigen::Vector3d(static_cast<double>(node % nx), static_cast<double>(node / nx % ny),
+    return origin_mm_ + spacing_mm_ * Eigen::Vector3d(static_cast<double>(node % nx),
+                                                      static_cast<double>(node / nx % ny),
                                                       static_cast<double>(node / nx / ny));
   }
 
@@ -101,7 +107,8 @@ class NearestTriangles {
   [[nodiscard]] std::size_t index(int x, int y, int z) const {
     return static_cast<std::size_t>(x) +
            static_cast<std::size_t>(size_.x()) *
-               (static_cast<std::size_t>(y) + static_cast<std::size_t>(size_.y()) * static_cast<std::size_t>(z));
+               (static_cast<std::size_t>(y) +
+                static_cast<std::size_t>(size_.y()) * static_cast<std::size_t>(z));
   }
 
   const TriangleMesh& mesh_;
@@ -124,7 +131,8 @@ DistanceField::DistanceField(const TriangleMesh& mesh, const DistanceFieldOption
   }
   const geometry::Bounds bounds = geometry::bounds_of(mesh);
   const Eigen::Vector3d size_mm = bounds.size_mm().array() + 2 * band_mm_;
-  spacing_mm_ = std::max(spacing_mm_, std::cbrt(size_mm.prod() / static_cast<double>(options.max_node_count)));
+  spacing_mm_ =
+      std::max(spacing_mm_, std::cbrt(size_mm.prod() / static_cast<double>(options.max_node_count)));
   origin_mm_ = bounds.min_mm.array() - band_mm_ - spacing_mm_;
   size_ = (size_mm / spacing_mm_).array().ceil().cast<int>() + 3;
 
@@ -156,7 +164,8 @@ DistanceField::DistanceField(ByteReader& bytes) {
   band_mm_ = bytes.read<double>();
   nodes_ = bytes.read_many<std::int16_t>();
   const bool is_grid = (size_.array() > 1).all() && spacing_mm_ > 0 && band_mm_ > 0;
-  if (!is_grid || std::uint64_t{nodes_.size()} != static_cast<std::uint64_t>(size_.cast<std::int64_t>().prod())) {
+  if (!is_grid ||
+      std::uint64_t{nodes_.size()} != static_cast<std::uint64_t>(size_.cast<std::int64_t>().prod())) {
     throw InvalidInput("no distance field");
   }
 }
@@ -172,8 +181,8 @@ void DistanceField::write_to(ByteWriter& bytes) const {
 DistanceField::Sample DistanceField::sample(const Eigen::Vector3d& point_mm) const {
   const Eigen::Vector3d cell = (point_mm - origin_mm_) / spacing_mm_;
   // Written so that a number that is not finite ends here too.
-  if (!(cell.x() >= 0 && cell.y() >= 0 && cell.z() >= 0 && cell.x() < size_.x() - 1 && cell.y() < size_.y() - 1 &&
-        cell.z() < size_.z() - 1)) {
+  if (!(cell.x() >= 0 && cell.y() >= 0 && cell.z() >= 0 && cell.x() < size_.x() - 1 &&
+        cell.y() < size_.y() - 1 && cell.z() < size_.z() - 1)) {
     return {band_mm_, Eigen::Vector3d::Zero()};
   }
   const int x = static_cast<int>(cell.x()), y = static_cast<int>(cell.y()), z = static_cast<int>(cell.z());
@@ -207,7 +216,8 @@ CoarseDistanceField::CoarseDistanceField(const DistanceField& field) {
     for (int y = 0; y < size_.y(); ++y) {
       for (int x = 0; x < size_.x(); ++x) {
         const Eigen::Vector3d node = field.origin_mm() + spacing_mm * Eigen::Vector3d(x, y, z);
-        nodes_.push_back(static_cast<std::int8_t>(std::lround(field.sample(node).distance_mm / field.band_mm() * 127)));
+        nodes_.push_back(
+            static_cast<std::int8_t>(std::lround(field.sample(node).distance_mm / field.band_mm() * 127)));
       }
     }
   }

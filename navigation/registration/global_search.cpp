@@ -24,8 +24,8 @@ struct CurvePair {
   Eigen::Vector3f first, second, first_tangent, second_tangent;
 };
 
-// Where the world marker may be: the plate of a screw head above the bone, its face outwards. Wider than what is usual,
-// since a hypothesis is off by some degrees and the field's nearest node by up to 0.4 mm.
+// Where the world marker may be: the plate of a screw head above the bone, its face outwards. Wider than what
+// is usual, since a hypothesis is off by some degrees and the field's nearest node by up to 0.4 mm.
 constexpr float kMinMarkerHeight_mm = -0.2f, kMaxMarkerHeight_mm = 4.5f;
 constexpr float kMinMarkerCosine = 0.70f;
 
@@ -44,16 +44,19 @@ class Search {
 
   void add_pair(const CurvePair& pair) {
     add_ordered_pair(pair);
-    if (options_.both_ways) add_ordered_pair({pair.second, pair.first, pair.second_tangent, pair.first_tangent});
+    if (options_.both_ways)
+      add_ordered_pair({pair.second, pair.first, pair.second_tangent, pair.first_tangent});
   }
 
   // Best first, near twins left out.
   std::vector<Hypothesis> take() {
-    std::sort(found_.begin(), found_.end(), [](const RoughPose& l, const RoughPose& r) { return l.score > r.score; });
+    std::sort(found_.begin(), found_.end(),
+              [](const RoughPose& l, const RoughPose& r) { return l.score > r.score; });
     std::vector<RoughPose> kept;
     for (const RoughPose& pose : found_) {
       if (kept.size() == options_.keep_count) break;
-      const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const RoughPose& k) { return is_twin(pose, k); });
+      const bool is_new =
+          std::none_of(kept.begin(), kept.end(), [&](const RoughPose& k) { return is_twin(pose, k); });
       if (is_new) kept.push_back(pose);
     }
     std::vector<Hypothesis> hypotheses;
@@ -72,7 +75,8 @@ class Search {
 
   void add_ordered_pair(const CurvePair& pair) {
     matches_.clear();
-    bone_.pairs.find_matches(shape_of(pair.first, pair.first_tangent, pair.second, pair.second_tangent), {}, matches_);
+    bone_.pairs.find_matches(shape_of(pair.first, pair.first_tangent, pair.second, pair.second_tangent), {},
+                             matches_);
     const Eigen::Vector3f e = (pair.second - pair.first).normalized();
     const Eigen::Vector3f across = (pair.first_tangent - pair.first_tangent.dot(e) * e).normalized();
     Eigen::Matrix3f curve_axes;  // rows
@@ -80,7 +84,8 @@ class Search {
     const Eigen::Vector3f curve_middle = 0.5f * (pair.first + pair.second);
     const std::vector<SurfaceSample>& samples = bone_.pairs.samples();
     for (const PairTable::Match& match : matches_) {
-      if (options_.reachable && !((*options_.reachable)[match.first] && (*options_.reachable)[match.second])) continue;
+      if (options_.reachable && !((*options_.reachable)[match.first] && (*options_.reachable)[match.second]))
+        continue;
       const SurfaceSample &first = samples[match.first], &second = samples[match.second];
       const Eigen::Vector3f surface_e = (second.point_mm - first.point_mm).normalized();
       const Eigen::Vector3f normal = (first.normal - first.normal.dot(surface_e) * surface_e).normalized();
@@ -119,7 +124,8 @@ class Search {
         if (score < kWayOut[checkpoint].least_share * static_cast<float>(i)) return 0;
         ++checkpoint;
       }
-      const float distance = bone_.coarse_field.nearest_mm(pose.rotation * test_points_[i] + pose.translation_mm);
+      const float distance =
+          bone_.coarse_field.nearest_mm(pose.rotation * test_points_[i] + pose.translation_mm);
       score += std::max(0.0f, 1 - distance * distance / (kScoreReach_mm * kScoreReach_mm));
     }
     return score;
@@ -127,7 +133,8 @@ class Search {
 
   [[nodiscard]] bool is_twin(const RoughPose& a, const RoughPose& b) const {
     constexpr float kMaxDistance_mm = 3.0f, kMaxAngle_rad = 0.15f;
-    const Eigen::Vector3f apart = a.rotation * center_ + a.translation_mm - b.rotation * center_ - b.translation_mm;
+    const Eigen::Vector3f apart =
+        a.rotation * center_ + a.translation_mm - b.rotation * center_ - b.translation_mm;
     if (apart.squaredNorm() > kMaxDistance_mm * kMaxDistance_mm) return false;
     const float trace = (a.rotation.transpose() * b.rotation).trace();
     return trace > 1 + 2 * std::cos(kMaxAngle_rad);
@@ -153,8 +160,8 @@ class Search {
 };
 
 // Pairs far apart with tangents well across the baseline say most about the pose.
-std::vector<CurvePair> draw_curve_pairs(const std::vector<OrientedPoint>& oriented, const PairTable& table, int count,
-                                        std::uint64_t seed) {
+std::vector<CurvePair> draw_curve_pairs(const std::vector<OrientedPoint>& oriented, const PairTable& table,
+                                        int count, std::uint64_t seed) {
   constexpr int kTriesPerPair = 200;
   constexpr float kMinSine = 0.5f, kMargin_mm = 1.0f;
   std::vector<CurvePair> pairs;
@@ -163,8 +170,10 @@ std::vector<CurvePair> draw_curve_pairs(const std::vector<OrientedPoint>& orient
   const auto uniform = [&random] { return static_cast<float>(random() >> 40) * 0x1p-24f; };
   const float min_mm = static_cast<float>(table.min_distance_mm()) + kMargin_mm;
   const float max_mm = static_cast<float>(table.max_distance_mm()) - kMargin_mm;
-  for (int attempt = 0; attempt < kTriesPerPair * count && static_cast<int>(pairs.size()) < count; ++attempt) {
-    const OrientedPoint &first = oriented[random() % oriented.size()], &second = oriented[random() % oriented.size()];
+  for (int attempt = 0; attempt < kTriesPerPair * count && static_cast<int>(pairs.size()) < count;
+       ++attempt) {
+    const OrientedPoint &first = oriented[random() % oriented.size()],
+                        &second = oriented[random() % oriented.size()];
     const CurvePair pair{first.position_mm.cast<float>(), second.position_mm.cast<float>(),
                          first.tangent.cast<float>(), second.tangent.cast<float>()};
     const PairShape shape = shape_of(pair.first, pair.first_tangent, pair.second, pair.second_tangent);
@@ -179,10 +188,12 @@ std::vector<CurvePair> draw_curve_pairs(const std::vector<OrientedPoint>& orient
 
 }  // namespace
 
-std::vector<Hypothesis> search_globally(const PreparedBone::Data& bone, const std::vector<OrientedPoint>& oriented,
+std::vector<Hypothesis> search_globally(const PreparedBone::Data& bone,
+                                        const std::vector<OrientedPoint>& oriented,
                                         const TouchedPoints& points, const GlobalSearchOptions& options) {
   Search search(bone, points, options);
-  for (const CurvePair& pair : draw_curve_pairs(oriented, bone.pairs, options.curve_pair_count, options.seed)) {
+  for (const CurvePair& pair :
+       draw_curve_pairs(oriented, bone.pairs, options.curve_pair_count, options.seed)) {
     search.add_pair(pair);
   }
   return search.take();

@@ -12,6 +12,7 @@
 #include "navigation/registration/reachable_region.h"
 #include "navigation/registration/stroke_set.h"
 #include "planning/files/format.h"
+#include "planning/geometry/quantile.h"
 
 namespace arthronaut::registration {
 
@@ -25,13 +26,6 @@ constexpr double kMinLengthToSearch_mm = 25;
 constexpr int kPairsWhileCollecting = 6, kPairsAfterwards = 1;
 constexpr int kIterations = 6;
 constexpr int kAgreeingSolutions = 5;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -166,7 +160,8 @@ void OnlineRegistration::State::solve() {
     offsets_mm = cover.offsets_mm(*setting.cover, curves, standing.best().bone_from_marker);
   }
   const double white_noise_mm = white_noise_of(oriented);
-  const TouchedCurves touched{curves, points, strokes.length_in_use_mm(), white_noise_mm, std::move(offsets_mm)};
+  const TouchedCurves touched{curves, points, strokes.length_in_use_mm(), white_noise_mm,
+                              std::move(offsets_mm)};
   result.registration = summarise(bone->data(), standing, touched, setting.options);
   if (fitter && !standing.empty()) cover.add_to(result.registration, target_mm());
   if (!result.registration.has_pose) {
@@ -176,7 +171,7 @@ void OnlineRegistration::State::solve() {
     return;
   }
   result.bone_is_in_doubt =
-      is_long_enough(touched) && share_of_bearable_misfit(result.registration, white_noise_mm) > 1;
+      touched.length_mm >= kMinLength_mm && share_of_bearable_misfit(result.registration, white_noise_mm) > 1;
   const Eigen::Matrix3d turn = result.registration.covariance.bottomRightCorner<3, 3>();
   Eigen::Matrix3d across = Eigen::Matrix3d::Identity();
   if (options.direction_in_bone) across = geometry::cross_matrix(options.direction_in_bone->normalized());
@@ -263,7 +258,8 @@ void OnlineRegistration::State::judge_state() {
   }
   if (std::ssize(misses_mm) < kTouchesToVerify) return;
   const bool all_lie_on = *std::max_element(misses_mm.begin(), misses_mm.end()) < kMaxVerifiedTouch_mm;
-  if (all_lie_on && median(misses_mm) < kMaxVerifiedMedian_mm) result.state = OnlineState::Verified;
+  if (all_lie_on && geometry::median(misses_mm, 0) < kMaxVerifiedMedian_mm)
+    result.state = OnlineState::Verified;
 }
 
 void OnlineRegistration::State::describe_strokes() {
@@ -281,7 +277,7 @@ void OnlineRegistration::State::describe_strokes() {
         const Eigen::Vector3d p = bone_from_marker * point.position_mm;
         misses_mm.push_back(std::abs(bone->data().field.sample(p).distance_mm - offset_mm(p).value_or(0.0)));
       }
-      info.median_residual_mm = median(std::move(misses_mm));
+      info.median_residual_mm = geometry::median(std::move(misses_mm), 0);
     }
     result.strokes.push_back(info);
   }

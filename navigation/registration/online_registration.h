@@ -85,8 +85,8 @@ struct OnlineResult {
   std::vector<StrokeInfo> strokes;
   std::vector<Touch> touches;
   std::string alarm;  // empty, or why the state was taken back: "the world marker may have moved: ..."
-  // The strokes miss this bone's surface by more than their noise explains, or fit its mirror image as well: what was
-  // confirmed with fewer of them is not to be trusted any more.
+  // The strokes miss this bone's surface by more than their noise explains, or fit its mirror image as well:
+  // what was confirmed with fewer of them is not to be trusted any more.
   bool bone_is_in_doubt = false;
   std::string failure;  // of a worker: why it has ended and works in nothing any more; empty else
 };

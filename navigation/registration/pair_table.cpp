@@ -20,8 +20,9 @@ constexpr std::size_t kMaxSampleCount = 60'000;  // two bytes an index
 
 float wrapped_rad(float angle) { return angle - kTurn * std::floor(angle / kTurn + 0.5f); }
 
-// A direction of cosine `curve_cos` to the baseline can lie across one of cosine `surface_cos` when the planes through
-// the baseline that hold them enclose the angle whose cosine this is; beyond [-1, 1] there is none.
+// A direction of cosine `curve_cos` to the baseline can lie across one of cosine `surface_cos` when the
+// planes through the baseline that hold them enclose the angle whose cosine this is; beyond [-1, 1] there is
+// none.
 float cos_of_crossing(float curve_cos, float surface_cos) {
   const float sines = (1 - curve_cos * curve_cos) * (1 - surface_cos * surface_cos);
   return -curve_cos * surface_cos / std::sqrt(std::max(sines, 1e-6f));
@@ -58,7 +59,8 @@ class SpacedSet {
           for (const std::size_t other : it->second) {
             // The other side of a thin wall is another place.
             if (samples_[other].normal.dot(sample.normal) < 0) continue;
-            if ((samples_[other].point_mm - sample.point_mm).squaredNorm() < spacing_mm_ * spacing_mm_) return false;
+            if ((samples_[other].point_mm - sample.point_mm).squaredNorm() < spacing_mm_ * spacing_mm_)
+              return false;
           }
         }
       }
@@ -83,7 +85,9 @@ std::vector<SurfaceSample> sample_surface(const geometry::TriangleMesh& mesh, do
   const std::vector<Eigen::Vector3d> normals = geometry::vertex_normals(mesh);
   std::vector<double> area_up_to(mesh.triangles.size());
   double area_mm2 = 0;
-  const auto corner = [&](std::size_t t, std::size_t k) { return static_cast<std::size_t>(mesh.triangles[t][k]); };
+  const auto corner = [&](std::size_t t, std::size_t k) {
+    return static_cast<std::size_t>(mesh.triangles[t][k]);
+  };
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Eigen::Vector3d &a = mesh.vertices_mm[corner(t, 0)], &b = mesh.vertices_mm[corner(t, 1)],
                           &c = mesh.vertices_mm[corner(t, 2)];
@@ -109,8 +113,8 @@ std::vector<SurfaceSample> sample_surface(const geometry::TriangleMesh& mesh, do
   return set.take();
 }
 
-PairShape shape_of(const Eigen::Vector3f& first, const Eigen::Vector3f& first_direction, const Eigen::Vector3f& second,
-                   const Eigen::Vector3f& second_direction) {
+PairShape shape_of(const Eigen::Vector3f& first, const Eigen::Vector3f& first_direction,
+                   const Eigen::Vector3f& second, const Eigen::Vector3f& second_direction) {
   PairShape shape;
   const Eigen::Vector3f between = second - first;
   shape.distance_mm = between.norm();
@@ -123,7 +127,8 @@ PairShape shape_of(const Eigen::Vector3f& first, const Eigen::Vector3f& first_di
   return shape;
 }
 
-PairTable::PairTable(const geometry::TriangleMesh& mesh, const PairTableOptions& options) : options_(options) {
+PairTable::PairTable(const geometry::TriangleMesh& mesh, const PairTableOptions& options)
+    : options_(options) {
   double spacing_mm = options_.sample_spacing_mm;
   const double area_mm2 = geometry::surface_area_mm2(mesh);
   spacing_mm = std::max(spacing_mm, std::sqrt(area_mm2 / static_cast<double>(kMaxSampleCount)));
@@ -175,7 +180,8 @@ std::size_t PairTable::count_pairs() const {
 }
 
 void PairTable::build_pairs() {
-  const auto low = static_cast<float>(options_.min_distance_mm), high = static_cast<float>(options_.max_distance_mm);
+  const auto low = static_cast<float>(options_.min_distance_mm),
+             high = static_cast<float>(options_.max_distance_mm);
   distance_bin_count_ = static_cast<int>((high - low) / kDistanceBin_mm) + 1;
   const auto cosine_bin = [](float cosine) {
     return std::clamp(static_cast<int>((cosine + 1) * (0.5f * kCosineBins)), 0, kCosineBins - 1);
@@ -196,7 +202,8 @@ void PairTable::build_pairs() {
       pair.shape.distance_mm = std::clamp(pair.shape.distance_mm, low, high);
       // A normal along the baseline lies across no tangent that is not across the baseline itself: no use.
       constexpr float kAlong = 0.98f;
-      if (std::abs(pair.shape.cos_first) < kAlong && std::abs(pair.shape.cos_second) < kAlong) found.push_back(pair);
+      if (std::abs(pair.shape.cos_first) < kAlong && std::abs(pair.shape.cos_second) < kAlong)
+        found.push_back(pair);
     }
   }
   // Counting sort by cell, then by dihedral within the cell.
@@ -213,10 +220,12 @@ void PairTable::build_pairs() {
   }
 }
 
-void PairTable::find_matches(const PairShape& curve, const Tolerance& tolerance, std::vector<Match>& matches) const {
+void PairTable::find_matches(const PairShape& curve, const Tolerance& tolerance,
+                             std::vector<Match>& matches) const {
   const auto low_mm = static_cast<float>(options_.min_distance_mm);
   const int first_bin = std::max(
-      0, static_cast<int>(std::floor((curve.distance_mm - tolerance.distance_mm - low_mm) / kDistanceBin_mm)));
+      0,
+      static_cast<int>(std::floor((curve.distance_mm - tolerance.distance_mm - low_mm) / kDistanceBin_mm)));
   const int last_bin = std::min(
       distance_bin_count_ - 1,
       static_cast<int>(std::floor((curve.distance_mm + tolerance.distance_mm - low_mm) / kDistanceBin_mm)));
@@ -227,7 +236,8 @@ void PairTable::find_matches(const PairShape& curve, const Tolerance& tolerance,
     second_range[static_cast<std::size_t>(k)] = crossing_range(curve.cos_second, low, high);
   }
 
-  // dihedral' - dihedral = turn at the first point - turn at the second, each turn being plus or minus a crossing angle.
+  // dihedral' - dihedral = turn at the first point - turn at the second, each turn being plus or minus a
+  // crossing angle.
   const auto test = [&](const Pair& pair, float first_sign, float second_sign) {
     if (std::abs(pair.shape.distance_mm - curve.distance_mm) > tolerance.distance_mm) return;
     const float first_cos = cos_of_crossing(curve.cos_first, pair.shape.cos_first);
@@ -236,14 +246,16 @@ void PairTable::find_matches(const PairShape& curve, const Tolerance& tolerance,
     const float first_turn = first_sign * std::acos(std::clamp(first_cos, -1.0f, 1.0f));
     const float second_turn = second_sign * std::acos(std::clamp(second_cos, -1.0f, 1.0f));
     const float miss = wrapped_rad(pair.shape.dihedral_rad - curve.dihedral_rad - first_turn + second_turn);
-    if (std::abs(miss) <= tolerance.angle_rad) matches.push_back({pair.first, pair.second, first_turn + 0.5f * miss});
+    if (std::abs(miss) <= tolerance.angle_rad)
+      matches.push_back({pair.first, pair.second, first_turn + 0.5f * miss});
   };
   const auto test_window = [&](std::size_t cell, float from, float to, float first_sign, float second_sign) {
     const auto begin = pairs_.begin() + cell_start_[cell], end = pairs_.begin() + cell_start_[cell + 1];
     const auto by_dihedral = [](const Pair& pair, float angle) { return pair.shape.dihedral_rad < angle; };
     // The window may pass the seam at half a turn.
     const float shift = kTurn * std::floor((from + kPi) / kTurn);
-    for (float part_from = from - shift, part_to = to - shift; part_to >= -kPi; part_from -= kTurn, part_to -= kTurn) {
+    for (float part_from = from - shift, part_to = to - shift; part_to >= -kPi;
+         part_from -= kTurn, part_to -= kTurn) {
       for (auto it = std::lower_bound(begin, end, part_from, by_dihedral);
            it != end && it->shape.dihedral_rad <= part_to; ++it) {
         test(*it, first_sign, second_sign);
@@ -261,10 +273,14 @@ void PairTable::find_matches(const PairShape& curve, const Tolerance& tolerance,
         const auto cell = static_cast<std::size_t>((bin * kCosineBins + k) * kCosineBins + l);
         if (cell_start_[cell] == cell_start_[cell + 1]) continue;
         const float base = curve.dihedral_rad, slack = tolerance.angle_rad;
-        test_window(cell, base + first.low - second.high - slack, base + first.high - second.low + slack, 1, 1);
-        test_window(cell, base + first.low + second.low - slack, base + first.high + second.high + slack, 1, -1);
-        test_window(cell, base - first.high - second.high - slack, base - first.low - second.low + slack, -1, 1);
-        test_window(cell, base - first.high + second.low - slack, base - first.low + second.high + slack, -1, -1);
+        test_window(cell, base + first.low - second.high - slack, base + first.high - second.low + slack, 1,
+                    1);
+        test_window(cell, base + first.low + second.low - slack, base + first.high + second.high + slack, 1,
+                    -1);
+        test_window(cell, base - first.high - second.high - slack, base - first.low - second.low + slack, -1,
+                    1);
+        test_window(cell, base - first.high + second.low - slack, base - first.low + second.high + slack, -1,
+                    -1);
       }
     }
   }

@@ -39,10 +39,12 @@ double lead_of(double cost, double rival_cost, const TouchedPoints& points) {
 bool are_different(const RigidTransform& a, const RigidTransform& b, const Eigen::Vector3d& centroid_mm) {
   constexpr double kDistance_mm = 3.0, kAngle_deg = 5.0;
   return (a * centroid_mm - b * centroid_mm).norm() > kDistance_mm ||
-         geometry::deg_from_rad(geometry::rotation_angle_rad(a.rotation.conjugate() * b.rotation)) > kAngle_deg;
+         geometry::deg_from_rad(geometry::rotation_angle_rad(a.rotation.conjugate() * b.rotation)) >
+             kAngle_deg;
 }
 
-void PosePool::add(const std::vector<Hypothesis>& hypotheses, const TouchedPoints& points, std::uint64_t seed) {
+void PosePool::add(const std::vector<Hypothesis>& hypotheses, const TouchedPoints& points,
+                   std::uint64_t seed) {
   const TouchedPoints coarse_points = draw_points(points, kCoarsePointCount, seed);
   // Those in the pool are refined on the same points, so that the costs compare.
   for (RefinedPose& pose : poses_) {
@@ -69,14 +71,16 @@ void PosePool::refine_all(const TouchedPoints& points, int iterations) {
 
 void PosePool::drop_hopeless(const TouchedPoints& points) {
   constexpr double kHopeless = 25;
-  while (poses_.size() > 2 && lead_of(poses_.front().cost, poses_.back().cost, points) > kHopeless) poses_.pop_back();
+  while (poses_.size() > 2 && lead_of(poses_.front().cost, poses_.back().cost, points) > kHopeless)
+    poses_.pop_back();
 }
 
 void PosePool::polish(const TouchedPoints& points) {
   const bool are_few = points.positions_mm.size() <= kPolishPointCount;
   const RefinedPose& best = poses_.front();
-  const RefinedPose polished = refine(distance_to(bone_), are_few ? points : draw_points(points, kPolishPointCount, 1),
-                                      best.bone_from_marker, best.model, prior_, kPolishIterations);
+  const RefinedPose polished =
+      refine(distance_to(bone_), are_few ? points : draw_points(points, kPolishPointCount, 1),
+             best.bone_from_marker, best.model, prior_, kPolishIterations);
   poses_.front().bone_from_marker = polished.bone_from_marker;
 }
 

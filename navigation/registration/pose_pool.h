@@ -26,8 +26,8 @@ class PosePool {
 
   // Refines hypotheses roughly on few points, and lets the best into the pool.
   void add(const std::vector<Hypothesis>& hypotheses, const TouchedPoints& points, std::uint64_t seed);
-  // Refines all poses of the pool on the points, ranks them, and drops twins and all but the best few. Of those that have
-  // fallen behind beyond hope only the foremost is kept, as the runner-up.
+  // Refines all poses of the pool on the points, ranks them, and drops twins and all but the best few. Of
+  // those that have fallen behind beyond hope only the foremost is kept, as the runner-up.
   void refine_all(const TouchedPoints& points, int iterations);
   // Fits the best against the mesh itself, which takes out the grid's rounding.
   void polish(const TouchedPoints& points);

@@ -8,7 +8,8 @@ namespace arthronaut::registration {
 
 namespace {
 
-// To be raised whenever the same mesh would be made ready otherwise than before, or laid out otherwise in the file.
+// To be raised whenever the same mesh would be made ready otherwise than before, or laid out otherwise in the
+// file.
 constexpr std::uint64_t kVersion = 1;
 
 std::uint64_t key_of(const geometry::TriangleMesh& mesh) {
@@ -24,8 +25,8 @@ std::uint64_t key_of(const geometry::TriangleMesh& mesh) {
 }
 
 // Key, checksum of what follows, field, pairs.
-std::unique_ptr<const PreparedBone::Data> read_cache(const std::filesystem::path& file, const geometry::TriangleMesh& mesh,
-                                                     std::uint64_t key) {
+std::unique_ptr<const PreparedBone::Data> read_cache(const std::filesystem::path& file,
+                                                     const geometry::TriangleMesh& mesh, std::uint64_t key) {
   if (!std::filesystem::exists(file)) return nullptr;
   try {
     const std::string contents = files::read_text(file);

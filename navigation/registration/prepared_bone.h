@@ -13,7 +13,10 @@ namespace arthronaut::registration {
 struct PreparedBone::Data {
   explicit Data(const geometry::TriangleMesh& mesh) : Data(mesh, DistanceField(mesh), PairTable(mesh)) {}
   Data(const geometry::TriangleMesh& mesh, DistanceField distance_field, PairTable pair_table)
-      : field(std::move(distance_field)), coarse_field(field), pairs(std::move(pair_table)), surface(mesh),
+      : field(std::move(distance_field)),
+        coarse_field(field),
+        pairs(std::move(pair_table)),
+        surface(mesh),
         bounds(geometry::bounds_of(mesh)) {}
 
   DistanceField field;

@@ -11,7 +11,8 @@ ProbeWay::ProbeWay(const PreparedBone::Data& bone, const TouchedPoints& points) 
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t chosen = i * points.shaft_directions.size() / count;
     if (!points.shaft_directions[chosen]) continue;
-    shafts_.push_back({points.positions_mm[chosen].cast<float>(), points.shaft_directions[chosen]->cast<float>()});
+    shafts_.push_back(
+        {points.positions_mm[chosen].cast<float>(), points.shaft_directions[chosen]->cast<float>()});
   }
 }
 
@@ -19,13 +20,15 @@ bool ProbeWay::leads_through_bone(const Shaft& shaft, const Eigen::Matrix3f& rot
                                   const Eigen::Vector3f& translation_mm) const {
   constexpr std::array<float, 7> kAlong_mm{4, 7, 11, 16, 22, 28, 35};
   constexpr float kForgiven_mm = 1.5f;
-  const Eigen::Vector3f tip = rotation * shaft.tip_mm + translation_mm, direction = rotation * shaft.direction;
+  const Eigen::Vector3f tip = rotation * shaft.tip_mm + translation_mm,
+                        direction = rotation * shaft.direction;
   return std::any_of(kAlong_mm.begin(), kAlong_mm.end(), [&](float along_mm) {
     return field_.nearest_mm(tip + along_mm * direction) < -kForgiven_mm;
   });
 }
 
-double ProbeWay::share_through_bone(const Eigen::Matrix3f& rotation, const Eigen::Vector3f& translation_mm) const {
+double ProbeWay::share_through_bone(const Eigen::Matrix3f& rotation,
+                                    const Eigen::Vector3f& translation_mm) const {
   if (shafts_.empty()) return 0;
   const auto count = std::count_if(shafts_.begin(), shafts_.end(), [&](const Shaft& shaft) {
     return leads_through_bone(shaft, rotation, translation_mm);

@@ -14,11 +14,15 @@ class ProbeWay {
   // The bone has to outlive it. Without directions of the shaft in the points every pose is possible.
   ProbeWay(const PreparedBone::Data& bone, const TouchedPoints& points);
 
-  // Share of the points, of some two dozen evenly chosen ones, that the shaft would have reached through the bone; up to
-  // 35 mm from the tip are looked at, and 1.5 mm into the bone are forgiven, for a bent tip and the field's rounding.
-  [[nodiscard]] double share_through_bone(const Eigen::Matrix3f& rotation, const Eigen::Vector3f& translation_mm) const;
-  // At most half: a probe that bends about an edge, or was bent by it, is no reason to drop a pose. Both are bone_from_marker.
-  [[nodiscard]] bool is_possible(const Eigen::Matrix3f& rotation, const Eigen::Vector3f& translation_mm) const;
+  // Share of the points, of some two dozen evenly chosen ones, that the shaft would have reached through the
+  // bone; up to 35 mm from the tip are looked at, and 1.5 mm into the bone are forgiven, for a bent tip and
+  // the field's rounding.
+  [[nodiscard]] double share_through_bone(const Eigen::Matrix3f& rotation,
+                                          const Eigen::Vector3f& translation_mm) const;
+  // At most half: a probe that bends about an edge, or was bent by it, is no reason to drop a pose. Both are
+  // bone_from_marker.
+  [[nodiscard]] bool is_possible(const Eigen::Matrix3f& rotation,
+                                 const Eigen::Vector3f& translation_mm) const;
 
  private:
   struct Shaft {

@@ -26,7 +26,8 @@ std::vector<Eigen::Vector3f> directions_about(const Eigen::Vector3d& axis) {
 }
 
 // By steps as long as the distance to the bone allows.
-bool is_free_way(const CoarseDistanceField& field, const SurfaceSample& sample, const Eigen::Vector3f& direction) {
+bool is_free_way(const CoarseDistanceField& field, const SurfaceSample& sample,
+                 const Eigen::Vector3f& direction) {
   constexpr float kLeast_mm = 1.5f;  // the field's nodes are off by up to 0.9 mm
   float way_mm = 2 * kLeast_mm;
   while (way_mm < static_cast<float>(kFreeWay_mm)) {
@@ -39,7 +40,8 @@ bool is_free_way(const CoarseDistanceField& field, const SurfaceSample& sample, 
 
 }  // namespace
 
-std::vector<bool> find_reachable_samples(const PreparedBone::Data& bone, const Eigen::Vector3d& entry_in_bone_mm) {
+std::vector<bool> find_reachable_samples(const PreparedBone::Data& bone,
+                                         const Eigen::Vector3d& entry_in_bone_mm) {
   const std::vector<SurfaceSample>& samples = bone.pairs.samples();
   const geometry::SurfacePoint entry = bone.surface.closest_point(entry_in_bone_mm);
   if ((entry.point_mm - entry_in_bone_mm).norm() > kMaxEntryDistance_mm) return {};

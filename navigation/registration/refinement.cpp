@@ -12,12 +12,14 @@ using geometry::Matrix6d;
 using geometry::RigidTransform;
 using geometry::Vector6d;
 
-// Twists (v, w) about a point near the touched area, in the bone frame: bone_from_marker <- twist * bone_from_marker.
+// Twists (v, w) about a point near the touched area, in the bone frame: bone_from_marker <- twist *
+// bone_from_marker.
 struct NormalEquations {
   Matrix6d matrix = Matrix6d::Zero();
   Vector6d right = Vector6d::Zero();
 
-  void add(const Eigen::Vector3d& arm_mm, const Eigen::Vector3d& gradient, double residual_mm, double weight) {
+  void add(const Eigen::Vector3d& arm_mm, const Eigen::Vector3d& gradient, double residual_mm,
+           double weight) {
     Vector6d row;
     row.head<3>() = gradient;
     row.tail<3>() = arm_mm.cross(gradient);
@@ -36,7 +38,8 @@ struct NormalEquations {
     damped.diagonal().array() *= 1.0 + 1e-6;
     damped.diagonal().array() += 1e-6;
     Vector6d twist = damped.ldlt().solve(right);
-    const double excess = std::max(twist.head<3>().norm() / kMaxTranslation_mm, twist.tail<3>().norm() / kMaxAngle_rad);
+    const double excess =
+        std::max(twist.head<3>().norm() / kMaxTranslation_mm, twist.tail<3>().norm() / kMaxAngle_rad);
     if (excess > 1) twist /= excess;
     return twist.allFinite() ? twist : Vector6d::Zero();
   }
@@ -52,10 +55,12 @@ void move(RigidTransform& bone_from_marker, const Vector6d& twist, const Eigen::
       turn * (bone_from_marker.translation_mm - pivot_mm) + pivot_mm + twist.head<3>();
 }
 
-bool is_small(const Vector6d& twist) { return twist.head<3>().norm() < 1e-4 && twist.tail<3>().norm() < 1e-5; }
+bool is_small(const Vector6d& twist) {
+  return twist.head<3>().norm() < 1e-4 && twist.tail<3>().norm() < 1e-5;
+}
 
-// Laws of the three explanations. Lifts are alike up to the field's band, and all beyond it count as the last of them. Into the
-// bone goes nothing but a gross error: a pose that buries strokes can't explain them away.
+// Laws of the three explanations. Lifts are alike up to the field's band, and all beyond it count as the last
+// of them. Into the bone goes nothing but a gross error: a pose that buries strokes can't explain them away.
 constexpr double kSoftHeight_mm = 0.9, kSoftSigma_mm = 0.37;
 constexpr double kLiftedDensity_per_mm = 0.2, kLiftOnset_mm = 0.15;
 constexpr double kMinSigma_mm = 0.06, kMaxSigma_mm = 0.6;
@@ -76,7 +81,8 @@ struct Explanation {
 
 Explanation explain(double residual_mm, const ContactModel& model) {
   const double soft_sigma = std::hypot(kSoftSigma_mm, model.contact_sigma_mm);
-  const double contact = (1 - model.soft_share - model.lifted_share) * normal_density(residual_mm, model.contact_sigma_mm);
+  const double contact =
+      (1 - model.soft_share - model.lifted_share) * normal_density(residual_mm, model.contact_sigma_mm);
   const double soft = model.soft_share * normal_density(residual_mm - kSoftHeight_mm, soft_sigma);
   const double lifted = model.lifted_share * lifted_density_per_mm(residual_mm, model.buried_density_per_mm);
   const double sum = contact + soft + lifted;
@@ -84,7 +90,8 @@ Explanation explain(double residual_mm, const ContactModel& model) {
 }
 
 // The M step for the law. The shares lean on a prior of a few mm of path, so that none dies out.
-ContactModel updated_model(const TouchedPoints& points, const std::vector<double>& residuals_mm, const ContactModel& model) {
+ContactModel updated_model(const TouchedPoints& points, const std::vector<double>& residuals_mm,
+                           const ContactModel& model) {
   constexpr double kPriorWeight = 4.0;
   double contact = kPriorWeight, soft = 0.1 * kPriorWeight, lifted = 0.1 * kPriorWeight;
   double square_sum = 0.2 * 0.2 * kPriorWeight;
@@ -106,7 +113,8 @@ struct MarkerObjection {
   double cost, weight;  // weight: of the height's miss in the normal equations
 };
 
-// Robust: a marker that stands otherwise than usual must not bend the result, and costs no more than some 20 mm of path.
+// Robust: a marker that stands otherwise than usual must not bend the result, and costs no more than some 20
+// mm of path.
 MarkerObjection object_to(const Eigen::Matrix3d& bone_from_marker, const DistanceField::Sample& sample,
                           const MarkerPrior& prior) {
   constexpr double kWidth = 9.0;  // squared, in sigmas
@@ -137,7 +145,8 @@ ResidualEvidence evidence_of(double residual_mm, const ContactModel& model) {
   return evidence;
 }
 
-RigidTransform approach(const DistanceField& field, const TouchedPoints& points, const RigidTransform& start) {
+RigidTransform approach(const DistanceField& field, const TouchedPoints& points,
+                        const RigidTransform& start) {
   constexpr int kIterations = 18;
   constexpr double kFirstWidth_mm = 2.0, kLastWidth_mm = 0.8;
   RigidTransform bone_from_marker = start;
@@ -180,7 +189,8 @@ RefinedPose refine(const DistanceFunction& distance, const TouchedPoints& points
       refined.residuals_mm[i] = residual_mm;
       const Explanation explanation = explain(residual_mm, refined.model);
       cost += points.weights[i] * explanation.negative_log_density;
-      const double contact = explanation.contact * contact_information, soft = explanation.soft * soft_information;
+      const double contact = explanation.contact * contact_information,
+                   soft = explanation.soft * soft_information;
       const double weight = contact + soft;
       if (weight < 1e-9) continue;
       equations.add(p - pivot, sample.gradient, residual_mm - kSoftHeight_mm * soft / weight,

@@ -1,9 +1,9 @@
 // From a rough pose to the best one nearby.
 //
-// What the tip tells is not symmetric: it never goes into the bone, but it is lifted off, and it rides on soft tissue. So
-// each residual (signed distance to the bone) is explained by one of three: contact, a normal law about 0; soft tissue, a
-// normal law about 0.9 mm; lifted, any height above the bone, and hardly ever inside it. Their shares and the
-// contact's spread are found with the pose (EM).
+// What the tip tells is not symmetric: it never goes into the bone, but it is lifted off, and it rides on
+// soft tissue. So each residual (signed distance to the bone) is explained by one of three: contact, a normal
+// law about 0; soft tissue, a normal law about 0.9 mm; lifted, any height above the bone, and hardly ever
+// inside it. Their shares and the contact's spread are found with the pose (EM).
 #pragma once
 
 #include <functional>
@@ -22,20 +22,20 @@ struct ContactModel {
   double contact_sigma_mm = 0.4;
   double soft_share = 0.10;
   double lifted_share = 0.10;
-  // Of a lifted point inside the bone, by mm: a gross error, twenty times rarer than a lift. As likely as a lift where the mesh
-  // may hold cartilage that is not there.
+  // Of a lifted point inside the bone, by mm: a gross error, twenty times rarer than a lift. As likely as a
+  // lift where the mesh may hold cartilage that is not there.
   double buried_density_per_mm = kRarelyBuried_per_mm;
   static constexpr double kRarelyBuried_per_mm = 0.01, kOftenBuried_per_mm = 0.2;
 };
 
-// Errors along a stroke hang together: about this much of path makes one independent measurement. Costs and weights
-// count touched mm; what is known otherwise (the marker's prior) counts for so many of them.
+// Errors along a stroke hang together: about this much of path makes one independent measurement. Costs and
+// weights count touched mm; what is known otherwise (the marker's prior) counts for so many of them.
 inline constexpr double kCorrelationLength_mm = 5.0;
 
 // The world marker is the plate of a screw head: its centre a little above the bone, its face outwards.
 struct MarkerPrior {
   bool use = false;
-  double height_mm = 2.0, sigma_mm = 0.7;  // of the marker's centre above the bone
+  double height_mm = 2.0, sigma_mm = 0.7;              // of the marker's centre above the bone
   double free_tilt_rad = 0.44, tilt_sigma_rad = 0.10;  // no objection up to 25 degrees
 };
 
@@ -43,7 +43,7 @@ struct RefinedPose {
   geometry::RigidTransform bone_from_marker;
   ContactModel model;
   double cost = 0;  // weighted negative log likelihood for each unit of weight; smaller is better
-  std::vector<double> residuals_mm;       // signed, by point
+  std::vector<double> residuals_mm;  // signed, by point
 };
 
 // What the law says about one residual: the derivatives of its negative log density.

@@ -18,7 +18,8 @@ namespace {
 
 constexpr int kMaxRounds = 7;
 
-// How much better the best pose explains the points than the best different one, in units of independent measurements.
+// How much better the best pose explains the points than the best different one, in units of independent
+// measurements.
 double lead_of_best(const PosePool& pool, const TouchedPoints& points) {
   if (pool.empty()) return 0;
   constexpr double kNoRival = 100;
@@ -26,8 +27,8 @@ double lead_of_best(const PosePool& pool, const TouchedPoints& points) {
   return lead_of(pool.best().cost, pool.runner_up()->cost, points);
 }
 
-// Starts around a pose, some millimetres and degrees away: a rival that lies near it is easily missed by the search, and
-// is the one that a small residual hides best.
+// Starts around a pose, some millimetres and degrees away: a rival that lies near it is easily missed by the
+// search, and is the one that a small residual hides best.
 std::vector<Hypothesis> neighbours_of(const geometry::RigidTransform& bone_from_marker,
                                       const Eigen::Vector3d& centroid_mm, std::uint64_t seed) {
   constexpr int kCount = 24;
@@ -74,7 +75,8 @@ strokes::Curves mirrored(strokes::Curves curves) {
 
 }  // namespace
 
-SearchSetting::SearchSetting(const PreparedBone::Data& searched_bone, const RegistrationOptions& registration_options)
+SearchSetting::SearchSetting(const PreparedBone::Data& searched_bone,
+                             const RegistrationOptions& registration_options)
     : bone(searched_bone), options(registration_options) {
   if (options.plan_entry_in_bone_mm) reachable = find_reachable_samples(bone, *options.plan_entry_in_bone_mm);
   if (options.covered) cover.emplace(bone, *options.covered);
@@ -86,7 +88,8 @@ ContactModel SearchSetting::start_law() const {
   return law;
 }
 
-SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::Curves& curves, int max_rounds) {
+SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::Curves& curves,
+                                   int max_rounds) {
   const PreparedBone::Data& bone = setting.bone;
   const RegistrationOptions& options = setting.options;
   constexpr std::size_t kPointCount = 800;
@@ -133,7 +136,8 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
     outcome.cost = cover.cost;  // not of fewer points where the region was left out
   }
   outcome.summary = summarise(
-      bone, pool, {curves, points, strokes::stroke_length_mm(curves), white_noise_mm, std::move(offsets_mm)}, options);
+      bone, pool, {curves, points, strokes::stroke_length_mm(curves), white_noise_mm, std::move(offsets_mm)},
+      options);
   if (setting.cover && outcome.summary.has_pose) {
     const Eigen::Vector3d centroid_mm = pool.best().bone_from_marker * points.centroid_mm;
     cover.add_to(outcome.summary, options.target_in_bone_mm.value_or(centroid_mm));
@@ -154,19 +158,25 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
 
 std::string_view reason_against(SideVerdict verdict) {
   switch (verdict) {
-    case SideVerdict::Own: return "";
-    case SideVerdict::Other: return "the curves fit the mirror image of this bone: it is the bone of the other side";
-    case SideVerdict::Unclear: break;
+    case SideVerdict::Own:
+      return "";
+    case SideVerdict::Other:
+      return "the curves fit the mirror image of this bone: it is the bone of the other side";
+    case SideVerdict::Unclear:
+      break;
   }
-  return "the mirror image of this bone fits almost alike: is it this patient's bone, and the right side? Touch other faces of "
+  return "the mirror image of this bone fits almost alike: is it this patient's bone, and the right side? "
+         "Touch other faces of "
          "the notch too";
 }
 
-SideVerdict judge_side(const SearchSetting& setting, const strokes::Curves& curves, const SearchOutcome& found) {
-  // A few strokes can't give a clear lead: there, less of one is telling enough. The own side has to lead by more, since a
-  // bone that is much like its mirror image fits the wrong way round by chance.
+SideVerdict judge_side(const SearchSetting& setting, const strokes::Curves& curves,
+                       const SearchOutcome& found) {
+  // A few strokes can't give a clear lead: there, less of one is telling enough. The own side has to lead by
+  // more, since a bone that is much like its mirror image fits the wrong way round by chance.
   constexpr double kOtherLead = 3, kOtherLeadOfEach = 0.05, kOwnLead = 8, kOwnLeadOfEach = 0.1;
-  // To name the right reason is worth a little more, above all where the search has no marker to go by or a thickness is free.
+  // To name the right reason is worth a little more, above all where the search has no marker to go by or a
+  // thickness is free.
   constexpr int kRounds = 3, kRoundsToName = 4;
   const bool is_easy = setting.options.use_marker_prior && !setting.cover;
   const int rounds = found.summary.reliable ? kRounds : is_easy ? kRoundsToName : kMaxRounds;

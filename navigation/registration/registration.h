@@ -1,6 +1,6 @@
-// Global registration of touched curves to the bone's surface, with no initial guess: pairs of curve points with
-// tangents against pairs of surface points with normals, hypothesise and test, robust refinement, final polish on the
-// exact mesh; and a verdict about itself.
+// Global registration of touched curves to the bone's surface, with no initial guess: pairs of curve points
+// with tangents against pairs of surface points with normals, hypothesise and test, robust refinement, final
+// polish on the exact mesh; and a verdict about itself.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,13 +17,15 @@
 
 namespace arthronaut::registration {
 
-// The bone made ready: distance field, oriented surface samples, pair table, exact tree. Immutable; shared by threads.
+// The bone made ready: distance field, oriented surface samples, pair table, exact tree. Immutable; shared by
+// threads.
 class PreparedBone {
  public:
   // mesh: closed, outward, mm. Throws InvalidInput when it is empty.
   explicit PreparedBone(const geometry::TriangleMesh& mesh);
-  // The same, and kept in a file for the next time. A file that is absent, broken, of another mesh or of another version is
-  // made again, and one that cannot be written is done without: a cache changes nothing but the time.
+  // The same, and kept in a file for the next time. A file that is absent, broken, of another mesh or of
+  // another version is made again, and one that cannot be written is done without: a cache changes nothing
+  // but the time.
   PreparedBone(const geometry::TriangleMesh& mesh, const std::filesystem::path& cache_file);
   ~PreparedBone();
   PreparedBone(PreparedBone&&) noexcept;
@@ -44,9 +46,11 @@ struct CoveredRegion {
 
 struct RegistrationOptions {
   std::uint64_t seed = 1;
-  bool use_marker_prior = true;                      // the world marker sits on the bone
-  std::optional<Eigen::Vector3d> target_in_bone_mm;  // where predicted_tre_mm holds; else the centroid of the points
-  // The planned tunnel's entry: strokes are looked for within reach of it first, and everywhere when they don't lie there.
+  bool use_marker_prior = true;  // the world marker sits on the bone
+  std::optional<Eigen::Vector3d>
+      target_in_bone_mm;  // where predicted_tre_mm holds; else the centroid of the points
+  // The planned tunnel's entry: strokes are looked for within reach of it first, and everywhere when they
+  // don't lie there.
   std::optional<Eigen::Vector3d> plan_entry_in_bone_mm = std::nullopt;
   // Its thickness is solved, or it is left out when the strokes don't hold it; the assumptions say which.
   std::optional<CoveredRegion> covered = std::nullopt;
@@ -63,22 +67,24 @@ struct RegistrationSummary {
   CoverUse cover_use = CoverUse::None;
   double cover_thickness_mm = 0;  // where it was solved: how far off the mesh the probe touches there
   geometry::RigidTransform marker_from_bone;
-  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // of the body twist of marker_from_bone, correlated errors in
-  double rms_mm = 0;            // of the inliers
+  geometry::Matrix6d covariance =
+      geometry::Matrix6d::Zero();  // of the body twist of marker_from_bone, correlated errors in
+  double rms_mm = 0;               // of the inliers
   double inlier_fraction = 0;
   int point_count = 0;
   double predicted_tre_mm = 0;  // one sigma, at the target
-  // Signed distance of each curve point to what was touched, in the order given: to the bone's mesh, and on a covered
-  // region whose thickness was solved, to a surface that far off the mesh. On one that was left out, to the mesh.
+  // Signed distance of each curve point to what was touched, in the order given: to the bone's mesh, and on a
+  // covered region whose thickness was solved, to a surface that far off the mesh. On one that was left out,
+  // to the mesh.
   std::vector<double> point_residuals_mm;
   // How near the best different solution came: its robust cost over the best one's; large is good.
   double runner_up_ratio = 0;
-  // What the residuals hold beyond the tip's own white noise, root mean square: slow errors of tracking, and above all
-  // a bone that is another one than the mesh's. Judged inside the bone, where lifting and soft tissue don't reach. What the
-  // pose took up of it, which is much with few strokes, is put back.
+  // What the residuals hold beyond the tip's own white noise, root mean square: slow errors of tracking, and
+  // above all a bone that is another one than the mesh's. Judged inside the bone, where lifting and soft
+  // tissue don't reach. What the pose took up of it, which is much with few strokes, is put back.
   double misfit_mm = 0;
-  // What the residuals of different stretches of stroke share where they cross: the shape's own miss, since errors of the
-  // tip differ from stretch to stretch.
+  // What the residuals of different stretches of stroke share where they cross: the shape's own miss, since
+  // errors of the tip differ from stretch to stretch.
   double shared_misfit_mm = 0;
 };
 
@@ -87,10 +93,11 @@ struct RegistrationSummary {
                                                   const RegistrationOptions& options = {});
 
 // One-sigma error in mm that the covariance predicts at a point of the bone frame.
-[[nodiscard]] double predicted_error_mm(const RegistrationSummary& registration, const Eigen::Vector3d& point_in_bone_mm);
+[[nodiscard]] double predicted_error_mm(const RegistrationSummary& registration,
+                                        const Eigen::Vector3d& point_in_bone_mm);
 
-// How far off the mesh the probe touches at a place of the bone's surface, by a registration that was told of the region;
-// nullopt where that is not known.
+// How far off the mesh the probe touches at a place of the bone's surface, by a registration that was told of
+// the region; nullopt where that is not known.
 [[nodiscard]] std::optional<double> cover_offset_mm(const RegistrationSummary& registration,
                                                     const CoveredRegion& region,
                                                     const Eigen::Vector3d& place_in_bone_mm);

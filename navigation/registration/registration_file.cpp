@@ -22,7 +22,8 @@ RegistrationSummary read_registration_file(const std::filesystem::path& file) {
   summary.point_count = static_cast<int>(document.integer("point_count"));
   summary.reliable = document.boolean("reliable");
   summary.reasons = document.texts("reasons");
-  if (summary.reliable && !summary.has_pose) document.fail("reliable", "must be false where no pose was found");
+  if (summary.reliable && !summary.has_pose)
+    document.fail("reliable", "must be false where no pose was found");
   summary.predicted_tre_mm = document.number("predicted_tre_mm");
   if (document.has("runner_up_ratio")) summary.runner_up_ratio = document.number("runner_up_ratio");
   if (document.has("misfit_mm")) summary.misfit_mm = document.number("misfit_mm");
@@ -40,7 +41,8 @@ void write_registration_file(const std::filesystem::path& file, const Registrati
   nlohmann::ordered_json document;
   document["format"] = kFormat;
   document["version"] = kVersion;
-  document["has_pose"] = registration.has_pose;  // the format wants a pose in any case: without one it is the identity
+  document["has_pose"] =
+      registration.has_pose;  // the format wants a pose in any case: without one it is the identity
   document["marker_from_bone"] = files::to_json(registration.marker_from_bone);
   document["rms_mm"] = registration.rms_mm;
   document["inlier_fraction"] = registration.inlier_fraction;

@@ -44,8 +44,8 @@ TouchedPoints choose_points(const strokes::Curves& curves, std::size_t max_count
   double begun_mm = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_first = i == 0;
-    const bool is_new_curve = !is_first && curves[i * curves.size() / count].curve !=
-                                               curves[(i - 1) * curves.size() / count].curve;
+    const bool is_new_curve =
+        !is_first && curves[i * curves.size() / count].curve != curves[(i - 1) * curves.size() / count].curve;
     const bool is_full = begun_mm >= kStretch_mm;
     if (is_new_curve || is_full) begun_mm = 0;
     points.stretches.push_back(is_first ? 0 : points.stretches.back() + (is_new_curve || is_full ? 1 : 0));

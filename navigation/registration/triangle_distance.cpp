@@ -17,7 +17,8 @@ struct EdgeSide {
 };
 
 std::uint64_t edge_key(std::int32_t a, std::int32_t b) {
-  const auto low = static_cast<std::uint64_t>(std::min(a, b)), high = static_cast<std::uint64_t>(std::max(a, b));
+  const auto low = static_cast<std::uint64_t>(std::min(a, b)),
+             high = static_cast<std::uint64_t>(std::max(a, b));
   return low << 32 | high;
 }
 
@@ -52,14 +53,18 @@ NearestOnTriangle nearest_on_triangle(const Eigen::Vector3d& query_mm,
 }
 
 PseudoNormals::PseudoNormals(const geometry::TriangleMesh& mesh)
-    : mesh_(mesh), face_(mesh.triangles.size()), corner_(mesh.vertices_mm.size(), Eigen::Vector3d::Zero()),
+    : mesh_(mesh),
+      face_(mesh.triangles.size()),
+      corner_(mesh.vertices_mm.size(), Eigen::Vector3d::Zero()),
       edge_(mesh.triangles.size()) {
   std::vector<EdgeSide> sides;
   sides.reserve(3 * mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& triangle = mesh.triangles[t];
     std::array<Eigen::Vector3d, 3> p;
-    for (int k = 0; k < 3; ++k) p[static_cast<std::size_t>(k)] = mesh.vertices_mm[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])];
+    for (int k = 0; k < 3; ++k)
+      p[static_cast<std::size_t>(k)] =
+          mesh.vertices_mm[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])];
     face_[t] = (p[1] - p[0]).cross(p[2] - p[0]).stableNormalized();
     for (std::size_t k = 0; k < 3; ++k) {
       const double angle = geometry::angle_between_rad(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
@@ -76,20 +81,28 @@ PseudoNormals::PseudoNormals(const geometry::TriangleMesh& mesh)
     for (; last < sides.size() && sides[last].key == sides[first].key; ++last) {
       sum += face_[static_cast<std::size_t>(sides[last].triangle)];
     }
-    for (; first < last; ++first) edge_[static_cast<std::size_t>(sides[first].triangle)][sides[first].edge] = sum;
+    for (; first < last; ++first)
+      edge_[static_cast<std::size_t>(sides[first].triangle)][sides[first].edge] = sum;
   }
 }
 
 const Eigen::Vector3d& PseudoNormals::at(std::int32_t triangle, TrianglePart part) const {
   const auto t = static_cast<std::size_t>(triangle);
   switch (part) {
-    case TrianglePart::Corner0: return corner_[static_cast<std::size_t>(mesh_.triangles[t][0])];
-    case TrianglePart::Corner1: return corner_[static_cast<std::size_t>(mesh_.triangles[t][1])];
-    case TrianglePart::Corner2: return corner_[static_cast<std::size_t>(mesh_.triangles[t][2])];
-    case TrianglePart::Edge0: return edge_[t][0];
-    case TrianglePart::Edge1: return edge_[t][1];
-    case TrianglePart::Edge2: return edge_[t][2];
-    case TrianglePart::Face: break;
+    case TrianglePart::Corner0:
+      return corner_[static_cast<std::size_t>(mesh_.triangles[t][0])];
+    case TrianglePart::Corner1:
+      return corner_[static_cast<std::size_t>(mesh_.triangles[t][1])];
+    case TrianglePart::Corner2:
+      return corner_[static_cast<std::size_t>(mesh_.triangles[t][2])];
+    case TrianglePart::Edge0:
+      return edge_[t][0];
+    case TrianglePart::Edge1:
+      return edge_[t][1];
+    case TrianglePart::Edge2:
+      return edge_[t][2];
+    case TrianglePart::Face:
+      break;
   }
   return face_[t];
 }

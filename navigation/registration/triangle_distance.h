@@ -10,7 +10,8 @@
 
 namespace arthronaut::registration {
 
-// Where on a triangle a nearest point lies: a corner, an edge (edge k runs from corner k to corner k + 1) or the face.
+// Where on a triangle a nearest point lies: a corner, an edge (edge k runs from corner k to corner k + 1) or
+// the face.
 enum class TrianglePart : std::uint8_t { Corner0, Corner1, Corner2, Edge0, Edge1, Edge2, Face };
 
 struct NearestOnTriangle {
@@ -22,8 +23,8 @@ struct NearestOnTriangle {
 [[nodiscard]] NearestOnTriangle nearest_on_triangle(const Eigen::Vector3d& query_mm,
                                                     const std::array<Eigen::Vector3d, 3>& corners_mm);
 
-// Angle-weighted pseudo-normals (Baerentzen and Aanaes 2005): the sign of (query - nearest) . normal tells inside from
-// outside wherever the nearest point lies.
+// Angle-weighted pseudo-normals (Baerentzen and Aanaes 2005): the sign of (query - nearest) . normal tells
+// inside from outside wherever the nearest point lies.
 class PseudoNormals {
  public:
   explicit PseudoNormals(const geometry::TriangleMesh& mesh);
@@ -31,8 +32,8 @@ class PseudoNormals {
 
  private:
   const geometry::TriangleMesh& mesh_;
-  std::vector<Eigen::Vector3d> face_, corner_;          // by triangle, by vertex
-  std::vector<std::array<Eigen::Vector3d, 3>> edge_;    // by triangle
+  std::vector<Eigen::Vector3d> face_, corner_;        // by triangle, by vertex
+  std::vector<std::array<Eigen::Vector3d, 3>> edge_;  // by triangle
 };
 
 }  // namespace arthronaut::registration

@@ -21,22 +21,23 @@ struct CurvePoint {
 };
 using Curves = std::vector<CurvePoint>;
 
-// curves.csv. The columns shaft_x, shaft_y and shaft_z are read where they are there, and written when asked for; their cells
-// are empty where the direction is not known. Throws IoError or InvalidInput.
+// curves.csv. The columns shaft_x, shaft_y and shaft_z are read where they are there, and written when asked
+// for; their cells are empty where the direction is not known. Throws IoError or InvalidInput.
 enum class ShaftColumns { LeaveOut, Write };
 [[nodiscard]] Curves read_curves_file(const std::filesystem::path& file);
 void write_curves_file(const std::filesystem::path& file, const Curves& curves,
                        ShaftColumns shaft = ShaftColumns::LeaveOut);
 
 struct StrokeOptions {
-  double max_gap_s = 0.1;        // a stroke ends where tracking was gone for longer
-  double max_hop_mm = 1.5;       // and where the tip jumps further between two frames
-  double min_length_mm = 2.0;    // shorter strokes are left out
+  double max_gap_s = 0.1;      // a stroke ends where tracking was gone for longer
+  double max_hop_mm = 1.5;     // and where the tip jumps further between two frames
+  double min_length_mm = 2.0;  // shorter strokes are left out
 };
 
 // Tip positions wherever world marker and tool are seen in the same frame. An empty result is not an error.
 // Throws InvalidInput when the tools declare no such world marker or tool, or the tool has no tip.
-[[nodiscard]] Curves digitise(const std::vector<PoseRow>& poses, const tools::ToolSet& tools, bones::BoneKind bone,
-                              std::string_view tool_name, const StrokeOptions& options = {});
+[[nodiscard]] Curves digitise(const std::vector<PoseRow>& poses, const tools::ToolSet& tools,
+                              bones::BoneKind bone, std::string_view tool_name,
+                              const StrokeOptions& options = {});
 
 }  // namespace arthronaut::strokes

@@ -15,7 +15,8 @@ std::optional<Eigen::Vector3d> read_shaft(const files::CsvTable& table, std::siz
   const std::optional<double> x = table.optional_number(row, "shaft_x");
   if (!x) return std::nullopt;
   const Eigen::Vector3d shaft(*x, table.number(row, "shaft_y"), table.number(row, "shaft_z"));
-  if (std::abs(shaft.norm() - 1) > kUnitTolerance) table.fail(row, "shaft_x", "the direction is not of length 1");
+  if (std::abs(shaft.norm() - 1) > kUnitTolerance)
+    table.fail(row, "shaft_x", "the direction is not of length 1");
   return shaft.normalized();
 }
 
@@ -29,7 +30,8 @@ Curves read_curves_file(const std::filesystem::path& file) {
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     curves[row].curve = static_cast<int>(table.integer(row, "curve"));
     curves[row].time_s = table.optional_number(row, "time_s");
-    curves[row].position_mm = {table.number(row, "x_mm"), table.number(row, "y_mm"), table.number(row, "z_mm")};
+    curves[row].position_mm = {table.number(row, "x_mm"), table.number(row, "y_mm"),
+                               table.number(row, "z_mm")};
     if (has_shaft) curves[row].shaft_direction = read_shaft(table, row);
   }
   return curves;

@@ -10,7 +10,8 @@ class StrokeCutter {
  public:
   explicit StrokeCutter(const StrokeOptions& options) : options_(options) {}
 
-  void add(double time_s, const Eigen::Vector3d& tip_mm, const std::optional<Eigen::Vector3d>& shaft_direction) {
+  void add(double time_s, const Eigen::Vector3d& tip_mm,
+           const std::optional<Eigen::Vector3d>& shaft_direction) {
     if (!stroke_.empty()) {
       const bool gap = time_s - *stroke_.back().time_s > options_.max_gap_s;
       const double hop_mm = (tip_mm - stroke_.back().position_mm).norm();
@@ -53,7 +54,8 @@ Curves digitise(const std::vector<PoseRow>& poses, const tools::ToolSet& tools, 
     throw InvalidInput("the tools declare no world marker for the " + std::string(bones::to_text(bone)));
   }
   const tools::Tool* tool = tools.find_tool(tool_name);
-  if (tool == nullptr) throw InvalidInput("the tools declare no tool named \"" + std::string(tool_name) + "\"");
+  if (tool == nullptr)
+    throw InvalidInput("the tools declare no tool named \"" + std::string(tool_name) + "\"");
   if (!tool->tip_mm) throw InvalidInput("the tool \"" + std::string(tool_name) + "\" has no tip_mm");
 
   const std::optional<Eigen::Vector3d> shaft_in_tool = tools::shaft_direction(*tool);

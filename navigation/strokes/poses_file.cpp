@@ -19,7 +19,8 @@ PoseRow read_row(const files::CsvTable& table, std::size_t row) {
   pose.marker_id = static_cast<int>(table.integer(row, "marker_id"));
   const Eigen::Quaterniond rotation(table.number(row, "qw"), table.number(row, "qx"), table.number(row, "qy"),
                                     table.number(row, "qz"));
-  if (std::abs(rotation.norm() - 1.0) > kMaxNormError) table.fail(row, "qw", "the quaternion's norm is not 1");
+  if (std::abs(rotation.norm() - 1.0) > kMaxNormError)
+    table.fail(row, "qw", "the quaternion's norm is not 1");
   pose.camera_from_marker.rotation = rotation.normalized();
   pose.camera_from_marker.translation_mm = {table.number(row, "tx_mm"), table.number(row, "ty_mm"),
                                             table.number(row, "tz_mm")};
@@ -31,8 +32,8 @@ PoseRow read_row(const files::CsvTable& table, std::size_t row) {
 }  // namespace
 
 std::vector<PoseRow> read_poses_file(const std::filesystem::path& file) {
-  const auto table = files::CsvTable::read(file, {"frame", "time_s", "marker_id", "qw", "qx", "qy", "qz", "tx_mm",
-                                                  "ty_mm", "tz_mm", "rms_px", "mark_angle_deg"});
+  const auto table = files::CsvTable::read(file, {"frame", "time_s", "marker_id", "qw", "qx", "qy", "qz",
+                                                  "tx_mm", "ty_mm", "tz_mm", "rms_px", "mark_angle_deg"});
   std::vector<PoseRow> rows;
   rows.reserve(table.row_count());
   for (std::size_t row = 0; row < table.row_count(); ++row) {
@@ -52,8 +53,8 @@ std::string poses_to_text(const std::vector<PoseRow>& rows) {
     const Eigen::Quaterniond& q = row.camera_from_marker.rotation;
     const Eigen::Vector3d& t = row.camera_from_marker.translation_mm;
     std::snprintf(line, sizeof line, "%lld,%.6f,%d,%.9f,%.9f,%.9f,%.9f,%.6f,%.6f,%.6f,%.4f,",
-                  static_cast<long long>(row.frame), row.time_s, row.marker_id, q.w(), q.x(), q.y(), q.z(), t.x(),
-                  t.y(), t.z(), row.rms_px);
+                  static_cast<long long>(row.frame), row.time_s, row.marker_id, q.w(), q.x(), q.y(), q.z(),
+                  t.x(), t.y(), t.z(), row.rms_px);
     text += line;
     if (row.mark_angle_deg) {
       std::snprintf(line, sizeof line, "%.6f", *row.mark_angle_deg);

@@ -20,8 +20,8 @@ struct PoseRow {
   std::optional<double> mark_angle_deg;  // empty while the lens mark is not found
 };
 
-// Throws IoError or InvalidInput (file, line, column, reason): missing column, a number that is not finite, a quaternion
-// whose norm is off 1 by more than 1e-3, time that runs backwards.
+// Throws IoError or InvalidInput (file, line, column, reason): missing column, a number that is not finite, a
+// quaternion whose norm is off 1 by more than 1e-3, time that runs backwards.
 [[nodiscard]] std::vector<PoseRow> read_poses_file(const std::filesystem::path& file);
 void write_poses_file(const std::filesystem::path& file, const std::vector<PoseRow>& rows);
 [[nodiscard]] std::string poses_to_text(const std::vector<PoseRow>& rows);

@@ -25,7 +25,8 @@ void for_each_stroke(const Curves& curves, Function f) {
 
 double length_at_stride(const Points& points, std::size_t stride) {
   double length_mm = 0;
-  for (std::size_t i = stride; i < points.size(); i += stride) length_mm += (points[i] - points[i - stride]).norm();
+  for (std::size_t i = stride; i < points.size(); i += stride)
+    length_mm += (points[i] - points[i - stride]).norm();
   return length_mm;
 }
 
@@ -56,8 +57,8 @@ Points running_mean(const Points& points, std::size_t half_width) {
   return smooth;
 }
 
-// Noise makes the path of dense samples too long: the samples are smoothed over the shortest stride at which walking
-// every second step would hardly shorten the path.
+// Noise makes the path of dense samples too long: the samples are smoothed over the shortest stride at which
+// walking every second step would hardly shorten the path.
 std::vector<double> arc_lengths(const Points& points) {
   constexpr double kStillShortens = 1.1;
   const Points despiked = running_median(points, 2);
@@ -68,7 +69,8 @@ std::vector<double> arc_lengths(const Points& points) {
   }
   const Points smooth = stride > 1 ? running_mean(despiked, 2 * stride) : despiked;
   std::vector<double> arc_mm(points.size(), 0.0);
-  for (std::size_t i = 1; i < points.size(); ++i) arc_mm[i] = arc_mm[i - 1] + (smooth[i] - smooth[i - 1]).norm();
+  for (std::size_t i = 1; i < points.size(); ++i)
+    arc_mm[i] = arc_mm[i - 1] + (smooth[i] - smooth[i - 1]).norm();
   return arc_mm;
 }
 
@@ -78,8 +80,8 @@ struct LocalCurve {
   double weight = 0;             // effective number of points
 };
 
-// A quadratic through the window by reweighted least squares: absolute values first, which a third of lifted samples
-// doesn't bend, Tukey's biweight then.
+// A quadratic through the window by reweighted least squares: absolute values first, which a third of lifted
+// samples doesn't bend, Tukey's biweight then.
 LocalCurve fit_local_curve(std::span<const Eigen::Vector3d> points, std::span<const double> offsets_mm) {
   constexpr int kAbsoluteIterations = 6, kIterations = 10;
   std::vector<double> weights(points.size(), 1.0), residuals(points.size());
@@ -98,7 +100,8 @@ LocalCurve fit_local_curve(std::span<const Eigen::Vector3d> points, std::span<co
       residuals[i] = (points[i] - curve.coefficients * basis).norm();
     }
     std::vector<double> sorted = residuals;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                     sorted.end());
     // 1.538 is the median length of a three-dimensional unit normal vector.
     scale_mm = std::max(sorted[sorted.size() / 2] / 1.538, 0.01);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -119,8 +122,8 @@ LocalCurve fit_local_curve(std::span<const Eigen::Vector3d> points, std::span<co
   return curve;
 }
 
-void add_oriented_points(const Curves& curves, std::size_t first, std::size_t last, const TangentOptions& options,
-                         std::vector<OrientedPoint>& oriented) {
+void add_oriented_points(const Curves& curves, std::size_t first, std::size_t last,
+                         const TangentOptions& options, std::vector<OrientedPoint>& oriented) {
   constexpr std::size_t kMinPoints = 5;
   if (last - first < kMinPoints) return;
   Points points;

@@ -18,8 +18,8 @@ struct WorldMarker {
 };
 
 struct ToolAxis {
-  Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();       // in the marker frame: the guide's distal end
-  Eigen::Vector3d direction = -Eigen::Vector3d::UnitY();    // unit, the direction of drilling
+  Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();     // in the marker frame: the guide's distal end
+  Eigen::Vector3d direction = -Eigen::Vector3d::UnitY();  // unit, the direction of drilling
 };
 
 struct Tool {
@@ -32,8 +32,8 @@ struct Tool {
   std::optional<double> residual_mm = std::nullopt;
 };
 
-// Of a tool with a tip, about: unit, in the marker frame, from the tip towards the marker, which sits on the handle's side.
-// Empty without a tip, or when it lies in the marker itself.
+// Of a tool with a tip, about: unit, in the marker frame, from the tip towards the marker, which sits on the
+// handle's side. Empty without a tip, or when it lies in the marker itself.
 [[nodiscard]] std::optional<Eigen::Vector3d> shaft_direction(const Tool& tool);
 
 struct ToolSet {
@@ -44,11 +44,12 @@ struct ToolSet {
   [[nodiscard]] const WorldMarker* find_world_marker(bones::BoneKind bone) const;
 };
 
-// The standard ids: 0 femur, 1 tibia, 2 probe, 3 femoral guide, 4 tibial guide, with the built-in instruments' geometry.
+// The standard ids: 0 femur, 1 tibia, 2 probe, 3 femoral guide, 4 tibial guide, with the built-in
+// instruments' geometry.
 [[nodiscard]] ToolSet standard_tools();
 
-// Refuses a marker id used twice, ids outside DICT_4X4_50, sizes that are not above 0, a zero axis direction. Throws
-// IoError or InvalidInput.
+// Refuses a marker id used twice, ids outside DICT_4X4_50, sizes that are not above 0, a zero axis direction.
+// Throws IoError or InvalidInput.
 [[nodiscard]] ToolSet read_tools_file(const std::filesystem::path& file);
 void write_tools_file(const std::filesystem::path& file, const ToolSet& tools);
 

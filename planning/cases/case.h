@@ -39,7 +39,8 @@ struct Case {
 // Throws IoError or InvalidInput (file, place, reason): not a case, newer version, broken file, missing mesh.
 [[nodiscard]] Case load_case(const std::filesystem::path& folder);
 
-// Creates the folder where needed. Meshes are written only when they differ from what is there. Throws IoError.
+// Creates the folder where needed. Meshes are written only when they differ from what is there. Throws
+// IoError.
 void save_case(const std::filesystem::path& folder, const Case& contents);
 // The plan alone: what changes while a surgeon plans.
 void save_plan(const std::filesystem::path& folder, const Plan& plan);
@@ -48,10 +49,13 @@ void save_plan(const std::filesystem::path& folder, const Plan& plan);
 [[nodiscard]] std::filesystem::path tools_file(const std::filesystem::path& case_folder);
 [[nodiscard]] std::filesystem::path mesh_file(const std::filesystem::path& case_folder, bones::BoneKind kind);
 // The bone made ready for registration.
-[[nodiscard]] std::filesystem::path prepared_bone_file(const std::filesystem::path& case_folder, bones::BoneKind kind);
-// What cartilage covers that the bone's mesh lacks, or has too much: a surface of its own, of which the vertices count. A
-// case without one declares none. load_cartilage throws as load_case, save_cartilage IoError.
-[[nodiscard]] std::filesystem::path cartilage_file(const std::filesystem::path& case_folder, bones::BoneKind kind);
+[[nodiscard]] std::filesystem::path prepared_bone_file(const std::filesystem::path& case_folder,
+                                                       bones::BoneKind kind);
+// What cartilage covers that the bone's mesh lacks, or has too much: a surface of its own, of which the
+// vertices count. A case without one declares none. load_cartilage throws as load_case, save_cartilage
+// IoError.
+[[nodiscard]] std::filesystem::path cartilage_file(const std::filesystem::path& case_folder,
+                                                   bones::BoneKind kind);
 [[nodiscard]] std::optional<geometry::TriangleMesh> load_cartilage(const std::filesystem::path& case_folder,
                                                                    bones::BoneKind kind);
 void save_cartilage(const std::filesystem::path& case_folder, bones::BoneKind kind,

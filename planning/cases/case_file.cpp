@@ -16,7 +16,8 @@ constexpr int kCaseVersion = 1, kPlanVersion = 1;
 
 nlohmann::ordered_json landmarks_to_json(const landmarks::Landmarks& landmarks) {
   auto json = nlohmann::ordered_json::array();
-  for (const auto& [name, position] : landmarks) json.push_back({{"name", name}, {"position_mm", files::to_json(position)}});
+  for (const auto& [name, position] : landmarks)
+    json.push_back({{"name", name}, {"position_mm", files::to_json(position)}});
   return json;
 }
 
@@ -24,7 +25,8 @@ landmarks::Landmarks landmarks_from(const files::JsonObject& bone) {
   landmarks::Landmarks landmarks;
   if (!bone.has("landmarks")) return landmarks;
   for (const auto& node : bone.objects("landmarks")) {
-    if (!landmarks.emplace(node.text("name"), node.vector3("position_mm")).second) node.fail("name", "is there twice");
+    if (!landmarks.emplace(node.text("name"), node.vector3("position_mm")).second)
+      node.fail("name", "is there twice");
   }
   return landmarks;
 }
@@ -53,7 +55,8 @@ Plan load_plan(const fs::path& file) {
 bool holds_mesh(const fs::path& file, const geometry::TriangleMesh& mesh) {
   if (!fs::exists(file)) return false;
   try {
-    const auto there = bones::read_mesh(file, {.space = bones::Space::LPS, .unit = bones::LengthUnit::Millimetre});
+    const auto there =
+        bones::read_mesh(file, {.space = bones::Space::LPS, .unit = bones::LengthUnit::Millimetre});
     return there.triangles == mesh.triangles && there.vertices_mm == mesh.vertices_mm;
   } catch (const std::runtime_error&) {
     return false;  // a broken mesh is replaced
@@ -85,7 +88,8 @@ Case load_case(const fs::path& folder) {
     if (node.has("source")) bone.source = node.text("source");
     bone.mesh = bones::read_mesh(mesh_file(folder, bone.kind),
                                  {.space = bones::Space::LPS, .unit = bones::LengthUnit::Millimetre});
-    if (auto landmarks = landmarks_from(node); !landmarks.empty()) result.landmarks[bone.kind] = std::move(landmarks);
+    if (auto landmarks = landmarks_from(node); !landmarks.empty())
+      result.landmarks[bone.kind] = std::move(landmarks);
     if (!result.bones.emplace(bone.kind, std::move(bone)).second) node.fail("kind", "is there twice");
   }
   if (fs::exists(folder / "plan.json")) result.plan = load_plan(folder / "plan.json");
@@ -98,7 +102,8 @@ std::optional<geometry::TriangleMesh> load_cartilage(const fs::path& case_folder
   return bones::read_mesh(file, {.space = bones::Space::LPS, .unit = bones::LengthUnit::Millimetre});
 }
 
-void save_cartilage(const fs::path& case_folder, bones::BoneKind kind, const geometry::TriangleMesh& cartilage) {
+void save_cartilage(const fs::path& case_folder, bones::BoneKind kind,
+                    const geometry::TriangleMesh& cartilage) {
   bones::write_mesh_ply(cartilage_file(case_folder, kind), cartilage);
 }
 
@@ -114,14 +119,16 @@ void save_plan(const fs::path& folder, const Plan& plan) {
                     {{"format", kPlanFormat}, {"version", kPlanVersion}, {"tunnels", std::move(tunnels)}});
 }
 
-// case.json is written last: it is what makes the folder a case, and it names only meshes that are already there.
+// case.json is written last: it is what makes the folder a case, and it names only meshes that are already
+// there.
 void save_case(const fs::path& folder, const Case& contents) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw IoError(folder, "cannot create: " + error.message());
   auto bones = nlohmann::ordered_json::array();
   for (const auto& [kind, bone] : contents.bones) {
-    if (!holds_mesh(mesh_file(folder, kind), bone.mesh)) bones::write_mesh_ply(mesh_file(folder, kind), bone.mesh);
+    if (!holds_mesh(mesh_file(folder, kind), bone.mesh))
+      bones::write_mesh_ply(mesh_file(folder, kind), bone.mesh);
     nlohmann::ordered_json node = {{"kind", bones::to_text(kind)}, {"source", bone.source}};
     if (const auto marks = contents.landmarks.find(kind); marks != contents.landmarks.end()) {
       node["landmarks"] = landmarks_to_json(marks->second);

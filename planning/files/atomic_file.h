@@ -8,13 +8,14 @@
 
 namespace arthronaut::files {
 
-// Writes beside the target, fsyncs, renames over it and fsyncs the folder: after a crash at any moment the target
-// holds its old contents or the new. "-" writes to standard output. Throws IoError with the system's reason; the
-// target is then as before and nothing is left beside it.
+// Writes beside the target, fsyncs, renames over it and fsyncs the folder: after a crash at any moment the
+// target holds its old contents or the new. "-" writes to standard output. Throws IoError with the system's
+// reason; the target is then as before and nothing is left beside it.
 void write_atomically(const std::filesystem::path& target, std::string_view contents);
 
-// The same for a writer that needs a path of its own (a video, a PDF): `write` gets a temporary path in the target's
-// folder that carries the target's extension; when it throws, the temporary file is removed and the exception passes.
+// The same for a writer that needs a path of its own (a video, a PDF): `write` gets a temporary path in the
+// target's folder that carries the target's extension; when it throws, the temporary file is removed and the
+// exception passes.
 void write_atomically(const std::filesystem::path& target,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 

@@ -67,7 +67,8 @@ bool CsvTable::has_column(std::string_view column) const {
 
 std::size_t CsvTable::column_index(std::string_view column) const {
   const auto found = std::find(columns_.begin(), columns_.end(), column);
-  if (found == columns_.end()) throw InvalidInput(file_, "line 1", "has no column \"" + std::string(column) + "\"");
+  if (found == columns_.end())
+    throw InvalidInput(file_, "line 1", "has no column \"" + std::string(column) + "\"");
   return static_cast<std::size_t>(found - columns_.begin());
 }
 
@@ -83,7 +84,8 @@ double CsvTable::number(std::size_t row, std::string_view column) const {
   const std::string& cell = text(row, column);
   double value = 0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size()) fail(row, column, "\"" + cell + "\" is not a number");
+  if (error != std::errc() || end != cell.data() + cell.size())
+    fail(row, column, "\"" + cell + "\" is not a number");
   if (!std::isfinite(value)) fail(row, column, "must be finite");
   return value;
 }
@@ -97,7 +99,8 @@ std::int64_t CsvTable::integer(std::size_t row, std::string_view column) const {
   const std::string& cell = text(row, column);
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size()) fail(row, column, "\"" + cell + "\" is not an integer");
+  if (error != std::errc() || end != cell.data() + cell.size())
+    fail(row, column, "\"" + cell + "\" is not an integer");
   return value;
 }
 

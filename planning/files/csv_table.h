@@ -1,5 +1,5 @@
-// Strict reading of comma-separated files with one header line. Columns are found by name, so that further columns
-// may follow; every error names the file, the line and the column.
+// Strict reading of comma-separated files with one header line. Columns are found by name, so that further
+// columns may follow; every error names the file, the line and the column.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@ namespace arthronaut::files {
 
 class CsvTable {
  public:
-  // Throws IoError when the file cannot be read, InvalidInput when the header lacks a required column or a row has
-  // another number of cells than the header. CRLF and a final empty line are accepted.
+  // Throws IoError when the file cannot be read, InvalidInput when the header lacks a required column or a
+  // row has another number of cells than the header. CRLF and a final empty line are accepted.
   static CsvTable read(const std::filesystem::path& file, const std::vector<std::string>& required_columns);
   static CsvTable parse(std::string_view text, const std::filesystem::path& name,
                         const std::vector<std::string>& required_columns);
@@ -23,7 +23,8 @@ class CsvTable {
   [[nodiscard]] bool has_column(std::string_view column) const;
   // Throw InvalidInput when the cell is not a finite number / an integer.
   [[nodiscard]] double number(std::size_t row, std::string_view column) const;
-  [[nodiscard]] std::optional<double> optional_number(std::size_t row, std::string_view column) const;  // empty cell
+  [[nodiscard]] std::optional<double> optional_number(std::size_t row,
+                                                      std::string_view column) const;  // empty cell
   [[nodiscard]] std::int64_t integer(std::size_t row, std::string_view column) const;
   [[nodiscard]] const std::string& text(std::size_t row, std::string_view column) const;
   [[noreturn]] void fail(std::size_t row, std::string_view column, const std::string& reason) const;

@@ -1,6 +1,6 @@
-// Strict reading of Arthronaut's JSON files: every miss names the file, the place and the reason, and a number that
-// is not finite, a newer version or an unknown format is refused. Writing is nlohmann's ordered_json in the .cpp of
-// each format, through write_json.
+// Strict reading of Arthronaut's JSON files: every miss names the file, the place and the reason, and a
+// number that is not finite, a newer version or an unknown format is refused. Writing is nlohmann's
+// ordered_json in the .cpp of each format, through write_json.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,12 +16,13 @@
 
 namespace arthronaut::files {
 
-// One object of a parsed document and where it stands. Copies share the document. Every accessor throws InvalidInput
+// One object of a parsed document and where it stands. Copies share the document. Every accessor throws
+// InvalidInput
 // ("FILE: a.b[2]: reason") when the value is absent or not what is asked for.
 class JsonObject {
  public:
-  [[nodiscard]] bool has(std::string_view key) const;  // present and not null
-  [[nodiscard]] bool is_number(std::string_view key) const;  // throws when the key is missing
+  [[nodiscard]] bool has(std::string_view key) const;                // present and not null
+  [[nodiscard]] bool is_number(std::string_view key) const;          // throws when the key is missing
   [[nodiscard]] double number(std::string_view key) const;           // finite
   [[nodiscard]] double positive_number(std::string_view key) const;  // finite and > 0
   [[nodiscard]] std::int64_t integer(std::string_view key) const;
@@ -33,7 +34,8 @@ class JsonObject {
   [[nodiscard]] std::vector<std::string> texts(std::string_view key) const;
   [[nodiscard]] JsonObject object(std::string_view key) const;
   [[nodiscard]] std::vector<JsonObject> objects(std::string_view key) const;  // an array of objects
-  // {"q_wxyz": [..], "t_mm": [..]}; refuses a quaternion whose norm is off 1 by more than 1e-3, then normalises.
+  // {"q_wxyz": [..], "t_mm": [..]}; refuses a quaternion whose norm is off 1 by more than 1e-3, then
+  // normalises.
   [[nodiscard]] geometry::RigidTransform rigid_transform(std::string_view key) const;
 
   [[nodiscard]] std::int64_t version() const { return integer("version"); }
@@ -53,13 +55,14 @@ class JsonObject {
 };
 
 // Reads a file whose "format" is `format` and whose "version" is 1 to `newest_version`.
-[[nodiscard]] JsonObject read_json(const std::filesystem::path& file, std::string_view format, int newest_version);
+[[nodiscard]] JsonObject read_json(const std::filesystem::path& file, std::string_view format,
+                                   int newest_version);
 // The same for text already in memory; `name` stands in messages.
-[[nodiscard]] JsonObject parse_json(std::string_view text, const std::filesystem::path& name, std::string_view format,
-                                    int newest_version);
+[[nodiscard]] JsonObject parse_json(std::string_view text, const std::filesystem::path& name,
+                                    std::string_view format, int newest_version);
 
-// Atomic, indented, newline at the end. "-" writes to standard output. Throws IoError; InvalidInput when a number in
-// it is not finite (nothing is written then).
+// Atomic, indented, newline at the end. "-" writes to standard output. Throws IoError; InvalidInput when a
+// number in it is not finite (nothing is written then).
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& document);
 
 [[nodiscard]] nlohmann::ordered_json to_json(const Eigen::Vector2d& v);

@@ -39,7 +39,8 @@ Vector6d log(const RigidTransform& transform) {
   if (q.w() < 0) q.coeffs() *= -1;
   const double sine = q.vec().norm();
   const double angle = 2 * std::atan2(sine, q.w());
-  const Eigen::Vector3d w = sine < 1e-9 ? Eigen::Vector3d(2 * q.vec()) : Eigen::Vector3d(q.vec() * (angle / sine));
+  const Eigen::Vector3d w =
+      sine < 1e-9 ? Eigen::Vector3d(2 * q.vec()) : Eigen::Vector3d(q.vec() * (angle / sine));
   Vector6d twist;
   twist << left_jacobian(w).inverse() * transform.translation_mm, w;
   return twist;

@@ -22,7 +22,9 @@ struct RigidTransform {
     return {(rotation * source_from_other.rotation).normalized(), *this * source_from_other.translation_mm};
   }
   // Turns a direction; does not translate it.
-  [[nodiscard]] Eigen::Vector3d rotate(const Eigen::Vector3d& direction) const { return rotation * direction; }
+  [[nodiscard]] Eigen::Vector3d rotate(const Eigen::Vector3d& direction) const {
+    return rotation * direction;
+  }
   [[nodiscard]] RigidTransform inverse() const {
     const Eigen::Quaterniond r = rotation.conjugate();
     return {r, -(r * translation_mm)};
@@ -30,8 +32,8 @@ struct RigidTransform {
   [[nodiscard]] Eigen::Matrix3d matrix() const { return rotation.toRotationMatrix(); }
 };
 
-// exp and log of SE(3). A twist is (v, w): translation in mm first, then rotation in rad. Perturbations act in the
-// body frame, on the right: T <- T * exp(twist). log is valid for rotations below pi.
+// exp and log of SE(3). A twist is (v, w): translation in mm first, then rotation in rad. Perturbations act
+// in the body frame, on the right: T <- T * exp(twist). log is valid for rotations below pi.
 [[nodiscard]] RigidTransform exp(const Vector6d& twist);
 [[nodiscard]] Vector6d log(const RigidTransform& transform);
 

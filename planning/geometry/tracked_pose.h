@@ -21,9 +21,10 @@ struct TrackedPose {
   }
 };
 
-// middle_from_source seen from target: both must be valid and of the same instant, else the result is invalid.
-// First-order covariance, errors independent: S = Ad(B^-1) S_A Ad(B^-1)^T + S_B for A * B.
-[[nodiscard]] TrackedPose compose(const TrackedPose& target_from_middle, const TrackedPose& middle_from_source);
+// middle_from_source seen from target: both must be valid and of the same instant, else the result is
+// invalid. First-order covariance, errors independent: S = Ad(B^-1) S_A Ad(B^-1)^T + S_B for A * B.
+[[nodiscard]] TrackedPose compose(const TrackedPose& target_from_middle,
+                                  const TrackedPose& middle_from_source);
 [[nodiscard]] TrackedPose inverse(const TrackedPose& target_from_source);
 
 }  // namespace arthronaut::geometry

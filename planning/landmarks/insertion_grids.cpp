@@ -20,7 +20,8 @@ std::optional<Vector3d> find(const Landmarks& landmarks, const char* name) {
 
 // Unit, from the medial to the lateral side, at right angles to `across`.
 Vector3d lateral_of_femur(const Landmarks& landmarks, bones::Side side, const Vector3d& across) {
-  const auto lateral = find(landmarks, "lateral_condyle_posterior"), medial = find(landmarks, "medial_condyle_posterior");
+  const auto lateral = find(landmarks, "lateral_condyle_posterior"),
+             medial = find(landmarks, "medial_condyle_posterior");
   Vector3d axis = side == bones::Side::Right ? Vector3d(-1, 0, 0) : Vector3d(1, 0, 0);
   if (lateral && medial && (*lateral - *medial).norm() > kLeastSpan_mm) axis = *lateral - *medial;
   return (axis - axis.dot(across) * across).normalized();
@@ -30,21 +31,24 @@ Vector3d lateral_of_femur(const Landmarks& landmarks, bones::Side side, const Ve
 
 FemoralQuadrant::Percent FemoralQuadrant::percent_of(const Vector3d& point_mm) const {
   const Vector3d from_corner = point_mm - corner_mm;
-  return {.deep_shallow = 100 * from_corner.dot(shallow) / depth_mm, .high_low = 100 * from_corner.dot(low) / height_mm};
+  return {.deep_shallow = 100 * from_corner.dot(shallow) / depth_mm,
+          .high_low = 100 * from_corner.dot(low) / height_mm};
 }
 
 Vector3d FemoralQuadrant::point_at(const Percent& percent) const {
-  return corner_mm + 0.01 * percent.deep_shallow * depth_mm * shallow + 0.01 * percent.high_low * height_mm * low;
+  return corner_mm + 0.01 * percent.deep_shallow * depth_mm * shallow +
+         0.01 * percent.high_low * height_mm * low;
 }
 
-std::optional<FemoralQuadrant> femoral_quadrant(const geometry::TriangleMesh& femur, const Landmarks& landmarks,
-                                                bones::Side side) {
+std::optional<FemoralQuadrant> femoral_quadrant(const geometry::TriangleMesh& femur,
+                                                const Landmarks& landmarks, bones::Side side) {
   const auto front = find(landmarks, "blumensaat_anterior"), back = find(landmarks, "blumensaat_posterior");
   if (!front || !back || (*front - *back).norm() < kLeastSpan_mm) return std::nullopt;
   FemoralQuadrant quadrant;
   quadrant.shallow = (*front - *back).normalized();
   const Vector3d lateral = lateral_of_femur(landmarks, side, quadrant.shallow);
-  // Lateral, shallow, low: of the two normals of Blumensaat's line in the view, the one that points to the joint.
+  // Lateral, shallow, low: of the two normals of Blumensaat's line in the view, the one that points to the
+  // joint.
   quadrant.low = lateral.cross(quadrant.shallow).normalized();
   if (quadrant.low.z() > 0) quadrant.low = -quadrant.low;
 
@@ -77,7 +81,8 @@ std::optional<TibialGrid> tibial_grid(const Landmarks& landmarks) {
   Vector3d across = *lateral - *medial, along = *back - *front;
   across.z() = along.z() = 0;
   if (across.norm() < kLeastSpan_mm || along.norm() < kLeastSpan_mm) return std::nullopt;
-  TibialGrid grid{.anterior_mm = *front, .medial_mm = *medial, .posterior = {}, .lateral = across.normalized()};
+  TibialGrid grid{
+      .anterior_mm = *front, .medial_mm = *medial, .posterior = {}, .lateral = across.normalized()};
   grid.posterior = (along - along.dot(grid.lateral) * grid.lateral).normalized();
   grid.depth_mm = along.dot(grid.posterior);
   grid.width_mm = across.norm();

@@ -1,8 +1,10 @@
-// Where on a bone a point lies in the percentages that surgeons publish: Bernard and Hertel's quadrant on the lateral
-// femoral condyle, and the anterior-posterior (Amis and Jakob) and medial-lateral shares of the tibial plateau.
+// Where on a bone a point lies in the percentages that surgeons publish: Bernard and Hertel's quadrant on the
+// lateral femoral condyle, and the anterior-posterior (Amis and Jakob) and medial-lateral shares of the
+// tibial plateau.
 //
-// Grids follow from landmarks that somebody placed: on the femur they depend on how Blumensaat's line was laid through a
-// roof that is often curved (Yahagi 2018), so that a percentage is no better than a few points.
+// Grids follow from landmarks that somebody placed: on the femur they depend on how Blumensaat's line was
+// laid through a roof that is often curved (Yahagi 2018), so that a percentage is no better than a few
+// points.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,11 +16,11 @@
 
 namespace arthronaut::landmarks {
 
-// Bernard and Hertel's rectangle as on a true lateral view: one side on Blumensaat's line, the others touching the
-// outline of the lateral condyle below that line.
+// Bernard and Hertel's rectangle as on a true lateral view: one side on Blumensaat's line, the others
+// touching the outline of the lateral condyle below that line.
 struct FemoralQuadrant {
-  Eigen::Vector3d corner_mm;         // deep and high, in the plane of the footprint-side condyle; bone frame
-  Eigen::Vector3d shallow, low;      // unit, at right angles: along Blumensaat's line; away from it
+  Eigen::Vector3d corner_mm;     // deep and high, in the plane of the footprint-side condyle; bone frame
+  Eigen::Vector3d shallow, low;  // unit, at right angles: along Blumensaat's line; away from it
   double depth_mm = 0, height_mm = 0;
 
   struct Percent {
@@ -29,15 +31,16 @@ struct FemoralQuadrant {
   [[nodiscard]] Eigen::Vector3d point_at(const Percent& percent) const;
 };
 
-// Needs blumensaat_anterior and blumensaat_posterior; the view is along the line through both posterior condyles where
-// these are known, else along the patient's x. nullopt when a landmark is missing or the two lie closer than 5 mm.
+// Needs blumensaat_anterior and blumensaat_posterior; the view is along the line through both posterior
+// condyles where these are known, else along the patient's x. nullopt when a landmark is missing or the two
+// lie closer than 5 mm.
 [[nodiscard]] std::optional<FemoralQuadrant> femoral_quadrant(const geometry::TriangleMesh& femur,
                                                               const Landmarks& landmarks, bones::Side side);
 
 // Percentages on the tibial plateau, in the plane across the long axis.
 struct TibialGrid {
-  Eigen::Vector3d anterior_mm, medial_mm;     // where each share is 0; bone frame
-  Eigen::Vector3d posterior, lateral;         // unit, at right angles
+  Eigen::Vector3d anterior_mm, medial_mm;  // where each share is 0; bone frame
+  Eigen::Vector3d posterior, lateral;      // unit, at right angles
   double depth_mm = 0, width_mm = 0;
 
   struct Percent {

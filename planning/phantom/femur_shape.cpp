@@ -10,7 +10,8 @@ constexpr double kTopMm = 66.0;  // above the epicondylar axis: about 90 mm abov
 const Eigen::Vector2d kRoofOutlet{12.5, -17.5};
 constexpr double kNotchMiddleX = 0.0;
 
-// The joint surface seen from the side: posterior condyle, distal condyle, trochlear ridge, as hulls of circles.
+// The joint surface seen from the side: posterior condyle, distal condyle, trochlear ridge, as hulls of
+// circles.
 struct SagittalProfile {
   Circle posterior, distal, trochlear;
 
@@ -42,7 +43,8 @@ double FemurShape::notch_middle_x_mm() const {
   return parameters_.scale * parameters_.width_factor * kNotchMiddleX;
 }
 
-// Both condyles and the trochlea as one pulley: the sagittal profile, lowered by the groove, between slanted sides.
+// Both condyles and the trochlea as one pulley: the sagittal profile, lowered by the groove, between slanted
+// sides.
 double FemurShape::pulley(const Eigen::Vector3d& q) const {
   const Eigen::Vector2d sagittal(q.y(), q.z());
   const double lateral = kLateral.distance(sagittal);
@@ -52,8 +54,8 @@ double FemurShape::pulley(const Eigen::Vector3d& q) const {
   const double groove = 0.5 * parameters_.groove_depth_mm * (1.0 + std::cos(geometry::kPi * off_groove));
   const double surface = (1.0 - share) * medial + share * lateral + groove;
 
-  // Seen from below the condyles are a trapezium: the sides come together towards the front, the medial one more, and
-  // they come together a little towards the joint.
+  // Seen from below the condyles are a trapezium: the sides come together towards the front, the medial one
+  // more, and they come together a little towards the joint.
   const double front = ramp(q.y() + 6.0), back = ramp(-q.y() - 12.0), low = ramp(-q.z());
   const double lateral_side = (q.x() - 35.0 + 0.17 * front + 0.10 * back + 0.06 * low) / 1.02;
   const double medial_side = (-q.x() - 37.0 + 0.36 * front + 0.06 * back + 0.08 * low) / 1.06;
@@ -63,8 +65,8 @@ double FemurShape::pulley(const Eigen::Vector3d& q) const {
 // An arch under Blumensaat's line, open in front, below and behind; wider towards its mouth.
 double FemurShape::notch(const Eigen::Vector3d& q) const {
   const double under_roof = roof_normal_.dot(Eigen::Vector2d(q.y(), q.z()) - kRoofOutlet);
-  const double half_width = parameters_.notch_half_width_mm / parameters_.width_factor + 0.05 * (under_roof - 9.0) +
-                            0.08 * ramp(-q.y() - 14.0);
+  const double half_width = parameters_.notch_half_width_mm / parameters_.width_factor +
+                            0.05 * (under_roof - 9.0) + 0.08 * ramp(-q.y() - 14.0);
   return filleted_intersection(std::abs(q.x() - kNotchMiddleX) - half_width, -under_roof, 8.5);
 }
 
@@ -80,8 +82,8 @@ double FemurShape::operator()(const Eigen::Vector3d& p) const {
   shaft = filleted_intersection(shaft, -(q.z() + 8.0), 3.0);
 
   double bone = smooth_union(pulley(q), shaft, 10.0);
-  bone = smooth_union(bone, ellipsoid(q, {29.0, -3.0, 1.0}, {9.0, 13.0, 12.0}), 12.0);     // lateral epicondyle
-  bone = smooth_union(bone, ellipsoid(q, {-30.0, -3.5, 1.5}, {9.5, 14.0, 12.0}), 12.0);   // medial epicondyle
+  bone = smooth_union(bone, ellipsoid(q, {29.0, -3.0, 1.0}, {9.0, 13.0, 12.0}), 12.0);   // lateral epicondyle
+  bone = smooth_union(bone, ellipsoid(q, {-30.0, -3.5, 1.5}, {9.5, 14.0, 12.0}), 12.0);  // medial epicondyle
   bone = smooth_union(bone, ellipsoid(q, {-26.5, -6.0, 13.5}, {6.0, 6.0, 6.0}), 12.0);   // adductor tubercle
   bone = filleted_difference(bone, notch(q), 3.5);
 

@@ -76,7 +76,8 @@ geometry::TriangleMesh contour(vtkImageData* grid) {
   return mesh;
 }
 
-// Every vertex goes half way to the mean of its neighbours, then back onto the surface: slivers of the grid disappear.
+// Every vertex goes half way to the mean of its neighbours, then back onto the surface: slivers of the grid
+// disappear.
 void relax(geometry::TriangleMesh& mesh, const ImplicitFunction& function) {
   std::vector<Eigen::Vector3d> sum(mesh.vertices_mm.size(), Eigen::Vector3d::Zero());
   std::vector<int> neighbours(mesh.vertices_mm.size(), 0);

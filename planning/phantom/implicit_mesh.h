@@ -17,9 +17,11 @@ struct ImplicitMeshOptions {
 };
 
 // Closed, outward, vertices on the surface within 1e-6 mm; the same input gives the same mesh, bit for bit.
-[[nodiscard]] geometry::TriangleMesh mesh_of(const ImplicitFunction& function, const ImplicitMeshOptions& options);
+[[nodiscard]] geometry::TriangleMesh mesh_of(const ImplicitFunction& function,
+                                             const ImplicitMeshOptions& options);
 
-// The point of the surface that Newton steps along the gradient reach; at most a few mm away for a good result.
+// The point of the surface that Newton steps along the gradient reach; at most a few mm away for a good
+// result.
 [[nodiscard]] Eigen::Vector3d project_onto(const ImplicitFunction& function, const Eigen::Vector3d& p);
 // Unit, outward, by central differences.
 [[nodiscard]] Eigen::Vector3d normal_of(const ImplicitFunction& function, const Eigen::Vector3d& p);

@@ -1,5 +1,5 @@
-// Building blocks of implicit surfaces: negative inside, positive outside, about 1 per mm near the surface. Inner header
-// of the phantom.
+// Building blocks of implicit surfaces: negative inside, positive outside, about 1 per mm near the surface.
+// Inner header of the phantom.
 #pragma once
 
 #include <Eigen/Core>

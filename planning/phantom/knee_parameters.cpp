@@ -4,7 +4,8 @@ namespace arthronaut::phantom {
 
 namespace {
 
-// SplitMix64: the same numbers on every platform and standard library, which std's distributions do not promise.
+// SplitMix64: the same numbers on every platform and standard library, which std's distributions do not
+// promise.
 class Draws {
  public:
   explicit Draws(std::uint64_t seed) : state_(seed) {}

@@ -1,5 +1,6 @@
-// The two bones of the phantom as implicit surfaces, in the anatomical frame: x lateral, y anterior, z superior, mm, the
-// origin near the middle of the epicondylar axis. For a right knee this frame is the patient's RAS. Inner header.
+// The two bones of the phantom as implicit surfaces, in the anatomical frame: x lateral, y anterior, z
+// superior, mm, the origin near the middle of the epicondylar axis. For a right knee this frame is the
+// patient's RAS. Inner header.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,14 +13,14 @@ namespace arthronaut::phantom {
 
 // What differs from knee to knee. Defaults are an average adult; vary() draws from the range of adults.
 struct KneeParameters {
-  double scale = 1.0;                    // of all lengths
-  double width_factor = 1.0;             // of medial-lateral lengths
+  double scale = 1.0;         // of all lengths
+  double width_factor = 1.0;  // of medial-lateral lengths
   double notch_half_width_mm = 9.4;
-  double roof_slope_deg = 37.0;          // Blumensaat's line against the long axis
+  double roof_slope_deg = 37.0;  // Blumensaat's line against the long axis
   double groove_depth_mm = 6.5;
-  double medial_distal_mm = 1.5;         // how much lower the medial condyle reaches
+  double medial_distal_mm = 1.5;  // how much lower the medial condyle reaches
   double shaft_valgus_deg = 6.5;
-  double plateau_slope_deg = 7.0;        // posterior slope of the tibia
+  double plateau_slope_deg = 7.0;  // posterior slope of the tibia
   double eminence_height_mm = 8.5;
   std::array<double, 6> ripple_phases{1.0, -0.5, 0.3, 0.7, 2.1, -1.3};  // rad, of the low waves of the cortex
 };
@@ -31,8 +32,8 @@ class FemurShape {
   [[nodiscard]] double operator()(const Eigen::Vector3d& p) const;
   [[nodiscard]] Eigen::Vector3d min_mm() const;
   [[nodiscard]] Eigen::Vector3d max_mm() const;
-  // Blumensaat's line in the sagittal plane (anterior, superior): a point, the unit direction towards the anterior
-  // outlet, and the unit normal into the notch.
+  // Blumensaat's line in the sagittal plane (anterior, superior): a point, the unit direction towards the
+  // anterior outlet, and the unit normal into the notch.
   [[nodiscard]] Eigen::Vector2d roof_point() const;
   [[nodiscard]] Eigen::Vector2d roof_direction() const;
   [[nodiscard]] Eigen::Vector2d roof_normal() const;

@@ -21,8 +21,9 @@ using Eigen::Vector3d;
 using geometry::Surface;
 using landmarks::Landmarks;
 
-// Where the native ligament inserts: Bernard and Hertel's quadrant (deep to shallow, high to low) and Amis and Jakob's
-// line (anterior to posterior) with the medial-lateral share. Means of published studies, in percent.
+// Where the native ligament inserts: Bernard and Hertel's quadrant (deep to shallow, high to low) and Amis
+// and Jakob's line (anterior to posterior) with the medial-lateral share. Means of published studies, in
+// percent.
 constexpr double kFemurDeepShallow = 28, kFemurHighLow = 35;
 constexpr double kTibiaAnteroposterior = 41, kTibiaMediolateral = 47;
 
@@ -64,17 +65,19 @@ Landmarks femur_landmarks(const FemurShape& shape, const AnatomicalBone& femur) 
       femur.furthest(-Vector3d::UnitY(), [&](const Vector3d& v) { return is_condylar(v) && v.x() < middle; });
   // The roof of the notch in the midline: along Blumensaat's line, seen from inside the notch.
   const auto on_roof = [&](double from_outlet_mm) {
-    const Vector2d below = shape.roof_point() - from_outlet_mm * shape.roof_direction() + 4 * scale * shape.roof_normal();
+    const Vector2d below =
+        shape.roof_point() - from_outlet_mm * shape.roof_direction() + 4 * scale * shape.roof_normal();
     return femur.hit(in_sagittal_plane(middle, below), in_sagittal_plane(0, -shape.roof_normal()));
   };
   marks["blumensaat_anterior"] = on_roof(2 * scale);
   marks["notch_apex"] = on_roof(14 * scale);
   marks["blumensaat_posterior"] = on_roof(26 * scale);
-  // The grid is the one that plans are judged by. In this frame the lateral side is that of a left knee in LPS, and the
-  // wall is met from the middle of the notch.
+  // The grid is the one that plans are judged by. In this frame the lateral side is that of a left knee in
+  // LPS, and the wall is met from the middle of the notch.
   const auto quadrant = landmarks::femoral_quadrant(femur.mesh, marks, bones::Side::Left);
   if (!quadrant) throw std::logic_error("phantom: no quadrant on the femur");
-  const Vector3d in_notch = quadrant->point_at({.deep_shallow = kFemurDeepShallow, .high_low = kFemurHighLow});
+  const Vector3d in_notch =
+      quadrant->point_at({.deep_shallow = kFemurDeepShallow, .high_low = kFemurHighLow});
   const Vector3d across = quadrant->low.cross(quadrant->shallow);
   marks["native_footprint"] = femur.hit(in_notch, across.x() > 0 ? across : -across);
   return marks;
@@ -98,21 +101,26 @@ Landmarks tibia_landmarks(const TibiaShape& shape, const AnatomicalBone& tibia) 
   // The two shares meet where both lines cross, seen from above.
   const Vector3d along = 0.01 * kTibiaAnteroposterior * grid->depth_mm * grid->posterior;
   const Vector3d across = 0.01 * kTibiaMediolateral * grid->width_mm * grid->lateral;
-  const Vector3d corner = grid->anterior_mm + (grid->medial_mm - grid->anterior_mm).dot(grid->lateral) * grid->lateral;
+  const Vector3d corner =
+      grid->anterior_mm + (grid->medial_mm - grid->anterior_mm).dot(grid->lateral) * grid->lateral;
   const Vector3d footprint = corner + along + across;
   marks["native_footprint"] = from_above(footprint.x(), footprint.y());
   return marks;
 }
 
-// Planned in the anatomical frame, so that a left knee's plan is the mirror image of a right one's to the last bit.
+// Planned in the anatomical frame, so that a left knee's plan is the mirror image of a right one's to the
+// last bit.
 tunnels::Tunnel plan_tunnel(const AnatomicalBone& bone, bones::BoneKind kind, const Vector3d& entry) {
   const Vector3d patient = tunnels::customary_direction(kind, bones::Side::Left);
-  const tunnels::Tunnel customary{.bone = kind, .entry_mm = entry,
-                                  .direction = {patient.x(), -patient.y(), patient.z()}, .diameter_mm = 9};
+  const tunnels::Tunnel customary{.bone = kind,
+                                  .entry_mm = entry,
+                                  .direction = {patient.x(), -patient.y(), patient.z()},
+                                  .diameter_mm = 9};
   return tunnels::aim(customary, bone.surface, tunnels::customary_aim(kind));
 }
 
-// The anatomical frame into LPS. A right knee's lateral is the patient's right; a left knee is its mirror image.
+// The anatomical frame into LPS. A right knee's lateral is the patient's right; a left knee is its mirror
+// image.
 class ToPatient {
  public:
   explicit ToPatient(bones::Side side) : x_(side == bones::Side::Right ? -1 : 1) {}
@@ -149,10 +157,12 @@ PhantomKnee make_phantom_knee(const PhantomOptions& options) {
   const TibiaShape tibia_shape(parameters);
   const auto bone_of = [&](const auto& shape) {
     return AnatomicalBone(mesh_of(
-        shape, {.min_mm = shape.min_mm(), .max_mm = shape.max_mm(), .edge_length_mm = options.edge_length_mm}));
+        shape,
+        {.min_mm = shape.min_mm(), .max_mm = shape.max_mm(), .edge_length_mm = options.edge_length_mm}));
   };
   const AnatomicalBone femur = bone_of(femur_shape), tibia = bone_of(tibia_shape);
-  const Landmarks femur_marks = femur_landmarks(femur_shape, femur), tibia_marks = tibia_landmarks(tibia_shape, tibia);
+  const Landmarks femur_marks = femur_landmarks(femur_shape, femur),
+                  tibia_marks = tibia_landmarks(tibia_shape, tibia);
 
   const auto femoral = plan_tunnel(femur, bones::BoneKind::Femur, femur_marks.at("native_footprint"));
   const auto tibial = plan_tunnel(tibia, bones::BoneKind::Tibia, tibia_marks.at("native_footprint"));

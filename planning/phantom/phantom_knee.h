@@ -1,5 +1,5 @@
-// The built-in knee: implicit surfaces with known anatomy, deterministic by seed. The test bed, the built-in case and the
-// simulator's scene. It is nobody's knee.
+// The built-in knee: implicit surfaces with known anatomy, deterministic by seed. The test bed, the built-in
+// case and the simulator's scene. It is nobody's knee.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ namespace arthronaut::phantom {
 
 struct PhantomOptions {
   bones::Side side = bones::Side::Right;
-  std::uint64_t seed = 1;          // varies size and shape within the range of adults
-  double edge_length_mm = 1.0;     // of the meshes
+  std::uint64_t seed = 1;       // varies size and shape within the range of adults
+  double edge_length_mm = 1.0;  // of the meshes
 };
 
 // LPS, mm; knee in extension; the origin between the epicondyles. x is left: lateral of a right knee is -x.

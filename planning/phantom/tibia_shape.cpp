@@ -18,8 +18,12 @@ double mix(double a, double b, double share) { return a + share * (b - a); }
 
 TibiaShape::TibiaShape(const KneeParameters& parameters) : parameters_(parameters) {}
 
-Eigen::Vector3d TibiaShape::min_mm() const { return parameters_.scale * Eigen::Vector3d(-48, -40, kBottomMm - 4); }
-Eigen::Vector3d TibiaShape::max_mm() const { return parameters_.scale * Eigen::Vector3d(48, 38, kPlateauZ + 20); }
+Eigen::Vector3d TibiaShape::min_mm() const {
+  return parameters_.scale * Eigen::Vector3d(-48, -40, kBottomMm - 4);
+}
+Eigen::Vector3d TibiaShape::max_mm() const {
+  return parameters_.scale * Eigen::Vector3d(48, 38, kPlateauZ + 20);
+}
 
 // The top: sloping backwards, hollow medially, slightly domed laterally, with the two spines between.
 double TibiaShape::plateau_height_mm(double lateral, double anterior) const {
@@ -49,7 +53,8 @@ double TibiaShape::operator()(const Eigen::Vector3d& p) const {
   const double middle = superellipse(q.x() - 1.0, q.y() - mix(3.0, 1.0, flow), mix(18.0, 8.0, narrow),
                                      mix(17.5, 15.0, flow), 2.0);
   double bone = smooth_union(smooth_union(medial, lateral, 7.0), middle, 9.0);
-  bone = smooth_union(bone, ellipsoid(q, {4.0, 13.5, kPlateauZ - 30.0}, {8.5, 8.5, 15.0}), 10.0);  // tuberosity
+  bone =
+      smooth_union(bone, ellipsoid(q, {4.0, 13.5, kPlateauZ - 30.0}, {8.5, 8.5, 15.0}), 10.0);  // tuberosity
   const double top = (q.z() - plateau_height_mm(q.x(), q.y())) / 1.15;
   bone = filleted_intersection(bone, top, 3.0);
 

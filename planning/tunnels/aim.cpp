@@ -25,8 +25,9 @@ double merit_of(const TunnelGeometry& measured, double tilt_deg, const AimOption
 
 Eigen::Vector3d customary_direction(bones::BoneKind kind, bones::Side side) {
   const double lateral = side == bones::Side::Right ? -1 : 1;
-  const Eigen::Vector3d direction = kind == bones::BoneKind::Femur ? Eigen::Vector3d(0.72 * lateral, -0.32, 0.62)
-                                                                   : Eigen::Vector3d(-0.36 * lateral, -0.47, -0.80);
+  const Eigen::Vector3d direction = kind == bones::BoneKind::Femur
+                                        ? Eigen::Vector3d(0.72 * lateral, -0.32, 0.62)
+                                        : Eigen::Vector3d(-0.36 * lateral, -0.47, -0.80);
   return direction.normalized();
 }
 
@@ -47,7 +48,8 @@ Tunnel aim(const Tunnel& tunnel, const geometry::Surface& bone, const AimOptions
       const double angle = 2 * geometry::kPi * turn / kTurns;
       Tunnel candidate = tunnel;
       candidate.direction =
-          (std::cos(tilt) * axis + std::sin(tilt) * (std::cos(angle) * side + std::sin(angle) * up)).normalized();
+          (std::cos(tilt) * axis + std::sin(tilt) * (std::cos(angle) * side + std::sin(angle) * up))
+              .normalized();
       const TunnelGeometry measured = measure(candidate, bone);
       if (!measured.enters_bone) continue;
       if (const double merit = merit_of(measured, tilt_deg, options); merit > best_merit) {

@@ -1,4 +1,5 @@
-// Where to aim a tunnel when all that is known is its entry: the customary direction, turned a little to fit the bone.
+// Where to aim a tunnel when all that is known is its entry: the customary direction, turned a little to fit
+// the bone.
 #pragma once
 
 #include "planning/bones/bone.h"
@@ -7,8 +8,8 @@
 
 namespace arthronaut::tunnels {
 
-// Unit, LPS, the knee in extension. Femur: outwards, forwards and up, as drilled through the anteromedial portal. Tibia:
-// down to the anteromedial face, 55 degrees steep. Customs of the field, no norms.
+// Unit, LPS, the knee in extension. Femur: outwards, forwards and up, as drilled through the anteromedial
+// portal. Tibia: down to the anteromedial face, 55 degrees steep. Customs of the field, no norms.
 [[nodiscard]] Eigen::Vector3d customary_direction(bones::BoneKind kind, bones::Side side);
 
 struct AimOptions {
@@ -18,8 +19,9 @@ struct AimOptions {
 // 32 to 38 mm in the femur, 36 to 44 mm in the tibia: inside of what plan_checks.h calls fine.
 [[nodiscard]] AimOptions customary_aim(bones::BoneKind kind);
 
-// Of the directions within greatest_tilt_deg of the tunnel's own, that with the thickest wall among tunnels of a fitting
-// length, little tilt preferred; the length nearest to fitting where none fits. The tunnel itself where none enters.
+// Of the directions within greatest_tilt_deg of the tunnel's own, that with the thickest wall among tunnels
+// of a fitting length, little tilt preferred; the length nearest to fitting where none fits. The tunnel
+// itself where none enters.
 [[nodiscard]] Tunnel aim(const Tunnel& tunnel, const geometry::Surface& bone, const AimOptions& options);
 
 }  // namespace arthronaut::tunnels

@@ -1,5 +1,5 @@
-// A planned tunnel against published norms. The numbers are means of studies and customs, each with its source; they
-// are no limits of safety, every one can be changed, and the surgeon decides.
+// A planned tunnel against published norms. The numbers are means of studies and customs, each with its
+// source; they are no limits of safety, every one can be changed, and the surgeon decides.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,8 @@
 namespace arthronaut::tunnels {
 
 struct PlanCheck {
-  // Fine: as the norm has it. Look: outside of it. Wrong: the tunnel can't be drilled like this. Note: a number alone.
+  // Fine: as the norm has it. Look: outside of it. Wrong: the tunnel can't be drilled like this. Note: a
+  // number alone.
   enum class Verdict { Fine, Look, Wrong, Note } verdict = Verdict::Note;
   std::string name;    // "Length"
   std::string text;    // "24.1 mm: shorter than 25 mm"
@@ -41,19 +42,20 @@ struct PlanNorms {
 
 // What is known of the bone beside the tunnel; each check that lacks its part is left out.
 struct PlanSurroundings {
-  std::optional<landmarks::FemoralQuadrant> quadrant;   // femur
-  std::optional<landmarks::TibialGrid> plateau;         // tibia
-  std::optional<Eigen::Vector3d> native_footprint_mm;   // centre of the native insertion
+  std::optional<landmarks::FemoralQuadrant> quadrant;  // femur
+  std::optional<landmarks::TibialGrid> plateau;        // tibia
+  std::optional<Eigen::Vector3d> native_footprint_mm;  // centre of the native insertion
 };
 [[nodiscard]] PlanSurroundings surroundings_of(const geometry::TriangleMesh& bone, bones::BoneKind kind,
                                                const landmarks::Landmarks& landmarks, bones::Side side);
 
-// The angle between the tunnel's projection on the coronal plane and the plateau's medial-lateral line, degrees in
-// [0, 90]: 90 is a tunnel along the tibia's long axis.
+// The angle between the tunnel's projection on the coronal plane and the plateau's medial-lateral line,
+// degrees in [0, 90]: 90 is a tunnel along the tibia's long axis.
 [[nodiscard]] double coronal_angle_deg(const Eigen::Vector3d& direction);
 
 // In a fixed order, length first. A tunnel that misses the bone gives one check, which says so.
 [[nodiscard]] std::vector<PlanCheck> check_plan(const Tunnel& tunnel, const TunnelGeometry& geometry,
-                                                const PlanSurroundings& surroundings, const PlanNorms& norms = {});
+                                                const PlanSurroundings& surroundings,
+                                                const PlanNorms& norms = {});
 
 }  // namespace arthronaut::tunnels

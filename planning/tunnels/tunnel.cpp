@@ -11,8 +11,8 @@ namespace {
 constexpr double kEntrySearchMm = 5.0;
 constexpr double kWallStepMm = 0.5;
 
-// Bone beside the tunnel. Within a diameter of either mouth the nearest surface is the mouth itself: those stretches are
-// left out, and of a very short tunnel only the middle is looked at.
+// Bone beside the tunnel. Within a diameter of either mouth the nearest surface is the mouth itself: those
+// stretches are left out, and of a very short tunnel only the middle is looked at.
 double least_wall_mm(const Tunnel& tunnel, const Eigen::Vector3d& entry_mm, double length_mm,
                      const geometry::Surface& bone) {
   const double margin = std::min(tunnel.diameter_mm, 0.5 * length_mm);

@@ -11,17 +11,17 @@ namespace arthronaut::tunnels {
 
 struct Tunnel {
   bones::BoneKind bone = bones::BoneKind::Femur;
-  Eigen::Vector3d entry_mm = Eigen::Vector3d::Zero();       // on the joint side, in the bone's frame (LPS)
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();     // unit, the direction of drilling, into the bone
+  Eigen::Vector3d entry_mm = Eigen::Vector3d::Zero();    // on the joint side, in the bone's frame (LPS)
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  // unit, the direction of drilling, into the bone
   double diameter_mm = 9.0;
 };
 
 struct TunnelGeometry {
-  bool enters_bone = false;               // false: the rest is meaningless
-  Eigen::Vector3d entry_on_surface_mm;    // where the axis enters the bone, within 5 mm of the planned entry
-  Eigen::Vector3d exit_mm;                // where the axis leaves the bone
-  double length_mm = 0;                   // inside bone, along the axis
-  double wall_mm = 0;                     // least bone between the tunnel's side and the surface, beyond the entry
+  bool enters_bone = false;             // false: the rest is meaningless
+  Eigen::Vector3d entry_on_surface_mm;  // where the axis enters the bone, within 5 mm of the planned entry
+  Eigen::Vector3d exit_mm;              // where the axis leaves the bone
+  double length_mm = 0;                 // inside bone, along the axis
+  double wall_mm = 0;  // least bone between the tunnel's side and the surface, beyond the entry
 };
 
 // Never throws: a tunnel that misses the bone gives enters_bone == false.

@@ -1,5 +1,5 @@
-// The project's markers beside AprilTags read by libapriltag: tags of the same size in the same places, drawn by
-// the simulator in the same light with the same noise, seen through the same true camera, one thread each.
+// The project's markers beside AprilTags read by libapriltag: tags of the same size in the same places, drawn
+// by the simulator in the same light with the same noise, seen through the same true camera, one thread each.
 // Prints the table of docs/benchmarks.md.
 //
 //   apriltag_comparison [FRAMES [SEED]]
@@ -144,12 +144,13 @@ struct Row {
   }
 
   void print() const {
-    std::printf(
-        "| %s | %.3f / %.3f | %.4f / %.4f | %.3f / %.3f | %.4f / %.4f | %.1f | %d | %.1f / %.1f |\n",
-        name.c_str(), geometry::quantile(rotation_deg, 0.5), geometry::quantile(rotation_deg, 0.95), geometry::quantile(translation_mm, 0.5),
-        geometry::quantile(translation_mm, 0.95), geometry::quantile(relative_deg, 0.5), geometry::quantile(relative_deg, 0.95),
-        geometry::quantile(relative_mm, 0.5), geometry::quantile(relative_mm, 0.95), 100.0 * found / std::max(1, asked), wrong,
-        geometry::quantile(ms, 0.5), geometry::quantile(ms, 0.99));
+    std::printf("| %s | %.3f / %.3f | %.4f / %.4f | %.3f / %.3f | %.4f / %.4f | %.1f | %d | %.1f / %.1f |\n",
+                name.c_str(), geometry::quantile(rotation_deg, 0.5), geometry::quantile(rotation_deg, 0.95),
+                geometry::quantile(translation_mm, 0.5), geometry::quantile(translation_mm, 0.95),
+                geometry::quantile(relative_deg, 0.5), geometry::quantile(relative_deg, 0.95),
+                geometry::quantile(relative_mm, 0.5), geometry::quantile(relative_mm, 0.95),
+                100.0 * found / std::max(1, asked), wrong, geometry::quantile(ms, 0.5),
+                geometry::quantile(ms, 0.99));
   }
 };
 
@@ -192,7 +193,8 @@ void run(int frame_count, std::uint64_t seed) {
     }
   }
   std::printf(
-      "| tags | rotation deg | translation mm | relative deg | relative mm | found %% | wrong | ms: median / 99 %% "
+      "| tags | rotation deg | translation mm | relative deg | relative mm | found %% | wrong | ms: median / "
+      "99 %% "
       "|\n|---|---|---|---|---|---|---|---|\n");
   for (const Row& row : rows) row.print();
 }

@@ -1,5 +1,5 @@
-// What one 1080p frame costs from picture in to guidance out, and what recording adds. On the path-traced clip where it is
-// there; its folder is named by ARTHRONAUT_TEST_DATA.
+// What one 1080p frame costs from picture in to guidance out, and what recording adds. On the path-traced
+// clip where it is there; its folder is named by ARTHRONAUT_TEST_DATA.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -27,7 +27,8 @@ std::vector<camera::FramePtr> clip_frames() {
   return frames;
 }
 
-// Frames go round and round under new timestamps; the jump at the end of the clip is part of what is measured.
+// Frames go round and round under new timestamps; the jump at the end of the clip is part of what is
+// measured.
 void process_frame(benchmark::State& state) {
   if (!std::filesystem::exists(clip_folder())) return state.SkipWithError("needs the recorded data");
   const auto frames = clip_frames();

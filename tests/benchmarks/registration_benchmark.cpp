@@ -1,6 +1,6 @@
-// Registration on the phantom's femur (ARTHRONAUT_BENCHMARK_BONE names another mesh, LPS, mm): time of one registration, and
-// in the counters the share of successes (target error below 2 mm) and the mean error of those; time of one update while
-// the surgeon scratches. Other methods: registration_comparison.
+// Registration on the phantom's femur (ARTHRONAUT_BENCHMARK_BONE names another mesh, LPS, mm): time of one
+// registration, and in the counters the share of successes (target error below 2 mm) and the mean error of
+// those; time of one update while the surgeon scratches. Other methods: registration_comparison.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -53,7 +53,8 @@ Trial trial_of(const benchmark::State& state, std::uint64_t seed) {
 class Score {
  public:
   void add(const RigidTransform& marker_from_bone, const Trial& trial) {
-    const double error_mm = (marker_from_bone * bone().target_mm - trial.marker_from_bone * bone().target_mm).norm();
+    const double error_mm =
+        (marker_from_bone * bone().target_mm - trial.marker_from_bone * bone().target_mm).norm();
     ++count_;
     if (error_mm >= 2) return;
     ++successes_;
@@ -86,8 +87,8 @@ void register_globally(benchmark::State& state) {
   score.report(state);
 }
 
-// The updates from the 500th point on, each with 10 mm more of stroke: the time is the median's, the counter tells the longest,
-// in which the bone of the other side is tried too.
+// The updates from the 500th point on, each with 10 mm more of stroke: the time is the median's, the counter
+// tells the longest, in which the bone of the other side is tried too.
 void update_online(benchmark::State& state) {
   using Clock = std::chrono::steady_clock;
   const auto curves = trial_of(state, 1).curves;
@@ -113,9 +114,6 @@ void update_online(benchmark::State& state) {
 
 BENCHMARK(prepare)->Unit(benchmark::kMillisecond)->Iterations(2);
 // First argument: 0 dry, 1 ex vivo, 2 hard; second: with the marker's prior.
-BENCHMARK(register_globally)
-    ->ArgsProduct({{0, 1, 2}, {1, 0}})
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(10);
+BENCHMARK(register_globally)->ArgsProduct({{0, 1, 2}, {1, 0}})->Unit(benchmark::kMillisecond)->Iterations(10);
 BENCHMARK(update_online)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseManualTime()->Iterations(3);
 }  // namespace arthronaut

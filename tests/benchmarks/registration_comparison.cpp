@@ -2,11 +2,11 @@
 //
 //   registration_comparison FEMUR [TRIALS [TRIALS_OF_500_STARTS]]
 //
-// FEMUR is a mesh of a right femur (LPS, mm). Ours starts from nothing, with and without the world marker's prior. ICP is
-// point-to-plane with the farthest tenth of the points trimmed, nearest points on the exact surface; it starts at the true
-// pose disturbed by 10 mm and 10 degrees, or from 500 random poses that put a touched point on the bone, the best fit
-// taken. Times are processor time of one thread, the bone made ready. Other programs get the same trials from
-// `arthronaut experiment registration --write-trials`.
+// FEMUR is a mesh of a right femur (LPS, mm). Ours starts from nothing, with and without the world marker's
+// prior. ICP is point-to-plane with the farthest tenth of the points trimmed, nearest points on the exact
+// surface; it starts at the true pose disturbed by 10 mm and 10 degrees, or from 500 random poses that put a
+// touched point on the bone, the best fit taken. Times are processor time of one thread, the bone made ready.
+// Other programs get the same trials from `arthronaut experiment registration --write-trials`.
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -73,7 +73,8 @@ struct IcpResult {
   double cost_mm2 = 1e18;  // mean square of the nearer nine tenths
 };
 
-IcpResult run_icp(const geometry::Surface& surface, const Points& points, RigidTransform pose, int max_iterations) {
+IcpResult run_icp(const geometry::Surface& surface, const Points& points, RigidTransform pose,
+                  int max_iterations) {
   IcpResult result;
   std::vector<double> squares(points.size());
   std::vector<geometry::SurfacePoint> nearest(points.size());
@@ -158,8 +159,9 @@ void compare(const char* name, const experiments::TrialSeries& series, int trial
     errors_mm.push_back((found * series.target_mm() - trial.marker_from_bone * series.target_mm()).norm());
     if (errors_mm.back() < kSuccess_mm) good_errors_mm.push_back(errors_mm.back());
   }
-  std::printf("| %s | %s | %zu of %d | %.2f | %.2f | %.3g |\n", std::string(to_text(series.noise())).c_str(), name,
-              good_errors_mm.size(), trial_count, median(errors_mm), median(good_errors_mm), 1e3 * median(seconds));
+  std::printf("| %s | %s | %zu of %d | %.2f | %.2f | %.3g |\n", std::string(to_text(series.noise())).c_str(),
+              name, good_errors_mm.size(), trial_count, median(errors_mm), median(good_errors_mm),
+              1e3 * median(seconds));
   std::fflush(stdout);
 }
 
@@ -170,17 +172,22 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: registration_comparison FEMUR [TRIALS [TRIALS_OF_500_STARTS]]\n");
     return 2;
   }
-  const int trial_count = argc > 2 ? std::atoi(argv[2]) : 20, slow_trial_count = argc > 3 ? std::atoi(argv[3]) : 5;
+  const int trial_count = argc > 2 ? std::atoi(argv[2]) : 20,
+            slow_trial_count = argc > 3 ? std::atoi(argv[3]) : 5;
   try {
     const geometry::TriangleMesh mesh = bones::read_mesh(argv[1]);
     const geometry::Surface surface(mesh);
     const registration::PreparedBone bone(mesh);
-    std::printf("| noise | method | success | median error, mm | of the successes | ms, median |\n|---|---|---|---|---|---|\n");
+    std::printf(
+        "| noise | method | success | median error, mm | of the successes | ms, median "
+        "|\n|---|---|---|---|---|---|\n");
     for (const TrialNoise noise : {TrialNoise::Dry, TrialNoise::ExVivo, TrialNoise::Hard}) {
-      const experiments::TrialSeries series(mesh, {.noise = noise, .seed = 1, .side = bones::Side::Right, .area_center_mm = {}});
+      const experiments::TrialSeries series(
+          mesh, {.noise = noise, .seed = 1, .side = bones::Side::Right, .area_center_mm = {}});
       const auto ours = [&](bool use_marker_prior) {
         return [&, use_marker_prior](const Trial& trial, std::uint64_t seed) {
-          return registration::register_curves(bone, trial.curves, {seed, use_marker_prior, series.target_mm()})
+          return registration::register_curves(bone, trial.curves,
+                                               {seed, use_marker_prior, series.target_mm()})
               .marker_from_bone;
         };
       };

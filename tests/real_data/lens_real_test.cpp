@@ -42,8 +42,8 @@ ClipErrors track(const std::filesystem::path& folder) {
                                    .norm());
   }
   std::cout << folder.filename().string() << ": mark found in " << errors.angle_deg.size() << " of "
-            << errors.frames << " frames, angle error median " << geometry::quantile(errors.angle_deg, 0.5) << ", 95 % "
-            << geometry::quantile(errors.angle_deg, 0.95) << " deg, circle centre median "
+            << errors.frames << " frames, angle error median " << geometry::quantile(errors.angle_deg, 0.5)
+            << ", 95 % " << geometry::quantile(errors.angle_deg, 0.95) << " deg, circle centre median "
             << geometry::quantile(errors.center_px, 0.5) << " px\n";
   return errors;
 }

@@ -33,8 +33,8 @@ TEST(RealMarkers, AreNeverReportedWrong) {
   }
 }
 
-// A noisier camera than any: what cannot be confirmed is followed, but no pose stands that is the square's other tilt,
-// which has nearly the same corners.
+// A noisier camera than any: what cannot be confirmed is followed, but no pose stands that is the square's
+// other tilt, which has nearly the same corners.
 TEST(RealMarkers, AreNeverReportedWrongInNoise) {
   constexpr double kWrongDeg = 5, kWrongMm = 1;
   ARTHRONAUT_REQUIRE_DATA(folder, "arthroscopy/ruler_wet");
@@ -51,7 +51,8 @@ TEST(RealMarkers, AreNeverReportedWrongInNoise) {
       cv::add(cv::Mat(clean.height, clean.width, CV_8UC1, const_cast<std::uint8_t*>(clean.data),
                       static_cast<std::size_t>(clean.stride)),
               noise, noisy, cv::noArray(), CV_8UC1);
-      const camera::GrayView view{noisy.data, noisy.cols, noisy.rows, static_cast<std::ptrdiff_t>(noisy.step)};
+      const camera::GrayView view{noisy.data, noisy.cols, noisy.rows,
+                                  static_cast<std::ptrdiff_t>(noisy.step)};
       for (const auto& seen : tracker->track(view, clip.camera(), clip.timestamp_ns())) {
         ++shown;
         if (!seen.is_tracked()) continue;
@@ -77,7 +78,8 @@ TEST(RealMarkers, AreTwiceAsExactAsTheReferenceTracker) {
   clip.rewind();
   const ClipAccuracy reference = measure_accuracy(clip, *markers::make_aruco_tracker(declared));
   EXPECT_LT(geometry::quantile(own.rotation_deg, 0.5), 0.5 * geometry::quantile(reference.rotation_deg, 0.5));
-  EXPECT_LT(geometry::quantile(own.translation_mm, 0.5), 0.5 * geometry::quantile(reference.translation_mm, 0.5));
+  EXPECT_LT(geometry::quantile(own.translation_mm, 0.5),
+            0.5 * geometry::quantile(reference.translation_mm, 0.5));
   // The two markers of the ruler, 10 mm apart, over 140 degrees of lens rotation: the project's own limits.
   EXPECT_LT(geometry::quantile(own.relative_rotation_deg, 0.5), 0.15);
   EXPECT_LT(geometry::quantile(own.relative_rotation_deg, 0.95), 0.5);

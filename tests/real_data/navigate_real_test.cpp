@@ -1,5 +1,5 @@
-// The whole theatre on the path-traced clips, with the real femur and the true camera: scratch, register from nothing, guide.
-// Runs through navigate_video, as the command does.
+// The whole theatre on the path-traced clips, with the real femur and the true camera: scratch, register from
+// nothing, guide. Runs through navigate_video, as the command does.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -64,18 +64,21 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
       (scratched.registration->marker_from_bone * plan.entry_mm - truth * plan.entry_mm).norm();
   const double rotation_error_deg = geometry::deg_from_rad(geometry::rotation_angle_rad(
       truth.rotation.conjugate() * scratched.registration->marker_from_bone.rotation));
-  std::printf("probe_wet: %ld frames, tip in %ld, strokes %.0f mm; registration rms %.3f mm, error at the target %.3f mm "
-              "(predicted %.3f), rotation %.3f deg, %s\n",
-              scratched.statistics.frame_count, scratched.frames_with_tip, scratched.stroke_length_mm,
-              scratched.registration->rms_mm, target_error_mm, scratched.registration->predicted_tre_mm,
-              rotation_error_deg, scratched.registration->reliable ? "reliable" : "not reliable");
+  std::printf(
+      "probe_wet: %ld frames, tip in %ld, strokes %.0f mm; registration rms %.3f mm, error at the target "
+      "%.3f mm "
+      "(predicted %.3f), rotation %.3f deg, %s\n",
+      scratched.statistics.frame_count, scratched.frames_with_tip, scratched.stroke_length_mm,
+      scratched.registration->rms_mm, target_error_mm, scratched.registration->predicted_tre_mm,
+      rotation_error_deg, scratched.registration->reliable ? "reliable" : "not reliable");
   EXPECT_EQ(scratched.statistics.frame_count, 240);
   EXPECT_TRUE(scratched.registration->reliable);
   EXPECT_LT(target_error_mm, kTargetErrorMm);
 
   pipeline::NavigateOptions drill = options_of(guide_clip, plan);
   drill.registration = scratched.registration;
-  const auto gt = files::CsvTable::read(guide_clip / "gt/guide.csv", {"tip_to_entry_mm", "axis_to_entry_mm", "angle_deg"});
+  const auto gt = files::CsvTable::read(guide_clip / "gt/guide.csv",
+                                        {"tip_to_entry_mm", "axis_to_entry_mm", "angle_deg"});
   std::vector<double> tip_errors, offset_errors, angle_errors;
   pipeline::NavigationObserver observer;
   observer.on_frame = [&](const camera::FramePtr&, const pipeline::FrameResult& result) {
@@ -91,17 +94,18 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
   const pipeline::NavigationSummary guided = pipeline::navigate_video(*guide_video, drill, observer);
   ASSERT_GT(guided.frames_with_guidance, 30);  // of 40: the guide is free in all of them
   const std::size_t last = gt.row_count() - 1;
-  std::printf("guide_wet: guidance in %ld of %ld frames; rms error: tip to entry %.3f mm, axis to entry %.3f mm, "
-              "angle %.3f deg\n  last frame: tip to entry %.2f mm (true %.2f), axis to entry %.2f mm (true %.2f), "
-              "angle %.2f deg (true %.2f)\n",
-              guided.frames_with_guidance, guided.statistics.frame_count, root_mean_square(tip_errors),
-              root_mean_square(offset_errors), root_mean_square(angle_errors), guided.last_guidance.tip_to_entry_mm,
-              gt.number(last, "tip_to_entry_mm"), guided.last_guidance.axis_to_entry_mm,
-              gt.number(last, "axis_to_entry_mm"), guided.last_guidance.angle_deg, gt.number(last, "angle_deg"));
+  std::printf(
+      "guide_wet: guidance in %ld of %ld frames; rms error: tip to entry %.3f mm, axis to entry %.3f mm, "
+      "angle %.3f deg\n  last frame: tip to entry %.2f mm (true %.2f), axis to entry %.2f mm (true %.2f), "
+      "angle %.2f deg (true %.2f)\n",
+      guided.frames_with_guidance, guided.statistics.frame_count, root_mean_square(tip_errors),
+      root_mean_square(offset_errors), root_mean_square(angle_errors), guided.last_guidance.tip_to_entry_mm,
+      gt.number(last, "tip_to_entry_mm"), guided.last_guidance.axis_to_entry_mm,
+      gt.number(last, "axis_to_entry_mm"), guided.last_guidance.angle_deg, gt.number(last, "angle_deg"));
 }
 
-// Frames that the recorder encodes itself, as it does for a camera, give nearly the poses that were tracked live: what the
-// loss costs is printed, and lies within what replay lets pass.
+// Frames that the recorder encodes itself, as it does for a camera, give nearly the poses that were tracked
+// live: what the loss costs is printed, and lies within what replay lets pass.
 TEST(NavigateReal, ReplaysEncodedFramesWithinTolerance) {
   ARTHRONAUT_REQUIRE_DATA(guide_clip, "arthroscopy/guide_wet");
   const test::TemporaryFolder folder;
@@ -111,10 +115,12 @@ TEST(NavigateReal, ReplaysEncodedFramesWithinTolerance) {
   (void)recording::record_navigation(*video, options, folder.path(), recording::KeepVideo::Encode, {});
   const recording::RecordedSession session(folder.path());
   const recording::ReplaySummary replay = recording::replay_session(session, {});
-  std::printf("guide_wet, encoded: %.2f MB a frame; worst difference of a pose %.3f mm, %.3f deg, of guidance %.3f mm, "
-              "%.3f deg\n",
-              static_cast<double>(std::filesystem::file_size(session.video())) / 1e6 / 40, replay.worst_pose_mm,
-              replay.worst_pose_deg, replay.worst_offset_mm, replay.worst_angle_deg);
+  std::printf(
+      "guide_wet, encoded: %.2f MB a frame; worst difference of a pose %.3f mm, %.3f deg, of guidance %.3f "
+      "mm, "
+      "%.3f deg\n",
+      static_cast<double>(std::filesystem::file_size(session.video())) / 1e6 / 40, replay.worst_pose_mm,
+      replay.worst_pose_deg, replay.worst_offset_mm, replay.worst_angle_deg);
   EXPECT_EQ(replay.replayed_frames, 40);
   EXPECT_TRUE(replay.is_same()) << replay.differences.size() << " differences";
 }

@@ -1,5 +1,5 @@
-// Path-traced recordings of a real femur, whose truth is known exactly: what digitisation, registration and guidance make
-// of the true poses.
+// Path-traced recordings of a real femur, whose truth is known exactly: what digitisation, registration and
+// guidance make of the true poses.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,12 +27,13 @@ tunnels::Tunnel read_truth_tunnel(const std::filesystem::path& file) {
 
 }  // namespace
 
-// The tip seen from the world marker, from true poses, is the curve that the renderer wrote: 0.01 mm is the rounding of
-// quaternions in the file, seen 26 mm away.
+// The tip seen from the world marker, from true poses, is the curve that the renderer wrote: 0.01 mm is the
+// rounding of quaternions in the file, seen 26 mm away.
 TEST(RealDigitisation, TruePosesGiveTheTrueCurve) {
   ARTHRONAUT_REQUIRE_DATA(set, "arthroscopy/probe_wet");
-  const auto curves = strokes::digitise(strokes::read_poses_file(set / "gt/poses.csv"),
-                                        tools::read_tools_file(set / "tools.json"), bones::BoneKind::Femur, "probe");
+  const auto curves =
+      strokes::digitise(strokes::read_poses_file(set / "gt/poses.csv"),
+                        tools::read_tools_file(set / "tools.json"), bones::BoneKind::Femur, "probe");
   const auto truth = strokes::read_curves_file(set / "gt/curves.csv");
   ASSERT_EQ(curves.size(), truth.size());
   for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -40,7 +41,8 @@ TEST(RealDigitisation, TruePosesGiveTheTrueCurve) {
   }
 }
 
-// Curves without noise on a real femur: found from nothing with any seed, with and without the prior of the marker.
+// Curves without noise on a real femur: found from nothing with any seed, with and without the prior of the
+// marker.
 TEST(RealRegistration, CleanCurvesAreFoundFromNothing) {
   ARTHRONAUT_REQUIRE_DATA(set, "arthroscopy/probe_wet");
   const auto plan = read_truth_tunnel(set.parent_path() / "guide_wet/gt/tunnel.json");
@@ -49,17 +51,18 @@ TEST(RealRegistration, CleanCurvesAreFoundFromNothing) {
   const registration::PreparedBone bone(bones::read_mesh(set / "bone.stl"));
   for (const bool use_marker_prior : {true, false}) {
     for (const std::uint64_t seed : {1, 2, 3}) {
-      const auto found =
-          registration::register_curves(bone, curves, {seed, use_marker_prior, plan.entry_mm});
+      const auto found = registration::register_curves(bone, curves, {seed, use_marker_prior, plan.entry_mm});
       ASSERT_TRUE(found.has_pose);
-      const double error_mm = (found.marker_from_bone * plan.entry_mm - truth.marker_from_bone * plan.entry_mm).norm();
+      const double error_mm =
+          (found.marker_from_bone * plan.entry_mm - truth.marker_from_bone * plan.entry_mm).norm();
       EXPECT_TRUE(found.reliable) << (found.reasons.empty() ? "" : found.reasons.front());
       EXPECT_LT(error_mm, 0.1) << "seed " << seed << (use_marker_prior ? " with" : " without") << " prior";
     }
   }
 }
 
-// Strokes on one person's femur never register reliably to another's, whatever the noise, and always to their own.
+// Strokes on one person's femur never register reliably to another's, whatever the noise, and always to their
+// own.
 TEST(RealRegistration, AnotherPersonsFemurIsRefused) {
   ARTHRONAUT_REQUIRE_DATA(folder, "bones/mri-femora");
   const auto mesh = bones::read_mesh(folder / "femur_mesh_10k_pts.vtk");
@@ -77,11 +80,13 @@ TEST(RealRegistration, AnotherPersonsFemurIsRefused) {
       EXPECT_FALSE(registration::register_curves(other_bone, trial.curves, {seed, true, *wall}).reliable);
     }
   }
-  // Few strokes, half of them off the bone, fit the other femur well now and then, and here with no rival in sight.
+  // Few strokes, half of them off the bone, fit the other femur well now and then, and here with no rival in
+  // sight.
   const auto hard = experiments::setting_of(experiments::TrialNoise::Hard);
   for (const std::uint64_t seed : {13008, 13009, 13010, 13011}) {
     const auto trial = experiments::make_trial(mesh, surface, *wall, hard, seed);
-    EXPECT_FALSE(registration::register_curves(other_bone, trial.curves, {seed, true, *wall}).reliable) << seed;
+    EXPECT_FALSE(registration::register_curves(other_bone, trial.curves, {seed, true, *wall}).reliable)
+        << seed;
   }
 }
 
@@ -103,7 +108,8 @@ TEST(RealRegistration, RefusesWithTheRightReason) {
     return experiments::make_trial(mesh, surface, *wall, setting, 1);
   };
   const auto trial = trial_of(16), patch = trial_of(3);
-  const auto expect = [](const registration::PreparedBone& on, const strokes::Curves& curves, const std::string& words) {
+  const auto expect = [](const registration::PreparedBone& on, const strokes::Curves& curves,
+                         const std::string& words) {
     const auto found = registration::register_curves(on, curves);
     EXPECT_FALSE(found.reliable) << words;
     std::string all;
@@ -135,7 +141,8 @@ TEST(RealGuidance, TruePosesGiveTheTrueNumbers) {
   const auto tools = tools::read_tools_file(set / "tools.json");
   const auto poses = strokes::read_poses_file(set / "gt/poses.csv");
   const auto table = files::CsvTable::read(
-      set / "gt/guide.csv", {"frame", "tip_to_entry_mm", "axis_to_entry_mm", "angle_deg", "tip_x_mm", "dir_x"});
+      set / "gt/guide.csv",
+      {"frame", "tip_to_entry_mm", "axis_to_entry_mm", "angle_deg", "tip_x_mm", "dir_x"});
   const tools::Tool* guide = tools.find_tool("femoral guide");
   ASSERT_TRUE(guide != nullptr && guide->axis);
 

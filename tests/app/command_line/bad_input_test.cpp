@@ -11,18 +11,18 @@
 namespace arthronaut {
 namespace {
 
+using test::run_program;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using test::run_program;
 
 class BadInput : public ::testing::Test {
  protected:
   BadInput() { test::write_marker_clip(folder_); }
 
   [[nodiscard]] std::vector<std::string> track(const std::string& output) const {
-    return {"track",      "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json", "--fixed-lens", "-o", output,
-            folder_ / "clip.mkv"};
+    return {"track", "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json", "--fixed-lens",
+            "-o",    output,     folder_ / "clip.mkv"};
   }
   void spoil(const std::string& name, const std::string& what, const std::string& with) const {
     std::string text = files::read_text(folder_ / name);
@@ -67,7 +67,8 @@ TEST_F(BadInput, ToolsWithAMarkerTwice) {
 
 // The frame where the video breaks off is named; the poses before it are not passed off as the whole.
 TEST_F(BadInput, VideoThatEndsHalfWayThroughAFrame) {
-  std::filesystem::resize_file(folder_ / "clip.mkv", std::filesystem::file_size(folder_ / "clip.mkv") * 6 / 10);
+  std::filesystem::resize_file(folder_ / "clip.mkv",
+                               std::filesystem::file_size(folder_ / "clip.mkv") * 6 / 10);
   const auto result = run_program(track(folder_ / "poses.csv"));
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.errors, AllOf(HasSubstr("clip.mkv"), HasSubstr("frame")));
@@ -93,14 +94,18 @@ TEST_F(BadInput, EmptyFolderToImport) {
 }
 
 TEST_F(BadInput, MeshThatIsCutOffOrHoldsNoNumber) {
-  test::write_file(folder_ / "cut.stl", std::string(80, ' ') + std::string("\x10\0\0\0", 4) + std::string(70, '\0'));
-  const auto cut = run_program({"import", folder_ / "cut.stl", "--side", "left", "-o", folder_ / "knee.arthro"});
+  test::write_file(folder_ / "cut.stl",
+                   std::string(80, ' ') + std::string("\x10\0\0\0", 4) + std::string(70, '\0'));
+  const auto cut =
+      run_program({"import", folder_ / "cut.stl", "--side", "left", "-o", folder_ / "knee.arthro"});
   EXPECT_EQ(cut.exit_code, 3);
   EXPECT_THAT(cut.errors, HasSubstr("cut.stl"));
-  test::write_file(folder_ / "nan.stl",
-                   "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 90 nan 0\nvertex 0 90 0\nendloop\n"
-                   "endfacet\nendsolid a\n");
-  const auto nan = run_program({"import", folder_ / "nan.stl", "--side", "left", "-o", folder_ / "knee.arthro"});
+  test::write_file(
+      folder_ / "nan.stl",
+      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 90 nan 0\nvertex 0 90 0\nendloop\n"
+      "endfacet\nendsolid a\n");
+  const auto nan =
+      run_program({"import", folder_ / "nan.stl", "--side", "left", "-o", folder_ / "knee.arthro"});
   EXPECT_EQ(nan.exit_code, 3);
   EXPECT_THAT(nan.errors, HasSubstr("nan.stl"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "knee.arthro"));

@@ -1,4 +1,5 @@
-// A short video of markers that face a plain pinhole camera: every pose is known from where the marker was drawn.
+// A short video of markers that face a plain pinhole camera: every pose is known from where the marker was
+// drawn.
 #pragma once
 
 #include <string>
@@ -12,7 +13,8 @@ inline constexpr int kClipFrames = 24;
 inline constexpr double kClipFocalPx = 400, kClipMarkerPx = 84, kClipMarkerMm = 4;
 inline constexpr double kClipDepthMm = kClipFocalPx * kClipMarkerMm / kClipMarkerPx;
 
-// x of the middle of the probe's marker in a frame; it moves by 2 px a frame. y is 240 px, the image's middle.
+// x of the middle of the probe's marker in a frame; it moves by 2 px a frame. y is 240 px, the image's
+// middle.
 [[nodiscard]] double clip_probe_x_px(int frame);
 
 // Writes clip.mkv, camera.json and tools.json (world marker 0, probe 2).

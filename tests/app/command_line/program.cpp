@@ -23,8 +23,8 @@ std::string contents_of(const fs::path& file) {
   return std::move(text).str();
 }
 
-[[noreturn]] void become_program(const std::vector<std::string>& arguments, const ProgramLimits& limits, int output,
-                                 int errors) {
+[[noreturn]] void become_program(const std::vector<std::string>& arguments, const ProgramLimits& limits,
+                                 int output, int errors) {
   ::dup2(output, STDOUT_FILENO);
   ::dup2(errors, STDERR_FILENO);
   if (limits.file_size_bytes > 0) {
@@ -35,7 +35,8 @@ std::string contents_of(const fs::path& file) {
   // Opened before rights are given up: the program may lie in a home that is closed to others.
   const int program = ::open(ARTHRONAUT_PROGRAM, O_RDONLY | O_CLOEXEC);
   constexpr unsigned kNobody = 65534;
-  if (limits.as_nobody && ::geteuid() == 0 && (::setgid(kNobody) != 0 || ::setuid(kNobody) != 0)) ::_exit(126);
+  if (limits.as_nobody && ::geteuid() == 0 && (::setgid(kNobody) != 0 || ::setuid(kNobody) != 0))
+    ::_exit(126);
   std::vector<char*> words{const_cast<char*>(ARTHRONAUT_PROGRAM)};
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);

@@ -15,8 +15,8 @@ struct ProgramResult {
 };
 
 struct ProgramLimits {
-  long file_size_bytes = 0;      // above 0: writing more fails like a full disk
-  bool as_nobody = false;        // gives up root, which no folder is read-only for
+  long file_size_bytes = 0;  // above 0: writing more fails like a full disk
+  bool as_nobody = false;    // gives up root, which no folder is read-only for
 };
 
 ProgramResult run_program(const std::vector<std::string>& arguments, const ProgramLimits& limits = {});

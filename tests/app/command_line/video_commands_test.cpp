@@ -12,8 +12,8 @@
 namespace arthronaut {
 namespace {
 
-using ::testing::HasSubstr;
 using test::run_program;
+using ::testing::HasSubstr;
 
 class VideoCommands : public ::testing::Test {
  protected:
@@ -21,11 +21,13 @@ class VideoCommands : public ::testing::Test {
   test::TemporaryFolder folder_;
 };
 
-// Every marker of every frame, where it was drawn: 84 px for 4 mm at 400 px focal length. Edges between whole pixels are
-// found to about 0.1 px: 0.005 mm across the view and 0.03 mm in depth; the limits are three times that.
+// Every marker of every frame, where it was drawn: 84 px for 4 mm at 400 px focal length. Edges between whole
+// pixels are found to about 0.1 px: 0.005 mm across the view and 0.03 mm in depth; the limits are three times
+// that.
 TEST_F(VideoCommands, TrackFindsEveryMarkerWhereItWasDrawn) {
-  const auto result = run_program({"track", "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json",
-                                   "--fixed-lens", "-o", folder_ / "poses.csv", folder_ / "clip.mkv"});
+  const auto result =
+      run_program({"track", "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json",
+                   "--fixed-lens", "-o", folder_ / "poses.csv", folder_ / "clip.mkv"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_THAT(result.output, HasSubstr("24 of 24 frames"));
   const auto rows = strokes::read_poses_file(folder_ / "poses.csv");
@@ -33,7 +35,8 @@ TEST_F(VideoCommands, TrackFindsEveryMarkerWhereItWasDrawn) {
   for (const strokes::PoseRow& row : rows) {
     EXPECT_NEAR(row.camera_from_marker.translation_mm.z(), test::kClipDepthMm, 0.1) << row.frame;
     if (row.marker_id != 2) continue;
-    const double x_mm = (test::clip_probe_x_px(static_cast<int>(row.frame)) - 320) / test::kClipFocalPx * test::kClipDepthMm;
+    const double x_mm =
+        (test::clip_probe_x_px(static_cast<int>(row.frame)) - 320) / test::kClipFocalPx * test::kClipDepthMm;
     EXPECT_NEAR(row.camera_from_marker.translation_mm.x(), x_mm, 0.02) << row.frame;
     EXPECT_NEAR(row.time_s, static_cast<double>(row.frame) / 60, 1e-6);
     EXPECT_FALSE(row.mark_angle_deg.has_value());
@@ -42,36 +45,40 @@ TEST_F(VideoCommands, TrackFindsEveryMarkerWhereItWasDrawn) {
 
 // "-o -" gives the table and nothing else; --quiet gives nothing at all.
 TEST_F(VideoCommands, TrackWritesToStandardOutput) {
-  const std::vector<std::string> arguments{"track", "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json",
-                                           "--fixed-lens", "-o", "-", folder_ / "clip.mkv"};
+  const std::vector<std::string> arguments{
+      "track", "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json", "--fixed-lens",
+      "-o",    "-",        folder_ / "clip.mkv"};
   const auto result = run_program(arguments);
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_TRUE(result.output.starts_with("frame,time_s,marker_id,qw,qx,qy,qz,tx_mm,ty_mm,tz_mm,rms_px,mark_angle_deg"));
+  EXPECT_TRUE(result.output.starts_with(
+      "frame,time_s,marker_id,qw,qx,qy,qz,tx_mm,ty_mm,tz_mm,rms_px,mark_angle_deg"));
   EXPECT_EQ(std::count(result.output.begin(), result.output.end(), '\n'), 1 + 2 * test::kClipFrames);
   EXPECT_EQ(result.errors, "");
 }
 
-// A clip without the lens mark stands for no pose unless the lens is said not to turn: done, but not reliable. Here the
-// principal point lies on the axis, so the mark is not needed; off the axis it is.
+// A clip without the lens mark stands for no pose unless the lens is said not to turn: done, but not
+// reliable. Here the principal point lies on the axis, so the mark is not needed; off the axis it is.
 TEST_F(VideoCommands, TrackNeedsTheMarkOfALensThatTurns) {
   std::string camera = test::clip_camera_json();
   const std::string on_axis = "\"rotation_center_px\": [320.0, 240.0]";
   camera.replace(camera.find(on_axis), on_axis.size(), "\"rotation_center_px\": [300.0, 230.0]");
   test::write_file(folder_ / "camera.json", camera);
-  const auto result = run_program({"track", "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json", "-o",
-                                   folder_ / "poses.csv", folder_ / "clip.mkv"});
+  const auto result =
+      run_program({"track", "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json", "-o",
+                   folder_ / "poses.csv", folder_ / "clip.mkv"});
   EXPECT_EQ(result.exit_code, 4);
   EXPECT_THAT(result.errors, HasSubstr("lens mark"));
   EXPECT_TRUE(strokes::read_poses_file(folder_ / "poses.csv").empty());
 }
 
-// navigate writes a session into the case also where nothing reliable comes out, says so by exit code 4 and the reasons;
-// replay finds the same again, and a record that was changed is found out.
+// navigate writes a session into the case also where nothing reliable comes out, says so by exit code 4 and
+// the reasons; replay finds the same again, and a record that was changed is found out.
 TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   const std::string knee = folder_ / "knee.arthro";
   ASSERT_EQ(run_program({"phantom", "-o", knee}).exit_code, 0);
-  const auto navigated = run_program({"navigate", knee, "--video", folder_ / "clip.mkv", "--camera", folder_ / "camera.json",
-                                      "--tools", folder_ / "tools.json", "--medium", "air", "--fixed-lens"});
+  const auto navigated =
+      run_program({"navigate", knee, "--video", folder_ / "clip.mkv", "--camera", folder_ / "camera.json",
+                   "--tools", folder_ / "tools.json", "--medium", "air", "--fixed-lens"});
   EXPECT_EQ(navigated.exit_code, 4) << navigated.errors;
   EXPECT_THAT(navigated.errors, HasSubstr("not reliable"));
   EXPECT_TRUE(std::filesystem::exists(knee + "/camera.json"));
@@ -85,8 +92,8 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
 
   sqlite3* database = nullptr;
   ASSERT_EQ(sqlite3_open((session / "session.sqlite").c_str(), &database), SQLITE_OK);
-  sqlite3_exec(database, "UPDATE markers SET tx_mm = tx_mm + 0.5 WHERE frame = 7 AND marker_id = 2", nullptr, nullptr,
-               nullptr);
+  sqlite3_exec(database, "UPDATE markers SET tx_mm = tx_mm + 0.5 WHERE frame = 7 AND marker_id = 2", nullptr,
+               nullptr, nullptr);
   sqlite3_close(database);
   const auto changed = run_program({"replay", knee, "-o", folder_ / "differences.csv"});
   EXPECT_EQ(changed.exit_code, 4);
@@ -99,8 +106,9 @@ TEST_F(VideoCommands, NavigateLeavesNothingBehindWhenItFails) {
   const std::string knee = folder_ / "knee.arthro";
   ASSERT_EQ(run_program({"phantom", "-o", knee}).exit_code, 0);
   std::filesystem::resize_file(folder_ / "clip.mkv", std::filesystem::file_size(folder_ / "clip.mkv") / 2);
-  const auto result = run_program({"navigate", knee, "--video", folder_ / "clip.mkv", "--camera", folder_ / "camera.json",
-                                   "--tools", folder_ / "tools.json", "--fixed-lens"});
+  const auto result =
+      run_program({"navigate", knee, "--video", folder_ / "clip.mkv", "--camera", folder_ / "camera.json",
+                   "--tools", folder_ / "tools.json", "--fixed-lens"});
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.errors, HasSubstr("clip.mkv"));
   EXPECT_FALSE(std::filesystem::exists(knee + "/camera.json"));

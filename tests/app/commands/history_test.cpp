@@ -14,7 +14,10 @@ namespace {
 using bones::BoneKind;
 
 tunnels::Tunnel tunnel(double x) {
-  return {.bone = BoneKind::Femur, .entry_mm = {x, 0, 0}, .direction = Eigen::Vector3d::UnitX(), .diameter_mm = 9};
+  return {.bone = BoneKind::Femur,
+          .entry_mm = {x, 0, 0},
+          .direction = Eigen::Vector3d::UnitX(),
+          .diameter_mm = 9};
 }
 
 // A plan whose every saved state is kept.
@@ -104,7 +107,8 @@ TEST(History, RemovingATunnelCanBeUndone) {
   EXPECT_EQ(planner.x(), 4);
 }
 
-// Any walk of executing, undoing and redoing: the model equals that of a plain list of states, and so does what was saved.
+// Any walk of executing, undoing and redoing: the model equals that of a plain list of states, and so does
+// what was saved.
 TEST(History, AgreesWithAListOfStatesOnRandomWalks) {
   std::mt19937 random(7);
   Planner planner;

@@ -25,8 +25,8 @@ class MarkerSheet : public ::testing::Test {
   // The page as a printer would see it.
   cv::Mat printed(int page) const {
     const std::string number = std::to_string(page);
-    const std::string command = "pdftoppm -gray -r 600 -f " + number + " -l " + number + " -singlefile -png " +
-                                file().string() + " " + (folder_ / "page").string();
+    const std::string command = "pdftoppm -gray -r 600 -f " + number + " -l " + number +
+                                " -singlefile -png " + file().string() + " " + (folder_ / "page").string();
     EXPECT_EQ(std::system(command.c_str()), 0);
     return cv::imread((folder_ / "page.png").string(), cv::IMREAD_GRAYSCALE);
   }
@@ -48,16 +48,19 @@ TEST_F(MarkerSheet, MarkersHaveTheirIdAndTrueSize) {
   auto parameters = cv::aruco::DetectorParameters::create();
   parameters->minMarkerPerimeterRate = 0.01;  // 4 mm are small on a page of 297 mm
   parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
-  cv::aruco::detectMarkers(page, cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50), corners, ids, parameters);
+  cv::aruco::detectMarkers(page, cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50), corners, ids,
+                           parameters);
   std::map<int, int> seen;
   cv::Point2f ruler[2];
   for (std::size_t i = 0; i < ids.size(); ++i) {
     ++seen[ids[i]];
     const double expected = ids[i] == 5 || ids[i] == 6 ? 2.89 : 4.0;
     for (int k = 0; k < 4; ++k) {
-      EXPECT_NEAR(cv::norm(corners[i][k] - corners[i][(k + 1) % 4]) * kMmPerPx, expected, 0.05) << "id " << ids[i];
+      EXPECT_NEAR(cv::norm(corners[i][k] - corners[i][(k + 1) % 4]) * kMmPerPx, expected, 0.05)
+          << "id " << ids[i];
     }
-    if (ids[i] == 5 || ids[i] == 6) ruler[ids[i] - 5] = 0.25f * (corners[i][0] + corners[i][1] + corners[i][2] + corners[i][3]);
+    if (ids[i] == 5 || ids[i] == 6)
+      ruler[ids[i] - 5] = 0.25f * (corners[i][0] + corners[i][1] + corners[i][2] + corners[i][3]);
   }
   EXPECT_EQ(seen[0], 6);
   EXPECT_EQ(seen[2], 6);
@@ -76,7 +79,8 @@ TEST_F(MarkerSheet, CheckerboardHasTrueSquares) {
   const int y = static_cast<int>((42 + 1) / kMmPerPx);
   std::vector<double> edges_mm;
   for (int x = static_cast<int>(19 / kMmPerPx); x < static_cast<int>(60 / kMmPerPx); ++x) {
-    if ((page.at<std::uint8_t>(y, x) < 128) != (page.at<std::uint8_t>(y, x + 1) < 128)) edges_mm.push_back(x * kMmPerPx);
+    if ((page.at<std::uint8_t>(y, x) < 128) != (page.at<std::uint8_t>(y, x + 1) < 128))
+      edges_mm.push_back(x * kMmPerPx);
   }
   ASSERT_GT(edges_mm.size(), 10u);
   for (std::size_t i = 1; i < edges_mm.size(); ++i) EXPECT_NEAR(edges_mm[i] - edges_mm[i - 1], 2.0, 0.09);

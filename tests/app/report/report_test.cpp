@@ -103,8 +103,9 @@ TEST_F(Report, ComparesPlannedAndAchieved) {
   const Eigen::Vector3d side = planned.direction.unitOrthogonal();
   measured.entry_mm += 1.25 * side;  // across the axis: entry and axis are off by the same
   truth.entry_mm += 2.0 * side;
-  recording::write_achieved_file(session_folder / "achieved.json",
-                                 {.planned = planned, .measured = measured, .depth_mm = 30, .pose_count = 42, .truth = truth});
+  recording::write_achieved_file(
+      session_folder / "achieved.json",
+      {.planned = planned, .measured = measured, .depth_mm = 30, .pose_count = 42, .truth = truth});
   write_report(knee_folder(), pdf());
   EXPECT_GE(page_count(pdf_info()), 3);
   const std::string text = pdf_text();

@@ -71,8 +71,9 @@ TEST_F(BoneRegistrationTest, AConfirmedRegistrationTakesEffectByItself) {
   EXPECT_GE(stroke_rows(status).size(), 6U);
 }
 
-// The first half of the strokes confirms; the rest is of a surface that is not this bone's, wavy by more than any tracker's
-// error. Together they fit no longer: what the first half found guides no more, with the reason.
+// The first half of the strokes confirms; the rest is of a surface that is not this bone's, wavy by more than
+// any tracker's error. Together they fit no longer: what the first half found guides no more, with the
+// reason.
 TEST_F(BoneRegistrationTest, ADoubtAboutTheBoneTakesGuidanceAway) {
   constexpr double kWave_mm = 1.0, kLength_mm = 9;
   const std::size_t half = trial_.curves.size() / 2;

@@ -92,8 +92,6 @@ TEST_F(CameraFile, RefusalsNameThePlace) {
   expect(good.substr(0, good.size() / 2), "line");
 }
 
-TEST_F(CameraFile, AMissingFileIsAnIoError) {
-  EXPECT_THROW((void)read_camera_file(file()), IoError);
-}
+TEST_F(CameraFile, AMissingFileIsAnIoError) { EXPECT_THROW((void)read_camera_file(file()), IoError); }
 
 }  // namespace arthronaut::camera

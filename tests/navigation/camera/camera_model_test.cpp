@@ -28,10 +28,11 @@ Calibration scope(double xi) {
 
 // A point in view: within `max_deg` of the axis, 8 to 60 mm away.
 Eigen::Vector3d random_point(std::mt19937& random, double max_deg) {
-  std::uniform_real_distribution<double> angle(0, geometry::rad_from_deg(max_deg)), turn(-geometry::kPi, geometry::kPi),
-      distance(8, 60);
+  std::uniform_real_distribution<double> angle(0, geometry::rad_from_deg(max_deg)),
+      turn(-geometry::kPi, geometry::kPi), distance(8, 60);
   const double a = angle(random), t = turn(random);
-  return distance(random) * Eigen::Vector3d(std::sin(a) * std::cos(t), std::sin(a) * std::sin(t), std::cos(a));
+  return distance(random) *
+         Eigen::Vector3d(std::sin(a) * std::cos(t), std::sin(a) * std::sin(t), std::cos(a));
 }
 
 struct Setting {
@@ -50,8 +51,8 @@ class CameraModelSettings : public ::testing::TestWithParam<Setting> {
 
 }  // namespace
 
-// Inverse after forward returns to the pixel to 1e-9 px and to the direction to 1e-12 rad: both are closed forms, so only
-// rounding is left.
+// Inverse after forward returns to the pixel to 1e-9 px and to the direction to 1e-12 rad: both are closed
+// forms, so only rounding is left.
 TEST_P(CameraModelSettings, RoundTripIsExact) {
   std::mt19937 random(1);
   const auto model = camera();
@@ -89,20 +90,22 @@ TEST_P(CameraModelSettings, JacobiansMatchDifferences) {
     constexpr double kPixelStep = 1e-3;
     for (int k = 0; k < 2; ++k) {
       const Eigen::Vector2d step = kPixelStep * Eigen::Vector2d::Unit(k);
-      numeric_tangent.col(k) = (*model.undistort(*pixel + step) - *model.undistort(*pixel - step)) / (2 * kPixelStep);
+      numeric_tangent.col(k) =
+          (*model.undistort(*pixel + step) - *model.undistort(*pixel - step)) / (2 * kPixelStep);
     }
     EXPECT_LT((d_tangent - numeric_tangent).norm(), 1e-6 * d_tangent.norm());
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    DryAndWet, CameraModelSettings,
-    ::testing::Values(Setting{-0.3, 1, 1, FluidModel::FlatPort}, Setting{-0.7, 1, 1, FluidModel::FlatPort},
-                      Setting{0.2, 1, 1, FluidModel::FlatPort}, Setting{0, 1, 1, FluidModel::FlatPort},
-                      Setting{-0.3, kSalineIndex, 1, FluidModel::FlatPort},
-                      Setting{-0.7, kWaterIndex, 1, FluidModel::FlatPort},
-                      Setting{0.05, kSalineIndex, 1.02, FluidModel::FlatPort},
-                      Setting{-0.45, kSalineIndex, 1, FluidModel::FocalRule}));
+INSTANTIATE_TEST_SUITE_P(DryAndWet, CameraModelSettings,
+                         ::testing::Values(Setting{-0.3, 1, 1, FluidModel::FlatPort},
+                                           Setting{-0.7, 1, 1, FluidModel::FlatPort},
+                                           Setting{0.2, 1, 1, FluidModel::FlatPort},
+                                           Setting{0, 1, 1, FluidModel::FlatPort},
+                                           Setting{-0.3, kSalineIndex, 1, FluidModel::FlatPort},
+                                           Setting{-0.7, kWaterIndex, 1, FluidModel::FlatPort},
+                                           Setting{0.05, kSalineIndex, 1.02, FluidModel::FlatPort},
+                                           Setting{-0.45, kSalineIndex, 1, FluidModel::FocalRule}));
 
 // Turning the lens by delta moves the picture of a fixed lens-frame scene by Rot(delta; q):
 // project(K_delta, R_z X) == Rot(delta; q) project(K_0, X).
@@ -126,8 +129,10 @@ TEST(CameraModel, LensRotationIdentity) {
 TEST(CameraModel, PositiveLensAngleTurnsXTowardsY) {
   auto calibration = scope(-0.3);
   const Eigen::Vector2d right = calibration.rotation_center_px + Eigen::Vector2d(10, 0);
-  EXPECT_LT((calibration.turned(right, geometry::kPi / 2) - calibration.rotation_center_px - Eigen::Vector2d(0, 10)).norm(),
-            1e-12);
+  EXPECT_LT(
+      (calibration.turned(right, geometry::kPi / 2) - calibration.rotation_center_px - Eigen::Vector2d(0, 10))
+          .norm(),
+      1e-12);
   EXPECT_NEAR(calibration.lens_angle_rad(271.3 + 20), geometry::rad_from_deg(20), 1e-12);
   EXPECT_NEAR(calibration.lens_angle_rad(11.3), geometry::rad_from_deg(100), 1e-12);
   EXPECT_NEAR(calibration.lens_angle_rad(251.3), geometry::rad_from_deg(-20), 1e-12);
@@ -168,7 +173,8 @@ TEST(CameraModel, SineLensStaysASineLensInFluid) {
   }
 }
 
-// A straight line in space is a circle arc in the picture of a dry division lens: four of its points share one circle.
+// A straight line in space is a circle arc in the picture of a dry division lens: four of its points share
+// one circle.
 TEST(CameraModel, LinesBecomeCircles) {
   const CameraModel dry(scope(-0.45), 0, 1);
   const Eigen::Vector3d a(-8, 3, 20), b(9, 6, 24);

@@ -1,8 +1,9 @@
+#include "navigation/experiments/trial_series.h"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
-#include "navigation/experiments/trial_series.h"
 #include "planning/bones/mesh_file.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
@@ -12,8 +13,8 @@
 
 namespace arthronaut::experiments {
 
-// What is written is all that another program needs: the truth takes the curves back onto the bone that lies beside them.
-// Dry tips are off by 0.1 mm white and 0.1 mm slow noise in each coordinate, 0.25 mm in all.
+// What is written is all that another program needs: the truth takes the curves back onto the bone that lies
+// beside them. Dry tips are off by 0.1 mm white and 0.1 mm slow noise in each coordinate, 0.25 mm in all.
 TEST(TrialSeries, WritesTrialsThatOtherProgramsCanRun) {
   const auto knee = phantom::make_phantom_knee();
   TrialSeriesOptions options;

@@ -89,7 +89,8 @@ TEST(Guidance, OffsetsAndDepthAreThoseOfTheMotion) {
   EXPECT_NEAR(numbers.axis_to_entry_mm, 1.5, kRounding);
 
   const Eigen::Vector3d proximal_in_plane(0.6, 0, 0.8);
-  scene.hold_guide(scene.plan.entry_mm + 2 * proximal_in_plane - 5 * scene.plan.direction, scene.plan.direction);
+  scene.hold_guide(scene.plan.entry_mm + 2 * proximal_in_plane - 5 * scene.plan.direction,
+                   scene.plan.direction);
   numbers = scene.compute();
   EXPECT_NEAR(numbers.offset_proximal_mm, 2, kRounding);
   EXPECT_NEAR(numbers.offset_anterior_mm, 0, kRounding);
@@ -99,7 +100,8 @@ TEST(Guidance, OffsetsAndDepthAreThoseOfTheMotion) {
 // A guide that points at the entry from elsewhere reads its angle, and no offset.
 TEST(Guidance, AngleIsThatBetweenTheAxes) {
   Scene scene;
-  const Eigen::Vector3d direction = Eigen::AngleAxisd(geometry::rad_from_deg(7.5), Eigen::Vector3d::UnitY()) * scene.plan.direction;
+  const Eigen::Vector3d direction =
+      Eigen::AngleAxisd(geometry::rad_from_deg(7.5), Eigen::Vector3d::UnitY()) * scene.plan.direction;
   scene.hold_guide(scene.plan.entry_mm - 10 * direction, direction);
   const GuidanceNumbers numbers = scene.compute();
   EXPECT_NEAR(numbers.angle_deg, 7.5, 1e-6);

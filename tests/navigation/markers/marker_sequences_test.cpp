@@ -61,10 +61,10 @@ class Shutter {
 
 class Sequences : public ::testing::TestWithParam<Sequence> {};
 
-// No pose that stands is wrong, nearly all are there, and the errors are as large as their covariances say: the
-// mean of the squared errors by the covariance, over 6, is 1 when it is true. The sixteen poses follow one motion
-// at nearly one place, so that they count for about four: 24 squares, whose mean is known to 0.3 (one sigma).
-// Three sigmas up are 2; three down are nothing, so two are taken there and no more.
+// No pose that stands is wrong, nearly all are there, and the errors are as large as their covariances say:
+// the mean of the squared errors by the covariance, over 6, is 1 when it is true. The sixteen poses follow
+// one motion at nearly one place, so that they count for about four: 24 squares, whose mean is known to 0.3
+// (one sigma). Three sigmas up are 2; three down are nothing, so two are taken there and no more.
 TEST_P(Sequences, AreTrackedWithTrueCovariance) {
   const Sequence& sequence = GetParam();
   constexpr int kFrames = 8;

@@ -1,4 +1,5 @@
-// Counts what operator new is asked for while frames are processed. In a program of its own, since it replaces it.
+// Counts what operator new is asked for while frames are processed. In a program of its own, since it
+// replaces it.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -22,12 +23,13 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 namespace arthronaut {
 namespace {
 
-// Grey conversion, lens, frozen picture, poses, tip and guidance allocate nothing once buffers have their size. (How
-// markers are found is not the pipeline's: a scripted tracker stands in.)
+// Grey conversion, lens, frozen picture, poses, tip and guidance allocate nothing once buffers have their
+// size. (How markers are found is not the pipeline's: a scripted tracker stands in.)
 TEST(NavigationPipelineAllocation, NothingPerFrameAfterTheFirstFrames) {
-  auto script = std::vector<markers::MarkerObservation>{
-      test::seen(0, {Eigen::Quaterniond(0, 1, 0, 0), {0, 0, 20}}), test::seen(2, {Eigen::Quaterniond(0, 1, 0, 0), {5, 0, 20}}),
-      test::seen(3, {Eigen::Quaterniond(0, 1, 0, 0), {0, 5, 20}})};
+  auto script =
+      std::vector<markers::MarkerObservation>{test::seen(0, {Eigen::Quaterniond(0, 1, 0, 0), {0, 0, 20}}),
+                                              test::seen(2, {Eigen::Quaterniond(0, 1, 0, 0), {5, 0, 20}}),
+                                              test::seen(3, {Eigen::Quaterniond(0, 1, 0, 0), {0, 5, 20}})};
   pipeline::PipelineOptions options = test::scripted_options();
   options.follow_lens = true;
   options.calibration.rotation_center_px = options.calibration.principal_point_px;

@@ -37,8 +37,8 @@ class NavigationPipeline : public ::testing::Test {
   [[nodiscard]] RigidTransform world_from_guide() const {
     const RigidTransform& world_from_bone = registration_.marker_from_bone;
     RigidTransform result;
-    result.rotation =
-        Eigen::Quaterniond::FromTwoVectors(-Eigen::Vector3d::UnitY(), world_from_bone.rotate(plan_.direction));
+    result.rotation = Eigen::Quaterniond::FromTwoVectors(-Eigen::Vector3d::UnitY(),
+                                                         world_from_bone.rotate(plan_.direction));
     const Eigen::Vector3d end = world_from_bone * (plan_.entry_mm - 5.0 * plan_.direction);
     result.translation_mm = end - result.rotate({0, -25, -4});
     return result;
@@ -59,13 +59,15 @@ class NavigationPipeline : public ::testing::Test {
   pipeline::FrameResult result_;
 };
 
-// The tip in the world is the probe's pose relative to the world marker times the tip, wherever the camera is.
+// The tip in the world is the probe's pose relative to the world marker times the tip, wherever the camera
+// is.
 TEST_F(NavigationPipeline, PlacesTipAndToolsInTheWorldMarkersFrame) {
   const pipeline::FrameResult& result = process(0, 1);
   ASSERT_TRUE(result.tip_is_valid);
   EXPECT_LT((result.tip_in_world_mm - world_from_probe_ * Eigen::Vector3d(1, -30, -5)).norm(), kExact);
   ASSERT_EQ(result.tools.size(), 2u);
-  const RigidTransform error = world_from_probe_.inverse() * result.tools[0].world_from_tool.target_from_source;
+  const RigidTransform error =
+      world_from_probe_.inverse() * result.tools[0].world_from_tool.target_from_source;
   EXPECT_LT(geometry::log(error).norm(), kExact);
 }
 
@@ -111,7 +113,8 @@ TEST_F(NavigationPipeline, SaysThatAPictureIsFrozen) {
   EXPECT_TRUE(process(19, 8).guidance.is_valid());
 }
 
-// The covariance of the tip against 20 000 draws of both poses' errors; 5 % is three standard errors of that many draws.
+// The covariance of the tip against 20 000 draws of both poses' errors; 5 % is three standard errors of that
+// many draws.
 TEST_F(NavigationPipeline, PredictsTheTipsErrorFromBothPoses) {
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
   covariance.diagonal() << 0.01, 0.02, 0.09, 4e-5, 3e-5, 1e-5;
@@ -137,8 +140,8 @@ TEST_F(NavigationPipeline, PredictsTheTipsErrorFromBothPoses) {
   EXPECT_LT((sampled - predicted).norm(), 0.05 * predicted.norm());
 }
 
-// A picture without rim and mark says nothing about the lens: poses of such a frame stand only for a lens whose principal
-// point lies on the axis that it turns about.
+// A picture without rim and mark says nothing about the lens: poses of such a frame stand only for a lens
+// whose principal point lies on the axis that it turns about.
 TEST_F(NavigationPipeline, StandsForNoPoseWhileTheLensIsUnknown) {
   options_.follow_lens = true;
   pipeline::NavigationPipeline turning(options_, std::make_unique<test::ScriptedMarkers>(&script_));

@@ -1,4 +1,5 @@
-// A marker tracker that sees what the test says, and pictures that show nothing: the pipeline's own work with known truth.
+// A marker tracker that sees what the test says, and pictures that show nothing: the pipeline's own work with
+// known truth.
 #pragma once
 
 #include <vector>

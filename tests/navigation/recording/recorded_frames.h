@@ -35,11 +35,13 @@ inline pipeline::FrameResult frame_result(std::int64_t index) {
   result.lens.mark_sigma_deg = 0.1;
   result.lens.is_stale = false;
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.1 + x / 100, Eigen::Vector3d(1, 2, 3).normalized()));
-  result.markers = {seen(0, {turn, {x, 2.5, 25}}), lost(2, markers::MarkerState::Glare), seen(3, {turn, {0, x / 3, 19}})};
+  result.markers = {seen(0, {turn, {x, 2.5, 25}}), lost(2, markers::MarkerState::Glare),
+                    seen(3, {turn, {0, x / 3, 19}})};
   result.markers[0].rms_px = 0.123456789;
   result.tip_is_valid = index % 2 == 0;
   result.tip_in_world_mm = {x / 3, -x, 1.0 / 3};
-  result.guidance.state = index % 3 == 0 ? guidance::GuidanceState::Valid : guidance::GuidanceState::GuideLost;
+  result.guidance.state =
+      index % 3 == 0 ? guidance::GuidanceState::Valid : guidance::GuidanceState::GuideLost;
   result.guidance.timestamp_ns = result.timestamp_ns;
   result.guidance.guide_point_mm = {1, x, 3};
   result.guidance.guide_direction = Eigen::Vector3d(1, 2, 3).normalized();
@@ -54,7 +56,8 @@ inline registration::RegistrationSummary some_registration() {
   registration::RegistrationSummary summary;
   summary.has_pose = summary.reliable = true;
   summary.reasons.clear();
-  summary.marker_from_bone = {Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d(3, 2, 1).normalized())), {1, -2, 30}};
+  summary.marker_from_bone = {
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d(3, 2, 1).normalized())), {1, -2, 30}};
   summary.covariance = geometry::Matrix6d::Identity() * 0.01;
   summary.rms_mm = 0.2;
   summary.inlier_fraction = 0.9;

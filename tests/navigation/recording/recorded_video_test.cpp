@@ -48,8 +48,8 @@ double rms_gray_difference(const camera::Frame& a, const camera::Frame& b) {
   return std::sqrt(sum / static_cast<double>(gray_a.size()));
 }
 
-// Encoded pictures come back under their frames' indices and timestamps, also when a live source left some out, and differ
-// by less than a sensor's noise: 2 grey values rms.
+// Encoded pictures come back under their frames' indices and timestamps, also when a live source left some
+// out, and differ by less than a sensor's noise: 2 grey values rms.
 TEST_F(RecordedVideo, GivesPicturesBackUnderTheirFrames) {
   {
     recording::SessionRecorder recorder(folder_, test::session_header(), test::scripted_options());

@@ -52,7 +52,8 @@ TEST_F(Session, ReadsBackExactlyWhatWasRecorded) {
     ASSERT_EQ(frame.poses.size(), 2u);
     EXPECT_EQ(frame.poses[0].camera_from_marker.rotation.coeffs(),
               wanted.markers[0].camera_from_marker.rotation.coeffs());
-    EXPECT_EQ(frame.poses[1].camera_from_marker.translation_mm, wanted.markers[2].camera_from_marker.translation_mm);
+    EXPECT_EQ(frame.poses[1].camera_from_marker.translation_mm,
+              wanted.markers[2].camera_from_marker.translation_mm);
     ASSERT_EQ(frame.markers.size(), 3u);
     EXPECT_EQ(frame.markers[1].state, markers::MarkerState::Glare);
     EXPECT_EQ(frame.tip_is_valid, wanted.tip_is_valid);
@@ -70,7 +71,8 @@ TEST_F(Session, ReadsBackExactlyWhatWasRecorded) {
   EXPECT_TRUE(session.video().empty());
 }
 
-// Plans and registrations come back at the frame where they took effect; the open formats stand beside the record.
+// Plans and registrations come back at the frame where they took effect; the open formats stand beside the
+// record.
 TEST_F(Session, KeepsPlansAndRegistrationsWithTheirMoment) {
   recording::SessionRecorder recorder(folder_, test::session_header(), options_);
   tunnels::Tunnel plan;
@@ -89,8 +91,10 @@ TEST_F(Session, KeepsPlansAndRegistrationsWithTheirMoment) {
   EXPECT_EQ(session.plan_of(session.events()[0]).planned_length_mm, 27.5);
   EXPECT_EQ(session.events()[1].after_frame, 0);
   const auto registration = session.registration_of(session.events()[1]);
-  EXPECT_LT(geometry::log(registration.marker_from_bone.inverse() * test::some_registration().marker_from_bone).norm(),
-            1e-12);
+  EXPECT_LT(
+      geometry::log(registration.marker_from_bone.inverse() * test::some_registration().marker_from_bone)
+          .norm(),
+      1e-12);
   EXPECT_LT((registration.covariance - test::some_registration().covariance).norm(), 1e-12);
   EXPECT_TRUE(session.registration().has_value());
   EXPECT_EQ(session.curves().size(), 2u);
@@ -130,7 +134,8 @@ TEST_F(Session, LosesAtMostOneSecondWhenKilled) {
   EXPECT_GE(session.frames().back().index, last_appended - 60);
 }
 
-// A disk that is full is said at the next call, as an error that names the file; it is not lost in the writer's thread.
+// A disk that is full is said at the next call, as an error that names the file; it is not lost in the
+// writer's thread.
 TEST_F(Session, ReportsADiskThatIsFull) {
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
@@ -158,7 +163,8 @@ TEST_F(Session, ReportsADiskThatIsFull) {
 TEST_F(Session, CopiesAPatternOfStills) {
   const fs::path stills = folder_ / "stills";
   fs::create_directory(stills);
-  for (const char* name : {"f_0001.png", "f_0002.png", "g_0001.png", "f_0001.txt"}) std::ofstream(stills / name) << name;
+  for (const char* name : {"f_0001.png", "f_0002.png", "g_0001.png", "f_0001.txt"})
+    std::ofstream(stills / name) << name;
   const fs::path session_folder = folder_ / "session";
   fs::create_directory(session_folder);
   recording::SessionRecorder recorder(session_folder, test::session_header(), options_);

@@ -7,7 +7,8 @@
 
 namespace arthronaut::registration {
 
-// What counts is the place on the bone: a tip that is lifted, or rides on cartilage, or would be inside, is over it too.
+// What counts is the place on the bone: a tip that is lifted, or rides on cartilage, or would be inside, is
+// over it too.
 TEST(CoverMap, JudgesThePlaceUnderThePoint) {
   const PhantomBone& bone = phantom_bone();
   const geometry::SurfacePoint place = bone.surface->closest_point(bone.target_mm);
@@ -20,7 +21,8 @@ TEST(CoverMap, JudgesThePlaceUnderThePoint) {
   }
 }
 
-// A region of nothing, or within reach of nothing, covers nothing; and a point that is no point is not covered.
+// A region of nothing, or within reach of nothing, covers nothing; and a point that is no point is not
+// covered.
 TEST(CoverMap, CoversNothingWithoutARegion) {
   const PhantomBone& bone = phantom_bone();
   EXPECT_FALSE(CoverMap(bone.prepared->data(), {{}, 4}).covers(bone.target_mm));

@@ -26,7 +26,8 @@ double distance_to_cube(const Eigen::Vector3d& p) {
 
 }  // namespace
 
-// Sign and distance about a cube's faces, edges and corners; the interpolant rounds creases off by up to half a cell.
+// Sign and distance about a cube's faces, edges and corners; the interpolant rounds creases off by up to half
+// a cell.
 TEST(DistanceField, CubeHasExactSignsAtEdgesAndCorners) {
   const DistanceField field(cube());
   std::mt19937 random(1);
@@ -45,8 +46,9 @@ TEST(DistanceField, SaturatesBeyondTheBand) {
   EXPECT_DOUBLE_EQ(field.sample({0, 0, 0}).distance_mm, -field.band_mm());
   EXPECT_DOUBLE_EQ(field.sample({500, 0, 0}).distance_mm, field.band_mm());
   EXPECT_EQ(field.sample({500, 0, 0}).gradient.norm(), 0);
-  EXPECT_DOUBLE_EQ(field.sample(Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())).distance_mm,
-                   field.band_mm());
+  EXPECT_DOUBLE_EQ(
+      field.sample(Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())).distance_mm,
+      field.band_mm());
 }
 
 // Against the exact surface of a bone: never another sign where it matters, rounding of the grid in the mean.
@@ -59,9 +61,8 @@ TEST(DistanceField, BoneAgreesWithTheExactSurface) {
   double sum = 0, coarse_sum = 0;
   constexpr int kCount = 4000;
   for (int i = 0; i < kCount; ++i) {
-    const Eigen::Vector3d p =
-        bone.mesh.vertices_mm[random() % bone.mesh.vertices_mm.size()] +
-        Eigen::Vector3d(normal(random), normal(random), normal(random));
+    const Eigen::Vector3d p = bone.mesh.vertices_mm[random() % bone.mesh.vertices_mm.size()] +
+                              Eigen::Vector3d(normal(random), normal(random), normal(random));
     const double truth = bone.surface->signed_distance_mm(p);
     const double found = field.sample(p).distance_mm;
     if (std::abs(truth) > 0.2) {
@@ -88,7 +89,8 @@ TEST(TriangleDistance, NearestPointIsNoFartherThanAnySample) {
     for (int u = 0; u <= 40; ++u) {
       for (int v = 0; u + v <= 40; ++v) {
         const double a = u / 40.0, b = v / 40.0;
-        best = std::min(best, (query - ((1 - a - b) * corners[0] + a * corners[1] + b * corners[2])).squaredNorm());
+        best = std::min(best,
+                        (query - ((1 - a - b) * corners[0] + a * corners[1] + b * corners[2])).squaredNorm());
       }
     }
     EXPECT_LE(found.squared_mm2, best + 1e-12);

@@ -37,14 +37,16 @@ TEST(PairTable, SamplesAreSpreadOverTheSurface) {
   }
 }
 
-// A curve pair made from two samples, with any tangents across their normals, moved anyhow, finds those samples again, one
-// way round or the other; and the turn that comes with the match lays both tangents across both normals.
+// A curve pair made from two samples, with any tangents across their normals, moved anyhow, finds those
+// samples again, one way round or the other; and the turn that comes with the match lays both tangents across
+// both normals.
 TEST(PairTable, FindsThePairThatACurvePairWasMadeFrom) {
   std::mt19937 random(5);
   const auto& samples = table().samples();
   int tried = 0, found = 0;
   while (tried < 200) {
-    const auto a = static_cast<std::uint16_t>(random() % samples.size()), b = static_cast<std::uint16_t>(random() % samples.size());
+    const auto a = static_cast<std::uint16_t>(random() % samples.size()),
+               b = static_cast<std::uint16_t>(random() % samples.size());
     const Eigen::Vector3f p = across(samples[a].normal, random), q = across(samples[b].normal, random);
     const Eigen::Vector3f between = samples[b].point_mm - samples[a].point_mm;
     const float distance = between.norm();
@@ -56,11 +58,14 @@ TEST(PairTable, FindsThePairThatACurvePairWasMadeFrom) {
     ++tried;
     const Eigen::Quaternionf turn = Eigen::Quaternionf::UnitRandom();
     std::vector<PairTable::Match> matches, reversed;
-    table().find_matches(shape_of(turn * samples[a].point_mm, turn * p, turn * samples[b].point_mm, turn * q), {}, matches);
-    table().find_matches(shape_of(turn * samples[b].point_mm, turn * q, turn * samples[a].point_mm, turn * p), {}, reversed);
+    table().find_matches(shape_of(turn * samples[a].point_mm, turn * p, turn * samples[b].point_mm, turn * q),
+                         {}, matches);
+    table().find_matches(shape_of(turn * samples[b].point_mm, turn * q, turn * samples[a].point_mm, turn * p),
+                         {}, reversed);
     const auto is_ab = [&](const PairTable::Match& m) { return m.first == a && m.second == b; };
     const auto is_ba = [&](const PairTable::Match& m) { return m.first == b && m.second == a; };
-    found += std::any_of(matches.begin(), matches.end(), is_ab) || std::any_of(reversed.begin(), reversed.end(), is_ba);
+    found += std::any_of(matches.begin(), matches.end(), is_ab) ||
+             std::any_of(reversed.begin(), reversed.end(), is_ba);
   }
   EXPECT_EQ(found, tried);
 }
@@ -75,7 +80,8 @@ TEST(PairTable, TangentsHaveNoSign) {
     table().find_matches(shape_of({0, 0, 0}, sign * p.normalized(), second, -q.normalized()), {}, turned);
     EXPECT_GT(matches.size(), 100u);
     // Rounding may move a few over the tolerance's edge.
-    EXPECT_NEAR(static_cast<double>(matches.size()), static_cast<double>(turned.size()), 0.01 * static_cast<double>(matches.size()));
+    EXPECT_NEAR(static_cast<double>(matches.size()), static_cast<double>(turned.size()),
+                0.01 * static_cast<double>(matches.size()));
   }
 }
 

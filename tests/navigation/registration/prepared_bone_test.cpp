@@ -1,9 +1,10 @@
+#include "navigation/registration/prepared_bone.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <fstream>
 
-#include "navigation/registration/prepared_bone.h"
 #include "navigation/registration/reachable_region.h"
 #include "planning/files/atomic_file.h"
 #include "tests/navigation/registration/phantom_bone.h"
@@ -19,7 +20,8 @@ class PreparedBoneCache : public testing::Test {
   // What registering makes of the bone, to the last bit.
   static Eigen::Vector3d found_with(const PreparedBone& bone) {
     const auto trial = phantom_bone().trial(experiments::TrialNoise::Dry, 1);
-    return register_curves(bone, trial.curves, {1, true, phantom_bone().target_mm}).marker_from_bone.translation_mm;
+    return register_curves(bone, trial.curves, {1, true, phantom_bone().target_mm})
+        .marker_from_bone.translation_mm;
   }
 
   // Small, so that it is made ready in no time.
@@ -47,7 +49,8 @@ TEST_F(PreparedBoneCache, MakesABrokenFileAgain) {
   const std::string good = files::read_text(file_);
   std::string flipped = good;
   flipped[good.size() / 2] ^= 1;
-  for (const std::string& broken : {good.substr(0, good.size() / 2), good.substr(0, 5), std::string(), flipped}) {
+  for (const std::string& broken :
+       {good.substr(0, good.size() / 2), good.substr(0, 5), std::string(), flipped}) {
     std::ofstream(file_, std::ios::binary) << broken;
     const PreparedBone again(octahedron(), file_);
     EXPECT_EQ(files::read_text(file_), good);
@@ -90,7 +93,8 @@ TEST(ReachableRegion, IsNearTheEntryAndOpen) {
   }
   EXPECT_GT(near_count, 5);
   EXPECT_GT(open_count, 0.9 * near_count);
-  const auto nowhere = find_reachable_samples(bone.prepared->data(), bone.target_mm + Eigen::Vector3d(500, 0, 0));
+  const auto nowhere =
+      find_reachable_samples(bone.prepared->data(), bone.target_mm + Eigen::Vector3d(500, 0, 0));
   EXPECT_EQ(std::count(nowhere.begin(), nowhere.end(), true), 0);
 }
 

@@ -10,7 +10,8 @@ namespace {
 
 using experiments::TrialNoise;
 
-// The probe comes in through a medial portal, the knee bent far, as the drill does: from there every touched point is reached.
+// The probe comes in through a medial portal, the knee bent far, as the drill does: from there every touched
+// point is reached.
 strokes::Curves with_shafts(const PhantomBone& bone, const experiments::Trial& trial, double sign = 1) {
   const Eigen::Vector3d portal_mm = bone.target_mm + 60 * Eigen::Vector3d(0.7, 0.4, -0.6);  // LPS
   strokes::Curves curves = trial.curves;
@@ -21,7 +22,8 @@ strokes::Curves with_shafts(const PhantomBone& bone, const experiments::Trial& t
   return curves;
 }
 
-double share_at_truth(const PhantomBone& bone, const experiments::Trial& trial, const strokes::Curves& curves) {
+double share_at_truth(const PhantomBone& bone, const experiments::Trial& trial,
+                      const strokes::Curves& curves) {
   const geometry::RigidTransform truth = trial.marker_from_bone.inverse();
   return ProbeWay(bone.prepared->data(), choose_points(curves, 800))
       .share_through_bone(truth.matrix().cast<float>(), truth.translation_mm.cast<float>());
@@ -29,8 +31,8 @@ double share_at_truth(const PhantomBone& bone, const experiments::Trial& trial, 
 
 }  // namespace
 
-// Through the portal the way is free but for strokes that go round the notch's edge, out of its sight; the other way round it
-// leads through the bone but for those.
+// Through the portal the way is free but for strokes that go round the notch's edge, out of its sight; the
+// other way round it leads through the bone but for those.
 TEST(ProbeWay, TellsTheFreeWayFromTheOneThroughTheBone) {
   const PhantomBone& bone = phantom_bone();
   const auto trial = bone.trial(TrialNoise::Dry, 1);
@@ -52,18 +54,22 @@ TEST(ProbeWay, RightPosesStayPossible) {
   const PhantomBone& bone = phantom_bone();
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const auto trial = bone.trial(TrialNoise::Dry, seed);
-    const auto found = register_curves(*bone.prepared, with_shafts(bone, trial), {seed, false, bone.target_mm});
+    const auto found =
+        register_curves(*bone.prepared, with_shafts(bone, trial), {seed, false, bone.target_mm});
     EXPECT_TRUE(found.reliable) << testing::PrintToString(found.reasons);
-    EXPECT_LT((found.marker_from_bone * bone.target_mm - trial.marker_from_bone * bone.target_mm).norm(), 0.4);
+    EXPECT_LT((found.marker_from_bone * bone.target_mm - trial.marker_from_bone * bone.target_mm).norm(),
+              0.4);
   }
 }
 
-// A probe whose tip is declared at the wrong end: the right pose would lead it through the bone, and no other one stands.
+// A probe whose tip is declared at the wrong end: the right pose would lead it through the bone, and no other
+// one stands.
 TEST(ProbeWay, RefusesPosesThatLeadTheProbeThroughTheBone) {
   const PhantomBone& bone = phantom_bone();
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const auto trial = bone.trial(TrialNoise::Dry, seed);
-    const auto found = register_curves(*bone.prepared, with_shafts(bone, trial, -1), {seed, true, bone.target_mm});
+    const auto found =
+        register_curves(*bone.prepared, with_shafts(bone, trial, -1), {seed, true, bone.target_mm});
     EXPECT_FALSE(found.reliable) << "seed " << seed;
     EXPECT_FALSE(found.reasons.empty());
   }

@@ -20,13 +20,15 @@ using geometry::median;
 using testing::Contains;
 using testing::HasSubstr;
 
-double target_error_mm(const RegistrationSummary& found, const experiments::Trial& trial, const Eigen::Vector3d& target) {
+double target_error_mm(const RegistrationSummary& found, const experiments::Trial& trial,
+                       const Eigen::Vector3d& target) {
   return found.has_pose ? (found.marker_from_bone * target - trial.marker_from_bone * target).norm() : 1e9;
 }
 
 }  // namespace
 
-// The paper's dry setting, no initial guess: always found, always sure, and the error is about the one predicted.
+// The paper's dry setting, no initial guess: always found, always sure, and the error is about the one
+// predicted.
 TEST(RegisterCurves, DryTrialsAreAllFoundAndSure) {
   const PhantomBone& bone = phantom_bone();
   std::vector<double> errors, ratios;
@@ -81,15 +83,16 @@ TEST(RegisterCurves, IsDeterministicForASeed) {
   EXPECT_EQ(first.point_residuals_mm, second.point_residuals_mm);
 }
 
-// Clean points lie on the bone to within the rounding of the residual's grid, each with its own residual, in order; a point
-// lifted by 3 mm reads 3 mm.
+// Clean points lie on the bone to within the rounding of the residual's grid, each with its own residual, in
+// order; a point lifted by 3 mm reads 3 mm.
 TEST(RegisterCurves, PointResidualsAreSignedDistancesInOrder) {
   const PhantomBone& bone = phantom_bone();
   experiments::TrialSetting clean;
   clean.white_mm = clean.slow_mm = 0;
   auto trial = bone.trial(clean, 2);
   const Eigen::Vector3d on_bone = trial.marker_from_bone.inverse() * trial.curves[100].position_mm;
-  trial.curves[100].position_mm = trial.marker_from_bone * (on_bone + 3 * bone.surface->closest_point(on_bone).normal);
+  trial.curves[100].position_mm =
+      trial.marker_from_bone * (on_bone + 3 * bone.surface->closest_point(on_bone).normal);
   const auto found = register_curves(*bone.prepared, trial.curves, {1, true, bone.target_mm});
   ASSERT_EQ(found.point_residuals_mm.size(), trial.curves.size());
   EXPECT_NEAR(found.point_residuals_mm[100], 3.0, 0.3);
@@ -108,14 +111,16 @@ TEST(RegisterCurves, RefusesCurvesThatHoldNothing) {
     return found.reasons;
   };
   strokes::Curves line;
-  for (int i = 0; i < 200; ++i) line.push_back({0, i / 60.0, Eigen::Vector3d(10 + 0.1 * i, 5 + 0.02 * i, -7)});
+  for (int i = 0; i < 200; ++i)
+    line.push_back({0, i / 60.0, Eigen::Vector3d(10 + 0.1 * i, 5 + 0.02 * i, -7)});
   EXPECT_THAT(reasons_of(line), Contains(HasSubstr("straight line")));
 
   experiments::TrialSetting small;
   small.area_radius_mm = 3;
   EXPECT_THAT(reasons_of(bone.trial(small, 4).curves), Contains(HasSubstr("patch")));
 
-  EXPECT_THAT(reasons_of({trial.curves.begin(), trial.curves.begin() + 10}), Contains(HasSubstr("only 10 points")));
+  EXPECT_THAT(reasons_of({trial.curves.begin(), trial.curves.begin() + 10}),
+              Contains(HasSubstr("only 10 points")));
   EXPECT_THAT(reasons_of({}), Contains(HasSubstr("only 0 points")));
 
   strokes::Curves metres = trial.curves, equal = trial.curves, huge = trial.curves, broken = trial.curves;
@@ -151,7 +156,8 @@ TEST(RegisterCurves, RefusesTheOtherSidesBone) {
   for (auto& triangle : image.triangles) std::swap(triangle[1], triangle[2]);
   const PreparedBone mirrored(image);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const auto found = register_curves(mirrored, bone.trial(TrialNoise::Dry, seed).curves, {seed, true, std::nullopt});
+    const auto found =
+        register_curves(mirrored, bone.trial(TrialNoise::Dry, seed).curves, {seed, true, std::nullopt});
     EXPECT_FALSE(found.reliable);
     EXPECT_THAT(found.reasons, Contains(HasSubstr("other side")));
   }
@@ -173,14 +179,15 @@ TEST(RegisterCurves, TakesTwentyThousandPoints) {
 // The predicted error grows with the distance from what was touched.
 TEST(RegisterCurves, PredictedErrorGrowsAwayFromTheTouchedArea) {
   const PhantomBone& bone = phantom_bone();
-  const auto found = register_curves(*bone.prepared, bone.trial(TrialNoise::Dry, 1).curves, {1, true, bone.target_mm});
+  const auto found =
+      register_curves(*bone.prepared, bone.trial(TrialNoise::Dry, 1).curves, {1, true, bone.target_mm});
   EXPECT_NEAR(predicted_error_mm(found, bone.target_mm), found.predicted_tre_mm, 1e-9);
   EXPECT_GT(predicted_error_mm(found, bone.target_mm + Eigen::Vector3d(0, 0, 60)), found.predicted_tre_mm);
 }
 
-// Cartilage of 2 mm that the mesh lacks, and of 2 mm that the probe lacks: told of the region, the registration is sure,
-// the thickness comes out within 0.3 mm, the error at the target is that of bare bone and about the one predicted. What is
-// left of the residuals is the tip's noise, on the region too.
+// Cartilage of 2 mm that the mesh lacks, and of 2 mm that the probe lacks: told of the region, the
+// registration is sure, the thickness comes out within 0.3 mm, the error at the target is that of bare bone
+// and about the one predicted. What is left of the residuals is the tip's noise, on the region too.
 TEST(RegisterCurves, SolvesTheThicknessOfCartilage) {
   const PhantomBone& bone = phantom_bone();
   std::vector<double> ratios;
@@ -195,7 +202,8 @@ TEST(RegisterCurves, SolvesTheThicknessOfCartilage) {
       EXPECT_NEAR(thickness_in(found.assumptions[0]), thickness_mm, 0.3) << found.assumptions[0];
       EXPECT_LT(found.misfit_mm, 0.2);
       ratios.push_back(target_error_mm(found, covered.trial, bone.target_mm) / found.predicted_tre_mm);
-      EXPECT_LT(ratios.back() * found.predicted_tre_mm, 0.4) << "seed " << seed << ", " << thickness_mm << " mm";
+      EXPECT_LT(ratios.back() * found.predicted_tre_mm, 0.4)
+          << "seed " << seed << ", " << thickness_mm << " mm";
       std::vector<double> on_cover_mm;
       for (std::size_t i = 0; i < covered.is_on_cover.size(); ++i) {
         if (covered.is_on_cover[i]) on_cover_mm.push_back(found.point_residuals_mm[i]);
@@ -223,8 +231,8 @@ TEST(RegisterCurves, CoveredExVivoTrialsAreNeverWrongAndSure) {
   EXPECT_GE(found_count, 3);
 }
 
-// A declared region, whose thickness is free, lets no bone of the other side pass; neither in the last trial, whose strokes fit
-// the wrong way round within their noise once the region is left out.
+// A declared region, whose thickness is free, lets no bone of the other side pass; neither in the last trial,
+// whose strokes fit the wrong way round within their noise once the region is left out.
 TEST(RegisterCurves, RefusesTheOtherSidesBoneWithCartilageToo) {
   const PhantomBone& bone = phantom_bone();
   for (const auto& [noise, seed] :
@@ -239,7 +247,8 @@ TEST(RegisterCurves, RefusesTheOtherSidesBoneWithCartilageToo) {
   }
 }
 
-// A corner of the strokes on cartilage: too little to hold its thickness, so it is left out, and harms nothing.
+// A corner of the strokes on cartilage: too little to hold its thickness, so it is left out, and harms
+// nothing.
 TEST(RegisterCurves, LeavesOutCartilageThatWasHardlyTouched) {
   const PhantomBone& bone = phantom_bone();
   const CoveredTrial covered = covered_trial(bone, bone.trial(TrialNoise::Dry, 2), -2, 15);
@@ -262,15 +271,18 @@ TEST(RegisterCurves, DoubtsStrokesOnCartilageAlone) {
   EXPECT_THAT(found.assumptions, Contains(HasSubstr("taken to lie on the mesh")));
 }
 
-// A plan whose entry is where the strokes are helps; one on the far side of the bone does no harm, and is said.
+// A plan whose entry is where the strokes are helps; one on the far side of the bone does no harm, and is
+// said.
 TEST(RegisterCurves, LooksNearThePlanFirst) {
   const PhantomBone& bone = phantom_bone();
   const auto trial = bone.trial(TrialNoise::ExVivo, 4);
   RegistrationOptions options{1, false, bone.target_mm};
   const geometry::Bounds bounds = geometry::bounds_of(bone.mesh);
   const Eigen::Vector3d far =
-      bone.surface->closest_point({bounds.center_mm().x(), bounds.min_mm.y(), bounds.max_mm.z() - 5}).point_mm;
-  for (const auto& [entry, words] : {std::pair{bone.target_mm, "within reach"}, std::pair{far, "out of reach"}}) {
+      bone.surface->closest_point({bounds.center_mm().x(), bounds.min_mm.y(), bounds.max_mm.z() - 5})
+          .point_mm;
+  for (const auto& [entry, words] :
+       {std::pair{bone.target_mm, "within reach"}, std::pair{far, "out of reach"}}) {
     options.plan_entry_in_bone_mm = entry;
     const auto found = register_curves(*bone.prepared, trial.curves, options);
     EXPECT_LT(target_error_mm(found, trial, bone.target_mm), 1.0) << words;
@@ -278,7 +290,8 @@ TEST(RegisterCurves, LooksNearThePlanFirst) {
   }
 }
 
-// An entry that is not on the bone at all, such as another patient's plan, helps nothing, harms nothing, and is said.
+// An entry that is not on the bone at all, such as another patient's plan, helps nothing, harms nothing, and
+// is said.
 TEST(RegisterCurves, SaysThatThePlannedEntryIsNotOnTheBone) {
   const PhantomBone& bone = phantom_bone();
   const auto trial = bone.trial(TrialNoise::Dry, 4);
@@ -293,7 +306,8 @@ TEST(RegisterCurves, SaysThatThePlannedEntryIsNotOnTheBone) {
 // registration.json keeps all that guidance needs.
 TEST(RegistrationFile, RoundTrip) {
   const PhantomBone& bone = phantom_bone();
-  auto found = register_curves(*bone.prepared, bone.trial(TrialNoise::Dry, 1).curves, {1, true, bone.target_mm});
+  auto found =
+      register_curves(*bone.prepared, bone.trial(TrialNoise::Dry, 1).curves, {1, true, bone.target_mm});
   found.reliable = false;
   found.reasons = {"two poses", "one \"patch\""};
   const test::TemporaryFolder folder;
@@ -324,7 +338,8 @@ TEST(RegistrationFile, SaysThatNoPoseWasFound) {
 TEST(RegistrationFile, RefusesToBeSureOfNoPose) {
   const test::TemporaryFolder folder;
   const auto file = folder / "registration.json";
-  std::ofstream(file) << R"({"format": "arthronaut.registration", "version": 1, "has_pose": false, "rms_mm": 0,
+  std::ofstream(file)
+      << R"({"format": "arthronaut.registration", "version": 1, "has_pose": false, "rms_mm": 0,
     "inlier_fraction": 0, "point_count": 5, "reliable": true, "reasons": [], "predicted_tre_mm": 0})";
   EXPECT_THROW((void)read_registration_file(file), InvalidInput);
 }

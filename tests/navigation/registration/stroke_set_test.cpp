@@ -17,7 +17,8 @@ strokes::Curves straight_strokes(int count) {
 
 }  // namespace
 
-// Strokes are told apart by their numbers; what is excluded doesn't count but can come back, what is undone is gone.
+// Strokes are told apart by their numbers; what is excluded doesn't count but can come back, what is undone
+// is gone.
 TEST(StrokeSet, CountsWhatIsInUse) {
   StrokeSet strokes;
   EXPECT_FALSE(strokes.undo());

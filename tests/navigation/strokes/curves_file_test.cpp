@@ -23,7 +23,8 @@ TEST(CurvesFile, RoundTripKeepsOrderAndEmptyTimes) {
   }
 }
 
-// The way the probe came is written when asked for, with empty cells where it is not known; a plain file has none.
+// The way the probe came is written when asked for, with empty cells where it is not known; a plain file has
+// none.
 TEST(CurvesFile, ShaftsAreWrittenWhenAskedFor) {
   const Eigen::Vector3d shaft = Eigen::Vector3d(1, -2, 0.5).normalized();
   const Curves curves{{0, 0.25, {1, 2, 3}, shaft}, {0, 0.5, {2, 2, 3}, std::nullopt}};

@@ -29,13 +29,15 @@ tools::ToolSet probe_and_world() {
 geometry::RigidTransform random_pose(std::mt19937& random) {
   std::normal_distribution<double> normal;
   geometry::RigidTransform pose;
-  pose.rotation = Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized();
+  pose.rotation =
+      Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized();
   pose.translation_mm = 20 * Eigen::Vector3d(normal(random), normal(random), normal(random));
   return pose;
 }
 
 // Rows of both markers with the tip at the given places of the world, the camera and the probe held anyhow.
-std::vector<PoseRow> rows_for(const std::vector<Eigen::Vector3d>& tips_mm, const std::vector<double>& times_s) {
+std::vector<PoseRow> rows_for(const std::vector<Eigen::Vector3d>& tips_mm,
+                              const std::vector<double>& times_s) {
   std::mt19937 random(4);
   std::vector<PoseRow> rows;
   for (std::size_t i = 0; i < tips_mm.size(); ++i) {

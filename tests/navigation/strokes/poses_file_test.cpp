@@ -13,7 +13,8 @@ namespace arthronaut::strokes {
 
 namespace {
 
-constexpr const char* kHeader = "frame,time_s,marker_id,qw,qx,qy,qz,tx_mm,ty_mm,tz_mm,rms_px,mark_angle_deg\n";
+constexpr const char* kHeader =
+    "frame,time_s,marker_id,qw,qx,qy,qz,tx_mm,ty_mm,tz_mm,rms_px,mark_angle_deg\n";
 
 // With which a file of this name and text is refused.
 std::string error_of(const std::string& name, const std::string& text) {
@@ -45,16 +46,19 @@ TEST(PosesFile, RoundTripKeepsPosesAndEmptyMarkAngles) {
   EXPECT_EQ(rows[0].marker_id, 2);
   EXPECT_FALSE(rows[0].mark_angle_deg.has_value());
   EXPECT_NEAR(rows[1].mark_angle_deg.value(), 271.3, 1e-6);
-  EXPECT_LT((rows[0].camera_from_marker.translation_mm - first.camera_from_marker.translation_mm).norm(), 1e-6);
+  EXPECT_LT((rows[0].camera_from_marker.translation_mm - first.camera_from_marker.translation_mm).norm(),
+            1e-6);
   EXPECT_LT(rows[0].camera_from_marker.rotation.angularDistance(first.camera_from_marker.rotation), 1e-8);
 }
 
 // A number that is no rotation, time that runs backwards, a missing column: each is refused with its place.
 TEST(PosesFile, RefusesWhatBreaksTheContract) {
-  EXPECT_THAT(error_of("norm.csv", std::string(kHeader) + "0,0,0,0.9,0,0,0,1,2,3,0.1,\n"),
-              testing::AllOf(testing::HasSubstr("norm.csv"), testing::HasSubstr("qw"), testing::HasSubstr("norm")));
-  EXPECT_THAT(error_of("time.csv", std::string(kHeader) + "0,0.5,0,1,0,0,0,1,2,3,0.1,\n1,0.4,0,1,0,0,0,1,2,3,0.1,\n"),
-              testing::HasSubstr("backwards"));
+  EXPECT_THAT(
+      error_of("norm.csv", std::string(kHeader) + "0,0,0,0.9,0,0,0,1,2,3,0.1,\n"),
+      testing::AllOf(testing::HasSubstr("norm.csv"), testing::HasSubstr("qw"), testing::HasSubstr("norm")));
+  EXPECT_THAT(
+      error_of("time.csv", std::string(kHeader) + "0,0.5,0,1,0,0,0,1,2,3,0.1,\n1,0.4,0,1,0,0,0,1,2,3,0.1,\n"),
+      testing::HasSubstr("backwards"));
   EXPECT_THAT(error_of("nan.csv", std::string(kHeader) + "0,0,0,1,0,0,0,nan,2,3,0.1,\n"),
               testing::HasSubstr("tx_mm"));
   EXPECT_THAT(error_of("column.csv", "frame,time_s,marker_id\n0,0,0\n"), testing::HasSubstr("qw"));

@@ -26,7 +26,8 @@ Curves circle(double step_mm, double noise_mm, double turn_rad = 5.0) {
 }
 
 double tangent_error_rad(const OrientedPoint& point) {
-  const Eigen::Vector3d truth = Eigen::Vector3d(-point.position_mm.y(), point.position_mm.x(), 0).normalized();
+  const Eigen::Vector3d truth =
+      Eigen::Vector3d(-point.position_mm.y(), point.position_mm.x(), 0).normalized();
   return std::asin(std::min(1.0, point.tangent.cross(truth).norm()));
 }
 

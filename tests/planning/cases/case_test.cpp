@@ -24,18 +24,24 @@ Case example() {
   return {.name = "Knie Müller \"links\"",
           .side = bones::Side::Left,
           .created_utc = "2026-01-31T12:00:00Z",
-          .bones = {{BoneKind::Femur, {.kind = BoneKind::Femur, .mesh = test::box({40, 30, 50}), .source = "femur.stl"}},
-                    {BoneKind::Tibia, {.kind = BoneKind::Tibia, .mesh = test::ellipsoid({35, 25, 60}, 2), .source = "CT"}}},
+          .bones = {{BoneKind::Femur,
+                     {.kind = BoneKind::Femur, .mesh = test::box({40, 30, 50}), .source = "femur.stl"}},
+                    {BoneKind::Tibia,
+                     {.kind = BoneKind::Tibia, .mesh = test::ellipsoid({35, 25, 60}, 2), .source = "CT"}}},
           .landmarks = {{BoneKind::Femur, {{"native_footprint", {40, 0.1, -1.0 / 3}}}}},
           .plan = {.tunnels = {{BoneKind::Femur,
-                                {.bone = BoneKind::Femur, .entry_mm = {40, 1e-3, 0.1}, .direction = {-0.6, 0, 0.8},
+                                {.bone = BoneKind::Femur,
+                                 .entry_mm = {40, 1e-3, 0.1},
+                                 .direction = {-0.6, 0, 0.8},
                                  .diameter_mm = 8.5}}}}};
 }
 
 class CaseFolder : public ::testing::Test {
  protected:
   void SetUp() override { save_case(folder_, example()); }
-  void overwrite(const std::string& name, const std::string& text) { files::write_atomically(folder_ / name, text); }
+  void overwrite(const std::string& name, const std::string& text) {
+    files::write_atomically(folder_ / name, text);
+  }
   void replace(const std::string& name, const std::string& what, const std::string& with) {
     std::string text = files::read_text(folder_ / name);
     const auto at = text.find(what);
@@ -50,7 +56,8 @@ class CaseFolder : public ::testing::Test {
   std::filesystem::path folder_ = temporary_ / "Knee.arthro";
 };
 
-// A region of cartilage is part of the case only where it was declared, bone by bone; saving the case leaves it alone.
+// A region of cartilage is part of the case only where it was declared, bone by bone; saving the case leaves
+// it alone.
 TEST_F(CaseFolder, KeepsTheCartilageOfABone) {
   EXPECT_FALSE(load_cartilage(folder_, BoneKind::Femur).has_value());
   const geometry::TriangleMesh patch = test::box({8, 3, 5});  // smaller than any bone
@@ -136,8 +143,10 @@ TEST_F(CaseFolder, RefusesABrokenMesh) {
 
 // A folder that is no case, or has lost a mesh, is said to be so.
 TEST_F(CaseFolder, NamesWhatIsMissing) {
-  EXPECT_THAT(message_of<IoError>([&] { (void)load_case(temporary_ / "nothing"); }), HasSubstr("not a case folder"));
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)load_case(temporary_.path()); }), HasSubstr("no case.json"));
+  EXPECT_THAT(message_of<IoError>([&] { (void)load_case(temporary_ / "nothing"); }),
+              HasSubstr("not a case folder"));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)load_case(temporary_.path()); }),
+              HasSubstr("no case.json"));
   std::filesystem::remove(folder_ / "femur.ply");
   EXPECT_THAT(message_of<IoError>([&] { (void)load_case(folder_); }), HasSubstr("femur.ply"));
 }

@@ -18,7 +18,8 @@ namespace {
 using bones::BoneKind;
 
 Plan plan_numbered(int number) {
-  return {.tunnels = {{BoneKind::Femur, {.entry_mm = {static_cast<double>(number), 0, 0}, .diameter_mm = 9}}}};
+  return {
+      .tunnels = {{BoneKind::Femur, {.entry_mm = {static_cast<double>(number), 0, 0}, .diameter_mm = 9}}}};
 }
 int number_of(const Plan& plan) { return static_cast<int>(plan.tunnels.at(BoneKind::Femur).entry_mm.x()); }
 
@@ -32,8 +33,8 @@ Case case_numbered(int number) {
   return knee;
 }
 
-// Runs `save(n)` for n = first, first + 1, ... in a child, kills it after the delay, and returns the last n whose save
-// had returned (first - 1: none).
+// Runs `save(n)` for n = first, first + 1, ... in a child, kills it after the delay, and returns the last n
+// whose save had returned (first - 1: none).
 template <typename Save>
 int killed_while_saving(int first, std::chrono::microseconds delay, const Save& save) {
   int pipe_ends[2];
@@ -57,7 +58,8 @@ int killed_while_saving(int first, std::chrono::microseconds delay, const Save& 
   return saved;
 }
 
-// The plan is saved after every step of planning. At most the save under way when the process died may count as well.
+// The plan is saved after every step of planning. At most the save under way when the process died may count
+// as well.
 TEST(CaseAfterKill, HoldsTheLastSavedPlan) {
   const test::TemporaryFolder temporary;
   const auto folder = temporary / "Knee.arthro";

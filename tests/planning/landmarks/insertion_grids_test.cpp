@@ -10,7 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A box as the femur: Blumensaat's line along its middle, so that the lower half is the condyle: 60 mm deep, 20 mm high.
+// A box as the femur: Blumensaat's line along its middle, so that the lower half is the condyle: 60 mm deep,
+// 20 mm high.
 Landmarks roof_of_a_box() {
   return {{"blumensaat_anterior", {0, -20, 0}}, {"blumensaat_posterior", {0, 10, 0}}};
 }
@@ -38,10 +39,11 @@ TEST(FemoralQuadrant, FindsThePointOfAPercentage) {
   }
 }
 
-// Percentages belong to the bone, not to how it lies: a leg flexed by 30 degrees reads the same. The condyles' line is
-// what the view is along, so it has to be known.
+// Percentages belong to the bone, not to how it lies: a leg flexed by 30 degrees reads the same. The
+// condyles' line is what the view is along, so it has to be known.
 TEST(FemoralQuadrant, TurnsWithTheBone) {
-  const geometry::RigidTransform flexed{Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Vector3d::UnitX())), {5, -7, 9}};
+  const geometry::RigidTransform flexed{Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Vector3d::UnitX())),
+                                        {5, -7, 9}};
   auto mesh = test::ellipsoid({40, 30, 20}, 3);
   auto marks = roof_of_a_box();
   marks["lateral_condyle_posterior"] = {-20, 25, -5};
@@ -59,13 +61,15 @@ TEST(FemoralQuadrant, TurnsWithTheBone) {
 TEST(FemoralQuadrant, NeedsBlumensaatsLine) {
   const auto mesh = test::box({40, 30, 20});
   EXPECT_FALSE(femoral_quadrant(mesh, {}, bones::Side::Right));
-  EXPECT_FALSE(femoral_quadrant(mesh, {{"blumensaat_anterior", {0, 0, 0}}, {"blumensaat_posterior", {0, 3, 0}}},
-                                bones::Side::Right));
+  EXPECT_FALSE(femoral_quadrant(
+      mesh, {{"blumensaat_anterior", {0, 0, 0}}, {"blumensaat_posterior", {0, 3, 0}}}, bones::Side::Right));
 }
 
 TEST(TibialGrid, ReadsSharesFromAbove) {
-  const Landmarks marks{{"plateau_anterior", {2, -25, 3}}, {"plateau_posterior", {9, 25, -4}},
-                        {"plateau_medial", {38, 1, 0}}, {"plateau_lateral", {-38, 1, 2}}};
+  const Landmarks marks{{"plateau_anterior", {2, -25, 3}},
+                        {"plateau_posterior", {9, 25, -4}},
+                        {"plateau_medial", {38, 1, 0}},
+                        {"plateau_lateral", {-38, 1, 2}}};
   const auto grid = tibial_grid(marks);
   ASSERT_TRUE(grid);
   const auto percent = grid->percent_of({38 - 0.47 * 76, -25 + 0.41 * 50, 17});

@@ -31,7 +31,8 @@ const PhantomKnee& knee_of(std::uint64_t seed, Side side = Side::Right) {
   return knees.at(key);
 }
 
-// Every edge between exactly two triangles that run along it in opposite directions: closed, and oriented one way.
+// Every edge between exactly two triangles that run along it in opposite directions: closed, and oriented one
+// way.
 bool is_closed_and_oriented(const geometry::TriangleMesh& mesh) {
   std::map<std::pair<std::int32_t, std::int32_t>, int> half_edges;
   for (const auto& t : mesh.triangles) {
@@ -47,7 +48,8 @@ double angle_deg(const Vector3d& a, const Vector3d& b) {
   return geometry::deg_from_rad(geometry::angle_between_rad(a, b));
 }
 
-// The simulator and registration take the meshes as they are: a hole or a flipped triangle would be their fault then.
+// The simulator and registration take the meshes as they are: a hole or a flipped triangle would be their
+// fault then.
 TEST(PhantomKnee, MeshesAreClosedOutwardAndWithoutSlivers) {
   for (const std::uint64_t seed : {1, 3}) {
     const auto& knee = knee_of(seed);
@@ -74,7 +76,8 @@ TEST(PhantomKnee, FollowsItsSeed) {
   EXPECT_NE(once.femur.mesh.vertices_mm.size(), other.femur.mesh.vertices_mm.size());
 }
 
-// Meshes mirrored by accident are the classic error of the field: the left knee is the mirror image, still outward.
+// Meshes mirrored by accident are the classic error of the field: the left knee is the mirror image, still
+// outward.
 TEST(PhantomKnee, LeftIsTheMirrorImageOfRight) {
   const auto &right = knee_of(2), &left = knee_of(2, Side::Left);
   const auto mirrored = [](const Vector3d& p) { return Vector3d(-p.x(), p.y(), p.z()); };
@@ -102,7 +105,8 @@ TEST(PhantomKnee, StandsInThePatientsAxes) {
   EXPECT_LT(tibia.at("lateral_eminence").x(), tibia.at("medial_eminence").x());
   EXPECT_LT(femur.at("native_footprint").x(), femur.at("notch_apex").x());
   EXPECT_LT((femur.at("lateral_epicondyle") + femur.at("medial_epicondyle")).norm() / 2, 6.0);
-  // Bone meets no bone: the cartilage's gap of 2 to 8 mm is between the lowest of the femur and the plateau below.
+  // Bone meets no bone: the cartilage's gap of 2 to 8 mm is between the lowest of the femur and the plateau
+  // below.
   const geometry::Surface tibia_surface(knee.tibia.mesh);
   double gap = 1e9;
   for (const auto& v : knee.femur.mesh.vertices_mm) gap = std::min(gap, tibia_surface.signed_distance_mm(v));
@@ -115,15 +119,17 @@ TEST(PhantomKnee, LandmarksLieOnTheMesh) {
   for (const std::uint64_t seed : {1, 2}) {
     const auto& knee = knee_of(seed);
     const geometry::Surface femur(knee.femur.mesh), tibia(knee.tibia.mesh);
-    for (const auto& [name, p] : knee.femur_landmarks) EXPECT_LT(std::abs(femur.signed_distance_mm(p)), 0.05) << name;
-    for (const auto& [name, p] : knee.tibia_landmarks) EXPECT_LT(std::abs(tibia.signed_distance_mm(p)), 0.05) << name;
+    for (const auto& [name, p] : knee.femur_landmarks)
+      EXPECT_LT(std::abs(femur.signed_distance_mm(p)), 0.05) << name;
+    for (const auto& [name, p] : knee.tibia_landmarks)
+      EXPECT_LT(std::abs(tibia.signed_distance_mm(p)), 0.05) << name;
     EXPECT_EQ(knee.femur_landmarks.size(), 8U);
     EXPECT_EQ(knee.tibia_landmarks.size(), 8U);
   }
 }
 
-// Sizes of adults: epicondylar width 70 to 92 mm, condyles 54 to 72 mm deep, notch 15 to 24 mm wide at the footprint,
-// plateau 66 to 86 mm wide; medial condyle the lower; roof 26 to 46 degrees (Howell 1995).
+// Sizes of adults: epicondylar width 70 to 92 mm, condyles 54 to 72 mm deep, notch 15 to 24 mm wide at the
+// footprint, plateau 66 to 86 mm wide; medial condyle the lower; roof 26 to 46 degrees (Howell 1995).
 TEST(PhantomKnee, HasTheSizeOfAnAdultKnee) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE(seed);
@@ -152,14 +158,15 @@ TEST(PhantomKnee, HasTheSizeOfAnAdultKnee) {
       if (v.x() > 0) medial_low = std::min(medial_low, v.z());
     }
     EXPECT_LT(medial_low, lateral_low - 0.3);
-    const double roof = angle_deg(femur.at("blumensaat_posterior") - femur.at("blumensaat_anterior"), Vector3d::UnitZ());
+    const double roof =
+        angle_deg(femur.at("blumensaat_posterior") - femur.at("blumensaat_anterior"), Vector3d::UnitZ());
     EXPECT_GT(roof, 26);
     EXPECT_LT(roof, 46);
   }
 }
 
-// The footprints stand where the studies have them, read with the same grids that judge a surgeon's plan; on the femur
-// the wall is flat enough that the grid's own plane and the wall agree within half a percent.
+// The footprints stand where the studies have them, read with the same grids that judge a surgeon's plan; on
+// the femur the wall is flat enough that the grid's own plane and the wall agree within half a percent.
 TEST(PhantomKnee, FootprintsStandAtThePublishedPercentages) {
   for (const Side side : {Side::Left, Side::Right}) {
     const auto& knee = knee_of(1, side);
@@ -176,8 +183,8 @@ TEST(PhantomKnee, FootprintsStandAtThePublishedPercentages) {
   }
 }
 
-// The built-in plan is one that a surgeon would take: through the footprints, long enough, with bone all around, out
-// through the lateral femur and the anteromedial tibia.
+// The built-in plan is one that a surgeon would take: through the footprints, long enough, with bone all
+// around, out through the lateral femur and the anteromedial tibia.
 TEST(PhantomKnee, PlanIsAnatomical) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     SCOPED_TRACE(seed);

@@ -10,7 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A 40 mm slab: straight through is too long for 30 to 38 mm, and tilting only lengthens it, so that straight wins.
+// A 40 mm slab: straight through is too long for 30 to 38 mm, and tilting only lengthens it, so that straight
+// wins.
 TEST(Aim, StaysStraightWhereTiltingIsWorse) {
   const geometry::Surface slab(test::box({200, 200, 20}));
   const Tunnel straight{.entry_mm = {0, 0, -20}, .direction = {0, 0, 1}};
@@ -18,13 +19,15 @@ TEST(Aim, StaysStraightWhereTiltingIsWorse) {
   EXPECT_LT((aimed.direction - Vector3d::UnitZ()).norm(), 1e-12);
 }
 
-// A slab of 40 mm asked for a tunnel of 41 mm and more needs acos(40 / 41) = 12.7 degrees: within reach of 14.
+// A slab of 40 mm asked for a tunnel of 41 mm and more needs acos(40 / 41) = 12.7 degrees: within reach
+// of 14.
 TEST(Aim, TiltsToFitTheLength) {
   const geometry::Surface slab(test::box({200, 200, 20}));
   const Tunnel straight{.entry_mm = {0, 0, -20}, .direction = {0, 0, 1}};
   const auto aimed = aim(straight, slab, {.least_length_mm = 41, .greatest_length_mm = 50});
   EXPECT_GE(measure(aimed, slab).length_mm, 41);
-  EXPECT_LE(geometry::deg_from_rad(geometry::angle_between_rad(aimed.direction, straight.direction)), 14 + 1e-9);
+  EXPECT_LE(geometry::deg_from_rad(geometry::angle_between_rad(aimed.direction, straight.direction)),
+            14 + 1e-9);
   EXPECT_EQ(aimed.entry_mm, straight.entry_mm);
 }
 
@@ -40,7 +43,8 @@ TEST(Aim, LeansAwayFromAThinWall) {
 // The custom is mirrored with the knee, and unit.
 TEST(Aim, MirrorsTheCustomaryDirection) {
   for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
-    const Vector3d right = customary_direction(kind, bones::Side::Right), left = customary_direction(kind, bones::Side::Left);
+    const Vector3d right = customary_direction(kind, bones::Side::Right),
+                   left = customary_direction(kind, bones::Side::Left);
     EXPECT_EQ(Vector3d(-left.x(), left.y(), left.z()), right);
     EXPECT_NEAR(right.norm(), 1, 1e-12);
   }

@@ -12,12 +12,16 @@ using bones::BoneKind;
 using Verdict = PlanCheck::Verdict;
 
 TunnelGeometry inside(double length_mm, double wall_mm) {
-  return {.enters_bone = true, .entry_on_surface_mm = {0, 0, 0}, .exit_mm = {0, 0, length_mm}, .length_mm = length_mm,
+  return {.enters_bone = true,
+          .entry_on_surface_mm = {0, 0, 0},
+          .exit_mm = {0, 0, length_mm},
+          .length_mm = length_mm,
           .wall_mm = wall_mm};
 }
 
 PlanCheck named(const std::vector<PlanCheck>& checks, const std::string& name) {
-  const auto found = std::find_if(checks.begin(), checks.end(), [&](const auto& check) { return check.name == name; });
+  const auto found =
+      std::find_if(checks.begin(), checks.end(), [&](const auto& check) { return check.name == name; });
   if (found == checks.end()) ADD_FAILURE() << "no check " << name;
   return found == checks.end() ? PlanCheck{} : *found;
 }
@@ -25,8 +29,8 @@ PlanCheck named(const std::vector<PlanCheck>& checks, const std::string& name) {
 // 10 mm deep and 20 mm high, the corner at the origin: percentages can be read off.
 PlanSurroundings with_quadrant() {
   PlanSurroundings surroundings;
-  surroundings.quadrant = {.corner_mm = {0, 0, 0}, .shallow = {0, -1, 0}, .low = {0, 0, -1}, .depth_mm = 10,
-                           .height_mm = 20};
+  surroundings.quadrant = {
+      .corner_mm = {0, 0, 0}, .shallow = {0, -1, 0}, .low = {0, 0, -1}, .depth_mm = 10, .height_mm = 20};
   return surroundings;
 }
 
@@ -35,7 +39,8 @@ TEST(PlanChecks, JudgesTheFemoralLength) {
   const Tunnel tunnel{.bone = BoneKind::Femur};
   EXPECT_EQ(named(check_plan(tunnel, inside(30.0, 5), {}), "Length").verdict, Verdict::Fine);
   EXPECT_EQ(named(check_plan(tunnel, inside(29.9, 5), {}), "Length").verdict, Verdict::Look);
-  EXPECT_THAT(named(check_plan(tunnel, inside(24.9, 5), {}), "Length").text, ::testing::HasSubstr("shorter than 25 mm"));
+  EXPECT_THAT(named(check_plan(tunnel, inside(24.9, 5), {}), "Length").text,
+              ::testing::HasSubstr("shorter than 25 mm"));
 }
 
 TEST(PlanChecks, JudgesTheWall) {
@@ -43,7 +48,8 @@ TEST(PlanChecks, JudgesTheWall) {
   EXPECT_EQ(named(check_plan(tunnel, inside(35, 2.0), {}), "Wall").verdict, Verdict::Fine);
   EXPECT_EQ(named(check_plan(tunnel, inside(35, 1.9), {}), "Wall").verdict, Verdict::Look);
   EXPECT_EQ(named(check_plan(tunnel, inside(35, 0.9), {}), "Wall").verdict, Verdict::Wrong);
-  EXPECT_THAT(named(check_plan(tunnel, inside(35, -0.1), {}), "Wall").text, ::testing::HasSubstr("breaks out"));
+  EXPECT_THAT(named(check_plan(tunnel, inside(35, -0.1), {}), "Wall").text,
+              ::testing::HasSubstr("breaks out"));
 }
 
 // The limits of the back wall are the femur's: a tibial tunnel thins out at its slanting exit.
@@ -72,7 +78,8 @@ TEST(PlanChecks, JudgesThePlaceInTheQuadrant) {
 // Every number to compare with says where it comes from, and norms can be changed.
 TEST(PlanChecks, NameTheirSourcesAndFollowChangedNorms) {
   const Tunnel tunnel{.bone = BoneKind::Femur};
-  for (const auto& check : check_plan(tunnel, inside(35, 5), with_quadrant())) EXPECT_FALSE(check.source.empty()) << check.name;
+  for (const auto& check : check_plan(tunnel, inside(35, 5), with_quadrant()))
+    EXPECT_FALSE(check.source.empty()) << check.name;
   PlanNorms strict;
   strict.short_femoral_tunnel_mm = 36;
   EXPECT_EQ(named(check_plan(tunnel, inside(35, 5), {}, strict), "Length").verdict, Verdict::Look);

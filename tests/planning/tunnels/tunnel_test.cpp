@@ -22,8 +22,8 @@ TEST_F(TunnelInABox, MeasuresAStraightTunnelExactly) {
   ASSERT_TRUE(measured.enters_bone);
   EXPECT_NEAR(measured.length_mm, 40, 1e-9);
   EXPECT_LT((measured.exit_mm - Vector3d(10, 4, 20)).norm(), 1e-9);
-  // In the middle of the slab the faces above and below are nearer than the sides; at a diameter from the mouth the
-  // nearest is the mouth's own face, 9 mm away.
+  // In the middle of the slab the faces above and below are nearer than the sides; at a diameter from the
+  // mouth the nearest is the mouth's own face, 9 mm away.
   EXPECT_NEAR(measured.wall_mm, 9 - 4.5, 1e-9);
 }
 
@@ -60,7 +60,8 @@ TEST_F(TunnelInABox, TakesTheEntryWithinFiveMillimetres) {
 }
 
 TEST_F(TunnelInABox, SaysWhenItDoesNotEnter) {
-  EXPECT_FALSE(measure({.entry_mm = {0, 0, -20}, .direction = {0, 0, -1}}, bone_).enters_bone);  // out of the bone
+  EXPECT_FALSE(
+      measure({.entry_mm = {0, 0, -20}, .direction = {0, 0, -1}}, bone_).enters_bone);  // out of the bone
   EXPECT_FALSE(measure({.entry_mm = {60, 0, -20}, .direction = {0, 0, 1}}, bone_).enters_bone);  // beside it
 }
 
@@ -70,7 +71,8 @@ TEST(Tunnel, EndsAtTheFirstExit) {
   const auto further = test::box({10, 10, 10});
   const auto offset = static_cast<std::int32_t>(two.vertices_mm.size());
   for (const auto& v : further.vertices_mm) two.vertices_mm.push_back(v + Vector3d(0, 0, 40));
-  for (const auto& t : further.triangles) two.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  for (const auto& t : further.triangles)
+    two.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
   const auto measured = measure({.entry_mm = {1, 2, -10}, .direction = {0, 0, 1}}, geometry::Surface(two));
   ASSERT_TRUE(measured.enters_bone);
   EXPECT_NEAR(measured.length_mm, 20, 1e-9);
