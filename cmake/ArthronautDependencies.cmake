@@ -15,6 +15,7 @@ find_package(VTK 9.1 REQUIRED COMPONENTS
   InteractionStyle)
 find_package(GDCM REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(spdlog 1.10 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)

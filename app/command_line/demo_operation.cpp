@@ -226,7 +226,7 @@ class Demo {
 
   void scratch() {
     step("Scratch: the probe draws on the notch wall, and the femur is found from nothing");
-    const registration::PreparedBone bone(simulation_.knee.femur.mesh);
+    const registration::SurfaceIndex bone(simulation_.knee.femur.mesh);
     navigation_.bone = &bone;
     const pipeline::NavigationSummary summary =
         navigate(Phase::Scratch, "scratch", [](auto&, const auto&) {});

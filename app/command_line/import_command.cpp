@@ -1,7 +1,7 @@
 #include "app/command_line/command.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
-#include "planning/images/bone_import.h"
+#include "planning/import/bone_import.h"
 
 namespace arthronaut::command_line {
 
@@ -14,13 +14,13 @@ struct ImportArguments {
   std::optional<double> threshold;
 };
 
-images::BoneImportOptions options_of(const ImportArguments& arguments) {
-  images::BoneImportOptions options;
+importing::BoneImportOptions options_of(const ImportArguments& arguments) {
+  importing::BoneImportOptions options;
   if (!arguments.bone.empty()) options.kind = bones::bone_kind_from_text(arguments.bone);
   if (!arguments.side.empty()) options.side = bones::side_from_text(arguments.side);
   if (!arguments.unit.empty()) options.unit = bones::length_unit_from_text(arguments.unit);
   if (!arguments.space.empty()) options.space = bones::space_from_text(arguments.space);
-  if (!arguments.labels.empty()) options.labels = images::labels_from_text(arguments.labels);
+  if (!arguments.labels.empty()) options.labels = importing::labels_from_text(arguments.labels);
   options.threshold = arguments.threshold;
   options.series = arguments.series;
   return options;
@@ -28,7 +28,7 @@ images::BoneImportOptions options_of(const ImportArguments& arguments) {
 
 // The case to add to: the one that is there, or a new one of the side that is known.
 cases::Case case_to_extend(const fs::path& folder, const ImportArguments& arguments,
-                           const images::BoneImport& import) {
+                           const importing::BoneImport& import) {
   if (fs::exists(folder / "case.json")) {
     cases::Case existing = cases::load_case(folder);
     if (import.side && *import.side != existing.side) {
@@ -54,8 +54,8 @@ cases::Case case_to_extend(const fs::path& folder, const ImportArguments& argume
   return created;
 }
 
-void add_bones(const fs::path& folder, cases::Case& target, const images::BoneImport& import) {
-  for (const images::ImportedBone& imported : import.bones) {
+void add_bones(const fs::path& folder, cases::Case& target, const importing::BoneImport& import) {
+  for (const importing::ImportedBone& imported : import.bones) {
     const bones::BoneKind kind = imported.bone.kind;
     // A tunnel planned on another surface would lie somewhere else in this one.
     if (target.bones.contains(kind) && target.plan.tunnels.contains(kind)) {
@@ -82,14 +82,14 @@ void save_whole(const fs::path& folder, const cases::Case& contents) {
 
 void import(Context& context, const ImportArguments& arguments) {
   const fs::path folder = arguments.output;
-  const images::BoneImport import = images::import_bones(arguments.source, options_of(arguments));
+  const importing::BoneImport import = importing::import_bones(arguments.source, options_of(arguments));
   cases::Case target = case_to_extend(folder, arguments, import);
   add_bones(folder, target, import);
   save_whole(folder, target);
 
   for (const auto& line : import.lines) context.say(line);
   std::vector<std::string> doubts;
-  for (const images::ImportedBone& imported : import.bones) {
+  for (const importing::ImportedBone& imported : import.bones) {
     const std::string bone(bones::to_text(imported.bone.kind));
     for (const auto& line : imported.lines) context.say(bone + ": " + line);
     for (const auto& doubt : imported.doubts) doubts.push_back(bone + ": " + doubt);

@@ -138,8 +138,8 @@ void navigate(Context& context, const NavigateArguments& arguments) {
   if (mesh == knee.bones.end()) {
     throw InvalidInput(arguments.case_folder, "", "the case has no " + arguments.bone);
   }
-  const registration::PreparedBone bone(
-      mesh->second.mesh, cases::prepared_bone_file(arguments.case_folder, options.pipeline.bone));
+  const registration::SurfaceIndex bone(
+      mesh->second.mesh, cases::surface_index_file(arguments.case_folder, options.pipeline.bone));
   options.bone = &bone;
   const bones::BoneKind kind = options.pipeline.bone;
   const auto cartilage = arguments.cartilage.mesh.empty() ? cases::load_cartilage(arguments.case_folder, kind)

@@ -23,15 +23,15 @@ struct RegisterArguments {
 };
 
 // A mesh that lies in a case is kept ready in the case's cache.
-registration::PreparedBone prepare(const geometry::TriangleMesh& mesh,
+registration::SurfaceIndex prepare(const geometry::TriangleMesh& mesh,
                                    const std::filesystem::path& mesh_file) {
   const std::filesystem::path folder = mesh_file.parent_path();
   for (const bones::BoneKind kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
     if (std::filesystem::exists(folder / "case.json") && mesh_file == cases::mesh_file(folder, kind)) {
-      return registration::PreparedBone(mesh, cases::prepared_bone_file(folder, kind));
+      return registration::SurfaceIndex(mesh, cases::surface_index_file(folder, kind));
     }
   }
-  return registration::PreparedBone(mesh);
+  return registration::SurfaceIndex(mesh);
 }
 
 void register_bone(Context& context, const RegisterArguments& arguments) {
@@ -50,7 +50,7 @@ void register_bone(Context& context, const RegisterArguments& arguments) {
     options.covered.emplace().points_mm =
         read_cartilage({arguments.cartilage, arguments.space, arguments.unit}).vertices_mm;
   }
-  const registration::PreparedBone bone = prepare(mesh, arguments.bone);
+  const registration::SurfaceIndex bone = prepare(mesh, arguments.bone);
   const auto summary = registration::register_curves(bone, curves, options);
   registration::write_registration_file(arguments.output, summary);
   if (summary.has_pose && arguments.output != "-") {

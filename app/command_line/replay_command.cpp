@@ -44,10 +44,10 @@ void replay(Context& context, const ReplayArguments& arguments) {
   const cases::Case knee = cases::load_case(arguments.case_folder);
   const recording::RecordedSession session(session_folder(arguments));
   recording::ReplayOptions options;
-  std::optional<registration::PreparedBone> bone;
+  std::optional<registration::SurfaceIndex> bone;
   if (const auto found = knee.bones.find(session.header().bone); found != knee.bones.end()) {
     options.bone =
-        &bone.emplace(found->second.mesh, cases::prepared_bone_file(arguments.case_folder, found->first));
+        &bone.emplace(found->second.mesh, cases::surface_index_file(arguments.case_folder, found->first));
     if (const auto cartilage = cases::load_cartilage(arguments.case_folder, found->first)) {
       options.covered.emplace().points_mm = cartilage->vertices_mm;
     }

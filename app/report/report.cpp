@@ -82,7 +82,7 @@ class Report {
 
   void write(const std::filesystem::path& file) {
     plan_page();
-    theatre_page();
+    navigate_page();
     settings();
     pdf_.save(file);
   }
@@ -151,7 +151,7 @@ class Report {
   }
 
   void plan_page();
-  void theatre_page();
+  void navigate_page();
   void registration_section(const registration::RegistrationSummary& registration);
   void result_section(const recording::AchievedTunnel& achieved);
   void settings();
@@ -235,7 +235,7 @@ void Report::result_section(const recording::AchievedTunnel& achieved) {
            {.size_pt = 8.5, .ink = kGray});
 }
 
-void Report::theatre_page() {
+void Report::navigate_page() {
   begin_page("In theatre");
   if (!content_.session) {
     sentence("No session with a registration or a drilled tunnel is recorded in this case.");

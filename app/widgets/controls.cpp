@@ -20,15 +20,15 @@ void draw_text(ImDrawList& draw, ImFont* font, const ImVec2& at, ImU32 color, st
 
 }  // namespace
 
-ImU32 color_of(Sign sign) {
-  switch (sign) {
-    case Sign::Good:
+ImU32 color_of(Severity severity) {
+  switch (severity) {
+    case Severity::Good:
       return kGood;
-    case Sign::Caution:
+    case Severity::Caution:
       return kCaution;
-    case Sign::Bad:
+    case Severity::Bad:
       return kBad;
-    case Sign::Quiet:
+    case Severity::Quiet:
       return kQuietText;
   }
   return kQuietText;
@@ -84,42 +84,43 @@ void action_button(const Ui& ui, std::string_view action_id, float width, float 
   ImGui::PopID();
 }
 
-void draw_sign(ImDrawList& draw, const ImVec2& c, float r, Sign sign) {
-  const ImU32 color = color_of(sign), ink = kBackground;
+void draw_sign(ImDrawList& draw, const ImVec2& c, float r, Severity severity) {
+  const ImU32 color = color_of(severity), ink = kBackground;
   const float line = std::max(r * 0.28F, 1.5F);
-  switch (sign) {
-    case Sign::Good:
+  switch (severity) {
+    case Severity::Good:
       draw.AddCircleFilled(c, r, color, 24);
       draw.AddLine({c.x - 0.45F * r, c.y + 0.02F * r}, {c.x - 0.10F * r, c.y + 0.40F * r}, ink, line);
       draw.AddLine({c.x - 0.10F * r, c.y + 0.40F * r}, {c.x + 0.50F * r, c.y - 0.35F * r}, ink, line);
       break;
-    case Sign::Caution:
+    case Severity::Caution:
       draw.AddTriangleFilled({c.x, c.y - 1.1F * r}, {c.x + 1.15F * r, c.y + 0.9F * r},
                              {c.x - 1.15F * r, c.y + 0.9F * r}, color);
       draw.AddLine({c.x, c.y - 0.4F * r}, {c.x, c.y + 0.30F * r}, ink, line);
       draw.AddCircleFilled({c.x, c.y + 0.62F * r}, line * 0.6F, ink);
       break;
-    case Sign::Bad:
+    case Severity::Bad:
       draw.AddRectFilled({c.x - r, c.y - r}, {c.x + r, c.y + r}, color, 0.25F * r);
       draw.AddLine({c.x - 0.45F * r, c.y - 0.45F * r}, {c.x + 0.45F * r, c.y + 0.45F * r}, ink, line);
       draw.AddLine({c.x - 0.45F * r, c.y + 0.45F * r}, {c.x + 0.45F * r, c.y - 0.45F * r}, ink, line);
       break;
-    case Sign::Quiet:
+    case Severity::Quiet:
       draw.AddCircle(c, 0.8F * r, color, 24, line * 0.7F);
       break;
   }
 }
 
-void status_row(const Ui& ui, Sign sign, std::string_view name, std::string_view text) {
+void status_row(const Ui& ui, Severity severity, std::string_view name, std::string_view text) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float radius = ui.theme.px(9), indent = ui.theme.px(30);
   const float wrap = std::max(ImGui::GetContentRegionAvail().x - indent, 1.F);
   const float line = ui.theme.strong->FontSize;
-  draw_sign(draw, {at.x + radius + ui.theme.px(2), at.y + line / 2 + 1}, radius, sign);
+  draw_sign(draw, {at.x + radius + ui.theme.px(2), at.y + line / 2 + 1}, radius, severity);
   const ImVec2 name_size = text_size(ui.theme.strong, name);
   draw_text(draw, ui.theme.strong, {at.x + indent, at.y}, kText, name);
-  const ImU32 color = sign == Sign::Quiet || sign == Sign::Good ? kQuietText : color_of(sign);
+  const ImU32 color =
+      severity == Severity::Quiet || severity == Severity::Good ? kQuietText : color_of(severity);
   const float gap = ui.theme.px(10);
   const ImVec2 one_line = text_size(ui.theme.body, text);
   float height = line;
@@ -164,13 +165,13 @@ float draw_number(ImDrawList& draw, ImFont* font, const ImVec2& at, ImU32 color,
 }
 
 void number_block(const Ui& ui, const Rect& rect, std::string_view name, std::string_view value,
-                  std::string_view unit, Sign sign) {
+                  std::string_view unit, Severity severity) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const Theme& theme = ui.theme;
-  const ImU32 color = sign == Sign::Quiet ? kText : color_of(sign);
+  const ImU32 color = severity == Severity::Quiet ? kText : color_of(severity);
   float x = rect.x;
-  if (sign != Sign::Quiet) {
-    draw_sign(draw, {x + theme.px(10), rect.y + theme.strong->FontSize / 2}, theme.px(9), sign);
+  if (severity != Severity::Quiet) {
+    draw_sign(draw, {x + theme.px(10), rect.y + theme.strong->FontSize / 2}, theme.px(9), severity);
     x += theme.px(28);
   }
   draw_text(draw, theme.strong, {x, rect.y}, kQuietText, name);

@@ -19,13 +19,13 @@ struct Ui {
   double now_s = 0;
 };
 
-enum class Sign {
+enum class Severity {
   Good,     // disc with a tick
   Caution,  // triangle with an exclamation mark
   Bad,      // square with a cross
   Quiet,    // hollow circle: nothing to say
 };
-[[nodiscard]] ImU32 color_of(Sign sign);
+[[nodiscard]] ImU32 color_of(Severity severity);
 
 // A panel at a fixed place, with an optional title. Between begin and end the ImGui cursor is inside it.
 void begin_panel(const Ui& ui, const char* name, const Rect& rect, std::string_view title = {});
@@ -35,9 +35,9 @@ void end_panel();
 // needs.
 void action_button(const Ui& ui, std::string_view action_id, float width = 0, float height = 0);
 
-void draw_sign(ImDrawList& draw, const ImVec2& center, float radius, Sign sign);
-// Sign, name, and what there is to say; wraps.
-void status_row(const Ui& ui, Sign sign, std::string_view name, std::string_view text);
+void draw_sign(ImDrawList& draw, const ImVec2& center, float radius, Severity severity);
+// Severity, name, and what there is to say; wraps.
+void status_row(const Ui& ui, Severity severity, std::string_view name, std::string_view text);
 
 // Text with digits of one width, so that a number that changes does not jitter. Returns the width drawn.
 float draw_number(ImDrawList& draw, ImFont* font, const ImVec2& at, ImU32 color, std::string_view text);
@@ -45,7 +45,7 @@ float draw_number(ImDrawList& draw, ImFont* font, const ImVec2& at, ImU32 color,
 
 // A large number under its name: "Angle", "1.2", "° ± 0.4".
 void number_block(const Ui& ui, const Rect& rect, std::string_view name, std::string_view value,
-                  std::string_view unit, Sign sign);
+                  std::string_view unit, Severity severity);
 
 void text_in(ImFont* font, ImU32 color, std::string_view text);  // wraps in the panel
 void text_centered(const Ui& ui, const Rect& rect, ImFont* font, ImU32 color,

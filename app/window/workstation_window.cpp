@@ -39,11 +39,10 @@ WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
       window_("Arthronaut"),
       case_(options.case_folder, [] { GraphicsWindow::wake(); }),
       log_(options.list_widgets),
-      planning_(
-          [this] { window_.make_current(); },
-          [this](const planning_view::PlanEdit& edit) { history_.apply(edit, GraphicsWindow::now_s()); }),
+      planning_([this] { window_.make_current(); },
+                [this](const open_case::PlanEdit& edit) { history_.apply(edit, GraphicsWindow::now_s()); }),
       setup_([] { GraphicsWindow::wake(); }, [this] { go_to(Mode::Navigate); }, camera_turns_),
-      theatre_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }, camera_turns_),
+      navigate_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }, camera_turns_),
       review_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }) {
   add_actions();
 }
@@ -91,9 +90,9 @@ void WorkstationWindow::add_actions() {
                 [this] { return history_.can_redo(); },
                 {},
                 [this] { history_.redo(); }});
-  planning_.add_actions(actions_, [this]() -> const plan_model::PlanModel* { return case_.model(); });
+  planning_.add_actions(actions_, [this]() -> const open_case::PlanModel* { return case_.model(); });
   setup_.add_actions(actions_);
-  theatre_.add_actions(actions_);
+  navigate_.add_actions(actions_);
   review_.add_actions(actions_);
 }
 
@@ -112,7 +111,7 @@ void WorkstationWindow::run() {
 
 // What a station of Set up last knew of its run is of when it was last drawn.
 bool WorkstationWindow::pictures_come() const {
-  return (mode_ == Mode::SetUp && setup_.is_busy()) || theatre_.is_busy();
+  return (mode_ == Mode::SetUp && setup_.is_busy()) || navigate_.is_busy();
 }
 
 bool WorkstationWindow::is_busy() const {
@@ -136,7 +135,7 @@ void WorkstationWindow::take_opened_case() {
   history_.open(case_.model(), case_.folder());
   planning_.reset(*case_.model());
   setup_.open(case_.folder());
-  theatre_.open(case_.model(), case_.folder());
+  navigate_.open(case_.model(), case_.folder());
   review_.open(case_.model(), case_.folder());
 }
 
@@ -162,7 +161,7 @@ std::vector<std::string_view> WorkstationWindow::action_prefixes() const {
       for (const std::string_view prefix : setup_.action_prefixes()) prefixes.push_back(prefix);
       break;
     case Mode::Navigate:
-      prefixes.push_back("operate.");
+      prefixes.push_back("navigate.");
       break;
     case Mode::Review:
       prefixes.push_back("review.");
@@ -175,7 +174,7 @@ void WorkstationWindow::go_to(Mode mode) {
   if (mode_ == Mode::SetUp && mode != Mode::SetUp) setup_.leave();
   mode_ = mode;
   if (mode == Mode::SetUp) setup_.enter();
-  if (mode == Mode::Navigate) theatre_.enter();
+  if (mode == Mode::Navigate) navigate_.enter();
   if (mode == Mode::Review) review_.refresh();
 }
 
@@ -201,7 +200,7 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   else if (mode_ == Mode::SetUp)
     setup_.draw(ui, inner);
   else if (mode_ == Mode::Navigate)
-    theatre_.draw(ui, inner);
+    navigate_.draw(ui, inner);
   else
     review_.draw(ui, inner);
   if (shows_keys_) draw_key_list(ui, action_prefixes());
@@ -248,7 +247,7 @@ void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Re
   const float y = area.y + (area.height - font->FontSize) / 2;
   draw.AddText(font, font->FontSize, {area.x + ui.theme.px(20), y}, widgets::kQuietText, kNotice);
   const std::string notice = !case_.failure().empty()  ? case_.failure()
-                             : mode_ == Mode::Navigate ? theatre_.notice()
+                             : mode_ == Mode::Navigate ? navigate_.notice()
                              : mode_ == Mode::Review   ? review_.notice()
                                                        : std::string();
   const std::string text = !notice.empty()            ? notice

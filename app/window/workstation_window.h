@@ -4,13 +4,13 @@
 #include <string_view>
 #include <vector>
 
-#include "app/planning_view/planning_view.h"
-#include "app/review_view/review_view.h"
-#include "app/setup_view/setup_view.h"
-#include "app/theatre_view/theatre_view.h"
+#include "app/case/case_opening.h"
+#include "app/case/plan_history.h"
+#include "app/navigate/navigate_view.h"
+#include "app/plan/plan_view.h"
+#include "app/review/review_view.h"
+#include "app/setup/setup_view.h"
 #include "app/widgets/graphics_window.h"
-#include "app/window/case_opening.h"
-#include "app/window/plan_history.h"
 #include "app/window/workstation.h"
 
 namespace arthronaut::window {
@@ -40,15 +40,15 @@ class WorkstationWindow {
 
   WorkstationOptions options_;
   widgets::GraphicsWindow window_;
-  CaseOpening case_;
+  open_case::CaseOpening case_;
   widgets::Actions actions_;
   widgets::WidgetLog log_;
-  PlanHistory history_;
+  open_case::PlanHistory history_;
   sources::DeviceTurns camera_turns_;  // of Set up and Navigate
-  planning_view::PlanningView planning_;
-  setup_view::SetupView setup_;
-  theatre_view::TheatreView theatre_;
-  review_view::ReviewView review_;
+  plan::PlanView planning_;
+  setup::SetupView setup_;
+  navigate::NavigateView navigate_;
+  review::ReviewView review_;
   Mode mode_ = Mode::Plan;
   bool shows_keys_ = false, quits_ = false;
 };

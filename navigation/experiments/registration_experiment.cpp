@@ -85,7 +85,7 @@ RegistrationExperimentResult run_registration_experiment(const geometry::Triangl
                                                          const RegistrationExperimentOptions& options,
                                                          const std::function<void(int)>& progress) {
   if (options.trial_count < 1) throw InvalidInput("an experiment needs at least one trial");
-  const registration::PreparedBone bone(mesh);
+  const registration::SurfaceIndex bone(mesh);
   const TrialSeries series(mesh, options.series);
   const Eigen::Vector3d& target = series.target_mm();
 

@@ -12,7 +12,7 @@ namespace {
 constexpr double kFlankDeg = 2.0;
 
 int wrapped_ray(int i) { return ((i % kRayCount) + kRayCount) % kRayCount; }
-double sign_of(MarkPolarity polarity) { return polarity == MarkPolarity::BrightOutward ? -1.0 : 1.0; }
+double severity_of(MarkPolarity polarity) { return polarity == MarkPolarity::BrightOutward ? -1.0 : 1.0; }
 
 // The dent's depth around one place, upright: angles relative to the first ray, dents positive.
 struct Window {
@@ -171,7 +171,7 @@ MarkCandidates find_marks(const DentProfile& dents, MarkPolarity polarity, const
   const double threshold_px = std::max(2.0, 0.008 * dents.radius_px);
   for (const MarkPolarity side : {MarkPolarity::BrightOutward, MarkPolarity::DarkInward}) {
     if (polarity != MarkPolarity::Unknown && polarity != side) continue;
-    const double sign = sign_of(side);
+    const double sign = severity_of(side);
     const auto is_dent = [&](int i) {
       const auto ray = static_cast<std::size_t>(wrapped_ray(i));
       return dents.seen[ray] && sign * dents.depth_px[ray] > threshold_px;
@@ -226,7 +226,7 @@ MarkCandidates find_marks(const DentProfile& dents, MarkPolarity polarity, const
 
 MarkCandidate follow_mark(const DentProfile& dents, MarkPolarity polarity, const MarkShape& known,
                           double expected_deg, double search_deg) {
-  const double sign = sign_of(polarity);
+  const double sign = severity_of(polarity);
   const double center = expected_deg - dents.angle_correction_deg(expected_deg);
   const double height_px = known.height * dents.radius_px;
   // Least robust cost over the tip's place; a dark or covered ray costs as much as a bad one, no more.

@@ -107,7 +107,7 @@ class EdgeTracker final : public MarkerTracker {
   std::vector<MarkerObservation> observations_;
   SquareSearch search_;
   CameraSmear smear_;
-  PhotogeometricFit dense_;
+  DirectFit dense_;
   int frames_to_search_ = 0;
 };
 

@@ -17,9 +17,9 @@ constexpr double kMaxDenseRmsPx = 1.1, kMaxLoneRmsPx = 0.5;
 // Motions over the exposure that are tried when none is known.
 constexpr double kTriedLengthsPx[] = {8, 18};
 constexpr int kTriedDirections = 4;
-const PhotogeometricOptions kTriedFit{
+const DirectOptions kTriedFit{
     .max_iterations = 5, .max_pixels = 300, .coarse_cells = 0.3, .max_way_cells = 3};
-const PhotogeometricOptions kUnsureFit{.coarse_cells = 0.3, .max_way_cells = 3};
+const DirectOptions kUnsureFit{.coarse_cells = 0.3, .max_way_cells = 3};
 // A motion over the exposure from which on the dense fit is the better one, and what it must reach.
 constexpr double kSmearedPx = 3, kLittleSmearPx = 8, kUnconfirmed = 10, kMinDenseCellPx = 6;
 constexpr int kMaxPasses = 4;
@@ -86,13 +86,12 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
   const double edges_motion_px = picture.motion.head<3>().norm() * px_per_mm;
   if (frame.dense && (!is_motion_known || edges_motion_px > kSmearedPx) && cell > kMinDenseCellPx) {
     const RigidTransform& from = fit.converged ? fit.camera_from_marker : start;
-    PhotogeometricPose dense =
-        fit_densely(frame, from, picture.motion, fit.converged ? PhotogeometricOptions() : kUnsureFit);
+    DirectPose dense = fit_densely(frame, from, picture.motion, fit.converged ? DirectOptions() : kUnsureFit);
     if (is_found && fit.converged && !dense.explains_picture())
       dense = fit_densely(frame, from, picture.motion, kUnsureFit);
     // What moves may also pass for out of focus.
     if (!is_motion_known && (!dense.explains_picture() || dense.sigma_px > kSoft * frame.smear.sigma_px)) {
-      const PhotogeometricPose moving = try_motions(frame, from);
+      const DirectPose moving = try_motions(frame, from);
       if (!dense.explains_picture() || (moving.explains_picture() && moving.noise_grey < dense.noise_grey))
         dense = moving;
     }
@@ -175,9 +174,9 @@ EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform&
   return fit;
 }
 
-PhotogeometricPose MarkerTrack::fit_densely(const TrackedFrame& frame, const RigidTransform& start,
-                                            const Vector6d& motion, const PhotogeometricOptions& options) {
-  PhotogeometricStart from;
+DirectPose MarkerTrack::fit_densely(const TrackedFrame& frame, const RigidTransform& start,
+                                    const Vector6d& motion, const DirectOptions& options) {
+  DirectStart from;
   from.pose = {start, motion, Vector6d::Zero()};
   from.sigma_px = frame.smear.sigma_px;
   from.gamma = frame.smear.gamma;
@@ -193,14 +192,14 @@ PhotogeometricPose MarkerTrack::fit_densely(const TrackedFrame& frame, const Rig
                              options);
 }
 
-PhotogeometricPose MarkerTrack::try_motions(const TrackedFrame& frame, const RigidTransform& start) {
-  PhotogeometricPose best;
+DirectPose MarkerTrack::try_motions(const TrackedFrame& frame, const RigidTransform& start) {
+  DirectPose best;
   for (const double length : kTriedLengthsPx) {
     for (int direction = 0; direction < kTriedDirections; ++direction) {
       const double angle = geometry::kPi * direction / kTriedDirections;
       const Vector6d motion =
           twist_of({length * std::cos(angle), length * std::sin(angle)}, frame.camera, start);
-      const PhotogeometricPose fit = fit_densely(frame, start, motion, kTriedFit);
+      const DirectPose fit = fit_densely(frame, start, motion, kTriedFit);
       if (!fit.is_usable() || (best.is_usable() && fit.noise_grey >= best.noise_grey)) continue;
       best = fit;
     }
@@ -209,7 +208,7 @@ PhotogeometricPose MarkerTrack::try_motions(const TrackedFrame& frame, const Rig
   return fit_densely(frame, best.pose.camera_from_marker, best.pose.velocity, {.max_way_cells = 2});
 }
 
-void MarkerTrack::report_dense(const TrackedFrame& frame, const PhotogeometricPose& fit, double max_rms_px,
+void MarkerTrack::report_dense(const TrackedFrame& frame, const DirectPose& fit, double max_rms_px,
                                MarkerObservation& observation) {
   observation.camera_from_marker = fit.pose.camera_from_marker;
   observation.covariance = fit.covariance;
@@ -251,8 +250,7 @@ void MarkerTrack::report_dense(const TrackedFrame& frame, const PhotogeometricPo
       std::hypot(kCornerSigmaPx, std::sqrt((poses->best.information * observation.covariance).trace() / 8));
   observation.ambiguity_ratio = std::min(kNoOtherPose, poses->other->rms_px / corner_px);
   if (observation.ambiguity_ratio >= kClearRatio) return;
-  const PhotogeometricPose other =
-      fit_densely(frame, poses->other->camera_from_marker, fit.pose.velocity, {});
+  const DirectPose other = fit_densely(frame, poses->other->camera_from_marker, fit.pose.velocity, {});
   if (!other.is_usable() || other.noise_grey > kOtherNoise * fit.noise_grey) return;
   if (are_unlike(fit.pose.camera_from_marker, other.pose.camera_from_marker))
     observation.state = MarkerState::Ambiguous;

@@ -8,11 +8,11 @@
 
 #include "navigation/camera/camera_model.h"
 #include "navigation/markers/camera_smear.h"
+#include "navigation/markers/direct_alignment.h"
 #include "navigation/markers/edge_pose.h"
 #include "navigation/markers/edge_profiles.h"
 #include "navigation/markers/marker_motion.h"
 #include "navigation/markers/marker_tracker.h"
-#include "navigation/markers/photogeometric.h"
 
 namespace arthronaut::markers {
 
@@ -22,7 +22,7 @@ struct TrackedFrame {
   const camera::CameraModel& camera;
   std::int64_t timestamp_ns = 0;
   CameraSmear& smear;
-  PhotogeometricFit* dense = nullptr;  // none: edge profiles alone
+  DirectFit* dense = nullptr;  // none: edge profiles alone
 };
 
 class MarkerTrack {
@@ -59,18 +59,15 @@ class MarkerTrack {
   [[nodiscard]] EdgePose fit_edges(const TrackedFrame& frame, const geometry::RigidTransform& start,
                                    bool is_found, Smear& picture, SmearTrend& trend);
   // Dense fit from a pose and a motion.
-  [[nodiscard]] PhotogeometricPose fit_densely(const TrackedFrame& frame,
-                                               const geometry::RigidTransform& start,
-                                               const geometry::Vector6d& motion,
-                                               const PhotogeometricOptions& options);
+  [[nodiscard]] DirectPose fit_densely(const TrackedFrame& frame, const geometry::RigidTransform& start,
+                                       const geometry::Vector6d& motion, const DirectOptions& options);
   // The same with motions from a grid, where none is known; the best, usable or not.
-  [[nodiscard]] PhotogeometricPose try_motions(const TrackedFrame& frame,
-                                               const geometry::RigidTransform& start);
+  [[nodiscard]] DirectPose try_motions(const TrackedFrame& frame, const geometry::RigidTransform& start);
   // From here on the pose in the observation is judged: what the edges say, and the dense fit where there is
   // one.
   void report_edges(const TrackedFrame& frame, const EdgePose& fit, const Smear& picture, bool is_found,
                     MarkerObservation& observation);
-  void report_dense(const TrackedFrame& frame, const PhotogeometricPose& fit, double max_rms_px,
+  void report_dense(const TrackedFrame& frame, const DirectPose& fit, double max_rms_px,
                     MarkerObservation& observation);
   // A pose that is good enough to go on from, not to stand for; of several in one frame, the one whose edges
   // agree best.

@@ -26,7 +26,7 @@ bool are_unlike(const RigidTransform& a, const RigidTransform& b) {
   return geometry::rotation_angle_rad(a.rotation.conjugate() * b.rotation) > kHarmlessTiltRad;
 }
 
-MarkerState judge(const PhotogeometricPose& fit, double max_rms_px, const MarkerObservation& observation) {
+MarkerState judge(const DirectPose& fit, double max_rms_px, const MarkerObservation& observation) {
   if (facing(fit.pose.camera_from_marker) < kMinFacing) return MarkerState::TooOblique;
   const double sigma_mm = std::sqrt(observation.covariance.topLeftCorner<3, 3>().trace());
   const double sigma_rad = std::sqrt(observation.covariance.bottomRightCorner<3, 3>().trace());

@@ -4,9 +4,9 @@
 #include <optional>
 #include <span>
 
+#include "navigation/markers/direct_alignment.h"
 #include "navigation/markers/edge_pose.h"
 #include "navigation/markers/marker_tracker.h"
-#include "navigation/markers/photogeometric.h"
 #include "navigation/markers/planar_pose.h"
 
 namespace arthronaut::markers {
@@ -23,7 +23,7 @@ inline constexpr double kMaxEdgeRmsPx = 1.2;  // how far an edge, or a corner, m
                                 const std::optional<SquarePose>& other, bool is_found);
 // What the dense fit says. The observation holds its covariance; max_rms_px: how far the corners that single
 // edges make may lie from the fit.
-[[nodiscard]] MarkerState judge(const PhotogeometricPose& fit, double max_rms_px,
+[[nodiscard]] MarkerState judge(const DirectPose& fit, double max_rms_px,
                                 const MarkerObservation& observation);
 // By what most of the edges that are missing at the supposed pose look like.
 [[nodiscard]] MarkerState reason_of_loss(const geometry::RigidTransform& camera_from_marker,

@@ -22,8 +22,8 @@ struct NavigateOptions {
   // Used from the first frame, until the strokes of this video give a reliable one.
   std::optional<registration::RegistrationSummary> registration;
   // What strokes are registered to; null: nothing is registered. Must outlive the call.
-  const registration::PreparedBone* bone = nullptr;
-  std::optional<registration::CoveredRegion> covered = std::nullopt;  // of the bone
+  const registration::SurfaceIndex* bone = nullptr;
+  std::optional<registration::CartilageRegion> covered = std::nullopt;  // of the bone
   std::uint64_t seed = 1;
   strokes::StrokeOptions strokes;
   // While the guide is seen and no reliable registration exists, one is tried whenever the probe has drawn

@@ -13,8 +13,8 @@ namespace arthronaut::recording {
 
 struct ReplayOptions {
   // The bone to register the recorded curves to. Null: the registration is not compared.
-  const registration::PreparedBone* bone = nullptr;
-  std::optional<registration::CoveredRegion> covered = std::nullopt;  // of the bone
+  const registration::SurfaceIndex* bone = nullptr;
+  std::optional<registration::CartilageRegion> covered = std::nullopt;  // of the bone
   std::uint64_t seed = 1;
   // What passes for the same, on a copied video: far above rounding, far below anything that matters.
   double tolerance_mm = 1e-3, tolerance_deg = 1e-3;

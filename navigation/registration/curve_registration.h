@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "navigation/registration/covered_region.h"
-#include "navigation/registration/prepared_bone.h"
+#include "navigation/registration/bone/surface_index.h"
+#include "navigation/registration/search/cartilage_offset.h"
 
 namespace arthronaut::registration {
 
@@ -16,12 +16,12 @@ enum class SideVerdict { Own, Unclear, Other };
 
 // What all searches with the same options share, made once.
 struct SearchSetting {
-  SearchSetting(const PreparedBone::Data& searched_bone, const RegistrationOptions& registration_options);
+  SearchSetting(const SurfaceIndex::Data& searched_bone, const RegistrationOptions& registration_options);
 
   // The residuals' law while the thickness of a declared cover is not known yet.
   [[nodiscard]] ContactModel start_law() const;
 
-  const PreparedBone::Data& bone;
+  const SurfaceIndex::Data& bone;
   RegistrationOptions options;
   std::vector<bool>
       reachable;  // samples of the bone, by the planned entry; empty without one that is on the bone

@@ -2,14 +2,14 @@
 #include <cmath>
 #include <random>
 
-#include "navigation/registration/confidence.h"
-#include "navigation/registration/covered_region.h"
-#include "navigation/registration/curve_checks.h"
+#include "navigation/registration/bone/reachable_region.h"
 #include "navigation/registration/curve_registration.h"
-#include "navigation/registration/global_search.h"
-#include "navigation/registration/pose_pool.h"
-#include "navigation/registration/reachable_region.h"
 #include "navigation/registration/registration.h"
+#include "navigation/registration/search/cartilage_offset.h"
+#include "navigation/registration/search/curve_checks.h"
+#include "navigation/registration/search/global_search.h"
+#include "navigation/registration/search/pose_pool.h"
+#include "navigation/registration/verdict/confidence.h"
 #include "navigation/strokes/stroke_tangents.h"
 
 namespace arthronaut::registration {
@@ -20,7 +20,7 @@ constexpr int kMaxRounds = 7;
 
 // How much better the best pose explains the points than the best different one, in units of independent
 // measurements.
-double lead_of_best(const PosePool& pool, const TouchedPoints& points) {
+double lead_of_best(const PosePool& pool, const WeightedPoints& points) {
   if (pool.empty()) return 0;
   constexpr double kNoRival = 100;
   if (pool.runner_up() == nullptr) return kNoRival;
@@ -53,7 +53,7 @@ std::vector<Hypothesis> neighbours_of(const geometry::RigidTransform& bone_from_
   return neighbours;
 }
 
-std::string describe_reach(const PreparedBone::Data& bone, const std::vector<bool>& reachable,
+std::string describe_reach(const SurfaceIndex::Data& bone, const std::vector<bool>& reachable,
                            const Eigen::Vector3d& touched_mm) {
   constexpr float kNear_mm = 12;
   if (reachable.empty()) return "the planned entry is not on this bone: the whole bone was searched";
@@ -75,7 +75,7 @@ strokes::Curves mirrored(strokes::Curves curves) {
 
 }  // namespace
 
-SearchSetting::SearchSetting(const PreparedBone::Data& searched_bone,
+SearchSetting::SearchSetting(const SurfaceIndex::Data& searched_bone,
                              const RegistrationOptions& registration_options)
     : bone(searched_bone), options(registration_options) {
   if (options.plan_entry_in_bone_mm) reachable = find_reachable_samples(bone, *options.plan_entry_in_bone_mm);
@@ -90,7 +90,7 @@ ContactModel SearchSetting::start_law() const {
 
 SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::Curves& curves,
                                    int max_rounds) {
-  const PreparedBone::Data& bone = setting.bone;
+  const SurfaceIndex::Data& bone = setting.bone;
   const RegistrationOptions& options = setting.options;
   constexpr std::size_t kPointCount = 800;
   constexpr int kPairsEachRound = 8, kIterationsEachRound = 5, kFinalIterations = 12;
@@ -98,7 +98,7 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
   // Found beyond doubt: no need to search on.
   constexpr double kClearLead = 25, kClearLeadLater = 12;
 
-  TouchedPoints points = choose_points(curves, kPointCount);
+  WeightedPoints points = choose_points(curves, kPointCount);
   const std::vector<strokes::OrientedPoint> oriented = strokes::oriented_points(curves);
   MarkerPrior prior;
   prior.use = options.use_marker_prior;
@@ -188,9 +188,9 @@ SideVerdict judge_side(const SearchSetting& setting, const strokes::Curves& curv
   return image_lead > -own_lead ? SideVerdict::Unclear : SideVerdict::Own;
 }
 
-RegistrationSummary register_curves(const PreparedBone& prepared, const strokes::Curves& curves,
+RegistrationSummary register_curves(const SurfaceIndex& prepared, const strokes::Curves& curves,
                                     const RegistrationOptions& options) {
-  const PreparedBone::Data& bone = prepared.data();
+  const SurfaceIndex::Data& bone = prepared.data();
   RegistrationSummary summary;
   summary.point_count = static_cast<int>(curves.size());
   summary.reasons = objections_to(curves, bone.bounds.size_mm().norm());

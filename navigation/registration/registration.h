@@ -19,17 +19,17 @@ namespace arthronaut::registration {
 
 // The bone made ready: distance field, oriented surface samples, pair table, exact tree. Immutable; shared by
 // threads.
-class PreparedBone {
+class SurfaceIndex {
  public:
   // mesh: closed, outward, mm. Throws InvalidInput when it is empty.
-  explicit PreparedBone(const geometry::TriangleMesh& mesh);
+  explicit SurfaceIndex(const geometry::TriangleMesh& mesh);
   // The same, and kept in a file for the next time. A file that is absent, broken, of another mesh or of
   // another version is made again, and one that cannot be written is done without: a cache changes nothing
   // but the time.
-  PreparedBone(const geometry::TriangleMesh& mesh, const std::filesystem::path& cache_file);
-  ~PreparedBone();
-  PreparedBone(PreparedBone&&) noexcept;
-  PreparedBone& operator=(PreparedBone&&) noexcept;
+  SurfaceIndex(const geometry::TriangleMesh& mesh, const std::filesystem::path& cache_file);
+  ~SurfaceIndex();
+  SurfaceIndex(SurfaceIndex&&) noexcept;
+  SurfaceIndex& operator=(SurfaceIndex&&) noexcept;
 
   struct Data;
   [[nodiscard]] const Data& data() const { return *data_; }
@@ -39,7 +39,7 @@ class PreparedBone {
 };
 
 // The part of the bone that cartilage covers where the mesh is bare bone, or the other way round.
-struct CoveredRegion {
+struct CartilageRegion {
   std::vector<Eigen::Vector3d> points_mm;  // bone frame; the region is what lies within reach of one of them
   double reach_mm = 4;
 };
@@ -53,7 +53,7 @@ struct RegistrationOptions {
   // don't lie there.
   std::optional<Eigen::Vector3d> plan_entry_in_bone_mm = std::nullopt;
   // Its thickness is solved, or it is left out when the strokes don't hold it; the assumptions say which.
-  std::optional<CoveredRegion> covered = std::nullopt;
+  std::optional<CartilageRegion> covered = std::nullopt;
 };
 
 // What a registration made of the covered region. None: without one, or it was taken to lie on the mesh.
@@ -89,7 +89,7 @@ struct RegistrationSummary {
 };
 
 // Deterministic for a seed. Never throws on poor data: read the summary.
-[[nodiscard]] RegistrationSummary register_curves(const PreparedBone& bone, const strokes::Curves& curves,
+[[nodiscard]] RegistrationSummary register_curves(const SurfaceIndex& bone, const strokes::Curves& curves,
                                                   const RegistrationOptions& options = {});
 
 // One-sigma error in mm that the covariance predicts at a point of the bone frame.
@@ -99,7 +99,7 @@ struct RegistrationSummary {
 // How far off the mesh the probe touches at a place of the bone's surface, by a registration that was told of
 // the region; nullopt where that is not known.
 [[nodiscard]] std::optional<double> cover_offset_mm(const RegistrationSummary& registration,
-                                                    const CoveredRegion& region,
+                                                    const CartilageRegion& region,
                                                     const Eigen::Vector3d& place_in_bone_mm);
 
 // registration.json; without the use of the cover, which the assumptions tell.

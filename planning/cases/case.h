@@ -49,7 +49,7 @@ void save_plan(const std::filesystem::path& folder, const Plan& plan);
 [[nodiscard]] std::filesystem::path tools_file(const std::filesystem::path& case_folder);
 [[nodiscard]] std::filesystem::path mesh_file(const std::filesystem::path& case_folder, bones::BoneKind kind);
 // The bone made ready for registration.
-[[nodiscard]] std::filesystem::path prepared_bone_file(const std::filesystem::path& case_folder,
+[[nodiscard]] std::filesystem::path surface_index_file(const std::filesystem::path& case_folder,
                                                        bones::BoneKind kind);
 // What cartilage covers that the bone's mesh lacks, or has too much: a surface of its own, of which the
 // vertices count. A case without one declares none. load_cartilage throws as load_case, save_cartilage

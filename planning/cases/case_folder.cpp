@@ -17,7 +17,7 @@ fs::path mesh_file(const fs::path& case_folder, bones::BoneKind kind) {
   return case_folder / (std::string(bones::to_text(kind)) + ".ply");
 }
 
-fs::path prepared_bone_file(const fs::path& case_folder, bones::BoneKind kind) {
+fs::path surface_index_file(const fs::path& case_folder, bones::BoneKind kind) {
   return case_folder / "cache" / (std::string(bones::to_text(kind)) + ".prepared");
 }
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "navigation/experiments/registration_trial.h"
-#include "navigation/registration/online_registration.h"
+#include "navigation/registration/online/online_registration.h"
 #include "navigation/registration/registration.h"
 #include "planning/bones/mesh_file.h"
 #include "planning/geometry/quantile.h"
@@ -29,12 +29,12 @@ struct Bone {
   Bone() {
     const char* file = std::getenv("ARTHRONAUT_BENCHMARK_BONE");
     mesh = file != nullptr ? bones::read_mesh(file) : phantom::make_phantom_knee().femur.mesh;
-    prepared = std::make_shared<const registration::PreparedBone>(mesh);
+    prepared = std::make_shared<const registration::SurfaceIndex>(mesh);
     surface = std::make_unique<geometry::Surface>(mesh);
     target_mm = experiments::find_lateral_notch_wall(mesh, *surface, bones::Side::Right).value();
   }
   geometry::TriangleMesh mesh;
-  std::shared_ptr<const registration::PreparedBone> prepared;
+  std::shared_ptr<const registration::SurfaceIndex> prepared;
   std::unique_ptr<geometry::Surface> surface;
   Eigen::Vector3d target_mm;
 };
@@ -70,7 +70,7 @@ class Score {
 };
 
 void prepare(benchmark::State& state) {
-  for (auto _ : state) benchmark::DoNotOptimize(registration::PreparedBone(bone().mesh));
+  for (auto _ : state) benchmark::DoNotOptimize(registration::SurfaceIndex(bone().mesh));
 }
 
 void register_globally(benchmark::State& state) {

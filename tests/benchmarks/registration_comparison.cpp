@@ -177,7 +177,7 @@ int main(int argc, char** argv) {
   try {
     const geometry::TriangleMesh mesh = bones::read_mesh(argv[1]);
     const geometry::Surface surface(mesh);
-    const registration::PreparedBone bone(mesh);
+    const registration::SurfaceIndex bone(mesh);
     std::printf(
         "| noise | method | success | median error, mm | of the successes | ms, median "
         "|\n|---|---|---|---|---|---|\n");

@@ -9,13 +9,15 @@
 #include "planning/bones/mesh_repair.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
-#include "planning/images/bone_import.h"
 #include "planning/images/dicom_slice.h"
 #include "planning/images/volume_file.h"
+#include "planning/import/bone_import.h"
 #include "tests/message_of.h"
 #include "tests/real_data/real_data.h"
 
-namespace arthronaut::images {
+namespace arthronaut::importing {
+
+using namespace images;  // volumes and slices are looked at beside the bones that come of them
 namespace {
 
 using bones::BoneKind;
@@ -256,4 +258,4 @@ TEST(ImportRealVolumes, TransferSyntaxesDecodeOrAreRefused) {
 }
 
 }  // namespace
-}  // namespace arthronaut::images
+}  // namespace arthronaut::importing

@@ -51,7 +51,7 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
   ARTHRONAUT_REQUIRE_DATA(probe_clip, "arthroscopy/probe_wet");
   ARTHRONAUT_REQUIRE_DATA(guide_clip, "arthroscopy/guide_wet");
   const tunnels::Tunnel plan = true_plan(guide_clip);
-  const registration::PreparedBone bone(bones::read_mesh_file(probe_clip / "bone.stl").mesh);
+  const registration::SurfaceIndex bone(bones::read_mesh_file(probe_clip / "bone.stl").mesh);
 
   pipeline::NavigateOptions scratch = options_of(probe_clip, plan);
   scratch.bone = &bone;

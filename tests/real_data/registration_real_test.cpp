@@ -48,7 +48,7 @@ TEST(RealRegistration, CleanCurvesAreFoundFromNothing) {
   const auto plan = read_truth_tunnel(set.parent_path() / "guide_wet/gt/tunnel.json");
   const auto truth = registration::read_registration_file(set / "gt/registration_gt.json");
   const auto curves = strokes::read_curves_file(set / "gt/curves.csv");
-  const registration::PreparedBone bone(bones::read_mesh(set / "bone.stl"));
+  const registration::SurfaceIndex bone(bones::read_mesh(set / "bone.stl"));
   for (const bool use_marker_prior : {true, false}) {
     for (const std::uint64_t seed : {1, 2, 3}) {
       const auto found = registration::register_curves(bone, curves, {seed, use_marker_prior, plan.entry_mm});
@@ -67,7 +67,7 @@ TEST(RealRegistration, AnotherPersonsFemurIsRefused) {
   ARTHRONAUT_REQUIRE_DATA(folder, "bones/mri-femora");
   const auto mesh = bones::read_mesh(folder / "femur_mesh_10k_pts.vtk");
   const auto other = bones::read_mesh(folder / "3_RIGHT_femur_Nov_02_2021.vtk");
-  const registration::PreparedBone own_bone(mesh), other_bone(other);
+  const registration::SurfaceIndex own_bone(mesh), other_bone(other);
   const geometry::Surface surface(mesh);
   const auto wall = experiments::find_lateral_notch_wall(mesh, surface, bones::Side::Right);
   ASSERT_TRUE(wall.has_value());
@@ -97,7 +97,7 @@ TEST(RealRegistration, RefusesWithTheRightReason) {
   geometry::TriangleMesh image = mesh;
   for (Eigen::Vector3d& vertex : image.vertices_mm) vertex.x() = -vertex.x();
   for (auto& triangle : image.triangles) std::swap(triangle[1], triangle[2]);
-  const registration::PreparedBone bone(mesh), mirrored(image),
+  const registration::SurfaceIndex bone(mesh), mirrored(image),
       other(bones::read_mesh(folder / "3_RIGHT_femur_Nov_02_2021.vtk"));
   const geometry::Surface surface(mesh);
   const auto wall = experiments::find_lateral_notch_wall(mesh, surface, bones::Side::Right);
@@ -108,7 +108,7 @@ TEST(RealRegistration, RefusesWithTheRightReason) {
     return experiments::make_trial(mesh, surface, *wall, setting, 1);
   };
   const auto trial = trial_of(16), patch = trial_of(3);
-  const auto expect = [](const registration::PreparedBone& on, const strokes::Curves& curves,
+  const auto expect = [](const registration::SurfaceIndex& on, const strokes::Curves& curves,
                          const std::string& words) {
     const auto found = registration::register_curves(on, curves);
     EXPECT_FALSE(found.reliable) << words;

@@ -34,7 +34,7 @@ TEST(Actions, KeyRunsWhatItIsForAndNothingElse) {
   EXPECT_TRUE(counter.press(GLFW_KEY_Z, GLFW_MOD_CONTROL));
   EXPECT_FALSE(counter.press(GLFW_KEY_Z, 0));
   EXPECT_FALSE(counter.press(GLFW_KEY_Z, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT));
-  EXPECT_FALSE(counter.press(GLFW_KEY_Z, GLFW_MOD_CONTROL, false, "operate."));
+  EXPECT_FALSE(counter.press(GLFW_KEY_Z, GLFW_MOD_CONTROL, false, "navigate."));
   counter.enabled = false;
   EXPECT_FALSE(counter.press(GLFW_KEY_Z, GLFW_MOD_CONTROL));
   EXPECT_FALSE(counter.actions.run("plan.undo"));

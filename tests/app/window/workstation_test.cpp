@@ -85,15 +85,15 @@ TEST_F(Workstation, LeadsThroughItsThreeModes) {
   ASSERT_TRUE(app.wait_for_state("picture", "live", 120));
   // Nothing is registered: no number may stand, and the reason does.
   ASSERT_TRUE(app.wait_for_state("guidance", "Not registered"));
-  ASSERT_TRUE(app.wait_for_widget("operate.video_panel"));
+  ASSERT_TRUE(app.wait_for_widget("navigate.video_panel"));
   const Picture live = app.screenshot();
   const auto is_lit = [](const std::array<int, 3>& c) { return c[0] + c[1] + c[2] > 120; };
-  EXPECT_GT(share(live, app.widgets().at("operate.video_panel"), is_lit), 0.2);
+  EXPECT_GT(share(live, app.widgets().at("navigate.video_panel"), is_lit), 0.2);
   EXPECT_EQ(app.state("layout"), "register");
   // The view without distortion is another picture of the same scene, as bright.
   app.press("u");
   ASSERT_TRUE(app.wait_for_state("view", "undistorted"));
-  EXPECT_GT(share(app.screenshot(), app.widgets().at("operate.video_panel"), is_lit), 0.2);
+  EXPECT_GT(share(app.screenshot(), app.widgets().at("navigate.video_panel"), is_lit), 0.2);
   app.press("Escape");
   ASSERT_TRUE(app.wait_for_state("picture", "none"));
   // A machine without a camera says so in words.
@@ -126,7 +126,7 @@ TEST_P(WorkstationLayout, HoldsAtEverySize) {
     ASSERT_TRUE(app.wait_for_state("mode", mode));
     const std::map<std::string, std::string> own{{"plan", "plan.undo"},
                                                  {"set up", "setup.next"},
-                                                 {"navigate", "operate.next"},
+                                                 {"navigate", "navigate.next"},
                                                  {"review", "review.play"}};
     ASSERT_TRUE(app.wait_for_widget(own.at(mode)));
     const auto widgets = app.widgets();

@@ -16,7 +16,7 @@ namespace arthronaut::registration {
 struct PhantomBone {
   geometry::TriangleMesh mesh;
   Eigen::Vector3d target_mm;  // the tunnel's entry, on the lateral wall of the notch
-  std::shared_ptr<const PreparedBone> prepared;
+  std::shared_ptr<const SurfaceIndex> prepared;
   std::unique_ptr<geometry::Surface> surface;
 
   [[nodiscard]] experiments::Trial trial(experiments::TrialNoise noise, std::uint64_t seed) const {
@@ -31,7 +31,7 @@ inline PhantomBone make_phantom_bone(std::uint64_t seed) {
   const phantom::PhantomKnee knee = phantom::make_phantom_knee({.seed = seed});
   PhantomBone bone;
   bone.mesh = knee.femur.mesh;
-  bone.prepared = std::make_shared<const PreparedBone>(bone.mesh);
+  bone.prepared = std::make_shared<const SurfaceIndex>(bone.mesh);
   bone.surface = std::make_unique<geometry::Surface>(bone.mesh);
   bone.target_mm = bone.surface->closest_point(knee.femoral_tunnel.entry_mm).point_mm;
   return bone;
@@ -46,7 +46,7 @@ inline const PhantomBone& phantom_bone() {
 // (thickness above 0) or has too much (below 0).
 struct CoveredTrial {
   experiments::Trial trial;
-  CoveredRegion region;
+  CartilageRegion region;
   std::vector<bool> is_on_cover;  // by point of the curves
 };
 

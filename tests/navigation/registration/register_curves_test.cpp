@@ -154,7 +154,7 @@ TEST(RegisterCurves, RefusesTheOtherSidesBone) {
   geometry::TriangleMesh image = bone.mesh;
   for (Eigen::Vector3d& vertex : image.vertices_mm) vertex.x() = -vertex.x();
   for (auto& triangle : image.triangles) std::swap(triangle[1], triangle[2]);
-  const PreparedBone mirrored(image);
+  const SurfaceIndex mirrored(image);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const auto found =
         register_curves(mirrored, bone.trial(TrialNoise::Dry, seed).curves, {seed, true, std::nullopt});

@@ -1,0 +1,57 @@
+#include "app/case/case_opening.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <utility>
+
+#include "planning/cases/case.h"
+#include "planning/phantom/phantom_case.h"
+
+namespace arthronaut::open_case {
+
+std::filesystem::path built_in_case_folder() {
+  const char* data = std::getenv("XDG_DATA_HOME");
+  const char* home = std::getenv("HOME");
+  std::filesystem::path base = std::filesystem::temp_directory_path();
+  if (data != nullptr && *data != '\0')
+    base = data;
+  else if (home != nullptr && *home != '\0')
+    base = std::filesystem::path(home) / ".local" / "share";
+  return base / "arthronaut" / "Phantom.arthro";
+}
+
+OpenedCase open_folder(const std::filesystem::path& folder) {
+  const std::filesystem::path chosen = folder.empty() ? built_in_case_folder() : folder;
+  if (folder.empty() && !std::filesystem::exists(chosen / "case.json")) {
+    std::filesystem::create_directories(chosen);
+    cases::save_case(chosen, phantom::case_of(phantom::make_phantom_knee(), "Phantom knee"));
+  }
+  return {chosen, std::make_unique<PlanModel>(cases::load_case(chosen))};
+}
+
+CaseOpening::CaseOpening(const std::filesystem::path& folder, std::function<void()> on_end)
+    : opening_(std::async(std::launch::async, [folder, on_end = std::move(on_end)] {
+        const struct AtEnd {
+          const std::function<void()>& call;
+          ~AtEnd() { call(); }
+        } at_end{on_end};
+        return open_folder(folder);
+      })) {}
+
+CaseOpening::~CaseOpening() {
+  if (opening_.valid()) opening_.wait();  // what it calls at its end must still be there
+}
+
+bool CaseOpening::take() {
+  if (!opening_.valid() || opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return false;
+  try {  // the top of the opening thread: a case that cannot be read is said on the screen
+    open_ = opening_.get();
+  } catch (const std::exception& error) {
+    failure_ = error.what();
+    return false;
+  }
+  return true;
+}
+
+}  // namespace arthronaut::open_case

@@ -1,0 +1,26 @@
+// What a mode asks the plan's history to do, and what the history says of itself.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "planning/tunnels/tunnel.h"
+
+namespace arthronaut::open_case {
+
+// A change that the surgeon made; the workstation carries it out, keeps it for undo and saves it.
+struct PlanEdit {
+  bones::BoneKind bone = bones::BoneKind::Femur;
+  std::optional<tunnels::Tunnel> tunnel;  // empty: remove it
+  std::string what;                       // "Aim the femoral tunnel"
+  bool continues = false;                 // belongs to the edit before it: one drag is one step back
+};
+
+// What the plan mode shows beside the model.
+struct PlanStatus {
+  std::string saved;  // "Saved 11:04:22", or what went wrong
+  bool save_failed = false;
+  std::string undo_what, redo_what;  // empty: nothing to undo, to redo
+};
+
+}  // namespace arthronaut::open_case

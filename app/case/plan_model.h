@@ -1,0 +1,63 @@
+// The open case as the plan mode sees it: the bones made ready for drawing and for exact queries, the tunnels
+// and what was measured of them. The one place where the plan lives while the program runs; it changes
+// through set_tunnel alone.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "planning/cases/case.h"
+#include "planning/geometry/surface.h"
+#include "planning/tunnels/plan_checks.h"
+
+namespace arthronaut::open_case {
+
+class PlanModel {
+ public:
+  // Takes about a second a bone: run it in a job. Throws InvalidInput when the case has no bone.
+  explicit PlanModel(cases::Case knee);
+
+  [[nodiscard]] const cases::Case& knee() const { return knee_; }
+  [[nodiscard]] bool has_bone(bones::BoneKind kind) const { return bones_.contains(kind); }
+  // Preconditions of these three: has_bone(kind).
+  [[nodiscard]] const geometry::Surface& surface(bones::BoneKind kind) const {
+    return *bones_.at(kind).surface;
+  }
+  [[nodiscard]] std::shared_ptr<const geometry::Surface> shared_surface(bones::BoneKind kind) const {
+    return bones_.at(kind).surface;
+  }
+  [[nodiscard]] const std::shared_ptr<const geometry::TriangleMesh>& drawn_mesh(bones::BoneKind kind) const {
+    return bones_.at(kind).drawn;
+  }
+
+  [[nodiscard]] std::optional<tunnels::Tunnel> tunnel(bones::BoneKind kind) const;
+  [[nodiscard]] const tunnels::TunnelGeometry& measured(
+      bones::BoneKind kind) const;  // meaningful with a tunnel
+  [[nodiscard]] std::vector<tunnels::PlanCheck> checks(bones::BoneKind kind) const;  // empty without a tunnel
+  // How far a tunnel is drawn: through the bone, or 30 mm where it misses.
+  [[nodiscard]] double drawn_length_mm(bones::BoneKind kind) const;
+  [[nodiscard]] geometry::Bounds bounds(std::optional<bones::BoneKind> only) const;
+
+  // nullopt removes the tunnel. Precondition: has_bone(kind).
+  void set_tunnel(bones::BoneKind kind, const std::optional<tunnels::Tunnel>& tunnel);
+  [[nodiscard]] std::uint64_t revision() const { return revision_; }  // counts the changes
+
+ private:
+  struct BoneModel {
+    std::shared_ptr<const geometry::TriangleMesh> drawn;
+    std::shared_ptr<const geometry::Surface> surface;
+    geometry::Bounds bounds;
+    tunnels::TunnelGeometry measured;
+    tunnels::PlanSurroundings surroundings;
+  };
+  void measure(bones::BoneKind kind);
+
+  cases::Case knee_;
+  std::map<bones::BoneKind, BoneModel> bones_;
+  std::uint64_t revision_ = 1;
+};
+
+}  // namespace arthronaut::open_case

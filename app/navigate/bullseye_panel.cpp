@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "app/guidance_severity/guidance_severity.h"
+#include "app/navigate/navigate_panels.h"
+
+namespace arthronaut::navigate {
+
+namespace {
+
+constexpr double kShown_mm = 6;  // radius of the whole bullseye
+constexpr std::array<double, 3> kRings_mm{1, 2, 5};
+
+void draw_target(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, float radius) {
+  const float per_mm = radius / static_cast<float>(kShown_mm);
+  draw.AddCircleFilled(center, radius, IM_COL32(15, 19, 24, 255), 96);
+  for (const double ring : kRings_mm) {
+    const float r = static_cast<float>(ring) * per_mm;
+    draw.AddCircle(center, r, ring == 1 ? widgets::kGood : IM_COL32(90, 104, 118, 255), 96,
+                   ui.theme.px(ring == 1 ? 3 : 2));
+    const std::string text = widgets::fixed(ring, 0) + (ring == 5 ? " mm" : "");
+    draw.AddText(ui.theme.body, ui.theme.body->FontSize,
+                 {center.x + r * 0.72F + ui.theme.px(3), center.y + r * 0.70F}, widgets::kQuietText,
+                 text.c_str());
+  }
+  draw.AddLine({center.x - radius, center.y}, {center.x + radius, center.y}, IM_COL32(64, 75, 86, 255),
+               ui.theme.px(1.5F));
+  draw.AddLine({center.x, center.y - radius}, {center.x, center.y + radius}, IM_COL32(64, 75, 86, 255),
+               ui.theme.px(1.5F));
+}
+
+void draw_directions(const widgets::Ui& ui, ImDrawList& draw, const widgets::Rect& area, const ImVec2& center,
+                     float radius, bool anterior_is_right) {
+  ImFont* font = ui.theme.strong;
+  const auto put = [&](const char* text, float x, float y, float align) {
+    const float width = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text).x;
+    const float left = std::clamp(x - width * align, area.x + 4, area.x + area.width - width - 4);
+    draw.AddText(font, font->FontSize, {left, y}, widgets::kQuietText, text);
+  };
+  put("proximal", center.x, center.y - radius - font->FontSize * 1.15F, 0.5F);
+  put("distal", center.x, center.y + radius + font->FontSize * 0.1F, 0.5F);
+  const float y = center.y - font->FontSize * 1.2F;
+  const float gap = ui.theme.px(6);
+  put(anterior_is_right ? "anterior" : "posterior", center.x + radius + gap, y, 0);
+  put(anterior_is_right ? "posterior" : "anterior", center.x - radius - gap, y, 1);
+}
+
+// The axis of the guide as a dot with a tail that leans as the guide does: 1 degree as long as 1 mm.
+void draw_guide(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, float radius,
+                const BullseyePoint& point, widgets::Severity sign) {
+  const float per_mm = radius / static_cast<float>(kShown_mm);
+  ImVec2 at{center.x + static_cast<float>(point.right_mm) * per_mm,
+            center.y - static_cast<float>(point.up_mm) * per_mm};
+  const float dx = at.x - center.x, dy = at.y - center.y, far = std::hypot(dx, dy);
+  const bool is_outside = far > radius;
+  if (is_outside) at = {center.x + dx / far * radius, center.y + dy / far * radius};
+  const ImU32 color = widgets::color_of(sign);
+  if (is_outside) {  // an arrow head on the rim says: farther that way
+    const ImVec2 out{dx / far, dy / far};
+    const float size = ui.theme.px(20);
+    draw.AddTriangleFilled({at.x + out.x * size, at.y + out.y * size},
+                           {at.x - out.y * size * 0.7F, at.y + out.x * size * 0.7F},
+                           {at.x + out.y * size * 0.7F, at.y - out.x * size * 0.7F}, color);
+    return;
+  }
+  // A lean that would leave the bullseye ends at its rim.
+  const float lean = static_cast<float>(std::hypot(point.lean_right_deg, point.lean_up_deg)) * per_mm;
+  const float shown =
+      lean > 0 ? std::min(1.F, std::max(radius - std::hypot(at.x - center.x, at.y - center.y), 0.F) / lean)
+               : 0;
+  const ImVec2 tail{at.x + static_cast<float>(point.lean_right_deg) * per_mm * shown,
+                    at.y - static_cast<float>(point.lean_up_deg) * per_mm * shown};
+  draw.AddLine(at, tail, color, ui.theme.px(5));
+  draw.AddCircle(at, ui.theme.px(15), color, 32, ui.theme.px(4));
+  widgets::draw_sign(draw, at, ui.theme.px(9), sign);
+}
+
+widgets::Severity worse(widgets::Severity a, widgets::Severity b) {
+  const auto rank = [](widgets::Severity s) {
+    return s == widgets::Severity::Bad ? 2 : s == widgets::Severity::Caution ? 1 : 0;
+  };
+  return rank(a) >= rank(b) ? a : b;
+}
+
+std::string direction_text(double value, const char* positive, const char* negative) {
+  return widgets::fixed(std::abs(value), 1) + " " + (value >= 0 ? positive : negative);
+}
+
+}  // namespace
+
+void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddRectFilled(area.min(), area.max(), widgets::kPanel, ui.theme.px(6));
+  ui.log.note("navigate.bullseye", area.min(), area.max());
+  const float font = ui.theme.strong->FontSize;
+  const float radius = std::max(std::min(area.width / 2 - font * 3.4F, area.height / 2 - font * 1.6F), 10.F);
+  const ImVec2 center = area.center();
+  if (!screen.display.guidance_is_valid || !screen.plan) {
+    draw.AddCircle(center, radius, widgets::kPanelEdge, 96, ui.theme.px(2));
+    widgets::text_centered(ui, area.inset(font), ui.theme.title, widgets::kCaution, screen.display.headline);
+    return;
+  }
+  const BullseyePoint point = bullseye_point(screen.display.guidance, *screen.plan);
+  draw_target(ui, draw, center, radius);
+  draw_directions(ui, draw, area, center, radius, point.anterior_is_right);
+  draw_guide(ui, draw, center, radius, point,
+             worse(guidance_severity::severity_of_offset(screen.display.guidance),
+                   guidance_severity::severity_of_angle(screen.display.guidance)));
+}
+
+void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddRectFilled(area.min(), area.max(), widgets::kPanel, ui.theme.px(6));
+  ui.log.note("navigate.numbers", area.min(), area.max());
+  widgets::Rect rest = area.inset(ui.theme.px(18));
+  const bool valid = screen.display.guidance_is_valid;
+  const guidance::GuidanceNumbers& g = screen.display.guidance;
+  // `mark` stands with the number ("\u00B0"), `unit` after it.
+  const auto block = [&](const char* name, double value, const char* mark, const std::string& unit,
+                         widgets::Severity sign) {
+    const widgets::Rect row = rest.cut_top(rest.height > 0 ? (area.height - ui.theme.px(36)) / 4 : 0);
+    // No number at all where none is valid: an old one would be believed.
+    widgets::number_block(ui, row, name, valid ? widgets::fixed(value, 1) + mark : "\u2013",
+                          valid ? unit : "", valid ? sign : widgets::Severity::Quiet);
+    return row;
+  };
+  const widgets::Rect offset =
+      block("Offset", guidance_severity::offset_mm(g), "", "mm " + widgets::plus_minus(g.sigma_offset_mm),
+            guidance_severity::severity_of_offset(g));
+  if (valid) {
+    const std::string text = direction_text(g.offset_anterior_mm, "anterior", "posterior") + "\n" +
+                             direction_text(g.offset_proximal_mm, "proximal", "distal");
+    ImFont* font = ui.theme.body;
+    const float width = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
+    draw.AddText(font, font->FontSize, {offset.x + offset.width - width, offset.y}, widgets::kText,
+                 text.c_str());
+  }
+  block("Angle", g.angle_deg, "\u00B0", widgets::plus_minus(g.sigma_angle_deg),
+        guidance_severity::severity_of_angle(g));
+  block("Depth", g.depth_mm, "", "mm", widgets::Severity::Quiet);
+  block("Remaining", g.remaining_mm, "", "mm", guidance_severity::severity_of_remaining(g));
+}
+
+}  // namespace arthronaut::navigate

@@ -1,0 +1,244 @@
+#include <GLFW/glfw3.h>
+
+#include "app/navigate/navigate_view.h"
+
+namespace arthronaut::navigate {
+
+void NavigateView::add_actions(widgets::Actions& actions) {
+  const auto running = [this] { return is_running(); };
+  const auto simulates = [this] { return can_simulate(); };
+  actions.add({"navigate.next",
+               "Next step",
+               "Starts, registers, drills: whatever comes next",
+               GLFW_KEY_SPACE,
+               0,
+               false,
+               [this] { return model_ != nullptr; },
+               {},
+               [this] { take_next_step(); }});
+  actions.add({"navigate.scratch", "Simulate: probe", "The simulated surgeon touches the bone with the probe",
+               GLFW_KEY_S, 0, false, simulates,
+               [this] { return is_running() && part_ == SimulatedPart::Scratch; },
+               [this] { start_simulation(SimulatedPart::Scratch); }});
+  actions.add({"navigate.drill", "Simulate: drill", "The simulated surgeon aims the guide and drills",
+               GLFW_KEY_G, 0, false, simulates,
+               [this] { return is_running() && part_ == SimulatedPart::Drill; },
+               [this] { start_simulation(SimulatedPart::Drill); }});
+  actions.add({"navigate.video",
+               "Video of the case",
+               "Navigates on the next video in the case's folder",
+               GLFW_KEY_O,
+               0,
+               false,
+               [this] { return model_ != nullptr; },
+               {},
+               [this] { start_video(); }});
+  actions.add({"navigate.stop",
+               "Stop",
+               "Ends the source",
+               GLFW_KEY_ESCAPE,
+               0,
+               false,
+               [this] { return operation_ != nullptr || !choices_.cameras.empty(); },
+               {},
+               [this] {
+                 if (choices_.cameras.empty()) end_operation();
+                 choices_.cameras.clear();
+               }});
+  actions.add({"navigate.camera", "Camera", "Navigates with a camera that is connected", GLFW_KEY_K, 0, false,
+               [this] { return model_ != nullptr && model_->has_bone(choices_.bone); },
+               [this] { return !choices_.cameras.empty(); }, [this] { choose_camera(); }});
+  actions.add({"navigate.digitise", "Probe draws",
+               "While on, where the probe's tip goes is kept for the registration", GLFW_KEY_D, 0, false,
+               running, [this] { return is_running() && status_.digitises; },
+               [this] { operation_->set_digitising(!status_.digitises); }});
+  actions.add(
+      {"navigate.register",
+       "Register",
+       "Fits the bone to what the probe drew",
+       GLFW_KEY_R,
+       0,
+       false,
+       [this] { return operation_ != nullptr && !status_.bone->drawn->empty() && !status_.is_registering; },
+       {},
+       [this] { operation_->register_curves(); }});
+  actions.add({"navigate.record", "Record", "Keeps video, poses and decisions in the case", GLFW_KEY_R,
+               GLFW_MOD_CONTROL, false, running, [this] { return !status_.recording.empty(); },
+               [this] { toggle_recording(); }});
+  actions.add({"navigate.overlay",
+               "Plan on video",
+               "Full, off; it fades by itself",
+               GLFW_KEY_V,
+               0,
+               false,
+               {},
+               [this] { return choices_.overlay_on; },
+               [this] { cycle_overlay(); }});
+  actions.add({"navigate.undistort",
+               "Undistorted",
+               "The picture without the lens' distortion: what is straight is straight",
+               GLFW_KEY_U,
+               0,
+               false,
+               {},
+               [this] { return choices_.undistorts; },
+               [this] { choices_.undistorts = !choices_.undistorts; }});
+  actions.add({"navigate.bone",
+               "Other bone",
+               "Navigate on the other bone",
+               GLFW_KEY_TAB,
+               0,
+               false,
+               [this] {
+                 const auto other = choices_.bone == bones::BoneKind::Femur ? bones::BoneKind::Tibia
+                                                                            : bones::BoneKind::Femur;
+                 return model_ != nullptr && model_->has_bone(other);
+               },
+               {},
+               [this] {
+                 end_operation();
+                 choices_.bone = choices_.bone == bones::BoneKind::Femur ? bones::BoneKind::Tibia
+                                                                         : bones::BoneKind::Femur;
+                 look_along_plan();
+               }});
+  actions.add({"navigate.medium",
+               "Saline",
+               "Saline while on, air while off; for the next video",
+               GLFW_KEY_M,
+               0,
+               false,
+               {},
+               [this] { return choices_.saline; },
+               [this] { choices_.saline = !choices_.saline; }});
+  add_registration_actions(actions);
+}
+
+void NavigateView::add_registration_actions(widgets::Actions& actions) {
+  const auto knows_bone = [this] { return bone_registration() != nullptr; };
+  const auto has_tip = [this] { return is_running(); };
+  const auto has_drawn = [this] { return bone_registration() != nullptr && !status_.bone->drawn->empty(); };
+  const auto select = [this](int step) {
+    choices_.stroke = neighbour_stroke(words_.strokes, choices_.stroke, step);
+  };
+  actions.add({"navigate.panel", "Registration", "Shows the registration or the way to the plan", GLFW_KEY_H,
+               0, false, [this] { return operation_ != nullptr; },
+               [this] { return layout(Operation::now_s()) == NavigateLayout::Register; },
+               [this] {
+                 choices_.layout = layout(Operation::now_s()) == NavigateLayout::Register
+                                       ? NavigateLayout::Guide
+                                       : NavigateLayout::Register;
+               }});
+  actions.add({"navigate.take_back",
+               "Take back",
+               "Forgets the stroke drawn last",
+               GLFW_KEY_BACKSPACE,
+               0,
+               false,
+               has_drawn,
+               {},
+               [this] { bone_registration()->take_back_stroke(); }});
+  actions.add({"navigate.stroke_up",
+               "Newer stroke",
+               "Selects the stroke drawn after this one",
+               GLFW_KEY_UP,
+               0,
+               true,
+               has_drawn,
+               {},
+               [select] { select(1); }});
+  actions.add({"navigate.stroke_down",
+               "Older stroke",
+               "Selects the stroke drawn before this one",
+               GLFW_KEY_DOWN,
+               0,
+               true,
+               has_drawn,
+               {},
+               [select] { select(-1); }});
+  actions.add(
+      {"navigate.leave_out", "Leave out", "Takes the selected stroke out of the fit, or back in", GLFW_KEY_X,
+       0, false, [this] { return neighbour_stroke(words_.strokes, choices_.stroke, 0) >= 0; },
+       [this] { return status_.bone->left_out.contains(choices_.stroke); },
+       [this] {
+         choices_.stroke = neighbour_stroke(words_.strokes, choices_.stroke, 0);
+         bone_registration()->leave_out(choices_.stroke, !status_.bone->left_out.contains(choices_.stroke));
+       }});
+  actions.add({"navigate.touch",
+               "Verify touch",
+               "Measures how far the tip is from the bone, here; not used in the fit",
+               GLFW_KEY_T,
+               0,
+               false,
+               has_tip,
+               {},
+               [this] { take_touch(false); }});
+  actions.add(
+      {"navigate.control_point", "Control point",
+       "A mark on the bone: touched first it is kept, later it tells whether the world marker has moved",
+       GLFW_KEY_P, 0, false, has_tip, [this] { return status_.bone->touches.has_control_point(); },
+       [this] { take_touch(true); }});
+  actions.add({"navigate.forget_touches",
+               "Forget touches",
+               "Touches and control point were wrong, not the marker: takes an alarm away",
+               GLFW_KEY_T,
+               GLFW_MOD_SHIFT,
+               false,
+               [this] {
+                 return bone_registration() != nullptr && (!status_.bone->touches.touches_mm().empty() ||
+                                                           status_.bone->touches.has_control_point());
+               },
+               {},
+               [this] { bone_registration()->forget_touches(); }});
+  actions.add({"navigate.clear",
+               "Clear points",
+               "Forgets what the probe drew and the touches; after an alarm the registration too",
+               GLFW_KEY_C,
+               0,
+               false,
+               [this, knows_bone] {
+                 return knows_bone() && (!status_.bone->drawn->empty() || !status_.bone->alarm.empty());
+               },
+               {},
+               [this] { bone_registration()->clear(); }});
+  actions.add({"navigate.earlier",
+               "Earlier",
+               "Goes back to the registration before",
+               GLFW_KEY_LEFT,
+               0,
+               false,
+               [this] { return status_.bone->entry_in_force.value_or(0) > 0; },
+               {},
+               [this] { bone_registration()->step_history(-1); }});
+  actions.add({"navigate.later",
+               "Later",
+               "Goes on to the registration after",
+               GLFW_KEY_RIGHT,
+               0,
+               false,
+               [this] {
+                 return status_.bone->entry_in_force &&
+                        *status_.bone->entry_in_force + 1 < status_.bone->history->size();
+               },
+               {},
+               [this] { bone_registration()->step_history(1); }});
+}
+
+void NavigateView::draw_controls(const widgets::Ui& ui, const widgets::Rect& area) {
+  const float gap = ui.theme.px(10), height = (area.height - gap) / 2;
+  const auto row = [&](float y, std::initializer_list<const char*> ids) {
+    const float width =
+        (area.width - gap * static_cast<float>(ids.size() - 1)) / static_cast<float>(ids.size());
+    float x = area.x;
+    for (const char* id : ids) {
+      ImGui::SetCursorScreenPos({x, y});
+      widgets::action_button(ui, id, width, height);
+      x += width + gap;
+    }
+  };
+  row(area.y, {"navigate.next", "navigate.scratch", "navigate.drill", "navigate.video", "navigate.camera",
+               "navigate.medium", "navigate.stop"});
+  row(area.y + height + gap, {"navigate.digitise", "navigate.register", "navigate.panel", "navigate.overlay",
+                              "navigate.undistort", "navigate.bone", "navigate.record"});
+}
+
+}  // namespace arthronaut::navigate

@@ -1,0 +1,48 @@
+// What may stand on the theatre screen at this moment. Every panel asks here, so that the overlay, the guide
+// and the numbers come and go together: what is not valid now is not drawn, and the reason stands in its
+// place.
+#pragma once
+
+#include <string>
+
+#include "app/navigate/operation.h"
+#include "app/widgets/controls.h"
+
+namespace arthronaut::navigate {
+
+struct NavigateDisplay {
+  bool has_picture = false;       // a picture may be shown; false: nothing but the reason
+  bool is_live = false;           // ... and it is of now
+  bool overlay_is_valid = false;  // the plan's lines belong to this picture
+  bool guidance_is_valid = false;
+  std::string headline, detail;        // why not; empty while guidance is valid
+  guidance::GuidanceNumbers guidance;  // meaningful when guidance_is_valid
+};
+
+// What fills the screen beside the picture: the registration that is being made, or the way to the plan.
+enum class NavigateLayout { Register, Guide };
+// since_guidance_s: how long ago guidance was valid last; infinite when it never was. A guide that is hidden
+// for a moment does not change the screen.
+[[nodiscard]] NavigateLayout layout_of(const OperationStatus* status, double since_guidance_s);
+
+// What is wrong with the lens, and what to do about it; empty while the mark is found on its track.
+struct LensTrouble {
+  std::string headline, advice;
+};
+[[nodiscard]] LensTrouble trouble_of(const lens::LensObservation& lens);
+
+// now_s on the clock of Operation::now_s(). status may be null: no operation was started.
+[[nodiscard]] NavigateDisplay display_of(const OperationStatus* status,
+                                         const pipeline::PipelineOptions* options, double now_s);
+
+// The bullseye's point: where the guide's axis crosses the plane through the entry, seen along the plan with
+// the proximal direction up; mm, x to the right. And how the guide leans there, in degrees the same way.
+struct BullseyePoint {
+  double right_mm = 0, up_mm = 0;
+  double lean_right_deg = 0, lean_up_deg = 0;
+  bool anterior_is_right = true;
+};
+[[nodiscard]] BullseyePoint bullseye_point(const guidance::GuidanceNumbers& guidance,
+                                           const tunnels::Tunnel& plan);
+
+}  // namespace arthronaut::navigate

@@ -1,0 +1,36 @@
+// From a case to an operation: which camera, which tools, which source.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "app/case/plan_model.h"
+#include "app/navigate/operation.h"
+#include "navigation/sources/connected_cameras.h"
+#include "navigation/sources/device_turns.h"
+
+namespace arthronaut::navigate {
+
+enum class SimulatedPart { Scratch, Drill };
+
+// Why the simulated operation can't run on this bone of the case: no plan, no landmarks. Empty when it can.
+[[nodiscard]] std::string missing_for_simulation(const open_case::PlanModel& model, bones::BoneKind bone);
+// Precondition: missing_for_simulation() is empty. The standard scope and the standard tools in saline,
+// tracked with what Set up has adopted of them for this case. Throws IoError or InvalidInput when that is
+// broken.
+[[nodiscard]] OperationSetup simulated_setup(const open_case::PlanModel& model, bones::BoneKind bone,
+                                             const std::filesystem::path& case_folder, SimulatedPart part);
+
+// A recorded video with the case's camera.json and tools.json. Throws IoError or InvalidInput when those are
+// missing or broken: the message says which.
+[[nodiscard]] OperationSetup video_setup(const open_case::PlanModel& model, bones::BoneKind bone,
+                                         const std::filesystem::path& case_folder,
+                                         const std::filesystem::path& video, double refractive_index);
+
+// The same with a camera that is connected, /dev/videoN. It is opened on the worker, in its turn.
+[[nodiscard]] OperationSetup camera_setup(const open_case::PlanModel& model, bones::BoneKind bone,
+                                          const std::filesystem::path& case_folder,
+                                          const sources::ConnectedCamera& camera,
+                                          const sources::DeviceTurns& turns, double refractive_index);
+
+}  // namespace arthronaut::navigate

@@ -1,0 +1,103 @@
+// Navigation mode: the live picture with the plan on it, beside it the guide relative to the plan, numbers
+// and states. Made to be worked by three keys of a pedal: Space does the next sensible step.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+
+#include "app/case/plan_model.h"
+#include "app/navigate/navigate_panels.h"
+#include "app/navigate/navigate_scene.h"
+#include "app/navigate/navigate_setup.h"
+#include "app/navigate/operation.h"
+#include "navigation/sources/background_end.h"
+
+namespace arthronaut::navigate {
+
+class NavigateView {
+ public:
+  // wake: ends the window's wait for input; called from other threads. turns: shared with whatever else opens
+  // cameras.
+  NavigateView(std::function<void()> make_current, std::function<void()> wake,
+               const sources::DeviceTurns& turns);
+  ~NavigateView();
+
+  // Another case; ends what runs. The model is read whenever an operation is started; it outlives this view's
+  // use.
+  void open(const open_case::PlanModel* model, const std::filesystem::path& case_folder);
+  // This mode comes to the front: sees anew which videos the case has.
+  void enter();
+  void add_actions(widgets::Actions& actions);
+  void draw(const widgets::Ui& ui, const widgets::Rect& area);
+  // While true the screen must be drawn again soon: pictures are coming, or the overlay fades.
+  [[nodiscard]] bool is_busy() const;
+  // One line for the status bar of the window; empty when there is nothing to say.
+  [[nodiscard]] std::string notice() const { return notice_; }
+
+ private:
+  void start(OperationSetup setup);
+  void start_simulation(SimulatedPart part);
+  void start_video();
+  void start_camera(const sources::ConnectedCamera& camera);
+  // One camera is opened at once, several are offered, none is told.
+  void choose_camera();
+  // Ends what runs: at once on the screen, in a thread of its own behind it.
+  void end_operation();
+  void take_next_step();
+  void take_touch(bool is_control_point);
+  void toggle_recording();
+  void add_registration_actions(widgets::Actions& actions);
+  void cycle_overlay();
+  void prepare_bone();
+  void look_along_plan();
+  [[nodiscard]] std::string next_step() const;
+  [[nodiscard]] bool can_simulate() const;
+  [[nodiscard]] bool is_running() const;
+  [[nodiscard]] BoneRegistration* bone_registration() const;  // null before this mode was looked at
+  void read_status();
+  [[nodiscard]] NavigateLayout layout(double now_s) const;
+  [[nodiscard]] NavigateScreen screen_of(const NavigateDisplay& display, double now_s) const;
+  void note_states(const widgets::Ui& ui, const NavigateScreen& screen) const;
+  [[nodiscard]] float overlay_opacity(double now_s) const;
+  void draw_controls(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_cameras(const widgets::Ui& ui, const widgets::Rect& area) const;
+
+  struct BoneState {  // what stays when one source ends and another starts
+    std::shared_future<SurfaceIndexPtr> prepared;
+    std::shared_ptr<BoneRegistration> registration;
+  };
+  struct Choices {
+    bones::BoneKind bone = bones::BoneKind::Femur;
+    bool saline = true;
+    std::vector<std::filesystem::path> videos;  // of the case, when this mode was entered
+    std::size_t video = 0;                      // the next of those
+    bool overlay_on = true;
+    double overlay_shown_at_s = 0;
+    bool undistorts = false;
+    std::optional<NavigateLayout> layout;           // empty: as things stand
+    double guidance_seen_s = -1e9;                  // when guidance was valid last
+    int stroke = -1;                                // selected
+    std::vector<sources::ConnectedCamera> cameras;  // on offer now; empty: none
+    std::size_t camera = 0;                         // of those
+  };
+
+  const open_case::PlanModel* model_ = nullptr;
+  std::filesystem::path case_folder_;
+  std::function<void()> wake_;
+  sources::DeviceTurns turns_;
+  NavigateScene scene_;
+  VideoTextures video_;
+  std::map<bones::BoneKind, BoneState> bones_;
+  Choices choices_;
+  std::unique_ptr<Operation> operation_;
+  sources::BackgroundEnd ending_;      // operations before, and bones of another case
+  OperationStatus status_;             // of this frame
+  RegistrationWords words_;            // of status_.bone
+  std::optional<SimulatedPart> part_;  // of the running simulation
+  std::string notice_;
+};
+
+}  // namespace arthronaut::navigate

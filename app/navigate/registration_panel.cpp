@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <array>
+
+#include "app/navigate/navigate_panels.h"
+
+namespace arthronaut::navigate {
+
+namespace {
+
+constexpr std::size_t kShownStrokes = 4, kShownHistory = 3;
+
+void draw_bar(const widgets::Ui& ui, double progress, widgets::Severity sign) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = std::max(ImGui::GetContentRegionAvail().x, 1.F), height = ui.theme.px(14);
+  draw.AddRectFilled(at, {at.x + width, at.y + height}, IM_COL32(14, 17, 21, 255), height / 2);
+  const float done = width * static_cast<float>(progress);
+  const ImU32 color = sign == widgets::Severity::Good ? widgets::kGood : widgets::kAccent;
+  if (done > height) draw.AddRectFilled(at, {at.x + done, at.y + height}, color, height / 2);
+  ImGui::Dummy({width, height});
+}
+
+void draw_state(const widgets::Ui& ui, const RegistrationWords& words) {
+  const SeverityText& state = words.state;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float radius = ui.theme.px(12);
+  widgets::draw_sign(*ImGui::GetWindowDrawList(), {at.x + radius, at.y + ui.theme.title->FontSize / 2},
+                     radius, state.sign);
+  ImGui::Indent(3 * radius);
+  widgets::text_in(ui.theme.title,
+                   state.sign == widgets::Severity::Quiet ? widgets::kText : widgets::color_of(state.sign),
+                   state.name);
+  ImGui::Unindent(3 * radius);
+  draw_bar(ui, words.progress, state.sign);
+  widgets::text_in(ui.theme.strong, widgets::kText, state.text);
+  if (!words.missing.empty()) widgets::text_in(ui.theme.body, widgets::kQuietText, words.missing);
+  if (!words.assumed.empty()) widgets::text_in(ui.theme.body, widgets::kQuietText, words.assumed);
+  for (const SeverityText& row : words.numbers) widgets::status_row(ui, row.sign, row.name, row.text);
+}
+
+void draw_touch(const widgets::Ui& ui, const std::optional<TouchText>& touch, const std::string& notice) {
+  if (!notice.empty()) widgets::status_row(ui, widgets::Severity::Caution, "No touch taken", notice);
+  if (!touch) return;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = std::max(ImGui::GetContentRegionAvail().x, 1.F);
+  const float height = ui.theme.strong->FontSize + ui.theme.number->FontSize;
+  widgets::number_block(ui, {at.x, at.y, width, height}, touch->number.name, touch->number.text, "",
+                        touch->number.sign);
+  ImGui::Dummy({width, height});
+  widgets::text_in(ui.theme.body, widgets::kQuietText, touch->sentence);
+}
+
+// A few rows of a list about the one that counts, the newest first; it is framed.
+template <typename Row, typename IsMarked, typename Draw>
+void draw_rows(const widgets::Ui& ui, const std::vector<Row>& rows, std::size_t most,
+               const IsMarked& is_marked, const Draw& draw_row) {
+  std::size_t marked = rows.size();
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (is_marked(i)) marked = i;
+  std::size_t end = rows.size();
+  if (marked < end) end = std::max(std::min(marked + most / 2 + 1, rows.size()), std::min(most, rows.size()));
+  for (std::size_t shown = 0; shown < most && shown < end; ++shown) {
+    const std::size_t i = end - 1 - shown;
+    const ImVec2 min = ImGui::GetCursorScreenPos();
+    draw_row(rows[i]);
+    if (i != marked) continue;
+    const ImVec2 max{min.x + std::max(ImGui::GetContentRegionAvail().x, 1.F), ImGui::GetItemRectMax().y};
+    const float by = ui.theme.px(4);
+    ImGui::GetWindowDrawList()->AddRect({min.x - by, min.y - by}, {max.x + by, max.y + by}, widgets::kAccent,
+                                        ui.theme.px(6), 0, ui.theme.px(2));
+  }
+}
+
+void draw_lists(const widgets::Ui& ui, const RegistrationStatus& status, const RegistrationWords& words,
+                int selected_stroke) {
+  const std::vector<StrokeRow>& strokes = words.strokes;
+  if (!strokes.empty()) {
+    const std::string count = strokes.size() > kShownStrokes ? ", " + std::to_string(kShownStrokes) + " of " +
+                                                                   std::to_string(strokes.size())
+                                                             : "";
+    widgets::text_in(ui.theme.strong, widgets::kAccent, "Strokes" + count + " (Up, Down)");
+    draw_rows(
+        ui, strokes, kShownStrokes, [&](std::size_t i) { return strokes[i].curve == selected_stroke; },
+        [&](const StrokeRow& row) { widgets::status_row(ui, row.text.sign, row.text.name, row.text.text); });
+  }
+  const std::vector<SeverityText>& history = words.history;
+  if (history.empty()) return;
+  const std::string used =
+      status.entry_in_force ? ", in use: " + std::to_string(*status.entry_in_force + 1) : "";
+  widgets::text_in(ui.theme.strong, widgets::kAccent,
+                   "Registrations" + used + (status.is_chosen ? " (chosen)" : ""));
+  draw_rows(
+      ui, history, kShownHistory, [&](std::size_t i) { return status.entry_in_force == i; },
+      [&](const SeverityText& row) { widgets::status_row(ui, row.sign, row.name, row.text); });
+}
+
+}  // namespace
+
+void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen) {
+  constexpr std::array<std::array<const char*, 2>, 4> kButtons{{{"navigate.take_back", "navigate.leave_out"},
+                                                                {"navigate.touch", "navigate.control_point"},
+                                                                {"navigate.forget_touches", "navigate.clear"},
+                                                                {"navigate.earlier", "navigate.later"}}};
+  const float gap = ui.theme.px(8), height = ui.theme.px(40);
+  widgets::Rect rest = area;
+  widgets::Rect buttons = rest.cut_bottom((height + gap) * kButtons.size() - gap, ui.theme.px(12));
+  widgets::begin_panel(ui, "navigate.registration", rest);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui.theme.px(8), ui.theme.px(7)});
+  draw_state(ui, screen.words);
+  draw_touch(ui, screen.words.touch, screen.status->touch_notice);
+  draw_lists(ui, *screen.status->bone, screen.words, screen.selected_stroke);
+  ImGui::PopStyleVar();
+  widgets::end_panel();
+  const float width = (buttons.width - gap) / 2;
+  for (const auto& row : kButtons) {
+    const widgets::Rect line = buttons.cut_top(height, gap);
+    ImGui::SetCursorScreenPos(line.min());
+    widgets::action_button(ui, row[0], width, height);
+    ImGui::SetCursorScreenPos({line.x + width + gap, line.y});
+    widgets::action_button(ui, row[1], width, height);
+  }
+}
+
+}  // namespace arthronaut::navigate

@@ -1,0 +1,70 @@
+// What the registration panel says, as plain data: states, numbers and touches in words, each with its sign.
+// Pure.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/navigate/bone_registration.h"
+#include "app/widgets/controls.h"
+
+namespace arthronaut::navigate {
+
+struct SeverityText {
+  widgets::Severity sign = widgets::Severity::Quiet;
+  std::string name, text;
+};
+
+// "Collecting", "Candidate, not confirmed yet", "Confirmed", "Verified", or the alarm; with what to do.
+[[nodiscard]] SeverityText state_of(const RegistrationStatus& status);
+// 0 to 1; 0 while there is an alarm.
+[[nodiscard]] double progress_of(const RegistrationStatus& status);
+// "Missing: 34 mm more of stroke; ..."; empty when nothing is.
+[[nodiscard]] std::string missing_of(const RegistrationStatus& status);
+// "Assumed: the covered region lies 2.0 mm off the mesh, ..."; of the same pose as the numbers. Empty when
+// nothing was.
+[[nodiscard]] std::string assumed_of(const RegistrationStatus& status);
+// Whether touches that it was not fitted to lie on the bone, by the registration that guides.
+[[nodiscard]] bool is_verified(const RegistrationStatus& status);
+// Predicted error at the tunnel, and how near the next best pose comes; of the pose that runs along, else of
+// the one in force. Empty without a pose.
+[[nodiscard]] std::vector<SeverityText> numbers_of(const RegistrationStatus& status);
+
+// The last touch, for a large number: name "Touch 2", text "0.4 mm" with its sign; and a sentence beside it.
+struct TouchText {
+  SeverityText number;
+  std::string sentence;
+};
+// nullopt before the first touch.
+[[nodiscard]] std::optional<TouchText> touch_of(const RegistrationStatus& status);
+
+// One row a stroke that counts, newest last. text: "32 mm, 0.2 mm off" or "left out".
+struct StrokeRow {
+  int curve = 0;
+  bool is_left_out = false;
+  SeverityText text;
+};
+[[nodiscard]] std::vector<StrokeRow> stroke_rows(const RegistrationStatus& status);
+// The stroke above or below another in that list; the newest when there is no such stroke. -1 when there is
+// none.
+[[nodiscard]] int neighbour_stroke(const std::vector<StrokeRow>& rows, int curve, int step);
+
+// One row an entry of the history: name "2  while drawing", text "± 0.6 mm, fit 0.3 mm".
+[[nodiscard]] std::vector<SeverityText> history_rows(const RegistrationStatus& status);
+
+// All of the above at once, to be kept until the status changes.
+struct RegistrationWords {
+  SeverityText state;
+  double progress = 0;
+  std::string missing, assumed;
+  std::vector<SeverityText> numbers;
+  std::optional<TouchText> touch;
+  std::vector<StrokeRow> strokes;
+  std::vector<SeverityText> history;
+};
+[[nodiscard]] RegistrationWords words_of(const RegistrationStatus& status);
+
+// How far a touched point may lie off the bone to be good; beyond caution it is bad.
+[[nodiscard]] widgets::Severity severity_of_residual(double residual_mm);
+
+}  // namespace arthronaut::navigate

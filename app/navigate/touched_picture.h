@@ -1,0 +1,37 @@
+// What was touched, laid on the 3D bone: strokes coloured and thickened by how far they lie off it, and how
+// well each part of the bone nearby is held.
+#pragma once
+
+#include <vector>
+
+#include "app/navigate/bone_registration.h"
+#include "app/scene/scene_content.h"
+
+namespace arthronaut::navigate {
+
+inline constexpr scene::Color kDoubtColor{0.94F, 0.75F, 0.24F}, kOffColor{1.0F, 0.44F, 0.36F};
+inline constexpr scene::Color kLeftOutColor{0.45F, 0.48F, 0.52F};
+
+class TouchedPicture {
+ public:
+  // Adds the strokes of `status`, laid on the bone by the registration in force or else by the one that runs
+  // along; the selected stroke is thicker. Nothing without a pose. Distances are kept from call to call.
+  void add_strokes(scene::SceneContent& content, const RegistrationStatus& status,
+                   const geometry::Surface& surface, int selected_curve);
+
+ private:
+  struct Point {
+    int curve;
+    Eigen::Vector3d in_bone_mm;
+    double residual_mm;
+  };
+  std::shared_ptr<const strokes::Curves> drawn_;  // that the points below were made of
+  geometry::RigidTransform marker_from_bone_;
+  std::vector<Point> points_;
+};
+
+// A disc on every part of the bone near the strokes: green where touched, orange and the larger the more a
+// stroke there would help, grey where it is held already.
+void add_patches(scene::SceneContent& content, const registration::Coach& coach);
+
+}  // namespace arthronaut::navigate

@@ -1,0 +1,27 @@
+#include "app/plan/anatomical_text.h"
+
+#include <array>
+#include <cmath>
+
+namespace arthronaut::plan {
+
+std::string anatomical_text(const Eigen::Vector3d& displacement_mm, bones::Side side) {
+  const double lateral = side == bones::Side::Right ? -displacement_mm.x() : displacement_mm.x();
+  struct Part {
+    double value;
+    const char *positive, *negative;
+  };
+  const std::array<Part, 3> parts{Part{displacement_mm.z(), "proximal", "distal"},
+                                  Part{lateral, "lateral", "medial"},
+                                  Part{-displacement_mm.y(), "anterior", "posterior"}};
+  std::string text;
+  for (const Part& part : parts) {
+    if (std::abs(part.value) < 0.5) continue;
+    if (!text.empty()) text += ", ";
+    text += std::to_string(std::lround(std::abs(part.value))) + " mm " +
+            (part.value > 0 ? part.positive : part.negative);
+  }
+  return text.empty() ? "at the entry" : text;
+}
+
+}  // namespace arthronaut::plan

@@ -1,0 +1,296 @@
+#include "app/plan/plan_view.h"
+
+#include <GLFW/glfw3.h>
+
+#include <array>
+
+#include "app/plan/tunnel_moves.h"
+
+namespace arthronaut::plan {
+
+namespace {
+
+using bones::BoneKind;
+
+constexpr double kHandleReach_px = 22;
+constexpr double kAimHandleBeyond_mm = 12;
+
+std::string tunnel_name(BoneKind bone) { return bone == BoneKind::Femur ? "femoral" : "tibial"; }
+
+std::optional<BoneKind> only_bone_of(scene::View view) {
+  if (view == scene::View::Distal || view == scene::View::Notch) return BoneKind::Femur;
+  if (view == scene::View::Plateau) return BoneKind::Tibia;
+  return std::nullopt;
+}
+
+}  // namespace
+
+PlanView::PlanView(std::function<void()> make_current, std::function<void(const open_case::PlanEdit&)> edit)
+    : pane_(std::move(make_current)), edit_(std::move(edit)) {}
+
+void PlanView::reset(const open_case::PlanModel& model) {
+  state_ = {};
+  if (!model.has_bone(BoneKind::Femur)) state_.bone = BoneKind::Tibia;
+  look_from(model, scene::View::Anterior);
+}
+
+void PlanView::look_from(const open_case::PlanModel& model, scene::View view) {
+  state_.looked_from = view;
+  state_.only = only_bone_of(view);
+  if (state_.only && !model.has_bone(*state_.only)) state_.only.reset();
+  if (state_.only) state_.bone = *state_.only;
+  pane_.look(scene::look_from(view, model.knee().side, model.bounds(state_.only), state_.aspect));
+  state_.shown_revision = 0;
+}
+
+void PlanView::apply(const open_case::PlanModel& model, const std::string& what, bool continues,
+                     const Move& move) const {
+  if (!model.has_bone(state_.bone)) return;
+  if (const auto tunnel = move(model))
+    edit_({state_.bone, tunnel, what + " " + tunnel_name(state_.bone) + " tunnel", continues});
+}
+
+void PlanView::add_actions(widgets::Actions& actions, std::function<const open_case::PlanModel*()> model) {
+  const auto has_tunnel = [this, model] {
+    return model() != nullptr && model()->tunnel(state_.bone).has_value();
+  };
+  const auto is_open = [model] { return model() != nullptr; };
+  const auto move_action =
+      [&](const char* id, const char* label, const char* tooltip, int key, int mods, const char* what,
+          std::function<tunnels::Tunnel(const open_case::PlanModel&, const tunnels::Tunnel&)> move) {
+        actions.add({id, label, tooltip, key, mods, true, has_tunnel, {}, [this, model, what, move] {
+                       apply(*model(), what, true,
+                             [&](const open_case::PlanModel& m) { return move(m, *m.tunnel(state_.bone)); });
+                     }});
+      };
+  add_view_actions(actions, model);
+  actions.add({"plan.bone",
+               "Other bone",
+               "Plan the tunnel of the other bone",
+               GLFW_KEY_TAB,
+               0,
+               false,
+               [this, model] {
+                 const BoneKind other = state_.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
+                 return model() != nullptr && model()->has_bone(other);
+               },
+               {},
+               [this, model] {
+                 state_.bone = state_.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
+                 if (state_.only) look_from(*model(), scene::View::Anterior);
+                 state_.shown_revision = 0;
+               }});
+  actions.add({"plan.place", "Place entry", "Then click where the tunnel is to begin on the bone", GLFW_KEY_P,
+               0, false, is_open, [this] { return state_.places_entry; },
+               [this] { state_.places_entry = !state_.places_entry; }});
+  move_action("plan.wider", "Wider", "Half a millimetre more", GLFW_KEY_EQUAL, 0,
+              "Change the diameter of the", [](const open_case::PlanModel&, const tunnels::Tunnel& t) {
+                return with_diameter(t, t.diameter_mm + 0.5);
+              });
+  move_action("plan.narrower", "Narrower", "Half a millimetre less", GLFW_KEY_MINUS, 0,
+              "Change the diameter of the", [](const open_case::PlanModel&, const tunnels::Tunnel& t) {
+                return with_diameter(t, t.diameter_mm - 0.5);
+              });
+  struct Arrow {
+    const char *id, *word;
+    int key;
+    Eigen::Vector2d right_up;
+  };
+  const std::array<Arrow, 4> arrows{
+      Arrow{"left", "left", GLFW_KEY_LEFT, {-1, 0}}, Arrow{"right", "right", GLFW_KEY_RIGHT, {1, 0}},
+      Arrow{"up", "up", GLFW_KEY_UP, {0, 1}}, Arrow{"down", "down", GLFW_KEY_DOWN, {0, -1}}};
+  for (const Arrow& arrow : arrows) {
+    move_action((std::string("plan.aim_") + arrow.id).c_str(), (std::string("Aim ") + arrow.word).c_str(),
+                "The far end of the tunnel moves that way by 1 degree", arrow.key, 0, "Aim the",
+                [this, arrow](const open_case::PlanModel&, const tunnels::Tunnel& t) {
+                  return turned(t, pane_.camera(), arrow.right_up);
+                });
+    move_action(
+        (std::string("plan.slide_") + arrow.id).c_str(), (std::string("Slide entry ") + arrow.word).c_str(),
+        "The entry moves over the bone by half a millimetre", arrow.key, GLFW_MOD_SHIFT,
+        "Move the entry of the", [this, arrow](const open_case::PlanModel& m, const tunnels::Tunnel& t) {
+          return with_entry_slid(t, pane_.camera(), 0.5 * arrow.right_up, m.surface(state_.bone));
+        });
+  }
+  actions.add(
+      {"plan.remove",
+       "Remove tunnel",
+       "Undo brings it back",
+       GLFW_KEY_DELETE,
+       0,
+       false,
+       has_tunnel,
+       {},
+       [this] {
+         edit_({state_.bone, std::nullopt, "Remove the " + tunnel_name(state_.bone) + " tunnel", false});
+       }});
+}
+
+void PlanView::add_view_actions(widgets::Actions& actions,
+                                std::function<const open_case::PlanModel*()> model) {
+  struct Side {
+    const char *id, *label;
+    int key;
+    scene::View view;
+  };
+  const std::array<Side, 7> sides{Side{"plan.anterior", "Anterior", GLFW_KEY_1, scene::View::Anterior},
+                                  Side{"plan.posterior", "Posterior", GLFW_KEY_2, scene::View::Posterior},
+                                  Side{"plan.medial", "Medial", GLFW_KEY_3, scene::View::Medial},
+                                  Side{"plan.lateral", "Lateral", GLFW_KEY_4, scene::View::Lateral},
+                                  Side{"plan.distal", "Distal", GLFW_KEY_5, scene::View::Distal},
+                                  Side{"plan.notch", "Notch", GLFW_KEY_6, scene::View::Notch},
+                                  Side{"plan.plateau", "Plateau", GLFW_KEY_7, scene::View::Plateau}};
+  for (const Side& side : sides)
+    actions.add({side.id, side.label, std::string("Look from ") + side.label, side.key, 0, false,
+                 [model, side] {
+                   const auto only = only_bone_of(side.view);
+                   return model() != nullptr && (!only || model()->has_bone(*only));
+                 },
+                 [this, side] { return state_.looked_from == side.view; },
+                 [this, model, side] { look_from(*model(), side.view); }});
+  actions.add({"plan.see_through",
+               "See through",
+               "The bone turns translucent",
+               GLFW_KEY_T,
+               0,
+               false,
+               {},
+               [this] { return state_.see_through; },
+               [this] {
+                 state_.see_through = !state_.see_through;
+                 state_.shown_revision = 0;
+               }});
+}
+
+void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area, const open_case::PlanModel& model,
+                    const open_case::PlanStatus& status) {
+  widgets::Rect rest = area;
+  const widgets::Rect panel = rest.cut_right(ui.theme.px(470), ui.theme.px(12));
+  widgets::Rect views = rest.cut_top(ui.theme.px(44), ui.theme.px(10));
+  ImGui::SetCursorScreenPos(views.min());
+  for (const char* id : {"plan.anterior", "plan.posterior", "plan.medial", "plan.lateral", "plan.distal",
+                         "plan.notch", "plan.plateau", "plan.see_through"}) {
+    widgets::action_button(ui, id);
+    ImGui::SameLine();
+  }
+  draw_bones(ui, rest, model);
+  draw_plan_panel(ui, panel, model, state_.bone, status);
+  ui.log.note_state("plan", status.save_failed                  ? "failed"
+                            : status.saved.starts_with("saved") ? "saved"
+                                                                : "moving");
+  ui.log.note_state("undo", status.undo_what);
+  ui.log.note_state("redo", status.redo_what);
+}
+
+void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area,
+                          const open_case::PlanModel& model) {
+  state_.aspect = area.width / std::max(area.height, 1.F);
+  if (state_.shown_revision == 0 || state_.shown_revision != model.revision()) {
+    scene::SceneContent content;
+    for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
+      if (!model.has_bone(kind) || (state_.only && *state_.only != kind)) continue;
+      content.bones.push_back({model.drawn_mesh(kind), scene::kBoneColor, state_.see_through ? 0.42 : 1.0});
+      if (const auto tunnel = model.tunnel(kind))
+        scene::add_planned_tunnel(content, *tunnel, model.drawn_length_mm(kind));
+    }
+    pane_.show(content);
+    state_.shown_revision = model.revision();
+  }
+  const auto handle_at = [&](const Eigen::Vector2d& pixel) {
+    const Eigen::Vector2d size(area.width, area.height);
+    const double reach = kHandleReach_px * ui.theme.scale;
+    state_.dragged = Handle::None;
+    const auto near = [&](const Eigen::Vector3d& point) {
+      const auto at = scene::project(pane_.camera(), point, size);
+      return at && (*at - pixel).norm() < reach;
+    };
+    if (state_.only && *state_.only != state_.bone) return false;
+    if (const auto aim = aim_handle(model); aim && near(*aim)) state_.dragged = Handle::Aim;
+    if (const auto tunnel = model.tunnel(state_.bone); tunnel && near(tunnel->entry_mm))
+      state_.dragged = Handle::Entry;
+    return state_.dragged != Handle::None;
+  };
+  const widgets::PaneInput input = pane_.draw(ui, "plan.view", area, handle_at);
+  draw_handles(ui, area, model);
+  use_pane_input(model, input);
+}
+
+std::optional<Eigen::Vector3d> PlanView::aim_handle(const open_case::PlanModel& model) const {
+  const auto tunnel = model.tunnel(state_.bone);
+  if (!tunnel) return std::nullopt;
+  return tunnel->entry_mm + (model.drawn_length_mm(state_.bone) + kAimHandleBeyond_mm) * tunnel->direction;
+}
+
+void PlanView::use_pane_input(const open_case::PlanModel& model, const widgets::PaneInput& input) {
+  if (!model.has_bone(state_.bone)) return;
+  const scene::SceneRay ray = scene::ray_through(pane_.camera(), input.mouse_px, input.size_px);
+  if (input.handle_pressed) state_.has_dragged = false;
+  if (input.handle_dragged && state_.dragged == Handle::Entry) {
+    apply(model, "Drag the entry of the", state_.has_dragged, [&](const open_case::PlanModel& m) {
+      return with_entry_at(*m.tunnel(state_.bone), ray, m.surface(state_.bone));
+    });
+    state_.has_dragged = true;
+  }
+  if (input.handle_dragged && state_.dragged == Handle::Aim) {
+    const auto handle = aim_handle(model);
+    apply(model, "Drag the aim of the", state_.has_dragged, [&](const open_case::PlanModel& m) {
+      return aimed(*m.tunnel(state_.bone), pane_.camera(), ray, *handle);
+    });
+    state_.has_dragged = true;
+  }
+  if (input.was_clicked && state_.places_entry) {
+    apply(model, "Place the entry of the", false,
+          [&](const open_case::PlanModel& m) -> std::optional<tunnels::Tunnel> {
+            const auto tunnel = m.tunnel(state_.bone);
+            return tunnel ? with_entry_at(*tunnel, ray, m.surface(state_.bone))
+                          : first_tunnel(state_.bone, ray, m.surface(state_.bone));
+          });
+    state_.places_entry = false;
+  }
+}
+
+void PlanView::draw_handles(const widgets::Ui& ui, const widgets::Rect& area,
+                            const open_case::PlanModel& model) const {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.PushClipRect(area.min(), area.max(), true);
+  const Eigen::Vector2d size(area.width, area.height);
+  const auto on_screen = [&](const Eigen::Vector3d& point) -> std::optional<ImVec2> {
+    const auto at = scene::project(pane_.camera(), point, size);
+    if (!at) return std::nullopt;
+    return ImVec2(area.x + static_cast<float>(at->x()), area.y + static_cast<float>(at->y()));
+  };
+  const auto tunnel = model.tunnel(state_.bone);
+  const bool is_shown = tunnel && (!state_.only || *state_.only == state_.bone);
+  const float radius = ui.theme.px(13), line = ui.theme.px(3);
+  const auto label = [&](const ImVec2& at, const char* text) {
+    const ImVec2 place(at.x + radius * 1.4F, at.y - ui.theme.body->FontSize / 2);
+    draw.AddText(ui.theme.strong, ui.theme.strong->FontSize, {place.x + 1, place.y + 1}, widgets::kBackground,
+                 text);
+    draw.AddText(ui.theme.strong, ui.theme.strong->FontSize, place, widgets::kText, text);
+  };
+  if (is_shown) {
+    // Entry: a ring with a dot. Aim: a diamond. The shapes differ, not only the places.
+    if (const auto at = on_screen(tunnel->entry_mm)) {
+      draw.AddCircle(*at, radius, widgets::kText, 32, line);
+      draw.AddCircleFilled(*at, radius * 0.3F, widgets::kText);
+      label(*at, "Entry");
+      ui.log.note("plan.entry_handle", {at->x - radius, at->y - radius}, {at->x + radius, at->y + radius});
+    }
+    if (const auto at = on_screen(*aim_handle(model))) {
+      draw.AddQuadFilled({at->x, at->y - radius}, {at->x + radius, at->y}, {at->x, at->y + radius},
+                         {at->x - radius, at->y}, widgets::color_of(scene::kPlanColor));
+      draw.AddQuad({at->x, at->y - radius}, {at->x + radius, at->y}, {at->x, at->y + radius},
+                   {at->x - radius, at->y}, widgets::kText, line * 0.7F);
+      label(*at, "Aim");
+      ui.log.note("plan.aim_handle", {at->x - radius, at->y - radius}, {at->x + radius, at->y + radius});
+    }
+  }
+  if (state_.places_entry)
+    draw.AddText(
+        ui.theme.title, ui.theme.title->FontSize, {area.x + ui.theme.px(20), area.y + ui.theme.px(16)},
+        widgets::kAccent,
+        ("Click on the " + std::string(bones::to_text(state_.bone)) + ": the tunnel begins there").c_str());
+  draw.PopClipRect();
+}
+
+}  // namespace arthronaut::plan

@@ -1,0 +1,88 @@
+#include "app/plan/tunnel_moves.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::plan {
+
+namespace {
+
+struct ScreenAxes {
+  Eigen::Vector3d right, up, ahead;
+};
+
+ScreenAxes axes_of(const scene::SceneCamera& camera) {
+  const Eigen::Vector3d ahead = (camera.focus_mm - camera.position_mm).normalized();
+  const Eigen::Vector3d right = ahead.cross(camera.up).normalized();
+  return {right, right.cross(ahead), ahead};
+}
+
+Eigen::Vector3d turned_towards(const Eigen::Vector3d& direction, const Eigen::Vector3d& side,
+                               double angle_deg) {
+  const Eigen::Vector3d across = side - side.dot(direction) * direction;
+  if (across.norm() < 0.05) return direction;  // it points that way: no turn brings it further
+  const double angle = geometry::rad_from_deg(angle_deg);
+  return (std::cos(angle) * direction + std::sin(angle) * across.normalized()).normalized();
+}
+
+}  // namespace
+
+tunnels::Tunnel with_entry_at(const tunnels::Tunnel& tunnel, const scene::SceneRay& ray,
+                              const geometry::Surface& bone) {
+  tunnels::Tunnel result = tunnel;
+  if (const auto hit = bone.first_hit(ray.origin_mm, ray.direction)) result.entry_mm = hit->point_mm;
+  return result;
+}
+
+std::optional<tunnels::Tunnel> first_tunnel(bones::BoneKind kind, const scene::SceneRay& ray,
+                                            const geometry::Surface& bone) {
+  const auto hit = bone.first_hit(ray.origin_mm, ray.direction);
+  if (!hit) return std::nullopt;
+  tunnels::Tunnel tunnel;
+  tunnel.bone = kind;
+  tunnel.entry_mm = hit->point_mm;
+  tunnel.direction = hit->normal.dot(ray.direction) < 0 ? Eigen::Vector3d(-hit->normal) : hit->normal;
+  return tunnel;
+}
+
+tunnels::Tunnel with_entry_slid(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera,
+                                const Eigen::Vector2d& right_up_mm, const geometry::Surface& bone) {
+  const ScreenAxes axes = axes_of(camera);
+  tunnels::Tunnel result = tunnel;
+  result.entry_mm =
+      bone.closest_point(tunnel.entry_mm + right_up_mm.x() * axes.right + right_up_mm.y() * axes.up).point_mm;
+  return result;
+}
+
+tunnels::Tunnel turned(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera,
+                       const Eigen::Vector2d& right_up_deg) {
+  const ScreenAxes axes = axes_of(camera);
+  tunnels::Tunnel result = tunnel;
+  result.direction = turned_towards(result.direction, axes.right, right_up_deg.x());
+  result.direction = turned_towards(result.direction, axes.up, right_up_deg.y());
+  return result;
+}
+
+tunnels::Tunnel aimed(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera,
+                      const scene::SceneRay& ray, const Eigen::Vector3d& handle_mm) {
+  const Eigen::Vector3d ahead = axes_of(camera).ahead;
+  const double along = ray.direction.dot(ahead);
+  if (along < 1e-6) return tunnel;
+  const Eigen::Vector3d target =
+      ray.origin_mm + (handle_mm - ray.origin_mm).dot(ahead) / along * ray.direction;
+  const Eigen::Vector3d direction = target - tunnel.entry_mm;
+  tunnels::Tunnel result = tunnel;
+  if (direction.norm() > 1) result.direction = direction.normalized();
+  return result;
+}
+
+tunnels::Tunnel with_diameter(const tunnels::Tunnel& tunnel, double diameter_mm) {
+  tunnels::Tunnel result = tunnel;
+  result.diameter_mm = std::clamp(diameter_mm, 4.0, 14.0);
+  return result;
+}
+
+}  // namespace arthronaut::plan

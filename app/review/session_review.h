@@ -1,0 +1,47 @@
+// A recorded session made ready for looking at: what happened when, frame by frame, and how the tunnel as
+// drilled lies to the plan. Plain data, read once; no window.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "navigation/recording/achieved_tunnel.h"
+#include "navigation/recording/session.h"
+
+namespace arthronaut::review {
+
+// A stretch of frames, [first, last], in which something held.
+struct Stretch {
+  std::size_t first = 0, last = 0;
+};
+
+struct TimeTrack {
+  std::string name;  // "Femur marker", "Probe", "Guidance", ...
+  std::vector<Stretch> stretches;
+};
+
+struct SessionReview {
+  std::filesystem::path folder;
+  std::shared_ptr<const recording::RecordedSession> session;
+  std::vector<TimeTrack> tracks;
+  // That guided, the last one; no tunnel when there was none. Not what the case plans by now.
+  recording::RecordedSession::PlanChange plan;
+  std::optional<recording::AchievedTunnel> achieved;
+  std::string achieved_problem;  // why achieved.json could not be read; empty when it was or is not there
+};
+
+// Throws IoError or InvalidInput.
+[[nodiscard]] SessionReview read_review(const std::filesystem::path& session_folder);
+
+// Seconds from the first frame. Preconditions: the session has frames; frame is one of them.
+[[nodiscard]] double time_s(const recording::RecordedSession& session, std::size_t frame);
+// The frame that was shown at that time: the last one not after it.
+[[nodiscard]] std::size_t frame_at(const recording::RecordedSession& session, double seconds);
+
+// Stretches of consecutive frames for which `holds`; gaps of up to `bridge` frames are closed.
+[[nodiscard]] std::vector<Stretch> stretches_of(const std::vector<bool>& holds, std::size_t bridge);
+
+}  // namespace arthronaut::review

@@ -1,0 +1,150 @@
+#include "app/setup/fluid_station.h"
+
+#include <GLFW/glfw3.h>
+
+#include "app/case/case_calibration.h"
+#include "navigation/camera/medium.h"
+
+namespace arthronaut::setup {
+
+void FluidStation::open(const std::filesystem::path& case_folder) {
+  stop();
+  case_folder_ = case_folder;
+  refractive_index_ = camera::kSalineIndex;
+  checked_ = {widgets::Severity::Quiet, "Fluid", "not checked yet"};
+}
+
+void FluidStation::start(const FeedSource& source) {
+  stop();
+  run_ = std::make_unique<Run>(
+      source,
+      [source, folder = case_folder_, index = refractive_index_] {
+        calibration::RulerSightingsOptions options;
+        options.calibration = open_case::camera_of(source.is_simulated, folder);
+        options.refractive_index = index;
+        return std::make_unique<FluidJob>(options);
+      },
+      wake_);
+}
+
+void FluidStation::stop() {
+  if (run_ != nullptr) ending_.end(std::move(run_));
+  status_ = {};
+  display_ = {};
+}
+
+void FluidStation::release_source() {
+  if (run_ != nullptr) run_->release_source();
+}
+
+bool FluidStation::is_busy() const {
+  return run_ != nullptr && (status_.phase == FeedPhase::Starting || status_.phase == FeedPhase::Running ||
+                             status_.job.is_checking);
+}
+
+Then FluidStation::take_next_step() {
+  if (display_.next == FluidStep::Done) return Then::GoOn;
+  if (display_.next == FluidStep::Again) return Then::StartAgain;
+  if (display_.next == FluidStep::Check) run_->post([](FluidJob& job) { job.check(); });
+  return Then::Stay;
+}
+
+void FluidStation::add_actions(widgets::Actions& actions) {
+  actions.add({"setup.fluid.medium",
+               "Other medium",
+               "What the ruler is said to be in: saline, water, air in turn",
+               GLFW_KEY_M,
+               0,
+               false,
+               {},
+               {},
+               [this] {
+                 stop();
+                 refractive_index_ = refractive_index_ == camera::kSalineIndex  ? camera::kWaterIndex
+                                     : refractive_index_ == camera::kWaterIndex ? camera::kAirIndex
+                                                                                : camera::kSalineIndex;
+               }});
+  actions.add({"setup.fluid.clear",
+               "Check anew",
+               "Forgets the pictures and counts new ones",
+               GLFW_KEY_C,
+               0,
+               false,
+               [this] { return run_ != nullptr && status_.phase == FeedPhase::Running; },
+               {},
+               [this] { run_->post([](FluidJob& job) { job.clear(); }); }});
+}
+
+std::vector<const char*> FluidStation::buttons() const { return {"setup.fluid.medium", "setup.fluid.clear"}; }
+
+void FluidStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
+  if (run_ != nullptr) status_ = run_->status();
+  display_ = run_ != nullptr ? fluid_display(status_, steady_now_s()) : FluidDisplay{};
+  const std::string medium = camera::medium_to_text(refractive_index_);
+  if (status_.job.summary != nullptr)
+    checked_ = {display_.verdict.sign, "Fluid",
+                status_.job.summary->is_trusted() ? medium + " fits" : "refused in " + medium};
+  const float gap = ui.theme.px(12);
+  widgets::Rect rest = area;
+  widgets::Rect left = rest.cut_left(rest.width * 0.36F, gap);
+  const widgets::Rect band = left.cut_bottom(ui.theme.px(130), gap);
+  draw_picture_with_ruler(ui, left);
+  const Band idle{widgets::Severity::Quiet, "Space starts the source",
+                  "The ruler with two markers (5 and 6, 10 mm apart) in " + medium};
+  draw_band(ui, band, run_ != nullptr ? display_.band : idle);
+  const widgets::Rect verdict = rest.cut_bottom(ui.theme.px(130), gap);
+  const Band none{widgets::Severity::Quiet, "Nothing to judge yet", "Said to be in " + medium};
+  draw_band(ui, verdict, display_.verdict.headline.empty() ? none : display_.verdict);
+  draw_models(ui, rest.cut_top(rest.height * 0.5F, gap));
+  std::vector<Row> rows = display_.numbers;
+  for (const std::string& reason : display_.reasons)
+    rows.push_back({widgets::Severity::Bad, "Reason", reason});
+  draw_rows(ui, "setup.numbers", rest, display_.reasons.empty() ? "Numbers" : "Why not", rows);
+  ui.log.note_state("setup_band", run_ != nullptr ? display_.band.headline : "no source");
+  ui.log.note_state("setup_verdict", display_.verdict.headline);
+}
+
+void FluidStation::draw_picture_with_ruler(const widgets::Ui& ui, const widgets::Rect& area) {
+  const FluidStatus& job = status_.job;
+  const widgets::PicturePlacement place =
+      draw_picture(ui, area, picture_, job.picture, job.view, display_.is_live);
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.PushClipRect(place.area().min(), place.area().max(), true);
+  if (display_.is_live && job.summary == nullptr)
+    for (const markers::MarkerObservation& marker : job.look.markers)
+      if (marker.is_tracked()) draw_marker(ui, place, marker.corners_px);
+  draw.PopClipRect();
+  // How much of the five seconds has been seen.
+  const float height = ui.theme.px(10), width = area.width * static_cast<float>(display_.progress);
+  draw.AddRectFilled({area.x, area.y + area.height - height}, {area.x + width, area.y + area.height},
+                     widgets::kAccent);
+}
+
+void FluidStation::draw_models(const widgets::Ui& ui, const widgets::Rect& area) {
+  widgets::begin_panel(ui, "setup.models", area, "Which model of the fluid fits, best first");
+  ui.log.note("setup.models", area.min(), area.max());
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const ImVec2 at = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+  const float line = ui.theme.px(48);
+  const std::array<float, 4> columns{at.x + ui.theme.px(34), at.x + room.x * 0.34F, at.x + room.x * 0.53F,
+                                     at.x + room.x * 0.77F};
+  const auto cell = [&](ImFont* font, std::size_t column, float y, ImU32 color, const std::string& text) {
+    draw.AddText(font, font->FontSize, {columns.at(column), y}, color, text.c_str());
+  };
+  float y = at.y;
+  const std::array<const char*, 4> head{"Model", "Corners miss", "Ruler wrong by, median", "95 %"};
+  for (std::size_t i = 0; i < head.size(); ++i) cell(ui.theme.strong, i, y, widgets::kQuietText, head[i]);
+  for (const FluidDisplay::Model& model : display_.models) {
+    y += line;
+    widgets::draw_sign(draw, {at.x + ui.theme.px(12), y + ui.theme.px(13)}, ui.theme.px(10), model.sign);
+    cell(ui.theme.strong, 0, y, widgets::kText, model.name);
+    cell(ui.theme.body, 1, y, widgets::kText, model.corners);
+    cell(ui.theme.body, 2, y, widgets::kText, model.median);
+    cell(ui.theme.body, 3, y, widgets::kText, model.worst);
+  }
+  if (display_.models.empty())
+    cell(ui.theme.body, 0, y + line, widgets::kQuietText, "after five seconds of the ruler");
+  widgets::end_panel();
+}
+
+}  // namespace arthronaut::setup

@@ -1,0 +1,49 @@
+// The self-check in fluid: five seconds of a ruler with two markers tell whether the camera measures rightly.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "app/setup/fluid_display.h"
+#include "app/setup/setup_panels.h"
+#include "navigation/sources/background_end.h"
+
+namespace arthronaut::setup {
+
+class FluidStation : public Station {
+ public:
+  // wake: ends the window's wait for input; called from other threads. ending: takes what is stopped.
+  FluidStation(std::function<void()> wake, sources::BackgroundEnd& ending)
+      : wake_(std::move(wake)), ending_(ending) {}
+
+  void open(const std::filesystem::path& case_folder) override;
+  void start(const FeedSource& source) override;
+  void stop() override;
+  void release_source() override;
+  void add_actions(widgets::Actions& actions) override;
+  void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
+  [[nodiscard]] std::vector<const char*> buttons() const override;
+  [[nodiscard]] Then take_next_step() override;
+  [[nodiscard]] bool has_run() const override { return run_ != nullptr; }
+  [[nodiscard]] bool is_busy() const override;
+  [[nodiscard]] std::string next_step() const override { return display_.next_text; }
+  [[nodiscard]] Row adopted() const override { return checked_; }
+
+ private:
+  using Run = LiveRun<FluidJob>;
+
+  void draw_picture_with_ruler(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_models(const widgets::Ui& ui, const widgets::Rect& area);
+
+  std::filesystem::path case_folder_;
+  std::function<void()> wake_;
+  sources::BackgroundEnd& ending_;
+  double refractive_index_ = 1;
+  std::unique_ptr<Run> run_;
+  FluidRunStatus status_;  // of this frame
+  FluidDisplay display_;   // of this frame
+  Row checked_;            // the last verdict
+  widgets::VideoTexture picture_;
+};
+
+}  // namespace arthronaut::setup

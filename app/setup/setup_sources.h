@@ -1,0 +1,28 @@
+// Where the pictures for setting up can come from: the simulated arthroscope, folders of still pictures, the
+// case's videos, what the user named, camera devices.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "app/setup/frame_feed.h"
+#include "navigation/sources/device_turns.h"
+
+namespace arthronaut::setup {
+
+enum class Purpose { Camera, Tools, Fluid };
+
+// Always at least the simulated arthroscope, which comes first. Looks into the file system, opens nothing.
+// Folders of stills (the case's own and those right inside it) are offered for the camera alone. `named` are
+// paths the user typed: a folder of pictures or a video; others are left out. Cameras are opened in their
+// turn.
+[[nodiscard]] std::vector<FeedSource> sources_for(Purpose purpose, const std::filesystem::path& case_folder,
+                                                  const sources::DeviceTurns& turns,
+                                                  const std::vector<std::filesystem::path>& named = {});
+
+// Which of these was made from this path; nullopt: none.
+[[nodiscard]] std::optional<std::size_t> index_of(const std::vector<FeedSource>& sources,
+                                                  const std::filesystem::path& path);
+
+}  // namespace arthronaut::setup

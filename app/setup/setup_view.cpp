@@ -1,0 +1,225 @@
+#include "app/setup/setup_view.h"
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "app/setup/calibrate_station.h"
+#include "app/setup/fluid_station.h"
+#include "app/setup/tool_station.h"
+
+namespace arthronaut::setup {
+
+SetupView::SetupView(const std::function<void()>& wake, std::function<void()> go_on,
+                     const sources::DeviceTurns& turns)
+    : go_on_(std::move(go_on)), turns_(turns) {
+  steps_.push_back({Purpose::Camera, "setup.show_camera", "setup.camera.",
+                    std::make_unique<CalibrateStation>(wake, ending_)});
+  steps_.push_back(
+      {Purpose::Tools, "setup.show_tools", "setup.tools.", std::make_unique<ToolStation>(wake, ending_)});
+  steps_.push_back(
+      {Purpose::Fluid, "setup.show_fluid", "setup.fluid.", std::make_unique<FluidStation>(wake, ending_)});
+}
+
+SetupView::~SetupView() = default;
+
+void SetupView::open(const std::filesystem::path& case_folder) {
+  case_folder_ = case_folder;
+  typed_ = {};
+  is_read_ = false;
+  for (Step& one : steps_) {
+    one.station->stop();
+    one.source = 0;
+  }
+  shown_ = 0;
+}
+
+void SetupView::enter() {
+  if (!is_read_)
+    for (Step& one : steps_) one.station->open(case_folder_);
+  is_read_ = true;
+  find_sources();
+}
+
+void SetupView::leave() {
+  for (Step& one : steps_) one.station->release_source();
+}
+
+bool SetupView::awaits_text() const { return typed_.wants_focus || step().station->awaits_text(); }
+
+bool SetupView::is_busy() const { return step().station->is_busy(); }
+
+void SetupView::show(std::size_t index) {
+  if (index != shown_) step().station->release_source();
+  shown_ = index;
+  find_sources();
+}
+
+void SetupView::find_sources() {
+  step().sources = sources_for(step().purpose, case_folder_, turns_, typed_.paths);
+  step().source %= step().sources.size();
+}
+
+void SetupView::choose_source() {
+  step().station->stop();
+  find_sources();
+  step().source = (step().source + 1) % step().sources.size();
+}
+
+void SetupView::start() { step().station->start(step().sources.at(step().source)); }
+
+void SetupView::take_next_step() {
+  if (!step().station->has_run()) return start();
+  const Then then = step().station->take_next_step();
+  if (then == Then::StartAgain) return start();
+  if (then == Then::Stay) return;
+  if (shown_ + 1 < steps_.size()) return show(shown_ + 1);
+  go_on_();
+}
+
+std::string SetupView::next_step() const {
+  return step().station->has_run() ? step().station->next_step()
+                                   : "start " + step().sources.at(step().source).name;
+}
+
+// A path that was typed becomes the chosen source, when it is one.
+void SetupView::take_typed_path() {
+  typed_.is_open = false;
+  std::filesystem::path path = typed_.text;
+  if (!path.has_filename()) path = path.parent_path();  // "pictures/"
+  typed_.paths.push_back(path);
+  const std::size_t chosen = step().source;
+  find_sources();
+  const std::optional<std::size_t> found = index_of(step().sources, path);
+  typed_.refused = !found.has_value();
+  if (typed_.refused) {
+    typed_.paths.pop_back();
+    find_sources();
+  } else if (*found != chosen) {
+    step().station->stop();
+  }
+  step().source = found.value_or(chosen % step().sources.size());
+}
+
+void SetupView::add_actions(widgets::Actions& actions) {
+  const auto show_action = [&](std::size_t index, const char* label, const char* tooltip, int key) {
+    actions.add({steps_.at(index).action,
+                 label,
+                 tooltip,
+                 key,
+                 0,
+                 false,
+                 {},
+                 [this, index] { return shown_ == index; },
+                 [this, index] { show(index); }});
+  };
+  show_action(0, "Camera", "Pictures of a checkerboard become camera.json", GLFW_KEY_1);
+  show_action(1, "Tools", "The probe's tip and the guides' axes, into tools.json", GLFW_KEY_2);
+  show_action(2, "Fluid check", "Whether the camera measures rightly in the fluid", GLFW_KEY_3);
+  const auto add = [&](const char* id, const char* label, const char* tooltip, int key,
+                       const std::function<void()>& run) {
+    actions.add({id, label, tooltip, key, 0, false, {}, {}, run});
+  };
+  add("setup.next", "Next step", "Starts, takes, calibrates, adopts: whatever comes next", GLFW_KEY_SPACE,
+      [this] { take_next_step(); });
+  add("setup.source", "Other source", "Simulated scope, pictures, videos, cameras in turn", GLFW_KEY_O,
+      [this] { choose_source(); });
+  add("setup.path", "Type a source", "The path of a video or of a folder of pictures", GLFW_KEY_P, [this] {
+    typed_.is_open = typed_.wants_focus = true;
+    typed_.refused = false;
+  });
+  add("setup.again", "Start again", "From the first picture; what was adopted stays", GLFW_KEY_R,
+      [this] { start(); });
+  actions.add({"setup.stop",
+               "Stop",
+               "Ends the source and forgets what was not adopted",
+               GLFW_KEY_ESCAPE,
+               0,
+               false,
+               [this] { return step().station->has_run(); },
+               {},
+               [this] { step().station->stop(); }});
+  for (Step& one : steps_) one.station->add_actions(actions);
+}
+
+std::vector<std::string_view> SetupView::action_prefixes() const {
+  return {"setup.next", "setup.source", "setup.path", "setup.again",
+          "setup.stop", "setup.show_",  step().prefix};
+}
+
+void SetupView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
+  const float gap = ui.theme.px(12);
+  widgets::Rect rest = area;
+  draw_heading(ui, rest.cut_top(ui.theme.px(88), gap));
+  const widgets::Rect controls = rest.cut_bottom(ui.theme.px(100), gap);
+  step().station->draw(ui, rest);
+  draw_controls(ui, controls);
+  ui.log.note_state("setup_step", std::string(step().action).substr(std::string("setup.show_").size()));
+  ui.log.note_state("setup_source", step().sources.at(step().source).name);
+  ui.log.note_state("setup_next", next_step());
+  ui.log.note_state("setup_adopted", step().station->adopted().text);
+}
+
+// The steps with what the case has of each; beside them what comes next, and the source.
+void SetupView::draw_heading(const widgets::Ui& ui, const widgets::Rect& area) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const float gap = ui.theme.px(10), width = ui.theme.px(300), height = ui.theme.px(50);
+  widgets::Rect rest = area;
+  for (const Step& one : steps_) {
+    const widgets::Rect place = rest.cut_left(width, gap);
+    ImGui::SetCursorScreenPos(place.min());
+    widgets::action_button(ui, one.action, width, height);
+    const Row row = one.station->adopted();
+    const float y = place.y + height + ui.theme.px(8);
+    widgets::draw_sign(draw, {place.x + ui.theme.px(12), y + ui.theme.px(13)}, ui.theme.px(9), row.sign);
+    draw.PushClipRect({place.x, place.y}, {place.x + place.width, place.y + place.height}, true);
+    draw.AddText(ui.theme.body, ui.theme.body->FontSize, {place.x + ui.theme.px(30), y}, widgets::kQuietText,
+                 row.text.c_str());
+    draw.PopClipRect();
+  }
+  const float left = rest.x + ui.theme.px(10);
+  const std::string next = "Next: " + next_step();
+  draw.PushClipRect(rest.min(), rest.max(), true);
+  draw.AddText(ui.theme.title, ui.theme.title->FontSize, {left, rest.y + ui.theme.px(4)}, widgets::kAccent,
+               next.c_str());
+  const float y = rest.y + height + ui.theme.px(8);
+  if (typed_.is_open) {
+    draw.PopClipRect();
+    return draw_path_field(ui, {left, y - ui.theme.px(8), rest.x + rest.width - left, ui.theme.px(40)});
+  }
+  std::string source = "Source: " + step().sources.at(step().source).name + "  (" +
+                       std::to_string(step().source + 1) + " of " + std::to_string(step().sources.size()) +
+                       ")";
+  if (typed_.refused) source = "No source there: " + typed_.text;
+  draw.AddText(ui.theme.body, ui.theme.body->FontSize, {left, y},
+               typed_.refused ? widgets::kCaution : widgets::kQuietText, source.c_str());
+  draw.PopClipRect();
+}
+
+void SetupView::draw_path_field(const widgets::Ui& ui, const widgets::Rect& area) {
+  ImGui::SetCursorScreenPos(area.min());
+  ImGui::SetNextItemWidth(area.width);
+  if (typed_.wants_focus) ImGui::SetKeyboardFocusHere();
+  const bool is_entered = ImGui::InputTextWithHint(
+      "##path", "path of a video or of a folder of pictures, then Enter", &typed_.text,
+      ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+  ui.log.note("setup.path_field", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+  if (is_entered) return take_typed_path();
+  if (!typed_.wants_focus && ImGui::IsItemDeactivated()) typed_.is_open = false;
+  typed_.wants_focus = false;
+}
+
+void SetupView::draw_controls(const widgets::Ui& ui, const widgets::Rect& area) {
+  std::vector<const char*> ids{"setup.next", "setup.source", "setup.path", "setup.again", "setup.stop"};
+  for (const char* id : step().station->buttons()) ids.push_back(id);
+  const std::size_t columns = (ids.size() + 1) / 2;
+  const float gap = ui.theme.px(10), height = (area.height - gap) / 2;
+  const float width = (area.width - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    ImGui::SetCursorScreenPos({area.x + static_cast<float>(i % columns) * (width + gap),
+                               area.y + static_cast<float>(i / columns) * (height + gap)});
+    widgets::action_button(ui, ids[i], width, height);
+  }
+}
+
+}  // namespace arthronaut::setup

@@ -1,0 +1,134 @@
+#include "app/setup/tool_job.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "planning/geometry/error.h"
+
+namespace arthronaut::setup {
+
+namespace {
+
+constexpr std::size_t kMostPoses = 3000;         // a minute at 50 pictures a second
+constexpr std::size_t kPosesBetweenResults = 6;  // and a twentieth of those there are
+
+const tools::Tool& tool_of(const tools::ToolSet& tools, const std::string& name) {
+  const tools::Tool* tool = tools.find_tool(name);
+  if (tool == nullptr) throw InvalidInput("tools.json declares no tool named \"" + name + "\"");
+  return *tool;
+}
+
+const markers::MarkerObservation* seen_as(const pipeline::View& view, int id) {
+  const auto found = std::find_if(view.markers.begin(), view.markers.end(),
+                                  [&](const markers::MarkerObservation& marker) { return marker.id == id; });
+  return found == view.markers.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::vector<ToolChoice> choices_of(const tools::ToolSet& tools) {
+  std::vector<ToolChoice> choices;
+  for (const tools::Tool& tool : tools.tools) {
+    if (tool.tip_mm || !tool.axis) choices.push_back({tool.name, ToolTask::Tip});
+    if (tool.axis) choices.push_back({tool.name, ToolTask::Axis});
+  }
+  return choices;
+}
+
+tools::ToolSet with_result(tools::ToolSet tools, const std::string& tool_name, const ToolResult& result) {
+  for (tools::Tool& tool : tools.tools) {
+    if (tool.name != tool_name) continue;
+    if (result.task == ToolTask::Tip)
+      tool.tip_mm = result.tip.tip_in_tool_mm;
+    else
+      tool.axis = tools::ToolAxis{result.axis.axis_point_in_tool_mm, result.axis.axis_direction_in_tool};
+    tool.residual_mm = result.rms_mm();
+  }
+  return tools;
+}
+
+ToolJob::ToolJob(const pipeline::ViewTrackerOptions& view, const tools::ToolSet& tools,
+                 const ToolChoice& choice)
+    : choice_(choice),
+      tools_(tools),
+      tracker_(view, markers::make_tracker(markers::declared_markers(tools))) {
+  (void)tool_of(tools_, choice_.tool_name);
+  if (tools_.world_markers.empty()) throw InvalidInput("tools.json declares no world marker");
+}
+
+void ToolJob::look(const camera::FramePtr& frame) {
+  status_.picture = frame;
+  tracker_.observe(*frame, view_);
+  status_.view = view_.camera.boundary();
+  judge_markers();
+  if (!status_.reason.empty() || !status_.is_collecting) return;
+  if (fixed_from_tool_.size() == kMostPoses) {
+    status_.reason = "enough poses were taken";
+    return;
+  }
+  const markers::MarkerObservation* world = seen_as(view_, *world_id_);
+  const markers::MarkerObservation* tool = seen_as(view_, tool_of(tools_, choice_.tool_name).marker_id);
+  fixed_from_tool_.push_back(world->camera_from_marker.inverse() * tool->camera_from_marker);
+  status_.pose_count = fixed_from_tool_.size();
+}
+
+void ToolJob::judge_markers() {
+  const auto judge = [&](const std::string& name, int id) {
+    const markers::MarkerObservation* marker = seen_as(view_, id);
+    ToolStatus::Seen seen{name};
+    seen.stands = marker != nullptr && view_.stands_for(*marker) && !view_.is_frozen;
+    seen.text = marker == nullptr ? "not declared" : std::string(markers::to_text(marker->state));
+    if (marker != nullptr && marker->is_tracked()) {
+      seen.corners_px = marker->corners_px;
+      if (!view_.intrinsics_are_known) seen.text = "lens angle unknown";
+      if (view_.is_frozen) seen.text = "the picture is frozen";
+    }
+    status_.markers.push_back(seen);
+    return seen.stands;
+  };
+  status_.markers.clear();
+  const bool has_tool = judge(choice_.tool_name, tool_of(tools_, choice_.tool_name).marker_id);
+  bool has_world = false;
+  for (const tools::WorldMarker& marker : tools_.world_markers) {
+    if (world_id_ && *world_id_ != marker.marker_id) continue;  // the poses are in one frame
+    if (!judge(std::string(bones::to_text(marker.bone)) + " marker", marker.marker_id)) continue;
+    has_world = true;
+    if (has_tool) world_id_ = marker.marker_id;
+  }
+  status_.reason = !has_tool    ? "the marker of the " + choice_.tool_name + " is not seen well"
+                   : !has_world ? "no world marker is seen well beside it"
+                                : "";
+}
+
+bool ToolJob::work() {
+  const std::size_t count = fixed_from_tool_.size();
+  const std::size_t wait = std::max(kPosesBetweenResults, calibrated_count_ / 20);
+  if (!status_.is_collecting || count < calibrated_count_ + wait) return false;
+  calibrated_count_ = count;
+  auto result = std::make_shared<ToolResult>();
+  result->task = choice_.task;
+  if (choice_.task == ToolTask::Tip)
+    result->tip = tools::calibrate_pivot(fixed_from_tool_);
+  else
+    result->axis = tools::calibrate_spin(fixed_from_tool_);
+  status_.result = std::move(result);
+  return true;
+}
+
+ToolStatus ToolJob::status() const { return status_; }
+
+void ToolJob::clear() {
+  fixed_from_tool_.clear();
+  world_id_.reset();
+  calibrated_count_ = 0;
+  status_.pose_count = 0;
+  status_.is_collecting = true;
+  status_.result.reset();
+}
+
+void ToolJob::settle(std::shared_ptr<const ToolResult> result) {
+  status_.is_collecting = false;
+  status_.result = std::move(result);
+}
+
+}  // namespace arthronaut::setup

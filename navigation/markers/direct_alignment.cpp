@@ -1,0 +1,389 @@
+#include "navigation/markers/direct_alignment.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "navigation/markers/product_sum.h"
+
+namespace arthronaut::markers {
+namespace {
+
+using geometry::RigidTransform;
+using geometry::Vector6d;
+
+// The unknowns: pose (6), velocity and its change over the exposure (x, y, about the normal), smear, gamma,
+// and the light: bias and gain as polynomials of the place.
+constexpr int kVelocity = 6, kChange = 9, kSmear = 12, kGamma = 13, kLight = 14;
+constexpr int kBiasTerms = 10, kGainTerms = 6, kLightTerms = kBiasTerms + kGainTerms;  // cubic, quadratic
+constexpr int kCount = kLight + kLightTerms;
+using Vector = Eigen::Matrix<double, kCount, 1>;
+using Matrix = Eigen::Matrix<double, kCount, kCount>;
+using Light = Eigen::Matrix<float, kLightTerms, 1>;
+
+constexpr int kStepsToASide = 4;  // pixels taken across an edge, to either side of it
+constexpr int kMinPixels = 120, kMinEdges = 20;
+constexpr int kBoundEdges = 15;  // edges that the unknowns fit by themselves
+constexpr int kRoughPixels = 300, kRoughStride = 3;
+constexpr double kRoughlySettledPx = 0.3;
+constexpr int kLikelyPixels = 2048;  // memory set aside
+constexpr int kSaturated = 250;
+constexpr double kTukey = 4.685;
+constexpr double kMinNoiseGrey = 1.5, kMaxNoiseGrey = 6, kMinNoiseLight = 2;
+// Neighbouring pixels share what is wrong with them: so many count as one beside what is known beforehand.
+constexpr double kCorrelatedPixels = 6;
+// What all edges have wrong together does not scatter: measured on path-traced and on drawn clips.
+constexpr double kSharedErrors = 2;
+constexpr double kSmearSigmaPx = 0.15, kGammaSigma = 0.15;
+constexpr double kPixelSigmaPx = 0.29;  // of a pixel's own square
+constexpr float kMinLight = 0.3F;
+constexpr double kMomentsPerSigma = 1.6;  // moments of the exposure lie so many sigma apart, at most
+constexpr double kSettledPx = 0.04, kSettledEnoughPx = 0.4;
+constexpr int kCoarseIterations = 2, kMinIterations = 3;
+// From here on a fit is given up that at the rate at which it gets better would not get there in time.
+constexpr int kHopefulIterations = 5;
+// Residuals that still get smaller, though the pose stands, mean that what covers is not out yet.
+constexpr double kSettledShare = 0.95;
+constexpr double kMinLikeness = 0.9;
+// Fits to something else reach a likeness of 0.99 and a noise of 5 on recorded clips; good ones 0.998 and 4.
+constexpr double kGoodShare = 0.65, kGoodLikeness = 0.9975, kGoodNoiseGrey = 4.7;
+
+float tukey_weight(float ratio) {
+  const float part = ratio / static_cast<float>(kTukey);
+  if (std::abs(part) >= 1) return 0;
+  const float left = 1 - part * part;
+  return left * left;
+}
+
+using Terms = Eigen::Matrix<float, 10, 1>;
+Terms terms_at(const Eigen::Vector2f& place) {
+  const float x = place.x(), y = place.y();
+  Terms terms;
+  terms << 1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y;
+  return terms;
+}
+
+double median_of(std::vector<float>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// How far the sides move in the picture over the exposure.
+double motion_px(const Vector6d& twist, double size_mm, double px_per_mm) {
+  return px_per_mm * (twist.head<3>().norm() + 0.5 * size_mm * twist.tail<3>().norm());
+}
+
+// How much of what the pixels show is the code: its part of the model against the residuals.
+struct CodeShare {
+  double n = 0, sum = 0, squares = 0, residuals = 0;
+  void add(double weight, double code, double residual) {
+    n += weight;
+    sum += weight * code;
+    squares += weight * code * code;
+    residuals += weight * residual * residual;
+  }
+  // As a correlation would be, if light without the code were no help in explaining the pixels.
+  [[nodiscard]] double likeness() const {
+    const double spread = n > 0 ? squares - sum * sum / n : 0;
+    return spread > 0 ? std::sqrt(spread / (spread + residuals)) : 0;
+  }
+};
+
+}  // namespace
+
+bool DirectPose::explains_picture() const {
+  return is_usable() && inlier_share >= kGoodShare && likeness >= kGoodLikeness &&
+         noise_grey <= kGoodNoiseGrey;
+}
+
+DirectFit::DirectFit() {
+  pixels_.reserve(kLikelyPixels);
+  residuals_.reserve(kLikelyPixels);
+  weights_.reserve(kLikelyPixels);
+  levels_.reserve(kLikelyPixels);
+  light_.reserve(kLikelyPixels);
+  sorted_.reserve(kLikelyPixels);
+  edge_gradients_.resize(2 * (kMaxCells + 1) * kMaxCells);
+}
+
+void DirectFit::take_pixels(const camera::GrayView& frame, const camera::CameraModel& camera, int cells,
+                            std::span<const EdgeSample> samples, double size_mm, const DirectStart& start,
+                            const DirectOptions& options, std::size_t first, std::size_t every) {
+  const RigidTransform& pose = start.pose.camera_from_marker;
+  const Eigen::Matrix3d rotation = pose.matrix();
+  const double sigma_cells = std::hypot(start.sigma_px, kPixelSigmaPx) * cells / size_mm;
+  const std::size_t stride =
+      (samples.size() * (2 * kStepsToASide + 1) + options.max_pixels - 1) / options.max_pixels;
+  for (std::size_t s = first * stride; s < samples.size(); s += every * stride) {
+    const EdgeSample& sample = samples[s];
+    const Eigen::Vector3d place(sample.x * size_mm, sample.y * size_mm, 0);
+    Eigen::Matrix<double, 2, 3> d_pixel;
+    const auto point = camera.project(pose * place, d_pixel);
+    if (!point || !camera.is_inside_view(*point)) continue;
+    const Eigen::Matrix<double, 2, 3> d_marker = d_pixel * rotation;
+    const Eigen::Matrix2d warp = d_marker.leftCols<2>(), back = warp.inverse();
+    const Eigen::Vector2d along = warp.col(1 - sample.axis);
+    const Eigen::Vector2d normal = Eigen::Vector2d(-along.y(), along.x()).normalized();
+    const Eigen::Vector3d moved = start.pose.velocity.head<3>() + start.pose.velocity.tail<3>().cross(place);
+    const double half_box_px = 0.5 * std::abs(normal.dot(d_marker * moved));
+    const double cell_px = std::abs(normal.dot(warp.col(sample.axis))) * size_mm / cells;
+    const double reach =
+        half_box_px + std::min(3 * start.sigma_px + 1.5 + options.coarse_cells * cell_px, 0.8 * cell_px);
+    const int lane = static_cast<int>((sample.axis == 0 ? 0.5 - sample.y : sample.x + 0.5) * cells);
+    const auto line =
+        static_cast<int>(std::lround((sample.axis == 0 ? sample.x + 0.5 : 0.5 - sample.y) * cells));
+    for (int k = -kStepsToASide; k <= kStepsToASide; ++k) {
+      const Eigen::Vector2d pixel = (*point + k * reach / kStepsToASide * normal).array().round();
+      if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() >= frame.width || pixel.y() >= frame.height) continue;
+      const std::uint8_t grey = frame.row(static_cast<int>(pixel.y()))[static_cast<int>(pixel.x())];
+      if (grey >= kSaturated) continue;
+      const auto ray = camera.ray(pixel);
+      if (!ray) continue;
+      Pixel& added = pixels_.emplace_back();
+      added.ray = ray->cast<float>();
+      added.grey = grey;
+      added.sigma_x = static_cast<float>(sigma_cells * back.row(0).norm());
+      added.sigma_y = static_cast<float>(sigma_cells * back.row(1).norm());
+      added.place = (2 / size_mm * (place.head<2>() + back * (pixel - *point))).cast<float>();
+      added.edge = (sample.axis * (cells + 1) + line) * cells + lane;
+    }
+  }
+}
+
+struct DirectFit::State {
+  ExposedCode exposed;
+  ExposedPose pose;
+  double smear = 0;  // logarithm of the factor on the pixels' sigmas
+  float smear_factor = 1;
+  double gamma = 1;
+  Light light = Light::Zero();
+  float coarse = 0;  // smear on purpose, in cells
+  double noise = kMinNoiseGrey;
+
+  [[nodiscard]] ExposedCode::Level level_at(const Pixel& pixel) const {
+    const auto wider = [this](float sigma) {
+      const float smeared = smear_factor * sigma;
+      return coarse > 0 ? std::sqrt(smeared * smeared + coarse * coarse) : smeared;
+    };
+    return exposed.at(pixel.ray, wider(pixel.sigma_x), wider(pixel.sigma_y));
+  }
+  bool apply(const Vector& step) {
+    if (!step.allFinite() || step.head<3>().norm() > 3 || step.segment<3>(3).norm() > 0.5) return false;
+    pose.camera_from_marker = pose.camera_from_marker * geometry::exp(step.head<6>());
+    for (int i = 0; i < 3; ++i) {
+      pose.velocity[i < 2 ? i : 5] += step[kVelocity + i];
+      pose.change[i < 2 ? i : 5] += step[kChange + i];
+    }
+    smear = std::clamp(smear + step[kSmear], -0.7, 0.9);
+    smear_factor = static_cast<float>(std::exp(smear));
+    gamma = std::clamp(gamma + step[kGamma], 1.0, 3.0);
+    light += step.tail<kLightTerms>().cast<float>();
+    return pose.camera_from_marker.translation_mm.z() > 0;
+  }
+  // From here back to where the fit started.
+  [[nodiscard]] Vector lag(const DirectStart& start) const {
+    const auto in_plane = [](const Vector6d& twist) { return Eigen::Vector3d(twist[0], twist[1], twist[5]); };
+    Vector lag = Vector::Zero();
+    lag.segment<3>(kVelocity) = in_plane(start.pose.velocity - pose.velocity);
+    lag.segment<3>(kChange) = in_plane(start.pose.change - pose.change);
+    lag[kSmear] = -smear;
+    lag[kGamma] = start.gamma - gamma;
+    return lag;
+  }
+};
+
+struct DirectFit::Linearised {
+  Matrix products = Matrix::Zero();  // J^T W J
+  Vector pull = Vector::Zero();      // J^T W r
+  Matrix normal = Matrix::Zero();    // with noise and what is known beforehand
+  Vector prior = Vector::Zero();
+  CodeShare code_share;
+  double scale = 0;  // robust, of the residuals
+  int used = 0;
+};
+
+// What light the start asks for is linear, in light; three times over, so that what is covered drops out.
+void DirectFit::guess_light(State& state) {
+  const std::size_t count = pixels_.size();
+  const auto gamma = static_cast<float>(state.gamma);
+  const auto row_of = [&](std::size_t i) {
+    const Terms terms = terms_at(pixels_[i].place);
+    Light row;
+    row << terms.head<kBiasTerms>(), levels_[i].level * terms.head<kGainTerms>();
+    return row;
+  };
+  for (std::size_t i = 0; i < count; ++i) light_[i] = 255 * std::pow(pixels_[i].grey / 255, gamma);
+  for (int pass = 0; pass < 3; ++pass) {
+    using Square = Eigen::Matrix<float, kLightTerms, kLightTerms>;
+    Square normal = 1e-2F * Square::Identity();
+    Light right = Light::Zero();
+    for (std::size_t i = 0; i < count; ++i) {
+      const Light row = row_of(i);
+      normal.noalias() += (weights_[i] * row) * row.transpose();
+      right += weights_[i] * light_[i] * row;
+    }
+    state.light = normal.ldlt().solve(right);
+    sorted_.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      residuals_[i] = light_[i] - state.light.dot(row_of(i));
+      sorted_.push_back(std::abs(residuals_[i]));
+    }
+    const auto scale = static_cast<float>(std::max(kMinNoiseLight, 1.8 * median_of(sorted_)));
+    for (std::size_t i = 0; i < count; ++i) weights_[i] = tukey_weight(residuals_[i] / scale);
+  }
+}
+
+void DirectFit::linearise(const State& state, bool is_first, Linearised& result) {
+  static_assert(kCount <= kRow);
+  result = Linearised();
+  ProductSum<kRow> products;
+  for (Row& gradient : edge_gradients_) gradient.setZero();
+  sorted_.clear();
+  const auto gamma = static_cast<float>(state.gamma);
+  const auto noise = static_cast<float>(state.noise);
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    const Pixel& pixel = pixels_[i];
+    const ExposedCode::Level& level = levels_[i];
+    const Terms terms = terms_at(pixel.place);
+    const float gain = state.light.tail<kGainTerms>().dot(terms.head<kGainTerms>());
+    const float bias = state.light.head<kBiasTerms>().dot(terms.head<kBiasTerms>());
+    const float light = std::max(kMinLight, bias + gain * level.level);
+    const float logarithm = std::log(light / 255);
+    const float modelled = 255 * std::exp(logarithm / gamma);
+    const float slope = modelled / (gamma * light);
+    const float residual = pixel.grey - modelled;
+    sorted_.push_back(std::abs(residual));
+    const float weight = is_first ? weights_[i] : tukey_weight(residual / noise);
+    if (weight <= 0) continue;
+    ++result.used;
+    result.code_share.add(weight, slope * gain * (level.level - 0.5F), residual);
+    Row row = Row::Zero();
+    row.head<6>() = slope * gain * level.by_pose;
+    row.segment<3>(kVelocity) = slope * gain * level.by_velocity;
+    row.segment<3>(kChange) = slope * gain * level.by_change;
+    row[kSmear] = slope * gain * level.by_smear;
+    row[kGamma] = -modelled * logarithm / (gamma * gamma);
+    row.segment<kBiasTerms>(kLight) = slope * terms.head<kBiasTerms>();
+    row.segment<kGainTerms>(kLight + kBiasTerms) = slope * level.level * terms.head<kGainTerms>();
+    products.add(std::sqrt(weight) * row);
+    edge_gradients_[pixel.edge] += weight * residual * row;
+  }
+  result.scale = 1.4826 * median_of(sorted_);
+  result.products = products.take().topLeftCorner<kCount, kCount>().cast<double>();
+  for (const Row& part : edge_gradients_) result.pull += part.head<kCount>().cast<double>();
+}
+
+bool DirectFit::scattered_covariance(const Linearised& at, double certainty,
+                                     geometry::Matrix6d& covariance) const {
+  // Of the inverse only what belongs to the pose is needed.
+  const Eigen::Matrix<double, kCount, 6> inverse =
+      at.normal.ldlt().solve(Eigen::Matrix<double, kCount, 6>::Identity());
+  geometry::Matrix6d scatter = inverse.transpose() * at.prior.asDiagonal() * inverse;
+  int edges = 0;
+  for (const Row& part : edge_gradients_) {
+    if (part.isZero()) continue;
+    ++edges;
+    const Vector6d pull = inverse.transpose() * (certainty * part.head<kCount>().cast<double>());
+    scatter.noalias() += pull * pull.transpose();
+  }
+  if (edges < kMinEdges) return false;
+  const double small_sample = edges / static_cast<double>(edges - kBoundEdges);
+  covariance = kSharedErrors * small_sample * scatter;
+  return covariance.allFinite();
+}
+
+DirectPose DirectFit::refine(const camera::GrayView& frame, const camera::CameraModel& camera,
+                             const MarkerCode& code, std::span<const EdgeSample> samples, double size_mm,
+                             const DirectStart& start, const DirectOptions& options) {
+  DirectPose result;
+  result.outcome = DirectPose::Outcome::OutOfView;
+  pixels_.clear();
+  const auto take_more = [&](std::size_t first, std::size_t every) {
+    take_pixels(frame, camera, code.cells, samples, size_mm, start, options, first, every);
+    residuals_.resize(pixels_.size());
+    levels_.resize(pixels_.size());
+    light_.resize(pixels_.size());
+    weights_.resize(pixels_.size(), 1.0F);
+  };
+  weights_.clear();
+  // The way to the result takes a part of the pixels, the last iterations all of them.
+  bool is_rough = options.max_pixels > kRoughPixels;
+  take_more(0, is_rough ? kRoughStride : 1);
+  const auto take_all = [&] {
+    for (int first = 1; is_rough && first < kRoughStride; ++first) take_more(first, kRoughStride);
+    is_rough = false;
+  };
+  if (pixels_.size() < kMinPixels) take_all();
+  if (pixels_.size() < kMinPixels) return result;
+
+  const double px_per_mm = camera.central_focal_px() / start.pose.camera_from_marker.translation_mm.z();
+  const double cell_px = px_per_mm * size_mm / code.cells;
+  const Eigen::Vector3d lever_px(px_per_mm, px_per_mm, 0.5 * size_mm * px_per_mm);
+  Vector prior = Vector::Zero();
+  prior.segment<3>(kVelocity) = (lever_px / start.velocity_sigma_px).array().square();
+  prior.segment<3>(kChange) = (lever_px / start.change_sigma_px).array().square();
+  prior[kSmear] = std::pow(start.sigma_px / kSmearSigmaPx, 2);
+  prior[kGamma] = 1 / (kGammaSigma * kGammaSigma);
+
+  State state{.exposed = ExposedCode(code, size_mm), .pose = start.pose, .gamma = start.gamma};
+  Linearised at;
+  const int coarse_iterations = options.coarse_cells > 0 ? kCoarseIterations : 0;
+  double moved_px = 0, certainty = 0, last_scale = 1e9;
+  for (int iteration = 0;; ++iteration) {
+    state.coarse = iteration < coarse_iterations ? static_cast<float>(options.coarse_cells) : 0;
+    const double moment_px =
+        kMomentsPerSigma * (start.sigma_px * std::exp(state.smear) + state.coarse * cell_px);
+    state.exposed.move(
+        state.pose,
+        static_cast<int>(std::ceil(motion_px(state.pose.velocity, size_mm, px_per_mm) / moment_px)));
+    for (std::size_t i = 0; i < pixels_.size(); ++i) levels_[i] = state.level_at(pixels_[i]);
+    if (iteration == 0) guess_light(state);
+    linearise(state, iteration == 0, at);
+    at.prior = prior;
+    // While the code is smeared on purpose, what else smears it stays as it is.
+    if (state.coarse > 0) at.prior.segment<kLight - kVelocity>(kVelocity) *= 1e6;
+    certainty = (is_rough ? kRoughStride : 1) / (kCorrelatedPixels * state.noise * state.noise);
+    at.normal = certainty * at.products;
+    at.normal.diagonal() += at.prior;
+    at.normal.diagonal().array() += 1e-9;
+    const double falls = std::min(1.0, at.scale / last_scale);
+    last_scale = at.scale;
+    const bool is_settled = !is_rough && iteration >= coarse_iterations + kMinIterations &&
+                            moved_px < kSettledPx && falls > kSettledShare;
+    if (is_settled || iteration == options.max_iterations) break;
+    if (iteration >= coarse_iterations + kHopefulIterations &&
+        at.scale * std::pow(falls, options.max_iterations - iteration) > kMaxNoiseGrey) {
+      result.outcome = DirectPose::Outcome::Unlike;
+      return result;
+    }
+
+    // A high scale in the beginning lets a start that is off come in; a low one later keeps out what covers.
+    state.noise = std::clamp(at.scale, kMinNoiseGrey, state.coarse > 0 ? 3 * kMaxNoiseGrey : kMaxNoiseGrey);
+    const Vector step = at.normal.ldlt().solve(certainty * at.pull + at.prior.cwiseProduct(state.lag(start)));
+    result.outcome = DirectPose::Outcome::NotSettled;
+    if (!state.apply(step)) return result;
+    moved_px = motion_px(step.head<6>(), size_mm, px_per_mm);
+    if (iteration >= coarse_iterations &&
+        (moved_px < kRoughlySettledPx || iteration >= coarse_iterations + kHopefulIterations))
+      take_all();
+  }
+  if (!scattered_covariance(at, certainty, result.covariance)) return result;
+  const Vector6d way = geometry::log(start.pose.camera_from_marker.inverse() * state.pose.camera_from_marker);
+  if ((coarse_iterations == 0 && moved_px > kSettledEnoughPx) ||
+      motion_px(way, size_mm, px_per_mm) > options.max_way_cells * cell_px)
+    return result;
+  result.pose = state.pose;
+  result.sigma_px = start.sigma_px * std::exp(state.smear);
+  result.gamma = state.gamma;
+  result.noise_grey = state.noise;
+  result.inlier_share = static_cast<double>(at.used) / static_cast<double>(pixels_.size());
+  result.likeness = at.code_share.likeness();
+  result.outcome =
+      result.likeness > kMinLikeness ? DirectPose::Outcome::Converged : DirectPose::Outcome::Unlike;
+  return result;
+}
+
+}  // namespace arthronaut::markers

@@ -1,0 +1,381 @@
+#include "navigation/registration/online/online_registration.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "navigation/registration/bone/reachable_region.h"
+#include "navigation/registration/curve_registration.h"
+#include "navigation/registration/online/coach.h"
+#include "navigation/registration/online/stroke_set.h"
+#include "navigation/registration/search/curve_checks.h"
+#include "navigation/registration/search/global_search.h"
+#include "navigation/registration/search/pose_pool.h"
+#include "navigation/registration/verdict/confidence.h"
+#include "planning/files/format.h"
+#include "planning/geometry/quantile.h"
+
+namespace arthronaut::registration {
+
+namespace {
+
+using geometry::RigidTransform;
+
+constexpr std::size_t kPointCount = 500;
+constexpr double kMinLengthToSearch_mm = 25;
+// Pairs to search with at each update: many while nothing is found, one as a watchdog later.
+constexpr int kPairsWhileCollecting = 6, kPairsAfterwards = 1;
+constexpr int kIterations = 6;
+constexpr int kAgreeingSolutions = 5;
+
+}  // namespace
+
+std::string_view to_text(OnlineState state) {
+  switch (state) {
+    case OnlineState::Collecting:
+      return "collecting";
+    case OnlineState::Candidate:
+      return "candidate";
+    case OnlineState::Confirmed:
+      return "confirmed";
+    case OnlineState::Verified:
+      return "verified";
+  }
+  return "unknown";
+}
+
+struct OnlineRegistration::State {
+  State(std::shared_ptr<const SurfaceIndex> prepared, const OnlineOptions& online_options)
+      : bone(std::move(prepared)),
+        options(online_options),
+        setting(bone->data(), options_of(online_options)),
+        pool(bone->data(), prior_of(online_options), setting.start_law()),
+        standing(pool) {
+    if (setting.cover) fitter.emplace(bone->data(), *setting.cover, pool.prior());
+    if (options.target_in_bone_mm)
+      reachable = find_reachable_samples(bone->data(), *options.target_in_bone_mm);
+  }
+
+  static MarkerPrior prior_of(const OnlineOptions& options) {
+    MarkerPrior prior;
+    prior.use = options.use_marker_prior;
+    return prior;
+  }
+
+  static RegistrationOptions options_of(const OnlineOptions& options) {
+    RegistrationOptions registering{options.seed, options.use_marker_prior, options.target_in_bone_mm};
+    registering.covered = options.covered;
+    return registering;
+  }
+
+  void check_side();
+  void solve();
+  void fit_cover();
+  void remember_solution();
+  void judge_touches();
+  void judge_state();
+  void describe_strokes();
+  [[nodiscard]] Eigen::Vector3d target_mm() const;
+  // How far off the mesh the bone is touched there; nullopt where that is not known.
+  [[nodiscard]] std::optional<double> offset_mm(const Eigen::Vector3d& point_in_bone_mm) const {
+    return setting.cover ? cover.offset_mm(*setting.cover, point_in_bone_mm) : 0.0;
+  }
+  [[nodiscard]] int violation_count() const {
+    int count = control_violations;
+    for (const Touch& touch : result.touches) {
+      count += touch.tells && std::abs(touch.residual_mm) > options.max_touch_error_mm;
+    }
+    return count;
+  }
+  [[nodiscard]] int agreement_count() const;
+
+  std::shared_ptr<const SurfaceIndex> bone;
+  OnlineOptions options;
+  SearchSetting setting;
+  std::vector<bool> reachable;  // samples of the bone, by the tunnel's entry; empty without one
+  StrokeSet strokes;
+  PosePool pool;      // of the search, which knows the mesh alone
+  PosePool standing;  // of the last solution: the same, or with a cover its poses with their thicknesses
+  std::optional<CoverFitter> fitter;
+  WeightedPoints points;      // of the last solution
+  CoverFit cover;             // of the last solution; nothing of it holds without options.covered
+  double cover_tried_mm = 0;  // the stroke length when all thicknesses were tried the last time
+  double solved_length_mm = 0;
+  bool is_changed = false;                // strokes were excluded, undone or cleared since the last solution
+  SideVerdict side = SideVerdict::Own;    // as the last check, before a confirmation, told
+  double side_checked_mm = 0;             // the stroke length then; 0 when there was none
+  bool is_judged = true;                  // false: touches came in since the last update
+  bool judges_all = false;                // the next update is to
+  std::vector<RigidTransform> solutions;  // marker_from_bone, each with new stroke, newest last
+  std::optional<Eigen::Vector3d> control_point_mm;
+  double control_shift_mm = 0;
+  int control_violations = 0;
+  OnlineResult result;
+  std::vector<HistoryEntry> history;
+};
+
+Eigen::Vector3d OnlineRegistration::State::target_mm() const {
+  if (options.target_in_bone_mm) return *options.target_in_bone_mm;
+  return standing.empty() ? Eigen::Vector3d::Zero() : standing.best().bone_from_marker * points.centroid_mm;
+}
+
+// To try all thicknesses takes long: that is done until something is found, and later on now and then.
+void OnlineRegistration::State::fit_cover() {
+  constexpr double kLengthRatio = 1.25;
+  const double length_mm = strokes.length_in_use_mm();
+  const bool anew =
+      result.state == OnlineState::Collecting || is_changed || length_mm > kLengthRatio * cover_tried_mm;
+  if (anew) cover_tried_mm = length_mm;
+  cover = fitter->fit(standing, points, anew);
+  points = cover.points;
+}
+
+void OnlineRegistration::State::solve() {
+  result.bone_is_in_doubt = false;
+  const strokes::Curves curves = strokes.curves_in_use();
+  points = choose_points(curves, kPointCount);
+  const std::vector<strokes::OrientedPoint> oriented = strokes.oriented_in_use();
+  // While drawing, few points are no objection: more are coming, and the length says how many are missing.
+  const std::vector<std::string> objections =
+      objections_to(curves, bone->data().bounds.size_mm().norm(), {.min_point_count = 1});
+  if (strokes.length_in_use_mm() < kMinLengthToSearch_mm || !objections.empty()) {
+    pool.clear();
+    if (fitter) fitter->forget();
+  } else {
+    GlobalSearchOptions search;
+    search.seed = options.seed + result.revision;  // other pairs each time
+    search.use_marker_prior = options.use_marker_prior;
+    const bool is_found = result.state != OnlineState::Collecting;
+    search.curve_pair_count = is_found ? kPairsAfterwards : kPairsWhileCollecting;
+    search.keep_count = is_found ? 4 : 40;
+    // Where the plan is first, then everywhere, in turn.
+    if (!is_found && !reachable.empty() && result.revision % 2 == 1) search.reachable = &reachable;
+    search.both_ways = !is_found;
+    pool.add(search_globally(bone->data(), oriented, points, search), points, search.seed);
+    pool.refine_all(points, kIterations);
+  }
+  standing.replace(pool.poses(), points.centroid_mm);
+  std::vector<std::optional<double>> offsets_mm;
+  if (fitter && !standing.empty()) {
+    fit_cover();
+    offsets_mm = cover.offsets_mm(*setting.cover, curves, standing.best().bone_from_marker);
+  }
+  const double white_noise_mm = white_noise_of(oriented);
+  const TouchedCurves touched{curves, points, strokes.length_in_use_mm(), white_noise_mm,
+                              std::move(offsets_mm)};
+  result.registration = summarise(bone->data(), standing, touched, setting.options);
+  if (fitter && !standing.empty()) cover.add_to(result.registration, target_mm());
+  if (!result.registration.has_pose) {
+    result.registration.reasons = objections;
+    if (objections.empty())
+      result.registration.reasons = {"no pose was found yet that puts the strokes on the bone"};
+    return;
+  }
+  result.bone_is_in_doubt =
+      touched.length_mm >= kMinLength_mm && share_of_bearable_misfit(result.registration, white_noise_mm) > 1;
+  const Eigen::Matrix3d turn = result.registration.covariance.bottomRightCorner<3, 3>();
+  Eigen::Matrix3d across = Eigen::Matrix3d::Identity();
+  if (options.direction_in_bone) across = geometry::cross_matrix(options.direction_in_bone->normalized());
+  result.predicted_angle_deg =
+      geometry::deg_from_rad(std::sqrt((across * turn * across.transpose()).trace()));
+}
+
+void OnlineRegistration::State::remember_solution() {
+  constexpr std::size_t kRemembered = kAgreeingSolutions;
+  if (!result.registration.has_pose) return;
+  solutions.push_back(result.registration.marker_from_bone);
+  if (solutions.size() > kRemembered) solutions.erase(solutions.begin());
+  history.push_back({result.revision, result.state, result.length_mm, result.registration.rms_mm,
+                     result.registration.predicted_tre_mm, result.registration.marker_from_bone});
+}
+
+// How many of the last solutions, one after the other, agree with the newest at the target; itself included.
+int OnlineRegistration::State::agreement_count() const {
+  constexpr double kDistance_mm = 1.0, kAngle_deg = 1.5;
+  int count = 0;
+  for (auto it = solutions.rbegin(); it != solutions.rend(); ++it, ++count) {
+    const RigidTransform& newest = solutions.back();
+    const double angle_deg =
+        geometry::deg_from_rad(geometry::rotation_angle_rad(newest.rotation.conjugate() * it->rotation));
+    if ((*it * target_mm() - newest * target_mm()).norm() > kDistance_mm || angle_deg > kAngle_deg) break;
+  }
+  return count;
+}
+
+// Which side's bone it is shows late: with few strokes the wrong one fits too. So it is asked once when all
+// else would confirm, and again when half as much again was drawn.
+void OnlineRegistration::State::check_side() {
+  const bool is_due = side_checked_mm == 0 || judges_all || result.length_mm > 1.5 * side_checked_mm ||
+                      side != SideVerdict::Own;
+  if (is_due && agreement_count() >= kAgreeingSolutions && result.registration.reliable) {
+    // Costs compare only between searches of the same kind, over the same points.
+    constexpr int kRounds = 2;
+    const strokes::Curves curves = strokes.curves_in_use();
+    const SearchOutcome own = search_and_summarise(setting, curves, kRounds);
+    side = judge_side(setting, curves, own);
+    side_checked_mm = result.length_mm;
+  }
+  if (side == SideVerdict::Own || !result.registration.has_pose) return;
+  result.bone_is_in_doubt = true;
+  result.registration.reliable = false;
+  result.registration.reasons.insert(result.registration.reasons.begin(), std::string(reason_against(side)));
+}
+
+void OnlineRegistration::State::judge_touches() {
+  if (!result.registration.has_pose) return;
+  const RigidTransform bone_from_marker = result.registration.marker_from_bone.inverse();
+  for (Touch& touch : result.touches) {
+    const Eigen::Vector3d p = bone_from_marker * touch.point_in_marker_mm;
+    const std::optional<double> offset = offset_mm(p);
+    touch.tells = offset.has_value();
+    touch.residual_mm = bone->data().surface.signed_distance_mm(p) - offset.value_or(0.0);
+  }
+}
+
+void OnlineRegistration::State::judge_state() {
+  constexpr double kCandidateRatio = 1.15, kCandidateInliers = 0.5;
+  constexpr int kTouchesToVerify = 3, kViolationsToDrop = 2;
+  constexpr double kMaxVerifiedTouch_mm = 1.0, kMaxVerifiedMedian_mm = 0.6;
+  const RegistrationSummary& registration = result.registration;
+  result.state = OnlineState::Collecting;
+  result.alarm.clear();
+  if (!registration.has_pose) return;
+  if (registration.runner_up_ratio < kCandidateRatio || registration.inlier_fraction < kCandidateInliers)
+    return;
+  result.state = OnlineState::Candidate;
+  if (violation_count() >= kViolationsToDrop) {
+    result.alarm = control_violations > 0
+                       ? files::format("the world marker may have moved: the control point is off by %.1f mm",
+                                       control_shift_mm)
+                       : files::format("the world marker may have moved: %.0f touches lie off the bone",
+                                       static_cast<double>(violation_count()));
+    return;
+  }
+  if (!registration.reliable || agreement_count() < kAgreeingSolutions) return;
+  result.state = OnlineState::Confirmed;
+  std::vector<double> misses_mm;
+  for (const Touch& touch : result.touches) {
+    if (touch.tells) misses_mm.push_back(std::abs(touch.residual_mm));
+  }
+  if (std::ssize(misses_mm) < kTouchesToVerify) return;
+  const bool all_lie_on = *std::max_element(misses_mm.begin(), misses_mm.end()) < kMaxVerifiedTouch_mm;
+  if (all_lie_on && geometry::median(misses_mm, 0) < kMaxVerifiedMedian_mm)
+    result.state = OnlineState::Verified;
+}
+
+void OnlineRegistration::State::describe_strokes() {
+  result.strokes.clear();
+  const RigidTransform bone_from_marker = result.registration.marker_from_bone.inverse();
+  for (const Stroke& stroke : strokes.all()) {
+    StrokeInfo info;
+    info.curve = stroke.points.front().curve;
+    info.point_count = static_cast<int>(stroke.points.size());
+    info.length_mm = stroke.length_mm;
+    info.is_excluded = stroke.is_excluded;
+    if (result.registration.has_pose) {
+      std::vector<double> misses_mm;
+      for (const strokes::CurvePoint& point : stroke.points) {
+        const Eigen::Vector3d p = bone_from_marker * point.position_mm;
+        misses_mm.push_back(std::abs(bone->data().field.sample(p).distance_mm - offset_mm(p).value_or(0.0)));
+      }
+      info.median_residual_mm = geometry::median(std::move(misses_mm), 0);
+    }
+    result.strokes.push_back(info);
+  }
+}
+
+OnlineRegistration::OnlineRegistration(std::shared_ptr<const SurfaceIndex> bone, const OnlineOptions& options)
+    : state_(std::make_unique<State>(std::move(bone), options)) {}
+OnlineRegistration::~OnlineRegistration() = default;
+
+void OnlineRegistration::add_points(std::span<const strokes::CurvePoint> points, bool is_excluded) {
+  state_->strokes.add_points(points, is_excluded);
+}
+
+void OnlineRegistration::judge_all() { state_->judges_all = true; }
+
+bool OnlineRegistration::exclude_stroke(int curve, bool is_excluded) {
+  if (!state_->strokes.exclude(curve, is_excluded)) return false;
+  return state_->is_changed = true;
+}
+
+bool OnlineRegistration::undo_stroke() {
+  if (!state_->strokes.undo()) return false;
+  return state_->is_changed = true;
+}
+
+void OnlineRegistration::add_touch(const Eigen::Vector3d& tip_in_marker_mm) {
+  state_->result.touches.push_back({tip_in_marker_mm, 0});
+  state_->is_judged = false;
+}
+
+void OnlineRegistration::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
+  State& state = *state_;
+  if (!state.control_point_mm) {
+    state.control_point_mm = tip_in_marker_mm;
+    return;
+  }
+  state.control_shift_mm = (tip_in_marker_mm - *state.control_point_mm).norm();
+  // One that is back where it was takes the suspicion away.
+  state.control_violations =
+      state.control_shift_mm > state.options.max_control_shift_mm ? state.control_violations + 1 : 0;
+  state.is_judged = false;
+}
+
+void OnlineRegistration::clear_touches() {
+  state_->result.touches.clear();
+  state_->control_point_mm.reset();
+  state_->control_violations = 0;
+  state_->is_judged = false;
+}
+
+void OnlineRegistration::clear() {
+  clear_touches();
+  state_->strokes.clear();
+  state_->solutions.clear();
+  state_->pool.clear();
+  if (state_->fitter) state_->fitter->forget();
+  state_->side = SideVerdict::Own;
+  state_->side_checked_mm = 0;
+  state_->is_changed = true;
+}
+
+const OnlineResult& OnlineRegistration::update() {
+  State& state = *state_;
+  // Measuring a stroke with its noise taken out costs more than adding up the steps of its points, which is
+  // never less.
+  const double missing_mm =
+      state.options.refine_every_mm - (state.strokes.length_in_use_mm() - state.solved_length_mm);
+  const bool is_asked = state.is_changed || state.judges_all;
+  if (state.strokes.unmeasured_mm() < missing_mm && !is_asked && state.is_judged) return state.result;
+  state.strokes.measure();
+  const double length_mm = state.strokes.length_in_use_mm();
+  const bool has_new_stroke = length_mm - state.solved_length_mm >= state.options.refine_every_mm;
+  if (!has_new_stroke && !is_asked && state.is_judged) return state.result;
+
+  ++state.result.revision;
+  if (has_new_stroke || is_asked) {
+    state.solve();
+    state.solved_length_mm = state.result.length_mm = length_mm;
+    if (state.is_changed) state.solutions.clear();  // agreement has to be earned again
+    // Of hardly more stroke than the last solution: it takes that one's place and earns no agreement.
+    if (!has_new_stroke && !state.solutions.empty()) state.solutions.pop_back();
+    state.remember_solution();
+    state.check_side();
+    state.describe_strokes();
+  }
+  state.is_changed = state.judges_all = false;
+  state.is_judged = true;
+  state.judge_touches();
+  state.judge_state();
+  state.result.coach =
+      advise(state.result, {state.bone->data(), state.standing, state.points, state.target_mm(),
+                            state.agreement_count(), kAgreeingSolutions, state.options.refine_every_mm});
+  if (!state.history.empty()) state.history.back().state = state.result.state;
+  return state.result;
+}
+
+const OnlineResult& OnlineRegistration::result() const { return state_->result; }
+const std::vector<HistoryEntry>& OnlineRegistration::history() const { return state_->history; }
+strokes::Curves OnlineRegistration::curves_in_use() const { return state_->strokes.curves_in_use(); }
+
+}  // namespace arthronaut::registration

@@ -1,0 +1,63 @@
+#include "navigation/registration/online/stroke_set.h"
+
+namespace arthronaut::registration {
+
+void StrokeSet::add_points(std::span<const strokes::CurvePoint> points, bool is_excluded) {
+  for (const strokes::CurvePoint& point : points) {
+    if (strokes_.empty() || strokes_.back().points.front().curve != point.curve)
+      strokes_.emplace_back().is_excluded = is_excluded;
+    strokes::Curves& stroke = strokes_.back().points;
+    if (!stroke.empty()) unmeasured_mm_ += (point.position_mm - stroke.back().position_mm).norm();
+    stroke.push_back(point);
+  }
+}
+
+bool StrokeSet::exclude(int curve, bool is_excluded) {
+  bool found = false;
+  for (Stroke& stroke : strokes_) {
+    if (stroke.points.front().curve != curve) continue;
+    stroke.is_excluded = is_excluded;
+    found = true;
+  }
+  return found;
+}
+
+bool StrokeSet::undo() {
+  if (strokes_.empty()) return false;
+  strokes_.pop_back();
+  return true;
+}
+
+void StrokeSet::measure() {
+  unmeasured_mm_ = 0;
+  for (Stroke& stroke : strokes_) {
+    if (stroke.measured_count == stroke.points.size()) continue;
+    stroke.measured_count = stroke.points.size();
+    stroke.oriented = strokes::oriented_points(stroke.points);
+    stroke.length_mm = strokes::stroke_length_mm(stroke.points);
+  }
+}
+
+double StrokeSet::length_in_use_mm() const {
+  double length_mm = 0;
+  for (const Stroke& stroke : strokes_) length_mm += stroke.is_excluded ? 0.0 : stroke.length_mm;
+  return length_mm;
+}
+
+strokes::Curves StrokeSet::curves_in_use() const {
+  strokes::Curves curves;
+  for (const Stroke& stroke : strokes_) {
+    if (!stroke.is_excluded) curves.insert(curves.end(), stroke.points.begin(), stroke.points.end());
+  }
+  return curves;
+}
+
+std::vector<strokes::OrientedPoint> StrokeSet::oriented_in_use() const {
+  std::vector<strokes::OrientedPoint> oriented;
+  for (const Stroke& stroke : strokes_) {
+    if (!stroke.is_excluded) oriented.insert(oriented.end(), stroke.oriented.begin(), stroke.oriented.end());
+  }
+  return oriented;
+}
+
+}  // namespace arthronaut::registration

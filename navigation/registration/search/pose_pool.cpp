@@ -1,0 +1,106 @@
+#include "navigation/registration/search/pose_pool.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace arthronaut::registration {
+
+namespace {
+
+using geometry::RigidTransform;
+
+constexpr std::size_t kCoarsePointCount = 120, kPolishPointCount = 400;
+constexpr std::size_t kPoolSize = 8;
+constexpr int kPolishIterations = 3, kIterationsToJudge = 2;
+
+DistanceFunction distance_in(const DistanceField& field) {
+  return [&field](const Eigen::Vector3d& p) { return field.sample(p); };
+}
+
+// The mesh itself, where the field knows the sign; the two agree about it but within the grid's rounding.
+DistanceFunction distance_to(const SurfaceIndex::Data& bone) {
+  return [&bone](const Eigen::Vector3d& p) {
+    DistanceField::Sample sample = bone.field.sample(p);
+    if (std::abs(sample.distance_mm) >= bone.field.band_mm()) return sample;
+    const geometry::SurfacePoint nearest = bone.surface.closest_point(p);
+    const Eigen::Vector3d away = p - nearest.point_mm;
+    const double side = away.dot(sample.gradient) < 0 ? -1.0 : 1.0;
+    sample.distance_mm = side * away.norm();
+    return sample;
+  };
+}
+
+}  // namespace
+
+double lead_of(double cost, double rival_cost, const WeightedPoints& points) {
+  return (rival_cost - cost) * points.weight_sum / kCorrelationLength_mm;
+}
+
+bool are_different(const RigidTransform& a, const RigidTransform& b, const Eigen::Vector3d& centroid_mm) {
+  constexpr double kDistance_mm = 3.0, kAngle_deg = 5.0;
+  return (a * centroid_mm - b * centroid_mm).norm() > kDistance_mm ||
+         geometry::deg_from_rad(geometry::rotation_angle_rad(a.rotation.conjugate() * b.rotation)) >
+             kAngle_deg;
+}
+
+void PosePool::add(const std::vector<Hypothesis>& hypotheses, const WeightedPoints& points,
+                   std::uint64_t seed) {
+  const WeightedPoints coarse_points = draw_points(points, kCoarsePointCount, seed);
+  // Those in the pool are refined on the same points, so that the costs compare.
+  for (RefinedPose& pose : poses_) {
+    pose = refine(distance_in(bone_.field), coarse_points, pose.bone_from_marker, pose.model, prior_, 1);
+  }
+  for (const Hypothesis& hypothesis : hypotheses) {
+    const RigidTransform near = approach(bone_.field, coarse_points, hypothesis.bone_from_marker);
+    poses_.push_back(refine(distance_in(bone_.field), coarse_points, near, start_, prior_, 6));
+  }
+  rank(points.centroid_mm, kPoolSize);
+}
+
+void PosePool::refine_all(const WeightedPoints& points, int iterations) {
+  const int first_iterations = std::min(iterations, kIterationsToJudge);
+  for (const int part : {first_iterations, iterations - first_iterations}) {
+    if (part == 0) continue;
+    for (RefinedPose& pose : poses_) {
+      pose = refine(distance_in(bone_.field), points, pose.bone_from_marker, pose.model, prior_, part);
+    }
+    rank(points.centroid_mm, kPoolSize);
+    drop_hopeless(points);
+  }
+}
+
+void PosePool::drop_hopeless(const WeightedPoints& points) {
+  constexpr double kHopeless = 25;
+  while (poses_.size() > 2 && lead_of(poses_.front().cost, poses_.back().cost, points) > kHopeless)
+    poses_.pop_back();
+}
+
+void PosePool::polish(const WeightedPoints& points) {
+  const bool are_few = points.positions_mm.size() <= kPolishPointCount;
+  const RefinedPose& best = poses_.front();
+  const RefinedPose polished =
+      refine(distance_to(bone_), are_few ? points : draw_points(points, kPolishPointCount, 1),
+             best.bone_from_marker, best.model, prior_, kPolishIterations);
+  poses_.front().bone_from_marker = polished.bone_from_marker;
+}
+
+void PosePool::replace(std::vector<RefinedPose> poses, const Eigen::Vector3d& centroid_mm) {
+  poses_ = std::move(poses);
+  rank(centroid_mm, kPoolSize);
+}
+
+void PosePool::rank(const Eigen::Vector3d& centroid_mm, std::size_t max_count) {
+  std::stable_sort(poses_.begin(), poses_.end(),
+                   [](const RefinedPose& l, const RefinedPose& r) { return l.cost < r.cost; });
+  std::vector<RefinedPose> kept;
+  for (RefinedPose& pose : poses_) {
+    if (kept.size() == max_count) break;
+    const bool is_new = std::all_of(kept.begin(), kept.end(), [&](const RefinedPose& other) {
+      return are_different(pose.bone_from_marker, other.bone_from_marker, centroid_mm);
+    });
+    if (is_new) kept.push_back(std::move(pose));
+  }
+  poses_ = std::move(kept);
+}
+
+}  // namespace arthronaut::registration

@@ -1,0 +1,217 @@
+#include "navigation/registration/search/refinement.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace arthronaut::registration {
+
+namespace {
+
+using geometry::Matrix6d;
+using geometry::RigidTransform;
+using geometry::Vector6d;
+
+// Twists (v, w) about a point near the touched area, in the bone frame: bone_from_marker <- twist *
+// bone_from_marker.
+struct NormalEquations {
+  Matrix6d matrix = Matrix6d::Zero();
+  Vector6d right = Vector6d::Zero();
+
+  void add(const Eigen::Vector3d& arm_mm, const Eigen::Vector3d& gradient, double residual_mm,
+           double weight) {
+    Vector6d row;
+    row.head<3>() = gradient;
+    row.tail<3>() = arm_mm.cross(gradient);
+    // By hand, since these few products are most of the time of a fit.
+    for (int j = 0; j < 6; ++j) {
+      const double weighted = weight * row[j];
+      for (int i = j; i < 6; ++i) matrix(i, j) += weighted * row[i];
+      right[j] -= weighted * residual_mm;
+    }
+  }
+
+  // Slightly damped, so that a motion which nothing holds stays where it is; steps are kept within reason.
+  [[nodiscard]] Vector6d solve() const {
+    constexpr double kMaxTranslation_mm = 3.0, kMaxAngle_rad = 0.2;
+    Matrix6d damped = matrix.selfadjointView<Eigen::Lower>();
+    damped.diagonal().array() *= 1.0 + 1e-6;
+    damped.diagonal().array() += 1e-6;
+    Vector6d twist = damped.ldlt().solve(right);
+    const double excess =
+        std::max(twist.head<3>().norm() / kMaxTranslation_mm, twist.tail<3>().norm() / kMaxAngle_rad);
+    if (excess > 1) twist /= excess;
+    return twist.allFinite() ? twist : Vector6d::Zero();
+  }
+};
+
+void move(RigidTransform& bone_from_marker, const Vector6d& twist, const Eigen::Vector3d& pivot_mm) {
+  const Eigen::Vector3d w = twist.tail<3>();
+  const double angle = w.norm();
+  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+  if (angle > 0) turn = Eigen::AngleAxisd(angle, w / angle);
+  bone_from_marker.rotation = (turn * bone_from_marker.rotation).normalized();
+  bone_from_marker.translation_mm =
+      turn * (bone_from_marker.translation_mm - pivot_mm) + pivot_mm + twist.head<3>();
+}
+
+bool is_small(const Vector6d& twist) {
+  return twist.head<3>().norm() < 1e-4 && twist.tail<3>().norm() < 1e-5;
+}
+
+// Laws of the three explanations. Lifts are alike up to the field's band, and all beyond it count as the last
+// of them. Into the bone goes nothing but a gross error: a pose that buries strokes can't explain them away.
+constexpr double kSoftHeight_mm = 0.9, kSoftSigma_mm = 0.37;
+constexpr double kLiftedDensity_per_mm = 0.2, kLiftOnset_mm = 0.15;
+constexpr double kMinSigma_mm = 0.06, kMaxSigma_mm = 0.6;
+
+double normal_density(double x, double sigma) {
+  return std::exp(-0.5 * x * x / (sigma * sigma)) / (sigma * 2.5066282746310002);
+}
+
+double lifted_density_per_mm(double residual_mm, double buried_density_per_mm) {
+  const double share_above = 1 / (1 + std::exp(-residual_mm / kLiftOnset_mm));
+  return buried_density_per_mm + (kLiftedDensity_per_mm - buried_density_per_mm) * share_above;
+}
+
+struct Explanation {
+  double contact, soft, lifted;  // sum to 1
+  double negative_log_density;
+};
+
+Explanation explain(double residual_mm, const ContactModel& model) {
+  const double soft_sigma = std::hypot(kSoftSigma_mm, model.contact_sigma_mm);
+  const double contact =
+      (1 - model.soft_share - model.lifted_share) * normal_density(residual_mm, model.contact_sigma_mm);
+  const double soft = model.soft_share * normal_density(residual_mm - kSoftHeight_mm, soft_sigma);
+  const double lifted = model.lifted_share * lifted_density_per_mm(residual_mm, model.buried_density_per_mm);
+  const double sum = contact + soft + lifted;
+  return {contact / sum, soft / sum, lifted / sum, -std::log(sum)};
+}
+
+// The M step for the law. The shares lean on a prior of a few mm of path, so that none dies out.
+ContactModel updated_model(const WeightedPoints& points, const std::vector<double>& residuals_mm,
+                           const ContactModel& model) {
+  constexpr double kPriorWeight = 4.0;
+  double contact = kPriorWeight, soft = 0.1 * kPriorWeight, lifted = 0.1 * kPriorWeight;
+  double square_sum = 0.2 * 0.2 * kPriorWeight;
+  for (std::size_t i = 0; i < residuals_mm.size(); ++i) {
+    const Explanation explanation = explain(residuals_mm[i], model);
+    contact += points.weights[i] * explanation.contact;
+    soft += points.weights[i] * explanation.soft;
+    lifted += points.weights[i] * explanation.lifted;
+    square_sum += points.weights[i] * explanation.contact * residuals_mm[i] * residuals_mm[i];
+  }
+  ContactModel updated = model;
+  updated.contact_sigma_mm = std::clamp(std::sqrt(square_sum / contact), kMinSigma_mm, kMaxSigma_mm);
+  updated.soft_share = soft / (contact + soft + lifted);
+  updated.lifted_share = lifted / (contact + soft + lifted);
+  return updated;
+}
+
+struct MarkerObjection {
+  double cost, weight;  // weight: of the height's miss in the normal equations
+};
+
+// Robust: a marker that stands otherwise than usual must not bend the result, and costs no more than some 20
+// mm of path.
+MarkerObjection object_to(const Eigen::Matrix3d& bone_from_marker, const DistanceField::Sample& sample,
+                          const MarkerPrior& prior) {
+  constexpr double kWidth = 9.0;  // squared, in sigmas
+  const double miss = (sample.distance_mm - prior.height_mm) / prior.sigma_mm;
+  const double tilt_rad = geometry::angle_between_rad(bone_from_marker.col(2), sample.gradient);
+  const double excess = std::max(0.0, tilt_rad - prior.free_tilt_rad) / prior.tilt_sigma_rad;
+  const double ratio = kWidth / (kWidth + miss * miss);
+  const auto robust = [](double square) { return 0.5 * kWidth * square / (kWidth + square); };
+  return {kCorrelationLength_mm * (robust(miss * miss) + robust(excess * excess)),
+          kCorrelationLength_mm * ratio * ratio / (prior.sigma_mm * prior.sigma_mm)};
+}
+
+}  // namespace
+
+ResidualEvidence evidence_of(double residual_mm, const ContactModel& model) {
+  const Explanation explanation = explain(residual_mm, model);
+  const double contact_information = 1 / (model.contact_sigma_mm * model.contact_sigma_mm);
+  const double soft_information = 1 / (kSoftSigma_mm * kSoftSigma_mm + 1 / contact_information);
+  const double contact_slope = residual_mm * contact_information;
+  const double soft_slope = (residual_mm - kSoftHeight_mm) * soft_information;
+  ResidualEvidence evidence;
+  evidence.contact = explanation.contact;
+  evidence.slope = explanation.contact * contact_slope + explanation.soft * soft_slope;
+  evidence.information = explanation.contact * contact_information + explanation.soft * soft_information;
+  const double square_slope =
+      explanation.contact * contact_slope * contact_slope + explanation.soft * soft_slope * soft_slope;
+  evidence.curvature = evidence.information - (square_slope - evidence.slope * evidence.slope);
+  return evidence;
+}
+
+RigidTransform approach(const DistanceField& field, const WeightedPoints& points,
+                        const RigidTransform& start) {
+  constexpr int kIterations = 18;
+  constexpr double kFirstWidth_mm = 2.0, kLastWidth_mm = 0.8;
+  RigidTransform bone_from_marker = start;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    const double progress = std::min(1.0, iteration / 12.0);
+    const double width = kFirstWidth_mm * std::pow(kLastWidth_mm / kFirstWidth_mm, progress);
+    const Eigen::Vector3d pivot = bone_from_marker * points.centroid_mm;
+    const Eigen::Matrix3d rotation = bone_from_marker.matrix();
+    NormalEquations equations;
+    for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
+      const Eigen::Vector3d p = rotation * points.positions_mm[i] + bone_from_marker.translation_mm;
+      const DistanceField::Sample sample = field.sample(p);
+      const double ratio = width * width / (width * width + sample.distance_mm * sample.distance_mm);
+      equations.add(p - pivot, sample.gradient, sample.distance_mm, points.weights[i] * ratio * ratio);
+    }
+    const Vector6d twist = equations.solve();
+    move(bone_from_marker, twist, pivot);
+    if (progress == 1.0 && is_small(twist)) break;
+  }
+  return bone_from_marker;
+}
+
+RefinedPose refine(const DistanceFunction& distance, const WeightedPoints& points,
+                   const RigidTransform& start, const ContactModel& model, const MarkerPrior& prior,
+                   int iterations) {
+  RefinedPose refined;
+  refined.bone_from_marker = start;
+  refined.model = model;
+  refined.residuals_mm.resize(points.positions_mm.size());
+  for (int iteration = 0;; ++iteration) {
+    const Eigen::Vector3d pivot = refined.bone_from_marker * points.centroid_mm;
+    const Eigen::Matrix3d rotation = refined.bone_from_marker.matrix();
+    const double contact_information = 1 / (refined.model.contact_sigma_mm * refined.model.contact_sigma_mm);
+    const double soft_information = 1 / (kSoftSigma_mm * kSoftSigma_mm + 1 / contact_information);
+    NormalEquations equations;
+    double cost = 0;
+    for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
+      const Eigen::Vector3d p = rotation * points.positions_mm[i] + refined.bone_from_marker.translation_mm;
+      const DistanceField::Sample sample = distance(p);
+      const double residual_mm = sample.distance_mm - points.offset_mm(i);
+      refined.residuals_mm[i] = residual_mm;
+      const Explanation explanation = explain(residual_mm, refined.model);
+      cost += points.weights[i] * explanation.negative_log_density;
+      const double contact = explanation.contact * contact_information,
+                   soft = explanation.soft * soft_information;
+      const double weight = contact + soft;
+      if (weight < 1e-9) continue;
+      equations.add(p - pivot, sample.gradient, residual_mm - kSoftHeight_mm * soft / weight,
+                    points.weights[i] * weight);
+    }
+    if (prior.use) {
+      const Eigen::Vector3d& marker = refined.bone_from_marker.translation_mm;
+      const DistanceField::Sample sample = distance(marker);
+      const MarkerObjection objection = object_to(rotation, sample, prior);
+      equations.add(marker - pivot, sample.gradient, sample.distance_mm - prior.height_mm, objection.weight);
+      cost += objection.cost;
+    }
+    refined.cost = cost / std::max(points.weight_sum, 1e-9);
+    if (iteration >= iterations) break;
+    const Vector6d twist = equations.solve();
+    move(refined.bone_from_marker, twist, pivot);
+    refined.model = updated_model(points, refined.residuals_mm, refined.model);
+    if (is_small(twist) && iteration > 3) iterations = iteration + 1;
+  }
+  return refined;
+}
+
+}  // namespace arthronaut::registration

@@ -1,0 +1,67 @@
+// From a rough pose to the best one nearby.
+//
+// What the tip tells is not symmetric: it never goes into the bone, but it is lifted off, and it rides on
+// soft tissue. So each residual (signed distance to the bone) is explained by one of three: contact, a normal
+// law about 0; soft tissue, a normal law about 0.9 mm; lifted, any height above the bone, and hardly ever
+// inside it. Their shares and the contact's spread are found with the pose (EM).
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "navigation/registration/bone/distance_field.h"
+#include "navigation/registration/search/weighted_points.h"
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::registration {
+
+// Signed distance and its gradient at a point of the bone frame: the grid's, or the exact mesh's.
+using DistanceFunction = std::function<DistanceField::Sample(const Eigen::Vector3d&)>;
+
+struct ContactModel {
+  double contact_sigma_mm = 0.4;
+  double soft_share = 0.10;
+  double lifted_share = 0.10;
+  // Of a lifted point inside the bone, by mm: a gross error, twenty times rarer than a lift. As likely as a
+  // lift where the mesh may hold cartilage that is not there.
+  double buried_density_per_mm = kRarelyBuried_per_mm;
+  static constexpr double kRarelyBuried_per_mm = 0.01, kOftenBuried_per_mm = 0.2;
+};
+
+// Errors along a stroke hang together: about this much of path makes one independent measurement. Costs and
+// weights count touched mm; what is known otherwise (the marker's prior) counts for so many of them.
+inline constexpr double kCorrelationLength_mm = 5.0;
+
+// The world marker is the plate of a screw head: its centre a little above the bone, its face outwards.
+struct MarkerPrior {
+  bool use = false;
+  double height_mm = 2.0, sigma_mm = 0.7;              // of the marker's centre above the bone
+  double free_tilt_rad = 0.44, tilt_sigma_rad = 0.10;  // no objection up to 25 degrees
+};
+
+struct RefinedPose {
+  geometry::RigidTransform bone_from_marker;
+  ContactModel model;
+  double cost = 0;  // weighted negative log likelihood for each unit of weight; smaller is better
+  std::vector<double> residuals_mm;  // signed, by point
+};
+
+// What the law says about one residual: the derivatives of its negative log density.
+struct ResidualEvidence {
+  double contact = 0;      // probability that the tip touched the bone
+  double slope = 0;        // first derivative, 1/mm
+  double curvature = 0;    // second derivative, 1/mm^2; negative where explanations compete
+  double information = 0;  // the curvature if it were known which explanation holds, 1/mm^2
+};
+[[nodiscard]] ResidualEvidence evidence_of(double residual_mm, const ContactModel& model);
+
+// Geman-McClure, its width shrinking from 2 mm to 0.8 mm: from several mm and degrees away to the minimum.
+[[nodiscard]] geometry::RigidTransform approach(const DistanceField& field, const WeightedPoints& points,
+                                                const geometry::RigidTransform& bone_from_marker);
+
+// EM from a pose within about 1 mm.
+[[nodiscard]] RefinedPose refine(const DistanceFunction& distance, const WeightedPoints& points,
+                                 const geometry::RigidTransform& bone_from_marker, const ContactModel& model,
+                                 const MarkerPrior& prior, int iterations);
+
+}  // namespace arthronaut::registration

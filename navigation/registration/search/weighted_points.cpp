@@ -1,0 +1,72 @@
+#include "navigation/registration/search/weighted_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <unordered_map>
+
+#include "navigation/registration/bone/cell_key.h"
+
+namespace arthronaut::registration {
+
+namespace {
+
+void weigh(WeightedPoints& points) {
+  // Cells of 1 mm.
+  const auto key = [](const Eigen::Vector3d& p_mm) { return cell_key(p_mm.array().floor().cast<int>()); };
+  std::unordered_map<std::uint64_t, int> count;
+  for (const Eigen::Vector3d& p : points.positions_mm) ++count[key(p)];
+  points.weights.clear();
+  points.weight_sum = 0;
+  points.centroid_mm.setZero();
+  for (const Eigen::Vector3d& p : points.positions_mm) {
+    const double weight = 1.0 / count[key(p)];
+    points.weights.push_back(weight);
+    points.weight_sum += weight;
+    points.centroid_mm += weight * p;
+  }
+  if (points.weight_sum > 0) points.centroid_mm /= points.weight_sum;
+}
+
+}  // namespace
+
+WeightedPoints choose_points(const strokes::Curves& curves, std::size_t max_count) {
+  WeightedPoints points;
+  const std::size_t count = std::min(curves.size(), max_count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const strokes::CurvePoint& point = curves[i * curves.size() / count];
+    points.positions_mm.push_back(point.position_mm);
+    points.shaft_directions.push_back(point.shaft_direction);
+  }
+  weigh(points);
+  constexpr double kStretch_mm = 12.0;
+  double begun_mm = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_first = i == 0;
+    const bool is_new_curve =
+        !is_first && curves[i * curves.size() / count].curve != curves[(i - 1) * curves.size() / count].curve;
+    const bool is_full = begun_mm >= kStretch_mm;
+    if (is_new_curve || is_full) begun_mm = 0;
+    points.stretches.push_back(is_first ? 0 : points.stretches.back() + (is_new_curve || is_full ? 1 : 0));
+    begun_mm += points.weights[i];
+  }
+  return points;
+}
+
+WeightedPoints draw_points(const WeightedPoints& points, std::size_t count, std::uint64_t seed) {
+  std::vector<std::size_t> order(points.positions_mm.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::mt19937_64 random(seed);
+  count = std::min(count, order.size());
+  WeightedPoints drawn;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::swap(order[i], order[i + random() % (order.size() - i)]);
+    drawn.positions_mm.push_back(points.positions_mm[order[i]]);
+    if (!points.offsets_mm.empty()) drawn.offsets_mm.push_back(points.offsets_mm[order[i]]);
+  }
+  weigh(drawn);
+  return drawn;
+}
+
+}  // namespace arthronaut::registration

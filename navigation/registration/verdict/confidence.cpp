@@ -1,0 +1,237 @@
+#include "navigation/registration/verdict/confidence.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "navigation/registration/search/shaft_collision.h"
+#include "planning/files/format.h"
+#include "planning/geometry/quantile.h"
+
+namespace arthronaut::registration {
+
+using geometry::cross_matrix;
+using geometry::Matrix6d;
+using geometry::Vector6d;
+
+namespace {
+
+constexpr double kMeasuredShare = 0.7;
+constexpr double kBoneSize_mm = 30, kBoneTurn_rad = 3;
+
+Vector6d row_of(const Eigen::Vector3d& gradient, const Eigen::Vector3d& arm_mm) {
+  Vector6d row;
+  row << gradient, arm_mm.cross(gradient);
+  return row;
+}
+
+// The covariance of marker_from_bone's body twist from that of the bone frame's twist about the pivot.
+Matrix6d about_origin(const Matrix6d& about_pivot, const Eigen::Vector3d& pivot_mm) {
+  Matrix6d shift = Matrix6d::Identity();
+  shift.topRightCorner<3, 3>() = cross_matrix(pivot_mm);
+  const Matrix6d covariance = shift * about_pivot * shift.transpose();
+  return 0.5 * (covariance + covariance.transpose());
+}
+
+void measure_inliers(const RefinedPose& best, const WeightedPoints& points, RegistrationSummary& summary) {
+  constexpr double kInlier_mm = 1.0;
+  double inlier_weight = 0, square_sum = 0;
+  for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
+    if (std::abs(best.residuals_mm[i]) > kInlier_mm) continue;
+    inlier_weight += points.weights[i];
+    square_sum += points.weights[i] * best.residuals_mm[i] * best.residuals_mm[i];
+  }
+  summary.rms_mm = inlier_weight > 0 ? std::sqrt(square_sum / inlier_weight) : 0.0;
+  summary.inlier_fraction = inlier_weight / std::max(points.weight_sum, 1e-9);
+}
+
+double misfit_of(const std::vector<double>& residuals_mm, const TouchedCurves& touched) {
+  constexpr double kDeepest_mm = 1.5;  // deeper is no touch of this bone at all
+  const double white_noise_mm = touched.white_noise_mm;
+  double square_sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < residuals_mm.size(); ++i) {
+    const double residual = residuals_mm[i];
+    const bool is_left_out = !touched.offsets_mm.empty() && !touched.offsets_mm[i];
+    if (residual >= 0 || residual < -kDeepest_mm || is_left_out) continue;
+    square_sum += residual * residual;
+    ++count;
+  }
+  const double square = count > 0 ? square_sum / count : 0.0;
+  // The six parameters of the pose took up a part of the miss, the more the fewer measurements there are.
+  const double measurements = touched.points.weight_sum / kCorrelationLength_mm;
+  const double taken_up = measurements / std::max(measurements - 6, 1.0);
+  return std::sqrt(taken_up * std::max(0.0, square - white_noise_mm * white_noise_mm));
+}
+
+double shared_misfit_of(const std::vector<double>& residuals_mm, const WeightedPoints& points) {
+  constexpr double kSamePlace_mm = 1.5, kTouch_mm = 1.0;  // further off is lifted or no touch of this bone
+  constexpr int kMinPairs = 30, kUnrelated = 4;
+  double product_sum = 0, sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < residuals_mm.size(); ++i) {
+    if (std::abs(residuals_mm[i]) > kTouch_mm) continue;
+    for (std::size_t j = i + 1; j < residuals_mm.size(); ++j) {
+      // Stretches that follow one another still share errors of the tip.
+      if (points.stretches[j] < points.stretches[i] + kUnrelated || std::abs(residuals_mm[j]) > kTouch_mm)
+        continue;
+      if ((points.positions_mm[i] - points.positions_mm[j]).squaredNorm() > kSamePlace_mm * kSamePlace_mm)
+        continue;
+      product_sum += residuals_mm[i] * residuals_mm[j];
+      sum += residuals_mm[i] + residuals_mm[j];
+      ++count;
+    }
+  }
+  if (count < kMinPairs) return 0;
+  const double mean = sum / (2 * count);
+  return std::sqrt(std::max(0.0, product_sum / count - mean * mean));
+}
+
+// The whole miss, less what the slow errors that come with such white noise make of it.
+double excess_misfit_mm(const RegistrationSummary& summary, double white_noise_mm) {
+  return summary.misfit_mm - 0.75 * white_noise_mm + summary.shared_misfit_mm;
+}
+
+// Measured on five femora: the right bone gives an excess of up to 0.12, 0.38 and mostly 0.45 mm at a white
+// noise of 0.07, 0.15 and 0.20 mm, another person's 0.47, 0.42 and mostly 0.35 mm and more.
+double max_excess_mm(double white_noise_mm) { return 0.28 + 0.8 * white_noise_mm; }
+
+// The lead over the next pose that a pose needs, in independent measurements' log likelihood. One that few
+// strokes hold loosely, or that misses them, leads by chance: on another person's femur too. Measured there,
+// on 400 mm of strokes of which half are off the bone, and on twice as many.
+constexpr double kClearLead = 5;
+double lead_needed(double excess_misfit_mm, double predicted_error_mm, double length_mm) {
+  constexpr double kAtOneMm = 1.45, kMisfit_mm = 0.074, kPower = 2.6, kLength_mm = 400;
+  const double few = kLength_mm / length_mm;
+  return std::max(kClearLead, kAtOneMm * few * few * std::exp(excess_misfit_mm / kMisfit_mm) *
+                                  std::pow(predicted_error_mm, kPower));
+}
+
+std::vector<std::string> doubts(const RegistrationSummary& summary, const TouchedCurves& touched,
+                                double lead) {
+  constexpr double kMinInliers = 0.5;
+  std::vector<std::string> reasons;
+  if (touched.length_mm < kMinLength_mm) {
+    reasons.push_back(files::format("too little was touched: draw %.0f mm more of stroke",
+                                    std::ceil(kMinLength_mm - touched.length_mm)));
+  }
+  if (share_of_bearable_misfit(summary, touched.white_noise_mm) > 1) {
+    reasons.push_back(files::format(
+        "the points miss the surface by %.2f mm, more than the tip's noise of %.2f mm explains: "
+        "is it this patient's bone?",
+        summary.misfit_mm, touched.white_noise_mm));
+  }
+  if (summary.inlier_fraction < kMinInliers) reasons.push_back("too few of the points lie on this bone");
+  if (summary.predicted_tre_mm > kMaxError_mm) {
+    reasons.push_back("the touched patch does not hold the bone fast: touch other faces of the notch too");
+  }
+  if (lead < kClearLead) {
+    reasons.push_back("two poses fit almost alike: touch other faces of the notch too");
+  } else if (lead < lead_needed(excess_misfit_mm(summary, touched.white_noise_mm), summary.predicted_tre_mm,
+                                touched.length_mm)) {
+    reasons.push_back(
+        files::format("strokes that miss the surface by %.2f mm fit another bone too: draw more of them, "
+                      "on other faces of the notch too",
+                      summary.misfit_mm));
+  }
+  return reasons;
+}
+
+}  // namespace
+
+Matrix6d covariance_about(const RefinedPose& pose, const WeightedPoints& points,
+                          const SurfaceIndex::Data& bone, const MarkerPrior& prior,
+                          const Eigen::Vector3d& pivot_mm) {
+  Matrix6d held = Matrix6d::Zero(), pull = Matrix6d::Zero();
+  double curvature = 0, information = 1e-9;
+  Vector6d stretch_pull = Vector6d::Zero();
+  int stretch_count = 0;
+  for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
+    const Eigen::Vector3d p = pose.bone_from_marker * points.positions_mm[i];
+    const Vector6d row = row_of(bone.field.sample(p).gradient, p - pivot_mm);
+    const ResidualEvidence evidence = evidence_of(pose.residuals_mm[i], pose.model);
+    held += points.weights[i] * evidence.information * row * row.transpose();
+    curvature += points.weights[i] * evidence.curvature;
+    information += points.weights[i] * evidence.information;
+    stretch_pull += points.weights[i] * evidence.slope * row;
+    if (i + 1 == points.positions_mm.size() || points.stretches[i + 1] != points.stretches[i]) {
+      pull += stretch_pull * stretch_pull.transpose();
+      stretch_pull.setZero();
+      ++stretch_count;
+    }
+  }
+  // Six parameters were fitted to the stretches.
+  pull *= stretch_count / std::max(stretch_count - 6.0, 1.0);
+  // Few stretches measure the scatter poorly: a part of it is what the law of the residuals expects.
+  pull = kMeasuredShare * pull + (1 - kMeasuredShare) * kCorrelationLength_mm * held;
+  // Where it is not known which explanation holds, a residual says less than if it were.
+  held *= std::clamp(curvature / information, 0.2, 1.0);
+
+  const auto add_knowledge = [&](const Vector6d& row, double sigma) {
+    const Matrix6d known = row * row.transpose() * (kCorrelationLength_mm / (sigma * sigma));
+    held += known;
+    pull += kCorrelationLength_mm * known;
+  };
+  if (prior.use) {
+    const Eigen::Vector3d& marker = pose.bone_from_marker.translation_mm;
+    add_knowledge(row_of(bone.field.sample(marker).gradient, marker - pivot_mm), prior.sigma_mm);
+  }
+  for (int k = 0; k < 6; ++k) add_knowledge(Vector6d::Unit(k), k < 3 ? kBoneSize_mm : kBoneTurn_rad);
+  const Matrix6d inverse = held.ldlt().solve(Matrix6d::Identity());
+  return inverse * pull * inverse;
+}
+
+double white_noise_of(const std::vector<strokes::OrientedPoint>& oriented) {
+  std::vector<double> noise_mm;
+  for (const strokes::OrientedPoint& point : oriented) noise_mm.push_back(point.fit_rms_mm);
+  return geometry::median(std::move(noise_mm), 0);
+}
+
+double share_of_bearable_misfit(const RegistrationSummary& summary, double white_noise_mm) {
+  return excess_misfit_mm(summary, white_noise_mm) / max_excess_mm(white_noise_mm);
+}
+
+RegistrationSummary summarise(const SurfaceIndex::Data& bone, const PosePool& pool,
+                              const TouchedCurves& touched, const RegistrationOptions& options) {
+  RegistrationSummary summary;
+  summary.point_count = static_cast<int>(touched.curves.size());
+  if (pool.empty()) {
+    summary.reasons = {"no pose was found that puts the touched curves on this bone"};
+    return summary;
+  }
+  const RefinedPose& best = pool.best();
+  const Eigen::Vector3d pivot = best.bone_from_marker * touched.points.centroid_mm;
+  summary.has_pose = true;
+  summary.marker_from_bone = best.bone_from_marker.inverse();
+  summary.covariance = about_origin(covariance_about(best, touched.points, bone, pool.prior(), pivot), pivot);
+  summary.predicted_tre_mm = predicted_error_mm(summary, options.target_in_bone_mm.value_or(pivot));
+  constexpr double kNoRival = 10;
+  summary.runner_up_ratio =
+      pool.runner_up() ? std::min(kNoRival, std::exp(pool.runner_up()->cost - best.cost)) : kNoRival;
+  measure_inliers(best, touched.points, summary);
+  for (std::size_t i = 0; i < touched.curves.size(); ++i) {
+    const Eigen::Vector3d p = best.bone_from_marker * touched.curves[i].position_mm;
+    const double distance_mm = bone.field.sample(p).distance_mm;
+    const bool is_known = std::abs(distance_mm) < bone.field.band_mm();
+    const double offset_mm = touched.offsets_mm.empty() ? 0.0 : touched.offsets_mm[i].value_or(0.0);
+    summary.point_residuals_mm.push_back((is_known ? distance_mm : bone.surface.signed_distance_mm(p)) -
+                                         offset_mm);
+  }
+  summary.misfit_mm = misfit_of(summary.point_residuals_mm, touched);
+  summary.shared_misfit_mm = shared_misfit_of(best.residuals_mm, touched.points);
+  constexpr double kLeadAlone = 25;  // that no other was found says no more
+  const double lead =
+      pool.runner_up() ? lead_of(best.cost, pool.runner_up()->cost, touched.points) : kLeadAlone;
+  summary.reasons = doubts(summary, touched, lead);
+  if (!ShaftCollision(bone, touched.points)
+           .is_possible(best.bone_from_marker.matrix().cast<float>(),
+                        best.bone_from_marker.translation_mm.cast<float>())) {
+    summary.reasons.push_back(
+        "the probe would have come through the bone: is it this patient's bone, and the right side?");
+  }
+  summary.reliable = summary.reasons.empty();
+  return summary;
+}
+
+}  // namespace arthronaut::registration

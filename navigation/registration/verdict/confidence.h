@@ -1,0 +1,42 @@
+// How wrong a registration may be, and whether it may be relied on. The residual says almost nothing about
+// the error at the target; what counts is what the touched surface holds fast, how the errors along a stroke
+// hang together, and whether another pose fits as well.
+#pragma once
+
+#include "navigation/registration/bone/surface_index.h"
+#include "navigation/registration/search/pose_pool.h"
+
+namespace arthronaut::registration {
+
+// A pose of less stroke, or predicted to be off by more, is not to be relied on.
+inline constexpr double kMinLength_mm = 100, kMaxError_mm = 1.2;
+
+// The strokes that a pose is judged against.
+struct TouchedCurves {
+  const strokes::Curves& curves;
+  const WeightedPoints& points;  // chosen from them
+  double length_mm = 0;
+  double white_noise_mm = 0;  // of the tip, one coordinate, from the strokes alone
+  // By point of the curves, how far off the mesh it touched; nullopt: not known, left out. Empty: on the
+  // mesh, all of them.
+  std::vector<std::optional<double>> offsets_mm = {};
+};
+[[nodiscard]] double white_noise_of(const std::vector<strokes::OrientedPoint>& oriented);
+
+// The best pose of the pool with all that can be said about it. An empty pool gives a summary without a pose.
+[[nodiscard]] RegistrationSummary summarise(const SurfaceIndex::Data& bone, const PosePool& pool,
+                                            const TouchedCurves& touched, const RegistrationOptions& options);
+
+// By how much the points miss the surface, over what a good tracker's errors make of this white noise at
+// most. Above 1 it is another bone's surface.
+[[nodiscard]] double share_of_bearable_misfit(const RegistrationSummary& summary, double white_noise_mm);
+
+// Covariance of a twist of the bone frame about `pivot_mm` (bone frame). Robust ("sandwich"): the curvature
+// of the cost on both sides, and between them how much the pull of whole stretches of path scatters, which
+// holds correlated errors and whatever else the law of the residuals leaves out. What nothing holds is off by
+// no more than the bone's own size.
+[[nodiscard]] geometry::Matrix6d covariance_about(const RefinedPose& pose, const WeightedPoints& points,
+                                                  const SurfaceIndex::Data& bone, const MarkerPrior& prior,
+                                                  const Eigen::Vector3d& pivot_mm);
+
+}  // namespace arthronaut::registration

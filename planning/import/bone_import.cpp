@@ -1,0 +1,227 @@
+#include "planning/import/bone_import.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "planning/files/format.h"
+#include "planning/geometry/error.h"
+#include "planning/images/bone_surface.h"
+#include "planning/images/volume_file.h"
+
+namespace arthronaut::importing {
+
+namespace {
+
+using bones::BoneKind;
+using bones::Side;
+using namespace images;
+
+constexpr double kCtThreshold_hu = 250;
+// Air in a CT; no other modality has values this low that means anything.
+constexpr float kAir_hu = -500;
+// A bone this far to one side of the patient's middle is of that side, whatever a name says.
+constexpr double kClearlySideways_mm = 40;
+
+// The words of a file name, in lower case: runs of letters.
+std::vector<std::string> words_of(const std::filesystem::path& source) {
+  std::filesystem::path named = source;
+  if (!named.has_filename()) named = named.parent_path();  // "folder/"
+  std::vector<std::string> words(1);
+  for (const char c : named.filename().string()) {
+    const bool is_upper = c >= 'A' && c <= 'Z', is_lower = c >= 'a' && c <= 'z';
+    if (is_upper || is_lower) {
+      words.back() += is_upper ? static_cast<char>(c - 'A' + 'a') : c;
+    } else {
+      words.emplace_back();
+    }
+  }
+  return words;
+}
+
+// The one of two answers whose word occurs, when the other's does not.
+template <typename T, typename Matches>
+std::optional<T> only_one(const std::vector<std::string>& words, T first, T second, const Matches& matches) {
+  const auto occurs = [&](T value) {
+    return std::any_of(words.begin(), words.end(),
+                       [&](const std::string& word) { return matches(word, value); });
+  };
+  const bool has_first = occurs(first), has_second = occurs(second);
+  if (has_first == has_second) return std::nullopt;
+  return has_first ? first : second;
+}
+
+std::string formatted_size(const Eigen::Vector3d& size) {
+  return files::format("%.1f x %.1f x %.1f mm (left-right x front-back x up-down)", size.x(), size.y(),
+                       size.z());
+}
+
+ImportedBone finished(BoneKind kind, const std::string& source, const geometry::TriangleMesh& mesh,
+                      const std::optional<Side>& side) {
+  bones::MeshRepair repair = bones::mend_mesh(mesh);
+  ImportedBone imported;
+  imported.repair = repair.report;
+  imported.bone = {kind, std::move(repair.mesh), source};
+  const geometry::Bounds bounds = geometry::bounds_of(imported.bone.mesh);
+  imported.lines.push_back(std::to_string(repair.report.triangles_now) + " triangles, " +
+                           formatted_size(bounds.size_mm()));
+  for (const auto& line : repair.report.lines()) imported.lines.push_back("mended: " + line);
+  imported.doubts = repair.report.doubts();
+  const double x = bounds.center_mm().x();
+  if (side && std::abs(x) > kClearlySideways_mm && (x > 0) != (*side == Side::Left)) {
+    imported.doubts.push_back("the bone lies " + std::to_string(std::lround(std::abs(x))) +
+                              " mm to the patient's " + (x > 0 ? "left" : "right") + ", but the side is " +
+                              std::string(bones::to_text(*side)) + ": check --side and --space");
+  }
+  return imported;
+}
+
+[[noreturn]] void ask_for_kind(const std::filesystem::path& source) {
+  throw InvalidInput(source, "", "its name does not say which bone it is: add --bone femur or --bone tibia");
+}
+
+void import_mesh(const std::filesystem::path& source, const BoneImportOptions& options, BoneImport& result) {
+  if (!options.labels.empty() || options.threshold || !options.series.empty()) {
+    throw InvalidInput(source, "", "is a mesh: --label, --threshold and --series are for volumes");
+  }
+  const auto kind = options.kind ? options.kind : bone_kind_in_name(source);
+  if (!kind) ask_for_kind(source);
+  const bones::MeshFile file = bones::read_mesh_file(source, {options.space, options.unit});
+  const char* said_by = options.space             ? "as --space says"
+                        : file.space_was_declared ? "as the file says"
+                                                  : "the file does not say";
+  result.lines.push_back(file.format + ", in " + std::string(bones::to_text(file.unit_in_file)) + ", " +
+                         (file.space_in_file == bones::Space::LPS ? "LPS" : "RAS") + " (" + said_by + ")");
+  try {
+    result.bones.push_back(finished(*kind, source.filename().string(), file.mesh, result.side));
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(source, "", error.what());
+  }
+}
+
+double threshold_for(const std::filesystem::path& source, const BoneImportOptions& options,
+                     const Volume& volume) {
+  if (options.threshold) return *options.threshold;
+  const float least = *std::min_element(volume.values.begin(), volume.values.end());
+  if (volume.modality == "CT" || (volume.modality.empty() && least < kAir_hu)) return kCtThreshold_hu;
+  throw InvalidInput(source, "",
+                     "is no CT, so there is no threshold that finds bone: give --threshold, or import a "
+                     "label map or a mesh of it");
+}
+
+std::string list_of(const std::vector<std::pair<int, std::size_t>>& labels) {
+  std::string list;
+  for (const auto& [value, count] : labels) {
+    if (value != 0) list += (list.empty() ? "" : ", ") + std::to_string(value);
+  }
+  return list;
+}
+
+void import_volume(const std::filesystem::path& source, const BoneImportOptions& options,
+                   BoneImport& result) {
+  if (options.space || options.unit) {
+    throw InvalidInput(
+        source, "", "is a volume, which says its space and unit itself: --space and --unit are for meshes");
+  }
+  const Volume volume = read_volume(source, {options.series});
+  const Eigen::Vector3d spacing = volume.spacing_mm();
+  result.lines.push_back(volume.format + ", " +
+                         files::format("%d x %d x %d voxels of %.3g x %.3g x %.3g mm, ", volume.size.x(),
+                                       volume.size.y(), volume.size.z(), spacing.x(), spacing.y(),
+                                       spacing.z()) +
+                         axes_in_words(volume));
+  result.lines.insert(result.lines.end(), volume.notes.begin(), volume.notes.end());
+
+  const auto labels = labels_of(volume);
+  const bool is_label_map = labels.size() > 1 && labels.front().first >= 0 && volume.modality.empty();
+  std::string name = source.filename().string();
+  if (name.empty()) name = source.parent_path().filename().string();
+  try {
+    if (!options.labels.empty()) {
+      for (const auto& [kind, label] : options.labels) {
+        if (options.kind && *options.kind != kind) continue;
+        const BoneSurface surface = surface_of_label(volume, label);
+        result.bones.push_back(
+            finished(kind, "label " + std::to_string(label) + " of " + name, surface.mesh, result.side));
+        result.bones.back().lines.insert(result.bones.back().lines.begin(), surface.notes.begin(),
+                                         surface.notes.end());
+      }
+      if (result.bones.empty()) throw InvalidInput("--label does not name the bone of --bone");
+      return;
+    }
+    if (is_label_map && !options.threshold) {
+      throw InvalidInput(
+          "is a label map with the labels " + list_of(labels) +
+          ": say which are the bones, for example --label femur=" + std::to_string(labels[1].first));
+    }
+    const auto kind = options.kind ? options.kind : bone_kind_in_name(source);
+    if (!kind)
+      throw InvalidInput("does not say which of its bones to take: add --bone femur or --bone tibia");
+    ThresholdOptions threshold;
+    threshold.threshold = threshold_for(source, options, volume);
+    threshold.piece = *kind == BoneKind::Femur ? Piece::Superior : Piece::Inferior;
+    const BoneSurface surface = surface_above_threshold(volume, threshold);
+    result.bones.push_back(finished(*kind, name, surface.mesh, result.side));
+    ImportedBone& bone = result.bones.back();
+    bone.lines.insert(bone.lines.begin(), surface.notes.begin(), surface.notes.end());
+    bone.doubts.insert(bone.doubts.begin(), surface.doubts.begin(), surface.doubts.end());
+  } catch (const InvalidInput& error) {
+    // Those of the surface speak of "the volume": the file's name goes before it, once.
+    const std::string message = error.what();
+    if (message.starts_with(source.string())) throw;
+    throw InvalidInput(source, "", message);
+  }
+}
+
+}  // namespace
+
+BoneImport import_bones(const std::filesystem::path& source, const BoneImportOptions& options) {
+  if (!std::filesystem::exists(source)) throw IoError(source, "does not exist");
+  BoneImport result;
+  result.side = options.side ? options.side : side_in_name(source);
+  result.side_was_guessed = !options.side && result.side;
+  if (bones::is_mesh_file(source) && !std::filesystem::is_directory(source)) {
+    import_mesh(source, options, result);
+  } else if (is_volume_source(source)) {
+    import_volume(source, options, result);
+  } else {
+    throw InvalidInput(source, "",
+                       "is nothing that is imported: a mesh (STL, PLY, OBJ, VTK, VTP), a DICOM folder, or a "
+                       "volume (NIfTI, NRRD, MetaImage)");
+  }
+  return result;
+}
+
+std::optional<BoneKind> bone_kind_in_name(const std::filesystem::path& source) {
+  return only_one(words_of(source), BoneKind::Femur, BoneKind::Tibia,
+                  [](const std::string& word, BoneKind kind) {
+                    return word.find(kind == BoneKind::Femur ? "femur" : "tibia") != std::string::npos;
+                  });
+}
+
+std::optional<Side> side_in_name(const std::filesystem::path& source) {
+  return only_one(words_of(source), Side::Left, Side::Right, [](const std::string& word, Side side) {
+    return word == bones::to_text(side) || word == bones::to_text(side).substr(0, 1);
+  });
+}
+
+std::map<BoneKind, int> labels_from_text(const std::string& text) {
+  std::map<BoneKind, int> labels;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const std::string part = text.substr(at, end - at);
+    const auto equals = part.find('=');
+    int label = 0;
+    const char* begin = part.data() + std::min(equals, part.size() - 1) + 1;
+    const auto [stop, error] = std::from_chars(begin, part.data() + part.size(), label);
+    if (equals == std::string::npos || error != std::errc() || stop != part.data() + part.size()) {
+      throw InvalidInput("--label: \"" + part + "\" is not BONE=NUMBER, as in femur=5,tibia=6");
+    }
+    if (!labels.emplace(bones::bone_kind_from_text(part.substr(0, equals)), label).second) {
+      throw InvalidInput("--label: names " + part.substr(0, equals) + " twice");
+    }
+    at = end + 1;
+  }
+  return labels;
+}
+
+}  // namespace arthronaut::importing

@@ -1,0 +1,54 @@
+// From whatever holds a bone (mesh, label map, CT) to the closed, outward surface in LPS and mm that a case
+// holds.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning/bones/bone.h"
+#include "planning/bones/mesh_file.h"
+#include "planning/bones/mesh_repair.h"
+
+namespace arthronaut::importing {
+
+struct BoneImportOptions {
+  std::optional<bones::BoneKind> kind;    // else guessed from the name of the source
+  std::optional<bones::Side> side;        // else guessed from the name of the source
+  std::optional<bones::Space> space;      // meshes: overrides what the file says
+  std::optional<bones::LengthUnit> unit;  // meshes: of the file
+  std::map<bones::BoneKind, int> labels;  // label maps: which label is which bone
+  std::optional<double> threshold;        // grey volumes; else 250 HU for a CT, and refused for all others
+  std::string series;                     // DICOM folders: series number or UID
+};
+
+struct ImportedBone {
+  bones::Bone bone;
+  bones::MeshRepairReport repair;
+  std::vector<std::string> lines;   // what was found, chosen and mended, for a person
+  std::vector<std::string> doubts;  // why a person should look before relying on it
+};
+
+struct BoneImport {
+  std::vector<ImportedBone> bones;
+  std::optional<bones::Side> side;  // nullopt: neither given nor in the name
+  bool side_was_guessed = false;
+  std::vector<std::string> lines;  // about the source
+};
+
+// Throws IoError or InvalidInput; a bone that cannot be told from the name is InvalidInput that says which
+// option to add.
+[[nodiscard]] BoneImport import_bones(const std::filesystem::path& source,
+                                      const BoneImportOptions& options = {});
+
+// From words in a name such as "3_RIGHT_femur.vtk" or "knee-L-tibia.stl"; nullopt when there is none, or
+// both.
+[[nodiscard]] std::optional<bones::BoneKind> bone_kind_in_name(const std::filesystem::path& source);
+[[nodiscard]] std::optional<bones::Side> side_in_name(const std::filesystem::path& source);
+
+// "femur=5,tibia=6". Throws InvalidInput.
+[[nodiscard]] std::map<bones::BoneKind, int> labels_from_text(const std::string& text);
+
+}  // namespace arthronaut::importing

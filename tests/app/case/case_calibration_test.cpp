@@ -1,0 +1,86 @@
+#include "app/case/case_calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "navigation/camera/camera_file.h"
+#include "navigation/simulator/simulated_operation.h"
+#include "planning/cases/case.h"
+#include "planning/geometry/error.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::open_case {
+namespace {
+
+constexpr bool kSimulated = true, kReal = false;
+
+class CaseCalibration : public ::testing::Test {
+ protected:
+  void adopt_camera(const std::string& scope_name, double focal_px) const {
+    camera::CalibrationRecord record;
+    record.calibration = simulator::standard_camera();
+    record.calibration.focal_px = focal_px;
+    record.scope_name = scope_name;
+    record.date_utc = "2026-11-21T10:00:00Z";
+    camera::write_camera_file(cases::camera_file(folder_), record);
+  }
+  // The standard tools with a probe whose tip was found at another place.
+  void adopt_tools(double tip_z_mm) const {
+    tools::ToolSet tools = tools::standard_tools();
+    for (tools::Tool& tool : tools.tools) {
+      if (tool.name != "probe") continue;
+      tool.tip_mm->z() = tip_z_mm;
+      tool.residual_mm = 0.2;
+    }
+    tools::write_tools_file(cases::tools_file(folder_), tools);
+  }
+  const test::TemporaryFolder temporary_;
+  const std::filesystem::path& folder_ = temporary_.path();
+};
+
+// Without anything adopted the simulation is tracked with what is built in, and a real scope with nothing.
+TEST_F(CaseCalibration, StartsWithWhatIsBuiltIn) {
+  EXPECT_EQ(camera_of(kSimulated, folder_).focal_px, simulator::standard_camera().focal_px);
+  EXPECT_EQ(calibration_in_words(kSimulated, folder_), "built-in camera, built-in tools");
+  EXPECT_THROW((void)camera_of(kReal, folder_), InvalidInput);
+  EXPECT_TRUE(camera_is_kept(kSimulated, folder_).empty());
+  EXPECT_TRUE(tools_are_kept(kSimulated, folder_).empty());
+}
+
+// What was adopted of the simulated arthroscope is what its pictures are tracked with, and the words say so.
+TEST_F(CaseCalibration, TheSimulationUsesWhatItsSetUpAdopted) {
+  adopt_camera(kSimulatedScope, 601);
+  adopt_tools(77);
+  EXPECT_EQ(camera_of(kSimulated, folder_).focal_px, 601);
+  EXPECT_EQ(tools_of(kSimulated, folder_).find_tool("probe")->tip_mm->z(), 77);
+  const std::size_t count = tools::standard_tools().tools.size();
+  EXPECT_EQ(calibration_in_words(kSimulated, folder_),
+            "camera of 2026-11-21, 1 of " + std::to_string(count) + " tools calibrated");
+  EXPECT_TRUE(camera_is_kept(kSimulated, folder_).empty());
+}
+
+// A real scope's files are of no use to the simulation, which does not replace them either.
+TEST_F(CaseCalibration, KeepsRealFilesFromTheSimulation) {
+  adopt_camera("Scope 30", 601);
+  adopt_tools(77);
+  EXPECT_EQ(camera_of(kSimulated, folder_).focal_px, simulator::standard_camera().focal_px);
+  EXPECT_NE(tools_of(kSimulated, folder_).find_tool("probe")->tip_mm->z(), 77);
+  EXPECT_EQ(calibration_in_words(kSimulated, folder_), "built-in camera, built-in tools");
+  EXPECT_EQ(camera_of(kReal, folder_).focal_px, 601);
+  EXPECT_EQ(tools_of(kReal, folder_).find_tool("probe")->tip_mm->z(), 77);
+  EXPECT_FALSE(camera_is_kept(kSimulated, folder_).empty());
+  EXPECT_FALSE(tools_are_kept(kSimulated, folder_).empty());
+  EXPECT_TRUE(camera_is_kept(kReal, folder_).empty());
+}
+
+// A broken camera.json stops the real scope with the file's name, and does not stop the simulation.
+TEST_F(CaseCalibration, ABrokenFileIsTold) {
+  std::ofstream(folder_ / "camera.json") << "x";
+  EXPECT_GT(camera_of(kSimulated, folder_).focal_px, 0);
+  EXPECT_FALSE(camera_is_kept(kSimulated, folder_).empty());
+  EXPECT_THROW((void)camera_of(kReal, folder_), InvalidInput);
+}
+
+}  // namespace
+}  // namespace arthronaut::open_case

@@ -1,0 +1,52 @@
+#include "app/case/case_opening.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "planning/phantom/phantom_case.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::open_case {
+namespace {
+
+// As the window asks once a frame; returns how often it was told that the case has just become open.
+int take_until_done(CaseOpening& opening) {
+  int count = 0;
+  while (opening.is_busy()) {
+    count += opening.take() ? 1 : 0;
+    std::this_thread::yield();
+  }
+  return count + (opening.take() ? 1 : 0);
+}
+
+// A case is taken over once, and what ends the opening wakes the window.
+TEST(CaseOpening, GivesTheCaseOnce) {
+  const test::TemporaryFolder folder;
+  phantom::PhantomOptions coarse;
+  coarse.edge_length_mm = 4;
+  cases::save_case(folder.path(), phantom::case_of(phantom::make_phantom_knee(coarse), "test"));
+  std::atomic<int> ends = 0;
+  CaseOpening opening(folder.path(), [&ends] { ++ends; });
+  EXPECT_EQ(take_until_done(opening), 1);
+  EXPECT_EQ(ends, 1);
+  ASSERT_NE(opening.model(), nullptr);
+  EXPECT_EQ(opening.model()->knee().name, "test");
+  EXPECT_EQ(opening.folder(), folder.path());
+  EXPECT_EQ(opening.failure(), "");
+}
+
+// One that cannot be opened says why, and the window is woken all the same.
+TEST(CaseOpening, SaysWhyACaseCannotBeOpened) {
+  const test::TemporaryFolder folder;
+  std::atomic<int> ends = 0;
+  CaseOpening opening(folder.path() / "absent.arthro", [&ends] { ++ends; });
+  EXPECT_EQ(take_until_done(opening), 0);
+  EXPECT_EQ(ends, 1);
+  EXPECT_EQ(opening.model(), nullptr);
+  EXPECT_NE(opening.failure().find("absent.arthro"), std::string::npos) << opening.failure();
+}
+
+}  // namespace
+}  // namespace arthronaut::open_case

@@ -1,0 +1,42 @@
+#include "app/case/plan_model.h"
+
+#include <gtest/gtest.h>
+
+#include "planning/geometry/error.h"
+#include "planning/phantom/phantom_case.h"
+
+namespace arthronaut::open_case {
+namespace {
+
+using bones::BoneKind;
+
+cases::Case phantom() {
+  return phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 2.5}), "test");
+}
+
+// What the panel shows follows the plan at once, and the revision counts the changes.
+TEST(PlanModel, MeasuresAnewWithEveryChange) {
+  PlanModel model(phantom());
+  const std::uint64_t first = model.revision();
+  const double length = model.measured(BoneKind::Femur).length_mm;
+  ASSERT_TRUE(model.measured(BoneKind::Femur).enters_bone);
+  EXPECT_FALSE(model.checks(BoneKind::Femur).empty());
+  tunnels::Tunnel tunnel = *model.tunnel(BoneKind::Femur);
+  tunnel.direction = (tunnel.direction + Eigen::Vector3d(0, 0, 0.4)).normalized();
+  model.set_tunnel(BoneKind::Femur, tunnel);
+  EXPECT_GT(model.revision(), first);
+  EXPECT_GT(std::abs(model.measured(BoneKind::Femur).length_mm - length), 0.1);
+  model.set_tunnel(BoneKind::Femur, std::nullopt);
+  EXPECT_FALSE(model.tunnel(BoneKind::Femur));
+  EXPECT_TRUE(model.checks(BoneKind::Femur).empty());
+}
+
+// A case without a bone is refused with its name.
+TEST(PlanModel, RefusesACaseWithoutBones) {
+  cases::Case empty;
+  empty.name = "nothing";
+  EXPECT_THROW(PlanModel{empty}, InvalidInput);
+}
+
+}  // namespace
+}  // namespace arthronaut::open_case

@@ -1,0 +1,211 @@
+#include "app/navigate/navigate_display.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+namespace arthronaut::navigate {
+namespace {
+
+using Phase = OperationStatus::Phase;
+using guidance::GuidanceState;
+
+constexpr double kNow_s = 100;
+
+pipeline::PipelineOptions options() {
+  pipeline::PipelineOptions options;
+  options.tools = tools::standard_tools();
+  return options;
+}
+
+// A running operation whose newest frame is 20 ms old and fully valid.
+OperationStatus valid_status() {
+  auto live = std::make_shared<LiveFrame>();
+  live->picture = std::make_shared<camera::Frame>();
+  live->published_s = kNow_s - 0.02;
+  live->result.intrinsics_are_known = true;
+  live->result.camera_from_world.is_valid = true;
+  live->result.guidance.state = GuidanceState::Valid;
+  live->result.guidance.angle_deg = 1.5;
+  OperationStatus status;
+  status.phase = Phase::Running;
+  status.live = live;
+  return status;
+}
+
+template <typename Change>
+NavigateDisplay display_after(const Change& change) {
+  OperationStatus status = valid_status();
+  auto live = std::make_shared<LiveFrame>(*status.live);
+  change(status, *live);
+  if (status.live != nullptr) status.live = live;
+  const pipeline::PipelineOptions o = options();
+  return display_of(&status, &o, kNow_s);
+}
+
+// All is well: everything may be drawn and no reason stands anywhere.
+TEST(NavigateDisplay, ShowsWhatIsValid) {
+  const NavigateDisplay display = display_after([](OperationStatus&, LiveFrame&) {});
+  EXPECT_TRUE(display.is_live && display.overlay_is_valid && display.guidance_is_valid);
+  EXPECT_TRUE(display.headline.empty());
+  EXPECT_EQ(display.guidance.angle_deg, 1.5);
+}
+
+// Whatever makes guidance invalid takes the numbers away in that very frame and says why.
+TEST(NavigateDisplay, EveryInvalidStateHidesTheNumbersAndSaysWhy) {
+  for (const GuidanceState state :
+       {GuidanceState::NoPlan, GuidanceState::NoRegistration, GuidanceState::RegistrationUnreliable,
+        GuidanceState::WorldMarkerLost, GuidanceState::GuideLost, GuidanceState::LensStale,
+        GuidanceState::Stale}) {
+    const NavigateDisplay display =
+        display_after([&](OperationStatus&, LiveFrame& live) { live.result.guidance.state = state; });
+    EXPECT_FALSE(display.guidance_is_valid) << to_text(state);
+    EXPECT_FALSE(display.headline.empty()) << to_text(state);
+    EXPECT_EQ(display.guidance.angle_deg, 0) << "a number of the frame leaked";
+  }
+}
+
+// A pose that does not stand takes the overlay with it, even where guidance claims to be valid.
+TEST(NavigateDisplay, OverlayNeedsThePoseOfThisFrame) {
+  const auto lost = display_after(
+      [](OperationStatus&, LiveFrame& live) { live.result.camera_from_world.is_valid = false; });
+  EXPECT_FALSE(lost.overlay_is_valid || lost.guidance_is_valid);
+  const auto lens =
+      display_after([](OperationStatus&, LiveFrame& live) { live.result.intrinsics_are_known = false; });
+  EXPECT_FALSE(lens.overlay_is_valid || lens.guidance_is_valid);
+  const auto frozen = display_after([](OperationStatus&, LiveFrame& live) { live.result.is_frozen = true; });
+  EXPECT_FALSE(frozen.overlay_is_valid || frozen.guidance_is_valid);
+  EXPECT_EQ(frozen.headline, "Picture frozen");
+}
+
+// A worker that hangs must not leave its last picture standing as live.
+TEST(NavigateDisplay, AnOldPictureIsNotLive) {
+  const NavigateDisplay display =
+      display_after([](OperationStatus&, LiveFrame& live) { live.published_s = kNow_s - 2; });
+  EXPECT_TRUE(display.has_picture);
+  EXPECT_FALSE(display.is_live || display.overlay_is_valid || display.guidance_is_valid);
+  EXPECT_EQ(display.headline, "No new picture for 2.0 s");
+}
+
+// The end of a source and a failure are said, and nothing of them is live.
+TEST(NavigateDisplay, EndAndFailureAreNotLive) {
+  const auto ended = display_after([](OperationStatus& status, LiveFrame&) { status.phase = Phase::Ended; });
+  EXPECT_TRUE(ended.has_picture);
+  EXPECT_FALSE(ended.is_live || ended.guidance_is_valid || ended.overlay_is_valid);
+  const auto failed = display_after([](OperationStatus& status, LiveFrame&) {
+    status.phase = Phase::Failed;
+    status.message = "clip.mkv: frame 12 is cut off";
+  });
+  EXPECT_FALSE(failed.has_picture);
+  EXPECT_EQ(failed.detail, "clip.mkv: frame 12 is cut off");
+  EXPECT_FALSE(display_of(nullptr, nullptr, kNow_s).has_picture);
+}
+
+// An alarm hides everything from this moment on, even in a frame that was computed before it.
+TEST(NavigateDisplay, AnAlarmDropsGuidanceAtOnce) {
+  const auto display = display_after([](OperationStatus& status, LiveFrame&) {
+    RegistrationStatus bone;
+    bone.alarm = "the control point has moved by 2.1 mm";
+    status.bone = std::make_shared<const RegistrationStatus>(bone);
+  });
+  EXPECT_TRUE(display.is_live);
+  EXPECT_FALSE(display.overlay_is_valid || display.guidance_is_valid);
+  EXPECT_EQ(display.headline, "World marker may have moved");
+  EXPECT_NE(display.detail.find("2.1 mm"), std::string::npos);
+}
+
+// Each trouble with the lens has its own name and says what to do; another zoom is said before a mark that is
+// hidden.
+TEST(NavigateDisplay, SaysWhatIsWrongWithTheLens) {
+  using lens::MarkState;
+  lens::LensObservation lens;
+  lens.mark = MarkState::Found;
+  EXPECT_TRUE(trouble_of(lens).headline.empty());
+  for (const MarkState state :
+       {MarkState::NoCircle, MarkState::Dark, MarkState::Covered, MarkState::Ambiguous, MarkState::NotSeen}) {
+    lens.mark = state;
+    EXPECT_EQ(trouble_of(lens).headline, "Lens mark not found");
+    EXPECT_NE(trouble_of(lens).advice.find(':'), std::string::npos) << to_text(state);
+  }
+  lens.zoom_or_slip = true;
+  EXPECT_NE(trouble_of(lens).headline.find("coupler"), std::string::npos);
+  const auto display = display_after([&](OperationStatus&, LiveFrame& live) {
+    live.result.intrinsics_are_known = false;
+    live.result.guidance.state = GuidanceState::LensStale;
+    live.result.lens = lens;
+  });
+  EXPECT_EQ(display.headline, trouble_of(lens).headline);
+  EXPECT_EQ(display.detail, trouble_of(lens).advice);
+}
+
+// The screen shows the registration while it is made, and the way to the plan when there is one to go; a
+// guide that was seen a moment ago keeps it.
+TEST(NavigateDisplay, TheLayoutFollowsWhatIsDone) {
+  constexpr double kLongAgo = 1e9;
+  EXPECT_EQ(layout_of(nullptr, kLongAgo), NavigateLayout::Guide);
+  OperationStatus status = valid_status();
+  status.digitises = true;
+  EXPECT_EQ(layout_of(&status, kLongAgo), NavigateLayout::Register);
+  EXPECT_EQ(layout_of(&status, 0.5), NavigateLayout::Guide);
+  auto registration = std::make_shared<registration::RegistrationSummary>();
+  registration->has_pose = registration->reliable = true;
+  RegistrationStatus bone;
+  bone.in_force = registration;
+  status.bone = std::make_shared<const RegistrationStatus>(bone);
+  EXPECT_EQ(layout_of(&status, kLongAgo), NavigateLayout::Register) << "the probe still draws";
+  status.digitises = false;
+  EXPECT_EQ(layout_of(&status, kLongAgo), NavigateLayout::Guide);
+}
+
+// Before there is a registration the lost marker is what keeps one from being made, so it is said first.
+TEST(NavigateDisplay, ALostMarkerIsSaidBeforeAMissingRegistration) {
+  const auto display = display_after([](OperationStatus&, LiveFrame& live) {
+    live.result.guidance.state = GuidanceState::NoRegistration;
+    live.result.camera_from_world.is_valid = false;
+    live.result.markers.resize(1);
+    live.result.markers[0].id = 0;
+    live.result.markers[0].state = markers::MarkerState::Covered;
+  });
+  EXPECT_EQ(display.headline, "Bone marker lost");
+  EXPECT_EQ(display.detail, std::string(markers::to_text(markers::MarkerState::Covered)));
+}
+
+// The reason names what the tracker said about the marker that is missing.
+TEST(NavigateDisplay, NamesTheReasonOfTheMarker) {
+  const NavigateDisplay display = display_after([](OperationStatus&, LiveFrame& live) {
+    live.result.guidance.state = GuidanceState::GuideLost;
+    live.result.markers.resize(1);
+    live.result.markers[0].id = 3;
+    live.result.markers[0].state = markers::MarkerState::Glare;
+  });
+  EXPECT_EQ(display.headline, "Drill guide lost");
+  EXPECT_EQ(display.detail, std::string(markers::to_text(markers::MarkerState::Glare)));
+}
+
+guidance::GuidanceNumbers numbers_of(const Eigen::Vector3d& offset, const Eigen::Vector3d& lean,
+                                     const tunnels::Tunnel& plan) {
+  guidance::GuidanceNumbers numbers;
+  numbers.state = GuidanceState::Valid;
+  numbers.guide_direction = (plan.direction + lean).normalized();
+  numbers.guide_point_mm = plan.entry_mm + offset - 12 * numbers.guide_direction;
+  return numbers;
+}
+
+// The bullseye looks along the plan with proximal up; anterior is on the side that it names; the dot is as
+// far out as the axis misses the entry, and a lean alone does not move it.
+TEST(Bullseye, PointIsWhereTheAxisMissesTheEntry) {
+  tunnels::Tunnel plan;
+  plan.entry_mm = {3, 4, 5};
+  plan.direction = -Eigen::Vector3d::UnitX();
+  const BullseyePoint proximal = bullseye_point(numbers_of({0, 0, 2}, {0, 0, 0}, plan), plan);
+  EXPECT_NEAR(proximal.up_mm, 2, 1e-9);
+  EXPECT_NEAR(proximal.right_mm, 0, 1e-9);
+  const BullseyePoint anterior = bullseye_point(numbers_of({0, -1.5, 0}, {0, 0, 0}, plan), plan);
+  EXPECT_NEAR(anterior.right_mm, anterior.anterior_is_right ? 1.5 : -1.5, 1e-9);
+  const BullseyePoint leaning = bullseye_point(numbers_of({0, 0, 0}, {0, 0, 0.1}, plan), plan);
+  EXPECT_NEAR(leaning.lean_up_deg, geometry::deg_from_rad(std::atan(0.1)), 1e-9);
+  EXPECT_NEAR(leaning.up_mm, 0, 1e-9);
+}
+
+}  // namespace
+}  // namespace arthronaut::navigate

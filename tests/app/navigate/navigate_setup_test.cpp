@@ -1,0 +1,46 @@
+#include "app/navigate/navigate_setup.h"
+
+#include <gtest/gtest.h>
+
+#include "app/case/case_calibration.h"
+#include "navigation/camera/camera_file.h"
+#include "navigation/simulator/simulated_operation.h"
+#include "planning/phantom/phantom_case.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::navigate {
+namespace {
+
+// The simulation is tracked with the camera and the tools that Set up adopted of it, and with what is built
+// in before that; the words on the screen say which.
+TEST(NavigateSetup, TheSimulationIsTrackedWithWhatSetUpAdopted) {
+  const test::TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
+  const open_case::PlanModel model(
+      phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 2.5}), "test"));
+  const auto setup = [&] {
+    return simulated_setup(model, bones::BoneKind::Femur, folder, SimulatedPart::Scratch);
+  };
+  const camera::Calibration built_in = simulator::standard_camera();
+  EXPECT_EQ(setup().pipeline.calibration.focal_px, built_in.focal_px);
+  EXPECT_EQ(setup().calibration, "built-in camera, built-in tools");
+
+  camera::CalibrationRecord record;
+  record.calibration = built_in;
+  record.calibration.focal_px += 1;
+  record.scope_name = open_case::kSimulatedScope;
+  record.date_utc = "2026-11-21T10:00:00Z";
+  camera::write_camera_file(cases::camera_file(folder), record);
+  tools::ToolSet tools = tools::standard_tools();
+  for (tools::Tool& tool : tools.tools)
+    if (tool.name == "probe") tool.tip_mm->x() += 0.1;
+  tools::write_tools_file(cases::tools_file(folder), tools);
+  const OperationSetup adopted = setup();
+  EXPECT_EQ(adopted.pipeline.calibration.focal_px, built_in.focal_px + 1);
+  EXPECT_NEAR(adopted.pipeline.tools.find_tool("probe")->tip_mm->x(),
+              tools::standard_tools().find_tool("probe")->tip_mm->x() + 0.1, 1e-9);
+  EXPECT_TRUE(adopted.calibration.starts_with("camera of 2026-11-21, 0 of ")) << adopted.calibration;
+}
+
+}  // namespace
+}  // namespace arthronaut::navigate

@@ -1,0 +1,95 @@
+#include "app/plan/tunnel_moves.h"
+
+#include <gtest/gtest.h>
+
+#include "app/plan/anatomical_text.h"
+#include "planning/geometry/rigid_transform.h"
+#include "tests/planning/geometry/shapes.h"
+
+namespace arthronaut::plan {
+namespace {
+
+// A slab of bone in front of an anterior camera: its front face lies at y = 0, the bone behind it.
+geometry::Surface slab() { return geometry::Surface(test::box({50, 15, 50}, {0, 15, 0})); }
+
+// The camera looks posteriorly: +x is to the right of the picture, +z up.
+scene::SceneCamera anterior() { return scene::look_along({0, 1, 0}, {0, 0, 0}, 200, {0, 0, 1}); }
+
+tunnels::Tunnel straight() {
+  tunnels::Tunnel tunnel;
+  tunnel.entry_mm = {1, 0, 2};
+  tunnel.direction = Eigen::Vector3d(0.1, 1, 0).normalized();
+  return tunnel;
+}
+
+// A click puts the entry on the bone under it and keeps the aim; a click beside the bone changes nothing.
+TEST(TunnelMoves, EntryFollowsTheClick) {
+  const geometry::Surface bone = slab();
+  const tunnels::Tunnel moved = with_entry_at(straight(), {{7, -100, 9}, {0, 1, 0}}, bone);
+  EXPECT_NEAR((moved.entry_mm - Eigen::Vector3d(7, 0, 9)).norm(), 0, 1e-9);
+  EXPECT_EQ(moved.direction, straight().direction);
+  EXPECT_EQ(with_entry_at(straight(), {{90, -100, 0}, {0, 1, 0}}, bone).entry_mm, straight().entry_mm);
+}
+
+// A first tunnel goes into the bone, whichever way the mesh is oriented there.
+TEST(TunnelMoves, FirstTunnelGoesInwards) {
+  const geometry::Surface bone = slab();
+  const auto tunnel = first_tunnel(bones::BoneKind::Tibia, {{7, -100, 9}, {0, 1, 0}}, bone);
+  ASSERT_TRUE(tunnel);
+  EXPECT_EQ(tunnel->bone, bones::BoneKind::Tibia);
+  EXPECT_NEAR((tunnel->direction - Eigen::Vector3d::UnitY()).norm(), 0, 1e-9);
+  EXPECT_FALSE(first_tunnel(bones::BoneKind::Tibia, {{90, -100, 0}, {0, 1, 0}}, bone));
+}
+
+// One press of an arrow key turns by exactly its angle, and the far end moves that way on the screen.
+TEST(TunnelMoves, AimTurnsTheFarEndThatWay) {
+  const tunnels::Tunnel right = turned(straight(), anterior(), {1, 0});
+  EXPECT_NEAR(geometry::deg_from_rad(geometry::angle_between_rad(right.direction, straight().direction)), 1,
+              1e-9);
+  EXPECT_GT(right.direction.x(), straight().direction.x());
+  const tunnels::Tunnel up = turned(straight(), anterior(), {0, 1});
+  EXPECT_GT(up.direction.z(), straight().direction.z());
+  EXPECT_NEAR(up.direction.norm(), 1, 1e-12);
+  EXPECT_EQ(up.entry_mm, straight().entry_mm);
+}
+
+// A tunnel that already points to the right of the screen can't be turned further to the right.
+TEST(TunnelMoves, AimStopsWhereItPointsThatWay) {
+  tunnels::Tunnel sideways = straight();
+  sideways.direction = Eigen::Vector3d::UnitX();
+  EXPECT_EQ(turned(sideways, anterior(), {1, 0}).direction, sideways.direction);
+}
+
+// Sliding moves the entry along the surface.
+TEST(TunnelMoves, SlidingStaysOnTheBone) {
+  const tunnels::Tunnel slid = with_entry_slid(straight(), anterior(), {0.5, -0.25}, slab());
+  EXPECT_NEAR((slid.entry_mm - Eigen::Vector3d(1.5, 0, 1.75)).norm(), 0, 1e-9);
+}
+
+// Dragging the handle aims at where the mouse is, in the plane of the handle.
+TEST(TunnelMoves, AimHandleFollowsTheMouse) {
+  const Eigen::Vector3d handle = straight().entry_mm + 45 * straight().direction;
+  const Eigen::Vector3d wanted = handle + Eigen::Vector3d(6, 0, -4);
+  const scene::SceneCamera camera = anterior();
+  const scene::SceneRay ray{camera.position_mm, (wanted - camera.position_mm).normalized()};
+  const tunnels::Tunnel result = aimed(straight(), camera, ray, handle);
+  EXPECT_NEAR((result.direction - (wanted - straight().entry_mm).normalized()).norm(), 0, 1e-9);
+}
+
+// A diameter stays within what a drill can be.
+TEST(TunnelMoves, DiameterIsClamped) {
+  EXPECT_EQ(with_diameter(straight(), 9.5).diameter_mm, 9.5);
+  EXPECT_EQ(with_diameter(straight(), 99).diameter_mm, 14);
+  EXPECT_EQ(with_diameter(straight(), 0).diameter_mm, 4);
+}
+
+// LPS to words: lateral changes sign with the side, small parts are not named.
+TEST(AnatomicalText, FollowsTheSide) {
+  EXPECT_EQ(anatomical_text({-28, -12, 14}, bones::Side::Right),
+            "14 mm proximal, 28 mm lateral, 12 mm anterior");
+  EXPECT_EQ(anatomical_text({-28, 0.2, 0}, bones::Side::Left), "28 mm medial");
+  EXPECT_EQ(anatomical_text({0, 0, 0.3}, bones::Side::Left), "at the entry");
+}
+
+}  // namespace
+}  // namespace arthronaut::plan

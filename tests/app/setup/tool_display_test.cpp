@@ -1,0 +1,116 @@
+#include "app/setup/tool_display.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/app/setup/row_of.h"
+
+namespace arthronaut::setup {
+namespace {
+
+using test::row_of;
+using tools::PivotCalibrationSummary;
+using widgets::Severity;
+
+constexpr double kNow_s = 100;
+const ToolChoice kProbe{"probe", ToolTask::Tip};
+
+// Both markers are seen, 40 poses were taken.
+ToolRunStatus running() {
+  ToolRunStatus status;
+  status.phase = FeedPhase::Running;
+  status.looked_s = kNow_s - 0.1;
+  status.job.picture = std::make_shared<camera::Frame>();
+  status.job.markers = {{"probe", true, "tracked"}, {"femur marker", true, "tracked"}};
+  status.job.pose_count = 40;
+  return status;
+}
+
+ToolRunStatus with_tip(PivotCalibrationSummary::Outcome outcome, std::vector<std::string> reasons) {
+  ToolRunStatus status = running();
+  auto result = std::make_shared<ToolResult>();
+  result->tip.outcome = outcome;
+  result->tip.reasons = std::move(reasons);
+  result->tip.cone_deg = outcome == PivotCalibrationSummary::Outcome::Ok ? 24 : 9;
+  result->tip.rms_mm = 0.05;
+  result->tip.sigma_mm = 0.02;
+  status.job.result = result;
+  return status;
+}
+
+// A picture that does not count says why, and which marker is missing.
+TEST(ToolDisplay, SaysWhyAPictureDoesNotCount) {
+  ToolRunStatus status = running();
+  status.job.markers[1] = {"femur marker", false, "glare"};
+  status.job.reason = "no world marker is seen well beside it";
+  const ToolDisplay display = tool_display(status, kProbe, {}, kNow_s);
+  EXPECT_EQ(display.band.sign, Severity::Caution);
+  EXPECT_NE(display.band.detail.find("no world marker"), std::string::npos);
+  EXPECT_EQ(row_of(display.markers, "probe").sign, Severity::Good);
+  EXPECT_EQ(row_of(display.markers, "femur marker").sign, Severity::Caution);
+  EXPECT_EQ(row_of(display.markers, "femur marker").text, "glare");
+}
+
+// A narrow cone can't be adopted however small its residual; the limit stands beside the number.
+TEST(ToolDisplay, RefusesANarrowCone) {
+  const ToolRunStatus narrow =
+      with_tip(PivotCalibrationSummary::Outcome::ConeTooNarrow, {"the cone is 9 degrees (needs 20)"});
+  const ToolDisplay display = tool_display(narrow, kProbe, {}, kNow_s);
+  EXPECT_FALSE(display.can_adopt);
+  EXPECT_EQ(display.verdict.detail, "the cone is 9 degrees (needs 20)");
+  EXPECT_EQ(row_of(display.numbers, "Cone").sign, Severity::Caution);
+  EXPECT_EQ(row_of(display.numbers, "Residual").sign, Severity::Good);
+  EXPECT_THROW((void)row_of(display.numbers, "Tip from the marker"), std::runtime_error);
+  // While the tool still moves it is "not yet"; once the pictures have ended it is a refusal.
+  EXPECT_EQ(display.verdict.sign, Severity::Caution);
+  ToolRunStatus over = narrow;
+  over.phase = FeedPhase::Ended;
+  EXPECT_EQ(tool_display(over, kProbe, {}, kNow_s).verdict.sign, Severity::Bad);
+  EXPECT_EQ(tool_display(over, kProbe, {}, kNow_s).next, ToolStep::Again);
+}
+
+// A good tip leads to its adoption, that to the next step.
+TEST(ToolDisplay, LeadsToAdoption) {
+  const ToolRunStatus good = with_tip(PivotCalibrationSummary::Outcome::Ok, {});
+  const ToolDisplay display = tool_display(good, kProbe, {}, kNow_s);
+  EXPECT_TRUE(display.can_adopt);
+  EXPECT_EQ(display.next, ToolStep::Adopt);
+  EXPECT_EQ(tool_display(good, kProbe, {.is_adopted = true}, kNow_s).next, ToolStep::Done);
+}
+
+// A simulated tip does not replace what a case knows of real tools.
+TEST(ToolDisplay, KeepsWhatMayNotBeReplaced) {
+  const ToolRunStatus good = with_tip(PivotCalibrationSummary::Outcome::Ok, {});
+  const ToolDisplay display = tool_display(good, kProbe, {.kept_because = "it is real"}, kNow_s);
+  EXPECT_FALSE(display.can_adopt);
+  EXPECT_EQ(display.verdict.detail, "it is real");
+}
+
+// The picture of a source that hangs is not live, and no marker of it counts as seen.
+TEST(ToolDisplay, OldPicturesAreNotLive) {
+  ToolRunStatus status = running();
+  status.looked_s = kNow_s - 5;
+  const ToolDisplay display = tool_display(status, kProbe, {}, kNow_s);
+  EXPECT_FALSE(display.is_live);
+  EXPECT_EQ(display.band.sign, Severity::Bad);
+  EXPECT_EQ(row_of(display.markers, "probe").sign, Severity::Quiet);
+}
+
+// Tips are offered of tools that have one or nothing, axes of guides; a result takes the place of what was
+// known.
+TEST(ToolChoices, FollowTheToolsFile) {
+  const tools::ToolSet standard = tools::standard_tools();
+  const auto choices = choices_of(standard);
+  ASSERT_EQ(choices.size(), 3U);
+  EXPECT_EQ(choices[0].task, ToolTask::Tip);
+  EXPECT_EQ(choices[1].task, ToolTask::Axis);
+  ToolResult result;
+  result.tip.tip_in_tool_mm = {1, 2, 3};
+  result.tip.rms_mm = 0.07;
+  const tools::ToolSet changed = with_result(standard, "probe", result);
+  EXPECT_EQ(*changed.find_tool("probe")->tip_mm, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(changed.find_tool("probe")->residual_mm, 0.07);
+  EXPECT_FALSE(changed.find_tool("femoral guide")->residual_mm.has_value());
+}
+
+}  // namespace
+}  // namespace arthronaut::setup

@@ -1,0 +1,319 @@
+#include "navigation/registration/online/online_registration.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include "tests/navigation/registration/phantom_bone.h"
+
+namespace arthronaut::registration {
+
+namespace {
+
+using experiments::TrialNoise;
+using geometry::RigidTransform;
+
+OnlineOptions options_for(const PhantomBone& bone) {
+  OnlineOptions options;
+  options.target_in_bone_mm = bone.target_mm;
+  options.direction_in_bone = Eigen::Vector3d(-0.8, 0, 0.6);
+  return options;
+}
+
+// Point by point, as the frames bring them; returns the states that were passed.
+std::vector<OnlineState> draw(OnlineRegistration& online, const strokes::Curves& curves) {
+  std::vector<OnlineState> states{online.result().state};
+  for (const strokes::CurvePoint& point : curves) {
+    online.add_points({&point, 1});
+    const OnlineState state = online.update().state;
+    if (state != states.back()) states.push_back(state);
+  }
+  return states;
+}
+
+// A place that you know: somewhere on the bone, seen from the marker.
+Eigen::Vector3d known_place(const PhantomBone& bone, const experiments::Trial& trial, double dx_mm) {
+  return trial.marker_from_bone *
+         bone.surface->closest_point(bone.target_mm + Eigen::Vector3d(dx_mm, dx_mm, 3)).point_mm;
+}
+
+}  // namespace
+
+// From nothing to confirmed while the strokes come in; the coach's bar ends full; then touches verify it.
+TEST(OnlineRegistration, ConfirmsWhileScratchingAndVerifiesByTouches) {
+  const PhantomBone& bone = phantom_bone();
+  const auto trial = bone.trial(TrialNoise::Dry, 1);
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  const auto states = draw(online, trial.curves);
+  EXPECT_EQ(states.front(), OnlineState::Collecting);
+  EXPECT_EQ(states.back(), OnlineState::Confirmed);
+  const OnlineResult& result = online.result();
+  EXPECT_DOUBLE_EQ(result.coach.progress, 1);
+  EXPECT_LT((result.registration.marker_from_bone * bone.target_mm - trial.marker_from_bone * bone.target_mm)
+                .norm(),
+            0.4);
+  EXPECT_EQ(result.strokes.size(), 6u);
+  EXPECT_GT(result.predicted_angle_deg, 0);
+  EXPECT_GT(online.history().size(), 10u);
+
+  for (const double dx_mm : {0.0, 4.0, -4.0}) online.add_touch(known_place(bone, trial, dx_mm));
+  EXPECT_EQ(online.update().state, OnlineState::Verified);
+}
+
+// With little drawn it says what is missing, and where to go on: a place on the bone that was not touched
+// yet.
+TEST(OnlineRegistration, CoachSaysWhatIsMissing) {
+  const PhantomBone& bone = phantom_bone();
+  auto curves = bone.trial(TrialNoise::Dry, 1).curves;
+  curves.resize(130);
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  draw(online, curves);
+  const Coach& coach = online.result().coach;
+  EXPECT_LT(coach.progress, 1);
+  EXPECT_FALSE(coach.missing.empty());
+  if (online.result().registration.has_pose) {
+    ASSERT_TRUE(coach.next_patch_in_bone_mm.has_value());
+    EXPECT_LT(std::abs(bone.surface->signed_distance_mm(*coach.next_patch_in_bone_mm)), 0.01);
+    EXPECT_GT(coach.patches.size(), 20u);
+  }
+}
+
+// Two touches off the bone take the confirmation back, whatever was sure before; forgetting them gives it
+// back.
+TEST(OnlineRegistration, TwoViolationsDropTheState) {
+  const PhantomBone& bone = phantom_bone();
+  const auto trial = bone.trial(TrialNoise::Dry, 2);
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  draw(online, trial.curves);
+  ASSERT_EQ(online.result().state, OnlineState::Confirmed);
+  const auto normal = trial.marker_from_bone.rotate(bone.surface->closest_point(bone.target_mm).normal);
+  online.add_touch(known_place(bone, trial, 0) + 2.5 * normal);
+  EXPECT_EQ(online.update().state, OnlineState::Confirmed);
+  online.add_touch(known_place(bone, trial, 1) + 2.5 * normal);
+  EXPECT_EQ(online.update().state, OnlineState::Candidate);
+  EXPECT_THAT(online.result().alarm, testing::HasSubstr("world marker"));
+  online.clear_touches();
+  EXPECT_EQ(online.update().state, OnlineState::Confirmed);
+}
+
+// A bumped world marker: the control point, touched again, is elsewhere.
+TEST(OnlineRegistration, ControlPointTellsABumpedMarker) {
+  const PhantomBone& bone = phantom_bone();
+  const auto trial = bone.trial(TrialNoise::Dry, 2);
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  const Eigen::Vector3d control = known_place(bone, trial, 0);
+  online.touch_control_point(control);
+  draw(online, trial.curves);
+  online.touch_control_point(control + Eigen::Vector3d(0.2, 0, 0));
+  EXPECT_EQ(online.update().state, OnlineState::Confirmed);
+  online.touch_control_point(control + Eigen::Vector3d(1.5, 0, 0));
+  online.touch_control_point(control + Eigen::Vector3d(1.5, 0, 0));
+  EXPECT_EQ(online.update().state, OnlineState::Candidate);
+  EXPECT_THAT(online.result().alarm, testing::HasSubstr("control point"));
+}
+
+// A bad stroke can be taken out, put back, and undone.
+TEST(OnlineRegistration, StrokesCanBeExcludedAndUndone) {
+  const PhantomBone& bone = phantom_bone();
+  auto curves = bone.trial(TrialNoise::Dry, 3).curves;
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  draw(online, curves);
+  EXPECT_TRUE(online.exclude_stroke(2));
+  EXPECT_FALSE(online.exclude_stroke(99));
+  EXPECT_TRUE(online.update().strokes[2].is_excluded);
+  EXPECT_LT(online.curves_in_use().size(), curves.size());
+  EXPECT_TRUE(online.exclude_stroke(2, false));
+  EXPECT_TRUE(online.undo_stroke());
+  EXPECT_EQ(online.update().strokes.size(), 5u);
+  EXPECT_TRUE(online.result().registration.has_pose);
+  online.clear();
+  EXPECT_EQ(online.update().state, OnlineState::Collecting);
+  EXPECT_FALSE(online.undo_stroke());
+}
+
+// The wrong side's bone is never confirmed: neither by clean strokes nor by noisy ones, of which the second
+// trial fits the phantom's notch, which is much like its own mirror image, a little better the wrong way
+// round.
+TEST(OnlineRegistration, NeverConfirmsTheMirroredBone) {
+  const PhantomBone& bone = phantom_bone();
+  for (const auto& [noise, seed] : {std::pair{TrialNoise::Dry, 1}, std::pair{TrialNoise::ExVivo, 2}}) {
+    auto curves = bone.trial(noise, static_cast<std::uint64_t>(seed)).curves;
+    for (auto& point : curves) point.position_mm.x() = -point.position_mm.x();
+    OnlineRegistration online(bone.prepared, options_for(bone));
+    for (const OnlineState state : draw(online, curves)) EXPECT_LT(state, OnlineState::Confirmed);
+  }
+}
+
+// Cartilage of 2 mm that the mesh lacks, and of 2 mm that the probe lacks: confirmed on the way, with the
+// thickness in what was assumed; a touch on the region lies on what is to be touched there.
+TEST(OnlineRegistration, SolvesTheThicknessOfCartilageWhileScratching) {
+  const PhantomBone& bone = phantom_bone();
+  for (const double thickness_mm : {2.0, -2.0}) {
+    CoveredTrial covered = covered_trial(bone, bone.trial(TrialNoise::Dry, 1), thickness_mm);
+    covered.trial.curves.resize(600);
+    OnlineOptions options = options_for(bone);
+    options.covered = covered.region;
+    OnlineRegistration online(bone.prepared, options);
+    EXPECT_EQ(draw(online, covered.trial.curves).back(), OnlineState::Confirmed);
+    const RegistrationSummary& found = online.result().registration;
+    ASSERT_EQ(found.assumptions.size(), 1u);
+    EXPECT_NEAR(thickness_in(found.assumptions[0]), thickness_mm, 0.3) << found.assumptions[0];
+    const RigidTransform& truth = covered.trial.marker_from_bone;
+    EXPECT_LT((found.marker_from_bone * bone.target_mm - truth * bone.target_mm).norm(), 0.4);
+    for (const StrokeInfo& stroke : online.result().strokes) EXPECT_LT(stroke.median_residual_mm, 0.4);
+
+    const geometry::SurfacePoint place =
+        bone.surface->closest_point(bone.target_mm + Eigen::Vector3d(0, 0, 12));
+    for (int i = 0; i < 3; ++i) online.add_touch(truth * (place.point_mm + thickness_mm * place.normal));
+    EXPECT_EQ(online.update().state, OnlineState::Verified);
+  }
+}
+
+// What was excluded or undone has no say in the thickness: without the strokes on it, the region is as if
+// never touched.
+TEST(OnlineRegistration, ExcludedStrokesHaveNoSayInTheThickness) {
+  constexpr int kOnCover = 100;
+  const PhantomBone& bone = phantom_bone();
+  CoveredTrial covered = covered_trial(bone, bone.trial(TrialNoise::Dry, 3), 2);
+  strokes::Curves& curves = covered.trial.curves;
+  for (std::size_t i = 0; i < curves.size(); ++i) curves[i].curve += covered.is_on_cover[i] ? kOnCover : 0;
+  std::stable_sort(curves.begin(), curves.end(),
+                   [](const auto& l, const auto& r) { return l.curve < r.curve; });
+  const int last = curves.back().curve;
+  OnlineOptions options = options_for(bone);
+  options.covered = covered.region;
+  OnlineRegistration online(bone.prepared, options);
+  constexpr std::size_t kAtOnce = 100;
+  for (std::size_t i = 0; i < curves.size(); i += kAtOnce) {
+    online.add_points({curves.data() + i, std::min(kAtOnce, curves.size() - i)});
+    online.update();
+  }
+  const auto assumption = [&online] {
+    const auto& assumptions = online.result().registration.assumptions;
+    return assumptions.empty() ? std::string() : assumptions.front();
+  };
+  EXPECT_NEAR(thickness_in(assumption()), 2, 0.3) << assumption();
+  EXPECT_TRUE(online.undo_stroke());
+  for (int curve = kOnCover; curve < last; ++curve) EXPECT_TRUE(online.exclude_stroke(curve));
+  online.update();
+  EXPECT_THAT(assumption(),
+              testing::AnyOf(testing::HasSubstr("no stroke lies on"), testing::HasSubstr("left out")));
+  for (int curve = kOnCover; curve < last; ++curve) EXPECT_TRUE(online.exclude_stroke(curve, false));
+  online.update();
+  EXPECT_NEAR(thickness_in(assumption()), 2, 0.3) << assumption();
+}
+
+// A region whose thickness is free confirms no bone of the other side.
+TEST(OnlineRegistration, NeverConfirmsTheMirroredBoneWithCartilage) {
+  const PhantomBone& bone = phantom_bone();
+  CoveredTrial covered = covered_trial(bone, bone.trial(TrialNoise::Dry, 1), 2);
+  covered.trial.curves.resize(500);
+  for (auto& point : covered.trial.curves) point.position_mm.x() = -point.position_mm.x();
+  OnlineOptions options = options_for(bone);
+  options.covered = covered.region;
+  OnlineRegistration online(bone.prepared, options);
+  for (const OnlineState state : draw(online, covered.trial.curves)) EXPECT_LT(state, OnlineState::Confirmed);
+}
+
+// What was drawn is judged to its last point when that is asked for, and a solution of hardly more stroke is
+// no further witness: two solutions stay two, and don't confirm.
+TEST(OnlineRegistration, JudgesAllWhenAsked) {
+  const PhantomBone& bone = phantom_bone();
+  auto curves = bone.trial(TrialNoise::Dry, 1).curves;
+  curves.resize(700);
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  draw(online, curves);
+  const std::uint64_t before = online.result().revision;
+  online.judge_all();
+  EXPECT_EQ(online.update().revision, before + 1);
+  EXPECT_EQ(online.result().state, OnlineState::Confirmed);
+  EXPECT_EQ(online.result().registration.point_residuals_mm.size(), curves.size());
+
+  OnlineRegistration at_once(bone.prepared, options_for(bone));
+  at_once.add_points(curves);
+  for (int i = 0; i < 8; ++i) {
+    at_once.judge_all();
+    EXPECT_LT(at_once.update().state, OnlineState::Confirmed)
+        << "one piece of stroke, asked of again and again";
+  }
+}
+
+// Strokes handed over at once go through the same as strokes drawn one after the other; a mirrored bone is
+// not confirmed either way.
+TEST(RegistrationWorker, TakesUpWhatWasDrawnBefore) {
+  const PhantomBone& bone = phantom_bone();
+  auto curves = bone.trial(TrialNoise::Dry, 1).curves;
+  curves.resize(700);
+  OnlineRegistration core(bone.prepared, options_for(bone));
+  draw(core, curves);
+  core.judge_all();
+  core.update();
+  RegistrationWorker worker(bone.prepared, options_for(bone));
+  worker.take_up(curves, {});
+  worker.finish();
+  EXPECT_EQ(worker.latest()->state, OnlineState::Confirmed);
+  EXPECT_EQ(worker.latest()->revision, core.result().revision);
+  EXPECT_EQ(worker.latest()->registration.marker_from_bone.translation_mm,
+            core.result().registration.marker_from_bone.translation_mm);
+
+  for (auto& point : curves) point.position_mm.x() = -point.position_mm.x();
+  RegistrationWorker mirrored(bone.prepared, options_for(bone));
+  mirrored.take_up(curves, {});
+  mirrored.finish();
+  EXPECT_LT(mirrored.latest()->state, OnlineState::Confirmed);
+}
+
+// A thread of the screen that starts a worker computes nothing: the core, with the part of the bone that the
+// plan lets a probe reach, is made by the worker's own thread. Told by the processor time of the calling
+// thread alone, which other threads don't touch, and by the least of ten; half of the core's leaves ample
+// room for starting a thread.
+TEST(RegistrationWorker, IsStartedWithoutComputing) {
+  const PhantomBone& bone = phantom_bone();
+  const auto least_s = [](const auto& make) {
+    const auto spent_s = [] {
+      timespec time{};
+      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+      return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+    };
+    double least = 1e9;
+    for (int i = 0; i < 10; ++i) {
+      const double before = spent_s();
+      const auto made = make();
+      least = std::min(least, spent_s() - before);
+    }
+    return least;
+  };
+  const double core_s =
+      least_s([&] { return std::make_unique<OnlineRegistration>(bone.prepared, options_for(bone)); });
+  const double worker_s =
+      least_s([&] { return std::make_unique<RegistrationWorker>(bone.prepared, options_for(bone)); });
+  EXPECT_LT(worker_s, 0.5 * core_s);
+}
+
+// The worker's result is the core's, whatever the threads do, and what is published is never torn.
+TEST(RegistrationWorker, GivesWhatTheCoreGives) {
+  const PhantomBone& bone = phantom_bone();
+  auto curves = bone.trial(TrialNoise::Dry, 1).curves;
+  curves.resize(700);
+  OnlineRegistration core(bone.prepared, options_for(bone));
+  draw(core, curves);
+  RegistrationWorker worker(bone.prepared, options_for(bone));
+  ASSERT_NE(worker.latest(), nullptr);
+  std::uint64_t seen = 0;
+  for (const strokes::CurvePoint& point : curves) {
+    worker.add_points({&point, 1});
+    const auto latest = worker.latest();
+    EXPECT_GE(latest->revision, seen);
+    seen = latest->revision;
+  }
+  worker.finish();
+  const auto latest = worker.latest();
+  EXPECT_EQ(latest->revision, core.result().revision);
+  EXPECT_EQ(latest->state, core.result().state);
+  EXPECT_EQ(latest->registration.marker_from_bone.translation_mm,
+            core.result().registration.marker_from_bone.translation_mm);
+}
+
+}  // namespace arthronaut::registration

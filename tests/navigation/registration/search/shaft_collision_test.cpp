@@ -1,0 +1,78 @@
+#include "navigation/registration/search/shaft_collision.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/navigation/registration/phantom_bone.h"
+
+namespace arthronaut::registration {
+
+namespace {
+
+using experiments::TrialNoise;
+
+// The probe comes in through a medial portal, the knee bent far, as the drill does: from there every touched
+// point is reached.
+strokes::Curves with_shafts(const PhantomBone& bone, const experiments::Trial& trial, double sign = 1) {
+  const Eigen::Vector3d portal_mm = bone.target_mm + 60 * Eigen::Vector3d(0.7, 0.4, -0.6);  // LPS
+  strokes::Curves curves = trial.curves;
+  for (strokes::CurvePoint& point : curves) {
+    const Eigen::Vector3d tip_in_bone_mm = trial.marker_from_bone.inverse() * point.position_mm;
+    point.shaft_direction = sign * trial.marker_from_bone.rotate((portal_mm - tip_in_bone_mm).normalized());
+  }
+  return curves;
+}
+
+double share_at_truth(const PhantomBone& bone, const experiments::Trial& trial,
+                      const strokes::Curves& curves) {
+  const geometry::RigidTransform truth = trial.marker_from_bone.inverse();
+  return ShaftCollision(bone.prepared->data(), choose_points(curves, 800))
+      .share_through_bone(truth.matrix().cast<float>(), truth.translation_mm.cast<float>());
+}
+
+}  // namespace
+
+// Through the portal the way is free but for strokes that go round the notch's edge, out of its sight; the
+// other way round it leads through the bone but for those.
+TEST(ShaftCollision, TellsTheFreeWayFromTheOneThroughTheBone) {
+  const PhantomBone& bone = phantom_bone();
+  const auto trial = bone.trial(TrialNoise::Dry, 1);
+  EXPECT_LT(share_at_truth(bone, trial, with_shafts(bone, trial)), 0.25);
+  EXPECT_GT(share_at_truth(bone, trial, with_shafts(bone, trial, -1)), 0.6);
+}
+
+// Where the shaft is not known nothing is ruled out.
+TEST(ShaftCollision, EveryPoseIsPossibleWithoutShafts) {
+  const PhantomBone& bone = phantom_bone();
+  const auto trial = bone.trial(TrialNoise::Dry, 1);
+  const ShaftCollision way(bone.prepared->data(), choose_points(trial.curves, 800));
+  EXPECT_EQ(way.share_through_bone(Eigen::Matrix3f::Identity(), bone.target_mm.cast<float>()), 0);
+  EXPECT_TRUE(way.is_possible(Eigen::Matrix3f::Identity(), bone.target_mm.cast<float>()));
+}
+
+// The right pose is found with the shafts as without them.
+TEST(ShaftCollision, RightPosesStayPossible) {
+  const PhantomBone& bone = phantom_bone();
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const auto trial = bone.trial(TrialNoise::Dry, seed);
+    const auto found =
+        register_curves(*bone.prepared, with_shafts(bone, trial), {seed, false, bone.target_mm});
+    EXPECT_TRUE(found.reliable) << testing::PrintToString(found.reasons);
+    EXPECT_LT((found.marker_from_bone * bone.target_mm - trial.marker_from_bone * bone.target_mm).norm(),
+              0.4);
+  }
+}
+
+// A probe whose tip is declared at the wrong end: the right pose would lead it through the bone, and no other
+// one stands.
+TEST(ShaftCollision, RefusesPosesThatLeadTheProbeThroughTheBone) {
+  const PhantomBone& bone = phantom_bone();
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const auto trial = bone.trial(TrialNoise::Dry, seed);
+    const auto found =
+        register_curves(*bone.prepared, with_shafts(bone, trial, -1), {seed, true, bone.target_mm});
+    EXPECT_FALSE(found.reliable) << "seed " << seed;
+    EXPECT_FALSE(found.reasons.empty());
+  }
+}
+
+}  // namespace arthronaut::registration
