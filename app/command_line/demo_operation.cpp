@@ -10,10 +10,11 @@
 #include "app/command_line/tracking_report.h"
 #include "app/report/report.h"
 #include "navigation/calibration/calibration.h"
-#include "navigation/recording/achieved_tunnel.h"
-#include "navigation/recording/record_navigation.h"
+#include "navigation/operation/achieved_tunnel.h"
 #include "navigation/simulator/simulated_operation.h"
+#include "navigation/theatre/navigate_source.h"
 #include "navigation/tools/pivot_calibration.h"
+#include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/quantile.h"
 #include "planning/phantom/phantom_case.h"
@@ -69,9 +70,9 @@ class DrillRecord {
   [[nodiscard]] int count() const { return static_cast<int>(sigma_offset_.size()); }
 
   // Precondition: count() > 0. The depth is read off the drill's scale, to the millimetre.
-  [[nodiscard]] recording::AchievedTunnel achieved(const tunnels::Tunnel& planned,
+  [[nodiscard]] operation::AchievedTunnel achieved(const tunnels::Tunnel& planned,
                                                    const geometry::Surface& bone) const {
-    recording::AchievedTunnel achieved;
+    operation::AchievedTunnel achieved;
     achieved.planned = achieved.measured = planned;
     for (int i = 0; i < 3; ++i) {
       const auto axis = static_cast<std::size_t>(i);
@@ -125,7 +126,7 @@ class Demo {
     simulation_.plan = simulation_.knee.femoral_tunnel;
     simulation_.seed = options_.seed;
     const geometry::TriangleMesh& mesh = simulation_.knee.femur.mesh;
-    femur_ = std::make_unique<geometry::Surface>(mesh);
+    femur_ = std::make_shared<const geometry::Surface>(mesh);
     planned_length_mm_ = tunnels::measure(simulation_.plan, *femur_).length_mm;
     cases::save_case(options_.case_folder,
                      phantom::case_of(simulation_.knee, options_.case_folder.stem().string()));
@@ -165,7 +166,7 @@ class Demo {
     }
     for (const std::string& note : summary.notes) context_.say("          " + note);
     camera::write_camera_file(cases::camera_file(options_.case_folder), summary.record);
-    navigation_.pipeline.calibration = summary.record.calibration;
+    navigation_.source.pipeline.calibration = summary.record.calibration;
     const camera::Calibration& found = summary.record.calibration;
     context_.say(format(
         "          %zu stills, rms %.2f px; focal length %+.2f %%, principal point %.1f px from the truth",
@@ -184,7 +185,7 @@ class Demo {
   void pivot() {
     step("Pivot: the probe swings about its tip");
     pipeline::ViewTrackerOptions view;
-    view.calibration = navigation_.pipeline.calibration;
+    view.calibration = navigation_.source.pipeline.calibration;
     view.refractive_index = simulation_.refractive_index;
     simulator::SimulationOptions swing = simulation_;
     swing.frame_count = kPivotFrames;
@@ -216,22 +217,24 @@ class Demo {
       context_.say_unreliable("the pivot (the tip stays as made)", summary.reasons);
     }
     tools::write_tools_file(cases::tools_file(options_.case_folder), tools);
-    navigation_.pipeline.tools = tools;
-    navigation_.pipeline.refractive_index = simulation_.refractive_index;
-    navigation_.pipeline.bone = simulation_.bone;
-    navigation_.pipeline.side = options_.side;
-    navigation_.plan = simulation_.plan;
-    navigation_.planned_length_mm = planned_length_mm_;
+    navigation_.source.pipeline.tools = tools;
+    navigation_.source.pipeline.refractive_index = simulation_.refractive_index;
+    navigation_.source.pipeline.bone = simulation_.bone;
+    navigation_.source.pipeline.side = options_.side;
+    navigation_.operation.bone = simulation_.bone;
+    navigation_.operation.mesh_sha256 = bones::mesh_sha256(simulation_.knee.femur.mesh);
+    navigation_.operation.surface = femur_;
+    navigation_.operation.plan = {simulation_.plan, planned_length_mm_};
   }
 
   void scratch() {
     step("Scratch: the probe draws on the notch wall, and the femur is found from nothing");
-    const registration::SurfaceIndex bone(simulation_.knee.femur.mesh);
-    navigation_.bone = &bone;
-    const pipeline::NavigationSummary summary =
-        navigate(Phase::Scratch, "scratch", [](auto&, const auto&) {});
+    navigation_.bone = std::make_shared<const registration::SurfaceIndex>(simulation_.knee.femur.mesh);
+    const theatre::NavigationSummary summary = navigate(Phase::Scratch, "scratch", [](auto&, const auto&) {});
     navigation_.bone = nullptr;
-    navigation_.registration = summary.registration;
+    if (summary.registration)
+      navigation_.registration = {*summary.registration,
+                                  operation::provenance_of(navigation_.operation, navigation_.source)};
     if (summary.registration && summary.registration->has_pose) {
       const Eigen::Vector3d& entry = simulation_.plan.entry_mm;
       context_.say(format(
@@ -246,7 +249,7 @@ class Demo {
   bool drill() {
     step("Drill: the guide is led to the plan, and the tunnel is drilled");
     DrillRecord record;
-    const pipeline::NavigationSummary summary = navigate(
+    const theatre::NavigationSummary summary = navigate(
         Phase::Drill, "drill", [&](const WatchedOperation& source, const pipeline::FrameResult& result) {
           const double depth_mm = source.depth_mm(result.frame_index);
           if (depth_mm > 0 && result.guidance.is_valid()) record.add(result.guidance, depth_mm);
@@ -260,29 +263,34 @@ class Demo {
     }
     achieved_ = record.achieved(simulation_.plan, *femur_);
     achieved_.truth = true_tunnel_;
-    recording::write_achieved_file(last_session_ / "achieved.json", achieved_);
+    operation::write_achieved_file(last_session_ / "achieved.json", achieved_);
     return true;
   }
 
   // One phase as a session of the case; its last frame with a registration becomes a picture.
   template <typename Watch>
-  pipeline::NavigationSummary navigate(Phase phase, const std::string& name, const Watch& watch) {
+  theatre::NavigationSummary navigate(Phase phase, const std::string& name, const Watch& watch) {
     WatchedOperation source(simulation_, phase);
     last_session_ = cases::create_session_folder(options_.case_folder);
     camera::FramePtr last_frame;
     pipeline::FrameResult last_result;
     Progress progress(name, static_cast<long>(source.info().frame_count));
     long done = 0;
-    pipeline::NavigationObserver observer;
-    observer.on_frame = [&](const camera::FramePtr& frame, const pipeline::FrameResult& result) {
+    theatre::NavigationObserver observer;
+    observer.on_frame = [&](const camera::FramePtr& frame, const operation::OperationState& state) {
+      const pipeline::FrameResult& result = state.frame;
       watch(source, result);
       progress.advance_to(++done);
       if (!result.camera_from_world.is_valid) return;
       last_frame = frame;
       last_result = result;
     };
-    const pipeline::NavigationSummary summary = recording::record_navigation(
-        source, navigation_, last_session_, recording::KeepVideo::Encode, {}, observer);
+    theatre::RecordOptions record;
+    record.folder = last_session_;
+    record.keep = recording::KeepVideo::Encode;
+    navigation_.source.title = "Simulated operation: " + name;
+    const theatre::NavigationSummary summary =
+        theatre::navigate_source(source, navigation_, record, observer);
     true_marker_from_bone_ = source.operation().marker_from_bone();
     if (phase == Phase::Drill) true_tunnel_ = source.operation().drilled_tunnel();
     if (last_frame) {
@@ -294,12 +302,12 @@ class Demo {
   }
 
   void say_result() {
-    const auto line = [&](const char* what, const recording::TunnelDifference& d) {
+    const auto line = [&](const char* what, const operation::TunnelDifference& d) {
       context_.say(format("          %s: entry %.2f mm, angle %.2f deg", what, d.entry_mm, d.angle_deg));
     };
-    line("planned against measured ", recording::compare(achieved_.planned, achieved_.measured));
-    line("planned against the truth", recording::compare(achieved_.planned, *achieved_.truth));
-    line("measured against the truth", recording::compare(*achieved_.truth, achieved_.measured));
+    line("planned against measured ", operation::compare(achieved_.planned, achieved_.measured));
+    line("planned against the truth", operation::compare(achieved_.planned, *achieved_.truth));
+    line("measured against the truth", operation::compare(*achieved_.truth, achieved_.measured));
   }
 
   void finish() {
@@ -316,13 +324,13 @@ class Demo {
   DemoOptions options_;
   std::chrono::steady_clock::time_point started_;
   simulator::SimulationOptions simulation_;  // the truth
-  pipeline::NavigateOptions navigation_;     // what the theatre has found so far
-  std::unique_ptr<geometry::Surface> femur_;
+  theatre::NavigateOptions navigation_;      // what the theatre has found so far
+  std::shared_ptr<const geometry::Surface> femur_;
   double planned_length_mm_ = 0;
   fs::path last_session_;
   geometry::RigidTransform true_marker_from_bone_;
   tunnels::Tunnel true_tunnel_;
-  recording::AchievedTunnel achieved_;
+  operation::AchievedTunnel achieved_;
 };
 
 }  // namespace

@@ -7,7 +7,9 @@
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
 #include "navigation/recording/case_sessions.h"
-#include "navigation/recording/record_navigation.h"
+#include "navigation/registration/registration_file.h"
+#include "navigation/theatre/navigate_source.h"
+#include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
@@ -84,28 +86,54 @@ pipeline::PipelineOptions pipeline_options(const NavigateArguments& arguments, c
   return options;
 }
 
-// Plan and registration of the case for this bone.
-pipeline::NavigateOptions navigate_options(const Context& context, const NavigateArguments& arguments,
-                                           const cases::Case& knee) {
-  pipeline::NavigateOptions options;
-  options.pipeline = pipeline_options(arguments, knee);
-  const bones::BoneKind bone = options.pipeline.bone;
-  if (const auto plan = knee.plan.tunnels.find(bone); plan != knee.plan.tunnels.end()) {
-    options.plan = plan->second;
-    options.planned_length_mm =
-        tunnels::measure(plan->second, geometry::Surface(knee.bones.at(bone).mesh)).length_mm;
-  }
+// A registration that was given by name and is of something else is refused; one of the case is passed over.
+std::optional<operation::GiveRegistration> known_registration(const Context& context,
+                                                              const NavigateArguments& arguments,
+                                                              const theatre::NavigateOptions& options) {
+  const registration::Provenance now = operation::provenance_of(options.operation, options.source);
+  const bones::BoneKind bone = options.operation.bone;
   if (!arguments.registration.empty()) {
-    options.registration = registration::read_registration_file(arguments.registration);
-  } else if (const auto known =
-                 recording::find_registration(arguments.case_folder, bone, options.pipeline.tools)) {
-    options.registration = known->registration;
-    context.say("registration: of session " + known->session_folder.filename().string());
+    const auto record = registration::read_registration_record(arguments.registration);
+    const auto mismatch = record.of ? registration::mismatch_of(*record.of, now) : std::nullopt;
+    if (mismatch)
+      throw InvalidInput(arguments.registration, "of",
+                         "does not match: " + registration::in_words(*mismatch, *record.of, now));
+    return operation::GiveRegistration{record.registration, record.of.value_or(now)};
   }
+  const auto known = recording::find_registration(arguments.case_folder, bone, options.source.pipeline.tools);
+  if (!known) return std::nullopt;
+  const std::string session = known->session_folder.filename().string();
+  if (const auto mismatch = known->of ? registration::mismatch_of(*known->of, now) : std::nullopt) {
+    context.say("registration: that of session " + session +
+                " is not used: " + registration::in_words(*mismatch, *known->of, now));
+    return std::nullopt;
+  }
+  context.say("registration: of session " + session);
+  return operation::GiveRegistration{known->registration, known->of.value_or(now)};
+}
+
+// Plan and registration of the case for this bone.
+theatre::NavigateOptions navigate_options(const Context& context, const NavigateArguments& arguments,
+                                          const cases::Case& knee) {
+  theatre::NavigateOptions options;
+  options.source.kind = sources::SourceKind::Recording;
+  options.source.title = arguments.video;
+  options.source.pipeline = pipeline_options(arguments, knee);
+  const bones::BoneKind bone = options.source.pipeline.bone;
+  const auto found = knee.bones.find(bone);
+  if (found == knee.bones.end())
+    throw InvalidInput(arguments.case_folder, "", "the case has no " + arguments.bone);
+  const auto surface = std::make_shared<const geometry::Surface>(found->second.mesh);
+  options.operation.bone = bone;
+  options.operation.mesh_sha256 = bones::mesh_sha256(found->second.mesh);
+  options.operation.surface = surface;
+  if (const auto plan = knee.plan.tunnels.find(bone); plan != knee.plan.tunnels.end())
+    options.operation.plan = {plan->second, tunnels::measure(plan->second, *surface).length_mm};
+  options.registration = known_registration(context, arguments, options);
   return options;
 }
 
-void say_registration(const Context& context, const pipeline::NavigationSummary& summary) {
+void say_registration(const Context& context, const theatre::NavigationSummary& summary) {
   if (!summary.registration || !summary.registration->has_pose) return context.say("registration: none");
   const registration::RegistrationSummary& r = *summary.registration;
   context.say(
@@ -115,7 +143,7 @@ void say_registration(const Context& context, const pipeline::NavigationSummary&
   for (const std::string& assumption : r.assumptions) context.say("  " + assumption);
 }
 
-void say_guidance(const Context& context, const pipeline::NavigationSummary& summary) {
+void say_guidance(const Context& context, const theatre::NavigationSummary& summary) {
   const guidance::GuidanceNumbers& g = summary.last_guidance;
   if (!g.is_valid())
     return context.say("guidance: none; at the end: " + std::string(guidance::to_text(summary.last_state)));
@@ -133,35 +161,31 @@ void say_guidance(const Context& context, const pipeline::NavigationSummary& sum
 
 void navigate(Context& context, const NavigateArguments& arguments) {
   const cases::Case knee = cases::load_case(arguments.case_folder);
-  pipeline::NavigateOptions options = navigate_options(context, arguments, knee);
-  const auto mesh = knee.bones.find(options.pipeline.bone);
-  if (mesh == knee.bones.end()) {
-    throw InvalidInput(arguments.case_folder, "", "the case has no " + arguments.bone);
-  }
-  const registration::SurfaceIndex bone(
-      mesh->second.mesh, cases::surface_index_file(arguments.case_folder, options.pipeline.bone));
-  options.bone = &bone;
-  const bones::BoneKind kind = options.pipeline.bone;
+  theatre::NavigateOptions options = navigate_options(context, arguments, knee);
+  const bones::BoneKind kind = options.operation.bone;
+  options.bone = std::make_shared<const registration::SurfaceIndex>(
+      knee.bones.at(kind).mesh, cases::surface_index_file(arguments.case_folder, kind));
   const auto cartilage = arguments.cartilage.mesh.empty() ? cases::load_cartilage(arguments.case_folder, kind)
                                                           : read_cartilage(arguments.cartilage);
   if (cartilage) {
-    options.covered.emplace().points_mm = cartilage->vertices_mm;
+    options.operation.cartilage.emplace().points_mm = cartilage->vertices_mm;
     context.say(std::string("cartilage: ") + (arguments.cartilage.mesh.empty() ? "of the case" : "given"));
   }
   const auto source = sources::open_video(arguments.video);
-  context.say("working medium: " + camera::medium_to_text(options.pipeline.refractive_index));
+  context.say("working medium: " + camera::medium_to_text(options.source.pipeline.refractive_index));
 
   NewSession session(arguments.case_folder);
-  pipeline::NavigationSummary summary;
+  theatre::NavigationSummary summary;
   {
     Progress progress("navigating", static_cast<long>(source->info().frame_count));
     long done = 0;
-    pipeline::NavigationObserver observer;
+    theatre::NavigationObserver observer;
     observer.on_frame = [&](const auto&, const auto&) { progress.advance_to(++done); };
-    summary = recording::record_navigation(
-        *source, options, session.folder(),
-        arguments.no_copy ? recording::KeepVideo::Refer : recording::KeepVideo::Copy, arguments.video,
-        observer);
+    theatre::RecordOptions record;
+    record.folder = session.folder();
+    record.keep = arguments.no_copy ? recording::KeepVideo::Refer : recording::KeepVideo::Copy;
+    record.video = arguments.video;
+    summary = theatre::navigate_source(*source, options, record, observer);
   }
   adopt(arguments.camera, cases::camera_file(arguments.case_folder));
   adopt(arguments.tools, cases::tools_file(arguments.case_folder));

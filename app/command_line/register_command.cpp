@@ -5,6 +5,7 @@
 #include "app/command_line/cartilage_option.h"
 #include "app/command_line/command.h"
 #include "navigation/registration/registration.h"
+#include "navigation/registration/registration_file.h"
 #include "planning/bones/mesh_file.h"
 #include "planning/cases/case.h"
 

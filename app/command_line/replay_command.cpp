@@ -6,6 +6,7 @@
 #include "planning/cases/case.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
+#include "planning/geometry/surface.h"
 
 namespace arthronaut::command_line {
 
@@ -44,10 +45,10 @@ void replay(Context& context, const ReplayArguments& arguments) {
   const cases::Case knee = cases::load_case(arguments.case_folder);
   const recording::RecordedSession session(session_folder(arguments));
   recording::ReplayOptions options;
-  std::optional<registration::SurfaceIndex> bone;
   if (const auto found = knee.bones.find(session.header().bone); found != knee.bones.end()) {
-    options.bone =
-        &bone.emplace(found->second.mesh, cases::surface_index_file(arguments.case_folder, found->first));
+    options.bone = std::make_shared<const registration::SurfaceIndex>(
+        found->second.mesh, cases::surface_index_file(arguments.case_folder, found->first));
+    options.surface = std::make_shared<const geometry::Surface>(found->second.mesh);
     if (const auto cartilage = cases::load_cartilage(arguments.case_folder, found->first)) {
       options.covered.emplace().points_mm = cartilage->vertices_mm;
     }
@@ -65,6 +66,12 @@ void replay(Context& context, const ReplayArguments& arguments) {
   context.say(format("session %s: %ld of %ld frames replayed%s", session.header().id.c_str(),
                      summary.replayed_frames, summary.recorded_frames,
                      session.was_finished() ? "" : " (the recording was cut off and never finished)"));
+  if (summary.frames_without_picture > 0)
+    context.say(format("%ld frames have no picture: what was decided on them was run again from the record",
+                       summary.frames_without_picture));
+  if (summary.states_compared > 0)
+    context.say(format("states the same to the last bit: %ld of %ld%s", summary.states_equal,
+                       summary.states_compared, summary.is_same_build ? "" : " (recorded by another build)"));
   context.say(format("largest differences: pose %.6f mm, %.6f deg; tip %.6f mm; guidance %.6f mm, %.6f deg",
                      summary.worst_pose_mm, summary.worst_pose_deg, summary.worst_tip_mm,
                      summary.worst_offset_mm, summary.worst_angle_deg));
@@ -75,7 +82,7 @@ void replay(Context& context, const ReplayArguments& arguments) {
   for (const recording::Difference& difference : summary.differences) context.say(line_of(difference));
   if (summary.is_same()) return context.say("the same");
   context.say_unreliable("the replay",
-                         {summary.replayed_frames == 0
+                         {summary.replayed_frames + summary.frames_without_picture == 0
                               ? "no frame could be replayed"
                               : std::to_string(summary.differences.size()) + " differences above tolerance"});
 }

@@ -48,14 +48,14 @@ void draw_directions(const widgets::Ui& ui, ImDrawList& draw, const widgets::Rec
 
 // The axis of the guide as a dot with a tail that leans as the guide does: 1 degree as long as 1 mm.
 void draw_guide(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, float radius,
-                const BullseyePoint& point, widgets::Severity sign) {
+                const BullseyePoint& point, widgets::Severity severity) {
   const float per_mm = radius / static_cast<float>(kShown_mm);
   ImVec2 at{center.x + static_cast<float>(point.right_mm) * per_mm,
             center.y - static_cast<float>(point.up_mm) * per_mm};
   const float dx = at.x - center.x, dy = at.y - center.y, far = std::hypot(dx, dy);
   const bool is_outside = far > radius;
   if (is_outside) at = {center.x + dx / far * radius, center.y + dy / far * radius};
-  const ImU32 color = widgets::color_of(sign);
+  const ImU32 color = widgets::color_of(severity);
   if (is_outside) {  // an arrow head on the rim says: farther that way
     const ImVec2 out{dx / far, dy / far};
     const float size = ui.theme.px(20);
@@ -73,7 +73,7 @@ void draw_guide(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, f
                     at.y - static_cast<float>(point.lean_up_deg) * per_mm * shown};
   draw.AddLine(at, tail, color, ui.theme.px(5));
   draw.AddCircle(at, ui.theme.px(15), color, 32, ui.theme.px(4));
-  widgets::draw_sign(draw, at, ui.theme.px(9), sign);
+  widgets::draw_sign(draw, at, ui.theme.px(9), severity);
 }
 
 widgets::Severity worse(widgets::Severity a, widgets::Severity b) {
@@ -118,11 +118,11 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Naviga
   const guidance::GuidanceNumbers& g = screen.display.guidance;
   // `mark` stands with the number ("\u00B0"), `unit` after it.
   const auto block = [&](const char* name, double value, const char* mark, const std::string& unit,
-                         widgets::Severity sign) {
+                         widgets::Severity severity) {
     const widgets::Rect row = rest.cut_top(rest.height > 0 ? (area.height - ui.theme.px(36)) / 4 : 0);
     // No number at all where none is valid: an old one would be believed.
     widgets::number_block(ui, row, name, valid ? widgets::fixed(value, 1) + mark : "\u2013",
-                          valid ? unit : "", valid ? sign : widgets::Severity::Quiet);
+                          valid ? unit : "", valid ? severity : widgets::Severity::Quiet);
     return row;
   };
   const widgets::Rect offset =

@@ -151,10 +151,10 @@ void OperationJob::stop_recording() {
 
 void OperationJob::record_drilled_tunnel() {
   if (!setup_.plan) return;
-  std::optional<recording::AchievedTunnel> achieved = drilled_.measured(*setup_.plan);
+  std::optional<operation::AchievedTunnel> achieved = drilled_.measured(*setup_.plan);
   if (!achieved) return;
   if (setup_.truth != nullptr) achieved->truth = *setup_.truth;
-  recording::write_achieved_file(recorder_->folder() / "achieved.json", *achieved);
+  operation::write_achieved_file(recorder_->folder() / "achieved.json", *achieved);
   recorder_->add_event({achieved->timestamp_ns, "tunnel drilled", "achieved.json"});
 }
 

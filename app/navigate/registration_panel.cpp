@@ -9,13 +9,13 @@ namespace {
 
 constexpr std::size_t kShownStrokes = 4, kShownHistory = 3;
 
-void draw_bar(const widgets::Ui& ui, double progress, widgets::Severity sign) {
+void draw_bar(const widgets::Ui& ui, double progress, widgets::Severity severity) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = std::max(ImGui::GetContentRegionAvail().x, 1.F), height = ui.theme.px(14);
   draw.AddRectFilled(at, {at.x + width, at.y + height}, IM_COL32(14, 17, 21, 255), height / 2);
   const float done = width * static_cast<float>(progress);
-  const ImU32 color = sign == widgets::Severity::Good ? widgets::kGood : widgets::kAccent;
+  const ImU32 color = severity == widgets::Severity::Good ? widgets::kGood : widgets::kAccent;
   if (done > height) draw.AddRectFilled(at, {at.x + done, at.y + height}, color, height / 2);
   ImGui::Dummy({width, height});
 }
@@ -25,17 +25,17 @@ void draw_state(const widgets::Ui& ui, const RegistrationWords& words) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float radius = ui.theme.px(12);
   widgets::draw_sign(*ImGui::GetWindowDrawList(), {at.x + radius, at.y + ui.theme.title->FontSize / 2},
-                     radius, state.sign);
+                     radius, state.severity);
   ImGui::Indent(3 * radius);
   widgets::text_in(ui.theme.title,
-                   state.sign == widgets::Severity::Quiet ? widgets::kText : widgets::color_of(state.sign),
+                   state.severity == widgets::Severity::Quiet ? widgets::kText : widgets::color_of(state.severity),
                    state.name);
   ImGui::Unindent(3 * radius);
-  draw_bar(ui, words.progress, state.sign);
+  draw_bar(ui, words.progress, state.severity);
   widgets::text_in(ui.theme.strong, widgets::kText, state.text);
   if (!words.missing.empty()) widgets::text_in(ui.theme.body, widgets::kQuietText, words.missing);
   if (!words.assumed.empty()) widgets::text_in(ui.theme.body, widgets::kQuietText, words.assumed);
-  for (const SeverityText& row : words.numbers) widgets::status_row(ui, row.sign, row.name, row.text);
+  for (const SeverityText& row : words.numbers) widgets::status_row(ui, row.severity, row.name, row.text);
 }
 
 void draw_touch(const widgets::Ui& ui, const std::optional<TouchText>& touch, const std::string& notice) {
@@ -45,7 +45,7 @@ void draw_touch(const widgets::Ui& ui, const std::optional<TouchText>& touch, co
   const float width = std::max(ImGui::GetContentRegionAvail().x, 1.F);
   const float height = ui.theme.strong->FontSize + ui.theme.number->FontSize;
   widgets::number_block(ui, {at.x, at.y, width, height}, touch->number.name, touch->number.text, "",
-                        touch->number.sign);
+                        touch->number.severity);
   ImGui::Dummy({width, height});
   widgets::text_in(ui.theme.body, widgets::kQuietText, touch->sentence);
 }
@@ -81,7 +81,7 @@ void draw_lists(const widgets::Ui& ui, const RegistrationStatus& status, const R
     widgets::text_in(ui.theme.strong, widgets::kAccent, "Strokes" + count + " (Up, Down)");
     draw_rows(
         ui, strokes, kShownStrokes, [&](std::size_t i) { return strokes[i].curve == selected_stroke; },
-        [&](const StrokeRow& row) { widgets::status_row(ui, row.text.sign, row.text.name, row.text.text); });
+        [&](const StrokeRow& row) { widgets::status_row(ui, row.text.severity, row.text.name, row.text.text); });
   }
   const std::vector<SeverityText>& history = words.history;
   if (history.empty()) return;
@@ -91,7 +91,7 @@ void draw_lists(const widgets::Ui& ui, const RegistrationStatus& status, const R
                    "Registrations" + used + (status.is_chosen ? " (chosen)" : ""));
   draw_rows(
       ui, history, kShownHistory, [&](std::size_t i) { return status.entry_in_force == i; },
-      [&](const SeverityText& row) { widgets::status_row(ui, row.sign, row.name, row.text); });
+      [&](const SeverityText& row) { widgets::status_row(ui, row.severity, row.name, row.text); });
 }
 
 }  // namespace

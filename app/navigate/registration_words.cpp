@@ -147,9 +147,9 @@ std::vector<StrokeRow> stroke_rows(const RegistrationStatus& status) {
     row.text.name = "Stroke " + std::to_string(rows.size() + 1);
     row.text.text = widgets::fixed(stroke.length_mm, 0) + " mm";
     if (has_pose) row.text.text += ", " + tenths_of_mm(stroke.median_residual_mm) + " off";
-    row.text.sign = has_pose ? severity_of_residual(stroke.median_residual_mm) : Severity::Quiet;
+    row.text.severity = has_pose ? severity_of_residual(stroke.median_residual_mm) : Severity::Quiet;
     if (row.is_left_out) {
-      row.text.sign = Severity::Quiet;
+      row.text.severity = Severity::Quiet;
       row.text.text += ", left out";
     }
     rows.push_back(row);
@@ -178,7 +178,7 @@ std::vector<SeverityText> history_rows(const RegistrationStatus& status) {
                              tenths_of_mm(entry.registration->rms_mm) +
                              (entry.state == OnlineState::Verified ? ", verified" : "");
     if (entry.is_void) {
-      row.sign = Severity::Quiet;
+      row.severity = Severity::Quiet;
       row.text = "the marker has moved since";
     }
     rows.push_back(row);

@@ -11,7 +11,7 @@
 namespace arthronaut::navigate {
 
 struct SeverityText {
-  widgets::Severity sign = widgets::Severity::Quiet;
+  widgets::Severity severity = widgets::Severity::Quiet;
   std::string name, text;
 };
 

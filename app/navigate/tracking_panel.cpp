@@ -36,7 +36,7 @@ void draw_markers(const widgets::Ui& ui, const NavigateScreen& screen) {
                               : is_needed(screen, marker.id)                    ? Severity::Caution
                               : marker.state == markers::MarkerState::Duplicate ? Severity::Caution
                                                                                 : Severity::Quiet;
-    widgets::status_row(ui, sign, guidance_severity::marker_name(screen.options->tools, marker.id), text);
+    widgets::status_row(ui, severity, guidance_severity::marker_name(screen.options->tools, marker.id), text);
   }
 }
 
@@ -82,7 +82,7 @@ void draw_touch_row(const widgets::Ui& ui, const NavigateScreen& screen) {
   if (!screen.status->touch_notice.empty())
     widgets::status_row(ui, Severity::Caution, "No touch taken", screen.status->touch_notice);
   else if (const auto& touch = screen.words.touch)
-    widgets::status_row(ui, touch->number.sign, touch->number.name, touch->number.text);
+    widgets::status_row(ui, touch->number.severity, touch->number.name, touch->number.text);
 }
 
 // Touch a place that you know: how far the tip is from the bone model, while both are known.

@@ -10,7 +10,7 @@
 #include "app/scene/plan_picture.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
-#include "navigation/recording/achieved_tunnel.h"
+#include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
@@ -50,7 +50,7 @@ struct Content {
   std::filesystem::path folder;
   cases::Case knee;
   std::unique_ptr<recording::RecordedSession> session;
-  std::optional<recording::AchievedTunnel> achieved;
+  std::optional<operation::AchievedTunnel> achieved;
 };
 
 Content gather(const std::filesystem::path& folder) {
@@ -64,7 +64,7 @@ Content gather(const std::filesystem::path& folder) {
     auto session = std::make_unique<recording::RecordedSession>(*it);
     if (!has_achieved && !session->registration()) continue;
     content.session = std::move(session);
-    if (has_achieved) content.achieved = recording::read_achieved_file(achieved_file);
+    if (has_achieved) content.achieved = operation::read_achieved_file(achieved_file);
     // The newest session with a drilled tunnel; failing that, the newest with a registration.
     if (has_achieved) break;
     bool older_has_achieved = false;
@@ -153,7 +153,7 @@ class Report {
   void plan_page();
   void navigate_page();
   void registration_section(const registration::RegistrationSummary& registration);
-  void result_section(const recording::AchievedTunnel& achieved);
+  void result_section(const operation::AchievedTunnel& achieved);
   void settings();
 
   const Content& content_;
@@ -211,16 +211,16 @@ void Report::registration_section(const registration::RegistrationSummary& regis
       {.size_pt = 8, .ink = kGray});
 }
 
-void Report::result_section(const recording::AchievedTunnel& achieved) {
+void Report::result_section(const operation::AchievedTunnel& achieved) {
   heading("Planned against achieved");
-  const auto planned_measured = recording::compare(achieved.planned, achieved.measured);
+  const auto planned_measured = operation::compare(achieved.planned, achieved.measured);
   std::vector<std::vector<std::string>> rows = {
       {"Comparison", "Entry to entry", "Entry to axis", "Angle"},
       {"As navigation measured it, against the plan", number(planned_measured.entry_mm, " mm", 2),
        number(planned_measured.axis_to_entry_mm, " mm", 2), number(planned_measured.angle_deg, "°", 2)}};
   if (achieved.truth) {
-    const auto planned_true = recording::compare(achieved.planned, *achieved.truth);
-    const auto measured_true = recording::compare(*achieved.truth, achieved.measured);
+    const auto planned_true = operation::compare(achieved.planned, *achieved.truth);
+    const auto measured_true = operation::compare(*achieved.truth, achieved.measured);
     rows.push_back({"As it truly lies (simulator), against the plan", number(planned_true.entry_mm, " mm", 2),
                     number(planned_true.axis_to_entry_mm, " mm", 2), number(planned_true.angle_deg, "°", 2)});
     rows.push_back({"Error of navigation: measured against true", number(measured_true.entry_mm, " mm", 2),

@@ -64,7 +64,7 @@ void draw_events(const widgets::Ui& ui, ImDrawList& draw, const widgets::Rect& a
   }
 }
 
-void draw_difference(const widgets::Ui& ui, const char* name, const recording::TunnelDifference& d) {
+void draw_difference(const widgets::Ui& ui, const char* name, const operation::TunnelDifference& d) {
   widgets::text_in(ui.theme.strong, widgets::kText, name);
   widgets::text_in(ui.theme.body, widgets::kText,
                    "entry " + widgets::fixed(d.entry_mm, 1) + " mm, axis " +
@@ -78,10 +78,10 @@ void draw_achieved(const widgets::Ui& ui, const SessionReview& review) {
     return widgets::status_row(ui, widgets::Severity::Bad, "Not readable", review.achieved_problem);
   if (!review.achieved)
     return widgets::text_in(ui.theme.body, widgets::kQuietText, "No tunnel was recorded as drilled.");
-  const recording::AchievedTunnel& achieved = *review.achieved;
-  draw_difference(ui, "As navigation measured it", recording::compare(achieved.planned, achieved.measured));
+  const operation::AchievedTunnel& achieved = *review.achieved;
+  draw_difference(ui, "As navigation measured it", operation::compare(achieved.planned, achieved.measured));
   if (achieved.truth)
-    draw_difference(ui, "As it truly is (simulated)", recording::compare(achieved.planned, *achieved.truth));
+    draw_difference(ui, "As it truly is (simulated)", operation::compare(achieved.planned, *achieved.truth));
   if (achieved.depth_mm > 1)
     widgets::text_in(ui.theme.body, widgets::kQuietText,
                      "Depth " + widgets::fixed(achieved.depth_mm, 1) + " mm");

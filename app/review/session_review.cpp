@@ -56,7 +56,7 @@ SessionReview read_review(const std::filesystem::path& session_folder) {
   const std::filesystem::path achieved = session_folder / "achieved.json";
   if (!std::filesystem::exists(achieved)) return review;
   try {  // a broken achieved.json must not hide the session: its reason is shown in its place
-    review.achieved = recording::read_achieved_file(achieved);
+    review.achieved = operation::read_achieved_file(achieved);
   } catch (const std::runtime_error& error) {
     review.achieved_problem = error.what();
   }

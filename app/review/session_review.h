@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "navigation/recording/achieved_tunnel.h"
+#include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session.h"
 
 namespace arthronaut::review {
@@ -29,7 +29,7 @@ struct SessionReview {
   std::vector<TimeTrack> tracks;
   // That guided, the last one; no tunnel when there was none. Not what the case plans by now.
   recording::RecordedSession::PlanChange plan;
-  std::optional<recording::AchievedTunnel> achieved;
+  std::optional<operation::AchievedTunnel> achieved;
   std::string achieved_problem;  // why achieved.json could not be read; empty when it was or is not there
 };
 

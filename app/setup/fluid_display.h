@@ -16,7 +16,7 @@ struct FluidDisplay {
   Band band;            // what to do, or what is wrong with what is seen
   double progress = 0;  // 0 to 1, of the five seconds
   struct Model {        // one line of the table, best first
-    widgets::Severity sign = widgets::Severity::Quiet;
+    widgets::Severity severity = widgets::Severity::Quiet;
     std::string name, corners, median, worst;
   };
   std::vector<Model> models;

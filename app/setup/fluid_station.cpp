@@ -82,7 +82,7 @@ void FluidStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   display_ = run_ != nullptr ? fluid_display(status_, steady_now_s()) : FluidDisplay{};
   const std::string medium = camera::medium_to_text(refractive_index_);
   if (status_.job.summary != nullptr)
-    checked_ = {display_.verdict.sign, "Fluid",
+    checked_ = {display_.verdict.severity, "Fluid",
                 status_.job.summary->is_trusted() ? medium + " fits" : "refused in " + medium};
   const float gap = ui.theme.px(12);
   widgets::Rect rest = area;
@@ -136,7 +136,7 @@ void FluidStation::draw_models(const widgets::Ui& ui, const widgets::Rect& area)
   for (std::size_t i = 0; i < head.size(); ++i) cell(ui.theme.strong, i, y, widgets::kQuietText, head[i]);
   for (const FluidDisplay::Model& model : display_.models) {
     y += line;
-    widgets::draw_sign(draw, {at.x + ui.theme.px(12), y + ui.theme.px(13)}, ui.theme.px(10), model.sign);
+    widgets::draw_sign(draw, {at.x + ui.theme.px(12), y + ui.theme.px(13)}, ui.theme.px(10), model.severity);
     cell(ui.theme.strong, 0, y, widgets::kText, model.name);
     cell(ui.theme.body, 1, y, widgets::kText, model.corners);
     cell(ui.theme.body, 2, y, widgets::kText, model.median);

@@ -41,9 +41,9 @@ widgets::PicturePlacement draw_picture(const widgets::Ui& ui, const widgets::Rec
 void draw_band(const widgets::Ui& ui, const widgets::Rect& area, const Band& band) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddRectFilled(area.min(), area.max(), widgets::kPanel, ui.theme.px(6));
-  draw.AddRect(area.min(), area.max(), widgets::color_of(band.sign), ui.theme.px(6), 0, ui.theme.px(2));
+  draw.AddRect(area.min(), area.max(), widgets::color_of(band.severity), ui.theme.px(6), 0, ui.theme.px(2));
   const float radius = ui.theme.px(17);
-  widgets::draw_sign(draw, {area.x + ui.theme.px(36), area.center().y}, radius, band.sign);
+  widgets::draw_sign(draw, {area.x + ui.theme.px(36), area.center().y}, radius, band.severity);
   const float left = area.x + ui.theme.px(72);
   const float wrap = std::max(area.x + area.width - left - ui.theme.px(12), 1.F);
   ImFont* title = ui.theme.title;
@@ -69,7 +69,7 @@ void draw_rows(const widgets::Ui& ui, const char* name, const widgets::Rect& are
                std::span<const Row> rows) {
   widgets::begin_panel(ui, name, area, title);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui.theme.px(8), ui.theme.px(7)});
-  for (const Row& row : rows) widgets::status_row(ui, row.sign, row.name, row.text);
+  for (const Row& row : rows) widgets::status_row(ui, row.severity, row.name, row.text);
   ImGui::PopStyleVar();
   widgets::end_panel();
 }

@@ -171,7 +171,7 @@ void SetupView::draw_heading(const widgets::Ui& ui, const widgets::Rect& area) {
     widgets::action_button(ui, one.action, width, height);
     const Row row = one.station->adopted();
     const float y = place.y + height + ui.theme.px(8);
-    widgets::draw_sign(draw, {place.x + ui.theme.px(12), y + ui.theme.px(13)}, ui.theme.px(9), row.sign);
+    widgets::draw_sign(draw, {place.x + ui.theme.px(12), y + ui.theme.px(13)}, ui.theme.px(9), row.severity);
     draw.PushClipRect({place.x, place.y}, {place.x + place.width, place.y + place.height}, true);
     draw.AddText(ui.theme.body, ui.theme.body->FontSize, {place.x + ui.theme.px(30), y}, widgets::kQuietText,
                  row.text.c_str());

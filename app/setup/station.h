@@ -14,13 +14,13 @@ namespace arthronaut::setup {
 
 // One line of a panel: a state by shape, word and colour.
 struct Row {
-  widgets::Severity sign = widgets::Severity::Quiet;
+  widgets::Severity severity = widgets::Severity::Quiet;
   std::string name, text;
 };
 
 // What stands under the picture: what is wanted now, or what is wrong.
 struct Band {
-  widgets::Severity sign = widgets::Severity::Quiet;
+  widgets::Severity severity = widgets::Severity::Quiet;
   std::string headline, detail;
 };
 

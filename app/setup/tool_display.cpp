@@ -118,7 +118,7 @@ ToolDisplay tool_display(const ToolRunStatus& status, const ToolChoice& choice, 
   if (job.result != nullptr) judge(*job.result, context, display);
   const bool is_over = status.phase == FeedPhase::Ended || status.phase == FeedPhase::Failed;
   if (is_over && job.result != nullptr && !job.result->is_usable()) {
-    display.verdict.sign = Severity::Bad;
+    display.verdict.severity = Severity::Bad;
     display.verdict.headline = "Refused: not adopted";
   }
   display.band = band_of(status, choice, display);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "navigation/recording/session_files.h"
+#include "navigation/registration/registration_file.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
 
@@ -21,7 +22,8 @@ std::optional<KnownRegistration> registration_of(const std::filesystem::path& fo
   if (read_session_header(folder, options).bone != bone) return std::nullopt;
   const tools::ToolSet then = tools::read_tools_file(folder / "tools.json");
   if (!is_same_marker(then.find_world_marker(bone), tools.find_world_marker(bone))) return std::nullopt;
-  KnownRegistration known{registration::read_registration_file(folder / "registration.json"), folder};
+  const auto record = registration::read_registration_record(folder / "registration.json");
+  KnownRegistration known{record.registration, record.of, folder};
   if (!known.registration.reliable) return std::nullopt;
   return known;
 }

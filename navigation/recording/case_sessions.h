@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "navigation/registration/provenance.h"
 #include "navigation/registration/registration.h"
 #include "navigation/tools/tool_set.h"
 #include "planning/bones/bone.h"
@@ -12,6 +13,7 @@ namespace arthronaut::recording {
 
 struct KnownRegistration {
   registration::RegistrationSummary registration;
+  std::optional<registration::Provenance> of;  // records of older versions do not say
   std::filesystem::path session_folder;
 };
 

@@ -144,6 +144,12 @@ std::vector<RecordedFrame> read_frames(SessionDatabase& database) {
   Statement guidance = database.prepare("SELECT * FROM guidance ORDER BY frame");
   for_each_row(guidance, frames,
                [](const Statement& row, RecordedFrame& frame) { frame.guidance = guidance_at(row, frame); });
+  // Records that are older than the digests have no such table.
+  if (!database.prepare("SELECT 1 FROM sqlite_master WHERE name = 'digests'").step()) return frames;
+  Statement digests = database.prepare("SELECT * FROM digests ORDER BY frame");
+  for_each_row(digests, frames, [](const Statement& row, RecordedFrame& frame) {
+    frame.digests = {static_cast<std::uint64_t>(row.integer(1)), static_cast<std::uint64_t>(row.integer(2))};
+  });
   return frames;
 }
 

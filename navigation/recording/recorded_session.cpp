@@ -2,6 +2,7 @@
 #include "navigation/recording/frame_record.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_files.h"
+#include "navigation/registration/registration_file.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::recording {

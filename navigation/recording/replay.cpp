@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "navigation/pipeline/prefetched_source.h"
+#include "navigation/recording/session_files.h"
 
 namespace arthronaut::recording {
 
@@ -84,87 +86,210 @@ class FrameComparison {
   std::vector<strokes::PoseRow> rows_;
 };
 
-// Gives the pipeline the plans and registrations of the session when their frame has come.
-class EventPlayer {
- public:
-  EventPlayer(const RecordedSession& session, pipeline::NavigationPipeline& pipeline)
-      : session_(session), pipeline_(pipeline) {}
+pipeline::FrameResult result_of(const RecordedFrame& recorded, const pipeline::PipelineOptions& options) {
+  pipeline::FrameResult result;
+  result.frame_index = recorded.index;
+  result.timestamp_ns = recorded.timestamp_ns;
+  result.lens = recorded.lens;
+  result.intrinsics_are_known = recorded.intrinsics_are_known;
+  result.is_frozen = recorded.is_frozen;
+  const auto pose_of = [&](int marker_id) {
+    geometry::TrackedPose pose;
+    pose.timestamp_ns = recorded.timestamp_ns;
+    for (const strokes::PoseRow& row : recorded.poses) {
+      if (row.marker_id != marker_id) continue;
+      pose.is_valid = !recorded.is_frozen;
+      pose.target_from_source = row.camera_from_marker;
+    }
+    return pose;
+  };
+  if (const auto* world = options.tools.find_world_marker(options.bone))
+    result.camera_from_world = pose_of(world->marker_id);
+  const geometry::TrackedPose world_from_camera = geometry::inverse(result.camera_from_world);
+  for (const tools::Tool& tool : options.tools.tools)
+    result.tools.push_back({tool.marker_id, geometry::compose(world_from_camera, pose_of(tool.marker_id))});
+  result.tip_is_valid = recorded.tip_is_valid;
+  result.tip_in_world_mm = recorded.tip_in_world_mm;
+  for (std::size_t i = 0; i < result.tools.size(); ++i) {
+    const tools::Tool& tool = options.tools.tools[i];
+    const auto shaft = tools::shaft_direction(tool);
+    if (recorded.tip_is_valid && tool.name == options.probe_name && shaft)
+      result.shaft_in_world = result.tools[i].world_from_tool.target_from_source.rotate(*shaft);
+  }
+  result.guidance = recorded.guidance;
+  return result;
+}
 
+// The operation of a record, run again.
+class Rerun {
+ public:
+  Rerun(const operation::OperationSetup& setup, const ReplayOptions& options) : operation_(setup) {
+    if (!options.bone) return;
+    work_.emplace([&] { return options.bone; }, operation::work_options(setup));
+    outcomes_[0] = work_->outcome();
+  }
+
+  void start(const RecordedSession& session) {
+    session_ = &session;
+    next_event_ = 0;
+    const SessionHeader& header = session.header();
+    has_journal_ = !header.source_kind.empty();
+    operation::SourceSetup source;
+    source.kind = sources::source_kind_from_text(header.source_kind).value_or(sources::SourceKind::Recording);
+    source.title = header.source;
+    source.pipeline = session.pipeline_options();
+    operation_.start_source(source);
+    pass_on();
+  }
   void play_before(std::int64_t frame) {
-    const auto& events = session_.events();
-    for (; next_ < events.size() && events[next_].after_frame < frame; ++next_) play(events[next_]);
+    const auto& events = session_->events();
+    for (; next_event_ < events.size() && events[next_event_].after_frame < frame; ++next_event_)
+      play(events[next_event_]);
   }
   void play_rest() {
-    for (; next_ < session_.events().size(); ++next_) play(session_.events()[next_]);
+    for (; next_event_ < session_->events().size(); ++next_event_) play(session_->events()[next_event_]);
+    operation_.end_source();
+    pass_on();
   }
-  [[nodiscard]] const RecordedSession::PlanChange& plan() const { return plan_; }
-  [[nodiscard]] const std::optional<registration::RegistrationSummary>& found() const { return found_; }
+  operation::OperationStatePtr process(const camera::Frame& picture) {
+    operation_.process(picture);
+    return after_frame();
+  }
+  operation::OperationStatePtr process(const RecordedFrame& recorded) {
+    operation_.process_recorded(result_of(recorded, session_->pipeline_options()));
+    return after_frame();
+  }
+  [[nodiscard]] operation::OperationStatePtr state() { return operation_.state(); }
 
  private:
-  void play(const SessionEvent& event) {
-    if (event.kind == kPlanEvent) {
-      plan_ = session_.plan_of(event);
-      pipeline_.set_plan(plan_.plan, plan_.planned_length_mm);
-    } else if (event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent) {
-      const registration::RegistrationSummary registration = session_.registration_of(event);
-      pipeline_.set_registration(registration);
-      if (event.kind == kRegistrationEvent) found_ = registration;
-    }
+  operation::OperationStatePtr after_frame() {
+    const operation::OperationStatePtr state = operation_.state();
+    pass_on();
+    return state;
   }
 
-  const RecordedSession& session_;
-  pipeline::NavigationPipeline& pipeline_;
-  std::size_t next_ = 0;
-  RecordedSession::PlanChange plan_;
-  std::optional<registration::RegistrationSummary> found_;
+  void play(const SessionEvent& event) {
+    if (event.kind == kCommandEvent) {
+      operation_.apply(operation::command_from_text(event.text, database_file(session_->folder()).string()));
+    } else if (event.kind == kOutcomeEvent) {
+      const auto outcome = outcomes_.find(std::stoull(event.text));
+      if (outcome != outcomes_.end()) operation_.take_outcome(outcome->second);
+    } else if (event.kind == kSourceEndedEvent) {
+      operation_.end_source();
+    } else if (!has_journal_ && event.kind == kPlanEvent) {
+      const RecordedSession::PlanChange change = session_->plan_of(event);
+      operation::OfferPlan offer;
+      if (change.plan) offer.plan = {*change.plan, change.planned_length_mm};
+      operation_.apply(offer);
+      operation_.apply(operation::TakePlanOver{});
+    } else if (!has_journal_ && (event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent)) {
+      operation::SourceSetup source;
+      source.kind = sources::SourceKind::Recording;
+      source.pipeline = session_->pipeline_options();
+      operation_.apply(operation::GiveRegistration{session_->registration_of(event),
+                                                   operation::provenance_of(operation_.setup(), source)});
+    }
+    pass_on();
+  }
+
+  void pass_on() {
+    (void)operation_.take_journal();
+    for (const operation::RegistrationRequest& request : operation_.take_requests())
+      if (work_ && work_->work_in(request)) outcomes_[work_->outcome()->request_count] = work_->outcome();
+  }
+
+  operation::Operation operation_;
+  std::optional<operation::RegistrationWork> work_;
+  std::map<std::uint64_t, operation::OutcomePtr>
+      outcomes_;  // all there ever were: the record says which was taken
+  const RecordedSession* session_ = nullptr;
+  std::size_t next_event_ = 0;
+  bool has_journal_ = false;
 };
 
-Eigen::Vector3d centroid(const strokes::Curves& curves) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const strokes::CurvePoint& point : curves) sum += point.position_mm;
-  return sum / static_cast<double>(curves.size());
-}
-
-// What was registered. curves.csv is rounded; where the recorded poses give the same strokes, they give them
-// exactly.
-strokes::Curves registered_curves(const RecordedSession& session) {
-  const pipeline::PipelineOptions options = session.pipeline_options();
-  const tools::Tool* probe = options.tools.find_tool(options.probe_name);
-  if (!probe || !probe->tip_mm) return session.curves();
-  std::vector<strokes::PoseRow> rows;
-  for (const RecordedFrame& frame : session.frames()) {
-    rows.insert(rows.end(), frame.poses.begin(), frame.poses.end());
+// The sessions before it in the same operation, oldest first.
+std::vector<RecordedSession> sessions_before(const RecordedSession& session, ReplaySummary& summary) {
+  std::vector<RecordedSession> before;
+  std::string id = session.header().continues;
+  while (!id.empty()) {
+    const std::filesystem::path folder = session.folder().parent_path() / id;
+    if (!std::filesystem::exists(folder)) {
+      summary.differences.push_back({-1, "session before", 0, "", id + " is not there any more"});
+      break;
+    }
+    before.emplace_back(folder);
+    id = before.back().header().continues;
   }
-  strokes::Curves curves = strokes::digitise(rows, options.tools, options.bone, options.probe_name);
-  return curves.size() == session.curves().size() ? curves : session.curves();
+  std::reverse(before.begin(), before.end());
+  return before;
 }
 
-void compare_registration(const RecordedSession& session, const EventPlayer& player,
+operation::OperationSetup setup_of(const RecordedSession& first, const ReplayOptions& options) {
+  operation::OperationSetup setup;
+  setup.bone = first.header().bone;
+  setup.mesh_sha256 = first.header().mesh_sha256;
+  setup.surface = options.surface;
+  setup.cartilage = options.covered;
+  if (first.header().registers_after_mm > 0) setup.registers_after_mm = first.header().registers_after_mm;
+  for (const SessionEvent& event : first.events()) {
+    if (event.kind != kPlanEvent) continue;
+    const RecordedSession::PlanChange change = first.plan_of(event);
+    if (change.plan) setup.plan = {*change.plan, change.planned_length_mm};
+    break;
+  }
+  return setup;
+}
+
+void compare_registration(const RecordedSession& session, const operation::OperationState& now,
                           const ReplayOptions& options, ReplaySummary& summary) {
-  if (!options.bone || !player.found() || session.curves().empty()) return;
-  const registration::RegistrationSummary& then = *player.found();
-  registration::RegistrationOptions registering;
-  registering.seed = options.seed;
-  registering.covered = options.covered;
-  if (player.plan().plan) registering.target_in_bone_mm = player.plan().plan->entry_mm;
-  const auto now = registration::register_curves(*options.bone, registered_curves(session), registering);
-  const auto differs = [&](const char* detail) {
-    summary.differences.push_back({-1, "registration", 0, "", detail});
-  };
-  if (then.reliable != now.reliable)
-    differs(now.reliable ? "is reliable now and was not" : "was reliable and is not now");
+  const auto& then = session.registration();
+  const auto& found = now.registration->in_force.registration;
+  if (!options.bone || !then || session.header().source_kind.empty()) return;
+  const bool is_reliable_now = found != nullptr && found->reliable;
+  if (then->reliable != is_reliable_now)
+    summary.differences.push_back(
+        {-1, "registration", 0, "",
+         is_reliable_now ? "is reliable now and was not" : "was reliable and is not now"});
   // registration.json always holds a transform, also where none was found: only a reliable one is worth
   // comparing.
-  if (!then.reliable || !now.reliable) return;
+  if (!then->reliable || !is_reliable_now) return;
   const Eigen::Vector3d target_in_bone =
-      registering.target_in_bone_mm.value_or(then.marker_from_bone.inverse() * centroid(session.curves()));
+      now.plan ? now.plan->tunnel.entry_mm : Eigen::Vector3d::Zero().eval();
   const double error_mm =
-      (then.marker_from_bone * target_in_bone - now.marker_from_bone * target_in_bone).norm();
+      (then->marker_from_bone * target_in_bone - found->marker_from_bone * target_in_bone).norm();
   summary.registration_mm = error_mm;
-  if (error_mm > std::max(options.registration_tolerance_mm, then.predicted_tre_mm)) {
+  if (error_mm > std::max(options.registration_tolerance_mm, then->predicted_tre_mm))
     summary.differences.push_back({-1, "registration at the target", error_mm, "mm", ""});
-  }
 }
+
+// States by their digests: the first that differs is told, with how many do.
+class StateComparison {
+ public:
+  void compare(const RecordedFrame& then, const operation::OperationState& now, bool has_picture) {
+    if (!then.digests) return;
+    ++compared_;
+    const bool is_same = then.digests->decisions == operation::digest_of_decisions(now) &&
+                         (!has_picture || then.digests->frame == operation::digest_of_frame(now));
+    if (is_same) {
+      ++equal_;
+    } else if (first_unequal_ < 0) {
+      first_unequal_ = then.index;
+    }
+  }
+  void add_to(ReplaySummary& summary) const {
+    summary.states_compared = compared_;
+    summary.states_equal = equal_;
+    if (summary.is_same_build && first_unequal_ >= 0)
+      summary.differences.push_back({first_unequal_, "state", 0, "",
+                                     "is not the same to the last bit, from here on in " +
+                                         std::to_string(compared_ - equal_) + " of " +
+                                         std::to_string(compared_) + " frames"});
+  }
+
+ private:
+  long compared_ = 0, equal_ = 0;
+  std::int64_t first_unequal_ = -1;
+};
 
 }  // namespace
 
@@ -173,31 +298,51 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   ReplaySummary summary;
   summary.recorded_frames = static_cast<long>(session.frames().size());
   const bool reencoded = session.header().video_is_reencoded;
+  summary.is_same_build = !reencoded && session.header().build == build_identity();
   FrameComparison comparison(summary, reencoded ? options.reencoded_tolerance_mm : options.tolerance_mm,
                              reencoded ? options.reencoded_tolerance_deg : options.tolerance_deg);
-  const auto video = open_recorded_video(session);
-  pipeline::PrefetchedSource prefetched(*video);
-  pipeline::NavigationPipeline pipeline(session.pipeline_options());
-  EventPlayer player(session, pipeline);
-  pipeline::FrameResult result;
-  auto recorded = session.frames().begin();
-  while (const camera::FramePtr frame = prefetched.next()) {
-    player.play_before(frame->index);
-    pipeline.process(*frame, result);
-    recorded = std::find_if(recorded, session.frames().end(),
-                            [&](const auto& f) { return f.index == frame->index; });
-    if (recorded == session.frames().end()) break;
-    comparison.compare(*recorded, result);
-    ++summary.replayed_frames;
-    if (progress) progress(summary.replayed_frames);
+  StateComparison states;
+  const std::vector<RecordedSession> before = sessions_before(session, summary);
+  Rerun rerun(setup_of(before.empty() ? session : before.front(), options), options);
+  for (const RecordedSession& earlier : before) {
+    rerun.start(earlier);
+    for (const RecordedFrame& frame : earlier.frames()) {
+      rerun.play_before(frame.index);
+      (void)rerun.process(frame);
+    }
+    rerun.play_rest();
   }
-  player.play_rest();
-  if (session.was_finished() && summary.replayed_frames < summary.recorded_frames) {
+
+  std::unique_ptr<sources::FrameSource> video, prefetched;
+  camera::FramePtr picture;
+  if (!session.video().empty()) {
+    video = open_recorded_video(session);
+    prefetched = std::make_unique<pipeline::PrefetchedSource>(*video);
+    picture = prefetched->next();
+  }
+  rerun.start(session);
+  for (const RecordedFrame& recorded : session.frames()) {
+    while (picture != nullptr && picture->index < recorded.index) picture = prefetched->next();
+    const bool has_picture = picture != nullptr && picture->index == recorded.index;
+    rerun.play_before(recorded.index);
+    const operation::OperationStatePtr state =
+        has_picture ? rerun.process(*picture) : rerun.process(recorded);
+    if (has_picture) comparison.compare(recorded, state->frame);
+    states.compare(recorded, *state, has_picture);
+    summary.replayed_frames += has_picture ? 1 : 0;
+    summary.frames_without_picture += has_picture ? 0 : 1;
+    if (progress) progress(summary.replayed_frames + summary.frames_without_picture);
+  }
+  rerun.play_rest();
+  // A kept video that ends early is a fault of the record; pictures that nobody asked to keep are none.
+  const bool is_whole_video = !session.video().empty() && session.frame_of_picture().empty();
+  if (session.was_finished() && is_whole_video && summary.frames_without_picture > 0) {
     summary.differences.push_back({-1, "video", 0, "",
                                    "shows " + std::to_string(summary.replayed_frames) + " of " +
                                        std::to_string(summary.recorded_frames) + " recorded frames"});
   }
-  compare_registration(session, player, options, summary);
+  states.add_to(summary);
+  compare_registration(session, *rerun.state(), options, summary);
   return summary;
 }
 

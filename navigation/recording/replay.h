@@ -1,21 +1,26 @@
-// Runs a recorded session through today's pipeline and says what differs. The registrations and plans of the
-// session take effect at the frames where they did, so that a difference in guidance comes from tracking
-// alone; the registration itself is found again from the recorded curves.
+// Runs a recorded session again: the same operation, with the pictures, commands and outcomes of the record,
+// and says what differs. On the build that recorded it every state must come out the same to the last bit,
+// registrations and alarms included; on another one, differences beyond the tolerances below are told.
+//
+// A session that goes on with the strokes and registrations of earlier ones takes those in first, from their
+// records. Frames whose picture was not kept are taken from the record too: what was decided on them is run
+// again, their tracking is not.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "navigation/operation/operation.h"
 #include "navigation/recording/session.h"
 
 namespace arthronaut::recording {
 
 struct ReplayOptions {
-  // The bone to register the recorded curves to. Null: the registration is not compared.
-  const registration::SurfaceIndex* bone = nullptr;
+  // The bone to register to. Null: nothing is registered again.
+  operation::SurfaceIndexPtr bone;
+  std::shared_ptr<const geometry::Surface> surface;                     // of the same mesh, for the touches
   std::optional<registration::CartilageRegion> covered = std::nullopt;  // of the bone
-  std::uint64_t seed = 1;
   // What passes for the same, on a copied video: far above rounding, far below anything that matters.
   double tolerance_mm = 1e-3, tolerance_deg = 1e-3;
   // On frames that the recorder encoded itself, whose pixels are not quite those that were tracked: three
@@ -34,15 +39,20 @@ struct Difference {
 };
 
 struct ReplaySummary {
-  long recorded_frames = 0, replayed_frames = 0;
-  std::vector<Difference> differences;  // above tolerance, in the order of frames
+  long recorded_frames = 0, replayed_frames = 0;  // those whose picture was tracked again
+  long frames_without_picture = 0;                // run again from the record
+  std::vector<Difference> differences;            // above tolerance, in the order of frames
+  long states_compared = 0, states_equal = 0;     // by their digests
+  bool is_same_build = false;                     // states must be equal to the last bit
   // The largest of all, also below tolerance.
   double worst_pose_mm = 0, worst_pose_deg = 0, worst_tip_mm = 0, worst_offset_mm = 0, worst_angle_deg = 0;
   std::optional<double> registration_mm;  // at the target; empty when it was not compared
-  [[nodiscard]] bool is_same() const { return differences.empty() && replayed_frames > 0; }
+  [[nodiscard]] bool is_same() const {
+    return differences.empty() && replayed_frames + frames_without_picture > 0;
+  }
 };
 
-// Throws InvalidInput when no video was kept, and what the video throws.
+// Throws what the video throws.
 [[nodiscard]] ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions& options,
                                            const std::function<void(long frames_done)>& progress = {});
 

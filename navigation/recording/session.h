@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "navigation/pipeline/navigation_pipeline.h"
+#include "navigation/registration/provenance.h"
 #include "navigation/sources/frame_source.h"
 #include "navigation/strokes/curves.h"
 #include "navigation/strokes/poses_file.h"
@@ -36,8 +37,17 @@ struct SessionHeader {
   std::string source;  // name of the frame source
   std::string video;   // path or pattern within the folder, or an absolute one; empty when no video was kept
   bool video_is_reencoded = false;  // by append_picture(): tracking it again gives slightly other poses
+  // Of the operation that this session is a part of; empty and 0 in records that are older than it.
+  std::string source_kind;        // "live", "recording", "simulation"
+  std::string mesh_sha256;        // of the bone's mesh
+  std::string continues;          // id of the session before it in the same operation
+  double registers_after_mm = 0;  // OperationSetup::registers_after_mm; 0: somebody was at the pedal
   std::string program_version;
+  std::string build;  // build_identity() of the program that recorded it
 };
+
+// SHA-256 of the running program: the same build gives the same states to the last bit. Computed once.
+[[nodiscard]] const std::string& build_identity();
 
 struct SessionEvent {
   std::int64_t timestamp_ns = 0;
@@ -51,7 +61,10 @@ struct SessionEvent {
 inline constexpr std::string_view kPlanEvent = "plan";                  // text: JSON; empty: no plan
 inline constexpr std::string_view kRegistrationEvent = "registration";  // text: file name; found here
 inline constexpr std::string_view kGivenRegistrationEvent =
-    "registration given";  // text: file name; from elsewhere
+    "registration given";                                     // text: file name; from elsewhere
+inline constexpr std::string_view kCommandEvent = "command";  // text: operation::Command as JSON
+inline constexpr std::string_view kOutcomeEvent = "outcome";  // text: request count of what was taken in
+inline constexpr std::string_view kSourceEndedEvent = "source ended";
 inline constexpr std::string_view kDroppedPicturesEvent = "pictures dropped";  // text: how many
 
 // Writes while the operation goes on. Calls hand over to a writer thread by a bounded, lossless queue (more
@@ -82,11 +95,16 @@ class SessionRecorder {
   bool try_append_picture(const camera::FramePtr& frame);
 
   void append(const pipeline::FrameResult& result);
+  // What the operation had come to after the frame that was appended last: see operation::digest_of_frame().
+  struct StateDigests {
+    std::uint64_t frame = 0, decisions = 0;
+  };
+  void append_digests(const StateDigests& digests);
   void add_event(const SessionEvent& event);
   // What guidance is computed from, from the next frame on.
   void set_plan(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm);
   void set_registration(const registration::RegistrationSummary& registration,
-                        bool found_in_this_session = true);
+                        bool found_in_this_session = true, const registration::Provenance* of = nullptr);
   // Replaces the curves. Kept on disk at once.
   void set_curves(const strokes::Curves& curves);
   // Commits, writes the open formats, closes. Throws IoError.
@@ -113,7 +131,12 @@ struct RecordedFrame {
   bool tip_is_valid = false;
   Eigen::Vector3d tip_in_world_mm = Eigen::Vector3d::Zero();
   guidance::GuidanceNumbers guidance;
+  std::optional<SessionRecorder::StateDigests> digests;  // older records have none
 };
+
+// An event of an operation whose session is finished already: the surgeon decides after the source has ended,
+// too. Throws IoError or InvalidInput.
+void append_event(const std::filesystem::path& session_folder, const SessionEvent& event);
 
 // Reads a session, also one that a crash cut off. Throws IoError or InvalidInput.
 class RecordedSession {

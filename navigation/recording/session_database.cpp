@@ -29,6 +29,7 @@ CREATE TABLE guidance(
   depth_mm REAL, remaining_mm REAL, sigma_offset_mm REAL, sigma_angle_deg REAL);
 CREATE TABLE events(id INTEGER PRIMARY KEY, after_frame INTEGER, timestamp_ns INTEGER, kind TEXT, text TEXT);
 CREATE TABLE pictures(picture INTEGER PRIMARY KEY, frame INTEGER NOT NULL);
+CREATE TABLE digests(frame INTEGER PRIMARY KEY, state INTEGER NOT NULL, decisions INTEGER NOT NULL);
 CREATE TABLE ending(finished INTEGER);
 )";
 

@@ -5,6 +5,7 @@
 
 #include "planning/files/atomic_file.h"
 #include "planning/files/json_document.h"
+#include "planning/files/sha256.h"
 
 namespace arthronaut::recording {
 
@@ -21,6 +22,11 @@ void append_number(std::string& line, double value) {
 }
 
 }  // namespace
+
+const std::string& build_identity() {
+  static const std::string kIdentity = files::sha256_of_file("/proc/self/exe");
+  return kIdentity;
+}
 
 std::filesystem::path header_file(const std::filesystem::path& folder) { return folder / "session.json"; }
 std::filesystem::path database_file(const std::filesystem::path& folder) { return folder / "session.sqlite"; }
@@ -40,9 +46,14 @@ void write_session_header(const std::filesystem::path& folder, const SessionHead
   json["source"] = header.source;
   json["video"] = header.video;
   json["video_is_reencoded"] = header.video_is_reencoded;
+  if (!header.source_kind.empty()) json["source_kind"] = header.source_kind;
+  if (!header.mesh_sha256.empty()) json["mesh_sha256"] = header.mesh_sha256;
+  if (!header.continues.empty()) json["continues"] = header.continues;
+  if (header.registers_after_mm > 0) json["registers_after_mm"] = header.registers_after_mm;
   json["follow_lens"] = options.follow_lens;
   json["flat_port"] = options.fluid_model == camera::FluidModel::FlatPort;
   json["program_version"] = header.program_version;
+  if (!header.build.empty()) json["build"] = header.build;
   files::write_json(header_file(folder), json);
 }
 
@@ -60,6 +71,11 @@ SessionHeader read_session_header(const std::filesystem::path& folder, pipeline:
   header.video = json.text("video");
   header.video_is_reencoded = json.boolean("video_is_reencoded");
   header.program_version = json.text("program_version");
+  if (json.has("build")) header.build = json.text("build");
+  if (json.has("source_kind")) header.source_kind = json.text("source_kind");
+  if (json.has("mesh_sha256")) header.mesh_sha256 = json.text("mesh_sha256");
+  if (json.has("continues")) header.continues = json.text("continues");
+  if (json.has("registers_after_mm")) header.registers_after_mm = json.positive_number("registers_after_mm");
   options.bone = header.bone;
   options.side = header.side;
   options.refractive_index = header.refractive_index;

@@ -13,6 +13,7 @@
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/recording/video_files.h"
+#include "navigation/registration/registration_file.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::recording {
@@ -32,9 +33,14 @@ struct EncodedPicture {
 struct RegistrationFile {
   std::string name;
   registration::RegistrationSummary registration;
+  std::optional<registration::Provenance> of;
 };
-using Message =
-    std::variant<pipeline::FrameResult, SessionEvent, EncodedPicture, RegistrationFile, strokes::Curves>;
+struct FrameDigests {
+  std::int64_t frame = 0;
+  SessionRecorder::StateDigests digests;
+};
+using Message = std::variant<pipeline::FrameResult, SessionEvent, EncodedPicture, RegistrationFile,
+                             strokes::Curves, FrameDigests>;
 
 // Carries out messages in the writer thread.
 class DatabaseWriter {
@@ -44,7 +50,8 @@ class DatabaseWriter {
         folder_(std::move(folder)),
         frames_(database),
         event_(database.prepare("INSERT INTO events(after_frame, timestamp_ns, kind, text) VALUES(?,?,?,?)")),
-        picture_(database.prepare("INSERT INTO pictures VALUES(?,?)")) {}
+        picture_(database.prepare("INSERT INTO pictures VALUES(?,?)")),
+        digests_(database.prepare("INSERT INTO digests VALUES(?,?,?)")) {}
 
   void write(const Message& message) {
     if (!in_transaction_) database_.execute("BEGIN");
@@ -68,15 +75,22 @@ class DatabaseWriter {
   }
   void put(const EncodedPicture& picture) { picture_.bind(1, picture.picture).bind(2, picture.frame).run(); }
   void put(const RegistrationFile& file) {
-    registration::write_registration_file(folder_ / file.name, file.registration);
-    registration::write_registration_file(folder_ / "registration.json", file.registration);
+    const registration::Provenance* of = file.of ? &*file.of : nullptr;
+    registration::write_registration_file(folder_ / file.name, file.registration, of);
+    registration::write_registration_file(folder_ / "registration.json", file.registration, of);
+  }
+  void put(const FrameDigests& frame) {
+    digests_.bind(1, frame.frame)
+        .bind(2, static_cast<std::int64_t>(frame.digests.frame))
+        .bind(3, static_cast<std::int64_t>(frame.digests.decisions))
+        .run();
   }
   void put(const strokes::Curves& curves) { strokes::write_curves_file(folder_ / "curves.csv", curves); }
 
   SessionDatabase& database_;
   std::filesystem::path folder_;
   FrameInserter frames_;
-  Statement event_, picture_;
+  Statement event_, picture_, digests_;
   bool in_transaction_ = false;
 };
 
@@ -206,6 +220,10 @@ void SessionRecorder::append(const pipeline::FrameResult& result) {
   state_->send(result);
 }
 
+void SessionRecorder::append_digests(const StateDigests& digests) {
+  state_->send(FrameDigests{state_->last_frame, digests});
+}
+
 void SessionRecorder::add_event(const SessionEvent& event) {
   SessionEvent placed = event;
   placed.after_frame = state_->last_frame;
@@ -217,9 +235,9 @@ void SessionRecorder::set_plan(const std::optional<tunnels::Tunnel>& plan, doubl
 }
 
 void SessionRecorder::set_registration(const registration::RegistrationSummary& registration,
-                                       bool found_in_this_session) {
+                                       bool found_in_this_session, const registration::Provenance* of) {
   const std::string name = "registration_" + std::to_string(++state_->registration_count) + ".json";
-  state_->send(RegistrationFile{name, registration});
+  state_->send(RegistrationFile{name, registration, of != nullptr ? std::optional(*of) : std::nullopt});
   state_->send_event(found_in_this_session ? kRegistrationEvent : kGivenRegistrationEvent, name);
 }
 
@@ -235,6 +253,15 @@ void SessionRecorder::finish() {
   state_->write_open_formats();
   state_->database.execute("INSERT INTO ending VALUES(1)");
   state_->database.seal();
+}
+
+void append_event(const std::filesystem::path& session_folder, const SessionEvent& event) {
+  SessionDatabase database = SessionDatabase::open(database_file(session_folder));
+  Statement last = database.prepare("SELECT MAX(frame) FROM frames");
+  const std::int64_t after = last.step() && !last.is_null(0) ? last.integer(0) : -1;
+  Statement insert =
+      database.prepare("INSERT INTO events(after_frame, timestamp_ns, kind, text) VALUES(?,?,?,?)");
+  insert.bind(1, after).bind(2, event.timestamp_ns).bind(3, event.kind).bind(4, event.text).run();
 }
 
 std::filesystem::path SessionRecorder::folder() const { return state_->folder; }

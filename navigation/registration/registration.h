@@ -102,8 +102,4 @@ struct RegistrationSummary {
                                                     const CartilageRegion& region,
                                                     const Eigen::Vector3d& place_in_bone_mm);
 
-// registration.json; without the use of the cover, which the assumptions tell.
-[[nodiscard]] RegistrationSummary read_registration_file(const std::filesystem::path& file);
-void write_registration_file(const std::filesystem::path& file, const RegistrationSummary& registration);
-
 }  // namespace arthronaut::registration

@@ -1,7 +1,9 @@
+#include "navigation/registration/registration_file.h"
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "navigation/registration/registration.h"
+#include "navigation/camera/medium.h"
 #include "planning/files/json_document.h"
 
 namespace arthronaut::registration {
@@ -9,10 +11,34 @@ namespace arthronaut::registration {
 namespace {
 constexpr const char* kFormat = "arthronaut.registration";
 constexpr int kVersion = 1;
-}  // namespace
 
-RegistrationSummary read_registration_file(const std::filesystem::path& file) {
-  const files::JsonObject document = files::read_json(file, kFormat, kVersion);
+nlohmann::ordered_json to_json(const Provenance& of) {
+  nlohmann::ordered_json json;
+  json["mesh_sha256"] = of.mesh_sha256;
+  json["bone"] = bones::to_text(of.bone);
+  json["marker_id"] = of.world_marker_id;
+  json["camera"] = of.camera;
+  json["tools"] = of.tools;
+  json["medium"] = camera::medium_to_text(of.refractive_index);
+  json["source"] = sources::to_text(of.source);
+  return json;
+}
+
+Provenance provenance_from(const files::JsonObject& json) {
+  Provenance of;
+  of.mesh_sha256 = json.text("mesh_sha256");
+  of.bone = bones::bone_kind_from_text(json.text("bone"));
+  of.world_marker_id = static_cast<int>(json.integer("marker_id"));
+  of.camera = json.text("camera");
+  of.tools = json.text("tools");
+  of.refractive_index = camera::refractive_index_from_text(json.text("medium"));
+  const auto source = sources::source_kind_from_text(json.text("source"));
+  if (!source) json.fail("source", "must be live, recording or simulation");
+  of.source = *source;
+  return of;
+}
+
+RegistrationSummary summary_from(const files::JsonObject& document) {
   RegistrationSummary summary;
   // Other programs' files have a pose and don't say so.
   summary.has_pose = !document.has("has_pose") || document.boolean("has_pose");
@@ -37,7 +63,29 @@ RegistrationSummary read_registration_file(const std::filesystem::path& file) {
   return summary;
 }
 
-void write_registration_file(const std::filesystem::path& file, const RegistrationSummary& registration) {
+}  // namespace
+
+RegistrationSummary read_registration_file(const std::filesystem::path& file) {
+  return read_registration_record(file).registration;
+}
+
+RegistrationRecord read_registration_record(const std::filesystem::path& file) {
+  const files::JsonObject document = files::read_json(file, kFormat, kVersion);
+  return registration_record_from(document);
+}
+
+RegistrationRecord registration_record_from(const files::JsonObject& document) {
+  RegistrationRecord record{summary_from(document), std::nullopt};
+  if (document.has("of")) record.of = provenance_from(document.object("of"));
+  return record;
+}
+
+void write_registration_file(const std::filesystem::path& file, const RegistrationSummary& registration,
+                             const Provenance* of) {
+  files::write_json(file, to_json(registration, of));
+}
+
+nlohmann::ordered_json to_json(const RegistrationSummary& registration, const Provenance* of) {
   nlohmann::ordered_json document;
   document["format"] = kFormat;
   document["version"] = kVersion;
@@ -57,7 +105,8 @@ void write_registration_file(const std::filesystem::path& file, const Registrati
   std::vector<double> entries;
   for (int i = 0; i < 36; ++i) entries.push_back(registration.covariance(i / 6, i % 6));
   document["covariance"] = entries;
-  files::write_json(file, document);
+  if (of != nullptr) document["of"] = to_json(*of);
+  return document;
 }
 
 }  // namespace arthronaut::registration

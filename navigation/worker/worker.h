@@ -80,6 +80,8 @@ class Worker {
       std::unique_lock lock(shared_.mutex);
       shared_.wake.wait_until(lock, stop_, time, [] { return false; });
     }
+    // As Worker::post(), for whoever the body sets to work; from any thread, while the body runs.
+    void post(Message message) { Worker::post(shared_, std::move(message)); }
     void publish(std::shared_ptr<const Published> value) {
       {
         const std::lock_guard lock(shared_.mutex);
@@ -121,16 +123,7 @@ class Worker {
   ~Worker() = default;
 
   // Dropped when the worker has ended.
-  void post(Message message) {
-    {
-      const std::lock_guard lock(shared_->mutex);
-      if (shared_->has_ended) return;
-      if (shared_->backlog == Backlog::NewestWins) shared_->waiting.clear();
-      shared_->waiting.push_back(std::move(message));
-      shared_->is_idle = false;
-    }
-    shared_->wake.notify_all();
-  }
+  void post(Message message) { post(*shared_, std::move(message)); }
   // The newest published value, whole; null before the first.
   [[nodiscard]] std::shared_ptr<const Published> latest() const {
     const std::lock_guard lock(shared_->mutex);
@@ -154,6 +147,17 @@ class Worker {
   }
 
  private:
+  static void post(Shared& shared, Message message) {
+    {
+      const std::lock_guard lock(shared.mutex);
+      if (shared.has_ended) return;
+      if (shared.backlog == Backlog::NewestWins) shared.waiting.clear();
+      shared.waiting.push_back(std::move(message));
+      shared.is_idle = false;
+    }
+    shared.wake.notify_all();
+  }
+
   // The top of the thread: what is thrown here becomes a state.
   static void run(Shared& shared, const Body& body, const std::stop_token& stop) {
     std::string failure;

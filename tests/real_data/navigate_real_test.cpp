@@ -13,6 +13,7 @@
 #include "planning/bones/mesh_file.h"
 #include "planning/files/csv_table.h"
 #include "planning/files/json_document.h"
+#include "navigation/registration/registration_file.h"
 #include "tests/real_data/real_data.h"
 #include "tests/temporary_folder.h"
 

@@ -7,6 +7,7 @@
 #include "navigation/experiments/registration_trial.h"
 #include "navigation/guidance/guidance.h"
 #include "navigation/registration/registration.h"
+#include "navigation/registration/registration_file.h"
 #include "navigation/strokes/curves.h"
 #include "planning/bones/mesh_file.h"
 #include "planning/files/csv_table.h"

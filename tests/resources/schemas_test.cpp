@@ -6,6 +6,7 @@
 
 #include "navigation/camera/camera_file.h"
 #include "navigation/registration/registration.h"
+#include "navigation/registration/registration_file.h"
 #include "navigation/tools/tool_set.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"

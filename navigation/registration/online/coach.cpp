@@ -129,13 +129,7 @@ Coach advise(const OnlineResult& result, const CoachFacts& facts) {
   const auto next = std::max_element(coach.patches.begin(), coach.patches.end(),
                                      [](const BonePatch& l, const BonePatch& r) { return l.gain < r.gain; });
   if (next != coach.patches.end() && next->gain > 0.02) coach.next_patch_in_bone_mm = next->point_in_bone_mm;
-  if (!result.alarm.empty()) {
-    coach.message = "Check the world marker: " + result.alarm + ".";
-    coach.progress = 0;
-  } else if (result.state == OnlineState::Verified) {
-    coach.message = "Verified.";
-    coach.progress = 1;
-  } else if (result.state == OnlineState::Confirmed) {
+  if (result.state == OnlineState::Confirmed) {
     coach.message = "Confirmed. Touch three places that you know, to verify.";
     coach.progress = 1;
   } else if (coach.next_patch_in_bone_mm) {

@@ -37,8 +37,6 @@ std::string_view to_text(OnlineState state) {
       return "candidate";
     case OnlineState::Confirmed:
       return "confirmed";
-    case OnlineState::Verified:
-      return "verified";
   }
   return "unknown";
 }
@@ -71,20 +69,12 @@ struct OnlineRegistration::State {
   void solve();
   void fit_cover();
   void remember_solution();
-  void judge_touches();
   void judge_state();
   void describe_strokes();
   [[nodiscard]] Eigen::Vector3d target_mm() const;
   // How far off the mesh the bone is touched there; nullopt where that is not known.
   [[nodiscard]] std::optional<double> offset_mm(const Eigen::Vector3d& point_in_bone_mm) const {
     return setting.cover ? cover.offset_mm(*setting.cover, point_in_bone_mm) : 0.0;
-  }
-  [[nodiscard]] int violation_count() const {
-    int count = control_violations;
-    for (const Touch& touch : result.touches) {
-      count += touch.tells && std::abs(touch.residual_mm) > options.max_touch_error_mm;
-    }
-    return count;
   }
   [[nodiscard]] int agreement_count() const;
 
@@ -103,14 +93,9 @@ struct OnlineRegistration::State {
   bool is_changed = false;                // strokes were excluded, undone or cleared since the last solution
   SideVerdict side = SideVerdict::Own;    // as the last check, before a confirmation, told
   double side_checked_mm = 0;             // the stroke length then; 0 when there was none
-  bool is_judged = true;                  // false: touches came in since the last update
   bool judges_all = false;                // the next update is to
   std::vector<RigidTransform> solutions;  // marker_from_bone, each with new stroke, newest last
-  std::optional<Eigen::Vector3d> control_point_mm;
-  double control_shift_mm = 0;
-  int control_violations = 0;
   OnlineResult result;
-  std::vector<HistoryEntry> history;
 };
 
 Eigen::Vector3d OnlineRegistration::State::target_mm() const {
@@ -184,8 +169,6 @@ void OnlineRegistration::State::remember_solution() {
   if (!result.registration.has_pose) return;
   solutions.push_back(result.registration.marker_from_bone);
   if (solutions.size() > kRemembered) solutions.erase(solutions.begin());
-  history.push_back({result.revision, result.state, result.length_mm, result.registration.rms_mm,
-                     result.registration.predicted_tre_mm, result.registration.marker_from_bone});
 }
 
 // How many of the last solutions, one after the other, agree with the newest at the target; itself included.
@@ -220,46 +203,15 @@ void OnlineRegistration::State::check_side() {
   result.registration.reasons.insert(result.registration.reasons.begin(), std::string(reason_against(side)));
 }
 
-void OnlineRegistration::State::judge_touches() {
-  if (!result.registration.has_pose) return;
-  const RigidTransform bone_from_marker = result.registration.marker_from_bone.inverse();
-  for (Touch& touch : result.touches) {
-    const Eigen::Vector3d p = bone_from_marker * touch.point_in_marker_mm;
-    const std::optional<double> offset = offset_mm(p);
-    touch.tells = offset.has_value();
-    touch.residual_mm = bone->data().surface.signed_distance_mm(p) - offset.value_or(0.0);
-  }
-}
-
 void OnlineRegistration::State::judge_state() {
   constexpr double kCandidateRatio = 1.15, kCandidateInliers = 0.5;
-  constexpr int kTouchesToVerify = 3, kViolationsToDrop = 2;
-  constexpr double kMaxVerifiedTouch_mm = 1.0, kMaxVerifiedMedian_mm = 0.6;
   const RegistrationSummary& registration = result.registration;
   result.state = OnlineState::Collecting;
-  result.alarm.clear();
   if (!registration.has_pose) return;
   if (registration.runner_up_ratio < kCandidateRatio || registration.inlier_fraction < kCandidateInliers)
     return;
-  result.state = OnlineState::Candidate;
-  if (violation_count() >= kViolationsToDrop) {
-    result.alarm = control_violations > 0
-                       ? files::format("the world marker may have moved: the control point is off by %.1f mm",
-                                       control_shift_mm)
-                       : files::format("the world marker may have moved: %.0f touches lie off the bone",
-                                       static_cast<double>(violation_count()));
-    return;
-  }
-  if (!registration.reliable || agreement_count() < kAgreeingSolutions) return;
-  result.state = OnlineState::Confirmed;
-  std::vector<double> misses_mm;
-  for (const Touch& touch : result.touches) {
-    if (touch.tells) misses_mm.push_back(std::abs(touch.residual_mm));
-  }
-  if (std::ssize(misses_mm) < kTouchesToVerify) return;
-  const bool all_lie_on = *std::max_element(misses_mm.begin(), misses_mm.end()) < kMaxVerifiedTouch_mm;
-  if (all_lie_on && geometry::median(misses_mm, 0) < kMaxVerifiedMedian_mm)
-    result.state = OnlineState::Verified;
+  const bool is_confirmed = registration.reliable && agreement_count() >= kAgreeingSolutions;
+  result.state = is_confirmed ? OnlineState::Confirmed : OnlineState::Candidate;
 }
 
 void OnlineRegistration::State::describe_strokes() {
@@ -303,33 +255,7 @@ bool OnlineRegistration::undo_stroke() {
   return state_->is_changed = true;
 }
 
-void OnlineRegistration::add_touch(const Eigen::Vector3d& tip_in_marker_mm) {
-  state_->result.touches.push_back({tip_in_marker_mm, 0});
-  state_->is_judged = false;
-}
-
-void OnlineRegistration::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
-  State& state = *state_;
-  if (!state.control_point_mm) {
-    state.control_point_mm = tip_in_marker_mm;
-    return;
-  }
-  state.control_shift_mm = (tip_in_marker_mm - *state.control_point_mm).norm();
-  // One that is back where it was takes the suspicion away.
-  state.control_violations =
-      state.control_shift_mm > state.options.max_control_shift_mm ? state.control_violations + 1 : 0;
-  state.is_judged = false;
-}
-
-void OnlineRegistration::clear_touches() {
-  state_->result.touches.clear();
-  state_->control_point_mm.reset();
-  state_->control_violations = 0;
-  state_->is_judged = false;
-}
-
 void OnlineRegistration::clear() {
-  clear_touches();
   state_->strokes.clear();
   state_->solutions.clear();
   state_->pool.clear();
@@ -346,36 +272,30 @@ const OnlineResult& OnlineRegistration::update() {
   const double missing_mm =
       state.options.refine_every_mm - (state.strokes.length_in_use_mm() - state.solved_length_mm);
   const bool is_asked = state.is_changed || state.judges_all;
-  if (state.strokes.unmeasured_mm() < missing_mm && !is_asked && state.is_judged) return state.result;
+  if (state.strokes.unmeasured_mm() < missing_mm && !is_asked) return state.result;
   state.strokes.measure();
   const double length_mm = state.strokes.length_in_use_mm();
   const bool has_new_stroke = length_mm - state.solved_length_mm >= state.options.refine_every_mm;
-  if (!has_new_stroke && !is_asked && state.is_judged) return state.result;
+  if (!has_new_stroke && !is_asked) return state.result;
 
   ++state.result.revision;
-  if (has_new_stroke || is_asked) {
-    state.solve();
-    state.solved_length_mm = state.result.length_mm = length_mm;
-    if (state.is_changed) state.solutions.clear();  // agreement has to be earned again
-    // Of hardly more stroke than the last solution: it takes that one's place and earns no agreement.
-    if (!has_new_stroke && !state.solutions.empty()) state.solutions.pop_back();
-    state.remember_solution();
-    state.check_side();
-    state.describe_strokes();
-  }
+  state.solve();
+  state.solved_length_mm = state.result.length_mm = length_mm;
+  if (state.is_changed) state.solutions.clear();  // agreement has to be earned again
+  // Of hardly more stroke than the last solution: it takes that one's place and earns no agreement.
+  if (!has_new_stroke && !state.solutions.empty()) state.solutions.pop_back();
+  state.remember_solution();
+  state.check_side();
+  state.describe_strokes();
   state.is_changed = state.judges_all = false;
-  state.is_judged = true;
-  state.judge_touches();
   state.judge_state();
   state.result.coach =
       advise(state.result, {state.bone->data(), state.standing, state.points, state.target_mm(),
                             state.agreement_count(), kAgreeingSolutions, state.options.refine_every_mm});
-  if (!state.history.empty()) state.history.back().state = state.result.state;
   return state.result;
 }
 
 const OnlineResult& OnlineRegistration::result() const { return state_->result; }
-const std::vector<HistoryEntry>& OnlineRegistration::history() const { return state_->history; }
 strokes::Curves OnlineRegistration::curves_in_use() const { return state_->strokes.curves_in_use(); }
 
 }  // namespace arthronaut::registration

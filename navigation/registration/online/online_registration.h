@@ -1,23 +1,20 @@
 // Registration while the surgeon scratches.
 //
-// OnlineRegistration is the thread-free core: points go in as they are drawn, update() does a bounded piece
-// of work and returns all that is known. RegistrationWorker runs one on its own thread: the frame thread
-// hands points over and reads the newest result, and never waits for a computation.
+// Thread-free: points go in as they are drawn, update() does a bounded piece of work and returns all that is
+// known. navigation/operation/registration_work.h runs it beside the frames.
 //
 // States:
 //   Collecting  no pose stands out yet
 //   Candidate   one pose is ahead, but something is missing (the coach says what)
 //   Confirmed   reliable, and the last solutions agree with one another at the target
-//   Verified    confirmed, and touches that were not used in the fit lie on the bone
-// A touch that lies off the bone twice (OnlineOptions::max_touch_error_mm), or a control point that has
-// wandered, takes Confirmed and Verified back to Candidate: the world marker may have moved.
+// Whether touches verify it is judged where they are known, of the registration that guides
+// (navigation/operation/touches.h).
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,7 +24,7 @@
 
 namespace arthronaut::registration {
 
-enum class OnlineState { Collecting, Candidate, Confirmed, Verified };
+enum class OnlineState { Collecting, Candidate, Confirmed };
 [[nodiscard]] std::string_view to_text(OnlineState state);
 
 struct OnlineOptions {
@@ -37,9 +34,7 @@ struct OnlineOptions {
   std::optional<Eigen::Vector3d> direction_in_bone;  // the tunnel's, for the predicted error of its angle
   // Its thickness is solved with each update, or it is left out; registration.assumptions says which.
   std::optional<CartilageRegion> covered = std::nullopt;
-  double refine_every_mm = 10;        // of new stroke
-  double max_touch_error_mm = 1.5;    // a touch further off the bone is a violation
-  double max_control_shift_mm = 1.0;  // of a control point touched again, in the world-marker frame
+  double refine_every_mm = 10;  // of new stroke
 };
 
 // One part of the bone near the touched area, for colouring it.
@@ -66,14 +61,6 @@ struct StrokeInfo {
   double median_residual_mm = 0;  // of |signed distance|; 0 while there is no pose
 };
 
-struct Touch {
-  Eigen::Vector3d point_in_marker_mm = Eigen::Vector3d::Zero();
-  // Signed distance to what is to be touched there (see RegistrationSummary::point_residuals_mm), by the
-  // registration in force; kept up to date.
-  double residual_mm = 0;
-  bool tells = true;  // false: on a covered region of unknown thickness; it neither verifies nor alarms
-};
-
 // Everything that is known at one moment. Immutable once published.
 struct OnlineResult {
   std::uint64_t revision = 0;  // grows with every change
@@ -83,20 +70,9 @@ struct OnlineResult {
   Coach coach;
   double length_mm = 0;  // of the strokes in use
   std::vector<StrokeInfo> strokes;
-  std::vector<Touch> touches;
-  std::string alarm;  // empty, or why the state was taken back: "the world marker may have moved: ..."
   // The strokes miss this bone's surface by more than their noise explains, or fit its mirror image as well:
   // what was confirmed with fewer of them is not to be trusted any more.
   bool bone_is_in_doubt = false;
-  std::string failure;  // of a worker: why it has ended and works in nothing any more; empty else
-};
-
-// What a registration said when it was replaced or taken back.
-struct HistoryEntry {
-  std::uint64_t revision = 0;
-  OnlineState state = OnlineState::Collecting;
-  double length_mm = 0, rms_mm = 0, predicted_tre_mm = 0;
-  geometry::RigidTransform marker_from_bone;
 };
 
 // Deterministic: the results depend on the order of calls alone, never on time. Not thread-safe.
@@ -114,13 +90,7 @@ class OnlineRegistration {
   bool exclude_stroke(int curve, bool is_excluded = true);
   // Forgets the stroke drawn last; false when there is none.
   bool undo_stroke();
-  // A touch that is not used in the fit, to verify. Judged at once, by the registration in force.
-  void add_touch(const Eigen::Vector3d& tip_in_marker_mm);
-  // The control point: the first call keeps it, later ones compare.
-  void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm);
-  // Forgets touches and control point, and with them an alarm; strokes and pose stay.
-  void clear_touches();
-  // Forgets everything but the history.
+  // Forgets everything.
   void clear();
 
   // Solves again when enough was drawn or anything changed; otherwise returns what is known. About 6 ms once
@@ -131,36 +101,7 @@ class OnlineRegistration {
   const OnlineResult& update();
 
   [[nodiscard]] const OnlineResult& result() const;
-  [[nodiscard]] const std::vector<HistoryEntry>& history() const;
   [[nodiscard]] strokes::Curves curves_in_use() const;
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
-
-// The same on a thread of its own, which also makes the core. Every member may be called from any thread and
-// returns at once.
-class RegistrationWorker {
- public:
-  RegistrationWorker(std::shared_ptr<const SurfaceIndex> bone, const OnlineOptions& options);
-  ~RegistrationWorker();  // stops after the piece of work in hand
-
-  void add_points(std::span<const strokes::CurvePoint> points);
-  // What was drawn before there was a worker. Worked in point by point, as if it were drawn now, and then all
-  // of it is judged (judge_all()): only that is published.
-  void take_up(std::span<const strokes::CurvePoint> points, const std::set<int>& excluded_curves);
-  void exclude_stroke(int curve, bool is_excluded = true);
-  void undo_stroke();
-  void add_touch(const Eigen::Vector3d& tip_in_marker_mm);
-  void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm);
-  void clear_touches();
-  void clear();
-
-  // The newest result, whole; never null.
-  [[nodiscard]] std::shared_ptr<const OnlineResult> latest() const;
-  // Waits until all that was handed over so far has been worked in; for tests and for the end of a session.
-  void finish();
 
  private:
   struct State;

@@ -119,7 +119,7 @@ TEST_F(BoneRegistrationTest, ABumpedMarkerTakesGuidanceAway) {
   EXPECT_FALSE(status.in_force->reliable);
   EXPECT_EQ(status.in_force->reasons.front(), status.alarm);
   EXPECT_GT(status.change_count, before);
-  EXPECT_EQ(state_of(status).sign, widgets::Severity::Bad);
+  EXPECT_EQ(state_of(status).severity, widgets::Severity::Bad);
   EXPECT_EQ(progress_of(status), 0);
 
   bone_.forget_touches();
@@ -156,7 +156,7 @@ TEST_F(BoneRegistrationTest, TouchesVerify) {
   const auto touch = touch_of(status);
   ASSERT_TRUE(touch);
   EXPECT_EQ(touch->number.name, "Touch 5");
-  EXPECT_EQ(touch->number.sign, widgets::Severity::Good);
+  EXPECT_EQ(touch->number.severity, widgets::Severity::Good);
 }
 
 // Going back to an earlier registration holds against newer ones until the newest is chosen again.
@@ -290,7 +290,7 @@ TEST_F(BoneRegistrationTest, ABoneThatFailsSaysWhy) {
   const RegistrationStatus status = *broken.status();
   EXPECT_EQ(status.bone_trouble, "the mesh is empty");
   EXPECT_EQ(state_of(status).text, "the mesh is empty");
-  EXPECT_EQ(state_of(status).sign, widgets::Severity::Bad);
+  EXPECT_EQ(state_of(status).severity, widgets::Severity::Bad);
   broken.register_all([] { return true; });
   EXPECT_EQ(broken.status()->in_force->reasons.front(), "the mesh is empty");
 }

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "navigation/recording/achieved_tunnel.h"
+#include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session.h"
 #include "navigation/tools/tool_set.h"
 #include "planning/cases/case.h"
@@ -103,7 +103,7 @@ TEST_F(Report, ComparesPlannedAndAchieved) {
   const Eigen::Vector3d side = planned.direction.unitOrthogonal();
   measured.entry_mm += 1.25 * side;  // across the axis: entry and axis are off by the same
   truth.entry_mm += 2.0 * side;
-  recording::write_achieved_file(
+  operation::write_achieved_file(
       session_folder / "achieved.json",
       {.planned = planned, .measured = measured, .depth_mm = 30, .pose_count = 42, .truth = truth});
   write_report(knee_folder(), pdf());

@@ -58,8 +58,8 @@ TEST(CalibrateDisplay, OffersAGoodPicture) {
   EXPECT_TRUE(display.is_live && display.can_take);
   EXPECT_FALSE(display.can_calibrate || display.can_adopt || display.can_drop);
   EXPECT_EQ(display.next, CalibrateStep::Take);
-  EXPECT_EQ(display.band.sign, Severity::Good);
-  EXPECT_EQ(row_of(display.quality, "Coverage").sign, Severity::Good);
+  EXPECT_EQ(display.band.severity, Severity::Good);
+  EXPECT_EQ(row_of(display.quality, "Coverage").severity, Severity::Good);
 }
 
 // What the guide rejects can't be taken; every reason stands on the screen, the measure beside its limit.
@@ -71,11 +71,11 @@ TEST(CalibrateDisplay, SaysEveryReasonOfARejection) {
   advice.wanted = "Not yet: " + advice.rejections.front();
   const CalibrateDisplay display = calibrate_display(running(advice), {}, kNow_s);
   EXPECT_FALSE(display.can_take);
-  EXPECT_EQ(display.band.sign, Severity::Caution);
+  EXPECT_EQ(display.band.severity, Severity::Caution);
   const std::string said = display.band.headline + display.band.detail;
   for (const std::string& reason : advice.rejections)
     EXPECT_NE(said.find(reason), std::string::npos) << reason;
-  EXPECT_EQ(row_of(display.quality, "Coverage").sign, Severity::Caution);
+  EXPECT_EQ(row_of(display.quality, "Coverage").severity, Severity::Caution);
   EXPECT_NE(row_of(display.quality, "Coverage").text.find("60 %"), std::string::npos);
 }
 
@@ -92,7 +92,7 @@ TEST(CalibrateDisplay, OldPicturesAreNotLive) {
   failing.message = "clip.mkv: frame 12 is cut off";
   const CalibrateDisplay failed = calibrate_display(failing, {}, kNow_s);
   EXPECT_FALSE(failed.is_live || failed.can_take);
-  EXPECT_EQ(failed.band.sign, Severity::Bad);
+  EXPECT_EQ(failed.band.severity, Severity::Bad);
   EXPECT_EQ(failed.band.detail, "clip.mkv: frame 12 is cut off");
 
   CalibrateRunStatus ending = running();
@@ -114,7 +114,7 @@ TEST(CalibrateDisplay, LeadsToAdoption) {
   const CalibrateDisplay display = calibrate_display(done, {}, kNow_s);
   EXPECT_TRUE(display.can_adopt);
   EXPECT_EQ(display.next, CalibrateStep::Adopt);
-  EXPECT_EQ(display.verdict.sign, Severity::Good);
+  EXPECT_EQ(display.verdict.severity, Severity::Good);
   EXPECT_EQ(calibrate_display(done, {.is_adopted = true}, kNow_s).next, CalibrateStep::Done);
   EXPECT_FALSE(calibrate_display(done, {.is_adopted = true}, kNow_s).can_adopt);
 }
@@ -126,7 +126,7 @@ TEST(CalibrateDisplay, RefusesWhatIsUnreliable) {
     const CalibrateDisplay display =
         calibrate_display(calibrated(outcome, {"all boards face the lens", "another"}), {}, kNow_s);
     EXPECT_FALSE(display.can_adopt);
-    EXPECT_EQ(display.verdict.sign, Severity::Bad);
+    EXPECT_EQ(display.verdict.severity, Severity::Bad);
     EXPECT_EQ(display.verdict.detail, "all boards face the lens");
     EXPECT_EQ(display.reasons.size(), 2U);
     EXPECT_EQ(display.next, CalibrateStep::Resume);

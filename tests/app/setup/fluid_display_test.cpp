@@ -37,10 +37,10 @@ FluidRunStatus checked(std::vector<std::string> reasons) {
 TEST(FluidDisplay, ShowsHowFarItIs) {
   FluidRunStatus status = running();
   EXPECT_DOUBLE_EQ(fluid_display(status, kNow_s).progress, 0.5);
-  EXPECT_EQ(fluid_display(status, kNow_s).band.sign, Severity::Good);
+  EXPECT_EQ(fluid_display(status, kNow_s).band.severity, Severity::Good);
   status.job.look.is_taken = false;
   status.job.look.reason = "marker 6 is not seen";
-  EXPECT_EQ(fluid_display(status, kNow_s).band.sign, Severity::Caution);
+  EXPECT_EQ(fluid_display(status, kNow_s).band.severity, Severity::Caution);
   EXPECT_EQ(fluid_display(status, kNow_s).band.detail, "Not counted: marker 6 is not seen");
 }
 
@@ -49,21 +49,21 @@ TEST(FluidDisplay, ListsTheModelsBestFirst) {
   const FluidDisplay display = fluid_display(checked({}), kNow_s);
   ASSERT_EQ(display.models.size(), 2U);
   EXPECT_EQ(display.models[0].name, "flat port");
-  EXPECT_EQ(display.models[0].sign, Severity::Good);
+  EXPECT_EQ(display.models[0].severity, Severity::Good);
   EXPECT_EQ(display.models[0].corners, "0.20 px");
   EXPECT_EQ(display.models[1].worst, "\u2013");
-  EXPECT_EQ(display.verdict.sign, Severity::Good);
+  EXPECT_EQ(display.verdict.severity, Severity::Good);
   EXPECT_EQ(display.next, FluidStep::Done);
 }
 
 // A check that fails says so by sign and word, with every reason.
 TEST(FluidDisplay, RefusesWithReasons) {
   const FluidDisplay display = fluid_display(checked({"air fits better", "few pictures"}), kNow_s);
-  EXPECT_EQ(display.verdict.sign, Severity::Bad);
+  EXPECT_EQ(display.verdict.severity, Severity::Bad);
   EXPECT_EQ(display.verdict.detail, "air fits better");
   EXPECT_EQ(display.reasons.size(), 2U);
   EXPECT_EQ(display.next, FluidStep::Again);
-  EXPECT_EQ(display.models[0].sign, Severity::Caution);
+  EXPECT_EQ(display.models[0].severity, Severity::Caution);
 }
 
 // A source that ends early can be checked with what there is; one that shows no ruler can't.

@@ -43,10 +43,10 @@ TEST(ToolDisplay, SaysWhyAPictureDoesNotCount) {
   status.job.markers[1] = {"femur marker", false, "glare"};
   status.job.reason = "no world marker is seen well beside it";
   const ToolDisplay display = tool_display(status, kProbe, {}, kNow_s);
-  EXPECT_EQ(display.band.sign, Severity::Caution);
+  EXPECT_EQ(display.band.severity, Severity::Caution);
   EXPECT_NE(display.band.detail.find("no world marker"), std::string::npos);
-  EXPECT_EQ(row_of(display.markers, "probe").sign, Severity::Good);
-  EXPECT_EQ(row_of(display.markers, "femur marker").sign, Severity::Caution);
+  EXPECT_EQ(row_of(display.markers, "probe").severity, Severity::Good);
+  EXPECT_EQ(row_of(display.markers, "femur marker").severity, Severity::Caution);
   EXPECT_EQ(row_of(display.markers, "femur marker").text, "glare");
 }
 
@@ -57,14 +57,14 @@ TEST(ToolDisplay, RefusesANarrowCone) {
   const ToolDisplay display = tool_display(narrow, kProbe, {}, kNow_s);
   EXPECT_FALSE(display.can_adopt);
   EXPECT_EQ(display.verdict.detail, "the cone is 9 degrees (needs 20)");
-  EXPECT_EQ(row_of(display.numbers, "Cone").sign, Severity::Caution);
-  EXPECT_EQ(row_of(display.numbers, "Residual").sign, Severity::Good);
+  EXPECT_EQ(row_of(display.numbers, "Cone").severity, Severity::Caution);
+  EXPECT_EQ(row_of(display.numbers, "Residual").severity, Severity::Good);
   EXPECT_THROW((void)row_of(display.numbers, "Tip from the marker"), std::runtime_error);
   // While the tool still moves it is "not yet"; once the pictures have ended it is a refusal.
-  EXPECT_EQ(display.verdict.sign, Severity::Caution);
+  EXPECT_EQ(display.verdict.severity, Severity::Caution);
   ToolRunStatus over = narrow;
   over.phase = FeedPhase::Ended;
-  EXPECT_EQ(tool_display(over, kProbe, {}, kNow_s).verdict.sign, Severity::Bad);
+  EXPECT_EQ(tool_display(over, kProbe, {}, kNow_s).verdict.severity, Severity::Bad);
   EXPECT_EQ(tool_display(over, kProbe, {}, kNow_s).next, ToolStep::Again);
 }
 
@@ -91,8 +91,8 @@ TEST(ToolDisplay, OldPicturesAreNotLive) {
   status.looked_s = kNow_s - 5;
   const ToolDisplay display = tool_display(status, kProbe, {}, kNow_s);
   EXPECT_FALSE(display.is_live);
-  EXPECT_EQ(display.band.sign, Severity::Bad);
-  EXPECT_EQ(row_of(display.markers, "probe").sign, Severity::Quiet);
+  EXPECT_EQ(display.band.severity, Severity::Bad);
+  EXPECT_EQ(row_of(display.markers, "probe").severity, Severity::Quiet);
 }
 
 // Tips are offered of tools that have one or nothing, axes of guides; a result takes the place of what was

@@ -8,6 +8,7 @@
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/quantile.h"
+#include "navigation/registration/registration_file.h"
 #include "tests/navigation/registration/phantom_bone.h"
 #include "tests/temporary_folder.h"
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <ctime>
 
 #include "tests/navigation/registration/phantom_bone.h"
 
@@ -33,16 +32,10 @@ std::vector<OnlineState> draw(OnlineRegistration& online, const strokes::Curves&
   return states;
 }
 
-// A place that you know: somewhere on the bone, seen from the marker.
-Eigen::Vector3d known_place(const PhantomBone& bone, const experiments::Trial& trial, double dx_mm) {
-  return trial.marker_from_bone *
-         bone.surface->closest_point(bone.target_mm + Eigen::Vector3d(dx_mm, dx_mm, 3)).point_mm;
-}
-
 }  // namespace
 
-// From nothing to confirmed while the strokes come in; the coach's bar ends full; then touches verify it.
-TEST(OnlineRegistration, ConfirmsWhileScratchingAndVerifiesByTouches) {
+// From nothing to confirmed while the strokes come in; the coach's bar ends full.
+TEST(OnlineRegistration, ConfirmsWhileScratching) {
   const PhantomBone& bone = phantom_bone();
   const auto trial = bone.trial(TrialNoise::Dry, 1);
   OnlineRegistration online(bone.prepared, options_for(bone));
@@ -56,10 +49,6 @@ TEST(OnlineRegistration, ConfirmsWhileScratchingAndVerifiesByTouches) {
             0.4);
   EXPECT_EQ(result.strokes.size(), 6u);
   EXPECT_GT(result.predicted_angle_deg, 0);
-  EXPECT_GT(online.history().size(), 10u);
-
-  for (const double dx_mm : {0.0, 4.0, -4.0}) online.add_touch(known_place(bone, trial, dx_mm));
-  EXPECT_EQ(online.update().state, OnlineState::Verified);
 }
 
 // With little drawn it says what is missing, and where to go on: a place on the bone that was not touched
@@ -78,40 +67,6 @@ TEST(OnlineRegistration, CoachSaysWhatIsMissing) {
     EXPECT_LT(std::abs(bone.surface->signed_distance_mm(*coach.next_patch_in_bone_mm)), 0.01);
     EXPECT_GT(coach.patches.size(), 20u);
   }
-}
-
-// Two touches off the bone take the confirmation back, whatever was sure before; forgetting them gives it
-// back.
-TEST(OnlineRegistration, TwoViolationsDropTheState) {
-  const PhantomBone& bone = phantom_bone();
-  const auto trial = bone.trial(TrialNoise::Dry, 2);
-  OnlineRegistration online(bone.prepared, options_for(bone));
-  draw(online, trial.curves);
-  ASSERT_EQ(online.result().state, OnlineState::Confirmed);
-  const auto normal = trial.marker_from_bone.rotate(bone.surface->closest_point(bone.target_mm).normal);
-  online.add_touch(known_place(bone, trial, 0) + 2.5 * normal);
-  EXPECT_EQ(online.update().state, OnlineState::Confirmed);
-  online.add_touch(known_place(bone, trial, 1) + 2.5 * normal);
-  EXPECT_EQ(online.update().state, OnlineState::Candidate);
-  EXPECT_THAT(online.result().alarm, testing::HasSubstr("world marker"));
-  online.clear_touches();
-  EXPECT_EQ(online.update().state, OnlineState::Confirmed);
-}
-
-// A bumped world marker: the control point, touched again, is elsewhere.
-TEST(OnlineRegistration, ControlPointTellsABumpedMarker) {
-  const PhantomBone& bone = phantom_bone();
-  const auto trial = bone.trial(TrialNoise::Dry, 2);
-  OnlineRegistration online(bone.prepared, options_for(bone));
-  const Eigen::Vector3d control = known_place(bone, trial, 0);
-  online.touch_control_point(control);
-  draw(online, trial.curves);
-  online.touch_control_point(control + Eigen::Vector3d(0.2, 0, 0));
-  EXPECT_EQ(online.update().state, OnlineState::Confirmed);
-  online.touch_control_point(control + Eigen::Vector3d(1.5, 0, 0));
-  online.touch_control_point(control + Eigen::Vector3d(1.5, 0, 0));
-  EXPECT_EQ(online.update().state, OnlineState::Candidate);
-  EXPECT_THAT(online.result().alarm, testing::HasSubstr("control point"));
 }
 
 // A bad stroke can be taken out, put back, and undone.
@@ -147,7 +102,7 @@ TEST(OnlineRegistration, NeverConfirmsTheMirroredBone) {
 }
 
 // Cartilage of 2 mm that the mesh lacks, and of 2 mm that the probe lacks: confirmed on the way, with the
-// thickness in what was assumed; a touch on the region lies on what is to be touched there.
+// thickness in what was assumed.
 TEST(OnlineRegistration, SolvesTheThicknessOfCartilageWhileScratching) {
   const PhantomBone& bone = phantom_bone();
   for (const double thickness_mm : {2.0, -2.0}) {
@@ -163,11 +118,6 @@ TEST(OnlineRegistration, SolvesTheThicknessOfCartilageWhileScratching) {
     const RigidTransform& truth = covered.trial.marker_from_bone;
     EXPECT_LT((found.marker_from_bone * bone.target_mm - truth * bone.target_mm).norm(), 0.4);
     for (const StrokeInfo& stroke : online.result().strokes) EXPECT_LT(stroke.median_residual_mm, 0.4);
-
-    const geometry::SurfacePoint place =
-        bone.surface->closest_point(bone.target_mm + Eigen::Vector3d(0, 0, 12));
-    for (int i = 0; i < 3; ++i) online.add_touch(truth * (place.point_mm + thickness_mm * place.normal));
-    EXPECT_EQ(online.update().state, OnlineState::Verified);
   }
 }
 
@@ -238,82 +188,6 @@ TEST(OnlineRegistration, JudgesAllWhenAsked) {
     EXPECT_LT(at_once.update().state, OnlineState::Confirmed)
         << "one piece of stroke, asked of again and again";
   }
-}
-
-// Strokes handed over at once go through the same as strokes drawn one after the other; a mirrored bone is
-// not confirmed either way.
-TEST(RegistrationWorker, TakesUpWhatWasDrawnBefore) {
-  const PhantomBone& bone = phantom_bone();
-  auto curves = bone.trial(TrialNoise::Dry, 1).curves;
-  curves.resize(700);
-  OnlineRegistration core(bone.prepared, options_for(bone));
-  draw(core, curves);
-  core.judge_all();
-  core.update();
-  RegistrationWorker worker(bone.prepared, options_for(bone));
-  worker.take_up(curves, {});
-  worker.finish();
-  EXPECT_EQ(worker.latest()->state, OnlineState::Confirmed);
-  EXPECT_EQ(worker.latest()->revision, core.result().revision);
-  EXPECT_EQ(worker.latest()->registration.marker_from_bone.translation_mm,
-            core.result().registration.marker_from_bone.translation_mm);
-
-  for (auto& point : curves) point.position_mm.x() = -point.position_mm.x();
-  RegistrationWorker mirrored(bone.prepared, options_for(bone));
-  mirrored.take_up(curves, {});
-  mirrored.finish();
-  EXPECT_LT(mirrored.latest()->state, OnlineState::Confirmed);
-}
-
-// A thread of the screen that starts a worker computes nothing: the core, with the part of the bone that the
-// plan lets a probe reach, is made by the worker's own thread. Told by the processor time of the calling
-// thread alone, which other threads don't touch, and by the least of ten; half of the core's leaves ample
-// room for starting a thread.
-TEST(RegistrationWorker, IsStartedWithoutComputing) {
-  const PhantomBone& bone = phantom_bone();
-  const auto least_s = [](const auto& make) {
-    const auto spent_s = [] {
-      timespec time{};
-      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-      return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-    };
-    double least = 1e9;
-    for (int i = 0; i < 10; ++i) {
-      const double before = spent_s();
-      const auto made = make();
-      least = std::min(least, spent_s() - before);
-    }
-    return least;
-  };
-  const double core_s =
-      least_s([&] { return std::make_unique<OnlineRegistration>(bone.prepared, options_for(bone)); });
-  const double worker_s =
-      least_s([&] { return std::make_unique<RegistrationWorker>(bone.prepared, options_for(bone)); });
-  EXPECT_LT(worker_s, 0.5 * core_s);
-}
-
-// The worker's result is the core's, whatever the threads do, and what is published is never torn.
-TEST(RegistrationWorker, GivesWhatTheCoreGives) {
-  const PhantomBone& bone = phantom_bone();
-  auto curves = bone.trial(TrialNoise::Dry, 1).curves;
-  curves.resize(700);
-  OnlineRegistration core(bone.prepared, options_for(bone));
-  draw(core, curves);
-  RegistrationWorker worker(bone.prepared, options_for(bone));
-  ASSERT_NE(worker.latest(), nullptr);
-  std::uint64_t seen = 0;
-  for (const strokes::CurvePoint& point : curves) {
-    worker.add_points({&point, 1});
-    const auto latest = worker.latest();
-    EXPECT_GE(latest->revision, seen);
-    seen = latest->revision;
-  }
-  worker.finish();
-  const auto latest = worker.latest();
-  EXPECT_EQ(latest->revision, core.result().revision);
-  EXPECT_EQ(latest->state, core.result().state);
-  EXPECT_EQ(latest->registration.marker_from_bone.translation_mm,
-            core.result().registration.marker_from_bone.translation_mm);
 }
 
 }  // namespace arthronaut::registration

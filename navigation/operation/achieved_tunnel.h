@@ -8,7 +8,7 @@
 
 #include "planning/tunnels/tunnel.h"
 
-namespace arthronaut::recording {
+namespace arthronaut::operation {
 
 struct AchievedTunnel {
   tunnels::Tunnel planned;
@@ -34,4 +34,4 @@ struct TunnelDifference {
 // Atomic. Throws IoError.
 void write_achieved_file(const std::filesystem::path& file, const AchievedTunnel& achieved);
 
-}  // namespace arthronaut::recording
+}  // namespace arthronaut::operation

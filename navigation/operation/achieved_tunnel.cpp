@@ -1,11 +1,11 @@
-#include "navigation/recording/achieved_tunnel.h"
+#include "navigation/operation/achieved_tunnel.h"
 
 #include <nlohmann/json.hpp>
 
 #include "planning/files/json_document.h"
 #include "planning/geometry/rigid_transform.h"
 
-namespace arthronaut::recording {
+namespace arthronaut::operation {
 
 namespace {
 
@@ -71,4 +71,4 @@ void write_achieved_file(const std::filesystem::path& file, const AchievedTunnel
   files::write_json(file, json);
 }
 
-}  // namespace arthronaut::recording
+}  // namespace arthronaut::operation

@@ -1,8 +1,8 @@
-#include "app/navigate/tunnel_meter.h"
+#include "navigation/operation/tunnel_meter.h"
 
 #include <algorithm>
 
-namespace arthronaut::navigate {
+namespace arthronaut::operation {
 
 namespace {
 
@@ -46,9 +46,11 @@ void TunnelMeter::add(const guidance::GuidanceNumbers& guidance) {
   deepest_.push_back(guidance);
 }
 
-std::optional<recording::AchievedTunnel> TunnelMeter::measured(const tunnels::Tunnel& planned) const {
-  if (deepest_.size() < kLeastPoses) return std::nullopt;
-  recording::AchievedTunnel achieved;
+bool TunnelMeter::has_evidence() const { return deepest_.size() >= kLeastPoses; }
+
+std::optional<AchievedTunnel> TunnelMeter::measured(const tunnels::Tunnel& planned) const {
+  if (!has_evidence()) return std::nullopt;
+  AchievedTunnel achieved;
   achieved.planned = planned;
   achieved.measured = planned;  // bone and diameter: the drill is the planned one
   achieved.measured.direction = median_vector(deepest_, [](const guidance::GuidanceNumbers& pose) {
@@ -67,4 +69,4 @@ std::optional<recording::AchievedTunnel> TunnelMeter::measured(const tunnels::Tu
   return achieved;
 }
 
-}  // namespace arthronaut::navigate
+}  // namespace arthronaut::operation

@@ -1,0 +1,80 @@
+// Everything that a person or a script can ask of an operation, as values: the journal is their list, with
+// the frame after which each was given.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "navigation/registration/provenance.h"
+#include "navigation/registration/registration.h"
+#include "planning/tunnels/tunnel.h"
+
+namespace arthronaut::operation {
+
+// A planned tunnel and how long it is inside the bone, along the plan.
+struct PlannedTunnel {
+  tunnels::Tunnel tunnel;
+  double length_mm = 0;
+};
+
+// The probe's tip draws on the bone from now on, or no more.
+struct Draw {
+  bool on = true;
+};
+// The place where the tip rests is a touch that verifies, or confirms what is void; the probe stops drawing:
+// a touch must not be used in the fit.
+struct TakeTouch {};
+// The same for the control point: the first time it is kept, later it tells whether the marker has moved.
+struct TouchControlPoint {};
+struct ForgetTouches {};
+struct TakeBackStroke {};
+struct ExcludeStroke {
+  int curve = 0;
+  bool is_excluded = true;
+};
+// Forgets strokes and touches. While an alarm says that the marker has moved, what was registered goes too.
+struct ClearStrokes {};
+// A registration of all strokes in use, from nothing.
+struct RegisterStrokes {};
+// An entry of the history takes effect, and stays until the newest is chosen again.
+struct ChooseRegistration {
+  std::size_t entry = 0;
+};
+// The plan was edited. Guidance keeps the one in force until it is taken over.
+struct OfferPlan {
+  std::optional<PlannedTunnel> plan;
+};
+struct TakePlanOver {};
+// The surgeon goes on without a touch that verifies; that is recorded.
+struct SkipVerification {};
+// The world marker sits elsewhere now: nothing that was found before holds.
+struct MarkerPlacedAnew {};
+// What the surgeon reads off the drill's depth stop.
+struct ReadDepthStop {
+  double depth_mm = 0;
+};
+// The tunnel is drilled: the surgeon's word. What was seen of the guide or the drill is the evidence.
+struct TunnelDrilled {};
+// A registration from a file, or from before a crash.
+struct GiveRegistration {
+  registration::RegistrationSummary registration;
+  registration::Provenance of;
+  bool is_resumed = false;  // from before a crash: void until one touch confirms it
+};
+
+using Command =
+    std::variant<Draw, TakeTouch, TouchControlPoint, ForgetTouches, TakeBackStroke, ExcludeStroke,
+                 ClearStrokes, RegisterStrokes, ChooseRegistration, OfferPlan, TakePlanOver, SkipVerification,
+                 MarkerPlacedAnew, ReadDepthStop, TunnelDrilled, GiveRegistration>;
+
+// "exclude stroke", ...: what the journal calls it.
+[[nodiscard]] std::string_view name_of(const Command& command);
+// One line of JSON, every number to its last bit.
+[[nodiscard]] std::string to_text(const Command& command);
+// Throws InvalidInput for what is not such a line; `name` says where it stands.
+[[nodiscard]] Command command_from_text(const std::string& text, const std::string& name);
+
+}  // namespace arthronaut::operation

@@ -1,0 +1,44 @@
+// The journal of an operation: every command, every outcome of the registration that was taken in, and what
+// came of them, each with the frame after which it happened. Commands, outcomes and frames are all that a
+// second run needs; the rest is for whoever reads it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "navigation/operation/achieved_tunnel.h"
+#include "navigation/operation/command.h"
+#include "navigation/operation/registration_work.h"
+
+namespace arthronaut::operation {
+
+enum class JournalKind {
+  CommandGiven,  // text: to_text(Command)
+  OutcomeTaken,  // text: its request count
+  SourceEnded,
+  RegistrationInForce,  // registration is set
+  Alarm,                // text: what it says, empty when it is over
+  Void,                 // text: why
+  Confirmed,            // by a touch
+  Verified,
+  VerificationSkipped,
+  Plan,     // in force from now on: plan, or none
+  Drilled,  // achieved is set
+  Note,
+};
+
+struct JournalEntry {
+  std::int64_t after_frame = -1;  // index of the last frame before it; -1: none of this source yet
+  std::int64_t timestamp_ns = 0;  // of that frame
+  JournalKind kind = JournalKind::Note;
+  std::string text;
+  RegistrationPtr registration;  // with RegistrationInForce
+  registration::Provenance of;
+  bool registration_was_given = false;
+  std::optional<PlannedTunnel> plan;  // with Plan
+  std::optional<AchievedTunnel> achieved;
+};
+
+}  // namespace arthronaut::operation

@@ -1,0 +1,162 @@
+#include "navigation/operation/operation.h"
+
+#include <utility>
+
+#include "navigation/operation/operation_parts.h"
+
+namespace arthronaut::operation {
+
+registration::Provenance provenance_of(const OperationSetup& setup, const SourceSetup& source,
+                                       int placement) {
+  const pipeline::PipelineOptions& options = source.pipeline;
+  registration::Provenance now;
+  now.mesh_sha256 = setup.mesh_sha256;
+  now.bone = setup.bone;
+  if (const auto* marker = options.tools.find_world_marker(setup.bone))
+    now.world_marker_id = marker->marker_id;
+  now.placement = placement;
+  now.camera = registration::camera_identity(options.calibration);
+  now.tools = registration::tools_identity(options.tools, setup.bone, options.probe_name);
+  now.refractive_index = options.refractive_index;
+  now.source = source.kind;
+  return now;
+}
+
+RegistrationWorkOptions work_options(const OperationSetup& setup) {
+  RegistrationWorkOptions options;
+  options.online.seed = options.fit.seed = setup.seed;
+  options.online.covered = options.fit.covered = setup.cartilage;
+  if (setup.plan) {
+    options.online.target_in_bone_mm = options.fit.target_in_bone_mm = setup.plan->tunnel.entry_mm;
+    options.online.direction_in_bone = setup.plan->tunnel.direction;
+  }
+  return options;
+}
+
+Operation::Operation(OperationSetup setup) : parts_(std::make_unique<Parts>(std::move(setup))) {}
+Operation::~Operation() = default;
+
+void Operation::start_source(const SourceSetup& source) {
+  Parts& p = *parts_;
+  // First what may throw: then nothing has changed.
+  auto pipeline = std::make_unique<pipeline::NavigationPipeline>(source.pipeline);
+  const registration::Provenance now = provenance_of(p.setup, source, p.ledger.now().placement);
+  p.pipeline = std::move(pipeline);
+  p.source = std::make_shared<const SourceSetup>(source);
+  p.has_source = true;
+  p.frame = {};
+  p.frame_count = 0;
+  p.tip.clear();
+  p.meter = {};
+  p.drilled = {};
+  p.touch_refusal = TouchRefusal::None;
+  p.world_was_seen = p.guide_was_seen = false;
+  p.control_touched_ns = 0;  // of another clock
+  p.pipeline->set_plan(p.plan ? std::optional(p.plan->tunnel) : std::nullopt, p.plan ? p.plan->length_mm : 0);
+  if (p.offered)
+    p.set_plan(*std::exchange(p.offered, std::nullopt));
+  else
+    p.note_plan();
+  p.ledger.set_now(now);
+  if (!p.strokes.points().empty() && registration::mismatch_of(p.strokes_of, now)) {
+    p.set_aside_count += p.strokes.points().size();
+    p.clear_strokes();
+  }
+  const RegistrationPtr in_force = p.ledger.in_force().registration;
+  p.pipeline->set_registration(in_force != nullptr ? std::optional(*in_force) : std::nullopt);
+  if (in_force != nullptr) p.note_in_force(true);
+  p.followed_change = p.ledger.change_count();
+  p.follow_ledger();
+  p.draws = source.draws && p.ledger.in_force().standing != Standing::Stands;
+}
+
+void Operation::end_source() {
+  Parts& p = *parts_;
+  if (!p.has_source) return;
+  p.note(JournalKind::SourceEnded);
+  p.has_source = p.draws = false;
+  p.tip.clear();
+}
+
+void Operation::process(const camera::Frame& frame) {
+  parts_->pipeline->process(frame, parts_->frame);
+  parts_->take_frame();
+}
+
+void Operation::process_recorded(const pipeline::FrameResult& result) {
+  parts_->frame = result;
+  parts_->take_frame();
+}
+
+void Operation::apply(const Command& command) {
+  Parts& p = *parts_;
+  p.note(JournalKind::CommandGiven, to_text(command));
+  std::visit([&](const auto& c) { p.apply(c); }, command);
+  p.follow_ledger();
+}
+
+void Operation::take_outcome(const OutcomePtr& outcome) {
+  Parts& p = *parts_;
+  if (outcome == nullptr || outcome == p.outcome) return;
+  const OutcomePtr before = std::exchange(p.outcome, outcome);
+  p.note(JournalKind::OutcomeTaken, std::to_string(outcome->request_count));
+  const bool has_become_ready = outcome->bone_is_ready && (before == nullptr || !before->bone_is_ready);
+  // Nothing more may come: what was drawn while the bone was being made ready is judged, nobody asking.
+  if (has_become_ready && !p.strokes.points().empty()) p.ask(JudgeAll{});
+  const auto& online = outcome->online;
+  if (online != nullptr && (before == nullptr || before->online != online)) {
+    // What was found with strokes that are gone or excluded since, before the registration heard of it, must
+    // not take effect any more.
+    bool is_of_today = true;
+    for (const registration::StrokeInfo& stroke : online->strokes)
+      is_of_today = is_of_today && (stroke.is_excluded || p.strokes.uses(stroke.curve));
+    if (is_of_today && !p.strokes.points().empty()) {
+      p.online = online;
+      p.ledger.take_online(online, outcome->request_count);
+    }
+  }
+  if (outcome->fit_number > (before != nullptr ? before->fit_number : 0) &&
+      outcome->fit_number == p.fit_number) {
+    p.is_fitting = false;
+    if (std::exchange(p.fit_is_wanted, false))
+      p.ledger.take_fit(outcome->fit, p.fit_request, p.fit_length_mm);
+  }
+  p.follow_ledger();
+}
+
+std::vector<RegistrationRequest> Operation::take_requests() { return std::exchange(parts_->requests, {}); }
+std::vector<JournalEntry> Operation::take_journal() { return std::exchange(parts_->journal, {}); }
+
+OperationStatePtr Operation::state() {
+  Parts& p = *parts_;
+  auto state = std::make_shared<OperationState>();
+  state->revision = ++p.revision;
+  state->bone = p.setup.bone;
+  state->has_source = p.has_source;
+  state->source = p.source;
+  state->frame_count = p.frame_count;
+  state->frame = p.frame;
+  state->draws = p.draws;
+  state->registration = p.registration_state();
+  p.changed = false;
+  state->verification = p.verification();
+  state->control_point_due = p.control_point_due();
+  state->touch_refusal = p.touch_refusal;
+  state->touch_asked_ns = p.touch_asked_ns;
+  state->plan = p.plan;
+  state->plan_was_edited = p.offered.has_value();
+  state->depth_stop_mm = p.depth_stop_mm;
+  state->drilled = p.drilled;
+  state->drilled.has_evidence = p.plan && p.meter.has_evidence();
+  state->next_action = next_action_of(*state);
+  state->step = step_of(state->next_action);
+  return state;
+}
+
+const pipeline::FrameResult& Operation::frame() const { return parts_->frame; }
+const strokes::Curves& Operation::points() const { return parts_->strokes.points(); }
+strokes::Curves Operation::strokes_in_use() const { return parts_->strokes.in_use(); }
+const OperationSetup& Operation::setup() const { return parts_->setup; }
+const OutcomePtr& Operation::outcome() const { return parts_->outcome; }
+
+}  // namespace arthronaut::operation

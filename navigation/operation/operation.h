@@ -1,0 +1,91 @@
+// The operation on one bone: everything between a frame and what may be shown.
+//
+// State and an input (a source, a frame, a command, an outcome of the registration) give the next state and
+// effects. There is no thread, no clock and no file in here: the same inputs in the same order give the same
+// states to the last bit, which is what replay, resuming after a crash and the tests rest on. The window, the
+// command line, the demo and replay run this class and nothing beside it.
+//
+//   Operation operation(setup);
+//   operation.start_source(source);
+//   for each frame:  operation.take_outcome(newest);  operation.apply(command)...;  operation.process(frame);
+//                    work.post(operation.take_requests());  record(operation.take_journal());
+//                    show(operation.state());
+//
+// Strokes, registrations and touches outlive the source: one that ends takes nothing of it away, and another
+// one is judged by what it is of (registration/provenance.h).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "navigation/camera/frame.h"
+#include "navigation/operation/journal_entry.h"
+#include "navigation/operation/operation_state.h"
+#include "navigation/operation/registration_work.h"
+
+namespace arthronaut::operation {
+
+struct OperationSetup {
+  bones::BoneKind bone = bones::BoneKind::Femur;
+  std::string mesh_sha256;                           // of the bone's mesh; empty: not known
+  std::shared_ptr<const geometry::Surface> surface;  // null: touches are not judged
+  std::optional<registration::CartilageRegion> cartilage;
+  std::optional<PlannedTunnel> plan;
+  std::uint64_t seed = 1;
+  TouchLimits limits;
+  // Nobody is at the pedal: while the guide is seen and no registration of all strokes stands, one is asked
+  // for whenever the probe has drawn this much more.
+  std::optional<double> registers_after_mm;
+};
+// What a registration found with this source is of.
+[[nodiscard]] registration::Provenance provenance_of(const OperationSetup& setup, const SourceSetup& source,
+                                                     int placement = 0);
+// What the registration of such an operation works with.
+[[nodiscard]] RegistrationWorkOptions work_options(const OperationSetup& setup);
+
+class Operation {
+ public:
+  explicit Operation(OperationSetup setup);
+  ~Operation();
+  Operation(const Operation&) = delete;
+  Operation& operator=(const Operation&) = delete;
+
+  // From now on frames are of this source. What was found with another camera, probe, medium, marker or kind
+  // of source is void at once; strokes drawn there are set aside. Throws InvalidInput when the options break
+  // their contract (no world marker for the bone, unusable calibration); the state is then as before.
+  void start_source(const SourceSetup& source);
+  // No more frames: nothing of the last one is valid any more. No effect without a source.
+  void end_source();
+  // Frames in order of time. Throws InvalidInput when the frame's size is not the camera's.
+  // Precondition: a source was started.
+  void process(const camera::Frame& frame);
+  // Never throws: what can't be done now changes nothing, or says so in the state.
+  void apply(const Command& command);
+  // The newest one that the registration has published; one that was taken in already changes nothing. Null
+  // is ignored.
+  void take_outcome(const OutcomePtr& outcome);
+
+  // A frame of a record instead of a picture: for resuming and for replay where no picture was kept.
+  // `result` as process() made it.
+  void process_recorded(const pipeline::FrameResult& result);
+
+  // Since the last call, in order.
+  [[nodiscard]] std::vector<RegistrationRequest> take_requests();
+  [[nodiscard]] std::vector<JournalEntry> take_journal();
+
+  // The state as it is now, whole. Never null.
+  [[nodiscard]] OperationStatePtr state();
+  [[nodiscard]] const pipeline::FrameResult& frame() const;  // the newest, without a copy
+  [[nodiscard]] const strokes::Curves& points() const;  // all that was drawn, in the world marker's frame
+  [[nodiscard]] strokes::Curves strokes_in_use() const;
+  [[nodiscard]] const OperationSetup& setup() const;
+  [[nodiscard]] const OutcomePtr& outcome() const;  // the newest that was taken in; null before the first
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace arthronaut::operation

@@ -1,0 +1,140 @@
+// Inner header: the state of an operation and what changes it, for operation.cpp (what comes in) and
+// operation_rules.cpp (what follows from it).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "navigation/operation/operation.h"
+#include "navigation/operation/tunnel_meter.h"
+
+namespace arthronaut::operation {
+
+struct Operation::Parts {
+  explicit Parts(OperationSetup with)
+      : setup(std::move(with)), ledger(setup.surface, setup.cartilage, setup.limits), plan(setup.plan) {}
+
+  void note(JournalEntry entry) {
+    entry.after_frame = frame_count > 0 ? frame.frame_index : -1;
+    entry.timestamp_ns = frame_count > 0 ? frame.timestamp_ns : 0;
+    journal.push_back(std::move(entry));
+    changed = true;
+  }
+  void note(JournalKind kind, std::string text = "") { note(entry_of(kind, std::move(text))); }
+  static JournalEntry entry_of(JournalKind kind, std::string text) {
+    JournalEntry entry;
+    entry.kind = kind;
+    entry.text = std::move(text);
+    return entry;
+  }
+  void ask(RegistrationRequest request) {
+    requests.push_back(std::move(request));
+    ++request_count;
+  }
+
+  void follow_ledger();
+  void note_in_force(bool is_given);
+  void note_plan() {
+    JournalEntry entry = entry_of(JournalKind::Plan, "");
+    entry.plan = plan;
+    note(std::move(entry));
+  }
+  void set_plan(const std::optional<PlannedTunnel>& next);
+  void take_frame();
+  void draw_tip();
+  void watch_marker();
+  void watch_guidance();
+  void look_for_registration();
+  void register_strokes();
+  void strokes_changed() { fit_is_wanted = false; }
+  void clear_strokes();
+  void take_touch(bool is_control_point);
+  [[nodiscard]] std::optional<std::size_t> guide_in_view() const;
+  [[nodiscard]] ControlPointDue control_point_due() const;
+  [[nodiscard]] Verification verification() const;
+  [[nodiscard]] RegistrationStatePtr registration_state();
+
+  void apply(const Draw& draw) { draws = has_source && draw.on; }
+  void apply(const TakeTouch&) { take_touch(false); }
+  void apply(const TouchControlPoint&) { take_touch(true); }
+  void apply(const ForgetTouches&) { ledger.forget_touches(); }
+  void apply(const TakeBackStroke&) {
+    ask(StrokesTakenBack{strokes.take_back()});
+    strokes_changed();
+  }
+  void apply(const ExcludeStroke& exclude) {
+    strokes.exclude(exclude.curve, exclude.is_excluded);
+    ask(StrokeExclusion{exclude.curve, exclude.is_excluded});
+    strokes_changed();
+  }
+  void apply(const ClearStrokes&) {
+    const bool marker_has_moved = static_cast<bool>(ledger.alarm());
+    clear_strokes();
+    if (marker_has_moved) return ledger.marker_placed_anew();
+    ledger.forget_touches();
+  }
+  void apply(const RegisterStrokes&) { register_strokes(); }
+  void apply(const ChooseRegistration& choose) { ledger.choose(choose.entry); }
+  void apply(const OfferPlan& offer);
+  void apply(const TakePlanOver&) {
+    if (offered) set_plan(*std::exchange(offered, std::nullopt));
+  }
+  void apply(const SkipVerification&) { skip_verification("asked for"); }
+  void apply(const MarkerPlacedAnew&) {
+    clear_strokes();
+    ledger.marker_placed_anew();
+  }
+  void apply(const ReadDepthStop& stop) { depth_stop_mm = stop.depth_mm; }
+  void apply(const TunnelDrilled&);
+  void apply(const GiveRegistration& give);
+  void skip_verification(const std::string& how);
+
+  OperationSetup setup;
+  RegistrationLedger ledger;
+  StrokeBook strokes;
+  registration::Provenance strokes_of;  // what the strokes were drawn under
+  std::size_t set_aside_count = 0;
+  SteadyTip tip;
+
+  std::shared_ptr<const SourceSetup> source;
+  std::unique_ptr<pipeline::NavigationPipeline> pipeline;
+  bool has_source = false, draws = false;
+  pipeline::FrameResult frame;
+  std::int64_t frame_count = 0;
+
+  OutcomePtr outcome;  // the newest that was taken in
+  std::shared_ptr<const registration::OnlineResult> online;
+  int fit_number = 0;  // of the newest that was asked for
+  std::uint64_t fit_request = 0;
+  double fit_length_mm = 0;
+  std::size_t fit_points = 0;
+  bool is_fitting = false, fit_is_wanted = false;
+  int frames_since_look = 0;
+
+  std::optional<PlannedTunnel> plan;
+  std::optional<std::optional<PlannedTunnel>> offered;
+  std::optional<std::size_t> skipped_entry;  // of the ledger: it guided without a touch
+  TouchRefusal touch_refusal = TouchRefusal::None;
+  std::int64_t touch_asked_ns = 0;
+  std::int64_t world_seen_ns = 0, control_touched_ns = 0;
+  bool world_was_seen = false, was_lost_for_long = false, guide_was_seen = false;
+  TunnelMeter meter;
+  DrilledState drilled;
+  std::optional<double> depth_stop_mm;
+
+  std::uint64_t followed_change = 0;
+  Standing followed_standing = Standing::None;
+  bool followed_verified = false;
+  std::vector<RegistrationRequest> requests;
+  std::uint64_t request_count = 0;
+  std::vector<JournalEntry> journal;
+
+  bool changed = true;  // something but the frame, since the last snapshot
+  RegistrationStatePtr published_registration;
+  std::uint64_t revision = 0;
+};
+
+}  // namespace arthronaut::operation

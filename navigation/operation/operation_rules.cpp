@@ -1,0 +1,242 @@
+#include "navigation/operation/operation_parts.h"
+
+namespace arthronaut::operation {
+
+namespace {
+
+// Looking twice a second whether something new was drawn is enough.
+constexpr int kFramesBetweenLooks = 30;
+// A marker that was out of sight for so long may have been hit meanwhile.
+constexpr std::int64_t kLongLoss_ns = 30'000'000'000;
+// A control point that was touched so lately need not be touched again before drilling.
+constexpr std::int64_t kControlHolds_ns = 300'000'000'000;
+
+double length_mm(const strokes::Curves& curves) {
+  double sum_mm = 0;
+  for (std::size_t i = 1; i < curves.size(); ++i)
+    if (curves[i].curve == curves[i - 1].curve)
+      sum_mm += (curves[i].position_mm - curves[i - 1].position_mm).norm();
+  return sum_mm;
+}
+
+bool is_same(const std::optional<PlannedTunnel>& a, const std::optional<PlannedTunnel>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return a->tunnel.bone == b->tunnel.bone && a->tunnel.entry_mm == b->tunnel.entry_mm &&
+         a->tunnel.direction == b->tunnel.direction && a->tunnel.diameter_mm == b->tunnel.diameter_mm &&
+         a->length_mm == b->length_mm;
+}
+
+}  // namespace
+
+void Operation::Parts::note_in_force(bool is_given) {
+  JournalEntry entry;
+  entry.kind = JournalKind::RegistrationInForce;
+  entry.registration = ledger.in_force().registration;
+  if (ledger.entry_in_force()) entry.of = (*ledger.entries())[*ledger.entry_in_force()].of;
+  entry.registration_was_given = is_given;
+  note(std::move(entry));
+}
+
+// What is in force guides from the next frame on; what is not any more does not guide in it.
+void Operation::Parts::follow_ledger() {
+  const RegistrationInForce& in_force = ledger.in_force();
+  if (ledger.change_count() != followed_change) {
+    followed_change = ledger.change_count();
+    if (pipeline != nullptr)
+      pipeline->set_registration(in_force.registration != nullptr ? std::optional(*in_force.registration)
+                                                                  : std::nullopt);
+    if (in_force.registration != nullptr) {
+      const RegistrationOrigin origin = (*ledger.entries())[*ledger.entry_in_force()].origin;
+      note_in_force(origin == RegistrationOrigin::Given || origin == RegistrationOrigin::Resumed);
+    }
+  }
+  if (in_force.standing != followed_standing) {
+    const std::string why = in_force.registration != nullptr && !in_force.registration->reasons.empty()
+                                ? in_force.registration->reasons.front()
+                                : "";
+    if (followed_standing == Standing::Alarm) note(JournalKind::Alarm);
+    if (in_force.standing == Standing::Alarm) note(JournalKind::Alarm, why);
+    if (in_force.standing == Standing::Void) note(JournalKind::Void, why);
+    if (followed_standing == Standing::Void && in_force.standing == Standing::Stands)
+      note(JournalKind::Confirmed, "by a touch");
+    followed_standing = in_force.standing;
+  }
+  if (in_force.is_verified && !followed_verified) note(JournalKind::Verified);
+  followed_verified = in_force.is_verified;
+  changed = true;
+}
+
+void Operation::Parts::set_plan(const std::optional<PlannedTunnel>& next) {
+  plan = next;
+  meter = {};  // what was seen of the guide was relative to another plan
+  if (pipeline != nullptr)
+    pipeline->set_plan(plan ? std::optional(plan->tunnel) : std::nullopt, plan ? plan->length_mm : 0);
+  note_plan();
+}
+
+std::optional<std::size_t> Operation::Parts::guide_in_view() const {
+  const pipeline::PipelineOptions& options = source->pipeline;
+  const tools::Tool* guide = options.tools.find_tool(options.guide_name);
+  for (std::size_t i = 0; guide != nullptr && i < frame.tools.size(); ++i)
+    if (frame.tools[i].marker_id == guide->marker_id && frame.tools[i].world_from_tool.is_valid) return i;
+  return std::nullopt;
+}
+
+void Operation::Parts::take_frame() {
+  ++frame_count;
+  const double time_s = static_cast<double>(frame.timestamp_ns) * 1e-9;
+  tip.add(time_s, frame.tip_is_valid ? std::optional(frame.tip_in_world_mm) : std::nullopt);
+  draw_tip();
+  watch_marker();
+  watch_guidance();
+  look_for_registration();
+}
+
+void Operation::Parts::draw_tip() {
+  if (!draws || !frame.tip_is_valid) return;
+  if (strokes.points().empty()) strokes_of = ledger.now();
+  const double time_s = static_cast<double>(frame.timestamp_ns) * 1e-9;
+  ask(DrawnPoint{strokes.add(time_s, frame.tip_in_world_mm, frame.shaft_in_world)});
+}
+
+void Operation::Parts::watch_marker() {
+  if (frame.camera_from_world.is_valid) {
+    if (world_was_seen && frame.timestamp_ns - world_seen_ns > kLongLoss_ns)
+      was_lost_for_long = changed = true;
+    world_was_seen = true;
+    world_seen_ns = frame.timestamp_ns;
+  }
+}
+
+void Operation::Parts::watch_guidance() {
+  const bool guide_is_seen = guide_in_view().has_value();
+  if (guide_is_seen && !guide_was_seen) changed = true;
+  guide_was_seen = guide_was_seen || guide_is_seen;
+  if (!frame.guidance.is_valid()) return;
+  meter.add(frame.guidance);
+  if (verification() == Verification::NotYet) skip_verification("guidance began without one");
+}
+
+void Operation::Parts::skip_verification(const std::string& how) {
+  if (verification() != Verification::NotYet || !ledger.entry_in_force()) return;
+  skipped_entry = ledger.entry_in_force();
+  note(JournalKind::VerificationSkipped, how);
+}
+
+Verification Operation::Parts::verification() const {
+  if (ledger.in_force().is_verified) return Verification::ByTouches;
+  return ledger.entry_in_force() && skipped_entry == ledger.entry_in_force() ? Verification::Skipped
+                                                                             : Verification::NotYet;
+}
+
+void Operation::Parts::look_for_registration() {
+  if (!setup.registers_after_mm || !plan || !guide_in_view() || ++frames_since_look < kFramesBetweenLooks)
+    return;
+  frames_since_look = 0;
+  const std::optional<std::size_t> entry = ledger.entry_in_force();
+  const bool is_settled = entry && (*ledger.entries())[*entry].origin != RegistrationOrigin::WhileDrawing &&
+                          ledger.in_force().standing == Standing::Stands;
+  if (is_settled || length_mm(strokes.in_use()) < fit_length_mm + *setup.registers_after_mm) return;
+  register_strokes();
+}
+
+void Operation::Parts::register_strokes() {
+  if (is_fitting) return;
+  auto curves = std::make_shared<const strokes::Curves>(strokes.in_use());
+  if (curves->empty()) return;
+  fit_length_mm = length_mm(*curves);
+  fit_points = curves->size();
+  is_fitting = fit_is_wanted = true;
+  ask(FitAll{++fit_number, std::move(curves)});
+  fit_request = request_count;
+  changed = true;
+}
+
+void Operation::Parts::clear_strokes() {
+  strokes.clear();
+  ask(StrokesCleared{});
+  strokes_changed();
+  online.reset();
+  fit_length_mm = 0;
+  ledger.forget_strokes();
+}
+
+void Operation::Parts::take_touch(bool is_control_point) {
+  draws = false;
+  touch_asked_ns = frame.timestamp_ns;
+  const auto tip_mm = tip.position_mm();
+  if (!has_source || !tip_mm) {
+    touch_refusal = !has_source                                      ? TouchRefusal::NoSource
+                    : tip.why_not() == SteadyTip::Reason::TipUnknown ? TouchRefusal::TipUnknown
+                                                                     : TouchRefusal::TipMoves;
+    return;
+  }
+  touch_refusal = TouchRefusal::None;
+  if (!is_control_point) return ledger.add_touch(*tip_mm);
+  control_touched_ns = frame.timestamp_ns;
+  was_lost_for_long = false;
+  ledger.touch_control_point(*tip_mm);
+}
+
+void Operation::Parts::apply(const OfferPlan& offer) {
+  offered.reset();
+  if (is_same(offer.plan, plan)) return;
+  if (has_source)
+    offered = offer.plan;
+  else
+    set_plan(offer.plan);
+}
+
+void Operation::Parts::apply(const TunnelDrilled&) {
+  drilled.outcome = DrilledState::Outcome::NoEvidence;
+  if (!plan) return;
+  drilled.tunnel = meter.measured(plan->tunnel);
+  if (!drilled.tunnel) return;
+  drilled.outcome = DrilledState::Outcome::Recorded;
+  if (depth_stop_mm) drilled.tunnel->depth_mm = *depth_stop_mm;
+  JournalEntry entry = entry_of(JournalKind::Drilled, "");
+  entry.achieved = drilled.tunnel;
+  note(std::move(entry));
+}
+
+void Operation::Parts::apply(const GiveRegistration& give) {
+  registration::Provenance of = give.of;
+  // Nobody saw the marker meanwhile: one touch has to show that it sits where it sat.
+  if (give.is_resumed) of.placement = ledger.now().placement - 1;
+  ledger.give(give.is_resumed ? RegistrationOrigin::Resumed : RegistrationOrigin::Given,
+              std::make_shared<const registration::RegistrationSummary>(give.registration), of);
+}
+
+ControlPointDue Operation::Parts::control_point_due() const {
+  if (!has_source || ledger.in_force().standing != Standing::Stands) return ControlPointDue::None;
+  if (!ledger.touches().has_control_point()) return ControlPointDue::Set;
+  if (was_lost_for_long) return ControlPointDue::CheckAfterLoss;
+  return guide_was_seen && frame.timestamp_ns - control_touched_ns > kControlHolds_ns
+             ? ControlPointDue::CheckBeforeDrilling
+             : ControlPointDue::None;
+}
+
+RegistrationStatePtr Operation::Parts::registration_state() {
+  if (!changed && published_registration != nullptr && published_registration->drawn == strokes.trace())
+    return published_registration;
+  auto state = std::make_shared<RegistrationState>();
+  state->drawn = strokes.trace();
+  state->point_count = strokes.points().size();
+  state->excluded = strokes.excluded();
+  state->online = online;
+  state->in_force = ledger.in_force();
+  state->change_count = ledger.change_count();
+  state->history = ledger.entries();
+  state->entry_in_force = ledger.entry_in_force();
+  state->is_chosen = ledger.is_chosen();
+  state->alarm = ledger.alarm();
+  state->touches = ledger.touches();
+  state->bone_is_ready = outcome != nullptr && outcome->bone_is_ready;
+  state->is_fitting = is_fitting;
+  if (outcome != nullptr) state->bone_trouble = outcome->failure;
+  state->set_aside_count = set_aside_count;
+  published_registration = std::move(state);
+  return published_registration;
+}
+
+}  // namespace arthronaut::operation

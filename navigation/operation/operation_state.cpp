@@ -1,0 +1,195 @@
+#include "navigation/operation/operation_state.h"
+
+#include <span>
+
+namespace arthronaut::operation {
+
+namespace {
+
+// So many points are a few strokes: worth asking whether they are enough.
+constexpr std::size_t kEnoughPoints = 150;
+
+// 64-bit FNV-1a.
+class Digest {
+ public:
+  template <typename Value>
+  void add(const Value& value) {
+    static_assert(std::is_arithmetic_v<Value> || std::is_enum_v<Value>, "no padding may be hashed");
+    for (const std::byte byte : std::as_bytes(std::span(&value, 1))) {
+      hash_ ^= static_cast<std::uint64_t>(byte);
+      hash_ *= 0x100000001B3U;
+    }
+  }
+  template <typename Derived>
+  void add_matrix(const Eigen::MatrixBase<Derived>& matrix) {
+    for (Eigen::Index i = 0; i < matrix.size(); ++i)
+      add(static_cast<double>(matrix.derived().coeff(i / matrix.cols(), i % matrix.cols())));
+  }
+  void add(const geometry::RigidTransform& transform) {
+    add_matrix(transform.rotation.coeffs());
+    add_matrix(transform.translation_mm);
+  }
+  void add(const geometry::TrackedPose& pose) {
+    add(pose.is_valid);
+    if (!pose.is_valid) return;
+    add(pose.target_from_source);
+    add_matrix(pose.covariance);
+  }
+  [[nodiscard]] std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xCBF29CE484222325U;
+};
+
+void add_guidance(Digest& digest, const guidance::GuidanceNumbers& g) {
+  digest.add(g.state);
+  if (!g.is_valid()) return;
+  digest.add_matrix(g.guide_point_mm);
+  digest.add_matrix(g.guide_direction);
+  for (const double number : {g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg, g.offset_anterior_mm,
+                              g.offset_proximal_mm, g.depth_mm, g.sigma_offset_mm, g.sigma_angle_deg})
+    digest.add(number);
+}
+
+void add_frame(Digest& digest, const pipeline::FrameResult& frame) {
+  digest.add(frame.frame_index);
+  digest.add(frame.timestamp_ns);
+  digest.add(frame.intrinsics_are_known);
+  digest.add(frame.is_frozen);
+  for (const markers::MarkerObservation& marker : frame.markers) digest.add(marker.state);
+  digest.add(frame.camera_from_world);
+  for (const pipeline::ToolPose& tool : frame.tools) digest.add(tool.world_from_tool);
+  digest.add(frame.tip_is_valid);
+  if (frame.tip_is_valid) digest.add_matrix(frame.tip_in_world_mm);
+  add_guidance(digest, frame.guidance);
+}
+
+void add_registration(Digest& digest, const RegistrationState& state) {
+  digest.add(state.point_count);
+  digest.add(state.excluded.size());
+  digest.add(state.in_force.standing);
+  digest.add(state.in_force.is_verified);
+  digest.add(state.change_count);
+  digest.add(state.history->size());
+  if (const auto& r = state.in_force.registration; r != nullptr && r->has_pose) {
+    digest.add(r->marker_from_bone);
+    digest.add_matrix(r->covariance);
+    digest.add(r->reliable);
+    digest.add(r->predicted_tre_mm);
+  }
+  digest.add(state.alarm.kind);
+  digest.add(state.touches.count());
+  for (const auto& residual_mm : state.touches.residuals_mm()) digest.add(residual_mm.value_or(-1));
+  if (state.online != nullptr) {
+    digest.add(state.online->revision);
+    digest.add(state.online->state);
+    digest.add(state.online->length_mm);
+  }
+}
+
+NextAction action_without_registration(const OperationState& state) {
+  const RegistrationState& registration = *state.registration;
+  if (registration.is_fitting) return NextAction::WaitForRegistration;
+  if (state.frame_count > 0 && !state.frame.camera_from_world.is_valid) return NextAction::ShowWorldMarker;
+  if (state.draws) return NextAction::GoOnDrawing;
+  if (registration.in_force.standing == Standing::Void) return NextAction::RegisterAnew;
+  return registration.point_count >= kEnoughPoints ? NextAction::RegisterStrokes : NextAction::Draw;
+}
+
+}  // namespace
+
+std::string_view to_text(Step step) {
+  constexpr std::string_view kNames[] = {"plan",     "calibrate", "world marker", "tools", "digitise",
+                                         "register", "verify",    "guide",        "finish"};
+  return kNames[static_cast<std::size_t>(step)];
+}
+
+std::string_view to_text(NextAction action) {
+  constexpr std::string_view kNames[] = {"plan tunnel",           "start source",
+                                         "show world marker",     "draw",
+                                         "go on drawing",         "register strokes",
+                                         "wait for registration", "check world marker",
+                                         "confirm by touch",      "register anew",
+                                         "take plan over",        "verify by touch",
+                                         "set control point",     "check control point",
+                                         "bring guide",           "follow bullseye",
+                                         "record drilled",        "finish"};
+  return kNames[static_cast<std::size_t>(action)];
+}
+
+NextAction next_action_of(const OperationState& state) {
+  const RegistrationState& registration = *state.registration;
+  const RegistrationInForce& in_force = registration.in_force;
+  if (!state.plan) return NextAction::PlanTunnel;
+  if (state.drilled.outcome == DrilledState::Outcome::Recorded) return NextAction::Finish;
+  if (registration.alarm) return NextAction::CheckWorldMarker;
+  if (!state.has_source) {
+    const bool may_register =
+        in_force.standing != Standing::Stands && registration.point_count >= kEnoughPoints;
+    if (registration.is_fitting) return NextAction::WaitForRegistration;
+    return may_register ? NextAction::RegisterStrokes : NextAction::StartSource;
+  }
+  if (state.plan_was_edited) return NextAction::TakePlanOver;
+  if (in_force.standing == Standing::Void && in_force.can_be_confirmed && !state.draws)
+    return NextAction::ConfirmByTouch;
+  if (in_force.standing != Standing::Stands) return action_without_registration(state);
+  const bool guides = state.frame.guidance.is_valid();
+  if (state.verification == Verification::NotYet && !guides) return NextAction::VerifyByTouch;
+  if (state.control_point_due == ControlPointDue::Set && !guides) return NextAction::SetControlPoint;
+  if (state.control_point_due > ControlPointDue::Set) return NextAction::CheckControlPoint;
+  if (state.drilled.has_evidence) return NextAction::RecordDrilled;
+  return guides ? NextAction::FollowBullseye : NextAction::BringGuide;
+}
+
+Step step_of(NextAction action) {
+  switch (action) {
+    case NextAction::PlanTunnel:
+    case NextAction::TakePlanOver:
+      return Step::Plan;
+    case NextAction::StartSource:
+    case NextAction::ShowWorldMarker:
+      return Step::WorldMarker;
+    case NextAction::Draw:
+    case NextAction::GoOnDrawing:
+      return Step::Digitise;
+    case NextAction::RegisterStrokes:
+    case NextAction::WaitForRegistration:
+    case NextAction::RegisterAnew:
+      return Step::Register;
+    case NextAction::CheckWorldMarker:
+    case NextAction::ConfirmByTouch:
+    case NextAction::VerifyByTouch:
+    case NextAction::SetControlPoint:
+    case NextAction::CheckControlPoint:
+      return Step::Verify;
+    case NextAction::BringGuide:
+    case NextAction::FollowBullseye:
+      return Step::Guide;
+    case NextAction::RecordDrilled:
+    case NextAction::Finish:
+      return Step::Finish;
+  }
+  return Step::Plan;
+}
+
+std::uint64_t digest_of_frame(const OperationState& state) {
+  Digest digest;
+  if (state.frame_count > 0) add_frame(digest, state.frame);
+  return digest.value();
+}
+
+std::uint64_t digest_of_decisions(const OperationState& state) {
+  Digest digest;
+  add_registration(digest, *state.registration);
+  digest.add(state.draws);
+  digest.add(state.verification);
+  digest.add(state.control_point_due);
+  digest.add(state.touch_refusal);
+  digest.add(state.plan.has_value());
+  digest.add(state.plan_was_edited);
+  digest.add(state.drilled.outcome);
+  digest.add(state.next_action);
+  return digest.value();
+}
+
+}  // namespace arthronaut::operation

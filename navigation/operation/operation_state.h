@@ -1,0 +1,129 @@
+// Everything that is known of an operation at one moment: what screen, record and report read. A snapshot is
+// immutable and whole; verdicts are enums and numbers, and whoever shows them makes the words.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "navigation/operation/achieved_tunnel.h"
+#include "navigation/operation/command.h"
+#include "navigation/operation/registration_ledger.h"
+#include "navigation/operation/stroke_book.h"
+#include "navigation/pipeline/navigation_pipeline.h"
+
+namespace arthronaut::operation {
+
+// Where the pictures come from. A value: to start a source is to hand this over.
+struct SourceSetup {
+  sources::SourceKind kind = sources::SourceKind::Simulation;
+  std::string title;        // "Simulated operation: probe"
+  std::string calibration;  // camera and tools in words: "camera of 2026-11-21, 1 of 4 tools calibrated"
+  pipeline::PipelineOptions pipeline;
+  bool draws = true;  // the probe draws from the first frame, unless something reliable guides already
+};
+
+// What is known of where the bone lies.
+struct RegistrationState {
+  TracePtr drawn = std::make_shared<const strokes::Curves>();  // for the screen, never null
+  std::size_t point_count = 0;                                 // that were drawn
+  std::set<int> excluded;                                      // strokes that are not used
+  // Null until the bone is ready and what was drawn by then is judged.
+  std::shared_ptr<const registration::OnlineResult> online;
+  RegistrationInForce in_force;
+  std::uint64_t change_count = 0;  // of in_force.registration
+  std::shared_ptr<const std::vector<RegistrationEntry>> history =
+      std::make_shared<const std::vector<RegistrationEntry>>();  // never null
+  std::optional<std::size_t> entry_in_force;
+  bool is_chosen = false;  // by the surgeon: newer ones wait
+  TouchAlarm alarm;
+  Touches touches;
+  bool bone_is_ready = false;
+  bool is_fitting = false;   // a registration of all strokes was asked for and is not there yet
+  std::string bone_trouble;  // why nothing can be registered to this bone; empty else
+  // Strokes that were set aside because the pictures are of something else now.
+  std::size_t set_aside_count = 0;
+};
+using RegistrationStatePtr = std::shared_ptr<const RegistrationState>;
+
+// Why a touch that was asked for was not taken.
+enum class TouchRefusal { None, NoSource, TipUnknown, TipMoves };
+
+// Whether a touch on the bone has shown that the registration holds, before it guides.
+enum class Verification { NotYet, ByTouches, Skipped };
+
+// What the control point is wanted for.
+enum class ControlPointDue { None, Set, CheckBeforeDrilling, CheckAfterLoss };
+
+// The nine steps of an operation.
+enum class Step { Plan, Calibrate, WorldMarker, Tools, Digitise, Register, Verify, Guide, Finish };
+[[nodiscard]] std::string_view to_text(Step step);
+
+// The next sensible thing to do. A pedal carries out what is a command; the rest is told.
+enum class NextAction {
+  PlanTunnel,
+  StartSource,
+  ShowWorldMarker,
+  Draw,             // the probe is to draw, and does not
+  GoOnDrawing,      // strokes are missing: the coach says which
+  RegisterStrokes,  // what was drawn may be enough
+  WaitForRegistration,
+  CheckWorldMarker,  // an alarm says that it may have moved
+  ConfirmByTouch,    // what guides is void until one touch confirms it
+  RegisterAnew,      // what guides is void for good
+  TakePlanOver,
+  VerifyByTouch,
+  SetControlPoint,
+  CheckControlPoint,
+  BringGuide,
+  FollowBullseye,
+  RecordDrilled,
+  Finish,
+};
+[[nodiscard]] std::string_view to_text(NextAction action);
+
+// The tunnel as drilled, or why it is not known.
+struct DrilledState {
+  enum class Outcome { NotSaid, Recorded, NoEvidence } outcome = Outcome::NotSaid;
+  bool has_evidence = false;  // the guide was seen where it must be while a tunnel is drilled
+  std::optional<AchievedTunnel> tunnel;
+};
+
+struct OperationState {
+  std::uint64_t revision = 0;  // grows with every snapshot
+  bones::BoneKind bone = bones::BoneKind::Femur;
+  bool has_source = false;
+  // Of the source that runs, or ran last; null before the first.
+  std::shared_ptr<const SourceSetup> source;
+  std::int64_t frame_count = 0;  // of this source
+  // The newest picture and everything known about it; meaningful when frame_count > 0.
+  pipeline::FrameResult frame;
+  bool draws = false;
+  RegistrationStatePtr registration = std::make_shared<const RegistrationState>();  // never null
+  Verification verification = Verification::NotYet;
+  ControlPointDue control_point_due = ControlPointDue::None;
+  TouchRefusal touch_refusal = TouchRefusal::None;  // of the last touch that was asked for
+  std::int64_t touch_asked_ns = 0;                  // in the source's time
+  std::optional<PlannedTunnel> plan;                // in force
+  bool plan_was_edited = false;                     // another one is offered and not taken over
+  std::optional<double> depth_stop_mm;
+  DrilledState drilled;
+  Step step = Step::Plan;
+  NextAction next_action = NextAction::PlanTunnel;
+};
+using OperationStatePtr = std::shared_ptr<const OperationState>;
+
+// Which step an operation has come to, and what is to be done next; pure, from the rest of the state.
+[[nodiscard]] NextAction next_action_of(const OperationState& state);
+[[nodiscard]] Step step_of(NextAction action);
+
+// Numbers over everything in the state that a screen may show or a record keeps: two runs with the same
+// numbers did the same. The first to the last bit of every pose and covariance of the frame; the second of
+// everything else: registration, touches, alarms, plan, steps. 64-bit FNV-1a over the binary values.
+[[nodiscard]] std::uint64_t digest_of_frame(const OperationState& state);
+[[nodiscard]] std::uint64_t digest_of_decisions(const OperationState& state);
+
+}  // namespace arthronaut::operation

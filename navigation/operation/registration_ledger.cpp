@@ -1,0 +1,218 @@
+#include "navigation/operation/registration_ledger.h"
+
+namespace arthronaut::operation {
+
+namespace {
+
+constexpr double kClearlyBetter = 0.9;
+// Below it a fit that is not reliable says more about the strokes than about the bone.
+constexpr double kTellingLength_mm = 100;
+
+RegistrationPtr doubted(const registration::RegistrationSummary& found, std::vector<std::string> reasons) {
+  auto summary = std::make_shared<registration::RegistrationSummary>(found);
+  summary->reliable = false;
+  summary->reasons = std::move(reasons);
+  return summary;
+}
+
+bool is_same(const RegistrationPtr& a, const RegistrationPtr& b) {
+  if (a == b) return true;
+  return a != nullptr && b != nullptr && a->reliable == b->reliable && a->reasons == b->reasons &&
+         a->marker_from_bone.translation_mm == b->marker_from_bone.translation_mm &&
+         a->marker_from_bone.rotation.coeffs() == b->marker_from_bone.rotation.coeffs();
+}
+
+}  // namespace
+
+std::string_view to_text(RegistrationOrigin origin) {
+  switch (origin) {
+    case RegistrationOrigin::WhileDrawing:
+      return "while drawing";
+    case RegistrationOrigin::AllStrokes:
+      return "all strokes";
+    case RegistrationOrigin::Given:
+      return "given";
+    case RegistrationOrigin::Resumed:
+      return "resumed";
+  }
+  return "unknown";
+}
+
+std::string_view to_text(Standing standing) {
+  switch (standing) {
+    case Standing::None:
+      return "none";
+    case Standing::Stands:
+      return "stands";
+    case Standing::NotReliable:
+      return "not reliable";
+    case Standing::Void:
+      return "void";
+    case Standing::Alarm:
+      return "alarm";
+    case Standing::InDoubt:
+      return "in doubt";
+  }
+  return "unknown";
+}
+
+RegistrationLedger::RegistrationLedger(std::shared_ptr<const geometry::Surface> surface,
+                                       std::optional<registration::CartilageRegion> cartilage,
+                                       const TouchLimits& limits)
+    : surface_(std::move(surface)), cartilage_(std::move(cartilage)), touches_(limits) {}
+
+void RegistrationLedger::set_now(const registration::Provenance& now) {
+  const bool is_same_world = now.bone == now_.bone && (now.source == sources::SourceKind::Simulation) ==
+                                                          (now_.source == sources::SourceKind::Simulation);
+  now_ = now;
+  // A control point of a simulated bone says nothing about a real one.
+  if (!is_same_world) touches_.clear();
+  judge();
+}
+
+void RegistrationLedger::take_online(const std::shared_ptr<const registration::OnlineResult>& online,
+                                     std::uint64_t request_count) {
+  const registration::RegistrationSummary& found = online->registration;
+  const bool is_confirmed =
+      online->state >= registration::OnlineState::Confirmed && found.reliable && !online->bone_is_in_doubt;
+  if (online->bone_is_in_doubt && request_count > fitted_after_ && entry_in_force_) {
+    doubt_ = found.reasons.empty() ? std::vector<std::string>{"the strokes bring the bone in doubt"}
+                                   : found.reasons;
+    best_tre_mm_ = std::numeric_limits<double>::infinity();
+    judge();
+  }
+  if (!is_confirmed) return;
+  if (doubt_) {
+    doubt_.reset();
+    is_chosen_ = false;  // what was chosen is what was doubted
+  }
+  if (found.predicted_tre_mm >= kClearlyBetter * best_tre_mm_) return judge();
+  best_tre_mm_ = found.predicted_tre_mm;
+  add({RegistrationOrigin::WhileDrawing, std::make_shared<const registration::RegistrationSummary>(found),
+       now_});
+}
+
+void RegistrationLedger::take_fit(const RegistrationPtr& fit, std::uint64_t request_count, double length_mm) {
+  const bool is_given = entry_in_force_ && (*entries_)[*entry_in_force_].origin == RegistrationOrigin::Given;
+  if (!fit->reliable && is_given && in_force_.standing == Standing::Stands && length_mm < kTellingLength_mm)
+    return;
+  is_chosen_ = false;  // it was asked for just now
+  fitted_after_ = request_count;
+  if (fit->reliable) doubt_.reset();
+  best_tre_mm_ = fit->reliable ? fit->predicted_tre_mm : std::numeric_limits<double>::infinity();
+  add({RegistrationOrigin::AllStrokes, fit, now_});
+}
+
+void RegistrationLedger::give(RegistrationOrigin origin, const RegistrationPtr& registration,
+                              const registration::Provenance& of) {
+  is_chosen_ = false;
+  add({origin, registration, of});
+}
+
+void RegistrationLedger::choose(std::size_t entry) {
+  if (entry >= entries_->size() || entry == entry_in_force_ || (*entries_)[entry].marker_has_moved) return;
+  entry_in_force_ = entry;
+  is_chosen_ = entry + 1 < entries_->size();
+  judge();
+}
+
+void RegistrationLedger::add_touch(const Eigen::Vector3d& tip_in_marker_mm) {
+  touches_.add_touch(tip_in_marker_mm, now_);
+  judge();
+  if (in_force_.standing == Standing::Void && in_force_.can_be_confirmed && touches_.last_confirms()) {
+    change_entry(*entry_in_force_, [this](RegistrationEntry& entry) { entry.of = now_; });
+    judge();
+  }
+}
+
+void RegistrationLedger::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
+  touches_.touch_control_point(tip_in_marker_mm);
+  judge();
+}
+
+void RegistrationLedger::forget_touches() {
+  touches_.clear();
+  judge();
+}
+
+void RegistrationLedger::forget_strokes() {
+  best_tre_mm_ = std::numeric_limits<double>::infinity();
+  is_chosen_ = false;
+  judge();
+}
+
+void RegistrationLedger::marker_placed_anew() {
+  for (std::size_t i = 0; i < entries_->size(); ++i)
+    change_entry(i, [](RegistrationEntry& entry) { entry.marker_has_moved = true; });
+  entry_in_force_.reset();
+  doubt_.reset();
+  ++now_.placement;
+  touches_.clear();
+  forget_strokes();
+}
+
+void RegistrationLedger::add(RegistrationEntry entry) {
+  auto entries = std::make_shared<std::vector<RegistrationEntry>>(*entries_);
+  entries->push_back(std::move(entry));
+  entries_ = std::move(entries);
+  if (!is_chosen_) entry_in_force_ = entries_->size() - 1;
+  judge();
+}
+
+void RegistrationLedger::change_entry(std::size_t entry,
+                                      const std::function<void(RegistrationEntry&)>& change) {
+  auto entries = std::make_shared<std::vector<RegistrationEntry>>(*entries_);
+  change((*entries)[entry]);
+  entries_ = std::move(entries);
+}
+
+RegistrationInForce RegistrationLedger::judged() const {
+  RegistrationInForce judged;
+  if (!entry_in_force_) return judged;
+  const RegistrationEntry& entry = (*entries_)[*entry_in_force_];
+  judged.registration = entry.registration;
+  judged.mismatch = registration::mismatch_of(entry.of, now_);
+  if (judged.mismatch) {
+    judged.standing = Standing::Void;
+    judged.can_be_confirmed = registration::can_be_confirmed(entry.of, now_);
+    judged.registration =
+        doubted(*entry.registration, {registration::in_words(*judged.mismatch, entry.of, now_)});
+    return judged;
+  }
+  if (!entry.registration->has_pose || !entry.registration->reliable) {
+    judged.standing = Standing::NotReliable;
+    return judged;
+  }
+  if (const TouchAlarm alarm = touches_.alarm()) {
+    judged.standing = Standing::Alarm;
+    judged.registration = doubted(*entry.registration, {in_words(alarm)});
+    return judged;
+  }
+  if (doubt_) {
+    judged.standing = Standing::InDoubt;
+    judged.registration = doubted(*entry.registration, *doubt_);
+    return judged;
+  }
+  judged.standing = Standing::Stands;
+  judged.is_verified = entry.is_verified;
+  return judged;
+}
+
+// Distances of the touches first, the alarm with them, and then what is in force.
+void RegistrationLedger::judge() {
+  const RegistrationEntry* entry = entry_in_force_ ? &(*entries_)[*entry_in_force_] : nullptr;
+  touches_.judge(entry != nullptr ? entry->registration.get() : nullptr, surface_.get(), cartilage_, now_);
+  RegistrationInForce next = judged();
+  if (next.standing == Standing::Stands && !next.is_verified && touches_.verify()) {
+    change_entry(*entry_in_force_, [](RegistrationEntry& verified) { verified.is_verified = true; });
+    next.is_verified = true;
+  }
+  // The same verdict keeps its object: who follows it compares pointers.
+  if (is_same(next.registration, in_force_.registration))
+    next.registration = in_force_.registration;
+  else
+    ++change_count_;
+  in_force_ = std::move(next);
+}
+
+}  // namespace arthronaut::operation

@@ -1,0 +1,114 @@
+// Which registration guides, and whether it may: the ledger of all that were found, given or resumed, each
+// with what it is of; the rules by which one takes effect; and everything that takes it out of effect again.
+//
+// A registration takes effect by itself the moment it is confirmed, and again when it has become clearly
+// better (its predicted error a tenth smaller), unless the surgeon went back to an earlier one: a choice
+// stands until the newest is chosen again. What may not guide, whoever chose it:
+//   void      it is of another mesh, bone, marker, placement, camera, probe, medium or kind of source
+//   alarm     touches lie off the bone, or the control point has wandered
+//   doubt     strokes drawn since miss the surface, or fit its mirror image as well; until confirmed anew
+// Thread-free, deterministic.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "navigation/operation/registration_work.h"
+#include "navigation/operation/touches.h"
+
+namespace arthronaut::operation {
+
+enum class RegistrationOrigin { WhileDrawing, AllStrokes, Given, Resumed };
+[[nodiscard]] std::string_view to_text(RegistrationOrigin origin);
+
+struct RegistrationEntry {
+  RegistrationOrigin origin = RegistrationOrigin::WhileDrawing;
+  RegistrationPtr registration;  // as it was found
+  registration::Provenance of;
+  bool is_verified = false;       // by touches
+  bool marker_has_moved = false;  // since: it can't be taken again
+};
+
+enum class Standing { None, Stands, NotReliable, Void, Alarm, InDoubt };
+[[nodiscard]] std::string_view to_text(Standing standing);
+
+// What is in force and how it stands.
+struct RegistrationInForce {
+  Standing standing = Standing::None;
+  // As guidance takes it: reliable only while it stands, its reasons say why not. Null with None.
+  RegistrationPtr registration;
+  std::optional<registration::Mismatch> mismatch;  // with Void
+  bool can_be_confirmed = false;                   // with Void: by one touch on the bone
+  bool is_verified = false;
+};
+
+class RegistrationLedger {
+ public:
+  RegistrationLedger(std::shared_ptr<const geometry::Surface> surface,
+                     std::optional<registration::CartilageRegion> cartilage, const TouchLimits& limits);
+
+  // What the pictures are of from now on. Whatever is in force is judged by it at once.
+  void set_now(const registration::Provenance& now);
+  [[nodiscard]] const registration::Provenance& now() const { return now_; }
+
+  // Found while the probe draws; `request_count` as in RegistrationOutcome. What was found with strokes that
+  // are gone since must not be handed in.
+  void take_online(const std::shared_ptr<const registration::OnlineResult>& online,
+                   std::uint64_t request_count);
+  // Of all strokes, asked for with the request of that count; length of the strokes that it was fitted to. It
+  // takes effect even when it is not reliable, unless a reliable one was given from elsewhere and too little
+  // was drawn to say anything against that.
+  void take_fit(const RegistrationPtr& fit, std::uint64_t request_count, double length_mm);
+  // From a file, or from before a crash: guides as far as `of` allows.
+  void give(RegistrationOrigin origin, const RegistrationPtr& registration,
+            const registration::Provenance& of);
+  // Makes another entry the one in force; nothing happens when there is none, or the marker has moved since.
+  void choose(std::size_t entry);
+
+  // A touch verifies, tells an alarm, or confirms what is void.
+  void add_touch(const Eigen::Vector3d& tip_in_marker_mm);
+  void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm);
+  // The touches were wrong and not the marker: takes an alarm away.
+  void forget_touches();
+  // What was drawn is gone: the next registration has to earn its place anew. Touches stay.
+  void forget_strokes();
+  // The world marker sits elsewhere: nothing found before holds, for good.
+  void marker_placed_anew();
+
+  [[nodiscard]] const RegistrationInForce& in_force() const { return in_force_; }
+  [[nodiscard]] std::uint64_t change_count() const { return change_count_; }  // of in_force().registration
+  [[nodiscard]] const std::shared_ptr<const std::vector<RegistrationEntry>>& entries() const {
+    return entries_;  // never null
+  }
+  [[nodiscard]] std::optional<std::size_t> entry_in_force() const { return entry_in_force_; }
+  [[nodiscard]] bool is_chosen() const { return is_chosen_; }  // by the surgeon: newer ones wait
+  [[nodiscard]] const Touches& touches() const { return touches_; }
+  [[nodiscard]] TouchAlarm alarm() const { return touches_.alarm(); }
+
+ private:
+  void add(RegistrationEntry entry);
+  void change_entry(std::size_t entry, const std::function<void(RegistrationEntry&)>& change);
+  void judge();
+  [[nodiscard]] RegistrationInForce judged() const;
+
+  const std::shared_ptr<const geometry::Surface> surface_;
+  const std::optional<registration::CartilageRegion> cartilage_;
+  registration::Provenance now_;
+  Touches touches_;
+  std::shared_ptr<const std::vector<RegistrationEntry>> entries_ =
+      std::make_shared<const std::vector<RegistrationEntry>>();
+  std::optional<std::size_t> entry_in_force_;
+  bool is_chosen_ = false;
+  // Doubt told by strokes drawn after the newest fit of all strokes; its reasons.
+  std::optional<std::vector<std::string>> doubt_;
+  std::uint64_t fitted_after_ = 0;                                // requests, at the newest fit
+  double best_tre_mm_ = std::numeric_limits<double>::infinity();  // of those that took effect by themselves
+  RegistrationInForce in_force_;
+  std::uint64_t change_count_ = 0;
+};
+
+}  // namespace arthronaut::operation

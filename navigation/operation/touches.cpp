@@ -1,0 +1,143 @@
+#include "navigation/operation/touches.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "planning/files/format.h"
+#include "planning/geometry/quantile.h"
+
+namespace arthronaut::operation {
+
+namespace {
+
+constexpr double kRest_s = 0.25, kRestRadius_mm = 1;
+constexpr std::size_t kLeastSamples = 3;
+
+}  // namespace
+
+void SteadyTip::add(double time_s, const std::optional<Eigen::Vector3d>& tip_in_marker_mm) {
+  if (!samples_.empty() && time_s < samples_.back().time_s) samples_.clear();
+  if (tip_in_marker_mm) samples_.push_back({time_s, *tip_in_marker_mm});
+  while (!samples_.empty() && samples_.front().time_s < time_s - kRest_s) samples_.pop_front();
+}
+
+std::optional<Eigen::Vector3d> SteadyTip::position_mm() const {
+  if (samples_.size() < kLeastSamples) return std::nullopt;
+  Eigen::Vector3d middle;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const Sample& sample : samples_) values.push_back(sample.tip_in_marker_mm[axis]);
+    middle[axis] = geometry::median(std::move(values));
+  }
+  for (const Sample& sample : samples_)
+    if ((sample.tip_in_marker_mm - middle).norm() > kRestRadius_mm) return std::nullopt;
+  return middle;
+}
+
+SteadyTip::Reason SteadyTip::why_not() const {
+  if (position_mm()) return Reason::None;
+  return samples_.size() < kLeastSamples ? Reason::TipUnknown : Reason::Moves;
+}
+
+std::string in_words(const TouchAlarm& alarm) {
+  switch (alarm.kind) {
+    case TouchAlarm::Kind::None:
+      return "";
+    case TouchAlarm::Kind::ControlPointMoved:
+      return files::format("The control point has moved by %.1f mm", alarm.control_shift_mm);
+    case TouchAlarm::Kind::TouchesOff:
+      return files::format("%d touches lie off the bone", alarm.touches_off);
+    case TouchAlarm::Kind::Both:
+      return files::format("The control point has moved by %.1f mm and a touch lies off the bone",
+                           alarm.control_shift_mm);
+  }
+  return "";
+}
+
+void Touches::add_touch(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of) {
+  // The same place touched again verifies nothing more.
+  const bool is_new_place = std::none_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
+    return (touch.tip_in_marker_mm - tip_in_marker_mm).norm() < limits_.apart_mm;
+  });
+  touches_.push_back({tip_in_marker_mm, of, is_new_place});
+  last_ = Last::Kind::Touch;
+}
+
+void Touches::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
+  control_touches_mm_.push_back(tip_in_marker_mm);
+  if (control_touches_mm_.size() == 1) {
+    last_ = Last::Kind::ControlSet;
+    return;
+  }
+  control_shift_mm_ = (tip_in_marker_mm - control_touches_mm_.front()).norm();
+  // One that is back where it was takes the suspicion away.
+  control_violations_ = control_shift_mm_ > limits_.max_control_shift_mm ? control_violations_ + 1 : 0;
+  last_ = Last::Kind::ControlAgain;
+}
+
+void Touches::clear() { *this = Touches(limits_); }
+
+void Touches::judge(const registration::RegistrationSummary* registration, const geometry::Surface* surface,
+                    const std::optional<registration::CartilageRegion>& cartilage,
+                    const registration::Provenance& now) {
+  residuals_mm_.clear();
+  if (registration == nullptr || !registration->has_pose || surface == nullptr) return;
+  const geometry::RigidTransform bone_from_marker = registration->marker_from_bone.inverse();
+  for (const Touch& touch : touches_) {
+    if (registration::mismatch_of(touch.of, now)) {
+      residuals_mm_.emplace_back();
+      continue;
+    }
+    const Eigen::Vector3d p = bone_from_marker * touch.tip_in_marker_mm;
+    std::optional<double> residual_mm = surface->signed_distance_mm(p);
+    if (cartilage) {
+      const auto offset_mm =
+          registration::cover_offset_mm(*registration, *cartilage, surface->closest_point(p).point_mm);
+      residual_mm = offset_mm ? std::optional(*residual_mm - *offset_mm) : std::nullopt;
+    }
+    residuals_mm_.push_back(residual_mm);
+  }
+}
+
+Touches::Last Touches::last() const {
+  Last last{last_, static_cast<int>(touches_.size()), true, std::nullopt, false};
+  if (!touches_.empty()) last.is_new_place = touches_.back().is_new_place;
+  if (last_ == Last::Kind::ControlAgain) last.distance_mm = control_shift_mm_;
+  if (last_ == Last::Kind::Touch && !residuals_mm_.empty()) {
+    last.distance_mm = residuals_mm_.back();
+    last.is_on_unknown_cartilage = !last.distance_mm;
+  }
+  return last;
+}
+
+TouchAlarm Touches::alarm() const {
+  TouchAlarm alarm;
+  alarm.control_shift_mm = control_shift_mm_;
+  alarm.touches_off = static_cast<int>(
+      std::count_if(residuals_mm_.begin(), residuals_mm_.end(), [&](const auto& residual_mm) {
+        return residual_mm && std::abs(*residual_mm) > limits_.max_touch_error_mm;
+      }));
+  if (control_violations_ >= limits_.violations_to_alarm)
+    alarm.kind = TouchAlarm::Kind::ControlPointMoved;
+  else if (alarm.touches_off >= limits_.violations_to_alarm)
+    alarm.kind = TouchAlarm::Kind::TouchesOff;
+  else if (alarm.touches_off + control_violations_ >= limits_.violations_to_alarm)
+    alarm.kind = TouchAlarm::Kind::Both;
+  return alarm;
+}
+
+bool Touches::verify() const {
+  std::vector<double> misses_mm;
+  for (std::size_t i = 0; i < residuals_mm_.size(); ++i)
+    if (residuals_mm_[i] && touches_[i].is_new_place) misses_mm.push_back(std::abs(*residuals_mm_[i]));
+  if (static_cast<int>(misses_mm.size()) < limits_.touches_to_verify) return false;
+  return *std::max_element(misses_mm.begin(), misses_mm.end()) < limits_.max_verified_mm &&
+         geometry::median(misses_mm) < limits_.max_verified_median_mm;
+}
+
+bool Touches::last_confirms() const {
+  return last_ == Last::Kind::Touch && !residuals_mm_.empty() && residuals_mm_.back() &&
+         std::abs(*residuals_mm_.back()) < limits_.max_confirming_mm;
+}
+
+}  // namespace arthronaut::operation

@@ -1,0 +1,110 @@
+// Touches that verify a registration, and the control point that tells a bumped world marker. Judged by the
+// registration that guidance uses, whatever it came from.
+#pragma once
+
+#include <Eigen/Core>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "navigation/registration/provenance.h"
+#include "navigation/registration/registration.h"
+#include "planning/geometry/surface.h"
+
+namespace arthronaut::operation {
+
+struct TouchLimits {
+  double max_touch_error_mm = 1.5;    // a touch further off the bone is a violation
+  double max_control_shift_mm = 1.0;  // of a control point touched again, in the world-marker frame
+  int violations_to_alarm = 2;
+  int touches_to_verify = 3;            // at different places, each nearer than
+  double max_verified_mm = 1.0;         // ... this, and
+  double max_verified_median_mm = 0.6;  // ... in the median than this
+  // One touch that shows that a void registration holds all the same must lie nearer than this.
+  double max_confirming_mm = 1.0;
+  double apart_mm = 3;  // touches nearer to each other are of the same place
+};
+
+// The tip at rest: a touch is where the tip stood for a moment, not where one frame saw it.
+class SteadyTip {
+ public:
+  enum class Reason { None, TipUnknown, Moves };
+  // nullopt: the tip is not known in this frame.
+  void add(double time_s, const std::optional<Eigen::Vector3d>& tip_in_marker_mm);
+  // The median of the last quarter of a second when the tip was seen at least three times and kept within 1
+  // mm; else nullopt.
+  [[nodiscard]] std::optional<Eigen::Vector3d> position_mm() const;
+  // Why there is none.
+  [[nodiscard]] Reason why_not() const;
+  void clear() { samples_.clear(); }
+
+ private:
+  struct Sample {
+    double time_s;
+    Eigen::Vector3d tip_in_marker_mm;
+  };
+  std::deque<Sample> samples_;
+};
+
+// Why nothing is to be trusted.
+struct TouchAlarm {
+  enum class Kind { None, ControlPointMoved, TouchesOff, Both } kind = Kind::None;
+  double control_shift_mm = 0;
+  int touches_off = 0;
+  [[nodiscard]] explicit operator bool() const { return kind != Kind::None; }
+};
+[[nodiscard]] std::string in_words(const TouchAlarm& alarm);
+
+class Touches {
+ public:
+  struct Last {
+    enum class Kind { None, Touch, ControlSet, ControlAgain } kind = Kind::None;
+    int number = 0;                     // of the touch, from 1
+    bool is_new_place = true;           // of a touch: away from those before
+    std::optional<double> distance_mm;  // signed, to the bone; of the control point: how far it has wandered
+    bool is_on_unknown_cartilage = false;  // of a touch: nobody knows how far off the bone it should lie
+  };
+
+  explicit Touches(const TouchLimits& limits = {}) : limits_(limits) {}
+
+  // `of`: what the pictures were of when it was taken. A touch under another provenance is kept and says
+  // nothing about a registration of this one.
+  void add_touch(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of);
+  void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm);
+  void clear();
+  // Distances anew, by another registration, of the touches that are of `now`; none without a pose. On
+  // cartilage they are to what is touched there.
+  void judge(const registration::RegistrationSummary* registration, const geometry::Surface* surface,
+             const std::optional<registration::CartilageRegion>& cartilage,
+             const registration::Provenance& now);
+
+  [[nodiscard]] bool has_control_point() const { return !control_touches_mm_.empty(); }
+  [[nodiscard]] std::size_t count() const { return touches_.size(); }
+  // Signed, mm, in the order of the touches; empty while there is no registration to judge by, nullopt on
+  // cartilage of unknown thickness and for touches of another provenance.
+  [[nodiscard]] const std::vector<std::optional<double>>& residuals_mm() const { return residuals_mm_; }
+  [[nodiscard]] Last last() const;
+  [[nodiscard]] TouchAlarm alarm() const;
+  // Enough of them lie on the bone, at different places.
+  [[nodiscard]] bool verify() const;
+  // The newest touch alone lies on the bone, so near that a void registration is confirmed by it.
+  [[nodiscard]] bool last_confirms() const;
+  [[nodiscard]] const TouchLimits& limits() const { return limits_; }
+
+ private:
+  struct Touch {
+    Eigen::Vector3d tip_in_marker_mm;
+    registration::Provenance of;
+    bool is_new_place;
+  };
+  TouchLimits limits_;
+  std::vector<Touch> touches_;
+  std::vector<Eigen::Vector3d> control_touches_mm_;
+  std::vector<std::optional<double>> residuals_mm_;
+  double control_shift_mm_ = 0;
+  int control_violations_ = 0;
+  Last::Kind last_ = Last::Kind::None;
+};
+
+}  // namespace arthronaut::operation

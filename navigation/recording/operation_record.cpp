@@ -1,0 +1,119 @@
+#include "navigation/recording/operation_record.h"
+
+#include <arthronaut/version.h>
+
+#include "planning/cases/case.h"
+
+namespace arthronaut::recording {
+
+namespace {
+
+using operation::JournalEntry;
+using operation::JournalKind;
+
+SessionHeader header_of(const std::filesystem::path& folder, const operation::OperationSetup& setup,
+                        const operation::SourceSetup& source, const sources::SourceInfo& info,
+                        const std::string& continues) {
+  SessionHeader header;
+  header.id = folder.filename().string();
+  header.started_utc = cases::utc_now();
+  header.bone = source.pipeline.bone;
+  header.side = source.pipeline.side;
+  header.refractive_index = source.pipeline.refractive_index;
+  header.probe_name = source.pipeline.probe_name;
+  header.guide_name = source.pipeline.guide_name;
+  header.source = info.name;
+  header.source_kind = sources::to_text(source.kind);
+  header.mesh_sha256 = setup.mesh_sha256;
+  header.continues = continues;
+  header.registers_after_mm = setup.registers_after_mm.value_or(0);
+  header.program_version = kProgramVersion;
+  header.build = build_identity();
+  return header;
+}
+
+std::string_view kind_of(JournalKind kind) {
+  switch (kind) {
+    case JournalKind::CommandGiven:
+      return kCommandEvent;
+    case JournalKind::OutcomeTaken:
+      return kOutcomeEvent;
+    case JournalKind::SourceEnded:
+      return kSourceEndedEvent;
+    case JournalKind::RegistrationInForce:
+      return kRegistrationEvent;
+    case JournalKind::Alarm:
+      return "alarm";
+    case JournalKind::Void:
+      return "registration void";
+    case JournalKind::Confirmed:
+      return "registration confirmed";
+    case JournalKind::Verified:
+      return "registration verified";
+    case JournalKind::VerificationSkipped:
+      return "verification skipped";
+    case JournalKind::Plan:
+      return kPlanEvent;
+    case JournalKind::Drilled:
+      return "tunnel drilled";
+    case JournalKind::Note:
+      return "note";
+  }
+  return "note";
+}
+
+}  // namespace
+
+std::optional<SessionEvent> event_of(const JournalEntry& entry) {
+  if (entry.kind == JournalKind::RegistrationInForce || entry.kind == JournalKind::Plan) return std::nullopt;
+  SessionEvent event{entry.timestamp_ns, std::string(kind_of(entry.kind)), entry.text, entry.after_frame};
+  if (entry.kind == JournalKind::Drilled) event.text = "achieved.json";
+  return event;
+}
+
+OperationRecord::OperationRecord(const std::filesystem::path& folder, const operation::OperationSetup& setup,
+                                 const operation::SourceSetup& source, const sources::SourceInfo& info,
+                                 const std::string& continues)
+    : folder_(folder),
+      recorder_(std::make_unique<SessionRecorder>(folder, header_of(folder, setup, source, info, continues),
+                                                  source.pipeline)) {}
+
+void OperationRecord::keep_video(KeepVideo keep, const std::filesystem::path& video) {
+  keep_ = keep;
+  copied_video_ = keep == KeepVideo::Copy ? video : std::filesystem::path();
+  // A record that is cut off can be run again by where the video is.
+  if (keep == KeepVideo::Refer || keep == KeepVideo::Copy) recorder_->refer_to_video(video);
+}
+
+void OperationRecord::add(const std::vector<JournalEntry>& entries) {
+  for (const JournalEntry& entry : entries) {
+    if (entry.kind == JournalKind::RegistrationInForce)
+      recorder_->set_registration(*entry.registration, !entry.registration_was_given, &entry.of);
+    if (entry.kind == JournalKind::Plan)
+      recorder_->set_plan(entry.plan ? std::optional(entry.plan->tunnel) : std::nullopt,
+                          entry.plan ? entry.plan->length_mm : 0);
+    if (entry.kind == JournalKind::Drilled)
+      operation::write_achieved_file(folder_ / "achieved.json", *entry.achieved);
+    if (const auto event = event_of(entry)) recorder_->add_event(*event);
+  }
+}
+
+void OperationRecord::add_frame(const camera::FramePtr& picture, const operation::OperationState& state,
+                                bool is_live) {
+  recorder_->append(state.frame);
+  recorder_->append_digests({operation::digest_of_frame(state), operation::digest_of_decisions(state)});
+  if (keep_ != KeepVideo::Encode) return;
+  // Left out are pictures of a live source that the encoder can't keep up with; the record counts them.
+  if (is_live)
+    (void)recorder_->try_append_picture(picture);
+  else
+    recorder_->append_picture(picture);
+}
+
+void OperationRecord::finish(const strokes::Curves& strokes) {
+  if (!strokes.empty()) recorder_->set_curves(strokes);
+  if (!copied_video_.empty()) recorder_->copy_video(copied_video_);
+  recorder_->finish();
+}
+
+}  // namespace arthronaut::recording

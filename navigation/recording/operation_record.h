@@ -1,0 +1,53 @@
+// The journal of an operation in a session, from its first frame, whether or not video is kept: commands,
+// outcomes of the registration, frames, what guided and why not. A disk that fails ends the record, never the
+// operation.
+//
+// Thread-free; the recorder behind it writes on a thread of its own and commits twice a second.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "navigation/operation/operation.h"
+#include "navigation/recording/session.h"
+
+namespace arthronaut::recording {
+
+enum class KeepVideo {
+  No,
+  Copy,    // the source's file, as it is, when the record ends
+  Refer,   // only where it is
+  Encode,  // the source has no file: its pictures, from now on
+};
+
+class OperationRecord {
+ public:
+  // The folder exists and is empty. `continues`: id of the session before it in this operation, or empty.
+  // Throws IoError.
+  OperationRecord(const std::filesystem::path& folder, const operation::OperationSetup& setup,
+                  const operation::SourceSetup& source, const sources::SourceInfo& info,
+                  const std::string& continues);
+
+  // From the next frame on. `video` is the source's file or pattern (unused for Encode and No).
+  void keep_video(KeepVideo keep, const std::filesystem::path& video = {});
+  // What the operation has done since the last call; then the frame, its picture and what came of it.
+  void add(const std::vector<operation::JournalEntry>& entries);
+  void add_frame(const camera::FramePtr& picture, const operation::OperationState& state, bool is_live);
+  // Throws IoError. The strokes are those that count.
+  void finish(const strokes::Curves& strokes);
+
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  [[nodiscard]] KeepVideo keeps() const { return keep_; }
+
+ private:
+  std::filesystem::path folder_, copied_video_;
+  KeepVideo keep_ = KeepVideo::No;
+  std::unique_ptr<SessionRecorder> recorder_;
+};
+
+// One entry as an event of a session; nullopt for those that have a place of their own there.
+[[nodiscard]] std::optional<SessionEvent> event_of(const operation::JournalEntry& entry);
+
+}  // namespace arthronaut::recording

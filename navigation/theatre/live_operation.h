@@ -1,0 +1,81 @@
+// An operation in theatre: one thread that takes frames, carries out what is asked and publishes what may be
+// shown; another one registers. The screen reads latest() and posts; it never waits.
+//
+// States of the source: none -> starting -> running -> ended | failed, and from any of them to starting
+// again. The operation itself, its strokes and registrations, outlives them all. No failure starts another
+// source.
+//
+// Threads: every member may be called from any thread and none waits, but the destructor, which joins:
+// request_stop() first and destroy it elsewhere where that would freeze a screen.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "navigation/theatre/operation_run.h"
+
+namespace arthronaut::theatre {
+
+// What the screen wants to have made of a frame beside the frames, such as the lines that are drawn over it.
+class Decoration {
+ public:
+  virtual ~Decoration() = default;
+};
+using Decorate = std::function<std::shared_ptr<const Decoration>(const operation::OperationState&)>;
+
+// Everything that may be shown. Immutable, whole.
+struct LiveState {
+  enum class Phase { NoSource, Starting, Running, Ended, Failed } phase = Phase::NoSource;
+  std::string message;                           // why it failed
+  operation::OperationStatePtr operation;        // now, never null once published
+  camera::FramePtr picture;                      // the newest; null before the first of this source
+  std::shared_ptr<const Decoration> decoration;  // of that picture; may be null
+  // When what the picture shows was so: for a live source when it was captured, else when it was published.
+  double captured_s = 0;                 // on the clock of now_s()
+  double stale_after_s = 2;              // older than that it is no picture of now
+  double frames_per_second = 0;          // that were navigated, lately
+  std::filesystem::path session_folder;  // of the record that is written, or was written last
+  bool keeps_video = false;
+  std::string record_trouble;  // why nothing is recorded; empty while all is well
+};
+using LiveStatePtr = std::shared_ptr<const LiveState>;
+
+struct LiveOptions {
+  operation::OperationSetup operation;
+  BoneMaker bone;
+  OperationRun::MakeSessionFolder make_session_folder;  // empty: no record
+  Decorate decorate;                                    // called on the operation's thread; may be empty
+  double live_stale_after_s = 0.1;   // guidance from older pictures of a live source is hidden
+  double other_stale_after_s = 2.0;  // recordings and simulations come as the machine can make them
+};
+
+class LiveOperation {
+ public:
+  // on_news is called from the operation's thread whenever latest() has changed; it must not call back.
+  LiveOperation(LiveOptions options, std::function<void()> on_news);
+  ~LiveOperation();
+  LiveOperation(const LiveOperation&) = delete;
+  LiveOperation& operator=(const LiveOperation&) = delete;
+
+  void start(TheatreSource source);
+  void end_source();
+  void apply(operation::Command command);
+  void keep_video(bool on);
+  void request_stop();
+
+  // Never null.
+  [[nodiscard]] LiveStatePtr latest() const;
+  // Why the thread has ended; empty while it runs. That is a fault of the program.
+  [[nodiscard]] std::string failure() const;
+  // Waits until all that was posted is carried out and no source runs; for tests.
+  void finish() const;
+  [[nodiscard]] static double now_s();  // steady clock
+
+ private:
+  struct Thread;
+  std::unique_ptr<Thread> thread_;
+};
+
+}  // namespace arthronaut::theatre

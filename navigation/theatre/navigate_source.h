@@ -1,0 +1,65 @@
+// A whole operation from a source, with nobody at the pedal: the probe draws from the first frame, strokes
+// are registered as they come, all of them when the guide comes into view and at the end. What `arthronaut
+// navigate` and the demo do. The same operation as the window's; only who gives the commands differs.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "navigation/operation/operation.h"
+#include "navigation/pipeline/track_video.h"
+#include "navigation/recording/operation_record.h"
+#include "navigation/sources/frame_source.h"
+
+namespace arthronaut::theatre {
+
+struct NavigateOptions {
+  operation::SourceSetup source;
+  operation::OperationSetup operation;
+  // What strokes are registered to; null: nothing is registered.
+  operation::SurfaceIndexPtr bone;
+  // Used from the first frame; what it is of is checked like any other.
+  std::optional<operation::GiveRegistration> registration;
+  double retry_after_mm = 40;  // see OperationSetup::registers_after_mm
+};
+
+// Called in the thread of navigate_source.
+struct NavigationObserver {
+  std::function<void(const camera::FramePtr& picture, const operation::OperationState& state)> on_frame;
+  // Asked after each frame: commands to be given before the next one. A script at the pedal.
+  std::function<std::vector<operation::Command>(const operation::OperationState& state)> pedal;
+};
+
+struct NavigationSummary {
+  pipeline::ViewStatistics statistics;
+  strokes::Curves curves;
+  double stroke_length_mm = 0;
+  // The one that is in force at the end; none when nothing was found or given.
+  std::optional<registration::RegistrationSummary> registration;
+  operation::Standing standing = operation::Standing::None;
+  bool registration_was_found = false;  // here, not given
+  long frames_with_tip = 0, frames_with_guidance = 0;
+  guidance::GuidanceNumbers last_guidance;  // the last valid one; not valid when there was none
+  guidance::GuidanceState last_state = guidance::GuidanceState::NoPlan;
+  operation::DrilledState drilled;
+  std::vector<std::string> reasons;  // why the result is not reliable; empty when it is
+};
+
+struct RecordOptions {
+  std::filesystem::path folder;  // exists and is empty; empty path: no record
+  recording::KeepVideo keep = recording::KeepVideo::No;
+  std::filesystem::path video;  // the source's file or pattern, for Copy and Refer
+  std::string continues;        // id of the session before it in the same operation
+};
+
+// Deterministic for a source, options and seed. Decoding runs in a thread of its own. Throws InvalidInput
+// when the options break their contract or a frame has another size than the camera's, IoError when the
+// record fails, and what the source throws.
+[[nodiscard]] NavigationSummary navigate_source(sources::FrameSource& source, const NavigateOptions& options,
+                                                const RecordOptions& record = {},
+                                                const NavigationObserver& observer = {});
+
+}  // namespace arthronaut::theatre

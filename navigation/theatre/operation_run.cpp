@@ -1,0 +1,140 @@
+#include "navigation/theatre/operation_run.h"
+
+#include "navigation/pipeline/prefetched_source.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::theatre {
+
+using recording::KeepVideo;
+
+OperationRun::OperationRun(const operation::OperationSetup& setup,
+                           std::unique_ptr<RegistrationService> registration,
+                           MakeSessionFolder make_session_folder)
+    : operation_(setup),
+      registration_(std::move(registration)),
+      make_session_folder_(std::move(make_session_folder)) {}
+
+OperationRun::~OperationRun() { end_source(); }
+
+void OperationRun::start(const TheatreSource& source) {
+  end_source();
+  auto opened = source.open();
+  operation_.start_source(source.setup);
+  theatre_source_ = source;
+  source_ = std::move(opened);
+  prefetched_ = std::make_unique<pipeline::PrefetchedSource>(*source_);
+  record_trouble_.clear();
+  record_is_due_ = static_cast<bool>(make_session_folder_);
+  begin_record();
+}
+
+void OperationRun::begin_record() {
+  if (!record_is_due_) return;
+  record_is_due_ = false;
+  try {  // a disk that fails ends the record, never the operation
+    const std::filesystem::path folder = make_session_folder_();
+    record_ = std::make_unique<recording::OperationRecord>(folder, operation_.setup(), theatre_source_.setup,
+                                                           source_->info(), continues_);
+    session_folder_ = folder;
+    continues_ = folder.filename().string();
+    // Where the video is costs nothing and makes the record one that can be run again.
+    if (!source_->info().encoded_file.empty())
+      record_->keep_video(KeepVideo::Refer, source_->info().encoded_file);
+  } catch (const std::runtime_error& error) {
+    record_trouble_ = error.what();
+    record_.reset();
+  }
+}
+
+void OperationRun::write(const std::function<void(recording::OperationRecord&)>& what) {
+  if (record_ == nullptr) return;
+  try {
+    what(*record_);
+  } catch (const std::runtime_error& error) {
+    record_trouble_ = error.what();
+    record_.reset();
+  }
+}
+
+// What the operation asks for and what it has to tell.
+void OperationRun::pass_on() {
+  auto requests = operation_.take_requests();
+  if (!requests.empty()) registration_->post(std::move(requests));
+  auto journal = operation_.take_journal();
+  if (journal.empty()) return;
+  for (operation::JournalEntry& entry : journal)
+    if (entry.achieved && theatre_source_.truth) entry.achieved->truth = theatre_source_.truth();
+  if (record_ != nullptr) return write([&](recording::OperationRecord& record) { record.add(journal); });
+  // After the end of a source: the decision belongs to its record.
+  if (session_folder_.empty() || !record_trouble_.empty()) return;
+  try {
+    for (const operation::JournalEntry& entry : journal)
+      if (const auto event = recording::event_of(entry)) recording::append_event(session_folder_, *event);
+  } catch (const std::runtime_error& error) {
+    record_trouble_ = error.what();
+  }
+}
+
+bool OperationRun::follow_registration() {
+  const operation::OutcomePtr before = operation_.outcome();
+  operation_.take_outcome(registration_->latest());
+  pass_on();
+  return operation_.outcome() != before;
+}
+
+camera::FramePtr OperationRun::step() {
+  if (source_ == nullptr) return nullptr;
+  camera::FramePtr picture;
+  try {
+    picture = prefetched_->next();
+  } catch (...) {
+    end_source();
+    throw;
+  }
+  if (picture == nullptr) {
+    end_source();
+    return nullptr;
+  }
+  (void)follow_registration();
+  operation_.process(*picture);
+  frame_state_ = operation_.state();
+  write([&](recording::OperationRecord& record) {
+    record.add_frame(picture, *frame_state_, theatre_source_.setup.kind == sources::SourceKind::Live);
+  });
+  pass_on();
+  return picture;
+}
+
+void OperationRun::apply(const operation::Command& command) {
+  operation_.apply(command);
+  pass_on();
+}
+
+void OperationRun::end_source() {
+  if (source_ == nullptr) return;
+  operation_.end_source();
+  pass_on();
+  prefetched_.reset();
+  source_.reset();
+  write([&](recording::OperationRecord& record) { record.finish(operation_.strokes_in_use()); });
+  record_.reset();
+}
+
+KeepVideo OperationRun::way_to_keep() const {
+  return source_->info().encoded_file.empty() ? KeepVideo::Encode : KeepVideo::Copy;
+}
+
+bool OperationRun::keeps_video() const {
+  return record_ != nullptr && (record_->keeps() == KeepVideo::Copy || record_->keeps() == KeepVideo::Encode);
+}
+
+void OperationRun::keep_video(bool on) {
+  if (source_ == nullptr) return;
+  const std::filesystem::path& file = source_->info().encoded_file;
+  const KeepVideo otherwise = file.empty() ? KeepVideo::No : KeepVideo::Refer;
+  write([&](recording::OperationRecord& record) { record.keep_video(on ? way_to_keep() : otherwise, file); });
+}
+
+const sources::SourceInfo& OperationRun::source_info() const { return source_->info(); }
+
+}  // namespace arthronaut::theatre

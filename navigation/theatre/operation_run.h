@@ -1,0 +1,82 @@
+// An operation with its source, its registration and its record: one step a frame. Thread-free: the window
+// runs it on a worker (live_operation.h), the command line and the demo call step() in a loop.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "navigation/operation/operation.h"
+#include "navigation/recording/operation_record.h"
+#include "navigation/sources/frame_source.h"
+#include "navigation/theatre/registration_service.h"
+
+namespace arthronaut::theatre {
+
+// A source to be started: what the operation must know of it, and how it is opened.
+struct TheatreSource {
+  operation::SourceSetup setup;
+  std::function<std::unique_ptr<sources::FrameSource>()>
+      open;  // called where the frames are taken; may throw
+  // Where the tunnel truly goes; the simulated source alone knows, once it is open.
+  std::function<std::optional<tunnels::Tunnel>()> truth;
+};
+
+class OperationRun {
+ public:
+  // Makes an empty folder for a session's record and returns it; may throw IoError. Empty function: no
+  // record.
+  using MakeSessionFolder = std::function<std::filesystem::path()>;
+
+  OperationRun(const operation::OperationSetup& setup, std::unique_ptr<RegistrationService> registration,
+               MakeSessionFolder make_session_folder);
+  ~OperationRun();
+
+  // Ends the source before it and opens this one; its record begins with the first frame. Throws what opening
+  // throws and what Operation::start_source throws; there is no source then.
+  void start(const TheatreSource& source);
+  // The next frame, worked in; null at the end of the source, which ends it, and without a source. Throws
+  // what the source throws, which ends it too.
+  [[nodiscard]] camera::FramePtr step();
+  // Ends the source and its record. A disk that fails is told by record_trouble().
+  void end_source();
+
+  void apply(const operation::Command& command);
+  // Takes in what the registration has found meanwhile; true when that is something new. step() does it too.
+  bool follow_registration();
+  // Video from now on, or no more; the journal goes on in any case. No effect without a source.
+  void keep_video(bool on);
+
+  [[nodiscard]] bool has_source() const { return source_ != nullptr; }
+  // Of the source that runs; precondition: has_source().
+  [[nodiscard]] const sources::SourceInfo& source_info() const;
+  [[nodiscard]] operation::OperationStatePtr state() { return operation_.state(); }
+  [[nodiscard]] operation::OperationStatePtr state_of_frame() const { return frame_state_; }
+  [[nodiscard]] operation::Operation& operation() { return operation_; }
+  // Of the record that is being written, or was written last; empty before the first.
+  [[nodiscard]] const std::filesystem::path& session_folder() const { return session_folder_; }
+  [[nodiscard]] bool keeps_video() const;
+  // Why nothing is recorded any more; empty while all is well.
+  [[nodiscard]] const std::string& record_trouble() const { return record_trouble_; }
+
+ private:
+  void begin_record();
+  void write(const std::function<void(recording::OperationRecord&)>& what);
+  void pass_on();
+  [[nodiscard]] recording::KeepVideo way_to_keep() const;
+
+  operation::Operation operation_;
+  std::unique_ptr<RegistrationService> registration_;
+  MakeSessionFolder make_session_folder_;
+  TheatreSource theatre_source_;
+  std::unique_ptr<sources::FrameSource> source_, prefetched_;
+  std::unique_ptr<recording::OperationRecord> record_;
+  std::filesystem::path session_folder_;
+  std::string continues_, record_trouble_;
+  bool record_is_due_ = false;
+  operation::OperationStatePtr frame_state_;  // after the newest frame
+};
+
+}  // namespace arthronaut::theatre
