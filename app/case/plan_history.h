@@ -9,6 +9,7 @@
 
 #include "app/case/history.h"
 #include "app/case/plan_edit.h"
+#include "app/case/plan_model.h"
 
 namespace arthronaut::open_case {
 

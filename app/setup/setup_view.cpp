@@ -4,6 +4,8 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
+
 #include "app/setup/calibrate_station.h"
 #include "app/setup/fluid_station.h"
 #include "app/setup/tool_station.h"
@@ -23,8 +25,13 @@ SetupView::SetupView(const std::function<void()>& wake, std::function<void()> go
 
 SetupView::~SetupView() = default;
 
-void SetupView::open(const std::filesystem::path& case_folder) {
-  case_folder_ = case_folder;
+mode::ModeTitle SetupView::title() const {
+  // F4 although it stands second: F2 and F3 are in the users' fingers.
+  return {"set up", "mode.setup", "Set up", "Camera, tools and fluid, before the operation", GLFW_KEY_F4};
+}
+
+void SetupView::case_opened(const mode::OpenCase& opened) {
+  case_folder_ = opened.folder;
   typed_ = {};
   is_read_ = false;
   for (Step& one : steps_) {
@@ -35,6 +42,7 @@ void SetupView::open(const std::filesystem::path& case_folder) {
 }
 
 void SetupView::enter() {
+  is_shown_ = true;
   if (!is_read_)
     for (Step& one : steps_) one.station->open(case_folder_);
   is_read_ = true;
@@ -42,12 +50,25 @@ void SetupView::enter() {
 }
 
 void SetupView::leave() {
+  is_shown_ = false;
   for (Step& one : steps_) one.station->release_source();
 }
 
 bool SetupView::awaits_text() const { return typed_.wants_focus || step().station->awaits_text(); }
 
-bool SetupView::is_busy() const { return step().station->is_busy(); }
+// What a station last knew of its run is of when it was last drawn.
+bool SetupView::is_busy() const { return is_shown_ && step().station->is_busy(); }
+
+bool SetupView::has_running_work() const {
+  return std::any_of(steps_.begin(), steps_.end(), [](const Step& one) { return one.station->has_run(); });
+}
+
+std::optional<sources::SourceKind> SetupView::source_kind() const {
+  if (!step().station->has_run()) return std::nullopt;
+  const FeedSource& source = step().sources.at(step().source);
+  if (source.is_simulated) return sources::SourceKind::Simulation;
+  return source.path.empty() ? sources::SourceKind::Live : sources::SourceKind::Recording;
+}
 
 void SetupView::show(std::size_t index) {
   if (index != shown_) step().station->release_source();
