@@ -138,28 +138,30 @@ void SetupView::add_actions(widgets::Actions& actions) {
   show_action(1, "Tools", "The probe's tip and the guides' axes, into tools.json", GLFW_KEY_2);
   show_action(2, "Fluid check", "Whether the camera measures rightly in the fluid", GLFW_KEY_3);
   const auto add = [&](const char* id, const char* label, const char* tooltip, int key,
-                       const std::function<void()>& run) {
-    actions.add({id, label, tooltip, key, 0, false, {}, {}, run});
+                       const std::function<void()>& run, const widgets::Hold& hold = {}) {
+    actions.add({id, label, tooltip, key, 0, false, {}, {}, run, hold});
   };
+  const auto has_run = [this] { return step().station->has_run(); };
   add("setup.next", "Next step", "Starts, takes, calibrates, adopts: whatever comes next", GLFW_KEY_SPACE,
       [this] { take_next_step(); });
   add("setup.source", "Other source", "Simulated scope, pictures, videos, cameras in turn", GLFW_KEY_O,
-      [this] { choose_source(); });
+      [this] { choose_source(); }, {"take another source", has_run});
   add("setup.path", "Type a source", "The path of a video or of a folder of pictures", GLFW_KEY_P, [this] {
     typed_.is_open = typed_.wants_focus = true;
     typed_.refused = false;
   });
   add("setup.again", "Start again", "From the first picture; what was adopted stays", GLFW_KEY_R,
-      [this] { start(); });
+      [this] { start(); }, {"start again", has_run});
   actions.add({"setup.stop",
                "Stop",
                "Ends the source and forgets what was not adopted",
                GLFW_KEY_ESCAPE,
                0,
                false,
-               [this] { return step().station->has_run(); },
+               has_run,
                {},
-               [this] { step().station->stop(); }});
+               [this] { step().station->stop(); },
+               {"stop"}});
   for (Step& one : steps_) one.station->add_actions(actions);
 }
 
