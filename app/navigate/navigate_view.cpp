@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/navigate/overlay_lines.h"
 #include "app/scene/scene_camera.h"
 #include "navigation/camera/medium.h"
 #include "navigation/sources/source_files.h"
@@ -16,9 +17,6 @@ namespace {
 
 using Phase = OperationStatus::Phase;
 
-// AR can blind: what is drawn over the picture stands out for a while, then fades to a hint by itself.
-constexpr double kOverlayFull_s = 8, kOverlayFading_s = 2;
-constexpr float kOverlayFaded = 0.25F;
 constexpr double kGuideAway_s = 2;
 constexpr std::size_t kEnoughPoints = 150;
 constexpr const char* kDrill = "drill";
@@ -235,9 +233,7 @@ void NavigateView::toggle_recording() {
 
 float NavigateView::overlay_opacity(double now_s) const {
   if (!choices_.overlay_on) return 0;
-  const double faded =
-      std::clamp((now_s - choices_.overlay_shown_at_s - kOverlayFull_s) / kOverlayFading_s, 0.0, 1.0);
-  return 1 - static_cast<float>(faded) * (1 - kOverlayFaded);
+  return navigate::overlay_opacity(now_s - choices_.overlay_shown_at_s);
 }
 
 void NavigateView::cycle_overlay() {

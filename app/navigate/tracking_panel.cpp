@@ -36,7 +36,7 @@ void draw_markers(const widgets::Ui& ui, const NavigateScreen& screen) {
                               : is_needed(screen, marker.id)                    ? Severity::Caution
                               : marker.state == markers::MarkerState::Duplicate ? Severity::Caution
                                                                                 : Severity::Quiet;
-    widgets::status_row(ui, sign, guidance_severity::marker_name(screen.options->tools, marker.id), text);
+    widgets::status_row(ui, severity, guidance_severity::marker_name(screen.options->tools, marker.id), text);
   }
 }
 

@@ -88,7 +88,7 @@ void action_button(const Ui& ui, std::string_view action_id, float width, float 
     const ImU32 color = enabled ? kQuietText : IM_COL32(84, 94, 104, 255);
     draw_text(draw, ui.theme.body, at, color, key);
     // A bar under the key: it is one to be held.
-    if (!action->hold.to.empty())
+    if (action->needs_hold())
       draw.AddRectFilled({at.x, at.y + label_size.y},
                          {max.x - style.FramePadding.x, at.y + label_size.y + ui.theme.px(3)}, color);
   }

@@ -1,6 +1,7 @@
 #include "app/window/workstation_window.h"
 
 #include <GLFW/glfw3.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
@@ -8,6 +9,8 @@
 #include "app/plan/plan_view.h"
 #include "app/review/review_view.h"
 #include "app/setup/setup_view.h"
+#include "app/widgets/hold_hint.h"
+#include "app/widgets/source_banner.h"
 #include "app/window/key_list.h"
 #include "planning/geometry/error.h"
 
@@ -17,7 +20,7 @@ namespace {
 
 using widgets::GraphicsWindow;
 
-constexpr double kIdleWait_s = 0.2, kBusyWait_s = 0.05;
+constexpr double kIdleWait_s = 0.2, kBusyWait_s = 0.05, kHeldWait_s = 0.02;
 // After input ImGui needs a few frames until hovering, pressing and layout have settled.
 constexpr int kFramesAfterInput = 4;
 constexpr const char* kNotice = "Research software, not a medical device";
@@ -28,7 +31,8 @@ WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
     : options_(options),
       window_("Arthronaut"),
       case_(options.case_folder, [] { GraphicsWindow::wake(); }),
-      log_(options.list_widgets) {
+      log_(options.list_widgets),
+      watch_([](const std::string& what) { spdlog::warn(what); }, std::chrono::milliseconds(500)) {
   make_modes();
   add_actions();
 }
@@ -61,24 +65,41 @@ void WorkstationWindow::add_actions() {
                 {},
                 [this] { return shows_keys_; },
                 [this] { shows_keys_ = !shows_keys_; }});
-  actions_.add(
-      {"app.quit", "Quit", "Everything is saved", GLFW_KEY_Q, GLFW_MOD_CONTROL, false, {}, {}, [this] {
-         quits_ = true;
-       }});
+  actions_.add({"app.quit",
+                "Quit",
+                "Everything is saved",
+                GLFW_KEY_Q,
+                GLFW_MOD_CONTROL,
+                false,
+                {},
+                {},
+                [this] { quits_ = true; },
+                {"quit", [this] { return has_running_work(); }}});
   for (const auto& mode : modes_) mode->add_actions(actions_);
 }
 
 void WorkstationWindow::run() {
   int settle = 30;  // frames to draw without waiting
-  for (long count = 0;
-       !quits_ && !window_.should_close() && (options_.frames == 0 || count < options_.frames); ++count) {
-    const double timeout = settle > 0 ? 0 : modes_are_busy() || case_.is_busy() ? kBusyWait_s : kIdleWait_s;
+  for (long count = 0; !quits_ && !should_end() && (options_.frames == 0 || count < options_.frames);
+       ++count) {
+    const double timeout = settle > 0                            ? 0
+                           : actions_.is_held()                  ? kHeldWait_s
+                           : modes_are_busy() || case_.is_busy() ? kBusyWait_s
+                                                                 : kIdleWait_s;
     const double started = GraphicsWindow::now_s();
     frame(timeout);
     const bool woken = timeout > 0 && GraphicsWindow::now_s() - started < timeout;
     settle = woken && !modes_are_busy() ? kFramesAfterInput : std::max(settle - 1, 0);
   }
   shown().leave();
+}
+
+bool WorkstationWindow::should_end() {
+  if (!window_.should_close()) return false;
+  if (!has_running_work()) return true;
+  window_.keep_open();
+  actions_.remind("app.quit");
+  return false;
 }
 
 bool WorkstationWindow::modes_are_busy() const {
@@ -96,7 +117,10 @@ void WorkstationWindow::frame(double timeout_s) {
   dispatch_keys();
   for (const auto& mode : modes_) mode->tick(GraphicsWindow::now_s());
   const widgets::Ui ui{window_.theme(), actions_, log_, GraphicsWindow::now_s()};
+  heartbeat_.beat(ui.now_s, has_running_work());
+  watch_.frame_drawn(has_running_work());
   draw_screen(ui);
+  actions_.advance(ui.now_s);  // after the buttons: what was let go in this frame is known
   window_.end_frame();
   log_.end_frame();
 }
@@ -108,6 +132,7 @@ void WorkstationWindow::take_opened_case() {
 }
 
 void WorkstationWindow::dispatch_keys() {
+  for (const int key : window_.released_keys()) actions_.release(key);
   for (const widgets::KeyPress& press : window_.keys()) {
     if (shows_keys_ && press.key == GLFW_KEY_ESCAPE) {
       shows_keys_ = false;
@@ -117,6 +142,7 @@ void WorkstationWindow::dispatch_keys() {
     // What is typed after the key that opens a text field is meant for the field.
     if (shown().awaits_text()) window_.await_text_field();
   }
+  if (ImGui::GetIO().WantTextInput) actions_.let_go();
 }
 
 std::vector<std::string_view> WorkstationWindow::action_prefixes() const {
@@ -126,6 +152,7 @@ std::vector<std::string_view> WorkstationWindow::action_prefixes() const {
 }
 
 void WorkstationWindow::show(std::size_t mode) {
+  actions_.let_go();
   if (mode != shown_) shown().leave();
   shown_ = mode;
   shown().enter();
@@ -151,8 +178,13 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   else
     shown().draw(ui, inner);
   if (shows_keys_) draw_key_list(ui, action_prefixes());
+  const auto kind = shown().source_kind();
+  if (kind) widgets::draw_source_frame(ui, {0, 0, size.x, size.y}, *kind);
+  widgets::draw_hold_hint(ui, {0, 0, size.x, size.y});
   ImGui::PopFont();
   ImGui::End();
+  if (!kind) log_.note_state("source_kind", "none");
+  log_.note_state("standstill", heartbeat_.words());
   log_.note_state("mode", shown().title().name);
   log_.note_state("case", case_.model() != nullptr ? "open" : case_.failure().empty() ? "opening" : "failed");
 }
@@ -163,10 +195,18 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
   draw.AddLine({area.x, area.y + area.height}, area.max(), widgets::kPanelEdge);
   const float middle = area.y + area.height / 2;
   const ImFont* title = ui.theme.title;
-  draw.AddText(title, title->FontSize, {area.x + ui.theme.px(20), middle - title->FontSize / 2},
-               widgets::kText, "Arthronaut");
-  const float width = ui.theme.px(190), height = ui.theme.px(50);
-  float x = area.x + ui.theme.px(230);
+  const float width = ui.theme.px(172), height = ui.theme.px(50);
+  const widgets::Rect heart{area.x + ui.theme.px(14), middle - height / 2, height, height};
+  widgets::draw_heartbeat(ui, heart, heartbeat_);
+  // The same place in all modes: where the pictures come from, or else whose screen this is.
+  const widgets::Rect name{heart.x + heart.width + ui.theme.px(10), middle - ui.theme.px(29),
+                           ui.theme.px(330), ui.theme.px(58)};
+  if (const auto kind = shown().source_kind())
+    widgets::draw_source_word(ui, name, *kind);
+  else
+    draw.AddText(title, title->FontSize, {name.x, middle - title->FontSize / 2}, widgets::kText,
+                 "Arthronaut");
+  float x = name.x + name.width + ui.theme.px(12);
   for (const auto& mode : modes_) {
     ImGui::SetCursorScreenPos({x, middle - height / 2});
     widgets::action_button(ui, mode->title().action, width, height);
@@ -193,7 +233,10 @@ void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Re
   const ImFont* font = ui.theme.body;
   const float y = area.y + (area.height - font->FontSize) / 2;
   draw.AddText(font, font->FontSize, {area.x + ui.theme.px(20), y}, widgets::kQuietText, kNotice);
-  const std::string notice = !case_.failure().empty() ? case_.failure() : shown().notice();
+  const std::string standstill = heartbeat_.words();
+  const std::string notice = !case_.failure().empty() ? case_.failure()
+                             : !standstill.empty()    ? standstill
+                                                      : shown().notice();
   const std::string text = !notice.empty()            ? notice
                            : case_.model() != nullptr ? case_.folder().string()
                                                       : std::string();

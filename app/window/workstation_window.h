@@ -8,6 +8,8 @@
 #include "app/case/case_opening.h"
 #include "app/mode/mode.h"
 #include "app/widgets/graphics_window.h"
+#include "app/widgets/heartbeat.h"
+#include "app/window/draw_watch.h"
 #include "app/window/workstation.h"
 
 namespace arthronaut::window {
@@ -31,6 +33,7 @@ class WorkstationWindow {
   void draw_top_bar(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_status_bar(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_waiting(const widgets::Ui& ui, const widgets::Rect& area);
+  [[nodiscard]] bool should_end();  // the window was closed, and nothing runs that it would cut off
   [[nodiscard]] mode::Mode& shown() const { return *modes_[shown_]; }
   [[nodiscard]] bool modes_are_busy() const;    // in front or behind
   [[nodiscard]] bool has_running_work() const;  // likewise
@@ -42,6 +45,8 @@ class WorkstationWindow {
   widgets::WidgetLog log_;
   std::vector<std::unique_ptr<mode::Mode>> modes_;  // in the order of their buttons
   std::size_t shown_ = 0;
+  widgets::Heartbeat heartbeat_;
+  DrawWatch watch_;
   bool shows_keys_ = false, quits_ = false;
 };
 
