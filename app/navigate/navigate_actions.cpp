@@ -16,14 +16,26 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                [this] { return model_ != nullptr; },
                {},
                [this] { take_next_step(); }});
-  actions.add({"navigate.scratch", "Simulate: probe", "The simulated surgeon touches the bone with the probe",
-               GLFW_KEY_S, 0, false, simulates,
+  actions.add({"navigate.scratch",
+               "Simulate: probe",
+               "The simulated surgeon touches the bone with the probe",
+               GLFW_KEY_S,
+               0,
+               false,
+               simulates,
                [this] { return is_running() && part_ == SimulatedPart::Scratch; },
-               [this] { start_simulation(SimulatedPart::Scratch); }});
-  actions.add({"navigate.drill", "Simulate: drill", "The simulated surgeon aims the guide and drills",
-               GLFW_KEY_G, 0, false, simulates,
+               [this] { start_simulation(SimulatedPart::Scratch); },
+               {"start the simulation instead", running}});
+  actions.add({"navigate.drill",
+               "Simulate: drill",
+               "The simulated surgeon aims the guide and drills",
+               GLFW_KEY_G,
+               0,
+               false,
+               simulates,
                [this] { return is_running() && part_ == SimulatedPart::Drill; },
-               [this] { start_simulation(SimulatedPart::Drill); }});
+               [this] { start_simulation(SimulatedPart::Drill); },
+               {"start the simulation instead", running}});
   actions.add({"navigate.video",
                "Video of the case",
                "Navigates on the next video in the case's folder",
@@ -32,7 +44,8 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                false,
                [this] { return model_ != nullptr; },
                {},
-               [this] { start_video(); }});
+               [this] { start_video(); },
+               {"start the video instead", running}});
   actions.add({"navigate.stop",
                "Stop",
                "Ends the source",
@@ -44,10 +57,18 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                [this] {
                  if (choices_.cameras.empty()) end_operation();
                  choices_.cameras.clear();
-               }});
-  actions.add({"navigate.camera", "Camera", "Navigates with a camera that is connected", GLFW_KEY_K, 0, false,
+               },
+               {"stop", [this] { return choices_.cameras.empty(); }}});
+  actions.add({"navigate.camera",
+               "Camera",
+               "Navigates with a camera that is connected",
+               GLFW_KEY_K,
+               0,
+               false,
                [this] { return model_ != nullptr && model_->has_bone(choices_.bone); },
-               [this] { return !choices_.cameras.empty(); }, [this] { choose_camera(); }});
+               [this] { return !choices_.cameras.empty(); },
+               [this] { choose_camera(); },
+               {"choose a camera instead", [this] { return is_running() && choices_.cameras.empty(); }}});
   actions.add({"navigate.digitise", "Probe draws",
                "While on, where the probe's tip goes is kept for the registration", GLFW_KEY_D, 0, false,
                running, [this] { return is_running() && status_.digitises; },
@@ -62,9 +83,16 @@ void NavigateView::add_actions(widgets::Actions& actions) {
        [this] { return operation_ != nullptr && !status_.bone->drawn->empty() && !status_.is_registering; },
        {},
        [this] { operation_->register_curves(); }});
-  actions.add({"navigate.record", "Record", "Keeps video, poses and decisions in the case", GLFW_KEY_R,
-               GLFW_MOD_CONTROL, false, running, [this] { return !status_.recording.empty(); },
-               [this] { toggle_recording(); }});
+  actions.add({"navigate.record",
+               "Record",
+               "Keeps video, poses and decisions in the case",
+               GLFW_KEY_R,
+               GLFW_MOD_CONTROL,
+               false,
+               running,
+               [this] { return !status_.recording.empty(); },
+               [this] { toggle_recording(); },
+               {"end the record", [this] { return !status_.recording.empty(); }}});
   actions.add({"navigate.overlay",
                "Plan on video",
                "Full, off; it fades by itself",
@@ -96,6 +124,10 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                },
                {},
                [this] {
+                 if (is_running()) {
+                   notice_ = "Stop the source first, then take the other bone";
+                   return;
+                 }
                  end_operation();
                  choices_.bone = choices_.bone == bones::BoneKind::Femur ? bones::BoneKind::Tibia
                                                                          : bones::BoneKind::Femur;
@@ -136,7 +168,8 @@ void NavigateView::add_registration_actions(widgets::Actions& actions) {
                false,
                has_drawn,
                {},
-               [this] { bone_registration()->take_back_stroke(); }});
+               [this] { bone_registration()->take_back_stroke(); },
+               {"forget the last stroke"}});
   actions.add({"navigate.stroke_up",
                "Newer stroke",
                "Selects the stroke drawn after this one",
@@ -188,7 +221,8 @@ void NavigateView::add_registration_actions(widgets::Actions& actions) {
                                                            status_.bone->touches.has_control_point());
                },
                {},
-               [this] { bone_registration()->forget_touches(); }});
+               [this] { bone_registration()->forget_touches(); },
+               {"forget the touches"}});
   actions.add({"navigate.clear",
                "Clear points",
                "Forgets what the probe drew and the touches; after an alarm the registration too",
@@ -199,7 +233,8 @@ void NavigateView::add_registration_actions(widgets::Actions& actions) {
                  return knows_bone() && (!status_.bone->drawn->empty() || !status_.bone->alarm.empty());
                },
                {},
-               [this] { bone_registration()->clear(); }});
+               [this] { bone_registration()->clear(); },
+               {"clear the points"}});
   actions.add({"navigate.earlier",
                "Earlier",
                "Goes back to the registration before",

@@ -1,8 +1,11 @@
 #include "app/navigate/navigate_view.h"
 
+#include <GLFW/glfw3.h>
+
 #include <algorithm>
 #include <utility>
 
+#include "app/navigate/overlay_lines.h"
 #include "app/scene/scene_camera.h"
 #include "navigation/camera/medium.h"
 #include "navigation/sources/source_files.h"
@@ -14,9 +17,6 @@ namespace {
 
 using Phase = OperationStatus::Phase;
 
-// AR can blind: what is drawn over the picture stands out for a while, then fades to a hint by itself.
-constexpr double kOverlayFull_s = 8, kOverlayFading_s = 2;
-constexpr float kOverlayFaded = 0.25F;
 constexpr double kGuideAway_s = 2;
 constexpr std::size_t kEnoughPoints = 150;
 constexpr const char* kDrill = "drill";
@@ -29,16 +29,24 @@ NavigateView::NavigateView(std::function<void()> make_current, std::function<voi
     : wake_(std::move(wake)), turns_(turns), scene_(std::move(make_current)) {}
 NavigateView::~NavigateView() = default;
 
-void NavigateView::open(const open_case::PlanModel* model, const std::filesystem::path& case_folder) {
+mode::ModeTitle NavigateView::title() const {
+  return {"navigate", "mode.navigate", "Navigate", "In theatre", GLFW_KEY_F2};
+}
+
+std::optional<sources::SourceKind> NavigateView::source_kind() const {
+  return operation_ != nullptr ? std::optional(kind_) : std::nullopt;
+}
+
+void NavigateView::case_opened(const mode::OpenCase& opened) {
   end_operation();
   // A bone that is just being made ready would be waited for.
   ending_.end(std::exchange(bones_, {}));
   choices_ = {};
   notice_.clear();
-  model_ = model;
-  case_folder_ = case_folder;
-  if (model_ != nullptr && !model_->has_bone(choices_.bone)) choices_.bone = bones::BoneKind::Tibia;
-  if (model_ != nullptr) look_along_plan();
+  model_ = opened.model;
+  case_folder_ = opened.folder;
+  if (!model_->has_bone(choices_.bone)) choices_.bone = bones::BoneKind::Tibia;
+  look_along_plan();
 }
 
 void NavigateView::enter() { choices_.videos = sources::videos_in(case_folder_); }
@@ -121,6 +129,7 @@ void NavigateView::start_simulation(SimulatedPart part) {
   try {
     start(simulated_setup(*model_, choices_.bone, case_folder_, part));
     part_ = part;
+    kind_ = sources::SourceKind::Simulation;
   } catch (const std::runtime_error& error) {  // as in start_video()
     notice_ = error.what();
   }
@@ -136,6 +145,7 @@ void NavigateView::start_video() {
   try {
     start(video_setup(*model_, choices_.bone, case_folder_, choices_.videos[choices_.video],
                       choices_.saline ? camera::kSalineIndex : camera::kAirIndex));
+    kind_ = sources::SourceKind::Recording;
     ++choices_.video;
   } catch (const std::runtime_error& error) {  // a file that cannot be used is a notice on this screen
     notice_ = error.what();
@@ -146,6 +156,7 @@ void NavigateView::start_camera(const sources::ConnectedCamera& camera) {
   try {
     start(camera_setup(*model_, choices_.bone, case_folder_, camera, turns_,
                        choices_.saline ? camera::kSalineIndex : camera::kAirIndex));
+    kind_ = sources::SourceKind::Live;
   } catch (const std::runtime_error& error) {
     notice_ = error.what();
     choices_.cameras.clear();
@@ -222,9 +233,7 @@ void NavigateView::toggle_recording() {
 
 float NavigateView::overlay_opacity(double now_s) const {
   if (!choices_.overlay_on) return 0;
-  const double faded =
-      std::clamp((now_s - choices_.overlay_shown_at_s - kOverlayFull_s) / kOverlayFading_s, 0.0, 1.0);
-  return 1 - static_cast<float>(faded) * (1 - kOverlayFaded);
+  return navigate::overlay_opacity(now_s - choices_.overlay_shown_at_s);
 }
 
 void NavigateView::cycle_overlay() {

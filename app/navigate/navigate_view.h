@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "app/case/plan_model.h"
+#include "app/mode/mode.h"
 #include "app/navigate/navigate_panels.h"
 #include "app/navigate/navigate_scene.h"
 #include "app/navigate/navigate_setup.h"
@@ -17,25 +18,25 @@
 
 namespace arthronaut::navigate {
 
-class NavigateView {
+class NavigateView : public mode::Mode {
  public:
   // wake: ends the window's wait for input; called from other threads. turns: shared with whatever else opens
   // cameras.
   NavigateView(std::function<void()> make_current, std::function<void()> wake,
                const sources::DeviceTurns& turns);
-  ~NavigateView();
+  ~NavigateView() override;
 
-  // Another case; ends what runs. The model is read whenever an operation is started; it outlives this view's
-  // use.
-  void open(const open_case::PlanModel* model, const std::filesystem::path& case_folder);
-  // This mode comes to the front: sees anew which videos the case has.
-  void enter();
-  void add_actions(widgets::Actions& actions);
-  void draw(const widgets::Ui& ui, const widgets::Rect& area);
-  // While true the screen must be drawn again soon: pictures are coming, or the overlay fades.
-  [[nodiscard]] bool is_busy() const;
-  // One line for the status bar of the window; empty when there is nothing to say.
-  [[nodiscard]] std::string notice() const { return notice_; }
+  [[nodiscard]] mode::ModeTitle title() const override;
+  [[nodiscard]] std::vector<std::string_view> action_prefixes() const override { return {"navigate."}; }
+  // The model is read whenever an operation is started.
+  void case_opened(const mode::OpenCase& opened) override;
+  void enter() override;  // sees anew which videos the case has
+  void add_actions(widgets::Actions& actions) override;
+  void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
+  [[nodiscard]] bool is_busy() const override;
+  [[nodiscard]] bool has_running_work() const override { return is_running(); }
+  [[nodiscard]] std::optional<sources::SourceKind> source_kind() const override;
+  [[nodiscard]] std::string notice() const override { return notice_; }
 
  private:
   void start(OperationSetup setup);
@@ -97,6 +98,7 @@ class NavigateView {
   OperationStatus status_;             // of this frame
   RegistrationWords words_;            // of status_.bone
   std::optional<SimulatedPart> part_;  // of the running simulation
+  sources::SourceKind kind_ = sources::SourceKind::Simulation;  // of the source started last
   std::string notice_;
 };
 

@@ -9,8 +9,8 @@
 namespace arthronaut::navigate {
 
 // Discs over every tool that is tracked in this frame: a wide one over its working end, others along its
-// shaft. The shaft follows the tool's axis where it has one, else the line from the tip to the marker; discs
-// overlap.
+// shaft, none wider than a quarter of the view. The shaft follows the tool's axis where it has one, else the
+// line from the tip to the marker; discs overlap.
 [[nodiscard]] std::vector<scene::ClearDisc> clear_discs_of(const pipeline::FrameResult& result,
                                                            const tools::ToolSet& tools);
 

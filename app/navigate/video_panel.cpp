@@ -1,54 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "app/navigate/navigate_panels.h"
+#include "app/navigate/overlay_lines.h"
 #include "app/widgets/picture_placement.h"
 
 namespace arthronaut::navigate {
 
 namespace {
-
-using scene::OverlayLine;
-
-struct LineStyle {
-  ImU32 color;
-  float width;
-};
-
-LineStyle style_of(const OverlayLine& line, float opacity, float scale) {
-  const float seen = line.is_hidden ? 0.35F * opacity : opacity;
-  switch (line.kind) {
-    case OverlayLine::Kind::BoneOutline:
-      return {widgets::color_of(scene::Color{1, 1, 1}, 0.5F * seen), 2.0F * scale};
-    case OverlayLine::Kind::EntryRing:
-      return {widgets::color_of(scene::Color{1, 1, 1}, seen), 3.5F * scale};
-    case OverlayLine::Kind::TunnelWall:
-      return {widgets::color_of(scene::kPlanColor, 0.75F * seen), 2.0F * scale};
-    case OverlayLine::Kind::TunnelAxis:
-      return {widgets::color_of(scene::kPlanColor, seen), 3.0F * scale};
-    case OverlayLine::Kind::Curve:
-      return {widgets::color_of(scene::kCurveColor, 0.9F * seen), 3.0F * scale};
-  }
-  return {widgets::kText, scale};
-}
-
-void draw_overlay(ImDrawList& draw, const widgets::PicturePlacement& placement,
-                  const scene::PlanOverlay& overlay, float opacity, float scale) {
-  for (const OverlayLine& line : overlay) {
-    const LineStyle style = style_of(line, opacity, scale);
-    // A probe at rest trembles about one place: a line through all that is nothing but spikes.
-    const float least = line.kind == OverlayLine::Kind::Curve ? 2 * style.width : 0;
-    std::optional<ImVec2> last;
-    for (const Eigen::Vector2d& p : line.points_px) {
-      const auto at = placement.on_screen(p);
-      if (!at || (last && std::hypot(at->x - last->x, at->y - last->y) < least)) continue;
-      draw.PathLineTo(*at);
-      last = at;
-    }
-    draw.PathStroke(style.color, 0, style.width);
-  }
-}
 
 // The picture fills as much of the area as its shape allows; returns where its pixels stand.
 struct DrawnPicture {
@@ -115,12 +74,20 @@ void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const Navigate
   const DrawnPicture picture = draw_picture(area, screen, textures);
   draw.PushClipRect(picture.area.min(), picture.area.max(), true);
   if (display.overlay_is_valid && screen.overlay_opacity > 0)
-    draw_overlay(draw, picture.placement, screen.status->live->overlay, screen.overlay_opacity,
-                 ui.theme.scale);
+    draw_overlay_lines(draw, picture.placement, screen.status->live->overlay, screen.overlay_opacity,
+                       ui.theme.scale);
   draw.PopClipRect();
   if (screen.undistorts)
     draw.AddText(ui.theme.strong, ui.theme.strong->FontSize,
                  {area.x + ui.theme.px(14), area.y + ui.theme.px(9)}, widgets::kQuietText, "Undistorted");
+  // Numbers without lines beside them ask for a reason.
+  if (display.guidance_is_valid) {
+    const std::string reason = why_no_plan_line(screen.status->live->overlay, screen.overlay_opacity);
+    ui.log.note_state("no_overlay", reason);
+    widgets::Rect below = area;
+    (void)below.cut_top(ui.theme.px(screen.undistorts ? 44 : 0));
+    if (!reason.empty()) widgets::caption(ui, below, widgets::kCaution, reason);
+  }
   // While the bone is registered nothing guides, as it should be: the picture is needed whole.
   const bool is_expected = screen.layout == NavigateLayout::Register && display.overlay_is_valid;
   if (!display.guidance_is_valid && !is_expected) draw_reason(ui, area, display);

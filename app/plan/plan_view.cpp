@@ -25,59 +25,63 @@ std::optional<BoneKind> only_bone_of(scene::View view) {
 
 }  // namespace
 
-PlanView::PlanView(std::function<void()> make_current, std::function<void(const open_case::PlanEdit&)> edit)
-    : pane_(std::move(make_current)), edit_(std::move(edit)) {}
+PlanView::PlanView(std::function<void()> make_current) : pane_(std::move(make_current)) {}
 
-void PlanView::reset(const open_case::PlanModel& model) {
-  state_ = {};
-  if (!model.has_bone(BoneKind::Femur)) state_.bone = BoneKind::Tibia;
-  look_from(model, scene::View::Anterior);
+mode::ModeTitle PlanView::title() const {
+  return {"plan", "mode.plan", "Plan", "Place the tunnels", GLFW_KEY_F1};
 }
 
-void PlanView::look_from(const open_case::PlanModel& model, scene::View view) {
+void PlanView::case_opened(const mode::OpenCase& opened) {
+  model_ = opened.model;
+  history_.open(opened.model, opened.folder);
+  state_ = {};
+  if (!model_->has_bone(BoneKind::Femur)) state_.bone = BoneKind::Tibia;
+  look_from(scene::View::Anterior);
+}
+
+void PlanView::look_from(scene::View view) {
   state_.looked_from = view;
   state_.only = only_bone_of(view);
-  if (state_.only && !model.has_bone(*state_.only)) state_.only.reset();
+  if (state_.only && !model_->has_bone(*state_.only)) state_.only.reset();
   if (state_.only) state_.bone = *state_.only;
-  pane_.look(scene::look_from(view, model.knee().side, model.bounds(state_.only), state_.aspect));
+  pane_.look(scene::look_from(view, model_->knee().side, model_->bounds(state_.only), state_.aspect));
   state_.shown_revision = 0;
 }
 
-void PlanView::apply(const open_case::PlanModel& model, const std::string& what, bool continues,
-                     const Move& move) const {
-  if (!model.has_bone(state_.bone)) return;
-  if (const auto tunnel = move(model))
-    edit_({state_.bone, tunnel, what + " " + tunnel_name(state_.bone) + " tunnel", continues});
+void PlanView::apply(const std::string& what, bool continues, const Move& move) {
+  if (!model_->has_bone(state_.bone)) return;
+  if (const auto tunnel = move(*model_))
+    history_.apply({state_.bone, tunnel, what + " " + tunnel_name(state_.bone) + " tunnel", continues},
+                   widgets::GraphicsWindow::now_s());
 }
 
-void PlanView::add_actions(widgets::Actions& actions, std::function<const open_case::PlanModel*()> model) {
-  const auto has_tunnel = [this, model] {
-    return model() != nullptr && model()->tunnel(state_.bone).has_value();
-  };
-  const auto is_open = [model] { return model() != nullptr; };
+void PlanView::add_actions(widgets::Actions& actions) {
+  const auto has_tunnel = [this] { return model_ != nullptr && model_->tunnel(state_.bone).has_value(); };
+  const auto is_open = [this] { return model_ != nullptr; };
   const auto move_action =
       [&](const char* id, const char* label, const char* tooltip, int key, int mods, const char* what,
           std::function<tunnels::Tunnel(const open_case::PlanModel&, const tunnels::Tunnel&)> move) {
-        actions.add({id, label, tooltip, key, mods, true, has_tunnel, {}, [this, model, what, move] {
-                       apply(*model(), what, true,
+        actions.add({id, label, tooltip, key, mods, true, has_tunnel, {}, [this, what, move] {
+                       apply(what, true,
                              [&](const open_case::PlanModel& m) { return move(m, *m.tunnel(state_.bone)); });
                      }});
       };
-  add_view_actions(actions, model);
+  add_view_actions(actions);
+  add_history_actions(actions);
   actions.add({"plan.bone",
                "Other bone",
                "Plan the tunnel of the other bone",
                GLFW_KEY_TAB,
                0,
                false,
-               [this, model] {
+               [this] {
                  const BoneKind other = state_.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
-                 return model() != nullptr && model()->has_bone(other);
+                 return model_ != nullptr && model_->has_bone(other);
                },
                {},
-               [this, model] {
+               [this] {
                  state_.bone = state_.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
-                 if (state_.only) look_from(*model(), scene::View::Anterior);
+                 if (state_.only) look_from(scene::View::Anterior);
                  state_.shown_revision = 0;
                }});
   actions.add({"plan.place", "Place entry", "Then click where the tunnel is to begin on the bone", GLFW_KEY_P,
@@ -112,22 +116,43 @@ void PlanView::add_actions(widgets::Actions& actions, std::function<const open_c
           return with_entry_slid(t, pane_.camera(), 0.5 * arrow.right_up, m.surface(state_.bone));
         });
   }
-  actions.add(
-      {"plan.remove",
-       "Remove tunnel",
-       "Undo brings it back",
-       GLFW_KEY_DELETE,
-       0,
-       false,
-       has_tunnel,
-       {},
-       [this] {
-         edit_({state_.bone, std::nullopt, "Remove the " + tunnel_name(state_.bone) + " tunnel", false});
-       }});
+  actions.add({"plan.remove",
+               "Remove tunnel",
+               "Undo brings it back",
+               GLFW_KEY_DELETE,
+               0,
+               false,
+               has_tunnel,
+               {},
+               [this] {
+                 history_.apply(
+                     {state_.bone, std::nullopt, "Remove the " + tunnel_name(state_.bone) + " tunnel", false},
+                     widgets::GraphicsWindow::now_s());
+               }});
 }
 
-void PlanView::add_view_actions(widgets::Actions& actions,
-                                std::function<const open_case::PlanModel*()> model) {
+void PlanView::add_history_actions(widgets::Actions& actions) {
+  actions.add({"plan.undo",
+               "Undo",
+               "Takes the last change of the plan back",
+               GLFW_KEY_Z,
+               GLFW_MOD_CONTROL,
+               true,
+               [this] { return history_.can_undo(); },
+               {},
+               [this] { history_.undo(); }});
+  actions.add({"plan.redo",
+               "Redo",
+               "Does it again",
+               GLFW_KEY_Y,
+               GLFW_MOD_CONTROL,
+               true,
+               [this] { return history_.can_redo(); },
+               {},
+               [this] { history_.redo(); }});
+}
+
+void PlanView::add_view_actions(widgets::Actions& actions) {
   struct Side {
     const char *id, *label;
     int key;
@@ -142,12 +167,12 @@ void PlanView::add_view_actions(widgets::Actions& actions,
                                   Side{"plan.plateau", "Plateau", GLFW_KEY_7, scene::View::Plateau}};
   for (const Side& side : sides)
     actions.add({side.id, side.label, std::string("Look from ") + side.label, side.key, 0, false,
-                 [model, side] {
+                 [this, side] {
                    const auto only = only_bone_of(side.view);
-                   return model() != nullptr && (!only || model()->has_bone(*only));
+                   return model_ != nullptr && (!only || model_->has_bone(*only));
                  },
                  [this, side] { return state_.looked_from == side.view; },
-                 [this, model, side] { look_from(*model(), side.view); }});
+                 [this, side] { look_from(side.view); }});
   actions.add({"plan.see_through",
                "See through",
                "The bone turns translucent",
@@ -162,8 +187,8 @@ void PlanView::add_view_actions(widgets::Actions& actions,
                }});
 }
 
-void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area, const open_case::PlanModel& model,
-                    const open_case::PlanStatus& status) {
+void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
+  const open_case::PlanStatus& status = history_.status();
   widgets::Rect rest = area;
   const widgets::Rect panel = rest.cut_right(ui.theme.px(470), ui.theme.px(12));
   widgets::Rect views = rest.cut_top(ui.theme.px(44), ui.theme.px(10));
@@ -173,8 +198,8 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area, const open
     widgets::action_button(ui, id);
     ImGui::SameLine();
   }
-  draw_bones(ui, rest, model);
-  draw_plan_panel(ui, panel, model, state_.bone, status);
+  draw_bones(ui, rest);
+  draw_plan_panel(ui, panel, *model_, state_.bone, status);
   ui.log.note_state("plan", status.save_failed                  ? "failed"
                             : status.saved.starts_with("saved") ? "saved"
                                                                 : "moving");
@@ -182,8 +207,8 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area, const open
   ui.log.note_state("redo", status.redo_what);
 }
 
-void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area,
-                          const open_case::PlanModel& model) {
+void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
+  const open_case::PlanModel& model = *model_;
   state_.aspect = area.width / std::max(area.height, 1.F);
   if (state_.shown_revision == 0 || state_.shown_revision != model.revision()) {
     scene::SceneContent content;
@@ -205,41 +230,41 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area,
       return at && (*at - pixel).norm() < reach;
     };
     if (state_.only && *state_.only != state_.bone) return false;
-    if (const auto aim = aim_handle(model); aim && near(*aim)) state_.dragged = Handle::Aim;
+    if (const auto aim = aim_handle(); aim && near(*aim)) state_.dragged = Handle::Aim;
     if (const auto tunnel = model.tunnel(state_.bone); tunnel && near(tunnel->entry_mm))
       state_.dragged = Handle::Entry;
     return state_.dragged != Handle::None;
   };
   const widgets::PaneInput input = pane_.draw(ui, "plan.view", area, handle_at);
-  draw_handles(ui, area, model);
-  use_pane_input(model, input);
+  draw_handles(ui, area);
+  use_pane_input(input);
 }
 
-std::optional<Eigen::Vector3d> PlanView::aim_handle(const open_case::PlanModel& model) const {
-  const auto tunnel = model.tunnel(state_.bone);
+std::optional<Eigen::Vector3d> PlanView::aim_handle() const {
+  const auto tunnel = model_->tunnel(state_.bone);
   if (!tunnel) return std::nullopt;
-  return tunnel->entry_mm + (model.drawn_length_mm(state_.bone) + kAimHandleBeyond_mm) * tunnel->direction;
+  return tunnel->entry_mm + (model_->drawn_length_mm(state_.bone) + kAimHandleBeyond_mm) * tunnel->direction;
 }
 
-void PlanView::use_pane_input(const open_case::PlanModel& model, const widgets::PaneInput& input) {
-  if (!model.has_bone(state_.bone)) return;
+void PlanView::use_pane_input(const widgets::PaneInput& input) {
+  if (!model_->has_bone(state_.bone)) return;
   const scene::SceneRay ray = scene::ray_through(pane_.camera(), input.mouse_px, input.size_px);
   if (input.handle_pressed) state_.has_dragged = false;
   if (input.handle_dragged && state_.dragged == Handle::Entry) {
-    apply(model, "Drag the entry of the", state_.has_dragged, [&](const open_case::PlanModel& m) {
+    apply("Drag the entry of the", state_.has_dragged, [&](const open_case::PlanModel& m) {
       return with_entry_at(*m.tunnel(state_.bone), ray, m.surface(state_.bone));
     });
     state_.has_dragged = true;
   }
   if (input.handle_dragged && state_.dragged == Handle::Aim) {
-    const auto handle = aim_handle(model);
-    apply(model, "Drag the aim of the", state_.has_dragged, [&](const open_case::PlanModel& m) {
+    const auto handle = aim_handle();
+    apply("Drag the aim of the", state_.has_dragged, [&](const open_case::PlanModel& m) {
       return aimed(*m.tunnel(state_.bone), pane_.camera(), ray, *handle);
     });
     state_.has_dragged = true;
   }
   if (input.was_clicked && state_.places_entry) {
-    apply(model, "Place the entry of the", false,
+    apply("Place the entry of the", false,
           [&](const open_case::PlanModel& m) -> std::optional<tunnels::Tunnel> {
             const auto tunnel = m.tunnel(state_.bone);
             return tunnel ? with_entry_at(*tunnel, ray, m.surface(state_.bone))
@@ -249,8 +274,7 @@ void PlanView::use_pane_input(const open_case::PlanModel& model, const widgets::
   }
 }
 
-void PlanView::draw_handles(const widgets::Ui& ui, const widgets::Rect& area,
-                            const open_case::PlanModel& model) const {
+void PlanView::draw_handles(const widgets::Ui& ui, const widgets::Rect& area) const {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.PushClipRect(area.min(), area.max(), true);
   const Eigen::Vector2d size(area.width, area.height);
@@ -259,7 +283,7 @@ void PlanView::draw_handles(const widgets::Ui& ui, const widgets::Rect& area,
     if (!at) return std::nullopt;
     return ImVec2(area.x + static_cast<float>(at->x()), area.y + static_cast<float>(at->y()));
   };
-  const auto tunnel = model.tunnel(state_.bone);
+  const auto tunnel = model_->tunnel(state_.bone);
   const bool is_shown = tunnel && (!state_.only || *state_.only == state_.bone);
   const float radius = ui.theme.px(13), line = ui.theme.px(3);
   const auto label = [&](const ImVec2& at, const char* text) {
@@ -276,7 +300,7 @@ void PlanView::draw_handles(const widgets::Ui& ui, const widgets::Rect& area,
       label(*at, "Entry");
       ui.log.note("plan.entry_handle", {at->x - radius, at->y - radius}, {at->x + radius, at->y + radius});
     }
-    if (const auto at = on_screen(*aim_handle(model))) {
+    if (const auto at = on_screen(*aim_handle())) {
       draw.AddQuadFilled({at->x, at->y - radius}, {at->x + radius, at->y}, {at->x, at->y + radius},
                          {at->x - radius, at->y}, widgets::color_of(scene::kPlanColor));
       draw.AddQuad({at->x, at->y - radius}, {at->x + radius, at->y}, {at->x, at->y + radius},

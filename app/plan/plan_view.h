@@ -1,5 +1,5 @@
-// Plan mode: the bones in 3D, the tunnels with their handles, and the numbers. Reads the model, asks for
-// changes.
+// Plan mode: the bones in 3D, the tunnels with their handles, and the numbers. Reads the model; every change
+// goes through the history, which saves it.
 #pragma once
 
 #include <functional>
@@ -7,36 +7,36 @@
 #include <optional>
 #include <string>
 
-#include "app/case/plan_edit.h"
+#include "app/case/plan_history.h"
 #include "app/case/plan_model.h"
-#include "app/widgets/controls.h"
+#include "app/mode/mode.h"
 #include "app/widgets/scene_pane.h"
 
 namespace arthronaut::plan {
 
-class PlanView {
+class PlanView : public mode::Mode {
  public:
-  PlanView(std::function<void()> make_current, std::function<void(const open_case::PlanEdit&)> edit);
+  explicit PlanView(std::function<void()> make_current);
 
-  // plan.* actions; they live as long as this view. `model` may change between calls, null while no case is
-  // open.
-  void add_actions(widgets::Actions& actions, std::function<const open_case::PlanModel*()> model);
-  void draw(const widgets::Ui& ui, const widgets::Rect& area, const open_case::PlanModel& model,
-            const open_case::PlanStatus& status);
-  // Another case is open.
-  void reset(const open_case::PlanModel& model);
+  [[nodiscard]] mode::ModeTitle title() const override;
+  [[nodiscard]] std::vector<std::string_view> action_prefixes() const override { return {"plan."}; }
+  void add_actions(widgets::Actions& actions) override;
+  void case_opened(const mode::OpenCase& opened) override;
+  void leave() override { history_.settle_now(); }
+  void tick(double now_s) override { history_.settle(now_s); }
+  void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
+  [[nodiscard]] bool is_busy() const override { return history_.is_moving(); }
 
  private:
   using Move = std::function<std::optional<tunnels::Tunnel>(const open_case::PlanModel&)>;
-  void add_view_actions(widgets::Actions& actions, std::function<const open_case::PlanModel*()> model);
-  void apply(const open_case::PlanModel& model, const std::string& what, bool continues,
-             const Move& move) const;
-  void look_from(const open_case::PlanModel& model, scene::View view);
-  void draw_bones(const widgets::Ui& ui, const widgets::Rect& area, const open_case::PlanModel& model);
-  void use_pane_input(const open_case::PlanModel& model, const widgets::PaneInput& input);
-  void draw_handles(const widgets::Ui& ui, const widgets::Rect& area,
-                    const open_case::PlanModel& model) const;
-  [[nodiscard]] std::optional<Eigen::Vector3d> aim_handle(const open_case::PlanModel& model) const;
+  void add_view_actions(widgets::Actions& actions);
+  void add_history_actions(widgets::Actions& actions);
+  void apply(const std::string& what, bool continues, const Move& move);
+  void look_from(scene::View view);
+  void draw_bones(const widgets::Ui& ui, const widgets::Rect& area);
+  void use_pane_input(const widgets::PaneInput& input);
+  void draw_handles(const widgets::Ui& ui, const widgets::Rect& area) const;
+  [[nodiscard]] std::optional<Eigen::Vector3d> aim_handle() const;
 
   enum class Handle { None, Entry, Aim };
   struct ViewState {
@@ -50,8 +50,9 @@ class PlanView {
     scene::View looked_from = scene::View::Anterior;
   };
 
+  open_case::PlanModel* model_ = nullptr;  // null until a case is open
+  open_case::PlanHistory history_;
   widgets::ScenePane pane_;
-  std::function<void(const open_case::PlanEdit&)> edit_;
   ViewState state_;
 };
 

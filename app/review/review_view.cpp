@@ -24,9 +24,17 @@ std::string date_text(const std::string& name) {
 ReviewView::ReviewView(std::function<void()> make_current, std::function<void()> wake)
     : wake_(std::move(wake)), pane_(std::move(make_current)) {}
 
-void ReviewView::open(const open_case::PlanModel* model, const std::filesystem::path& case_folder) {
-  model_ = model;
-  case_folder_ = case_folder;
+mode::ModeTitle ReviewView::title() const {
+  return {"review", "mode.review", "Review", "What happened", GLFW_KEY_F3};
+}
+
+std::optional<sources::SourceKind> ReviewView::source_kind() const {
+  return has_frames() ? std::optional(sources::SourceKind::Recording) : std::nullopt;
+}
+
+void ReviewView::case_opened(const mode::OpenCase& opened) {
+  model_ = opened.model;
+  case_folder_ = opened.folder;
   sessions_.clear();
   chosen_.reset();
   review_.reset();
@@ -34,7 +42,7 @@ void ReviewView::open(const open_case::PlanModel* model, const std::filesystem::
   notice_.clear();
 }
 
-void ReviewView::refresh() {
+void ReviewView::enter() {
   sessions_ = cases::session_folders(case_folder_);
   std::reverse(sessions_.begin(), sessions_.end());  // newest first
   if (sessions_.empty()) return;

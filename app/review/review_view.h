@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/case/plan_model.h"
+#include "app/mode/mode.h"
 #include "app/review/picture_fetcher.h"
 #include "app/review/session_review.h"
 #include "app/widgets/controls.h"
@@ -26,16 +27,20 @@ struct ReviewCursor {
   double play_started_s = 0, play_from_s = 0;
 };
 
-class ReviewView {
+class ReviewView : public mode::Mode {
  public:
   ReviewView(std::function<void()> make_current, std::function<void()> wake);
 
-  void open(const open_case::PlanModel* model, const std::filesystem::path& case_folder);
-  void refresh();  // reads the list of sessions again; chooses the newest where none is chosen
-  void add_actions(widgets::Actions& actions);
-  void draw(const widgets::Ui& ui, const widgets::Rect& area);
-  [[nodiscard]] bool is_busy() const;
-  [[nodiscard]] std::string notice() const { return notice_; }
+  [[nodiscard]] mode::ModeTitle title() const override;
+  [[nodiscard]] std::vector<std::string_view> action_prefixes() const override { return {"review."}; }
+  void case_opened(const mode::OpenCase& opened) override;
+  void enter() override;  // reads the list of sessions again; chooses the newest where none is chosen
+  void add_actions(widgets::Actions& actions) override;
+  void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
+  [[nodiscard]] bool is_busy() const override;
+  // Whatever a session was made of, what is shown of it is a recording.
+  [[nodiscard]] std::optional<sources::SourceKind> source_kind() const override;
+  [[nodiscard]] std::string notice() const override { return notice_; }
 
  private:
   void choose(std::size_t session);

@@ -113,8 +113,8 @@ Then CalibrateStation::take_next_step() {
 void CalibrateStation::add_actions(widgets::Actions& actions) {
   using Test = std::function<bool()>;
   const auto add = [&](const char* id, const char* label, const char* tooltip, int key, const Test& enabled,
-                       const std::function<void()>& run) {
-    actions.add({id, label, tooltip, key, 0, false, enabled, {}, run});
+                       const std::function<void()>& run, const widgets::Hold& hold = {}) {
+    actions.add({id, label, tooltip, key, 0, false, enabled, {}, run, hold});
   };
   actions.add({"setup.camera.auto",
                "Take by itself",
@@ -136,7 +136,7 @@ void CalibrateStation::add_actions(widgets::Actions& actions) {
   add(
       "setup.camera.drop", "Drop last", "Forgets the picture taken last", GLFW_KEY_D,
       [this] { return run_ != nullptr && display_.can_drop; },
-      [this] { run_->post([](CalibrateJob& job) { job.drop_last(); }); });
+      [this] { run_->post([](CalibrateJob& job) { job.drop_last(); }); }, {"forget the last picture"});
   add(
       "setup.camera.still", "Next picture", "Leaves this picture out; of single pictures", GLFW_KEY_RIGHT,
       [this] { return run_ != nullptr && run_->source().is_stills && status_.phase == FeedPhase::Running; },

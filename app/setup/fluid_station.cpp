@@ -63,7 +63,8 @@ void FluidStation::add_actions(widgets::Actions& actions) {
                  refractive_index_ = refractive_index_ == camera::kSalineIndex  ? camera::kWaterIndex
                                      : refractive_index_ == camera::kWaterIndex ? camera::kAirIndex
                                                                                 : camera::kSalineIndex;
-               }});
+               },
+               {"change the medium", [this] { return run_ != nullptr; }}});
   actions.add({"setup.fluid.clear",
                "Check anew",
                "Forgets the pictures and counts new ones",
@@ -72,7 +73,8 @@ void FluidStation::add_actions(widgets::Actions& actions) {
                false,
                [this] { return run_ != nullptr && status_.phase == FeedPhase::Running; },
                {},
-               [this] { run_->post([](FluidJob& job) { job.clear(); }); }});
+               [this] { run_->post([](FluidJob& job) { job.clear(); }); },
+               {"count anew"}});
 }
 
 std::vector<const char*> FluidStation::buttons() const { return {"setup.fluid.medium", "setup.fluid.clear"}; }

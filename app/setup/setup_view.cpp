@@ -4,6 +4,8 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
+
 #include "app/setup/calibrate_station.h"
 #include "app/setup/fluid_station.h"
 #include "app/setup/tool_station.h"
@@ -23,8 +25,13 @@ SetupView::SetupView(const std::function<void()>& wake, std::function<void()> go
 
 SetupView::~SetupView() = default;
 
-void SetupView::open(const std::filesystem::path& case_folder) {
-  case_folder_ = case_folder;
+mode::ModeTitle SetupView::title() const {
+  // F4 although it stands second: F2 and F3 are in the users' fingers.
+  return {"set up", "mode.setup", "Set up", "Camera, tools and fluid, before the operation", GLFW_KEY_F4};
+}
+
+void SetupView::case_opened(const mode::OpenCase& opened) {
+  case_folder_ = opened.folder;
   typed_ = {};
   is_read_ = false;
   for (Step& one : steps_) {
@@ -35,6 +42,7 @@ void SetupView::open(const std::filesystem::path& case_folder) {
 }
 
 void SetupView::enter() {
+  is_shown_ = true;
   if (!is_read_)
     for (Step& one : steps_) one.station->open(case_folder_);
   is_read_ = true;
@@ -42,12 +50,25 @@ void SetupView::enter() {
 }
 
 void SetupView::leave() {
+  is_shown_ = false;
   for (Step& one : steps_) one.station->release_source();
 }
 
 bool SetupView::awaits_text() const { return typed_.wants_focus || step().station->awaits_text(); }
 
-bool SetupView::is_busy() const { return step().station->is_busy(); }
+// What a station last knew of its run is of when it was last drawn.
+bool SetupView::is_busy() const { return is_shown_ && step().station->is_busy(); }
+
+bool SetupView::has_running_work() const {
+  return std::any_of(steps_.begin(), steps_.end(), [](const Step& one) { return one.station->has_run(); });
+}
+
+std::optional<sources::SourceKind> SetupView::source_kind() const {
+  if (!step().station->has_run()) return std::nullopt;
+  const FeedSource& source = step().sources.at(step().source);
+  if (source.is_simulated) return sources::SourceKind::Simulation;
+  return source.path.empty() ? sources::SourceKind::Live : sources::SourceKind::Recording;
+}
 
 void SetupView::show(std::size_t index) {
   if (index != shown_) step().station->release_source();
@@ -117,28 +138,30 @@ void SetupView::add_actions(widgets::Actions& actions) {
   show_action(1, "Tools", "The probe's tip and the guides' axes, into tools.json", GLFW_KEY_2);
   show_action(2, "Fluid check", "Whether the camera measures rightly in the fluid", GLFW_KEY_3);
   const auto add = [&](const char* id, const char* label, const char* tooltip, int key,
-                       const std::function<void()>& run) {
-    actions.add({id, label, tooltip, key, 0, false, {}, {}, run});
+                       const std::function<void()>& run, const widgets::Hold& hold = {}) {
+    actions.add({id, label, tooltip, key, 0, false, {}, {}, run, hold});
   };
+  const auto has_run = [this] { return step().station->has_run(); };
   add("setup.next", "Next step", "Starts, takes, calibrates, adopts: whatever comes next", GLFW_KEY_SPACE,
       [this] { take_next_step(); });
   add("setup.source", "Other source", "Simulated scope, pictures, videos, cameras in turn", GLFW_KEY_O,
-      [this] { choose_source(); });
+      [this] { choose_source(); }, {"take another source", has_run});
   add("setup.path", "Type a source", "The path of a video or of a folder of pictures", GLFW_KEY_P, [this] {
     typed_.is_open = typed_.wants_focus = true;
     typed_.refused = false;
   });
   add("setup.again", "Start again", "From the first picture; what was adopted stays", GLFW_KEY_R,
-      [this] { start(); });
+      [this] { start(); }, {"start again", has_run});
   actions.add({"setup.stop",
                "Stop",
                "Ends the source and forgets what was not adopted",
                GLFW_KEY_ESCAPE,
                0,
                false,
-               [this] { return step().station->has_run(); },
+               has_run,
                {},
-               [this] { step().station->stop(); }});
+               [this] { step().station->stop(); },
+               {"stop"}});
   for (Step& one : steps_) one.station->add_actions(actions);
 }
 

@@ -8,34 +8,34 @@
 #include <string>
 #include <vector>
 
+#include "app/mode/mode.h"
 #include "app/setup/setup_sources.h"
 #include "app/setup/station.h"
 #include "navigation/sources/background_end.h"
 
 namespace arthronaut::setup {
 
-class SetupView {
+class SetupView : public mode::Mode {
  public:
   // wake: ends the window's wait for input; called from other threads.
   // go_on: called when the last part of setting up is done and the next step is wished.
   // turns: shared with whatever else opens cameras.
   SetupView(const std::function<void()>& wake, std::function<void()> go_on,
             const sources::DeviceTurns& turns);
-  ~SetupView();
+  ~SetupView() override;
 
-  // Another case; ends what runs. Nothing of it is read before enter().
-  void open(const std::filesystem::path& case_folder);
-  // This mode comes to the front: sees anew what the case and the machine have.
-  void enter();
-  // Another mode comes to the front: cameras and files are let go, what was taken stays.
-  void leave();
-  void add_actions(widgets::Actions& actions);
-  // The prefixes of the ids of the actions that work now.
-  [[nodiscard]] std::vector<std::string_view> action_prefixes() const;
-  void draw(const widgets::Ui& ui, const widgets::Rect& area);
-  // A text field was opened in this frame and has not the keyboard yet.
-  [[nodiscard]] bool awaits_text() const;
-  [[nodiscard]] bool is_busy() const;  // the screen must be drawn again soon
+  [[nodiscard]] mode::ModeTitle title() const override;
+  // Nothing of the case is read before enter().
+  void case_opened(const mode::OpenCase& opened) override;
+  void enter() override;  // sees anew what the case and the machine have
+  void leave() override;  // cameras and files are let go, what was taken stays
+  void add_actions(widgets::Actions& actions) override;
+  [[nodiscard]] std::vector<std::string_view> action_prefixes() const override;
+  void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
+  [[nodiscard]] bool awaits_text() const override;
+  [[nodiscard]] bool is_busy() const override;
+  [[nodiscard]] bool has_running_work() const override;
+  [[nodiscard]] std::optional<sources::SourceKind> source_kind() const override;
 
  private:
   struct Step {
@@ -70,7 +70,8 @@ class SetupView {
   sources::DeviceTurns turns_;
   sources::BackgroundEnd ending_;  // what the stations have stopped
   std::filesystem::path case_folder_;
-  bool is_read_ = false;  // the stations know the case
+  bool is_read_ = false;   // the stations know the case
+  bool is_shown_ = false;  // this mode is at the front
   Typed typed_;
   std::vector<Step> steps_;
   std::size_t shown_ = 0;

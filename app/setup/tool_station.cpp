@@ -104,16 +104,13 @@ Then ToolStation::take_next_step() {
 void ToolStation::add_actions(widgets::Actions& actions) {
   using Test = std::function<bool()>;
   const auto add = [&](const char* id, const char* label, const char* tooltip, int key, const Test& enabled,
-                       const std::function<void()>& run) {
-    actions.add({id, label, tooltip, key, 0, false, enabled, {}, run});
+                       const std::function<void()>& run, const widgets::Hold& hold = {}) {
+    actions.add({id, label, tooltip, key, 0, false, enabled, {}, run, hold});
   };
   add(
-      "setup.tools.tool", "Other tool", "The next tool of tools.json", GLFW_KEY_TAB,
-      [this] { return choices_.size() > 1; },
-      [this] {
-        stop();
-        chosen_ = (chosen_ + 1) % choices_.size();
-      });
+      "setup.tools.tool", "Other tool", "The next tool of tools.json; stop the source first", GLFW_KEY_TAB,
+      [this] { return choices_.size() > 1 && run_ == nullptr; },
+      [this] { chosen_ = (chosen_ + 1) % choices_.size(); });
   actions.add({"setup.tools.medium",
                "Saline",
                "Saline while on, air while off; for the next start",
@@ -129,7 +126,7 @@ void ToolStation::add_actions(widgets::Actions& actions) {
   add(
       "setup.tools.clear", "Clear poses", "Forgets the poses and takes new ones", GLFW_KEY_C,
       [this] { return run_ != nullptr && status_.job.pose_count > 0; },
-      [this] { run_->post([](ToolJob& job) { job.clear(); }); });
+      [this] { run_->post([](ToolJob& job) { job.clear(); }); }, {"clear the poses"});
   add(
       "setup.tools.adopt", "Adopt", "This case is navigated with the result", GLFW_KEY_ENTER,
       [this] { return run_ != nullptr && display_.can_adopt; }, [this] { adopt(); });

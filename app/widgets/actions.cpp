@@ -82,23 +82,63 @@ const Action* Actions::find(std::string_view id) const {
 
 bool Actions::run(std::string_view id) const {
   const Action* action = find(id);
-  if (action == nullptr || (action->is_enabled && !action->is_enabled())) return false;
+  if (action == nullptr || !action->can_run()) return false;
   action->run();
   return true;
 }
 
-bool Actions::press(const KeyPress& press, const std::vector<std::string_view>& prefixes) const {
+bool Actions::begin(const Action& action) {
+  if (action.needs_hold())
+    guard_.press(action.id);
+  else
+    action.run();
+  return true;
+}
+
+bool Actions::press(const KeyPress& press, const std::vector<std::string_view>& prefixes) {
+  if (!press.is_repeat) guard_.cancel();  // two keys at once are a hand that lies on the keyboard
   for (const Action& action : actions_) {
     if (action.key != press.key || action.mods != press.mods || action.key == 0) continue;
-    if (press.is_repeat && !action.repeats) continue;
+    if (press.is_repeat && (!action.repeats || action.needs_hold())) continue;
     const bool in_reach = std::any_of(prefixes.begin(), prefixes.end(),
                                       [&](std::string_view prefix) { return action.id.starts_with(prefix); });
-    if (in_reach && (!action.is_enabled || action.is_enabled())) {
-      action.run();
-      return true;
-    }
+    if (in_reach && action.can_run()) return begin(action);
   }
   return false;
+}
+
+void Actions::release(int key) {
+  const Action* held = guard_.is_held() ? find(guard_.what()) : nullptr;
+  if (held == nullptr) return;
+  const bool is_modifier = key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER;
+  if (key == held->key || (is_modifier && held->mods != 0)) guard_.let_go();
+}
+
+void Actions::press_button(std::string_view id) {
+  const Action* action = find(id);
+  if (action != nullptr && action->can_run()) begin(*action);
+}
+
+void Actions::release_button(std::string_view id) {
+  if (guard_.what() == id) guard_.let_go();
+}
+
+void Actions::advance(double now_s) {
+  const std::string what = guard_.what();
+  const Action* action = guard_.is_held() ? find(what) : nullptr;
+  if (guard_.is_held() && (action == nullptr || !action->can_run() || !action->needs_hold())) guard_.cancel();
+  if (guard_.advance(now_s) && action != nullptr) action->run();
+}
+
+double Actions::hold_progress(std::string_view id) const {
+  return guard_.what() == id ? guard_.progress() : 0;
+}
+
+std::string Actions::hold_words() const {
+  const Action* action = find(guard_.what());
+  if (action == nullptr || action->hold.to.empty()) return "";
+  const std::string key = key_name(action->key, action->mods);
+  return "Hold " + (key.empty() ? "the button" : key) + " to " + action->hold.to;
 }
 
 }  // namespace arthronaut::widgets

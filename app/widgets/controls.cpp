@@ -48,7 +48,7 @@ void end_panel() { ImGui::EndChild(); }
 void action_button(const Ui& ui, std::string_view action_id, float width, float height) {
   const Action* action = ui.actions.find(action_id);
   if (action == nullptr) return;
-  const bool enabled = !action->is_enabled || action->is_enabled();
+  const bool enabled = action->can_run(), needs_hold = enabled && action->needs_hold();
   const bool is_on = action->is_on && action->is_on();
   const std::string key = key_name(action->key, action->mods);
   const ImGuiStyle& style = ImGui::GetStyle();
@@ -59,27 +59,42 @@ void action_button(const Ui& ui, std::string_view action_id, float width, float 
 
   ImGui::PushID(action->id.c_str());
   ImGui::BeginDisabled(!enabled);
-  if (ImGui::InvisibleButton("button", {width, height})) action->run();
+  const bool clicked = ImGui::InvisibleButton("button", {width, height});
   const bool hovered = enabled && ImGui::IsItemHovered();
   const bool held = ImGui::IsItemActive();
+  // What was held ends with its press: letting go is no click, whatever the action has become meanwhile.
+  bool& is_a_hold = *ImGui::GetStateStorage()->GetBoolRef(ImGui::GetID("hold"));
+  if (ImGui::IsItemActivated()) is_a_hold = needs_hold;
+  if (ImGui::IsItemActivated() && needs_hold) ui.actions.press_button(action->id);
+  if (clicked && !is_a_hold) action->run();
+  if (ImGui::IsItemDeactivated() || (held && !hovered)) ui.actions.release_button(action->id);
   ImGui::EndDisabled();
   const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax();
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const ImGuiCol fill = held ? ImGuiCol_ButtonActive : hovered ? ImGuiCol_ButtonHovered : ImGuiCol_Button;
   draw.AddRectFilled(min, max, is_on ? IM_COL32(28, 74, 104, 255) : ImGui::GetColorU32(fill),
                      style.FrameRounding);
+  if (const float done = static_cast<float>(ui.actions.hold_progress(action->id)); done > 0)
+    draw.AddRectFilled(min, {min.x + done * (max.x - min.x), max.y}, kHeld, style.FrameRounding);
   if (is_on) draw.AddRect(min, max, kAccent, style.FrameRounding, 0, ui.theme.px(2));
   const ImU32 text = enabled ? kText : IM_COL32(104, 115, 126, 255);
   const float middle = (min.y + max.y) / 2;
   const float left = key.empty() ? (min.x + max.x - label_size.x) / 2 : min.x + style.FramePadding.x;
   draw.PushClipRect(min, max, true);
   draw_text(draw, ui.theme.body, {left, middle - label_size.y / 2}, text, action->label);
-  if (!key.empty())
-    draw_text(draw, ui.theme.body,
-              {max.x - style.FramePadding.x - text_size(ui.theme.body, key).x, middle - label_size.y / 2},
-              enabled ? kQuietText : IM_COL32(84, 94, 104, 255), key);
+  if (!key.empty()) {
+    const ImVec2 at{max.x - style.FramePadding.x - text_size(ui.theme.body, key).x,
+                    middle - label_size.y / 2};
+    const ImU32 color = enabled ? kQuietText : IM_COL32(84, 94, 104, 255);
+    draw_text(draw, ui.theme.body, at, color, key);
+    // A bar under the key: it is one to be held.
+    if (action->needs_hold())
+      draw.AddRectFilled({at.x, at.y + label_size.y},
+                         {max.x - style.FramePadding.x, at.y + label_size.y + ui.theme.px(3)}, color);
+  }
   draw.PopClipRect();
-  if (hovered && !action->tooltip.empty()) ImGui::SetTooltip("%s", action->tooltip.c_str());
+  if (hovered && !action->tooltip.empty())
+    ImGui::SetTooltip("%s%s", action->tooltip.c_str(), needs_hold ? ". Hold it down" : "");
   ui.log.note(action->id, min, max);
   ImGui::PopID();
 }

@@ -14,7 +14,7 @@ namespace arthronaut::widgets {
 // What every panel gets.
 struct Ui {
   const Theme& theme;
-  const Actions& actions;
+  Actions& actions;
   WidgetLog& log;
   double now_s = 0;
 };
@@ -32,7 +32,7 @@ void begin_panel(const Ui& ui, const char* name, const Rect& rect, std::string_v
 void end_panel();
 
 // A button for an action: its label, its key, greyed while it is not possible. Width 0: as wide as the label
-// needs.
+// needs. What must be held fills while it is held, by the key or by the mouse.
 void action_button(const Ui& ui, std::string_view action_id, float width = 0, float height = 0);
 
 void draw_sign(ImDrawList& draw, const ImVec2& center, float radius, Severity severity);

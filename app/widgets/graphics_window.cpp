@@ -17,6 +17,7 @@ struct GraphicsWindow::State {
   KeyQueue queue;
   std::vector<KeyEvent> dealt;
   std::vector<KeyPress> keys;
+  std::vector<int> released;
   int frames_to_hold = 0;
 
   static State& of(GLFWwindow* window) { return *static_cast<State*>(glfwGetWindowUserPointer(window)); }
@@ -31,6 +32,7 @@ struct GraphicsWindow::State {
   }
   void deal_keys() {
     keys.clear();
+    released.clear();
     dealt.clear();
     if (frames_to_hold > 0 && !ImGui::GetIO().WantTextInput) {
       --frames_to_hold;
@@ -51,7 +53,10 @@ struct GraphicsWindow::State {
                                  : is_repeat ? GLFW_REPEAT
                                              : GLFW_PRESS,
                                  event.mods);
-      if (!is_release) keys.push_back({event.key, event.mods & kOurs, is_repeat});
+      if (is_release)
+        released.push_back(event.key);
+      else
+        keys.push_back({event.key, event.mods & kOurs, is_repeat});
     }
   }
 };
@@ -153,6 +158,8 @@ void GraphicsWindow::await_text_field() {
 }
 
 const std::vector<KeyPress>& GraphicsWindow::keys() const { return state_->keys; }
+const std::vector<int>& GraphicsWindow::released_keys() const { return state_->released; }
+void GraphicsWindow::keep_open() { glfwSetWindowShouldClose(state_->window, GLFW_FALSE); }
 bool GraphicsWindow::should_close() const { return glfwWindowShouldClose(state_->window) == GLFW_TRUE; }
 void GraphicsWindow::make_current() const { glfwMakeContextCurrent(state_->window); }
 const Theme& GraphicsWindow::theme() const { return state_->theme; }

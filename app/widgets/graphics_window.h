@@ -34,7 +34,10 @@ class GraphicsWindow {
   void await_text_field();
   // Keys pressed in this frame, unless a text field has them.
   [[nodiscard]] const std::vector<KeyPress>& keys() const;
+  // Keys let go in this frame (GLFW_KEY_*), also those that a text field has.
+  [[nodiscard]] const std::vector<int>& released_keys() const;
   [[nodiscard]] bool should_close() const;
+  void keep_open();  // takes back that it should close
   void make_current() const;
   [[nodiscard]] const Theme& theme() const;
   [[nodiscard]] static double now_s();

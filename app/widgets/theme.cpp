@@ -18,16 +18,18 @@ constexpr Paths kSemiBold{"/usr/share/fonts/opentype/inter/Inter-SemiBold.otf",
                           "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf",
                           "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans-Bold.ttf"};
 
-ImFont* add_font(const Paths& paths, float size_px) {
-  // Latin with accents; dashes and the ellipsis; Greek sigma; arrows; the minus sign.
-  static constexpr std::array<ImWchar, 11> kGlyphs{0x20,   0x17F,  0x2010, 0x2026, 0x3C3, 0x3C3,
-                                                   0x2190, 0x2193, 0x2212, 0x2212, 0};
+// Latin with accents; dashes and the ellipsis; Greek sigma; arrows; the minus sign.
+constexpr std::array<ImWchar, 11> kGlyphs{0x20,   0x17F,  0x2010, 0x2026, 0x3C3, 0x3C3,
+                                          0x2190, 0x2193, 0x2212, 0x2212, 0};
+
+// ImGui keeps the pointer to the glyphs until the atlas is built.
+ImFont* add_font(const Paths& paths, float size_px, const ImWchar* glyphs = kGlyphs.data()) {
   ImFontConfig config;
   config.OversampleH = 2;
   config.OversampleV = 1;
   for (const char* path : paths)
     if (std::filesystem::exists(path))
-      return ImGui::GetIO().Fonts->AddFontFromFileTTF(path, size_px, &config, kGlyphs.data());
+      return ImGui::GetIO().Fonts->AddFontFromFileTTF(path, size_px, &config, glyphs);
   config.SizePixels = size_px;
   return ImGui::GetIO().Fonts->AddFontDefault(&config);
 }
@@ -85,6 +87,8 @@ Theme build_theme(float scale) {
   theme.strong = add_font(kSemiBold, std::round(24 * scale));
   theme.title = add_font(kSemiBold, std::round(34 * scale));
   theme.number = add_font(kSemiBold, std::round(64 * scale));
+  static constexpr std::array<ImWchar, 7> kLetters{0x20, 0x7E, 0x2013, 0x2013, 0x2190, 0x2193, 0};
+  theme.afar = add_font(kSemiBold, std::round(kAfar_px * scale), kLetters.data());
   build_style(scale);
   return theme;
 }

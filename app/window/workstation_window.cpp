@@ -1,9 +1,16 @@
 #include "app/window/workstation_window.h"
 
 #include <GLFW/glfw3.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
+#include "app/navigate/navigate_view.h"
+#include "app/plan/plan_view.h"
+#include "app/review/review_view.h"
+#include "app/setup/setup_view.h"
+#include "app/widgets/hold_hint.h"
+#include "app/widgets/source_banner.h"
 #include "app/window/key_list.h"
 #include "planning/geometry/error.h"
 
@@ -13,24 +20,10 @@ namespace {
 
 using widgets::GraphicsWindow;
 
-constexpr double kIdleWait_s = 0.2, kBusyWait_s = 0.05;
+constexpr double kIdleWait_s = 0.2, kBusyWait_s = 0.05, kHeldWait_s = 0.02;
 // After input ImGui needs a few frames until hovering, pressing and layout have settled.
 constexpr int kFramesAfterInput = 4;
 constexpr const char* kNotice = "Research software, not a medical device";
-
-const char* name_of(Mode mode) {
-  switch (mode) {
-    case Mode::Plan:
-      return "plan";
-    case Mode::SetUp:
-      return "set up";
-    case Mode::Navigate:
-      return "navigate";
-    case Mode::Review:
-      return "review";
-  }
-  return "";
-}
 
 }  // namespace
 
@@ -39,26 +32,30 @@ WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
       window_("Arthronaut"),
       case_(options.case_folder, [] { GraphicsWindow::wake(); }),
       log_(options.list_widgets),
-      planning_([this] { window_.make_current(); },
-                [this](const open_case::PlanEdit& edit) { history_.apply(edit, GraphicsWindow::now_s()); }),
-      setup_([] { GraphicsWindow::wake(); }, [this] { go_to(Mode::Navigate); }, camera_turns_),
-      navigate_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }, camera_turns_),
-      review_([this] { window_.make_current(); }, [] { GraphicsWindow::wake(); }) {
+      watch_([](const std::string& what) { spdlog::warn(what); }, std::chrono::milliseconds(500)) {
+  make_modes();
   add_actions();
+}
+
+void WorkstationWindow::make_modes() {
+  const auto make_current = [this] { window_.make_current(); };
+  const auto wake = [] { GraphicsWindow::wake(); };
+  const sources::DeviceTurns camera_turns;  // Set up and Navigate open one camera after the other
+  constexpr std::size_t kNavigate = 2;
+  modes_.push_back(std::make_unique<plan::PlanView>(make_current));
+  modes_.push_back(std::make_unique<setup::SetupView>(
+      wake, [this] { show(kNavigate); }, camera_turns));
+  modes_.push_back(std::make_unique<navigate::NavigateView>(make_current, wake, camera_turns));
+  modes_.push_back(std::make_unique<review::ReviewView>(make_current, wake));
 }
 
 void WorkstationWindow::add_actions() {
   const auto is_open = [this] { return case_.model() != nullptr; };
-  const auto mode_action = [&](const char* id, const char* label, const char* tooltip, int key, Mode mode) {
-    actions_.add({id, label, tooltip, key, 0, false, is_open, [this, mode] { return mode_ == mode; },
-                  [this, mode] { go_to(mode); }});
-  };
-  mode_action("mode.plan", "Plan", "Place the tunnels", GLFW_KEY_F1, Mode::Plan);
-  // F4 although it stands second: F2 and F3 are in the users' fingers.
-  mode_action("mode.setup", "Set up", "Camera, tools and fluid, before the operation", GLFW_KEY_F4,
-              Mode::SetUp);
-  mode_action("mode.navigate", "Navigate", "In theatre", GLFW_KEY_F2, Mode::Navigate);
-  mode_action("mode.review", "Review", "What happened", GLFW_KEY_F3, Mode::Review);
+  for (std::size_t i = 0; i < modes_.size(); ++i) {
+    const mode::ModeTitle title = modes_[i]->title();
+    actions_.add({std::string(title.action), std::string(title.label), std::string(title.tooltip), title.key,
+                  0, false, is_open, [this, i] { return shown_ == i; }, [this, i] { show(i); }});
+  }
   actions_.add({"app.keys",
                 "Keys",
                 "Every key of this mode",
@@ -68,54 +65,49 @@ void WorkstationWindow::add_actions() {
                 {},
                 [this] { return shows_keys_; },
                 [this] { shows_keys_ = !shows_keys_; }});
-  actions_.add(
-      {"app.quit", "Quit", "Everything is saved", GLFW_KEY_Q, GLFW_MOD_CONTROL, false, {}, {}, [this] {
-         quits_ = true;
-       }});
-  actions_.add({"plan.undo",
-                "Undo",
-                "Takes the last change of the plan back",
-                GLFW_KEY_Z,
+  actions_.add({"app.quit",
+                "Quit",
+                "Everything is saved",
+                GLFW_KEY_Q,
                 GLFW_MOD_CONTROL,
-                true,
-                [this] { return history_.can_undo(); },
+                false,
                 {},
-                [this] { history_.undo(); }});
-  actions_.add({"plan.redo",
-                "Redo",
-                "Does it again",
-                GLFW_KEY_Y,
-                GLFW_MOD_CONTROL,
-                true,
-                [this] { return history_.can_redo(); },
                 {},
-                [this] { history_.redo(); }});
-  planning_.add_actions(actions_, [this]() -> const open_case::PlanModel* { return case_.model(); });
-  setup_.add_actions(actions_);
-  navigate_.add_actions(actions_);
-  review_.add_actions(actions_);
+                [this] { quits_ = true; },
+                {"quit", [this] { return has_running_work(); }}});
+  for (const auto& mode : modes_) mode->add_actions(actions_);
 }
 
 void WorkstationWindow::run() {
   int settle = 30;  // frames to draw without waiting
-  for (long count = 0;
-       !quits_ && !window_.should_close() && (options_.frames == 0 || count < options_.frames); ++count) {
-    const double timeout = settle > 0 ? 0 : is_busy() ? kBusyWait_s : kIdleWait_s;
+  for (long count = 0; !quits_ && !should_end() && (options_.frames == 0 || count < options_.frames);
+       ++count) {
+    const double timeout = settle > 0                            ? 0
+                           : actions_.is_held()                  ? kHeldWait_s
+                           : modes_are_busy() || case_.is_busy() ? kBusyWait_s
+                                                                 : kIdleWait_s;
     const double started = GraphicsWindow::now_s();
     frame(timeout);
     const bool woken = timeout > 0 && GraphicsWindow::now_s() - started < timeout;
-    settle = woken && !pictures_come() ? kFramesAfterInput : std::max(settle - 1, 0);
+    settle = woken && !modes_are_busy() ? kFramesAfterInput : std::max(settle - 1, 0);
   }
-  history_.settle_now();
+  shown().leave();
 }
 
-// What a station of Set up last knew of its run is of when it was last drawn.
-bool WorkstationWindow::pictures_come() const {
-  return (mode_ == Mode::SetUp && setup_.is_busy()) || navigate_.is_busy();
+bool WorkstationWindow::should_end() {
+  if (!window_.should_close()) return false;
+  if (!has_running_work()) return true;
+  window_.keep_open();
+  actions_.remind("app.quit");
+  return false;
 }
 
-bool WorkstationWindow::is_busy() const {
-  return case_.is_busy() || pictures_come() || review_.is_busy() || history_.is_moving();
+bool WorkstationWindow::modes_are_busy() const {
+  return std::any_of(modes_.begin(), modes_.end(), [](const auto& mode) { return mode->is_busy(); });
+}
+
+bool WorkstationWindow::has_running_work() const {
+  return std::any_of(modes_.begin(), modes_.end(), [](const auto& mode) { return mode->has_running_work(); });
 }
 
 // poll -> queues and actions -> UI (with the scenes that are dirty) -> draw -> swap
@@ -123,23 +115,24 @@ void WorkstationWindow::frame(double timeout_s) {
   window_.begin_frame(timeout_s);
   take_opened_case();
   dispatch_keys();
-  history_.settle(GraphicsWindow::now_s());
+  for (const auto& mode : modes_) mode->tick(GraphicsWindow::now_s());
   const widgets::Ui ui{window_.theme(), actions_, log_, GraphicsWindow::now_s()};
+  heartbeat_.beat(ui.now_s, has_running_work());
+  watch_.frame_drawn(has_running_work());
   draw_screen(ui);
+  actions_.advance(ui.now_s);  // after the buttons: what was let go in this frame is known
   window_.end_frame();
   log_.end_frame();
 }
 
 void WorkstationWindow::take_opened_case() {
   if (!case_.take()) return;
-  history_.open(case_.model(), case_.folder());
-  planning_.reset(*case_.model());
-  setup_.open(case_.folder());
-  navigate_.open(case_.model(), case_.folder());
-  review_.open(case_.model(), case_.folder());
+  for (const auto& mode : modes_) mode->case_opened({case_.model(), case_.folder()});
+  shown().enter();
 }
 
 void WorkstationWindow::dispatch_keys() {
+  for (const int key : window_.released_keys()) actions_.release(key);
   for (const widgets::KeyPress& press : window_.keys()) {
     if (shows_keys_ && press.key == GLFW_KEY_ESCAPE) {
       shows_keys_ = false;
@@ -147,35 +140,22 @@ void WorkstationWindow::dispatch_keys() {
     }
     actions_.press(press, action_prefixes());
     // What is typed after the key that opens a text field is meant for the field.
-    if (mode_ == Mode::SetUp && setup_.awaits_text()) window_.await_text_field();
+    if (shown().awaits_text()) window_.await_text_field();
   }
+  if (ImGui::GetIO().WantTextInput) actions_.let_go();
 }
 
 std::vector<std::string_view> WorkstationWindow::action_prefixes() const {
   std::vector<std::string_view> prefixes{"app.", "mode."};
-  switch (mode_) {
-    case Mode::Plan:
-      prefixes.push_back("plan.");
-      break;
-    case Mode::SetUp:
-      for (const std::string_view prefix : setup_.action_prefixes()) prefixes.push_back(prefix);
-      break;
-    case Mode::Navigate:
-      prefixes.push_back("navigate.");
-      break;
-    case Mode::Review:
-      prefixes.push_back("review.");
-      break;
-  }
+  for (const std::string_view prefix : shown().action_prefixes()) prefixes.push_back(prefix);
   return prefixes;
 }
 
-void WorkstationWindow::go_to(Mode mode) {
-  if (mode_ == Mode::SetUp && mode != Mode::SetUp) setup_.leave();
-  mode_ = mode;
-  if (mode == Mode::SetUp) setup_.enter();
-  if (mode == Mode::Navigate) navigate_.enter();
-  if (mode == Mode::Review) review_.refresh();
+void WorkstationWindow::show(std::size_t mode) {
+  actions_.let_go();
+  if (mode != shown_) shown().leave();
+  shown_ = mode;
+  shown().enter();
 }
 
 void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
@@ -195,18 +175,17 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   widgets::Rect inner = area.inset(ui.theme.px(12));
   if (case_.model() == nullptr)
     draw_waiting(ui, inner);
-  else if (mode_ == Mode::Plan)
-    planning_.draw(ui, inner, *case_.model(), history_.status());
-  else if (mode_ == Mode::SetUp)
-    setup_.draw(ui, inner);
-  else if (mode_ == Mode::Navigate)
-    navigate_.draw(ui, inner);
   else
-    review_.draw(ui, inner);
+    shown().draw(ui, inner);
   if (shows_keys_) draw_key_list(ui, action_prefixes());
+  const auto kind = shown().source_kind();
+  if (kind) widgets::draw_source_frame(ui, {0, 0, size.x, size.y}, *kind);
+  widgets::draw_hold_hint(ui, {0, 0, size.x, size.y});
   ImGui::PopFont();
   ImGui::End();
-  log_.note_state("mode", name_of(mode_));
+  if (!kind) log_.note_state("source_kind", "none");
+  log_.note_state("standstill", heartbeat_.words());
+  log_.note_state("mode", shown().title().name);
   log_.note_state("case", case_.model() != nullptr ? "open" : case_.failure().empty() ? "opening" : "failed");
 }
 
@@ -216,13 +195,21 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
   draw.AddLine({area.x, area.y + area.height}, area.max(), widgets::kPanelEdge);
   const float middle = area.y + area.height / 2;
   const ImFont* title = ui.theme.title;
-  draw.AddText(title, title->FontSize, {area.x + ui.theme.px(20), middle - title->FontSize / 2},
-               widgets::kText, "Arthronaut");
-  const float width = ui.theme.px(190), height = ui.theme.px(50);
-  float x = area.x + ui.theme.px(230);
-  for (const char* id : {"mode.plan", "mode.setup", "mode.navigate", "mode.review"}) {
+  const float width = ui.theme.px(172), height = ui.theme.px(50);
+  const widgets::Rect heart{area.x + ui.theme.px(14), middle - height / 2, height, height};
+  widgets::draw_heartbeat(ui, heart, heartbeat_);
+  // The same place in all modes: where the pictures come from, or else whose screen this is.
+  const widgets::Rect name{heart.x + heart.width + ui.theme.px(10), middle - ui.theme.px(29),
+                           ui.theme.px(330), ui.theme.px(58)};
+  if (const auto kind = shown().source_kind())
+    widgets::draw_source_word(ui, name, *kind);
+  else
+    draw.AddText(title, title->FontSize, {name.x, middle - title->FontSize / 2}, widgets::kText,
+                 "Arthronaut");
+  float x = name.x + name.width + ui.theme.px(12);
+  for (const auto& mode : modes_) {
     ImGui::SetCursorScreenPos({x, middle - height / 2});
-    widgets::action_button(ui, id, width, height);
+    widgets::action_button(ui, mode->title().action, width, height);
     x += width + ui.theme.px(10);
   }
   if (case_.model() != nullptr) {
@@ -246,10 +233,10 @@ void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Re
   const ImFont* font = ui.theme.body;
   const float y = area.y + (area.height - font->FontSize) / 2;
   draw.AddText(font, font->FontSize, {area.x + ui.theme.px(20), y}, widgets::kQuietText, kNotice);
-  const std::string notice = !case_.failure().empty()  ? case_.failure()
-                             : mode_ == Mode::Navigate ? navigate_.notice()
-                             : mode_ == Mode::Review   ? review_.notice()
-                                                       : std::string();
+  const std::string standstill = heartbeat_.words();
+  const std::string notice = !case_.failure().empty() ? case_.failure()
+                             : !standstill.empty()    ? standstill
+                                                      : shown().notice();
   const std::string text = !notice.empty()            ? notice
                            : case_.model() != nullptr ? case_.folder().string()
                                                       : std::string();

@@ -10,6 +10,8 @@
 
 namespace arthronaut::sources {
 
+enum class SourceKind { Live, Recording, Simulation };
+
 struct SourceInfo {
   std::string name;  // for screen and record
   Eigen::Vector2i image_size_px{0, 0};

@@ -23,7 +23,7 @@ struct Counter {
                  {},
                  [this] { ++runs; }});
   }
-  bool press(int key, int mods, bool is_repeat = false, std::string_view prefix = "plan.") const {
+  bool press(int key, int mods, bool is_repeat = false, std::string_view prefix = "plan.") {
     return actions.press({key, mods, is_repeat}, {prefix});
   }
 };

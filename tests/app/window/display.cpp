@@ -159,15 +159,43 @@ void RunningWorkstation::hand(const std::string& arguments) const {
 
 void RunningWorkstation::press(const std::string& key) const { hand("key " + key); }
 
+bool RunningWorkstation::hold_until(const std::string& key, const std::string& state,
+                                    const std::string& value, double seconds) const {
+  hand("keydown " + key);
+  const bool became = wait_for_state(state, value, seconds);
+  hand("keyup " + key);
+  return became;
+}
+
+bool RunningWorkstation::hold_click_until(const std::string& widget, const std::string& state,
+                                          const std::string& value, double seconds) const {
+  point_at(widget);
+  hand("mousedown 1");
+  const bool became = wait_for_state(state, value, seconds);
+  hand("mouseup 1");
+  return became;
+}
+
+void RunningWorkstation::freeze(double seconds) const {
+  kill(process_, SIGSTOP);
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  kill(process_, SIGCONT);
+}
+
 void RunningWorkstation::type(const std::string& text) const { hand("type --delay 0 '" + text + "'"); }
 
-void RunningWorkstation::click(const std::string& widget) const {
+void RunningWorkstation::point_at(const std::string& widget) const {
   const auto all = widgets();
   const auto found = all.find(widget);
   if (found == all.end()) throw std::runtime_error("no widget " + widget);
   const Area& area = found->second;
   hand("mousemove " + std::to_string(area.x + area.width / 2) + " " +
-       std::to_string(area.y + area.height / 2) + " sleep 0.2 mousedown 1 sleep 0.2 mouseup 1");
+       std::to_string(area.y + area.height / 2) + " sleep 0.2");
+}
+
+void RunningWorkstation::click(const std::string& widget) const {
+  point_at(widget);
+  hand("mousedown 1 sleep 0.2 mouseup 1");
 }
 
 void RunningWorkstation::drag(int x0, int y0, int x1, int y1) const {
@@ -191,6 +219,13 @@ Picture RunningWorkstation::screenshot() const {
   stream.read(reinterpret_cast<char*>(picture.rgb.data()), static_cast<std::streamsize>(picture.rgb.size()));
   if (!stream) throw std::runtime_error("the screenshot is cut off");
   return picture;
+}
+
+int RunningWorkstation::hold_to_exit(const std::string& key, double seconds) {
+  hand("keydown " + key);
+  const int code = wait_for_exit(seconds);
+  hand("keyup " + key);
+  return code;
 }
 
 int RunningWorkstation::wait_for_exit(double seconds) {

@@ -58,16 +58,26 @@ class RunningWorkstation {
   [[nodiscard]] std::map<std::string, Area> widgets() const;  // of the last complete list
 
   void press(const std::string& key) const;  // as xdotool names it
+  // Holds the key down until the state is so, then lets go; false when it did not become so in time.
+  [[nodiscard]] bool hold_until(const std::string& key, const std::string& state, const std::string& value,
+                                double seconds = 40) const;
   void type(const std::string& text) const;  // as fast as it goes
   void click(const std::string& widget) const;
+  // The same with the mouse on a widget.
+  [[nodiscard]] bool hold_click_until(const std::string& widget, const std::string& state,
+                                      const std::string& value, double seconds = 40) const;
+  void freeze(double seconds) const;  // the program stands still, as a machine that is overloaded
   void drag(int x0, int y0, int x1, int y1) const;
   [[nodiscard]] Picture screenshot() const;
+  // Holds the key down until the program has ended; the exit code, or -1 when it has not.
+  int hold_to_exit(const std::string& key, double seconds);
   // The exit code, or -1 when it did not end within the time.
   int wait_for_exit(double seconds);
 
  private:
   void read_output(int pipe);
   void hand(const std::string& arguments) const;
+  void point_at(const std::string& widget) const;
 
   std::string display_;
   std::filesystem::path folder_;

@@ -54,8 +54,8 @@ TEST(SettingUp, LeadsToAnAdoptedCameraAndTip) {
   EXPECT_TRUE(probe->residual_mm.has_value());
   EXPECT_LT((*probe->tip_mm - *tools::standard_tools().find_tool("probe")->tip_mm).norm(), 0.35);
 
-  app.press("ctrl+q");
-  EXPECT_EQ(app.wait_for_exit(60), 0);
+  // A source still runs: leaving is to be held.
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
 }
 
 // Keys that are shorter than a frame arrive in a text field, in their order, from the one on that opened it.

@@ -94,8 +94,7 @@ TEST_F(Workstation, LeadsThroughItsThreeModes) {
   app.press("u");
   ASSERT_TRUE(app.wait_for_state("view", "undistorted"));
   EXPECT_GT(share(app.screenshot(), app.widgets().at("navigate.video_panel"), is_lit), 0.2);
-  app.press("Escape");
-  ASSERT_TRUE(app.wait_for_state("picture", "none"));
+  ASSERT_TRUE(app.hold_until("Escape", "picture", "none"));
   // A machine without a camera says so in words.
   if (!std::filesystem::exists("/dev/video0")) {
     app.press("k");

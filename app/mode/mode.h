@@ -1,0 +1,63 @@
+// One mode of the workstation as the window sees it. The window holds a list of these and knows nothing else
+// of them: another mode is another entry of that list.
+//
+// A life: add_actions() once; case_opened() whenever another case is open; then enter(), draw() in every
+// frame while it is shown, leave(). tick() is called in every frame once a case is open, shown or not.
+// Threads: all of it on the window's thread, none of it waits.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/case/plan_model.h"
+#include "app/widgets/controls.h"
+#include "navigation/sources/frame_source.h"
+
+namespace arthronaut::mode {
+
+struct ModeTitle {
+  std::string_view name;     // "navigate": in the list of states
+  std::string_view action;   // "mode.navigate": the id of the action that shows it
+  std::string_view label;    // "Navigate"
+  std::string_view tooltip;  // "In theatre"
+  int key = 0;               // GLFW_KEY_*, shows it
+};
+
+// The case that is open. The model outlives every use of it, until the next case_opened().
+struct OpenCase {
+  open_case::PlanModel* model = nullptr;  // not null
+  std::filesystem::path folder;
+};
+
+class Mode {
+ public:
+  virtual ~Mode() = default;
+  [[nodiscard]] virtual ModeTitle title() const = 0;
+  // Called once, before any case is open. They live as long as this mode.
+  virtual void add_actions(widgets::Actions& actions) = 0;
+  // What the ids of the actions start with whose keys work while this mode is shown.
+  [[nodiscard]] virtual std::vector<std::string_view> action_prefixes() const = 0;
+
+  // Another case: ends what runs on the one before and forgets it.
+  virtual void case_opened(const OpenCase& opened) = 0;
+  virtual void enter() {}                 // comes to the front
+  virtual void leave() {}                 // another mode comes to the front, or the program ends
+  virtual void tick(double /*now_s*/) {}  // once a frame, shown or not, before anything is drawn
+  virtual void draw(const widgets::Ui& ui, const widgets::Rect& area) = 0;
+
+  // While true the screen must be drawn again soon: pictures or a result are to come, or something moves.
+  [[nodiscard]] virtual bool is_busy() const { return false; }
+  // Something runs that the end of the program would cut off: ending it is then guarded.
+  [[nodiscard]] virtual bool has_running_work() const { return false; }
+  // A text field was opened in this frame and has not the keyboard yet.
+  [[nodiscard]] virtual bool awaits_text() const { return false; }
+  // The kind of the source whose pictures are shown or waited for; nullopt: none.
+  [[nodiscard]] virtual std::optional<sources::SourceKind> source_kind() const { return std::nullopt; }
+  // One line for the status bar; empty when there is nothing to say.
+  [[nodiscard]] virtual std::string notice() const { return {}; }
+};
+
+}  // namespace arthronaut::mode
