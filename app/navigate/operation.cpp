@@ -150,7 +150,7 @@ class Operation::Worker {
       run_requests(job);
       std::shared_ptr<LiveFrame> live = job.step();
       if (live == nullptr) return;
-      if (!job.source_info().is_live) wait_until(pace.due(live->picture->timestamp_ns), stop);
+      if (!job.source_info().is_live()) wait_until(pace.due(live->picture->timestamp_ns), stop);
       publish(std::move(live));
       if (!job.recording_error().empty()) {
         update([&](OperationStatus& s) {

@@ -45,7 +45,7 @@ std::shared_ptr<LiveFrame> OperationJob::step() {
   // A camera that stops must not go unnoticed. Recorded and simulated pictures come as the machine can make
   // them.
   constexpr double kDeviceStale_s = 0.2, kOtherStale_s = 2.0;
-  live->stale_after_s = source_->info().is_live ? kDeviceStale_s : kOtherStale_s;
+  live->stale_after_s = source_->info().is_live() ? kDeviceStale_s : kOtherStale_s;
   follow_registration();
   pipeline_.process(*live->picture, live->result);
   note_tip(live->result);
@@ -100,7 +100,7 @@ void OperationJob::record(const LiveFrame& live) {
   try {
     recorder_->append(live.result);
     if (!source_->info().encoded_file.empty()) return;
-    if (source_->info().is_live)
+    if (source_->info().is_live())
       recorder_->try_append_picture(live.picture);
     else
       recorder_->append_picture(live.picture);

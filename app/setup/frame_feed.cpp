@@ -41,7 +41,7 @@ struct FrameFeed::State {
   }
 
   void read(sources::FrameSource& opened, const std::stop_token& stop) {
-    const bool is_paced = !opened.info().is_live && !source.is_stills;
+    const bool is_paced = !opened.info().is_live() && !source.is_stills;
     Clock::time_point start = Clock::now();
     std::int64_t first_ns = -1;
     while (!stop.stop_requested()) {

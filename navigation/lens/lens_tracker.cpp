@@ -25,6 +25,8 @@ constexpr int kFramesBetweenSearches = 4;
 constexpr double kDarkShare = 0.4;    // of the rays: the scene is too dark to tell the rim
 constexpr double kNearEnough_px = 4;  // an error of the rays' centre that costs 0.02 px
 constexpr double kClearCoverage_deg = 240, kMostZoom = 0.005;
+constexpr double kJumpedZoom = 0.02;  // four times what a search from nothing is accurate to
+constexpr double kLitAbove = 14;      // grey values above the mask: as search_circle() tells light from it
 
 // The shape of this scope's mark: the mean over the first clear sightings.
 struct LearntShape {
@@ -67,6 +69,8 @@ struct LensTracker::State {
   camera::Boundary last_circle;  // that was found
   int lost_frames = 0;           // since
   std::int64_t last_found_ns = 0;
+  std::int64_t last_calibrated_ns = 0;  // when the rim was last seen with the calibrated radius
+  double mask_level = 0;                // outside of it then
   int jump_frames = 0;
   double jump_angle_deg = 0;
 
@@ -75,6 +79,10 @@ struct LensTracker::State {
   bool fit_near(const camera::GrayView& frame, const camera::Boundary& found);
   bool measure_and_fit(const camera::GrayView& frame, const camera::Boundary& expected, double gate_share);
   void watch_circle();
+  void watch_zoom(const camera::GrayView& frame);
+  [[nodiscard]] bool has_track() const {
+    return options.calibration && options.calibration->image_size_px == size_px;
+  }
   void find_mark();
   MarkState choose_mark(MarkCandidate& chosen);
   bool believe_jump(const MarkCandidate& candidate);
@@ -143,7 +151,7 @@ void LensTracker::State::watch_circle() {
   if (!observation.circle_found || observation.circle_coverage_deg < 180) return;
   const camera::Boundary& seen = observation.circle;
   double allowed_px = 4;
-  if (options.calibration && options.calibration->image_size_px == size_px) {
+  if (has_track()) {
     const camera::Calibration& c = *options.calibration;
     track.reference = c.boundary;
     if (observation.mark == MarkState::Found)
@@ -172,6 +180,36 @@ void LensTracker::State::watch_circle() {
     track.reference.center_px += 0.2 * (seen.center_px - track.reference.center_px);
     track.reference.radius_px += (seen.radius_px - track.reference.radius_px) / std::min(track.frames, 300);
   }
+}
+
+// Of this very frame: a wrong focal length is wrong from the first picture on.
+void LensTracker::State::watch_zoom(const camera::GrayView& frame) {
+  if (!has_track() || options.calibration->boundary.radius_px <= 0) {
+    observation.zoom = ZoomState::NotWatched;
+    return;
+  }
+  if (observation.circle_found) {
+    const double ratio = observation.circle.radius_px / options.calibration->boundary.radius_px;
+    const bool is_calibrated = std::abs(ratio - 1) <= kMostZoom;
+    observation.zoom = is_calibrated ? ZoomState::AsCalibrated : ZoomState::Changed;
+    observation.radius_ratio = ratio;
+    if (is_calibrated) {
+      last_calibrated_ns = observation.timestamp_ns;
+      mask_level = profile.dark_level;
+    }
+    return;
+  }
+  // Nobody turns the zoom in the moment for which a scene is dark; but where the mask was it must be dark
+  // too: a rim that a lit picture does not show has gone out of it.
+  const bool is_hidden = profile.dark_share > kDarkShare && profile.dark_level <= mask_level + kLitAbove;
+  // Zoomed out at one blow the rim lies where rays do not reach, and its surroundings are as dark.
+  const auto elsewhere = is_hidden && lost_frames == 1 ? search_circle(frame, scratch) : std::nullopt;
+  const bool has_jumped =
+      elsewhere && std::abs(elsewhere->radius_px / options.calibration->boundary.radius_px - 1) > kJumpedZoom;
+  const double hidden_s = static_cast<double>(observation.timestamp_ns - last_calibrated_ns) * 1e-9;
+  const bool is_held = observation.zoom == ZoomState::AsCalibrated && is_hidden && !has_jumped &&
+                       hidden_s <= options.stale_after_s;
+  if (!is_held) observation.zoom = ZoomState::Unknown;
 }
 
 bool LensTracker::State::believe_jump(const MarkCandidate& candidate) {
@@ -255,16 +293,32 @@ std::string_view to_text(MarkState state) {
   return "unknown";
 }
 
+std::string_view to_text(ZoomState state) {
+  switch (state) {
+    case ZoomState::NotWatched:
+      return "zoom not watched";
+    case ZoomState::Unknown:
+      return "zoom unknown";
+    case ZoomState::AsCalibrated:
+      return "zoom as calibrated";
+    case ZoomState::Changed:
+      return "another zoom than calibrated";
+  }
+  return "unknown";
+}
+
 std::string reason_text(const LensObservation& lens) {
   char text[160] = "";
   const double larger_percent = 100 * (lens.radius_ratio - 1);
-  if (lens.rim == RimState::Zoomed)
+  if (lens.rim == RimState::Zoomed || lens.zoom == ZoomState::Changed)
     std::snprintf(text, sizeof text, "the view is %.1f %% %s than calibrated: zoom back, or calibrate again",
                   std::abs(larger_percent), larger_percent > 0 ? "larger" : "smaller");
   else if (lens.rim == RimState::Slipped)
     std::snprintf(text, sizeof text,
                   "the view lies %.0f px beside its track: seat the scope in the coupler, or calibrate again",
                   lens.off_track_px);
+  else if (lens.zoom == ZoomState::Unknown)
+    return "zoom unknown: the rim of the view is not seen, so the focal length is not known";
   else if (lens.zoom_or_slip)
     return "another zoom, or the coupler slipped";  // of a record, which holds no more
   else if (lens.mark != MarkState::Found)
@@ -306,6 +360,7 @@ const LensObservation& LensTracker::observe(const camera::GrayView& frame, std::
     seen.mark =
         state.has_circle && state.profile.dark_share > kDarkShare ? MarkState::Dark : MarkState::NoCircle;
   state.watch_circle();
+  state.watch_zoom(frame);
 
   seen.mark_angle_deg = state.filter.angle_deg();
   seen.mark_sigma_deg = state.filter.sigma_deg();

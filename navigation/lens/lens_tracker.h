@@ -31,6 +31,16 @@ enum class RimState {
   Slipped,  // another centre: the scope is not seated in the coupler as it was
 };
 
+// What the rim's radius says about the focal length. The rim is the edge of a stop inside the scope: camera
+// head and zoom enlarge it just as they enlarge the scene, so its radius is the only witness of the zoom.
+enum class ZoomState {
+  NotWatched,    // no calibration for pictures of this size, or one without a rim
+  Unknown,       // no rim that would tell: never seen, out of view, or hidden for too long
+  AsCalibrated,  // the rim has the calibrated radius, or had it a moment ago and darkness hides it
+  Changed,       // another radius
+};
+[[nodiscard]] std::string_view to_text(ZoomState state);
+
 enum class MarkPolarity { Unknown, DarkInward, BrightOutward };
 
 struct LensObservation {
@@ -45,8 +55,9 @@ struct LensObservation {
   bool is_stale = true;         // no mark for longer than the options allow: intrinsics can't be trusted
   bool zoom_or_slip = false;    // radius or centre off their track: another zoom, or the coupler slipped
   RimState rim = RimState::OnTrack;  // which of them; told from the second clear frame on, and while it lasts
-  double radius_ratio = 1;           // of the circle to that of the track, when last seen
-  double off_track_px = 0;           // of the circle's centre from the track, when last seen
+  ZoomState zoom = ZoomState::NotWatched;  // told in this very frame
+  double radius_ratio = 1;                 // of the circle to that of the track, when last seen
+  double off_track_px = 0;                 // of the circle's centre from the track, when last seen
   [[nodiscard]] bool has_angle() const { return mark == MarkState::Found || !is_stale; }
 };
 
@@ -56,6 +67,7 @@ struct LensObservation {
 struct LensTrackerOptions {
   std::optional<camera::Calibration>
       calibration;  // predicts the circle and its track; without it: found from nothing
+  // How long a lost mark's angle is held, and the zoom while darkness hides the rim.
   double stale_after_s = 1.0;
   // Which polarity to believe where both are possible; Unknown lets the tracker learn it.
   MarkPolarity polarity = MarkPolarity::Unknown;

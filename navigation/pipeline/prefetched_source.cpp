@@ -1,9 +1,16 @@
 #include "navigation/pipeline/prefetched_source.h"
 
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <deque>
 #include <exception>
+#include <mutex>
+#include <optional>
 #include <thread>
+#include <utility>
 
-#include "navigation/pipeline/bounded_queue.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::pipeline {
 
@@ -12,43 +19,149 @@ namespace {
 // Four 1080p frames are 25 MB; more would not hide longer hiccups than a decoder has.
 constexpr std::size_t kFramesAhead = 4;
 
+std::string seconds_text(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g s", seconds);
+  return text;
+}
+
 }  // namespace
 
-struct PrefetchedSource::State {
-  explicit State(sources::FrameSource& wrapped) : source(wrapped), queue(kFramesAhead) {}
+Delivery delivery_of(const sources::SourceInfo& info) {
+  return info.is_live() ? Delivery::NewestWins : Delivery::Lossless;
+}
 
+// Shared by the thread and its owner, so that either may outlive the other. (Not a Worker, whose end waits
+// for its thread.)
+struct PrefetchedSource::State {
+  using Lock = std::unique_lock<std::mutex>;
+
+  // The thread's: opens what is not open yet, then fills `waiting` until it is told to stop.
   void run() {
+    std::exception_ptr failure;
     try {
-      while (camera::FramePtr frame = source.next()) {
-        if (!queue.push(std::move(frame))) return;
+      if (opener) {
+        std::unique_ptr<sources::FrameSource> opened = std::exchange(opener, nullptr)();
+        const Lock lock(mutex);
+        owned = std::move(opened);
+        source = owned.get();
+        info = source->info();
+        delivery = delivery_of(info);
+        is_open = true;
+        changed.notify_all();
+      }
+      while (camera::FramePtr frame = source->next()) {
+        if (!put(std::move(frame))) break;
       }
     } catch (...) {
-      error = std::current_exception();  // handed over by the close below
+      failure = std::current_exception();  // handed over at next()
     }
-    queue.close();
+    {
+      const Lock lock(mutex);
+      error = failure;
+      has_ended = true;
+      changed.notify_all();
+    }
+    owned.reset();  // here and last: closing a device may take its time as well
   }
 
-  sources::FrameSource& source;
-  BoundedQueue<camera::FramePtr> queue;
+  bool put(camera::FramePtr frame) {
+    Lock lock(mutex);
+    if (delivery == Delivery::NewestWins) waiting.clear();
+    changed.wait(lock, [&] { return stops || waiting.size() < kFramesAhead; });
+    if (stops) return false;
+    waiting.push_back(std::move(frame));
+    changed.notify_all();
+    return true;
+  }
+
+  // False when nothing was there in time.
+  template <typename Ready>
+  bool wait(Lock& lock, std::optional<double> seconds, const Ready& is_ready) {
+    if (!seconds) {
+      changed.wait(lock, is_ready);
+      return true;
+    }
+    return changed.wait_for(lock, std::chrono::duration<double>(*seconds), is_ready);
+  }
+
+  NextFrame take(std::optional<double> seconds) {
+    Lock lock(mutex);
+    (void)wait(lock, seconds, [&] { return has_ended || !waiting.empty(); });
+    NextFrame next;
+    if (!waiting.empty()) {
+      next.frame = std::move(waiting.front());
+      waiting.pop_front();
+      changed.notify_all();
+    } else if (has_ended) {
+      if (error) std::rethrow_exception(error);
+      next.has_ended = true;
+    }
+    return next;
+  }
+
+  std::mutex mutex;
+  std::condition_variable changed;
+  Opener opener;                                // the thread's
+  std::unique_ptr<sources::FrameSource> owned;  // the thread's
+  sources::FrameSource* source = nullptr;       // the thread's
+  sources::SourceInfo info;                     // fixed once open
+  Delivery delivery = Delivery::Lossless;       // the same
+  std::optional<double> patience_s;             // of a source that was opened here
+  std::deque<camera::FramePtr> waiting;
   std::exception_ptr error;
-  std::thread worker;
+  bool is_open = false, has_ended = false, stops = false;
+  std::thread thread;  // its owner's
 };
 
-PrefetchedSource::PrefetchedSource(sources::FrameSource& source) : state_(std::make_unique<State>(source)) {
-  state_->worker = std::thread([state = state_.get()] { state->run(); });
+PrefetchedSource::PrefetchedSource(sources::FrameSource& source)
+    : PrefetchedSource(source, delivery_of(source.info())) {}
+
+PrefetchedSource::PrefetchedSource(sources::FrameSource& source, Delivery delivery)
+    : state_(std::make_shared<State>()) {
+  state_->source = &source;
+  state_->info = source.info();
+  state_->delivery = delivery;
+  state_->is_open = true;
+  state_->thread = std::thread([state = state_] { state->run(); });
+}
+
+PrefetchedSource::PrefetchedSource(Opener opener, double patience_s) : state_(std::make_shared<State>()) {
+  State& s = *state_;
+  s.opener = std::move(opener);
+  s.patience_s = patience_s;
+  s.thread = std::thread([state = state_] { state->run(); });
+  State::Lock lock(s.mutex);
+  const bool answered = s.wait(lock, patience_s, [&] { return s.is_open || s.has_ended; });
+  if (s.is_open) return;
+  s.stops = true;
+  s.thread.detach();
+  if (answered) std::rethrow_exception(s.error);
+  throw DeviceError("the source does not answer: it was not open after " + seconds_text(patience_s));
 }
 
 PrefetchedSource::~PrefetchedSource() {
-  state_->queue.close();
-  state_->worker.join();
+  {
+    const State::Lock lock(state_->mutex);
+    state_->stops = true;
+    state_->changed.notify_all();
+  }
+  if (state_->patience_s)
+    state_->thread.detach();
+  else
+    state_->thread.join();
 }
 
-const sources::SourceInfo& PrefetchedSource::info() const { return state_->source.info(); }
+const sources::SourceInfo& PrefetchedSource::info() const { return state_->info; }
 
 camera::FramePtr PrefetchedSource::next() {
-  if (auto frame = state_->queue.pop()) return *frame;
-  if (state_->error) std::rethrow_exception(state_->error);
-  return nullptr;
+  NextFrame next = state_->take(state_->patience_s);
+  if (!next.frame && !next.has_ended) {
+    throw DeviceError(state_->info.name + ": has given no picture for " + seconds_text(*state_->patience_s));
+  }
+  return std::move(next.frame);
 }
+
+NextFrame PrefetchedSource::next_within(double seconds) { return state_->take(seconds); }
 
 }  // namespace arthronaut::pipeline

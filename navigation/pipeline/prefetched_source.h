@@ -1,27 +1,56 @@
-// A frame source whose frames are made (decoded, rendered) in a thread of their own, a few ahead of who asks
-// for them.
+// A frame source whose frames are made (decoded, rendered, grabbed) in a thread of their own.
+//
+// Recordings and the simulator lose nothing: a few frames are made ahead of who asks for them. A live source
+// must never be behind: of it only the newest picture waits, and what a slow consumer did not take in time is
+// left out. When next() returns, the frame is then at most one frame interval older than the newest that the
+// device gave, however long the work on the one before took.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "navigation/sources/frame_source.h"
 
 namespace arthronaut::pipeline {
 
-// Wraps any source; gives the same frames in the same order, and throws at next() what the wrapped source
-// threw, after the frames before it. One thread at a time calls next(). The destructor waits for the frame
-// that is being made.
+enum class Delivery { Lossless, NewestWins };
+
+// Newest wins for what is live, lossless for all else.
+[[nodiscard]] Delivery delivery_of(const sources::SourceInfo& info);
+
+// What next_within() found.
+struct NextFrame {
+  camera::FramePtr frame;  // null when none came in time and at the end
+  bool has_ended = false;  // there will be none any more
+};
+
+// Wraps any source; frames come in order, and next() throws what the wrapped source threw, after the frames
+// before it. One thread at a time calls next() and next_within().
 class PrefetchedSource : public sources::FrameSource {
  public:
-  // `source` must outlive this and must not be used by anybody else meanwhile.
+  using Opener = std::function<std::unique_ptr<sources::FrameSource>()>;
+
+  // `source` must outlive this and must not be used by anybody else meanwhile; the destructor waits for the
+  // frame that is being made. Delivered as delivery_of() says.
   explicit PrefetchedSource(sources::FrameSource& source);
+  PrefetchedSource(sources::FrameSource& source, Delivery delivery);
+  // Opens the source in its own thread and keeps it. Opener, source and all they hold on to may hang (a
+  // stalled disk, a device that is gone): nothing here waits longer than patience_s, the destructor not at
+  // all. A thread that hangs is left behind with the source, which goes when it comes back. So the opener
+  // must own all that it uses. Throws what the opener throws, and DeviceError when it does not return in
+  // time.
+  PrefetchedSource(Opener opener, double patience_s);
   ~PrefetchedSource() override;
+
   [[nodiscard]] const sources::SourceInfo& info() const override;
+  // A source that was opened here and gives nothing for patience_s is a DeviceError; else it waits.
   [[nodiscard]] camera::FramePtr next() override;
+  // Waits so long and no longer.
+  [[nodiscard]] NextFrame next_within(double seconds);
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  std::shared_ptr<State> state_;  // shared with the thread
 };
 
 }  // namespace arthronaut::pipeline

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "navigation/pipeline/frozen_picture.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::pipeline {
@@ -21,6 +21,7 @@ struct ViewTracker::State {
       : options(with),
         lens_tracker({.calibration = with.calibration}),
         markers(std::move(with_markers)),
+        frozen(with.frozen_after_s),
         turn_radius_px((with.calibration.principal_point_px - with.calibration.rotation_center_px).norm()) {
     // Throws here rather than in the first frame.
     (void)camera::CameraModel(options.calibration, 0, options.refractive_index, options.fluid_model);
@@ -33,12 +34,13 @@ struct ViewTracker::State {
         angle_is_usable ? options.calibration.lens_angle_rad(view.lens.mark_angle_deg) : 0;
     view.camera =
         camera::CameraModel(options.calibration, angle_rad, options.refractive_index, options.fluid_model);
-    view.intrinsics_are_known = !options.follow_lens || is_angle_known(view.lens);
+    view.intrinsics_are_known = !options.follow_lens || are_known(view.lens);
   }
 
-  // A scope whose principal point lies on the axis of rotation needs no mark; for others the chord that two
-  // sigma of the angle span must stay small.
-  [[nodiscard]] bool is_angle_known(const lens::LensObservation& lens) const {
+  // The angle does not help while the focal length is not known. A scope whose principal point lies on the
+  // axis of rotation needs no mark; for others the chord that two sigma of the angle span must stay small.
+  [[nodiscard]] bool are_known(const lens::LensObservation& lens) const {
+    if (lens.zoom == lens::ZoomState::Unknown || lens.zoom == lens::ZoomState::Changed) return false;
     if (lens.zoom_or_slip) return false;
     if (lens.has_angle() && mark_was_seen) return true;
     const double two_sigma_deg = mark_was_seen ? std::min(2 * lens.mark_sigma_deg, 180.0) : 180.0;
@@ -46,21 +48,13 @@ struct ViewTracker::State {
     return chord_px <= options.max_principal_point_error_px;
   }
 
-  // Equal pictures cost a comparison of all bytes, different ones that of the first few.
-  [[nodiscard]] bool is_frozen(std::int64_t timestamp_ns) {
-    const bool same =
-        gray.size() == last_gray.size() && std::memcmp(gray.data(), last_gray.data(), gray.size()) == 0;
-    if (!same || timestamp_ns < picture_since_ns) picture_since_ns = timestamp_ns;
-    return static_cast<double>(timestamp_ns - picture_since_ns) * 1e-9 >= options.frozen_after_s;
-  }
-
   ViewTrackerOptions options;
   lens::LensTracker lens_tracker;
   std::unique_ptr<markers::MarkerTracker> markers;
+  FrozenPicture frozen;
   double turn_radius_px;
   bool mark_was_seen = false;
-  std::vector<std::uint8_t> gray, last_gray;
-  std::int64_t picture_since_ns = 0;
+  std::vector<std::uint8_t> gray;
 };
 
 ViewTracker::ViewTracker(const ViewTrackerOptions& options, std::unique_ptr<markers::MarkerTracker> markers)
@@ -76,13 +70,12 @@ void ViewTracker::observe(const camera::Frame& frame, View& view) {
                        size_text(frame.width, frame.height) + " pixels, but the camera was calibrated at " +
                        size_text(size.x(), size.y()));
   }
-  std::swap(s.gray, s.last_gray);
   camera::gray_from(frame, s.gray);
   const camera::GrayView picture{s.gray.data(), frame.width, frame.height, frame.width};
 
   view.frame_index = frame.index;
   view.timestamp_ns = frame.timestamp_ns;
-  view.is_frozen = s.is_frozen(frame.timestamp_ns);
+  view.is_frozen = s.frozen.observe(picture, frame.timestamp_ns);
   view.lens = s.lens_tracker.observe(picture, frame.timestamp_ns);
   s.follow_lens(view);
   const auto markers = s.markers->track(picture, view.camera, frame.timestamp_ns);

@@ -18,7 +18,7 @@ struct ViewTrackerOptions {
   double refractive_index = 1.0;  // of the working medium
   camera::FluidModel fluid_model = camera::FluidModel::FlatPort;
   bool follow_lens = true;      // false: the intrinsics stay at lens angle 0
-  double frozen_after_s = 0.3;  // the same picture for this long is no live picture
+  double frozen_after_s = 0.3;  // the same content for this long is no live picture
   // How far the principal point may be unknown (2 sigma) before poses are doubtful. 3 px are 0.23 deg at the
   // standard scope.
   double max_principal_point_error_px = 3.0;
@@ -29,10 +29,11 @@ struct View {
   std::int64_t frame_index = 0;
   std::int64_t timestamp_ns = 0;
   lens::LensObservation lens;
-  // The lens angle is known well enough for this scope: a mark lost for too long, or a rim off its track
-  // (another zoom, a slipped coupler), makes it false, and no pose of this frame is to be trusted.
+  // Focal length and lens angle are known well enough for this scope: a mark lost for too long, a rim off its
+  // track (a slipped coupler), out of view or of another radius than calibrated (lens.zoom) makes it false,
+  // and no pose of this frame is to be trusted.
   bool intrinsics_are_known = false;
-  bool is_frozen = false;                           // the same picture again and again
+  bool is_frozen = false;                           // the same content again and again: see frozen_picture.h
   camera::CameraModel camera;                       // of this frame
   std::vector<markers::MarkerObservation> markers;  // one for each declared marker, in their order
   // Whether the pose of a marker of this view may be used at all; its own state says more.

@@ -12,12 +12,13 @@ namespace {
 class RecordedVideo : public sources::FrameSource {
  public:
   explicit RecordedVideo(const RecordedSession& session)
-      : video_(sources::open_video(session.video())),
+      : video_(session.header().video_has_exact_luma ? sources::open_video_with_exact_luma(session.video())
+                                                     : sources::open_video(session.video())),
         info_(video_->info()),
         may_break_off_(!session.was_finished() && session.header().video_is_reencoded),
         frame_of_picture_(session.frame_of_picture()) {
     info_.name = session.header().id;
-    info_.is_live = false;
+    info_.kind = sources::SourceKind::Recording;
     for (const RecordedFrame& frame : session.frames()) timestamps_[frame.index] = frame.timestamp_ns;
     info_.frame_count = static_cast<std::int64_t>(timestamps_.size());
     if (!frame_of_picture_.empty()) {

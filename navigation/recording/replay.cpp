@@ -297,7 +297,7 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
                              const std::function<void(long)>& progress) {
   ReplaySummary summary;
   summary.recorded_frames = static_cast<long>(session.frames().size());
-  const bool reencoded = session.header().video_is_reencoded;
+  const bool reencoded = session.header().video_is_reencoded && !session.header().video_has_exact_luma;
   summary.is_same_build = !reencoded && session.header().build == build_identity();
   FrameComparison comparison(summary, reencoded ? options.reencoded_tolerance_mm : options.tolerance_mm,
                              reencoded ? options.reencoded_tolerance_deg : options.tolerance_deg);

@@ -8,12 +8,14 @@
 //                       pictures/ holds copied stills; an absolute path stands in session.json when copying
 //                       was declined
 //   registration_N.json each registration at the moment it took effect
-//   poses.csv curves.csv registration.json guidance.csv     the same in open formats, written when the
-//   session ends camera.json tools.json                                  what it was navigated with
+//   poses.csv curves.csv registration.json guidance.csv     the same in open formats; poses and guidance
+//                       grow in *.csv.part while it goes on and get their names when the session ends
+//   camera.json tools.json                                  what it was navigated with
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,7 +38,10 @@ struct SessionHeader {
   std::string probe_name, guide_name;
   std::string source;  // name of the frame source
   std::string video;   // path or pattern within the folder, or an absolute one; empty when no video was kept
-  bool video_is_reencoded = false;  // by append_picture(): tracking it again gives slightly other poses
+  bool video_is_reencoded = false;  // by append_picture(), not the source's own file
+  // Its luma is what was tracked, bit for bit: tracking it again gives the same poses. False for encoded
+  // videos of older versions, which give slightly other ones.
+  bool video_has_exact_luma = false;
   // Of the operation that this session is a part of; empty and 0 in records that are older than it.
   std::string source_kind;        // "live", "recording", "simulation"
   std::string mesh_sha256;        // of the bone's mesh
@@ -61,23 +66,41 @@ struct SessionEvent {
 inline constexpr std::string_view kPlanEvent = "plan";                  // text: JSON; empty: no plan
 inline constexpr std::string_view kRegistrationEvent = "registration";  // text: file name; found here
 inline constexpr std::string_view kGivenRegistrationEvent =
-    "registration given";                                     // text: file name; from elsewhere
+    "registration given";  // text: file name; from elsewhere
 inline constexpr std::string_view kCommandEvent = "command";  // text: operation::Command as JSON
 inline constexpr std::string_view kOutcomeEvent = "outcome";  // text: request count of what was taken in
 inline constexpr std::string_view kSourceEndedEvent = "source ended";
-inline constexpr std::string_view kDroppedPicturesEvent = "pictures dropped";  // text: how many
+inline constexpr std::string_view kDroppedPicturesEvent = "pictures dropped";    // text: how many
+inline constexpr std::string_view kVideoStoppedEvent = "video stopped";          // text: why
+inline constexpr std::string_view kRecordingStoppedEvent = "recording stopped";  // text: why
+
+// What the system has for users without privileges. Throws IoError.
+[[nodiscard]] std::uintmax_t free_bytes_at(const std::filesystem::path& folder);
+
+// How much must stay free on the disk. A video fills disks, the rest of a session takes a megabyte a minute:
+// so the video stops first, and the record of poses and events goes on nearly to the end.
+struct DiskLimits {
+  std::uintmax_t video_stops_below_bytes = std::uintmax_t{2} << 30;
+  std::uintmax_t all_stops_below_bytes = std::uintmax_t{128} << 20;
+  // What is free where a folder lies; for tests another than the system's answer.
+  std::function<std::uintmax_t(const std::filesystem::path& folder)> free_bytes = free_bytes_at;
+};
 
 // Writes while the operation goes on. Calls hand over to a writer thread by a bounded, lossless queue (more
 // than a minute of frames; only a disk that hangs for longer makes a call wait); the writer commits at least
 // twice a second. Pictures go through a queue and a thread of their own. An error of the disk reaches the
 // next call, or finish(), as IoError.
 //
+// Free space is looked at with every commit. When it runs short the video ends (kVideoStoppedEvent; pictures
+// are then left out and counted), and before the disk is full the whole record: what was made is committed,
+// and the next call says so as IoError. finish() then still completes the session.
+//
 // Threads: one thread at a time calls the recorder. States: writing -> finished.
 class SessionRecorder {
  public:
   // The folder exists and is empty. Writes session.json, camera.json and tools.json at once. Throws IoError.
   SessionRecorder(const std::filesystem::path& folder, const SessionHeader& header,
-                  const pipeline::PipelineOptions& options);
+                  const pipeline::PipelineOptions& options, const DiskLimits& limits = {});
   ~SessionRecorder();  // finish() unless it was called; errors are then lost
   SessionRecorder(const SessionRecorder&) = delete;
   SessionRecorder& operator=(const SessionRecorder&) = delete;
@@ -87,7 +110,7 @@ class SessionRecorder {
   void copy_video(const std::filesystem::path& video_or_pattern);
   // Keeps only where the video is.
   void refer_to_video(const std::filesystem::path& video_or_pattern);
-  // The frame's picture, for sources that are not files. Encoded nearly losslessly (see picture_writer.h).
+  // The frame's picture, for sources that are not files. Its luma is kept exactly (see picture_writer.h).
   // Waits while half a second of pictures is waiting: for sources that can wait.
   void append_picture(const camera::FramePtr& frame);
   // The same for a live source: never waits; false when the encoder cannot keep up and the picture is left
@@ -107,7 +130,8 @@ class SessionRecorder {
                         bool found_in_this_session = true, const registration::Provenance* of = nullptr);
   // Replaces the curves. Kept on disk at once.
   void set_curves(const strokes::Curves& curves);
-  // Commits, writes the open formats, closes. Throws IoError.
+  // Commits and closes. The open formats are written as frames come, so that this takes the same short time
+  // after a minute and after hours, pictures that still wait for the encoder aside. Throws IoError.
   void finish();
 
   [[nodiscard]] std::filesystem::path folder() const;

@@ -46,6 +46,7 @@ void write_session_header(const std::filesystem::path& folder, const SessionHead
   json["source"] = header.source;
   json["video"] = header.video;
   json["video_is_reencoded"] = header.video_is_reencoded;
+  json["video_has_exact_luma"] = header.video_has_exact_luma;
   if (!header.source_kind.empty()) json["source_kind"] = header.source_kind;
   if (!header.mesh_sha256.empty()) json["mesh_sha256"] = header.mesh_sha256;
   if (!header.continues.empty()) json["continues"] = header.continues;
@@ -70,6 +71,7 @@ SessionHeader read_session_header(const std::filesystem::path& folder, pipeline:
   header.source = json.text("source");
   header.video = json.text("video");
   header.video_is_reencoded = json.boolean("video_is_reencoded");
+  header.video_has_exact_luma = json.has("video_has_exact_luma") && json.boolean("video_has_exact_luma");
   header.program_version = json.text("program_version");
   if (json.has("build")) header.build = json.text("build");
   if (json.has("source_kind")) header.source_kind = json.text("source_kind");
@@ -87,32 +89,24 @@ SessionHeader read_session_header(const std::filesystem::path& folder, pipeline:
   return header;
 }
 
-void write_guidance_file(const std::filesystem::path& file, const std::vector<RecordedFrame>& frames) {
-  std::string text =
-      "frame,time_s,state,tip_to_entry_mm,axis_to_entry_mm,angle_deg,offset_anterior_mm,offset_proximal_mm,"
-      "depth_mm,"
-      "remaining_mm,sigma_offset_mm,sigma_angle_deg,point_x_mm,point_y_mm,point_z_mm,direction_x,direction_y,"
-      "direction_z\n";
-  for (const RecordedFrame& frame : frames) {
-    const guidance::GuidanceNumbers& g = frame.guidance;
-    text += std::to_string(frame.index);
-    append_number(text, static_cast<double>(frame.timestamp_ns) * 1e-9);
-    text += ',';
-    text += guidance::to_text(g.state);
-    if (g.is_valid()) {
-      for (const double value :
-           {g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg, g.offset_anterior_mm, g.offset_proximal_mm,
-            g.depth_mm, g.remaining_mm, g.sigma_offset_mm, g.sigma_angle_deg, g.guide_point_mm.x(),
-            g.guide_point_mm.y(), g.guide_point_mm.z(), g.guide_direction.x(), g.guide_direction.y(),
-            g.guide_direction.z()}) {
-        append_number(text, value);
-      }
-    } else {
-      text.append(15, ',');
+void append_guidance_line(std::int64_t frame, std::int64_t timestamp_ns, const guidance::GuidanceNumbers& g,
+                          std::string& text) {
+  text += std::to_string(frame);
+  append_number(text, static_cast<double>(timestamp_ns) * 1e-9);
+  text += ',';
+  text += guidance::to_text(g.state);
+  if (g.is_valid()) {
+    for (const double value :
+         {g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg, g.offset_anterior_mm, g.offset_proximal_mm,
+          g.depth_mm, g.remaining_mm, g.sigma_offset_mm, g.sigma_angle_deg, g.guide_point_mm.x(),
+          g.guide_point_mm.y(), g.guide_point_mm.z(), g.guide_direction.x(), g.guide_direction.y(),
+          g.guide_direction.z()}) {
+      append_number(text, value);
     }
-    text += '\n';
+  } else {
+    text.append(15, ',');
   }
-  files::write_atomically(file, text);
+  text += '\n';
 }
 
 std::string plan_to_text(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm) {

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
+#include <string>
+#include <string_view>
 
 #include "navigation/recording/session.h"
 
@@ -19,7 +20,12 @@ void write_session_header(const std::filesystem::path& folder, const SessionHead
                                                 pipeline::PipelineOptions& options);
 
 // guidance.csv: one row a frame; numbers are empty where there is no guidance, and `state` says why.
-void write_guidance_file(const std::filesystem::path& file, const std::vector<RecordedFrame>& frames);
+inline constexpr std::string_view kGuidanceHeader =
+    "frame,time_s,state,tip_to_entry_mm,axis_to_entry_mm,angle_deg,offset_anterior_mm,offset_proximal_mm,"
+    "depth_mm,remaining_mm,sigma_offset_mm,sigma_angle_deg,point_x_mm,point_y_mm,point_z_mm,direction_x,"
+    "direction_y,direction_z\n";
+void append_guidance_line(std::int64_t frame, std::int64_t timestamp_ns,
+                          const guidance::GuidanceNumbers& guidance, std::string& text);
 
 // The text of a plan event.
 [[nodiscard]] std::string plan_to_text(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm);

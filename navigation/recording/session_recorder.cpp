@@ -1,5 +1,6 @@
 #include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <exception>
 #include <optional>
 #include <thread>
@@ -9,6 +10,7 @@
 #include "navigation/camera/camera_file.h"
 #include "navigation/pipeline/bounded_queue.h"
 #include "navigation/recording/frame_record.h"
+#include "navigation/recording/open_formats.h"
 #include "navigation/recording/picture_writer.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_files.h"
@@ -42,11 +44,18 @@ struct FrameDigests {
 using Message = std::variant<pipeline::FrameResult, SessionEvent, EncodedPicture, RegistrationFile,
                              strokes::Curves, FrameDigests>;
 
+std::string gib_text(std::uintmax_t bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f GiB", static_cast<double>(bytes) / static_cast<double>(1 << 30));
+  return text;
+}
+
 // Carries out messages in the writer thread.
 class DatabaseWriter {
  public:
-  DatabaseWriter(SessionDatabase& database, std::filesystem::path folder)
+  DatabaseWriter(SessionDatabase& database, OpenFormats& formats, std::filesystem::path folder)
       : database_(database),
+        formats_(formats),
         folder_(std::move(folder)),
         frames_(database),
         event_(database.prepare("INSERT INTO events(after_frame, timestamp_ns, kind, text) VALUES(?,?,?,?)")),
@@ -62,10 +71,21 @@ class DatabaseWriter {
   void commit() {
     if (in_transaction_) database_.execute("COMMIT");
     in_transaction_ = false;
+    formats_.flush();
+  }
+
+  // An event of the writer's own, after the last frame that was written.
+  void write_event(std::string_view kind, std::string text) {
+    write(SessionEvent{last_timestamp_ns_, std::string(kind), std::move(text), last_frame_});
   }
 
  private:
-  void put(const pipeline::FrameResult& result) { frames_.insert(result); }
+  void put(const pipeline::FrameResult& result) {
+    frames_.insert(result);
+    formats_.append(result);
+    last_frame_ = result.frame_index;
+    last_timestamp_ns_ = result.timestamp_ns;
+  }
   void put(const SessionEvent& event) {
     event_.bind(1, event.after_frame)
         .bind(2, event.timestamp_ns)
@@ -88,9 +108,11 @@ class DatabaseWriter {
   void put(const strokes::Curves& curves) { strokes::write_curves_file(folder_ / "curves.csv", curves); }
 
   SessionDatabase& database_;
+  OpenFormats& formats_;
   std::filesystem::path folder_;
   FrameInserter frames_;
   Statement event_, picture_, digests_;
+  std::int64_t last_frame_ = -1, last_timestamp_ns_ = 0;
   bool in_transaction_ = false;
 };
 
@@ -98,20 +120,23 @@ class DatabaseWriter {
 
 struct SessionRecorder::State {
   State(const std::filesystem::path& to, const SessionHeader& with,
-        const pipeline::PipelineOptions& with_options)
+        const pipeline::PipelineOptions& with_options, const DiskLimits& with_limits)
       : folder(to),
         header(with),
         options(with_options),
+        limits(with_limits),
         database(SessionDatabase::create(database_file(to))),
+        formats(to),
         queue(kWaitingMessages) {}
 
   void run() {
     try {
-      DatabaseWriter writer(database, folder);
+      DatabaseWriter writer(database, formats, folder);
       auto next_commit = std::chrono::steady_clock::now() + kCommitEvery;
       while (!queue.is_drained()) {
         if (const auto message = queue.pop_until(next_commit)) writer.write(*message);
         if (std::chrono::steady_clock::now() < next_commit) continue;
+        if (!watch_disk(writer)) break;
         writer.commit();
         next_commit = std::chrono::steady_clock::now() + kCommitEvery;
       }
@@ -120,6 +145,26 @@ struct SessionRecorder::State {
       error = std::current_exception();  // read after the thread has ended
       queue.close();
     }
+  }
+
+  // In the writer's thread. False when nothing more may be written.
+  bool watch_disk(DatabaseWriter& writer) {
+    const std::uintmax_t free = limits.free_bytes(folder);
+    if (free < limits.video_stops_below_bytes && !video_stopped.exchange(true))
+      writer.write_event(kVideoStoppedEvent, "only " + gib_text(free) + " are free on the disk");
+    if (free >= limits.all_stops_below_bytes) return true;
+    writer.write_event(kRecordingStoppedEvent, "only " + gib_text(free) + " are free on the disk");
+    error = std::make_exception_ptr(IoError(folder, "recording stopped: only " + gib_text(free) +
+                                                        " are free on the disk; what was recorded is kept"));
+    out_of_space = true;
+    queue.close();
+    return false;
+  }
+
+  // Whether pictures are still taken; counts those that are not.
+  bool takes_pictures() {
+    if (video_stopped) ++dropped_count;
+    return !video_stopped;
   }
 
   void send(Message message) {
@@ -143,27 +188,23 @@ struct SessionRecorder::State {
     if (!pictures) {
       pictures.emplace(folder / kEncodedVideo, kEncodedFramesPerSecond);
       header.video = kEncodedVideo;
-      header.video_is_reencoded = true;
+      header.video_is_reencoded = header.video_has_exact_luma = true;
       rewrite_header();
     }
     return *pictures;
   }
 
-  void write_open_formats() {
-    const std::vector<RecordedFrame> frames = read_frames(database);
-    std::vector<strokes::PoseRow> rows;
-    for (const RecordedFrame& frame : frames) rows.insert(rows.end(), frame.poses.begin(), frame.poses.end());
-    strokes::write_poses_file(folder / "poses.csv", rows);
-    write_guidance_file(folder / "guidance.csv", frames);
-  }
-
   std::filesystem::path folder;
   SessionHeader header;
   pipeline::PipelineOptions options;
+  DiskLimits limits;
   SessionDatabase database;  // the writer thread's until it has ended
+  OpenFormats formats;       // the same
   pipeline::BoundedQueue<Message> queue;
   std::thread worker;
   std::exception_ptr error;
+  std::atomic<bool> video_stopped = false;
+  bool out_of_space = false;  // why there is an error: all was kept; the writer thread's until it has ended
   std::optional<PictureWriter> pictures;
   std::int64_t picture_count = 0, dropped_count = 0;
   std::int64_t last_frame = -1, last_timestamp_ns = 0;
@@ -171,9 +212,16 @@ struct SessionRecorder::State {
   bool finished = false;
 };
 
+std::uintmax_t free_bytes_at(const std::filesystem::path& folder) {
+  std::error_code error;
+  const std::filesystem::space_info space = std::filesystem::space(folder, error);
+  if (error) throw IoError(folder, "cannot tell how much room its disk has: " + error.message());
+  return space.available;
+}
+
 SessionRecorder::SessionRecorder(const std::filesystem::path& folder, const SessionHeader& header,
-                                 const pipeline::PipelineOptions& options)
-    : state_(std::make_unique<State>(folder, header, options)) {
+                                 const pipeline::PipelineOptions& options, const DiskLimits& limits)
+    : state_(std::make_unique<State>(folder, header, options, limits)) {
   state_->rewrite_header();
   camera::CalibrationRecord camera;
   camera.calibration = options.calibration;
@@ -201,11 +249,13 @@ void SessionRecorder::refer_to_video(const std::filesystem::path& video_or_patte
 }
 
 void SessionRecorder::append_picture(const camera::FramePtr& frame) {
+  if (!state_->takes_pictures()) return;
   state_->picture_writer().write(frame);
   state_->send(EncodedPicture{state_->picture_count++, frame->index});
 }
 
 bool SessionRecorder::try_append_picture(const camera::FramePtr& frame) {
+  if (!state_->takes_pictures()) return false;
   if (!state_->picture_writer().try_write(frame)) {
     ++state_->dropped_count;
     return false;
@@ -244,15 +294,23 @@ void SessionRecorder::set_registration(const registration::RegistrationSummary& 
 void SessionRecorder::set_curves(const strokes::Curves& curves) { state_->send(curves); }
 
 void SessionRecorder::finish() {
-  if (state_->finished) return;
-  if (state_->dropped_count > 0)
-    state_->send_event(kDroppedPicturesEvent, std::to_string(state_->dropped_count));
-  state_->finished = true;
-  state_->join_and_report();
-  if (state_->pictures) state_->pictures->finish();
-  state_->write_open_formats();
-  state_->database.execute("INSERT INTO ending VALUES(1)");
-  state_->database.seal();
+  State& s = *state_;
+  if (s.finished) return;
+  try {
+    if (s.dropped_count > 0) s.send_event(kDroppedPicturesEvent, std::to_string(s.dropped_count));
+    s.join_and_report();
+  } catch (const IoError&) {
+    // Said at the call before, where it is the room on the disk: what is there is finished all the same.
+    if (!s.out_of_space) {
+      s.finished = true;
+      throw;
+    }
+  }
+  s.finished = true;
+  s.formats.finish();
+  if (s.pictures) s.pictures->finish();
+  s.database.execute("INSERT INTO ending VALUES(1)");
+  s.database.seal();
 }
 
 void append_event(const std::filesystem::path& session_folder, const SessionEvent& event) {

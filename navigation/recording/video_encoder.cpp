@@ -1,6 +1,8 @@
 #include "navigation/recording/video_encoder.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "planning/geometry/error.h"
 
@@ -9,7 +11,6 @@ extern "C" {
 #include <libavformat/avformat.h>
 #include <libavutil/log.h>
 #include <libavutil/opt.h>
-#include <libswscale/swscale.h>
 }
 
 namespace arthronaut::recording {
@@ -24,16 +25,26 @@ struct FreeLibav {
   void operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
   void operator()(AVPacket* p) const { av_packet_free(&p); }
   void operator()(AVFrame* p) const { av_frame_free(&p); }
-  void operator()(SwsContext* p) const { sws_freeContext(p); }
 };
 template <class T>
 using LibavPtr = std::unique_ptr<T, FreeLibav>;
 
-// A key frame every half second: review jumps to any moment, and a cluster, the unit that reaches the disk,
-// is no longer.
-constexpr int kFramesPerKeyFrame = 30;
+// A cluster, the unit that reaches the disk, is no longer than this.
 constexpr const char* kClusterMs = "250";
-constexpr const char* kQuality = "10";
+
+// Colour differences of full-range BT.601 in 16-bit fixed point: (B - Y) / 1.772 and (R - Y) / 1.402.
+constexpr int kBlue = 36984, kRed = 46745;
+
+// In steps of four: the last two bits of a colour difference are noise, which would be most of the file.
+std::uint8_t coarse(int difference_of_four_pixels, int factor) {
+  const int value = 128 + ((difference_of_four_pixels * factor + (1 << 17)) >> 18);
+  return static_cast<std::uint8_t>(std::clamp((value + 2) & ~3, 0, 252));
+}
+
+// Half the resolution needs even sizes.
+AVPixelFormat format_of(int width, int height) {
+  return (width | height) % 2 == 0 ? AV_PIX_FMT_YUV420P : AV_PIX_FMT_YUV444P;
+}
 
 }  // namespace
 
@@ -58,22 +69,19 @@ struct VideoEncoder::State {
   }
 
   void open_encoder(int width, int height, double frames_per_second) {
-    const AVCodec* codec = avcodec_find_encoder_by_name("libx264");
-    if (!codec) throw IoError(file, "cannot write the video: this libavcodec has no H.264 encoder");
+    const AVCodec* codec = avcodec_find_encoder(AV_CODEC_ID_UTVIDEO);
+    if (!codec) throw IoError(file, "cannot write the video: this libavcodec has no Ut Video encoder");
     encoder.reset(avcodec_alloc_context3(codec));
     encoder->width = width;
     encoder->height = height;
-    encoder->pix_fmt = AV_PIX_FMT_YUV420P;
-    encoder->color_range = AVCOL_RANGE_MPEG;
+    encoder->pix_fmt = format_of(width, height);
+    encoder->color_range = AVCOL_RANGE_JPEG;    // luma is grey as it is tracked, 0 to 255
     encoder->colorspace = AVCOL_SPC_SMPTE170M;  // BT.601, the matrix of camera::gray_from
     encoder->framerate = {static_cast<int>(std::lround(1000 * frames_per_second)), 1000};
     encoder->time_base = av_inv_q(encoder->framerate);
-    encoder->gop_size = kFramesPerKeyFrame;
     encoder->thread_count = 1;  // the other core tracks
     encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-    av_opt_set(encoder->priv_data, "preset", "ultrafast", 0);
-    av_opt_set(encoder->priv_data, "tune", "zerolatency", 0);
-    av_opt_set(encoder->priv_data, "crf", kQuality, 0);
+    av_opt_set(encoder->priv_data, "pred", "left", 0);
     check(avcodec_open2(encoder.get(), codec, nullptr), "cannot start the video encoder");
   }
 
@@ -93,13 +101,45 @@ struct VideoEncoder::State {
   }
 
   void open_picture(int width, int height) {
-    picture->format = AV_PIX_FMT_YUV420P;
+    picture->format = format_of(width, height);
     picture->width = width;
     picture->height = height;
+    picture->color_range = AVCOL_RANGE_JPEG;
     check(av_frame_get_buffer(picture.get(), 0), "cannot start the video");
-    converter.reset(sws_getContext(width, height, AV_PIX_FMT_BGR24, width, height, AV_PIX_FMT_YUV420P,
-                                   SWS_BILINEAR | SWS_ACCURATE_RND, nullptr, nullptr, nullptr));
-    if (!converter) throw IoError(file, "cannot convert pictures for the video");
+  }
+
+  void fill_luma(const camera::Frame& frame) {
+    camera::gray_from(frame, gray);
+    for (int y = 0; y < frame.height; ++y) {
+      const std::uint8_t* const row = gray.data() + static_cast<std::ptrdiff_t>(y) * frame.width;
+      std::copy(row, row + frame.width, plane_row(0, y));
+    }
+  }
+
+  // Means of two by two pixels, or each pixel where the size is odd.
+  void fill_colour(const camera::Frame& frame) {
+    const std::ptrdiff_t width = frame.width;
+    const int step = picture->format == AV_PIX_FMT_YUV420P ? 2 : 1;
+    const std::ptrdiff_t right = step - 1, below = (step - 1) * width;
+    for (int y = 0; y < frame.height; y += step) {
+      std::uint8_t* const blue_row = plane_row(1, y / step);
+      std::uint8_t* const red_row = plane_row(2, y / step);
+      for (int x = 0; x < frame.width; x += step) {
+        const std::ptrdiff_t at = y * width + x;
+        int blue = 0, red = 0;
+        for (const std::ptrdiff_t pixel : {at, at + right, at + below, at + below + right}) {
+          const int luma = gray[static_cast<std::size_t>(pixel)];
+          blue += frame.bgr[static_cast<std::size_t>(3 * pixel)] - luma;
+          red += frame.bgr[static_cast<std::size_t>(3 * pixel + 2)] - luma;
+        }
+        blue_row[x / step] = coarse(blue, kBlue);
+        red_row[x / step] = coarse(red, kRed);
+      }
+    }
+  }
+
+  [[nodiscard]] std::uint8_t* plane_row(int plane, int y) {
+    return picture->data[plane] + static_cast<std::ptrdiff_t>(y) * picture->linesize[plane];
   }
 
   // Null: no more pictures.
@@ -119,9 +159,9 @@ struct VideoEncoder::State {
   std::filesystem::path file;
   LibavPtr<AVFormatContext> container;
   LibavPtr<AVCodecContext> encoder;
-  LibavPtr<SwsContext> converter;
   LibavPtr<AVPacket> packet;
   LibavPtr<AVFrame> picture;
+  std::vector<std::uint8_t> gray;
   AVStream* stream = nullptr;
   std::int64_t count = 0;
 };
@@ -138,9 +178,8 @@ void VideoEncoder::encode(const camera::Frame& picture) {
                        "is of another size than those before it");
   }
   s.check(av_frame_make_writable(s.picture.get()), "cannot encode");
-  const std::uint8_t* const rows[1] = {picture.bgr.data()};
-  const int strides[1] = {3 * picture.width};
-  sws_scale(s.converter.get(), rows, strides, 0, picture.height, s.picture->data, s.picture->linesize);
+  s.fill_luma(picture);
+  s.fill_colour(picture);
   s.picture->pts = s.count++;
   s.send(s.picture.get());
 }

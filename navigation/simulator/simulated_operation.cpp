@@ -69,6 +69,7 @@ struct SimulatedOperation::State {
     script = write_script();
     exposure = fitting_exposure();
     info.name = "simulated arthroscope";
+    info.kind = sources::SourceKind::Simulation;
     info.image_size_px = options.camera.image_size_px;
     info.frames_per_second = options.frames_per_second;
     info.frame_count =

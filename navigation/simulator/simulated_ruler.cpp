@@ -76,6 +76,7 @@ SimulatedRuler::SimulatedRuler(const RulerOptions& options) : state_(std::make_u
     throw InvalidInput("simulated ruler: its two markers must differ");
   state_->options = options;
   state_->info.name = "simulated ruler";
+  state_->info.kind = sources::SourceKind::Simulation;
   state_->info.image_size_px = options.camera.image_size_px;
   state_->info.frames_per_second = options.frames_per_second;
   state_->info.frame_count = options.frame_count;

@@ -1,5 +1,8 @@
 #include "navigation/sources/frame_source.h"
 
+#include <algorithm>
+#include <cctype>
+
 #include "navigation/sources/source_files.h"
 #include "navigation/sources/still_images.h"
 #include "navigation/sources/video_file.h"
@@ -7,17 +10,56 @@
 
 namespace arthronaut::sources {
 
+namespace {
+
+namespace fs = std::filesystem;
+
+// "rtsp://10.0.0.5/scope": a name, a colon and two slashes, of which a path keeps at least one.
+bool is_address(const std::string& text) {
+  const std::size_t colon = text.find("://");
+  if (colon == std::string::npos || colon < 2) return false;
+  return std::all_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(colon),
+                     [](unsigned char c) { return std::isalnum(c) || c == '+' || c == '-' || c == '.'; });
+}
+
+// Reading a pipe waits until somebody writes into it, which may be never.
+void refuse_what_is_no_file(const fs::path& path) {
+  const fs::file_type type = fs::status(path).type();
+  if (type == fs::file_type::regular) return;
+  const char* reason = "is no file";
+  if (type == fs::file_type::directory)
+    reason = "is a folder; give a video or a pattern such as f_%04d.png";
+  else if (type == fs::file_type::fifo)
+    reason = "is a pipe; give a video file or the number of a camera";
+  else if (type == fs::file_type::socket)
+    reason = "is a socket; give a video file or the number of a camera";
+  else if (type == fs::file_type::character || type == fs::file_type::block)
+    reason = "is a device; give the number of a camera";
+  throw InvalidInput(path, "", reason);
+}
+
+}  // namespace
+
 std::unique_ptr<FrameSource> open_video(const std::filesystem::path& video_or_pattern) {
   // A file of that very name wins over its reading as a pattern.
   if (!std::filesystem::exists(video_or_pattern)) {
     if (is_printf_pattern(video_or_pattern)) return open_still_images(video_or_pattern);
+    if (is_address(video_or_pattern.string())) {
+      throw InvalidInput(video_or_pattern, "",
+                         "is an address in a network, and streams can't be read; give a video file or the "
+                         "number of a camera");
+    }
     throw IoError(video_or_pattern, "no such file");
   }
-  if (std::filesystem::is_directory(video_or_pattern)) {
-    throw InvalidInput(video_or_pattern, "", "is a folder; give a video or a pattern such as f_%04d.png");
-  }
+  refuse_what_is_no_file(video_or_pattern);
   if (looks_like_picture(video_or_pattern)) return open_still_images(video_or_pattern);
-  return open_video_file(video_or_pattern);
+  return open_video_file(video_or_pattern, LumaOf::Colours);
+}
+
+std::unique_ptr<FrameSource> open_video_with_exact_luma(const std::filesystem::path& video) {
+  if (!fs::exists(video)) throw IoError(video, "no such file");
+  refuse_what_is_no_file(video);
+  return open_video_file(video, LumaOf::File);
 }
 
 }  // namespace arthronaut::sources

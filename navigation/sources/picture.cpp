@@ -6,12 +6,20 @@
 #include <opencv2/imgproc.hpp>
 
 #include "navigation/sources/frame_source.h"
+#include "navigation/sources/picture_size.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::sources {
 namespace {
 
+constexpr std::uint64_t kMostPixels = 64'000'000;  // twice 8K
+
 std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  // A pipe would be waited for.
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw InvalidInput(file, "", "is no file");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw IoError(file, "can't be opened");
   std::vector<std::uint8_t> bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
@@ -40,6 +48,15 @@ void read_picture_into(const std::filesystem::path& file, camera::Frame& frame) 
   if (std::filesystem::is_directory(file)) throw InvalidInput(file, "", "is a folder, not a picture");
   const std::vector<std::uint8_t> bytes = read_bytes(file);
   if (is_cut_off(bytes)) throw InvalidInput(file, "", "the picture breaks off before its end");
+  const std::optional<PictureSize> size = picture_size(bytes);
+  if (!size) throw InvalidInput(file, "", "is not a picture that can be decoded");
+  if (size->width == 0 || size->height == 0) throw InvalidInput(file, "", "has no pixels");
+  if (size->width > kMostPixels / size->height) {
+    throw InvalidInput(file, "",
+                       "claims " + std::to_string(size->width) + " x " + std::to_string(size->height) +
+                           " pixels, more than the " + std::to_string(kMostPixels / 1'000'000) +
+                           " million that a picture may have");
+  }
   const cv::Mat picture = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
   if (picture.empty()) throw InvalidInput(file, "", "is not a picture that can be decoded");
   if (picture.depth() != CV_8U) {

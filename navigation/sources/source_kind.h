@@ -7,7 +7,11 @@
 
 namespace arthronaut::sources {
 
-enum class SourceKind { Live, Recording, Simulation };
+enum class SourceKind {
+  Live,        // a device: frames come at their own pace and can be missed
+  Recording,   // a file that was made before
+  Simulation,  // rendered: nobody's knee
+};
 
 // "live", "recording", "simulation": as in files.
 [[nodiscard]] constexpr std::string_view to_text(SourceKind kind) {

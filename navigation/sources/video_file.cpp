@@ -1,5 +1,6 @@
 #include "navigation/sources/video_file.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "navigation/sources/matroska_end.h"
@@ -16,6 +17,7 @@ namespace arthronaut::sources {
 namespace {
 
 constexpr double kFallbackFramesPerSecond = 60;
+constexpr std::int64_t kMostPixels = 64'000'000;  // twice 8K
 
 struct FreeLibav {
   void operator()(AVFormatContext* p) const { avformat_close_input(&p); }
@@ -35,8 +37,8 @@ std::string libav_message(int error) {
 
 class VideoFile : public FrameSource {
  public:
-  explicit VideoFile(const std::filesystem::path& file)
-      : file_(file), packet_(av_packet_alloc()), picture_(av_frame_alloc()) {
+  VideoFile(const std::filesystem::path& file, LumaOf luma)
+      : file_(file), luma_(luma), packet_(av_packet_alloc()), picture_(av_frame_alloc()) {
     // What goes wrong is told once, by exception, with file and frame.
     av_log_set_level(AV_LOG_QUIET);
     open_container();
@@ -59,6 +61,7 @@ class VideoFile : public FrameSource {
     frame->width = picture_->width;
     frame->height = picture_->height;
     convert(*frame);
+    if (luma_ == LumaOf::File) copy_luma(*frame);
     ++next_index_;
     return frame;
   }
@@ -92,6 +95,7 @@ class VideoFile : public FrameSource {
     decoder_.reset(avcodec_alloc_context3(codec));
     avcodec_parameters_to_context(decoder_.get(), stream().codecpar);
     decoder_->thread_count = 2;
+    decoder_->max_pixels = kMostPixels;  // a header that claims more is a broken one, or a bomb
     decoder_->pkt_timebase = stream().time_base;
     if (const int error = avcodec_open2(decoder_.get(), codec, nullptr); error < 0) {
       throw InvalidInput(file_, "", "its video can't be decoded: " + libav_message(error));
@@ -172,13 +176,31 @@ class VideoFile : public FrameSource {
         converter_.release(), frame.width, frame.height, static_cast<AVPixelFormat>(picture_->format),
         frame.width, frame.height, AV_PIX_FMT_BGR24, SWS_BICUBIC, nullptr, nullptr, nullptr));
     if (!converter_) fail("has a pixel format that can't be converted");
+    if (luma_ == LumaOf::File) {
+      const int* const bt601 = sws_getCoefficients(SWS_CS_ITU601);
+      constexpr int kFullRange = 1, kUnity = 1 << 16;
+      sws_setColorspaceDetails(converter_.get(), bt601, kFullRange, bt601, kFullRange, 0, kUnity, kUnity);
+    }
     frame.bgr.resize(static_cast<std::size_t>(3) * frame.width * frame.height);
     std::uint8_t* const planes[] = {frame.bgr.data()};
     const int strides[] = {3 * frame.width};
     sws_scale(converter_.get(), picture_->data, picture_->linesize, 0, frame.height, planes, strides);
   }
 
+  void copy_luma(camera::Frame& frame) const {
+    if (picture_->format != AV_PIX_FMT_YUV420P && picture_->format != AV_PIX_FMT_YUV444P) {
+      fail("has no luma plane of its own");
+    }
+    frame.luma.resize(static_cast<std::size_t>(frame.width) * frame.height);
+    for (int y = 0; y < frame.height; ++y) {
+      const std::uint8_t* const row =
+          picture_->data[0] + static_cast<std::ptrdiff_t>(y) * picture_->linesize[0];
+      std::copy(row, row + frame.width, frame.luma.data() + static_cast<std::ptrdiff_t>(y) * frame.width);
+    }
+  }
+
   std::filesystem::path file_;
+  LumaOf luma_;
   LibavPtr<AVFormatContext> container_;
   LibavPtr<AVCodecContext> decoder_;
   LibavPtr<AVPacket> packet_;
@@ -194,8 +216,8 @@ class VideoFile : public FrameSource {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> open_video_file(const std::filesystem::path& file) {
-  return std::make_unique<VideoFile>(file);
+std::unique_ptr<FrameSource> open_video_file(const std::filesystem::path& file, LumaOf luma) {
+  return std::make_unique<VideoFile>(file, luma);
 }
 
 }  // namespace arthronaut::sources

@@ -46,22 +46,24 @@ std::vector<PoseRow> read_poses_file(const std::filesystem::path& file) {
   return rows;
 }
 
-std::string poses_to_text(const std::vector<PoseRow>& rows) {
-  std::string text = "frame,time_s,marker_id,qw,qx,qy,qz,tx_mm,ty_mm,tz_mm,rms_px,mark_angle_deg\n";
+void append_pose_line(const PoseRow& row, std::string& text) {
   char line[320];
-  for (const PoseRow& row : rows) {
-    const Eigen::Quaterniond& q = row.camera_from_marker.rotation;
-    const Eigen::Vector3d& t = row.camera_from_marker.translation_mm;
-    std::snprintf(line, sizeof line, "%lld,%.6f,%d,%.9f,%.9f,%.9f,%.9f,%.6f,%.6f,%.6f,%.4f,",
-                  static_cast<long long>(row.frame), row.time_s, row.marker_id, q.w(), q.x(), q.y(), q.z(),
-                  t.x(), t.y(), t.z(), row.rms_px);
+  const Eigen::Quaterniond& q = row.camera_from_marker.rotation;
+  const Eigen::Vector3d& t = row.camera_from_marker.translation_mm;
+  std::snprintf(line, sizeof line, "%lld,%.6f,%d,%.9f,%.9f,%.9f,%.9f,%.6f,%.6f,%.6f,%.4f,",
+                static_cast<long long>(row.frame), row.time_s, row.marker_id, q.w(), q.x(), q.y(), q.z(),
+                t.x(), t.y(), t.z(), row.rms_px);
+  text += line;
+  if (row.mark_angle_deg) {
+    std::snprintf(line, sizeof line, "%.6f", *row.mark_angle_deg);
     text += line;
-    if (row.mark_angle_deg) {
-      std::snprintf(line, sizeof line, "%.6f", *row.mark_angle_deg);
-      text += line;
-    }
-    text += '\n';
   }
+  text += '\n';
+}
+
+std::string poses_to_text(const std::vector<PoseRow>& rows) {
+  std::string text(kPosesHeader);
+  for (const PoseRow& row : rows) append_pose_line(row, text);
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "planning/geometry/rigid_transform.h"
@@ -25,5 +26,9 @@ struct PoseRow {
 [[nodiscard]] std::vector<PoseRow> read_poses_file(const std::filesystem::path& file);
 void write_poses_file(const std::filesystem::path& file, const std::vector<PoseRow>& rows);
 [[nodiscard]] std::string poses_to_text(const std::vector<PoseRow>& rows);
+// The same in parts, for a file that grows: the first line, then each row.
+inline constexpr std::string_view kPosesHeader =
+    "frame,time_s,marker_id,qw,qx,qy,qz,tx_mm,ty_mm,tz_mm,rms_px,mark_angle_deg\n";
+void append_pose_line(const PoseRow& row, std::string& text);
 
 }  // namespace arthronaut::strokes

@@ -126,24 +126,27 @@ class Loop {
   }
 
   void take_frame() {
-    camera::FramePtr picture;
+    OperationRun::Step step;
     try {  // a source that fails ends, and what was made stays
-      picture = run_.step();
+      step = run_.step();
     } catch (const std::exception& error) {
       live_.phase = LiveState::Phase::Failed;
       live_.message = error.what();
       return publish();
     }
-    if (picture == nullptr) {
+    if (step.has_ended) {
       live_.phase = LiveState::Phase::Ended;
       return publish();
     }
+    if (step.picture == nullptr) return;  // the screen sees for itself how old the last one is
     const operation::OperationStatePtr state = run_.state_of_frame();
     if (options_.decorate) live_.decoration = options_.decorate(*state);
     const bool is_live = kind_ == sources::SourceKind::Live;
-    if (!is_live) inbox_.sleep_until(pace_.due(picture->timestamp_ns));
-    live_.picture = std::move(picture);
-    live_.captured_s = seconds_of(Clock::now());
+    if (!is_live) inbox_.sleep_until(pace_.due(step.picture->timestamp_ns));
+    live_.picture = step.picture;
+    const bool is_dated = is_live && step.picture->captured_ns > 0;
+    live_.captured_s =
+        is_dated ? static_cast<double>(step.picture->captured_ns) * 1e-9 : seconds_of(Clock::now());
     live_.stale_after_s = is_live ? options_.live_stale_after_s : options_.other_stale_after_s;
     live_.frames_per_second = rate_.count();
     publish(state);

@@ -18,11 +18,14 @@ OperationRun::~OperationRun() { end_source(); }
 
 void OperationRun::start(const TheatreSource& source) {
   end_source();
-  auto opened = source.open();
+  // A device answers soon or is broken; a simulation has to find its place first.
+  constexpr double kLivePatience_s = 5, kOtherPatience_s = 300;
+  const bool is_live = source.setup.kind == sources::SourceKind::Live;
+  auto opened = std::make_unique<pipeline::PrefetchedSource>(source.open,
+                                                             is_live ? kLivePatience_s : kOtherPatience_s);
   operation_.start_source(source.setup);
   theatre_source_ = source;
   source_ = std::move(opened);
-  prefetched_ = std::make_unique<pipeline::PrefetchedSource>(*source_);
   record_trouble_.clear();
   record_is_due_ = static_cast<bool>(make_session_folder_);
   begin_record();
@@ -82,27 +85,29 @@ bool OperationRun::follow_registration() {
   return operation_.outcome() != before;
 }
 
-camera::FramePtr OperationRun::step() {
-  if (source_ == nullptr) return nullptr;
-  camera::FramePtr picture;
+OperationRun::Step OperationRun::step() {
+  constexpr double kWait_s = 0.1;
+  const bool is_live = theatre_source_.setup.kind == sources::SourceKind::Live;
+  pipeline::NextFrame next;
   try {
-    picture = prefetched_->next();
+    if (is_live) {
+      next = source_->next_within(kWait_s);
+    } else {
+      next.frame = source_->next();
+      next.has_ended = next.frame == nullptr;
+    }
   } catch (...) {
     end_source();
     throw;
   }
-  if (picture == nullptr) {
-    end_source();
-    return nullptr;
-  }
+  if (next.has_ended) end_source();
   (void)follow_registration();
-  operation_.process(*picture);
+  if (next.frame == nullptr) return {nullptr, next.has_ended};
+  operation_.process(*next.frame);
   frame_state_ = operation_.state();
-  write([&](recording::OperationRecord& record) {
-    record.add_frame(picture, *frame_state_, theatre_source_.setup.kind == sources::SourceKind::Live);
-  });
+  write([&](recording::OperationRecord& record) { record.add_frame(next.frame, *frame_state_, is_live); });
   pass_on();
-  return picture;
+  return {next.frame, false};
 }
 
 void OperationRun::apply(const operation::Command& command) {
@@ -114,7 +119,6 @@ void OperationRun::end_source() {
   if (source_ == nullptr) return;
   operation_.end_source();
   pass_on();
-  prefetched_.reset();
   source_.reset();
   write([&](recording::OperationRecord& record) { record.finish(operation_.strokes_in_use()); });
   record_.reset();

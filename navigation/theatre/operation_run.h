@@ -9,6 +9,7 @@
 #include <string>
 
 #include "navigation/operation/operation.h"
+#include "navigation/pipeline/prefetched_source.h"
 #include "navigation/recording/operation_record.h"
 #include "navigation/sources/frame_source.h"
 #include "navigation/theatre/registration_service.h"
@@ -71,7 +72,7 @@ class OperationRun {
   std::unique_ptr<RegistrationService> registration_;
   MakeSessionFolder make_session_folder_;
   TheatreSource theatre_source_;
-  std::unique_ptr<sources::FrameSource> source_, prefetched_;
+  std::unique_ptr<pipeline::PrefetchedSource> source_;
   std::unique_ptr<recording::OperationRecord> record_;
   std::filesystem::path session_folder_;
   std::string continues_, record_trouble_;

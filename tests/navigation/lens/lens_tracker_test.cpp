@@ -191,6 +191,51 @@ TEST(LensTracker, NoticesZoomAndSlipInEveryFrame) {
     }
 }
 
+// What the rim says about the focal length, in the very frame: unknown before it was seen and when it has
+// gone out of a lit picture (zoomed in), changed when it has another radius, by 1 % as well; held for as long
+// as a mark while darkness hides it, and no longer.
+TEST(LensTracker, ZoomUnknownUntilTheRimWasSeenAsCalibrated) {
+  const RimTruth truth;
+  LensTrackerOptions options;
+  options.calibration.emplace();
+  options.calibration->image_size_px = {truth.width, truth.height};
+  options.calibration->rotation_center_px = {480, 270};
+  options.calibration->boundary = {truth.center_px, truth.radius_px};
+  options.calibration->reference_mark_angle_deg = truth.mark_angle_deg;
+  LensTracker tracker(options);
+  std::int64_t now_ns = 0;
+  const auto zoom_of = [&](const RimPicture& shown) {
+    return tracker.observe(shown.view(), now_ns += 16'666'667).zoom;
+  };
+  RimTruth zoomed_truth = truth, larger_truth = truth, dark_truth = truth, partly_truth = truth;
+  zoomed_truth.radius_px = 700;  // beyond the picture's corners
+  larger_truth.radius_px *= 1.01;
+  dark_truth.scene = [](double, double) { return 1.0; };
+  partly_truth.scene = [](double angle_deg, double) {
+    return std::abs(turn_between_deg(angle_deg, -60)) < 70 ? 2.0 : 90.0;
+  };
+
+  const RimPicture seen = draw(truth), zoomed_in = draw(zoomed_truth), larger = draw(larger_truth),
+                   dark = draw(dark_truth), partly = draw(partly_truth);
+
+  EXPECT_EQ(zoom_of(zoomed_in), ZoomState::Unknown);
+  EXPECT_NE(reason_text(tracker.observe(zoomed_in.view(), now_ns += 16'666'667)).find("zoom unknown"),
+            std::string::npos);
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(zoom_of(seen), ZoomState::AsCalibrated) << i;
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(zoom_of(partly), ZoomState::AsCalibrated) << i;
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(zoom_of(zoomed_in), ZoomState::Unknown) << i;
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(zoom_of(seen), ZoomState::AsCalibrated) << i;
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(zoom_of(larger), ZoomState::Changed) << i;
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(zoom_of(seen), ZoomState::AsCalibrated) << i;
+  for (int i = 0; i < 30; ++i) EXPECT_EQ(zoom_of(dark), ZoomState::AsCalibrated) << i;
+  now_ns += 600'000'000;
+  EXPECT_EQ(zoom_of(dark), ZoomState::Unknown);
+  EXPECT_EQ(zoom_of(seen), ZoomState::AsCalibrated);
+
+  LensTracker without_calibration;
+  EXPECT_EQ(without_calibration.observe(seen.view(), 0).zoom, ZoomState::NotWatched);
+}
+
 // A mark that is gone: the words first say that its angle is held, then that it is not known. Both
 // polarities.
 TEST(LensTracker, SaysThatTheAngleIsHeldAndThenNotKnown) {

@@ -41,7 +41,7 @@ TEST(NavigationPipelineAllocation, NothingPerFrameAfterTheFirstFrames) {
   pipeline.set_registration(registration);
 
   std::vector<camera::Frame> frames;
-  for (int i = 0; i < 40; ++i) frames.push_back(test::plain_frame(i, static_cast<std::uint8_t>(i % 7)));
+  for (int i = 0; i < 40; ++i) frames.push_back(test::round_frame(i, static_cast<std::uint8_t>(90 + i % 7)));
   pipeline::FrameResult result;
   for (int i = 0; i < 5; ++i) pipeline.process(frames[static_cast<std::size_t>(i)], result);
   ASSERT_TRUE(result.guidance.is_valid());

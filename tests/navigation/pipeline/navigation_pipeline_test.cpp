@@ -110,7 +110,7 @@ TEST_F(NavigationPipeline, SaysThatAPictureIsFrozen) {
   EXPECT_EQ(result_.guidance.state, GuidanceState::Stale);
   EXPECT_FALSE(result_.tip_is_valid);
   EXPECT_FALSE(result_.camera_from_world.is_valid);
-  EXPECT_TRUE(process(19, 8).guidance.is_valid());
+  EXPECT_TRUE(process(19, 60).guidance.is_valid());
 }
 
 // The covariance of the tip against 20 000 draws of both poses' errors; 5 % is three standard errors of that
@@ -157,11 +157,50 @@ TEST_F(NavigationPipeline, StandsForNoPoseWhileTheLensIsUnknown) {
 
   options_.calibration.rotation_center_px = options_.calibration.principal_point_px;
   pipeline::NavigationPipeline centred(options_, std::make_unique<test::ScriptedMarkers>(&script_));
-  centred.process(test::plain_frame(0, 40), result_);
+  centred.process(test::round_frame(0, 40), result_);
   EXPECT_TRUE(result_.intrinsics_are_known);
   pipeline::append_pose_rows(result_, rows);
   EXPECT_EQ(rows.size(), 3u);
   EXPECT_FALSE(rows.front().mark_angle_deg.has_value());
+}
+
+// A rim that has gone out of the view, or has another radius, takes the focal length with it: no pose of that
+// very frame stands, with or without a mark; and all do in the first frame in which the rim is as calibrated.
+TEST_F(NavigationPipeline, ZoomUnknownMakesEveryPoseInvalidInThatFrame) {
+  options_.follow_lens = true;
+  options_.calibration.rotation_center_px = options_.calibration.principal_point_px;
+  pipeline::NavigationPipeline zooming(options_, std::make_unique<test::ScriptedMarkers>(&script_));
+  zooming.set_plan(plan_, 30);
+  zooming.set_registration(registration_);
+  const auto expect = [&](const camera::Frame& frame, lens::ZoomState zoom, bool stands) {
+    zooming.process(frame, result_);
+    EXPECT_EQ(result_.lens.zoom, zoom) << frame.index << ": " << lens::to_text(result_.lens.zoom);
+    EXPECT_EQ(result_.intrinsics_are_known, stands) << frame.index;
+    EXPECT_EQ(result_.camera_from_world.is_valid, stands) << frame.index;
+    EXPECT_EQ(result_.tip_is_valid, stands) << frame.index;
+    EXPECT_EQ(result_.guidance.is_valid(), stands) << frame.index;
+    std::vector<strokes::PoseRow> rows;
+    pipeline::append_pose_rows(result_, rows);
+    EXPECT_EQ(rows.empty(), !stands) << frame.index;
+  };
+  using lens::ZoomState;
+  expect(test::plain_frame(0, 90), ZoomState::Unknown, false);  // never seen
+  for (int i = 1; i < 6; ++i) expect(test::round_frame(i, 90), ZoomState::AsCalibrated, true);
+  for (int i = 6; i < 9; ++i) expect(test::plain_frame(i, 90), ZoomState::Unknown, false);
+  for (int i = 9; i < 12; ++i) expect(test::round_frame(i, 90), ZoomState::AsCalibrated, true);
+  camera::Frame smaller = test::plain_frame(12, 0);  // the same picture, zoomed out by a tenth
+  const camera::Frame whole = test::round_frame(12, 90);
+  for (int y = 0; y < smaller.height; ++y) {
+    for (int x = 0; x < smaller.width; ++x) {
+      const long from_x = std::lround(80 + (x - 80) / 0.9), from_y = std::lround(60 + (y - 60) / 0.9);
+      if (from_x < 0 || from_x >= 160 || from_y < 0 || from_y >= 120) continue;
+      std::copy_n(whole.bgr.begin() + 3 * (from_y * 160 + from_x), 3,
+                  smaller.bgr.begin() + 3 * (y * 160 + x));
+    }
+  }
+  zooming.process(smaller, result_);
+  EXPECT_NE(result_.lens.zoom, ZoomState::AsCalibrated);
+  EXPECT_FALSE(result_.intrinsics_are_known || result_.camera_from_world.is_valid || result_.tip_is_valid);
 }
 
 // Another size than the calibration's is another camera.

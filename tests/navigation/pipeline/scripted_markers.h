@@ -2,6 +2,8 @@
 // known truth.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "navigation/pipeline/navigation_pipeline.h"
@@ -58,6 +60,21 @@ inline camera::Frame plain_frame(std::int64_t index, std::uint8_t gray) {
   frame.width = 160;
   frame.height = 120;
   frame.bgr.assign(static_cast<std::size_t>(3 * frame.width * frame.height), gray);
+  return frame;
+}
+
+// A plain lit view inside the rim that small_calibration() has: its zoom is known.
+inline camera::Frame round_frame(std::int64_t index, std::uint8_t gray) {
+  camera::Frame frame = plain_frame(index, 0);
+  const camera::Boundary rim = small_calibration().boundary;
+  for (int y = 0; y < frame.height; ++y) {
+    for (int x = 0; x < frame.width; ++x) {
+      const double open =
+          std::clamp(rim.radius_px - (Eigen::Vector2d(x, y) - rim.center_px).norm() + 0.5, 0.0, 1.0);
+      const auto value = static_cast<std::uint8_t>(gray * std::pow(open, 1 / 2.2));
+      std::fill_n(frame.bgr.begin() + 3 * (y * frame.width + x), 3, value);
+    }
+  }
   return frame;
 }
 

@@ -26,7 +26,7 @@ TEST(SimulatedOperation, ShowsMarkersThatCanBeTracked) {
   for (const Phase phase : {Phase::Pivot, Phase::Scratch, Phase::Drill}) {
     SimulatedOperation operation(options, phase);
     EXPECT_EQ(operation.info().frame_count, 4);
-    EXPECT_FALSE(operation.info().is_live);
+    EXPECT_EQ(operation.info().kind, sources::SourceKind::Simulation);
     const auto declared = markers::declared_markers(options.tools);
     std::vector<std::uint8_t> memory;
     // The guide comes into view while it approaches: its first frame may lack it.

@@ -27,7 +27,7 @@ TEST(StillImages, PlaysAPatternFromItsFirstNumber) {
   const auto source = open_video(folder / "f_%04d.png");
   EXPECT_EQ(source->info().frame_count, 5);
   EXPECT_EQ(source->info().image_size_px, Eigen::Vector2i(32, 24));
-  EXPECT_FALSE(source->info().is_live);
+  EXPECT_EQ(source->info().kind, SourceKind::Recording);
   for (int i = 0; i < 5; ++i) {
     const camera::FramePtr frame = source->next();
     ASSERT_TRUE(frame);
