@@ -20,6 +20,15 @@ void append_number(std::string& line, double value) {
   line += text;
 }
 
+// Empty where the drill is not seen.
+void append_drill(std::string& line, const guidance::GuidanceNumbers& numbers,
+                  double guidance::DrillDepth::*value) {
+  if (numbers.drill)
+    append_number(line, (*numbers.drill).*value);
+  else
+    line += ',';
+}
+
 }  // namespace
 
 std::filesystem::path header_file(const std::filesystem::path& folder) { return folder / "session.json"; }
@@ -76,7 +85,7 @@ void write_guidance_file(const std::filesystem::path& file, const std::vector<Re
       "frame,time_s,state,tip_to_entry_mm,axis_to_entry_mm,angle_deg,offset_anterior_mm,offset_proximal_mm,"
       "depth_mm,"
       "remaining_mm,sigma_offset_mm,sigma_angle_deg,point_x_mm,point_y_mm,point_z_mm,direction_x,direction_y,"
-      "direction_z\n";
+      "direction_z,offset_lateral_mm,drill_depth_mm,drill_to_exit_mm\n";
   for (const RecordedFrame& frame : frames) {
     const guidance::GuidanceNumbers& g = frame.guidance;
     text += std::to_string(frame.index);
@@ -84,15 +93,18 @@ void write_guidance_file(const std::filesystem::path& file, const std::vector<Re
     text += ',';
     text += guidance::to_text(g.state);
     if (g.is_valid()) {
-      for (const double value :
-           {g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg, g.offset_anterior_mm, g.offset_proximal_mm,
-            g.depth_mm, g.remaining_mm, g.sigma_offset_mm, g.sigma_angle_deg, g.guide_point_mm.x(),
-            g.guide_point_mm.y(), g.guide_point_mm.z(), g.guide_direction.x(), g.guide_direction.y(),
-            g.guide_direction.z()}) {
+      for (const double value : {g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg, g.offset_anterior_mm,
+                                 g.offset_proximal_mm, g.depth_mm})
         append_number(text, value);
-      }
+      append_drill(text, g, &guidance::DrillDepth::remaining_mm);
+      for (const double value : {g.sigma_offset_mm, g.sigma_angle_deg, g.guide_point_mm.x(),
+                                 g.guide_point_mm.y(), g.guide_point_mm.z(), g.guide_direction.x(),
+                                 g.guide_direction.y(), g.guide_direction.z(), g.offset_lateral_mm})
+        append_number(text, value);
+      append_drill(text, g, &guidance::DrillDepth::depth_mm);
+      append_drill(text, g, &guidance::DrillDepth::to_exit_mm);
     } else {
-      text.append(15, ',');
+      text.append(18, ',');
     }
     text += '\n';
   }
