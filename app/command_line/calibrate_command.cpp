@@ -49,8 +49,7 @@ void say_result(const Context& context, const calibration::CalibrationSummary& s
                      picture.lens_angle_deg, picture.mark_is_used ? "" : " (without its mark)"));
   for (const std::string& note : summary.notes) context.say(note);
   const camera::Calibration& c = summary.record.calibration;
-  const Eigen::MatrixXd& covariance = summary.record.covariance;
-  const auto sigma = [&](int k) { return covariance.rows() == 6 ? std::sqrt(covariance(k, k)) : 0.0; };
+  const auto sigma = [&](int k) { return c.covariance ? std::sqrt((*c.covariance)(k, k)) : 0.0; };
   context.say(line("focal length %.2f px (+- %.2f), xi %.5f (+- %.5f)", c.focal_px, sigma(0), c.distortion_xi,
                    sigma(1)));
   context.say(line("principal point (%.2f, %.2f) px (+- %.2f), centre of rotation (%.2f, %.2f) px (+- %.2f)",

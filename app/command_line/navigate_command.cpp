@@ -152,11 +152,16 @@ void say_guidance(const Context& context, const theatre::NavigationSummary& summ
              "angle %.2f deg",
              summary.frames_with_guidance, summary.statistics.frame_count, g.tip_to_entry_mm,
              g.axis_to_entry_mm, g.angle_deg));
-  context.say(
-      format("  offset %.2f mm anterior, %.2f mm proximal; depth %.1f mm, remaining %.1f mm; "
-             "one sigma %.2f mm, %.2f deg",
-             g.offset_anterior_mm, g.offset_proximal_mm, g.depth_mm, g.remaining_mm, g.sigma_offset_mm,
-             g.sigma_angle_deg));
+  context.say(format(
+      "  offset %.2f mm: %.2f mm %s, %.2f mm %s; guide %.1f mm beyond the entry; one sigma %.2f mm, "
+      "%.2f deg",
+      g.offset_mm, g.offset_in_mm(g.across_plan.side_is),
+      std::string(landmarks::to_text(g.across_plan.side_is)).c_str(), g.offset_in_mm(g.across_plan.up_is),
+      std::string(landmarks::to_text(g.across_plan.up_is)).c_str(), g.depth_mm, g.sigma_offset_mm,
+      g.sigma_angle_deg));
+  if (g.drill)
+    context.say(format("  drill %.1f mm deep, %.1f mm remaining, %.1f mm to the exit (+- %.1f mm)",
+                       g.drill->depth_mm, g.drill->remaining_mm, g.drill->to_exit_mm, g.drill->sigma_mm));
 }
 
 void navigate(Context& context, const NavigateArguments& arguments) {

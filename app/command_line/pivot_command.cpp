@@ -100,6 +100,10 @@ void calibrate_tip(Context& context, const PivotArguments& arguments) {
   document["inlier_count"] = summary.inlier_count;
   if (summary.has_tip()) {
     document["sigma_mm"] = summary.sigma_mm;
+    const Eigen::Matrix3d error = summary.tip_error_mm2();
+    auto values = nlohmann::ordered_json::array();
+    for (int i = 0; i < 9; ++i) values.push_back(error(i / 3, i % 3));
+    document["tip_covariance_mm2"] = std::move(values);  // as tools.json keeps it
     document["half_change_mm"] = summary.half_change_mm;
     document["pivot_mm"] = files::to_json(summary.pivot_in_fixed_mm);
   }
@@ -125,6 +129,10 @@ void calibrate_axis(Context& context, const PivotArguments& arguments) {
   document["axis_direction"] =
       has ? files::to_json(summary.axis_direction_in_tool) : nlohmann::ordered_json();
   document["rms_mm"] = has ? nlohmann::ordered_json(summary.rms_mm) : nlohmann::ordered_json();
+  if (has) {
+    document["axis_point_sigma_mm"] = summary.point_sigma_mm;
+    document["axis_direction_sigma_deg"] = summary.direction_sigma_deg;
+  }
   document["turn_deg"] = summary.turn_deg;
   document["reliable"] = summary.is_usable();
   document["reasons"] = summary.reasons;

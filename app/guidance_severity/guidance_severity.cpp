@@ -1,23 +1,44 @@
 #include "app/guidance_severity/guidance_severity.h"
 
+#include <cmath>
+
 namespace arthronaut::guidance_severity {
 
-double offset_mm(const guidance::GuidanceNumbers& guidance) { return guidance.axis_to_entry_mm; }
+namespace {
 
-widgets::Severity severity_of_offset(const guidance::GuidanceNumbers& guidance) {
-  if (guidance.sigma_offset_mm > 2) return widgets::Severity::Bad;
-  if (guidance.axis_to_entry_mm < 1 && guidance.sigma_offset_mm < 1) return widgets::Severity::Good;
-  return guidance.axis_to_entry_mm < 2 ? widgets::Severity::Caution : widgets::Severity::Bad;
+using widgets::Severity;
+
+Severity severity_of(double value, double sigma, double good) {
+  if (!(sigma <= 2 * good) || !(value < 2 * good)) return Severity::Bad;
+  return value < good && sigma < good ? Severity::Good : Severity::Caution;
 }
 
-widgets::Severity severity_of_angle(const guidance::GuidanceNumbers& guidance) {
-  if (guidance.angle_deg < 2) return widgets::Severity::Good;
-  return guidance.angle_deg < 4 ? widgets::Severity::Caution : widgets::Severity::Bad;
+std::string part(const guidance::GuidanceNumbers& guidance, landmarks::AnatomicalDirection direction) {
+  const double value = guidance.offset_in_mm(direction);
+  return widgets::fixed(std::abs(value), 1) + " " + std::string(landmarks::to_text(direction, value >= 0));
 }
 
-widgets::Severity severity_of_remaining(const guidance::GuidanceNumbers& guidance) {
-  if (guidance.remaining_mm < 2) return widgets::Severity::Bad;
-  return guidance.remaining_mm < 5 ? widgets::Severity::Caution : widgets::Severity::Quiet;
+}  // namespace
+
+double offset_mm(const guidance::GuidanceNumbers& guidance) { return guidance.offset_mm; }
+
+OffsetParts offset_parts(const guidance::GuidanceNumbers& guidance) {
+  return {part(guidance, guidance.across_plan.side_is), part(guidance, guidance.across_plan.up_is)};
+}
+
+Severity severity_of_offset(const guidance::GuidanceNumbers& guidance) {
+  return severity_of(guidance.offset_mm, guidance.sigma_offset_mm, 1);
+}
+
+Severity severity_of_angle(const guidance::GuidanceNumbers& guidance) {
+  return severity_of(guidance.angle_deg, guidance.sigma_angle_deg, 2);
+}
+
+Severity severity_of_drill(const guidance::DrillDepth& drill) {
+  using guidance::Breakout;
+  if (drill.remaining_mm < 2 || drill.breakout == Breakout::Imminent || drill.breakout == Breakout::Through)
+    return Severity::Bad;
+  return drill.remaining_mm < 5 || drill.breakout == Breakout::Near ? Severity::Caution : Severity::Quiet;
 }
 
 std::string marker_name(const tools::ToolSet& tools, int marker_id) {

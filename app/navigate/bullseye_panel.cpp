@@ -31,19 +31,21 @@ void draw_target(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, 
 }
 
 void draw_directions(const widgets::Ui& ui, ImDrawList& draw, const widgets::Rect& area, const ImVec2& center,
-                     float radius, bool anterior_is_right) {
+                     float radius, const BullseyePoint& point) {
   ImFont* font = ui.theme.strong;
-  const auto put = [&](const char* text, float x, float y, float align) {
-    const float width = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text).x;
+  const auto put = [&](landmarks::AnatomicalDirection direction, bool is_positive, float x, float y,
+                       float align) {
+    const std::string text(landmarks::to_text(direction, is_positive));
+    const float width = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
     const float left = std::clamp(x - width * align, area.x + 4, area.x + area.width - width - 4);
-    draw.AddText(font, font->FontSize, {left, y}, widgets::kQuietText, text);
+    draw.AddText(font, font->FontSize, {left, y}, widgets::kQuietText, text.c_str());
   };
-  put("proximal", center.x, center.y - radius - font->FontSize * 1.15F, 0.5F);
-  put("distal", center.x, center.y + radius + font->FontSize * 0.1F, 0.5F);
+  put(point.up_is, true, center.x, center.y - radius - font->FontSize * 1.15F, 0.5F);
+  put(point.up_is, false, center.x, center.y + radius + font->FontSize * 0.1F, 0.5F);
   const float y = center.y - font->FontSize * 1.2F;
   const float gap = ui.theme.px(6);
-  put(anterior_is_right ? "anterior" : "posterior", center.x + radius + gap, y, 0);
-  put(anterior_is_right ? "posterior" : "anterior", center.x - radius - gap, y, 1);
+  put(point.side_is, point.side_is_right, center.x + radius + gap, y, 0);
+  put(point.side_is, !point.side_is_right, center.x - radius - gap, y, 1);
 }
 
 // The axis of the guide as a dot with a tail that leans as the guide does: 1 degree as long as 1 mm.
@@ -83,10 +85,6 @@ widgets::Severity worse(widgets::Severity a, widgets::Severity b) {
   return rank(a) >= rank(b) ? a : b;
 }
 
-std::string direction_text(double value, const char* positive, const char* negative) {
-  return widgets::fixed(std::abs(value), 1) + " " + (value >= 0 ? positive : negative);
-}
-
 }  // namespace
 
 void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen) {
@@ -103,7 +101,7 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
   }
   const BullseyePoint point = bullseye_point(screen.display.guidance, *screen.plan);
   draw_target(ui, draw, center, radius);
-  draw_directions(ui, draw, area, center, radius, point.anterior_is_right);
+  draw_directions(ui, draw, area, center, radius, point);
   draw_guide(ui, draw, center, radius, point,
              worse(guidance_severity::severity_of_offset(screen.display.guidance),
                    guidance_severity::severity_of_angle(screen.display.guidance)));
@@ -129,8 +127,8 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Naviga
       block("Offset", guidance_severity::offset_mm(g), "", "mm " + widgets::plus_minus(g.sigma_offset_mm),
             guidance_severity::severity_of_offset(g));
   if (valid) {
-    const std::string text = direction_text(g.offset_anterior_mm, "anterior", "posterior") + "\n" +
-                             direction_text(g.offset_proximal_mm, "proximal", "distal");
+    const guidance_severity::OffsetParts parts = guidance_severity::offset_parts(g);
+    const std::string text = parts.side + "\n" + parts.up;
     ImFont* font = ui.theme.body;
     const float width = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
     draw.AddText(font, font->FontSize, {offset.x + offset.width - width, offset.y}, widgets::kText,
@@ -138,8 +136,12 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Naviga
   }
   block("Angle", g.angle_deg, "\u00B0", widgets::plus_minus(g.sigma_angle_deg),
         guidance_severity::severity_of_angle(g));
-  block("Depth", g.depth_mm, "", "mm", widgets::Severity::Quiet);
-  block("Remaining", g.remaining_mm, "", "mm", guidance_severity::severity_of_remaining(g));
+  // Said of a drill that is seen alone: a guide does not know how deep the drill is that runs through it.
+  if (valid && g.drill && g.drill->is_at_plan()) {
+    block("Drill depth", g.drill->depth_mm, "", "mm " + widgets::plus_minus(g.drill->sigma_mm),
+          widgets::Severity::Quiet);
+    block("Remaining", g.drill->remaining_mm, "", "mm", guidance_severity::severity_of_drill(*g.drill));
+  }
 }
 
 }  // namespace arthronaut::navigate

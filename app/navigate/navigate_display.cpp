@@ -43,6 +43,12 @@ void explain(NavigateDisplay& display, const OperationStatus& status,
       display.headline = "No plan";
       display.detail = "Plan the tunnel of this bone first";
       break;
+    case GuidanceState::NoGuide:
+      display.headline = "No drill guide";
+      display.detail = options.tools.find_tool(options.guide_name) == nullptr
+                           ? "The tools of this case hold no " + options.guide_name
+                           : "The axis of the " + options.guide_name + " is not known: measure it in Set up";
+      break;
     case GuidanceState::NoRegistration:
       // Nothing can be touched while the marker is lost: that comes first.
       if (!result.camera_from_world.is_valid) {
@@ -160,20 +166,22 @@ NavigateDisplay display_of(const OperationStatus* status, const pipeline::Pipeli
 
 BullseyePoint bullseye_point(const guidance::GuidanceNumbers& guidance, const tunnels::Tunnel& plan) {
   const Eigen::Vector3d ahead = plan.direction.normalized();
-  Eigen::Vector3d up =
-      Eigen::Vector3d::UnitZ() - ahead.z() * ahead;  // proximal; anterior where the plan runs along the bone
-  if (up.norm() < 0.2) up = -Eigen::Vector3d::UnitY() + ahead.y() * ahead;
-  up.normalize();
-  const Eigen::Vector3d right = ahead.cross(up);
+  const landmarks::PlaneAxes& axes = guidance.across_plan;
+  BullseyePoint point;
+  point.up_is = axes.up_is;
+  point.side_is = axes.side_is;
+  // Looking along the plan, with `up` up.
+  point.side_is_right = ahead.cross(axes.up).dot(axes.side) > 0;
+  const double to_the_right = point.side_is_right ? 1 : -1;
+  point.right_mm = to_the_right * guidance.offset_in_mm(axes.side_is);
+  point.up_mm = guidance.offset_in_mm(axes.up_is);
   const double advance = guidance.guide_direction.dot(ahead);
-  const double along = std::abs(advance) > 0.1
-                           ? (plan.entry_mm - guidance.guide_point_mm).dot(ahead) / advance
-                           : (plan.entry_mm - guidance.guide_point_mm).dot(guidance.guide_direction);
-  const Eigen::Vector3d offset = guidance.guide_point_mm + along * guidance.guide_direction - plan.entry_mm;
-  const auto lean = [&](const Eigen::Vector3d& side) {
-    return geometry::deg_from_rad(std::atan2(guidance.guide_direction.dot(side), advance));
+  const auto lean = [&](const Eigen::Vector3d& towards) {
+    return geometry::deg_from_rad(std::atan2(guidance.guide_direction.dot(towards), advance));
   };
-  return {offset.dot(right), offset.dot(up), lean(right), lean(up), right.y() <= 0};
+  point.lean_right_deg = to_the_right * lean(axes.side);
+  point.lean_up_deg = lean(axes.up);
+  return point;
 }
 
 }  // namespace arthronaut::navigate

@@ -62,7 +62,7 @@ void NavigateScene::show(const NavigateScreen& screen) {
   }
   if (shown_.guide != nullptr) {
     const guidance::GuidanceNumbers& g = screen.display.guidance;
-    scene::add_guide(content, g.guide_point_mm, g.guide_direction, std::max(g.remaining_mm, 5.0));
+    scene::add_guide(content, g.guide_point_mm, g.guide_direction, std::max(screen.planned_length_mm, 5.0));
   }
   pane_.show(content);
 }

@@ -129,10 +129,13 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const Session
                           guidance_severity::severity_of_angle(at.guidance));
     widgets::Rect below{cursor.x, cursor.y + height, width, height};
     const widgets::Rect below_left = below.cut_left(width / 2);
-    widgets::number_block(ui, below_left, "Depth", widgets::fixed(at.guidance.depth_mm, 1), "mm",
+    // Of a drill with a marker of its own; nobody saw how deep another one was.
+    const auto& drill = at.guidance.drill;
+    widgets::number_block(ui, below_left, "Drill depth",
+                          drill ? widgets::fixed(drill->depth_mm, 1) : "\u2013", drill ? "mm" : "",
                           widgets::Severity::Quiet);
-    widgets::number_block(ui, below, "Remaining", widgets::fixed(at.guidance.remaining_mm, 1), "mm",
-                          widgets::Severity::Quiet);
+    widgets::number_block(ui, below, "Remaining", drill ? widgets::fixed(drill->remaining_mm, 1) : "\u2013",
+                          drill ? "mm" : "", widgets::Severity::Quiet);
     ImGui::Dummy({width, 2 * height});
   } else {
     widgets::status_row(ui, widgets::Severity::Quiet, "No guidance",

@@ -274,7 +274,8 @@ void ReviewView::show_scene() {
   }
   if (frame.guidance.is_valid())
     scene::add_guide(content, frame.guidance.guide_point_mm, frame.guidance.guide_direction,
-                     std::max(frame.guidance.remaining_mm, 5.0));
+                     frame.guidance.drill ? std::max(frame.guidance.drill->remaining_mm, 5.0)
+                                          : std::max(plan.planned_length_mm, 5.0));
   pane_.show(content);
 }
 

@@ -58,10 +58,9 @@ int decimals_for(double sigma) {
 
 std::vector<Row> result_rows(const calibration::CalibrationSummary& summary) {
   const camera::Calibration& c = summary.record.calibration;
-  const Eigen::MatrixXd& covariance = summary.record.covariance;
   const auto number = [&](double value, int k) {
-    if (covariance.rows() != 6) return fixed(value, 1) + " (error not known)";
-    const double sigma = std::sqrt(covariance(k, k));
+    if (!c.covariance) return fixed(value, 1) + " (error not known)";
+    const double sigma = std::sqrt((*c.covariance)(k, k));
     return fixed(value, decimals_for(sigma)) + " \u00B1 " + fixed(sigma, decimals_for(sigma));
   };
   const auto point = [&](const Eigen::Vector2d& p, int k) {

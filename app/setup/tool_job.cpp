@@ -1,6 +1,7 @@
 #include "app/setup/tool_job.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "planning/geometry/error.h"
@@ -38,10 +39,19 @@ std::vector<ToolChoice> choices_of(const tools::ToolSet& tools) {
 tools::ToolSet with_result(tools::ToolSet tools, const std::string& tool_name, const ToolResult& result) {
   for (tools::Tool& tool : tools.tools) {
     if (tool.name != tool_name) continue;
-    if (result.task == ToolTask::Tip)
+    if (result.task == ToolTask::Tip) {
       tool.tip_mm = result.tip.tip_in_tool_mm;
-    else
-      tool.axis = tools::ToolAxis{result.axis.axis_point_in_tool_mm, result.axis.axis_direction_in_tool};
+      tool.tip_covariance_mm2 = result.tip.tip_error_mm2();
+    } else {
+      // Turning tells the line, not where on it the guide ends: that stays where it was declared.
+      const Eigen::Vector3d& direction = result.axis.axis_direction_in_tool;
+      const double along_mm =
+          tool.axis ? (tool.axis->point_mm - result.axis.axis_point_in_tool_mm).dot(direction) : 0;
+      tool.axis = tools::ToolAxis{result.axis.axis_point_in_tool_mm + along_mm * direction, direction};
+      tool.axis_direction_sigma_deg = result.axis.direction_sigma_deg;
+      tool.axis_point_sigma_mm = std::hypot(
+          result.axis.point_sigma_mm, along_mm * geometry::rad_from_deg(result.axis.direction_sigma_deg));
+    }
     tool.residual_mm = result.rms_mm();
   }
   return tools;

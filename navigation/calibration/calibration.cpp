@@ -181,10 +181,12 @@ CalibrationSummary calibrate(std::span<const CalibrationPicture> pictures,
   calibration.reference_mark_angle_deg = found.reference_mark_angle_deg;
   calibration.refractive_index = options.refractive_index;
   calibration.boundary = {found.circle_center_px, median_radius_px(pictures)};
-  summary.record.covariance = best.covariance;
-  if (!joint.options.turns && best.covariance.rows() == 6) {
-    const double guess_px = 0.03 * calibration.boundary.radius_px;
-    summary.record.covariance.bottomRightCorner<2, 2>() = guess_px * guess_px * Eigen::Matrix2d::Identity();
+  if (best.covariance.rows() == 6) {
+    calibration.covariance = best.covariance;
+    if (!joint.options.turns) {
+      const double guess_px = 0.03 * calibration.boundary.radius_px;
+      calibration.covariance->bottomRightCorner<2, 2>() = guess_px * guess_px * Eigen::Matrix2d::Identity();
+    }
   }
   summary.record.rms_px = summary.rms_px = best.rms_px;
   summary.record.date_utc = utc_now();

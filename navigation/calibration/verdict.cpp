@@ -84,8 +84,8 @@ std::vector<std::string> reasons_against(const CalibrationSummary& summary,
     if (picture.rms_px > 2.5 * summary.rms_px && picture.rms_px > kMostRms_px)
       reasons.push_back(picture.name + ": does not agree with the other pictures");
 
-  if (summary.record.covariance.rows() == 6) {
-    const Eigen::VectorXd sigma = summary.record.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  if (c.covariance) {
+    const Eigen::VectorXd sigma = c.covariance->diagonal().cwiseMax(0).cwiseSqrt();
     if (!(sigma(0) <= kMostFocalSigma * c.focal_px))
       reasons.push_back(files::format("the focal length is known to %.1f px only (1 sigma, of %.0f)",
                                       sigma(0), c.focal_px));

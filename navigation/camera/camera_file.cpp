@@ -33,10 +33,13 @@ nlohmann::ordered_json medium_to_json(double index) {
   return index;
 }
 
-Eigen::MatrixXd read_covariance(const files::JsonObject& root) {
+CameraCovariance read_covariance(const files::JsonObject& root) {
   const auto values = root.numbers("covariance");
   if (values.size() != 36) root.fail("covariance", "must hold 36 numbers, row by row");
-  return Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(values.data());
+  const CameraCovariance covariance =
+      Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(values.data());
+  if (!(covariance.diagonal().minCoeff() >= 0)) root.fail("covariance", "a variance must not be negative");
+  return covariance;
 }
 
 }  // namespace
@@ -62,7 +65,7 @@ CalibrationRecord read_camera_file(const std::filesystem::path& file) {
   c.boundary.center_px = boundary.vector2("center_px");
   c.boundary.radius_px = boundary.positive_number("radius_px");
   c.refractive_index = read_medium(root);
-  if (root.has("covariance")) record.covariance = read_covariance(root);
+  if (root.has("covariance")) c.covariance = read_covariance(root);
   if (root.has("rms_px")) record.rms_px = root.number("rms_px");
   if (root.has("date_utc")) record.date_utc = root.text("date_utc");
   if (root.has("scope")) record.scope_name = root.text("scope");
@@ -86,9 +89,9 @@ void write_camera_file(const std::filesystem::path& file, const CalibrationRecor
        {{"center_px", files::to_json(c.boundary.center_px)}, {"radius_px", c.boundary.radius_px}}},
       {"medium", medium_to_json(c.refractive_index)},
   };
-  if (record.covariance.size() == 36) {
+  if (c.covariance) {
     auto values = nlohmann::ordered_json::array();
-    for (int i = 0; i < 36; ++i) values.push_back(record.covariance(i / 6, i % 6));
+    for (int i = 0; i < 36; ++i) values.push_back((*c.covariance)(i / 6, i % 6));
     json["covariance"] = std::move(values);
   }
   if (record.rms_px >= 0) json["rms_px"] = record.rms_px;

@@ -1,5 +1,5 @@
 // camera.json (format "arthronaut.camera", version 1). A calibration may carry more than the model needs:
-// covariance, date, names of scope and head; these travel in CalibrationRecord.
+// residual, date, names of scope and head; these travel in CalibrationRecord.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,9 +12,6 @@ namespace arthronaut::camera {
 
 struct CalibrationRecord {
   Calibration calibration;
-  // Of (focal_px, distortion_xi, principal x, principal y, rotation centre x, rotation centre y); 0x0 when
-  // unknown.
-  Eigen::MatrixXd covariance;
   double rms_px = -1;    // reprojection error of the calibration; -1 when unknown
   std::string date_utc;  // ISO 8601; empty when unknown
   std::string scope_name, head_name;

@@ -18,6 +18,18 @@ Eigen::Vector2d Calibration::turned(const Eigen::Vector2d& point_at_angle_0_px, 
   return rotation_center_px + Eigen::Vector2d(c * arm.x() - s * arm.y(), s * arm.x() + c * arm.y());
 }
 
+CameraCovariance nominal_covariance(const Calibration& calibration) {
+  constexpr double kFocalShare = 0.005, kXi = 0.02, kWidthShare = 0.002;
+  const double point_px = kWidthShare * calibration.image_size_px.x();
+  Eigen::Matrix<double, 6, 1> sigma;
+  sigma << kFocalShare * calibration.focal_px, kXi, point_px, point_px, point_px, point_px;
+  return sigma.cwiseAbs2().asDiagonal();
+}
+
+CameraCovariance covariance_of(const Calibration& calibration) {
+  return calibration.covariance ? *calibration.covariance : nominal_covariance(calibration);
+}
+
 CameraModel::CameraModel(const Calibration& calibration, double lens_angle_rad, double refractive_index,
                          FluidModel fluid_model)
     : image_size_(calibration.image_size_px),
@@ -72,6 +84,23 @@ std::optional<Eigen::Vector2d> CameraModel::project(const Eigen::Vector3d& point
   d_pixel_d_point.col(2) = -k * (z / s) * (1 / w + 1 / d) * v;
   d_pixel_d_point.row(1) *= aspect_;
   return center_ + k * v.cwiseProduct(axis_scale);
+}
+
+// With u = c + k v, k = 2 n f / S: xi moves S alone, by dD/dxi = -2 n^2 R^2 / D.
+std::optional<Eigen::Matrix<double, 2, 4>> CameraModel::d_pixel_d_lens(
+    const Eigen::Vector3d& point_in_camera_mm) const {
+  Eigen::Matrix<double, 2, 3> ignored;
+  const auto pixel = project(point_in_camera_mm, ignored);
+  if (!pixel) return std::nullopt;
+  const bool refracts = fluid_model_ == FluidModel::FlatPort;
+  const double n2 = refracts ? index_ratio_ * index_ratio_ : 1.0;
+  const double a = n2 - 1, r2 = point_in_camera_mm.head<2>().squaredNorm();
+  const double z2 = point_in_camera_mm.z() * point_in_camera_mm.z();
+  const double w = std::sqrt(z2 - a * r2), d = std::sqrt(z2 - (a + 4 * n2 * xi_) * r2);
+  const Eigen::Vector2d arm = *pixel - center_;
+  Eigen::Matrix<double, 2, 4> jacobian;
+  jacobian << arm / focal_, arm * (2 * n2 * r2 / (d * (w + d))), Eigen::Matrix2d::Identity();
+  return jacobian;
 }
 
 std::optional<Eigen::Vector2d> CameraModel::undistort(const Eigen::Vector2d& pixel) const {

@@ -19,6 +19,10 @@
 
 namespace arthronaut::camera {
 
+// Errors of a calibration, in this order: focal_px, distortion_xi, principal point x and y, rotation centre x
+// and y (px).
+using CameraCovariance = Eigen::Matrix<double, 6, 6>;
+
 // The circular image border of the arthroscope.
 struct Boundary {
   Eigen::Vector2d center_px = Eigen::Vector2d::Zero();
@@ -36,12 +40,21 @@ struct Calibration {
   double reference_mark_angle_deg = 0;  // the mark angle at which the lens angle is 0
   Boundary boundary;                    // at lens angle 0
   double refractive_index = 1;          // of the medium of the calibration
+  // How well it is known; empty where nobody said.
+  std::optional<CameraCovariance> covariance = std::nullopt;
 
   // Where principal point and boundary stand when the mark is seen at this angle (image axes, degrees).
   [[nodiscard]] double lens_angle_rad(double mark_angle_deg) const;
   [[nodiscard]] Eigen::Vector2d turned(const Eigen::Vector2d& point_at_angle_0_px,
                                        double lens_angle_rad) const;
 };
+
+// What is taken for a calibration that does not say how well it is known: one sigma of 0.5 % of the focal
+// length, 0.02 of xi, and 0.2 % of the image's width for each coordinate of principal point and rotation
+// centre. That is a careless calibration; what the adjustment of a good one says is a tenth of it.
+[[nodiscard]] CameraCovariance nominal_covariance(const Calibration& calibration);
+// Its own, else the nominal one.
+[[nodiscard]] CameraCovariance covariance_of(const Calibration& calibration);
 
 // How the working medium changes the camera.
 enum class FluidModel {
@@ -64,6 +77,10 @@ class CameraModel {
   // The same with the Jacobian d pixel / d point.
   [[nodiscard]] std::optional<Eigen::Vector2d> project(const Eigen::Vector3d& point_in_camera_mm,
                                                        Eigen::Matrix<double, 2, 3>& d_pixel_d_point) const;
+  // d pixel / d (focal_px, distortion_xi, principal point x, y) for a point in the camera frame; nullopt as
+  // project.
+  [[nodiscard]] std::optional<Eigen::Matrix<double, 2, 4>> d_pixel_d_lens(
+      const Eigen::Vector3d& point_in_camera_mm) const;
   // Unit ray in the camera frame and working medium; nullopt where the model has no ray (total reflection, xi
   // fold).
   [[nodiscard]] std::optional<Eigen::Vector3d> ray(const Eigen::Vector2d& pixel) const;

@@ -1,35 +1,39 @@
 #include "navigation/guidance/guidance.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace arthronaut::guidance {
 
 namespace {
 
+// A guide that advances less than this along the plan, as a cosine, lies almost across it.
+constexpr double kLeastAdvance = 0.1;
+
 using geometry::cross_matrix;
 using geometry::TrackedPose;
 
-// The first thing that is missing, in the order in which a user can mend it.
-GuidanceState missing_input(const GuidanceInput& input) {
-  if (input.plan == nullptr || input.axis == nullptr) return GuidanceState::NoPlan;
+// What the guide and a drill need alike, in the order in which a user can mend it.
+GuidanceState missing_world(const GuidanceInput& input) {
   if (input.registration == nullptr || !input.registration->has_pose) return GuidanceState::NoRegistration;
   if (!input.registration->reliable) return GuidanceState::RegistrationUnreliable;
   if (input.lens_is_stale) return GuidanceState::LensStale;
   if (!input.camera_from_world_marker.is_valid) return GuidanceState::WorldMarkerLost;
-  if (!input.camera_from_guide.is_valid) return GuidanceState::GuideLost;
-  if (!input.camera_from_world_marker.is_usable_at(input.now_ns, input.max_age_ns) ||
-      !input.camera_from_guide.is_usable_at(input.now_ns, input.max_age_ns)) {
+  if (!input.camera_from_world_marker.is_usable_at(input.now_ns, input.max_age_ns))
     return GuidanceState::Stale;
-  }
   return GuidanceState::Valid;
 }
 
-// Part of `axis` that lies in the plane across `normal`, unit; zero where the axis stands on the plane.
-Eigen::Vector3d laid_into_plane(const Eigen::Vector3d& axis, const Eigen::Vector3d& normal) {
-  const Eigen::Vector3d in_plane = axis - axis.dot(normal) * normal;
-  const double length = in_plane.norm();
-  return length > 1e-6 ? Eigen::Vector3d(in_plane / length) : Eigen::Vector3d::Zero();
+GuidanceState missing_input(const GuidanceInput& input) {
+  if (input.plan == nullptr) return GuidanceState::NoPlan;
+  if (input.axis == nullptr) return GuidanceState::NoGuide;
+  const GuidanceState world = missing_world(input);
+  // A guide that is out of view is said before a pose that is old.
+  if (world != GuidanceState::Valid && world != GuidanceState::Stale) return world;
+  if (!input.camera_from_guide.is_valid) return GuidanceState::GuideLost;
+  if (world == GuidanceState::Stale || !input.camera_from_guide.is_usable_at(input.now_ns, input.max_age_ns))
+    return GuidanceState::Stale;
+  return GuidanceState::Valid;
 }
 
 // Where the guide's axis crosses the plane through the entry across the plan; a guide that lies almost in
@@ -37,9 +41,95 @@ Eigen::Vector3d laid_into_plane(const Eigen::Vector3d& axis, const Eigen::Vector
 Eigen::Vector3d crossing_of(const Eigen::Vector3d& guide_point, const Eigen::Vector3d& guide_direction,
                             const Eigen::Vector3d& entry, const Eigen::Vector3d& plan_direction) {
   const double advance = guide_direction.dot(plan_direction);
-  const double along = std::abs(advance) > 0.1 ? (entry - guide_point).dot(plan_direction) / advance
-                                               : (entry - guide_point).dot(guide_direction);
+  const double along = std::abs(advance) > kLeastAdvance ? (entry - guide_point).dot(plan_direction) / advance
+                                                         : (entry - guide_point).dot(guide_direction);
   return guide_point + along * guide_direction;
+}
+
+// How that crossing moves with the guide's axis: by what is across it, run along the axis back into the
+// plane.
+Eigen::Matrix3d into_plane(const Eigen::Vector3d& guide_direction, const Eigen::Vector3d& plan_direction) {
+  const Eigen::Matrix3d across_plan =
+      Eigen::Matrix3d::Identity() - plan_direction * plan_direction.transpose();
+  const double advance = guide_direction.dot(plan_direction);
+  if (std::abs(advance) > kLeastAdvance)
+    return Eigen::Matrix3d::Identity() - guide_direction * plan_direction.transpose() / advance;
+  return across_plan * (Eigen::Matrix3d::Identity() - guide_direction * guide_direction.transpose());
+}
+
+void put_offset(landmarks::AnatomicalDirection direction, double value_mm, GuidanceNumbers& numbers) {
+  switch (direction) {
+    case landmarks::AnatomicalDirection::Anterior:
+      numbers.offset_anterior_mm = value_mm;
+      return;
+    case landmarks::AnatomicalDirection::Proximal:
+      numbers.offset_proximal_mm = value_mm;
+      return;
+    case landmarks::AnatomicalDirection::Lateral:
+      numbers.offset_lateral_mm = value_mm;
+      return;
+  }
+}
+
+// One tool's place in the bone, and what is not known about it.
+struct Placed {
+  geometry::RigidTransform bone_from_tool;
+  TwistBudget budget;
+};
+// Empty where the two markers were seen in different frames.
+std::optional<Placed> place(const GuidanceInput& input, const TrackedPose& camera_from_tool,
+                            const TwistPerCameraError& tool_per_camera_error) {
+  const TrackedPose marker_from_tool = compose(inverse(input.camera_from_world_marker), camera_from_tool);
+  if (!marker_from_tool.is_valid) return std::nullopt;
+  static const KnownErrors kExact;
+  return Placed{input.registration->marker_from_bone.inverse() * marker_from_tool.target_from_source,
+                twist_budget(*input.registration, marker_from_tool,
+                             relative_twist_per_camera_error(marker_from_tool.target_from_source,
+                                                             input.world_marker_per_camera_error,
+                                                             tool_per_camera_error),
+                             input.known_errors != nullptr ? *input.known_errors : kExact)};
+}
+
+void predict_errors(const GuidanceInput& input, const TwistBudget& budget, const Eigen::Vector3d& crossing,
+                    GuidanceNumbers& numbers) {
+  const Eigen::Vector3d& direction = numbers.guide_direction;
+  const Eigen::Matrix3d across_guide = Eigen::Matrix3d::Identity() - direction * direction.transpose();
+  const Eigen::Matrix3d in_plane = into_plane(direction, input.plan->direction.normalized());
+  // A point p of the guide moves by v - [p]x w, a direction g by -[g]x w.
+  Eigen::Matrix<double, 3, 6> move;
+  move << in_plane, -in_plane * cross_matrix(crossing);
+  const double reach_mm = (crossing - numbers.guide_point_mm).norm();
+  const double own_mm2 = input.axis_error.point_sigma_mm * input.axis_error.point_sigma_mm +
+                         std::pow(reach_mm * input.axis_error.direction_sigma_rad, 2);
+  numbers.offset_error_mm =
+      predicted_error(budget, move, own_mm2 * in_plane * across_guide * in_plane.transpose());
+  Eigen::Matrix<double, 3, 6> turn;
+  turn << Eigen::Matrix3d::Zero(), -geometry::deg_from_rad(1) * cross_matrix(direction);
+  const double own_deg = geometry::deg_from_rad(input.axis_error.direction_sigma_rad);
+  numbers.angle_error_deg = predicted_error(budget, turn, own_deg * own_deg * across_guide);
+  numbers.sigma_offset_mm = numbers.offset_error_mm.total;
+  numbers.sigma_angle_deg = numbers.angle_error_deg.total;
+}
+
+// The drill by its own marker.
+std::optional<DrillDepth> seen_drill(const GuidanceInput& input) {
+  if (input.plan == nullptr || input.drill == nullptr || !input.drill->tip_mm || !input.drill->axis ||
+      missing_world(input) != GuidanceState::Valid ||
+      !input.camera_from_drill.is_usable_at(input.now_ns, input.max_age_ns))
+    return std::nullopt;
+  const auto placed = place(input, input.camera_from_drill, input.drill_per_camera_error);
+  if (!placed) return std::nullopt;
+  const Eigen::Vector3d tip = placed->bone_from_tool * *input.drill->tip_mm;
+  const Eigen::Vector3d along = input.plan->direction.normalized();
+  Eigen::Matrix<double, 3, 6> move =
+      Eigen::Matrix<double, 3, 6>::Zero();  // of the one coordinate along the plan
+  move.row(0) << along.transpose(), -along.transpose() * cross_matrix(tip);
+  const Eigen::Vector3d along_in_drill = placed->bone_from_tool.inverse().rotate(along);
+  Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
+  own(0, 0) = along_in_drill.dot(tools::tip_error_mm2(*input.drill) * along_in_drill);
+  return drill_depth(*input.plan, input.planned, tip,
+                     placed->bone_from_tool.rotate(input.drill->axis->direction).normalized(),
+                     predicted_error(placed->budget, move, own).total, DrillDepth::Source::Drill);
 }
 
 }  // namespace
@@ -62,26 +152,37 @@ std::string_view to_text(GuidanceState state) {
       return "lens mark not seen";
     case GuidanceState::Stale:
       return "pose too old";
+    case GuidanceState::NoGuide:
+      return "no drill guide with an axis";
   }
   return "unknown";
+}
+
+double GuidanceNumbers::offset_in_mm(landmarks::AnatomicalDirection direction) const {
+  switch (direction) {
+    case landmarks::AnatomicalDirection::Anterior:
+      return offset_anterior_mm;
+    case landmarks::AnatomicalDirection::Proximal:
+      return offset_proximal_mm;
+    case landmarks::AnatomicalDirection::Lateral:
+      return offset_lateral_mm;
+  }
+  return 0;
 }
 
 GuidanceNumbers compute_guidance(const GuidanceInput& input) {
   GuidanceNumbers numbers;
   numbers.timestamp_ns = input.camera_from_guide.timestamp_ns;
+  numbers.drill = seen_drill(input);
   numbers.state = missing_input(input);
   if (numbers.state != GuidanceState::Valid) return numbers;
-
-  const TrackedPose marker_from_guide =
-      compose(inverse(input.camera_from_world_marker), input.camera_from_guide);
-  if (!marker_from_guide.is_valid) {  // the two markers were seen in different frames
+  const auto placed = place(input, input.camera_from_guide, input.guide_per_camera_error);
+  if (!placed) {
     numbers.state = GuidanceState::Stale;
     return numbers;
   }
-  const geometry::RigidTransform bone_from_marker = input.registration->marker_from_bone.inverse();
-  const geometry::RigidTransform bone_from_guide = bone_from_marker * marker_from_guide.target_from_source;
-  const Eigen::Vector3d point = bone_from_guide * input.axis->point_mm;
-  const Eigen::Vector3d direction = bone_from_guide.rotate(input.axis->direction).normalized();
+  const Eigen::Vector3d point = placed->bone_from_tool * input.axis->point_mm;
+  const Eigen::Vector3d direction = placed->bone_from_tool.rotate(input.axis->direction).normalized();
   const Eigen::Vector3d& entry = input.plan->entry_mm;
   const Eigen::Vector3d plan_direction = input.plan->direction.normalized();
 
@@ -91,30 +192,15 @@ GuidanceNumbers compute_guidance(const GuidanceInput& input) {
   numbers.axis_to_entry_mm = (entry - point).cross(direction).norm();
   numbers.angle_deg = geometry::deg_from_rad(geometry::angle_between_rad(direction, plan_direction));
   numbers.depth_mm = (point - entry).dot(plan_direction);
-  numbers.remaining_mm = input.planned_length_mm - numbers.depth_mm;
 
-  // LPS: anterior is -y, proximal +z for either bone and side.
-  const Eigen::Vector3d offset = crossing_of(point, direction, entry, plan_direction) - entry;
-  numbers.offset_anterior_mm = offset.dot(laid_into_plane(-Eigen::Vector3d::UnitY(), plan_direction));
-  numbers.offset_proximal_mm = offset.dot(laid_into_plane(Eigen::Vector3d::UnitZ(), plan_direction));
-
-  // Predicted error of the guide's axis at the entry: the registration's at that point, and the tracked
-  // pose's seen through the guide's axis. Both are body twists (v, w): a point p of the body moves by v -
-  // [p]x w.
-  const geometry::Matrix6d& tracking = marker_from_guide.covariance;
-  const Eigen::Vector3d entry_in_guide = bone_from_guide.inverse() * entry;
-  Eigen::Matrix<double, 3, 6> move;
-  move << Eigen::Matrix3d::Identity(), -cross_matrix(entry_in_guide);
-  const double registration_mm = registration::predicted_error_mm(*input.registration, entry);
-  numbers.sigma_offset_mm =
-      std::sqrt(registration_mm * registration_mm + (move * tracking * move.transpose()).trace());
-  const Eigen::Matrix3d across_plan = cross_matrix(plan_direction),
-                        across_guide = cross_matrix(input.axis->direction);
-  const Eigen::Matrix3d turn_registration = input.registration->covariance.bottomRightCorner<3, 3>();
-  const Eigen::Matrix3d turn_tracking = tracking.bottomRightCorner<3, 3>();
-  numbers.sigma_angle_deg =
-      geometry::deg_from_rad(std::sqrt((across_plan * turn_registration * across_plan.transpose()).trace() +
-                                       (across_guide * turn_tracking * across_guide.transpose()).trace()));
+  const Eigen::Vector3d crossing = crossing_of(point, direction, entry, plan_direction);
+  numbers.across_plan = landmarks::axes_across(input.axes, plan_direction);
+  const double up_mm = (crossing - entry).dot(numbers.across_plan.up);
+  const double side_mm = (crossing - entry).dot(numbers.across_plan.side);
+  numbers.offset_mm = std::hypot(up_mm, side_mm);
+  put_offset(numbers.across_plan.up_is, up_mm, numbers);
+  put_offset(numbers.across_plan.side_is, side_mm, numbers);
+  predict_errors(input, placed->budget, crossing, numbers);
   return numbers;
 }
 

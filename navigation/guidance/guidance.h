@@ -4,14 +4,19 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 
+#include "navigation/guidance/drill_depth.h"
+#include "navigation/guidance/error_budget.h"
 #include "navigation/registration/registration.h"
 #include "navigation/tools/tool_set.h"
 #include "planning/geometry/tracked_pose.h"
+#include "planning/landmarks/anatomical_axes.h"
 #include "planning/tunnels/tunnel.h"
 
 namespace arthronaut::guidance {
 
+// Kept as numbers in recordings: new ones go to the end.
 enum class GuidanceState {
   Valid,
   NoPlan,
@@ -20,41 +25,59 @@ enum class GuidanceState {
   WorldMarkerLost,
   GuideLost,
   LensStale,
-  Stale,  // the newest pose is too old
+  Stale,    // the newest pose is too old
+  NoGuide,  // the tools hold no such guide, or it has no axis
 };
 [[nodiscard]] std::string_view to_text(GuidanceState state);
 
 struct GuidanceInput {
   const tunnels::Tunnel* plan = nullptr;  // null: NoPlan
-  double planned_length_mm = 0;           // inside bone, along the plan
-  bones::Side side = bones::Side::Right;
+  PlannedDepth planned;                   // inside bone, along the plan
+  landmarks::AnatomicalAxes axes;         // of the bone, in its frame
   const registration::RegistrationSummary* registration = nullptr;
   geometry::TrackedPose camera_from_world_marker;
   geometry::TrackedPose camera_from_guide;
-  const tools::ToolAxis* axis = nullptr;  // of the guide, in its marker frame
+  const tools::ToolAxis* axis = nullptr;  // of the guide, in its marker frame; null: NoGuide
+  // A drill with a marker of its own; without one nothing is said about depth.
+  geometry::TrackedPose camera_from_drill;
+  const tools::Tool* drill = nullptr;
   bool lens_is_stale = false;
   std::int64_t now_ns = 0;
   std::int64_t max_age_ns = 100'000'000;
+  // What the predicted error is made of beside the poses and the registration; zero: exact.
+  const KnownErrors* known_errors = nullptr;  // null: all exact
+  tools::AxisError axis_error;
+  TwistPerCameraError world_marker_per_camera_error = TwistPerCameraError::Zero();
+  TwistPerCameraError guide_per_camera_error = TwistPerCameraError::Zero();
+  TwistPerCameraError drill_per_camera_error = TwistPerCameraError::Zero();
 };
 
 struct GuidanceNumbers {
   GuidanceState state = GuidanceState::NoPlan;
   std::int64_t timestamp_ns = 0;
-  // Everything below is meaningful when is_valid() and lies in the bone frame (LPS, mm).
+  // Everything down to `drill` is meaningful when is_valid() and lies in the bone frame (LPS, mm).
   Eigen::Vector3d guide_point_mm = Eigen::Vector3d::Zero();
   Eigen::Vector3d guide_direction = Eigen::Vector3d::UnitZ();
   double tip_to_entry_mm = 0;   // guide point to planned entry
   double axis_to_entry_mm = 0;  // planned entry to the guide's axis
   double angle_deg = 0;         // guide's axis to the plan's
-  // The axis' offset where it crosses the plane through the entry across the plan, in two anatomical axes:
-  // the bone's anterior(+)/posterior(-) and proximal(+)/distal(-) directions laid into that plane.
+  // The offset: where the guide's axis crosses the plane through the entry across the plan, from the entry.
+  // Its length, and the same vector in the two anatomical directions of that plane (across_plan); the third
+  // one, which runs along the plan, is 0. So offset_mm is the root of the sum of their squares.
+  double offset_mm = 0;
   double offset_anterior_mm = 0;
   double offset_proximal_mm = 0;
-  double depth_mm = 0;         // of the guide point beyond the entry along the plan; negative before it
-  double remaining_mm = 0;     // planned length - depth
-  double sigma_offset_mm = 0;  // predicted, one sigma
+  double offset_lateral_mm = 0;
+  landmarks::PlaneAxes across_plan;
+  double depth_mm = 0;  // of the guide's point, not of a drill, beyond the entry along the plan
+  // Predicted, one sigma: root mean square of the length of the offset's error, and of the direction's.
+  double sigma_offset_mm = 0;
   double sigma_angle_deg = 0;
+  PredictedError offset_error_mm, angle_error_deg;  // the same, with their shares
+  // Of the drill, where it is seen: whether the guide is seen or not. Empty: nobody knows how deep it is.
+  std::optional<DrillDepth> drill = std::nullopt;
   [[nodiscard]] bool is_valid() const { return state == GuidanceState::Valid; }
+  [[nodiscard]] double offset_in_mm(landmarks::AnatomicalDirection direction) const;
 };
 
 // Allocates nothing.

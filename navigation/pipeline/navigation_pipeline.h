@@ -31,6 +31,8 @@ struct PipelineOptions {
   bones::Side side = bones::Side::Right;
   std::string probe_name = "probe";
   std::string guide_name = "femoral guide";
+  // In which offsets are said; empty: the scanner's. landmarks::anatomical_axes() makes them.
+  std::optional<landmarks::AnatomicalAxes> axes = std::nullopt;
 };
 
 struct ToolPose {
@@ -46,7 +48,10 @@ struct FrameResult : View {                 // markers: world markers first, the
   bool tip_is_valid = false;
   Eigen::Vector3d tip_in_world_mm = Eigen::Vector3d::Zero();
   std::optional<Eigen::Vector3d> shaft_in_world;  // see tools::shaft_direction
+  // Of the tip in the world: poses, camera and the tip's own calibration.
   Eigen::Matrix3d tip_covariance_mm2 = Eigen::Matrix3d::Zero();
+  // For the sums of the registration that this tip draws (guidance::BiasSums).
+  guidance::TipSensitivity tip_sensitivity;
   guidance::GuidanceNumbers guidance;
   double processing_ms = 0;  // of process(): not part of what replay compares
 };
@@ -69,7 +74,10 @@ class NavigationPipeline {
 
   // What guidance is computed from. Takes effect with the next frame.
   void set_plan(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm);
-  void set_registration(const std::optional<registration::RegistrationSummary>& marker_from_bone);
+  // bias: how the registration follows the errors of probe and camera, from the sums over its points; without
+  // one, what is taken where nobody knows how it was drawn.
+  void set_registration(const std::optional<registration::RegistrationSummary>& marker_from_bone,
+                        const std::optional<guidance::RegistrationBias>& bias = std::nullopt);
 
   [[nodiscard]] const PipelineOptions& options() const;
 

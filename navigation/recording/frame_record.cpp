@@ -62,9 +62,22 @@ guidance::GuidanceNumbers guidance_at(const Statement& row, const RecordedFrame&
   g.offset_anterior_mm = row.number(11);
   g.offset_proximal_mm = row.number(12);
   g.depth_mm = row.number(13);
-  g.remaining_mm = row.number(14);
   g.sigma_offset_mm = row.number(15);
   g.sigma_angle_deg = row.number(16);
+  // Sessions of before 2026-11-22 end here. What they call remaining was the guide's: nobody saw the drill.
+  constexpr int kColumns = 21;
+  if (row.column_count() >= kColumns) {
+    g.offset_lateral_mm = row.number(17);
+    if (!row.is_null(18)) {
+      g.drill.emplace();
+      g.drill->depth_mm = row.number(18);
+      g.drill->remaining_mm = row.number(14);
+      g.drill->to_exit_mm = row.number(19);
+      g.drill->sigma_mm = row.number(20);
+      g.drill->breakout = guidance::breakout_of(g.drill->to_exit_mm, g.drill->sigma_mm);
+    }
+  }
+  g.offset_mm = Eigen::Vector3d(g.offset_anterior_mm, g.offset_proximal_mm, g.offset_lateral_mm).norm();
   return g;
 }
 
@@ -85,7 +98,7 @@ void for_each_row(Statement& rows, std::vector<RecordedFrame>& frames, const Vis
 FrameInserter::FrameInserter(SessionDatabase& database)
     : frame_(database.prepare("INSERT INTO frames VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")),
       marker_(database.prepare("INSERT INTO markers VALUES(?,?,?,?,?,?,?,?,?,?,?,?)")),
-      guidance_(database.prepare("INSERT INTO guidance VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")) {}
+      guidance_(database.prepare("INSERT INTO guidance VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")) {}
 
 void FrameInserter::insert(const pipeline::FrameResult& result) {
   const lens::LensObservation& lens = result.lens;
@@ -114,13 +127,18 @@ void FrameInserter::insert(const pipeline::FrameResult& result) {
 
   const guidance::GuidanceNumbers& g = result.guidance;
   guidance_.bind(1, result.frame_index).bind(2, static_cast<int>(g.state));
-  for (int position = 3; position <= 17; ++position) guidance_.bind_null(position);
+  for (int position = 3; position <= 21; ++position) guidance_.bind_null(position);
   if (g.is_valid()) {
     bind_vector(guidance_, 3, g.guide_point_mm);
     bind_vector(guidance_, 6, g.guide_direction);
     guidance_.bind(9, g.tip_to_entry_mm).bind(10, g.axis_to_entry_mm).bind(11, g.angle_deg);
     guidance_.bind(12, g.offset_anterior_mm).bind(13, g.offset_proximal_mm).bind(14, g.depth_mm);
-    guidance_.bind(15, g.remaining_mm).bind(16, g.sigma_offset_mm).bind(17, g.sigma_angle_deg);
+    guidance_.bind(16, g.sigma_offset_mm).bind(17, g.sigma_angle_deg);
+    guidance_.bind(18, g.offset_lateral_mm);
+    if (g.drill) {
+      guidance_.bind(15, g.drill->remaining_mm).bind(19, g.drill->depth_mm);
+      guidance_.bind(20, g.drill->to_exit_mm).bind(21, g.drill->sigma_mm);
+    }
   }
   guidance_.run();
 }

@@ -26,7 +26,8 @@ CREATE TABLE guidance(
   frame INTEGER PRIMARY KEY, state INTEGER,
   point_x_mm REAL, point_y_mm REAL, point_z_mm REAL, direction_x REAL, direction_y REAL, direction_z REAL,
   tip_to_entry_mm REAL, axis_to_entry_mm REAL, angle_deg REAL, offset_anterior_mm REAL, offset_proximal_mm REAL,
-  depth_mm REAL, remaining_mm REAL, sigma_offset_mm REAL, sigma_angle_deg REAL);
+  depth_mm REAL, remaining_mm REAL, sigma_offset_mm REAL, sigma_angle_deg REAL,
+  offset_lateral_mm REAL, drill_depth_mm REAL, drill_to_exit_mm REAL, drill_sigma_mm REAL);
 CREATE TABLE events(id INTEGER PRIMARY KEY, after_frame INTEGER, timestamp_ns INTEGER, kind TEXT, text TEXT);
 CREATE TABLE pictures(picture INTEGER PRIMARY KEY, frame INTEGER NOT NULL);
 CREATE TABLE digests(frame INTEGER PRIMARY KEY, state INTEGER NOT NULL, decisions INTEGER NOT NULL);
@@ -84,6 +85,7 @@ void Statement::run() {
 
 std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_, column); }
 double Statement::number(int column) const { return sqlite3_column_double(statement_, column); }
+int Statement::column_count() const { return sqlite3_column_count(statement_); }
 bool Statement::is_null(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
 
 std::string Statement::text(int column) const {

@@ -35,6 +35,7 @@ class Statement {
   [[nodiscard]] double number(int column) const;
   [[nodiscard]] std::string text(int column) const;
   [[nodiscard]] bool is_null(int column) const;
+  [[nodiscard]] int column_count() const;
 
  private:
   void check(int result) const;

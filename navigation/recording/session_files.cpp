@@ -21,6 +21,15 @@ void append_number(std::string& line, double value) {
   line += text;
 }
 
+// Empty where the drill is not seen.
+void append_drill(std::string& line, const guidance::GuidanceNumbers& numbers,
+                  double guidance::DrillDepth::*value) {
+  if (numbers.drill)
+    append_number(line, (*numbers.drill).*value);
+  else
+    line += ',';
+}
+
 }  // namespace
 
 const std::string& build_identity() {
@@ -96,15 +105,18 @@ void append_guidance_line(std::int64_t frame, std::int64_t timestamp_ns, const g
   text += ',';
   text += guidance::to_text(g.state);
   if (g.is_valid()) {
-    for (const double value :
-         {g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg, g.offset_anterior_mm, g.offset_proximal_mm,
-          g.depth_mm, g.remaining_mm, g.sigma_offset_mm, g.sigma_angle_deg, g.guide_point_mm.x(),
-          g.guide_point_mm.y(), g.guide_point_mm.z(), g.guide_direction.x(), g.guide_direction.y(),
-          g.guide_direction.z()}) {
+    for (const double value : {g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg, g.offset_anterior_mm,
+                               g.offset_proximal_mm, g.depth_mm})
       append_number(text, value);
-    }
+    append_drill(text, g, &guidance::DrillDepth::remaining_mm);
+    for (const double value : {g.sigma_offset_mm, g.sigma_angle_deg, g.guide_point_mm.x(), g.guide_point_mm.y(),
+                               g.guide_point_mm.z(), g.guide_direction.x(), g.guide_direction.y(),
+                               g.guide_direction.z(), g.offset_lateral_mm})
+      append_number(text, value);
+    append_drill(text, g, &guidance::DrillDepth::depth_mm);
+    append_drill(text, g, &guidance::DrillDepth::to_exit_mm);
   } else {
-    text.append(15, ',');
+    text.append(18, ',');
   }
   text += '\n';
 }

@@ -236,6 +236,13 @@ void check(const PivotCalibrationOptions& options) {
 
 }  // namespace
 
+Eigen::Matrix3d PivotCalibrationSummary::tip_error_mm2() const {
+  const double length_mm = tip_in_tool_mm.norm();
+  if (!has_tip() || length_mm < 1e-6) return tip_covariance_mm2;
+  const Eigen::Vector3d bias = bias_mm * (tip_in_tool_mm / length_mm);
+  return tip_covariance_mm2 + bias * bias.transpose();
+}
+
 PivotCalibrationSummary calibrate_pivot(std::span<const RigidTransform> fixed_from_tool,
                                         const PivotCalibrationOptions& options) {
   using Outcome = PivotCalibrationSummary::Outcome;

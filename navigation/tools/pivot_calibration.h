@@ -61,6 +61,9 @@ struct PivotCalibrationSummary {
   // fills.
   std::vector<Eigen::Vector2d> tilt_deg;
 
+  // What tools.json keeps of how well the tip is known: the covariance, and the predicted bias along the
+  // shaft.
+  [[nodiscard]] Eigen::Matrix3d tip_error_mm2() const;
   [[nodiscard]] bool has_tip() const { return outcome > Outcome::NoPivot; }
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Ok; }
 };

@@ -132,6 +132,11 @@ SpinCalibrationSummary calibrate_spin(std::span<const RigidTransform> fixed_from
   summary.turn_deg = turn_deg(axis, fixed_from_tool, use);
   // The wobble is the noise of two axes; the part of it that turns with the tool is averaged over the sector.
   summary.direction_sigma_deg = 1.3 * summary.wobble_deg / std::sqrt(static_cast<double>(n));
+  // With m the mean of e^(i angle) over the sector, only 1 - m^2 of each pose tells the tool's own offset
+  // from the sleeve's; a full turn tells all.
+  const double half_rad = std::max(geometry::rad_from_deg(summary.turn_deg) / 2, 1e-3);
+  const double mean = std::sin(half_rad) / half_rad;
+  summary.point_sigma_mm = summary.rms_mm / std::sqrt(2.0 * n * (1 - mean * mean));
 
   if (summary.turn_deg < options.min_turn_deg) {
     refuse(summary, Outcome::TurnTooSmall,

@@ -40,6 +40,10 @@ struct SpinCalibrationSummary {
   double rms_mm = -1;
   double wobble_deg = -1;  // of the axis about its mean, RMS over the inliers
   double direction_sigma_deg = -1;
+  // One sigma of the axis point, each coordinate across the axis: what the residual leaves after averaging
+  // over the sector that was turned. At another point of the axis the direction's comes on top, by its
+  // distance.
+  double point_sigma_mm = -1;
   double turn_deg = 0;
   int pose_count = 0, inlier_count = 0;
   [[nodiscard]] bool has_axis() const { return outcome > Outcome::TooFewPoses; }

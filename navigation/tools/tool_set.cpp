@@ -6,6 +6,7 @@
 
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
+#include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::tools {
 namespace {
@@ -39,6 +40,37 @@ ToolAxis read_axis(const files::JsonObject& entry) {
   return axis;
 }
 
+// One sigma that must not be negative.
+std::optional<double> read_sigma(const files::JsonObject& entry, std::string_view key) {
+  if (!entry.has(key)) return std::nullopt;
+  const double sigma = entry.number(key);
+  if (sigma < 0) entry.fail(key, "must not be negative");
+  return sigma;
+}
+
+// "tip_covariance_mm2", nine numbers row by row, or "tip_sigma_mm", the same in every direction.
+std::optional<Eigen::Matrix3d> read_tip_covariance(const files::JsonObject& entry) {
+  if (!entry.has("tip_covariance_mm2")) {
+    const std::optional<double> sigma = read_sigma(entry, "tip_sigma_mm");
+    if (!sigma) return std::nullopt;
+    return Eigen::Matrix3d(*sigma * *sigma * Eigen::Matrix3d::Identity());
+  }
+  const std::vector<double> values = entry.numbers("tip_covariance_mm2");
+  if (values.size() != 9) entry.fail("tip_covariance_mm2", "must hold 9 numbers, row by row");
+  const Eigen::Matrix3d covariance =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
+  if (!(covariance.diagonal().minCoeff() >= 0))
+    entry.fail("tip_covariance_mm2", "a variance must not be negative");
+  return covariance;
+}
+
+ToolKind read_kind(const files::JsonObject& entry) {
+  if (!entry.has("kind")) return ToolKind::Any;
+  if (entry.text("kind") != "drill")
+    entry.fail("kind", "must be \"drill\" or absent, is \"" + entry.text("kind") + "\"");
+  return ToolKind::Drill;
+}
+
 Tool read_tool(const files::JsonObject& entry, Owners& owners) {
   Tool tool;
   tool.name = entry.text("name");
@@ -51,6 +83,12 @@ Tool read_tool(const files::JsonObject& entry, Owners& owners) {
     tool.residual_mm = entry.number("residual_mm");
     if (*tool.residual_mm < 0) entry.fail("residual_mm", "must not be negative");
   }
+  tool.kind = read_kind(entry);
+  if (tool.kind == ToolKind::Drill && (!tool.tip_mm || !tool.axis))
+    entry.fail("kind", "a drill needs tip_mm, axis_point_mm and axis_direction");
+  tool.tip_covariance_mm2 = read_tip_covariance(entry);
+  tool.axis_point_sigma_mm = read_sigma(entry, "axis_point_sigma_mm");
+  tool.axis_direction_sigma_deg = read_sigma(entry, "axis_direction_sigma_deg");
   return tool;
 }
 
@@ -60,6 +98,30 @@ std::optional<Eigen::Vector3d> shaft_direction(const Tool& tool) {
   constexpr double kMinLength_mm = 1e-6;
   if (!tool.tip_mm || tool.tip_mm->norm() < kMinLength_mm) return std::nullopt;
   return -tool.tip_mm->normalized();
+}
+
+DefaultToolError default_error(const Tool& tool) {
+  constexpr DefaultToolError kMeasured{0.1, 0.2}, kNominal{0.3, 0.5};
+  return tool.residual_mm ? kMeasured : kNominal;
+}
+
+Eigen::Matrix3d tip_error_mm2(const Tool& tool) {
+  if (tool.tip_covariance_mm2) return *tool.tip_covariance_mm2;
+  const double sigma_mm = default_error(tool).point_sigma_mm;
+  return sigma_mm * sigma_mm * Eigen::Matrix3d::Identity();
+}
+
+AxisError axis_error(const Tool& tool) {
+  const DefaultToolError unsaid = default_error(tool);
+  return {tool.axis_point_sigma_mm.value_or(unsaid.point_sigma_mm),
+          geometry::rad_from_deg(tool.axis_direction_sigma_deg.value_or(unsaid.direction_sigma_deg))};
+}
+
+const Tool* ToolSet::find_drill() const {
+  for (const Tool& tool : tools) {
+    if (tool.kind == ToolKind::Drill) return &tool;
+  }
+  return nullptr;
 }
 
 const Tool* ToolSet::find_tool(std::string_view name) const {
@@ -130,6 +192,7 @@ void write_tools_file(const std::filesystem::path& file, const ToolSet& tools) {
   for (const Tool& tool : tools.tools) {
     nlohmann::ordered_json entry;
     entry["name"] = tool.name;
+    if (tool.kind == ToolKind::Drill) entry["kind"] = "drill";
     entry["marker_id"] = tool.marker_id;
     entry["size_mm"] = tool.size_mm;
     if (tool.tip_mm) entry["tip_mm"] = files::to_json(*tool.tip_mm);
@@ -138,6 +201,13 @@ void write_tools_file(const std::filesystem::path& file, const ToolSet& tools) {
       entry["axis_direction"] = files::to_json(tool.axis->direction);
     }
     if (tool.residual_mm) entry["residual_mm"] = *tool.residual_mm;
+    if (tool.tip_covariance_mm2) {
+      auto values = nlohmann::ordered_json::array();
+      for (int i = 0; i < 9; ++i) values.push_back((*tool.tip_covariance_mm2)(i / 3, i % 3));
+      entry["tip_covariance_mm2"] = std::move(values);
+    }
+    if (tool.axis_point_sigma_mm) entry["axis_point_sigma_mm"] = *tool.axis_point_sigma_mm;
+    if (tool.axis_direction_sigma_deg) entry["axis_direction_sigma_deg"] = *tool.axis_direction_sigma_deg;
     document["tools"].push_back(std::move(entry));
   }
   files::write_json(file, document);

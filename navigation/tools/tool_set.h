@@ -22,6 +22,11 @@ struct ToolAxis {
   Eigen::Vector3d direction = -Eigen::Vector3d::UnitY();  // unit, the direction of drilling
 };
 
+enum class ToolKind {
+  Any,    // what it is follows from what it has: a tip, an axis
+  Drill,  // a drill with a marker of its own: what it says about depth is seen, not supposed
+};
+
 struct Tool {
   std::string name;
   int marker_id = 0;
@@ -30,7 +35,28 @@ struct Tool {
   std::optional<ToolAxis> axis;
   // RMS of the calibration that tip or axis come from; empty: not known.
   std::optional<double> residual_mm = std::nullopt;
+  ToolKind kind = ToolKind::Any;  // a Drill has a tip and an axis
+  // How well tip and axis are known, in the marker frame; empty: nobody said, see tip_error_mm2().
+  std::optional<Eigen::Matrix3d> tip_covariance_mm2 = std::nullopt;
+  std::optional<double> axis_point_sigma_mm = std::nullopt;       // of each coordinate across the axis
+  std::optional<double> axis_direction_sigma_deg = std::nullopt;  // about each of two axes across it
 };
+
+// What is taken for a tool whose file does not say. Measured, that is with a residual: the limits that its
+// calibration had to keep, 0.1 mm and 0.2 degrees. Nominal, taken from a drawing: 0.3 mm and 0.5 degrees,
+// what a marker that is glued or clamped by hand comes to.
+struct DefaultToolError {
+  double point_sigma_mm, direction_sigma_deg;  // of each coordinate
+};
+[[nodiscard]] DefaultToolError default_error(const Tool& tool);
+// As the file says, else the default of one sigma in each coordinate.
+[[nodiscard]] Eigen::Matrix3d tip_error_mm2(const Tool& tool);
+
+// How far the axis may be off, one sigma of each coordinate across it; errors of point and direction apart.
+struct AxisError {
+  double point_sigma_mm = 0, direction_sigma_rad = 0;
+};
+[[nodiscard]] AxisError axis_error(const Tool& tool);
 
 // Of a tool with a tip, about: unit, in the marker frame, from the tip towards the marker, which sits on the
 // handle's side. Empty without a tip, or when it lies in the marker itself.
@@ -41,6 +67,7 @@ struct ToolSet {
   std::vector<Tool> tools;
 
   [[nodiscard]] const Tool* find_tool(std::string_view name) const;
+  [[nodiscard]] const Tool* find_drill() const;  // the first of kind Drill; null: there is none
   [[nodiscard]] const WorldMarker* find_world_marker(bones::BoneKind bone) const;
 };
 
@@ -48,7 +75,8 @@ struct ToolSet {
 // instruments' geometry.
 [[nodiscard]] ToolSet standard_tools();
 
-// Refuses a marker id used twice, ids outside DICT_4X4_50, sizes that are not above 0, a zero axis direction.
+// Refuses a marker id used twice, ids outside DICT_4X4_50, sizes that are not above 0, a zero axis direction,
+// a drill without tip or axis, an error below 0.
 // Throws IoError or InvalidInput.
 [[nodiscard]] ToolSet read_tools_file(const std::filesystem::path& file);
 void write_tools_file(const std::filesystem::path& file, const ToolSet& tools);

@@ -64,7 +64,7 @@ TEST_F(Schemas, DescribeTheCamera) {
   record.calibration.distortion_xi = -0.4;
   record.calibration.rotation_center_px = {960, 540};
   record.calibration.boundary = {{960, 540}, 520};
-  record.covariance = Eigen::MatrixXd::Identity(6, 6);
+  record.calibration.covariance = camera::CameraCovariance::Identity();
   record.rms_px = 0.2;
   for (const double index : {1.0, 1.35}) {
     record.calibration.refractive_index = index;
@@ -76,7 +76,15 @@ TEST_F(Schemas, DescribeTheCamera) {
 // The built-in tools: with tips, with axes.
 TEST_F(Schemas, DescribeTheTools) {
   const fs::path file = folder_ / "tools.json";
-  tools::write_tools_file(file, tools::standard_tools());
+  tools::ToolSet set = tools::standard_tools();
+  tools::write_tools_file(file, set);
+  expect_described(file, "tools", [&] { (void)tools::read_tools_file(file); });
+  // And with all that a calibration knows, and a drill.
+  set.tools[0].tip_covariance_mm2 = Eigen::Matrix3d::Identity();
+  set.tools[1].axis_point_sigma_mm = set.tools[1].axis_direction_sigma_deg = 0.1;
+  set.tools[1].tip_mm = set.tools[1].axis->point_mm;
+  set.tools[1].kind = tools::ToolKind::Drill;
+  tools::write_tools_file(file, set);
   expect_described(file, "tools", [&] { (void)tools::read_tools_file(file); });
 }
 

@@ -2,13 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace arthronaut::guidance_severity {
 namespace {
 
 // The signs turn where the header says.
 TEST(Readings, FollowTheThresholds) {
   guidance::GuidanceNumbers g;
-  g.axis_to_entry_mm = 0.9;
+  g.offset_mm = 0.9;
   g.sigma_offset_mm = 0.4;
   EXPECT_EQ(severity_of_offset(g), widgets::Severity::Good);
   g.sigma_offset_mm = 1.5;  // a small number that nobody knows well is not good
@@ -17,8 +19,50 @@ TEST(Readings, FollowTheThresholds) {
   EXPECT_EQ(severity_of_offset(g), widgets::Severity::Bad);
   g.angle_deg = 3;
   EXPECT_EQ(severity_of_angle(g), widgets::Severity::Caution);
-  g.remaining_mm = 1;
-  EXPECT_EQ(severity_of_remaining(g), widgets::Severity::Bad);
+}
+
+// A small angle that nobody knows well is not green, as with the offset.
+TEST(Readings, Hazard11TheAnglesSeverityTakesItsSigma) {
+  guidance::GuidanceNumbers g;
+  g.angle_deg = 0.5;
+  g.sigma_angle_deg = 0.8;
+  EXPECT_EQ(severity_of_angle(g), widgets::Severity::Good);
+  g.sigma_angle_deg = 2.5;
+  EXPECT_EQ(severity_of_angle(g), widgets::Severity::Caution);
+  g.sigma_angle_deg = 4.5;
+  EXPECT_EQ(severity_of_angle(g), widgets::Severity::Bad);
+  g.sigma_angle_deg = std::numeric_limits<double>::quiet_NaN();  // not known at all
+  EXPECT_EQ(severity_of_angle(g), widgets::Severity::Bad);
+}
+
+// What remains and what is left to the far side count, whichever is worse.
+TEST(Readings, Hazard7TheDrillsSeverityWarnsOfTheFarSide) {
+  guidance::DrillDepth drill;
+  drill.remaining_mm = 20;
+  EXPECT_EQ(severity_of_drill(drill), widgets::Severity::Quiet);
+  drill.remaining_mm = 4;
+  EXPECT_EQ(severity_of_drill(drill), widgets::Severity::Caution);
+  drill.remaining_mm = 1;
+  EXPECT_EQ(severity_of_drill(drill), widgets::Severity::Bad);
+  drill.remaining_mm = 20;
+  drill.breakout = guidance::Breakout::Near;
+  EXPECT_EQ(severity_of_drill(drill), widgets::Severity::Caution);
+  drill.breakout = guidance::Breakout::Imminent;
+  EXPECT_EQ(severity_of_drill(drill), widgets::Severity::Bad);
+}
+
+// The parts of the offset in the bone's words, of whichever two directions lie across the plan.
+TEST(Readings, Hazard31TheOffsetsPartsAreNamedByTheBonesAxes) {
+  guidance::GuidanceNumbers g;
+  g.offset_anterior_mm = -1.2;
+  g.offset_proximal_mm = 0.4;
+  EXPECT_EQ(offset_parts(g).side, "1.2 posterior");
+  EXPECT_EQ(offset_parts(g).up, "0.4 proximal");
+  g.across_plan.up_is = landmarks::AnatomicalDirection::Anterior;
+  g.across_plan.side_is = landmarks::AnatomicalDirection::Lateral;
+  g.offset_lateral_mm = -2;
+  EXPECT_EQ(offset_parts(g).side, "2.0 medial");
+  EXPECT_EQ(offset_parts(g).up, "1.2 posterior");
 }
 
 // Markers are called by what they are fixed to; one that is declared nowhere, by its number.

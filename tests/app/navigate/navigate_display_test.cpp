@@ -56,7 +56,7 @@ TEST(NavigateDisplay, EveryInvalidStateHidesTheNumbersAndSaysWhy) {
   for (const GuidanceState state :
        {GuidanceState::NoPlan, GuidanceState::NoRegistration, GuidanceState::RegistrationUnreliable,
         GuidanceState::WorldMarkerLost, GuidanceState::GuideLost, GuidanceState::LensStale,
-        GuidanceState::Stale}) {
+        GuidanceState::Stale, GuidanceState::NoGuide}) {
     const NavigateDisplay display =
         display_after([&](OperationStatus&, LiveFrame& live) { live.result.guidance.state = state; });
     EXPECT_FALSE(display.guidance_is_valid) << to_text(state);
@@ -182,12 +182,33 @@ TEST(NavigateDisplay, NamesTheReasonOfTheMarker) {
   EXPECT_EQ(display.detail, std::string(markers::to_text(markers::MarkerState::Glare)));
 }
 
+// A tool set without the guide, and a guide whose axis nobody knows, are said as such.
+TEST(NavigateDisplay, Hazard11AMissingGuideIsSaidInItsOwnWords) {
+  const auto no_guide = [](OperationStatus&, LiveFrame& live) {
+    live.result.guidance.state = GuidanceState::NoGuide;
+  };
+  const NavigateDisplay without_axis = display_after(no_guide);
+  EXPECT_EQ(without_axis.headline, "No drill guide");
+  EXPECT_EQ(without_axis.detail, "The axis of the femoral guide is not known: measure it in Set up");
+  OperationStatus status = valid_status();
+  auto live = std::make_shared<LiveFrame>(*status.live);
+  no_guide(status, *live);
+  status.live = live;
+  const pipeline::PipelineOptions no_tools;
+  const NavigateDisplay without_guide = display_of(&status, &no_tools, kNow_s);
+  EXPECT_EQ(without_guide.detail, "The tools of this case hold no femoral guide");
+}
+
 guidance::GuidanceNumbers numbers_of(const Eigen::Vector3d& offset, const Eigen::Vector3d& lean,
                                      const tunnels::Tunnel& plan) {
   guidance::GuidanceNumbers numbers;
   numbers.state = GuidanceState::Valid;
   numbers.guide_direction = (plan.direction + lean).normalized();
   numbers.guide_point_mm = plan.entry_mm + offset - 12 * numbers.guide_direction;
+  numbers.across_plan = landmarks::axes_across(landmarks::scanner_axes(bones::Side::Right), plan.direction);
+  numbers.offset_anterior_mm = -offset.y();
+  numbers.offset_proximal_mm = offset.z();
+  numbers.offset_mm = std::hypot(offset.y(), offset.z());
   return numbers;
 }
 
@@ -201,7 +222,10 @@ TEST(Bullseye, PointIsWhereTheAxisMissesTheEntry) {
   EXPECT_NEAR(proximal.up_mm, 2, 1e-9);
   EXPECT_NEAR(proximal.right_mm, 0, 1e-9);
   const BullseyePoint anterior = bullseye_point(numbers_of({0, -1.5, 0}, {0, 0, 0}, plan), plan);
-  EXPECT_NEAR(anterior.right_mm, anterior.anterior_is_right ? 1.5 : -1.5, 1e-9);
+  EXPECT_EQ(anterior.side_is, landmarks::AnatomicalDirection::Anterior);
+  EXPECT_NEAR(anterior.right_mm, anterior.side_is_right ? 1.5 : -1.5, 1e-9);
+  // Into a right knee's lateral wall, with proximal up, anterior is to the right.
+  EXPECT_TRUE(anterior.side_is_right);
   const BullseyePoint leaning = bullseye_point(numbers_of({0, 0, 0}, {0, 0, 0.1}, plan), plan);
   EXPECT_NEAR(leaning.lean_up_deg, geometry::deg_from_rad(std::atan(0.1)), 1e-9);
   EXPECT_NEAR(leaning.up_mm, 0, 1e-9);

@@ -46,7 +46,7 @@ CalibrateRunStatus calibrated(CalibrationSummary::Outcome outcome, std::vector<s
   summary->outcome = outcome;
   summary->reasons = std::move(reasons);
   summary->record.calibration.focal_px = 580.25;
-  summary->record.covariance = Eigen::MatrixXd::Identity(6, 6) * 0.0004;
+  summary->record.calibration.covariance = camera::CameraCovariance::Identity() * 0.0004;
   summary->rms_px = 0.2;
   status.job.summary = summary;
   return status;

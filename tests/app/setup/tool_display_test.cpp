@@ -112,5 +112,22 @@ TEST(ToolChoices, FollowTheToolsFile) {
   EXPECT_FALSE(changed.find_tool("femoral guide")->residual_mm.has_value());
 }
 
+// What was measured carries how well it is known. A spin tells the line of the axis, not where on it the
+// guide ends: the distal end stays as far along as it was declared, and the direction's error comes on top
+// there.
+TEST(ToolChoices, Hazard6AnAdoptedAxisKeepsItsEndAndItsError) {
+  ToolResult result;
+  result.task = ToolTask::Axis;
+  result.axis.axis_point_in_tool_mm = {0.2, 0, -3.1};
+  result.axis.axis_direction_in_tool = -Eigen::Vector3d::UnitY();
+  result.axis.point_sigma_mm = 0.03;
+  result.axis.direction_sigma_deg = 0.1;
+  const tools::ToolSet changed = with_result(tools::standard_tools(), "femoral guide", result);
+  const tools::Tool& guide = *changed.find_tool("femoral guide");
+  EXPECT_LT((guide.axis->point_mm - Eigen::Vector3d(0.2, -24, -3.1)).norm(), 1e-12);
+  EXPECT_EQ(guide.axis_direction_sigma_deg, 0.1);
+  EXPECT_NEAR(*guide.axis_point_sigma_mm, std::hypot(0.03, 24 * geometry::rad_from_deg(0.1)), 1e-12);
+}
+
 }  // namespace
 }  // namespace arthronaut::setup

@@ -51,9 +51,9 @@ Spread study(double tilt_deg, double corner_sigma_px, int trials) {
         truth.turned(truth.principal_point_px, truth.lens_angle_rad(found.reference_mark_angle_deg));
     const double focal_error = found.focal_px - truth.focal_px;
     square.focal_px += focal_error * focal_error / trials;
-    square.in_sigmas += focal_error * focal_error / summary.record.covariance(0, 0) / trials;
-    square.xi_in_sigmas +=
-        std::pow(found.distortion_xi - truth.distortion_xi, 2) / summary.record.covariance(1, 1) / trials;
+    square.in_sigmas += focal_error * focal_error / (*summary.record.calibration.covariance)(0, 0) / trials;
+    square.xi_in_sigmas += std::pow(found.distortion_xi - truth.distortion_xi, 2) /
+                           (*summary.record.calibration.covariance)(1, 1) / trials;
     square.xi += std::pow(found.distortion_xi - truth.distortion_xi, 2) / trials;
     square.principal_px += (found.principal_point_px - c).squaredNorm() / 2 / trials;
     square.center_px += (found.rotation_center_px - truth.rotation_center_px).squaredNorm() / 2 / trials;

@@ -34,7 +34,7 @@ class CameraFile : public ::testing::Test {
                           .reference_mark_angle_deg = 271.3,
                           .boundary = {{960.5, 540.2}, 531},
                           .refractive_index = 1.0};
-    record.covariance = Eigen::MatrixXd::Identity(6, 6);
+    record.calibration.covariance = CameraCovariance::Identity();
     record.rms_px = 0.2;
     record.scope_name = "4 mm, 30 degrees";
     return record;
@@ -52,6 +52,19 @@ std::string with(std::string text, const std::string& from, const std::string& t
 
 }  // namespace
 
+// A file that does not say how well its camera is known is not taken for exact.
+TEST_F(CameraFile, Hazard6ACameraWithoutCovarianceIsNotExact) {
+  CalibrationRecord record = example();
+  record.calibration.covariance.reset();
+  write_camera_file(file(), record);
+  const Calibration read = read_camera_file(file()).calibration;
+  EXPECT_FALSE(read.covariance);
+  const CameraCovariance taken = covariance_of(read);
+  EXPECT_NEAR(std::sqrt(taken(0, 0)), 0.005 * read.focal_px, 1e-9);
+  EXPECT_GT(taken.diagonal().minCoeff(), 0);
+  EXPECT_EQ(covariance_of(example().calibration), *example().calibration.covariance);
+}
+
 TEST_F(CameraFile, RoundTripKeepsEveryNumber) {
   write_camera_file(file(), example());
   const auto read = read_camera_file(file());
@@ -66,7 +79,7 @@ TEST_F(CameraFile, RoundTripKeepsEveryNumber) {
   EXPECT_EQ(read.calibration.boundary.center_px, expected.calibration.boundary.center_px);
   EXPECT_EQ(read.calibration.boundary.radius_px, expected.calibration.boundary.radius_px);
   EXPECT_EQ(read.calibration.refractive_index, expected.calibration.refractive_index);
-  EXPECT_EQ(read.covariance, expected.covariance);
+  EXPECT_EQ(read.calibration.covariance, expected.calibration.covariance);
   EXPECT_EQ(read.rms_px, expected.rms_px);
   EXPECT_EQ(read.scope_name, expected.scope_name);
 }

@@ -97,6 +97,31 @@ TEST_P(CameraModelSettings, JacobiansMatchDifferences) {
   }
 }
 
+// The pixel's derivative to the lens itself, against cameras that have a little more or less of each (steps
+// of a millionth to a thousandth: truncation and rounding below 1e-6).
+TEST_P(CameraModelSettings, LensJacobiansMatchDifferences) {
+  const Eigen::Vector3d point(6, -4, 21);
+  const auto jacobian = camera().d_pixel_d_lens(point);
+  ASSERT_TRUE(jacobian);
+  const double step[4] = {1e-3, 1e-6, 1e-3, 1e-3};
+  for (int k = 0; k < 4; ++k) {
+    const auto pixel_with = [&](double change) {
+      auto calibration = scope(GetParam().xi);
+      calibration.aspect_ratio = GetParam().aspect;
+      if (k == 0) calibration.focal_px += change;
+      if (k == 1) calibration.distortion_xi += change;
+      if (k >= 2) {  // a shift of both moves the principal point alike at every lens angle
+        calibration.principal_point_px[k - 2] += change;
+        calibration.rotation_center_px[k - 2] += change;
+      }
+      return *CameraModel(calibration, 0.4, GetParam().index, GetParam().fluid).project(point);
+    };
+    const Eigen::Vector2d numeric = (pixel_with(step[k]) - pixel_with(-step[k])) / (2 * step[k]);
+    EXPECT_LT((jacobian->col(k) - numeric).norm(), 1e-6 * (1 + numeric.norm())) << "parameter " << k;
+  }
+  EXPECT_FALSE(camera().d_pixel_d_lens({0, 0, -1}));
+}
+
 INSTANTIATE_TEST_SUITE_P(DryAndWet, CameraModelSettings,
                          ::testing::Values(Setting{-0.3, 1, 1, FluidModel::FlatPort},
                                            Setting{-0.7, 1, 1, FluidModel::FlatPort},

@@ -29,9 +29,12 @@ TEST(NavigationPipelineAllocation, NothingPerFrameAfterTheFirstFrames) {
   auto script =
       std::vector<markers::MarkerObservation>{test::seen(0, {Eigen::Quaterniond(0, 1, 0, 0), {0, 0, 20}}),
                                               test::seen(2, {Eigen::Quaterniond(0, 1, 0, 0), {5, 0, 20}}),
-                                              test::seen(3, {Eigen::Quaterniond(0, 1, 0, 0), {0, 5, 20}})};
+                                              test::seen(3, {Eigen::Quaterniond(0, 1, 0, 0), {0, 5, 20}}),
+                                              test::seen(6, {Eigen::Quaterniond(0, 1, 0, 0), {5, 5, 20}})};
   pipeline::PipelineOptions options = test::scripted_options();
   options.follow_lens = true;
+  options.calibration.covariance.reset();  // what nobody said is taken as nominal
+  options.tools.tools.push_back(test::scripted_drill());
   options.calibration.rotation_center_px = options.calibration.principal_point_px;
   pipeline::NavigationPipeline pipeline(options, std::make_unique<test::ScriptedMarkers>(&script));
   pipeline.set_plan(tunnels::Tunnel{}, 30);
@@ -45,6 +48,8 @@ TEST(NavigationPipelineAllocation, NothingPerFrameAfterTheFirstFrames) {
   pipeline::FrameResult result;
   for (int i = 0; i < 5; ++i) pipeline.process(frames[static_cast<std::size_t>(i)], result);
   ASSERT_TRUE(result.guidance.is_valid());
+  ASSERT_TRUE(result.guidance.drill);
+  ASSERT_GT(result.guidance.offset_error_mm.camera, 0);
   const long before = allocation_count;
   for (int i = 5; i < 40; ++i) pipeline.process(frames[static_cast<std::size_t>(i)], result);
   EXPECT_EQ(allocation_count - before, 0);

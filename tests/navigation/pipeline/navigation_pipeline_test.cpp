@@ -85,6 +85,74 @@ TEST_F(NavigationPipeline, GuidesAlongThePlan) {
   EXPECT_EQ(g.timestamp_ns, result_.timestamp_ns);
 }
 
+// What tools and camera are known to stands in the numbers of the frame, the tip's and the guide's.
+TEST_F(NavigationPipeline, Hazard6PredictsFromToolsAndCamera) {
+  pipeline_.set_plan(plan_, 30);
+  pipeline_.set_registration(registration_);
+  ASSERT_NEAR(process(0, 1).guidance.sigma_offset_mm, 0, 1e-9);
+  ASSERT_NEAR(result_.tip_covariance_mm2.trace(), 0, 1e-12);
+  options_.calibration.covariance.reset();
+  options_.tools.tools[0].tip_covariance_mm2.reset();
+  options_.tools.tools[1].axis_point_sigma_mm.reset();
+  options_.tools.tools[1].axis_direction_sigma_deg.reset();
+  pipeline::NavigationPipeline nominal(options_, std::make_unique<test::ScriptedMarkers>(&script_));
+  nominal.set_plan(plan_, 30);
+  nominal.set_registration(registration_);
+  nominal.process(test::plain_frame(0, 1), result_);
+  const guidance::PredictedError& offset = result_.guidance.offset_error_mm;
+  // Axis point and direction over 5 mm, and the tip that drew the registration: 0.3 mm in two directions
+  // each.
+  const double turned_mm = 5 * geometry::rad_from_deg(0.5);
+  EXPECT_NEAR(offset.tools, std::sqrt(2 * (0.09 + 0.09 + turned_mm * turned_mm)), 1e-6);
+  EXPECT_GT(offset.camera, 0);
+  EXPECT_GT(result_.tip_covariance_mm2.trace(), 3 * 0.09);
+  // A registration that followed the camera's error as the guide does leaves less of it.
+  guidance::BiasSums sums;
+  for (const Eigen::Vector3d& beside : {Eigen::Vector3d(3, 0, 0), Eigen::Vector3d(0, 3, 0),
+                                        Eigen::Vector3d(0, 0, 3), Eigen::Vector3d(0, 0, 0)}) {
+    guidance::TipSensitivity point = result_.tip_sensitivity;
+    point.tip_mm += beside;
+    sums.add(point);
+  }
+  nominal.set_registration(registration_, sums.bias());
+  nominal.process(test::plain_frame(1, 2), result_);
+  EXPECT_NE(result_.guidance.offset_error_mm.camera, offset.camera);
+  EXPECT_NEAR(result_.guidance.offset_error_mm.registration, 0, 1e-9);
+}
+
+// A drill of the tool set is followed by its own marker; while it is not seen nothing is said about depth.
+TEST_F(NavigationPipeline, Hazard7TheDrillIsFollowedByItsOwnMarker) {
+  options_.tools.tools.push_back(test::scripted_drill());
+  const RigidTransform& world_from_bone = registration_.marker_from_bone;
+  RigidTransform world_from_drill;
+  world_from_drill.rotation =
+      Eigen::Quaterniond::FromTwoVectors(-Eigen::Vector3d::UnitY(), world_from_bone.rotate(plan_.direction));
+  const Eigen::Vector3d tip = world_from_bone * (plan_.entry_mm + 12.0 * plan_.direction);
+  world_from_drill.translation_mm = tip - world_from_drill.rotate({0, -40, -4});
+  script_.push_back(test::seen(6, camera_from_world_ * world_from_drill));
+  pipeline::NavigationPipeline drilling(options_, std::make_unique<test::ScriptedMarkers>(&script_));
+  drilling.set_plan(plan_, 30);
+  drilling.set_registration(registration_);
+  drilling.process(test::plain_frame(0, 1), result_);
+  ASSERT_TRUE(result_.guidance.drill);
+  EXPECT_NEAR(result_.guidance.drill->depth_mm, 12, 1e-6);
+  EXPECT_NEAR(result_.guidance.drill->remaining_mm, 18, 1e-6);
+  script_.back() = test::lost(6, MarkerState::Covered);
+  drilling.process(test::plain_frame(1, 2), result_);
+  EXPECT_TRUE(result_.guidance.is_valid());
+  EXPECT_FALSE(result_.guidance.drill);
+}
+
+// A tool set without the guide that is asked for is not "no plan".
+TEST_F(NavigationPipeline, Hazard11SaysThatTheGuideIsMissing) {
+  options_.guide_name = "another guide";
+  pipeline::NavigationPipeline without(options_, std::make_unique<test::ScriptedMarkers>(&script_));
+  without.set_plan(plan_, 30);
+  without.set_registration(registration_);
+  without.process(test::plain_frame(0, 1), result_);
+  EXPECT_EQ(result_.guidance.state, GuidanceState::NoGuide);
+}
+
 // A marker that is lost takes everything that rests on it away in that very frame.
 TEST_F(NavigationPipeline, DropsWhatRestsOnALostMarkerInTheSameFrame) {
   pipeline_.set_plan(plan_, 30);

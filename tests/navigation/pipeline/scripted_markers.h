@@ -78,22 +78,36 @@ inline camera::Frame round_frame(std::int64_t index, std::uint8_t gray) {
   return frame;
 }
 
-// World marker 0 of the femur, probe 2 with a tip, guide 3 with an axis.
+// World marker 0 of the femur, probe 2 with a tip, guide 3 with an axis. All is known exactly.
 inline pipeline::PipelineOptions scripted_options() {
   pipeline::PipelineOptions options;
   options.calibration = small_calibration();
+  options.calibration.covariance = camera::CameraCovariance::Zero();
   options.follow_lens = false;
   options.tools.world_markers = {{bones::BoneKind::Femur, 0, 4.0}};
   tools::Tool probe;
   probe.name = "probe";
   probe.marker_id = 2;
   probe.tip_mm = Eigen::Vector3d(1, -30, -5);
+  probe.tip_covariance_mm2 = Eigen::Matrix3d::Zero();
   tools::Tool guide;
   guide.name = "femoral guide";
   guide.marker_id = 3;
   guide.axis = tools::ToolAxis{{0, -25, -4}, {0, -1, 0}};
+  guide.axis_point_sigma_mm = guide.axis_direction_sigma_deg = 0.0;
   options.tools.tools = {probe, guide};
   return options;
+}
+
+// A drill with a marker of its own, 6.
+inline tools::Tool scripted_drill() {
+  tools::Tool drill;
+  drill.name = "drill";
+  drill.marker_id = 6;
+  drill.kind = tools::ToolKind::Drill;
+  drill.tip_mm = Eigen::Vector3d(0, -40, -4);
+  drill.axis = tools::ToolAxis{*drill.tip_mm, -Eigen::Vector3d::UnitY()};
+  return drill;
 }
 
 }  // namespace arthronaut::test

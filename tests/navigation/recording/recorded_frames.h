@@ -48,7 +48,14 @@ inline pipeline::FrameResult frame_result(std::int64_t index) {
   result.guidance.axis_to_entry_mm = 1 / (x + 3);
   result.guidance.angle_deg = 2 + x / 9;
   result.guidance.depth_mm = -x;
-  result.guidance.remaining_mm = 30 + x;
+  result.guidance.offset_lateral_mm = 0.3 + x / 50;
+  if (index % 2 == 0) {
+    result.guidance.drill.emplace();
+    result.guidance.drill->depth_mm = x;
+    result.guidance.drill->remaining_mm = 30 - x;
+    result.guidance.drill->to_exit_mm = 31 - x;
+    result.guidance.drill->sigma_mm = 0.4;
+  }
   return result;
 }
 

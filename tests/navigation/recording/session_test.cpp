@@ -63,6 +63,11 @@ TEST_F(Session, ReadsBackExactlyWhatWasRecorded) {
     EXPECT_EQ(frame.guidance.state, wanted.guidance.state);
     if (wanted.guidance.is_valid()) {
       EXPECT_EQ(frame.guidance.angle_deg, wanted.guidance.angle_deg);
+      EXPECT_EQ(frame.guidance.offset_lateral_mm, wanted.guidance.offset_lateral_mm);
+      ASSERT_EQ(frame.guidance.drill.has_value(), wanted.guidance.drill.has_value());
+      if (wanted.guidance.drill) {
+        EXPECT_EQ(frame.guidance.drill->remaining_mm, wanted.guidance.drill->remaining_mm);
+      }
     }
   }
   ASSERT_EQ(session.events().size(), 1u);

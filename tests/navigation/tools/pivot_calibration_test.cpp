@@ -91,6 +91,17 @@ TEST(PivotCalibration, PredictsItsScatter) {
   EXPECT_NEAR(sum / 60, 1.0, 0.35);
 }
 
+// What tools.json keeps holds the bias along the shaft as well.
+TEST(PivotCalibration, Hazard6TheTipsErrorHoldsTheBias) {
+  PivotCalibrationSummary summary;
+  summary.outcome = PivotCalibrationSummary::Outcome::Ok;
+  summary.tip_in_tool_mm = {0, -20, 0};
+  summary.tip_covariance_mm2 = 0.0025 * Eigen::Matrix3d::Identity();
+  summary.bias_mm = 0.1;
+  EXPECT_NEAR(summary.tip_error_mm2()(1, 1), 0.0125, 1e-12);
+  EXPECT_NEAR(summary.tip_error_mm2()(0, 0), 0.0025, 1e-12);
+}
+
 // A narrow cone has a beautiful residual and a wrong tip: refused, with the cone in the reason.
 TEST(PivotCalibration, RefusesANarrowCone) {
   Motion motion;

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "planning/geometry/error.h"
+#include "planning/geometry/rigid_transform.h"
 #include "tests/message_of.h"
 #include "tests/temporary_folder.h"
 
@@ -50,6 +51,54 @@ TEST_F(ToolsFile, KeepsTheStandardToolsThroughARoundTrip) {
       EXPECT_EQ(read.tools[i].axis->direction, written.tools[i].axis->direction);
     }
   }
+}
+
+// Tip and axis carry how well they are known; a drill says that it is one.
+TEST_F(ToolsFile, Hazard6KeepsHowWellTheToolsAreKnown) {
+  ToolSet written = standard_tools();
+  Eigen::Matrix3d covariance;
+  covariance << 0.01, 0.002, 0, 0.002, 0.04, 0.001, 0, 0.001, 0.02;
+  written.tools[0].tip_covariance_mm2 = covariance;
+  written.tools[1].axis_point_sigma_mm = 0.07;
+  written.tools[1].axis_direction_sigma_deg = 0.11;
+  Tool drill;
+  drill.name = "drill";
+  drill.marker_id = 7;
+  drill.tip_mm = Eigen::Vector3d(0, -80, -4);
+  drill.axis = ToolAxis{*drill.tip_mm, -Eigen::Vector3d::UnitY()};
+  drill.kind = ToolKind::Drill;
+  written.tools.push_back(drill);
+  write_tools_file(file_, written);
+  const ToolSet read = read_tools_file(file_);
+  EXPECT_EQ(read.tools[0].tip_covariance_mm2, written.tools[0].tip_covariance_mm2);
+  EXPECT_EQ(tip_error_mm2(read.tools[0]), covariance);
+  EXPECT_EQ(axis_error(read.tools[1]).point_sigma_mm, 0.07);
+  EXPECT_NEAR(geometry::deg_from_rad(axis_error(read.tools[1]).direction_sigma_rad), 0.11, 1e-12);
+  EXPECT_FALSE(read.tools[2].axis_point_sigma_mm);
+  ASSERT_NE(read.find_drill(), nullptr);
+  EXPECT_EQ(read.find_drill()->name, "drill");
+  EXPECT_EQ(standard_tools().find_drill(), nullptr);
+}
+
+// A nominal tool is worse than a measured one, and neither is exact; one number stands for every direction.
+TEST_F(ToolsFile, Hazard6ANominalToolIsNotExact) {
+  Tool tool = standard_tools().tools.front();
+  EXPECT_NEAR(tip_error_mm2(tool)(0, 0), 0.3 * 0.3, 1e-12);
+  tool.residual_mm = 0.2;
+  EXPECT_NEAR(tip_error_mm2(tool)(0, 0), 0.1 * 0.1, 1e-12);
+  write("",
+        R"({"name": "probe", "marker_id": 2, "size_mm": 4, "tip_mm": [0, -20, -5], "tip_sigma_mm": 0.5})");
+  EXPECT_NEAR(tip_error_mm2(read_tools_file(file_).tools.front())(2, 2), 0.25, 1e-12);
+  write("", R"({"name": "probe", "marker_id": 2, "size_mm": 4, "tip_mm": [0, -20, -5], "tip_sigma_mm": -1})");
+  EXPECT_NE(refusal().find("tip_sigma_mm"), std::string::npos);
+}
+
+// A drill without tip or axis could say nothing about depth.
+TEST_F(ToolsFile, Hazard7ADrillNeedsTipAndAxis) {
+  write("", R"({"name": "drill", "marker_id": 2, "size_mm": 4, "kind": "drill", "tip_mm": [0, -20, -5]})");
+  EXPECT_NE(refusal().find("a drill needs"), std::string::npos);
+  write("", R"({"name": "saw", "marker_id": 2, "size_mm": 4, "kind": "saw"})");
+  EXPECT_NE(refusal().find("\"saw\""), std::string::npos);
 }
 
 // The ids are those that interfaces.md promises.

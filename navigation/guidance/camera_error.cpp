@@ -1,0 +1,58 @@
+#include "navigation/guidance/camera_error.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace arthronaut::guidance {
+
+namespace {
+
+// How the lens is turned in this frame, from where its principal point went.
+Eigen::Matrix2d turn_of(const camera::CameraModel& camera, const camera::Calibration& calibration) {
+  const Eigen::Vector2d before = calibration.principal_point_px - calibration.rotation_center_px;
+  const Eigen::Vector2d now = camera.principal_point_px() - calibration.rotation_center_px;
+  const double length = before.norm() * now.norm();
+  if (length < 1e-9) return Eigen::Matrix2d::Identity();  // it turns about itself: the angle does not matter
+  const double c = before.dot(now) / length, s = (before.x() * now.y() - before.y() * now.x()) / length;
+  Eigen::Matrix2d turn;
+  turn << c, -s, s, c;
+  return turn;
+}
+
+}  // namespace
+
+TwistPerCameraError twist_per_camera_error(const geometry::RigidTransform& camera_from_marker, double size_mm,
+                                           const camera::CameraModel& camera,
+                                           const camera::Calibration& calibration) {
+  // The principal point follows c = q + R (c0 - q).
+  Eigen::Matrix<double, 4, 6> lens = Eigen::Matrix<double, 4, 6>::Zero();
+  const Eigen::Matrix2d turn = turn_of(camera, calibration);
+  lens(0, 0) = lens(1, 1) = 1;
+  lens.block<2, 2>(2, 2) = turn;
+  lens.block<2, 2>(2, 4) = Eigen::Matrix2d::Identity() - turn;
+
+  const Eigen::Matrix3d rotation = camera_from_marker.matrix();
+  geometry::Matrix6d normal = geometry::Matrix6d::Zero();
+  TwistPerCameraError right = TwistPerCameraError::Zero();
+  for (const double x : {-size_mm / 2, size_mm / 2}) {
+    for (const double y : {-size_mm / 2, size_mm / 2}) {
+      const Eigen::Vector3d corner(x, y, 0);
+      const Eigen::Vector3d in_camera = camera_from_marker * corner;
+      Eigen::Matrix<double, 2, 3> d_pixel_d_point;
+      const auto pixel = camera.project(in_camera, d_pixel_d_point);
+      const auto d_pixel_d_lens = camera.d_pixel_d_lens(in_camera);
+      if (!pixel || !d_pixel_d_lens) return TwistPerCameraError::Zero();
+      Eigen::Matrix<double, 3, 6> d_point_d_twist;
+      d_point_d_twist << rotation, -rotation * geometry::cross_matrix(corner);
+      const Eigen::Matrix<double, 2, 6> d_pixel_d_twist = d_pixel_d_point * d_point_d_twist;
+      normal += d_pixel_d_twist.transpose() * d_pixel_d_twist;
+      right += d_pixel_d_twist.transpose() * (*d_pixel_d_lens * lens);
+    }
+  }
+  // The corners stay where they were seen: what the camera moves, the pose takes back.
+  const Eigen::LDLT<geometry::Matrix6d> solver(normal);
+  const TwistPerCameraError result = -solver.solve(right);
+  return result.allFinite() ? result : TwistPerCameraError::Zero();
+}
+
+}  // namespace arthronaut::guidance

@@ -1,0 +1,21 @@
+// What an error of the camera's calibration does to the pose of a marker. Every marker of a frame is seen by
+// the same camera, so that their errors hang together: what is reckoned from two of them is off by less than
+// either.
+#pragma once
+
+#include "navigation/camera/camera_model.h"
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::guidance {
+
+// Columns: the calibration's errors in the order of camera::CameraCovariance. Rows: body twist (v mm, w rad).
+using TwistPerCameraError = Eigen::Matrix<double, 6, 6>;
+
+// First order, by the corners: the pose found through a camera that is off by d is T * exp(result * d), where
+// T is the pose that it would find without. Zero where a corner has no image. `camera` is that of the frame,
+// of `calibration` with its lens turned. Allocates nothing.
+[[nodiscard]] TwistPerCameraError twist_per_camera_error(const geometry::RigidTransform& camera_from_marker,
+                                                         double size_mm, const camera::CameraModel& camera,
+                                                         const camera::Calibration& calibration);
+
+}  // namespace arthronaut::guidance

@@ -1,0 +1,169 @@
+#include "navigation/guidance/drill_evidence.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "planning/geometry/error.h"
+#include "planning/geometry/quantile.h"
+
+namespace arthronaut::guidance {
+
+namespace {
+
+constexpr std::size_t kCapacity = 2048;  // over a minute at 30 poses a second
+
+template <typename Poses, typename Value>
+double median_of(const Poses& poses, const Value& value) {
+  std::vector<double> values;
+  values.reserve(poses.size());
+  for (const auto& pose : poses) values.push_back(value(pose));
+  return geometry::median(std::move(values), 0);
+}
+
+template <typename Poses, typename Vector>
+Eigen::Vector3d median_vector(const Poses& poses, const Vector& vector) {
+  Eigen::Vector3d result;
+  for (int axis = 0; axis < 3; ++axis)
+    result[axis] = median_of(poses, [&](const auto& pose) { return vector(pose)[axis]; });
+  return result;
+}
+
+// Where the line crosses the plane through the entry across the plan; its nearest point where it lies in it.
+Eigen::Vector3d crossing_of(const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
+                            const tunnels::Tunnel& planned) {
+  const Eigen::Vector3d along = planned.direction.normalized();
+  const double advance = direction.dot(along);
+  const Eigen::Vector3d to_entry = planned.entry_mm - point;
+  const double way = std::abs(advance) > 0.1 ? to_entry.dot(along) / advance : to_entry.dot(direction);
+  return point + way * direction;
+}
+
+}  // namespace
+
+std::string_view to_text(EvidenceOutcome outcome) {
+  switch (outcome) {
+    case EvidenceOutcome::NoGuidance:
+      return "there was no guidance meanwhile";
+    case EvidenceOutcome::NeverTouched:
+      return "the guide never stood on the bone";
+    case EvidenceOutcome::BesideEntry:
+      return "the guide did not stand at the planned entry";
+    case EvidenceOutcome::TooShort:
+      return "the guide stood at the planned entry too shortly";
+    case EvidenceOutcome::Seen:
+      return "seen";
+  }
+  return "unknown";
+}
+
+DrillEvidence::Store::Store() { poses_.reserve(kCapacity); }
+
+void DrillEvidence::Store::add(const Pose& pose) {
+  if (++passed_over_ < stride_) return;
+  passed_over_ = 0;
+  if (poses_.size() == kCapacity) {
+    for (std::size_t i = 0; i < kCapacity / 2; ++i) poses_[i] = poses_[2 * i + 1];
+    poses_.resize(kCapacity / 2);
+    stride_ *= 2;
+  }
+  poses_.push_back(pose);
+}
+
+void DrillEvidence::Store::clear() {
+  poses_.clear();
+  stride_ = 1;
+  passed_over_ = 0;
+}
+
+DrillEvidence::DrillEvidence(const tunnels::Tunnel& planned, const DrillEvidenceLimits& limits)
+    : planned_(planned), limits_(limits) {
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) throw InvalidInput(std::string("drill evidence: ") + what);
+  };
+  require(limits.most_depth_mm > limits.least_depth_mm, "most_depth_mm must be above least_depth_mm");
+  require(limits.most_lateral_mm > 0, "most_lateral_mm must be above 0");
+  require(limits.window_mm > 0, "window_mm must be above 0");
+  require(limits.least_poses > 0, "least_poses must be above 0");
+}
+
+void DrillEvidence::clear() {
+  guide_.clear();
+  drill_.clear();
+  valid_count_ = deep_enough_count_ = 0;
+  nearest_mm_ = 0;
+}
+
+void DrillEvidence::add(const GuidanceNumbers& numbers) {
+  if (numbers.drill && numbers.drill->source == DrillDepth::Source::Drill) {
+    const DrillDepth& drill = *numbers.drill;
+    if (drill.depth_mm >= limits_.least_drilled_mm && drill.lateral_mm <= limits_.most_lateral_mm)
+      drill_.add({drill.tip_mm, drill.direction, drill.depth_mm,
+                  numbers.is_valid() ? numbers.sigma_offset_mm : std::sqrt(2.0) * drill.sigma_mm,
+                  numbers.sigma_angle_deg, numbers.timestamp_ns});
+  }
+  if (!numbers.is_valid()) return;
+  nearest_mm_ = valid_count_ == 0 ? numbers.tip_to_entry_mm : std::min(nearest_mm_, numbers.tip_to_entry_mm);
+  ++valid_count_;
+  if (numbers.depth_mm < limits_.least_depth_mm || numbers.depth_mm > limits_.most_depth_mm) return;
+  ++deep_enough_count_;
+  const Eigen::Vector3d along = planned_.direction.normalized();
+  const Eigen::Vector3d from_entry = numbers.guide_point_mm - planned_.entry_mm;
+  if ((from_entry - from_entry.dot(along) * along).norm() > limits_.most_lateral_mm) return;
+  guide_.add({numbers.guide_point_mm, numbers.guide_direction, numbers.depth_mm, numbers.sigma_offset_mm,
+              numbers.sigma_angle_deg, numbers.timestamp_ns});
+}
+
+void DrillEvidence::summarise(const std::vector<Pose>& poses, DrillEvidenceSummary& summary) const {
+  std::vector<double> depths;
+  depths.reserve(poses.size());
+  for (const Pose& pose : poses) depths.push_back(pose.depth_mm);
+  const double deepest_mm = geometry::quantile(std::move(depths), 0.9, 0);
+  std::vector<Pose> counted;
+  counted.reserve(poses.size());
+  std::copy_if(poses.begin(), poses.end(), std::back_inserter(counted),
+               [&](const Pose& pose) { return std::abs(pose.depth_mm - deepest_mm) <= limits_.window_mm; });
+  summary.pose_count = static_cast<int>(counted.size());
+  if (counted.size() < limits_.least_poses) return;
+  summary.outcome = EvidenceOutcome::Seen;
+  summary.direction = median_vector(counted, [](const Pose& pose) { return pose.direction; }).normalized();
+  summary.entry_mm = median_vector(
+      counted, [&](const Pose& pose) { return crossing_of(pose.point_mm, pose.direction, planned_); });
+  summary.depth_mm = median_of(counted, [](const Pose& pose) { return pose.depth_mm; });
+  summary.sigma_offset_mm = median_of(counted, [](const Pose& pose) { return pose.sigma_offset_mm; });
+  summary.sigma_angle_deg = median_of(counted, [](const Pose& pose) { return pose.sigma_angle_deg; });
+  double squares_mm = 0, squares_deg = 0;
+  for (const Pose& pose : counted) {
+    squares_mm += (crossing_of(pose.point_mm, pose.direction, planned_) - summary.entry_mm).squaredNorm();
+    squares_deg +=
+        std::pow(geometry::deg_from_rad(geometry::angle_between_rad(pose.direction, summary.direction)), 2);
+  }
+  const double count = static_cast<double>(counted.size());
+  summary.spread_mm = std::sqrt(squares_mm / count);
+  summary.spread_deg = std::sqrt(squares_deg / count);
+  summary.timestamp_ns = counted.back().timestamp_ns;
+}
+
+DrillEvidenceSummary DrillEvidence::summary() const {
+  DrillEvidenceSummary summary;
+  summary.nearest_mm = nearest_mm_;
+  // A drill's own marker says more than the guide that it runs through.
+  if (!drill_.poses().empty()) {
+    summarise(drill_.poses(), summary);
+    summary.is_of_drill = summary.is_usable();
+    if (summary.is_usable()) return summary;
+  }
+  if (valid_count_ == 0) return summary;
+  if (deep_enough_count_ == 0) {
+    summary.outcome = EvidenceOutcome::NeverTouched;
+    return summary;
+  }
+  if (guide_.poses().empty()) {
+    summary.outcome = EvidenceOutcome::BesideEntry;
+    return summary;
+  }
+  summary.outcome = EvidenceOutcome::TooShort;
+  summarise(guide_.poses(), summary);
+  return summary;
+}
+
+}  // namespace arthronaut::guidance

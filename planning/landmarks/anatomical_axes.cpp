@@ -1,0 +1,171 @@
+#include "planning/landmarks/anatomical_axes.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace arthronaut::landmarks {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kLeastElongation = 1.6;  // of variances, along the shaft and across it
+constexpr double kLeastCosine = 0.5;      // to the scanner's axis of the same name
+
+std::optional<Vector3d> find(const Landmarks& landmarks, const char* name) {
+  const auto found = landmarks.find(name);
+  return found == landmarks.end() ? std::nullopt : std::optional(found->second);
+}
+
+// Unit, from one landmark to the other; empty when one is missing or they lie closer than 5 mm.
+std::optional<Vector3d> between(const std::optional<Vector3d>& from, const std::optional<Vector3d>& to) {
+  constexpr double kLeastLength_mm = 5;
+  if (!from || !to || (*to - *from).norm() < kLeastLength_mm) return std::nullopt;
+  return Vector3d((*to - *from).normalized());
+}
+
+// The part of `v` across the unit vector `line`, unit; empty where hardly any is left.
+std::optional<Vector3d> laid_across(const Vector3d& v, const Vector3d& line) {
+  const Vector3d across = v - v.dot(line) * line;
+  if (across.norm() < kLeastCosine) return std::nullopt;
+  return Vector3d(across.normalized());
+}
+
+std::optional<Vector3d> middle(const std::optional<Vector3d>& a, const std::optional<Vector3d>& b) {
+  if (!a || !b) return std::nullopt;
+  return Vector3d((*a + *b) / 2);
+}
+
+// The longest principal axis of the surface, towards the head.
+std::optional<Vector3d> shaft_of(const geometry::TriangleMesh& mesh) {
+  double total = 0;
+  Vector3d mean = Vector3d::Zero();
+  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+  for (const auto& triangle : mesh.triangles) {
+    const auto corner = [&](std::size_t k) -> const Vector3d& {
+      return mesh.vertices_mm[static_cast<std::size_t>(triangle[k])];
+    };
+    const double area = 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+    const Vector3d center = (corner(0) + corner(1) + corner(2)) / 3;
+    total += area;
+    mean += area * center;
+    moment += area * center * center.transpose();
+  }
+  if (!(total > 0)) return std::nullopt;
+  mean /= total;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(moment / total - mean * mean.transpose());
+  if (!(principal.eigenvalues()[2] > kLeastElongation * principal.eigenvalues()[1])) return std::nullopt;
+  const Vector3d longest = principal.eigenvectors().col(2);
+  return longest.z() < 0 ? Vector3d(-longest) : longest;
+}
+
+// Right-handed for a left knee's (anterior, lateral, proximal), left-handed for a right one's: the third axis
+// follows from two and the side.
+Vector3d anterior_of(const Vector3d& proximal, const Vector3d& lateral, bones::Side side) {
+  return side == bones::Side::Right ? Vector3d(proximal.cross(lateral)) : Vector3d(lateral.cross(proximal));
+}
+
+AnatomicalAxes axes_from(AnatomicalAxes::Origin origin, const Vector3d& proximal, const Vector3d& lateral,
+                         bones::Side side) {
+  return {origin, anterior_of(proximal, lateral, side), proximal, lateral};
+}
+
+bool agrees(const AnatomicalAxes& axes, const AnatomicalAxes& scanner) {
+  return axes.anterior.dot(scanner.anterior) > kLeastCosine &&
+         axes.proximal.dot(scanner.proximal) > kLeastCosine &&
+         axes.lateral.dot(scanner.lateral) > kLeastCosine;
+}
+
+std::optional<AnatomicalAxes> from_landmarks(bones::BoneKind bone, bones::Side side,
+                                             const Landmarks& landmarks,
+                                             const std::optional<Vector3d>& shaft) {
+  const bool is_femur = bone == bones::BoneKind::Femur;
+  const auto medial = find(landmarks, is_femur ? "medial_epicondyle" : "plateau_medial");
+  const auto outer = find(landmarks, is_femur ? "lateral_epicondyle" : "plateau_lateral");
+  const auto lateral = between(medial, outer);
+  if (!lateral) return std::nullopt;
+  const auto behind = is_femur ? middle(find(landmarks, "medial_condyle_posterior"),
+                                        find(landmarks, "lateral_condyle_posterior"))
+                               : find(landmarks, "plateau_posterior");
+  const auto ahead = is_femur ? middle(medial, outer) : find(landmarks, "plateau_anterior");
+  std::optional<Vector3d> proximal;
+  if (const auto forward = between(behind, ahead)) {
+    if (const auto anterior = laid_across(*forward, *lateral)) {
+      proximal = side == bones::Side::Right ? Vector3d(lateral->cross(*anterior))
+                                            : Vector3d(anterior->cross(*lateral));
+    }
+  }
+  if (!proximal) proximal = laid_across(shaft.value_or(Vector3d::UnitZ()), *lateral);
+  if (!proximal) return std::nullopt;
+  return axes_from(AnatomicalAxes::Origin::FromLandmarks, *proximal, *lateral, side);
+}
+
+}  // namespace
+
+std::string_view to_text(AnatomicalAxes::Origin origin) {
+  switch (origin) {
+    case AnatomicalAxes::Origin::FromLandmarks:
+      return "the bone's landmarks";
+    case AnatomicalAxes::Origin::FromShaft:
+      return "the bone's shaft";
+    case AnatomicalAxes::Origin::FromScanner:
+      return "the scanner's axes";
+  }
+  return "unknown";
+}
+
+AnatomicalAxes scanner_axes(bones::Side side) {
+  return axes_from(AnatomicalAxes::Origin::FromScanner, Vector3d::UnitZ(),
+                   side == bones::Side::Right ? Vector3d(-Vector3d::UnitX()) : Vector3d::UnitX(), side);
+}
+
+AnatomicalAxes anatomical_axes(bones::BoneKind bone, bones::Side side, const Landmarks& landmarks,
+                               const geometry::TriangleMesh& mesh) {
+  const AnatomicalAxes scanner = scanner_axes(side);
+  const std::optional<Vector3d> shaft = shaft_of(mesh);
+  const std::optional<AnatomicalAxes> named = from_landmarks(bone, side, landmarks, shaft);
+  if (named && agrees(*named, scanner)) return *named;
+  if (!shaft) return scanner;
+  const std::optional<Vector3d> lateral = laid_across(scanner.lateral, *shaft);
+  if (!lateral) return scanner;
+  const AnatomicalAxes by_shape = axes_from(AnatomicalAxes::Origin::FromShaft, *shaft, *lateral, side);
+  return agrees(by_shape, scanner) ? by_shape : scanner;
+}
+
+std::string_view to_text(AnatomicalDirection direction, bool is_positive) {
+  switch (direction) {
+    case AnatomicalDirection::Anterior:
+      return is_positive ? "anterior" : "posterior";
+    case AnatomicalDirection::Proximal:
+      return is_positive ? "proximal" : "distal";
+    case AnatomicalDirection::Lateral:
+      return is_positive ? "lateral" : "medial";
+  }
+  return "unknown";
+}
+
+PlaneAxes axes_across(const AnatomicalAxes& axes, const Vector3d& line) {
+  const double along_anterior = std::abs(axes.anterior.dot(line)),
+               along_proximal = std::abs(axes.proximal.dot(line)),
+               along_lateral = std::abs(axes.lateral.dot(line));
+  PlaneAxes plane;
+  Vector3d up = axes.proximal, side = axes.anterior;
+  if (along_proximal >= along_anterior && along_proximal >= along_lateral) {
+    plane.up_is = AnatomicalDirection::Anterior;
+    up = axes.anterior;
+    plane.side_is = AnatomicalDirection::Lateral;
+    side = axes.lateral;
+  } else if (along_anterior >= along_lateral) {
+    plane.side_is = AnatomicalDirection::Lateral;
+    side = axes.lateral;
+  }
+  plane.up = (up - up.dot(line) * line).normalized();
+  plane.side = line.cross(plane.up);
+  if (plane.side.dot(side) < 0) plane.side = -plane.side;
+  return plane;
+}
+
+}  // namespace arthronaut::landmarks
