@@ -46,19 +46,20 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                {},
                [this] { start_video(); },
                {"start the video instead", running}});
-  actions.add({"navigate.stop",
-               "Stop",
-               "Ends the source",
-               GLFW_KEY_ESCAPE,
-               0,
-               false,
-               [this] { return operation_ != nullptr || !choices_.cameras.empty(); },
-               {},
-               [this] {
-                 if (choices_.cameras.empty()) end_operation();
-                 choices_.cameras.clear();
-               },
-               {"stop", [this] { return choices_.cameras.empty(); }}});
+  actions.add(
+      {"navigate.stop",
+       "Stop",
+       "Ends the source",
+       GLFW_KEY_ESCAPE,
+       0,
+       false,
+       [this] { return live_->phase == theatre::LiveState::Phase::Running || !choices_.cameras.empty(); },
+       {},
+       [this] {
+         if (choices_.cameras.empty()) end_source();
+         choices_.cameras.clear();
+       },
+       {"stop", [this] { return choices_.cameras.empty(); }}});
   actions.add({"navigate.camera",
                "Camera",
                "Navigates with a camera that is connected",
@@ -71,28 +72,27 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                {"choose a camera instead", [this] { return is_running() && choices_.cameras.empty(); }}});
   actions.add({"navigate.digitise", "Probe draws",
                "While on, where the probe's tip goes is kept for the registration", GLFW_KEY_D, 0, false,
-               running, [this] { return is_running() && status_.digitises; },
-               [this] { operation_->set_digitising(!status_.digitises); }});
-  actions.add(
-      {"navigate.register",
-       "Register",
-       "Fits the bone to what the probe drew",
-       GLFW_KEY_R,
-       0,
-       false,
-       [this] { return operation_ != nullptr && !status_.bone->drawn->empty() && !status_.is_registering; },
-       {},
-       [this] { operation_->register_curves(); }});
+               running, [this] { return is_running() && live_->operation->draws; },
+               [this] { ask(operation::Draw{!live_->operation->draws}); }});
+  actions.add({"navigate.register",
+               "Register",
+               "Fits the bone to what the probe drew",
+               GLFW_KEY_R,
+               0,
+               false,
+               [this] { return registration().point_count > 0 && !registration().is_fitting; },
+               {},
+               [this] { ask(operation::RegisterStrokes{}); }});
   actions.add({"navigate.record",
                "Record",
-               "Keeps video, poses and decisions in the case",
+               "Keeps the video too; poses and decisions are kept in any case",
                GLFW_KEY_R,
                GLFW_MOD_CONTROL,
                false,
                running,
-               [this] { return !status_.recording.empty(); },
-               [this] { toggle_recording(); },
-               {"end the record", [this] { return !status_.recording.empty(); }}});
+               [this] { return live_->keeps_video; },
+               [this] { bones_.operation(choices_.bone).keep_video(!live_->keeps_video); },
+               {"end the video's record", [this] { return live_->keeps_video; }}});
   actions.add({"navigate.overlay",
                "Plan on video",
                "Full, off; it fades by itself",
@@ -128,7 +128,6 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                    notice_ = "Stop the source first, then take the other bone";
                    return;
                  }
-                 end_operation();
                  choices_.bone = choices_.bone == bones::BoneKind::Femur ? bones::BoneKind::Tibia
                                                                          : bones::BoneKind::Femur;
                  look_along_plan();
@@ -146,17 +145,16 @@ void NavigateView::add_actions(widgets::Actions& actions) {
 }
 
 void NavigateView::add_registration_actions(widgets::Actions& actions) {
-  const auto knows_bone = [this] { return bone_registration() != nullptr; };
   const auto has_tip = [this] { return is_running(); };
-  const auto has_drawn = [this] { return bone_registration() != nullptr && !status_.bone->drawn->empty(); };
+  const auto has_drawn = [this] { return registration().point_count > 0; };
   const auto select = [this](int step) {
     choices_.stroke = neighbour_stroke(words_.strokes, choices_.stroke, step);
   };
   actions.add({"navigate.panel", "Registration", "Shows the registration or the way to the plan", GLFW_KEY_H,
-               0, false, [this] { return operation_ != nullptr; },
-               [this] { return layout(Operation::now_s()) == NavigateLayout::Register; },
+               0, false, [this] { return model_ != nullptr; },
+               [this] { return layout(theatre::LiveOperation::now_s()) == NavigateLayout::Register; },
                [this] {
-                 choices_.layout = layout(Operation::now_s()) == NavigateLayout::Register
+                 choices_.layout = layout(theatre::LiveOperation::now_s()) == NavigateLayout::Register
                                        ? NavigateLayout::Guide
                                        : NavigateLayout::Register;
                }});
@@ -168,7 +166,7 @@ void NavigateView::add_registration_actions(widgets::Actions& actions) {
                false,
                has_drawn,
                {},
-               [this] { bone_registration()->take_back_stroke(); },
+               [this] { ask(operation::TakeBackStroke{}); },
                {"forget the last stroke"}});
   actions.add({"navigate.stroke_up",
                "Newer stroke",
@@ -189,12 +187,12 @@ void NavigateView::add_registration_actions(widgets::Actions& actions) {
                {},
                [select] { select(-1); }});
   actions.add(
-      {"navigate.leave_out", "Leave out", "Takes the selected stroke out of the fit, or back in", GLFW_KEY_X,
-       0, false, [this] { return neighbour_stroke(words_.strokes, choices_.stroke, 0) >= 0; },
-       [this] { return status_.bone->left_out.contains(choices_.stroke); },
+      {"navigate.exclude", "Exclude", "Takes the selected stroke out of the fit, or back in", GLFW_KEY_X, 0,
+       false, [this] { return neighbour_stroke(words_.strokes, choices_.stroke, 0) >= 0; },
+       [this] { return registration().excluded.contains(choices_.stroke); },
        [this] {
          choices_.stroke = neighbour_stroke(words_.strokes, choices_.stroke, 0);
-         bone_registration()->leave_out(choices_.stroke, !status_.bone->left_out.contains(choices_.stroke));
+         ask(operation::ExcludeStroke{choices_.stroke, !registration().excluded.contains(choices_.stroke)});
        }});
   actions.add({"navigate.touch",
                "Verify touch",
@@ -208,32 +206,28 @@ void NavigateView::add_registration_actions(widgets::Actions& actions) {
   actions.add(
       {"navigate.control_point", "Control point",
        "A mark on the bone: touched first it is kept, later it tells whether the world marker has moved",
-       GLFW_KEY_P, 0, false, has_tip, [this] { return status_.bone->touches.has_control_point(); },
+       GLFW_KEY_P, 0, false, has_tip, [this] { return registration().touches.has_control_point(); },
        [this] { take_touch(true); }});
-  actions.add({"navigate.forget_touches",
-               "Forget touches",
-               "Touches and control point were wrong, not the marker: takes an alarm away",
-               GLFW_KEY_T,
-               GLFW_MOD_SHIFT,
-               false,
-               [this] {
-                 return bone_registration() != nullptr && (!status_.bone->touches.touches_mm().empty() ||
-                                                           status_.bone->touches.has_control_point());
-               },
-               {},
-               [this] { bone_registration()->forget_touches(); },
-               {"forget the touches"}});
+  actions.add(
+      {"navigate.forget_touches",
+       "Forget touches",
+       "Touches and control point were wrong, not the marker: takes an alarm away",
+       GLFW_KEY_T,
+       GLFW_MOD_SHIFT,
+       false,
+       [this] { return registration().touches.count() > 0 || registration().touches.has_control_point(); },
+       {},
+       [this] { ask(operation::ForgetTouches{}); },
+       {"forget the touches"}});
   actions.add({"navigate.clear",
                "Clear points",
                "Forgets what the probe drew and the touches; after an alarm the registration too",
                GLFW_KEY_C,
                0,
                false,
-               [this, knows_bone] {
-                 return knows_bone() && (!status_.bone->drawn->empty() || !status_.bone->alarm.empty());
-               },
+               [this] { return registration().point_count > 0 || registration().alarm; },
                {},
-               [this] { bone_registration()->clear(); },
+               [this] { ask(operation::ClearStrokes{}); },
                {"clear the points"}});
   actions.add({"navigate.earlier",
                "Earlier",
@@ -241,9 +235,9 @@ void NavigateView::add_registration_actions(widgets::Actions& actions) {
                GLFW_KEY_LEFT,
                0,
                false,
-               [this] { return status_.bone->entry_in_force.value_or(0) > 0; },
+               [this] { return registration().entry_in_force.value_or(0) > 0; },
                {},
-               [this] { bone_registration()->step_history(-1); }});
+               [this] { ask(operation::ChooseRegistration{*registration().entry_in_force - 1}); }});
   actions.add({"navigate.later",
                "Later",
                "Goes on to the registration after",
@@ -251,11 +245,11 @@ void NavigateView::add_registration_actions(widgets::Actions& actions) {
                0,
                false,
                [this] {
-                 return status_.bone->entry_in_force &&
-                        *status_.bone->entry_in_force + 1 < status_.bone->history->size();
+                 return registration().entry_in_force &&
+                        *registration().entry_in_force + 1 < registration().history->size();
                },
                {},
-               [this] { bone_registration()->step_history(1); }});
+               [this] { ask(operation::ChooseRegistration{*registration().entry_in_force + 1}); }});
 }
 
 void NavigateView::draw_controls(const widgets::Ui& ui, const widgets::Rect& area) {

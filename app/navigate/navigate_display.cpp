@@ -8,7 +8,7 @@ namespace arthronaut::navigate {
 namespace {
 
 using guidance::GuidanceState;
-using Phase = OperationStatus::Phase;
+using Phase = theatre::LiveState::Phase;
 
 std::string reason_of_marker(const pipeline::FrameResult& result, int marker_id) {
   for (const markers::MarkerObservation& marker : result.markers)
@@ -16,26 +16,30 @@ std::string reason_of_marker(const pipeline::FrameResult& result, int marker_id)
   return "";
 }
 
-void explain(NavigateDisplay& display, const OperationStatus& status,
-             const pipeline::PipelineOptions& options) {
-  const pipeline::FrameResult& result = status.live->result;
+void tell(NavigateDisplay& display, const Trouble& trouble) {
+  display.headline = trouble.headline;
+  display.detail = trouble.advice;
+}
+
+void explain(NavigateDisplay& display, const operation::OperationState& state) {
+  const pipeline::FrameResult& result = state.frame;
+  const pipeline::PipelineOptions& options = state.source->pipeline;
+  const operation::RegistrationState& registration = *state.registration;
   if (result.is_frozen) {
     display.headline = "Picture frozen";
     display.detail = "The source sends the same picture again and again: check cable and camera";
     return;
   }
-  if (!status.bone->alarm.empty()) {
-    display.headline = "World marker may have moved";
-    display.detail = status.bone->alarm +
-                     ". Touch the control point again; if it stays off, clear the points (C) and draw anew";
-    return;
-  }
+  using operation::Standing;
+  const Standing standing = registration.in_force.standing;
+  if (standing == Standing::Alarm) return tell(display, trouble_of(registration));
   if (!result.intrinsics_are_known) {
-    const LensTrouble trouble = trouble_of(result.lens);
-    display.headline = trouble.headline.empty() ? "Lens angle unknown" : trouble.headline;
-    display.detail = trouble.advice;
+    tell(display, trouble_of(result.lens));
+    if (display.headline.empty()) display.headline = "Lens angle unknown";
     return;
   }
+  if (standing == Standing::Void || standing == Standing::InDoubt)
+    return tell(display, trouble_of(registration));
   switch (result.guidance.state) {
     case GuidanceState::Valid:
       break;
@@ -58,14 +62,12 @@ void explain(NavigateDisplay& display, const OperationStatus& status,
         break;
       }
       display.headline = "Not registered";
-      display.detail = !status.bone->bone_trouble.empty() ? status.bone->bone_trouble
-                       : status.is_registering            ? "Registering now"
+      display.detail = !registration.bone_trouble.empty() ? registration.bone_trouble
+                       : registration.is_fitting          ? "Registering now"
                                                           : "Touch the bone with the probe, then register";
       break;
     case GuidanceState::RegistrationUnreliable:
-      display.headline = "Registration not reliable";
-      if (status.bone->in_force != nullptr && !status.bone->in_force->reasons.empty())
-        display.detail = status.bone->in_force->reasons.front();
+      tell(display, trouble_of(registration));
       break;
     case GuidanceState::WorldMarkerLost:
       display.headline = "Bone marker lost";
@@ -90,77 +92,59 @@ void explain(NavigateDisplay& display, const OperationStatus& status,
 
 }  // namespace
 
-NavigateLayout layout_of(const OperationStatus* status, double since_guidance_s) {
+NavigateLayout layout_of(const theatre::LiveState& live, double since_guidance_s) {
   constexpr double kHold_s = 2;
-  if (status == nullptr || since_guidance_s < kHold_s) return NavigateLayout::Guide;
-  const bool is_registered = status->bone->in_force != nullptr && status->bone->in_force->reliable;
-  return is_registered && !status->digitises ? NavigateLayout::Guide : NavigateLayout::Register;
+  if (live.phase == Phase::NoSource || since_guidance_s < kHold_s) return NavigateLayout::Guide;
+  const bool stands = live.operation->registration->in_force.standing == operation::Standing::Stands;
+  return stands && !live.operation->draws ? NavigateLayout::Guide : NavigateLayout::Register;
 }
 
-LensTrouble trouble_of(const lens::LensObservation& lens) {
-  using lens::MarkState;
-  if (lens.zoom_or_slip)
-    return {"Zoom changed or coupler slipped",
-            "The round view has another size or place than at the calibration: set the zoom back, or "
-            "calibrate again"};
-  switch (lens.mark) {
-    case MarkState::Found:
-      return {};
-    case MarkState::NoCircle:
-      return {"Lens mark not found", "The round border is not seen: bring the whole view into the picture"};
-    case MarkState::Dark:
-      return {"Lens mark not found", "Too dark beside the border: give more light"};
-    case MarkState::Covered:
-      return {"Lens mark not found", "Something covers the mark: move the instrument from the border"};
-    case MarkState::Ambiguous:
-      return {"Lens mark not found", "Two marks look alike: turn the lens a little"};
-    case MarkState::NotSeen:
-      return {"Lens mark not found", "The border has no mark: is this the scope of the calibration?"};
-  }
-  return {};
-}
-
-NavigateDisplay display_of(const OperationStatus* status, const pipeline::PipelineOptions* options,
-                           double now_s) {
+NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   NavigateDisplay display;
-  if (status == nullptr || options == nullptr) {
+  if (live == nullptr || live->phase == Phase::NoSource) {
     display.headline = "No picture";
     display.detail = "Space starts the next step";
     return display;
   }
-  if (status->phase == Phase::Failed) {
+  if (live->phase == Phase::Failed) {
     display.headline = "Source failed";
-    display.detail = status->message;
+    display.detail = live->message;
     return display;
   }
-  if (status->live == nullptr) {
-    display.headline = status->phase == Phase::Ended ? "No picture in the source" : "Starting";
+  if (live->picture == nullptr) {
+    display.headline = live->phase == Phase::Ended ? "No picture in the source" : "Starting";
     display.detail = "Waiting for the first picture";
     return display;
   }
   display.has_picture = true;
-  if (status->phase == Phase::Ended) {
+  if (live->phase == Phase::Ended) {
     display.headline = "The source has ended";
     display.detail = "This is its last picture";
     return display;
   }
-  const double age_s = now_s - status->live->published_s;
-  if (age_s > status->live->stale_after_s) {
-    display.headline = "No new picture for " + widgets::fixed(age_s, 1) + " s";
+  display.age_s = now_s - live->captured_s;
+  if (display.age_s > live->stale_after_s) {
+    const bool is_short = display.age_s < 1;
+    display.headline = is_short ? "Picture " + widgets::fixed(1000 * display.age_s, 0) + " ms late"
+                                : "No new picture for " + widgets::fixed(display.age_s, 1) + " s";
     display.detail = "What you see is not live";
     return display;
   }
   display.is_live = true;
-  const pipeline::FrameResult& result = status->live->result;
+  const operation::OperationState& state = *live->operation;
+  const pipeline::FrameResult& result = state.frame;
+  // What is known by now counts, whatever the frame was computed with.
+  const operation::Standing standing = state.registration->in_force.standing;
+  const bool is_revoked = standing == operation::Standing::Alarm || standing == operation::Standing::Void ||
+                          standing == operation::Standing::InDoubt;
   display.overlay_is_valid =
-      result.camera_from_world.is_valid && result.intrinsics_are_known && !result.is_frozen;
-  // An alarm counts from this moment on, whatever the frame was computed with.
-  display.overlay_is_valid = display.overlay_is_valid && status->bone->alarm.empty();
-  display.guidance_is_valid = display.overlay_is_valid && result.guidance.is_valid();
+      result.camera_from_world.is_valid && result.intrinsics_are_known && !result.is_frozen && !is_revoked;
+  display.guidance_is_valid =
+      display.overlay_is_valid && result.guidance.is_valid() && standing == operation::Standing::Stands;
   if (display.guidance_is_valid)
     display.guidance = result.guidance;
   else
-    explain(display, *status, *options);
+    explain(display, state);
   return display;
 }
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "app/navigate/operation.h"
+#include "app/navigate/live_words.h"
 #include "app/widgets/controls.h"
 
 namespace arthronaut::navigate {
@@ -15,7 +15,8 @@ struct NavigateDisplay {
   bool is_live = false;           // ... and it is of now
   bool overlay_is_valid = false;  // the plan's lines belong to this picture
   bool guidance_is_valid = false;
-  std::string headline, detail;        // why not; empty while guidance is valid
+  double age_s = 0;              // of the picture, from its capture to now; with is_live or when it is late
+  std::string headline, detail;  // why not; empty while guidance is valid
   guidance::GuidanceNumbers guidance;  // meaningful when guidance_is_valid
 };
 
@@ -23,17 +24,10 @@ struct NavigateDisplay {
 enum class NavigateLayout { Register, Guide };
 // since_guidance_s: how long ago guidance was valid last; infinite when it never was. A guide that is hidden
 // for a moment does not change the screen.
-[[nodiscard]] NavigateLayout layout_of(const OperationStatus* status, double since_guidance_s);
+[[nodiscard]] NavigateLayout layout_of(const theatre::LiveState& live, double since_guidance_s);
 
-// What is wrong with the lens, and what to do about it; empty while the mark is found on its track.
-struct LensTrouble {
-  std::string headline, advice;
-};
-[[nodiscard]] LensTrouble trouble_of(const lens::LensObservation& lens);
-
-// now_s on the clock of Operation::now_s(). status may be null: no operation was started.
-[[nodiscard]] NavigateDisplay display_of(const OperationStatus* status,
-                                         const pipeline::PipelineOptions* options, double now_s);
+// now_s on the clock of theatre::LiveOperation::now_s(). live may be null: no bone was looked at yet.
+[[nodiscard]] NavigateDisplay display_of(const theatre::LiveState* live, double now_s);
 
 // The bullseye's point: the offset of the guidance's numbers, seen along the plan with their `up` direction
 // up; mm, x to the right. And how the guide leans there, in degrees the same way. Needs valid guidance.

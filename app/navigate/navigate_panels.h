@@ -3,28 +3,37 @@
 
 #include "app/navigate/navigate_display.h"
 #include "app/navigate/registration_words.h"
+#include "app/navigate/theatre_bones.h"
 #include "app/widgets/undistorted_texture.h"
 
 namespace arthronaut::navigate {
 
 // What the panels read.
 struct NavigateScreen {
-  const OperationStatus* status = nullptr;             // null: no operation
-  const pipeline::PipelineOptions* options = nullptr;  // of the operation; null with status
+  const theatre::LiveState* live = nullptr;  // null: no bone was looked at yet
   const NavigateDisplay& display;
-  const RegistrationWords& words;                 // of status->bone
+  const RegistrationWords& words;                 // of the operation's registration
   bones::BoneKind bone = bones::BoneKind::Femur;  // that is navigated
+  // In force: the one that guides. An edit that was not taken over is not here.
   std::optional<tunnels::Tunnel> plan = std::nullopt;
   double planned_length_mm = 0;
-  std::uint64_t plan_revision = 0;
   std::shared_ptr<const geometry::Surface> surface = nullptr;          // of the bone; may be null
   std::shared_ptr<const geometry::TriangleMesh> drawn_bone = nullptr;  // with surface
   float overlay_opacity = 1;                                           // 0: off
   NavigateLayout layout = NavigateLayout::Guide;
   int selected_stroke = -1;
-  bool undistorts = false;                        // shows the picture without the lens' distortion
-  std::string_view title = "", calibration = "";  // of the operation: "Simulated operation: probe"
-  std::string next_step = "";                     // "register what was touched"
+  bool undistorts = false;     // shows the picture without the lens' distortion
+  std::string next_step = "";  // "register what was touched"
+
+  // Of the newest picture; preconditions: display.has_picture.
+  [[nodiscard]] const pipeline::FrameResult& frame() const { return live->operation->frame; }
+  [[nodiscard]] const pipeline::PipelineOptions& options() const { return live->operation->source->pipeline; }
+  [[nodiscard]] const scene::PlanOverlay& lines() const;  // of the picture; empty when there are none
+  // A source runs or has run: there is something to say about it.
+  [[nodiscard]] bool has_source() const {
+    return live != nullptr && live->phase != theatre::LiveState::Phase::NoSource &&
+           live->operation->source != nullptr;
+  }
 };
 
 // The live picture on the graphics card.

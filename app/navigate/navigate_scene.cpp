@@ -7,7 +7,7 @@ namespace arthronaut::navigate {
 namespace {
 
 // Where to draw next is shown until that is settled: afterwards nothing asks for more.
-bool asks_for_strokes(NavigateLayout layout, const RegistrationStatus* bone) {
+bool asks_for_strokes(NavigateLayout layout, const operation::RegistrationState* bone) {
   return layout == NavigateLayout::Register && bone != nullptr && bone->online != nullptr &&
          bone->online->registration.has_pose && bone->online->state < registration::OnlineState::Confirmed;
 }
@@ -18,7 +18,7 @@ std::string caption_of(const NavigateScreen& screen, bool asks) {
   if (screen.display.guidance_is_valid) return bone + ": drill guide and plan";
   if (asks) return bone + ". Green: touched. Orange: draw here";
   if (screen.layout == NavigateLayout::Guide) return bone + ": plan; the guide is not known now";
-  const bool has_strokes = screen.status != nullptr && !screen.status->bone->drawn->empty();
+  const bool has_strokes = screen.live != nullptr && !screen.live->operation->registration->drawn->empty();
   return bone + (has_strokes ? ": plan, and what was touched" : ": plan; what is touched will show here");
 }
 
@@ -27,17 +27,25 @@ std::string caption_of(const NavigateScreen& screen, bool asks) {
 NavigateScene::Shown NavigateScene::shown_of(const NavigateScreen& screen) {
   Shown shown;
   shown.drawn_bone = screen.drawn_bone;
-  shown.plan_revision = screen.plan_revision;
+  if (screen.plan) {
+    const Eigen::Vector3d &entry = screen.plan->entry_mm, &direction = screen.plan->direction;
+    shown.plan = {entry.x(),
+                  entry.y(),
+                  entry.z(),
+                  direction.x(),
+                  direction.y(),
+                  direction.z(),
+                  screen.planned_length_mm};
+  }
   shown.layout = screen.layout;
   shown.selected_stroke = screen.layout == NavigateLayout::Register ? screen.selected_stroke : -1;
-  if (screen.status == nullptr) return shown;
-  shown.bone = screen.status->bone;
-  const RegistrationPtr& in_force = shown.bone->in_force;
-  const std::shared_ptr<const LiveFrame>& live = screen.status->live;
-  if (in_force != nullptr && in_force->reliable && screen.display.overlay_is_valid &&
-      live->result.tip_is_valid)
-    shown.tip = live;
-  if (screen.display.guidance_is_valid) shown.guide = live;
+  if (screen.live == nullptr) return shown;
+  shown.registration = screen.live->operation->registration;
+  if (!screen.display.overlay_is_valid) return shown;
+  const pipeline::FrameResult& frame = screen.frame();
+  const bool stands = shown.registration->in_force.standing == operation::Standing::Stands;
+  if (stands && frame.tip_is_valid) shown.tip_frame = frame.frame_index;
+  if (screen.display.guidance_is_valid) shown.guide_frame = frame.frame_index;
   return shown;
 }
 
@@ -48,19 +56,20 @@ void NavigateScene::show(const NavigateScreen& screen) {
   scene::SceneContent content;
   content.bones.push_back({screen.drawn_bone, scene::kBoneColor, 1.0});
   if (screen.plan) scene::add_planned_tunnel(content, *screen.plan, screen.planned_length_mm);
-  if (shown_.bone != nullptr) {
-    const RegistrationStatus& bone = *shown_.bone;
+  if (shown_.registration != nullptr) {
+    const operation::RegistrationState& bone = *shown_.registration;
     touched_.add_strokes(content, bone, *screen.surface, shown_.selected_stroke);
-    if (shown_.tip != nullptr)
-      content.balls.push_back({bone.in_force->marker_from_bone.inverse() * shown_.tip->result.tip_in_world_mm,
-                               2.5, scene::kGuideColor, false});
+    if (shown_.tip_frame >= 0)
+      content.balls.push_back(
+          {bone.in_force.registration->marker_from_bone.inverse() * screen.frame().tip_in_world_mm, 2.5,
+           scene::kGuideColor, false});
     if (asks_for_strokes(shown_.layout, &bone)) {
       add_patches(content, bone.online->coach);
       if (bone.online->coach.next_patch_in_bone_mm)
         content.balls.push_back({*bone.online->coach.next_patch_in_bone_mm, 5, scene::kAchievedColor, false});
     }
   }
-  if (shown_.guide != nullptr) {
+  if (shown_.guide_frame >= 0) {
     const guidance::GuidanceNumbers& g = screen.display.guidance;
     scene::add_guide(content, g.guide_point_mm, g.guide_direction, std::max(screen.planned_length_mm, 5.0));
   }
@@ -74,7 +83,7 @@ void NavigateScene::draw(const widgets::Ui& ui, const widgets::Rect& area, const
   // A guide that is not known is amiss only while it is to be followed.
   const bool is_missed = shown_.layout == NavigateLayout::Guide && !screen.display.guidance_is_valid;
   widgets::caption(ui, area, is_missed ? widgets::kCaution : widgets::kText,
-                   caption_of(screen, asks_for_strokes(shown_.layout, shown_.bone.get())));
+                   caption_of(screen, asks_for_strokes(shown_.layout, shown_.registration.get())));
 }
 
 }  // namespace arthronaut::navigate

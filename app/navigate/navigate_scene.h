@@ -2,6 +2,7 @@
 // is made anew only when something that it shows has changed.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -24,9 +25,9 @@ class NavigateScene {
   // What the picture is made of; alike: the picture is the same.
   struct Shown {
     std::shared_ptr<const geometry::TriangleMesh> drawn_bone;
-    std::uint64_t plan_revision = 0;
-    std::shared_ptr<const RegistrationStatus> bone;  // null: no operation
-    std::shared_ptr<const LiveFrame> tip, guide;     // whose tip or guide is shown; null: none
+    std::optional<std::array<double, 7>> plan;      // entry, direction and length of the one in force
+    operation::RegistrationStatePtr registration;   // null: no operation
+    std::int64_t tip_frame = -1, guide_frame = -1;  // whose tip or guide is shown; -1: none
     NavigateLayout layout = NavigateLayout::Guide;
     int selected_stroke = -1;
     bool operator==(const Shown&) const = default;

@@ -15,16 +15,14 @@ std::string guide_name_of(bones::BoneKind bone) {
   return bone == bones::BoneKind::Femur ? "femoral guide" : "tibial guide";
 }
 
-OperationSetup setup_of(const open_case::PlanModel& model, bones::BoneKind bone) {
-  OperationSetup setup;
-  setup.pipeline.bone = bone;
-  setup.pipeline.side = model.knee().side;
-  setup.pipeline.guide_name = guide_name_of(bone);
-  setup.plan = model.tunnel(bone);
-  setup.planned_length_mm = setup.plan ? model.drawn_length_mm(bone) : 0;
-  setup.surface = model.shared_surface(bone);
-  setup.drawn_bone = model.drawn_mesh(bone);
-  return setup;
+theatre::TheatreSource source_of(const open_case::PlanModel& model, bones::BoneKind bone,
+                                 sources::SourceKind kind) {
+  theatre::TheatreSource source;
+  source.setup.kind = kind;
+  source.setup.pipeline.bone = bone;
+  source.setup.pipeline.side = model.knee().side;
+  source.setup.pipeline.guide_name = guide_name_of(bone);
+  return source;
 }
 
 const landmarks::Landmarks& landmarks_of(const cases::Case& knee, bones::BoneKind bone) {
@@ -57,68 +55,86 @@ std::string missing_for_simulation(const open_case::PlanModel& model, bones::Bon
   return known.contains("native_footprint") ? "" : "the landmarks of the bone are not known";
 }
 
-OperationSetup simulated_setup(const open_case::PlanModel& model, bones::BoneKind bone,
-                               const std::filesystem::path& case_folder, SimulatedPart part) {
-  OperationSetup setup = setup_of(model, bone);
+theatre::TheatreSource simulated_setup(const open_case::PlanModel& model, bones::BoneKind bone,
+                                       const std::filesystem::path& case_folder, SimulatedPart part) {
+  theatre::TheatreSource source = source_of(model, bone, sources::SourceKind::Simulation);
+  operation::SourceSetup& setup = source.setup;
   setup.title = part == SimulatedPart::Scratch ? "Simulated operation: probe" : "Simulated operation: drill";
   setup.pipeline.calibration = open_case::camera_of(true, case_folder);
   setup.pipeline.tools = open_case::tools_of(true, case_folder);
   setup.calibration = open_case::calibration_in_words(true, case_folder);
   setup.pipeline.refractive_index = camera::kSalineIndex;
-  setup.digitises = part == SimulatedPart::Scratch;
+  setup.draws = part == SimulatedPart::Scratch;
   simulator::SimulationOptions simulation;
   simulation.knee = phantom_of(model.knee());
   simulation.camera = simulator::standard_camera();
   simulation.tools = tools::standard_tools();
   simulation.rest_count = kPlacesToTouch;
   simulation.bone = bone;
-  simulation.plan = *setup.plan;
+  simulation.plan = *model.tunnel(bone);
   simulation.refractive_index = setup.pipeline.refractive_index;
-  setup.truth = std::make_shared<std::optional<tunnels::Tunnel>>();
-  setup.open_source = [simulation, part, truth = setup.truth]() -> std::unique_ptr<sources::FrameSource> {
+  // Written where the source is opened, read when a tunnel was drilled, which is later.
+  const auto truth = std::make_shared<std::optional<tunnels::Tunnel>>();
+  source.truth = [truth] { return *truth; };
+  source.open = [simulation, part, truth]() -> std::unique_ptr<sources::FrameSource> {
     if (part == SimulatedPart::Scratch)
       return std::make_unique<simulator::SimulatedOperation>(simulation, simulator::Phase::Scratch);
-    auto operation = std::make_unique<simulator::SimulatedOperation>(simulation, simulator::Phase::Drill);
-    *truth = operation->drilled_tunnel();
-    return operation;
+    auto drilling = std::make_unique<simulator::SimulatedOperation>(simulation, simulator::Phase::Drill);
+    *truth = drilling->drilled_tunnel();
+    return drilling;
   };
-  return setup;
+  return source;
 }
 
 namespace {
 
 // With the case's own camera.json and tools.json.
-OperationSetup real_setup(const open_case::PlanModel& model, bones::BoneKind bone,
-                          const std::filesystem::path& case_folder, double refractive_index) {
+theatre::TheatreSource real_setup(const open_case::PlanModel& model, bones::BoneKind bone,
+                                  const std::filesystem::path& case_folder, double refractive_index,
+                                  sources::SourceKind kind) {
   if (!model.has_bone(bone)) throw InvalidInput("the case has no " + std::string(bones::to_text(bone)));
-  OperationSetup setup = setup_of(model, bone);
+  theatre::TheatreSource source = source_of(model, bone, kind);
+  operation::SourceSetup& setup = source.setup;
   setup.pipeline.calibration = camera::read_camera_file(cases::camera_file(case_folder)).calibration;
   setup.pipeline.tools = tools::read_tools_file(cases::tools_file(case_folder));
   setup.calibration = open_case::calibration_in_words(false, case_folder);
   setup.pipeline.refractive_index = refractive_index;
   if (setup.pipeline.tools.find_world_marker(bone) == nullptr)
     throw InvalidInput("tools.json declares no world marker for the " + std::string(bones::to_text(bone)));
-  return setup;
+  return source;
 }
 
 }  // namespace
 
-OperationSetup video_setup(const open_case::PlanModel& model, bones::BoneKind bone,
-                           const std::filesystem::path& case_folder, const std::filesystem::path& video,
-                           double refractive_index) {
-  OperationSetup setup = real_setup(model, bone, case_folder, refractive_index);
-  setup.title = video.filename().string();
-  setup.open_source = [video] { return sources::open_video(video); };
-  return setup;
+theatre::TheatreSource video_setup(const open_case::PlanModel& model, bones::BoneKind bone,
+                                   const std::filesystem::path& case_folder,
+                                   const std::filesystem::path& video, double refractive_index) {
+  theatre::TheatreSource source =
+      real_setup(model, bone, case_folder, refractive_index, sources::SourceKind::Recording);
+  source.setup.title = video.filename().string();
+  source.open = [video] { return sources::open_video(video); };
+  return source;
 }
 
-OperationSetup camera_setup(const open_case::PlanModel& model, bones::BoneKind bone,
-                            const std::filesystem::path& case_folder, const sources::ConnectedCamera& camera,
-                            const sources::DeviceTurns& turns, double refractive_index) {
-  OperationSetup setup = real_setup(model, bone, case_folder, refractive_index);
-  setup.title = camera.name;
-  setup.open_source = [turns, index = camera.index] { return turns.open(index); };
-  return setup;
+theatre::TheatreSource camera_setup(const open_case::PlanModel& model, bones::BoneKind bone,
+                                    const std::filesystem::path& case_folder,
+                                    const sources::ConnectedCamera& camera, const sources::DeviceTurns& turns,
+                                    double refractive_index) {
+  theatre::TheatreSource source =
+      real_setup(model, bone, case_folder, refractive_index, sources::SourceKind::Live);
+  source.setup.title = camera.name;
+  source.open = [turns, index = camera.index] { return turns.open(index); };
+  return source;
+}
+
+bool has_real_scope(const std::filesystem::path& case_folder) {
+  const auto file = cases::camera_file(case_folder);
+  if (case_folder.empty() || !std::filesystem::exists(file)) return false;
+  try {
+    return camera::read_camera_file(file).scope_name != open_case::kSimulatedScope;
+  } catch (const std::runtime_error&) {  // one that cannot be read is nobody's; opening it says what is wrong
+    return true;
+  }
 }
 
 }  // namespace arthronaut::navigate

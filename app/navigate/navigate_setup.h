@@ -1,13 +1,13 @@
-// From a case to an operation: which camera, which tools, which source.
+// From a case to a source of an operation: which camera, which tools, which pictures.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
 #include "app/case/plan_model.h"
-#include "app/navigate/operation.h"
 #include "navigation/sources/connected_cameras.h"
 #include "navigation/sources/device_turns.h"
+#include "navigation/theatre/operation_run.h"
 
 namespace arthronaut::navigate {
 
@@ -18,19 +18,23 @@ enum class SimulatedPart { Scratch, Drill };
 // Precondition: missing_for_simulation() is empty. The standard scope and the standard tools in saline,
 // tracked with what Set up has adopted of them for this case. Throws IoError or InvalidInput when that is
 // broken.
-[[nodiscard]] OperationSetup simulated_setup(const open_case::PlanModel& model, bones::BoneKind bone,
-                                             const std::filesystem::path& case_folder, SimulatedPart part);
+[[nodiscard]] theatre::TheatreSource simulated_setup(const open_case::PlanModel& model, bones::BoneKind bone,
+                                                     const std::filesystem::path& case_folder,
+                                                     SimulatedPart part);
 
 // A recorded video with the case's camera.json and tools.json. Throws IoError or InvalidInput when those are
 // missing or broken: the message says which.
-[[nodiscard]] OperationSetup video_setup(const open_case::PlanModel& model, bones::BoneKind bone,
-                                         const std::filesystem::path& case_folder,
-                                         const std::filesystem::path& video, double refractive_index);
+[[nodiscard]] theatre::TheatreSource video_setup(const open_case::PlanModel& model, bones::BoneKind bone,
+                                                 const std::filesystem::path& case_folder,
+                                                 const std::filesystem::path& video, double refractive_index);
 
 // The same with a camera that is connected, /dev/videoN. It is opened on the worker, in its turn.
-[[nodiscard]] OperationSetup camera_setup(const open_case::PlanModel& model, bones::BoneKind bone,
-                                          const std::filesystem::path& case_folder,
-                                          const sources::ConnectedCamera& camera,
-                                          const sources::DeviceTurns& turns, double refractive_index);
+[[nodiscard]] theatre::TheatreSource camera_setup(const open_case::PlanModel& model, bones::BoneKind bone,
+                                                  const std::filesystem::path& case_folder,
+                                                  const sources::ConnectedCamera& camera,
+                                                  const sources::DeviceTurns& turns, double refractive_index);
+
+// Whether the case is of a real arthroscope: it has a calibration that is not the simulated one's.
+[[nodiscard]] bool has_real_scope(const std::filesystem::path& case_folder);
 
 }  // namespace arthronaut::navigate

@@ -15,18 +15,16 @@ namespace arthronaut::navigate {
 
 namespace {
 
-using Phase = OperationStatus::Phase;
+using operation::NextAction;
+using Phase = theatre::LiveState::Phase;
 
 constexpr double kGuideAway_s = 2;
-constexpr std::size_t kEnoughPoints = 150;
-constexpr const char* kDrill = "drill";
-constexpr const char* kVerifyOrDrill = "verify by touches, or drill";
 
 }  // namespace
 
 NavigateView::NavigateView(std::function<void()> make_current, std::function<void()> wake,
                            const sources::DeviceTurns& turns)
-    : wake_(std::move(wake)), turns_(turns), scene_(std::move(make_current)) {}
+    : turns_(turns), scene_(std::move(make_current)), bones_(std::move(wake)) {}
 NavigateView::~NavigateView() = default;
 
 mode::ModeTitle NavigateView::title() const {
@@ -34,13 +32,16 @@ mode::ModeTitle NavigateView::title() const {
 }
 
 std::optional<sources::SourceKind> NavigateView::source_kind() const {
-  return operation_ != nullptr ? std::optional(kind_) : std::nullopt;
+  const bool has_one = live_->phase != Phase::NoSource && live_->operation->source != nullptr;
+  return has_one ? std::optional(live_->operation->source->kind) : std::nullopt;
 }
 
 void NavigateView::case_opened(const mode::OpenCase& opened) {
-  end_operation();
-  // A bone that is just being made ready would be waited for.
-  ending_.end(std::exchange(bones_, {}));
+  bones_.open(opened.model, opened.folder);
+  live_ = TheatreBones::nothing();
+  words_ = {};
+  part_.reset();
+  kind_.reset();
   choices_ = {};
   notice_.clear();
   model_ = opened.model;
@@ -51,68 +52,26 @@ void NavigateView::case_opened(const mode::OpenCase& opened) {
 
 void NavigateView::enter() { choices_.videos = sources::videos_in(case_folder_); }
 
-void NavigateView::end_operation() {
-  part_.reset();
+void NavigateView::end_source() {
   choices_.guidance_seen_s = -1e9;
-  if (operation_ == nullptr) return;
-  operation_->request_stop();
-  ending_.end(std::move(operation_));
-  const auto bone = status_.bone;
-  status_ = {};
-  status_.bone = bone;
+  if (theatre::LiveOperation* const operation = bones_.known(choices_.bone)) operation->end_source();
 }
 
-void NavigateView::start(OperationSetup setup) {
-  end_operation();
+void NavigateView::start(theatre::TheatreSource source) {
   notice_.clear();
   choices_.layout.reset();
   choices_.cameras.clear();
-  BoneState& bone = bones_[choices_.bone];
-  if (bone.registration != nullptr) {
-    const std::shared_ptr<const RegistrationStatus> known = bone.registration->status();
-    if (known->in_force != nullptr && known->in_force->reliable) setup.digitises = false;
-    // Made anew while nothing hangs on it: the plan, its target, may have changed.
-    if (known->drawn->empty() && known->history->empty()) bone.registration.reset();
-    if (!known->bone_trouble.empty()) bone = {};  // tried again
-  }
-  prepare_bone();
-  setup.registration = bone.registration;
-  operation_ = std::make_unique<Operation>(std::move(setup), wake_);
-  read_status();
-  choices_.overlay_shown_at_s = Operation::now_s();
+  choices_.guidance_seen_s = -1e9;
+  kind_ = source.setup.kind;
+  part_.reset();
+  bones_.operation(choices_.bone).start(std::move(source));
+  read_live();
+  choices_.overlay_shown_at_s = theatre::LiveOperation::now_s();
   look_along_plan();
 }
 
-void NavigateView::prepare_bone() {
-  BoneState& bone = bones_[choices_.bone];
-  if (!bone.prepared.valid()) {
-    const geometry::TriangleMesh& mesh = model_->knee().bones.at(choices_.bone).mesh;
-    const auto cache = case_folder_.empty() ? std::filesystem::path()
-                                            : cases::surface_index_file(case_folder_, choices_.bone);
-    bone.prepared = std::async(std::launch::async, [mesh, cache]() -> SurfaceIndexPtr {
-                      return cache.empty() ? std::make_shared<registration::SurfaceIndex>(mesh)
-                                           : std::make_shared<registration::SurfaceIndex>(mesh, cache);
-                    }).share();
-  }
-  if (bone.registration != nullptr) return;
-  std::optional<registration::CartilageRegion> covered;
-  try {
-    if (!case_folder_.empty())
-      if (const auto cartilage = cases::load_cartilage(case_folder_, choices_.bone))
-        covered.emplace().points_mm = cartilage->vertices_mm;
-  } catch (const std::runtime_error&) {  // without what it declares the bone would be registered wrongly
-    std::promise<SurfaceIndexPtr> broken;
-    broken.set_exception(std::current_exception());
-    bone.prepared = broken.get_future().share();
-  }
-  bone.registration =
-      std::make_shared<BoneRegistration>(bone.prepared, model_->tunnel(choices_.bone),
-                                         model_->shared_surface(choices_.bone), std::move(covered));
-}
-
-BoneRegistration* NavigateView::bone_registration() const {
-  const auto found = bones_.find(choices_.bone);
-  return found == bones_.end() ? nullptr : found->second.registration.get();
+void NavigateView::ask(operation::Command command) {
+  bones_.operation(choices_.bone).apply(std::move(command));
 }
 
 void NavigateView::look_along_plan() {
@@ -178,57 +137,88 @@ void NavigateView::choose_camera() {
   choices_.cameras = std::move(cameras);
 }
 
-bool NavigateView::is_running() const { return operation_ != nullptr && status_.phase == Phase::Running; }
+bool NavigateView::is_running() const { return live_->phase == Phase::Running; }
 
 bool NavigateView::can_simulate() const {
   return model_ != nullptr && missing_for_simulation(*model_, choices_.bone).empty();
 }
 
+void NavigateView::start_same_kind() {
+  if (!kind_) {
+    // Nothing was chosen yet. The built-in knee has nothing but its simulation; a real case never starts one.
+    if (can_simulate() && !has_real_scope(case_folder_)) return start_simulation(SimulatedPart::Scratch);
+    if (!choices_.videos.empty()) return start_video();
+    return choose_camera();
+  }
+  switch (*kind_) {
+    case sources::SourceKind::Live:
+      return choose_camera();
+    case sources::SourceKind::Recording:
+      return start_video();
+    case sources::SourceKind::Simulation:
+      return start_simulation(registration().in_force.standing == operation::Standing::Stands
+                                  ? SimulatedPart::Drill
+                                  : SimulatedPart::Scratch);
+  }
+}
+
 std::string NavigateView::next_step() const {
   if (model_ == nullptr) return "open a case";
   if (!choices_.cameras.empty()) return "open " + choices_.cameras[choices_.camera].name;
-  if (!model_->tunnel(choices_.bone)) return "plan the tunnel (F1)";
-  if (!status_.bone->alarm.empty()) return "check the world marker";
-  const bool registered = status_.bone->in_force != nullptr && status_.bone->in_force->reliable;
-  if (operation_ == nullptr || status_.phase == Phase::Failed)
-    return can_simulate() ? "start the simulated operation" : "open the next video";
-  if (status_.is_registering) return "wait for the registration";
-  // While the probe draws the registration runs along by itself.
-  const bool draws = is_running() && status_.digitises;
-  if (!registered && !draws && status_.bone->drawn->size() >= kEnoughPoints)
-    return "register what was touched";
-  if (registered && (part_ == SimulatedPart::Scratch || !is_running()) && can_simulate())
-    return is_running() && !is_verified(*status_.bone) ? kVerifyOrDrill : kDrill;
-  if (!is_running() && !choices_.videos.empty()) return "open the next video";
-  if (registered) return status_.digitises ? "verify by touches, or take the guide" : "follow the bullseye";
-  return "touch the bone with the probe";
+  const NextAction action = live_->operation->next_action;
+  if (!model_->tunnel(choices_.bone)) return words_of(NextAction::PlanTunnel);
+  if (live_->phase == Phase::Starting) return "wait for the first picture";
+  const bool starts = action == NextAction::StartSource || action == NextAction::PlanTunnel;
+  if (!starts) return words_of(action);
+  const bool simulates =
+      kind_ ? *kind_ == sources::SourceKind::Simulation : can_simulate() && !has_real_scope(case_folder_);
+  const bool stands = registration().in_force.standing == operation::Standing::Stands;
+  if (simulates) return stands ? "drill (simulation)" : "start the simulated operation";
+  return kind_ == sources::SourceKind::Live ? "open the camera again" : "open the next video";
 }
 
+// One pedal: carries out what is a command, and starts nothing but the kind of source that was chosen.
 void NavigateView::take_next_step() {
   if (!choices_.cameras.empty())
     return start_camera(sources::ConnectedCamera(choices_.cameras[choices_.camera]));
-  const std::string step = next_step();
-  if (step == "start the simulated operation") return start_simulation(SimulatedPart::Scratch);
-  if (step == "register what was touched") return operation_->register_curves();
-  if (step == kDrill || step == kVerifyOrDrill) return start_simulation(SimulatedPart::Drill);
-  if (step == "open the next video") return start_video();
-  if (step == "touch the bone with the probe" && status_.phase == Phase::Ended && can_simulate())
-    return start_simulation(SimulatedPart::Scratch);
+  if (live_->phase == Phase::Starting || !model_->tunnel(choices_.bone)) return;
+  switch (live_->operation->next_action) {
+    case NextAction::StartSource:
+    case NextAction::PlanTunnel:  // of an operation that was not told yet of the plan that is there
+      return start_same_kind();
+    case NextAction::Draw:
+    case NextAction::RegisterAnew:
+      return ask(operation::Draw{true});
+    case NextAction::RegisterStrokes:
+      return ask(operation::RegisterStrokes{});
+    case NextAction::TakePlanOver:
+      return ask(operation::TakePlanOver{});
+    case NextAction::ConfirmByTouch:
+    case NextAction::VerifyByTouch:
+      return take_touch(false);
+    case NextAction::CheckWorldMarker:
+    case NextAction::SetControlPoint:
+    case NextAction::CheckControlPoint:
+      return take_touch(true);
+    case NextAction::RecordDrilled:
+      return ask(operation::TunnelDrilled{});
+    case NextAction::ShowWorldMarker:
+    case NextAction::GoOnDrawing:
+    case NextAction::WaitForRegistration:
+    case NextAction::BringGuide:
+    case NextAction::FollowBullseye:
+    case NextAction::Finish:
+      return;  // what is to be done is not done by a pedal
+  }
 }
 
 // The probe stops drawing with a touch; the screen stays, so that the distance is read in large.
 void NavigateView::take_touch(bool is_control_point) {
-  choices_.layout = layout(Operation::now_s());
-  operation_->take_touch(is_control_point);
-}
-
-void NavigateView::toggle_recording() {
-  if (!status_.recording.empty()) return operation_->stop_recording();
-  try {
-    operation_->start_recording(cases::create_session_folder(case_folder_));
-  } catch (const IoError& error) {
-    notice_ = error.what();
-  }
+  choices_.layout = layout(theatre::LiveOperation::now_s());
+  if (is_control_point)
+    ask(operation::TouchControlPoint{});
+  else
+    ask(operation::TakeTouch{});
 }
 
 float NavigateView::overlay_opacity(double now_s) const {
@@ -237,37 +227,42 @@ float NavigateView::overlay_opacity(double now_s) const {
 }
 
 void NavigateView::cycle_overlay() {
-  const double now = Operation::now_s();
+  const double now = theatre::LiveOperation::now_s();
   const bool is_full = choices_.overlay_on && overlay_opacity(now) > 0.99F;
   choices_.overlay_on = !is_full;
   choices_.overlay_shown_at_s = now;
 }
 
-bool NavigateView::is_busy() const { return operation_ != nullptr && operation_->is_busy(); }
+bool NavigateView::is_busy() const {
+  return live_->phase == Phase::Running || live_->phase == Phase::Starting || registration().is_fitting;
+}
 
-void NavigateView::read_status() {
-  const std::shared_ptr<const RegistrationStatus> seen = status_.bone;
-  if (operation_ != nullptr) status_ = operation_->status();
-  BoneRegistration* const bone = bone_registration();
-  status_.bone = bone != nullptr ? bone->status() : std::make_shared<RegistrationStatus>();
-  if (status_.bone == seen) return;
-  words_ = words_of(*status_.bone);
-  if (status_.bone->change_count != seen->change_count) choices_.overlay_shown_at_s = Operation::now_s();
+void NavigateView::read_live() {
+  const theatre::LiveStatePtr seen = live_;
+  if (const theatre::LiveOperation* const operation = bones_.known(choices_.bone)) {
+    live_ = operation->latest();
+    if (const std::string failure = operation->failure(); !failure.empty()) notice_ = failure;
+  } else {
+    live_ = TheatreBones::nothing();
+  }
+  if (live_->operation->registration == seen->operation->registration) return;
+  words_ = words_of(registration());
+  if (registration().change_count != seen->operation->registration->change_count)
+    choices_.overlay_shown_at_s = theatre::LiveOperation::now_s();
 }
 
 NavigateLayout NavigateView::layout(double now_s) const {
-  if (operation_ == nullptr) return NavigateLayout::Guide;
-  return choices_.layout.value_or(layout_of(&status_, now_s - choices_.guidance_seen_s));
+  return choices_.layout.value_or(layout_of(*live_, now_s - choices_.guidance_seen_s));
 }
 
 NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double now_s) const {
-  const OperationStatus* status = operation_ != nullptr ? &status_ : nullptr;
-  NavigateScreen screen{status, operation_ != nullptr ? &operation_->options() : nullptr, display, words_,
-                        choices_.bone};
+  NavigateScreen screen{live_.get(), display, words_, choices_.bone};
   if (model_ != nullptr && model_->has_bone(choices_.bone)) {
-    screen.plan = model_->tunnel(choices_.bone);
-    screen.planned_length_mm = screen.plan ? model_->drawn_length_mm(choices_.bone) : 0;
-    screen.plan_revision = model_->revision();
+    // The one that guides: an edit that was not taken over is drawn in Plan alone.
+    if (const auto& plan = live_->operation->plan) {
+      screen.plan = plan->tunnel;
+      screen.planned_length_mm = plan->length_mm;
+    }
     screen.surface = model_->shared_surface(choices_.bone);
     screen.drawn_bone = model_->drawn_mesh(choices_.bone);
   }
@@ -275,22 +270,22 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
   screen.layout = layout(now_s);
   screen.selected_stroke = choices_.stroke;
   screen.undistorts = choices_.undistorts;
-  if (operation_ != nullptr) {
-    screen.title = operation_->title();
-    screen.calibration = operation_->calibration();
-  }
   screen.next_step = next_step();
   return screen;
 }
 
+void NavigateView::tick(double /*now_s*/) {
+  if (model_ != nullptr) bones_.offer_plans();
+  read_live();
+}
+
 void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   // The bone is made ready for registration as soon as this mode is looked at.
-  if (model_ != nullptr && model_->has_bone(choices_.bone)) prepare_bone();
-  read_status();
-  const double now = Operation::now_s();
-  NavigateDisplay display = operation_ != nullptr ? display_of(&status_, &operation_->options(), now)
-                                                  : display_of(nullptr, nullptr, now);
-  if (operation_ == nullptr && !notice_.empty()) display.detail = notice_;
+  if (model_ != nullptr && model_->has_bone(choices_.bone)) (void)bones_.operation(choices_.bone);
+  read_live();
+  const double now = theatre::LiveOperation::now_s();
+  NavigateDisplay display = display_of(live_.get(), now);
+  if (live_->phase == Phase::NoSource && !notice_.empty()) display.detail = notice_;
   if (display.guidance_is_valid) {
     // A guide that comes into view gets the screen, whatever was looked at before.
     if (now - choices_.guidance_seen_s > kGuideAway_s) choices_.layout.reset();
@@ -321,22 +316,28 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
 }
 
 void NavigateView::note_states(const widgets::Ui& ui, const NavigateScreen& screen) const {
-  const RegistrationPtr& in_force = status_.bone->in_force;
+  const operation::Standing standing = registration().in_force.standing;
   ui.log.note_state("guidance", screen.display.guidance_is_valid ? "valid" : screen.display.headline);
+  ui.log.note_state("detail", screen.display.detail);
   ui.log.note_state("overlay", screen.overlay_opacity > 0.99F ? "full"
                                : screen.overlay_opacity > 0   ? "faded"
                                                               : "off");
   ui.log.note_state("view", choices_.undistorts ? "undistorted" : "as it came");
   ui.log.note_state("next", screen.next_step);
-  ui.log.note_state("calibration", screen.calibration);
+  ui.log.note_state("calibration", screen.has_source() ? screen.live->operation->source->calibration : "");
   ui.log.note_state("notice", notice_);
   ui.log.note_state("layout", screen.layout == NavigateLayout::Register ? "register" : "guide");
-  ui.log.note_state("registration", in_force == nullptr  ? "none"
-                                    : in_force->reliable ? "reliable"
-                                                         : "unreliable");
-  ui.log.note_state("registrations", std::to_string(status_.bone->history->size()));
+  ui.log.note_state("registration", standing == operation::Standing::None     ? "none"
+                                    : standing == operation::Standing::Stands ? "reliable"
+                                                                              : "unreliable");
+  ui.log.note_state("standing", to_text(standing));
+  ui.log.note_state("step", to_text(live_->operation->step));
+  ui.log.note_state("plan", live_->operation->plan_was_edited ? "edited" : "in force");
+  ui.log.note_state("registrations", std::to_string(registration().history->size()));
   ui.log.note_state("strokes", std::to_string(words_.strokes.size()));
-  ui.log.note_state("recording", status_.recording.empty() ? "off" : "on");
+  ui.log.note_state("recording", live_->keeps_video ? "on" : "off");
+  ui.log.note_state("journal", live_->record_trouble.empty() ? live_->session_folder.filename().string()
+                                                             : live_->record_trouble);
   ui.log.note_state("picture", !screen.display.has_picture ? "none"
                                : screen.display.is_live    ? "live"
                                                            : "old");

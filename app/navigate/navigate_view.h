@@ -4,8 +4,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <future>
-#include <map>
 #include <memory>
 
 #include "app/case/plan_model.h"
@@ -13,8 +11,7 @@
 #include "app/navigate/navigate_panels.h"
 #include "app/navigate/navigate_scene.h"
 #include "app/navigate/navigate_setup.h"
-#include "app/navigate/operation.h"
-#include "navigation/sources/background_end.h"
+#include "app/navigate/theatre_bones.h"
 
 namespace arthronaut::navigate {
 
@@ -32,6 +29,7 @@ class NavigateView : public mode::Mode {
   void case_opened(const mode::OpenCase& opened) override;
   void enter() override;  // sees anew which videos the case has
   void add_actions(widgets::Actions& actions) override;
+  void tick(double now_s) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
   [[nodiscard]] bool is_busy() const override;
   [[nodiscard]] bool has_running_work() const override { return is_running(); }
@@ -39,26 +37,28 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] std::string notice() const override { return notice_; }
 
  private:
-  void start(OperationSetup setup);
+  void start(theatre::TheatreSource source);
   void start_simulation(SimulatedPart part);
   void start_video();
   void start_camera(const sources::ConnectedCamera& camera);
   // One camera is opened at once, several are offered, none is told.
   void choose_camera();
-  // Ends what runs: at once on the screen, in a thread of its own behind it.
-  void end_operation();
+  // The same kind of source again: nothing but a key of its own ever changes the kind.
+  void start_same_kind();
+  void end_source();
   void take_next_step();
+  void ask(operation::Command command);
   void take_touch(bool is_control_point);
-  void toggle_recording();
   void add_registration_actions(widgets::Actions& actions);
   void cycle_overlay();
-  void prepare_bone();
   void look_along_plan();
   [[nodiscard]] std::string next_step() const;
   [[nodiscard]] bool can_simulate() const;
   [[nodiscard]] bool is_running() const;
-  [[nodiscard]] BoneRegistration* bone_registration() const;  // null before this mode was looked at
-  void read_status();
+  [[nodiscard]] const operation::RegistrationState& registration() const {
+    return *live_->operation->registration;
+  }
+  void read_live();
   [[nodiscard]] NavigateLayout layout(double now_s) const;
   [[nodiscard]] NavigateScreen screen_of(const NavigateDisplay& display, double now_s) const;
   void note_states(const widgets::Ui& ui, const NavigateScreen& screen) const;
@@ -66,10 +66,6 @@ class NavigateView : public mode::Mode {
   void draw_controls(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_cameras(const widgets::Ui& ui, const widgets::Rect& area) const;
 
-  struct BoneState {  // what stays when one source ends and another starts
-    std::shared_future<SurfaceIndexPtr> prepared;
-    std::shared_ptr<BoneRegistration> registration;
-  };
   struct Choices {
     bones::BoneKind bone = bones::BoneKind::Femur;
     bool saline = true;
@@ -87,18 +83,15 @@ class NavigateView : public mode::Mode {
 
   const open_case::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
-  std::function<void()> wake_;
   sources::DeviceTurns turns_;
   NavigateScene scene_;
   VideoTextures video_;
-  std::map<bones::BoneKind, BoneState> bones_;
+  TheatreBones bones_;
   Choices choices_;
-  std::unique_ptr<Operation> operation_;
-  sources::BackgroundEnd ending_;      // operations before, and bones of another case
-  OperationStatus status_;             // of this frame
-  RegistrationWords words_;            // of status_.bone
-  std::optional<SimulatedPart> part_;  // of the running simulation
-  sources::SourceKind kind_ = sources::SourceKind::Simulation;  // of the source started last
+  theatre::LiveStatePtr live_ = TheatreBones::nothing();  // of this frame, of the chosen bone; never null
+  RegistrationWords words_;                               // of its registration
+  std::optional<SimulatedPart> part_;                     // of the simulation that was started last
+  std::optional<sources::SourceKind> kind_;  // of the source that was started last; empty: none yet
   std::string notice_;
 };
 

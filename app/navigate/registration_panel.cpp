@@ -27,9 +27,10 @@ void draw_state(const widgets::Ui& ui, const RegistrationWords& words) {
   widgets::draw_sign(*ImGui::GetWindowDrawList(), {at.x + radius, at.y + ui.theme.title->FontSize / 2},
                      radius, state.severity);
   ImGui::Indent(3 * radius);
-  widgets::text_in(ui.theme.title,
-                   state.severity == widgets::Severity::Quiet ? widgets::kText : widgets::color_of(state.severity),
-                   state.name);
+  widgets::text_in(
+      ui.theme.title,
+      state.severity == widgets::Severity::Quiet ? widgets::kText : widgets::color_of(state.severity),
+      state.name);
   ImGui::Unindent(3 * radius);
   draw_bar(ui, words.progress, state.severity);
   widgets::text_in(ui.theme.strong, widgets::kText, state.text);
@@ -71,8 +72,8 @@ void draw_rows(const widgets::Ui& ui, const std::vector<Row>& rows, std::size_t 
   }
 }
 
-void draw_lists(const widgets::Ui& ui, const RegistrationStatus& status, const RegistrationWords& words,
-                int selected_stroke) {
+void draw_lists(const widgets::Ui& ui, const operation::RegistrationState& status,
+                const RegistrationWords& words, int selected_stroke) {
   const std::vector<StrokeRow>& strokes = words.strokes;
   if (!strokes.empty()) {
     const std::string count = strokes.size() > kShownStrokes ? ", " + std::to_string(kShownStrokes) + " of " +
@@ -81,7 +82,9 @@ void draw_lists(const widgets::Ui& ui, const RegistrationStatus& status, const R
     widgets::text_in(ui.theme.strong, widgets::kAccent, "Strokes" + count + " (Up, Down)");
     draw_rows(
         ui, strokes, kShownStrokes, [&](std::size_t i) { return strokes[i].curve == selected_stroke; },
-        [&](const StrokeRow& row) { widgets::status_row(ui, row.text.severity, row.text.name, row.text.text); });
+        [&](const StrokeRow& row) {
+          widgets::status_row(ui, row.text.severity, row.text.name, row.text.text);
+        });
   }
   const std::vector<SeverityText>& history = words.history;
   if (history.empty()) return;
@@ -97,7 +100,7 @@ void draw_lists(const widgets::Ui& ui, const RegistrationStatus& status, const R
 }  // namespace
 
 void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen) {
-  constexpr std::array<std::array<const char*, 2>, 4> kButtons{{{"navigate.take_back", "navigate.leave_out"},
+  constexpr std::array<std::array<const char*, 2>, 4> kButtons{{{"navigate.take_back", "navigate.exclude"},
                                                                 {"navigate.touch", "navigate.control_point"},
                                                                 {"navigate.forget_touches", "navigate.clear"},
                                                                 {"navigate.earlier", "navigate.later"}}};
@@ -107,8 +110,8 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
   widgets::begin_panel(ui, "navigate.registration", rest);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui.theme.px(8), ui.theme.px(7)});
   draw_state(ui, screen.words);
-  draw_touch(ui, screen.words.touch, screen.status->touch_notice);
-  draw_lists(ui, *screen.status->bone, screen.words, screen.selected_stroke);
+  draw_touch(ui, screen.words.touch, touch_notice(*screen.live->operation));
+  draw_lists(ui, *screen.live->operation->registration, screen.words, screen.selected_stroke);
   ImGui::PopStyleVar();
   widgets::end_panel();
   const float width = (buttons.width - gap) / 2;

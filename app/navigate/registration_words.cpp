@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/navigate/live_words.h"
+
 namespace arthronaut::navigate {
 
 namespace {
@@ -15,9 +17,10 @@ constexpr double kShownLength_mm = 2;
 // As confidence.cpp counts them: below the first two poses are taken for alike; the second is its "no rival".
 constexpr double kRivalRatio = 1.15, kNoRivalRatio = 10;
 
-const registration::RegistrationSummary* pose_of(const RegistrationStatus& status) {
-  if (status.online != nullptr && status.online->registration.has_pose) return &status.online->registration;
-  return status.in_force != nullptr && status.in_force->has_pose ? status.in_force.get() : nullptr;
+const registration::RegistrationSummary* pose_of(const operation::RegistrationState& state) {
+  if (state.online != nullptr && state.online->registration.has_pose) return &state.online->registration;
+  const operation::RegistrationPtr& in_force = state.in_force.registration;
+  return in_force != nullptr && in_force->has_pose ? in_force.get() : nullptr;
 }
 
 // Nobody should read a nought where something was measured.
@@ -27,61 +30,59 @@ std::string tenths_of_mm(double value) {
 
 }  // namespace
 
-SeverityText state_of(const RegistrationStatus& status) {
-  if (!status.alarm.empty())
-    return {
-        Severity::Bad, "World marker may have moved",
-        status.alarm + ". Touch the control point again; if it stays off, clear the points and draw anew."};
-  if (!status.bone_trouble.empty())
-    return {Severity::Bad, "The bone can't be registered", status.bone_trouble};
-  if (status.online == nullptr)
+SeverityText state_of(const operation::RegistrationState& state) {
+  if (!state.bone_trouble.empty()) return {Severity::Bad, "The bone can't be registered", state.bone_trouble};
+  const operation::Standing standing = state.in_force.standing;
+  if (standing == operation::Standing::Void || standing == operation::Standing::Alarm ||
+      standing == operation::Standing::InDoubt) {
+    const Trouble trouble = trouble_of(state);
+    return {Severity::Bad, trouble.headline, trouble.advice + "."};
+  }
+  if (is_verified(state)) return {Severity::Good, "Verified", "The touches lie on the bone."};
+  if (state.online == nullptr)
     return {Severity::Quiet, "Collecting",
-            status.drawn->empty() ? "Draw strokes on the bone with the probe."
-                                  : "The bone is being made ready; go on drawing."};
-  const std::string& advice = status.online->coach.message;
-  switch (status.online->state) {
+            state.drawn->empty() ? "Draw strokes on the bone with the probe."
+                                 : "The bone is being made ready; go on drawing."};
+  const std::string& advice = state.online->coach.message;
+  switch (state.online->state) {
     case OnlineState::Collecting:
       return {Severity::Quiet, "Collecting", advice};
     case OnlineState::Candidate:
       return {Severity::Caution, "Candidate, not confirmed yet", advice};
     case OnlineState::Confirmed:
       return {Severity::Good, "Confirmed", "Touch three places that you know, to verify."};
-    case OnlineState::Verified:
-      return {Severity::Good, "Verified", "The touches lie on the bone."};
   }
   return {};
 }
 
-double progress_of(const RegistrationStatus& status) {
-  if (!status.alarm.empty() || status.online == nullptr) return 0;
-  return std::clamp(status.online->coach.progress, 0.0, 1.0);
+double progress_of(const operation::RegistrationState& state) {
+  if (state.alarm || state.online == nullptr) return 0;
+  return std::clamp(state.online->coach.progress, 0.0, 1.0);
 }
 
-std::string missing_of(const RegistrationStatus& status) {
-  if (status.online == nullptr || status.online->state >= OnlineState::Confirmed) return "";
+std::string missing_of(const operation::RegistrationState& state) {
+  if (state.online == nullptr || state.online->state >= OnlineState::Confirmed) return "";
   std::string text;
-  for (const std::string& item : status.online->coach.missing)
+  for (const std::string& item : state.online->coach.missing)
     text += (text.empty() ? "Missing: " : "; ") + item;
   return text;
 }
 
-std::string assumed_of(const RegistrationStatus& status) {
-  const registration::RegistrationSummary* pose = pose_of(status);
+std::string assumed_of(const operation::RegistrationState& state) {
+  const registration::RegistrationSummary* pose = pose_of(state);
   std::string text;
   if (pose == nullptr) return text;
   for (const std::string& item : pose->assumptions) text += (text.empty() ? "Assumed: " : "; ") + item;
   return text;
 }
 
-bool is_verified(const RegistrationStatus& status) {
-  return status.entry_in_force && (*status.history)[*status.entry_in_force].state == OnlineState::Verified;
-}
+bool is_verified(const operation::RegistrationState& state) { return state.in_force.is_verified; }
 
-std::vector<SeverityText> numbers_of(const RegistrationStatus& status) {
-  const registration::RegistrationSummary* pose = pose_of(status);
-  if (pose == nullptr || !status.alarm.empty()) return {};  // an alarm belies them
+std::vector<SeverityText> numbers_of(const operation::RegistrationState& state) {
+  const registration::RegistrationSummary* pose = pose_of(state);
+  if (pose == nullptr || state.alarm) return {};  // an alarm belies them
   const double error_mm = pose->predicted_tre_mm;
-  const bool runs_along = status.online != nullptr && pose == &status.online->registration;
+  const bool runs_along = state.online != nullptr && pose == &state.online->registration;
   std::vector<SeverityText> rows;
   rows.push_back(
       {error_mm < 1     ? Severity::Good
@@ -89,7 +90,7 @@ std::vector<SeverityText> numbers_of(const RegistrationStatus& status) {
                         : Severity::Bad,
        "At the tunnel",
        widgets::plus_minus(error_mm) + " mm" +
-           (runs_along ? ", " + widgets::plus_minus(status.online->predicted_angle_deg) + "\u00B0" : "")});
+           (runs_along ? ", " + widgets::plus_minus(state.online->predicted_angle_deg) + "\u00B0" : "")});
   const double ratio = pose->runner_up_ratio;
   if (ratio >= kNoRivalRatio)
     rows.push_back({Severity::Good, "Next best pose", "none comes near"});
@@ -103,10 +104,10 @@ std::vector<SeverityText> numbers_of(const RegistrationStatus& status) {
   return rows;
 }
 
-std::optional<TouchText> touch_of(const RegistrationStatus& status) {
-  using Kind = TouchCheck::Last::Kind;
-  const TouchCheck::Last last = status.touches.last();
-  const registration::OnlineOptions limits;
+std::optional<TouchText> touch_of(const operation::RegistrationState& state) {
+  using Kind = operation::Touches::Last::Kind;
+  const operation::Touches::Last last = state.touches.last();
+  const operation::TouchLimits limits = state.touches.limits();
   switch (last.kind) {
     case Kind::None:
       return std::nullopt;
@@ -123,7 +124,7 @@ std::optional<TouchText> touch_of(const RegistrationStatus& status) {
       break;
   }
   const std::string name = "Touch " + std::to_string(last.number);
-  if (last.is_on_unknown_cover)
+  if (last.is_on_unknown_cartilage)
     return TouchText{{Severity::Quiet, name, "tells nothing"},
                      "Cartilage of unknown thickness: touch bare bone."};
   if (!last.distance_mm)
@@ -137,20 +138,20 @@ std::optional<TouchText> touch_of(const RegistrationStatus& status) {
   return TouchText{{severity_of_residual(off_mm), name, tenths_of_mm(off_mm)}, sentence};
 }
 
-std::vector<StrokeRow> stroke_rows(const RegistrationStatus& status) {
+std::vector<StrokeRow> stroke_rows(const operation::RegistrationState& state) {
   std::vector<StrokeRow> rows;
-  if (status.online == nullptr) return rows;
-  const bool has_pose = status.online->registration.has_pose;
-  for (const registration::StrokeInfo& stroke : status.online->strokes) {
+  if (state.online == nullptr) return rows;
+  const bool has_pose = state.online->registration.has_pose;
+  for (const registration::StrokeInfo& stroke : state.online->strokes) {
     if (stroke.length_mm < kShownLength_mm) continue;
-    StrokeRow row{stroke.curve, status.left_out.contains(stroke.curve), {}};
+    StrokeRow row{stroke.curve, state.excluded.contains(stroke.curve), {}};
     row.text.name = "Stroke " + std::to_string(rows.size() + 1);
     row.text.text = widgets::fixed(stroke.length_mm, 0) + " mm";
     if (has_pose) row.text.text += ", " + tenths_of_mm(stroke.median_residual_mm) + " off";
     row.text.severity = has_pose ? severity_of_residual(stroke.median_residual_mm) : Severity::Quiet;
-    if (row.is_left_out) {
+    if (row.is_excluded) {
       row.text.severity = Severity::Quiet;
-      row.text.text += ", left out";
+      row.text.text += ", excluded";
     }
     rows.push_back(row);
   }
@@ -166,18 +167,18 @@ int neighbour_stroke(const std::vector<StrokeRow>& rows, int curve, int step) {
   return rows[static_cast<std::size_t>(at)].curve;
 }
 
-std::vector<SeverityText> history_rows(const RegistrationStatus& status) {
+std::vector<SeverityText> history_rows(const operation::RegistrationState& state) {
   std::vector<SeverityText> rows;
-  for (std::size_t i = 0; i < status.history->size(); ++i) {
-    const RegistrationEntry& entry = (*status.history)[i];
+  for (std::size_t i = 0; i < state.history->size(); ++i) {
+    const operation::RegistrationEntry& entry = (*state.history)[i];
     const bool counts = entry.registration->has_pose && entry.registration->reliable;
-    SeverityText row{counts ? Severity::Good : Severity::Bad, std::to_string(i + 1) + "  " + entry.origin,
-                     ""};
-    row.text = !counts ? "not reliable"
-                       : widgets::plus_minus(entry.registration->predicted_tre_mm) + " mm, fit " +
-                             tenths_of_mm(entry.registration->rms_mm) +
-                             (entry.state == OnlineState::Verified ? ", verified" : "");
-    if (entry.is_void) {
+    SeverityText row{counts ? Severity::Good : Severity::Bad,
+                     std::to_string(i + 1) + "  " + std::string(to_text(entry.origin)), ""};
+    row.text = !counts
+                   ? "not reliable"
+                   : widgets::plus_minus(entry.registration->predicted_tre_mm) + " mm, fit " +
+                         tenths_of_mm(entry.registration->rms_mm) + (entry.is_verified ? ", verified" : "");
+    if (entry.marker_has_moved) {
       row.severity = Severity::Quiet;
       row.text = "the marker has moved since";
     }
@@ -186,16 +187,16 @@ std::vector<SeverityText> history_rows(const RegistrationStatus& status) {
   return rows;
 }
 
-RegistrationWords words_of(const RegistrationStatus& status) {
-  return {state_of(status),   progress_of(status), missing_of(status),  assumed_of(status),
-          numbers_of(status), touch_of(status),    stroke_rows(status), history_rows(status)};
+RegistrationWords words_of(const operation::RegistrationState& state) {
+  return {state_of(state),   progress_of(state), missing_of(state),  assumed_of(state),
+          numbers_of(state), touch_of(state),    stroke_rows(state), history_rows(state)};
 }
 
 widgets::Severity severity_of_residual(double residual_mm) {
   const double off_mm = std::abs(residual_mm);
-  return off_mm < 1                                                  ? Severity::Good
-         : off_mm < registration::OnlineOptions{}.max_touch_error_mm ? Severity::Caution
-                                                                     : Severity::Bad;
+  return off_mm < 1                                             ? Severity::Good
+         : off_mm < operation::TouchLimits{}.max_touch_error_mm ? Severity::Caution
+                                                                : Severity::Bad;
 }
 
 }  // namespace arthronaut::navigate

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "app/navigate/bone_registration.h"
 #include "app/widgets/controls.h"
+#include "navigation/operation/operation_state.h"
 
 namespace arthronaut::navigate {
 
@@ -16,19 +16,19 @@ struct SeverityText {
 };
 
 // "Collecting", "Candidate, not confirmed yet", "Confirmed", "Verified", or the alarm; with what to do.
-[[nodiscard]] SeverityText state_of(const RegistrationStatus& status);
+[[nodiscard]] SeverityText state_of(const operation::RegistrationState& state);
 // 0 to 1; 0 while there is an alarm.
-[[nodiscard]] double progress_of(const RegistrationStatus& status);
+[[nodiscard]] double progress_of(const operation::RegistrationState& state);
 // "Missing: 34 mm more of stroke; ..."; empty when nothing is.
-[[nodiscard]] std::string missing_of(const RegistrationStatus& status);
+[[nodiscard]] std::string missing_of(const operation::RegistrationState& state);
 // "Assumed: the covered region lies 2.0 mm off the mesh, ..."; of the same pose as the numbers. Empty when
 // nothing was.
-[[nodiscard]] std::string assumed_of(const RegistrationStatus& status);
+[[nodiscard]] std::string assumed_of(const operation::RegistrationState& state);
 // Whether touches that it was not fitted to lie on the bone, by the registration that guides.
-[[nodiscard]] bool is_verified(const RegistrationStatus& status);
+[[nodiscard]] bool is_verified(const operation::RegistrationState& state);
 // Predicted error at the tunnel, and how near the next best pose comes; of the pose that runs along, else of
 // the one in force. Empty without a pose.
-[[nodiscard]] std::vector<SeverityText> numbers_of(const RegistrationStatus& status);
+[[nodiscard]] std::vector<SeverityText> numbers_of(const operation::RegistrationState& state);
 
 // The last touch, for a large number: name "Touch 2", text "0.4 mm" with its sign; and a sentence beside it.
 struct TouchText {
@@ -36,21 +36,21 @@ struct TouchText {
   std::string sentence;
 };
 // nullopt before the first touch.
-[[nodiscard]] std::optional<TouchText> touch_of(const RegistrationStatus& status);
+[[nodiscard]] std::optional<TouchText> touch_of(const operation::RegistrationState& state);
 
-// One row a stroke that counts, newest last. text: "32 mm, 0.2 mm off" or "left out".
+// One row a stroke that counts, newest last. text: "32 mm, 0.2 mm off" or "excluded".
 struct StrokeRow {
   int curve = 0;
-  bool is_left_out = false;
+  bool is_excluded = false;
   SeverityText text;
 };
-[[nodiscard]] std::vector<StrokeRow> stroke_rows(const RegistrationStatus& status);
+[[nodiscard]] std::vector<StrokeRow> stroke_rows(const operation::RegistrationState& state);
 // The stroke above or below another in that list; the newest when there is no such stroke. -1 when there is
 // none.
 [[nodiscard]] int neighbour_stroke(const std::vector<StrokeRow>& rows, int curve, int step);
 
 // One row an entry of the history: name "2  while drawing", text "± 0.6 mm, fit 0.3 mm".
-[[nodiscard]] std::vector<SeverityText> history_rows(const RegistrationStatus& status);
+[[nodiscard]] std::vector<SeverityText> history_rows(const operation::RegistrationState& state);
 
 // All of the above at once, to be kept until the status changes.
 struct RegistrationWords {
@@ -62,7 +62,7 @@ struct RegistrationWords {
   std::vector<StrokeRow> strokes;
   std::vector<SeverityText> history;
 };
-[[nodiscard]] RegistrationWords words_of(const RegistrationStatus& status);
+[[nodiscard]] RegistrationWords words_of(const operation::RegistrationState& state);
 
 // How far a touched point may lie off the bone to be good; beyond caution it is bad.
 [[nodiscard]] widgets::Severity severity_of_residual(double residual_mm);

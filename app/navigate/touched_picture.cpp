@@ -17,8 +17,8 @@ struct Pen {
   bool operator==(const Pen&) const = default;
 };
 
-Pen pen_of(double residual_mm, bool is_left_out) {
-  if (is_left_out) return {kLeftOutColor, kThin_mm};
+Pen pen_of(double residual_mm, bool is_excluded) {
+  if (is_excluded) return {kExcludedColor, kThin_mm};
   switch (severity_of_residual(residual_mm)) {
     case widgets::Severity::Good:
       return {scene::kCurveColor, kThin_mm};
@@ -31,18 +31,19 @@ Pen pen_of(double residual_mm, bool is_left_out) {
 
 }  // namespace
 
-void TouchedPicture::add_strokes(scene::SceneContent& content, const RegistrationStatus& status,
+void TouchedPicture::add_strokes(scene::SceneContent& content, const operation::RegistrationState& state,
                                  const geometry::Surface& surface, int selected_curve) {
   const registration::RegistrationSummary* pose = nullptr;
-  if (status.in_force != nullptr && status.in_force->has_pose)
-    pose = status.in_force.get();
-  else if (status.online != nullptr && status.online->registration.has_pose)
-    pose = &status.online->registration;
+  const operation::RegistrationPtr& in_force = state.in_force.registration;
+  if (in_force != nullptr && in_force->has_pose && state.in_force.standing != operation::Standing::Void)
+    pose = in_force.get();
+  else if (state.online != nullptr && state.online->registration.has_pose)
+    pose = &state.online->registration;
   if (pose == nullptr) return;
   const geometry::RigidTransform& marker_from_bone = pose->marker_from_bone;
-  if (drawn_ != status.drawn || marker_from_bone.translation_mm != marker_from_bone_.translation_mm ||
+  if (drawn_ != state.drawn || marker_from_bone.translation_mm != marker_from_bone_.translation_mm ||
       marker_from_bone.rotation.coeffs() != marker_from_bone_.rotation.coeffs()) {
-    drawn_ = status.drawn;
+    drawn_ = state.drawn;
     marker_from_bone_ = marker_from_bone;
     points_.clear();
     const geometry::RigidTransform bone_from_marker = marker_from_bone.inverse();
@@ -58,7 +59,7 @@ void TouchedPicture::add_strokes(scene::SceneContent& content, const Registratio
   for (std::size_t i = 1; i < points_.size(); ++i) {
     const Point &from = points_[i - 1], &to = points_[i];
     if (from.curve != to.curve) continue;
-    Pen pen = pen_of(to.residual_mm, status.left_out.contains(to.curve));
+    Pen pen = pen_of(to.residual_mm, state.excluded.contains(to.curve));
     if (to.curve == selected_curve) pen.diameter_mm += kSelectedBy_mm;
     const bool goes_on = i > 1 && points_[i - 2].curve == to.curve && !content.lines.empty() &&
                          content.lines.back().points_mm.back() == from.in_bone_mm &&
@@ -77,7 +78,7 @@ void add_patches(scene::SceneContent& content, const registration::Coach& coach)
     const bool helps = !patch.is_touched && patch.gain > kHelps;
     const scene::Color color = patch.is_touched ? scene::kCurveColor
                                : helps          ? scene::kAchievedColor
-                                                : kLeftOutColor;
+                                                : kExcludedColor;
     const double diameter_mm = patch.is_touched ? 2.0 : helps ? 1.5 + 12 * std::min(patch.gain, 0.2) : 1.0;
     const Eigen::Vector3d foot = patch.point_in_bone_mm + kLift_mm * patch.normal;
     content.rods.push_back(

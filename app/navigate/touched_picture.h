@@ -4,19 +4,19 @@
 
 #include <vector>
 
-#include "app/navigate/bone_registration.h"
 #include "app/scene/scene_content.h"
+#include "navigation/operation/operation_state.h"
 
 namespace arthronaut::navigate {
 
 inline constexpr scene::Color kDoubtColor{0.94F, 0.75F, 0.24F}, kOffColor{1.0F, 0.44F, 0.36F};
-inline constexpr scene::Color kLeftOutColor{0.45F, 0.48F, 0.52F};
+inline constexpr scene::Color kExcludedColor{0.45F, 0.48F, 0.52F};
 
 class TouchedPicture {
  public:
-  // Adds the strokes of `status`, laid on the bone by the registration in force or else by the one that runs
+  // Adds the strokes of `state`, laid on the bone by the registration in force or else by the one that runs
   // along; the selected stroke is thicker. Nothing without a pose. Distances are kept from call to call.
-  void add_strokes(scene::SceneContent& content, const RegistrationStatus& status,
+  void add_strokes(scene::SceneContent& content, const operation::RegistrationState& state,
                    const geometry::Surface& surface, int selected_curve);
 
  private:

@@ -3,6 +3,7 @@
 
 #include "app/guidance_severity/guidance_severity.h"
 #include "app/navigate/navigate_panels.h"
+#include "navigation/camera/medium.h"
 
 namespace arthronaut::navigate {
 
@@ -11,7 +12,7 @@ namespace {
 using widgets::Severity;
 
 bool is_needed(const NavigateScreen& screen, int marker_id) {
-  const pipeline::PipelineOptions& options = *screen.options;
+  const pipeline::PipelineOptions& options = screen.options();
   const auto* probe = options.tools.find_tool(options.probe_name);
   const auto* guide = options.tools.find_tool(options.guide_name);
   const auto* tool = screen.layout == NavigateLayout::Register ? probe : guide;
@@ -19,8 +20,8 @@ bool is_needed(const NavigateScreen& screen, int marker_id) {
 }
 
 void draw_markers(const widgets::Ui& ui, const NavigateScreen& screen) {
-  const pipeline::FrameResult& result = screen.status->live->result;
-  const auto* world = screen.options->tools.find_world_marker(screen.options->bone);
+  const pipeline::FrameResult& result = screen.frame();
+  const auto* world = screen.options().tools.find_world_marker(screen.options().bone);
   for (const markers::MarkerObservation& marker : result.markers) {
     const bool is_world = world != nullptr && world->marker_id == marker.id;
     // A tool that nobody needs now is worth a line only while it is seen.
@@ -36,16 +37,17 @@ void draw_markers(const widgets::Ui& ui, const NavigateScreen& screen) {
                               : is_needed(screen, marker.id)                    ? Severity::Caution
                               : marker.state == markers::MarkerState::Duplicate ? Severity::Caution
                                                                                 : Severity::Quiet;
-    widgets::status_row(ui, severity, guidance_severity::marker_name(screen.options->tools, marker.id), text);
+    widgets::status_row(ui, severity, guidance_severity::marker_name(screen.options().tools, marker.id),
+                        text);
   }
 }
 
 void draw_lens(const widgets::Ui& ui, const NavigateScreen& screen) {
   if (!screen.display.is_live)
     return widgets::status_row(ui, Severity::Quiet, "Lens mark", "no live picture");
-  const pipeline::FrameResult& result = screen.status->live->result;
+  const pipeline::FrameResult& result = screen.frame();
   const std::string angle = widgets::fixed(result.lens.mark_angle_deg, 0) + "\u00B0";
-  const LensTrouble trouble = trouble_of(result.lens);
+  const Trouble trouble = trouble_of(result.lens);
   if (trouble.headline.empty()) return widgets::status_row(ui, Severity::Good, "Lens mark", angle);
   // The last angle serves for a moment; afterwards the camera is not known and nothing is measured.
   widgets::status_row(ui, result.intrinsics_are_known ? Severity::Caution : Severity::Bad, trouble.headline,
@@ -54,61 +56,73 @@ void draw_lens(const widgets::Ui& ui, const NavigateScreen& screen) {
 }
 
 void draw_registration_row(const widgets::Ui& ui, const NavigateScreen& screen) {
-  const OperationStatus& status = *screen.status;
-  const std::string points = std::to_string(status.bone->drawn->size()) + " points";
-  const bool draws = status.digitises && screen.display.is_live;
+  const operation::OperationState& state = *screen.live->operation;
+  const operation::RegistrationState& known = *state.registration;
+  const std::string points = std::to_string(known.point_count) + " points";
+  const bool draws = state.draws && screen.display.is_live;
   widgets::status_row(ui, draws ? Severity::Good : Severity::Quiet, "Probe draws",
                       draws ? points : "off, " + points);
-  if (status.is_registering) return widgets::status_row(ui, Severity::Quiet, "Registration", "running");
-  if (!status.bone->bone_trouble.empty())
-    return widgets::status_row(ui, Severity::Bad, "Registration", status.bone->bone_trouble);
-  if (status.bone->in_force == nullptr)
-    return widgets::status_row(ui, Severity::Quiet, "Registration", "none yet");
-  const registration::RegistrationSummary& r = *status.bone->in_force;
-  if (!r.has_pose || !r.reliable) {
-    const std::string why = r.reasons.empty() ? "not reliable" : r.reasons.front();
-    return widgets::status_row(ui, Severity::Bad, "Registration", why);
+  if (known.is_fitting) return widgets::status_row(ui, Severity::Quiet, "Registration", "running");
+  if (!known.bone_trouble.empty())
+    return widgets::status_row(ui, Severity::Bad, "Registration", known.bone_trouble);
+  if (known.in_force.standing == operation::Standing::None) {
+    const std::string aside = std::to_string(known.set_aside_count) + " points of another source set aside";
+    return widgets::status_row(ui, Severity::Quiet, "Registration",
+                               known.set_aside_count > 0 ? aside : "none yet");
   }
+  const Trouble trouble = trouble_of(known);
+  if (!trouble.empty())
+    return widgets::status_row(
+        ui, Severity::Bad, trouble.headline,
+        known.in_force.registration->reasons.empty() ? "" : known.in_force.registration->reasons.front());
+  const bool is_skipped = state.verification == operation::Verification::Skipped;
   // In one line on the smallest screen: how well it fits stands in the registration panel.
-  widgets::status_row(ui, Severity::Good, "Registration",
-                      widgets::plus_minus(r.predicted_tre_mm) + " mm, " +
-                          (is_verified(*status.bone) ? "verified" : "not verified") +
-                          (status.bone->is_chosen ? ", an earlier one" : ""));
+  widgets::status_row(ui, is_skipped ? Severity::Caution : Severity::Good, "Registration",
+                      widgets::plus_minus(known.in_force.registration->predicted_tre_mm) + " mm, " +
+                          (state.verification == operation::Verification::ByTouches ? "verified"
+                           : is_skipped                                             ? "verification skipped"
+                                                                                    : "not verified") +
+                          (known.is_chosen ? ", an earlier one" : ""));
 }
 
 // The last touch, where the large number of the registration panel is not shown.
 void draw_touch_row(const widgets::Ui& ui, const NavigateScreen& screen) {
   if (screen.layout == NavigateLayout::Register) return;
-  if (!screen.status->touch_notice.empty())
-    widgets::status_row(ui, Severity::Caution, "No touch taken", screen.status->touch_notice);
+  const std::string notice = touch_notice(*screen.live->operation);
+  if (!notice.empty())
+    widgets::status_row(ui, Severity::Caution, "No touch taken", notice);
   else if (const auto& touch = screen.words.touch)
     widgets::status_row(ui, touch->number.severity, touch->number.name, touch->number.text);
 }
 
 // Touch a place that you know: how far the tip is from the bone model, while both are known.
 void draw_probe(const widgets::Ui& ui, const NavigateScreen& screen) {
-  const OperationStatus& status = *screen.status;
-  if (!screen.display.is_live || status.bone->in_force == nullptr || !status.bone->in_force->reliable ||
+  const operation::RegistrationInForce& in_force = screen.live->operation->registration->in_force;
+  if (!screen.display.is_live || in_force.standing != operation::Standing::Stands ||
       screen.surface == nullptr)
     return;
-  const pipeline::FrameResult& result = status.live->result;
+  const pipeline::FrameResult& result = screen.frame();
   if (!result.tip_is_valid) return;
   const double distance = screen.surface->signed_distance_mm(
-      status.bone->in_force->marker_from_bone.inverse() * result.tip_in_world_mm);
+      in_force.registration->marker_from_bone.inverse() * result.tip_in_world_mm);
   widgets::status_row(ui, Severity::Quiet, "Probe tip to bone", widgets::fixed(distance, 1) + " mm");
 }
 
+// The journal is written in any case: what is worth saying is that it is not, and whether video is kept.
 void draw_record(const widgets::Ui& ui, const NavigateScreen& screen) {
-  const OperationStatus& status = *screen.status;
-  if (!status.recording_error.empty())
-    widgets::status_row(ui, Severity::Bad, "Recording stopped", status.recording_error);
+  const theatre::LiveState& live = *screen.live;
+  if (!live.record_trouble.empty())
+    widgets::status_row(ui, Severity::Bad, "Nothing is recorded", live.record_trouble);
   else
-    widgets::status_row(ui, status.recording.empty() ? Severity::Quiet : Severity::Good, "Recording",
-                        status.recording.empty() ? "off" : status.recording.filename().string());
-  if (status.live != nullptr)
-    widgets::status_row(ui, Severity::Quiet, "Rate",
-                        widgets::fixed(status.frames_per_second, 0) + " pictures/s, " +
-                            widgets::fixed(status.live->result.processing_ms, 0) + " ms each");
+    widgets::status_row(ui, live.keeps_video ? Severity::Good : Severity::Quiet, "Recording",
+                        live.keeps_video ? "video and journal" : "journal");
+  if (live.picture == nullptr) return;
+  const bool is_dated = live.operation->source->kind == sources::SourceKind::Live;
+  widgets::status_row(
+      ui, Severity::Quiet, "Rate",
+      widgets::fixed(live.frames_per_second, 0) + " pictures/s, " +
+          widgets::fixed(screen.frame().processing_ms, 0) + " ms each" +
+          (is_dated ? ", " + widgets::fixed(1000 * screen.display.age_s, 0) + " ms old" : ""));
 }
 
 }  // namespace
@@ -117,10 +131,10 @@ void draw_tracking(const widgets::Ui& ui, const widgets::Rect& area, const Navig
   widgets::begin_panel(ui, "navigate.tracking", area);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui.theme.px(8), ui.theme.px(7)});
   widgets::text_in(ui.theme.strong, widgets::kAccent, "Next: " + screen.next_step);
-  if (screen.status == nullptr) {
+  if (!screen.has_source()) {
     widgets::text_in(ui.theme.body, widgets::kQuietText, screen.display.detail);
   } else {
-    if (screen.status->live != nullptr) {
+    if (screen.live->picture != nullptr) {
       draw_lens(ui, screen);
       draw_markers(ui, screen);
     }
@@ -128,7 +142,10 @@ void draw_tracking(const widgets::Ui& ui, const widgets::Rect& area, const Navig
     draw_touch_row(ui, screen);
     draw_probe(ui, screen);
     draw_record(ui, screen);
-    widgets::status_row(ui, Severity::Quiet, screen.title, screen.calibration);
+    const operation::SourceSetup& source = *screen.live->operation->source;
+    widgets::status_row(ui, Severity::Quiet, source.title, source.calibration);
+    widgets::status_row(ui, Severity::Quiet, "Medium",
+                        camera::medium_to_text(source.pipeline.refractive_index));
   }
   ImGui::PopStyleVar();
   widgets::end_panel();

@@ -17,7 +17,7 @@ struct DrawnPicture {
 
 DrawnPicture draw_picture(const widgets::Rect& area, const NavigateScreen& screen, VideoTextures& textures) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const LiveFrame& live = *screen.status->live;
+  const theatre::LiveState& live = *screen.live;
   const ImU32 tint =
       screen.display.is_live ? IM_COL32_WHITE : IM_COL32(120, 120, 120, 255);  // not live: visibly dimmed
   const auto put = [&](std::uint32_t texture, const widgets::Rect& at, const ImVec2& uv_min,
@@ -31,13 +31,13 @@ DrawnPicture draw_picture(const widgets::Rect& area, const NavigateScreen& scree
     widgets::Rect square = widgets::fitted(area, 1);
     square = {std::floor(square.x), std::floor(square.y), std::floor(square.width), std::floor(square.width)};
     const int size_px = std::max(static_cast<int>(square.width), 1);
-    textures.undistorted.draw(live.picture, textures.raw, live.result.camera, size_px);
+    textures.undistorted.draw(live.picture, textures.raw, screen.frame().camera, size_px);
     put(textures.undistorted.texture(), square, {0, 0}, {1, 1});
-    return {square, {square, live.result.camera, textures.undistorted.view()}};
+    return {square, {square, screen.frame().camera, textures.undistorted.view()}};
   }
   const float w = static_cast<float>(textures.raw.width()), h = static_cast<float>(textures.raw.height());
   const widgets::Rect part =
-      widgets::shown_part(screen.options->calibration.boundary, textures.raw.width(), textures.raw.height());
+      widgets::shown_part(screen.options().calibration.boundary, textures.raw.width(), textures.raw.height());
   const widgets::Rect picture = widgets::fitted(area, part.width / part.height);
   put(textures.raw.texture(), picture, {part.x / w, part.y / h},
       {(part.x + part.width) / w, (part.y + part.height) / h});
@@ -57,6 +57,12 @@ void draw_reason(const widgets::Ui& ui, const widgets::Rect& area, const Navigat
 
 }  // namespace
 
+const scene::PlanOverlay& NavigateScreen::lines() const {
+  static const scene::PlanOverlay kNone;
+  const auto* made = live != nullptr ? dynamic_cast<const PlanLines*>(live->decoration.get()) : nullptr;
+  return made != nullptr ? made->lines : kNone;
+}
+
 void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen,
                 VideoTextures& textures) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
@@ -74,15 +80,14 @@ void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const Navigate
   const DrawnPicture picture = draw_picture(area, screen, textures);
   draw.PushClipRect(picture.area.min(), picture.area.max(), true);
   if (display.overlay_is_valid && screen.overlay_opacity > 0)
-    draw_overlay_lines(draw, picture.placement, screen.status->live->overlay, screen.overlay_opacity,
-                       ui.theme.scale);
+    draw_overlay_lines(draw, picture.placement, screen.lines(), screen.overlay_opacity, ui.theme.scale);
   draw.PopClipRect();
   if (screen.undistorts)
     draw.AddText(ui.theme.strong, ui.theme.strong->FontSize,
                  {area.x + ui.theme.px(14), area.y + ui.theme.px(9)}, widgets::kQuietText, "Undistorted");
   // Numbers without lines beside them ask for a reason.
   if (display.guidance_is_valid) {
-    const std::string reason = why_no_plan_line(screen.status->live->overlay, screen.overlay_opacity);
+    const std::string reason = why_no_plan_line(screen.lines(), screen.overlay_opacity);
     ui.log.note_state("no_overlay", reason);
     widgets::Rect below = area;
     (void)below.cut_top(ui.theme.px(screen.undistorts ? 44 : 0));

@@ -38,9 +38,14 @@ class OperationRun {
   // Ends the source before it and opens this one; its record begins with the first frame. Throws what opening
   // throws and what Operation::start_source throws; there is no source then.
   void start(const TheatreSource& source);
-  // The next frame, worked in; null at the end of the source, which ends it, and without a source. Throws
-  // what the source throws, which ends it too.
-  [[nodiscard]] camera::FramePtr step();
+  struct Step {
+    camera::FramePtr picture;  // worked in; null when none came
+    bool has_ended = false;    // the source has, and with it its record
+  };
+  // The next frame, worked in. A live source that gives none for a tenth of a second gives a step without a
+  // picture, so that whoever calls can do something else. Throws what the source throws, which ends it too.
+  // Precondition: has_source().
+  [[nodiscard]] Step step();
   // Ends the source and its record. A disk that fails is told by record_trouble().
   void end_source();
 

@@ -1,0 +1,113 @@
+#include "app/navigate/live_words.h"
+
+namespace arthronaut::navigate {
+
+using operation::NextAction;
+using operation::Standing;
+
+std::string words_of(NextAction action) {
+  switch (action) {
+    case NextAction::PlanTunnel:
+      return "plan the tunnel (F1)";
+    case NextAction::StartSource:
+      return "start a source";
+    case NextAction::ShowWorldMarker:
+      return "bring the bone marker into view";
+    case NextAction::Draw:
+      return "let the probe draw";
+    case NextAction::GoOnDrawing:
+      return "touch the bone with the probe";
+    case NextAction::RegisterStrokes:
+      return "register what was touched";
+    case NextAction::WaitForRegistration:
+      return "wait for the registration";
+    case NextAction::CheckWorldMarker:
+      return "check the world marker: touch the control point";
+    case NextAction::ConfirmByTouch:
+      return "touch the bone once: confirms the registration";
+    case NextAction::RegisterAnew:
+      return "register anew: let the probe draw";
+    case NextAction::TakePlanOver:
+      return "the plan was edited: take it over";
+    case NextAction::VerifyByTouch:
+      return "verify: touch a place that you know";
+    case NextAction::SetControlPoint:
+      return "set the control point: touch a mark on the bone";
+    case NextAction::CheckControlPoint:
+      return "touch the control point again";
+    case NextAction::BringGuide:
+      return "take the guide";
+    case NextAction::FollowBullseye:
+      return "follow the bullseye";
+    case NextAction::RecordDrilled:
+      return "when the tunnel is drilled: say so";
+    case NextAction::Finish:
+      return "take the world marker out; done";
+  }
+  return "";
+}
+
+std::string touch_notice(const operation::OperationState& state) {
+  constexpr std::int64_t kReadable_ns = 8'000'000'000;
+  if (state.frame.timestamp_ns - state.touch_asked_ns > kReadable_ns) return "";
+  switch (state.touch_refusal) {
+    case operation::TouchRefusal::None:
+      return "";
+    case operation::TouchRefusal::NoSource:
+      return "no pictures come";
+    case operation::TouchRefusal::TipUnknown:
+      return "the probe's tip is not known now: show probe and bone marker";
+    case operation::TouchRefusal::TipMoves:
+      return "the probe moves: hold its tip still";
+  }
+  return "";
+}
+
+Trouble trouble_of(const operation::RegistrationState& registration) {
+  const operation::RegistrationInForce& in_force = registration.in_force;
+  const std::string why = in_force.registration != nullptr && !in_force.registration->reasons.empty()
+                              ? in_force.registration->reasons.front()
+                              : "";
+  switch (in_force.standing) {
+    case Standing::None:
+    case Standing::Stands:
+      return {};
+    case Standing::NotReliable:
+      return {"Registration not reliable", why};
+    case Standing::Void:
+      return {"Registration void",
+              why + (in_force.can_be_confirmed ? ". Touch the bone with the probe once (T) to confirm it"
+                                               : ". Register anew")};
+    case Standing::Alarm:
+      return {"World marker may have moved",
+              why + ". Touch the control point again; if it stays off, clear the points (C) and draw anew"};
+    case Standing::InDoubt:
+      return {"Registration in doubt", why + ". Draw more, or exclude the strokes that are wrong"};
+  }
+  return {};
+}
+
+Trouble trouble_of(const lens::LensObservation& lens) {
+  using lens::MarkState;
+  if (lens.zoom_or_slip)
+    return {"Zoom changed or coupler slipped",
+            "The round view has another size or place than at the calibration: set the zoom back, or "
+            "calibrate again"};
+  switch (lens.mark) {
+    case MarkState::Found:
+      return {};
+    case MarkState::NoCircle:
+      return {"Lens mark not found", "The round border is not seen: bring the whole view into the picture"};
+    case MarkState::Dark:
+      return {"Lens mark not found", "Too dark beside the border: give more light"};
+    case MarkState::Covered:
+      return {"Lens mark not found", "Something covers the mark: move the instrument from the border"};
+    case MarkState::Ambiguous:
+      return {"Lens mark not found", "Two marks look alike: turn the lens a little"};
+    case MarkState::NotSeen:
+      return {"Lens mark not found", "The border has no mark: is this the scope of the calibration?"};
+  }
+  return {};
+}
+
+}  // namespace arthronaut::navigate

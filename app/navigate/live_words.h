@@ -1,0 +1,26 @@
+// What the operation's verdicts are called on the screen. Pure: enums and numbers in, words out.
+#pragma once
+
+#include <string>
+
+#include "navigation/theatre/live_operation.h"
+
+namespace arthronaut::navigate {
+
+// What to do next: "touch the bone with the probe".
+[[nodiscard]] std::string words_of(operation::NextAction action);
+// Why a touch was not taken a moment ago; empty when it was, or when that is longer ago than it takes to
+// read.
+[[nodiscard]] std::string touch_notice(const operation::OperationState& state);
+
+// What is wrong, in a few words, and what to do about it.
+struct Trouble {
+  std::string headline, advice;
+  [[nodiscard]] bool empty() const { return headline.empty(); }
+};
+// Why what is in force may not guide; empty while it stands, and while there is nothing in force.
+[[nodiscard]] Trouble trouble_of(const operation::RegistrationState& registration);
+// While the mark is found on its track: empty.
+[[nodiscard]] Trouble trouble_of(const lens::LensObservation& lens);
+
+}  // namespace arthronaut::navigate

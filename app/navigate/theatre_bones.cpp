@@ -1,0 +1,146 @@
+#include "app/navigate/theatre_bones.h"
+
+#include "app/navigate/tool_clearance.h"
+#include "planning/bones/mesh_hash.h"
+#include "planning/cases/case.h"
+
+namespace arthronaut::navigate {
+
+namespace {
+
+using operation::OperationState;
+using operation::PlannedTunnel;
+
+// Projects what lies over a picture, on the operation's thread: prepared for one bone and the plan in force.
+class LineMaker {
+ public:
+  LineMaker(std::shared_ptr<const geometry::Surface> surface,
+            std::shared_ptr<const geometry::TriangleMesh> drawn)
+      : surface_(std::move(surface)), drawn_(std::move(drawn)) {}
+
+  std::shared_ptr<const theatre::Decoration> operator()(const OperationState& state) {
+    const pipeline::FrameResult& frame = state.frame;
+    if (!frame.camera_from_world.is_valid) return nullptr;
+    auto made = std::make_shared<PlanLines>();
+    const geometry::RigidTransform& camera_from_world = frame.camera_from_world.target_from_source;
+    const std::vector<scene::ClearDisc> clear = clear_discs_of(frame, state.source->pipeline.tools);
+    const operation::RegistrationInForce& in_force = state.registration->in_force;
+    if (in_force.standing == operation::Standing::Stands) {
+      prepare(state.plan);
+      made->lines =
+          model_->project(frame.camera, camera_from_world * in_force.registration->marker_from_bone, clear);
+    }
+    points_.clear();
+    for (const strokes::CurvePoint& point : *state.registration->drawn)
+      points_.push_back(camera_from_world * point.position_mm);
+    scene::add_curves(made->lines, frame.camera, points_, strokes::StrokeOptions{}.max_hop_mm, clear);
+    return made;
+  }
+
+ private:
+  void prepare(const std::optional<PlannedTunnel>& plan) {
+    if (model_ && plan.has_value() == plan_.has_value() &&
+        (!plan || (plan->tunnel.entry_mm == plan_->tunnel.entry_mm &&
+                   plan->tunnel.direction == plan_->tunnel.direction &&
+                   plan->tunnel.diameter_mm == plan_->tunnel.diameter_mm)))
+      return;
+    plan_ = plan;
+    model_.emplace(surface_, *drawn_, plan ? std::optional(plan->tunnel) : std::nullopt,
+                   plan ? plan->length_mm : 0);
+  }
+
+  std::shared_ptr<const geometry::Surface> surface_;
+  std::shared_ptr<const geometry::TriangleMesh> drawn_;
+  std::optional<PlannedTunnel> plan_;
+  std::optional<scene::OverlayModel> model_;
+  std::vector<Eigen::Vector3d> points_;
+};
+
+}  // namespace
+
+void TheatreBones::open(const open_case::PlanModel* model, const std::filesystem::path& case_folder) {
+  for (auto& [kind, bone] : bones_)
+    if (bone.operation != nullptr) bone.operation->request_stop();
+  // A bone that is just being made ready would be waited for.
+  ending_.end(std::exchange(bones_, {}));
+  model_ = model;
+  case_folder_ = case_folder;
+}
+
+std::optional<PlannedTunnel> TheatreBones::plan_of(bones::BoneKind bone) const {
+  const auto tunnel = model_->tunnel(bone);
+  if (!tunnel) return std::nullopt;
+  return PlannedTunnel{*tunnel, model_->drawn_length_mm(bone)};
+}
+
+std::unique_ptr<theatre::LiveOperation> TheatreBones::made(bones::BoneKind bone) const {
+  const geometry::TriangleMesh& mesh = model_->knee().bones.at(bone).mesh;
+  theatre::LiveOptions options;
+  options.operation.bone = bone;
+  options.operation.mesh_sha256 = bones::mesh_sha256(mesh);
+  options.operation.surface = model_->shared_surface(bone);
+  options.operation.plan = plan_of(bone);
+  const bool has_folder = !case_folder_.empty();
+  const auto cache = has_folder ? cases::surface_index_file(case_folder_, bone) : std::filesystem::path();
+  std::string cartilage_trouble;
+  try {
+    if (has_folder)
+      if (const auto cartilage = cases::load_cartilage(case_folder_, bone))
+        options.operation.cartilage.emplace().points_mm = cartilage->vertices_mm;
+  } catch (
+      const std::runtime_error& error) {  // without what it declares the bone would be registered wrongly
+    cartilage_trouble = error.what();
+  }
+  options.bone = [mesh, cache, cartilage_trouble]() -> operation::SurfaceIndexPtr {
+    if (!cartilage_trouble.empty()) throw std::runtime_error(cartilage_trouble);
+    return cache.empty() ? std::make_shared<registration::SurfaceIndex>(mesh)
+                         : std::make_shared<registration::SurfaceIndex>(mesh, cache);
+  };
+  if (has_folder)
+    options.make_session_folder = [folder = case_folder_] { return cases::create_session_folder(folder); };
+  options.decorate = [maker =
+                          std::make_shared<LineMaker>(options.operation.surface, model_->drawn_mesh(bone))](
+                         const OperationState& state) { return (*maker)(state); };
+  return std::make_unique<theatre::LiveOperation>(std::move(options), wake_);
+}
+
+bool TheatreBones::is_worth_keeping(const theatre::LiveState& state) {
+  const operation::RegistrationState& known = *state.operation->registration;
+  return state.operation->has_source || known.point_count > 0 || !known.history->empty();
+}
+
+theatre::LiveOperation& TheatreBones::operation(bones::BoneKind kind) {
+  Bone& bone = bones_[kind];
+  if (bone.operation != nullptr) {
+    const theatre::LiveStatePtr state = bone.operation->latest();
+    const bool is_broken = !state->operation->registration->bone_trouble.empty();
+    if (is_worth_keeping(*state) || (!is_broken && bone.plan_revision == model_->revision()))
+      return *bone.operation;
+    bone.operation->request_stop();
+    ending_.end(std::move(bone.operation));
+  }
+  bone.operation = made(kind);
+  bone.plan_revision = model_->revision();
+  return *bone.operation;
+}
+
+theatre::LiveOperation* TheatreBones::known(bones::BoneKind kind) const {
+  const auto found = bones_.find(kind);
+  return found == bones_.end() ? nullptr : found->second.operation.get();
+}
+
+theatre::LiveStatePtr TheatreBones::nothing() {
+  auto state = std::make_shared<theatre::LiveState>();
+  state->operation = std::make_shared<const OperationState>();
+  return state;
+}
+
+void TheatreBones::offer_plans() {
+  for (auto& [kind, bone] : bones_) {
+    if (bone.operation == nullptr || bone.plan_revision == model_->revision()) continue;
+    bone.plan_revision = model_->revision();
+    bone.operation->apply(operation::OfferPlan{plan_of(kind)});
+  }
+}
+
+}  // namespace arthronaut::navigate

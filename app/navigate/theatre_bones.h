@@ -1,0 +1,59 @@
+// The operations of an open case, one a bone: each made when its bone is first looked at, kept while sources
+// come and go, and told when the plan was edited.
+//
+// One thread, the window's; nothing here waits.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+
+#include "app/case/plan_model.h"
+#include "app/scene/plan_overlay.h"
+#include "navigation/sources/background_end.h"
+#include "navigation/theatre/live_operation.h"
+
+namespace arthronaut::navigate {
+
+// The plan's lines and the strokes, over the very picture that they were projected for.
+struct PlanLines : theatre::Decoration {
+  scene::PlanOverlay lines;
+};
+
+class TheatreBones {
+ public:
+  // wake: called from other threads whenever an operation has news.
+  explicit TheatreBones(std::function<void()> wake) : wake_(std::move(wake)) {}
+
+  // Another case: ends what runs, in threads behind the screen. The model outlives this object's use of it.
+  void open(const open_case::PlanModel* model, const std::filesystem::path& case_folder);
+  // Made when it is first asked for; made anew while nothing hangs on it and its plan has changed, or its
+  // bone could not be made ready. Precondition: the model has the bone.
+  theatre::LiveOperation& operation(bones::BoneKind bone);
+  // Null when it was not asked for yet.
+  [[nodiscard]] theatre::LiveOperation* known(bones::BoneKind bone) const;
+  // What is known where no bone was looked at yet.
+  [[nodiscard]] static theatre::LiveStatePtr nothing();
+  // A plan that was edited is offered to the operation of its bone; it guides by the one in force until the
+  // surgeon takes the other one over.
+  void offer_plans();
+
+ private:
+  struct Bone {
+    std::unique_ptr<theatre::LiveOperation> operation;
+    std::uint64_t plan_revision = 0;  // of the model, when the plan was handed over last
+  };
+  [[nodiscard]] std::unique_ptr<theatre::LiveOperation> made(bones::BoneKind bone) const;
+  [[nodiscard]] std::optional<operation::PlannedTunnel> plan_of(bones::BoneKind bone) const;
+  [[nodiscard]] static bool is_worth_keeping(const theatre::LiveState& state);
+
+  std::function<void()> wake_;
+  const open_case::PlanModel* model_ = nullptr;
+  std::filesystem::path case_folder_;
+  std::map<bones::BoneKind, Bone> bones_;
+  sources::BackgroundEnd ending_;
+};
+
+}  // namespace arthronaut::navigate
