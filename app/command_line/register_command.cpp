@@ -48,7 +48,7 @@ void register_bone(Context& context, const RegisterArguments& arguments) {
   if (arguments.target_option->count() > 0) options.target_in_bone_mm = arguments.target;
   if (arguments.entry_option->count() > 0) options.plan_entry_in_bone_mm = arguments.entry;
   if (!arguments.cartilage.empty()) {
-    options.covered.emplace().points_mm =
+    options.cartilage.emplace().points_mm =
         read_cartilage({arguments.cartilage, arguments.space, arguments.unit}).vertices_mm;
   }
   const registration::SurfaceIndex bone = prepare(mesh, arguments.bone);

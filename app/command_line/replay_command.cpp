@@ -50,7 +50,7 @@ void replay(Context& context, const ReplayArguments& arguments) {
         found->second.mesh, cases::surface_index_file(arguments.case_folder, found->first));
     options.surface = std::make_shared<const geometry::Surface>(found->second.mesh);
     if (const auto cartilage = cases::load_cartilage(arguments.case_folder, found->first)) {
-      options.covered.emplace().points_mm = cartilage->vertices_mm;
+      options.cartilage.emplace().points_mm = cartilage->vertices_mm;
     }
   }
   recording::ReplaySummary summary;

@@ -77,8 +77,8 @@ void NavigateView::ask(operation::Command command) {
 void NavigateView::look_along_plan() {
   const auto tunnel = model_->tunnel(choices_.bone);
   if (!tunnel)
-    return scene_.look(
-        scene::look_from(scene::View::Anterior, model_->knee().side, model_->bounds(choices_.bone), 1));
+    return scene_.look(scene::look_from(scene::ViewDirection::Anterior, model_->knee().side,
+                                        model_->bounds(choices_.bone), 1));
   const scene::SceneCamera along =
       scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm, 150, Eigen::Vector3d::UnitZ());
   scene_.look(scene::orbited(along, {40, -30}, 600));  // a little from the side: depth is seen too

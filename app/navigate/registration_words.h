@@ -21,7 +21,7 @@ struct SeverityText {
 [[nodiscard]] double progress_of(const operation::RegistrationState& state);
 // "Missing: 34 mm more of stroke; ..."; empty when nothing is.
 [[nodiscard]] std::string missing_of(const operation::RegistrationState& state);
-// "Assumed: the covered region lies 2.0 mm off the mesh, ..."; of the same pose as the numbers. Empty when
+// "Assumed: the cartilage lies 2.0 mm off the mesh, ..."; of the same pose as the numbers. Empty when
 // nothing was.
 [[nodiscard]] std::string assumed_of(const operation::RegistrationState& state);
 // Whether touches that it was not fitted to lie on the bone, by the registration that guides.

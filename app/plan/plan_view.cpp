@@ -17,9 +17,9 @@ constexpr double kAimHandleBeyond_mm = 12;
 
 std::string tunnel_name(BoneKind bone) { return bone == BoneKind::Femur ? "femoral" : "tibial"; }
 
-std::optional<BoneKind> only_bone_of(scene::View view) {
-  if (view == scene::View::Distal || view == scene::View::Notch) return BoneKind::Femur;
-  if (view == scene::View::Plateau) return BoneKind::Tibia;
+std::optional<BoneKind> only_bone_of(scene::ViewDirection view) {
+  if (view == scene::ViewDirection::Distal || view == scene::ViewDirection::Notch) return BoneKind::Femur;
+  if (view == scene::ViewDirection::Plateau) return BoneKind::Tibia;
   return std::nullopt;
 }
 
@@ -36,10 +36,10 @@ void PlanView::case_opened(const mode::OpenCase& opened) {
   history_.open(opened.model, opened.folder);
   state_ = {};
   if (!model_->has_bone(BoneKind::Femur)) state_.bone = BoneKind::Tibia;
-  look_from(scene::View::Anterior);
+  look_from(scene::ViewDirection::Anterior);
 }
 
-void PlanView::look_from(scene::View view) {
+void PlanView::look_from(scene::ViewDirection view) {
   state_.looked_from = view;
   state_.only = only_bone_of(view);
   if (state_.only && !model_->has_bone(*state_.only)) state_.only.reset();
@@ -81,7 +81,7 @@ void PlanView::add_actions(widgets::Actions& actions) {
                {},
                [this] {
                  state_.bone = state_.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
-                 if (state_.only) look_from(scene::View::Anterior);
+                 if (state_.only) look_from(scene::ViewDirection::Anterior);
                  state_.shown_revision = 0;
                }});
   actions.add({"plan.place", "Place entry", "Then click where the tunnel is to begin on the bone", GLFW_KEY_P,
@@ -156,15 +156,16 @@ void PlanView::add_view_actions(widgets::Actions& actions) {
   struct Side {
     const char *id, *label;
     int key;
-    scene::View view;
+    scene::ViewDirection view;
   };
-  const std::array<Side, 7> sides{Side{"plan.anterior", "Anterior", GLFW_KEY_1, scene::View::Anterior},
-                                  Side{"plan.posterior", "Posterior", GLFW_KEY_2, scene::View::Posterior},
-                                  Side{"plan.medial", "Medial", GLFW_KEY_3, scene::View::Medial},
-                                  Side{"plan.lateral", "Lateral", GLFW_KEY_4, scene::View::Lateral},
-                                  Side{"plan.distal", "Distal", GLFW_KEY_5, scene::View::Distal},
-                                  Side{"plan.notch", "Notch", GLFW_KEY_6, scene::View::Notch},
-                                  Side{"plan.plateau", "Plateau", GLFW_KEY_7, scene::View::Plateau}};
+  const std::array<Side, 7> sides{
+      Side{"plan.anterior", "Anterior", GLFW_KEY_1, scene::ViewDirection::Anterior},
+      Side{"plan.posterior", "Posterior", GLFW_KEY_2, scene::ViewDirection::Posterior},
+      Side{"plan.medial", "Medial", GLFW_KEY_3, scene::ViewDirection::Medial},
+      Side{"plan.lateral", "Lateral", GLFW_KEY_4, scene::ViewDirection::Lateral},
+      Side{"plan.distal", "Distal", GLFW_KEY_5, scene::ViewDirection::Distal},
+      Side{"plan.notch", "Notch", GLFW_KEY_6, scene::ViewDirection::Notch},
+      Side{"plan.plateau", "Plateau", GLFW_KEY_7, scene::ViewDirection::Plateau}};
   for (const Side& side : sides)
     actions.add({side.id, side.label, std::string("Look from ") + side.label, side.key, 0, false,
                  [this, side] {

@@ -32,7 +32,7 @@ class PlanView : public mode::Mode {
   void add_view_actions(widgets::Actions& actions);
   void add_history_actions(widgets::Actions& actions);
   void apply(const std::string& what, bool continues, const Move& move);
-  void look_from(scene::View view);
+  void look_from(scene::ViewDirection view);
   void draw_bones(const widgets::Ui& ui, const widgets::Rect& area);
   void use_pane_input(const widgets::PaneInput& input);
   void draw_handles(const widgets::Ui& ui, const widgets::Rect& area) const;
@@ -47,7 +47,7 @@ class PlanView : public mode::Mode {
     bool has_dragged = false;
     std::uint64_t shown_revision = 0;
     double aspect = 1.5;
-    scene::View looked_from = scene::View::Anterior;
+    scene::ViewDirection looked_from = scene::ViewDirection::Anterior;
   };
 
   open_case::PlanModel* model_ = nullptr;  // null until a case is open

@@ -112,10 +112,10 @@ class Report {
   }
 
   // Two pictures side by side with their names.
-  void pictures(scene::View left, scene::View right, bool with_result) {
+  void pictures(scene::ViewDirection left, scene::ViewDirection right, bool with_result) {
     const double width = (kWidthMm - 6) / 2;
     double x = kLeftMm, height = 0;
-    for (const scene::View view : {left, right}) {
+    for (const scene::ViewDirection view : {left, right}) {
       scene::PictureRequest request;
       request.knee = &content_.knee;
       request.view = view;
@@ -135,11 +135,11 @@ class Report {
   }
 
   // From the joint, onto the bone that was navigated; a case may hold one bone alone.
-  scene::View joint_view() const {
+  scene::ViewDirection joint_view() const {
     const auto& bones = content_.knee.bones;
     const bool is_tibia = content_.session ? content_.session->header().bone == bones::BoneKind::Tibia
                                            : !bones.contains(bones::BoneKind::Femur);
-    return is_tibia ? scene::View::Plateau : scene::View::Notch;
+    return is_tibia ? scene::ViewDirection::Plateau : scene::ViewDirection::Notch;
   }
 
   std::vector<Eigen::Vector3d> touched_points() const {
@@ -190,7 +190,7 @@ void Report::plan_page() {
     }
     table({16, 34, 32, 18, 20, 18, 32}, rows);
   }
-  pictures(scene::View::Anterior, scene::View::Lateral, false);
+  pictures(scene::ViewDirection::Anterior, scene::ViewDirection::Lateral, false);
 }
 
 void Report::registration_section(const registration::RegistrationSummary& registration) {
@@ -239,7 +239,7 @@ void Report::navigate_page() {
   begin_page("In theatre");
   if (!content_.session) {
     sentence("No session with a registration or a drilled tunnel is recorded in this case.");
-    pictures(joint_view(), scene::View::Medial, false);
+    pictures(joint_view(), scene::ViewDirection::Medial, false);
     return;
   }
   const auto& session = *content_.session;
@@ -265,7 +265,7 @@ void Report::navigate_page() {
   if (session.registration()) registration_section(*session.registration());
   if (content_.achieved) result_section(*content_.achieved);
   if (y_ > 195) begin_page("Pictures of the result");
-  pictures(joint_view(), scene::View::Lateral, true);
+  pictures(joint_view(), scene::ViewDirection::Lateral, true);
   if (content_.achieved) {
     sentence("Planned tunnel, and beside it the tunnel as drilled; dots: where the probe touched the bone.",
              {.size_pt = 8, .ink = kGray});

@@ -98,7 +98,7 @@ void ReviewView::take_opened() {
     pane_.look(tunnel ? scene::orbited(scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm,
                                                          190, {0, 0, 1}),
                                        {40, -30}, 600)
-                      : scene::look_from(scene::View::Anterior, model_->knee().side, bounds, 1));
+                      : scene::look_from(scene::ViewDirection::Anterior, model_->knee().side, bounds, 1));
   }
 }
 

@@ -14,8 +14,9 @@ namespace arthronaut::scene {
 namespace {
 
 std::optional<bones::BoneKind> bone_of(const PictureRequest& request) {
-  if (request.view == View::Distal || request.view == View::Notch) return bones::BoneKind::Femur;
-  if (request.view == View::Plateau) return bones::BoneKind::Tibia;
+  if (request.view == ViewDirection::Distal || request.view == ViewDirection::Notch)
+    return bones::BoneKind::Femur;
+  if (request.view == ViewDirection::Plateau) return bones::BoneKind::Tibia;
   return request.only_bone;
 }
 

@@ -15,7 +15,7 @@
 namespace arthronaut::scene {
 
 // Where the eye stands. Medial and lateral follow the case's side.
-enum class View {
+enum class ViewDirection {
   Anterior,
   Posterior,
   Medial,
@@ -24,7 +24,7 @@ enum class View {
   Notch,    // the femur as through the anterolateral portal of a flexed knee
   Plateau,  // the tibia from the joint
 };
-[[nodiscard]] std::string_view to_text(View view);  // "anterior", ...
+[[nodiscard]] std::string_view to_text(ViewDirection view);  // "anterior", ...
 
 struct PictureRequest {
   const cases::Case* knee = nullptr;  // not null
@@ -32,7 +32,7 @@ struct PictureRequest {
       only_bone;                            // empty: both; Distal and Notch show the femur, Plateau the tibia
   std::optional<tunnels::Tunnel> achieved;  // as drilled, drawn in another colour and pattern
   std::vector<Eigen::Vector3d> curve_points_in_bone;  // mm, LPS
-  View view = View::Anterior;
+  ViewDirection view = ViewDirection::Anterior;
   int width = 800, height = 600;
   bool light_background = false;  // for paper
 };

@@ -30,24 +30,24 @@ struct Direction {
 };
 
 // LPS: +x is the patient's left, +y posterior, +z superior.
-Direction direction_of(View view, bones::Side side) {
+Direction direction_of(ViewDirection view, bones::Side side) {
   const double lateral = side == bones::Side::Right ? -1 : 1;
   switch (view) {
-    case View::Anterior:
+    case ViewDirection::Anterior:
       return {{0, 1, 0}, {0, 0, 1}};
-    case View::Posterior:
+    case ViewDirection::Posterior:
       return {{0, -1, 0}, {0, 0, 1}};
-    case View::Medial:
+    case ViewDirection::Medial:
       return {{lateral, 0, 0}, {0, 0, 1}};
-    case View::Lateral:
+    case ViewDirection::Lateral:
       return {{-lateral, 0, 0}, {0, 0, 1}};
-    case View::Distal:
+    case ViewDirection::Distal:
       return {{0, 0, 1}, {0, -1, 0}};
     // From below and a little from the medial side and the back: between the condyles onto the lateral wall
     // of the notch, where the footprint is.
-    case View::Notch:
+    case ViewDirection::Notch:
       return {Eigen::Vector3d(0.36 * lateral, -0.10, 0.93).normalized(), {0, -1, 0}};
-    case View::Plateau:
+    case ViewDirection::Plateau:
       return {{0, 0, -1}, {0, -1, 0}};
   }
   throw InvalidInput("unknown view");
@@ -55,27 +55,27 @@ Direction direction_of(View view, bones::Side side) {
 
 }  // namespace
 
-std::string_view to_text(View view) {
+std::string_view to_text(ViewDirection view) {
   switch (view) {
-    case View::Anterior:
+    case ViewDirection::Anterior:
       return "anterior";
-    case View::Posterior:
+    case ViewDirection::Posterior:
       return "posterior";
-    case View::Medial:
+    case ViewDirection::Medial:
       return "medial";
-    case View::Lateral:
+    case ViewDirection::Lateral:
       return "lateral";
-    case View::Distal:
+    case ViewDirection::Distal:
       return "distal";
-    case View::Notch:
+    case ViewDirection::Notch:
       return "notch";
-    case View::Plateau:
+    case ViewDirection::Plateau:
       return "plateau";
   }
   throw InvalidInput("unknown view");
 }
 
-SceneCamera look_from(View view, bones::Side side, const geometry::Bounds& bounds, double aspect) {
+SceneCamera look_from(ViewDirection view, bones::Side side, const geometry::Bounds& bounds, double aspect) {
   const Direction direction = direction_of(view, side);
   SceneCamera camera = look_along(direction.ahead, bounds.center_mm(), 1.0, direction.up);
   const Axes axes = axes_of(camera);

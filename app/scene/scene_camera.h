@@ -23,7 +23,7 @@ struct SceneRay {
 };
 
 // Sees all of `bounds` from a named side of a knee.
-[[nodiscard]] SceneCamera look_from(View view, bones::Side side, const geometry::Bounds& bounds,
+[[nodiscard]] SceneCamera look_from(ViewDirection view, bones::Side side, const geometry::Bounds& bounds,
                                     double aspect);
 // Along `direction` (unit) at `focus`, `distance_mm` away; `up_hint` is made perpendicular.
 [[nodiscard]] SceneCamera look_along(const Eigen::Vector3d& direction, const Eigen::Vector3d& focus_mm,

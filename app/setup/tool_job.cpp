@@ -19,7 +19,7 @@ const tools::Tool& tool_of(const tools::ToolSet& tools, const std::string& name)
   return *tool;
 }
 
-const markers::MarkerObservation* seen_as(const pipeline::View& view, int id) {
+const markers::MarkerObservation* seen_as(const pipeline::PictureObservation& view, int id) {
   const auto found = std::find_if(view.markers.begin(), view.markers.end(),
                                   [&](const markers::MarkerObservation& marker) { return marker.id == id; });
   return found == view.markers.end() ? nullptr : &*found;

@@ -78,7 +78,7 @@ class ToolJob {
   ToolChoice choice_;
   tools::ToolSet tools_;
   pipeline::ViewTracker tracker_;
-  pipeline::View view_;
+  pipeline::PictureObservation view_;
   std::vector<geometry::RigidTransform> fixed_from_tool_;
   std::optional<int> world_id_;  // whose frame the poses are in
   std::size_t calibrated_count_ = 0;

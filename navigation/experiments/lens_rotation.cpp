@@ -30,7 +30,8 @@ pipeline::ViewTracker make_view_tracker(const camera::Calibration& camera, const
   return {options, markers::make_tracker(declared)};
 }
 
-std::optional<RulerError> error_of(const pipeline::View& view, const calibration::Ruler& ruler) {
+std::optional<RulerError> error_of(const pipeline::PictureObservation& view,
+                                   const calibration::Ruler& ruler) {
   const auto &first = view.markers[0], &second = view.markers[1];
   if (!view.stands_for(first) || !view.stands_for(second)) return std::nullopt;
   const auto measured = first.camera_from_marker.inverse() * second.camera_from_marker;
@@ -116,7 +117,7 @@ LensRotationResult run_lens_rotation(sources::FrameSource& source, const camera:
                       make_view_tracker(camera, seen, LensMode::NotFollowing),
                       make_view_tracker(camera, seen, LensMode::FocalRule)};
   LensRotationResult result;
-  pipeline::View view;
+  pipeline::PictureObservation view;
   // The mark's angle jumps from 360 to 0; the lens's does not.
   double unwrapped_deg = 0;
   while (const camera::FramePtr frame = source.next()) {

@@ -10,7 +10,7 @@ namespace arthronaut::markers {
 struct CameraSmear {
   double sigma_px = 1.2;
   double exposure_share = 0.5;  // of the time between frames
-  double gamma = 1.6;           // of the grey levels, as the dense fits find it
+  double gamma = 1.6;           // of the grey levels, as the direct fits find it
   BloomPrior bloom;
 };
 

@@ -1,5 +1,5 @@
-// Photogeometric refinement: the pose, the motion during the exposure and the light of a marker, from the
-// grey levels around all of its edges at once. The printed code is looked at through the camera model at
+// Direct (photometric) alignment: the pose, the motion during the exposure and the light of a marker, from
+// the grey levels around all of its edges at once. The printed code is looked at through the camera model at
 // every moment of the exposure, smeared by the optics, lit with a gain and a bias that vary smoothly over the
 // marker, and passed through the camera's tone curve; what is minimised is the difference in grey levels,
 // where noise is even. Areas between edges carry nothing and are left out.

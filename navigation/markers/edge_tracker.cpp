@@ -34,7 +34,8 @@ class EdgeTracker final : public MarkerTracker {
                                            std::int64_t timestamp_ns) override {
     check_frame_size(frame, camera);
     const LinearImage image(frame, light_);
-    const TrackedFrame tracked{image, camera, timestamp_ns, smear_, options_.fit_densely ? &dense_ : nullptr};
+    const TrackedFrame tracked{image, camera, timestamp_ns, smear_,
+                               options_.fit_directly ? &dense_ : nullptr};
     bool missing = false;
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       observations_[i] = MarkerObservation();

@@ -19,8 +19,8 @@ struct EdgeTrackerOptions {
   // detectors.
   double gamma = 1.6;
   double bloom_sigma_px =
-      0.2;                  // how far the bloom may be from the camera's mean; hardly above 0 leaves it out
-  bool fit_densely = true;  // false: edge profiles alone, also through motion blur; to compare
+      0.2;                   // how far the bloom may be from the camera's mean; hardly above 0 leaves it out
+  bool fit_directly = true;  // false: edge profiles alone, also through motion blur; to compare
   int search_every_frames = 4;  // a search of the whole frame, for doubles, while every marker is tracked
 };
 

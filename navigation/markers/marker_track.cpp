@@ -12,16 +12,16 @@ namespace {
 using geometry::RigidTransform;
 using geometry::Vector6d;
 
-// The corners that single edges make under a dense fit lie no farther from it, or it fits something else.
-constexpr double kMaxDenseRmsPx = 1.1, kMaxLoneRmsPx = 0.5;
+// The corners that single edges make under a direct fit lie no farther from it, or it fits something else.
+constexpr double kMaxDirectRmsPx = 1.1, kMaxLoneRmsPx = 0.5;
 // Motions over the exposure that are tried when none is known.
 constexpr double kTriedLengthsPx[] = {8, 18};
 constexpr int kTriedDirections = 4;
 const DirectOptions kTriedFit{
     .max_iterations = 5, .max_pixels = 300, .coarse_cells = 0.3, .max_way_cells = 3};
 const DirectOptions kUnsureFit{.coarse_cells = 0.3, .max_way_cells = 3};
-// A motion over the exposure from which on the dense fit is the better one, and what it must reach.
-constexpr double kSmearedPx = 3, kLittleSmearPx = 8, kUnconfirmed = 10, kMinDenseCellPx = 6;
+// A motion over the exposure from which on the direct fit is the better one, and what it must reach.
+constexpr double kSmearedPx = 3, kLittleSmearPx = 8, kUnconfirmed = 10, kMinDirectCellPx = 6;
 constexpr int kMaxPasses = 4;
 constexpr double kMaxNewMotionPx = 5;
 // At first sight the motion is a guess: so much more may be wrong with each corner.
@@ -84,35 +84,36 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
   // Without a past nothing is known of the motion, and edges alone may take a smear for another tilt.
   const bool is_motion_known = !is_found && motion_.is_known_at(frame.timestamp_ns);
   const double edges_motion_px = picture.motion.head<3>().norm() * px_per_mm;
-  if (frame.dense && (!is_motion_known || edges_motion_px > kSmearedPx) && cell > kMinDenseCellPx) {
+  if (frame.direct && (!is_motion_known || edges_motion_px > kSmearedPx) && cell > kMinDirectCellPx) {
     const RigidTransform& from = fit.converged ? fit.camera_from_marker : start;
-    DirectPose dense = fit_densely(frame, from, picture.motion, fit.converged ? DirectOptions() : kUnsureFit);
-    if (is_found && fit.converged && !dense.explains_picture())
-      dense = fit_densely(frame, from, picture.motion, kUnsureFit);
+    DirectPose direct =
+        fit_directly(frame, from, picture.motion, fit.converged ? DirectOptions() : kUnsureFit);
+    if (is_found && fit.converged && !direct.explains_picture())
+      direct = fit_directly(frame, from, picture.motion, kUnsureFit);
     // What moves may also pass for out of focus.
-    if (!is_motion_known && (!dense.explains_picture() || dense.sigma_px > kSoft * frame.smear.sigma_px)) {
+    if (!is_motion_known && (!direct.explains_picture() || direct.sigma_px > kSoft * frame.smear.sigma_px)) {
       const DirectPose moving = try_motions(frame, from);
-      if (!dense.explains_picture() || (moving.explains_picture() && moving.noise_grey < dense.noise_grey))
-        dense = moving;
+      if (!direct.explains_picture() || (moving.explains_picture() && moving.noise_grey < direct.noise_grey))
+        direct = moving;
     }
     // With no edge pose to agree with, the corners have to be its own all the more.
-    if (dense.is_usable())
-      report_dense(frame, dense, fit.converged ? kMaxDenseRmsPx : kMaxLoneRmsPx, observation);
+    if (direct.is_usable())
+      report_direct(frame, direct, fit.converged ? kMaxDirectRmsPx : kMaxLoneRmsPx, observation);
     if (observation.is_tracked()) {
-      frame.smear.gamma += 0.1 * (dense.gamma - frame.smear.gamma);
+      frame.smear.gamma += 0.1 * (direct.gamma - frame.smear.gamma);
       learn_exposure(
-          frame.smear.exposure_share * motion_.twist_to(dense.pose.camera_from_marker, frame.timestamp_ns),
-          dense.pose.velocity, px_per_mm, frame.smear);
+          frame.smear.exposure_share * motion_.twist_to(direct.pose.camera_from_marker, frame.timestamp_ns),
+          direct.pose.velocity, px_per_mm, frame.smear);
     }
     const bool is_sharp =
-        dense.explains_picture() && dense.pose.velocity.head<3>().norm() * px_per_mm < kSmearedPx;
+        direct.explains_picture() && direct.pose.velocity.head<3>().norm() * px_per_mm < kSmearedPx;
     if (observation.is_tracked() && !(is_sharp && fit.converged)) return true;
     if (!is_sharp) {
       if (!fit.converged) {
         observation.state = reason_of_loss(start, measurements_, cell);
         return false;
       }
-      // Edges that the dense fit does not confirm are good enough to go on from, not to stand for.
+      // Edges that the direct fit does not confirm are good enough to go on from, not to stand for.
       report_edges(frame, fit, picture, is_found, observation);
       if (!observation.is_tracked()) return false;
       if (is_motion_known && edges_motion_px < kLittleSmearPx) {
@@ -174,8 +175,8 @@ EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform&
   return fit;
 }
 
-DirectPose MarkerTrack::fit_densely(const TrackedFrame& frame, const RigidTransform& start,
-                                    const Vector6d& motion, const DirectOptions& options) {
+DirectPose MarkerTrack::fit_directly(const TrackedFrame& frame, const RigidTransform& start,
+                                     const Vector6d& motion, const DirectOptions& options) {
   DirectStart from;
   from.pose = {start, motion, Vector6d::Zero()};
   from.sigma_px = frame.smear.sigma_px;
@@ -188,8 +189,8 @@ DirectPose MarkerTrack::fit_densely(const TrackedFrame& frame, const RigidTransf
     from.pose.change = std::pow(frame.smear.exposure_share, 2) * *change;
     from.change_sigma_px = 1.5 + 0.5 * px_per_mm * from.pose.change.head<3>().norm();
   }
-  return frame.dense->refine(frame.image.view(), frame.camera, code_, samples_, marker_.size_mm, from,
-                             options);
+  return frame.direct->refine(frame.image.view(), frame.camera, code_, samples_, marker_.size_mm, from,
+                              options);
 }
 
 DirectPose MarkerTrack::try_motions(const TrackedFrame& frame, const RigidTransform& start) {
@@ -199,17 +200,17 @@ DirectPose MarkerTrack::try_motions(const TrackedFrame& frame, const RigidTransf
       const double angle = geometry::kPi * direction / kTriedDirections;
       const Vector6d motion =
           twist_of({length * std::cos(angle), length * std::sin(angle)}, frame.camera, start);
-      const DirectPose fit = fit_densely(frame, start, motion, kTriedFit);
+      const DirectPose fit = fit_directly(frame, start, motion, kTriedFit);
       if (!fit.is_usable() || (best.is_usable() && fit.noise_grey >= best.noise_grey)) continue;
       best = fit;
     }
   }
   if (!best.is_usable()) return best;
-  return fit_densely(frame, best.pose.camera_from_marker, best.pose.velocity, {.max_way_cells = 2});
+  return fit_directly(frame, best.pose.camera_from_marker, best.pose.velocity, {.max_way_cells = 2});
 }
 
-void MarkerTrack::report_dense(const TrackedFrame& frame, const DirectPose& fit, double max_rms_px,
-                               MarkerObservation& observation) {
+void MarkerTrack::report_direct(const TrackedFrame& frame, const DirectPose& fit, double max_rms_px,
+                                MarkerObservation& observation) {
   observation.camera_from_marker = fit.pose.camera_from_marker;
   observation.covariance = fit.covariance;
   // The motion is not followed in all six directions: what is left out changes about as much as what is seen.
@@ -250,7 +251,7 @@ void MarkerTrack::report_dense(const TrackedFrame& frame, const DirectPose& fit,
       std::hypot(kCornerSigmaPx, std::sqrt((poses->best.information * observation.covariance).trace() / 8));
   observation.ambiguity_ratio = std::min(kNoOtherPose, poses->other->rms_px / corner_px);
   if (observation.ambiguity_ratio >= kClearRatio) return;
-  const DirectPose other = fit_densely(frame, poses->other->camera_from_marker, fit.pose.velocity, {});
+  const DirectPose other = fit_directly(frame, poses->other->camera_from_marker, fit.pose.velocity, {});
   if (!other.is_usable() || other.noise_grey > kOtherNoise * fit.noise_grey) return;
   if (are_unlike(fit.pose.camera_from_marker, other.pose.camera_from_marker))
     observation.state = MarkerState::Ambiguous;

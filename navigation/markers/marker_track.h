@@ -22,7 +22,7 @@ struct TrackedFrame {
   const camera::CameraModel& camera;
   std::int64_t timestamp_ns = 0;
   CameraSmear& smear;
-  DirectFit* dense = nullptr;  // none: edge profiles alone
+  DirectFit* direct = nullptr;  // none: edge profiles alone
 };
 
 class MarkerTrack {
@@ -58,17 +58,17 @@ class MarkerTrack {
   // Edge profiles: refines the pose and the motion of `picture`.
   [[nodiscard]] EdgePose fit_edges(const TrackedFrame& frame, const geometry::RigidTransform& start,
                                    bool is_found, Smear& picture, SmearTrend& trend);
-  // Dense fit from a pose and a motion.
-  [[nodiscard]] DirectPose fit_densely(const TrackedFrame& frame, const geometry::RigidTransform& start,
-                                       const geometry::Vector6d& motion, const DirectOptions& options);
+  // Direct fit from a pose and a motion.
+  [[nodiscard]] DirectPose fit_directly(const TrackedFrame& frame, const geometry::RigidTransform& start,
+                                        const geometry::Vector6d& motion, const DirectOptions& options);
   // The same with motions from a grid, where none is known; the best, usable or not.
   [[nodiscard]] DirectPose try_motions(const TrackedFrame& frame, const geometry::RigidTransform& start);
-  // From here on the pose in the observation is judged: what the edges say, and the dense fit where there is
+  // From here on the pose in the observation is judged: what the edges say, and the direct fit where there is
   // one.
   void report_edges(const TrackedFrame& frame, const EdgePose& fit, const Smear& picture, bool is_found,
                     MarkerObservation& observation);
-  void report_dense(const TrackedFrame& frame, const DirectPose& fit, double max_rms_px,
-                    MarkerObservation& observation);
+  void report_direct(const TrackedFrame& frame, const DirectPose& fit, double max_rms_px,
+                     MarkerObservation& observation);
   // A pose that is good enough to go on from, not to stand for; of several in one frame, the one whose edges
   // agree best.
   void go_on_from(const EdgePose& fit);

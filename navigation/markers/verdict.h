@@ -21,7 +21,7 @@ inline constexpr double kMaxEdgeRmsPx = 1.2;  // how far an edge, or a corner, m
 // corners allow; `is_found`: nothing is known from frames before.
 [[nodiscard]] MarkerState judge(const EdgePose& fit, const MarkerObservation& observation,
                                 const std::optional<SquarePose>& other, bool is_found);
-// What the dense fit says. The observation holds its covariance; max_rms_px: how far the corners that single
+// What the direct fit says. The observation holds its covariance; max_rms_px: how far the corners that single
 // edges make may lie from the fit.
 [[nodiscard]] MarkerState judge(const DirectPose& fit, double max_rms_px,
                                 const MarkerObservation& observation);

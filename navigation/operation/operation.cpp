@@ -25,7 +25,7 @@ registration::Provenance provenance_of(const OperationSetup& setup, const Source
 RegistrationWorkOptions work_options(const OperationSetup& setup) {
   RegistrationWorkOptions options;
   options.online.seed = options.fit.seed = setup.seed;
-  options.online.covered = options.fit.covered = setup.cartilage;
+  options.online.cartilage = options.fit.cartilage = setup.cartilage;
   if (setup.plan) {
     options.online.target_in_bone_mm = options.fit.target_in_bone_mm = setup.plan->tunnel.entry_mm;
     options.online.direction_in_bone = setup.plan->tunnel.direction;

@@ -92,7 +92,7 @@ void Touches::judge(const registration::RegistrationSummary* registration, const
     std::optional<double> residual_mm = surface->signed_distance_mm(p);
     if (cartilage) {
       const auto offset_mm =
-          registration::cover_offset_mm(*registration, *cartilage, surface->closest_point(p).point_mm);
+          registration::cartilage_offset_mm(*registration, *cartilage, surface->closest_point(p).point_mm);
       residual_mm = offset_mm ? std::optional(*residual_mm - *offset_mm) : std::nullopt;
     }
     residuals_mm_.push_back(residual_mm);

@@ -8,7 +8,7 @@ namespace arthronaut::pipeline {
 
 namespace {
 
-geometry::TrackedPose tracked_pose(const View& view, std::size_t marker) {
+geometry::TrackedPose tracked_pose(const PictureObservation& view, std::size_t marker) {
   geometry::TrackedPose pose;
   pose.timestamp_ns = view.timestamp_ns;
   pose.is_valid = !view.is_frozen && view.stands_for(view.markers[marker]);

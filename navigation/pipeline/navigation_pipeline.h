@@ -42,7 +42,7 @@ struct ToolPose {
 
 // What one frame says. Immutable once published. Everything of the base is about the picture alone; what
 // follows is about the knee and is valid only in a live picture whose intrinsics are known.
-struct FrameResult : View {                 // markers: world markers first, then the tools'
+struct FrameResult : PictureObservation {   // markers: world markers first, then the tools'
   geometry::TrackedPose camera_from_world;  // the world marker of the bone
   std::vector<ToolPose> tools;              // world_from_tool of each tool, in the order of the tool set
   bool tip_is_valid = false;

@@ -49,7 +49,7 @@ ViewStatistics::ViewStatistics(const tools::ToolSet& tools) {
   for (const tools::Tool& tool : tools.tools) add_marker(markers, tool.marker_id, tool.name);
 }
 
-void ViewStatistics::add(const View& view, double processing_ms) {
+void ViewStatistics::add(const PictureObservation& view, double processing_ms) {
   ++frame_count;
   frames_with_mark += view.lens.mark == lens::MarkState::Found ? 1 : 0;
   frames_with_unknown_lens += view.intrinsics_are_known ? 0 : 1;
@@ -75,7 +75,7 @@ TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions&
   video.statistics = ViewStatistics(tools);
   ViewTracker tracker(options, markers::make_tracker(markers::declared_markers(tools)));
   PrefetchedSource prefetched(source);
-  View view;
+  PictureObservation view;
   while (const camera::FramePtr frame = prefetched.next()) {
     const auto begin = std::chrono::steady_clock::now();
     tracker.observe(*frame, view);

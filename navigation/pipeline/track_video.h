@@ -31,7 +31,7 @@ struct ViewStatistics {
 
   explicit ViewStatistics(const tools::ToolSet& tools);
   ViewStatistics() = default;
-  void add(const View& view, double processing_ms);
+  void add(const PictureObservation& view, double processing_ms);
 };
 
 struct TrackedVideo {

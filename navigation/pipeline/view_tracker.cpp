@@ -27,7 +27,7 @@ struct ViewTracker::State {
     (void)camera::CameraModel(options.calibration, 0, options.refractive_index, options.fluid_model);
   }
 
-  void follow_lens(View& view) {
+  void follow_lens(PictureObservation& view) {
     mark_was_seen = mark_was_seen || view.lens.mark == lens::MarkState::Found;
     const bool angle_is_usable = options.follow_lens && mark_was_seen;
     const double angle_rad =
@@ -62,7 +62,7 @@ ViewTracker::ViewTracker(const ViewTrackerOptions& options, std::unique_ptr<mark
 
 ViewTracker::~ViewTracker() = default;
 
-void ViewTracker::observe(const camera::Frame& frame, View& view) {
+void ViewTracker::observe(const camera::Frame& frame, PictureObservation& view) {
   State& s = *state_;
   const Eigen::Vector2i& size = s.options.calibration.image_size_px;
   if (frame.width != size.x() || frame.height != size.y()) {
@@ -82,7 +82,7 @@ void ViewTracker::observe(const camera::Frame& frame, View& view) {
   view.markers.assign(markers.begin(), markers.end());
 }
 
-void append_pose_rows(const View& view, std::vector<strokes::PoseRow>& rows) {
+void append_pose_rows(const PictureObservation& view, std::vector<strokes::PoseRow>& rows) {
   for (const markers::MarkerObservation& marker : view.markers) {
     if (!view.stands_for(marker)) continue;
     strokes::PoseRow row;

@@ -25,7 +25,7 @@ struct ViewTrackerOptions {
 };
 
 // What one picture shows.
-struct View {
+struct PictureObservation {
   std::int64_t frame_index = 0;
   std::int64_t timestamp_ns = 0;
   lens::LensObservation lens;
@@ -52,7 +52,7 @@ class ViewTracker {
   // Frames in order of time. `view` is reused from call to call. Throws InvalidInput when the frame's size is
   // not that of the calibration; never on what a picture shows. Allocates nothing of its own after the first
   // frames.
-  void observe(const camera::Frame& frame, View& view);
+  void observe(const camera::Frame& frame, PictureObservation& view);
 
  private:
   struct State;
@@ -60,6 +60,6 @@ class ViewTracker {
 };
 
 // Appends the rows of poses.csv: the poses that the view stands for.
-void append_pose_rows(const View& view, std::vector<strokes::PoseRow>& rows);
+void append_pose_rows(const PictureObservation& view, std::vector<strokes::PoseRow>& rows);
 
 }  // namespace arthronaut::pipeline

@@ -229,7 +229,7 @@ operation::OperationSetup setup_of(const RecordedSession& first, const ReplayOpt
   setup.bone = first.header().bone;
   setup.mesh_sha256 = first.header().mesh_sha256;
   setup.surface = options.surface;
-  setup.cartilage = options.covered;
+  setup.cartilage = options.cartilage;
   if (first.header().registers_after_mm > 0) setup.registers_after_mm = first.header().registers_after_mm;
   for (const SessionEvent& event : first.events()) {
     if (event.kind != kPlanEvent) continue;

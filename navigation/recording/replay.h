@@ -19,8 +19,8 @@ namespace arthronaut::recording {
 struct ReplayOptions {
   // The bone to register to. Null: nothing is registered again.
   operation::SurfaceIndexPtr bone;
-  std::shared_ptr<const geometry::Surface> surface;                     // of the same mesh, for the touches
-  std::optional<registration::CartilageRegion> covered = std::nullopt;  // of the bone
+  std::shared_ptr<const geometry::Surface> surface;                       // of the same mesh, for the touches
+  std::optional<registration::CartilageRegion> cartilage = std::nullopt;  // of the bone
   // What passes for the same, on a copied video: far above rounding, far below anything that matters.
   double tolerance_mm = 1e-3, tolerance_deg = 1e-3;
   // On frames that the recorder encoded itself, whose pixels are not quite those that were tracked: three

@@ -18,14 +18,14 @@ enum class SideVerdict { Own, Unclear, Other };
 struct SearchSetting {
   SearchSetting(const SurfaceIndex::Data& searched_bone, const RegistrationOptions& registration_options);
 
-  // The residuals' law while the thickness of a declared cover is not known yet.
-  [[nodiscard]] ContactModel start_law() const;
+  // The noise model while the thickness of declared cartilage is not known yet.
+  [[nodiscard]] NoiseModel start_noise() const;
 
   const SurfaceIndex::Data& bone;
   RegistrationOptions options;
   std::vector<bool>
       reachable;  // samples of the bone, by the planned entry; empty without one that is on the bone
-  std::optional<CoverMap> cover;  // of options.covered
+  std::optional<CartilageMap> cartilage;  // of options.cartilage
 };
 
 struct SearchOutcome {

@@ -79,13 +79,13 @@ SearchSetting::SearchSetting(const SurfaceIndex::Data& searched_bone,
                              const RegistrationOptions& registration_options)
     : bone(searched_bone), options(registration_options) {
   if (options.plan_entry_in_bone_mm) reachable = find_reachable_samples(bone, *options.plan_entry_in_bone_mm);
-  if (options.covered) cover.emplace(bone, *options.covered);
+  if (options.cartilage) cartilage.emplace(bone, *options.cartilage);
 }
 
-ContactModel SearchSetting::start_law() const {
-  ContactModel law;
-  if (cover) law.buried_density_per_mm = ContactModel::kOftenBuried_per_mm;
-  return law;
+NoiseModel SearchSetting::start_noise() const {
+  NoiseModel noise;
+  if (cartilage) noise.buried_density_per_mm = NoiseModel::kOftenBuried_per_mm;
+  return noise;
 }
 
 SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::Curves& curves,
@@ -102,7 +102,7 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
   const std::vector<strokes::OrientedPoint> oriented = strokes::oriented_points(curves);
   MarkerPrior prior;
   prior.use = options.use_marker_prior;
-  PosePool pool(bone, prior, setting.start_law());
+  PosePool pool(bone, prior, setting.start_noise());
   for (int round = 0; round < max_rounds; ++round) {
     const std::uint64_t seed = options.seed * kMaxRounds + static_cast<std::uint64_t>(round);
     const bool is_near_plan = round == 0 && !setting.reachable.empty();
@@ -126,21 +126,21 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
   SearchOutcome outcome;
   outcome.measurements = points.weight_sum / kCorrelationLength_mm;
   if (!pool.empty()) outcome.cost = pool.best().cost;
-  CoverFit cover;
+  CartilageFit cartilage;
   std::vector<std::optional<double>> offsets_mm;
-  if (setting.cover && !pool.empty()) {
-    cover = CoverFitter(bone, *setting.cover, prior).fit(pool, points, true);
-    points = cover.points;
+  if (setting.cartilage && !pool.empty()) {
+    cartilage = CartilageFitter(bone, *setting.cartilage, prior).fit(pool, points, true);
+    points = cartilage.points;
     pool.polish(points);
-    offsets_mm = cover.offsets_mm(*setting.cover, curves, pool.best().bone_from_marker);
-    outcome.cost = cover.cost;  // not of fewer points where the region was left out
+    offsets_mm = cartilage.offsets_mm(*setting.cartilage, curves, pool.best().bone_from_marker);
+    outcome.cost = cartilage.cost;  // not of fewer points where the region was left out
   }
   outcome.summary = summarise(
       bone, pool, {curves, points, strokes::stroke_length_mm(curves), white_noise_mm, std::move(offsets_mm)},
       options);
-  if (setting.cover && outcome.summary.has_pose) {
+  if (setting.cartilage && outcome.summary.has_pose) {
     const Eigen::Vector3d centroid_mm = pool.best().bone_from_marker * points.centroid_mm;
-    cover.add_to(outcome.summary, options.target_in_bone_mm.value_or(centroid_mm));
+    cartilage.add_to(outcome.summary, options.target_in_bone_mm.value_or(centroid_mm));
   }
   if (options.plan_entry_in_bone_mm && !pool.empty()) {
     outcome.summary.assumptions.push_back(
@@ -151,7 +151,7 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
   constexpr double kManyMeasurements = 60, kSmallShare = 0.8, kAmpleLead = 20;
   outcome.fits = misfit_share <= 1;
   // A thickness that is free, or points that are left out, let other shapes fit well too.
-  outcome.fits_amply = !setting.cover && misfit_share < kSmallShare &&
+  outcome.fits_amply = !setting.cartilage && misfit_share < kSmallShare &&
                        outcome.measurements > kManyMeasurements && lead_of_best(pool, points) > kAmpleLead;
   return outcome;
 }
@@ -178,7 +178,7 @@ SideVerdict judge_side(const SearchSetting& setting, const strokes::Curves& curv
   // To name the right reason is worth a little more, above all where the search has no marker to go by or a
   // thickness is free.
   constexpr int kRounds = 3, kRoundsToName = 4;
-  const bool is_easy = setting.options.use_marker_prior && !setting.cover;
+  const bool is_easy = setting.options.use_marker_prior && !setting.cartilage;
   const int rounds = found.summary.reliable ? kRounds : is_easy ? kRoundsToName : kMaxRounds;
   const SearchOutcome image = search_and_summarise(setting, mirrored(curves), rounds);
   const double image_lead = (found.cost - image.cost) * image.measurements;

@@ -53,19 +53,19 @@ struct RegistrationOptions {
   // don't lie there.
   std::optional<Eigen::Vector3d> plan_entry_in_bone_mm = std::nullopt;
   // Its thickness is solved, or it is left out when the strokes don't hold it; the assumptions say which.
-  std::optional<CartilageRegion> covered = std::nullopt;
+  std::optional<CartilageRegion> cartilage = std::nullopt;
 };
 
-// What a registration made of the covered region. None: without one, or it was taken to lie on the mesh.
-enum class CoverUse { None, Solved, LeftOut };
+// What a registration made of the cartilage. None: without one, or it was taken to lie on the mesh.
+enum class CartilageUse { None, Solved, LeftOut };
 
 struct RegistrationSummary {
   bool has_pose = false;  // false: nothing was found, the pose below is meaningless
   bool reliable = false;
   std::vector<std::string> reasons = {"no registration was run"};  // why it is not reliable; empty when it is
   std::vector<std::string> assumptions;  // what was taken for granted or left out, in plain words
-  CoverUse cover_use = CoverUse::None;
-  double cover_thickness_mm = 0;  // where it was solved: how far off the mesh the probe touches there
+  CartilageUse cartilage_use = CartilageUse::None;
+  double cartilage_thickness_mm = 0;  // where it was solved: how far off the mesh the probe touches there
   geometry::RigidTransform marker_from_bone;
   geometry::Matrix6d covariance =
       geometry::Matrix6d::Zero();  // of the body twist of marker_from_bone, correlated errors in
@@ -73,8 +73,8 @@ struct RegistrationSummary {
   double inlier_fraction = 0;
   int point_count = 0;
   double predicted_tre_mm = 0;  // one sigma, at the target
-  // Signed distance of each curve point to what was touched, in the order given: to the bone's mesh, and on a
-  // covered region whose thickness was solved, to a surface that far off the mesh. On one that was left out,
+  // Signed distance of each curve point to what was touched, in the order given: to the bone's mesh, and on
+  // cartilage whose thickness was solved, to a surface that far off the mesh. On cartilage that was left out,
   // to the mesh.
   std::vector<double> point_residuals_mm;
   // How near the best different solution came: its robust cost over the best one's; large is good.
@@ -98,8 +98,8 @@ struct RegistrationSummary {
 
 // How far off the mesh the probe touches at a place of the bone's surface, by a registration that was told of
 // the region; nullopt where that is not known.
-[[nodiscard]] std::optional<double> cover_offset_mm(const RegistrationSummary& registration,
-                                                    const CartilageRegion& region,
-                                                    const Eigen::Vector3d& place_in_bone_mm);
+[[nodiscard]] std::optional<double> cartilage_offset_mm(const RegistrationSummary& registration,
+                                                        const CartilageRegion& region,
+                                                        const Eigen::Vector3d& place_in_bone_mm);
 
 }  // namespace arthronaut::registration

@@ -30,7 +30,6 @@ class NearestTriangles {
         origin_mm_(origin_mm),
         spacing_mm_(spacing_mm),
         size_(size),
-        band_mm_(band_mm),
         buckets_(static_cast<std::size_t>(band_mm / bucket_mm()) + 2) {
     const auto count = static_cast<std::size_t>(size.x()) * static_cast<std::size_t>(size.y()) *
                        static_cast<std::size_t>(size.z());
@@ -115,7 +114,6 @@ class NearestTriangles {
   Eigen::Vector3d origin_mm_;
   double spacing_mm_;
   Eigen::Vector3i size_;
-  double band_mm_;
   std::vector<float> squared_mm2_;
   std::vector<std::int32_t> triangle_;
   std::vector<std::vector<std::uint32_t>> buckets_;  // nodes by distance

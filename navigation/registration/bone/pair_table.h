@@ -4,6 +4,11 @@
 // A pair of curve points (P, Q, tangents p, q) and a pair of surface points (P', Q', normals n, m) can match
 // only where the distances agree and, with e the unit baseline, c_p = p.e and so on, the angles allow both
 // tangents to lie across both normals: then the turn about the baseline is fixed, up to few choices.
+//
+// The constraint is that of C. Raposo, J. P. Barreto, "3D registration of curves and surfaces using local
+// differential information", CVPR 2018, which the MICCAI paper registers with. The table that is looked up by
+// distance and angles is in the manner of B. Drost, M. Ulrich, N. Navab, S. Ilic, "Model globally, match
+// locally: efficient and robust 3D object recognition", CVPR 2010.
 #pragma once
 
 #include <Eigen/Core>

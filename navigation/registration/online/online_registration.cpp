@@ -46,9 +46,9 @@ struct OnlineRegistration::State {
       : bone(std::move(prepared)),
         options(online_options),
         setting(bone->data(), options_of(online_options)),
-        pool(bone->data(), prior_of(online_options), setting.start_law()),
+        pool(bone->data(), prior_of(online_options), setting.start_noise()),
         standing(pool) {
-    if (setting.cover) fitter.emplace(bone->data(), *setting.cover, pool.prior());
+    if (setting.cartilage) fitter.emplace(bone->data(), *setting.cartilage, pool.prior());
     if (options.target_in_bone_mm)
       reachable = find_reachable_samples(bone->data(), *options.target_in_bone_mm);
   }
@@ -61,7 +61,7 @@ struct OnlineRegistration::State {
 
   static RegistrationOptions options_of(const OnlineOptions& options) {
     RegistrationOptions registering{options.seed, options.use_marker_prior, options.target_in_bone_mm};
-    registering.covered = options.covered;
+    registering.cartilage = options.cartilage;
     return registering;
   }
 
@@ -74,7 +74,7 @@ struct OnlineRegistration::State {
   [[nodiscard]] Eigen::Vector3d target_mm() const;
   // How far off the mesh the bone is touched there; nullopt where that is not known.
   [[nodiscard]] std::optional<double> offset_mm(const Eigen::Vector3d& point_in_bone_mm) const {
-    return setting.cover ? cover.offset_mm(*setting.cover, point_in_bone_mm) : 0.0;
+    return setting.cartilage ? cartilage.offset_mm(*setting.cartilage, point_in_bone_mm) : 0.0;
   }
   [[nodiscard]] int agreement_count() const;
 
@@ -84,10 +84,10 @@ struct OnlineRegistration::State {
   std::vector<bool> reachable;  // samples of the bone, by the tunnel's entry; empty without one
   StrokeSet strokes;
   PosePool pool;      // of the search, which knows the mesh alone
-  PosePool standing;  // of the last solution: the same, or with a cover its poses with their thicknesses
-  std::optional<CoverFitter> fitter;
+  PosePool standing;  // of the last solution: the same, or with cartilage its poses with their thicknesses
+  std::optional<CartilageFitter> fitter;
   WeightedPoints points;      // of the last solution
-  CoverFit cover;             // of the last solution; nothing of it holds without options.covered
+  CartilageFit cartilage;     // of the last solution; nothing of it holds without options.cartilage
   double cover_tried_mm = 0;  // the stroke length when all thicknesses were tried the last time
   double solved_length_mm = 0;
   bool is_changed = false;                // strokes were excluded, undone or cleared since the last solution
@@ -110,8 +110,8 @@ void OnlineRegistration::State::fit_cover() {
   const bool anew =
       result.state == OnlineState::Collecting || is_changed || length_mm > kLengthRatio * cover_tried_mm;
   if (anew) cover_tried_mm = length_mm;
-  cover = fitter->fit(standing, points, anew);
-  points = cover.points;
+  cartilage = fitter->fit(standing, points, anew);
+  points = cartilage.points;
 }
 
 void OnlineRegistration::State::solve() {
@@ -142,13 +142,13 @@ void OnlineRegistration::State::solve() {
   std::vector<std::optional<double>> offsets_mm;
   if (fitter && !standing.empty()) {
     fit_cover();
-    offsets_mm = cover.offsets_mm(*setting.cover, curves, standing.best().bone_from_marker);
+    offsets_mm = cartilage.offsets_mm(*setting.cartilage, curves, standing.best().bone_from_marker);
   }
   const double white_noise_mm = white_noise_of(oriented);
   const TouchedCurves touched{curves, points, strokes.length_in_use_mm(), white_noise_mm,
                               std::move(offsets_mm)};
   result.registration = summarise(bone->data(), standing, touched, setting.options);
-  if (fitter && !standing.empty()) cover.add_to(result.registration, target_mm());
+  if (fitter && !standing.empty()) cartilage.add_to(result.registration, target_mm());
   if (!result.registration.has_pose) {
     result.registration.reasons = objections;
     if (objections.empty())

@@ -33,7 +33,7 @@ struct OnlineOptions {
   std::optional<Eigen::Vector3d> target_in_bone_mm;  // the tunnel's entry; else the centroid of the points
   std::optional<Eigen::Vector3d> direction_in_bone;  // the tunnel's, for the predicted error of its angle
   // Its thickness is solved with each update, or it is left out; registration.assumptions says which.
-  std::optional<CartilageRegion> covered = std::nullopt;
+  std::optional<CartilageRegion> cartilage = std::nullopt;
   double refine_every_mm = 10;  // of new stroke
 };
 
@@ -96,7 +96,7 @@ class OnlineRegistration {
   // Solves again when enough was drawn or anything changed; otherwise returns what is known. About 6 ms once
   // a candidate is there, more while collecting, and some 200 ms when the side is checked: before the first
   // confirmation, again when half as much again was drawn, and with each update while the side is in doubt.
-  // With a covered region about twice as long, and 30 to 60 ms when all thicknesses are tried: while
+  // With cartilage about twice as long, and 30 to 60 ms when all thicknesses are tried: while
   // collecting, and when a quarter more was drawn.
   const OnlineResult& update();
 

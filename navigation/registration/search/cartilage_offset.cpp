@@ -12,7 +12,7 @@ namespace arthronaut::registration {
 namespace {
 
 constexpr double kThinnest_mm = -4, kThickest_mm = 5;
-// The contact's law is about half a millimetre wide: coarser steps could pass the right thickness by.
+// The contact's density is about half a millimetre wide: coarser steps could pass the right thickness by.
 constexpr double kCoarseStep_mm = 0.5, kFineStep_mm = 0.25;
 constexpr int kCoarseIterations = 6, kFineIterations = 8;
 constexpr std::size_t kCoarsePointCount = 250, kMaxPoses = 8;
@@ -25,20 +25,20 @@ Eigen::Vector3i cell_of(const Eigen::Vector3d& point_mm, double width_mm) {
 
 // Which of the points lie on the region, as a pose puts them.
 struct Assignment {
-  Assignment(const CoverMap& map, const WeightedPoints& points,
+  Assignment(const CartilageMap& map, const WeightedPoints& points,
              const geometry::RigidTransform& bone_from_marker) {
     for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
-      is_covered.push_back(map.covers(bone_from_marker * points.positions_mm[i]));
-      (is_covered.back() ? covered_sum : bare_sum) += points.weights[i];
+      is_on_cartilage.push_back(map.covers(bone_from_marker * points.positions_mm[i]));
+      (is_on_cartilage.back() ? cartilage_sum : bare_sum) += points.weights[i];
     }
   }
   [[nodiscard]] bool touches_bare() const { return bare_sum > kMinMeasurements * kCorrelationLength_mm; }
   [[nodiscard]] bool touches_both() const {
-    return touches_bare() && covered_sum > kMinMeasurements * kCorrelationLength_mm;
+    return touches_bare() && cartilage_sum > kMinMeasurements * kCorrelationLength_mm;
   }
 
-  std::vector<bool> is_covered;
-  double covered_sum = 0, bare_sum = 0;
+  std::vector<bool> is_on_cartilage;
+  double cartilage_sum = 0, bare_sum = 0;
 };
 
 // One pose with the thickness that suits it best.
@@ -53,20 +53,20 @@ struct PoseFit {
 
 class Fit {
  public:
-  Fit(const SurfaceIndex::Data& bone, const CoverMap& map, const MarkerPrior& prior,
+  Fit(const SurfaceIndex::Data& bone, const CartilageMap& map, const MarkerPrior& prior,
       const WeightedPoints& points)
       : bone_(bone), map_(map), prior_(prior), points_(points) {}
 
   [[nodiscard]] PoseFit from(const RefinedPose& start) const {
     // Where the mesh has too much, half of the points are buried until the thickness is known; where it lacks
-    // some, a law that lets points be buried goes astray. Which it is shows afterwards.
-    PoseFit as_lacking = from_law(start, ContactModel::kRarelyBuried_per_mm);
-    PoseFit as_too_much = from_law(start, ContactModel::kOftenBuried_per_mm);
+    // some, a model that lets points be buried goes astray. Which it is shows afterwards.
+    PoseFit as_lacking = from_noise(start, NoiseModel::kRarelyBuried_per_mm);
+    PoseFit as_too_much = from_noise(start, NoiseModel::kOftenBuried_per_mm);
     return as_too_much.pose.cost < as_lacking.pose.cost ? as_too_much : as_lacking;
   }
   [[nodiscard]] PoseFit on_from(const RefinedPose& pose, double thickness_mm, double profile_width_mm) const {
-    PoseFit fit = started(with_buried(pose, ContactModel::kRarelyBuried_per_mm), thickness_mm);
-    if (!has_cover_to_fit(fit)) return on_bare_bone(pose);
+    PoseFit fit = started(with_buried(pose, NoiseModel::kRarelyBuried_per_mm), thickness_mm);
+    if (!has_cartilage_to_fit(fit)) return on_bare_bone(pose);
     fit.thickness_mm = thickness_mm;
     fit.profile_width_mm = profile_width_mm;
     search_finely(fit);
@@ -79,21 +79,21 @@ class Fit {
     pose.model.buried_density_per_mm = density_per_mm;
     return pose;
   }
-  [[nodiscard]] PoseFit from_law(const RefinedPose& start, double buried_density_per_mm) const {
+  [[nodiscard]] PoseFit from_noise(const RefinedPose& start, double buried_density_per_mm) const {
     PoseFit fit = started(with_buried(start, buried_density_per_mm), 0);
-    if (!has_cover_to_fit(fit)) return on_bare_bone(start);
+    if (!has_cartilage_to_fit(fit)) return on_bare_bone(start);
     search_coarsely(fit);
-    fit.pose = with_buried(fit.pose, ContactModel::kRarelyBuried_per_mm);
+    fit.pose = with_buried(fit.pose, NoiseModel::kRarelyBuried_per_mm);
     // What lies on the region shows better from here.
     fit.assignment = Assignment(map_, points_, fit.pose.bone_from_marker);
     search_finely(fit);
     return fit;
   }
   [[nodiscard]] PoseFit on_bare_bone(const RefinedPose& start) const {
-    return started(with_buried(start, ContactModel::kRarelyBuried_per_mm), 0);
+    return started(with_buried(start, NoiseModel::kRarelyBuried_per_mm), 0);
   }
-  [[nodiscard]] static bool has_cover_to_fit(const PoseFit& fit) {
-    return fit.assignment.touches_bare() && fit.assignment.covered_sum > 0;
+  [[nodiscard]] static bool has_cartilage_to_fit(const PoseFit& fit) {
+    return fit.assignment.touches_bare() && fit.assignment.cartilage_sum > 0;
   }
 
   [[nodiscard]] PoseFit started(const RefinedPose& start, double thickness_mm) const {
@@ -107,7 +107,7 @@ class Fit {
                                     const RefinedPose& start, double thickness_mm, int iterations) const {
     points.offsets_mm.assign(points.positions_mm.size(), 0.0);
     for (std::size_t i = 0; i < points.offsets_mm.size(); ++i) {
-      if (assignment.is_covered[i]) points.offsets_mm[i] = thickness_mm;
+      if (assignment.is_on_cartilage[i]) points.offsets_mm[i] = thickness_mm;
     }
     return refine([this](const Eigen::Vector3d& p) { return bone_.field.sample(p); }, points,
                   start.bone_from_marker, start.model, prior_, iterations);
@@ -192,7 +192,7 @@ class Fit {
   [[nodiscard]] double measurements() const { return points_.weight_sum / kCorrelationLength_mm; }
 
   const SurfaceIndex::Data& bone_;
-  const CoverMap& map_;
+  const CartilageMap& map_;
   const MarkerPrior& prior_;
   const WeightedPoints& points_;
 };
@@ -218,7 +218,7 @@ WeightedPoints bare_points(const PoseFit& fit) {
   const WeightedPoints& points = fit.points;
   WeightedPoints bare;
   for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
-    if (fit.assignment.is_covered[i]) continue;
+    if (fit.assignment.is_on_cartilage[i]) continue;
     bare.positions_mm.push_back(points.positions_mm[i]);
     bare.weights.push_back(points.weights[i]);
     bare.stretches.push_back(points.stretches[i]);
@@ -230,45 +230,45 @@ WeightedPoints bare_points(const PoseFit& fit) {
 }
 
 // What the best says about the region; the others are put beside it.
-CoverFit summarised(const std::vector<PoseFit>& fits, PosePool& pool, const WeightedPoints& points) {
+CartilageFit summarised(const std::vector<PoseFit>& fits, PosePool& pool, const WeightedPoints& points) {
   const PoseFit& best = fits.front();
-  CoverFit cover;
-  cover.cost = best.pose.cost;
-  cover.has_bare = best.assignment.touches_bare();
-  cover.is_solved = best.is_held;
-  cover.is_left_out = best.assignment.covered_sum > 0 && cover.has_bare && !best.is_held;
-  cover.thickness_mm = best.thickness_mm;
-  cover.sigma_mm = best.sigma_mm;
-  cover.drift_per_mm = best.drift_per_mm;
-  cover.points = cover.is_left_out ? bare_points(best) : best.points;
+  CartilageFit cartilage;
+  cartilage.cost = best.pose.cost;
+  cartilage.has_bare = best.assignment.touches_bare();
+  cartilage.is_solved = best.is_held;
+  cartilage.is_left_out = best.assignment.cartilage_sum > 0 && cartilage.has_bare && !best.is_held;
+  cartilage.thickness_mm = best.thickness_mm;
+  cartilage.sigma_mm = best.sigma_mm;
+  cartilage.drift_per_mm = best.drift_per_mm;
+  cartilage.points = cartilage.is_left_out ? bare_points(best) : best.points;
   std::vector<RefinedPose> poses;
   for (const PoseFit& fit : fits) poses.push_back(fit.pose);
   pool.replace(std::move(poses), points.centroid_mm);
-  if (cover.is_left_out) pool.refine_all(cover.points, kFineIterations);
-  if (best.assignment.covered_sum <= 0) {
-    cover.assumption = "no stroke lies on the covered region";
-  } else if (!cover.has_bare) {
-    cover.assumption = "the covered region was taken to lie on the mesh: nothing but it was touched";
-  } else if (cover.is_solved) {
-    cover.assumption = files::format(
-        "the covered region lies %.1f mm off the mesh, one sigma %.1f mm: solved from the strokes",
-        cover.thickness_mm, cover.sigma_mm);
+  if (cartilage.is_left_out) pool.refine_all(cartilage.points, kFineIterations);
+  if (best.assignment.cartilage_sum <= 0) {
+    cartilage.assumption = "no stroke lies on the cartilage";
+  } else if (!cartilage.has_bare) {
+    cartilage.assumption = "the cartilage was taken to lie on the mesh: nothing but it was touched";
+  } else if (cartilage.is_solved) {
+    cartilage.assumption =
+        files::format("the cartilage lies %.1f mm off the mesh, one sigma %.1f mm: solved from the strokes",
+                      cartilage.thickness_mm, cartilage.sigma_mm);
   } else {
-    cover.assumption = "the covered region was left out: the strokes don't hold its thickness";
+    cartilage.assumption = "the cartilage was left out: the strokes don't hold its thickness";
   }
-  return cover;
+  return cartilage;
 }
 
 }  // namespace
 
-CoverMap::CoverMap(const SurfaceIndex::Data& bone, const CartilageRegion& region)
+CartilageMap::CartilageMap(const SurfaceIndex::Data& bone, const CartilageRegion& region)
     : bone_(bone), reach_mm_(region.reach_mm) {
   if (!(reach_mm_ > 0)) return;
   for (const Eigen::Vector3d& point : region.points_mm)
     cells_[cell_key(cell_of(point, reach_mm_))].push_back(point);
 }
 
-bool CoverMap::covers(const Eigen::Vector3d& point_in_bone_mm) const {
+bool CartilageMap::covers(const Eigen::Vector3d& point_in_bone_mm) const {
   if (cells_.empty() || !point_in_bone_mm.allFinite()) return false;
   // A lifted tip, or one on thick cartilage, is over the same place as one on the bone.
   const DistanceField::Sample sample = bone_.field.sample(point_in_bone_mm);
@@ -291,27 +291,28 @@ bool CoverMap::covers(const Eigen::Vector3d& point_in_bone_mm) const {
   return false;
 }
 
-std::optional<double> CoverFit::offset_mm(const CoverMap& map,
-                                          const Eigen::Vector3d& point_in_bone_mm) const {
+std::optional<double> CartilageFit::offset_mm(const CartilageMap& map,
+                                              const Eigen::Vector3d& point_in_bone_mm) const {
   if ((!is_solved && !is_left_out) || !map.covers(point_in_bone_mm)) return 0.0;
   if (is_left_out) return std::nullopt;
   return thickness_mm;
 }
 
-std::optional<double> cover_offset_mm(const RegistrationSummary& registration, const CartilageRegion& region,
-                                      const Eigen::Vector3d& place_in_bone_mm) {
-  if (registration.cover_use == CoverUse::None) return 0.0;
+std::optional<double> cartilage_offset_mm(const RegistrationSummary& registration,
+                                          const CartilageRegion& region,
+                                          const Eigen::Vector3d& place_in_bone_mm) {
+  if (registration.cartilage_use == CartilageUse::None) return 0.0;
   const double square_reach = region.reach_mm > 0 ? region.reach_mm * region.reach_mm : 0.0;
-  const bool is_covered = std::any_of(
+  const bool is_on_cartilage = std::any_of(
       region.points_mm.begin(), region.points_mm.end(),
       [&](const Eigen::Vector3d& point) { return (point - place_in_bone_mm).squaredNorm() < square_reach; });
-  if (!is_covered) return 0.0;
-  if (registration.cover_use == CoverUse::LeftOut) return std::nullopt;
-  return registration.cover_thickness_mm;
+  if (!is_on_cartilage) return 0.0;
+  if (registration.cartilage_use == CartilageUse::LeftOut) return std::nullopt;
+  return registration.cartilage_thickness_mm;
 }
 
-std::vector<std::optional<double>> CoverFit::offsets_mm(
-    const CoverMap& map, const strokes::Curves& curves,
+std::vector<std::optional<double>> CartilageFit::offsets_mm(
+    const CartilageMap& map, const strokes::Curves& curves,
     const geometry::RigidTransform& bone_from_marker) const {
   std::vector<std::optional<double>> offsets_mm;
   for (const strokes::CurvePoint& point : curves) {
@@ -320,13 +321,15 @@ std::vector<std::optional<double>> CoverFit::offsets_mm(
   return offsets_mm;
 }
 
-void CoverFit::add_to(RegistrationSummary& summary, const Eigen::Vector3d& target_in_bone_mm) const {
-  summary.cover_use = is_solved ? CoverUse::Solved : is_left_out ? CoverUse::LeftOut : CoverUse::None;
-  if (is_solved) summary.cover_thickness_mm = thickness_mm;
+void CartilageFit::add_to(RegistrationSummary& summary, const Eigen::Vector3d& target_in_bone_mm) const {
+  summary.cartilage_use = is_solved     ? CartilageUse::Solved
+                          : is_left_out ? CartilageUse::LeftOut
+                                        : CartilageUse::None;
+  if (is_solved) summary.cartilage_thickness_mm = thickness_mm;
   summary.assumptions.push_back(assumption);
   if (!has_bare) {
     summary.reliable = false;
-    summary.reasons.push_back("all strokes lie on the covered region: touch what is bare too");
+    summary.reasons.push_back("all strokes lie on the cartilage: touch what is bare too");
   }
   if (!is_solved) return;
   // What the thickness is uncertain by, the pose is too.
@@ -334,7 +337,7 @@ void CoverFit::add_to(RegistrationSummary& summary, const Eigen::Vector3d& targe
   summary.predicted_tre_mm = predicted_error_mm(summary, target_in_bone_mm);
 }
 
-CoverFit CoverFitter::fit(PosePool& pool, const WeightedPoints& points, bool anew) {
+CartilageFit CartilageFitter::fit(PosePool& pool, const WeightedPoints& points, bool anew) {
   const Fit fit(bone_, map_, prior_, points);
   std::vector<PoseFit> fits;
   for (const Known& known : known_)

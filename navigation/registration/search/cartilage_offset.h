@@ -17,10 +17,10 @@ namespace arthronaut::registration {
 
 // The region made ready to be asked. Immutable; a reach that is not above 0 makes it empty. The bone must
 // outlive it.
-class CoverMap {
+class CartilageMap {
  public:
-  CoverMap(const SurfaceIndex::Data& bone, const CartilageRegion& region);
-  // Whether the place of the bone under (or over) a point is covered.
+  CartilageMap(const SurfaceIndex::Data& bone, const CartilageRegion& region);
+  // Whether the place of the bone under (or over) a point belongs to the region.
   [[nodiscard]] bool covers(const Eigen::Vector3d& point_in_bone_mm) const;
 
  private:
@@ -29,7 +29,7 @@ class CoverMap {
   std::unordered_map<std::uint64_t, std::vector<Eigen::Vector3d>> cells_;  // as wide as the reach
 };
 
-struct CoverFit {
+struct CartilageFit {
   WeightedPoints points;  // with their offsets; without the region where it was left out
   bool is_solved = false;
   bool is_left_out = false;  // neither: no stroke lies on the region, or none beside it
@@ -43,11 +43,11 @@ struct CoverFit {
   std::string assumption;  // in plain words
 
   // How far off the mesh the probe touches at a place of the bone; nullopt where that is not known.
-  [[nodiscard]] std::optional<double> offset_mm(const CoverMap& map,
+  [[nodiscard]] std::optional<double> offset_mm(const CartilageMap& map,
                                                 const Eigen::Vector3d& point_in_bone_mm) const;
   // The same, by point of the curves.
   [[nodiscard]] std::vector<std::optional<double>> offsets_mm(
-      const CoverMap& map, const strokes::Curves& curves,
+      const CartilageMap& map, const strokes::Curves& curves,
       const geometry::RigidTransform& bone_from_marker) const;
   // Says what was assumed, and adds what the thickness leaves uncertain to the covariance and to the error at
   // the target.
@@ -57,16 +57,16 @@ struct CoverFit {
 // Gives each pose of a pool the thickness that suits it best and refines it with it, so that the poses
 // compare; the thickness is sought between -4 and 5 mm. Where the best one's is not held, all are refined
 // without the points that it puts on the region.
-class CoverFitter {
+class CartilageFitter {
  public:
   // All three must outlive it.
-  CoverFitter(const SurfaceIndex::Data& bone, const CoverMap& map, const MarkerPrior& prior)
+  CartilageFitter(const SurfaceIndex::Data& bone, const CartilageMap& map, const MarkerPrior& prior)
       : bone_(bone), map_(map), prior_(prior) {}
 
   // Follows the poses that it found the last time as points come in; anew, or the first time, it tries all
   // thicknesses with each pose of the pool as well. The best of all are left in the pool, which must not be
   // empty. For 500 points 9 ms a pose anew, 3 ms else.
-  [[nodiscard]] CoverFit fit(PosePool& pool, const WeightedPoints& points, bool anew);
+  [[nodiscard]] CartilageFit fit(PosePool& pool, const WeightedPoints& points, bool anew);
   void forget() { known_.clear(); }
 
  private:
@@ -77,7 +77,7 @@ class CoverFitter {
   };
 
   const SurfaceIndex::Data& bone_;
-  const CoverMap& map_;
+  const CartilageMap& map_;
   const MarkerPrior& prior_;
   std::vector<Known> known_;  // best first
 };

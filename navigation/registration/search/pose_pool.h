@@ -20,8 +20,8 @@ namespace arthronaut::registration {
 
 class PosePool {
  public:
-  // start: the law of the residuals that new poses are refined from.
-  PosePool(const SurfaceIndex::Data& bone, const MarkerPrior& prior, const ContactModel& start = {})
+  // start: the noise model that new poses are refined from.
+  PosePool(const SurfaceIndex::Data& bone, const MarkerPrior& prior, const NoiseModel& start = {})
       : bone_(bone), prior_(prior), start_(start) {}
 
   // Refines hypotheses roughly on few points, and lets the best into the pool.
@@ -47,7 +47,7 @@ class PosePool {
 
   const SurfaceIndex::Data& bone_;
   MarkerPrior prior_;
-  ContactModel start_;
+  NoiseModel start_;
   std::vector<RefinedPose> poses_;  // best first, different from one another
 };
 

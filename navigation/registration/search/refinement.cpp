@@ -79,7 +79,7 @@ struct Explanation {
   double negative_log_density;
 };
 
-Explanation explain(double residual_mm, const ContactModel& model) {
+Explanation explain(double residual_mm, const NoiseModel& model) {
   const double soft_sigma = std::hypot(kSoftSigma_mm, model.contact_sigma_mm);
   const double contact =
       (1 - model.soft_share - model.lifted_share) * normal_density(residual_mm, model.contact_sigma_mm);
@@ -89,9 +89,9 @@ Explanation explain(double residual_mm, const ContactModel& model) {
   return {contact / sum, soft / sum, lifted / sum, -std::log(sum)};
 }
 
-// The M step for the law. The shares lean on a prior of a few mm of path, so that none dies out.
-ContactModel updated_model(const WeightedPoints& points, const std::vector<double>& residuals_mm,
-                           const ContactModel& model) {
+// The M step for the noise model. The shares lean on a prior of a few mm of path, so that none dies out.
+NoiseModel updated_model(const WeightedPoints& points, const std::vector<double>& residuals_mm,
+                         const NoiseModel& model) {
   constexpr double kPriorWeight = 4.0;
   double contact = kPriorWeight, soft = 0.1 * kPriorWeight, lifted = 0.1 * kPriorWeight;
   double square_sum = 0.2 * 0.2 * kPriorWeight;
@@ -102,7 +102,7 @@ ContactModel updated_model(const WeightedPoints& points, const std::vector<doubl
     lifted += points.weights[i] * explanation.lifted;
     square_sum += points.weights[i] * explanation.contact * residuals_mm[i] * residuals_mm[i];
   }
-  ContactModel updated = model;
+  NoiseModel updated = model;
   updated.contact_sigma_mm = std::clamp(std::sqrt(square_sum / contact), kMinSigma_mm, kMaxSigma_mm);
   updated.soft_share = soft / (contact + soft + lifted);
   updated.lifted_share = lifted / (contact + soft + lifted);
@@ -129,7 +129,7 @@ MarkerObjection object_to(const Eigen::Matrix3d& bone_from_marker, const Distanc
 
 }  // namespace
 
-ResidualEvidence evidence_of(double residual_mm, const ContactModel& model) {
+ResidualEvidence evidence_of(double residual_mm, const NoiseModel& model) {
   const Explanation explanation = explain(residual_mm, model);
   const double contact_information = 1 / (model.contact_sigma_mm * model.contact_sigma_mm);
   const double soft_information = 1 / (kSoftSigma_mm * kSoftSigma_mm + 1 / contact_information);
@@ -170,7 +170,7 @@ RigidTransform approach(const DistanceField& field, const WeightedPoints& points
 }
 
 RefinedPose refine(const DistanceFunction& distance, const WeightedPoints& points,
-                   const RigidTransform& start, const ContactModel& model, const MarkerPrior& prior,
+                   const RigidTransform& start, const NoiseModel& model, const MarkerPrior& prior,
                    int iterations) {
   RefinedPose refined;
   refined.bone_from_marker = start;

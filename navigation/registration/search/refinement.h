@@ -1,9 +1,13 @@
 // From a rough pose to the best one nearby.
 //
 // What the tip tells is not symmetric: it never goes into the bone, but it is lifted off, and it rides on
-// soft tissue. So each residual (signed distance to the bone) is explained by one of three: contact, a normal
-// law about 0; soft tissue, a normal law about 0.9 mm; lifted, any height above the bone, and hardly ever
-// inside it. Their shares and the contact's spread are found with the pose (EM).
+// soft tissue. So the noise model of a residual (signed distance to the bone) is a mixture of three: contact,
+// normal about 0; soft tissue, normal about 0.9 mm; lifted, any height above the bone, and hardly ever inside
+// it. Their shares and the contact's spread are found with the pose by expectation maximisation (A. P.
+// Dempster, N. M. Laird, D. B. Rubin, "Maximum likelihood from incomplete data via the EM algorithm", Journal
+// of the Royal Statistical Society B 39, 1977). Registration by EM over a mixture with a part for what lies
+// nowhere near is known from A. Myronenko, X. Song, "Point set registration: coherent point drift", IEEE
+// TPAMI 32, 2010; there the parts are points, here they are ways in which a tip meets a surface.
 #pragma once
 
 #include <functional>
@@ -18,7 +22,7 @@ namespace arthronaut::registration {
 // Signed distance and its gradient at a point of the bone frame: the grid's, or the exact mesh's.
 using DistanceFunction = std::function<DistanceField::Sample(const Eigen::Vector3d&)>;
 
-struct ContactModel {
+struct NoiseModel {
   double contact_sigma_mm = 0.4;
   double soft_share = 0.10;
   double lifted_share = 0.10;
@@ -28,8 +32,8 @@ struct ContactModel {
   static constexpr double kRarelyBuried_per_mm = 0.01, kOftenBuried_per_mm = 0.2;
 };
 
-// Errors along a stroke hang together: about this much of path makes one independent measurement. Costs and
-// weights count touched mm; what is known otherwise (the marker's prior) counts for so many of them.
+// Errors along a stroke are autocorrelated: about this much of path makes one independent measurement. Costs
+// and weights count touched mm; what is known otherwise (the marker's prior) counts for so many of them.
 inline constexpr double kCorrelationLength_mm = 5.0;
 
 // The world marker is the plate of a screw head: its centre a little above the bone, its face outwards.
@@ -41,19 +45,19 @@ struct MarkerPrior {
 
 struct RefinedPose {
   geometry::RigidTransform bone_from_marker;
-  ContactModel model;
+  NoiseModel model;
   double cost = 0;  // weighted negative log likelihood for each unit of weight; smaller is better
   std::vector<double> residuals_mm;  // signed, by point
 };
 
-// What the law says about one residual: the derivatives of its negative log density.
+// What the noise model says about one residual: the derivatives of its negative log density.
 struct ResidualEvidence {
   double contact = 0;      // probability that the tip touched the bone
   double slope = 0;        // first derivative, 1/mm
   double curvature = 0;    // second derivative, 1/mm^2; negative where explanations compete
   double information = 0;  // the curvature if it were known which explanation holds, 1/mm^2
 };
-[[nodiscard]] ResidualEvidence evidence_of(double residual_mm, const ContactModel& model);
+[[nodiscard]] ResidualEvidence evidence_of(double residual_mm, const NoiseModel& model);
 
 // Geman-McClure, its width shrinking from 2 mm to 0.8 mm: from several mm and degrees away to the minimum.
 [[nodiscard]] geometry::RigidTransform approach(const DistanceField& field, const WeightedPoints& points,
@@ -61,7 +65,7 @@ struct ResidualEvidence {
 
 // EM from a pose within about 1 mm.
 [[nodiscard]] RefinedPose refine(const DistanceFunction& distance, const WeightedPoints& points,
-                                 const geometry::RigidTransform& bone_from_marker, const ContactModel& model,
+                                 const geometry::RigidTransform& bone_from_marker, const NoiseModel& model,
                                  const MarkerPrior& prior, int iterations);
 
 }  // namespace arthronaut::registration

@@ -16,7 +16,7 @@ struct WeightedPoints {
   std::vector<double> weights;                // 1 / points in the same 1 mm cell
   Eigen::Vector3d centroid_mm = Eigen::Vector3d::Zero();
   double weight_sum = 0;  // touched cells, about the mm of path
-  // Consecutive points of about 12 mm of path share a stretch: errors hang together within it, little beyond.
+  // Consecutive points of about 12 mm of path share a stretch: errors correlate within it, little beyond.
   // Numbered from 0 by point; empty in a random draw.
   std::vector<int> stretches;
   std::vector<double> offsets_mm;  // by point: how far off the mesh the touched surface lies; empty: nowhere

@@ -163,7 +163,7 @@ Matrix6d covariance_about(const RefinedPose& pose, const WeightedPoints& points,
   }
   // Six parameters were fitted to the stretches.
   pull *= stretch_count / std::max(stretch_count - 6.0, 1.0);
-  // Few stretches measure the scatter poorly: a part of it is what the law of the residuals expects.
+  // Few stretches measure the scatter poorly: a part of it is what the noise model expects.
   pull = kMeasuredShare * pull + (1 - kMeasuredShare) * kCorrelationLength_mm * held;
   // Where it is not known which explanation holds, a residual says less than if it were.
   held *= std::clamp(curvature / information, 0.2, 1.0);

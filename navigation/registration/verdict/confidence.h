@@ -1,6 +1,6 @@
 // How wrong a registration may be, and whether it may be relied on. The residual says almost nothing about
 // the error at the target; what counts is what the touched surface holds fast, how the errors along a stroke
-// hang together, and whether another pose fits as well.
+// correlate, and whether another pose fits as well.
 #pragma once
 
 #include "navigation/registration/bone/surface_index.h"
@@ -33,7 +33,7 @@ struct TouchedCurves {
 
 // Covariance of a twist of the bone frame about `pivot_mm` (bone frame). Robust ("sandwich"): the curvature
 // of the cost on both sides, and between them how much the pull of whole stretches of path scatters, which
-// holds correlated errors and whatever else the law of the residuals leaves out. What nothing holds is off by
+// holds correlated errors and whatever else the noise model leaves out. What nothing holds is off by
 // no more than the bone's own size.
 [[nodiscard]] geometry::Matrix6d covariance_about(const RefinedPose& pose, const WeightedPoints& points,
                                                   const SurfaceIndex::Data& bone, const MarkerPrior& prior,

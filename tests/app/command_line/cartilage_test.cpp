@@ -30,7 +30,7 @@ geometry::TriangleMesh surface_through(const std::vector<Eigen::Vector3d>& point
 TEST(CartilageOption, RegisterSolvesTheThicknessAndSaysSo) {
   const test::TemporaryFolder folder;
   const registration::PhantomBone& bone = registration::phantom_bone();
-  const auto covered = registration::covered_trial(bone, bone.trial(experiments::TrialNoise::Dry, 2), 2);
+  const auto covered = registration::cartilage_trial(bone, bone.trial(experiments::TrialNoise::Dry, 2), 2);
   bones::write_mesh_ply(folder / "femur.ply", bone.mesh);
   bones::write_mesh_ply(folder / "cartilage.ply", surface_through(covered.region.points_mm));
   strokes::write_curves_file(folder / "curves.csv", covered.trial.curves);
@@ -46,9 +46,9 @@ TEST(CartilageOption, RegisterSolvesTheThicknessAndSaysSo) {
   arguments.insert(arguments.end(), {"--cartilage", folder / "cartilage.ply"});
   const auto told = run_program(arguments);
   EXPECT_EQ(told.exit_code, 0) << told.errors;
-  EXPECT_THAT(told.output, HasSubstr("the covered region lies 2.0 mm off the mesh"));
+  EXPECT_THAT(told.output, HasSubstr("the cartilage lies 2.0 mm off the mesh"));
   EXPECT_THAT(files::read_text(folder / "registration.json"),
-              HasSubstr("the covered region lies 2.0 mm off the mesh"));
+              HasSubstr("the cartilage lies 2.0 mm off the mesh"));
 
   arguments.back() = folder / "curves.csv";
   const auto wrong = run_program(arguments);

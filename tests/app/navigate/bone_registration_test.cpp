@@ -343,7 +343,7 @@ TEST_F(BoneRegistrationTest, ThePictureShowsHowFarStrokesLieOff) {
 // Cartilage of 2 mm on a bone that was segmented bare: what was assumed about it stands on the screen, and
 // touches on it lie where they should.
 TEST_F(BoneRegistrationTest, SaysWhatWasAssumedAboutCartilage) {
-  const auto covered = registration::covered_trial(phantom_bone(), trial_, 2);
+  const auto covered = registration::cartilage_trial(phantom_bone(), trial_, 2);
   BoneRegistration bone(ready_bone(), plan(), surface_, covered.region);
   EXPECT_EQ(assumed_of(*bone.status()), "");
   draw_on(bone, {covered.trial.curves.begin(), covered.trial.curves.begin() + 600});

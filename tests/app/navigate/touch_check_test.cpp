@@ -65,18 +65,18 @@ TEST(TouchCheck, TouchesOnCartilageAreJudgedByItsThickness) {
   TouchCheck check;
   check.add_touch({0, 0, 2.1});
   check.add_touch({5, 0, 1.9});
-  registration.cover_use = registration::CoverUse::Solved;
-  registration.cover_thickness_mm = 2;
+  registration.cartilage_use = registration::CartilageUse::Solved;
+  registration.cartilage_thickness_mm = 2;
   check.judge(&registration, &surface, covered);
   EXPECT_NEAR(check.residuals_mm()[0].value(), 0.1, 1e-9);
   EXPECT_NEAR(check.last().distance_mm.value(), -0.1, 1e-9);
   EXPECT_EQ(check.alarm(), "");
-  registration.cover_use = registration::CoverUse::LeftOut;
+  registration.cartilage_use = registration::CartilageUse::LeftOut;
   check.judge(&registration, &surface, covered);
   EXPECT_FALSE(check.last().distance_mm.has_value());
-  EXPECT_TRUE(check.last().is_on_unknown_cover);
+  EXPECT_TRUE(check.last().is_on_unknown_cartilage);
   EXPECT_EQ(check.alarm(), "");
-  registration.cover_use = registration::CoverUse::None;
+  registration.cartilage_use = registration::CartilageUse::None;
   check.judge(&registration, &surface, covered);
   EXPECT_EQ(check.alarm(), "2 touches lie off the bone");
 }

@@ -90,7 +90,7 @@ TEST_F(Report, ComparesPlannedAndAchieved) {
   registration::RegistrationSummary registration;
   registration.has_pose = true;
   registration.reasons = {"too few points", "one flat patch"};
-  registration.assumptions = {"the covered region was left out"};
+  registration.assumptions = {"the cartilage was left out"};
   registration.point_count = 812;
   registration.rms_mm = 0.31;
   {
@@ -111,7 +111,7 @@ TEST_F(Report, ComparesPlannedAndAchieved) {
   const std::string text = pdf_text();
   expect_contains(text, "NOT RELIABLE");
   expect_contains(text, "too few points");
-  expect_contains(text, "assumed: the covered region was left out");
+  expect_contains(text, "assumed: the cartilage was left out");
   expect_contains(text, "812");
   expect_contains(text, "1.25 mm");  // plan to measured
   expect_contains(text, "2.00 mm");  // plan to truth

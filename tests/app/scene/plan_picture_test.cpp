@@ -17,7 +17,7 @@ const cases::Case& knee() {
   return coarse;
 }
 
-PictureRequest request_of(View view) {
+PictureRequest request_of(ViewDirection view) {
   PictureRequest request;
   request.knee = &knee();
   request.view = view;
@@ -47,8 +47,9 @@ class PlanPicture : public ::testing::Test {
 // Every view shows bone and a planned tunnel, and no two views look alike.
 TEST_F(PlanPicture, EveryViewShowsBoneAndPlan) {
   std::vector<Image> pictures;
-  for (const View view : {View::Anterior, View::Posterior, View::Medial, View::Lateral, View::Distal,
-                          View::Notch, View::Plateau}) {
+  for (const ViewDirection view :
+       {ViewDirection::Anterior, ViewDirection::Posterior, ViewDirection::Medial, ViewDirection::Lateral,
+        ViewDirection::Distal, ViewDirection::Notch, ViewDirection::Plateau}) {
     pictures.push_back(render_plan_picture(request_of(view)));
     const Image& image = pictures.back();
     ASSERT_EQ(image.rgb.size(), 3U * 320 * 240);
@@ -62,13 +63,13 @@ TEST_F(PlanPicture, EveryViewShowsBoneAndPlan) {
 
 // The same request gives the same pixels.
 TEST_F(PlanPicture, IsDeterministic) {
-  EXPECT_EQ(render_plan_picture(request_of(View::Notch)).rgb,
-            render_plan_picture(request_of(View::Notch)).rgb);
+  EXPECT_EQ(render_plan_picture(request_of(ViewDirection::Notch)).rgb,
+            render_plan_picture(request_of(ViewDirection::Notch)).rgb);
 }
 
 // A tunnel as drilled is drawn in a colour of its own.
 TEST_F(PlanPicture, AchievedTunnelIsSeen) {
-  PictureRequest request = request_of(View::Anterior);
+  PictureRequest request = request_of(ViewDirection::Anterior);
   const double before = share_of(render_plan_picture(request), is_achieved);
   request.achieved = knee().plan.tunnels.at(bones::BoneKind::Femur);
   request.achieved->entry_mm += Eigen::Vector3d(0, -4, 4);
@@ -77,11 +78,11 @@ TEST_F(PlanPicture, AchievedTunnelIsSeen) {
 
 // Bad requests are refused with a reason.
 TEST_F(PlanPicture, RefusesWhatItCannotDraw) {
-  PictureRequest request = request_of(View::Anterior);
+  PictureRequest request = request_of(ViewDirection::Anterior);
   request.width = 4;
   EXPECT_THROW((void)render_plan_picture(request), InvalidInput);
   cases::Case empty;
-  request = request_of(View::Anterior);
+  request = request_of(ViewDirection::Anterior);
   request.knee = &empty;
   EXPECT_THROW((void)render_plan_picture(request), InvalidInput);
 }

@@ -13,7 +13,7 @@ constexpr double kExact_px = 1e-6;  // closed forms: rounding alone
 
 // Seen from the front, the patient's left (+x in LPS) is on the right of the picture and the head is up.
 TEST(SceneCamera, AnteriorViewShowsThePatientFaceToFace) {
-  const SceneCamera camera = look_from(View::Anterior, bones::Side::Right, kKnee, 4.0 / 3);
+  const SceneCamera camera = look_from(ViewDirection::Anterior, bones::Side::Right, kKnee, 4.0 / 3);
   const auto middle = project(camera, {0, 0, 0}, kSize);
   const auto left_of_patient = project(camera, {30, 0, 0}, kSize);
   const auto head = project(camera, {0, 0, 30}, kSize);
@@ -27,15 +27,16 @@ TEST(SceneCamera, AnteriorViewShowsThePatientFaceToFace) {
 TEST(SceneCamera, LateralViewFollowsTheSide) {
   for (const auto side : {bones::Side::Right, bones::Side::Left}) {
     const double lateral_x = side == bones::Side::Right ? -1 : 1;
-    const SceneCamera camera = look_from(View::Lateral, side, kKnee, 4.0 / 3);
+    const SceneCamera camera = look_from(ViewDirection::Lateral, side, kKnee, 4.0 / 3);
     EXPECT_GT(camera.position_mm.x() * lateral_x, 100);
   }
 }
 
 // Every named view holds the whole bone.
 TEST(SceneCamera, NamedViewsHoldAllCorners) {
-  for (const View view : {View::Anterior, View::Posterior, View::Medial, View::Lateral, View::Distal,
-                          View::Notch, View::Plateau}) {
+  for (const ViewDirection view :
+       {ViewDirection::Anterior, ViewDirection::Posterior, ViewDirection::Medial, ViewDirection::Lateral,
+        ViewDirection::Distal, ViewDirection::Notch, ViewDirection::Plateau}) {
     const SceneCamera camera = look_from(view, bones::Side::Left, kKnee, 4.0 / 3);
     for (int corner = 0; corner < 8; ++corner) {
       const Eigen::Vector3d point((corner & 1) != 0 ? 40 : -40, (corner & 2) != 0 ? 30 : -30,
@@ -50,7 +51,8 @@ TEST(SceneCamera, NamedViewsHoldAllCorners) {
 
 // A ray through a point's pixel meets the point.
 TEST(SceneCamera, RayAndProjectionAreInverse) {
-  const SceneCamera camera = orbited(look_from(View::Notch, bones::Side::Right, kKnee, 1.5), {123, -77}, 600);
+  const SceneCamera camera =
+      orbited(look_from(ViewDirection::Notch, bones::Side::Right, kKnee, 1.5), {123, -77}, 600);
   const Eigen::Vector3d point(12, -7, 31);
   const auto pixel = project(camera, point, kSize);
   ASSERT_TRUE(pixel);
@@ -60,7 +62,7 @@ TEST(SceneCamera, RayAndProjectionAreInverse) {
 
 // Turning keeps the distance, a drag to the right turns the object to the right, zooming in comes nearer.
 TEST(SceneCamera, MovesAsAHandExpects) {
-  const SceneCamera camera = look_from(View::Anterior, bones::Side::Right, kKnee, 4.0 / 3);
+  const SceneCamera camera = look_from(ViewDirection::Anterior, bones::Side::Right, kKnee, 4.0 / 3);
   const SceneCamera turned = orbited(camera, {100, 0}, 600);
   EXPECT_NEAR((turned.position_mm - turned.focus_mm).norm(), (camera.position_mm - camera.focus_mm).norm(),
               1e-9);
@@ -78,7 +80,7 @@ TEST(SceneCamera, MovesAsAHandExpects) {
 
 // What is behind the eye has no pixel.
 TEST(SceneCamera, NothingBehindTheEye) {
-  const SceneCamera camera = look_from(View::Anterior, bones::Side::Right, kKnee, 1);
+  const SceneCamera camera = look_from(ViewDirection::Anterior, bones::Side::Right, kKnee, 1);
   EXPECT_FALSE(project(camera, camera.position_mm + Eigen::Vector3d(0, -10, 0), kSize));
 }
 

@@ -44,35 +44,35 @@ inline const PhantomBone& phantom_bone() {
 
 // Strokes on a bone that beyond `bare_mm` of the target is covered, by cartilage that the mesh lacks
 // (thickness above 0) or has too much (below 0).
-struct CoveredTrial {
+struct CartilageTrial {
   experiments::Trial trial;
   CartilageRegion region;
-  std::vector<bool> is_on_cover;  // by point of the curves
+  std::vector<bool> is_on_cartilage;  // by point of the curves
 };
 
-inline CoveredTrial covered_trial(const PhantomBone& bone, experiments::Trial trial, double thickness_mm,
-                                  double bare_mm = 9) {
+inline CartilageTrial cartilage_trial(const PhantomBone& bone, experiments::Trial trial, double thickness_mm,
+                                      double bare_mm = 9) {
   constexpr double kEnd_mm = 30;  // no stroke goes so far
-  CoveredTrial covered{std::move(trial), {}, {}};
-  for (strokes::CurvePoint& point : covered.trial.curves) {
-    const Eigen::Vector3d p = covered.trial.marker_from_bone.inverse() * point.position_mm;
+  CartilageTrial laid{std::move(trial), {}, {}};
+  for (strokes::CurvePoint& point : laid.trial.curves) {
+    const Eigen::Vector3d p = laid.trial.marker_from_bone.inverse() * point.position_mm;
     const geometry::SurfacePoint nearest = bone.surface->closest_point(p);
-    covered.is_on_cover.push_back((nearest.point_mm - bone.target_mm).norm() > bare_mm);
-    if (!covered.is_on_cover.back()) continue;
-    point.position_mm = covered.trial.marker_from_bone * (p + thickness_mm * nearest.normal);
+    laid.is_on_cartilage.push_back((nearest.point_mm - bone.target_mm).norm() > bare_mm);
+    if (!laid.is_on_cartilage.back()) continue;
+    point.position_mm = laid.trial.marker_from_bone * (p + thickness_mm * nearest.normal);
   }
   for (const Eigen::Vector3d& vertex : bone.mesh.vertices_mm) {
     const double away_mm = (vertex - bone.target_mm).norm();
-    if (away_mm > bare_mm + covered.region.reach_mm && away_mm < kEnd_mm)
-      covered.region.points_mm.push_back(vertex);
+    if (away_mm > bare_mm + laid.region.reach_mm && away_mm < kEnd_mm)
+      laid.region.points_mm.push_back(vertex);
   }
-  return covered;
+  return laid;
 }
 
 // Not a number where the text tells none.
 inline double thickness_in(const std::string& assumption) {
   double thickness_mm = 0;
-  const int count = std::sscanf(assumption.c_str(), "the covered region lies %lf", &thickness_mm);
+  const int count = std::sscanf(assumption.c_str(), "the cartilage lies %lf", &thickness_mm);
   return count == 1 ? thickness_mm : std::numeric_limits<double>::quiet_NaN();
 }
 

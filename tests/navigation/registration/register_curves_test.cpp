@@ -5,10 +5,10 @@
 #include <cmath>
 #include <fstream>
 
+#include "navigation/registration/registration_file.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/quantile.h"
-#include "navigation/registration/registration_file.h"
 #include "tests/navigation/registration/phantom_bone.h"
 #include "tests/temporary_folder.h"
 
@@ -194,22 +194,22 @@ TEST(RegisterCurves, SolvesTheThicknessOfCartilage) {
   std::vector<double> ratios;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     for (const double thickness_mm : {2.0, -2.0}) {
-      const CoveredTrial covered = covered_trial(bone, bone.trial(TrialNoise::Dry, seed), thickness_mm);
+      const CartilageTrial laid = cartilage_trial(bone, bone.trial(TrialNoise::Dry, seed), thickness_mm);
       RegistrationOptions options{seed, true, bone.target_mm};
-      options.covered = covered.region;
-      const auto found = register_curves(*bone.prepared, covered.trial.curves, options);
+      options.cartilage = laid.region;
+      const auto found = register_curves(*bone.prepared, laid.trial.curves, options);
       EXPECT_TRUE(found.reliable) << "seed " << seed << ": " << testing::PrintToString(found.reasons);
       ASSERT_EQ(found.assumptions.size(), 1u);
       EXPECT_NEAR(thickness_in(found.assumptions[0]), thickness_mm, 0.3) << found.assumptions[0];
       EXPECT_LT(found.misfit_mm, 0.2);
-      ratios.push_back(target_error_mm(found, covered.trial, bone.target_mm) / found.predicted_tre_mm);
+      ratios.push_back(target_error_mm(found, laid.trial, bone.target_mm) / found.predicted_tre_mm);
       EXPECT_LT(ratios.back() * found.predicted_tre_mm, 0.4)
           << "seed " << seed << ", " << thickness_mm << " mm";
-      std::vector<double> on_cover_mm;
-      for (std::size_t i = 0; i < covered.is_on_cover.size(); ++i) {
-        if (covered.is_on_cover[i]) on_cover_mm.push_back(found.point_residuals_mm[i]);
+      std::vector<double> on_cartilage_mm;
+      for (std::size_t i = 0; i < laid.is_on_cartilage.size(); ++i) {
+        if (laid.is_on_cartilage[i]) on_cartilage_mm.push_back(found.point_residuals_mm[i]);
       }
-      EXPECT_NEAR(median(on_cover_mm), 0, 0.3);
+      EXPECT_NEAR(median(on_cartilage_mm), 0, 0.3);
     }
   }
   EXPECT_GT(median(ratios), 0.3);
@@ -221,11 +221,11 @@ TEST(RegisterCurves, CoveredExVivoTrialsAreNeverWrongAndSure) {
   const PhantomBone& bone = phantom_bone();
   int found_count = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const CoveredTrial covered = covered_trial(bone, bone.trial(TrialNoise::ExVivo, seed), 2);
+    const CartilageTrial laid = cartilage_trial(bone, bone.trial(TrialNoise::ExVivo, seed), 2);
     RegistrationOptions options{seed, true, bone.target_mm};
-    options.covered = covered.region;
-    const auto found = register_curves(*bone.prepared, covered.trial.curves, options);
-    const double error_mm = target_error_mm(found, covered.trial, bone.target_mm);
+    options.cartilage = laid.region;
+    const auto found = register_curves(*bone.prepared, laid.trial.curves, options);
+    const double error_mm = target_error_mm(found, laid.trial, bone.target_mm);
     found_count += error_mm < 2;
     EXPECT_TRUE(error_mm < 2 || !found.reliable) << "seed " << seed << " off by " << error_mm;
   }
@@ -238,11 +238,11 @@ TEST(RegisterCurves, RefusesTheOtherSidesBoneWithCartilageToo) {
   const PhantomBone& bone = phantom_bone();
   for (const auto& [noise, seed] :
        {std::pair{TrialNoise::Dry, 1u}, std::pair{TrialNoise::Dry, 2u}, std::pair{TrialNoise::ExVivo, 11u}}) {
-    CoveredTrial covered = covered_trial(bone, bone.trial(noise, seed), 2);
-    for (auto& point : covered.trial.curves) point.position_mm.x() = -point.position_mm.x();
+    CartilageTrial laid = cartilage_trial(bone, bone.trial(noise, seed), 2);
+    for (auto& point : laid.trial.curves) point.position_mm.x() = -point.position_mm.x();
     RegistrationOptions options{seed, true, bone.target_mm};
-    options.covered = covered.region;
-    const auto found = register_curves(*bone.prepared, covered.trial.curves, options);
+    options.cartilage = laid.region;
+    const auto found = register_curves(*bone.prepared, laid.trial.curves, options);
     EXPECT_FALSE(found.reliable);
     EXPECT_THAT(found.reasons, Contains(HasSubstr("other side")));
   }
@@ -252,23 +252,23 @@ TEST(RegisterCurves, RefusesTheOtherSidesBoneWithCartilageToo) {
 // nothing.
 TEST(RegisterCurves, LeavesOutCartilageThatWasHardlyTouched) {
   const PhantomBone& bone = phantom_bone();
-  const CoveredTrial covered = covered_trial(bone, bone.trial(TrialNoise::Dry, 2), -2, 15);
+  const CartilageTrial laid = cartilage_trial(bone, bone.trial(TrialNoise::Dry, 2), -2, 15);
   RegistrationOptions options{1, true, bone.target_mm};
-  options.covered = covered.region;
-  const auto found = register_curves(*bone.prepared, covered.trial.curves, options);
+  options.cartilage = laid.region;
+  const auto found = register_curves(*bone.prepared, laid.trial.curves, options);
   EXPECT_TRUE(found.reliable) << testing::PrintToString(found.reasons);
   EXPECT_THAT(found.assumptions, Contains(HasSubstr("left out")));
-  EXPECT_LT(target_error_mm(found, covered.trial, bone.target_mm), 0.4);
+  EXPECT_LT(target_error_mm(found, laid.trial, bone.target_mm), 0.4);
 }
 
-// Where all strokes lie on the covered region, nothing holds its thickness, and that is said.
+// Where all strokes lie on the cartilage, nothing holds its thickness, and that is said.
 TEST(RegisterCurves, DoubtsStrokesOnCartilageAlone) {
   const PhantomBone& bone = phantom_bone();
   RegistrationOptions options{1, true, bone.target_mm};
-  options.covered.emplace().points_mm = bone.mesh.vertices_mm;
+  options.cartilage.emplace().points_mm = bone.mesh.vertices_mm;
   const auto found = register_curves(*bone.prepared, bone.trial(TrialNoise::Dry, 3).curves, options);
   EXPECT_FALSE(found.reliable);
-  EXPECT_THAT(found.reasons, Contains(HasSubstr("covered region")));
+  EXPECT_THAT(found.reasons, Contains(HasSubstr("cartilage")));
   EXPECT_THAT(found.assumptions, Contains(HasSubstr("taken to lie on the mesh")));
 }
 

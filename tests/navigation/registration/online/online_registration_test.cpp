@@ -106,16 +106,16 @@ TEST(OnlineRegistration, NeverConfirmsTheMirroredBone) {
 TEST(OnlineRegistration, SolvesTheThicknessOfCartilageWhileScratching) {
   const PhantomBone& bone = phantom_bone();
   for (const double thickness_mm : {2.0, -2.0}) {
-    CoveredTrial covered = covered_trial(bone, bone.trial(TrialNoise::Dry, 1), thickness_mm);
-    covered.trial.curves.resize(600);
+    CartilageTrial laid = cartilage_trial(bone, bone.trial(TrialNoise::Dry, 1), thickness_mm);
+    laid.trial.curves.resize(600);
     OnlineOptions options = options_for(bone);
-    options.covered = covered.region;
+    options.cartilage = laid.region;
     OnlineRegistration online(bone.prepared, options);
-    EXPECT_EQ(draw(online, covered.trial.curves).back(), OnlineState::Confirmed);
+    EXPECT_EQ(draw(online, laid.trial.curves).back(), OnlineState::Confirmed);
     const RegistrationSummary& found = online.result().registration;
     ASSERT_EQ(found.assumptions.size(), 1u);
     EXPECT_NEAR(thickness_in(found.assumptions[0]), thickness_mm, 0.3) << found.assumptions[0];
-    const RigidTransform& truth = covered.trial.marker_from_bone;
+    const RigidTransform& truth = laid.trial.marker_from_bone;
     EXPECT_LT((found.marker_from_bone * bone.target_mm - truth * bone.target_mm).norm(), 0.4);
     for (const StrokeInfo& stroke : online.result().strokes) EXPECT_LT(stroke.median_residual_mm, 0.4);
   }
@@ -124,16 +124,17 @@ TEST(OnlineRegistration, SolvesTheThicknessOfCartilageWhileScratching) {
 // What was excluded or undone has no say in the thickness: without the strokes on it, the region is as if
 // never touched.
 TEST(OnlineRegistration, ExcludedStrokesHaveNoSayInTheThickness) {
-  constexpr int kOnCover = 100;
+  constexpr int kOnCartilage = 100;
   const PhantomBone& bone = phantom_bone();
-  CoveredTrial covered = covered_trial(bone, bone.trial(TrialNoise::Dry, 3), 2);
-  strokes::Curves& curves = covered.trial.curves;
-  for (std::size_t i = 0; i < curves.size(); ++i) curves[i].curve += covered.is_on_cover[i] ? kOnCover : 0;
+  CartilageTrial laid = cartilage_trial(bone, bone.trial(TrialNoise::Dry, 3), 2);
+  strokes::Curves& curves = laid.trial.curves;
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    curves[i].curve += laid.is_on_cartilage[i] ? kOnCartilage : 0;
   std::stable_sort(curves.begin(), curves.end(),
                    [](const auto& l, const auto& r) { return l.curve < r.curve; });
   const int last = curves.back().curve;
   OnlineOptions options = options_for(bone);
-  options.covered = covered.region;
+  options.cartilage = laid.region;
   OnlineRegistration online(bone.prepared, options);
   constexpr std::size_t kAtOnce = 100;
   for (std::size_t i = 0; i < curves.size(); i += kAtOnce) {
@@ -146,11 +147,11 @@ TEST(OnlineRegistration, ExcludedStrokesHaveNoSayInTheThickness) {
   };
   EXPECT_NEAR(thickness_in(assumption()), 2, 0.3) << assumption();
   EXPECT_TRUE(online.undo_stroke());
-  for (int curve = kOnCover; curve < last; ++curve) EXPECT_TRUE(online.exclude_stroke(curve));
+  for (int curve = kOnCartilage; curve < last; ++curve) EXPECT_TRUE(online.exclude_stroke(curve));
   online.update();
   EXPECT_THAT(assumption(),
               testing::AnyOf(testing::HasSubstr("no stroke lies on"), testing::HasSubstr("left out")));
-  for (int curve = kOnCover; curve < last; ++curve) EXPECT_TRUE(online.exclude_stroke(curve, false));
+  for (int curve = kOnCartilage; curve < last; ++curve) EXPECT_TRUE(online.exclude_stroke(curve, false));
   online.update();
   EXPECT_NEAR(thickness_in(assumption()), 2, 0.3) << assumption();
 }
@@ -158,13 +159,13 @@ TEST(OnlineRegistration, ExcludedStrokesHaveNoSayInTheThickness) {
 // A region whose thickness is free confirms no bone of the other side.
 TEST(OnlineRegistration, NeverConfirmsTheMirroredBoneWithCartilage) {
   const PhantomBone& bone = phantom_bone();
-  CoveredTrial covered = covered_trial(bone, bone.trial(TrialNoise::Dry, 1), 2);
-  covered.trial.curves.resize(500);
-  for (auto& point : covered.trial.curves) point.position_mm.x() = -point.position_mm.x();
+  CartilageTrial laid = cartilage_trial(bone, bone.trial(TrialNoise::Dry, 1), 2);
+  laid.trial.curves.resize(500);
+  for (auto& point : laid.trial.curves) point.position_mm.x() = -point.position_mm.x();
   OnlineOptions options = options_for(bone);
-  options.covered = covered.region;
+  options.cartilage = laid.region;
   OnlineRegistration online(bone.prepared, options);
-  for (const OnlineState state : draw(online, covered.trial.curves)) EXPECT_LT(state, OnlineState::Confirmed);
+  for (const OnlineState state : draw(online, laid.trial.curves)) EXPECT_LT(state, OnlineState::Confirmed);
 }
 
 // What was drawn is judged to its last point when that is asked for, and a solution of hardly more stroke is
