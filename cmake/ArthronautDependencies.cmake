@@ -5,14 +5,11 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(CGAL 5.5 REQUIRED)
 find_package(Ceres 2.1 REQUIRED)
 find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc calib3d videoio imgcodecs aruco)
-# VTK without COMPONENTS asks for Qt: name them.
+# VTK without COMPONENTS asks for Qt: name those that a target links, and no other.
 find_package(VTK 9.1 REQUIRED COMPONENTS
-  CommonCore CommonDataModel CommonExecutionModel CommonTransforms
-  FiltersCore FiltersGeneral FiltersGeometry FiltersModeling FiltersSources
-  IOGeometry IOImage IOLegacy IOPLY IOXML IOCore
-  ImagingCore ImagingGeneral ImagingStatistics
-  RenderingCore RenderingOpenGL2 RenderingFreeType RenderingAnnotation
-  InteractionStyle)
+  CommonCore CommonDataModel CommonExecutionModel FiltersCore
+  IOImage IOXML
+  RenderingCore RenderingOpenGL2)
 find_package(GDCM REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
