@@ -8,6 +8,8 @@
 #include <cmath>
 #include <utility>
 
+#include "planning/geometry/quantile.h"
+
 namespace arthronaut::calibration {
 namespace {
 
@@ -140,9 +142,7 @@ double scale_of(std::span<const Sighting> sightings,
   for (std::size_t i = 0; i < sightings.size(); ++i)
     for (std::size_t k = 0; k < residuals_px[i].size(); ++k)
       in_sigmas.push_back(residuals_px[i][k].norm() / sightings[i].sigma_px[k]);
-  const auto middle = in_sigmas.begin() + static_cast<std::ptrdiff_t>(in_sigmas.size() / 2);
-  std::nth_element(in_sigmas.begin(), middle, in_sigmas.end());
-  return std::max(0.05, *middle / 1.177);
+  return std::max(0.05, geometry::median_in_place(std::span(in_sigmas)) / 1.177);
 }
 
 AdjustmentResult adjust_at_scale(std::span<const Sighting> sightings, const Estimate& start,

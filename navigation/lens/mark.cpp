@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planning/geometry/quantile.h"
 #include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::lens {
@@ -143,8 +144,7 @@ bool is_lit_like_its_flanks(const DentProfile& dents, int begin, int end) {
       if (dents.seen[ray]) light[static_cast<std::size_t>(count++)] = dents.light[ray];
     }
     if (count < 0.6 * (to - from + 1)) return -1.0F;
-    std::nth_element(light.begin(), light.begin() + count / 2, light.begin() + count);
-    return light[static_cast<std::size_t>(count / 2)];
+    return geometry::median_in_place(std::span(light).first(static_cast<std::size_t>(count)));
   };
   const float inside = median_light(begin, end);
   const float before = median_light(begin - kFlank, begin - 2), after = median_light(end + 2, end + kFlank);

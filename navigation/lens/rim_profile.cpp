@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "navigation/lens/rim.h"
+#include "planning/geometry/quantile.h"
 #include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::lens {
@@ -138,8 +139,7 @@ void mend_dark_strips(const std::array<float, kRayCount>& first_px, RimProfile& 
     if (profile.state[i] == RayState::Edge)
       gaps[static_cast<std::size_t>(count++)] = first_px[i] - profile.radius_px[i];
   if (count == 0) return;
-  std::nth_element(gaps.begin(), gaps.begin() + count / 2, gaps.begin() + count);
-  const float usual = gaps[static_cast<std::size_t>(count / 2)];
+  const float usual = geometry::median_in_place(std::span(gaps).first(static_cast<std::size_t>(count)));
   for (int i = 0; i < kRayCount; ++i)
     if (profile.state[i] == RayState::Edge && first_px[i] - profile.radius_px[i] > usual + kMostFurther_px)
       profile.radius_px[i] = first_px[i] - usual;
@@ -222,8 +222,9 @@ CircleFit fit_circle(const RimProfile& profile, double gate_px) {
       if (e < gate_px) magnitude[static_cast<std::size_t>(count++)] = static_cast<float>(e);
     }
     if (count < 60) return {};
-    std::nth_element(magnitude.begin(), magnitude.begin() + count / 2, magnitude.begin() + count);
-    scale = std::clamp(1.4826 * magnitude[static_cast<std::size_t>(count / 2)], 0.2, scale);
+    const float middle =
+        geometry::median_in_place(std::span(magnitude).first(static_cast<std::size_t>(count)));
+    scale = std::clamp(1.4826 * middle, 0.2, scale);
 
     const double limit = 4.685 * scale;
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "navigation/markers/product_sum.h"
+#include "planning/geometry/quantile.h"
 
 namespace arthronaut::markers {
 namespace {
@@ -29,13 +30,10 @@ constexpr int kBoundEdges = 15;  // edges that the unknowns fit by themselves
 constexpr int kRoughPixels = 300, kRoughStride = 3;
 constexpr double kRoughlySettledPx = 0.3;
 constexpr int kLikelyPixels = 2048;  // memory set aside
-constexpr int kSaturated = 250;
 constexpr double kTukey = 4.685;
 constexpr double kMinNoiseGrey = 1.5, kMaxNoiseGrey = 6, kMinNoiseLight = 2;
 // Neighbouring pixels share what is wrong with them: so many count as one beside what is known beforehand.
 constexpr double kCorrelatedPixels = 6;
-// What all edges have wrong together does not scatter: measured on path-traced and on drawn clips.
-constexpr double kSharedErrors = 2;
 constexpr double kSmearSigmaPx = 0.15, kGammaSigma = 0.15;
 constexpr double kPixelSigmaPx = 0.29;  // of a pixel's own square
 constexpr float kMinLight = 0.3F;
@@ -46,9 +44,6 @@ constexpr int kCoarseIterations = 2, kMinIterations = 3;
 constexpr int kHopefulIterations = 5;
 // Residuals that still get smaller, though the pose stands, mean that what covers is not out yet.
 constexpr double kSettledShare = 0.95;
-constexpr double kMinLikeness = 0.9;
-// Fits to something else reach a likeness of 0.99 and a noise of 5 on recorded clips; good ones 0.998 and 4.
-constexpr double kGoodShare = 0.65, kGoodLikeness = 0.9975, kGoodNoiseGrey = 4.7;
 
 float tukey_weight(float ratio) {
   const float part = ratio / static_cast<float>(kTukey);
@@ -63,12 +58,6 @@ Terms terms_at(const Eigen::Vector2f& place) {
   Terms terms;
   terms << 1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y;
   return terms;
-}
-
-double median_of(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // How far the sides move in the picture over the exposure.
@@ -93,11 +82,6 @@ struct CodeShare {
 };
 
 }  // namespace
-
-bool DirectPose::explains_picture() const {
-  return is_usable() && inlier_share >= kGoodShare && likeness >= kGoodLikeness &&
-         noise_grey <= kGoodNoiseGrey;
-}
 
 DirectFit::DirectFit() {
   pixels_.reserve(kLikelyPixels);
@@ -139,7 +123,7 @@ void DirectFit::take_pixels(const camera::GrayView& frame, const camera::CameraM
       const Eigen::Vector2d pixel = (*point + k * reach / kStepsToASide * normal).array().round();
       if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() >= frame.width || pixel.y() >= frame.height) continue;
       const std::uint8_t grey = frame.row(static_cast<int>(pixel.y()))[static_cast<int>(pixel.x())];
-      if (grey >= kSaturated) continue;
+      if (grey >= options.saturated_grey) continue;
       const auto ray = camera.ray(pixel);
       if (!ray) continue;
       Pixel& added = pixels_.emplace_back();
@@ -231,7 +215,8 @@ void DirectFit::guess_light(State& state) {
       residuals_[i] = light_[i] - state.light.dot(row_of(i));
       sorted_.push_back(std::abs(residuals_[i]));
     }
-    const auto scale = static_cast<float>(std::max(kMinNoiseLight, 1.8 * median_of(sorted_)));
+    const auto scale =
+        static_cast<float>(std::max(kMinNoiseLight, 1.8 * geometry::median_in_place(std::span(sorted_))));
     for (std::size_t i = 0; i < count; ++i) weights_[i] = tukey_weight(residuals_[i] / scale);
   }
 }
@@ -271,7 +256,7 @@ void DirectFit::linearise(const State& state, bool is_first, Linearised& result)
     products.add(std::sqrt(weight) * row);
     edge_gradients_[pixel.edge] += weight * residual * row;
   }
-  result.scale = 1.4826 * median_of(sorted_);
+  result.scale = 1.4826 * geometry::median_in_place(std::span(sorted_));
   result.products = products.take().topLeftCorner<kCount, kCount>().cast<double>();
   for (const Row& part : edge_gradients_) result.pull += part.head<kCount>().cast<double>();
 }
@@ -291,7 +276,7 @@ bool DirectFit::scattered_covariance(const Linearised& at, double certainty,
   }
   if (edges < kMinEdges) return false;
   const double small_sample = edges / static_cast<double>(edges - kBoundEdges);
-  covariance = kSharedErrors * small_sample * scatter;
+  covariance = small_sample * scatter;
   return covariance.allFinite();
 }
 
@@ -371,6 +356,7 @@ DirectPose DirectFit::refine(const camera::GrayView& frame, const camera::Camera
       take_all();
   }
   if (!scattered_covariance(at, certainty, result.covariance)) return result;
+  result.covariance *= options.shared_errors;
   const Vector6d way = geometry::log(start.pose.camera_from_marker.inverse() * state.pose.camera_from_marker);
   if ((coarse_iterations == 0 && moved_px > kSettledEnoughPx) ||
       motion_px(way, size_mm, px_per_mm) > options.max_way_cells * cell_px)
@@ -382,7 +368,9 @@ DirectPose DirectFit::refine(const camera::GrayView& frame, const camera::Camera
   result.inlier_share = static_cast<double>(at.used) / static_cast<double>(pixels_.size());
   result.likeness = at.code_share.likeness();
   result.outcome =
-      result.likeness > kMinLikeness ? DirectPose::Outcome::Converged : DirectPose::Outcome::Unlike;
+      result.likeness > options.min_likeness ? DirectPose::Outcome::Converged : DirectPose::Outcome::Unlike;
+  result.is_good = result.inlier_share >= options.good_inlier_share &&
+                   result.likeness >= options.good_likeness && result.noise_grey <= options.good_noise_grey;
   return result;
 }
 

@@ -35,6 +35,14 @@ struct DirectOptions {
   // by as much gets in.
   double coarse_cells = 0;
   double max_way_cells = 1.2;  // from the start to the result; farther away another cell may have answered
+  int saturated_grey = 250;    // pixels of this grey and above say nothing
+  double min_likeness = 0.9;   // to have converged at all
+  // What DirectPose::explains_picture asks for. Fits to something else reach a likeness of 0.99 and a noise
+  // of 5 on recorded clips; good ones 0.998 and 4.
+  double good_inlier_share = 0.65, good_likeness = 0.9975, good_noise_grey = 4.7;
+  // The covariance is this much larger than what scatters, since what all edges have wrong together does not:
+  // measured on path-traced and on drawn clips.
+  double shared_errors = 2;
 };
 
 struct DirectPose {
@@ -55,7 +63,8 @@ struct DirectPose {
   double inlier_share = 0;  // of the pixels
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Converged; }
   // The code and nothing else is what the picture shows there: good enough to stand for.
-  [[nodiscard]] bool explains_picture() const;
+  [[nodiscard]] bool explains_picture() const { return is_usable() && is_good; }
+  bool is_good = false;  // likeness, noise and share reach what DirectOptions calls good
 };
 
 // Keeps its memory from call to call.

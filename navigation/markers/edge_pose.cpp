@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planning/geometry/quantile.h"
+
 namespace arthronaut::markers {
 namespace {
 
@@ -65,8 +67,7 @@ double tukey_weight(double ratio) {
 // Median of |residual / sigma| , on the stack.
 double median_of(const std::array<double, kMaxEdges>& ratios, int count) {
   std::array<double, kMaxEdges> copy = ratios;
-  std::nth_element(copy.begin(), copy.begin() + count / 2, copy.begin() + count);
-  return copy[count / 2];
+  return geometry::median_in_place(std::span(copy).first(static_cast<std::size_t>(count)));
 }
 
 }  // namespace

@@ -14,6 +14,8 @@ namespace {
 
 using geometry::RigidTransform;
 
+constexpr std::size_t kLikelyCandidates = 256;  // memory set aside
+
 class EdgeTracker final : public MarkerTracker {
  public:
   EdgeTracker(std::span<const DeclaredMarker> declared, std::span<const MarkerCode> codes,
@@ -25,8 +27,9 @@ class EdgeTracker final : public MarkerTracker {
       if (code == codes.end())
         throw InvalidInput("marker " + std::to_string(marker.id) + ": is not in the dictionary");
       codes_.push_back(*code);
-      tracks_.emplace_back(marker, *code);
+      tracks_.emplace_back(marker, *code, options.track);
     }
+    candidates_.reserve(kLikelyCandidates);
     reset();
   }
 
@@ -35,7 +38,8 @@ class EdgeTracker final : public MarkerTracker {
     check_frame_size(frame, camera);
     const LinearImage image(frame, light_);
     const TrackedFrame tracked{image, camera, timestamp_ns, smear_,
-                               options_.fit_directly ? &dense_ : nullptr};
+                               options_.fit_directly ? &direct_ : nullptr};
+    candidates_.clear();
     bool missing = false;
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       observations_[i] = MarkerObservation();
@@ -55,7 +59,10 @@ class EdgeTracker final : public MarkerTracker {
     return observations_;
   }
 
+  [[nodiscard]] std::span<const MarkerCandidate> candidates() const override { return candidates_; }
+
   void reset() override {
+    candidates_.clear();
     observations_.assign(tracks_.size(), MarkerObservation());
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       tracks_[i].forget();
@@ -72,6 +79,7 @@ class EdgeTracker final : public MarkerTracker {
     for (MarkerTrack& track : tracks_) track.is_duplicate = false;
     for (const FoundSquare& square : search_.find(frame.image.view(), frame.camera)) {
       const auto code = read_code(frame.image, frame.camera, square.tangent, codes_);
+      candidates_.push_back({square.corners_px, code ? codes_[code->index].id : MarkerCandidate::kNoCode});
       if (!code) continue;
       MarkerTrack& track = tracks_[code->index];
       MarkerObservation& known = observations_[code->index];
@@ -106,9 +114,10 @@ class EdgeTracker final : public MarkerTracker {
   std::vector<MarkerCode> codes_;  // of the declared markers, in their order
   std::vector<MarkerTrack> tracks_;
   std::vector<MarkerObservation> observations_;
+  std::vector<MarkerCandidate> candidates_;  // of this frame's search
   SquareSearch search_;
   CameraSmear smear_;
-  DirectFit dense_;
+  DirectFit direct_;
   int frames_to_search_ = 0;
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "navigation/markers/marker_pattern.h"
+#include "navigation/markers/marker_track.h"
 #include "navigation/markers/marker_tracker.h"
 
 namespace arthronaut::markers {
@@ -21,6 +22,7 @@ struct EdgeTrackerOptions {
   double bloom_sigma_px =
       0.2;                   // how far the bloom may be from the camera's mean; hardly above 0 leaves it out
   bool fit_directly = true;  // false: edge profiles alone, also through motion blur; to compare
+  MarkerTrackOptions track;
   int search_every_frames = 4;  // a search of the whole frame, for doubles, while every marker is tracked
 };
 

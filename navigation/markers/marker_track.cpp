@@ -12,28 +12,33 @@ namespace {
 using geometry::RigidTransform;
 using geometry::Vector6d;
 
-// The corners that single edges make under a direct fit lie no farther from it, or it fits something else.
-constexpr double kMaxDirectRmsPx = 1.1, kMaxLoneRmsPx = 0.5;
 // Motions over the exposure that are tried when none is known.
 constexpr double kTriedLengthsPx[] = {8, 18};
 constexpr int kTriedDirections = 4;
-const DirectOptions kTriedFit{
-    .max_iterations = 5, .max_pixels = 300, .coarse_cells = 0.3, .max_way_cells = 3};
-const DirectOptions kUnsureFit{.coarse_cells = 0.3, .max_way_cells = 3};
-// A motion over the exposure from which on the direct fit is the better one, and what it must reach.
-constexpr double kSmearedPx = 3, kLittleSmearPx = 8, kUnconfirmed = 10, kMinDirectCellPx = 6;
+// A smear up to which edges go on by themselves, with so much less trust, where no direct fit confirms them.
+constexpr double kLittleSmearPx = 8, kUnconfirmed = 10;
 constexpr int kMaxPasses = 4;
 constexpr double kMaxNewMotionPx = 5;
-// At first sight the motion is a guess: so much more may be wrong with each corner.
-constexpr double kFoundCornerSigmaPx = 0.15;
 // How far the edges are looked for, in cells; less than half, or the next edge answers.
 constexpr double kReachPredicted = 0.35, kReachFound = 0.45;
-constexpr double kMinCellPx = 3;
 // Two starts that lead so near to each other lead to the same.
 constexpr double kSameEdgesPx = 0.1, kSameMotionPx = 0.5;
-constexpr double kCornerSigmaPx = 0.05;
 constexpr double kSoft = 1.4;
-constexpr double kClearRatio = 10, kOtherNoise = 1.15;
+
+// From a start that may be off by a third of a cell, and over a longer way.
+DirectOptions unsure(DirectOptions options) {
+  options.coarse_cells = 0.3;
+  options.max_way_cells = 3;
+  return options;
+}
+
+// Quick: which of many motions is worth a whole fit.
+DirectOptions tried(DirectOptions options) {
+  options = unsure(options);
+  options.max_iterations = 5;
+  options.max_pixels = 300;
+  return options;
+}
 
 double cell_px(const camera::CameraModel& camera, const RigidTransform& pose, double size_mm, int cells) {
   return camera.central_focal_px() * size_mm / cells / std::max(pose.translation_mm.z(), 1.0);
@@ -41,8 +46,9 @@ double cell_px(const camera::CameraModel& camera, const RigidTransform& pose, do
 
 }  // namespace
 
-MarkerTrack::MarkerTrack(const DeclaredMarker& marker, const MarkerCode& code)
-    : marker_(marker), code_(code), cells_(code.cells), samples_(edge_samples(code)) {
+MarkerTrack::MarkerTrack(const DeclaredMarker& marker, const MarkerCode& code,
+                         const MarkerTrackOptions& options)
+    : options_(options), marker_(marker), code_(code), cells_(code.cells), samples_(edge_samples(code)) {
   measurements_.reserve(samples_.size());
   is_inlier_.reserve(samples_.size());
 }
@@ -52,7 +58,7 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
   observation = MarkerObservation();
   observation.id = marker_.id;
   const double cell = cell_px(frame.camera, start, marker_.size_mm, cells_);
-  if (cell < kMinCellPx) {
+  if (cell < options_.min_cell_px) {
     observation.state = MarkerState::TooSmall;
     return false;
   }
@@ -84,12 +90,13 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
   // Without a past nothing is known of the motion, and edges alone may take a smear for another tilt.
   const bool is_motion_known = !is_found && motion_.is_known_at(frame.timestamp_ns);
   const double edges_motion_px = picture.motion.head<3>().norm() * px_per_mm;
-  if (frame.direct && (!is_motion_known || edges_motion_px > kSmearedPx) && cell > kMinDirectCellPx) {
+  if (frame.direct && (!is_motion_known || edges_motion_px > options_.smeared_px) &&
+      cell > options_.min_direct_cell_px) {
     const RigidTransform& from = fit.converged ? fit.camera_from_marker : start;
     DirectPose direct =
-        fit_directly(frame, from, picture.motion, fit.converged ? DirectOptions() : kUnsureFit);
+        fit_directly(frame, from, picture.motion, fit.converged ? options_.direct : unsure(options_.direct));
     if (is_found && fit.converged && !direct.explains_picture())
-      direct = fit_directly(frame, from, picture.motion, kUnsureFit);
+      direct = fit_directly(frame, from, picture.motion, unsure(options_.direct));
     // What moves may also pass for out of focus.
     if (!is_motion_known && (!direct.explains_picture() || direct.sigma_px > kSoft * frame.smear.sigma_px)) {
       const DirectPose moving = try_motions(frame, from);
@@ -98,7 +105,8 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
     }
     // With no edge pose to agree with, the corners have to be its own all the more.
     if (direct.is_usable())
-      report_direct(frame, direct, fit.converged ? kMaxDirectRmsPx : kMaxLoneRmsPx, observation);
+      report_direct(frame, direct, fit.converged ? options_.max_direct_rms_px : options_.max_lone_rms_px,
+                    observation);
     if (observation.is_tracked()) {
       frame.smear.gamma += 0.1 * (direct.gamma - frame.smear.gamma);
       learn_exposure(
@@ -106,7 +114,7 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
           direct.pose.velocity, px_per_mm, frame.smear);
     }
     const bool is_sharp =
-        direct.explains_picture() && direct.pose.velocity.head<3>().norm() * px_per_mm < kSmearedPx;
+        direct.explains_picture() && direct.pose.velocity.head<3>().norm() * px_per_mm < options_.smeared_px;
     if (observation.is_tracked() && !(is_sharp && fit.converged)) return true;
     if (!is_sharp) {
       if (!fit.converged) {
@@ -120,7 +128,7 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
         observation.covariance *= kUnconfirmed;
         return true;
       }
-      observation.state = edges_motion_px > kSmearedPx ? MarkerState::Blur : MarkerState::Covered;
+      observation.state = edges_motion_px > options_.smeared_px ? MarkerState::Blur : MarkerState::Covered;
       go_on_from(fit);
       return false;
     }
@@ -200,13 +208,15 @@ DirectPose MarkerTrack::try_motions(const TrackedFrame& frame, const RigidTransf
       const double angle = geometry::kPi * direction / kTriedDirections;
       const Vector6d motion =
           twist_of({length * std::cos(angle), length * std::sin(angle)}, frame.camera, start);
-      const DirectPose fit = fit_directly(frame, start, motion, kTriedFit);
+      const DirectPose fit = fit_directly(frame, start, motion, tried(options_.direct));
       if (!fit.is_usable() || (best.is_usable() && fit.noise_grey >= best.noise_grey)) continue;
       best = fit;
     }
   }
   if (!best.is_usable()) return best;
-  return fit_directly(frame, best.pose.camera_from_marker, best.pose.velocity, {.max_way_cells = 2});
+  DirectOptions whole = options_.direct;
+  whole.max_way_cells = 2;
+  return fit_directly(frame, best.pose.camera_from_marker, best.pose.velocity, whole);
 }
 
 void MarkerTrack::report_direct(const TrackedFrame& frame, const DirectPose& fit, double max_rms_px,
@@ -247,12 +257,13 @@ void MarkerTrack::report_direct(const TrackedFrame& frame, const DirectPose& fit
   }
   const auto poses = solve_square(frame.camera, exact, marker_.size_mm);
   if (!observation.is_tracked() || !poses || !poses->other) return;
-  const double corner_px =
-      std::hypot(kCornerSigmaPx, std::sqrt((poses->best.information * observation.covariance).trace() / 8));
+  const double corner_px = std::hypot(
+      options_.corner_sigma_px, std::sqrt((poses->best.information * observation.covariance).trace() / 8));
   observation.ambiguity_ratio = std::min(kNoOtherPose, poses->other->rms_px / corner_px);
-  if (observation.ambiguity_ratio >= kClearRatio) return;
-  const DirectPose other = fit_directly(frame, poses->other->camera_from_marker, fit.pose.velocity, {});
-  if (!other.is_usable() || other.noise_grey > kOtherNoise * fit.noise_grey) return;
+  if (observation.ambiguity_ratio >= options_.clear_ratio) return;
+  const DirectPose other =
+      fit_directly(frame, poses->other->camera_from_marker, fit.pose.velocity, options_.direct);
+  if (!other.is_usable() || other.noise_grey > options_.other_noise * fit.noise_grey) return;
   if (are_unlike(fit.pose.camera_from_marker, other.pose.camera_from_marker))
     observation.state = MarkerState::Ambiguous;
 }
@@ -274,9 +285,9 @@ void MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, c
     is_contradicted = are_unlike(fit.camera_from_marker, poses->best.camera_from_marker);
     if (other) {
       observation.ambiguity_ratio =
-          std::min(kNoOtherPose, other->rms_px / std::max(observation.rms_px, kCornerSigmaPx));
+          std::min(kNoOtherPose, other->rms_px / std::max(observation.rms_px, options_.corner_sigma_px));
     }
-    if (is_found) observation.covariance += square_covariance(poses->best, kFoundCornerSigmaPx);
+    if (is_found) observation.covariance += square_covariance(poses->best, options_.found_corner_sigma_px);
   }
   observation.state = judge(fit, observation, other, is_found);
   if (observation.is_tracked() && is_contradicted) observation.state = MarkerState::Doubtful;

@@ -25,9 +25,26 @@ struct TrackedFrame {
   DirectFit* direct = nullptr;  // none: edge profiles alone
 };
 
+// When a measured pose stands. docs/thresholds.md says where the numbers come from.
+struct MarkerTrackOptions {
+  double min_cell_px = 3;         // smaller ones are not measured: TooSmall
+  double min_direct_cell_px = 6;  // smaller ones are measured by their edges alone
+  double smeared_px = 3;          // a motion over the exposure from which on the direct fit is the better one
+  // The corners that single edges make under a direct fit lie no farther from it, or it fits something else;
+  // without an edge pose to agree with, they have to be its own all the more.
+  double max_direct_rms_px = 1.1, max_lone_rms_px = 0.5;
+  double corner_sigma_px = 0.05;
+  // At first sight the motion is a guess: so much more may be wrong with each corner.
+  double found_corner_sigma_px = 0.15;
+  // The other pose that a square allows is out of the question when it explains the corners this many times
+  // worse, or the grey levels this many times.
+  double clear_ratio = 10, other_noise = 1.15;
+  DirectOptions direct;
+};
+
 class MarkerTrack {
  public:
-  MarkerTrack(const DeclaredMarker& marker, const MarkerCode& code);
+  MarkerTrack(const DeclaredMarker& marker, const MarkerCode& code, const MarkerTrackOptions& options = {});
 
   // Where the marker should be at this time; nullopt when it was never seen or too long ago.
   [[nodiscard]] std::optional<geometry::RigidTransform> predicted(std::int64_t timestamp_ns) const {
@@ -73,6 +90,7 @@ class MarkerTrack {
   // agree best.
   void go_on_from(const EdgePose& fit);
 
+  MarkerTrackOptions options_;
   DeclaredMarker marker_;
   MarkerCode code_;
   int cells_;

@@ -1,6 +1,6 @@
 // Finds the declared square markers in a raw, distorted frame and gives the pose of each with its error, or
-// the reason why not. The interface has one implementation on OpenCV's ArUco detector and one of the
-// project's own.
+// the reason why not. One tracker implements the interface for the product; tests and benchmarks hold another
+// one, on OpenCV's ArUco detector, against it.
 #pragma once
 
 #include <Eigen/Core>
@@ -51,6 +51,13 @@ struct MarkerObservation {
   [[nodiscard]] bool is_tracked() const { return state == MarkerState::Tracked; }
 };
 
+// A square that a search of the whole frame looked at: for whoever asks why a marker was not found.
+struct MarkerCandidate {
+  static constexpr int kNoCode = -1;
+  std::array<Eigen::Vector2d, 4> corners_px;  // clockwise, any of them first; good to about 2 px
+  int id = kNoCode;                           // of the declared code that was read in it
+};
+
 class MarkerTracker {
  public:
   virtual ~MarkerTracker() = default;
@@ -60,19 +67,17 @@ class MarkerTracker {
   virtual std::span<const MarkerObservation> track(const camera::GrayView& frame,
                                                    const camera::CameraModel& camera,
                                                    std::int64_t timestamp_ns) = 0;
+  // What the last call's search looked at; empty when it had no need of one. Valid until the next call.
+  [[nodiscard]] virtual std::span<const MarkerCandidate> candidates() const { return {}; }
   virtual void reset() = 0;  // forget the past: another source
 };
 
-// OpenCV's ArUco detector for finding, corners refined to sub-pixel on the raw frame, IPPE, refinement on
-// distorted pixels. Throws InvalidInput when a marker is declared twice, an id is outside 0..49 or a size is
-// not above 0.
-[[nodiscard]] std::unique_ptr<MarkerTracker> make_aruco_tracker(std::span<const DeclaredMarker> declared);
-
-// The project's own tracker, the one to use: finds squares in the undistorted outline of dark regions,
+// The tracker: finds squares in the undistorted outline of dark regions,
 // measures every edge of the code to a small part of a pixel in linear light on the raw frame, follows the
 // marker through partial cover, glare and motion blur by prediction, and reports a pose only when its edges
 // confirm it along both axes. rms_px is how far the measured corners lie from the pose's. No memory is
-// allocated after the first frames. Throws as make_aruco_tracker.
+// allocated after the first frames. Throws InvalidInput when a marker is declared twice, an id is outside
+// 0..49 or a size is not above 0.
 [[nodiscard]] std::unique_ptr<MarkerTracker> make_tracker(std::span<const DeclaredMarker> declared);
 
 // Every marker that the tools declare: world markers first.

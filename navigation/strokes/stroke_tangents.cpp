@@ -6,6 +6,8 @@
 #include <cmath>
 #include <span>
 
+#include "planning/geometry/quantile.h"
+
 namespace arthronaut::strokes {
 
 namespace {
@@ -39,8 +41,7 @@ Points running_median(const Points& points, std::size_t half_width) {
     for (int axis = 0; axis < 3; ++axis) {
       window.clear();
       for (std::size_t j = i - reach; j <= i + reach; ++j) window.push_back(points[j][axis]);
-      std::nth_element(window.begin(), window.begin() + static_cast<std::ptrdiff_t>(reach), window.end());
-      smooth[i][axis] = window[reach];
+      smooth[i][axis] = geometry::median_in_place(std::span(window));
     }
   }
   return smooth;
@@ -99,11 +100,8 @@ LocalCurve fit_local_curve(std::span<const Eigen::Vector3d> points, std::span<co
       const Eigen::Vector3d basis(1.0, offsets_mm[i], offsets_mm[i] * offsets_mm[i]);
       residuals[i] = (points[i] - curve.coefficients * basis).norm();
     }
-    std::vector<double> sorted = residuals;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                     sorted.end());
     // 1.538 is the median length of a three-dimensional unit normal vector.
-    scale_mm = std::max(sorted[sorted.size() / 2] / 1.538, 0.01);
+    scale_mm = std::max(geometry::median(residuals) / 1.538, 0.01);
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (iteration < kAbsoluteIterations) {
         weights[i] = 1.0 / std::max(residuals[i], 0.05);

@@ -15,6 +15,7 @@
 #include "navigation/markers/edge_tracker.h"
 #include "navigation/markers/square_search.h"
 #include "planning/geometry/quantile.h"
+#include "tests/benchmarks/aruco_tracker.h"
 #include "tests/real_data/marker_accuracy.h"
 
 namespace arthronaut::real_data {

@@ -1,6 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include "navigation/markers/marker_tracker.h"
+#include "tests/benchmarks/aruco_tracker.h"
 #include "tests/navigation/markers/rendered_marker.h"
 
 namespace arthronaut::markers {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "navigation/registration/bone/triangle_distance.h"
 #include "planning/geometry/error.h"
+#include "planning/geometry/triangle_distance.h"
 
 namespace arthronaut::registration {
 
@@ -65,7 +65,8 @@ class NearestTriangles {
   }
 
   bool offer(std::size_t node, std::int32_t triangle) {
-    const double squared = nearest_on_triangle(position_mm(node), corners_of(mesh_, triangle)).squared_mm2;
+    const double squared =
+        geometry::nearest_on_triangle(position_mm(node), corners_of(mesh_, triangle)).squared_mm2;
     if (squared >= squared_mm2_[node]) return false;
     squared_mm2_[node] = static_cast<float>(squared);
     triangle_[node] = triangle;
@@ -136,7 +137,7 @@ DistanceField::DistanceField(const TriangleMesh& mesh, const DistanceFieldOption
 
   NearestTriangles nearest(mesh, origin_mm_, spacing_mm_, size_, band_mm_);
   nearest.run();
-  const PseudoNormals normals(mesh);
+  const geometry::PseudoNormals normals(mesh);
   nodes_.resize(static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()) *
                 static_cast<std::size_t>(size_.z()));
   const auto saturated = static_cast<std::int16_t>(std::lround(band_mm_ / kStep_mm));
@@ -148,7 +149,8 @@ DistanceField::DistanceField(const TriangleMesh& mesh, const DistanceFieldOption
     const std::int32_t triangle = nearest.triangle_at(i);
     if (triangle < 0) continue;
     const Eigen::Vector3d position = nearest.position_mm(i);
-    const NearestOnTriangle found = nearest_on_triangle(position, corners_of(mesh, triangle));
+    const geometry::NearestOnTriangle found =
+        geometry::nearest_on_triangle(position, corners_of(mesh, triangle));
     const bool inside = (position - found.point_mm).dot(normals.at(triangle, found.part)) < 0;
     const double distance_mm = std::min(std::sqrt(found.squared_mm2), band_mm_);
     nodes_[i] = static_cast<std::int16_t>(std::lround((inside ? -distance_mm : distance_mm) / kStep_mm));

@@ -57,7 +57,6 @@ class PairTable {
   [[nodiscard]] const std::vector<SurfaceSample>& samples() const { return samples_; }
   [[nodiscard]] double min_distance_mm() const { return options_.min_distance_mm; }
   [[nodiscard]] double max_distance_mm() const { return options_.max_distance_mm; }
-  [[nodiscard]] std::size_t pair_count() const { return pairs_.size(); }
 
   struct Tolerance {
     float distance_mm = 0.8f;

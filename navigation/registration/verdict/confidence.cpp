@@ -90,16 +90,21 @@ double shared_misfit_of(const std::vector<double>& residuals_mm, const WeightedP
 
 // The whole miss, less what the slow errors that come with such white noise make of it.
 double excess_misfit_mm(const RegistrationSummary& summary, double white_noise_mm) {
-  return summary.misfit_mm - 0.75 * white_noise_mm + summary.shared_misfit_mm;
+  constexpr double kSlowOfWhite = 0.75;
+  return summary.misfit_mm - kSlowOfWhite * white_noise_mm + summary.shared_misfit_mm;
 }
 
 // Measured on five femora: the right bone gives an excess of up to 0.12, 0.38 and mostly 0.45 mm at a white
 // noise of 0.07, 0.15 and 0.20 mm, another person's 0.47, 0.42 and mostly 0.35 mm and more.
-double max_excess_mm(double white_noise_mm) { return 0.28 + 0.8 * white_noise_mm; }
+double max_excess_mm(double white_noise_mm) {
+  constexpr double kExcess_mm = 0.28, kExcessOfNoise = 0.8;
+  return kExcess_mm + kExcessOfNoise * white_noise_mm;
+}
 
 // The lead over the next pose that a pose needs, in independent measurements' log likelihood. One that few
 // strokes hold loosely, or that misses them, leads by chance: on another person's femur too. Measured there,
-// on 400 mm of strokes of which half are off the bone, and on twice as many.
+// on 400 mm of strokes of which half are off the bone, and on twice as many; fitted by hand to those trials
+// (docs/thresholds.md).
 constexpr double kClearLead = 5;
 double lead_needed(double excess_misfit_mm, double predicted_error_mm, double length_mm) {
   constexpr double kAtOneMm = 1.45, kMisfit_mm = 0.074, kPower = 2.6, kLength_mm = 400;

@@ -7,6 +7,7 @@
 
 #include "navigation/markers/square_search.h"
 #include "planning/geometry/error.h"
+#include "tests/benchmarks/aruco_tracker.h"
 #include "tests/navigation/markers/counted_allocations.h"
 #include "tests/navigation/markers/rendered_marker.h"
 

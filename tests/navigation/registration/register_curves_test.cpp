@@ -217,7 +217,7 @@ TEST(RegisterCurves, SolvesTheThicknessOfCartilage) {
 }
 
 // Soft tissue and lifting on top of it: found, or doubted, never wrong and sure.
-TEST(RegisterCurves, CoveredExVivoTrialsAreNeverWrongAndSure) {
+TEST(RegisterCurves, CartilageInExVivoTrialsIsNeverWrongAndSure) {
   const PhantomBone& bone = phantom_bone();
   int found_count = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {

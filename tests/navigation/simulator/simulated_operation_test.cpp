@@ -7,6 +7,7 @@
 #include "navigation/lens/lens_tracker.h"
 #include "navigation/markers/marker_tracker.h"
 #include "planning/geometry/error.h"
+#include "tests/benchmarks/aruco_tracker.h"
 #include "tests/navigation/simulator/phantom_options.h"
 
 namespace arthronaut::simulator {

@@ -6,9 +6,9 @@
 #include <limits>
 #include <random>
 
-#include "navigation/registration/bone/triangle_distance.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
+#include "planning/geometry/triangle_distance.h"
 #include "tests/navigation/registration/phantom_bone.h"
 #include "tests/planning/geometry/shapes.h"
 
@@ -84,7 +84,7 @@ TEST(TriangleDistance, NearestPointIsNoFartherThanAnySample) {
   for (int i = 0; i < 300; ++i) {
     const std::array<Eigen::Vector3d, 3> corners{vector(), vector(), vector()};
     const Eigen::Vector3d query = 2 * vector();
-    const NearestOnTriangle found = nearest_on_triangle(query, corners);
+    const geometry::NearestOnTriangle found = geometry::nearest_on_triangle(query, corners);
     double best = 1e9;
     for (int u = 0; u <= 40; ++u) {
       for (int v = 0; u + v <= 40; ++v) {

@@ -1,4 +1,4 @@
-#include "navigation/registration/bone/triangle_distance.h"
+#include "planning/geometry/triangle_distance.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 #include "planning/geometry/rigid_transform.h"
 
-namespace arthronaut::registration {
+namespace arthronaut::geometry {
 
 namespace {
 
@@ -52,7 +52,7 @@ NearestOnTriangle nearest_on_triangle(const Eigen::Vector3d& query_mm,
   return found(a + on_ac * scale * ab + on_ab * scale * ac, TrianglePart::Face);
 }
 
-PseudoNormals::PseudoNormals(const geometry::TriangleMesh& mesh)
+PseudoNormals::PseudoNormals(const TriangleMesh& mesh)
     : mesh_(mesh),
       face_(mesh.triangles.size()),
       corner_(mesh.vertices_mm.size(), Eigen::Vector3d::Zero()),
@@ -67,7 +67,7 @@ PseudoNormals::PseudoNormals(const geometry::TriangleMesh& mesh)
           mesh.vertices_mm[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])];
     face_[t] = (p[1] - p[0]).cross(p[2] - p[0]).stableNormalized();
     for (std::size_t k = 0; k < 3; ++k) {
-      const double angle = geometry::angle_between_rad(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
+      const double angle = angle_between_rad(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
       corner_[static_cast<std::size_t>(triangle[k])] += angle * face_[t];
       edge_[t][k] = face_[t];
       sides.push_back({edge_key(triangle[k], triangle[(k + 1) % 3]), static_cast<std::int32_t>(t),
@@ -107,4 +107,4 @@ const Eigen::Vector3d& PseudoNormals::at(std::int32_t triangle, TrianglePart par
   return face_[t];
 }
 
-}  // namespace arthronaut::registration
+}  // namespace arthronaut::geometry

@@ -8,7 +8,7 @@
 
 #include "planning/geometry/triangle_mesh.h"
 
-namespace arthronaut::registration {
+namespace arthronaut::geometry {
 
 // Where on a triangle a nearest point lies: a corner, an edge (edge k runs from corner k to corner k + 1) or
 // the face.
@@ -24,16 +24,19 @@ struct NearestOnTriangle {
                                                     const std::array<Eigen::Vector3d, 3>& corners_mm);
 
 // Angle-weighted pseudo-normals (Baerentzen and Aanaes 2005): the sign of (query - nearest) . normal tells
-// inside from outside wherever the nearest point lies.
+// inside from outside wherever the nearest point of a closed mesh lies. Points of the same place have to
+// share an index.
 class PseudoNormals {
  public:
-  explicit PseudoNormals(const geometry::TriangleMesh& mesh);
+  // The mesh must outlive it.
+  explicit PseudoNormals(const TriangleMesh& mesh);
+  // Of the face unit; of edges and corners of any length.
   [[nodiscard]] const Eigen::Vector3d& at(std::int32_t triangle, TrianglePart part) const;
 
  private:
-  const geometry::TriangleMesh& mesh_;
+  const TriangleMesh& mesh_;
   std::vector<Eigen::Vector3d> face_, corner_;        // by triangle, by vertex
   std::vector<std::array<Eigen::Vector3d, 3>> edge_;  // by triangle
 };
 
-}  // namespace arthronaut::registration
+}  // namespace arthronaut::geometry

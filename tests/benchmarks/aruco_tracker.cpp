@@ -1,4 +1,5 @@
-// The reference tracker: everything but the pose is OpenCV's.
+#include "tests/benchmarks/aruco_tracker.h"
+
 #include <algorithm>
 #include <cmath>
 #include <opencv2/aruco.hpp>
@@ -6,7 +7,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "navigation/markers/declaration.h"
-#include "navigation/markers/marker_tracker.h"
 #include "navigation/markers/planar_pose.h"
 
 namespace arthronaut::markers {
