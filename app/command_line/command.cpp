@@ -6,6 +6,8 @@
 #include <cmath>
 #include <iostream>
 
+#include "planning/log/log.h"
+
 namespace arthronaut::command_line {
 
 Progress::Progress(std::string_view what, long total)
@@ -26,20 +28,30 @@ void Progress::advance_to(long done) {
 }
 
 void Context::say(const std::string& line) const {
+  log::info(line);
   if (!quiet) std::cout << line << '\n' << std::flush;
 }
 
 void Context::say_unreliable(const std::string& what, const std::vector<std::string>& reasons) {
   std::cerr << "arthronaut: " << what << " is not reliable\n";
-  for (const auto& reason : reasons) std::cerr << "  - " << reason << '\n';
+  log::warning(what + " is not reliable");
+  for (const auto& reason : reasons) {
+    std::cerr << "  - " << reason << '\n';
+    log::warning("- " + reason);
+  }
   exit_code = kUnreliable;
+}
+
+void add_log_options(CLI::App& app, Context& context) {
+  app.add_option("--log", context.log_file, "Append what happens to this file: sources, errors, results");
+  app.add_flag("--verbose", context.verbose, "Say more, and log more");
 }
 
 CLI::App* add_subcommand(CLI::App& app, Context& context, const std::string& name,
                          const std::string& description, const std::string& example) {
   CLI::App* subcommand = app.add_subcommand(name, description);
   subcommand->footer("Example:\n  " + example);
-  subcommand->add_flag("--verbose", context.verbose, "Say more");
+  add_log_options(*subcommand, context);
   subcommand->add_flag("--quiet", context.quiet, "Say nothing but errors");
   return subcommand;
 }

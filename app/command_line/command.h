@@ -35,14 +35,17 @@ class Progress {
 struct Context {
   int exit_code = kDone;
   bool quiet = false, verbose = false;
-  // A line for the user on standard output unless --quiet. Results asked for with "-o -" are not sent through
-  // here.
+  std::string log_file;  // empty: no log
+  // A line for the user on standard output unless --quiet, and for the log. Results asked for with "-o -" are
+  // not sent through here.
   void say(const std::string& line) const;
-  // The reasons of an unreliable result, on standard error, and exit code 4.
+  // The reasons of an unreliable result, on standard error and in the log, and exit code 4.
   void say_unreliable(const std::string& what, const std::vector<std::string>& reasons);
 };
 
-// Adds a subcommand with the options that all have (--verbose, --quiet) and an example under its help.
+// --log and --verbose, which the workstation has too.
+void add_log_options(CLI::App& app, Context& context);
+// Adds a subcommand with the options that all have (--log, --verbose, --quiet) and an example under its help.
 CLI::App* add_subcommand(CLI::App& app, Context& context, const std::string& name,
                          const std::string& description, const std::string& example);
 // Adds an option that takes "x,y,z" (mm or a direction), which may start with a minus sign.

@@ -1,5 +1,4 @@
 #include <arthronaut/version.h>
-#include <spdlog/spdlog.h>
 
 #include <cctype>
 #include <filesystem>
@@ -8,6 +7,7 @@
 
 #include "app/command_line/command.h"
 #include "planning/geometry/error.h"
+#include "planning/log/log.h"
 
 namespace arthronaut::command_line {
 
@@ -45,7 +45,41 @@ int open_window(const WorkstationRequest& request,
 
 int report_error(const std::exception& error, int exit_code) {
   std::cerr << "arthronaut: " << error.what() << '\n';
+  log::error(error.what());
   return exit_code;
+}
+
+void open_log(const Context& context, const std::vector<std::string>& arguments) {
+  if (context.log_file.empty()) return;
+  log::open(context.log_file, context.verbose ? log::Level::Debug : log::Level::Info);
+  std::string line = std::string("started: arthronaut ") + kProgramVersion;
+  for (const std::string& argument : arguments) line += " " + argument;
+  log::info(line);
+}
+
+// Parses and does what was asked for; every exception but those of the parser becomes an exit code.
+int run_parsed(CLI::App& app, Context& context, const std::vector<std::string>& arguments,
+               const std::function<int()>& open) {
+  try {
+    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // what CLI11 expects
+    app.parse(reversed);
+    return app.get_subcommands().empty() ? open() : context.exit_code;
+  } catch (const CLI::ParseError& error) {
+    const bool asked_for =
+        error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);  // --help, --version
+    app.exit(error);
+    return asked_for ? kDone : kWrongUsage;
+  } catch (const InvalidInput& error) {
+    return report_error(error, kInvalidInput);
+  } catch (const IoError& error) {
+    return report_error(error, kInvalidInput);
+  } catch (const DeviceError& error) {
+    return report_error(error, kInvalidInput);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return report_error(error, kInvalidInput);
+  } catch (const std::exception& error) {
+    return report_error(error, kInternalError);
+  }
 }
 
 }  // namespace
@@ -70,6 +104,7 @@ int run_command_line(int argc, char** argv,
                "Print where the workstation's widgets are, for tests");
 
   Context context;
+  add_log_options(app, context);
   add_import_command(app, context);
   add_plan_command(app, context);
   add_calibrate_command(app, context);
@@ -86,36 +121,13 @@ int run_command_line(int argc, char** argv,
   add_demo_command(app, context);
   add_experiment_command(app, context);
 
-  spdlog::set_level(spdlog::level::warn);
-  for (CLI::App* subcommand : app.get_subcommands({})) {
-    subcommand->parse_complete_callback([&context] {
-      if (context.verbose) spdlog::set_level(spdlog::level::debug);
-      if (context.quiet) spdlog::set_level(spdlog::level::err);
-    });
-  }
-
-  try {
-    auto arguments = joined_negative_values(argc, argv);
-    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // what CLI11 expects
-    app.parse(reversed);
-    if (app.get_subcommands().empty()) return open_window(request, open_workstation);
-    return context.exit_code;
-  } catch (const CLI::ParseError& error) {
-    const bool asked_for =
-        error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);  // --help, --version
-    app.exit(error);
-    return asked_for ? kDone : kWrongUsage;
-  } catch (const InvalidInput& error) {
-    return report_error(error, kInvalidInput);
-  } catch (const IoError& error) {
-    return report_error(error, kInvalidInput);
-  } catch (const DeviceError& error) {
-    return report_error(error, kInvalidInput);
-  } catch (const std::filesystem::filesystem_error& error) {
-    return report_error(error, kInvalidInput);
-  } catch (const std::exception& error) {
-    return report_error(error, kInternalError);
-  }
+  const std::vector<std::string> arguments = joined_negative_values(argc, argv);
+  // Called when all is parsed, before the subcommand does its work.
+  app.parse_complete_callback([&] { open_log(context, arguments); });
+  const int exit_code =
+      run_parsed(app, context, arguments, [&] { return open_window(request, open_workstation); });
+  log::info("ended with exit code " + std::to_string(exit_code));
+  return exit_code;
 }
 
 }  // namespace arthronaut::command_line

@@ -4,6 +4,7 @@
 
 #include "navigation/sources/capture_time.h"
 #include "navigation/sources/frame_source.h"
+#include "navigation/sources/logged_source.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::sources {
@@ -62,7 +63,7 @@ class CameraDevice : public FrameSource {
 }  // namespace
 
 std::unique_ptr<FrameSource> open_device(int device_index) {
-  return std::make_unique<CameraDevice>(device_index);
+  return logged(std::make_unique<CameraDevice>(device_index));
 }
 
 }  // namespace arthronaut::sources

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "navigation/sources/logged_source.h"
 #include "navigation/sources/source_files.h"
 #include "navigation/sources/still_images.h"
 #include "navigation/sources/video_file.h"
@@ -43,7 +44,7 @@ void refuse_what_is_no_file(const fs::path& path) {
 std::unique_ptr<FrameSource> open_video(const std::filesystem::path& video_or_pattern) {
   // A file of that very name wins over its reading as a pattern.
   if (!std::filesystem::exists(video_or_pattern)) {
-    if (is_printf_pattern(video_or_pattern)) return open_still_images(video_or_pattern);
+    if (is_printf_pattern(video_or_pattern)) return logged(open_still_images(video_or_pattern));
     if (is_address(video_or_pattern.string())) {
       throw InvalidInput(video_or_pattern, "",
                          "is an address in a network, and streams can't be read; give a video file or the "
@@ -52,14 +53,14 @@ std::unique_ptr<FrameSource> open_video(const std::filesystem::path& video_or_pa
     throw IoError(video_or_pattern, "no such file");
   }
   refuse_what_is_no_file(video_or_pattern);
-  if (looks_like_picture(video_or_pattern)) return open_still_images(video_or_pattern);
-  return open_video_file(video_or_pattern, LumaOf::Colours);
+  if (looks_like_picture(video_or_pattern)) return logged(open_still_images(video_or_pattern));
+  return logged(open_video_file(video_or_pattern, LumaOf::Colours));
 }
 
 std::unique_ptr<FrameSource> open_video_with_exact_luma(const std::filesystem::path& video) {
   if (!fs::exists(video)) throw IoError(video, "no such file");
   refuse_what_is_no_file(video);
-  return open_video_file(video, LumaOf::File);
+  return logged(open_video_file(video, LumaOf::File));
 }
 
 }  // namespace arthronaut::sources

@@ -29,6 +29,8 @@
 #include <utility>
 #include <vector>
 
+#include "planning/log/log.h"
+
 namespace arthronaut::worker {
 
 // What waits when the body is slower than the messages come: all of it, or the newest message alone.
@@ -166,6 +168,7 @@ class Worker {
       body(inbox);
     } catch (const std::exception& error) {
       failure = error.what();
+      log::error("a worker has ended: " + failure);
     }
     {
       const std::lock_guard lock(shared.mutex);

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "tests/app/command_line/program.h"
+#include "tests/temporary_folder.h"
 
 namespace arthronaut {
 namespace {
@@ -45,6 +47,34 @@ TEST(CommandLine, SaysItsVersion) {
   const auto result = run_program({"--version"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.output, HasSubstr("arthronaut 0."));
+}
+
+// The log tells how a run was started, what went wrong, and how it ended; a second run appends.
+TEST(CommandLine, LogsStartErrorAndEnd) {
+  const test::TemporaryFolder folder;
+  const std::string log = folder / "run.log";
+  EXPECT_EQ(run_program({"report", folder / "none.arthro", "-o", folder / "a.pdf", "--log", log}).exit_code,
+            3);
+  EXPECT_EQ(run_program({"phantom", "-o", folder / "Knee.arthro", "--log", log, "--quiet"}).exit_code, 0);
+  std::ifstream stream(log);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  using ::testing::AllOf;
+  ASSERT_THAT(lines, ::testing::SizeIs(::testing::Ge(5)));
+  EXPECT_THAT(lines[0], AllOf(HasSubstr(" info "), HasSubstr("started: arthronaut 0."), HasSubstr("report")));
+  EXPECT_THAT(lines[1], AllOf(HasSubstr(" error "), HasSubstr("none.arthro")));
+  EXPECT_THAT(lines[2], HasSubstr("ended with exit code 3"));
+  EXPECT_THAT(lines.back(), HasSubstr("ended with exit code 0"));
+}
+
+// A log that can't be written is told before anything is done.
+TEST(CommandLine, RefusesALogThatCannotBeWritten) {
+  const test::TemporaryFolder folder;
+  const auto result =
+      run_program({"phantom", "-o", folder / "Knee.arthro", "--log", folder / "none" / "run.log"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, HasSubstr("run.log"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "Knee.arthro"));
 }
 
 // A slip of the keyboard is named, and nothing is opened.
