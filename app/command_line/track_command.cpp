@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "app/command_line/command.h"
+#include "app/command_line/frame_dump.h"
 #include "app/command_line/medium_option.h"
 #include "app/command_line/tracking_report.h"
 #include "navigation/camera/camera_file.h"
@@ -12,7 +13,7 @@ namespace arthronaut::command_line {
 namespace {
 
 struct TrackArguments {
-  std::string camera, tools, output, video;
+  std::string camera, tools, output, video, dump;
   std::optional<double> medium_index;
   bool fixed_lens = false;
 };
@@ -29,7 +30,13 @@ void track(Context& context, const TrackArguments& arguments) {
   pipeline::TrackedVideo tracked;
   {
     Progress progress("tracking", static_cast<long>(source->info().frame_count));
-    tracked = pipeline::track_video(*source, options, tools, [&](long done) { progress.advance_to(done); });
+    std::optional<FrameDump> dump;
+    if (!arguments.dump.empty()) dump.emplace(arguments.dump);
+    long done = 0;
+    tracked = pipeline::track_video(*source, options, tools, [&](const auto& frame, const auto& seen) {
+      if (dump) dump->add(frame, seen);
+      progress.advance_to(++done);
+    });
   }
   files::write_atomically(arguments.output, strokes::poses_to_text(tracked.rows));
   if (arguments.output != "-") say_statistics(context, tracked.statistics);
@@ -53,6 +60,10 @@ void add_track_command(CLI::App& app, Context& context) {
                     "The lens stays at the calibration's reference angle; the lens mark is not needed");
   command->add_option("-o,--output", arguments->output, "poses.csv to write; - is standard output")
       ->required();
+  command->add_option(
+      "--dump", arguments->dump,
+      "Folder to write what the tracker saw to, frame by frame: a picture with the squares that "
+      "it looked at, and a JSON file");
   command
       ->add_option("VIDEO", arguments->video, "Video file, or a pattern of still images such as f_%04d.png")
       ->required();

@@ -70,7 +70,7 @@ void ViewStatistics::add(const PictureObservation& view, double processing_ms) {
 }
 
 TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions& options,
-                         const tools::ToolSet& tools, const std::function<void(long)>& progress) {
+                         const tools::ToolSet& tools, const FrameSeen& on_frame) {
   TrackedVideo video;
   video.statistics = ViewStatistics(tools);
   ViewTracker tracker(options, markers::make_tracker(markers::declared_markers(tools)));
@@ -82,7 +82,7 @@ TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions&
     const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
     append_pose_rows(view, video.rows);
     video.statistics.add(view, taken.count());
-    if (progress) progress(static_cast<long>(video.statistics.frame_count));
+    if (on_frame) on_frame(*frame, view);
   }
   video.reasons = reasons_of(video);
   return video;

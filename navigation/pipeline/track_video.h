@@ -40,10 +40,11 @@ struct TrackedVideo {
   std::vector<std::string> reasons;  // why the result is not reliable; empty when it is
 };
 
-// Decoding runs in a thread of its own. Throws what the source throws, and InvalidInput for another frame
-// size.
+using FrameSeen = std::function<void(const camera::Frame&, const PictureObservation&)>;
+
+// Decoding runs in a thread of its own. on_frame is called after each frame with what was seen in it. Throws
+// what the source throws, what on_frame throws, and InvalidInput for another frame size.
 [[nodiscard]] TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions& options,
-                                       const tools::ToolSet& tools,
-                                       const std::function<void(long frames_done)>& progress = {});
+                                       const tools::ToolSet& tools, const FrameSeen& on_frame = {});
 
 }  // namespace arthronaut::pipeline

@@ -80,6 +80,8 @@ void ViewTracker::observe(const camera::Frame& frame, PictureObservation& view) 
   s.follow_lens(view);
   const auto markers = s.markers->track(picture, view.camera, frame.timestamp_ns);
   view.markers.assign(markers.begin(), markers.end());
+  const auto candidates = s.markers->candidates();
+  view.candidates.assign(candidates.begin(), candidates.end());
 }
 
 void append_pose_rows(const PictureObservation& view, std::vector<strokes::PoseRow>& rows) {

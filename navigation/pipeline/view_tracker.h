@@ -33,10 +33,11 @@ struct PictureObservation {
   // track (a slipped coupler), out of view or of another radius than calibrated (lens.zoom) makes it false,
   // and no pose of this frame is to be trusted.
   bool intrinsics_are_known = false;
-  bool is_frozen = false;                           // the same content again and again: see frozen_picture.h
-  camera::CameraModel camera;                       // of this frame
-  std::vector<markers::MarkerObservation> markers;  // one for each declared marker, in their order
-  // Whether the pose of a marker of this view may be used at all; its own state says more.
+  bool is_frozen = false;                            // the same content again and again: see frozen_picture.h
+  camera::CameraModel camera;                        // of this frame
+  std::vector<markers::MarkerObservation> markers;   // one for each declared marker, in their order
+  std::vector<markers::MarkerCandidate> candidates;  // of this frame's search for markers, when there was one
+  // Whether the pose of a marker of this picture may be used at all; its own state says more.
   [[nodiscard]] bool stands_for(const markers::MarkerObservation& marker) const {
     return intrinsics_are_known && marker.is_tracked();
   }

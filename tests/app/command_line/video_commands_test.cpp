@@ -4,8 +4,10 @@
 #include <sqlite3.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "navigation/strokes/poses_file.h"
+#include "planning/files/format.h"
 #include "tests/app/command_line/marker_clip.h"
 #include "tests/temporary_folder.h"
 
@@ -41,6 +43,31 @@ TEST_F(VideoCommands, TrackFindsEveryMarkerWhereItWasDrawn) {
     EXPECT_NEAR(row.time_s, static_cast<double>(row.frame) / 60, 1e-6);
     EXPECT_FALSE(row.mark_angle_deg.has_value());
   }
+}
+
+// A dump holds of every frame a picture and what was seen in it; in the first one, where both markers had to
+// be searched for, the squares that were looked at lie where the markers were drawn.
+TEST_F(VideoCommands, TrackDumpsWhatItSawInEveryFrame) {
+  const auto dump = folder_ / "dump";
+  const auto result =
+      run_program({"track", "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json",
+                   "--fixed-lens", "--dump", dump, "-o", folder_ / "poses.csv", folder_ / "clip.mkv"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  for (int i = 0; i < test::kClipFrames; ++i)
+    for (const char* extension : {"png", "json"})
+      EXPECT_GT(std::filesystem::file_size(dump / files::format("%06d.%s", i, extension)), 0u) << i;
+  std::ifstream stream(dump / "000000.json");
+  const auto first = nlohmann::json::parse(stream);
+  EXPECT_EQ(first["markers"].size(), 2u);
+  EXPECT_EQ(first["markers"][0]["state"], "tracked");
+  double nearest_px = 1e9;
+  for (const auto& candidate : first["candidates"]) {
+    if (candidate.value("id", -1) != 2) continue;
+    double x_px = 0;
+    for (const auto& corner : candidate["corners_px"]) x_px += 0.25 * corner[0].get<double>();
+    nearest_px = std::min(nearest_px, std::abs(x_px - test::clip_probe_x_px(0)));
+  }
+  EXPECT_LT(nearest_px, 2);  // as good as a candidate's corners are said to be
 }
 
 // "-o -" gives the table and nothing else; --quiet gives nothing at all.
