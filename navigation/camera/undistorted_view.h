@@ -3,7 +3,7 @@
 // (1, 1), bottom right: tangent coordinates (X/Z, Y/Z) over half_extent().
 //
 // The lookup table holds, for a grid of places, where they are seen in the raw picture, measured from the
-// principal point. Turning the lens turns the principal point alone (methods 1.2), so one table serves every
+// principal point. Turning the lens turns the principal point alone, so one table serves every
 // lens angle; zoom, another scope or another medium needs a new one.
 #pragma once
 
