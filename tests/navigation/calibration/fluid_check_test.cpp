@@ -56,7 +56,7 @@ TEST(FluidCheck, TrustsAFlatPortInSaline) {
   EXPECT_THAT(summary.reasons, IsEmpty());
   EXPECT_EQ(summary.rows.front().hypothesis, FluidHypothesis::FlatPort);
   EXPECT_NEAR(summary.best_index, camera::kSalineIndex, 0.01);
-  // 0.1 px on a 2.9 mm marker at 22 mm; which such corners turn into about 0.03 mm and 0.3 degrees.
+  // 0.1 px on a 2.9 mm marker at 22 mm: such corners give about 0.03 mm and 0.3 degrees.
   EXPECT_LT(summary.rows.front().median_mm, 0.08);
   EXPECT_LT(summary.rows.front().median_deg, 0.6);
 }
