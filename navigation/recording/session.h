@@ -66,7 +66,7 @@ struct SessionEvent {
 inline constexpr std::string_view kPlanEvent = "plan";                  // text: JSON; empty: no plan
 inline constexpr std::string_view kRegistrationEvent = "registration";  // text: file name; found here
 inline constexpr std::string_view kGivenRegistrationEvent =
-    "registration given";  // text: file name; from elsewhere
+    "registration given";                                     // text: file name; from elsewhere
 inline constexpr std::string_view kCommandEvent = "command";  // text: operation::Command as JSON
 inline constexpr std::string_view kOutcomeEvent = "outcome";  // text: request count of what was taken in
 inline constexpr std::string_view kSourceEndedEvent = "source ended";

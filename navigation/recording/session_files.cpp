@@ -109,9 +109,9 @@ void append_guidance_line(std::int64_t frame, std::int64_t timestamp_ns, const g
                                g.offset_proximal_mm, g.depth_mm})
       append_number(text, value);
     append_drill(text, g, &guidance::DrillDepth::remaining_mm);
-    for (const double value : {g.sigma_offset_mm, g.sigma_angle_deg, g.guide_point_mm.x(), g.guide_point_mm.y(),
-                               g.guide_point_mm.z(), g.guide_direction.x(), g.guide_direction.y(),
-                               g.guide_direction.z(), g.offset_lateral_mm})
+    for (const double value : {g.sigma_offset_mm, g.sigma_angle_deg, g.guide_point_mm.x(),
+                               g.guide_point_mm.y(), g.guide_point_mm.z(), g.guide_direction.x(),
+                               g.guide_direction.y(), g.guide_direction.z(), g.offset_lateral_mm})
       append_number(text, value);
     append_drill(text, g, &guidance::DrillDepth::depth_mm);
     append_drill(text, g, &guidance::DrillDepth::to_exit_mm);

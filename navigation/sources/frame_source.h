@@ -12,7 +12,6 @@
 
 namespace arthronaut::sources {
 
-
 struct SourceInfo {
   std::string name;  // for screen and record
   Eigen::Vector2i image_size_px{0, 0};

@@ -10,10 +10,10 @@
 #include "navigation/pipeline/navigate_video.h"
 #include "navigation/recording/record_navigation.h"
 #include "navigation/recording/replay.h"
+#include "navigation/registration/registration_file.h"
 #include "planning/bones/mesh_file.h"
 #include "planning/files/csv_table.h"
 #include "planning/files/json_document.h"
-#include "navigation/registration/registration_file.h"
 #include "tests/real_data/real_data.h"
 #include "tests/temporary_folder.h"
 
