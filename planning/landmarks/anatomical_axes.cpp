@@ -52,7 +52,10 @@ std::optional<Vector3d> shaft_of(const geometry::TriangleMesh& mesh) {
     const Vector3d center = (corner(0) + corner(1) + corner(2)) / 3;
     total += area;
     mean += area * center;
-    moment += area * center * center.transpose();
+    // The second moment of a triangle: its corners' and nine times its centre's, over twelve.
+    moment += area / 12 *
+              (corner(0) * corner(0).transpose() + corner(1) * corner(1).transpose() +
+               corner(2) * corner(2).transpose() + 9 * center * center.transpose());
   }
   if (!(total > 0)) return std::nullopt;
   mean /= total;

@@ -199,9 +199,9 @@ TEST(Guidance, Hazard31OffsetAndItsPartsAreOneGeometry) {
     const Eigen::Vector3d crossing = scene.plan.entry_mm + up * n.across_plan.up + side * n.across_plan.side;
     if (std::abs(n.guide_direction.dot(scene.plan.direction)) > 0.1) {
       EXPECT_LT((crossing - n.guide_point_mm).cross(n.guide_direction).norm(), 1e-6 * (1 + n.offset_mm));
+      // Never shorter than the entry's distance from the guide's axis.
+      EXPECT_GE(n.offset_mm, n.axis_to_entry_mm - 1e-9);
     }
-    // Never shorter than the entry's distance from the guide's axis.
-    EXPECT_GE(n.offset_mm, n.axis_to_entry_mm * 0.1 - 1e-9);
   }
 }
 

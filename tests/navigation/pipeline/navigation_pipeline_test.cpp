@@ -99,14 +99,18 @@ TEST_F(NavigationPipeline, Hazard6PredictsFromToolsAndCamera) {
   nominal.set_plan(plan_, 30);
   nominal.set_registration(registration_);
   nominal.process(test::plain_frame(0, 1), result_);
-  const guidance::PredictedError& offset = result_.guidance.offset_error_mm;
+  const guidance::PredictedError offset = result_.guidance.offset_error_mm;
   // Axis point and direction over 5 mm, and the tip that drew the registration: 0.3 mm in two directions
   // each.
   const double turned_mm = 5 * geometry::rad_from_deg(0.5);
   EXPECT_NEAR(offset.tools, std::sqrt(2 * (0.09 + 0.09 + turned_mm * turned_mm)), 1e-6);
   EXPECT_GT(offset.camera, 0);
   EXPECT_GT(result_.tip_covariance_mm2.trace(), 3 * 0.09);
-  // A registration that followed the camera's error as the guide does leaves less of it.
+  // A registration drawn where the guide stands now followed the camera's error as the guide does, and leaves
+  // less of it.
+  script_[1] = test::seen(2, camera_from_world_ * world_from_guide());
+  nominal.process(test::plain_frame(1, 2), result_);
+  ASSERT_TRUE(result_.tip_is_valid);
   guidance::BiasSums sums;
   for (const Eigen::Vector3d& beside : {Eigen::Vector3d(3, 0, 0), Eigen::Vector3d(0, 3, 0),
                                         Eigen::Vector3d(0, 0, 3), Eigen::Vector3d(0, 0, 0)}) {
@@ -115,8 +119,8 @@ TEST_F(NavigationPipeline, Hazard6PredictsFromToolsAndCamera) {
     sums.add(point);
   }
   nominal.set_registration(registration_, sums.bias());
-  nominal.process(test::plain_frame(1, 2), result_);
-  EXPECT_NE(result_.guidance.offset_error_mm.camera, offset.camera);
+  nominal.process(test::plain_frame(2, 3), result_);
+  EXPECT_LT(result_.guidance.offset_error_mm.camera, 0.5 * offset.camera);
   EXPECT_NEAR(result_.guidance.offset_error_mm.registration, 0, 1e-9);
 }
 
