@@ -13,6 +13,7 @@ find_package(VTK 9.1 REQUIRED COMPONENTS
   ImagingCore ImagingGeneral ImagingStatistics
   RenderingCore RenderingOpenGL2 RenderingFreeType RenderingAnnotation
   InteractionStyle)
+find_package(DCMTK 3.6 REQUIRED CONFIG)
 find_package(GDCM REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
