@@ -17,9 +17,9 @@ namespace arthronaut::images {
 // 128 bytes of anything, then "DICM": what every DICOM file on a disk begins with. Throws IoError.
 [[nodiscard]] bool has_dicom_mark(const std::filesystem::path& file);
 
-// The data set up to and with the pixels. Of large values, the pixels above all, only the place in the file is
-// kept: a folder costs what its headers hold, and each byte is read once. A deflated data set is unpacked whole,
-// up to `most_bytes`.
+// The data set up to and with the pixels. Of large values, the pixels above all, only the place in the file
+// is kept: a folder costs what its headers hold, and each byte is read once. A deflated data set is unpacked
+// whole, up to `most_bytes`.
 //
 // Throws InvalidInput ("FILE: byte N: broken or cut off: reason") and IoError. The file must have the mark.
 [[nodiscard]] std::shared_ptr<DcmDataset> open_dicom(const std::filesystem::path& file,

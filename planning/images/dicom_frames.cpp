@@ -79,9 +79,9 @@ std::vector<DicomSlice> slices_of_frames(const DicomSlice& common, DcmDataset& d
   DcmSequenceOfItems* shared = sequence_of(dataset, DCM_SharedFunctionalGroupsSequence);
   const auto count = static_cast<std::size_t>(common.frames_in_file);
   if (per_frame->card() != count) {
-    throw InvalidInput(common.file, "functional groups",
-                       "are of " + std::to_string(per_frame->card()) + " frames, the file holds " +
-                           std::to_string(count));
+    throw InvalidInput(
+        common.file, "functional groups",
+        "are of " + std::to_string(per_frame->card()) + " frames, the file holds " + std::to_string(count));
   }
   FGInterface groups;
   if (const OFCondition condition = groups.read(dataset); condition.bad())

@@ -85,8 +85,8 @@ bool is_jpeg_2000(E_TransferSyntax syntax) {
 }
 
 // Stored pixels in this machine's byte order.
-std::vector<char> stored_pixels(const std::filesystem::path& file, DcmDataset& dataset,
-                                const PixelBits& bits, const DicomFrame& frame) {
+std::vector<char> stored_pixels(const std::filesystem::path& file, DcmDataset& dataset, const PixelBits& bits,
+                                const DicomFrame& frame) {
   DcmElement* element = nullptr;
   dataset.findAndGetElement(DCM_PixelData, element);
   auto* pixels = dynamic_cast<DcmPixelData*>(element);
@@ -98,9 +98,9 @@ std::vector<char> stored_pixels(const std::filesystem::path& file, DcmDataset& d
   if (!DcmXfer(syntax).isEncapsulated()) {
     const std::size_t needed = count * (static_cast<std::size_t>(frame.number) + 1);
     if (pixels->getLength() < needed) {
-      throw InvalidInput(file, "pixel data",
-                         "end early: " + std::to_string(pixels->getLength()) + " of " +
-                             std::to_string(needed) + " bytes");
+      throw InvalidInput(
+          file, "pixel data",
+          "end early: " + std::to_string(pixels->getLength()) + " of " + std::to_string(needed) + " bytes");
     }
   }
   Uint32 decoded_count = 0, fragment = 0;
@@ -113,9 +113,9 @@ std::vector<char> stored_pixels(const std::filesystem::path& file, DcmDataset& d
       pixels->getUncompressedFrame(&dataset, static_cast<Uint32>(frame.number), fragment, bytes.data(),
                                    static_cast<Uint32>(bytes.size()), color_model);
   if (condition.bad()) {
-    throw InvalidInput(file, "pixel data",
-                       std::string("cannot be decoded (") + DcmXfer(syntax).getXferName() +
-                           "): " + condition.text());
+    throw InvalidInput(
+        file, "pixel data",
+        std::string("cannot be decoded (") + DcmXfer(syntax).getXferName() + "): " + condition.text());
   }
   return bytes;
 }

@@ -110,8 +110,8 @@ void refuse_odd_ones(const Slices& slices) {
     if (!s.has_geometry) refuse(s, "does not say where it lies in the patient");
     if (s.frame.columns != first.frame.columns || s.frame.rows != first.frame.rows) {
       refuse(s, "is " + std::to_string(s.frame.columns) + " x " + std::to_string(s.frame.rows) +
-                    " pixels, other images of the series are " + std::to_string(first.frame.columns) +
-                    " x " + std::to_string(first.frame.rows));
+                    " pixels, other images of the series are " + std::to_string(first.frame.columns) + " x " +
+                    std::to_string(first.frame.rows));
     }
     // Scout pictures across the others often share their series.
     if (s.along_columns.dot(first.along_columns) < 0.9999 || s.along_rows.dot(first.along_rows) < 0.9999)

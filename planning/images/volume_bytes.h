@@ -38,8 +38,8 @@ enum class Compression { GzipOrZlib, Raw };
                                          std::size_t count);
 
 // The number of voxels that a header announces; asked for before anything of that size is allocated. Throws
-// InvalidInput when an axis is below 1, or when the values and the stored bytes that they are made of need more
-// than `most_bytes`.
+// InvalidInput when an axis is below 1, or when the values and the stored bytes that they are made of need
+// more than `most_bytes`.
 [[nodiscard]] std::size_t checked_voxel_count(const std::filesystem::path& file, const Eigen::Vector3i& size,
                                               std::size_t stored_bytes_per_voxel, std::size_t most_bytes);
 
@@ -57,8 +57,8 @@ struct Samples {
   std::endian order = std::endian::little;
   double slope = 1, intercept = 0;
 };
-// Sets the volume's values from the bytes; needs a size that was checked. Throws InvalidInput when there are too
-// few bytes.
+// Sets the volume's values from the bytes; needs a size that was checked. Throws InvalidInput when there are
+// too few bytes.
 void set_values(Volume& volume, const std::filesystem::path& file, std::string_view bytes,
                 const Samples& samples);
 
@@ -69,8 +69,8 @@ void finish(Volume& volume, const std::filesystem::path& file);
 [[nodiscard]] std::vector<double> numbers_of(const std::filesystem::path& file, const std::string& key,
                                              std::string_view value);
 // The data file that a header names, beside it; its whole contents. Only a plain name is taken: a header from
-// elsewhere must not make this program read any file of the machine. Throws InvalidInput when it is longer than
-// `most_bytes`.
+// elsewhere must not make this program read any file of the machine. Throws InvalidInput when it is longer
+// than `most_bytes`.
 [[nodiscard]] std::string read_data_file(const std::filesystem::path& header_file, std::string_view name,
                                          std::size_t most_bytes);
 // The whole file; the same errors.

@@ -43,8 +43,7 @@ Volume read_volume(const std::filesystem::path& source, const VolumeFileOptions&
   }
   if (is_dicom(source)) return read_dicom(source, options);
   if (!std::filesystem::exists(source)) throw IoError(source, "does not exist");
-  throw InvalidInput(source, "",
-                     "is not a volume this program reads: DICOM, NIfTI, NRRD or MetaImage");
+  throw InvalidInput(source, "", "is not a volume this program reads: DICOM, NIfTI, NRRD or MetaImage");
 }
 
 }  // namespace arthronaut::images

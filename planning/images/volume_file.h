@@ -2,8 +2,8 @@
 // .nii.gz), NRRD (.nrrd, .nhdr) and MetaImage (.mha, .mhd).
 //
 // DICOM is read by DCMTK (its JPEG 2000 by GDCM); the other readers are the project's own: VTK's drop the
-// orientation of NRRD and MetaImage, and none of them refuses a file that is cut off. A file that does not say
-// where left is, is refused: a guess would mirror knees.
+// orientation of NRRD and MetaImage, and none of them refuses a file that is cut off. A file that does not
+// say where left is, is refused: a guess would mirror knees.
 #pragma once
 
 #include <cstddef>
