@@ -63,6 +63,15 @@ void read_echo_time(DcmItem* own, DcmItem* shared, DicomSlice& slice) {
   }
 }
 
+// A group is either of one frame or of all (DICOM PS3.3, C.7.6.16): of two places none is to be believed.
+void refuse_said_twice(DcmItem& own, DcmItem& shared, const DicomSlice& slice) {
+  for (const DcmTagKey& key :
+       {DCM_PlanePositionSequence, DCM_PlaneOrientationSequence, DCM_PixelMeasuresSequence}) {
+    if (own.tagExists(key) && shared.tagExists(key))
+      throw InvalidInput(slice.file, slice.place(), "says where it lies both for itself and for all frames");
+  }
+}
+
 DcmSequenceOfItems* sequence_of(DcmDataset& dataset, const DcmTagKey& key) {
   DcmSequenceOfItems* sequence = nullptr;
   return dataset.findAndGetSequence(key, sequence).good() ? sequence : nullptr;
@@ -93,9 +102,11 @@ std::vector<DicomSlice> slices_of_frames(const DicomSlice& common, DcmDataset& d
     item = per_frame->nextInContainer(item);
     DicomSlice& slice = slices[i];
     slice.frame.number = static_cast<int>(i);
+    auto* own = dynamic_cast<DcmItem*>(item);
+    if (own && shared_item) refuse_said_twice(*own, *shared_item, slice);
     read_geometry(groups, i, slice);
     read_rescaling(groups, i, slice);
-    read_echo_time(dynamic_cast<DcmItem*>(item), shared_item, slice);
+    read_echo_time(own, shared_item, slice);
   }
   return slices;
 }

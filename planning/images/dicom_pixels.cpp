@@ -8,7 +8,9 @@
 
 #include <cstdint>
 #include <cstring>
+#include <string_view>
 
+#include "planning/files/scalar_bytes.h"
 #include "planning/geometry/error.h"
 #include "planning/images/dicom_file.h"
 #include "planning/images/jpeg2000.h"
@@ -80,6 +82,23 @@ std::string codestream_of(const std::filesystem::path& file, DcmDataset& dataset
   return codestream;
 }
 
+// An RLE frame begins with the number of its segments, one a byte of a pixel, and where each lies (DICOM
+// PS3.5, annex G.5). DCMTK reads beyond the frame where these are wrong.
+void refuse_broken_rle(const std::filesystem::path& file, std::string_view frame, const PixelBits& bits) {
+  constexpr std::size_t kHeader_bytes = 64;
+  const auto number = [&](std::size_t i) {
+    return files::scalar_at<std::uint32_t>(frame.data() + 4 * i, std::endian::little);
+  };
+  bool is_sound =
+      frame.size() >= kHeader_bytes && number(0) == static_cast<std::uint32_t>(bits.allocated / 8);
+  std::size_t least = kHeader_bytes;
+  for (std::size_t i = 1; is_sound && i <= number(0); ++i) {
+    is_sound = number(i) >= least && number(i) < frame.size();
+    least = static_cast<std::size_t>(number(i)) + 1;
+  }
+  if (!is_sound) throw InvalidInput(file, "pixel data", "cannot be decoded: are no RLE");
+}
+
 bool is_jpeg_2000(E_TransferSyntax syntax) {
   return syntax == EXS_JPEG2000LosslessOnly || syntax == EXS_JPEG2000;
 }
@@ -95,6 +114,8 @@ std::vector<char> stored_pixels(const std::filesystem::path& file, DcmDataset& d
   const std::size_t count = byte_count(frame, bits);
   if (is_jpeg_2000(syntax))
     return decoded_jpeg2000(file, codestream_of(file, dataset, *pixels, frame.number), frame, bits);
+  if (syntax == EXS_RLELossless)
+    refuse_broken_rle(file, codestream_of(file, dataset, *pixels, frame.number), bits);
   if (!DcmXfer(syntax).isEncapsulated()) {
     const std::size_t needed = count * (static_cast<std::size_t>(frame.number) + 1);
     if (pixels->getLength() < needed) {

@@ -13,6 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Without the slash of "folder/".
+fs::path without_slash(const fs::path& folder) {
+  return folder.has_filename() ? folder : folder.parent_path();
+}
+
 cases::Case case_to_extend(const fs::path& folder, const BoneImport& import, const std::string& name,
                            const fs::path& source) {
   if (fs::exists(folder / "case.json")) {
@@ -33,7 +38,7 @@ cases::Case case_to_extend(const fs::path& folder, const BoneImport& import, con
     throw InvalidInput(source, "", "its name does not say which knee it is: add --side left or --side right");
   }
   cases::Case created;
-  created.name = name.empty() ? folder.stem().string() : name;
+  created.name = name.empty() ? without_slash(folder).stem().string() : name;
   created.side = *import.side;
   created.created_utc = cases::utc_now();
   return created;
@@ -54,7 +59,7 @@ void add_bones(const fs::path& folder, cases::Case& target, const BoneImport& im
 
 // Beside the target, under a name of its own, then renamed.
 void save_new(const fs::path& folder, const cases::Case& contents) {
-  const fs::path named = folder.has_filename() ? folder : folder.parent_path();  // "folder/"
+  const fs::path named = without_slash(folder);
   const fs::path parent = named.has_parent_path() ? named.parent_path() : ".";
   std::error_code error;
   fs::create_directories(parent, error);

@@ -187,6 +187,7 @@ void write_listed_slice(const std::filesystem::path& folder, const images::Volum
 }
 
 void write_dicom_directory(const std::filesystem::path& folder, const std::vector<std::string>& names) {
+  OFLog::configure(OFLogger::OFF_LOG_LEVEL);  // it tells every step
   DicomDirInterface directory;
   directory.enableInventMode();
   directory.disableBackupMode();
