@@ -10,6 +10,7 @@ find_package(VTK 9.1 REQUIRED COMPONENTS
   CommonCore CommonDataModel CommonExecutionModel FiltersCore
   IOImage IOXML
   RenderingCore RenderingOpenGL2)
+find_package(DCMTK 3.6 REQUIRED CONFIG)
 find_package(GDCM REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)

@@ -23,8 +23,10 @@ void Progress::advance_to(long done) {
   const int percent = static_cast<int>(total_ > 0 ? 100 * done / total_ : done / 10);
   if (percent == last_percent_) return;
   last_percent_ = percent;
-  std::cerr << "\r\033[K" << what_ << ' ' << (total_ > 0 ? percent : done) << (total_ > 0 ? " %" : "")
-            << std::flush;
+  std::cerr << "\r\033[K" << what_;
+  if (total_ > 0) std::cerr << ' ' << percent << " %";
+  if (total_ <= 0 && done > 0) std::cerr << ' ' << done;
+  std::cerr << std::flush;
 }
 
 void Context::say(const std::string& line) const {

@@ -1,7 +1,15 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csignal>
+#include <memory>
+#include <optional>
+
 #include "app/command_line/command.h"
-#include "planning/cases/case.h"
 #include "planning/geometry/error.h"
-#include "planning/import/bone_import.h"
+#include "planning/import/case_import.h"
+#include "planning/import/import_child.h"
+#include "planning/import/import_process.h"
 
 namespace arthronaut::command_line {
 
@@ -12,6 +20,7 @@ namespace fs = std::filesystem;
 struct ImportArguments {
   std::string source, output, bone, side, unit, space, labels, series, name;
   std::optional<double> threshold;
+  double memory_limit_gib = importing::ImportRequest{}.memory_limit_gib;
 };
 
 importing::BoneImportOptions options_of(const ImportArguments& arguments) {
@@ -26,66 +35,77 @@ importing::BoneImportOptions options_of(const ImportArguments& arguments) {
   return options;
 }
 
-// The case to add to: the one that is there, or a new one of the side that is known.
-cases::Case case_to_extend(const fs::path& folder, const ImportArguments& arguments,
-                           const importing::BoneImport& import) {
-  if (fs::exists(folder / "case.json")) {
-    cases::Case existing = cases::load_case(folder);
-    if (import.side && *import.side != existing.side) {
-      throw InvalidInput(folder, "",
-                         "is a " + std::string(bones::to_text(existing.side)) + " knee, the import is a " +
-                             std::string(bones::to_text(*import.side)) + " one" +
-                             (import.side_was_guessed ? " by its name (--side says otherwise)" : ""));
+// While it lives, Ctrl+C and requests to end are noted down instead of ending the program halfway.
+class Interruption {
+ public:
+  Interruption() {
+    signal_ = 0;
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+      before_[i] = std::signal(kSignals[i], [](int caught) { signal_ = caught; });
+      if (before_[i] == SIG_IGN) std::signal(kSignals[i], SIG_IGN);  // as under nohup
     }
-    if (!arguments.name.empty()) existing.name = arguments.name;
-    return existing;
   }
-  if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder))) {
-    throw InvalidInput(folder, "", "exists and is not a case: nothing was written");
+  ~Interruption() {
+    for (std::size_t i = 0; i < kSignals.size(); ++i) std::signal(kSignals[i], before_[i]);
   }
-  if (!import.side) {
-    throw InvalidInput(arguments.source, "",
-                       "its name does not say which knee it is: add --side left or --side right");
+  Interruption(const Interruption&) = delete;
+  Interruption& operator=(const Interruption&) = delete;
+  // The signal; 0 while there was none.
+  [[nodiscard]] int caught() const { return signal_; }
+  // What the signal would have done at once.
+  void end_program() const {
+    std::signal(signal_, SIG_DFL);
+    std::raise(signal_);
   }
-  cases::Case created;
-  created.name = arguments.name.empty() ? folder.stem().string() : arguments.name;
-  created.side = *import.side;
-  created.created_utc = cases::utc_now();
-  return created;
-}
 
-void add_bones(const fs::path& folder, cases::Case& target, const importing::BoneImport& import) {
-  for (const importing::ImportedBone& imported : import.bones) {
-    const bones::BoneKind kind = imported.bone.kind;
-    // A tunnel planned on another surface would lie somewhere else in this one.
-    if (target.bones.contains(kind) && target.plan.tunnels.contains(kind)) {
-      throw InvalidInput(folder, "",
-                         "holds a plan on its " + std::string(bones::to_text(kind)) +
-                             ", which another bone would make wrong: import into another case");
+ private:
+  static constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
+  static inline volatile std::sig_atomic_t signal_ = 0;
+  std::array<void (*)(int), kSignals.size()> before_{};
+};
+
+class ProgressLine {
+ public:
+  void show(const importing::ImportProgress& progress) {
+    if (progress.stage.empty()) return;
+    if (progress.stage != stage_) {
+      line_.reset();
+      const bool is_known = progress.fraction >= 0;
+      line_.emplace(progress.stage, is_known ? 100 : 0);
+      stage_ = progress.stage;
     }
-    target.bones[kind] = imported.bone;
-    target.landmarks.erase(kind);
+    line_->advance_to(std::lround(100 * std::max(progress.fraction, 0.0)));
   }
-}
 
-// A folder that this command made does not stay behind when the case cannot be written into it.
-void save_whole(const fs::path& folder, const cases::Case& contents) {
-  const bool was_there = fs::exists(folder);
-  try {
-    cases::save_case(folder, contents);
-  } catch (...) {
-    std::error_code ignored;
-    if (!was_there) fs::remove_all(folder, ignored);
-    throw;
+ private:
+  std::string stage_;
+  std::optional<Progress> line_;
+};
+
+// Waits, shows how far it is, and passes an interruption on.
+void watch(importing::ImportProcess& process, const Interruption& interruption) {
+  constexpr double kLongestWait_s = 0.1;
+  ProgressLine line;
+  while (process.wait_for(kLongestWait_s) == importing::ImportProcess::State::Running) {
+    line.show(process.progress());
+    if (interruption.caught() != 0) process.cancel();
   }
 }
 
 void import(Context& context, const ImportArguments& arguments) {
   const fs::path folder = arguments.output;
-  const importing::BoneImport import = importing::import_bones(arguments.source, options_of(arguments));
-  cases::Case target = case_to_extend(folder, arguments, import);
-  add_bones(folder, target, import);
-  save_whole(folder, target);
+  const Interruption interruption;  // over the writing as well, which takes no time
+  importing::ImportProcess process({.source = arguments.source,
+                                    .options = options_of(arguments),
+                                    .memory_limit_gib = arguments.memory_limit_gib});
+  watch(process, interruption);
+  if (interruption.caught() != 0) {
+    process.cancel();
+    interruption.end_program();
+  }
+  if (process.state() != importing::ImportProcess::State::Done) throw InvalidInput(process.message());
+  const importing::BoneImport import = process.take_result();
+  const cases::Case target = importing::add_to_case(folder, import, arguments.name, arguments.source);
 
   for (const auto& line : import.lines) context.say(line);
   std::vector<std::string> doubts;
@@ -108,8 +128,10 @@ void add_import_command(CLI::App& app, Context& context) {
       "Make a case, or add a bone to one, from a mesh, a DICOM folder, a volume or a label map",
       "arthronaut import right_femur.stl -o Knee.arthro\n"
       "  arthronaut import labels.nrrd -o Knee.arthro --label femur=5,tibia=6 --side right");
-  sub->add_option("SOURCE", arguments->source,
-                  "Mesh (STL, PLY, OBJ, VTK, VTP), folder of DICOM files, or volume (NIfTI, NRRD, MetaImage)")
+  sub->add_option(
+         "SOURCE", arguments->source,
+         "Mesh (STL, PLY, OBJ, VTK, VTP), DICOM (folder, DICOMDIR or enhanced file), or volume (NIfTI, "
+         "NRRD, MetaImage)")
       ->required();
   sub->add_option("-o,--output", arguments->output, "Case folder to write or to add to")->required();
   sub->add_option("--bone", arguments->bone, "femur or tibia; default: by the name of the source")
@@ -124,9 +146,15 @@ void add_import_command(CLI::App& app, Context& context) {
   sub->add_option("--label", arguments->labels, "Labels of a label map, as in femur=5,tibia=6");
   sub->add_option("--threshold", arguments->threshold,
                   "Least value of bone in a grey volume; default for CT: 250 HU");
-  sub->add_option("--series", arguments->series, "Series number or UID, for a DICOM folder with several");
+  sub->add_option("--series", arguments->series, "Series number or UID, for DICOM with several");
   sub->add_option("--name", arguments->name, "Name of the case; default: that of its folder");
+  sub->add_option("--memory-limit-gib", arguments->memory_limit_gib,
+                  "Memory that reading and surface making may take; default: 2")
+      ->check(CLI::PositiveNumber);
   sub->callback([&context, arguments] { import(context, *arguments); });
+  // What ImportProcess starts this program with; not for a person.
+  CLI::App* child = app.add_subcommand(importing::kImportChildWord)->group("");
+  child->callback([&context] { context.exit_code = importing::run_import_child(); });
 }
 
 }  // namespace arthronaut::command_line

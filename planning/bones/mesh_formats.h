@@ -2,10 +2,8 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,8 +11,11 @@
 #include <vector>
 
 #include "planning/bones/mesh_file.h"
+#include "planning/files/scalar_bytes.h"
 
 namespace arthronaut::bones {
+
+using files::scalar_at;
 
 // In the file's own axes and unit.
 struct RawMesh {
@@ -64,17 +65,6 @@ class TextCursor {
 [[nodiscard]] bool equal_ignoring_case(std::string_view a, std::string_view b);
 // The whole of `word` as a number, "+1" and "nan" included; nullopt when it is none.
 [[nodiscard]] std::optional<double> number_from(std::string_view word);
-
-// A number of the given width and byte order from unaligned bytes.
-template <typename T>
-[[nodiscard]] T scalar_at(const char* bytes, std::endian order) {
-  char copy[sizeof(T)];
-  std::memcpy(copy, bytes, sizeof(T));
-  if (order != std::endian::native) std::reverse(copy, copy + sizeof(T));
-  T value;
-  std::memcpy(&value, copy, sizeof(T));
-  return value;
-}
 
 // Appends the fan of a polygon's corners, which are in range.
 void append_polygon(geometry::TriangleMesh& mesh, const std::vector<std::int32_t>& corners);

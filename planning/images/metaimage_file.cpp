@@ -66,7 +66,7 @@ std::vector<double> field_of_three(const std::filesystem::path& file, const Head
 
 }  // namespace
 
-Volume parse_metaimage(const std::filesystem::path& file, std::string_view text) {
+Volume parse_metaimage(const std::filesystem::path& file, std::string_view text, std::size_t most_bytes) {
   const Header header = parse_header(file, text);
   Volume volume;
   volume.format = "MetaImage";
@@ -99,15 +99,23 @@ Volume parse_metaimage(const std::filesystem::path& file, std::string_view text)
   if (data_name.starts_with("LIST") || data_name.find('%') != std::string::npos) {
     throw InvalidInput(file, "ElementDataFile", "a list of files is not read: save it as one file");
   }
-  const std::string data =
-      data_name == "LOCAL" ? std::string(text.substr(header.bytes)) : read_data_file(file, data_name);
   const std::string header_size = header.field({"headersize"});
   if (!header_size.empty() && header_size != "0") throw InvalidInput(file, "HeaderSize", "is not read");
   if (lower_case(header.field({"binarydata"})) == "false")
     throw InvalidInput(file, "BinaryData", "must be True");
-  const std::size_t most_bytes = checked_voxel_count(file, volume.size) * bytes_per(samples.type);
-  set_values(volume, file, header.is_true({"compresseddata"}) ? inflated(file, data, most_bytes) : data,
-             samples);
+  const std::size_t width = bytes_per(samples.type);
+  const std::size_t bytes = width * checked_voxel_count(file, volume.size, width, most_bytes);
+  std::string storage;
+  std::string_view data = text.substr(header.bytes);
+  if (data_name != "LOCAL") {
+    storage = read_data_file(file, data_name, most_stored_bytes(bytes));
+    data = storage;
+  }
+  if (header.is_true({"compresseddata"})) {
+    storage = inflated(file, data, bytes);
+    data = storage;
+  }
+  set_values(volume, file, data, samples);
   finish(volume, file);
   return volume;
 }

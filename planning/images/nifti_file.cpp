@@ -137,14 +137,11 @@ double mm_per_unit(const std::filesystem::path& file, const Header& header) {
 
 }  // namespace
 
-Volume parse_nifti(const std::filesystem::path& file, std::string_view text) {
-  constexpr std::size_t kMostBytes = std::size_t{1} << 33;
-  std::string whole;
-  if (text.starts_with("\x1f\x8b")) {
-    whole = inflated(file, text, kMostBytes);
-    text = whole;
-  }
-  const Header header(file, text);
+Volume parse_nifti(const std::filesystem::path& file, std::string_view text, std::size_t most_bytes) {
+  const bool is_packed = text.starts_with("\x1f\x8b");
+  // The header is judged before the rest is unpacked.
+  const std::string start = is_packed ? inflated_start(file, text, kNifti2.header_bytes) : "";
+  const Header header(file, is_packed ? std::string_view(start) : text);
   Volume volume;
   volume.format = "NIfTI";
   const double dimension = header.dim(0);
@@ -174,12 +171,22 @@ Volume parse_nifti(const std::filesystem::path& file, std::string_view text) {
     samples.slope = slope;
     samples.intercept = intercept;
   }
+  const std::size_t width = bytes_per(samples.type);
+  const std::size_t bytes = width * checked_voxel_count(file, volume.size, width, most_bytes);
   const double offset = header.vox_offset();
-  if (!(offset >= static_cast<double>(header.layout().header_bytes)) ||
-      offset > static_cast<double>(text.size())) {
+  // What lies before the voxels, extensions of the header, is never large.
+  constexpr double kMostBeforeVoxels_bytes = 1 << 24;
+  if (!(offset >= static_cast<double>(header.layout().header_bytes)) || offset > kMostBeforeVoxels_bytes)
     throw InvalidInput(file, "vox_offset", "lies outside of the file (a pair of .hdr and .img is not read)");
+  const auto first = static_cast<std::size_t>(offset);
+  std::string whole;
+  if (is_packed) {
+    whole = inflated(file, text, most_stored_bytes(first + bytes));
+    text = whole;
   }
-  set_values(volume, file, text.substr(static_cast<std::size_t>(offset)), samples);
+  if (first > text.size())
+    throw InvalidInput(file, "vox_offset", "lies outside of the file (a pair of .hdr and .img is not read)");
+  set_values(volume, file, text.substr(first), samples);
   finish(volume, file);
   return volume;
 }

@@ -93,29 +93,32 @@ Eigen::Vector3d lps_from_space(const std::filesystem::path& file, const std::str
                          : "\"" + name.substr(0, 40) + "\" is not a space of a patient that is read");
 }
 
-std::string voxel_bytes(const std::filesystem::path& file, const Header& header, std::string_view text,
-                        std::size_t most_bytes) {
-  std::string data;
-  const std::string data_file = header.field("data file", "datafile");
-  if (data_file.empty()) {
-    data = text.substr(header.bytes);
-  } else {
-    data = read_data_file(file, data_file);
-  }
+// `storage` holds what is not in `text`.
+std::string_view voxel_bytes(const std::filesystem::path& file, const Header& header, std::string_view text,
+                             std::size_t voxel_bytes_count, std::string& storage) {
   for (const char* key : {"line skip", "lineskip", "byte skip", "byteskip"}) {
     const std::string skip = header.field(key);
     if (!skip.empty() && skip != "0")
       throw InvalidInput(file, key, "is not read: save the file again without it");
   }
   const std::string encoding = lower_case(header.field("encoding"));
-  if (encoding == "raw") return data;
-  if (encoding == "gzip" || encoding == "gz") return inflated(file, data, most_bytes);
-  throw InvalidInput(file, "encoding", "\"" + encoding.substr(0, 40) + "\" is not read: raw and gzip are");
+  const bool is_packed = encoding == "gzip" || encoding == "gz";
+  if (!is_packed && encoding != "raw")
+    throw InvalidInput(file, "encoding", "\"" + encoding.substr(0, 40) + "\" is not read: raw and gzip are");
+  std::string_view data = text.substr(header.bytes);
+  const std::string data_file = header.field("data file", "datafile");
+  if (!data_file.empty()) {
+    storage = read_data_file(file, data_file, most_stored_bytes(voxel_bytes_count));
+    data = storage;
+  }
+  if (!is_packed) return data;
+  storage = inflated(file, data, voxel_bytes_count);
+  return storage;
 }
 
 }  // namespace
 
-Volume parse_nrrd(const std::filesystem::path& file, std::string_view text) {
+Volume parse_nrrd(const std::filesystem::path& file, std::string_view text, std::size_t most_bytes) {
   const Header header = parse_header(file, text);
   Volume volume;
   volume.format = "NRRD";
@@ -149,8 +152,10 @@ Volume parse_nrrd(const std::filesystem::path& file, std::string_view text) {
   } else if (endian != "little" && bytes_per(samples.type) > 1) {
     throw InvalidInput(file, "endian", "must be little or big");
   }
-  const std::size_t most_bytes = checked_voxel_count(file, volume.size) * bytes_per(samples.type);
-  set_values(volume, file, voxel_bytes(file, header, text, most_bytes), samples);
+  const std::size_t width = bytes_per(samples.type);
+  const std::size_t count = checked_voxel_count(file, volume.size, width, most_bytes);
+  std::string storage;
+  set_values(volume, file, voxel_bytes(file, header, text, count * width, storage), samples);
   finish(volume, file);
   return volume;
 }

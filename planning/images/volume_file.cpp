@@ -1,14 +1,14 @@
 #include "planning/images/volume_file.h"
 
-#include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
+#include "planning/images/dicom_file.h"
 #include "planning/images/volume_bytes.h"
 
 namespace arthronaut::images {
 
 namespace {
 
-using Parse = Volume (*)(const std::filesystem::path&, std::string_view);
+using Parse = Volume (*)(const std::filesystem::path&, std::string_view, std::size_t);
 
 Parse parser_for(const std::filesystem::path& file) {
   const std::string name = lower_case(file.filename().string());
@@ -18,24 +18,32 @@ Parse parser_for(const std::filesystem::path& file) {
   return nullptr;
 }
 
+// Anything but a plain file (a pipe, a device) is never read: it might have no end.
+bool is_dicom(const std::filesystem::path& file) {
+  return std::filesystem::is_regular_file(file) && has_dicom_mark(file);
+}
+
 }  // namespace
 
 bool is_volume_source(const std::filesystem::path& source) {
-  return std::filesystem::is_directory(source) || parser_for(source) != nullptr;
+  return std::filesystem::is_directory(source) || parser_for(source) != nullptr || is_dicom(source);
 }
 
 Volume read_volume(const std::filesystem::path& source, const VolumeFileOptions& options) {
-  if (std::filesystem::is_directory(source)) return read_dicom_folder(source, options);
-  const std::string text = files::read_text(source);
+  if (std::filesystem::is_directory(source)) return read_dicom(source, options);
+  if (std::filesystem::exists(source) && !std::filesystem::is_regular_file(source))
+    throw InvalidInput(source, "", "is neither a file nor a folder");
   if (const Parse parse = parser_for(source)) {
+    const std::string text = read_bounded(source, options.most_bytes);
     if (text.empty()) throw InvalidInput(source, "", "is empty");
-    return parse(source, text);
+    report(options, 0.2);
+    Volume volume = parse(source, text, options.most_bytes);
+    report(options, 1);
+    return volume;
   }
-  if (text.size() > 132 && std::string_view(text).substr(128, 4) == "DICM") {
-    throw InvalidInput(source, "", "is one DICOM file: name the folder that holds its series");
-  }
-  throw InvalidInput(source, "",
-                     "is not a volume this program reads: a DICOM folder, NIfTI, NRRD or MetaImage");
+  if (is_dicom(source)) return read_dicom(source, options);
+  if (!std::filesystem::exists(source)) throw IoError(source, "does not exist");
+  throw InvalidInput(source, "", "is not a volume this program reads: DICOM, NIfTI, NRRD or MetaImage");
 }
 
 }  // namespace arthronaut::images

@@ -16,6 +16,9 @@ using bones::BoneKind;
 using bones::Side;
 using namespace images;
 
+using Tell = std::function<void(std::string_view, double)>;
+constexpr double kUnknown = -1;  // of the time that a stage takes
+
 constexpr double kCtThreshold_hu = 250;
 // Air in a CT; no other modality has values this low that means anything.
 constexpr float kAir_hu = -500;
@@ -56,7 +59,8 @@ std::string formatted_size(const Eigen::Vector3d& size) {
 }
 
 ImportedBone finished(BoneKind kind, const std::string& source, const geometry::TriangleMesh& mesh,
-                      const std::optional<Side>& side) {
+                      const std::optional<Side>& side, const Tell& tell) {
+  tell("Mending the mesh", kUnknown);
   bones::MeshRepair repair = bones::mend_mesh(mesh);
   ImportedBone imported;
   imported.repair = repair.report;
@@ -79,12 +83,14 @@ ImportedBone finished(BoneKind kind, const std::string& source, const geometry::
   throw InvalidInput(source, "", "its name does not say which bone it is: add --bone femur or --bone tibia");
 }
 
-void import_mesh(const std::filesystem::path& source, const BoneImportOptions& options, BoneImport& result) {
+void import_mesh(const std::filesystem::path& source, const BoneImportOptions& options, BoneImport& result,
+                 const Tell& tell) {
   if (!options.labels.empty() || options.threshold || !options.series.empty()) {
     throw InvalidInput(source, "", "is a mesh: --label, --threshold and --series are for volumes");
   }
   const auto kind = options.kind ? options.kind : bone_kind_in_name(source);
   if (!kind) ask_for_kind(source);
+  tell("Reading", kUnknown);
   const bones::MeshFile file = bones::read_mesh_file(source, {options.space, options.unit});
   const char* said_by = options.space             ? "as --space says"
                         : file.space_was_declared ? "as the file says"
@@ -92,7 +98,7 @@ void import_mesh(const std::filesystem::path& source, const BoneImportOptions& o
   result.lines.push_back(file.format + ", in " + std::string(bones::to_text(file.unit_in_file)) + ", " +
                          (file.space_in_file == bones::Space::LPS ? "LPS" : "RAS") + " (" + said_by + ")");
   try {
-    result.bones.push_back(finished(*kind, source.filename().string(), file.mesh, result.side));
+    result.bones.push_back(finished(*kind, source.filename().string(), file.mesh, result.side, tell));
   } catch (const InvalidInput& error) {
     throw InvalidInput(source, "", error.what());
   }
@@ -116,13 +122,15 @@ std::string list_of(const std::vector<std::pair<int, std::size_t>>& labels) {
   return list;
 }
 
-void import_volume(const std::filesystem::path& source, const BoneImportOptions& options,
-                   BoneImport& result) {
+void import_volume(const std::filesystem::path& source, const BoneImportOptions& options, BoneImport& result,
+                   const Tell& tell) {
   if (options.space || options.unit) {
     throw InvalidInput(
         source, "", "is a volume, which says its space and unit itself: --space and --unit are for meshes");
   }
-  const Volume volume = read_volume(source, {options.series});
+  VolumeFileOptions reading{.series = options.series, .most_bytes = options.most_bytes};
+  reading.on_progress = [&](double fraction) { tell("Reading", fraction); };
+  const Volume volume = read_volume(source, reading);
   const Eigen::Vector3d spacing = volume.spacing_mm();
   result.lines.push_back(volume.format + ", " +
                          files::format("%d x %d x %d voxels of %.3g x %.3g x %.3g mm, ", volume.size.x(),
@@ -139,9 +147,10 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
     if (!options.labels.empty()) {
       for (const auto& [kind, label] : options.labels) {
         if (options.kind && *options.kind != kind) continue;
+        tell("Making the surface", kUnknown);
         const BoneSurface surface = surface_of_label(volume, label);
-        result.bones.push_back(
-            finished(kind, "label " + std::to_string(label) + " of " + name, surface.mesh, result.side));
+        result.bones.push_back(finished(kind, "label " + std::to_string(label) + " of " + name, surface.mesh,
+                                        result.side, tell));
         result.bones.back().lines.insert(result.bones.back().lines.begin(), surface.notes.begin(),
                                          surface.notes.end());
       }
@@ -159,8 +168,9 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
     ThresholdOptions threshold;
     threshold.threshold = threshold_for(source, options, volume);
     threshold.piece = *kind == BoneKind::Femur ? Piece::Superior : Piece::Inferior;
+    tell("Making the surface", kUnknown);
     const BoneSurface surface = surface_above_threshold(volume, threshold);
-    result.bones.push_back(finished(*kind, name, surface.mesh, result.side));
+    result.bones.push_back(finished(*kind, name, surface.mesh, result.side, tell));
     ImportedBone& bone = result.bones.back();
     bone.lines.insert(bone.lines.begin(), surface.notes.begin(), surface.notes.end());
     bone.doubts.insert(bone.doubts.begin(), surface.doubts.begin(), surface.doubts.end());
@@ -174,19 +184,24 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
 
 }  // namespace
 
-BoneImport import_bones(const std::filesystem::path& source, const BoneImportOptions& options) {
+BoneImport import_bones(const std::filesystem::path& source, const BoneImportOptions& options,
+                        const Tell& listener) {
+  const Tell tell = [&](std::string_view stage, double fraction) {
+    if (listener) listener(stage, fraction);
+  };
   if (!std::filesystem::exists(source)) throw IoError(source, "does not exist");
   BoneImport result;
   result.side = options.side ? options.side : side_in_name(source);
   result.side_was_guessed = !options.side && result.side;
   if (bones::is_mesh_file(source) && !std::filesystem::is_directory(source)) {
-    import_mesh(source, options, result);
+    import_mesh(source, options, result, tell);
   } else if (is_volume_source(source)) {
-    import_volume(source, options, result);
+    import_volume(source, options, result, tell);
   } else {
-    throw InvalidInput(source, "",
-                       "is nothing that is imported: a mesh (STL, PLY, OBJ, VTK, VTP), a DICOM folder, or a "
-                       "volume (NIfTI, NRRD, MetaImage)");
+    throw InvalidInput(
+        source, "",
+        "is nothing that is imported: a mesh (STL, PLY, OBJ, VTK, VTP), DICOM, or a volume (NIfTI, NRRD, "
+        "MetaImage)");
   }
   return result;
 }

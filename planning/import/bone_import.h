@@ -2,10 +2,13 @@
 // holds.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "planning/bones/bone.h"
@@ -21,7 +24,14 @@ struct BoneImportOptions {
   std::optional<bones::LengthUnit> unit;  // meshes: of the file
   std::map<bones::BoneKind, int> labels;  // label maps: which label is which bone
   std::optional<double> threshold;        // grey volumes; else 250 HU for a CT, and refused for all others
-  std::string series;                     // DICOM folders: series number or UID
+  std::string series;                     // DICOM: series number or UID
+  // Volumes: what reading may take, as images::VolumeFileOptions has it.
+  std::size_t most_bytes = std::size_t{2} << 30;
+};
+
+struct ImportProgress {
+  std::string stage;     // "Reading", "Making the surface", "Mending the mesh"
+  double fraction = -1;  // of this stage, 0 to 1; below 0: not known
 };
 
 struct ImportedBone {
@@ -39,9 +49,11 @@ struct BoneImport {
 };
 
 // Throws IoError or InvalidInput; a bone that cannot be told from the name is InvalidInput that says which
-// option to add.
-[[nodiscard]] BoneImport import_bones(const std::filesystem::path& source,
-                                      const BoneImportOptions& options = {});
+// option to add. `tell` is called on the same thread whenever there is progress. For files from elsewhere use
+// ImportProcess, which does this where it can do no harm.
+[[nodiscard]] BoneImport import_bones(
+    const std::filesystem::path& source, const BoneImportOptions& options = {},
+    const std::function<void(std::string_view stage, double fraction)>& tell = nullptr);
 
 // From words in a name such as "3_RIGHT_femur.vtk" or "knee-L-tibia.stl"; nullopt when there is none, or
 // both.

@@ -1,0 +1,35 @@
+// One DICOM file, opened by DCMTK, and the values of its named elements. Inner header of images.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+class DcmDataset;
+class DcmItem;
+class DcmTagKey;
+
+namespace arthronaut::images {
+
+// 128 bytes of anything, then "DICM": what every DICOM file on a disk begins with. Throws IoError.
+[[nodiscard]] bool has_dicom_mark(const std::filesystem::path& file);
+
+// The data set up to and with the pixels. Of large values, the pixels above all, only the place in the file
+// is kept: a folder costs what its headers hold, and each byte is read once. A deflated data set is unpacked
+// whole, up to `most_bytes`.
+//
+// Throws InvalidInput ("FILE: byte N: broken or cut off: reason") and IoError. The file must have the mark.
+[[nodiscard]] std::shared_ptr<DcmDataset> open_dicom(const std::filesystem::path& file,
+                                                     std::size_t most_bytes);
+
+// All values of the element, a backslash between them, without blanks around; empty when absent.
+[[nodiscard]] std::string text_of(DcmItem& item, const DcmTagKey& key);
+// nullopt unless the element holds exactly `count` finite numbers.
+[[nodiscard]] std::optional<std::vector<double>> decimals_of(DcmItem& item, const DcmTagKey& key,
+                                                             std::size_t count);
+[[nodiscard]] int unsigned_short_of(DcmItem& item, const DcmTagKey& key, int absent);
+
+}  // namespace arthronaut::images

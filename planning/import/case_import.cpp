@@ -1,0 +1,99 @@
+#include "planning/import/case_import.h"
+
+#include <stdlib.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "planning/geometry/error.h"
+
+namespace arthronaut::importing {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Without the slash of "folder/".
+fs::path without_slash(const fs::path& folder) {
+  return folder.has_filename() ? folder : folder.parent_path();
+}
+
+cases::Case case_to_extend(const fs::path& folder, const BoneImport& import, const std::string& name,
+                           const fs::path& source) {
+  if (fs::exists(folder / "case.json")) {
+    cases::Case existing = cases::load_case(folder);
+    if (import.side && *import.side != existing.side) {
+      throw InvalidInput(folder, "",
+                         "is a " + std::string(bones::to_text(existing.side)) + " knee, the import is a " +
+                             std::string(bones::to_text(*import.side)) + " one" +
+                             (import.side_was_guessed ? " by its name (--side says otherwise)" : ""));
+    }
+    if (!name.empty()) existing.name = name;
+    return existing;
+  }
+  if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder))) {
+    throw InvalidInput(folder, "", "exists and is not a case: nothing was written");
+  }
+  if (!import.side) {
+    throw InvalidInput(source, "", "its name does not say which knee it is: add --side left or --side right");
+  }
+  cases::Case created;
+  created.name = name.empty() ? without_slash(folder).stem().string() : name;
+  created.side = *import.side;
+  created.created_utc = cases::utc_now();
+  return created;
+}
+
+void add_bones(const fs::path& folder, cases::Case& target, const BoneImport& import) {
+  for (const ImportedBone& imported : import.bones) {
+    const bones::BoneKind kind = imported.bone.kind;
+    if (target.bones.contains(kind) && target.plan.tunnels.contains(kind)) {
+      throw InvalidInput(folder, "",
+                         "holds a plan on its " + std::string(bones::to_text(kind)) +
+                             ", which another bone would make wrong: import into another case");
+    }
+    target.bones[kind] = imported.bone;
+    target.landmarks.erase(kind);
+  }
+}
+
+// Beside the target, under a name of its own, then renamed.
+void save_new(const fs::path& folder, const cases::Case& contents) {
+  const fs::path named = without_slash(folder);
+  const fs::path parent = named.has_parent_path() ? named.parent_path() : ".";
+  std::error_code error;
+  fs::create_directories(parent, error);
+  std::string unfinished = (parent / ("." + named.filename().string() + "-XXXXXX")).string();
+  if (error || !::mkdtemp(unfinished.data()))
+    throw IoError(folder,
+                  std::string("cannot be created: ") + (error ? error.message() : std::strerror(errno)));
+  try {
+    cases::save_case(unfinished, contents);
+    fs::rename(unfinished, named, error);
+    if (error) throw IoError(folder, "cannot be created: " + error.message());
+  } catch (const IoError& failure) {
+    std::error_code ignored;
+    fs::remove_all(unfinished, ignored);
+    // Of the case that was asked for, not of the name it had meanwhile.
+    std::string reason = failure.what();
+    if (const auto at = reason.find(unfinished); at != std::string::npos)
+      reason.replace(at, unfinished.size(), named.string());
+    throw IoError(reason);
+  }
+}
+
+}  // namespace
+
+cases::Case add_to_case(const fs::path& folder, const BoneImport& import, const std::string& name,
+                        const fs::path& source) {
+  cases::Case target = case_to_extend(folder, import, name, source);
+  add_bones(folder, target, import);
+  if (fs::exists(folder / "case.json")) {
+    cases::save_case(folder, target);
+  } else {
+    save_new(folder, target);
+  }
+  return target;
+}
+
+}  // namespace arthronaut::importing

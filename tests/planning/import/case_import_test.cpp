@@ -1,0 +1,86 @@
+#include "planning/import/case_import.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "planning/geometry/error.h"
+#include "tests/message_of.h"
+#include "tests/planning/bones/mesh_text_forms.h"
+#include "tests/planning/geometry/shapes.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::importing {
+namespace {
+
+using bones::BoneKind;
+using bones::Side;
+using test::message_of;
+using test::TemporaryFolder;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+BoneImport imported(BoneKind kind, std::optional<Side> side = Side::Right) {
+  BoneImport import;
+  import.side = side;
+  ImportedBone bone;
+  bone.bone = {kind, test::ellipsoid({40, 30, 25}, 2), "bone.stl"};
+  import.bones.push_back(bone);
+  return import;
+}
+
+TEST(CaseImport, MakesACaseAndAddsToIt) {
+  const TemporaryFolder folder;
+  const cases::Case made = add_to_case(folder / "Knee.arthro", imported(BoneKind::Femur), "", "bone.stl");
+  EXPECT_EQ(made.name, "Knee");
+  EXPECT_THAT(folder.names(), ElementsAre("Knee.arthro"));
+  add_to_case(folder / "Knee.arthro", imported(BoneKind::Tibia), "Other", "bone.stl");
+  const cases::Case both = cases::load_case(folder / "Knee.arthro");
+  EXPECT_EQ(both.bones.size(), 2U);
+  EXPECT_EQ(both.name, "Other");
+  EXPECT_EQ(both.side, Side::Right);
+}
+
+// An empty folder, as made for it, becomes the case; folders that are not there are made.
+TEST(CaseImport, TakesAnEmptyFolder) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "empty");
+  add_to_case(folder / "empty/", imported(BoneKind::Femur), "", "bone.stl");
+  EXPECT_EQ(cases::load_case(folder / "empty").name, "empty");
+  add_to_case(folder / "new/Knee.arthro", imported(BoneKind::Femur), "", "bone.stl");
+  EXPECT_EQ(cases::load_case(folder / "new/Knee.arthro").bones.size(), 1U);
+}
+
+TEST(CaseImport, WhatItRefusesStaysAsItWas) {
+  const TemporaryFolder folder;
+  test::write_bytes(folder / "letter.txt", "Dear colleague");
+  EXPECT_THAT(
+      message_of<InvalidInput>([&] { add_to_case(folder.path(), imported(BoneKind::Femur), "", ""); }),
+      HasSubstr("not a case"));
+  EXPECT_THAT(message_of<InvalidInput>([&] {
+                add_to_case(folder / "a", imported(BoneKind::Femur, std::nullopt), "", "bone.stl");
+              }),
+              HasSubstr("bone.stl: "));
+  // A parent that is a file: nothing can be made below it.
+  EXPECT_THAT(message_of<IoError>(
+                  [&] { add_to_case(folder / "letter.txt/a", imported(BoneKind::Femur), "", "bone.stl"); }),
+              HasSubstr("letter.txt/a"));
+  EXPECT_THAT(folder.names(), ElementsAre("letter.txt"));
+  add_to_case(folder / "a", imported(BoneKind::Femur), "", "bone.stl");
+  EXPECT_THAT(message_of<InvalidInput>(
+                  [&] { add_to_case(folder / "a", imported(BoneKind::Tibia, Side::Left), "", "bone.stl"); }),
+              HasSubstr("right knee"));
+  EXPECT_EQ(cases::load_case(folder / "a").bones.size(), 1U);
+}
+
+// A bone that is planned on is not exchanged under its tunnel.
+TEST(CaseImport, ABoneThatIsPlannedOnStays) {
+  const TemporaryFolder folder;
+  cases::Case planned = add_to_case(folder / "a", imported(BoneKind::Femur), "", "bone.stl");
+  planned.plan.tunnels[BoneKind::Femur] = {};
+  cases::save_case(folder / "a", planned);
+  EXPECT_THAT(message_of<InvalidInput>([&] { add_to_case(folder / "a", imported(BoneKind::Femur), "", ""); }),
+              HasSubstr("plan on its femur"));
+}
+
+}  // namespace
+}  // namespace arthronaut::importing

@@ -1,0 +1,204 @@
+#include "planning/import/import_process.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <set>
+
+#include "planning/geometry/error.h"
+#include "tests/message_of.h"
+#include "tests/planning/bones/mesh_text_forms.h"
+#include "tests/planning/geometry/shapes.h"
+#include "tests/planning/images/large_volume.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::importing {
+namespace {
+
+using bones::BoneKind;
+using bones::Side;
+using test::message_of;
+using test::TemporaryFolder;
+using testing::AllOf;
+using testing::HasSubstr;
+using State = ImportProcess::State;
+
+class ImportProcessTest : public testing::Test {
+ protected:
+  [[nodiscard]] ImportRequest request(const std::filesystem::path& source) const {
+    ImportRequest request;
+    request.source = source;
+    request.program = ARTHRONAUT_IMPORT_CHILD;
+    return request;
+  }
+  // A program that does something else than to import.
+  [[nodiscard]] std::filesystem::path script(const std::string& line) const {
+    test::write_bytes(folder_ / "child.sh", "#!/bin/sh\n" + line + "\n");
+    std::filesystem::permissions(folder_ / "child.sh", std::filesystem::perms{0755});
+    return folder_ / "child.sh";
+  }
+  static State finished(ImportProcess& process) {
+    while (process.wait_for(60) == State::Running) {
+    }
+    return process.state();
+  }
+
+  TemporaryFolder folder_;
+};
+
+bool is_gone(int process_id) { return ::kill(process_id, 0) != 0; }
+
+// Bit for bit what the same import gives within this process.
+TEST_F(ImportProcessTest, GivesTheSameBonesAsAnImportInThisProcess) {
+  geometry::TriangleMesh mesh = test::ellipsoid({40, 30, 25}, 3, {-30, 0, 0});
+  mesh.triangles.pop_back();
+  test::write_bytes(folder_ / "right_femur.stl", test::binary_stl(mesh));
+  ImportProcess process(request(folder_ / "right_femur.stl"));
+  ASSERT_EQ(finished(process), State::Done) << process.message();
+  const BoneImport apart = process.take_result(), here = import_bones(folder_ / "right_femur.stl");
+  ASSERT_EQ(apart.bones.size(), 1U);
+  EXPECT_EQ(apart.bones[0].bone.mesh.vertices_mm, here.bones[0].bone.mesh.vertices_mm);
+  EXPECT_EQ(apart.bones[0].bone.mesh.triangles, here.bones[0].bone.mesh.triangles);
+  EXPECT_EQ(apart.bones[0].bone.kind, BoneKind::Femur);
+  EXPECT_EQ(apart.bones[0].bone.source, "right_femur.stl");
+  EXPECT_EQ(apart.bones[0].lines, here.bones[0].lines);
+  EXPECT_EQ(apart.bones[0].doubts, here.bones[0].doubts);
+  EXPECT_EQ(apart.bones[0].repair.holes_filled, 1U);
+  EXPECT_TRUE(apart.bones[0].repair.is_closed);
+  EXPECT_EQ(apart.side, Side::Right);
+  EXPECT_TRUE(apart.side_was_guessed);
+  EXPECT_EQ(apart.lines, here.lines);
+}
+
+// Every option arrives: without one of them the bone would be another, or none.
+TEST_F(ImportProcessTest, PassesTheOptionsOn) {
+  test::write_bytes(folder_ / "bone.stl",
+                    test::binary_stl(test::ellipsoid({0.04, 0.03, 0.025}, 3, {0.03, 0, 0})));
+  ImportRequest asked = request(folder_ / "bone.stl");
+  asked.options.kind = BoneKind::Tibia;
+  asked.options.side = Side::Left;
+  asked.options.unit = bones::LengthUnit::Metre;
+  asked.options.space = bones::Space::RAS;
+  ImportProcess process(asked);
+  ASSERT_EQ(finished(process), State::Done) << process.message();
+  const BoneImport import = process.take_result();
+  EXPECT_EQ(import.bones.at(0).bone.kind, BoneKind::Tibia);
+  EXPECT_EQ(import.side, Side::Left);
+  EXPECT_FALSE(import.side_was_guessed);
+  // 30 mm to the right in a RAS file is at -30 mm in LPS; floats of the STL carry it to 1e-5 mm.
+  EXPECT_NEAR(geometry::bounds_of(import.bones[0].bone.mesh).center_mm().x(), -30, 1e-3);
+}
+
+TEST_F(ImportProcessTest, TellsHowFarItIs) {
+  test::write_bytes(folder_ / "knee.nrrd", test::uniform_nrrd({60, 60, 60}, 700));
+  ImportRequest asked = request(folder_ / "knee.nrrd");
+  asked.options.kind = BoneKind::Femur;
+  asked.options.threshold = 300;
+  ImportProcess process(asked);
+  std::set<std::string> stages;
+  while (process.wait_for(60) == State::Running) stages.insert(process.progress().stage);
+  EXPECT_EQ(process.state(), State::Done) << process.message();
+  // Quick stages may pass between two looks; the last one that was told stays.
+  EXPECT_EQ(process.progress().stage, "Mending the mesh");
+}
+
+TEST_F(ImportProcessTest, ARefusalComesBackWithFilePlaceAndReason) {
+  test::write_bytes(folder_ / "right_femur.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\n");
+  ImportProcess process(request(folder_ / "right_femur.stl"));
+  ASSERT_EQ(finished(process), State::Failed);
+  EXPECT_EQ(process.message(),
+            message_of<InvalidInput>([&] { (void)import_bones(folder_ / "right_femur.stl"); }));
+  ImportProcess absent(request(folder_ / "absent.stl"));
+  ASSERT_EQ(finished(absent), State::Failed);
+  EXPECT_THAT(absent.message(), HasSubstr("absent.stl: does not exist"));
+}
+
+// Its header is within the limit, what is made of it is not: 15.6 million voxels, all of them bone.
+TEST_F(ImportProcessTest, AVolumeThatNeedsTooMuchMemoryIsAClearErrorAndNoHarm) {
+  test::write_bytes(folder_ / "bomb.nrrd", test::uniform_nrrd({250, 250, 250}, 700));
+  ImportRequest asked = request(folder_ / "bomb.nrrd");
+  asked.options.kind = BoneKind::Femur;
+  asked.options.threshold = 300;
+  asked.memory_limit_gib = 0.1;
+  ImportProcess process(asked);
+  EXPECT_EQ(finished(process), State::Failed);
+  EXPECT_THAT(process.message(),
+              AllOf(HasSubstr("bomb.nrrd: needs more than the 0.1 GiB"), HasSubstr("--memory-limit-gib")));
+  EXPECT_THAT(folder_.names(), testing::ElementsAre("bomb.nrrd"));
+}
+
+// The header alone is told in the same way, with the limit of this import.
+TEST_F(ImportProcessTest, AHeaderThatClaimsTooMuchIsRefusedByTheLimitOfTheImport) {
+  test::write_bytes(folder_ / "bomb.nrrd", test::uniform_nrrd({250, 250, 250}, 700));
+  ImportRequest asked = request(folder_ / "bomb.nrrd");
+  asked.memory_limit_gib = 0.05;
+  ImportProcess process(asked);
+  EXPECT_EQ(finished(process), State::Failed);
+  EXPECT_THAT(process.message(), AllOf(HasSubstr("250 x 250 x 250"), HasSubstr("limit is 0.05 GiB")));
+}
+
+TEST_F(ImportProcessTest, AChildThatIsKilledIsAClearError) {
+  ImportRequest asked = request("knee.nrrd");
+  asked.program = script("kill -9 $$");
+  ImportProcess killed(asked);
+  EXPECT_EQ(finished(killed), State::Failed);
+  EXPECT_THAT(killed.message(), AllOf(HasSubstr("knee.nrrd: "), HasSubstr("signal 9")));
+  asked.program = script("kill -SEGV $$");
+  ImportProcess crashed(asked);
+  EXPECT_EQ(finished(crashed), State::Failed);
+  EXPECT_THAT(crashed.message(), HasSubstr("signal 11"));
+  asked.program = script("exit 7");
+  ImportProcess ended(asked);
+  EXPECT_EQ(finished(ended), State::Failed);
+  EXPECT_THAT(ended.message(), HasSubstr("code 7"));
+}
+
+// What it says is not believed.
+TEST_F(ImportProcessTest, AChildThatTalksNonsenseIsAClearError) {
+  ImportRequest asked = request("knee.nrrd");
+  asked.program = script("exec head -c 100000 /dev/zero >&0");
+  ImportProcess process(asked);
+  EXPECT_EQ(finished(process), State::Failed);
+  EXPECT_THAT(process.message(), AllOf(HasSubstr("knee.nrrd: "), HasSubstr("no message")));
+  EXPECT_EQ(process.process_id(), -1);
+}
+
+TEST_F(ImportProcessTest, CancelEndsTheChildAtOnce) {
+  ImportRequest asked = request("knee.nrrd");
+  asked.program = script("exec sleep 60");
+  const auto start = std::chrono::steady_clock::now();
+  int process_id = -1;
+  {
+    ImportProcess process(asked);
+    process_id = process.process_id();
+    EXPECT_EQ(process.poll(), State::Running);
+    EXPECT_FALSE(is_gone(process_id));
+    process.cancel();
+    EXPECT_EQ(process.poll(), State::Cancelled);
+    EXPECT_THAT(process.message(), HasSubstr("cancelled"));
+    EXPECT_TRUE(is_gone(process_id));
+    EXPECT_THROW((void)process.take_result(), InvalidInput);
+  }
+  // So does letting go of it.
+  {
+    const ImportProcess process(asked);
+    process_id = process.process_id();
+  }
+  EXPECT_TRUE(is_gone(process_id));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));  // it would sleep for 60
+}
+
+TEST_F(ImportProcessTest, WhatCannotBeStartedIsAnIoError) {
+  ImportRequest asked = request("knee.nrrd");
+  asked.program = folder_ / "absent";
+  EXPECT_THAT(message_of<IoError>([&] { const ImportProcess process(asked); }), HasSubstr("absent"));
+  asked = request("knee.nrrd");
+  asked.memory_limit_gib = 0;
+  EXPECT_THROW(ImportProcess{asked}, InvalidInput);
+}
+
+}  // namespace
+}  // namespace arthronaut::importing
