@@ -1,5 +1,8 @@
 #include "app/command_line/command.h"
 #include "planning/cases/case.h"
+#include "planning/cases/case_lock.h"
+#include "planning/cases/identity.h"
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 #include "planning/import/bone_import.h"
 
@@ -12,6 +15,7 @@ namespace fs = std::filesystem;
 struct ImportArguments {
   std::string source, output, bone, side, unit, space, labels, series, name;
   std::optional<double> threshold;
+  bool without_identity = false;
 };
 
 importing::BoneImportOptions options_of(const ImportArguments& arguments) {
@@ -48,9 +52,10 @@ cases::Case case_to_extend(const fs::path& folder, const ImportArguments& argume
                        "its name does not say which knee it is: add --side left or --side right");
   }
   cases::Case created;
-  created.name = arguments.name.empty() ? folder.stem().string() : arguments.name;
+  // Not by the source's or the folder's name: it often is the patient's.
+  created.name = arguments.name.empty() ? files::utc_now_as("Knee %Y-%m-%d") : arguments.name;
   created.side = *import.side;
-  created.created_utc = cases::utc_now();
+  created.created_utc = files::utc_now();
   return created;
 }
 
@@ -68,11 +73,21 @@ void add_bones(const fs::path& folder, cases::Case& target, const importing::Bon
   }
 }
 
+// Another patient's bone in a case would be navigated by.
+void refuse_another_patient(const fs::path& folder, const cases::Identity& of_import) {
+  const auto of_case = cases::load_identity(folder);
+  if (!of_case || of_import.is_empty() || *of_case == of_import) return;
+  throw InvalidInput(folder, "",
+                     "is the knee of another patient (" + of_case->in_words() +
+                         ") than what was to be added (" + of_import.in_words() + "); nothing was written");
+}
+
 // A folder that this command made does not stay behind when the case cannot be written into it.
-void save_whole(const fs::path& folder, const cases::Case& contents) {
+void save_whole(const fs::path& folder, const cases::Case& contents, const cases::Identity& identity) {
   const bool was_there = fs::exists(folder);
   try {
     cases::save_case(folder, contents);
+    if (!identity.is_empty()) cases::save_identity(folder, identity);
   } catch (...) {
     std::error_code ignored;
     if (!was_there) fs::remove_all(folder, ignored);
@@ -82,10 +97,15 @@ void save_whole(const fs::path& folder, const cases::Case& contents) {
 
 void import(Context& context, const ImportArguments& arguments) {
   const fs::path folder = arguments.output;
-  const importing::BoneImport import = importing::import_bones(arguments.source, options_of(arguments));
+  cases::CaseLock lock;  // before the case is read; a new one nobody else knows of
+  if (fs::exists(folder / "case.json")) lock = cases::lock_or_refuse(folder);
+  if (!lock.notice().empty()) context.say(lock.notice() + ".");
+  importing::BoneImport import = importing::import_bones(arguments.source, options_of(arguments));
+  if (arguments.without_identity) import.identity = {};
+  refuse_another_patient(folder, import.identity);
   cases::Case target = case_to_extend(folder, arguments, import);
   add_bones(folder, target, import);
-  save_whole(folder, target);
+  save_whole(folder, target, import.identity);
 
   for (const auto& line : import.lines) context.say(line);
   std::vector<std::string> doubts;
@@ -125,7 +145,9 @@ void add_import_command(CLI::App& app, Context& context) {
   sub->add_option("--threshold", arguments->threshold,
                   "Least value of bone in a grey volume; default for CT: 250 HU");
   sub->add_option("--series", arguments->series, "Series number or UID, for a DICOM folder with several");
-  sub->add_option("--name", arguments->name, "Name of the case; default: that of its folder");
+  sub->add_option("--name", arguments->name, "Name of the case; default: \"Knee\" and the date");
+  sub->add_flag("--without-identity", arguments->without_identity,
+                "Do not keep whose bones they are; else identity.json holds what a DICOM source says");
   sub->callback([&context, arguments] { import(context, *arguments); });
 }
 
