@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "planning/cases/case.h"
+#include "planning/files/private_folder.h"
 #include "planning/phantom/phantom_case.h"
 
 namespace arthronaut::open_case {
@@ -21,12 +22,16 @@ std::filesystem::path built_in_case_folder() {
 }
 
 OpenedCase open_folder(const std::filesystem::path& folder) {
-  const std::filesystem::path chosen = folder.empty() ? built_in_case_folder() : folder;
-  if (folder.empty() && !std::filesystem::exists(chosen / "case.json")) {
-    std::filesystem::create_directories(chosen);
-    cases::save_case(chosen, phantom::case_of(phantom::make_phantom_knee(), "Phantom knee"));
-  }
-  return {chosen, std::make_unique<PlanModel>(cases::load_case(chosen))};
+  OpenedCase opened;
+  opened.folder = folder.empty() ? built_in_case_folder() : folder;
+  if (folder.empty()) files::create_private_folder(opened.folder);
+  if (folder.empty() || std::filesystem::exists(opened.folder / "case.json"))
+    opened.lock = cases::CaseLock(opened.folder);
+  if (folder.empty() && opened.lock.is_held() && !std::filesystem::exists(opened.folder / "case.json"))
+    cases::save_case(opened.folder, phantom::case_of(phantom::make_phantom_knee(), "Phantom knee"));
+  opened.model = std::make_unique<PlanModel>(cases::load_case(opened.folder));
+  opened.identity = cases::load_identity(opened.folder);
+  return opened;
 }
 
 CaseOpening::CaseOpening(const std::filesystem::path& folder, std::function<void()> on_end)

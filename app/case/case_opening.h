@@ -5,27 +5,33 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "app/case/plan_model.h"
+#include "planning/cases/case_lock.h"
+#include "planning/cases/identity.h"
 
 namespace arthronaut::open_case {
 
 struct OpenedCase {
   std::filesystem::path folder;
+  cases::CaseLock lock;  // not held: the case is read-only, for the reason that the lock says
   std::unique_ptr<PlanModel> model;
+  std::optional<cases::Identity> identity;
 };
 
 // Where the built-in case lives: $XDG_DATA_HOME/arthronaut/Phantom.arthro, else ~/.local/share/..., so that
 // what a user changes in it stays.
 [[nodiscard]] std::filesystem::path built_in_case_folder();
 
-// Loads the case and makes its bones ready, which takes seconds: for a job. An empty path is the built-in
-// case, made anew when it is not there. Throws IoError or InvalidInput.
+// Takes the case (cases::CaseLock), loads it and makes its bones ready, which takes seconds: for a job. A
+// case that another program has open, or that cannot be written, is loaded all the same. An empty path is the
+// built-in case, made anew when it is not there. Throws IoError or InvalidInput.
 [[nodiscard]] OpenedCase open_folder(const std::filesystem::path& folder);
 
 // The one case of a window: being opened on a thread of its own, then open for good, or refused with a
-// reason.
+// reason. While it is open it is this program's to write, or read-only, and stays so.
 class CaseOpening {
  public:
   // Opens the folder, see open_case(). on_end is called from the other thread when that is done, well or not.
@@ -39,6 +45,16 @@ class CaseOpening {
   [[nodiscard]] PlanModel* model() const { return open_.model.get(); }
   [[nodiscard]] const std::filesystem::path& folder() const { return open_.folder; }  // empty until then
   [[nodiscard]] const std::string& failure() const { return failure_; }  // why it can't be opened; empty else
+
+  // These are of the open case. Nothing may be written into a case that is read-only: no plan, no set-up, no
+  // session.
+  [[nodiscard]] bool is_read_only() const { return !read_only_reason().empty(); }
+  // "is open elsewhere: anna on theatre-2 (process 4711) since ..."; empty when it may be written.
+  [[nodiscard]] const std::string& read_only_reason() const { return open_.lock.refusal(); }
+  // That it was taken over from a program that had died; else empty.
+  [[nodiscard]] const std::string& notice() const { return open_.lock.notice(); }
+  // Whose knee it is; nothing where that is not known.
+  [[nodiscard]] const std::optional<cases::Identity>& identity() const { return open_.identity; }
 
  private:
   std::future<OpenedCase> opening_;

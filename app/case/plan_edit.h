@@ -8,7 +8,7 @@
 
 namespace arthronaut::open_case {
 
-// A change that the surgeon made; the workstation carries it out, keeps it for undo and saves it.
+// A change that the surgeon made; the history carries it out, keeps it for undo and saves it.
 struct PlanEdit {
   bones::BoneKind bone = bones::BoneKind::Femur;
   std::optional<tunnels::Tunnel> tunnel;  // empty: remove it
@@ -18,8 +18,13 @@ struct PlanEdit {
 
 // What the plan mode shows beside the model.
 struct PlanStatus {
-  std::string saved;  // "Saved 11:04:22", or what went wrong
-  bool save_failed = false;
+  enum class Save {
+    Saved,
+    NotYet,    // the hand has not come to rest
+    Failed,    // the model keeps what is not on disk
+    ReadOnly,  // another program has the case: edits are refused
+  } save = Save::Saved;
+  std::string text = "saved";        // "saved at 11:04:22", or what went wrong
   std::string undo_what, redo_what;  // empty: nothing to undo, to redo
 };
 

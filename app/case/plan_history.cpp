@@ -2,9 +2,8 @@
 
 #include <array>
 #include <ctime>
+#include <utility>
 
-#include "app/case/plan_steps.h"
-#include "planning/cases/case.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::open_case {
@@ -24,71 +23,78 @@ std::string clock_text() {
 
 }  // namespace
 
-void PlanHistory::open(PlanModel* model, const std::filesystem::path& case_folder) {
+void PlanHistory::open(PlanModel* model, const std::filesystem::path& case_folder,
+                       const std::string& read_only) {
+  *this = {};
   model_ = model;
   case_folder_ = case_folder;
-  history_ = model != nullptr ? std::make_unique<History>([this] { save(); }) : nullptr;
-  status_ = {};
-  status_.saved = "saved";
+  if (model != nullptr) version_ = model->knee().plan_version;
+  is_read_only_ = !read_only.empty();
+  if (is_read_only_) {
+    status_.save = PlanStatus::Save::ReadOnly;
+    status_.text = "not to be changed: the case " + read_only;
+  }
 }
 
 void PlanHistory::apply(const PlanEdit& edit, double now_s) {
-  if (history_ == nullptr) return;
-  if (history_->is_dragging() && (!edit.continues || edit.what != movement_)) history_->end_drag();
-  if (!history_->is_dragging()) history_->begin_drag();
-  movement_ = edit.what;
+  if (model_ == nullptr || is_read_only_) return;
+  if (is_moving_ && (!edit.continues || edit.what != steps_.back().what)) settle_now();
+  if (!is_moving_) {
+    steps_.resize(position_);  // what was undone can't be redone after a new step
+    steps_.push_back({edit.what, model_->knee().plan, {}});
+    ++position_;
+    is_moving_ = true;
+  }
+  model_->set_tunnel(edit.bone, edit.tunnel);
+  steps_.back().after = model_->knee().plan;
   moved_at_s_ = now_s;
-  const TunnelSetter set = [model = model_](bones::BoneKind bone,
-                                            const std::optional<tunnels::Tunnel>& tunnel) {
-    model->set_tunnel(bone, tunnel);
-  };
-  history_->execute(set_tunnel(set, edit.bone, model_->tunnel(edit.bone), edit.tunnel, edit.what));
-  status_.saved = "not saved yet";
+  status_.save = PlanStatus::Save::NotYet;
+  status_.text = "not saved yet";
   describe();
 }
 
 void PlanHistory::undo() {
-  if (!can_undo()) return;
   settle_now();
-  history_->undo();
+  if (!can_undo()) return;
+  model_->set_plan(steps_[--position_].before);
+  save();
   describe();
 }
 
 void PlanHistory::redo() {
-  if (!can_redo()) return;
   settle_now();
-  history_->redo();
+  if (!can_redo()) return;
+  model_->set_plan(steps_[position_++].after);
+  save();
   describe();
 }
 
-bool PlanHistory::can_undo() const {
-  return history_ != nullptr && (history_->is_dragging() || history_->can_undo());
-}
-bool PlanHistory::can_redo() const { return history_ != nullptr && history_->can_redo(); }
-
 void PlanHistory::settle(double now_s) {
-  if (is_moving() && now_s - moved_at_s_ > kRest_s) settle_now();
+  if (now_s - moved_at_s_ > kRest_s) settle_now();
 }
 
 void PlanHistory::settle_now() {
-  if (!is_moving()) return;
-  history_->end_drag();
-  describe();
+  if (std::exchange(is_moving_, false)) save();
 }
 
 void PlanHistory::describe() {
-  status_.undo_what = history_->is_dragging() ? movement_ : history_->undo_text();
-  status_.redo_what = history_->redo_text();
+  status_.undo_what = can_undo() ? steps_[position_ - 1].what : "";
+  status_.redo_what = can_redo() ? steps_[position_].what : "";
 }
 
 void PlanHistory::save() {
+  const auto fail = [this](const std::exception& error) {
+    status_.save = PlanStatus::Save::Failed;
+    status_.text = std::string("not saved: ") + error.what();
+  };
   try {  // a disk that is full is a state of the screen, not the end of the frame
-    cases::save_plan(case_folder_, model_->knee().plan);
-    status_.save_failed = false;
-    status_.saved = "saved at " + clock_text();
+    version_ = cases::save_plan_over(case_folder_, model_->knee().plan, version_);
+    status_.save = PlanStatus::Save::Saved;
+    status_.text = "saved at " + clock_text();
   } catch (const IoError& error) {
-    status_.save_failed = true;
-    status_.saved = std::string("not saved: ") + error.what();
+    fail(error);
+  } catch (const InvalidInput& error) {  // another program has written it
+    fail(error);
   }
 }
 

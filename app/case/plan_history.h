@@ -1,13 +1,19 @@
-// Carries out the edits of the plan mode: each becomes a step of the undo history and is saved. Edits that
-// follow each other as one movement (a drag, a key held down) are one step, saved when the hand rests.
+// A key's whole way to the plan: a mode makes a PlanEdit of it and hands it over here; the history puts it
+// into the model, keeps the plan before it for undo, and saves.
+//
+// Edits that follow each other as one movement (a drag, a key held down) are one step, saved when the hand
+// rests. After every step, undo and redo the plan on disk is the model's, so that a crash resumes there. Two
+// things stand against that, and the status says which: a case that another program has open is read-only,
+// every edit is refused; a plan.json that another program has changed meanwhile is not written over, the
+// model keeps the change.
+//
+// GUI-free. One thread.
 #pragma once
 
 #include <filesystem>
-#include <memory>
-#include <optional>
 #include <string>
+#include <vector>
 
-#include "app/case/history.h"
 #include "app/case/plan_edit.h"
 #include "app/case/plan_model.h"
 
@@ -15,29 +21,39 @@ namespace arthronaut::open_case {
 
 class PlanHistory {
  public:
-  // Another case: forgets the steps. The model outlives this history's use of it. Null closes.
-  void open(PlanModel* model, const std::filesystem::path& case_folder);
+  // Another case: forgets the steps. The model outlives this history's use of it; null closes. read_only: why
+  // nothing may be changed; empty where it may.
+  void open(PlanModel* model, const std::filesystem::path& case_folder, const std::string& read_only = {});
+  [[nodiscard]] const PlanModel* model() const { return model_; }  // null while no case is open
 
   void apply(const PlanEdit& edit, double now_s);
+  // Without effect when there is nothing to undo or redo.
   void undo();
   void redo();
-  [[nodiscard]] bool can_undo() const;
-  [[nodiscard]] bool can_redo() const;
+  [[nodiscard]] bool can_undo() const { return position_ > 0; }
+  [[nodiscard]] bool can_redo() const { return position_ < steps_.size(); }
 
   // Ends a movement that has rested for half a second, which saves it.
   void settle(double now_s);
   void settle_now();
-  [[nodiscard]] bool is_moving() const { return history_ != nullptr && history_->is_dragging(); }
+  [[nodiscard]] bool is_moving() const { return is_moving_; }
   [[nodiscard]] const PlanStatus& status() const { return status_; }
 
  private:
+  struct Step {
+    std::string what;
+    cases::Plan before, after;
+  };
   void save();
   void describe();
 
   PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
-  std::unique_ptr<History> history_;
-  std::string movement_;  // what the open movement does, and of which bone
+  std::string version_;  // of the plan on disk that the model's was made from
+  bool is_read_only_ = false;
+  std::vector<Step> steps_;
+  std::size_t position_ = 0;  // steps_[0, position_) are done
+  bool is_moving_ = false;    // the last step is still going on
   double moved_at_s_ = 0;
   PlanStatus status_;
 };

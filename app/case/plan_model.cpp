@@ -1,6 +1,7 @@
 #include "app/case/plan_model.h"
 
 #include "app/scene/scene_content.h"
+#include "planning/bones/mesh_hash.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::open_case {
@@ -21,8 +22,11 @@ PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
         kind, BoneModel{scene::simplified(bone.mesh),
                         std::make_shared<geometry::Surface>(bone.mesh),
                         geometry::bounds_of(bone.mesh),
+                        bones::mesh_sha256(bone.mesh),
                         {},
                         tunnels::surroundings_of(bone.mesh, kind, landmarks_of(knee_, kind), knee_.side)});
+    if (knee_.plan.tunnels.contains(kind))
+      knee_.plan.mesh_sha256.try_emplace(kind, bones_.at(kind).mesh_sha256);
     measure(kind);
   }
   if (bones_.empty()) throw InvalidInput("the case \"" + knee_.name + "\" has no bone to show");
@@ -41,7 +45,19 @@ const tunnels::TunnelGeometry& PlanModel::measured(bones::BoneKind kind) const {
 std::vector<tunnels::PlanCheck> PlanModel::checks(bones::BoneKind kind) const {
   const auto planned = tunnel(kind);
   if (!planned) return {};
-  return tunnels::check_plan(*planned, measured(kind), bones_.at(kind).surroundings);
+  auto checks = tunnels::check_plan(*planned, measured(kind), bones_.at(kind).surroundings);
+  if (const cases::PlanFit fit = plan_fit(kind); !fit.is_valid()) {
+    checks.insert(checks.begin(), {.verdict = tunnels::PlanCheck::Verdict::Wrong,
+                                   .name = "Bone",
+                                   .text = fit.reason + ": place the entry anew",
+                                   .source = ""});
+  }
+  return checks;
+}
+
+cases::PlanFit PlanModel::plan_fit(bones::BoneKind kind) const {
+  const auto bone = bones_.find(kind);
+  return cases::plan_fit(knee_.plan, kind, bone == bones_.end() ? "" : bone->second.mesh_sha256);
 }
 
 double PlanModel::drawn_length_mm(bones::BoneKind kind) const {
@@ -61,11 +77,21 @@ geometry::Bounds PlanModel::bounds(std::optional<bones::BoneKind> only) const {
 }
 
 void PlanModel::set_tunnel(bones::BoneKind kind, const std::optional<tunnels::Tunnel>& tunnel) {
-  if (tunnel)
-    knee_.plan.tunnels.insert_or_assign(kind, *tunnel);
-  else
-    knee_.plan.tunnels.erase(kind);
-  measure(kind);
+  cases::Plan plan = knee_.plan;
+  const auto before = this->tunnel(kind);
+  if (tunnel) {
+    plan.tunnels.insert_or_assign(kind, *tunnel);
+    if (!before || before->entry_mm != tunnel->entry_mm) plan.mesh_sha256[kind] = bones_.at(kind).mesh_sha256;
+  } else {
+    plan.tunnels.erase(kind);
+    plan.mesh_sha256.erase(kind);
+  }
+  set_plan(plan);
+}
+
+void PlanModel::set_plan(const cases::Plan& plan) {
+  knee_.plan = plan;
+  for (const auto& [kind, bone] : bones_) measure(kind);  // about a millisecond each
   ++revision_;
 }
 

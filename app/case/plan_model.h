@@ -1,12 +1,16 @@
 // The open case as the plan mode sees it: the bones made ready for drawing and for exact queries, the tunnels
 // and what was measured of them. The one place where the plan lives while the program runs; it changes
-// through set_tunnel alone.
+// through set_tunnel and set_plan alone.
+//
+// Each tunnel names the mesh that it was planned on (cases::PlanFit). One of an older file, which names none,
+// is taken to be of the mesh that it is opened with.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "planning/cases/case.h"
@@ -36,13 +40,19 @@ class PlanModel {
   [[nodiscard]] std::optional<tunnels::Tunnel> tunnel(bones::BoneKind kind) const;
   [[nodiscard]] const tunnels::TunnelGeometry& measured(
       bones::BoneKind kind) const;  // meaningful with a tunnel
-  [[nodiscard]] std::vector<tunnels::PlanCheck> checks(bones::BoneKind kind) const;  // empty without a tunnel
+  // Empty without a tunnel. That it was planned on another mesh is the first check, and a wrong one.
+  [[nodiscard]] std::vector<tunnels::PlanCheck> checks(bones::BoneKind kind) const;
+  // Whether the bone's tunnel is of the bone's mesh: what is not valid must not be guided by.
+  [[nodiscard]] cases::PlanFit plan_fit(bones::BoneKind kind) const;
   // How far a tunnel is drawn: through the bone, or 30 mm where it misses.
   [[nodiscard]] double drawn_length_mm(bones::BoneKind kind) const;
   [[nodiscard]] geometry::Bounds bounds(std::optional<bones::BoneKind> only) const;
 
-  // nullopt removes the tunnel. Precondition: has_bone(kind).
+  // nullopt removes the tunnel. One with another entry is planned on this case's mesh, where its entry was
+  // put; one that was only turned or widened stays of the mesh that it was of. Precondition: has_bone(kind).
   void set_tunnel(bones::BoneKind kind, const std::optional<tunnels::Tunnel>& tunnel);
+  // As it is, with the meshes that it names: for undo.
+  void set_plan(const cases::Plan& plan);
   [[nodiscard]] std::uint64_t revision() const { return revision_; }  // counts the changes
 
  private:
@@ -50,6 +60,7 @@ class PlanModel {
     std::shared_ptr<const geometry::TriangleMesh> drawn;
     std::shared_ptr<const geometry::Surface> surface;
     geometry::Bounds bounds;
+    std::string mesh_sha256;
     tunnels::TunnelGeometry measured;
     tunnels::PlanSurroundings surroundings;
   };

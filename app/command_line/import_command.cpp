@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "app/command_line/command.h"
+#include "planning/cases/case_lock.h"
 #include "planning/geometry/error.h"
 #include "planning/import/case_import.h"
 #include "planning/import/import_child.h"
@@ -21,6 +22,7 @@ struct ImportArguments {
   std::string source, output, bone, side, unit, space, labels, series, name;
   std::optional<double> threshold;
   double memory_limit_gib = importing::ImportRequest{}.memory_limit_gib;
+  bool without_identity = false;
 };
 
 importing::BoneImportOptions options_of(const ImportArguments& arguments) {
@@ -94,6 +96,9 @@ void watch(importing::ImportProcess& process, const Interruption& interruption) 
 
 void import(Context& context, const ImportArguments& arguments) {
   const fs::path folder = arguments.output;
+  cases::CaseLock lock;  // before the case is read; a new one nobody else knows of
+  if (fs::exists(folder / "case.json")) lock = cases::lock_or_refuse(folder);
+  if (!lock.notice().empty()) context.say(lock.notice() + ".");
   const Interruption interruption;  // over the writing as well, which takes no time
   importing::ImportProcess process({.source = arguments.source,
                                     .options = options_of(arguments),
@@ -104,7 +109,8 @@ void import(Context& context, const ImportArguments& arguments) {
     interruption.end_program();
   }
   if (process.state() != importing::ImportProcess::State::Done) throw InvalidInput(process.message());
-  const importing::BoneImport import = process.take_result();
+  importing::BoneImport import = process.take_result();
+  if (arguments.without_identity) import.identity = {};
   const cases::Case target = importing::add_to_case(folder, import, arguments.name, arguments.source);
 
   for (const auto& line : import.lines) context.say(line);
@@ -147,10 +153,12 @@ void add_import_command(CLI::App& app, Context& context) {
   sub->add_option("--threshold", arguments->threshold,
                   "Least value of bone in a grey volume; default for CT: 250 HU");
   sub->add_option("--series", arguments->series, "Series number or UID, for DICOM with several");
-  sub->add_option("--name", arguments->name, "Name of the case; default: that of its folder");
+  sub->add_option("--name", arguments->name, "Name of the case; default: \"Knee\" and the date");
   sub->add_option("--memory-limit-gib", arguments->memory_limit_gib,
                   "Memory that reading and surface making may take; default: 2")
       ->check(CLI::PositiveNumber);
+  sub->add_flag("--without-identity", arguments->without_identity,
+                "Do not keep whose bones they are; else identity.json holds what a DICOM source says");
   sub->callback([&context, arguments] { import(context, *arguments); });
   // What ImportProcess starts this program with; not for a person.
   CLI::App* child = app.add_subcommand(importing::kImportChildWord)->group("");

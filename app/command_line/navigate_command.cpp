@@ -11,6 +11,7 @@
 #include "navigation/theatre/navigate_source.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
+#include "planning/cases/case_lock.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 
@@ -103,6 +104,11 @@ std::optional<operation::GiveRegistration> known_registration(const Context& con
   const auto known = recording::find_registration(arguments.case_folder, bone, options.source.pipeline.tools);
   if (!known) return std::nullopt;
   const std::string session = known->session_folder.filename().string();
+  for (const std::string& broken : known->passed_over) context.say("registration: passed over " + broken);
+  if (!known->is_usable()) {
+    context.say("registration: that of session " + session + " is not used: " + known->refusal);
+    return std::nullopt;
+  }
   if (const auto mismatch = known->of ? registration::mismatch_of(*known->of, now) : std::nullopt) {
     context.say("registration: that of session " + session +
                 " is not used: " + registration::in_words(*mismatch, *known->of, now));
@@ -127,7 +133,9 @@ theatre::NavigateOptions navigate_options(const Context& context, const Navigate
   options.operation.bone = bone;
   options.operation.mesh_sha256 = bones::mesh_sha256(found->second.mesh);
   options.operation.surface = surface;
-  if (const auto plan = knee.plan.tunnels.find(bone); plan != knee.plan.tunnels.end())
+  const cases::PlanFit fit = cases::plan_fit(knee.plan, bone, options.operation.mesh_sha256);
+  if (fit.outcome == cases::PlanFit::Outcome::OtherMesh) context.say("plan: not used: " + fit.reason);
+  if (const auto plan = knee.plan.tunnels.find(bone); plan != knee.plan.tunnels.end() && fit.is_valid())
     options.operation.plan = {plan->second, tunnels::measure(plan->second, *surface).length_mm};
   options.registration = known_registration(context, arguments, options);
   return options;
@@ -165,6 +173,8 @@ void say_guidance(const Context& context, const theatre::NavigationSummary& summ
 }
 
 void navigate(Context& context, const NavigateArguments& arguments) {
+  const cases::CaseLock lock = cases::lock_or_refuse(arguments.case_folder);
+  if (!lock.notice().empty()) context.say(lock.notice() + ".");
   const cases::Case knee = cases::load_case(arguments.case_folder);
   theatre::NavigateOptions options = navigate_options(context, arguments, knee);
   const bones::BoneKind kind = options.operation.bone;

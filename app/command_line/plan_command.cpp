@@ -1,5 +1,7 @@
 #include "app/command_line/command.h"
+#include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
+#include "planning/cases/case_lock.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
@@ -36,6 +38,8 @@ void describe(const Context& context, const cases::Case& knee, const tunnels::Tu
     context.say(files::format("  exit       %.3f, %.3f, %.3f mm", x.x(), x.y(), x.z()));
     context.say(files::format("  wall       %.2f mm at the thinnest", measured.wall_mm));
   }
+  if (const auto fit = cases::plan_fit(knee, tunnel.bone); !fit.is_valid())
+    context.say("  ! not valid: " + fit.reason);
   const auto marks = knee.landmarks.find(tunnel.bone);
   const auto surroundings = tunnels::surroundings_of(
       knee.bones.at(tunnel.bone).mesh, tunnel.bone,
@@ -115,8 +119,12 @@ void add_plan_command(CLI::App& app, Context& context) {
   entry->needs(direction);
   footprint->needs(direction);
   sub->callback([arguments, entry, direction, &context] {
+    const bool writes = direction->count() > 0 || arguments->customary;
+    cases::CaseLock lock;
+    if (writes) lock = cases::lock_or_refuse(arguments->case_folder);
+    if (!lock.notice().empty()) context.say(lock.notice() + ".");
     auto knee = cases::load_case(arguments->case_folder);
-    if (direction->count() == 0 && !arguments->customary) {
+    if (!writes) {
       if (knee.plan.tunnels.empty()) context.say("No tunnel is planned.");
       for (const auto& [kind, tunnel] : knee.plan.tunnels) {
         if (!arguments->bone.empty() && arguments->bone != bones::to_text(kind)) continue;
@@ -137,7 +145,9 @@ void add_plan_command(CLI::App& app, Context& context) {
     const geometry::Surface surface(bone_of_case->second.mesh);
     const auto tunnel = planned_tunnel(*arguments, knee, kind, surface, entry->count() > 0);
     knee.plan.tunnels[kind] = tunnel;
-    cases::save_plan(arguments->case_folder, knee.plan);
+    knee.plan.mesh_sha256[kind] = bones::mesh_sha256(bone_of_case->second.mesh);
+    cases::name_meshes(knee);
+    knee.plan_version = cases::save_plan_over(arguments->case_folder, knee.plan, knee.plan_version);
     describe(context, knee, tunnel, surface);
   });
 }

@@ -93,7 +93,7 @@ void add_replay_command(CLI::App& app, Context& context) {
   CLI::App* command =
       add_subcommand(app, context, "replay",
                      "Run a recorded session again through today's pipeline and report every difference",
-                     "arthronaut replay knee.arthro --session 20260102-030405 -o differences.csv");
+                     "arthronaut replay knee.arthro --session 0003-20260102-030405 -o differences.csv");
   const auto arguments = std::make_shared<ReplayArguments>();
   command->add_option("CASE", arguments->case_folder, "Case folder")->required();
   command->add_option("--session", arguments->session, "The session's folder name; default: the newest");

@@ -30,12 +30,17 @@ struct ModeTitle {
 struct OpenCase {
   open_case::PlanModel* model = nullptr;  // not null
   std::filesystem::path folder;
+  // Why nothing may be written into the case ("is open elsewhere: ..."): no plan, no set-up, no session.
+  // Empty where it may.
+  std::string read_only = {};
 };
 
 class Mode {
  public:
   virtual ~Mode() = default;
   [[nodiscard]] virtual ModeTitle title() const = 0;
+  // Whether the mode is of use in a case that is read-only; one that is not cannot be entered there.
+  [[nodiscard]] virtual bool works_read_only() const { return true; }
   // Called once, before any case is open. They live as long as this mode.
   virtual void add_actions(widgets::Actions& actions) = 0;
   // What the ids of the actions start with whose keys work while this mode is shown.

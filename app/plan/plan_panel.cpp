@@ -21,6 +21,20 @@ widgets::Severity severity_of(tunnels::PlanCheck::Verdict verdict) {
   return widgets::Severity::Quiet;
 }
 
+widgets::Severity severity_of(open_case::PlanStatus::Save save) {
+  switch (save) {
+    case open_case::PlanStatus::Save::Saved:
+      return widgets::Severity::Good;
+    case open_case::PlanStatus::Save::NotYet:
+      return widgets::Severity::Quiet;
+    case open_case::PlanStatus::Save::Failed:
+      return widgets::Severity::Bad;
+    case open_case::PlanStatus::Save::ReadOnly:
+      return widgets::Severity::Caution;
+  }
+  return widgets::Severity::Quiet;
+}
+
 void draw_numbers(const widgets::Ui& ui, const tunnels::Tunnel& tunnel,
                   const tunnels::TunnelGeometry& geometry) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -47,8 +61,7 @@ void draw_history(const widgets::Ui& ui, const open_case::PlanStatus& status) {
   button_pair(ui, "plan.undo", "plan.redo");
   widgets::text_in(ui.theme.body, widgets::kQuietText,
                    status.undo_what.empty() ? "Nothing to undo" : "Last: " + status.undo_what);
-  widgets::status_row(ui, status.save_failed ? widgets::Severity::Bad : widgets::Severity::Good, "Plan",
-                      status.saved);
+  widgets::status_row(ui, severity_of(status.save), "Plan", status.text);
 }
 
 }  // namespace

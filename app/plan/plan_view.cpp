@@ -17,6 +17,20 @@ constexpr double kAimHandleBeyond_mm = 12;
 
 std::string tunnel_name(BoneKind bone) { return bone == BoneKind::Femur ? "femoral" : "tibial"; }
 
+const char* name_of(open_case::PlanStatus::Save save) {
+  switch (save) {
+    case open_case::PlanStatus::Save::Saved:
+      return "saved";
+    case open_case::PlanStatus::Save::NotYet:
+      return "moving";
+    case open_case::PlanStatus::Save::Failed:
+      return "failed";
+    case open_case::PlanStatus::Save::ReadOnly:
+      return "read-only";
+  }
+  return "";
+}
+
 std::optional<BoneKind> only_bone_of(scene::ViewDirection view) {
   if (view == scene::ViewDirection::Distal || view == scene::ViewDirection::Notch) return BoneKind::Femur;
   if (view == scene::ViewDirection::Plateau) return BoneKind::Tibia;
@@ -33,7 +47,7 @@ mode::ModeTitle PlanView::title() const {
 
 void PlanView::case_opened(const mode::OpenCase& opened) {
   model_ = opened.model;
-  history_.open(opened.model, opened.folder);
+  history_.open(opened.model, opened.folder, opened.read_only);
   state_ = {};
   if (!model_->has_bone(BoneKind::Femur)) state_.bone = BoneKind::Tibia;
   look_from(scene::ViewDirection::Anterior);
@@ -48,25 +62,15 @@ void PlanView::look_from(scene::ViewDirection view) {
   state_.shown_revision = 0;
 }
 
-void PlanView::apply(const std::string& what, bool continues, const Move& move) {
-  if (!model_->has_bone(state_.bone)) return;
-  if (const auto tunnel = move(*model_))
-    history_.apply({state_.bone, tunnel, what + " " + tunnel_name(state_.bone) + " tunnel", continues},
-                   widgets::GraphicsWindow::now_s());
+void PlanView::change(const std::string& what, bool continues, const std::optional<tunnels::Tunnel>& tunnel) {
+  if (!tunnel) return;
+  history_.apply({state_.bone, tunnel, what + " " + tunnel_name(state_.bone) + " tunnel", continues},
+                 widgets::GraphicsWindow::now_s());
 }
 
 void PlanView::add_actions(widgets::Actions& actions) {
-  const auto has_tunnel = [this] { return model_ != nullptr && model_->tunnel(state_.bone).has_value(); };
-  const auto is_open = [this] { return model_ != nullptr; };
-  const auto move_action =
-      [&](const char* id, const char* label, const char* tooltip, int key, int mods, const char* what,
-          std::function<tunnels::Tunnel(const open_case::PlanModel&, const tunnels::Tunnel&)> move) {
-        actions.add({id, label, tooltip, key, mods, true, has_tunnel, {}, [this, what, move] {
-                       apply(what, true,
-                             [&](const open_case::PlanModel& m) { return move(m, *m.tunnel(state_.bone)); });
-                     }});
-      };
   add_view_actions(actions);
+  add_tunnel_actions(actions);
   add_history_actions(actions);
   actions.add({"plan.bone",
                "Other bone",
@@ -84,36 +88,40 @@ void PlanView::add_actions(widgets::Actions& actions) {
                  if (state_.only) look_from(scene::ViewDirection::Anterior);
                  state_.shown_revision = 0;
                }});
+}
+
+// Each key makes a new tunnel of the one that is there.
+void PlanView::add_tunnel_actions(widgets::Actions& actions) {
+  const auto has_tunnel = [this] { return model_ != nullptr && model_->tunnel(state_.bone).has_value(); };
+  const auto add = [&](const std::string& id, const std::string& label, const char* tooltip, int key,
+                       int mods, const char* what, auto moved) {
+    actions.add({id, label, tooltip, key, mods, true, has_tunnel, {}, [this, what, moved] {
+                   change(what, true, moved(*model_->tunnel(state_.bone)));
+                 }});
+  };
   actions.add({"plan.place", "Place entry", "Then click where the tunnel is to begin on the bone", GLFW_KEY_P,
-               0, false, is_open, [this] { return state_.places_entry; },
+               0, false, [this] { return model_ != nullptr; }, [this] { return state_.places_entry; },
                [this] { state_.places_entry = !state_.places_entry; }});
-  move_action("plan.wider", "Wider", "Half a millimetre more", GLFW_KEY_EQUAL, 0,
-              "Change the diameter of the", [](const open_case::PlanModel&, const tunnels::Tunnel& t) {
-                return with_diameter(t, t.diameter_mm + 0.5);
-              });
-  move_action("plan.narrower", "Narrower", "Half a millimetre less", GLFW_KEY_MINUS, 0,
-              "Change the diameter of the", [](const open_case::PlanModel&, const tunnels::Tunnel& t) {
-                return with_diameter(t, t.diameter_mm - 0.5);
-              });
+  add("plan.wider", "Wider", "Half a millimetre more", GLFW_KEY_EQUAL, 0, "Change the diameter of the",
+      [](const tunnels::Tunnel& t) { return with_diameter(t, t.diameter_mm + 0.5); });
+  add("plan.narrower", "Narrower", "Half a millimetre less", GLFW_KEY_MINUS, 0, "Change the diameter of the",
+      [](const tunnels::Tunnel& t) { return with_diameter(t, t.diameter_mm - 0.5); });
   struct Arrow {
-    const char *id, *word;
+    std::string word;
     int key;
     Eigen::Vector2d right_up;
   };
-  const std::array<Arrow, 4> arrows{
-      Arrow{"left", "left", GLFW_KEY_LEFT, {-1, 0}}, Arrow{"right", "right", GLFW_KEY_RIGHT, {1, 0}},
-      Arrow{"up", "up", GLFW_KEY_UP, {0, 1}}, Arrow{"down", "down", GLFW_KEY_DOWN, {0, -1}}};
+  const std::array<Arrow, 4> arrows{Arrow{"left", GLFW_KEY_LEFT, {-1, 0}},
+                                    Arrow{"right", GLFW_KEY_RIGHT, {1, 0}}, Arrow{"up", GLFW_KEY_UP, {0, 1}},
+                                    Arrow{"down", GLFW_KEY_DOWN, {0, -1}}};
   for (const Arrow& arrow : arrows) {
-    move_action((std::string("plan.aim_") + arrow.id).c_str(), (std::string("Aim ") + arrow.word).c_str(),
-                "The far end of the tunnel moves that way by 1 degree", arrow.key, 0, "Aim the",
-                [this, arrow](const open_case::PlanModel&, const tunnels::Tunnel& t) {
-                  return turned(t, pane_.camera(), arrow.right_up);
-                });
-    move_action(
-        (std::string("plan.slide_") + arrow.id).c_str(), (std::string("Slide entry ") + arrow.word).c_str(),
+    add("plan.aim_" + arrow.word, "Aim " + arrow.word, "The far end of the tunnel moves that way by 1 degree",
+        arrow.key, 0, "Aim the",
+        [this, way = arrow.right_up](const tunnels::Tunnel& t) { return turned(t, pane_.camera(), way); });
+    add("plan.slide_" + arrow.word, "Slide entry " + arrow.word,
         "The entry moves over the bone by half a millimetre", arrow.key, GLFW_MOD_SHIFT,
-        "Move the entry of the", [this, arrow](const open_case::PlanModel& m, const tunnels::Tunnel& t) {
-          return with_entry_slid(t, pane_.camera(), 0.5 * arrow.right_up, m.surface(state_.bone));
+        "Move the entry of the", [this, way = arrow.right_up](const tunnels::Tunnel& t) {
+          return with_entry_slid(t, pane_.camera(), 0.5 * way, model_->surface(state_.bone));
         });
   }
   actions.add({"plan.remove",
@@ -201,9 +209,7 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   }
   draw_bones(ui, rest);
   draw_plan_panel(ui, panel, *model_, state_.bone, status);
-  ui.log.note_state("plan", status.save_failed                  ? "failed"
-                            : status.saved.starts_with("saved") ? "saved"
-                                                                : "moving");
+  ui.log.note_state("plan", name_of(status.save));
   ui.log.note_state("undo", status.undo_what);
   ui.log.note_state("redo", status.redo_what);
 }
@@ -251,26 +257,20 @@ void PlanView::use_pane_input(const widgets::PaneInput& input) {
   if (!model_->has_bone(state_.bone)) return;
   const scene::SceneRay ray = scene::ray_through(pane_.camera(), input.mouse_px, input.size_px);
   if (input.handle_pressed) state_.has_dragged = false;
-  if (input.handle_dragged && state_.dragged == Handle::Entry) {
-    apply("Drag the entry of the", state_.has_dragged, [&](const open_case::PlanModel& m) {
-      return with_entry_at(*m.tunnel(state_.bone), ray, m.surface(state_.bone));
-    });
+  const auto tunnel = model_->tunnel(state_.bone);
+  if (tunnel && input.handle_dragged && state_.dragged == Handle::Entry) {
+    change("Drag the entry of the", state_.has_dragged,
+           with_entry_at(*tunnel, ray, model_->surface(state_.bone)));
     state_.has_dragged = true;
   }
-  if (input.handle_dragged && state_.dragged == Handle::Aim) {
-    const auto handle = aim_handle();
-    apply("Drag the aim of the", state_.has_dragged, [&](const open_case::PlanModel& m) {
-      return aimed(*m.tunnel(state_.bone), pane_.camera(), ray, *handle);
-    });
+  if (tunnel && input.handle_dragged && state_.dragged == Handle::Aim) {
+    change("Drag the aim of the", state_.has_dragged, aimed(*tunnel, pane_.camera(), ray, *aim_handle()));
     state_.has_dragged = true;
   }
   if (input.was_clicked && state_.places_entry) {
-    apply("Place the entry of the", false,
-          [&](const open_case::PlanModel& m) -> std::optional<tunnels::Tunnel> {
-            const auto tunnel = m.tunnel(state_.bone);
-            return tunnel ? with_entry_at(*tunnel, ray, m.surface(state_.bone))
-                          : first_tunnel(state_.bone, ray, m.surface(state_.bone));
-          });
+    change("Place the entry of the", false,
+           tunnel ? with_entry_at(*tunnel, ray, model_->surface(state_.bone))
+                  : first_tunnel(state_.bone, ray, model_->surface(state_.bone)));
     state_.places_entry = false;
   }
 }

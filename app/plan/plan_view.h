@@ -28,10 +28,11 @@ class PlanView : public mode::Mode {
   [[nodiscard]] bool is_busy() const override { return history_.is_moving(); }
 
  private:
-  using Move = std::function<std::optional<tunnels::Tunnel>(const open_case::PlanModel&)>;
   void add_view_actions(widgets::Actions& actions);
   void add_history_actions(widgets::Actions& actions);
-  void apply(const std::string& what, bool continues, const Move& move);
+  void add_tunnel_actions(widgets::Actions& actions);
+  // The tunnel of the bone that is planned becomes this one; nothing where there is none.
+  void change(const std::string& what, bool continues, const std::optional<tunnels::Tunnel>& tunnel);
   void look_from(scene::ViewDirection view);
   void draw_bones(const widgets::Ui& ui, const widgets::Rect& area);
   void use_pane_input(const widgets::PaneInput& input);

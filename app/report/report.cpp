@@ -1,6 +1,5 @@
 #include "app/report/report.h"
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -13,6 +12,8 @@
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session.h"
 #include "planning/cases/case.h"
+#include "planning/cases/identity.h"
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 #include "planning/tunnels/tunnel.h"
 
@@ -36,13 +37,10 @@ std::string point(const Eigen::Vector3d& p, int decimals = 1) {
   return number(p.x(), ", ", decimals) + number(p.y(), ", ", decimals) + number(p.z(), "", decimals);
 }
 
-std::string utc_now() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  char text[32];
-  std::tm broken{};
-  gmtime_r(&now, &broken);
-  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &broken);
-  return text;
+// The name of a recording's file is often the patient's; that of a camera or a simulation says what it is.
+std::string neutral_source(const std::string& source) {
+  const std::string extension = std::filesystem::path(source).extension().string();
+  return extension.empty() ? source : "recording (" + extension.substr(1) + ")";
 }
 
 // What the report tells of: the case and, where there is one, the session that matters.
@@ -51,11 +49,16 @@ struct Content {
   cases::Case knee;
   std::unique_ptr<recording::RecordedSession> session;
   std::optional<operation::AchievedTunnel> achieved;
+  std::optional<cases::Identity> identity;  // where it is to be named
 };
 
-Content gather(const std::filesystem::path& folder) {
-  Content content{
-      .folder = folder, .knee = cases::load_case(folder), .session = nullptr, .achieved = std::nullopt};
+Content gather(const std::filesystem::path& folder, const ReportOptions& options) {
+  Content content{.folder = folder,
+                  .knee = cases::load_case(folder),
+                  .session = nullptr,
+                  .achieved = std::nullopt,
+                  .identity = std::nullopt};
+  if (options.with_identity) content.identity = cases::load_identity(folder);
   const auto sessions = cases::session_folders(folder);
   for (auto it = sessions.rbegin(); it != sessions.rend(); ++it) {
     const auto achieved_file = *it / "achieved.json";
@@ -151,6 +154,7 @@ class Report {
   }
 
   void plan_page();
+  void say_plan_fit(bones::BoneKind kind);
   void navigate_page();
   void registration_section(const registration::RegistrationSummary& registration);
   void result_section(const operation::AchievedTunnel& achieved);
@@ -164,11 +168,13 @@ class Report {
 
 void Report::plan_page() {
   begin_page("ACL reconstruction: the plan");
-  table({45, 125}, {{"Case", ""},
-                    {"Name", content_.knee.name},
-                    {"Side", std::string(bones::to_text(content_.knee.side))},
-                    {"Created", content_.knee.created_utc},
-                    {"Report made", utc_now()}});
+  std::vector<std::vector<std::string>> about = {{"Case", ""}};
+  if (content_.identity) about.push_back({"Patient", content_.identity->in_words()});
+  about.insert(about.end(), {{"Name", content_.knee.name},
+                             {"Side", std::string(bones::to_text(content_.knee.side))},
+                             {"Created", content_.knee.created_utc},
+                             {"Report made", files::utc_now_as("%Y-%m-%d %H:%M UTC")}});
+  table({45, 125}, about);
   sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
   heading("Planned tunnels");
   if (content_.knee.plan.tunnels.empty()) {
@@ -189,8 +195,21 @@ void Report::plan_page() {
            in_bone ? number(geometry.wall_mm, " mm") : "–", in_bone ? point(geometry.exit_mm) : "–"});
     }
     table({16, 34, 32, 18, 20, 18, 32}, rows);
+    for (const auto& [kind, tunnel] : content_.knee.plan.tunnels) say_plan_fit(kind);
   }
   pictures(scene::ViewDirection::Anterior, scene::ViewDirection::Lateral, false);
+}
+
+// A plan is of the mesh that it was made on, and of no other.
+void Report::say_plan_fit(bones::BoneKind kind) {
+  const std::string name(bones::to_text(kind));
+  const cases::PlanFit fit = cases::plan_fit(content_.knee, kind);
+  if (!fit.is_valid()) {
+    sentence("NOT VALID: " + fit.reason + ".", {.bold = true, .ink = kWarning});
+  } else if (fit.outcome == cases::PlanFit::Outcome::Unknown) {
+    sentence("The plan of the " + name + " does not say on which surface of the bone it was made.",
+             {.size_pt = 8.5, .ink = kGray});
+  }
 }
 
 void Report::registration_section(const registration::RegistrationSummary& registration) {
@@ -256,7 +275,7 @@ void Report::navigate_page() {
                     {"Id", header.id},
                     {"Started", header.started_utc},
                     {"Bone", std::string(bones::to_text(header.bone))},
-                    {"Video", header.source},
+                    {"Video", content_.identity ? header.source : neutral_source(header.source)},
                     {"Medium", camera::medium_to_text(header.refractive_index)},
                     {"Frames", std::to_string(session.frames().size()) +
                                    (session.was_finished() ? "" : " (cut off by a crash)")},
@@ -320,8 +339,9 @@ void Report::settings() {
 
 }  // namespace
 
-void write_report(const std::filesystem::path& case_folder, const std::filesystem::path& output_pdf) {
-  const Content content = gather(case_folder);
+void write_report(const std::filesystem::path& case_folder, const std::filesystem::path& output_pdf,
+                  const ReportOptions& options) {
+  const Content content = gather(case_folder, options);
   if (content.knee.bones.empty()) throw InvalidInput(case_folder, "case.json", "holds no bone to report on");
   Report(content).write(output_pdf);
 }

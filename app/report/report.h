@@ -5,9 +5,16 @@
 
 namespace arthronaut::report {
 
+struct ReportOptions {
+  // Names the patient as identity.json does. Without it nothing of identity.json is in the report, nor the
+  // name of the video's file, which often is the patient's.
+  bool with_identity = false;
+};
+
 // The newest session with a registration or an achieved tunnel is reported; the report says so when there is
 // none. Atomic. Throws IoError, InvalidInput (a broken case), DeviceError (no OpenGL at all for the
 // pictures).
-void write_report(const std::filesystem::path& case_folder, const std::filesystem::path& output_pdf);
+void write_report(const std::filesystem::path& case_folder, const std::filesystem::path& output_pdf,
+                  const ReportOptions& options = {});
 
 }  // namespace arthronaut::report

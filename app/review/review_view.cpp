@@ -4,19 +4,24 @@
 
 #include <algorithm>
 
+#include "planning/cases/case.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::review {
 
 namespace {
 
-// "20261121-122356" as "2026-11-21  12:23:56 UTC"; other names as they are.
+// "0007-20261121-122356" as "7:  2026-11-21  12:23:56 UTC"; of older sessions, without a number, the date;
+// other names as they are.
 std::string date_text(const std::string& name) {
+  const std::int64_t number = cases::session_number(name);
+  const std::string date = number > 0 ? name.substr(name.find('-') + 1) : name;
   const bool is_date =
-      name.size() >= 15 && name[8] == '-' && name.find_first_not_of("0123456789-") == std::string::npos;
+      date.size() >= 15 && date[8] == '-' && date.find_first_not_of("0123456789-") == std::string::npos;
   if (!is_date) return name;
-  return name.substr(0, 4) + "-" + name.substr(4, 2) + "-" + name.substr(6, 2) + "  " + name.substr(9, 2) +
-         ":" + name.substr(11, 2) + ":" + name.substr(13) + " UTC";
+  return (number > 0 ? std::to_string(number) + ":  " : "") + date.substr(0, 4) + "-" + date.substr(4, 2) +
+         "-" + date.substr(6, 2) + "  " + date.substr(9, 2) + ":" + date.substr(11, 2) + ":" +
+         date.substr(13) + " UTC";
 }
 
 }  // namespace

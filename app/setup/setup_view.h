@@ -25,6 +25,7 @@ class SetupView : public mode::Mode {
   ~SetupView() override;
 
   [[nodiscard]] mode::ModeTitle title() const override;
+  [[nodiscard]] bool works_read_only() const override { return false; }  // what it finds goes into the case
   // Nothing of the case is read before enter().
   void case_opened(const mode::OpenCase& opened) override;
   void enter() override;  // sees anew what the case and the machine have

@@ -53,8 +53,10 @@ void WorkstationWindow::add_actions() {
   const auto is_open = [this] { return case_.model() != nullptr; };
   for (std::size_t i = 0; i < modes_.size(); ++i) {
     const mode::ModeTitle title = modes_[i]->title();
-    actions_.add({std::string(title.action), std::string(title.label), std::string(title.tooltip), title.key,
-                  0, false, is_open, [this, i] { return shown_ == i; }, [this, i] { show(i); }});
+    actions_.add(
+        {std::string(title.action), std::string(title.label), std::string(title.tooltip), title.key, 0, false,
+         [this, is_open, i] { return is_open() && (!case_.is_read_only() || modes_[i]->works_read_only()); },
+         [this, i] { return shown_ == i; }, [this, i] { show(i); }});
   }
   actions_.add({"app.keys",
                 "Keys",
@@ -127,7 +129,8 @@ void WorkstationWindow::frame(double timeout_s) {
 
 void WorkstationWindow::take_opened_case() {
   if (!case_.take()) return;
-  for (const auto& mode : modes_) mode->case_opened({case_.model(), case_.folder()});
+  for (const auto& mode : modes_)
+    mode->case_opened({case_.model(), case_.folder(), case_.read_only_reason()});
   shown().enter();
 }
 
@@ -186,6 +189,7 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   if (!kind) log_.note_state("source_kind", "none");
   log_.note_state("standstill", heartbeat_.words());
   log_.note_state("mode", shown().title().name);
+  log_.note_state("access", case_.is_read_only() ? "read-only" : "own");
   log_.note_state("case", case_.model() != nullptr ? "open" : case_.failure().empty() ? "opening" : "failed");
 }
 
@@ -215,10 +219,17 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
   if (case_.model() != nullptr) {
     const cases::Case& knee = case_.model()->knee();
     const std::string text = knee.name + "  \u2013  " + std::string(bones::to_text(knee.side)) + " knee";
-    const float wide = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, text.c_str()).x;
-    draw.AddText(ui.theme.strong, ui.theme.strong->FontSize,
-                 {area.x + area.width - wide - ui.theme.px(360), middle - ui.theme.strong->FontSize / 2},
-                 widgets::kText, text.c_str());
+    // Whose knee it is stands over the name of the case.
+    const std::string patient = case_.identity() ? case_.identity()->in_words() : "";
+    const float right = area.x + area.width - ui.theme.px(360);
+    const auto line = [&](const ImFont* font, float y, ImU32 color, const std::string& words) {
+      const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, words.c_str()).x;
+      draw.AddText(font, font->FontSize, {right - wide, y}, color, words.c_str());
+    };
+    const float row = ui.theme.strong->FontSize;
+    if (!patient.empty()) line(ui.theme.strong, middle - row, widgets::kText, patient);
+    line(ui.theme.strong, patient.empty() ? middle - row / 2 : middle,
+         patient.empty() ? widgets::kText : widgets::kQuietText, text);
   }
   const float small = ui.theme.px(156);
   ImGui::SetCursorScreenPos({area.x + area.width - 2 * small - ui.theme.px(22), middle - height / 2});
@@ -237,12 +248,15 @@ void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Re
   const std::string notice = !case_.failure().empty() ? case_.failure()
                              : !standstill.empty()    ? standstill
                                                       : shown().notice();
+  const std::string access =
+      case_.is_read_only() ? "READ-ONLY: the case " + case_.read_only_reason() : case_.notice();
   const std::string text = !notice.empty()            ? notice
+                           : !access.empty()          ? access
                            : case_.model() != nullptr ? case_.folder().string()
                                                       : std::string();
   const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
   draw.AddText(font, font->FontSize, {area.x + area.width - wide - ui.theme.px(20), y},
-               notice.empty() ? widgets::kQuietText : widgets::kCaution, text.c_str());
+               notice.empty() && access.empty() ? widgets::kQuietText : widgets::kCaution, text.c_str());
 }
 
 void WorkstationWindow::draw_waiting(const widgets::Ui& ui, const widgets::Rect& area) {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 #include "navigation/calibration/adjustment.h"
 #include "navigation/calibration/joint_solution.h"
 #include "navigation/calibration/verdict.h"
 #include "planning/files/format.h"
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/quantile.h"
 
@@ -46,15 +46,6 @@ Sighting sighting_of(const CalibrationPicture& picture, double square_mm) {
   sighting.has_circle = picture.lens.circle_found;
   sighting.circle_center_px = picture.lens.circle.center_px;
   return sighting;
-}
-
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text;
 }
 
 // Where no round border is seen, the circle about the whole image stands in for it.
@@ -189,7 +180,7 @@ CalibrationSummary calibrate(std::span<const CalibrationPicture> pictures,
     }
   }
   summary.record.rms_px = summary.rms_px = best.rms_px;
-  summary.record.date_utc = utc_now();
+  summary.record.date_utc = files::utc_now();
   summary.record.scope_name = options.scope_name;
   summary.record.head_name = options.head_name;
   for (std::size_t i = 0; i < pictures.size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "navigation/recording/session.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/registration/registration_file.h"
 #include "planning/cases/case.h"
@@ -15,6 +16,20 @@ bool is_same_marker(const tools::WorldMarker* a, const tools::WorldMarker* b) {
   return a && b && a->marker_id == b->marker_id && a->size_mm == b->size_mm;
 }
 
+// The kind of event that Navigate records when the registration is in doubt.
+constexpr std::string_view kAlarmEvent = "alarm";
+
+// The alarm that came after the session's last registration; empty when none did.
+std::string alarm_after_registration(const std::filesystem::path& folder) {
+  std::string alarm;
+  const RecordedSession session(folder);
+  for (const SessionEvent& event : session.events()) {
+    if (event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent) alarm.clear();
+    if (event.kind == kAlarmEvent) alarm = event.text;  // empty: the alarm is over
+  }
+  return alarm;
+}
+
 std::optional<KnownRegistration> registration_of(const std::filesystem::path& folder, bones::BoneKind bone,
                                                  const tools::ToolSet& tools) {
   if (!std::filesystem::exists(folder / "registration.json")) return std::nullopt;
@@ -23,8 +38,13 @@ std::optional<KnownRegistration> registration_of(const std::filesystem::path& fo
   const tools::ToolSet then = tools::read_tools_file(folder / "tools.json");
   if (!is_same_marker(then.find_world_marker(bone), tools.find_world_marker(bone))) return std::nullopt;
   const auto record = registration::read_registration_record(folder / "registration.json");
-  KnownRegistration known{record.registration, record.of, folder};
-  if (!known.registration.reliable) return std::nullopt;
+  KnownRegistration known{record.registration, record.of, folder, "", {}};
+  if (!known.registration.reliable) {
+    known.refusal = "it is not reliable";
+    for (const std::string& reason : known.registration.reasons) known.refusal += "; " + reason;
+  } else if (const std::string alarm = alarm_after_registration(folder); !alarm.empty()) {
+    known.refusal = "it was in doubt at the end: " + alarm;
+  }
   return known;
 }
 
@@ -34,12 +54,18 @@ std::optional<KnownRegistration> find_registration(const std::filesystem::path& 
                                                    bones::BoneKind bone, const tools::ToolSet& tools) {
   std::vector<std::filesystem::path> folders = cases::session_folders(case_folder);
   std::reverse(folders.begin(), folders.end());
+  std::vector<std::string> passed_over;
   for (const std::filesystem::path& folder : folders) {
+    // One broken session must not hide the others for good; that it was passed over is told.
     try {
-      if (auto known = registration_of(folder, bone, tools)) return known;
-    } catch (const InvalidInput&) {
-      // One broken session must not hide the others; opening it by itself says what is wrong.
-    } catch (const IoError&) {
+      if (auto known = registration_of(folder, bone, tools)) {
+        known->passed_over = std::move(passed_over);
+        return known;
+      }
+    } catch (const InvalidInput& error) {
+      passed_over.emplace_back(error.what());
+    } catch (const IoError& error) {
+      passed_over.emplace_back(error.what());
     }
   }
   return std::nullopt;

@@ -1,16 +1,20 @@
 // A case: one knee, its bones, its plan, the theatre's files and the sessions, in a folder NAME.arthro.
 //
 //   case.json      format "arthronaut.case": side, bones, sources
-//   plan.json      format "arthronaut.plan": tunnels
+//   plan.json      format "arthronaut.plan": tunnels, and which mesh each was planned on
+//   identity.json  whose knee it is, where that is known (identity.h); nowhere else in the folder
+//   case.lock      who works on it now (case_lock.h)
 //   femur.ply      bone meshes, binary PLY, LPS, mm
 //   femur_cartilage.ply         surface of what cartilage covers, where it was declared for the registration
 //   camera.json, tools.json     copies of what this case is navigated with; absent until they are known
 //   sessions/ID/   one folder a session (navigation/recording)
 //   cache/         what can be made again from the rest; may be deleted at any time
 //
-// Every file is replaced atomically, so that a crash at any moment leaves the last saved state.
+// Every file is replaced atomically, so that a crash at any moment leaves the last saved state. The folder is
+// its owner's alone: folders 0700, files 0600 (files/private_folder.h).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -25,6 +29,8 @@ namespace arthronaut::cases {
 
 struct Plan {
   std::map<bones::BoneKind, tunnels::Tunnel> tunnels;  // at most one a bone
+  // bones::mesh_sha256 of the mesh that the tunnel was planned on. A tunnel of an older file names none.
+  std::map<bones::BoneKind, std::string> mesh_sha256 = {};
 };
 
 struct Case {
@@ -34,16 +40,45 @@ struct Case {
   std::map<bones::BoneKind, bones::Bone> bones;
   std::map<bones::BoneKind, landmarks::Landmarks> landmarks;
   Plan plan;
+  std::string plan_version = {};  // see plan_version(); of the moment when the case was loaded
 };
 
 // Throws IoError or InvalidInput (file, place, reason): not a case, newer version, broken file, missing mesh.
 [[nodiscard]] Case load_case(const std::filesystem::path& folder);
 
-// Creates the folder where needed. Meshes are written only when they differ from what is there. Throws
-// IoError.
+// Creates the folder where needed and makes it private. Meshes are written only when they differ from what is
+// there. A tunnel that names no mesh is saved with the name of the case's. Throws IoError.
 void save_case(const std::filesystem::path& folder, const Case& contents);
-// The plan alone: what changes while a surgeon plans.
+// The plan alone: what changes while a surgeon plans. Replaces what is there, whatever it is.
 void save_plan(const std::filesystem::path& folder, const Plan& plan);
+
+// Which plan is on disk: a hash of plan.json, empty when there is none.
+[[nodiscard]] std::string plan_version(const std::filesystem::path& folder);
+// Saves the plan over the version that it was made from, and returns the new version. Throws InvalidInput
+// when another program has changed plan.json since; nothing is then written. Throws IoError.
+[[nodiscard]] std::string save_plan_over(const std::filesystem::path& folder, const Plan& plan,
+                                         const std::string& version);
+
+// Whether the tunnel of a bone was planned on the mesh that the case holds.
+struct PlanFit {
+  enum class Outcome {
+    NoPlan,
+    Fits,
+    Unknown,    // an older file, which does not say; taken as fitting
+    OtherMesh,  // must not be navigated by
+    NoBone,     // planned on a bone that the case lacks
+  } outcome = Outcome::NoPlan;
+  std::string reason = "no tunnel is planned";  // why the plan is not valid; empty when it is
+  [[nodiscard]] bool is_valid() const { return outcome == Outcome::Fits || outcome == Outcome::Unknown; }
+};
+// mesh_sha256: of the case's mesh of that bone, empty when it has none. For those who keep it at hand.
+[[nodiscard]] PlanFit plan_fit(const Plan& plan, bones::BoneKind bone, const std::string& mesh_sha256);
+// Computes the hash of the mesh: milliseconds.
+[[nodiscard]] PlanFit plan_fit(const Case& contents, bones::BoneKind bone);
+// Whether plan_fit() is valid: what is guided by must be.
+[[nodiscard]] bool plan_fits(const Case& contents, bones::BoneKind bone);
+// Gives the tunnels that name no mesh the name of the case's.
+void name_meshes(Case& contents);
 
 [[nodiscard]] std::filesystem::path camera_file(const std::filesystem::path& case_folder);
 [[nodiscard]] std::filesystem::path tools_file(const std::filesystem::path& case_folder);
@@ -60,11 +95,20 @@ void save_plan(const std::filesystem::path& folder, const Plan& plan);
                                                                    bones::BoneKind kind);
 void save_cartilage(const std::filesystem::path& case_folder, bones::BoneKind kind,
                     const geometry::TriangleMesh& cartilage);
+
+// A session's folder is named by its number in the case, then by the clock, for people: 0007-20260131-120000.
+// The number, not the clock, tells which is newer: a clock may be set back. Folders of older versions have no
+// number (20260131-120000); they are older than all that have one.
+//
+// The number; 0 without one.
+[[nodiscard]] std::int64_t session_number(const std::filesystem::path& session_folder);
 // The sessions' folders, oldest first.
 [[nodiscard]] std::vector<std::filesystem::path> session_folders(const std::filesystem::path& case_folder);
-// Now, as created_utc wants it: "2026-01-31T12:00:00Z".
-[[nodiscard]] std::string utc_now();
-// A new, empty, unique session folder; its name sorts by time.
+// A new, empty folder with a number one above the largest, also when other processes make theirs at the same
+// time. Throws IoError.
 [[nodiscard]] std::filesystem::path create_session_folder(const std::filesystem::path& case_folder);
+
+// See files/utc_clock.h.
+[[nodiscard]] std::string utc_now();
 
 }  // namespace arthronaut::cases

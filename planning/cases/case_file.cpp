@@ -1,9 +1,11 @@
-// case.json and plan.json, and the meshes beside them.
+// case.json and the meshes beside it.
 #include <nlohmann/json.hpp>
 
 #include "planning/bones/mesh_file.h"
 #include "planning/cases/case.h"
+#include "planning/cases/plan_file.h"
 #include "planning/files/json_document.h"
+#include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::cases {
@@ -11,8 +13,8 @@ namespace arthronaut::cases {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::string_view kCaseFormat = "arthronaut.case", kPlanFormat = "arthronaut.plan";
-constexpr int kCaseVersion = 1, kPlanVersion = 1;
+constexpr std::string_view kFormat = "arthronaut.case";
+constexpr int kVersion = 1;
 
 nlohmann::ordered_json landmarks_to_json(const landmarks::Landmarks& landmarks) {
   auto json = nlohmann::ordered_json::array();
@@ -29,26 +31,6 @@ landmarks::Landmarks landmarks_from(const files::JsonObject& bone) {
       node.fail("name", "is there twice");
   }
   return landmarks;
-}
-
-Plan load_plan(const fs::path& file) {
-  const auto root = files::read_json(file, kPlanFormat, kPlanVersion);
-  Plan plan;
-  for (const auto& node : root.objects("tunnels")) {
-    tunnels::Tunnel tunnel;
-    try {
-      tunnel.bone = bones::bone_kind_from_text(node.text("bone"));
-    } catch (const InvalidInput&) {
-      node.fail("bone", "must be femur or tibia");
-    }
-    tunnel.entry_mm = node.vector3("entry_mm");
-    tunnel.direction = node.vector3("direction");
-    if (tunnel.direction.norm() < 1e-6) node.fail("direction", "must not be zero");
-    tunnel.direction.normalize();
-    tunnel.diameter_mm = node.positive_number("diameter_mm");
-    if (!plan.tunnels.emplace(tunnel.bone, tunnel).second) node.fail("bone", "has two tunnels");
-  }
-  return plan;
 }
 
 // Writing a mesh takes a while; most saves change only the plan.
@@ -69,7 +51,7 @@ Case load_case(const fs::path& folder) {
   if (!fs::is_directory(folder)) throw IoError(folder, "is not a case folder");
   const fs::path file = folder / "case.json";
   if (!fs::exists(file)) throw InvalidInput(folder, "", "is not a case: it holds no case.json");
-  const auto root = files::read_json(file, kCaseFormat, kCaseVersion);
+  const auto root = files::read_json(file, kFormat, kVersion);
   Case result;
   result.name = root.text("name");
   try {
@@ -92,7 +74,7 @@ Case load_case(const fs::path& folder) {
       result.landmarks[bone.kind] = std::move(landmarks);
     if (!result.bones.emplace(bone.kind, std::move(bone)).second) node.fail("kind", "is there twice");
   }
-  if (fs::exists(folder / "plan.json")) result.plan = load_plan(folder / "plan.json");
+  read_plan(folder, result);
   return result;
 }
 
@@ -107,24 +89,10 @@ void save_cartilage(const fs::path& case_folder, bones::BoneKind kind,
   bones::write_mesh_ply(cartilage_file(case_folder, kind), cartilage);
 }
 
-void save_plan(const fs::path& folder, const Plan& plan) {
-  auto tunnels = nlohmann::ordered_json::array();
-  for (const auto& [kind, tunnel] : plan.tunnels) {
-    tunnels.push_back({{"bone", bones::to_text(kind)},
-                       {"entry_mm", files::to_json(tunnel.entry_mm)},
-                       {"direction", files::to_json(tunnel.direction)},
-                       {"diameter_mm", tunnel.diameter_mm}});
-  }
-  files::write_json(folder / "plan.json",
-                    {{"format", kPlanFormat}, {"version", kPlanVersion}, {"tunnels", std::move(tunnels)}});
-}
-
 // case.json is written last: it is what makes the folder a case, and it names only meshes that are already
 // there.
 void save_case(const fs::path& folder, const Case& contents) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw IoError(folder, "cannot create: " + error.message());
+  files::create_private_folder(folder);
   auto bones = nlohmann::ordered_json::array();
   for (const auto& [kind, bone] : contents.bones) {
     if (!holds_mesh(mesh_file(folder, kind), bone.mesh))
@@ -135,9 +103,9 @@ void save_case(const fs::path& folder, const Case& contents) {
     }
     bones.push_back(std::move(node));
   }
-  save_plan(folder, contents.plan);
-  files::write_json(folder / "case.json", {{"format", kCaseFormat},
-                                           {"version", kCaseVersion},
+  save_plan(folder, with_named_meshes(contents));
+  files::write_json(folder / "case.json", {{"format", kFormat},
+                                           {"version", kVersion},
                                            {"name", contents.name},
                                            {"side", bones::to_text(contents.side)},
                                            {"created_utc", contents.created_utc},

@@ -1,6 +1,7 @@
 #include "planning/files/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -11,6 +12,7 @@
 #include <sstream>
 #include <utility>
 
+#include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::files {
@@ -18,6 +20,7 @@ namespace arthronaut::files {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr mode_t kOwnerAlone = 0600, kAsTheUserHasIt = 0666;  // the latter less the umask
 
 // A file descriptor that closes itself.
 class Descriptor {
@@ -46,14 +49,17 @@ void sync_folder(const fs::path& folder) {
   if (descriptor.get() >= 0) ::fsync(descriptor.get());
 }
 
-void sync_file(const fs::path& file) {
+void sync_file(const fs::path& file, bool for_owner_alone) {
   const Descriptor descriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   if (descriptor.get() < 0) fail(file, "cannot open");
+  // Writers of their own (a video encoder) made the file as the umask has it. On file systems that know no
+  // rights this fails, and nothing can be done about it.
+  if (for_owner_alone) (void)::fchmod(descriptor.get(), kOwnerAlone);
   if (::fsync(descriptor.get()) != 0) fail(file, "cannot write");
 }
 
-void write_whole(const fs::path& file, std::string_view contents) {
-  Descriptor descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+void write_whole(const fs::path& file, std::string_view contents, mode_t mode) {
+  Descriptor descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, mode));
   if (descriptor.get() < 0) fail(file, "cannot create");
   while (!contents.empty()) {
     const ssize_t written = ::write(descriptor.get(), contents.data(), contents.size());
@@ -62,6 +68,10 @@ void write_whole(const fs::path& file, std::string_view contents) {
     contents.remove_prefix(static_cast<std::size_t>(written));
   }
   if (descriptor.close() != 0) fail(file, "cannot write");
+}
+
+fs::path folder_of(const fs::path& target) {
+  return target.has_parent_path() ? target.parent_path() : fs::path(".");
 }
 
 fs::path temporary_beside(const fs::path& target) {
@@ -73,13 +83,13 @@ fs::path temporary_beside(const fs::path& target) {
 }  // namespace
 
 void write_atomically(const fs::path& target, const std::function<void(const fs::path&)>& write) {
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const fs::path folder = folder_of(target);
   if (!fs::is_directory(folder)) throw IoError(target, "the folder " + folder.string() + " does not exist");
   // The user knows the target's name, not that of the file beside it: errors speak of the target.
   const fs::path temporary = temporary_beside(target);
   try {
     write(temporary);
-    sync_file(temporary);
+    sync_file(temporary, is_private(folder));
     if (::rename(temporary.c_str(), target.c_str()) != 0) fail(target, "cannot replace");
   } catch (const IoError& error) {
     std::error_code ignored;
@@ -104,8 +114,11 @@ void write_atomically(const fs::path& target, std::string_view contents) {
     return;
   }
   // A device or a pipe (/dev/full, /dev/stdout) is written to; renaming over it would replace it.
-  if (std::error_code ignored; fs::is_other(target, ignored)) return write_whole(target, contents);
-  write_atomically(target, [contents](const fs::path& temporary) { write_whole(temporary, contents); });
+  if (std::error_code ignored; fs::is_other(target, ignored))
+    return write_whole(target, contents, kAsTheUserHasIt);
+  const mode_t mode = is_private(folder_of(target)) ? kOwnerAlone : kAsTheUserHasIt;
+  write_atomically(target,
+                   [contents, mode](const fs::path& temporary) { write_whole(temporary, contents, mode); });
 }
 
 std::string read_text(const fs::path& file) {

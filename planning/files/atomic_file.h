@@ -11,6 +11,9 @@ namespace arthronaut::files {
 // Writes beside the target, fsyncs, renames over it and fsyncs the folder: after a crash at any moment the
 // target holds its old contents or the new. "-" writes to standard output. Throws IoError with the system's
 // reason; the target is then as before and nothing is left beside it.
+//
+// A file is no more open than its folder: in one that is private (private_folder.h) it is 0600, elsewhere as
+// the umask has it. What the target's rights were before does not count.
 void write_atomically(const std::filesystem::path& target, std::string_view contents);
 
 // The same for a writer that needs a path of its own (a video, a PDF): `write` gets a temporary path in the

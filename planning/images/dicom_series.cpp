@@ -202,6 +202,7 @@ Volume read_dicom(const fs::path& source, const VolumeFileOptions& options) {
   }
   const DicomSlice& first = slices.front();
   volume.modality = first.modality;
+  volume.patient = first.patient;
   volume.size = {first.frame.columns, first.frame.rows, static_cast<int>(slices.size())};
   volume.values.reserve(checked_voxel_count(source, volume.size, 0, options.most_bytes));
   volume.lps_from_index.linear().col(0) = first.along_columns * first.column_spacing_mm;

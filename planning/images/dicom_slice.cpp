@@ -21,6 +21,8 @@ DicomSlice common_part(const std::filesystem::path& file, DcmDataset& dataset) {
   slice.series_number = text_of(dataset, DCM_SeriesNumber);
   slice.description = text_of(dataset, DCM_SeriesDescription);
   slice.modality = text_of(dataset, DCM_Modality);
+  slice.patient = {text_of(dataset, DCM_PatientName), text_of(dataset, DCM_PatientID),
+                   text_of(dataset, DCM_PatientBirthDate)};
   slice.frame.rows = unsigned_short_of(dataset, DCM_Rows, 0);
   slice.frame.columns = unsigned_short_of(dataset, DCM_Columns, 0);
   if (const auto frames = decimals_of(dataset, DCM_NumberOfFrames, 1)) {

@@ -9,12 +9,14 @@
 #include <vector>
 
 #include "planning/images/dicom_pixels.h"
+#include "planning/images/volume.h"
 
 namespace arthronaut::images {
 
 struct DicomSlice {
   std::filesystem::path file;
   std::string series_uid, series_number, description, modality;
+  Patient patient;
   DicomFrame frame;
   int frames_in_file = 1;
   // LPS, mm. has_geometry is false when the header lacks one of them.

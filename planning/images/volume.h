@@ -8,6 +8,11 @@
 
 namespace arthronaut::images {
 
+// Whose picture it is, as the file says; each may be empty.
+struct Patient {
+  std::string name, id, birth_date;
+};
+
 struct Volume {
   Eigen::Vector3i size = Eigen::Vector3i::Zero();
   // Takes an index (i, j, k), the centre of that voxel, to LPS in mm. Oblique, sheared and mirrored axes are
@@ -16,6 +21,7 @@ struct Volume {
   // i runs fastest. Rescaled: Hounsfield units for a CT, labels as they are. Finite.
   std::vector<float> values;
   std::string format;              // "DICOM", "NIfTI"
+  Patient patient;                 // DICOM alone says so
   std::string modality;            // "CT", "MR"; empty when the file does not say
   std::vector<std::string> notes;  // choices that the reader made, for a person to see
 

@@ -98,7 +98,7 @@ void import_mesh(const std::filesystem::path& source, const BoneImportOptions& o
   result.lines.push_back(file.format + ", in " + std::string(bones::to_text(file.unit_in_file)) + ", " +
                          (file.space_in_file == bones::Space::LPS ? "LPS" : "RAS") + " (" + said_by + ")");
   try {
-    result.bones.push_back(finished(*kind, source.filename().string(), file.mesh, result.side, tell));
+    result.bones.push_back(finished(*kind, file.format, file.mesh, result.side, tell));
   } catch (const InvalidInput& error) {
     throw InvalidInput(source, "", error.what());
   }
@@ -140,9 +140,9 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   result.lines.insert(result.lines.end(), volume.notes.begin(), volume.notes.end());
 
   const auto labels = labels_of(volume);
+    result.identity = {volume.patient.name, volume.patient.id, volume.patient.birth_date};
   const bool is_label_map = labels.size() > 1 && labels.front().first >= 0 && volume.modality.empty();
-  std::string name = source.filename().string();
-  if (name.empty()) name = source.parent_path().filename().string();
+  const std::string& name = volume.format;
   try {
     if (!options.labels.empty()) {
       for (const auto& [kind, label] : options.labels) {

@@ -14,6 +14,7 @@
 #include "planning/bones/bone.h"
 #include "planning/bones/mesh_file.h"
 #include "planning/bones/mesh_repair.h"
+#include "planning/cases/identity.h"
 
 namespace arthronaut::importing {
 
@@ -46,6 +47,9 @@ struct BoneImport {
   std::optional<bones::Side> side;  // nullopt: neither given nor in the name
   bool side_was_guessed = false;
   std::vector<std::string> lines;  // about the source
+  // Whose bones they are, where the source says so (DICOM does). For identity.json alone: nothing else of the
+  // import names a person, nor a file or folder, whose name often is the patient's.
+  cases::Identity identity;
 };
 
 // Throws IoError or InvalidInput; a bone that cannot be told from the name is InvalidInput that says which

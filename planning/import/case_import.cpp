@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "planning/cases/identity.h"
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::importing {
@@ -38,9 +40,10 @@ cases::Case case_to_extend(const fs::path& folder, const BoneImport& import, con
     throw InvalidInput(source, "", "its name does not say which knee it is: add --side left or --side right");
   }
   cases::Case created;
-  created.name = name.empty() ? without_slash(folder).stem().string() : name;
+  // Not by the source's or the folder's name: it often is the patient's.
+  created.name = name.empty() ? files::utc_now_as("Knee %Y-%m-%d") : name;
   created.side = *import.side;
-  created.created_utc = cases::utc_now();
+  created.created_utc = files::utc_now();
   return created;
 }
 
@@ -57,8 +60,17 @@ void add_bones(const fs::path& folder, cases::Case& target, const BoneImport& im
   }
 }
 
+// Another patient's bone in a case would be navigated by.
+void refuse_another_patient(const fs::path& folder, const cases::Identity& of_import) {
+  const auto of_case = cases::load_identity(folder);
+  if (!of_case || of_import.is_empty() || *of_case == of_import) return;
+  throw InvalidInput(folder, "",
+                     "is the knee of another patient (" + of_case->in_words() + ") than what was to be added (" +
+                         of_import.in_words() + "); nothing was written");
+}
+
 // Beside the target, under a name of its own, then renamed.
-void save_new(const fs::path& folder, const cases::Case& contents) {
+void save_new(const fs::path& folder, const cases::Case& contents, const cases::Identity& identity) {
   const fs::path named = without_slash(folder);
   const fs::path parent = named.has_parent_path() ? named.parent_path() : ".";
   std::error_code error;
@@ -69,6 +81,7 @@ void save_new(const fs::path& folder, const cases::Case& contents) {
                   std::string("cannot be created: ") + (error ? error.message() : std::strerror(errno)));
   try {
     cases::save_case(unfinished, contents);
+    if (!identity.is_empty()) cases::save_identity(unfinished, identity);
     fs::rename(unfinished, named, error);
     if (error) throw IoError(folder, "cannot be created: " + error.message());
   } catch (const IoError& failure) {
@@ -89,9 +102,11 @@ cases::Case add_to_case(const fs::path& folder, const BoneImport& import, const 
   cases::Case target = case_to_extend(folder, import, name, source);
   add_bones(folder, target, import);
   if (fs::exists(folder / "case.json")) {
+    refuse_another_patient(folder, import.identity);
     cases::save_case(folder, target);
+    if (!import.identity.is_empty()) cases::save_identity(folder, import.identity);
   } else {
-    save_new(folder, target);
+    save_new(folder, target, import.identity);
   }
   return target;
 }

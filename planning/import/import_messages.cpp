@@ -162,6 +162,9 @@ void describe(Archive& archive, BoneImport& import) {
   describe(archive, import.side);
   describe(archive, import.side_was_guessed);
   describe(archive, import.lines);
+  describe(archive, import.identity.patient_name);
+  describe(archive, import.identity.patient_id);
+  describe(archive, import.identity.birth_date);
 }
 
 std::string framed(MessageKind kind, const std::string& contents) {

@@ -9,6 +9,7 @@
 #include "navigation/registration/registration_file.h"
 #include "navigation/tools/tool_set.h"
 #include "planning/cases/case.h"
+#include "planning/cases/identity.h"
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
 #include "tests/resources/json_schema.h"
@@ -94,6 +95,13 @@ TEST_F(Schemas, DescribeTheCaseAndItsPlan) {
   for (const char* name : {"case", "plan"})
     expect_described(folder_ / (std::string(name) + ".json"), name,
                      [&] { (void)cases::load_case(folder_.path()); });
+}
+
+// Whose knee it is.
+TEST_F(Schemas, DescribeTheIdentity) {
+  cases::save_identity(folder_.path(), {"Muster^Anna", "4711", "19900131"});
+  expect_described(cases::identity_file(folder_.path()), "identity",
+                   [&] { (void)cases::load_identity(folder_.path()); });
 }
 
 // A registration that stands, and one that found nothing.

@@ -48,5 +48,38 @@ TEST(CaseOpening, SaysWhyACaseCannotBeOpened) {
   EXPECT_NE(opening.failure().find("absent.arthro"), std::string::npos) << opening.failure();
 }
 
+// Hazard 15: two windows on one case. The second one opens, read-only, and says who has it; when the first is
+// gone the next is free to write.
+TEST(CaseOpening, Hazard15TheSecondOpensReadOnlyAndSaysWhoHolds) {
+  const test::TemporaryFolder folder;
+  cases::save_case(folder.path(),
+                   phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "test"));
+  {
+    CaseOpening first(folder.path(), [] {});
+    EXPECT_EQ(take_until_done(first), 1);
+    EXPECT_FALSE(first.is_read_only());
+    CaseOpening second(folder.path(), [] {});
+    EXPECT_EQ(take_until_done(second), 1);
+    ASSERT_NE(second.model(), nullptr);
+    EXPECT_TRUE(second.is_read_only());
+    EXPECT_NE(second.read_only_reason().find("is open elsewhere"), std::string::npos);
+  }
+  CaseOpening third(folder.path(), [] {});
+  EXPECT_EQ(take_until_done(third), 1);
+  EXPECT_FALSE(third.is_read_only());
+}
+
+// Hazard 20: whose knee it is comes with the case.
+TEST(CaseOpening, Hazard20GivesWhoseKneeItIs) {
+  const test::TemporaryFolder folder;
+  cases::save_case(folder.path(),
+                   phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "test"));
+  cases::save_identity(folder.path(), {"Muster^Anna", "4711", "19900131"});
+  CaseOpening opening(folder.path(), [] {});
+  EXPECT_EQ(take_until_done(opening), 1);
+  ASSERT_TRUE(opening.identity().has_value());
+  EXPECT_EQ(opening.identity()->in_words(), "Muster, Anna · 4711 · 1990-01-31");
+}
+
 }  // namespace
 }  // namespace arthronaut::open_case

@@ -38,5 +38,27 @@ TEST(PlanModel, RefusesACaseWithoutBones) {
   EXPECT_THROW(PlanModel{empty}, InvalidInput);
 }
 
+// Hazard 21: a plan of another mesh is wrong until its entry is put on the bone that is there; turning or
+// widening it is not enough, and undo makes it wrong again.
+TEST(PlanModel, Hazard21PlanOfAnotherMeshIsWrongUntilItsEntryIsPlacedAnew) {
+  using Outcome = cases::PlanFit::Outcome;
+  cases::Case knee = phantom();
+  knee.plan.mesh_sha256[BoneKind::Femur] = std::string(64, '0');
+  PlanModel model(knee);
+  EXPECT_EQ(model.plan_fit(BoneKind::Femur).outcome, Outcome::OtherMesh);
+  EXPECT_EQ(model.checks(BoneKind::Femur).front().verdict, tunnels::PlanCheck::Verdict::Wrong);
+  EXPECT_EQ(model.plan_fit(BoneKind::Tibia).outcome, Outcome::Fits) << "one that names none is of this mesh";
+  const cases::Plan before = model.knee().plan;
+  tunnels::Tunnel tunnel = *model.tunnel(BoneKind::Femur);
+  tunnel.diameter_mm += 0.5;
+  model.set_tunnel(BoneKind::Femur, tunnel);
+  EXPECT_FALSE(model.plan_fit(BoneKind::Femur).is_valid());
+  tunnel.entry_mm.x() += 0.5;
+  model.set_tunnel(BoneKind::Femur, tunnel);
+  EXPECT_EQ(model.plan_fit(BoneKind::Femur).outcome, Outcome::Fits);
+  model.set_plan(before);
+  EXPECT_FALSE(model.plan_fit(BoneKind::Femur).is_valid());
+}
+
 }  // namespace
 }  // namespace arthronaut::open_case

@@ -8,6 +8,7 @@
 #include "navigation/recording/session.h"
 #include "navigation/tools/tool_set.h"
 #include "planning/cases/case.h"
+#include "planning/cases/identity.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
@@ -117,6 +118,28 @@ TEST_F(Report, ComparesPlannedAndAchieved) {
   expect_contains(text, "2.00 mm");  // plan to truth
   expect_contains(text, "0.75 mm");  // measured to truth
   expect_contains(text, "water");
+}
+
+// Hazard 19: nobody is named unless that was asked for.
+TEST_F(Report, Hazard19NamesThePatientOnlyWhenAsked) {
+  cases::save_identity(knee_folder(), {"Muster^Anna", "4711", "19900131"});
+  write_report(knee_folder(), pdf());
+  for (const char* word : {"Muster", "4711", "1990"})
+    EXPECT_EQ((pdf_text() + pdf_info()).find(word), std::string::npos) << word;
+  write_report(knee_folder(), pdf(), {.with_identity = true});
+  expect_contains(pdf_text(), "Muster, Anna");
+  expect_contains(pdf_text(), "1990-01-31");
+}
+
+// Hazard 21: a plan of another mesh is no valid plan, and the report says so.
+TEST_F(Report, Hazard21SaysThatThePlanIsOfAnotherMesh) {
+  write_report(knee_folder(), pdf());
+  EXPECT_EQ(pdf_text().find("NOT VALID"), std::string::npos);
+  cases::Plan plan = cases::load_case(knee_folder()).plan;
+  plan.mesh_sha256[bones::BoneKind::Femur] = std::string(64, '0');
+  cases::save_plan(knee_folder(), plan);
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "NOT VALID");
 }
 
 TEST_F(Report, LeavesNothingBehindWhenItFails) {

@@ -54,7 +54,8 @@ TEST(BoneImport, AMeshBecomesAClosedOutwardBone) {
   EXPECT_TRUE(import.side_was_guessed);
   EXPECT_TRUE(import.bones[0].repair.is_closed);
   EXPECT_GT(geometry::signed_volume_mm3(import.bones[0].bone.mesh), 0);
-  EXPECT_EQ(import.bones[0].bone.source, "right_femur.stl");
+  EXPECT_EQ(import.bones[0].bone.source, "binary STL");
+  EXPECT_TRUE(import.identity.is_empty());
   EXPECT_THAT(import.bones[0].lines, Contains(HasSubstr("inside out")));
   EXPECT_THAT(import.bones[0].lines, Contains(HasSubstr("1 hole")));
   EXPECT_TRUE(import.bones[0].doubts.empty());

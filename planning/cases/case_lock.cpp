@@ -1,0 +1,226 @@
+#include "planning/cases/case_lock.h"
+
+#include <fcntl.h>
+#include <pwd.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "planning/files/atomic_file.h"
+#include "planning/files/json_document.h"
+#include "planning/files/private_folder.h"
+#include "planning/files/utc_clock.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::cases {
+
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::string_view kFormat = "arthronaut.lock";
+constexpr int kVersion = 1;
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown host";
+}
+
+std::string user_name() {
+  const passwd* user = ::getpwuid(::geteuid());
+  return user != nullptr ? user->pw_name : "user " + std::to_string(::geteuid());
+}
+
+struct ProcessState {
+  bool is_over = false;  // killed, and not yet buried by its parent
+  // When it began, in the kernel's ticks since the machine's start, with which start that was: tells it from
+  // a later process of the same number. Empty where the kernel does not show it.
+  std::string start;
+};
+
+ProcessState state_of(long process) {
+  std::ifstream stream("/proc/" + std::to_string(process) + "/stat");
+  std::string line;
+  std::getline(stream, line);
+  // The name may hold spaces and brackets; after its last bracket come the state (3) and on to the start
+  // (22).
+  const auto name_end = line.rfind(')');
+  if (name_end == std::string::npos) return {};
+  std::istringstream fields(line.substr(name_end + 1));
+  ProcessState state;
+  std::string field, boot;
+  for (int number = 3; number <= 22 && fields >> field; ++number) {
+    if (number == 3) state.is_over = field == "Z" || field == "X";
+  }
+  std::ifstream boots("/proc/sys/kernel/random/boot_id");
+  std::getline(boots, boot);
+  if (fields) state.start = field + "@" + boot;
+  return state;
+}
+
+struct LockFile {
+  LockHolder holder;
+  std::string start;  // see ProcessState
+};
+
+// Nothing when there is none. A broken one names nobody.
+std::optional<LockFile> read_lock(const fs::path& file) {
+  if (std::error_code error; !fs::exists(file, error)) return std::nullopt;
+  try {
+    const auto root = files::read_json(file, kFormat, kVersion);
+    LockFile lock{{root.text("host"), root.text("user"), static_cast<long>(root.integer("process")),
+                   root.text("since_utc")},
+                  root.has("process_start") ? root.text("process_start") : ""};
+    return lock;
+  } catch (const InvalidInput&) {
+    return LockFile{};
+  }
+}
+
+void write_lock(const fs::path& file, const LockFile& lock) {
+  files::write_json(file, {{"format", kFormat},
+                           {"version", kVersion},
+                           {"host", lock.holder.host},
+                           {"process", lock.holder.process},
+                           {"process_start", lock.start},
+                           {"user", lock.holder.user},
+                           {"since_utc", lock.holder.since_utc}});
+}
+
+bool is_same(const LockFile& a, const LockFile& b) {
+  return a.holder.host == b.holder.host && a.holder.process == b.holder.process && a.start == b.start &&
+         a.holder.since_utc == b.holder.since_utc;
+}
+
+bool lives_here(const LockFile& lock) {
+  if (lock.holder.process <= 0) return false;
+  // EPERM: it lives, as another user's.
+  if (::kill(static_cast<pid_t>(lock.holder.process), 0) != 0 && errno == ESRCH) return false;
+  const ProcessState now = state_of(lock.holder.process);
+  const bool is_another = !lock.start.empty() && !now.start.empty() && lock.start != now.start;
+  return !now.is_over && !is_another;
+}
+
+// A folder that is no case, opened by a slip, keeps its rights.
+void make_case_private(const fs::path& folder) {
+  if (std::error_code error; fs::exists(folder / "case.json", error)) files::make_private(folder);
+}
+
+// Why the lock on file stands in the way; empty when it does not.
+std::string obstacle(const LockFile& lock, const fs::path& file) {
+  if (lock.holder.process == 0) return "";  // broken: nobody can be asked
+  if (lock.holder.host != host_name()) {
+    return "is open elsewhere: " + lock.holder.in_words() + ". If that program is gone, delete " +
+           file.string();
+  }
+  return lives_here(lock) ? "is open elsewhere: " + lock.holder.in_words() : "";
+}
+
+// The kernel's lock on the folder. -1: somebody holds it, or the folder cannot be opened.
+int lock_folder(const fs::path& folder, bool& is_taken) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return -1;
+  is_taken = ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  if (!is_taken) return descriptor;  // also where the file system knows no such locks
+  ::close(descriptor);
+  return -1;
+}
+
+}  // namespace
+
+std::string LockHolder::in_words() const {
+  std::string since = since_utc;  // "2026-01-31T12:00:00Z" as people write it
+  if (since.size() == 20) since = since.substr(0, 10) + " " + since.substr(11, 8) + " UTC";
+  return user + " on " + host + " (process " + std::to_string(process) + ") since " + since;
+}
+
+struct CaseLock::State {
+  State(fs::path in, int with_descriptor, LockFile with_lock)
+      : folder(std::move(in)), descriptor(with_descriptor), lock(std::move(with_lock)) {}
+  ~State() {
+    // A child of fork() has a copy of this, not the lock.
+    if (lock.holder.process == ::getpid()) {
+      try {
+        // Somebody may have deleted the file by hand and taken the case since.
+        const auto there = read_lock(lock_file(folder));
+        std::error_code ignored;
+        if (there && is_same(*there, lock)) fs::remove(lock_file(folder), ignored);
+      } catch (const std::exception&) {
+        // It stays, as after a crash, and is taken over.
+      }
+      make_case_private(folder);
+    }
+    ::close(descriptor);
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  fs::path folder;
+  int descriptor;
+  LockFile lock;
+};
+
+CaseLock::CaseLock(const fs::path& case_folder) {
+  const fs::path file = lock_file(case_folder);
+  bool is_taken = false;
+  const int descriptor = lock_folder(case_folder, is_taken);
+  if (descriptor < 0) {
+    // Between the kernel's lock and the file there is a moment in which the holder is not known.
+    std::optional<LockFile> lock;
+    try {
+      lock = read_lock(file);
+    } catch (const IoError&) {
+    }
+    refusal_ = !is_taken                          ? "cannot be opened for writing"
+               : lock && lock->holder.process > 0 ? "is open elsewhere: " + lock->holder.in_words()
+                                                  : "is open in another program";
+    return;
+  }
+  try {
+    const auto before = read_lock(file);
+    if (before) refusal_ = obstacle(*before, file);
+    if (refusal_.empty()) {
+      make_case_private(case_folder);
+      LockFile mine{{host_name(), user_name(), ::getpid(), files::utc_now()}, state_of(::getpid()).start};
+      write_lock(file, mine);
+      // Where the kernel locks no folders two programs may have come so far; the later file counts.
+      const auto there = read_lock(file);
+      if (there && is_same(*there, mine)) {
+        state_ = std::make_unique<State>(case_folder, descriptor, std::move(mine));
+        if (before) {
+          notice_ = before->holder.process > 0
+                        ? "Taken over from " + before->holder.in_words() + ", which ended without closing it"
+                        : "Taken over from a program that ended without closing it";
+        }
+        return;
+      }
+      refusal_ = "is open in another program";
+    }
+  } catch (const std::runtime_error& error) {  // a folder that can only be read
+    refusal_ = std::string("cannot be written: ") + error.what();
+  }
+  ::close(descriptor);
+}
+
+CaseLock::CaseLock() = default;
+CaseLock::~CaseLock() = default;
+CaseLock::CaseLock(CaseLock&&) noexcept = default;
+CaseLock& CaseLock::operator=(CaseLock&&) noexcept = default;
+
+CaseLock lock_or_refuse(const fs::path& case_folder) {
+  if (!fs::is_directory(case_folder)) throw IoError(case_folder, "is not a case folder");
+  CaseLock lock(case_folder);
+  if (!lock.is_held()) throw InvalidInput(case_folder, "", lock.refusal());
+  return lock;
+}
+
+fs::path lock_file(const fs::path& case_folder) { return case_folder / "case.lock"; }
+
+}  // namespace arthronaut::cases

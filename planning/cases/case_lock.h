@@ -1,0 +1,61 @@
+// Who works on a case: one program at a time. What a second one writes would be lost, or would lose the
+// first one's.
+//
+// A lock is two things. case.lock in the case's folder says who: host, process, user and since when, for
+// people and for other hosts. A lock of the kernel on the folder (flock) says whether that program lives: it
+// goes with its process, however that ended. So
+//
+//   nobody holds the kernel's lock, no case.lock                       -> taken
+//   ..., case.lock names a process that is gone from this host         -> taken over, and that is said
+//   ..., case.lock names a living process of this host, or another host -> refused
+//   somebody holds the kernel's lock                                   -> refused
+//
+// That the process is gone is told by its number and the time of its start, since numbers come again. A lock
+// of another host is never taken over: nobody here can know. Its message says what to do. Where the kernel
+// cannot lock folders (some network file systems) case.lock alone counts.
+//
+// Threads: each lock is one thread's at a time. A process that forks keeps the lock in the parent.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace arthronaut::cases {
+
+struct LockHolder {
+  std::string host, user;
+  long process = 0;
+  std::string since_utc;  // ISO 8601
+  // "anna on theatre-2 (process 4711) since 2026-01-31 12:00:00 UTC"
+  [[nodiscard]] std::string in_words() const;
+};
+
+class CaseLock {
+ public:
+  CaseLock();  // holds nothing, of no case
+  // Takes the case, or says why not: look at is_held(). The folder exists. Mends the folder's privacy
+  // (files/private_folder.h) when it is taken and when it is let go. Does not throw for what it finds there.
+  explicit CaseLock(const std::filesystem::path& case_folder);
+  ~CaseLock();  // lets go
+  CaseLock(CaseLock&&) noexcept;
+  CaseLock& operator=(CaseLock&&) noexcept;
+
+  [[nodiscard]] bool is_held() const { return state_ != nullptr; }
+  // Why it is not held, as a sentence for the user; empty when it is.
+  [[nodiscard]] const std::string& refusal() const { return refusal_; }
+  // What the user should know although it is held: that it was taken over, and from whom. Else empty.
+  [[nodiscard]] const std::string& notice() const { return notice_; }
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+  std::string refusal_, notice_;
+};
+
+// For a program that must write or do nothing. Throws InvalidInput with the refusal.
+[[nodiscard]] CaseLock lock_or_refuse(const std::filesystem::path& case_folder);
+
+[[nodiscard]] std::filesystem::path lock_file(const std::filesystem::path& case_folder);
+
+}  // namespace arthronaut::cases

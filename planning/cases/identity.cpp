@@ -1,0 +1,84 @@
+#include "planning/cases/identity.h"
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "planning/files/atomic_file.h"
+#include "planning/files/json_document.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::cases {
+
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::string_view kFormat = "arthronaut.identity";
+constexpr int kVersion = 1;
+
+// "Muster^Anna^^Dr." as "Muster, Anna, Dr."; a second alphabet ("=") is left out.
+std::string name_in_words(const std::string& dicom_name) {
+  std::string words, part;
+  for (const char c : dicom_name.substr(0, dicom_name.find('=')) + "^") {
+    if (c != '^') {
+      part += c;
+      continue;
+    }
+    if (!part.empty()) words += (words.empty() ? "" : ", ") + part;
+    part.clear();
+  }
+  return words;
+}
+
+std::string date_in_words(const std::string& date) {
+  const bool is_dicom =
+      date.size() == 8 && std::all_of(date.begin(), date.end(), [](char c) { return c >= '0' && c <= '9'; });
+  return is_dicom ? date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6) : date;
+}
+
+}  // namespace
+
+std::string Identity::in_words() const {
+  std::string words;
+  for (const std::string& part : {name_in_words(patient_name), patient_id, date_in_words(birth_date)}) {
+    if (!part.empty()) words += (words.empty() ? "" : " · ") + part;
+  }
+  return words;
+}
+
+fs::path identity_file(const fs::path& case_folder) { return case_folder / "identity.json"; }
+
+std::optional<Identity> load_identity(const fs::path& case_folder) {
+  const fs::path file = identity_file(case_folder);
+  if (!fs::exists(file)) return std::nullopt;
+  const auto root = files::read_json(file, kFormat, kVersion);
+  return Identity{root.text("patient_name"), root.text("patient_id"), root.text("birth_date")};
+}
+
+void save_identity(const fs::path& case_folder, const Identity& identity) {
+  const fs::path file = identity_file(case_folder);
+  if (identity.is_empty()) {
+    std::error_code error;
+    fs::remove(file, error);
+    if (error) throw IoError(file, "cannot remove: " + error.message());
+    return;
+  }
+  const nlohmann::ordered_json json = {{"format", kFormat},
+                                       {"version", kVersion},
+                                       {"patient_name", identity.patient_name},
+                                       {"patient_id", identity.patient_id},
+                                       {"birth_date", identity.birth_date}};
+  // Names in an old character set must not stop the import: bytes that are no UTF-8 are replaced.
+  const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  files::write_atomically(file, [&](const fs::path& temporary) {
+    std::ofstream stream(temporary, std::ios::binary);
+    // Before the first byte is in it.
+    std::error_code error;
+    fs::permissions(temporary, fs::perms::owner_read | fs::perms::owner_write, error);
+    if (!stream || error) throw IoError(temporary, "cannot create");
+    stream << text << std::flush;
+    if (!stream) throw IoError(temporary, "cannot write");
+  });
+}
+
+}  // namespace arthronaut::cases

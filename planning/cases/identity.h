@@ -1,0 +1,36 @@
+// Whose knee a case is, kept apart from everything else: identity.json, which no export takes along unless it
+// is asked to.
+//
+// A case that was imported without patient data (a mesh, a phantom) has none.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace arthronaut::cases {
+
+// As the source of the import gives it; each may be empty.
+struct Identity {
+  std::string patient_name;  // for people to read; DICOM's "Muster^Anna" is kept as it came
+  std::string patient_id;
+  std::string birth_date;  // "19900131" or "1990-01-31", as it came
+
+  [[nodiscard]] bool is_empty() const {
+    return patient_name.empty() && patient_id.empty() && birth_date.empty();
+  }
+  // "Muster, Anna · 4711 · 1990-01-31": what a title or a report shows.
+  [[nodiscard]] std::string in_words() const;
+  bool operator==(const Identity&) const = default;
+};
+
+[[nodiscard]] std::filesystem::path identity_file(const std::filesystem::path& case_folder);
+
+// Nothing when the case has no identity.json. Throws IoError or InvalidInput (file, place, reason).
+[[nodiscard]] std::optional<Identity> load_identity(const std::filesystem::path& case_folder);
+
+// Atomic; the file is 0600 whatever the folder is. An empty identity removes the file. Throws IoError; what
+// was there is then as before.
+void save_identity(const std::filesystem::path& case_folder, const Identity& identity);
+
+}  // namespace arthronaut::cases

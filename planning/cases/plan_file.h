@@ -1,0 +1,17 @@
+// Inner header: plan.json as a part of the case, between the files of this room.
+#pragma once
+
+#include <filesystem>
+
+#include "planning/cases/case.h"
+
+namespace arthronaut::cases {
+
+// Fills in plan and plan_version, of one and the same reading. A case without plan.json has an empty plan.
+// Throws IoError or InvalidInput (file, place, reason).
+void read_plan(const std::filesystem::path& case_folder, Case& contents);
+
+// The case's plan, in which every tunnel on a bone of the case names a mesh.
+[[nodiscard]] Plan with_named_meshes(const Case& contents);
+
+}  // namespace arthronaut::cases

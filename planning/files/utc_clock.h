@@ -1,0 +1,14 @@
+// The wall clock as files and pages name it: always UTC, so that two machines mean the same. For dates alone;
+// intervals are measured on a steady clock.
+#pragma once
+
+#include <string>
+
+namespace arthronaut::files {
+
+// ISO 8601, to the second: "2026-01-31T12:00:00Z".
+[[nodiscard]] std::string utc_now();
+// The same moment as strftime writes it: utc_now_as("%Y-%m-%d"). At most 63 characters.
+[[nodiscard]] std::string utc_now_as(const char* format);
+
+}  // namespace arthronaut::files

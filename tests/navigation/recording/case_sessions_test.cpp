@@ -1,0 +1,86 @@
+#include "navigation/recording/case_sessions.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "navigation/recording/session.h"
+#include "planning/cases/case.h"
+#include "tests/navigation/recording/recorded_frames.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::recording {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class CaseSessions : public ::testing::Test {
+ protected:
+  // A session with a registration; its RMS tells which it is.
+  std::filesystem::path add_session(double rms_mm, bool reliable, const std::string& alarm = {}) {
+    const auto folder = cases::create_session_folder(temporary_.path());
+    SessionRecorder recorder(folder, test::session_header(), options_);
+    registration::RegistrationSummary registration;
+    registration.has_pose = true;
+    registration.reliable = reliable;
+    registration.rms_mm = rms_mm;
+    registration.reasons.clear();
+    if (!reliable) registration.reasons = {"too few points"};
+    recorder.set_registration(registration);
+    if (!alarm.empty()) recorder.add_event({0, "alarm", alarm});
+    recorder.finish();
+    return folder;
+  }
+  [[nodiscard]] std::optional<KnownRegistration> found() const {
+    return find_registration(temporary_.path(), test::session_header().bone, options_.tools);
+  }
+
+  const test::TemporaryFolder temporary_;
+  const pipeline::PipelineOptions options_ = test::scripted_options();
+};
+
+TEST_F(CaseSessions, TheNewestSessionsRegistrationIsFound) {
+  EXPECT_FALSE(found().has_value());
+  add_session(0.1, true);
+  const auto newest = add_session(0.2, true);
+  ASSERT_TRUE(found().has_value());
+  EXPECT_TRUE(found()->is_usable());
+  EXPECT_EQ(found()->session_folder, newest);
+  EXPECT_EQ(found()->registration.rms_mm, 0.2);
+  EXPECT_THAT(found()->passed_over, IsEmpty());
+}
+
+// Hazard 16: what the newest session says counts, also when it is that there is nothing to guide by.
+TEST_F(CaseSessions, Hazard16AnOlderRegistrationIsNotTakenForAnUnreliableNewerOne) {
+  add_session(0.1, true);
+  const auto newest = add_session(0.9, false);
+  ASSERT_TRUE(found().has_value());
+  EXPECT_FALSE(found()->is_usable());
+  EXPECT_EQ(found()->session_folder, newest);
+  EXPECT_THAT(found()->refusal, HasSubstr("too few points"));
+}
+
+TEST_F(CaseSessions, Hazard16AnOlderRegistrationIsNotTakenAfterAnAlarm) {
+  add_session(0.1, true);
+  const auto newest = add_session(0.2, true, "the world marker was moved");
+  ASSERT_TRUE(found().has_value());
+  EXPECT_FALSE(found()->is_usable());
+  EXPECT_EQ(found()->session_folder, newest);
+  EXPECT_THAT(found()->refusal, HasSubstr("the world marker was moved"));
+}
+
+// A session that cannot be read is passed over, and never silently.
+TEST_F(CaseSessions, Hazard16ABrokenNewerSessionIsNamed) {
+  const auto older = add_session(0.1, true);
+  const auto broken = add_session(0.2, true);
+  std::ofstream(broken / "registration.json") << "{";
+  ASSERT_TRUE(found().has_value());
+  EXPECT_EQ(found()->session_folder, older);
+  ASSERT_EQ(found()->passed_over.size(), 1U);
+  EXPECT_THAT(found()->passed_over[0], HasSubstr(broken.filename().string()));
+}
+
+}  // namespace
+}  // namespace arthronaut::recording

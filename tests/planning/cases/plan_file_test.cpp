@@ -1,0 +1,110 @@
+// The plan on disk: of which mesh it is, and which version of it.
+#include "planning/cases/plan_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "planning/bones/mesh_file.h"
+#include "planning/bones/mesh_hash.h"
+#include "planning/files/atomic_file.h"
+#include "planning/geometry/error.h"
+#include "tests/message_of.h"
+#include "tests/planning/geometry/shapes.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::cases {
+namespace {
+
+using bones::BoneKind;
+using Outcome = PlanFit::Outcome;
+using ::testing::HasSubstr;
+
+Plan plan_with_diameter(double diameter_mm) {
+  return {.tunnels = {{BoneKind::Femur,
+                       {.bone = BoneKind::Femur, .entry_mm = {40, 0, 0}, .diameter_mm = diameter_mm}}}};
+}
+
+class PlanFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    save_case(folder_, {.name = "Knee",
+                        .created_utc = "",
+                        .bones = {{BoneKind::Femur, {.mesh = test::box({40, 30, 50}), .source = "made"}}},
+                        .landmarks = {},
+                        .plan = plan_with_diameter(9)});
+  }
+  test::TemporaryFolder temporary_;
+  std::filesystem::path folder_ = temporary_ / "Knee.arthro";
+};
+
+// Hazard 21: the plan names its mesh, and another mesh in its place is noticed.
+TEST_F(PlanFile, Hazard21PlanOnAnotherMeshIsNotValid) {
+  const Case before = load_case(folder_);
+  EXPECT_EQ(before.plan.mesh_sha256.at(BoneKind::Femur),
+            bones::mesh_sha256(before.bones.at(BoneKind::Femur).mesh));
+  EXPECT_EQ(plan_fit(before, BoneKind::Femur).outcome, Outcome::Fits);
+  EXPECT_TRUE(plan_fits(before, BoneKind::Femur));
+
+  auto other = test::box({40, 30, 50});
+  other.vertices_mm[0].x() += 1e-9;
+  bones::write_mesh_ply(mesh_file(folder_, BoneKind::Femur), other);
+  const Case after = load_case(folder_);
+  EXPECT_EQ(plan_fit(after, BoneKind::Femur).outcome, Outcome::OtherMesh);
+  EXPECT_FALSE(plan_fits(after, BoneKind::Femur));
+  EXPECT_THAT(plan_fit(after, BoneKind::Femur).reason, HasSubstr("another surface of the femur"));
+  // Saving such a case does not make its plan valid.
+  save_case(folder_, after);
+  EXPECT_FALSE(plan_fits(load_case(folder_), BoneKind::Femur));
+}
+
+// Cases of before the hash open as they did, and get the hash when they are saved.
+TEST_F(PlanFile, Hazard21AnOlderPlanGetsItsHashOnTheNextSave) {
+  save_plan(folder_, plan_with_diameter(8));
+  const Case older = load_case(folder_);
+  EXPECT_EQ(plan_fit(older, BoneKind::Femur).outcome, Outcome::Unknown);
+  EXPECT_TRUE(plan_fits(older, BoneKind::Femur));
+  save_case(folder_, older);
+  EXPECT_EQ(plan_fit(load_case(folder_), BoneKind::Femur).outcome, Outcome::Fits);
+}
+
+TEST_F(PlanFile, WithoutATunnelOrABoneThereIsNothingToFit) {
+  Case knee = load_case(folder_);
+  EXPECT_EQ(plan_fit(knee, BoneKind::Tibia).outcome, Outcome::NoPlan);
+  knee.bones.clear();
+  EXPECT_EQ(plan_fit(knee, BoneKind::Femur).outcome, Outcome::NoBone);
+  EXPECT_FALSE(plan_fits(knee, BoneKind::Femur));
+}
+
+// Hazard 15: two processes on one plan. The second does not write over what the first one saved.
+TEST_F(PlanFile, Hazard15APlanThatAnotherProcessChangedIsNotWrittenOver) {
+  const Case opened = load_case(folder_);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    save_plan(folder_, plan_with_diameter(7));
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_THAT(test::message_of<InvalidInput>(
+                  [&] { (void)save_plan_over(folder_, plan_with_diameter(10), opened.plan_version); }),
+              HasSubstr("changed by another program"));
+  EXPECT_EQ(load_case(folder_).plan.tunnels.at(BoneKind::Femur).diameter_mm, 7);
+}
+
+// Save upon save, each over the one before; a plan that was deleted is a change as well.
+TEST_F(PlanFile, SavesOverItsOwnVersions) {
+  std::string version = load_case(folder_).plan_version;
+  for (const double diameter_mm : {9.5, 10.0, 9.5})
+    version = save_plan_over(folder_, plan_with_diameter(diameter_mm), version);
+  EXPECT_EQ(version, plan_version(folder_));
+  EXPECT_EQ(load_case(folder_).plan.tunnels.at(BoneKind::Femur).diameter_mm, 9.5);
+  std::filesystem::remove(folder_ / "plan.json");
+  EXPECT_EQ(plan_version(folder_), "");
+  EXPECT_THROW((void)save_plan_over(folder_, {}, version), InvalidInput);
+  EXPECT_NO_THROW((void)save_plan_over(folder_, plan_with_diameter(8), ""));
+}
+
+}  // namespace
+}  // namespace arthronaut::cases
