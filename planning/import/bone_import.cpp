@@ -140,7 +140,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   result.lines.insert(result.lines.end(), volume.notes.begin(), volume.notes.end());
 
   const auto labels = labels_of(volume);
-    result.identity = {volume.patient.name, volume.patient.id, volume.patient.birth_date};
+  result.identity = {volume.patient.name, volume.patient.id, volume.patient.birth_date};
   const bool is_label_map = labels.size() > 1 && labels.front().first >= 0 && volume.modality.empty();
   const std::string& name = volume.format;
   try {

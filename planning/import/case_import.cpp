@@ -65,8 +65,8 @@ void refuse_another_patient(const fs::path& folder, const cases::Identity& of_im
   const auto of_case = cases::load_identity(folder);
   if (!of_case || of_import.is_empty() || *of_case == of_import) return;
   throw InvalidInput(folder, "",
-                     "is the knee of another patient (" + of_case->in_words() + ") than what was to be added (" +
-                         of_import.in_words() + "); nothing was written");
+                     "is the knee of another patient (" + of_case->in_words() +
+                         ") than what was to be added (" + of_import.in_words() + "); nothing was written");
 }
 
 // Beside the target, under a name of its own, then renamed.
