@@ -40,8 +40,9 @@ struct TrackedVideo {
   std::vector<std::string> reasons;  // why the result is not reliable; empty when it is
 };
 
-// Decoding runs in a thread of its own. Throws what the source throws, and InvalidInput for another frame
-// size.
+// In a medium that the pictures contradict (medium_check.h) no pose stands: there are no rows, and the reason
+// names the medium. Decoding runs in a thread of its own. Throws what the source throws, and InvalidInput for
+// another frame size.
 [[nodiscard]] TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions& options,
                                        const tools::ToolSet& tools,
                                        const std::function<void(long frames_done)>& progress = {});
