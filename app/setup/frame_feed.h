@@ -1,17 +1,17 @@
-// The pictures of one source for a worker that may be slower than they come.
+// The pictures of one source for somebody who may be slower than they come.
 //
-// Threads: one thread of its own opens and reads the source at the source's pace; one worker calls next() and
-// advance(). States: starting -> running -> ended | failed. The destructor waits for the picture that is
+// Threads: a worker of its own opens and reads the source at the source's pace; all members are called by one
+// other thread. States: starting -> running -> ended | failed. The destructor waits for the picture that is
 // being made.
 #pragma once
 
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <stop_token>
 #include <string>
 
 #include "navigation/sources/frame_source.h"
+#include "navigation/worker/worker.h"
 
 namespace arthronaut::setup {
 
@@ -29,7 +29,6 @@ struct FeedSource {
 class FrameFeed {
  public:
   explicit FrameFeed(FeedSource source);
-  ~FrameFeed();
   FrameFeed(const FrameFeed&) = delete;
   FrameFeed& operator=(const FrameFeed&) = delete;
 
@@ -41,8 +40,22 @@ class FrameFeed {
   [[nodiscard]] bool has_ended() const;     // no picture will come any more
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  struct Picture {  // number 0 without a frame: the source is open
+    camera::FramePtr frame;
+    long number = 0;  // counted from 1
+  };
+  // Messages: the number of the picture that is done with, where the reader waits for that.
+  using Reader = worker::Worker<long, Picture>;
+
+  static void read(const FeedSource& source, Reader::Inbox& inbox);
+  [[nodiscard]] long newest_number() const;
+
+  const FeedSource source_;
+  std::shared_ptr<const Picture> seen_;  // that next() saw last
+  long given_ = 0, passed_ = 0;          // numbers: given out last; of stills, done with last
+  Reader::Clock::time_point given_at_;
+  bool has_thrown_ = false;
+  Reader reader_;  // last: ends before the rest goes
 };
 
 }  // namespace arthronaut::setup

@@ -1,6 +1,6 @@
-// Where the numbers of a camera or a tool come from, and since when: data that travels with them in camera.json,
-// tools.json and fluid.json, so that nobody has to guess later from a name or a residual. What was found with
-// the simulator is marked so for ever.
+// Where the numbers of a camera or a tool come from, and since when: data that travels with them in
+// camera.json, tools.json and fluid.json, so that nobody has to guess later from a name or a residual. What
+// was found with the simulator is marked so for ever.
 #pragma once
 
 #include <optional>

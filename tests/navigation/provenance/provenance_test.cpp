@@ -25,7 +25,8 @@ class ProvenanceInFiles : public ::testing::Test {
   // The file with everything from this member's name to the end of its line left out.
   static void forget(const std::filesystem::path& file, const std::string& member) {
     std::string text = files::read_text(file);
-    for (auto at = text.find('"' + member + '"'); at != std::string::npos; at = text.find('"' + member + '"')) {
+    for (auto at = text.find('"' + member + '"'); at != std::string::npos;
+         at = text.find('"' + member + '"')) {
       const auto begin = text.rfind(',', at), end = text.find('\n', at);
       text.erase(begin, text.find_first_of(",\n", text.find(':', at)) - begin);
       (void)end;
@@ -92,9 +93,11 @@ TEST_F(ProvenanceInFiles, RefusesOtherWordsAndNoDates) {
     return test::message_of<InvalidInput>([&] { (void)camera::read_camera_file(camera_file_); });
   };
   const Provenance good{Origin::Nominal, "2026-11-21T10:00:00Z"};
-  EXPECT_NE(refusal_of(good, "\"nominal\"", "\"guessed\"").find("origin: must be measured"), std::string::npos);
+  EXPECT_NE(refusal_of(good, "\"nominal\"", "\"guessed\"").find("origin: must be measured"),
+            std::string::npos);
   for (const char* no_date : {"2026-13-21", "2026-02-30", "21.11.2026", "2026-11-21T25:00:00Z", "yesterday"})
-    EXPECT_NE(refusal_of(good, good.calibrated_utc, no_date).find("calibrated_utc"), std::string::npos) << no_date;
+    EXPECT_NE(refusal_of(good, good.calibrated_utc, no_date).find("calibrated_utc"), std::string::npos)
+        << no_date;
 }
 
 // Found by means of something simulated is simulated.
