@@ -18,8 +18,9 @@ namespace arthronaut::setup {
 struct FeedSource {
   std::string name;                                             // "Simulated arthroscope", for the screen
   std::function<std::unique_ptr<sources::FrameSource>()> open;  // called on the feed's thread
-  std::filesystem::path path;                                   // of a file or folder; empty else
+  std::filesystem::path path;  // of a file or folder; of a source that is asked for by a word, that word
   bool is_simulated = false;
+  bool is_live = false;  // a camera that is connected
   // Single pictures: each stands, and is given again and again, until advance() asks for the next one.
   bool is_stills = false;
   // Only the newest picture counts. Else none is left out, and a slow worker sees the source in slow motion.
