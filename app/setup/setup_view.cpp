@@ -65,9 +65,7 @@ bool SetupView::has_running_work() const {
 
 std::optional<sources::SourceKind> SetupView::source_kind() const {
   if (!step().station->has_run()) return std::nullopt;
-  const FeedSource& source = step().sources.at(step().source);
-  if (source.is_simulated) return sources::SourceKind::Simulation;
-  return source.path.empty() ? sources::SourceKind::Live : sources::SourceKind::Recording;
+  return step().started_kind;
 }
 
 void SetupView::show(std::size_t index) {
@@ -87,7 +85,12 @@ void SetupView::choose_source() {
 }
 
 void SetupView::start() {
-  if (const FeedSource* source = step().source.chosen()) step().station->start(*source);
+  const FeedSource* source = step().source.chosen();
+  if (source == nullptr) return;
+  step().started_kind = source->is_simulated ? sources::SourceKind::Simulation
+                        : source->is_live    ? sources::SourceKind::Live
+                                             : sources::SourceKind::Recording;
+  step().station->start(*source);
 }
 
 void SetupView::take_next_step() {

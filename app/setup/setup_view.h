@@ -45,6 +45,7 @@ class SetupView : public mode::Mode {
     const char* prefix;  // of its own actions
     std::unique_ptr<Station> station;
     SourceChoice source = {};
+    sources::SourceKind started_kind = sources::SourceKind::Recording;  // of what runs
   };
 
   struct Typed {  // sources that the user names by their path

@@ -82,8 +82,8 @@ TEST(FluidCheck, NoticesThatNothingIsRefracted) {
 
 // Air stated in saline and saline in air: the first reason names both media, and the shown one is data.
 TEST(FluidCheck, Hazard27AWrongMediumIsTheFirstReason) {
-  for (const auto [truth, stated] : {std::pair(camera::kSalineIndex, camera::kAirIndex),
-                                     std::pair(camera::kAirIndex, camera::kSalineIndex)}) {
+  for (const auto& [truth, stated] : {std::pair(camera::kSalineIndex, camera::kAirIndex),
+                                      std::pair(camera::kAirIndex, camera::kSalineIndex)}) {
     FluidCheckOptions options;
     options.refractive_index = stated;
     const auto summary =

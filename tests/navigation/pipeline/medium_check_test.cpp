@@ -88,7 +88,9 @@ TEST(MediumCheck, Hazard27TheRightMediumFitsAndIsNeverDoubted) {
       for (int frame = 0; frame < 120; ++frame) {
         check.look(knee.view(frame));
         ASSERT_NE(check.verdict().fit, MediumFit::Contradicts) << index << " seed " << seed;
-        if (frame == 60) EXPECT_EQ(check.verdict().fit, MediumFit::Fits) << index << " seed " << seed;
+        if (frame == 60) {
+          EXPECT_EQ(check.verdict().fit, MediumFit::Fits) << index << " seed " << seed;
+        }
       }
       EXPECT_EQ(reason_text(check.verdict()), "");
     }
@@ -96,7 +98,7 @@ TEST(MediumCheck, Hazard27TheRightMediumFitsAndIsNeverDoubted) {
 
 // Air stated in saline and saline in air: told within half a second, and the reason names both.
 TEST(MediumCheck, Hazard27AWrongMediumIsNamedAsTheReason) {
-  for (const auto [truth, stated] : {std::pair(kSalineIndex, kAirIndex), std::pair(kAirIndex, kSalineIndex)})
+  for (const auto& [truth, stated] : {std::pair(kSalineIndex, kAirIndex), std::pair(kAirIndex, kSalineIndex)})
     for (unsigned seed = 0; seed < 50; ++seed) {
       Knee knee(truth, stated, seed);
       // Its corners lean to no medium; a second look sees the same ones.
