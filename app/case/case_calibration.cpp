@@ -1,6 +1,7 @@
 #include "app/case/case_calibration.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "navigation/camera/camera_file.h"
 #include "navigation/simulator/simulated_operation.h"
@@ -16,7 +17,8 @@ namespace fs = std::filesystem;
 // Whether the case's camera.json is of the simulated arthroscope. A file that can't be read is not.
 bool has_simulated_camera(const fs::path& case_folder) {
   try {
-    return camera::read_camera_file(cases::camera_file(case_folder)).scope_name == kSimulatedScope;
+    return camera::read_camera_file(cases::camera_file(case_folder)).provenance.origin ==
+           provenance::Origin::Simulated;
   } catch (const std::runtime_error&) {  // absent or broken: the one who uses it will say so
     return false;
   }
@@ -56,18 +58,64 @@ std::string calibration_in_words(bool is_simulated, const fs::path& case_folder)
          " tools calibrated";
 }
 
+CaseProvenance provenance_of(bool is_simulated, const fs::path& case_folder) {
+  CaseProvenance all;
+  all.camera = {provenance::Origin::Simulated, ""};
+  if (!is_simulated || has_simulated_camera(case_folder)) {
+    const fs::path file = cases::camera_file(case_folder);
+    if (!fs::exists(file)) throw InvalidInput("the case has no camera.json: calibrate the camera first (F4)");
+    all.camera = camera::read_camera_file(file).provenance;
+  }
+  for (const tools::Tool& tool : tools_of(is_simulated, case_folder).tools)
+    all.tools.push_back({tool.name, tool.provenance});
+  return all;
+}
+
+std::string in_words(const provenance::Provenance& provenance, const std::string& now_utc) {
+  using provenance::Origin;
+  std::string words(provenance::to_text(provenance.origin));
+  if (provenance.origin == Origin::Nominal) return words;
+  if (provenance.calibrated_utc.empty()) return words + ", date not known";
+  if (provenance.origin == Origin::Measured) words += " " + provenance.calibrated_utc.substr(0, 10);
+  // By the calendar: what was measured yesterday evening is a day old this morning.
+  const auto days = provenance::days_between(provenance.calibrated_utc.substr(0, 10), now_utc.substr(0, 10));
+  if (!days) return words;
+  if (*days < 0) return words + ", date lies ahead: is the clock right?";
+  if (*days == 0) return provenance.origin == Origin::Measured ? words : words + " today";
+  return words + ", " + std::to_string(std::lround(*days)) + (*days == 1 ? " day old" : " days old");
+}
+
+bool has_real_camera(const fs::path& case_folder) {
+  std::error_code ignored;
+  return fs::exists(cases::camera_file(case_folder), ignored) && !has_simulated_camera(case_folder);
+}
+
 std::string camera_is_kept(bool is_simulated, const fs::path& case_folder) {
-  const bool may_be_replaced =
-      !is_simulated || !fs::exists(cases::camera_file(case_folder)) || has_simulated_camera(case_folder);
-  return may_be_replaced
-             ? ""
-             : "this case has the calibration of a real scope; a simulated one does not replace it";
+  return is_simulated && has_real_camera(case_folder)
+             ? "this case has the calibration of a real scope; a simulated one does not replace it"
+             : "";
 }
 
 std::string tools_are_kept(bool is_simulated, const fs::path& case_folder) {
-  const bool may_be_replaced =
-      !is_simulated || !fs::exists(cases::tools_file(case_folder)) || has_simulated_camera(case_folder);
-  return may_be_replaced ? "" : "this case has its own tools.json; what is simulated does not replace it";
+  if (!is_simulated) return "";
+  if (has_real_camera(case_folder)) return "this case has a real scope; what is simulated is no tool of it";
+  const bool has_own = fs::exists(cases::tools_file(case_folder)) && !has_simulated_camera(case_folder);
+  return has_own ? "this case has its own tools.json; what is simulated does not replace it" : "";
+}
+
+std::string camera_is_not_for_live(const fs::path& case_folder) {
+  return has_simulated_camera(case_folder)
+             ? "camera.json is of the simulated arthroscope: calibrate the real one first (F4)"
+             : "";
+}
+
+std::string tools_are_not_for_live(const fs::path& case_folder) {
+  const fs::path file = cases::tools_file(case_folder);
+  if (!fs::exists(file)) return "";
+  for (const tools::Tool& tool : tools::read_tools_file(file).tools)
+    if (tool.provenance.origin == provenance::Origin::Simulated)
+      return tool.name + ": was calibrated with the simulated arthroscope; calibrate the real tool (F4)";
+  return "";
 }
 
 }  // namespace arthronaut::open_case

@@ -4,8 +4,10 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "navigation/camera/camera_model.h"
+#include "navigation/provenance/provenance.h"
 #include "navigation/tools/tool_set.h"
 
 namespace arthronaut::open_case {
@@ -23,9 +25,34 @@ inline constexpr const char* kSimulatedScope = "Simulated arthroscope";
 // Both in words: "camera of 2026-11-21, 1 of 4 tools calibrated". Throws as those.
 [[nodiscard]] std::string calibration_in_words(bool is_simulated, const std::filesystem::path& case_folder);
 
-// Why what was found with simulated pictures may not replace the files of this case: those are of a real
-// scope or tool. Empty when it may.
+// Where the numbers come from: of camera_of() and of each tool of tools_of(). What is built in is nominal,
+// but for the simulated arthroscope's own camera, which is simulated. Throws as those.
+struct NamedProvenance {
+  std::string name;  // of the tool
+  provenance::Provenance provenance;
+};
+struct CaseProvenance {
+  provenance::Provenance camera;
+  std::vector<NamedProvenance> tools;
+};
+[[nodiscard]] CaseProvenance provenance_of(bool is_simulated, const std::filesystem::path& case_folder);
+// For the screen, at this time (ISO 8601): "measured 2026-11-21", from the next day on "measured 2026-11-21,
+// 3 days old"; "nominal"; "simulated, 3 days old". A measurement without a date says that it has none.
+[[nodiscard]] std::string in_words(const provenance::Provenance& provenance, const std::string& now_utc);
+
+// The case has the calibration of a real scope: its camera.json is not of the simulator. One that can't be
+// read counts as real; it is not replaced by something simulated.
+[[nodiscard]] bool has_real_camera(const std::filesystem::path& case_folder);
+
+// Why what was found with simulated pictures, or by means of a simulated camera, may not replace the files of
+// this case: those are of a real scope or tool. Empty when it may.
 [[nodiscard]] std::string camera_is_kept(bool is_simulated, const std::filesystem::path& case_folder);
 [[nodiscard]] std::string tools_are_kept(bool is_simulated, const std::filesystem::path& case_folder);
+
+// Why the pictures of a live camera can't be measured with this case's camera.json: it is of the simulator.
+// Empty when they can, or when there is none (then camera_of() throws).
+[[nodiscard]] std::string camera_is_not_for_live(const std::filesystem::path& case_folder);
+// The same of tools.json: names the first tool that was calibrated with the simulator.
+[[nodiscard]] std::string tools_are_not_for_live(const std::filesystem::path& case_folder);
 
 }  // namespace arthronaut::open_case

@@ -32,10 +32,9 @@ void CalibrateStation::read_adopted() {
     const camera::CalibrationRecord record = camera::read_camera_file(file);
     if (form_.scope_name.empty()) form_.scope_name = record.scope_name;
     if (form_.head_name.empty()) form_.head_name = record.head_name;
-    const bool is_simulated = record.scope_name == open_case::kSimulatedScope;
-    adopted_ = {is_simulated ? widgets::Severity::Caution : widgets::Severity::Good, "Camera",
-                std::string(is_simulated ? "simulated" : "calibrated") +
-                    (record.date_utc.empty() ? "" : ", " + record.date_utc.substr(0, 10))};
+    const bool is_measured = record.provenance.origin == provenance::Origin::Measured;
+    adopted_ = {is_measured ? widgets::Severity::Good : widgets::Severity::Caution, "Camera",
+                open_case::in_words(record.provenance, cases::utc_now())};
   } catch (const std::runtime_error& error) {
     adopted_ = {widgets::Severity::Bad, "Camera", error.what()};
   }
@@ -79,6 +78,9 @@ void CalibrateStation::adopt() {
   camera::CalibrationRecord record = status_.job.summary->record;
   record.scope_name = form_.scope_name;
   record.head_name = form_.head_name;
+  const bool is_simulated = run_->source().is_simulated;
+  record.provenance = {is_simulated ? provenance::Origin::Simulated : provenance::Origin::Measured,
+                       record.date_utc};
   try {  // a disk that is full is a state of the screen
     camera::write_camera_file(cases::camera_file(case_folder_), record);
     adopted_result_ = status_.job.summary;

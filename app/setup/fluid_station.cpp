@@ -4,6 +4,8 @@
 
 #include "app/case/case_calibration.h"
 #include "navigation/camera/medium.h"
+#include "planning/cases/case.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::setup {
 
@@ -11,7 +13,41 @@ void FluidStation::open(const std::filesystem::path& case_folder) {
   stop();
   case_folder_ = case_folder;
   refractive_index_ = camera::kSalineIndex;
-  checked_ = {widgets::Severity::Quiet, "Fluid", "not checked yet"};
+  read_standing();
+}
+
+void FluidStation::read_standing() {
+  using open_case::FluidStanding;
+  const bool is_simulated = !open_case::has_real_camera(case_folder_);
+  const open_case::FluidState state =
+      open_case::fluid_state(case_folder_, refractive_index_, is_simulated, cases::utc_now());
+  standing_ = state.text;
+  checked_ = {widgets::Severity::Caution, "Fluid", state.text};
+  if (state.standing == FluidStanding::Unreadable) checked_.severity = widgets::Severity::Bad;
+  if (state.standing != FluidStanding::Trusted && state.standing != FluidStanding::Refused) return;
+  const std::string medium = camera::medium_to_text(refractive_index_);
+  const bool is_measured = state.last->provenance.origin == provenance::Origin::Measured;
+  const std::string date = is_measured ? state.last->provenance.calibrated_utc.substr(0, 10) : "simulated";
+  checked_.text = (state.is_trusted() ? medium + " fits, " : "refused in " + medium + ", ") + date;
+  checked_.severity = !state.is_trusted() ? widgets::Severity::Bad
+                  : is_measured       ? widgets::Severity::Good
+                                      : widgets::Severity::Caution;
+}
+
+void FluidStation::keep_verdict() {
+  const std::shared_ptr<const calibration::FluidCheckSummary>& summary = status_.job.summary;
+  if (summary == nullptr || summary == kept_) return;
+  kept_ = summary;
+  const FeedSource& source = run_->source();
+  try {  // a disk that is full is a state of the screen
+    const std::string why_not = open_case::keep_fluid_verdict(
+        case_folder_, calibration::record_of(*summary, status_.job.refractive_index), source.is_simulated,
+        source.name, cases::utc_now());
+    read_standing();
+    if (!why_not.empty()) checked_ = {widgets::Severity::Caution, "Fluid", "not kept: " + why_not};
+  } catch (const IoError& error) {
+    checked_ = {widgets::Severity::Bad, "Fluid", std::string("not saved: ") + error.what()};
+  }
 }
 
 void FluidStation::start(const FeedSource& source) {
@@ -19,6 +55,9 @@ void FluidStation::start(const FeedSource& source) {
   run_ = std::make_unique<Run>(
       source,
       [source, folder = case_folder_, index = refractive_index_] {
+        if (source.is_live)
+          if (const std::string why = open_case::camera_is_not_for_live(folder); !why.empty())
+            throw InvalidInput(why);
         calibration::RulerSightingsOptions options;
         options.calibration = open_case::camera_of(source.is_simulated, folder);
         options.refractive_index = index;
@@ -63,6 +102,7 @@ void FluidStation::add_actions(widgets::Actions& actions) {
                  refractive_index_ = refractive_index_ == camera::kSalineIndex  ? camera::kWaterIndex
                                      : refractive_index_ == camera::kWaterIndex ? camera::kAirIndex
                                                                                 : camera::kSalineIndex;
+                 read_standing();
                },
                {"change the medium", [this] { return run_ != nullptr; }}});
   actions.add({"setup.fluid.clear",
@@ -83,9 +123,7 @@ void FluidStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if (run_ != nullptr) status_ = run_->status();
   display_ = run_ != nullptr ? fluid_display(status_, steady_now_s()) : FluidDisplay{};
   const std::string medium = camera::medium_to_text(refractive_index_);
-  if (status_.job.summary != nullptr)
-    checked_ = {display_.verdict.severity, "Fluid",
-                status_.job.summary->is_trusted() ? medium + " fits" : "refused in " + medium};
+  keep_verdict();
   const float gap = ui.theme.px(12);
   widgets::Rect rest = area;
   widgets::Rect left = rest.cut_left(rest.width * 0.36F, gap);
@@ -95,7 +133,7 @@ void FluidStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
                   "The ruler with two markers (5 and 6, 10 mm apart) in " + medium};
   draw_band(ui, band, run_ != nullptr ? display_.band : idle);
   const widgets::Rect verdict = rest.cut_bottom(ui.theme.px(130), gap);
-  const Band none{widgets::Severity::Quiet, "Nothing to judge yet", "Said to be in " + medium};
+  const Band none{checked_.severity, "Said to be in " + medium, standing_};
   draw_band(ui, verdict, display_.verdict.headline.empty() ? none : display_.verdict);
   draw_models(ui, rest.cut_top(rest.height * 0.5F, gap));
   std::vector<Row> rows = display_.numbers;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 
+#include "app/case/case_fluid.h"
 #include "app/setup/fluid_display.h"
 #include "app/setup/setup_panels.h"
 #include "navigation/sources/background_end.h"
@@ -32,6 +33,8 @@ class FluidStation : public Station {
  private:
   using Run = LiveRun<FluidJob>;
 
+  void keep_verdict();   // of this frame's status, once
+  void read_standing();  // what the case's last verdict says of the medium
   void draw_picture_with_ruler(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_models(const widgets::Ui& ui, const widgets::Rect& area);
 
@@ -42,7 +45,9 @@ class FluidStation : public Station {
   std::unique_ptr<Run> run_;
   FluidRunStatus status_;  // of this frame
   FluidDisplay display_;   // of this frame
-  Row checked_;            // the last verdict
+  std::string standing_;   // the same in a sentence
+  Row checked_;            // what the case's last verdict says of this medium
+  std::shared_ptr<const calibration::FluidCheckSummary> kept_;  // that was looked at last
   widgets::VideoTexture picture_;
 };
 

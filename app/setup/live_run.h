@@ -15,11 +15,8 @@
 #include <chrono>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
-#include <vector>
 
 #include "app/setup/frame_feed.h"
 
@@ -51,130 +48,106 @@ class LiveRun {
   using Status = RunStatus<typename Job::Status>;
 
   // make_job is called on the worker and may throw. on_news is called from the worker whenever status() has
-  // changed.
+  // changed; it must not call back.
   LiveRun(FeedSource source, std::function<std::unique_ptr<Job>()> make_job, std::function<void()> on_news)
-      : source_(std::move(source)), make_job_(std::move(make_job)), on_news_(std::move(on_news)) {
-    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
-  }
-  LiveRun(const LiveRun&) = delete;
-  LiveRun& operator=(const LiveRun&) = delete;
+      : source_(std::move(source)),
+        worker_(
+            worker::Backlog::Lossless,
+            [source = source_, make_job = std::move(make_job)](Inbox& inbox) {
+              Loop loop{inbox, make_job(), std::make_unique<FrameFeed>(source)};
+              loop.status.is_stills = source.is_stills;
+              while (!inbox.stops()) loop.step();
+            },
+            std::move(on_news)) {}
 
   [[nodiscard]] Status status() const {
-    const std::lock_guard lock(mutex_);
-    return status_;
+    const auto latest = worker_.latest();
+    Status status = latest == nullptr ? Status() : *latest;
+    if (const std::string failure = worker_.failure(); !failure.empty()) {
+      status.phase = FeedPhase::Failed;
+      status.message = failure;
+    }
+    return status;
   }
   [[nodiscard]] const FeedSource& source() const { return source_; }
 
-  void post(std::function<void(Job&)> request) {
-    const std::lock_guard lock(mutex_);
-    requests_.push_back(std::move(request));
-  }
-  void next_still() {
-    const std::lock_guard lock(mutex_);
-    wants_next_still_ = true;
-  }
-  void release_source() {
-    const std::lock_guard lock(mutex_);
-    releases_source_ = true;
-  }
+  void post(std::function<void(Job&)> request) { worker_.post({std::move(request), Wish::None}); }
+  void next_still() { worker_.post({{}, Wish::NextStill}); }
+  void release_source() { worker_.post({{}, Wish::ReleaseSource}); }
 
  private:
-  // The top of the worker: whatever goes wrong becomes a state.
-  void run(const std::stop_token& stop) {
-    try {
-      const std::unique_ptr<Job> job = make_job_();
-      auto feed = std::make_unique<FrameFeed>(source_);
-      while (!stop.stop_requested()) step(*job, feed);
-    } catch (const std::exception& error) {
-      fail(error.what());
-    }
-  }
+  enum class Wish { None, NextStill, ReleaseSource };
+  struct Message {
+    std::function<void(Job&)> request;
+    Wish wish = Wish::None;
+  };
+  using Worker = worker::Worker<Message, Status>;
+  using Inbox = typename Worker::Inbox;
 
-  void step(Job& job, std::unique_ptr<FrameFeed>& feed) {
-    bool has_news = run_requests(job, feed);
-    if (has_news) publish(job);
-    if (job.work()) publish(job);
-    if (feed == nullptr) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-      return;
-    }
-    try {
-      const camera::FramePtr frame = feed->next();
-      if (frame != nullptr) {
-        job.look(frame);
-        if (job.wants_next_still()) feed->advance();
-        note_look();
-        publish(job);
+  // The worker's side: one step takes what was posted, does what takes long, looks at one picture.
+  struct Loop {
+    Inbox& inbox;
+    std::unique_ptr<Job> job;
+    std::unique_ptr<FrameFeed> feed;  // null: released, or failed
+    Status status = {};
+
+    void step() {
+      while (const auto message = inbox.poll()) take(*message);
+      if (job->work()) publish();
+      if (feed == nullptr || feed->has_ended()) {
+        note_feed();
+        return inbox.wait_until(Worker::Clock::now() + std::chrono::milliseconds(50));
       }
-      note_feed(*feed);
-    } catch (const std::exception& error) {
-      feed.reset();
-      fail(error.what());
+      try {
+        if (const camera::FramePtr frame = feed->next()) {
+          job->look(frame);
+          if (job->wants_next_still()) feed->advance();
+          status.looked_s = steady_now_s();
+          publish();
+        }
+        note_feed();
+      } catch (const std::exception& error) {
+        feed.reset();
+        status.phase = FeedPhase::Failed;
+        status.message = error.what();
+        publish();
+      }
     }
-  }
 
-  bool run_requests(Job& job, std::unique_ptr<FrameFeed>& feed) {
-    std::vector<std::function<void(Job&)>> requests;
-    bool releases = false, next = false;
-    {
-      const std::lock_guard lock(mutex_);
-      std::swap(requests, requests_);
-      releases = std::exchange(releases_source_, false);
-      next = std::exchange(wants_next_still_, false);
-    }
-    for (const auto& request : requests) request(job);
-    if (feed != nullptr && (next || (!requests.empty() && job.wants_next_still()))) feed->advance();
-    if (releases && feed != nullptr) {
+    void take(const Message& message) {
+      if (message.request) {
+        message.request(*job);
+        publish();
+      }
+      if (feed == nullptr) return;
+      const bool is_asked = message.wish == Wish::NextStill;
+      if (is_asked || (message.request && job->wants_next_still())) feed->advance();
+      if (message.wish != Wish::ReleaseSource) return;
       feed.reset();
-      set_phase(FeedPhase::Ended);
+      status.phase = FeedPhase::Ended;
+      publish();
     }
-    return !requests.empty();
-  }
 
-  void publish(const Job& job) {
-    {
-      const std::lock_guard lock(mutex_);
-      status_.job = job.status();
+    void note_feed() {
+      if (feed == nullptr) return;
+      const FeedPhase phase = feed->has_ended()     ? FeedPhase::Ended
+                              : feed->has_started() ? FeedPhase::Running
+                                                    : FeedPhase::Starting;
+      const bool awaits_still = feed->awaits_still();
+      if (phase == status.phase && awaits_still == status.awaits_still) return;
+      status.phase = phase;
+      status.awaits_still = awaits_still;
+      publish();
     }
-    on_news_();
-  }
-  void note_look() {
-    const std::lock_guard lock(mutex_);
-    status_.looked_s = steady_now_s();
-  }
-  void note_feed(const FrameFeed& feed) {
-    set_phase(feed.has_ended()     ? FeedPhase::Ended
-              : feed.has_started() ? FeedPhase::Running
-                                   : FeedPhase::Starting);
-    const std::lock_guard lock(mutex_);
-    status_.is_stills = source_.is_stills;
-    status_.awaits_still = feed.awaits_still();
-  }
-  void set_phase(FeedPhase phase) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (status_.phase == phase || status_.phase == FeedPhase::Failed) return;
-      status_.phase = phase;
+
+    void publish() {
+      status.job = job->status();
+      inbox.publish(status);
     }
-    on_news_();
-  }
-  void fail(const char* message) {
-    {
-      const std::lock_guard lock(mutex_);
-      status_.phase = FeedPhase::Failed;
-      status_.message = message;
-    }
-    on_news_();
-  }
+  };
 
   const FeedSource source_;
-  const std::function<std::unique_ptr<Job>()> make_job_;
-  const std::function<void()> on_news_;
-  mutable std::mutex mutex_;
-  Status status_;
-  std::vector<std::function<void(Job&)>> requests_;
-  bool wants_next_still_ = false, releases_source_ = false;
-  std::jthread thread_;
+  Worker worker_;
 };
 
 }  // namespace arthronaut::setup

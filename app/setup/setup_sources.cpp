@@ -66,6 +66,7 @@ FeedSource simulated(Purpose purpose) {
   source.name = open_case::kSimulatedScope;
   source.open = [purpose] { return open_simulation(purpose); };
   source.is_simulated = true;
+  source.path = kSimulatorWord;
   source.is_stills = purpose == Purpose::Camera;
   source.newest_wins = false;
   return source;
@@ -101,11 +102,23 @@ std::optional<std::size_t> index_of(const std::vector<FeedSource>& sources, cons
 
 std::vector<FeedSource> sources_for(Purpose purpose, const fs::path& case_folder,
                                     const sources::DeviceTurns& turns, const std::vector<fs::path>& named) {
-  std::vector<FeedSource> offered{simulated(purpose)};
+  const bool is_real_case = open_case::has_real_camera(case_folder);
+  std::vector<FeedSource> offered;
+  if (!is_real_case) offered.push_back(simulated(purpose));
+  const auto offer_cameras = [&] {
+    for (const sources::ConnectedCamera& camera : sources::connected_cameras()) {
+      FeedSource source;
+      source.name = camera.name;
+      source.open = [turns, index = camera.index] { return turns.open(index); };
+      source.is_live = true;
+      offered.push_back(std::move(source));
+    }
+  };
   const auto offer_stills = [&](const fs::path& folder) {
     if (purpose == Purpose::Camera && !sources::pictures_in(folder).empty())
       offered.push_back(stills(folder));
   };
+  if (is_real_case) offer_cameras();
   std::error_code ignored;
   for (const fs::path& path : named) {
     if (fs::is_directory(path, ignored)) offer_stills(path);
@@ -119,12 +132,9 @@ std::vector<FeedSource> sources_for(Purpose purpose, const fs::path& case_folder
   std::sort(inner.begin(), inner.end());
   for (const fs::path& folder : inner) offer_stills(folder);
   for (const fs::path& file : sources::videos_in(case_folder)) offered.push_back(video(file, purpose));
-  for (const sources::ConnectedCamera& camera : sources::connected_cameras()) {
-    FeedSource source;
-    source.name = camera.name;
-    source.open = [turns, index = camera.index] { return turns.open(index); };
-    offered.push_back(std::move(source));
-  }
+  if (!is_real_case) offer_cameras();
+  const bool is_asked_for = std::find(named.begin(), named.end(), kSimulatorWord) != named.end();
+  if (is_real_case && is_asked_for) offered.push_back(simulated(purpose));
   return offered;
 }
 

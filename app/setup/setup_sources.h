@@ -13,10 +13,14 @@ namespace arthronaut::setup {
 
 enum class Purpose { Camera, Tools, Fluid };
 
-// Always at least the simulated arthroscope, which comes first. Looks into the file system, opens nothing.
-// Folders of stills (the case's own and those right inside it) are offered for the camera alone. `named` are
-// paths the user typed: a folder of pictures or a video; others are left out. Cameras are opened in their
-// turn.
+// What the user types to be offered the simulated arthroscope in a case with a real scope.
+inline constexpr const char* kSimulatorWord = "simulator";
+
+// The simulated arthroscope comes first, but in a case with a real scope (open_case::has_real_camera) it is
+// offered only to who asks for it by its word, last; there the cameras come first. May be empty. Looks into
+// the file system, opens nothing. Folders of stills (the case's own and those right inside it) are offered
+// for the camera alone. `named` are paths the user typed: a folder of pictures or a video; others are left
+// out. Cameras are opened in their turn.
 [[nodiscard]] std::vector<FeedSource> sources_for(Purpose purpose, const std::filesystem::path& case_folder,
                                                   const sources::DeviceTurns& turns,
                                                   const std::vector<std::filesystem::path>& named = {});

@@ -36,7 +36,7 @@ void SetupView::case_opened(const mode::OpenCase& opened) {
   is_read_ = false;
   for (Step& one : steps_) {
     one.station->stop();
-    one.source = 0;
+    one.source = {};
   }
   shown_ = 0;
 }
@@ -65,9 +65,7 @@ bool SetupView::has_running_work() const {
 
 std::optional<sources::SourceKind> SetupView::source_kind() const {
   if (!step().station->has_run()) return std::nullopt;
-  const FeedSource& source = step().sources.at(step().source);
-  if (source.is_simulated) return sources::SourceKind::Simulation;
-  return source.path.empty() ? sources::SourceKind::Live : sources::SourceKind::Recording;
+  return step().started_kind;
 }
 
 void SetupView::show(std::size_t index) {
@@ -77,17 +75,23 @@ void SetupView::show(std::size_t index) {
 }
 
 void SetupView::find_sources() {
-  step().sources = sources_for(step().purpose, case_folder_, turns_, typed_.paths);
-  step().source %= step().sources.size();
+  step().source.offer(sources_for(step().purpose, case_folder_, turns_, typed_.paths));
 }
 
 void SetupView::choose_source() {
   step().station->stop();
   find_sources();
-  step().source = (step().source + 1) % step().sources.size();
+  step().source.choose_next();
 }
 
-void SetupView::start() { step().station->start(step().sources.at(step().source)); }
+void SetupView::start() {
+  const FeedSource* source = step().source.chosen();
+  if (source == nullptr) return;
+  step().started_kind = source->is_simulated ? sources::SourceKind::Simulation
+                        : source->is_live    ? sources::SourceKind::Live
+                                             : sources::SourceKind::Recording;
+  step().station->start(*source);
+}
 
 void SetupView::take_next_step() {
   if (!step().station->has_run()) return start();
@@ -99,27 +103,21 @@ void SetupView::take_next_step() {
 }
 
 std::string SetupView::next_step() const {
-  return step().station->has_run() ? step().station->next_step()
-                                   : "start " + step().sources.at(step().source).name;
+  if (step().station->has_run()) return step().station->next_step();
+  const FeedSource* source = step().source.chosen();
+  return source != nullptr ? "start " + source->name : "choose another source (O), or type one (P)";
 }
 
-// A path that was typed becomes the chosen source, when it is one.
+// A path that was typed becomes the chosen source; one that leads nowhere is an error that stays until
+// another source is chosen.
 void SetupView::take_typed_path() {
   typed_.is_open = false;
   std::filesystem::path path = typed_.text;
   if (!path.has_filename()) path = path.parent_path();  // "pictures/"
   typed_.paths.push_back(path);
-  const std::size_t chosen = step().source;
+  step().station->stop();
   find_sources();
-  const std::optional<std::size_t> found = index_of(step().sources, path);
-  typed_.refused = !found.has_value();
-  if (typed_.refused) {
-    typed_.paths.pop_back();
-    find_sources();
-  } else if (*found != chosen) {
-    step().station->stop();
-  }
-  step().source = found.value_or(chosen % step().sources.size());
+  if (!step().source.choose_path(path)) typed_.paths.pop_back();
 }
 
 void SetupView::add_actions(widgets::Actions& actions) {
@@ -144,12 +142,12 @@ void SetupView::add_actions(widgets::Actions& actions) {
   const auto has_run = [this] { return step().station->has_run(); };
   add("setup.next", "Next step", "Starts, takes, calibrates, adopts: whatever comes next", GLFW_KEY_SPACE,
       [this] { take_next_step(); });
-  add("setup.source", "Other source", "Simulated scope, pictures, videos, cameras in turn", GLFW_KEY_O,
+  add(
+      "setup.source", "Other source",
+      "Cameras, pictures, videos in turn; the simulator where there is no real scope", GLFW_KEY_O,
       [this] { choose_source(); }, {"take another source", has_run});
-  add("setup.path", "Type a source", "The path of a video or of a folder of pictures", GLFW_KEY_P, [this] {
-    typed_.is_open = typed_.wants_focus = true;
-    typed_.refused = false;
-  });
+  add("setup.path", "Type a source", "The path of a video or of a folder of pictures, or: simulator",
+      GLFW_KEY_P, [this] { typed_.is_open = typed_.wants_focus = true; });
   add("setup.again", "Start again", "From the first picture; what was adopted stays", GLFW_KEY_R,
       [this] { start(); }, {"start again", has_run});
   actions.add({"setup.stop",
@@ -178,7 +176,8 @@ void SetupView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   step().station->draw(ui, rest);
   draw_controls(ui, controls);
   ui.log.note_state("setup_step", std::string(step().action).substr(std::string("setup.show_").size()));
-  ui.log.note_state("setup_source", step().sources.at(step().source).name);
+  const FeedSource* source = step().source.chosen();
+  ui.log.note_state("setup_source", source != nullptr ? source->name : step().source.problem());
   ui.log.note_state("setup_next", next_step());
   ui.log.note_state("setup_adopted", step().station->adopted().text);
 }
@@ -210,12 +209,10 @@ void SetupView::draw_heading(const widgets::Ui& ui, const widgets::Rect& area) {
     draw.PopClipRect();
     return draw_path_field(ui, {left, y - ui.theme.px(8), rest.x + rest.width - left, ui.theme.px(40)});
   }
-  std::string source = "Source: " + step().sources.at(step().source).name + "  (" +
-                       std::to_string(step().source + 1) + " of " + std::to_string(step().sources.size()) +
-                       ")";
-  if (typed_.refused) source = "No source there: " + typed_.text;
+  const bool is_chosen = step().source.chosen() != nullptr;
+  const std::string source = is_chosen ? "Source: " + step().source.text() : step().source.problem();
   draw.AddText(ui.theme.body, ui.theme.body->FontSize, {left, y},
-               typed_.refused ? widgets::kCaution : widgets::kQuietText, source.c_str());
+               is_chosen ? widgets::kQuietText : widgets::kCaution, source.c_str());
   draw.PopClipRect();
 }
 

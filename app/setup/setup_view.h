@@ -10,6 +10,7 @@
 
 #include "app/mode/mode.h"
 #include "app/setup/setup_sources.h"
+#include "app/setup/source_choice.h"
 #include "app/setup/station.h"
 #include "navigation/sources/background_end.h"
 
@@ -44,14 +45,14 @@ class SetupView : public mode::Mode {
     const char* action;  // that shows it
     const char* prefix;  // of its own actions
     std::unique_ptr<Station> station;
-    std::size_t source = 0;
-    std::vector<FeedSource> sources = {};
+    SourceChoice source = {};
+    sources::SourceKind started_kind = sources::SourceKind::Recording;  // of what runs
   };
 
   struct Typed {  // sources that the user names by their path
     std::vector<std::filesystem::path> paths;
     std::string text;
-    bool is_open = false, wants_focus = false, refused = false;
+    bool is_open = false, wants_focus = false;
   };
 
   [[nodiscard]] Step& step() { return steps_[shown_]; }

@@ -36,7 +36,8 @@ std::vector<ToolChoice> choices_of(const tools::ToolSet& tools) {
   return choices;
 }
 
-tools::ToolSet with_result(tools::ToolSet tools, const std::string& tool_name, const ToolResult& result) {
+tools::ToolSet with_result(tools::ToolSet tools, const std::string& tool_name, const ToolResult& result,
+                           const provenance::Provenance& provenance) {
   for (tools::Tool& tool : tools.tools) {
     if (tool.name != tool_name) continue;
     if (result.task == ToolTask::Tip) {
@@ -53,6 +54,7 @@ tools::ToolSet with_result(tools::ToolSet tools, const std::string& tool_name, c
           result.axis.point_sigma_mm, along_mm * geometry::rad_from_deg(result.axis.direction_sigma_deg));
     }
     tool.residual_mm = result.rms_mm();
+    tool.provenance = provenance;
   }
   return tools;
 }

@@ -35,10 +35,10 @@ struct ToolResult {
   [[nodiscard]] double rms_mm() const { return task == ToolTask::Tip ? tip.rms_mm : axis.rms_mm; }
 };
 
-// The tools with the result in the place of what was known. Precondition: the tool is there, the result
-// usable.
+// The tools with the result in the place of what was known, and where it comes from. Precondition: the tool
+// is there, the result usable.
 [[nodiscard]] tools::ToolSet with_result(tools::ToolSet tools, const std::string& tool_name,
-                                         const ToolResult& result);
+                                         const ToolResult& result, const provenance::Provenance& provenance);
 
 struct ToolStatus {
   camera::FramePtr picture;

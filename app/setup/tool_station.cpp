@@ -2,6 +2,8 @@
 
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
+
 #include "app/case/case_calibration.h"
 #include "navigation/camera/medium.h"
 #include "planning/cases/case.h"
@@ -13,6 +15,21 @@ namespace {
 
 std::string name_of(const ToolChoice& choice) {
   return choice.tool_name + (choice.task == ToolTask::Tip ? ": tip" : ": axis");
+}
+
+// How many come from where; what is simulated is named first.
+Row row_of(const tools::ToolSet& tools) {
+  const auto count = [&](provenance::Origin origin) {
+    return std::count_if(tools.tools.begin(), tools.tools.end(),
+                         [&](const tools::Tool& tool) { return tool.provenance.origin == origin; });
+  };
+  const auto simulated = count(provenance::Origin::Simulated), measured = count(provenance::Origin::Measured);
+  std::string text = std::to_string(measured) + " of " + std::to_string(tools.tools.size()) + " measured";
+  if (simulated > 0) text = std::to_string(simulated) + " simulated, " + text;
+  return {simulated > 0  ? widgets::Severity::Caution
+          : measured > 0 ? widgets::Severity::Good
+                         : widgets::Severity::Quiet,
+          "Tools", text};
 }
 
 }  // namespace
@@ -32,10 +49,7 @@ void ToolStation::read_adopted() {
   try {  // a file that can't be used is a state of this screen
     if (std::filesystem::exists(file)) {
       tools = tools::read_tools_file(file);
-      int calibrated = 0;
-      for (const tools::Tool& tool : tools.tools) calibrated += tool.residual_mm.has_value() ? 1 : 0;
-      adopted_ = {calibrated > 0 ? widgets::Severity::Good : widgets::Severity::Quiet, "Tools",
-                  std::to_string(calibrated) + " of " + std::to_string(tools.tools.size()) + " calibrated"};
+      adopted_ = row_of(tools);
     }
   } catch (const std::runtime_error& error) {
     adopted_ = {widgets::Severity::Bad, "Tools", error.what()};
@@ -49,13 +63,18 @@ ToolChoice ToolStation::choice() const { return choices_.empty() ? ToolChoice{"p
 
 void ToolStation::start(const FeedSource& source) {
   stop();
-  kept_because_ = open_case::tools_are_kept(source.is_simulated, case_folder_);
+  // Real pictures that a simulated camera measures give nothing real.
+  finds_simulated_ = source.is_simulated || !open_case::has_real_camera(case_folder_);
+  kept_because_ = open_case::tools_are_kept(finds_simulated_, case_folder_);
   run_ = std::make_unique<Run>(
       source,
       [source, folder = case_folder_, index = refractive_index_, choice = choice()] {
         if (source.is_simulated && choice.task == ToolTask::Axis)
           throw InvalidInput(
               "the simulated arthroscope shows no guide that turns: choose another source (O)");
+        if (source.is_live)
+          if (const std::string why = open_case::camera_is_not_for_live(folder); !why.empty())
+            throw InvalidInput(why);
         pipeline::ViewTrackerOptions view;
         view.calibration = open_case::camera_of(source.is_simulated, folder);
         view.refractive_index = index;
@@ -85,7 +104,10 @@ void ToolStation::adopt() {
     const std::filesystem::path file = cases::tools_file(case_folder_);
     const tools::ToolSet known =
         std::filesystem::exists(file) ? tools::read_tools_file(file) : tools::standard_tools();
-    tools::write_tools_file(file, with_result(known, choice().tool_name, *result));
+    using provenance::Origin;
+    const provenance::Provenance found{finds_simulated_ ? Origin::Simulated : Origin::Measured,
+                                       cases::utc_now()};
+    tools::write_tools_file(file, with_result(known, choice().tool_name, *result, found));
     adopted_result_ = result;
     run_->post([result](ToolJob& job) { job.settle(result); });
     read_adopted();

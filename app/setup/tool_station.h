@@ -50,7 +50,8 @@ class ToolStation : public Station {
   ToolDisplay display_;   // of this frame
   std::shared_ptr<const ToolResult> adopted_result_;
   Row adopted_;
-  std::string kept_because_;  // see open_case::tools_are_kept()
+  bool finds_simulated_ = false;  // what this run finds is of the simulator
+  std::string kept_because_;      // see open_case::tools_are_kept()
   widgets::VideoTexture picture_;
 };
 

@@ -181,6 +181,7 @@ CalibrationSummary calibrate(std::span<const CalibrationPicture> pictures,
   }
   summary.record.rms_px = summary.rms_px = best.rms_px;
   summary.record.date_utc = files::utc_now();
+  summary.record.provenance = {provenance::Origin::Measured, summary.record.date_utc};
   summary.record.scope_name = options.scope_name;
   summary.record.head_name = options.head_name;
   for (std::size_t i = 0; i < pictures.size(); ++i) {

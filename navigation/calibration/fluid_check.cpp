@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "navigation/calibration/plane_pose.h"
+#include "navigation/camera/medium.h"
 #include "planning/files/format.h"
 #include "planning/geometry/quantile.h"
 
@@ -124,8 +125,24 @@ double index_sigma(const std::function<FrameErrors(double)>& under, double index
   return -1;
 }
 
+// Whose index the pictures show, where it is not the stated one's.
+double shown_index(const FluidCheckSummary& summary, const FluidCheckOptions& options) {
+  if (summary.index_sigma < 0 || summary.index_sigma > options.most_index_sigma) return 0;
+  if (std::abs(summary.best_index - options.refractive_index) <= options.most_index_error) return 0;
+  for (const double index : {camera::kAirIndex, camera::kSalineIndex})
+    if (std::abs(summary.best_index - index) <= options.most_index_error) return index;
+  return 0;
+}
+
 std::vector<std::string> reasons_against(const FluidCheckSummary& summary, const FluidCheckOptions& options) {
   std::vector<std::string> reasons;
+  // Before all that follows from it.
+  if (summary.shown_index > 0)
+    reasons.push_back(
+        "the pictures are of " + camera::medium_to_text(summary.shown_index) + ", not of " +
+        camera::medium_to_text(options.refractive_index) +
+        files::format(" (they show a refractive index of %.2f): is the medium right, and the port flat?",
+                      summary.best_index));
   if (summary.frame_count < options.fewest_frames)
     reasons.push_back(
         files::format("the ruler's two markers were seen together in %.0f frames only (needs %.0f)",
@@ -146,7 +163,8 @@ std::vector<std::string> reasons_against(const FluidCheckSummary& summary, const
     reasons.push_back(
         "the ruler was held where the models hardly differ: bring it nearer, tilt it, move it towards the "
         "rim");
-  else if (std::abs(summary.best_index - options.refractive_index) > options.most_index_error)
+  else if (summary.shown_index == 0 &&
+           std::abs(summary.best_index - options.refractive_index) > options.most_index_error)
     reasons.push_back(files::format(
         "the pictures look like a refractive index of %.2f, not %.3f: another medium, or a port that "
         "is not flat",
@@ -191,6 +209,7 @@ FluidCheckSummary check_fluid(std::span<const RulerSighting> sightings, const Ru
     summary.best_index = best_index([&](double index) { return misfit_px(flat_port(index)); }, 1.0, 1.5);
     summary.index_sigma = index_sigma(flat_port, summary.best_index, chosen.size());
   }
+  summary.shown_index = shown_index(summary, options);
   summary.reasons = reasons_against(summary, options);
   return summary;
 }

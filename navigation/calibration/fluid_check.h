@@ -42,6 +42,9 @@ struct FluidCheckSummary {
   // One sigma of it by the corners' scatter alone; -1: not known. Large where the ruler was held so that
   // every index looks alike: small, in the middle of the view, facing the lens.
   double index_sigma = -1;
+  // The medium, air or a fluid (as saline), that the pictures show in place of the stated one; 0: none. Then
+  // it is the first of the reasons.
+  double shown_index = 0;
   std::vector<std::string> reasons = {
       "the check was not run"};  // why the given medium can't be trusted; empty: it can
   [[nodiscard]] bool is_trusted() const { return reasons.empty(); }

@@ -1,5 +1,7 @@
 #include "navigation/camera/camera_file.h"
 
+#include <algorithm>
+#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "navigation/camera/medium.h"
@@ -42,6 +44,12 @@ CameraCovariance read_covariance(const files::JsonObject& root) {
   return covariance;
 }
 
+bool is_simulated_scope(const std::string& name) {
+  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  return std::equal(name.begin(), name.end(), kSimulatedScope.begin(), kSimulatedScope.end(),
+                    [&](char a, char b) { return lower(a) == lower(b); });
+}
+
 }  // namespace
 
 CalibrationRecord read_camera_file(const std::filesystem::path& file) {
@@ -70,6 +78,9 @@ CalibrationRecord read_camera_file(const std::filesystem::path& file) {
   if (root.has("date_utc")) record.date_utc = root.text("date_utc");
   if (root.has("scope")) record.scope_name = root.text("scope");
   if (root.has("head")) record.head_name = root.text("head");
+  record.provenance = provenance::read_provenance(root, provenance::Origin::Measured);
+  if (record.provenance.calibrated_utc.empty()) record.provenance.calibrated_utc = record.date_utc;
+  if (is_simulated_scope(record.scope_name)) record.provenance.origin = provenance::Origin::Simulated;
   return record;
 }
 
@@ -98,6 +109,10 @@ void write_camera_file(const std::filesystem::path& file, const CalibrationRecor
   if (!record.date_utc.empty()) json["date_utc"] = record.date_utc;
   if (!record.scope_name.empty()) json["scope"] = record.scope_name;
   if (!record.head_name.empty()) json["head"] = record.head_name;
+  json["origin"] = provenance::to_text(record.provenance.origin);
+  const std::string& calibrated_utc =
+      record.provenance.calibrated_utc.empty() ? record.date_utc : record.provenance.calibrated_utc;
+  if (!calibrated_utc.empty()) json["calibrated_utc"] = calibrated_utc;
   files::write_json(file, json);
 }
 

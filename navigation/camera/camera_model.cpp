@@ -57,6 +57,14 @@ CameraModel::CameraModel(const Calibration& calibration, double lens_angle_rad, 
           "principal point and lens angle must be finite");
 }
 
+CameraModel CameraModel::in_medium(double index_ratio) const {
+  if (!(index_ratio >= 0.45 && index_ratio <= 2.3))
+    throw InvalidInput("camera: the ratio of the refractive indices must lie in [0.45, 2.3]");
+  CameraModel other = *this;
+  other.index_ratio_ = index_ratio;
+  return other;
+}
+
 std::optional<Eigen::Vector2d> CameraModel::project(const Eigen::Vector3d& point_in_camera_mm) const {
   Eigen::Matrix<double, 2, 3> ignored;
   return project(point_in_camera_mm, ignored);

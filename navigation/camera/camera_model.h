@@ -100,6 +100,9 @@ class CameraModel {
   // Index of the working medium over that of the calibration.
   [[nodiscard]] double index_ratio() const { return index_ratio_; }
   [[nodiscard]] FluidModel fluid_model() const { return fluid_model_; }
+  // The same lens at the same angle in another medium. Throws InvalidInput unless the ratio of the indices
+  // (as index_ratio()) lies in [0.45, 2.3], which is what two indices in [0.9, 2] can make.
+  [[nodiscard]] CameraModel in_medium(double index_ratio) const;
   [[nodiscard]] const Boundary& boundary() const { return boundary_; }  // at this lens angle
   [[nodiscard]] const Eigen::Vector2i& image_size_px() const { return image_size_; }
   [[nodiscard]] bool is_inside_view(

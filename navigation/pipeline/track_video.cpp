@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "navigation/pipeline/medium_check.h"
 #include "navigation/pipeline/prefetched_source.h"
 
 namespace arthronaut::pipeline {
@@ -73,7 +74,11 @@ TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions&
                          const tools::ToolSet& tools, const FrameSeen& on_frame) {
   TrackedVideo video;
   video.statistics = ViewStatistics(tools);
-  ViewTracker tracker(options, markers::make_tracker(markers::declared_markers(tools)));
+  const std::vector<markers::DeclaredMarker> declared = markers::declared_markers(tools);
+  ViewTracker tracker(options, markers::make_tracker(declared));
+  const double calibration_index = options.calibration.refractive_index;
+  MediumCheck medium(declared, options.refractive_index, calibration_index);
+  SecondLook second(declared, medium.other_index(), calibration_index);
   PrefetchedSource prefetched(source);
   PictureObservation view;
   while (const camera::FramePtr frame = prefetched.next()) {
@@ -82,9 +87,15 @@ TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions&
     const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
     append_pose_rows(view, video.rows);
     video.statistics.add(view, taken.count());
+    medium.look(view);
+    if (medium.wants_second_look()) medium.look_again(view, second.look(*frame, view.camera));
     if (on_frame) on_frame(*frame, view);
   }
   video.reasons = reasons_of(video);
+  if (medium.verdict().fit == MediumFit::Contradicts) {
+    video.rows.clear();  // a row is a pose that the program stands for
+    video.reasons = {reason_text(medium.verdict())};
+  }
   return video;
 }
 

@@ -42,8 +42,9 @@ struct TrackedVideo {
 
 using FrameSeen = std::function<void(const camera::Frame&, const PictureObservation&)>;
 
-// Decoding runs in a thread of its own. on_frame is called after each frame with what was seen in it. Throws
-// what the source throws, what on_frame throws, and InvalidInput for another frame size.
+// In a medium that the pictures contradict (medium_check.h) no pose stands: there are no rows, and the reason
+// names the medium. Decoding runs in a thread of its own. on_frame is called after each frame with what was
+// seen in it. Throws what the source throws, what on_frame throws, and InvalidInput for another frame size.
 [[nodiscard]] TrackedVideo track_video(sources::FrameSource& source, const ViewTrackerOptions& options,
                                        const tools::ToolSet& tools, const FrameSeen& on_frame = {});
 

@@ -89,6 +89,7 @@ Tool read_tool(const files::JsonObject& entry, Owners& owners) {
   tool.tip_covariance_mm2 = read_tip_covariance(entry);
   tool.axis_point_sigma_mm = read_sigma(entry, "axis_point_sigma_mm");
   tool.axis_direction_sigma_deg = read_sigma(entry, "axis_direction_sigma_deg");
+  tool.provenance = provenance::read_provenance(entry, provenance::Origin::Nominal);
   return tool;
 }
 
@@ -208,6 +209,8 @@ void write_tools_file(const std::filesystem::path& file, const ToolSet& tools) {
     }
     if (tool.axis_point_sigma_mm) entry["axis_point_sigma_mm"] = *tool.axis_point_sigma_mm;
     if (tool.axis_direction_sigma_deg) entry["axis_direction_sigma_deg"] = *tool.axis_direction_sigma_deg;
+    entry["origin"] = provenance::to_text(tool.provenance.origin);
+    if (!tool.provenance.calibrated_utc.empty()) entry["calibrated_utc"] = tool.provenance.calibrated_utc;
     document["tools"].push_back(std::move(entry));
   }
   files::write_json(file, document);

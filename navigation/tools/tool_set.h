@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "navigation/provenance/provenance.h"
 #include "planning/bones/bone.h"
 
 namespace arthronaut::tools {
@@ -40,6 +41,8 @@ struct Tool {
   std::optional<Eigen::Matrix3d> tip_covariance_mm2 = std::nullopt;
   std::optional<double> axis_point_sigma_mm = std::nullopt;       // of each coordinate across the axis
   std::optional<double> axis_direction_sigma_deg = std::nullopt;  // about each of two axes across it
+  // Of tip and axis. A file that does not say means nominal.
+  provenance::Provenance provenance = {};
 };
 
 // What is taken for a tool whose file does not say. Measured, that is with a residual: the limits that its

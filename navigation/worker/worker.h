@@ -40,10 +40,11 @@ template <typename Message, typename Published>
 class Worker {
   struct Shared {
     mutable std::mutex mutex;
-    std::condition_variable_any wake, idle;
+    std::condition_variable_any wake, idle, news;
     std::deque<Message> waiting;
     std::shared_ptr<const Published> published;
     std::string failure;
+    std::exception_ptr error;
     bool is_idle = false, has_ended = false;
     Backlog backlog = Backlog::Lossless;
     std::function<void()> on_news;
@@ -71,6 +72,11 @@ class Worker {
       if (shared_.waiting.empty()) return std::nullopt;
       return take_front();
     }
+    // Something newer waits: work that goes on for long may want to end early.
+    [[nodiscard]] bool has_message() const {
+      const std::lock_guard lock(shared_.mutex);
+      return !shared_.waiting.empty();
+    }
     // Until the time has come, a message waits or the worker is to stop.
     void wait_until(Clock::time_point time) {
       std::unique_lock lock(shared_.mutex);
@@ -89,6 +95,7 @@ class Worker {
         const std::lock_guard lock(shared_.mutex);
         shared_.published = std::move(value);
       }
+      shared_.news.notify_all();
       if (shared_.on_news) shared_.on_news();
     }
     void publish(Published value) { publish(std::make_shared<const Published>(std::move(value))); }
@@ -131,6 +138,13 @@ class Worker {
     const std::lock_guard lock(shared_->mutex);
     return shared_->published;
   }
+  // The same, but waits until it is another one than `known`, the worker has ended, or the time has come.
+  [[nodiscard]] std::shared_ptr<const Published> wait_for_other_than(
+      const std::shared_ptr<const Published>& known, Clock::time_point until) const {
+    std::unique_lock lock(shared_->mutex);
+    shared_->news.wait_until(lock, until, [&] { return shared_->published != known || shared_->has_ended; });
+    return shared_->published;
+  }
   [[nodiscard]] bool has_ended() const {
     const std::lock_guard lock(shared_->mutex);
     return shared_->has_ended;
@@ -139,6 +153,11 @@ class Worker {
   [[nodiscard]] std::string failure() const {
     const std::lock_guard lock(shared_->mutex);
     return shared_->failure;
+  }
+  // What it threw, to be thrown again where somebody can answer for it; null else.
+  [[nodiscard]] std::exception_ptr error() const {
+    const std::lock_guard lock(shared_->mutex);
+    return shared_->error;
   }
   void request_stop() { thread_.request_stop(); }
   // Waits until all that was posted so far is worked in, or the worker has ended; for tests and for the end.
@@ -163,18 +182,22 @@ class Worker {
   // The top of the thread: what is thrown here becomes a state.
   static void run(Shared& shared, const Body& body, const std::stop_token& stop) {
     std::string failure;
+    std::exception_ptr thrown;
     try {
       Inbox inbox(shared, stop);
       body(inbox);
     } catch (const std::exception& error) {
       failure = error.what();
       log::error("a worker has ended: " + failure);
+      thrown = std::current_exception();
     }
     {
       const std::lock_guard lock(shared.mutex);
       shared.failure = std::move(failure);
+      shared.error = std::move(thrown);
       shared.has_ended = true;
       shared.idle.notify_all();
+      shared.news.notify_all();
     }
     if (shared.on_news) shared.on_news();
   }

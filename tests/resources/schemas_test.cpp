@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "navigation/calibration/fluid_file.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/registration/registration.h"
 #include "navigation/registration/registration_file.h"
@@ -87,6 +88,23 @@ TEST_F(Schemas, DescribeTheTools) {
   set.tools[1].kind = tools::ToolKind::Drill;
   tools::write_tools_file(file, set);
   expect_described(file, "tools", [&] { (void)tools::read_tools_file(file); });
+}
+
+// A verdict that trusts the camera, and one that does not.
+TEST_F(Schemas, DescribeTheFluidCheck) {
+  const fs::path file = folder_ / "fluid.json";
+  calibration::FluidRecord record;
+  record.refractive_index = 1.3345;
+  record.provenance.calibrated_utc = "2026-11-21T10:00:00Z";
+  for (const bool trusted : {true, false}) {
+    record.is_trusted = trusted;
+    if (trusted)
+      record.reasons.clear();
+    else
+      record.reasons = {"too few frames"};
+    calibration::write_fluid_file(file, record);
+    expect_described(file, "fluid", [&] { (void)calibration::read_fluid_file(file); });
+  }
 }
 
 // The phantom: both bones, their landmarks, both tunnels.

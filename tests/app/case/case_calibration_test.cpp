@@ -74,6 +74,53 @@ TEST_F(CaseCalibration, KeepsRealFilesFromTheSimulation) {
   EXPECT_TRUE(camera_is_kept(kReal, folder_).empty());
 }
 
+// A case with a real scope takes no simulated tip, whether it has a tools.json or not.
+TEST_F(CaseCalibration, Hazard26ASimulatedTipIsNotAdoptedIntoARealCase) {
+  EXPECT_FALSE(has_real_camera(folder_));
+  adopt_camera("Scope 30", 601);
+  EXPECT_TRUE(has_real_camera(folder_));
+  EXPECT_FALSE(tools_are_kept(kSimulated, folder_).empty());
+  adopt_tools(77);
+  EXPECT_FALSE(tools_are_kept(kSimulated, folder_).empty());
+  EXPECT_TRUE(tools_are_kept(kReal, folder_).empty());
+}
+
+// What the simulator found is of no use to a live camera, and says so; of the tools the first one is named.
+TEST_F(CaseCalibration, Hazard26LivePicturesAreNotMeasuredWithWhatIsSimulated) {
+  EXPECT_TRUE(camera_is_not_for_live(folder_).empty());
+  EXPECT_TRUE(tools_are_not_for_live(folder_).empty());
+  adopt_camera(kSimulatedScope, 601);
+  EXPECT_NE(camera_is_not_for_live(folder_).find("simulated"), std::string::npos);
+  adopt_camera("Scope 30", 601);
+  EXPECT_TRUE(camera_is_not_for_live(folder_).empty());
+  tools::ToolSet tools = tools::standard_tools();
+  tools.tools.front().provenance = {provenance::Origin::Simulated, "2026-11-21T10:00:00Z"};
+  tools::write_tools_file(cases::tools_file(folder_), tools);
+  EXPECT_TRUE(tools_are_not_for_live(folder_).starts_with("probe: ")) << tools_are_not_for_live(folder_);
+}
+
+// Each number of the case says where it comes from and since when.
+TEST_F(CaseCalibration, Hazard6SaysWhereCameraAndToolsComeFrom) {
+  using provenance::Origin;
+  EXPECT_EQ(provenance_of(kSimulated, folder_).camera.origin, Origin::Simulated);
+  EXPECT_THROW((void)provenance_of(kReal, folder_), InvalidInput);
+  adopt_camera("Scope 30", 601);
+  tools::ToolSet tools = tools::standard_tools();
+  tools.tools.front().provenance = {Origin::Measured, "2026-11-20T23:00:00Z"};
+  tools::write_tools_file(cases::tools_file(folder_), tools);
+  const CaseProvenance all = provenance_of(kReal, folder_);
+  ASSERT_EQ(all.tools.size(), tools.tools.size());
+  const std::string now = "2026-11-21T07:00:00Z";
+  EXPECT_EQ(in_words(all.camera, now), "measured 2026-11-21");
+  EXPECT_EQ(all.tools.front().name, "probe");
+  EXPECT_EQ(in_words(all.tools.front().provenance, now), "measured 2026-11-20, 1 day old");
+  EXPECT_EQ(in_words(all.tools.back().provenance, now), "nominal");
+  EXPECT_EQ(in_words({Origin::Simulated, "2026-11-18T10:00:00Z"}, now), "simulated, 3 days old");
+  EXPECT_EQ(in_words({Origin::Measured, ""}, now), "measured, date not known");
+  EXPECT_EQ(in_words({Origin::Measured, "2026-12-01T10:00:00Z"}, now),
+            "measured 2026-12-01, date lies ahead: is the clock right?");
+}
+
 // A broken camera.json stops the real scope with the file's name, and does not stop the simulation.
 TEST_F(CaseCalibration, ABrokenFileIsTold) {
   std::ofstream(folder_ / "camera.json") << "x";

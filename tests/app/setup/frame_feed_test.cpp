@@ -6,6 +6,8 @@
 
 #include "app/case/case_calibration.h"
 #include "app/setup/setup_sources.h"
+#include "navigation/camera/camera_file.h"
+#include "navigation/simulator/simulated_operation.h"
 #include "planning/geometry/error.h"
 #include "tests/temporary_folder.h"
 
@@ -98,7 +100,6 @@ class Sources : public ::testing::Test {
     std::ofstream(folder_ / "board" / "b.PNG") << "x";
     std::ofstream(folder_ / "board" / "a.jpg") << "x";
     std::ofstream(folder_ / "knee.mkv") << "x";
-    std::ofstream(folder_ / "camera.json") << "x";
   }
   const test::TemporaryFolder temporary_;
   const std::filesystem::path& folder_ = temporary_.path();
@@ -114,6 +115,23 @@ TEST_F(Sources, AreFoundInTheCase) {
   EXPECT_EQ(for_camera[2].name, "knee.mkv");
   const auto for_tools = sources_for(Purpose::Tools, folder_, kTurns);
   EXPECT_EQ(for_tools[1].name, "knee.mkv");
+}
+
+// With a real scope's camera.json no step offers the simulator, but to who asks for it by its word.
+TEST_F(Sources, Hazard26ARealCaseNeverOffersTheSimulatorUnasked) {
+  camera::CalibrationRecord record;
+  record.calibration = simulator::standard_camera();
+  record.scope_name = "Scope 30";
+  camera::write_camera_file(folder_ / "camera.json", record);
+  for (const Purpose purpose : {Purpose::Camera, Purpose::Tools, Purpose::Fluid}) {
+    for (const FeedSource& source : sources_for(purpose, folder_, kTurns)) EXPECT_FALSE(source.is_simulated);
+    const auto asked = sources_for(purpose, folder_, kTurns, {kSimulatorWord});
+    ASSERT_FALSE(asked.empty());
+    EXPECT_TRUE(asked.back().is_simulated);
+  }
+  record.scope_name = open_case::kSimulatedScope;
+  camera::write_camera_file(folder_ / "camera.json", record);
+  EXPECT_TRUE(sources_for(Purpose::Tools, folder_, kTurns).front().is_simulated);
 }
 
 // A path that was named is found among what is offered, wherever it stands; for tools a folder of pictures is

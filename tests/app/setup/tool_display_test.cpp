@@ -106,10 +106,13 @@ TEST(ToolChoices, FollowTheToolsFile) {
   ToolResult result;
   result.tip.tip_in_tool_mm = {1, 2, 3};
   result.tip.rms_mm = 0.07;
-  const tools::ToolSet changed = with_result(standard, "probe", result);
+  const provenance::Provenance measured{provenance::Origin::Measured, "2026-11-21T10:00:00Z"};
+  const tools::ToolSet changed = with_result(standard, "probe", result, measured);
   EXPECT_EQ(*changed.find_tool("probe")->tip_mm, Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(changed.find_tool("probe")->residual_mm, 0.07);
+  EXPECT_EQ(changed.find_tool("probe")->provenance, measured);
   EXPECT_FALSE(changed.find_tool("femoral guide")->residual_mm.has_value());
+  EXPECT_EQ(changed.find_tool("femoral guide")->provenance.origin, provenance::Origin::Nominal);
 }
 
 // What was measured carries how well it is known. A spin tells the line of the axis, not where on it the

@@ -39,6 +39,7 @@ TEST(SettingUp, LeadsToAnAdoptedCameraAndTip) {
   EXPECT_NEAR(camera.calibration.focal_px, truth.focal_px, 0.003 * truth.focal_px);
   EXPECT_EQ(camera.scope_name, "Simulated arthroscope");
   EXPECT_TRUE(camera.calibration.covariance);
+  EXPECT_EQ(camera.provenance.origin, provenance::Origin::Simulated);
 
   // The tip within a third of a millimetre of the built-in probe's.
   app.press("space");
@@ -52,10 +53,41 @@ TEST(SettingUp, LeadsToAnAdoptedCameraAndTip) {
   const tools::Tool* probe = adopted.find_tool("probe");
   ASSERT_NE(probe, nullptr);
   EXPECT_TRUE(probe->residual_mm.has_value());
+  EXPECT_EQ(probe->provenance.origin, provenance::Origin::Simulated);
   EXPECT_LT((*probe->tip_mm - *tools::standard_tools().find_tool("probe")->tip_mm).norm(), 0.35);
 
   // A source still runs: leaving is to be held.
   EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
+// With a real scope in the case the tools step starts no simulator, and a path that leads nowhere is an
+// error.
+TEST(SettingUp, Hazard26ARealCaseNeverStartsTheSimulatorUnasked) {
+  if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
+  const TemporaryFolder home;
+  const std::filesystem::path folder = home / "arthronaut" / "Phantom.arthro";
+
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, home.path());
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  camera::CalibrationRecord camera;
+  camera.calibration = simulator::standard_camera();
+  camera.scope_name = "Scope 30";
+  camera::write_camera_file(folder / "camera.json", camera);
+  app.press("F4");
+  ASSERT_TRUE(app.wait_for_state("setup_step", "camera"));
+  app.press("2");
+  ASSERT_TRUE(app.wait_for_state("setup_step", "tools"));
+  EXPECT_NE(app.state("setup_source"), "Simulated arthroscope");
+  app.press("p");
+  app.type((home / "nothing.mkv").string());
+  app.press("Return");
+  EXPECT_TRUE(app.wait_for_state("setup_source", "No source there: " + (home / "nothing.mkv").string()));
+  app.press("space");
+  EXPECT_TRUE(app.wait_for_state("setup_band", "no source"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "tools.json"));
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(60), 0);
 }
 
 // Keys that are shorter than a frame arrive in a text field, in their order, from the one on that opened it.

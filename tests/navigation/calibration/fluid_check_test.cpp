@@ -80,6 +80,24 @@ TEST(FluidCheck, NoticesThatNothingIsRefracted) {
   EXPECT_NEAR(summary.best_index, 1.0, 0.02);
 }
 
+// Air stated in saline and saline in air: the first reason names both media, and the shown one is data.
+TEST(FluidCheck, Hazard27AWrongMediumIsTheFirstReason) {
+  for (const auto& [truth, stated] : {std::pair(camera::kSalineIndex, camera::kAirIndex),
+                                      std::pair(camera::kAirIndex, camera::kSalineIndex)}) {
+    FluidCheckOptions options;
+    options.refractive_index = stated;
+    const auto summary =
+        check_fluid(sightings_in(truth, camera::FluidModel::FlatPort, 0.1), {}, true_scope(), options);
+    EXPECT_EQ(summary.shown_index, truth);
+    ASSERT_FALSE(summary.reasons.empty());
+    EXPECT_THAT(summary.reasons.front(), HasSubstr("are of " + camera::medium_to_text(truth) + ", not of " +
+                                                   camera::medium_to_text(stated)));
+  }
+  const auto right = check_fluid(sightings_in(camera::kSalineIndex, camera::FluidModel::FlatPort, 0.1), {},
+                                 true_scope(), {});
+  EXPECT_EQ(right.shown_index, 0);
+}
+
 // What the scatter leaves of the index: a little at a tenth of a pixel; with corners 4 px off, too much to
 // tell media apart, and said so instead of a wrong index.
 TEST(FluidCheck, KnowsHowWellTheIndexIsKnown) {

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <new>
 
+#include "navigation/markers/planar_pose.h"
+#include "navigation/pipeline/medium_check.h"
 #include "tests/navigation/pipeline/scripted_markers.h"
 
 namespace {
@@ -53,6 +55,31 @@ TEST(NavigationPipelineAllocation, NothingPerFrameAfterTheFirstFrames) {
   const long before = allocation_count;
   for (int i = 5; i < 40; ++i) pipeline.process(frames[static_cast<std::size_t>(i)], result);
   EXPECT_EQ(allocation_count - before, 0);
+}
+
+// Votes on the medium, for and against, cost no memory either.
+TEST(MediumCheckAllocation, NothingPerFrame) {
+  const std::vector<markers::DeclaredMarker> declared{{0, 4}};
+  const camera::CameraModel saline(test::small_calibration(), 0, 1.3345);
+  pipeline::PictureObservation view;
+  view.intrinsics_are_known = true;
+  view.camera = saline;
+  view.markers = {test::seen(0, {Eigen::Quaterniond(0, 1, 0, 0), {0, 0, 12}})};
+  view.markers[0].camera_from_marker.rotation =
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX())) * Eigen::Quaterniond(0, 1, 0, 0);
+  const auto corners_mm = markers::square_corners_mm(4);
+  for (std::size_t k = 0; k < 4; ++k)
+    view.markers[0].corners_px[k] =
+        saline.project(view.markers[0].camera_from_marker * corners_mm[k]).value();
+  pipeline::MediumCheck check(declared, 1.0, 1.0);
+  const long before = allocation_count;
+  for (int i = 0; i < 60; ++i) {
+    view.timestamp_ns = i * 100'000'000LL;
+    check.look(view);
+    if (check.wants_second_look()) check.look_again(view, view.markers);
+  }
+  EXPECT_EQ(allocation_count - before, 0);
+  EXPECT_GT(check.verdict().votes_for + check.verdict().votes_against, 0);
 }
 
 }  // namespace

@@ -87,6 +87,29 @@ TEST(Worker, AWaitEndsWithAMessageOrTheStop) {
   EXPECT_EQ(*worker.latest(), Numbers{7});
 }
 
+// Who waits for news is woken by it, by the end and by the time, whichever comes first.
+TEST(Worker, WakesWhoWaitsForNews) {
+  const auto far = [] { return NumberWorker::Clock::now() + std::chrono::hours(1); };
+  NumberWorker worker(Backlog::Lossless, [](NumberWorker::Inbox& inbox) {
+    while (const auto number = inbox.next()) {
+      if (*number < 0) throw std::out_of_range("no such number");
+      inbox.publish(Numbers{*number});
+    }
+  });
+  std::shared_ptr<const Numbers> known;
+  const auto soon = NumberWorker::Clock::now() + std::chrono::milliseconds(5);
+  EXPECT_EQ(worker.wait_for_other_than(known, soon), nullptr);
+  for (int number = 0; number < 2000; ++number) {  // a wake-up that is lost would wait for an hour
+    worker.post(number);
+    known = worker.wait_for_other_than(known, far());
+    ASSERT_EQ(*known, Numbers{number});
+  }
+  worker.post(-1);
+  EXPECT_EQ(worker.wait_for_other_than(known, far()), known);
+  EXPECT_TRUE(worker.has_ended());
+  EXPECT_THROW(std::rethrow_exception(worker.error()), std::out_of_range);
+}
+
 }  // namespace
 
 }  // namespace arthronaut::worker

@@ -1,0 +1,157 @@
+#include "navigation/pipeline/medium_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "navigation/camera/medium.h"
+#include "navigation/markers/planar_pose.h"
+#include "planning/files/format.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::pipeline {
+
+namespace {
+
+using markers::MarkerState;
+
+std::int64_t ns_from_s(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
+
+// Of air and fluid the one that is farther from the stated medium: what lies between is told from it best.
+double farther_from(double stated) {
+  return stated - camera::kAirIndex > camera::kSalineIndex - stated ? camera::kAirIndex
+                                                                    : camera::kSalineIndex;
+}
+
+// How far corners lie from those of a square, at best; infinite when no pose gives anything like them.
+double misfit_px(const camera::CameraModel& camera, const markers::Corners& corners_px, double size_mm) {
+  const auto poses = markers::solve_square(camera, corners_px, size_mm);
+  return poses ? poses->best.rms_px : HUGE_VAL;
+}
+
+// The marker is there, and its pose does not stand, or stands badly: what the wrong medium makes of most.
+bool is_strained(const markers::MarkerObservation& marker, double clean_px) {
+  if (marker.is_tracked()) return marker.rms_px > clean_px;
+  return marker.state == MarkerState::Covered || marker.state == MarkerState::Doubtful ||
+         marker.state == MarkerState::Ambiguous;
+}
+
+}  // namespace
+
+std::string reason_text(const MediumVerdict& verdict) {
+  if (verdict.fit != MediumFit::Contradicts) return "";
+  const std::string stated = camera::medium_to_text(verdict.stated_index);
+  return "the markers look as in " + camera::medium_to_text(verdict.other_index) + ", not as in " + stated +
+         files::format(" (corners fit to %.2f px, not %.2f)", verdict.other_rms_px, verdict.stated_rms_px) +
+         ": is the medium right?";
+}
+
+MediumCheck::MediumCheck(std::span<const markers::DeclaredMarker> declared, double refractive_index,
+                         double calibration_index, const MediumCheckOptions& options)
+    : options_(options),
+      calibration_index_(calibration_index),
+      declared_(declared.begin(), declared.end()),
+      next_vote_ns_(declared.size(), 0) {
+  for (const double index : {refractive_index, calibration_index})
+    if (!(index >= 0.9 && index <= 2)) throw InvalidInput("a refractive index must lie in [0.9, 2]");
+  verdict_.stated_index = refractive_index;
+  verdict_.other_index = farther_from(refractive_index);
+}
+
+void MediumCheck::look(const PictureObservation& view) {
+  wants_second_look_ = false;
+  if (!view.intrinsics_are_known || view.is_frozen) return;
+  if (!has_begun_) confirmed_ns_ = view.timestamp_ns;
+  has_begun_ = true;
+  now_ns_ = view.timestamp_ns;
+  bool is_any_strained = false;
+  for (std::size_t i = 0; i < declared_.size(); ++i) {
+    const markers::MarkerObservation& marker = view.markers[i];
+    is_any_strained |= is_strained(marker, options_.clean_px);
+    if (!marker.is_tracked() || now_ns_ < next_vote_ns_[i]) continue;
+    next_vote_ns_[i] = now_ns_ + ns_from_s(options_.vote_every_s);
+    vote(view.camera, marker, declared_[i].size_mm, true);
+  }
+  decide();
+  const double pause_s = score_ < 0 ? options_.follow_up_s : options_.look_every_s;
+  const bool is_unconfirmed = now_ns_ - confirmed_ns_ >= ns_from_s(options_.unconfirmed_s);
+  const bool is_rested = !has_looked_ || now_ns_ - looked_ns_ >= ns_from_s(pause_s);
+  wants_second_look_ = is_any_strained && is_unconfirmed && is_rested;
+}
+
+void MediumCheck::look_again(const PictureObservation& view, std::span<const markers::MarkerObservation> in_other_medium) {
+  wants_second_look_ = false;
+  has_looked_ = true;
+  looked_ns_ = view.timestamp_ns;
+  for (std::size_t i = 0; i < declared_.size() && i < in_other_medium.size(); ++i) {
+    // What stands well in the stated medium has its own vote; in the other one it leans towards that.
+    const markers::MarkerObservation& stated = view.markers[i];
+    if (stated.is_tracked() && stated.rms_px <= options_.clean_px) continue;
+    if (!in_other_medium[i].is_tracked() || in_other_medium[i].rms_px > options_.clean_px) continue;
+    vote(view.camera, in_other_medium[i], declared_[i].size_mm, false);
+  }
+  decide();
+}
+
+void MediumCheck::vote(const camera::CameraModel& stated, const markers::MarkerObservation& seen,
+                       double size_mm, bool may_be_for) {
+  const camera::CameraModel other = stated.in_medium(verdict_.other_index / calibration_index_);
+  const double stated_px = misfit_px(stated, seen.corners_px, size_mm);
+  const double other_px = misfit_px(other, seen.corners_px, size_mm);
+  const auto speaks_for = [&](double right_px, double wrong_px) {
+    return right_px <= options_.clean_px && wrong_px > options_.wrong_px &&
+           wrong_px > options_.least_ratio * right_px;
+  };
+  if (may_be_for && speaks_for(stated_px, other_px)) {
+    ++verdict_.votes_for;
+    score_ += options_.weight_for;
+    confirmed_ns_ = now_ns_;
+  } else if (speaks_for(other_px, stated_px)) {
+    ++verdict_.votes_against;
+    score_ -= options_.weight_against;
+    // What fits no square at all says no more than one that is 10 px off.
+    stated_square_ += std::pow(std::min(stated_px, 10.0), 2);
+    other_square_ += other_px * other_px;
+  }
+  score_ = std::clamp(score_, -options_.limit, options_.limit);
+}
+
+void MediumCheck::decide() {
+  if (verdict_.votes_against > 0) {
+    const auto count = static_cast<double>(verdict_.votes_against);
+    verdict_.stated_rms_px = std::sqrt(stated_square_ / count);
+    verdict_.other_rms_px = std::sqrt(other_square_ / count);
+  }
+  // Between the bounds a verdict stays: on the way from one to the other nothing is known.
+  if (score_ <= options_.contradicts_at)
+    verdict_.fit = MediumFit::Contradicts;
+  else if (score_ >= options_.fits_at)
+    verdict_.fit = MediumFit::Fits;
+  else if (verdict_.fit == MediumFit::Fits ? score_ < 0 : score_ > 0)
+    verdict_.fit = MediumFit::Unknown;
+}
+
+void MediumCheck::reset() {
+  std::fill(next_vote_ns_.begin(), next_vote_ns_.end(), 0);
+  now_ns_ = confirmed_ns_ = looked_ns_ = 0;
+  has_begun_ = has_looked_ = wants_second_look_ = false;
+  score_ = 0;
+  stated_square_ = other_square_ = 0;
+  MediumVerdict fresh;
+  fresh.stated_index = verdict_.stated_index;
+  fresh.other_index = verdict_.other_index;
+  verdict_ = fresh;
+}
+
+SecondLook::SecondLook(std::span<const markers::DeclaredMarker> declared, double other_index,
+                       double calibration_index)
+    : index_ratio_(other_index / calibration_index), tracker_(markers::make_tracker(declared)) {}
+
+std::span<const markers::MarkerObservation> SecondLook::look(const camera::Frame& frame,
+                                                             const camera::CameraModel& camera) {
+  camera::gray_from(frame, gray_);
+  tracker_->reset();
+  return tracker_->track({gray_.data(), frame.width, frame.height, frame.width},
+                         camera.in_medium(index_ratio_), frame.timestamp_ns);
+}
+
+}  // namespace arthronaut::pipeline
