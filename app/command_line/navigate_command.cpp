@@ -14,6 +14,7 @@
 #include "planning/cases/case_lock.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
+#include "planning/landmarks/anatomical_axes.h"
 
 namespace arthronaut::command_line {
 
@@ -137,6 +138,10 @@ theatre::NavigateOptions navigate_options(const Context& context, const Navigate
   if (fit.outcome == cases::PlanFit::Outcome::OtherMesh) context.say("plan: not used: " + fit.reason);
   if (const auto plan = knee.plan.tunnels.find(bone); plan != knee.plan.tunnels.end() && fit.is_valid())
     options.operation.plan = {plan->second, tunnels::measure(plan->second, *surface).length_mm};
+  const auto landmarks = knee.landmarks.find(bone);
+  options.source.pipeline.axes = landmarks::anatomical_axes(
+      bone, knee.side, landmarks != knee.landmarks.end() ? landmarks->second : landmarks::Landmarks(),
+      found->second.mesh);
   options.registration = known_registration(context, arguments, options);
   return options;
 }

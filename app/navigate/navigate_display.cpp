@@ -30,6 +30,11 @@ void explain(NavigateDisplay& display, const operation::OperationState& state) {
     display.detail = "The source sends the same picture again and again: check cable and camera";
     return;
   }
+  if (state.medium.fit == pipeline::MediumFit::Contradicts) {
+    display.headline = "Wrong medium";
+    display.detail = pipeline::reason_text(state.medium);
+    return;
+  }
   using operation::Standing;
   const Standing standing = registration.in_force.standing;
   if (standing == Standing::Alarm) return tell(display, trouble_of(registration));
@@ -46,6 +51,9 @@ void explain(NavigateDisplay& display, const operation::OperationState& state) {
     case GuidanceState::NoPlan:
       display.headline = "No plan";
       display.detail = "Plan the tunnel of this bone first";
+      break;
+    case GuidanceState::WrongMedium:  // told above; a record may say it alone
+      display.headline = "Wrong medium";
       break;
     case GuidanceState::NoGuide:
       display.headline = "No drill guide";

@@ -4,6 +4,7 @@
 #include "navigation/camera/medium.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "planning/geometry/error.h"
+#include "planning/landmarks/anatomical_axes.h"
 
 namespace arthronaut::navigate {
 
@@ -15,6 +16,12 @@ std::string guide_name_of(bones::BoneKind bone) {
   return bone == bones::BoneKind::Femur ? "femoral guide" : "tibial guide";
 }
 
+const landmarks::Landmarks& landmarks_of(const cases::Case& knee, bones::BoneKind bone) {
+  static const landmarks::Landmarks kNone;
+  const auto found = knee.landmarks.find(bone);
+  return found == knee.landmarks.end() ? kNone : found->second;
+}
+
 theatre::TheatreSource source_of(const open_case::PlanModel& model, bones::BoneKind bone,
                                  sources::SourceKind kind) {
   theatre::TheatreSource source;
@@ -22,13 +29,9 @@ theatre::TheatreSource source_of(const open_case::PlanModel& model, bones::BoneK
   source.setup.pipeline.bone = bone;
   source.setup.pipeline.side = model.knee().side;
   source.setup.pipeline.guide_name = guide_name_of(bone);
+  source.setup.pipeline.axes = landmarks::anatomical_axes(
+      bone, model.knee().side, landmarks_of(model.knee(), bone), model.knee().bones.at(bone).mesh);
   return source;
-}
-
-const landmarks::Landmarks& landmarks_of(const cases::Case& knee, bones::BoneKind bone) {
-  static const landmarks::Landmarks kNone;
-  const auto found = knee.landmarks.find(bone);
-  return found == knee.landmarks.end() ? kNone : found->second;
 }
 
 phantom::PhantomKnee phantom_of(const cases::Case& knee) {

@@ -154,6 +154,8 @@ std::string_view to_text(GuidanceState state) {
       return "pose too old";
     case GuidanceState::NoGuide:
       return "no drill guide with an axis";
+    case GuidanceState::WrongMedium:
+      return "wrong medium";
   }
   return "unknown";
 }

@@ -27,6 +27,7 @@ enum class GuidanceState {
   LensStale,
   Stale,    // the newest pose is too old
   NoGuide,  // the tools hold no such guide, or it has no axis
+  WrongMedium,  // the pictures contradict the medium that is said to be before the lens
 };
 [[nodiscard]] std::string_view to_text(GuidanceState state);
 

@@ -44,11 +44,16 @@ void Operation::start_source(const SourceSetup& source) {
   p.pipeline = std::move(pipeline);
   p.source = std::make_shared<const SourceSetup>(source);
   p.has_source = true;
+  const std::vector<markers::DeclaredMarker> declared = markers::declared_markers(source.pipeline.tools);
+  const double calibration_index = source.pipeline.calibration.refractive_index;
+  p.medium.emplace(declared, source.pipeline.refractive_index, calibration_index);
+  p.second_look.emplace(declared, p.medium->other_index(), calibration_index);
   p.frame = {};
   p.frame_count = 0;
   p.tip.clear();
-  p.meter = {};
+  p.evidence = p.plan ? std::optional<guidance::DrillEvidence>(p.plan->tunnel) : std::nullopt;
   p.drilled = {};
+  p.evidence_is_seen = false;
   p.touch_refusal = TouchRefusal::None;
   p.world_was_seen = p.guide_was_seen = false;
   p.control_touched_ns = 0;  // of another clock
@@ -62,9 +67,8 @@ void Operation::start_source(const SourceSetup& source) {
     p.set_aside_count += p.strokes.points().size();
     p.clear_strokes();
   }
-  const RegistrationPtr in_force = p.ledger.in_force().registration;
-  p.pipeline->set_registration(in_force != nullptr ? std::optional(*in_force) : std::nullopt);
-  if (in_force != nullptr) p.note_in_force(true);
+  p.hand_registration();
+  if (p.ledger.in_force().registration != nullptr) p.note_in_force(true);
   p.followed_change = p.ledger.change_count();
   p.follow_ledger();
   p.draws = source.draws && p.ledger.in_force().standing != Standing::Stands;
@@ -80,6 +84,7 @@ void Operation::end_source() {
 
 void Operation::process(const camera::Frame& frame) {
   parts_->pipeline->process(frame, parts_->frame);
+  parts_->check_medium(frame);
   parts_->take_frame();
 }
 
@@ -147,7 +152,8 @@ OperationStatePtr Operation::state() {
   state->plan_was_edited = p.offered.has_value();
   state->depth_stop_mm = p.depth_stop_mm;
   state->drilled = p.drilled;
-  state->drilled.has_evidence = p.plan && p.meter.has_evidence();
+  state->drilled.has_evidence = p.evidence_is_seen;
+  if (p.medium) state->medium = p.medium->verdict();
   state->next_action = next_action_of(*state);
   state->step = step_of(state->next_action);
   return state;

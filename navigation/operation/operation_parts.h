@@ -2,14 +2,17 @@
 // operation_rules.cpp (what follows from it).
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "navigation/guidance/drill_evidence.h"
+#include "navigation/guidance/registration_bias.h"
 #include "navigation/operation/operation.h"
-#include "navigation/operation/tunnel_meter.h"
+#include "navigation/pipeline/medium_check.h"
 
 namespace arthronaut::operation {
 
@@ -36,6 +39,7 @@ struct Operation::Parts {
   }
 
   void follow_ledger();
+  void hand_registration();
   void note_in_force(bool is_given);
   void note_plan() {
     JournalEntry entry = entry_of(JournalKind::Plan, "");
@@ -43,6 +47,7 @@ struct Operation::Parts {
     note(std::move(entry));
   }
   void set_plan(const std::optional<PlannedTunnel>& next);
+  void check_medium(const camera::Frame& picture);
   void take_frame();
   void draw_tip();
   void watch_marker();
@@ -55,6 +60,7 @@ struct Operation::Parts {
   [[nodiscard]] std::optional<std::size_t> guide_in_view() const;
   [[nodiscard]] ControlPointDue control_point_due() const;
   [[nodiscard]] Verification verification() const;
+  [[nodiscard]] std::optional<guidance::RegistrationBias> bias() const;
   [[nodiscard]] RegistrationStatePtr registration_state();
 
   void apply(const Draw& draw) { draws = has_source && draw.on; }
@@ -121,7 +127,13 @@ struct Operation::Parts {
   std::int64_t touch_asked_ns = 0;
   std::int64_t world_seen_ns = 0, control_touched_ns = 0;
   bool world_was_seen = false, was_lost_for_long = false, guide_was_seen = false;
-  TunnelMeter meter;
+  std::optional<guidance::DrillEvidence> evidence;  // of the plan in force
+  bool evidence_is_seen = false;
+  int frames_since_evidence = 0;
+  std::optional<pipeline::MediumCheck> medium;  // of the source
+  std::optional<pipeline::SecondLook> second_look;
+  // How the registration that strokes give follows the errors of probe and camera; by stroke.
+  std::map<int, guidance::BiasSums> bias_of_stroke;
   DrilledState drilled;
   std::optional<double> depth_stop_mm;
 

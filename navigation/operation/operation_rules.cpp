@@ -37,14 +37,23 @@ void Operation::Parts::note_in_force(bool is_given) {
   note(std::move(entry));
 }
 
+// With what its strokes have in common with all that is measured by it. What came from elsewhere has none
+// that is known here.
+void Operation::Parts::hand_registration() {
+  const RegistrationPtr& in_force = ledger.in_force().registration;
+  if (in_force == nullptr) return pipeline->set_registration(std::nullopt);
+  const RegistrationOrigin origin = (*ledger.entries())[*ledger.entry_in_force()].origin;
+  const bool is_of_strokes =
+      origin == RegistrationOrigin::WhileDrawing || origin == RegistrationOrigin::AllStrokes;
+  pipeline->set_registration(*in_force, is_of_strokes ? bias() : std::nullopt);
+}
+
 // What is in force guides from the next frame on; what is not any more does not guide in it.
 void Operation::Parts::follow_ledger() {
   const RegistrationInForce& in_force = ledger.in_force();
   if (ledger.change_count() != followed_change) {
     followed_change = ledger.change_count();
-    if (pipeline != nullptr)
-      pipeline->set_registration(in_force.registration != nullptr ? std::optional(*in_force.registration)
-                                                                  : std::nullopt);
+    if (pipeline != nullptr) hand_registration();
     if (in_force.registration != nullptr) {
       const RegistrationOrigin origin = (*ledger.entries())[*ledger.entry_in_force()].origin;
       note_in_force(origin == RegistrationOrigin::Given || origin == RegistrationOrigin::Resumed);
@@ -68,7 +77,8 @@ void Operation::Parts::follow_ledger() {
 
 void Operation::Parts::set_plan(const std::optional<PlannedTunnel>& next) {
   plan = next;
-  meter = {};  // what was seen of the guide was relative to another plan
+  // What was seen of the guide was relative to another plan.
+  evidence = plan ? std::optional<guidance::DrillEvidence>(plan->tunnel) : std::nullopt;
   if (pipeline != nullptr)
     pipeline->set_plan(plan ? std::optional(plan->tunnel) : std::nullopt, plan ? plan->length_mm : 0);
   note_plan();
@@ -96,7 +106,43 @@ void Operation::Parts::draw_tip() {
   if (!draws || !frame.tip_is_valid) return;
   if (strokes.points().empty()) strokes_of = ledger.now();
   const double time_s = static_cast<double>(frame.timestamp_ns) * 1e-9;
-  ask(DrawnPoint{strokes.add(time_s, frame.tip_in_world_mm, frame.shaft_in_world)});
+  const strokes::CurvePoint* const before = strokes.points().empty() ? nullptr : &strokes.points().back();
+  const int curve_before = before != nullptr ? before->curve : -1;
+  const Eigen::Vector3d at_before = before != nullptr ? before->position_mm : frame.tip_in_world_mm;
+  const strokes::CurvePoint point = strokes.add(time_s, frame.tip_in_world_mm, frame.shaft_in_world);
+  // A point counts as much as the stroke that it stands for, as it does in the fit.
+  const double step_mm = point.curve == curve_before ? (point.position_mm - at_before).norm() : 0;
+  if (step_mm > 0) bias_of_stroke[point.curve].add(frame.tip_sensitivity, step_mm);
+  ask(DrawnPoint{point});
+}
+
+// Of the strokes in use now: what a registration found from them follows.
+std::optional<guidance::RegistrationBias> Operation::Parts::bias() const {
+  guidance::BiasSums sums;
+  for (const auto& [curve, of_stroke] : bias_of_stroke)
+    if (strokes.uses(curve)) sums += of_stroke;
+  return sums.empty() ? std::nullopt : std::optional(sums.bias());
+}
+
+// In the wrong medium nothing that is reckoned from the pictures stands; the reason is the medium, not the
+// markers.
+void Operation::Parts::check_medium(const camera::Frame& picture) {
+  if (!medium) return;
+  const pipeline::MediumFit before = medium->verdict().fit;
+  medium->look(frame);
+  if (medium->wants_second_look()) medium->look_again(frame, second_look->look(picture, frame.camera));
+  if (medium->verdict().fit != before) {
+    changed = true;
+    if (medium->verdict().fit == pipeline::MediumFit::Contradicts)
+      note(JournalKind::Note, pipeline::reason_text(medium->verdict()));
+  }
+  if (medium->verdict().fit != pipeline::MediumFit::Contradicts) return;
+  frame.camera_from_world.is_valid = frame.tip_is_valid = frame.intrinsics_are_known = false;
+  for (pipeline::ToolPose& tool : frame.tools) tool.world_from_tool.is_valid = false;
+  const std::int64_t timestamp_ns = frame.guidance.timestamp_ns;
+  frame.guidance = {};
+  frame.guidance.timestamp_ns = timestamp_ns;
+  frame.guidance.state = guidance::GuidanceState::WrongMedium;
 }
 
 void Operation::Parts::watch_marker() {
@@ -112,8 +158,13 @@ void Operation::Parts::watch_guidance() {
   const bool guide_is_seen = guide_in_view().has_value();
   if (guide_is_seen && !guide_was_seen) changed = true;
   guide_was_seen = guide_was_seen || guide_is_seen;
+  if (evidence) evidence->add(frame.guidance);
+  // Summing it up costs more than a frame should: twice a second is soon enough to be asked.
+  if (++frames_since_evidence >= kFramesBetweenLooks) {
+    frames_since_evidence = 0;
+    evidence_is_seen = evidence && evidence->summary().is_usable();
+  }
   if (!frame.guidance.is_valid()) return;
-  meter.add(frame.guidance);
   if (verification() == Verification::NotYet) skip_verification("guidance began without one");
 }
 
@@ -154,6 +205,7 @@ void Operation::Parts::register_strokes() {
 
 void Operation::Parts::clear_strokes() {
   strokes.clear();
+  bias_of_stroke.clear();
   ask(StrokesCleared{});
   strokes_changed();
   online.reset();
@@ -187,15 +239,32 @@ void Operation::Parts::apply(const OfferPlan& offer) {
     set_plan(offer.plan);
 }
 
+// That a tunnel was drilled is the surgeon's word; where it runs is what was seen meanwhile, or not known.
 void Operation::Parts::apply(const TunnelDrilled&) {
+  drilled = {};
   drilled.outcome = DrilledState::Outcome::NoEvidence;
-  if (!plan) return;
-  drilled.tunnel = meter.measured(plan->tunnel);
-  if (!drilled.tunnel) return;
+  if (!evidence) return;
+  const guidance::DrillEvidenceSummary seen = evidence->summary();
+  drilled.evidence = seen.outcome;
+  if (!seen.is_usable())
+    return note(JournalKind::Note,
+                "drilled, by the surgeon's word; " + std::string(guidance::to_text(seen.outcome)));
+  AchievedTunnel tunnel;
+  tunnel.planned = plan->tunnel;
+  tunnel.measured = plan->tunnel;  // bone and diameter: the drill is the planned one
+  tunnel.measured.entry_mm = seen.entry_mm;
+  tunnel.measured.direction = seen.direction;
+  tunnel.depth_mm = depth_stop_mm.value_or(seen.depth_mm);
+  tunnel.timestamp_ns = seen.timestamp_ns;
+  tunnel.pose_count = seen.pose_count;
+  tunnel.sigma_offset_mm = seen.sigma_offset_mm;
+  tunnel.sigma_angle_deg = seen.sigma_angle_deg;
   drilled.outcome = DrilledState::Outcome::Recorded;
-  if (depth_stop_mm) drilled.tunnel->depth_mm = *depth_stop_mm;
+  drilled.tunnel = tunnel;
+  evidence->clear();
+  evidence_is_seen = false;
   JournalEntry entry = entry_of(JournalKind::Drilled, "");
-  entry.achieved = drilled.tunnel;
+  entry.achieved = tunnel;
   note(std::move(entry));
 }
 

@@ -9,10 +9,12 @@
 #include <string_view>
 #include <vector>
 
+#include "navigation/guidance/drill_evidence.h"
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/operation/command.h"
 #include "navigation/operation/registration_ledger.h"
 #include "navigation/operation/stroke_book.h"
+#include "navigation/pipeline/medium_check.h"
 #include "navigation/pipeline/navigation_pipeline.h"
 
 namespace arthronaut::operation {
@@ -89,6 +91,7 @@ enum class NextAction {
 struct DrilledState {
   enum class Outcome { NotSaid, Recorded, NoEvidence } outcome = Outcome::NotSaid;
   bool has_evidence = false;  // the guide was seen where it must be while a tunnel is drilled
+  guidance::EvidenceOutcome evidence = guidance::EvidenceOutcome::NoGuidance;  // why it is not known
   std::optional<AchievedTunnel> tunnel;
 };
 
@@ -110,6 +113,7 @@ struct OperationState {
   std::optional<PlannedTunnel> plan;                // in force
   bool plan_was_edited = false;                     // another one is offered and not taken over
   std::optional<double> depth_stop_mm;
+  pipeline::MediumVerdict medium;  // whether the pictures fit the medium in force
   DrilledState drilled;
   Step step = Step::Plan;
   NextAction next_action = NextAction::PlanTunnel;
