@@ -1,10 +1,10 @@
-#include "app/navigate/tunnel_meter.h"
+#include "navigation/operation/tunnel_meter.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-namespace arthronaut::navigate {
+namespace arthronaut::operation {
 namespace {
 
 tunnels::Tunnel plan() {
@@ -57,4 +57,4 @@ TEST(TunnelMeter, NothingUnlessTheGuideStoodOnTheBone) {
 }
 
 }  // namespace
-}  // namespace arthronaut::navigate
+}  // namespace arthronaut::operation
