@@ -125,7 +125,8 @@ TEST(ToolChoices, Hazard6AnAdoptedAxisKeepsItsEndAndItsError) {
   result.axis.axis_direction_in_tool = -Eigen::Vector3d::UnitY();
   result.axis.point_sigma_mm = 0.03;
   result.axis.direction_sigma_deg = 0.1;
-  const tools::ToolSet changed = with_result(tools::standard_tools(), "femoral guide", result);
+  const tools::ToolSet changed = with_result(tools::standard_tools(), "femoral guide", result,
+                                             {provenance::Origin::Measured, "2026-11-21T10:00:00Z"});
   const tools::Tool& guide = *changed.find_tool("femoral guide");
   EXPECT_LT((guide.axis->point_mm - Eigen::Vector3d(0.2, -24, -3.1)).norm(), 1e-12);
   EXPECT_EQ(guide.axis_direction_sigma_deg, 0.1);
