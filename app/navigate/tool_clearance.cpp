@@ -11,6 +11,7 @@ namespace {
 constexpr double kTipClearance_px = 45;  // of 1080 lines: what is drawn keeps this far from a tool's tip
 // Instruments for the joint pass a cannula of 5 to 6 mm; the files do not say how thick each is.
 constexpr double kShaftRadius_mm = 2.8, kShaftLength_mm = 70, kStep_mm = 1.4;
+constexpr double kNearest_mm = 1;     // in front of the lens
 constexpr double kMostOfView = 0.16;  // of the view's radius: the width that one disc covers at most
 
 struct Shaft {
@@ -41,8 +42,8 @@ struct Width {
 
 std::optional<Width> width_of(const camera::CameraModel& camera, const Eigen::Vector3d& middle_mm,
                               const Eigen::Vector3d& axis) {
-  constexpr int kPlaces = 8;                                     // on each side of the middle
-  if (middle_mm.z() < 2 * kShaftRadius_mm) return std::nullopt;  // the camera stands in it, or sees past it
+  constexpr int kPlaces = 8;                             // on each side of the middle
+  if (middle_mm.z() < kNearest_mm) return std::nullopt;  // beside the lens or behind it
   Eigen::Vector3d across = axis.cross(middle_mm);
   across = across.norm() > 1e-6 ? across.normalized() : axis.unitOrthogonal();
   std::optional<Eigen::Vector2d> first, last;
@@ -84,8 +85,12 @@ std::vector<scene::ClearDisc> clear_discs_of(const pipeline::FrameResult& result
       if (const auto tip = result.camera.project(end); tip && is_near_view(result.camera, *tip))
         discs.push_back({*tip, tip_radius_px});
       std::optional<Width> before;
-      for (double along = 0; along <= kShaftLength_mm; along += kStep_mm) {
-        const auto width = width_of(result.camera, end + along * backwards, backwards);
+      double along = 0;
+      while (along <= kShaftLength_mm) {
+        const Eigen::Vector3d middle = end + along * backwards;
+        // Near the lens a step is wide in the picture.
+        along += kStep_mm * std::clamp(middle.z() / 15, 0.15, 1.0);
+        const auto width = width_of(result.camera, middle, backwards);
         if (width) add_discs(discs, *width, before, most_px);
         before = width;
       }
