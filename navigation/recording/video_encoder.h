@@ -2,8 +2,8 @@
 //
 // Luma is kept bit for bit: the plane that camera::gray_from() gives, in full range, so that tracking the
 // file again gives the same poses. Colour is for the eye: half the resolution, in steps of four grey values.
-// Every picture is a key frame. FFV1 takes three to four times the time, lossless H.264 twice, at 0.7 to 0.95
-// of the size (docs/benchmarks.md).
+// Every picture is a key frame. FFV1 takes four to five times the time and lossless H.264 twice, at 0.6 to
+// 0.95 of the size (docs/benchmarks.md).
 #pragma once
 
 #include <filesystem>
