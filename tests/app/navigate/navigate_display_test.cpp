@@ -4,48 +4,72 @@
 
 #include <Eigen/Geometry>
 
+#include "app/navigate/theatre_bones.h"
+
 namespace arthronaut::navigate {
 namespace {
 
-using Phase = OperationStatus::Phase;
+using Phase = theatre::LiveState::Phase;
 using guidance::GuidanceState;
+using operation::Standing;
 
 constexpr double kNow_s = 100;
 
-pipeline::PipelineOptions options() {
-  pipeline::PipelineOptions options;
-  options.tools = tools::standard_tools();
-  return options;
-}
+// What the screen reads, to be changed by a test: a running operation whose newest frame is 20 ms old and
+// fully valid, with a registration that stands.
+struct Shown {
+  theatre::LiveState live;
+  operation::OperationState operation;
+  operation::SourceSetup source;
+  operation::RegistrationState registration;
 
-// A running operation whose newest frame is 20 ms old and fully valid.
-OperationStatus valid_status() {
-  auto live = std::make_shared<LiveFrame>();
-  live->picture = std::make_shared<camera::Frame>();
-  live->published_s = kNow_s - 0.02;
-  live->result.intrinsics_are_known = true;
-  live->result.camera_from_world.is_valid = true;
-  live->result.guidance.state = GuidanceState::Valid;
-  live->result.guidance.angle_deg = 1.5;
-  OperationStatus status;
-  status.phase = Phase::Running;
-  status.live = live;
-  return status;
-}
+  Shown() {
+    live.phase = Phase::Running;
+    live.picture = std::make_shared<camera::Frame>();
+    live.captured_s = kNow_s - 0.02;
+    live.stale_after_s = 0.1;
+    source.kind = sources::SourceKind::Live;
+    source.pipeline.tools = tools::standard_tools();
+    operation.has_source = true;
+    operation.frame_count = 1;
+    operation.frame.intrinsics_are_known = true;
+    operation.frame.camera_from_world.is_valid = true;
+    operation.frame.guidance.state = GuidanceState::Valid;
+    operation.frame.guidance.angle_deg = 1.5;
+    stand(Standing::Stands, {});
+  }
+  void stand(Standing standing, std::vector<std::string> reasons) {
+    auto summary = std::make_shared<registration::RegistrationSummary>();
+    summary->has_pose = true;
+    summary->reliable = standing == Standing::Stands;
+    summary->reasons = std::move(reasons);
+    registration.in_force.standing = standing;
+    registration.in_force.registration = standing == Standing::None ? nullptr : std::move(summary);
+  }
+  [[nodiscard]] theatre::LiveState whole() const {
+    operation::OperationState state = operation;
+    state.source = std::make_shared<const operation::SourceSetup>(source);
+    state.registration = std::make_shared<const operation::RegistrationState>(registration);
+    theatre::LiveState whole = live;
+    whole.operation = std::make_shared<const operation::OperationState>(state);
+    return whole;
+  }
+  [[nodiscard]] NavigateDisplay display() const {
+    const theatre::LiveState state = whole();
+    return display_of(&state, kNow_s);
+  }
+};
 
 template <typename Change>
 NavigateDisplay display_after(const Change& change) {
-  OperationStatus status = valid_status();
-  auto live = std::make_shared<LiveFrame>(*status.live);
-  change(status, *live);
-  if (status.live != nullptr) status.live = live;
-  const pipeline::PipelineOptions o = options();
-  return display_of(&status, &o, kNow_s);
+  Shown shown;
+  change(shown);
+  return shown.display();
 }
 
 // All is well: everything may be drawn and no reason stands anywhere.
 TEST(NavigateDisplay, ShowsWhatIsValid) {
-  const NavigateDisplay display = display_after([](OperationStatus&, LiveFrame&) {});
+  const NavigateDisplay display = display_after([](Shown&) {});
   EXPECT_TRUE(display.is_live && display.overlay_is_valid && display.guidance_is_valid);
   EXPECT_TRUE(display.headline.empty());
   EXPECT_EQ(display.guidance.angle_deg, 1.5);
@@ -58,7 +82,7 @@ TEST(NavigateDisplay, EveryInvalidStateHidesTheNumbersAndSaysWhy) {
         GuidanceState::WorldMarkerLost, GuidanceState::GuideLost, GuidanceState::LensStale,
         GuidanceState::Stale, GuidanceState::NoGuide}) {
     const NavigateDisplay display =
-        display_after([&](OperationStatus&, LiveFrame& live) { live.result.guidance.state = state; });
+        display_after([&](Shown& shown) { shown.operation.frame.guidance.state = state; });
     EXPECT_FALSE(display.guidance_is_valid) << to_text(state);
     EXPECT_FALSE(display.headline.empty()) << to_text(state);
     EXPECT_EQ(display.guidance.angle_deg, 0) << "a number of the frame leaked";
@@ -67,21 +91,19 @@ TEST(NavigateDisplay, EveryInvalidStateHidesTheNumbersAndSaysWhy) {
 
 // A pose that does not stand takes the overlay with it, even where guidance claims to be valid.
 TEST(NavigateDisplay, OverlayNeedsThePoseOfThisFrame) {
-  const auto lost = display_after(
-      [](OperationStatus&, LiveFrame& live) { live.result.camera_from_world.is_valid = false; });
+  const auto lost =
+      display_after([](Shown& shown) { shown.operation.frame.camera_from_world.is_valid = false; });
   EXPECT_FALSE(lost.overlay_is_valid || lost.guidance_is_valid);
-  const auto lens =
-      display_after([](OperationStatus&, LiveFrame& live) { live.result.intrinsics_are_known = false; });
+  const auto lens = display_after([](Shown& shown) { shown.operation.frame.intrinsics_are_known = false; });
   EXPECT_FALSE(lens.overlay_is_valid || lens.guidance_is_valid);
-  const auto frozen = display_after([](OperationStatus&, LiveFrame& live) { live.result.is_frozen = true; });
+  const auto frozen = display_after([](Shown& shown) { shown.operation.frame.is_frozen = true; });
   EXPECT_FALSE(frozen.overlay_is_valid || frozen.guidance_is_valid);
   EXPECT_EQ(frozen.headline, "Picture frozen");
 }
 
 // A worker that hangs must not leave its last picture standing as live.
 TEST(NavigateDisplay, AnOldPictureIsNotLive) {
-  const NavigateDisplay display =
-      display_after([](OperationStatus&, LiveFrame& live) { live.published_s = kNow_s - 2; });
+  const NavigateDisplay display = display_after([](Shown& shown) { shown.live.captured_s = kNow_s - 2; });
   EXPECT_TRUE(display.has_picture);
   EXPECT_FALSE(display.is_live || display.overlay_is_valid || display.guidance_is_valid);
   EXPECT_EQ(display.headline, "No new picture for 2.0 s");
@@ -89,25 +111,22 @@ TEST(NavigateDisplay, AnOldPictureIsNotLive) {
 
 // The end of a source and a failure are said, and nothing of them is live.
 TEST(NavigateDisplay, EndAndFailureAreNotLive) {
-  const auto ended = display_after([](OperationStatus& status, LiveFrame&) { status.phase = Phase::Ended; });
+  const auto ended = display_after([](Shown& shown) { shown.live.phase = Phase::Ended; });
   EXPECT_TRUE(ended.has_picture);
   EXPECT_FALSE(ended.is_live || ended.guidance_is_valid || ended.overlay_is_valid);
-  const auto failed = display_after([](OperationStatus& status, LiveFrame&) {
-    status.phase = Phase::Failed;
-    status.message = "clip.mkv: frame 12 is cut off";
+  const auto failed = display_after([](Shown& shown) {
+    shown.live.phase = Phase::Failed;
+    shown.live.message = "clip.mkv: frame 12 is cut off";
   });
   EXPECT_FALSE(failed.has_picture);
   EXPECT_EQ(failed.detail, "clip.mkv: frame 12 is cut off");
-  EXPECT_FALSE(display_of(nullptr, nullptr, kNow_s).has_picture);
+  EXPECT_FALSE(display_of(nullptr, kNow_s).has_picture);
 }
 
 // An alarm hides everything from this moment on, even in a frame that was computed before it.
 TEST(NavigateDisplay, AnAlarmDropsGuidanceAtOnce) {
-  const auto display = display_after([](OperationStatus& status, LiveFrame&) {
-    RegistrationStatus bone;
-    bone.alarm = "the control point has moved by 2.1 mm";
-    status.bone = std::make_shared<const RegistrationStatus>(bone);
-  });
+  const auto display = display_after(
+      [](Shown& shown) { shown.stand(Standing::Alarm, {"the control point has moved by 2.1 mm"}); });
   EXPECT_TRUE(display.is_live);
   EXPECT_FALSE(display.overlay_is_valid || display.guidance_is_valid);
   EXPECT_EQ(display.headline, "World marker may have moved");
@@ -129,10 +148,10 @@ TEST(NavigateDisplay, SaysWhatIsWrongWithTheLens) {
   }
   lens.zoom_or_slip = true;
   EXPECT_NE(trouble_of(lens).headline.find("coupler"), std::string::npos);
-  const auto display = display_after([&](OperationStatus&, LiveFrame& live) {
-    live.result.intrinsics_are_known = false;
-    live.result.guidance.state = GuidanceState::LensStale;
-    live.result.lens = lens;
+  const auto display = display_after([&](Shown& shown) {
+    shown.operation.frame.intrinsics_are_known = false;
+    shown.operation.frame.guidance.state = GuidanceState::LensStale;
+    shown.operation.frame.lens = lens;
   });
   EXPECT_EQ(display.headline, trouble_of(lens).headline);
   EXPECT_EQ(display.detail, trouble_of(lens).advice);
@@ -142,29 +161,27 @@ TEST(NavigateDisplay, SaysWhatIsWrongWithTheLens) {
 // guide that was seen a moment ago keeps it.
 TEST(NavigateDisplay, TheLayoutFollowsWhatIsDone) {
   constexpr double kLongAgo = 1e9;
-  EXPECT_EQ(layout_of(nullptr, kLongAgo), NavigateLayout::Guide);
-  OperationStatus status = valid_status();
-  status.digitises = true;
-  EXPECT_EQ(layout_of(&status, kLongAgo), NavigateLayout::Register);
-  EXPECT_EQ(layout_of(&status, 0.5), NavigateLayout::Guide);
-  auto registration = std::make_shared<registration::RegistrationSummary>();
-  registration->has_pose = registration->reliable = true;
-  RegistrationStatus bone;
-  bone.in_force = registration;
-  status.bone = std::make_shared<const RegistrationStatus>(bone);
-  EXPECT_EQ(layout_of(&status, kLongAgo), NavigateLayout::Register) << "the probe still draws";
-  status.digitises = false;
-  EXPECT_EQ(layout_of(&status, kLongAgo), NavigateLayout::Guide);
+  EXPECT_EQ(layout_of(*TheatreBones::nothing(), kLongAgo), NavigateLayout::Guide);
+  Shown shown;
+  shown.stand(Standing::None, {});
+  shown.operation.draws = true;
+  EXPECT_EQ(layout_of(shown.whole(), kLongAgo), NavigateLayout::Register);
+  EXPECT_EQ(layout_of(shown.whole(), 0.5), NavigateLayout::Guide);
+  shown.stand(Standing::Stands, {});
+  EXPECT_EQ(layout_of(shown.whole(), kLongAgo), NavigateLayout::Register) << "the probe still draws";
+  shown.operation.draws = false;
+  EXPECT_EQ(layout_of(shown.whole(), kLongAgo), NavigateLayout::Guide);
 }
 
 // Before there is a registration the lost marker is what keeps one from being made, so it is said first.
 TEST(NavigateDisplay, ALostMarkerIsSaidBeforeAMissingRegistration) {
-  const auto display = display_after([](OperationStatus&, LiveFrame& live) {
-    live.result.guidance.state = GuidanceState::NoRegistration;
-    live.result.camera_from_world.is_valid = false;
-    live.result.markers.resize(1);
-    live.result.markers[0].id = 0;
-    live.result.markers[0].state = markers::MarkerState::Covered;
+  const auto display = display_after([](Shown& shown) {
+    shown.stand(Standing::None, {});
+    shown.operation.frame.guidance.state = GuidanceState::NoRegistration;
+    shown.operation.frame.camera_from_world.is_valid = false;
+    shown.operation.frame.markers.resize(1);
+    shown.operation.frame.markers[0].id = 0;
+    shown.operation.frame.markers[0].state = markers::MarkerState::Covered;
   });
   EXPECT_EQ(display.headline, "Bone marker lost");
   EXPECT_EQ(display.detail, std::string(markers::to_text(markers::MarkerState::Covered)));
@@ -172,11 +189,11 @@ TEST(NavigateDisplay, ALostMarkerIsSaidBeforeAMissingRegistration) {
 
 // The reason names what the tracker said about the marker that is missing.
 TEST(NavigateDisplay, NamesTheReasonOfTheMarker) {
-  const NavigateDisplay display = display_after([](OperationStatus&, LiveFrame& live) {
-    live.result.guidance.state = GuidanceState::GuideLost;
-    live.result.markers.resize(1);
-    live.result.markers[0].id = 3;
-    live.result.markers[0].state = markers::MarkerState::Glare;
+  const NavigateDisplay display = display_after([](Shown& shown) {
+    shown.operation.frame.guidance.state = GuidanceState::GuideLost;
+    shown.operation.frame.markers.resize(1);
+    shown.operation.frame.markers[0].id = 3;
+    shown.operation.frame.markers[0].state = markers::MarkerState::Glare;
   });
   EXPECT_EQ(display.headline, "Drill guide lost");
   EXPECT_EQ(display.detail, std::string(markers::to_text(markers::MarkerState::Glare)));
@@ -184,19 +201,60 @@ TEST(NavigateDisplay, NamesTheReasonOfTheMarker) {
 
 // A tool set without the guide, and a guide whose axis nobody knows, are said as such.
 TEST(NavigateDisplay, Hazard11AMissingGuideIsSaidInItsOwnWords) {
-  const auto no_guide = [](OperationStatus&, LiveFrame& live) {
-    live.result.guidance.state = GuidanceState::NoGuide;
-  };
+  const auto no_guide = [](Shown& shown) { shown.operation.frame.guidance.state = GuidanceState::NoGuide; };
   const NavigateDisplay without_axis = display_after(no_guide);
   EXPECT_EQ(without_axis.headline, "No drill guide");
   EXPECT_EQ(without_axis.detail, "The axis of the femoral guide is not known: measure it in Set up");
-  OperationStatus status = valid_status();
-  auto live = std::make_shared<LiveFrame>(*status.live);
-  no_guide(status, *live);
-  status.live = live;
-  const pipeline::PipelineOptions no_tools;
-  const NavigateDisplay without_guide = display_of(&status, &no_tools, kNow_s);
+  const NavigateDisplay without_guide = display_after([&](Shown& shown) {
+    no_guide(shown);
+    shown.source.pipeline.tools = {};
+  });
   EXPECT_EQ(without_guide.detail, "The tools of this case hold no femoral guide");
+}
+
+// A registration that is not one of what the pictures are of: overlay and numbers are gone in this very
+// frame, whatever it was computed with, and the reason stands on the screen with what is to be done.
+TEST(NavigateDisplay, Hazard1AVoidRegistrationShowsNothingAndSaysWhy) {
+  for (const bool can_be_confirmed : {false, true}) {
+    const NavigateDisplay display = display_after([&](Shown& shown) {
+      shown.stand(Standing::Void, {"it is of a simulation, and these pictures are live"});
+      shown.registration.in_force.can_be_confirmed = can_be_confirmed;
+    });
+    EXPECT_TRUE(display.is_live);
+    EXPECT_FALSE(display.overlay_is_valid || display.guidance_is_valid);
+    EXPECT_EQ(display.guidance.angle_deg, 0) << "a number of the frame leaked";
+    EXPECT_EQ(display.headline, "Registration void");
+    EXPECT_NE(display.detail.find("it is of a simulation"), std::string::npos) << display.detail;
+    EXPECT_NE(display.detail.find(can_be_confirmed ? "once (T) to confirm" : "Register anew"),
+              std::string::npos)
+        << display.detail;
+  }
+}
+
+// A live picture is late after the tenth of a second that its source allows, and not before; a recording,
+// which comes as the machine can make it, is not.
+TEST(NavigateDisplay, Hazard3ALatePictureIsNotLive) {
+  const auto aged = [](double age_s, double stale_after_s) {
+    return display_after([&](Shown& shown) {
+      shown.live.captured_s = kNow_s - age_s;
+      shown.live.stale_after_s = stale_after_s;
+    });
+  };
+  EXPECT_TRUE(aged(0.09, 0.1).guidance_is_valid);
+  const NavigateDisplay late = aged(0.25, 0.1);
+  EXPECT_FALSE(late.is_live || late.overlay_is_valid || late.guidance_is_valid);
+  EXPECT_EQ(late.headline, "Picture 250 ms late");
+  EXPECT_TRUE(aged(0.25, 2).guidance_is_valid);
+}
+
+// What is doubted does not guide, whoever chose it.
+TEST(NavigateDisplay, Hazard8DoubtHidesGuidance) {
+  const NavigateDisplay display = display_after([](Shown& shown) {
+    shown.stand(Standing::InDoubt, {"the strokes miss the surface"});
+    shown.registration.is_chosen = true;
+  });
+  EXPECT_FALSE(display.overlay_is_valid || display.guidance_is_valid);
+  EXPECT_EQ(display.headline, "Registration in doubt");
 }
 
 guidance::GuidanceNumbers numbers_of(const Eigen::Vector3d& offset, const Eigen::Vector3d& lean,

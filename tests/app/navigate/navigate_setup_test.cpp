@@ -19,7 +19,7 @@ TEST(NavigateSetup, TheSimulationIsTrackedWithWhatSetUpAdopted) {
   const open_case::PlanModel model(
       phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 2.5}), "test"));
   const auto setup = [&] {
-    return simulated_setup(model, bones::BoneKind::Femur, folder, SimulatedPart::Scratch);
+    return simulated_setup(model, bones::BoneKind::Femur, folder, SimulatedPart::Scratch).setup;
   };
   const camera::Calibration built_in = simulator::standard_camera();
   EXPECT_EQ(setup().pipeline.calibration.focal_px, built_in.focal_px);
@@ -35,7 +35,7 @@ TEST(NavigateSetup, TheSimulationIsTrackedWithWhatSetUpAdopted) {
   for (tools::Tool& tool : tools.tools)
     if (tool.name == "probe") tool.tip_mm->x() += 0.1;
   tools::write_tools_file(cases::tools_file(folder), tools);
-  const OperationSetup adopted = setup();
+  const operation::SourceSetup adopted = setup();
   EXPECT_EQ(adopted.pipeline.calibration.focal_px, built_in.focal_px + 1);
   EXPECT_NEAR(adopted.pipeline.tools.find_tool("probe")->tip_mm->x(),
               tools::standard_tools().find_tool("probe")->tip_mm->x() + 0.1, 1e-9);

@@ -42,8 +42,8 @@ class Knee {
       : true_camera_(scope(), 0.4, true_index), stated_camera_(scope(), 0.4, stated_index), random_(seed) {}
 
   // Both markers move slowly past tilts of 15 to 45 degrees, 12 to 28 mm away.
-  View view(int frame) {
-    View view;
+  PictureObservation view(int frame) {
+    PictureObservation view;
     view.frame_index = frame;
     view.timestamp_ns = frame * kFrame_ns;
     view.intrinsics_are_known = true;
@@ -104,7 +104,7 @@ TEST(MediumCheck, Hazard27AWrongMediumIsNamedAsTheReason) {
       // Its corners lean to no medium; a second look sees the same ones.
       MediumCheck check = check_of(stated);
       for (int frame = 0; frame < 30; ++frame) {
-        const View view = knee.view(frame);
+        const PictureObservation view = knee.view(frame);
         check.look(view);
         if (!check.wants_second_look()) continue;
         std::vector<markers::MarkerObservation> again = view.markers;
@@ -132,7 +132,7 @@ TEST(MediumCheck, Hazard27AMediumThatChangesIsNoticed) {
   ASSERT_EQ(check.verdict().fit, MediumFit::Fits);
   const auto run_until = [&](MediumFit fit) {
     for (int i = 0; i < 300 && check.verdict().fit != fit; ++i, ++frame) {
-      const View view = knee.view(frame);
+      const PictureObservation view = knee.view(frame);
       check.look(view);
       std::vector<markers::MarkerObservation> again = view.markers;
       for (markers::MarkerObservation& marker : again) marker.state = markers::MarkerState::Tracked;
@@ -151,7 +151,7 @@ TEST(MediumCheck, HasNoOpinionOnWhatLooksAlike) {
   Knee knee(kSalineIndex, kAirIndex, 3);
   MediumCheck check = check_of(kAirIndex);
   for (int frame = 0; frame < 120; ++frame) {
-    View view = knee.view(frame);
+    PictureObservation view = knee.view(frame);
     view.markers = {knee.seen_at(0, markers::facing_pose(0, 0, 60, 2, 2, 10)), markers::MarkerObservation()};
     check.look(view);
   }
@@ -164,7 +164,7 @@ TEST(MediumCheck, LeavesOutViewsThatSayNothing) {
   Knee knee(kSalineIndex, kAirIndex, 3);
   MediumCheck check = check_of(kAirIndex);
   for (int frame = 0; frame < 60; ++frame) {
-    View view = knee.view(frame);
+    PictureObservation view = knee.view(frame);
     (frame % 2 == 0 ? view.is_frozen : view.intrinsics_are_known) = frame % 2 == 0;
     check.look(view);
     EXPECT_FALSE(check.wants_second_look());
@@ -198,7 +198,7 @@ TEST(MediumCheck, Hazard27APlainMarkerInTheWrongMediumIsNotCalledCovered) {
   const auto tracker = markers::make_tracker(declared);
   MediumCheck check(declared, kAirIndex, kAirIndex);
   SecondLook second(declared, check.other_index(), kAirIndex);
-  View view;
+  PictureObservation view;
   int standing = 0;
   for (int i = 0; i < 40 && check.verdict().fit != MediumFit::Contradicts; ++i) {
     const RigidTransform pose = markers::facing_pose(0.5 + 0.02 * i, -0.5, 13, 44, 20, 30 + 0.5 * i);
