@@ -23,7 +23,9 @@ namespace {
 
 std::unique_ptr<markers::MarkerTracker> make_without_dense_fit(
     std::span<const markers::DeclaredMarker> declared) {
-  return markers::make_edge_tracker(declared, markers::codes_4x4_50(), {.fit_densely = false});
+  markers::EdgeTrackerOptions options;
+  options.fit_directly = false;
+  return markers::make_edge_tracker(declared, markers::codes_4x4_50(), options);
 }
 
 using TrackerMaker = std::unique_ptr<markers::MarkerTracker> (*)(std::span<const markers::DeclaredMarker>);

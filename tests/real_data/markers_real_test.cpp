@@ -148,7 +148,7 @@ TEST(RealPhotographs, AgreeWithSubPixelCorners) {
   parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
   const auto tracker =
       markers::make_edge_tracker(std::vector<markers::DeclaredMarker>{{0, 10}}, markers::codes_4x4_50(),
-                                 {.gamma = 1, .bloom_sigma_px = 0.001});
+                                 {.gamma = 1, .bloom_sigma_px = 0.001, .track = {}});
   std::vector<double> distances_px;
   int theirs = 0, both = 0;
   cv::Mat bgr, image;

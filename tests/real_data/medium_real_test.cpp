@@ -30,7 +30,7 @@ Outcome check(const fs::path& clip, double stated_index) {
   SecondLook second(declared, medium.other_index(), calibration.refractive_index);
   const auto source = sources::open_video(clip / "clip.mkv");
   Outcome outcome;
-  View view;
+  PictureObservation view;
   while (const camera::FramePtr frame = outcome.frames < kFrames ? source->next() : nullptr) {
     tracker.observe(*frame, view);
     medium.look(view);

@@ -1,5 +1,5 @@
 // The whole theatre on the path-traced clips, with the real femur and the true camera: scratch, register from
-// nothing, guide. Runs through navigate_video, as the command does.
+// nothing, guide. Runs through navigate_source, as the command does.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,10 +7,9 @@
 
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
-#include "navigation/pipeline/navigate_video.h"
-#include "navigation/recording/record_navigation.h"
 #include "navigation/recording/replay.h"
 #include "navigation/registration/registration_file.h"
+#include "navigation/theatre/navigate_source.h"
 #include "planning/bones/mesh_file.h"
 #include "planning/files/csv_table.h"
 #include "planning/files/json_document.h"
@@ -31,13 +30,13 @@ tunnels::Tunnel true_plan(const std::filesystem::path& clip) {
   return plan;
 }
 
-pipeline::NavigateOptions options_of(const std::filesystem::path& clip, const tunnels::Tunnel& plan) {
-  pipeline::NavigateOptions options;
-  options.pipeline.calibration = camera::read_camera_file(clip / "camera.json").calibration;
-  options.pipeline.refractive_index = camera::kSalineIndex;
-  options.pipeline.tools = tools::read_tools_file(clip / "tools.json");
-  options.plan = plan;
-  options.planned_length_mm = 25;
+theatre::NavigateOptions options_of(const std::filesystem::path& clip, const tunnels::Tunnel& plan) {
+  theatre::NavigateOptions options;
+  options.source.pipeline.calibration = camera::read_camera_file(clip / "camera.json").calibration;
+  options.source.pipeline.refractive_index = camera::kSalineIndex;
+  options.source.pipeline.tools = tools::read_tools_file(clip / "tools.json");
+  options.source.kind = sources::SourceKind::Recording;
+  options.operation.plan = {plan, 25};
   return options;
 }
 
@@ -52,12 +51,12 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
   ARTHRONAUT_REQUIRE_DATA(probe_clip, "arthroscopy/probe_wet");
   ARTHRONAUT_REQUIRE_DATA(guide_clip, "arthroscopy/guide_wet");
   const tunnels::Tunnel plan = true_plan(guide_clip);
-  const registration::SurfaceIndex bone(bones::read_mesh_file(probe_clip / "bone.stl").mesh);
 
-  pipeline::NavigateOptions scratch = options_of(probe_clip, plan);
-  scratch.bone = &bone;
+  theatre::NavigateOptions scratch = options_of(probe_clip, plan);
+  scratch.bone =
+      std::make_shared<const registration::SurfaceIndex>(bones::read_mesh_file(probe_clip / "bone.stl").mesh);
   const auto probe_video = sources::open_video(probe_clip / "clip.mkv");
-  const pipeline::NavigationSummary scratched = pipeline::navigate_video(*probe_video, scratch);
+  const theatre::NavigationSummary scratched = theatre::navigate_source(*probe_video, scratch);
   ASSERT_TRUE(scratched.registration.has_value());
   const auto truth = files::read_json(probe_clip / "gt/registration_gt.json", "arthronaut.registration", 1)
                          .rigid_transform("marker_from_bone");
@@ -76,13 +75,14 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
   EXPECT_TRUE(scratched.registration->reliable);
   EXPECT_LT(target_error_mm, kTargetErrorMm);
 
-  pipeline::NavigateOptions drill = options_of(guide_clip, plan);
-  drill.registration = scratched.registration;
+  theatre::NavigateOptions drill = options_of(guide_clip, plan);
+  drill.registration = {*scratched.registration, operation::provenance_of(scratch.operation, scratch.source)};
   const auto gt = files::CsvTable::read(guide_clip / "gt/guide.csv",
                                         {"tip_to_entry_mm", "axis_to_entry_mm", "angle_deg"});
   std::vector<double> tip_errors, offset_errors, angle_errors;
-  pipeline::NavigationObserver observer;
-  observer.on_frame = [&](const camera::FramePtr&, const pipeline::FrameResult& result) {
+  theatre::NavigationObserver observer;
+  observer.on_frame = [&](const camera::FramePtr&, const operation::OperationState& state) {
+    const pipeline::FrameResult& result = state.frame;
     if (!result.guidance.is_valid()) return;
     const auto row = static_cast<std::size_t>(result.frame_index);
     tip_errors.push_back(result.guidance.tip_to_entry_mm - gt.number(row, "tip_to_entry_mm"));
@@ -92,7 +92,7 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
     EXPECT_LT(std::abs(angle_errors.back()), kAngleErrorDeg) << "frame " << row;
   };
   const auto guide_video = sources::open_video(guide_clip / "clip.mkv");
-  const pipeline::NavigationSummary guided = pipeline::navigate_video(*guide_video, drill, observer);
+  const theatre::NavigationSummary guided = theatre::navigate_source(*guide_video, drill, {}, observer);
   ASSERT_GT(guided.frames_with_guidance, 30);  // of 40: the guide is free in all of them
   const std::size_t last = gt.row_count() - 1;
   std::printf(
@@ -105,15 +105,19 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
       gt.number(last, "axis_to_entry_mm"), guided.last_guidance.angle_deg, gt.number(last, "angle_deg"));
 }
 
-// Frames that the recorder encodes itself, as it does for a camera, give nearly the poses that were tracked
-// live: what the loss costs is printed, and lies within what replay lets pass.
-TEST(NavigateReal, ReplaysEncodedFramesWithinTolerance) {
+// Frames that the recorder encodes itself, as it does for a camera, keep the luma that was tracked: run again
+// on the same build, every state is the same to the last bit.
+TEST(NavigateReal, ReplaysEncodedFramesToTheLastBit) {
   ARTHRONAUT_REQUIRE_DATA(guide_clip, "arthroscopy/guide_wet");
   const test::TemporaryFolder folder;
-  pipeline::NavigateOptions options = options_of(guide_clip, true_plan(guide_clip));
-  options.registration = registration::read_registration_file(guide_clip / "gt/registration_gt.json");
+  theatre::NavigateOptions options = options_of(guide_clip, true_plan(guide_clip));
+  options.registration = {registration::read_registration_file(guide_clip / "gt/registration_gt.json"),
+                          operation::provenance_of(options.operation, options.source)};
   const auto video = sources::open_video(guide_clip / "clip.mkv");
-  (void)recording::record_navigation(*video, options, folder.path(), recording::KeepVideo::Encode, {});
+  theatre::RecordOptions record;
+  record.folder = folder.path();
+  record.keep = recording::KeepVideo::Encode;
+  (void)theatre::navigate_source(*video, options, record);
   const recording::RecordedSession session(folder.path());
   const recording::ReplaySummary replay = recording::replay_session(session, {});
   std::printf(
@@ -123,6 +127,9 @@ TEST(NavigateReal, ReplaysEncodedFramesWithinTolerance) {
       static_cast<double>(std::filesystem::file_size(session.video())) / 1e6 / 40, replay.worst_pose_mm,
       replay.worst_pose_deg, replay.worst_offset_mm, replay.worst_angle_deg);
   EXPECT_EQ(replay.replayed_frames, 40);
+  EXPECT_TRUE(replay.is_same_build);
+  EXPECT_EQ(replay.states_compared, 40);
+  EXPECT_EQ(replay.states_equal, 40);
   EXPECT_TRUE(replay.is_same()) << replay.differences.size() << " differences";
 }
 

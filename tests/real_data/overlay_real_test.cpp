@@ -9,7 +9,8 @@
 #include "app/navigate/tool_clearance.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
-#include "navigation/pipeline/navigate_video.h"
+#include "navigation/registration/registration_file.h"
+#include "navigation/theatre/navigate_source.h"
 #include "planning/bones/mesh_file.h"
 #include "planning/files/json_document.h"
 #include "tests/real_data/real_data.h"
@@ -37,28 +38,29 @@ TEST(OverlayReal, Hazard30StaysWhileGuidanceIsValid) {
   tunnels::Tunnel plan;
   plan.entry_mm = json.vector3("entry_mm");
   plan.direction = json.vector3("direction").normalized();
-  pipeline::NavigateOptions options;
-  options.pipeline.calibration = camera::read_camera_file(clip / "camera.json").calibration;
-  options.pipeline.refractive_index = camera::kSalineIndex;
-  options.pipeline.tools = tools::read_tools_file(clip / "tools.json");
-  options.plan = plan;
-  options.planned_length_mm = 25;
-  options.registration = registration::read_registration_file(clip / "gt/registration_gt.json");
+  theatre::NavigateOptions options;
+  options.source.pipeline.calibration = camera::read_camera_file(clip / "camera.json").calibration;
+  options.source.pipeline.refractive_index = camera::kSalineIndex;
+  options.source.pipeline.tools = tools::read_tools_file(clip / "tools.json");
+  options.source.kind = sources::SourceKind::Recording;
+  options.operation.plan = {plan, 25};
+  const auto known = registration::read_registration_file(clip / "gt/registration_gt.json");
+  options.registration = {known, operation::provenance_of(options.operation, options.source)};
   const geometry::TriangleMesh bone = bones::read_mesh_file(clip / "bone.stl").mesh;
   const scene::OverlayModel model(std::make_shared<geometry::Surface>(bone), bone, plan, 25);
-  const tools::Tool* const guide = options.pipeline.tools.find_tool("femoral guide");
+  const tools::Tool* const guide = options.source.pipeline.tools.find_tool("femoral guide");
   ASSERT_TRUE(guide != nullptr && guide->axis);
 
   int guided = 0;
   double most_cleared = 0;
-  pipeline::NavigationObserver observer;
-  observer.on_frame = [&](const camera::FramePtr&, const pipeline::FrameResult& result) {
+  theatre::NavigationObserver observer;
+  observer.on_frame = [&](const camera::FramePtr&, const operation::OperationState& state) {
+    const pipeline::FrameResult& result = state.frame;
     if (!result.guidance.is_valid()) return;
     ++guided;
-    const auto discs = navigate::clear_discs_of(result, options.pipeline.tools);
+    const auto discs = navigate::clear_discs_of(result, options.source.pipeline.tools);
     const scene::PlanOverlay overlay = model.project(
-        result.camera, result.camera_from_world.target_from_source * options.registration->marker_from_bone,
-        discs);
+        result.camera, result.camera_from_world.target_from_source * known.marker_from_bone, discs);
     EXPECT_EQ(navigate::why_no_plan_line(overlay, 1), "") << "frame " << result.frame_index;
     long all = 0, cleared = 0;
     for (int y = 0; y < 1080; y += 15)
@@ -80,7 +82,7 @@ TEST(OverlayReal, Hazard30StaysWhileGuidanceIsValid) {
             << "frame " << result.frame_index;
   };
   const auto video = sources::open_video(clip / "clip.mkv");
-  (void)pipeline::navigate_video(*video, options, observer);
+  (void)theatre::navigate_source(*video, options, {}, observer);
   std::printf("guide_wet: %d frames guided, at most %.0f %% of the view cleared\n", guided,
               100 * most_cleared);
   EXPECT_GT(guided, 30);
