@@ -11,7 +11,6 @@
 #include <dcmtk/dcmfg/fgplanor.h>
 #include <dcmtk/dcmfg/fgplanpo.h>
 #include <dcmtk/dcmjpeg/djencode.h>
-#include <dcmtk/dcmjpls/djencode.h>
 
 #include <cmath>
 #include <stdexcept>
@@ -96,7 +95,6 @@ void register_encoders() {
   static const bool is_ready = [] {
     DcmRLEEncoderRegistration::registerCodecs();
     DJEncoderRegistration::registerCodecs();
-    DJLSEncoderRegistration::registerCodecs();
     return true;
   }();
   static_cast<void>(is_ready);
