@@ -76,6 +76,9 @@ void explain(NavigateDisplay& display, const operation::OperationState& state) {
       break;
     case GuidanceState::RegistrationUnreliable:
       tell(display, trouble_of(registration));
+      // It was found to hold after this picture was worked in.
+      if (display.headline.empty())
+        tell(display, {"Registration taken", "It guides from the next picture on"});
       break;
     case GuidanceState::WorldMarkerLost:
       display.headline = "Bone marker lost";

@@ -32,8 +32,10 @@ mode::ModeTitle NavigateView::title() const {
 }
 
 std::optional<sources::SourceKind> NavigateView::source_kind() const {
-  const bool has_one = live_->phase != Phase::NoSource && live_->operation->source != nullptr;
-  return has_one ? std::optional(live_->operation->source->kind) : std::nullopt;
+  if (live_->phase == Phase::NoSource) return std::nullopt;
+  // Before its first picture, or where it gives none, the operation knows of the source before it alone.
+  if (live_->picture == nullptr) return kind_;
+  return live_->operation->source->kind;
 }
 
 void NavigateView::case_opened(const mode::OpenCase& opened) {

@@ -282,8 +282,9 @@ TEST(Bullseye, PointIsWhereTheAxisMissesTheEntry) {
   const BullseyePoint anterior = bullseye_point(numbers_of({0, -1.5, 0}, {0, 0, 0}, plan), plan);
   EXPECT_EQ(anterior.side_is, landmarks::AnatomicalDirection::Anterior);
   EXPECT_NEAR(anterior.right_mm, anterior.side_is_right ? 1.5 : -1.5, 1e-9);
-  // Into a right knee's lateral wall, with proximal up, anterior is to the right.
-  EXPECT_TRUE(anterior.side_is_right);
+  // Whoever looks into a right knee's lateral wall, proximal up, faces the patient's right: anterior, LPS -y,
+  // is to the left, since right is (-x) x z = +y.
+  EXPECT_FALSE(anterior.side_is_right);
   const BullseyePoint leaning = bullseye_point(numbers_of({0, 0, 0}, {0, 0, 0.1}, plan), plan);
   EXPECT_NEAR(leaning.lean_up_deg, geometry::deg_from_rad(std::atan(0.1)), 1e-9);
   EXPECT_NEAR(leaning.up_mm, 0, 1e-9);

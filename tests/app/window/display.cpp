@@ -60,6 +60,15 @@ std::string missing_for_window_tests() {
   return "";
 }
 
+std::pair<int, std::string> run_arthronaut(const std::string& arguments) {
+  FILE* const pipe = popen((std::string(ARTHRONAUT_PROGRAM) + " " + arguments + " 2>&1").c_str(), "r");
+  if (pipe == nullptr) throw std::runtime_error("no process");
+  std::string output;
+  for (int letter = fgetc(pipe); letter != EOF; letter = fgetc(pipe)) output += static_cast<char>(letter);
+  const int status = pclose(pipe);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), output};
+}
+
 VirtualDisplay::VirtualDisplay(int width, int height) {
   constexpr int kDisplayDescriptor = 3;
   const std::string screen = std::to_string(width) + "x" + std::to_string(height) + "x24";
@@ -177,9 +186,9 @@ bool RunningWorkstation::hold_click_until(const std::string& widget, const std::
 }
 
 void RunningWorkstation::freeze(double seconds) const {
-  kill(process_, SIGSTOP);
+  ::kill(process_, SIGSTOP);
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-  kill(process_, SIGCONT);
+  ::kill(process_, SIGCONT);
 }
 
 void RunningWorkstation::type(const std::string& text) const { hand("type --delay 0 '" + text + "'"); }
@@ -219,6 +228,12 @@ Picture RunningWorkstation::screenshot() const {
   stream.read(reinterpret_cast<char*>(picture.rgb.data()), static_cast<std::streamsize>(picture.rgb.size()));
   if (!stream) throw std::runtime_error("the screenshot is cut off");
   return picture;
+}
+
+void RunningWorkstation::kill() {
+  ::kill(process_, SIGKILL);
+  waitpid(process_, nullptr, 0);
+  process_ = -1;
 }
 
 int RunningWorkstation::hold_to_exit(const std::string& key, double seconds) {

@@ -16,6 +16,9 @@ namespace arthronaut::test {
 // What is missing on this machine to test the window; empty when nothing is.
 [[nodiscard]] std::string missing_for_window_tests();
 
+// Runs the program on the command line; its exit code, and what it said and complained.
+[[nodiscard]] std::pair<int, std::string> run_arthronaut(const std::string& arguments);
+
 // An X server without a screen. Gone when the test is over.
 class VirtualDisplay {
  public:
@@ -71,6 +74,7 @@ class RunningWorkstation {
   [[nodiscard]] Picture screenshot() const;
   // Holds the key down until the program has ended; the exit code, or -1 when it has not.
   int hold_to_exit(const std::string& key, double seconds);
+  void kill();  // at once, as a crash or a power cut ends it
   // The exit code, or -1 when it did not end within the time.
   int wait_for_exit(double seconds);
 

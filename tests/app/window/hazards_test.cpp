@@ -44,7 +44,8 @@ TEST_F(WorkstationHazards, Hazard22KeysThatEndTheOperationMustBeHeld) {
   EXPECT_TRUE(app.wait_for_state("hold", "Hold Esc to stop (let go)"));
   EXPECT_EQ(app.state("picture"), "live");
   EXPECT_EQ(app.wait_for_exit(0.1), -1);
-  ASSERT_TRUE(app.hold_click_until("navigate.stop", "picture", "none"));
+  // The last picture stays, and is called so.
+  ASSERT_TRUE(app.hold_click_until("navigate.stop", "guidance", "The source has ended"));
   app.press("space");
   ASSERT_TRUE(app.wait_for_state("picture", "live", 120));
   EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);

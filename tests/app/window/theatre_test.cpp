@@ -1,0 +1,184 @@
+// An operation in the real window, worked from outside as a surgeon and bad luck do: sources that fail, a
+// plan that is edited meanwhile, a folder that takes nothing, a program that is killed.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+#include <random>
+
+#include "navigation/camera/camera_file.h"
+#include "navigation/recording/video_encoder.h"
+#include "navigation/simulator/simulated_operation.h"
+#include "navigation/tools/tool_set.h"
+#include "planning/cases/case.h"
+#include "planning/phantom/phantom_case.h"
+#include "tests/app/window/display.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::test {
+namespace {
+
+class Theatre : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
+    cases::save_case(case_folder(), phantom::case_of(knee_, "Phantom"));
+  }
+  // Where the workstation looks for the built-in case.
+  [[nodiscard]] std::filesystem::path case_folder() const {
+    return folder_ / "arthronaut" / "Phantom.arthro";
+  }
+  // The case is of a real arthroscope from now on.
+  void adopt_real_scope() const {
+    camera::CalibrationRecord camera;
+    camera.calibration = simulator::standard_camera();
+    camera.scope_name = "Scope 30";
+    camera::write_camera_file(cases::camera_file(case_folder()), camera);
+    tools::write_tools_file(cases::tools_file(case_folder()), tools::standard_tools());
+  }
+  // The first pictures of the scripted surgeon, as a file that nobody can tell from a recording.
+  void write_clip(int frame_count) const {
+    simulator::SimulationOptions options;
+    options.knee = knee_;
+    options.camera = simulator::standard_camera();
+    options.tools = tools::standard_tools();
+    options.plan = knee_.femoral_tunnel;
+    simulator::SimulatedOperation operation(options, simulator::Phase::Scratch);
+    recording::VideoEncoder clip(case_folder() / "clip.mkv", 1920, 1080, 30);
+    for (int i = 0; i < frame_count; ++i) clip.encode(*operation.next());
+    clip.finish();
+  }
+  static void show_navigate(const RunningWorkstation& app) {
+    ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+    app.press("F2");
+    ASSERT_TRUE(app.wait_for_state("mode", "navigate"));
+    ASSERT_TRUE(app.wait_for_widget("navigate.next"));
+  }
+  static void start_simulation(const RunningWorkstation& app) {
+    show_navigate(app);
+    app.press("s");
+    ASSERT_TRUE(app.wait_for_state("picture", "live", 120));
+  }
+  [[nodiscard]] std::pair<int, std::string> replay(const std::string& session) const {
+    return run_arthronaut("replay '" + case_folder().string() + "' --session " + session);
+  }
+  const phantom::PhantomKnee knee_ = phantom::make_phantom_knee({});
+  const TemporaryFolder folder_;
+};
+
+bool becomes(const std::function<bool()>& is_so, double seconds) {
+  for (double waited_s = 0; waited_s < seconds; waited_s += 0.02) {
+    if (is_so()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return is_so();
+}
+
+// What was registered in a simulation guides nothing of a video: it is void, and the screen says why.
+TEST_F(Theatre, Hazard1ARegistrationOfASimulationIsVoidInAVideo) {
+  adopt_real_scope();
+  write_clip(90);
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  start_simulation(app);
+  ASSERT_TRUE(app.wait_for_state("standing", "stands", 400));
+  ASSERT_TRUE(app.hold_until("o", "source_kind", "RECORDING"));
+  EXPECT_TRUE(app.wait_for_state("standing", "void", 60));
+  EXPECT_NE(app.state("guidance"), "valid");
+  EXPECT_TRUE(
+      becomes([&] { return app.state("detail").find("another kind of pictures") != std::string::npos; }, 60))
+      << app.state("detail");
+  EXPECT_EQ(app.state("guidance"), "Registration void");
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
+// A source that fails starts no other kind, whatever ran before it and however often the pedal is pressed.
+TEST_F(Theatre, Hazard2AfterASourceThatFailedThePedalStartsNoOtherKind) {
+  adopt_real_scope();
+  std::ofstream(case_folder() / "broken.mkv") << "no video at all";
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  show_navigate(app);
+  // A real case offers no simulation unasked.
+  EXPECT_TRUE(app.wait_for_state("next", "open the next video"));
+  app.press("s");
+  ASSERT_TRUE(app.wait_for_state("picture", "live", 120));
+  EXPECT_EQ(app.state("source_kind"), "SIMULATION");
+  ASSERT_TRUE(app.hold_until("o", "guidance", "Source failed", 60));
+  ASSERT_TRUE(app.wait_for_state("source_kind", "RECORDING"));
+  for (int press = 0; press < 3; ++press) {
+    app.press("space");
+    // Long enough for a simulation to have shown its first picture.
+    EXPECT_FALSE(becomes([&] { return app.state("source_kind") != "RECORDING"; }, 2)) << press;
+    EXPECT_TRUE(app.wait_for_state("guidance", "Source failed", 60));
+    EXPECT_EQ(app.state("next").find("simula"), std::string::npos) << app.state("next");
+  }
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(60), 0);
+}
+
+// A plan that is edited while the operation runs is offered, not taken: the one in force stays until the
+// pedal takes the other one over.
+TEST_F(Theatre, Hazard5AnEditedPlanWaitsUntilItIsTakenOver) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  start_simulation(app);
+  EXPECT_TRUE(app.wait_for_state("plan", "in force"));
+  app.press("F1");
+  ASSERT_TRUE(app.wait_for_state("mode", "plan"));
+  app.press("Right");
+  ASSERT_TRUE(app.wait_for_state("undo", "Aim the femoral tunnel"));
+  app.press("F2");
+  ASSERT_TRUE(app.wait_for_state("mode", "navigate"));
+  ASSERT_TRUE(app.wait_for_state("plan", "edited"));
+  ASSERT_TRUE(app.wait_for_state("next", "the plan was edited: take it over"));
+  EXPECT_EQ(app.state("picture"), "live");
+  app.press("space");
+  EXPECT_TRUE(app.wait_for_state("plan", "in force"));
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
+// Nothing can be written where sessions belong: the operation goes on, and the screen says why it is not
+// recorded.
+TEST_F(Theatre, Hazard13ARecordThatCannotStartNeverTouchesGuidance) {
+  std::ofstream(case_folder() / "sessions") << "a file where the folder belongs";
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  start_simulation(app);
+  EXPECT_TRUE(becomes([&] { return app.state("journal").find("sessions") != std::string::npos; }, 60))
+      << app.state("journal");
+  // Asking for the video too changes nothing of it.
+  app.press("ctrl+r");
+  EXPECT_FALSE(becomes([&] { return app.state("recording") == "on"; }, 1));
+  app.press("d");  // the probe draws no more: commands are still carried out
+  EXPECT_TRUE(app.wait_for_state("picture", "live", 60));
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
+// Killed at any moment, the case opens again, and what was recorded by then can be read.
+TEST_F(Theatre, Hazard12AKilledWindowLeavesASessionThatCanBeRead) {
+  const VirtualDisplay display(1280, 720);
+  std::mt19937 random(12);
+  constexpr int kKills = 8;
+  for (int kill = 0; kill < kKills; ++kill) {
+    RunningWorkstation app(display, folder_.path());
+    start_simulation(app);
+    ASSERT_TRUE(becomes([&] { return !app.state("journal").empty(); }, 60));
+    const std::string session = app.state("journal");
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 3000));
+    app.kill();
+    const auto [exit_code, output] = replay(session);
+    // 4: read and run again, with differences; anything else could not be read.
+    EXPECT_TRUE(exit_code == 0 || exit_code == 4) << "kill " << kill << ": " << output;
+    EXPECT_NE(output.find("session " + session), std::string::npos) << output;
+    EXPECT_NE(output.find("never finished"), std::string::npos) << output;
+  }
+  RunningWorkstation app(display, folder_.path());
+  EXPECT_TRUE(app.wait_for_state("case", "open", 120));
+  EXPECT_TRUE(app.wait_for_state("access", "own"));
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(60), 0);
+}
+
+}  // namespace
+}  // namespace arthronaut::test
