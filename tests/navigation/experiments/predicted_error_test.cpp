@@ -24,7 +24,8 @@ TEST(PredictedError, Hazard6IsTheErrorThereIs) {
   const PredictedErrorResult result = run_predicted_error({});
   ASSERT_EQ(result.operations.size(), 100u);
   expect_honest(result.all(), "all");
-  for (const Setup setup : {Setup::Careful, Setup::PoorTools, Setup::PoorCamera, Setup::PoorBoth}) {
+  using Kind = experiments::Setup;  // gtest has a Setup of its own
+  for (const Kind setup : {Kind::Careful, Kind::PoorTools, Kind::PoorCamera, Kind::PoorBoth}) {
     EXPECT_EQ(result.of(setup).count, 25);
     expect_honest(result.of(setup), to_text(setup));
   }
