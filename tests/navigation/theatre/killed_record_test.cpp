@@ -24,12 +24,11 @@ namespace {
     if (i % 3 != 0) continue;
     run.apply(operation::ReadDepthStop{i / 3 * 1.0});
     const std::int32_t count = i / 3 + 1;
-    if (::write(pipe, &count, sizeof count) != sizeof count) ::_exit(1);
+    if (::write(pipe, &count, sizeof count) != static_cast<ssize_t>(sizeof count)) ::_exit(1);
   }
 }
 
-// How many commands had been given when so much time had passed, and again a second before the kill; then the
-// child is gone.
+// How many commands had been given a second before the child was killed, and in all.
 struct Killed {
   std::int32_t a_second_before = 0, at_the_end = 0;
 };
@@ -43,7 +42,7 @@ Killed run_and_kill(const std::filesystem::path& session, double after_s) {
   std::vector<Clock::time_point> given;
   std::int32_t count = 0;
   // The clock starts with the first command: getting ready takes as long as it takes.
-  while (::read(ends[0], &count, sizeof count) == sizeof count) {
+  while (::read(ends[0], &count, sizeof count) == static_cast<ssize_t>(sizeof count)) {
     given.push_back(Clock::now());
     if (std::chrono::duration<double>(given.back() - given.front()).count() >= after_s) break;
   }

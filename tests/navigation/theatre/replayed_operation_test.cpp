@@ -1,6 +1,7 @@
 // A recorded operation, run again, comes to the same state in every frame.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <random>
 
 #include "navigation/recording/replay.h"
@@ -35,8 +36,7 @@ class ReplayedOperation : public ::testing::Test {
                     << difference.detail;
   }
   // Every command there is, each once or more.
-  [[nodiscard]] std::vector<Command> commands(const OperationRun& run, operation::SourceSetup source) {
-    (void)run;
+  [[nodiscard]] std::vector<Command> commands(const operation::SourceSetup& source) const {
     operation::PlannedTunnel edited = test::phantom_plan();
     edited.length_mm += 1;
     const auto of = operation::provenance_of(setup_, source);
@@ -79,7 +79,7 @@ TEST_F(ReplayedOperation, EveryCommandOverTwoSourcesGivesTheSameStates) {
       const TheatreSource source = test::plain_source(frames);
       run.start(source);
       std::multimap<int, Command> script;
-      for (const Command& command : commands(run, source.setup))
+      for (const Command& command : commands(source.setup))
         script.emplace(std::uniform_int_distribution(0, frames - 1)(random), command);
       for (int i = 0; i < frames; ++i) {
         ASSERT_TRUE(run.step().picture);
@@ -134,7 +134,7 @@ TEST_F(ReplayedOperation, TheSimulatorsPicturesGiveTheSameStates) {
     OperationRun run(setup_, test::at_once(setup_), folders());
     run.start(source);
     run.keep_video(true);
-    const std::vector<Command> script = commands(run, source.setup);
+    const std::vector<Command> script = commands(source.setup);
     for (std::size_t i = 0; i < kFrames; ++i) {
       ASSERT_TRUE(run.step().picture);
       with_tip += run.state()->frame.tip_is_valid ? 1 : 0;
