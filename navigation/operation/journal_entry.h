@@ -15,10 +15,11 @@
 namespace arthronaut::operation {
 
 enum class JournalKind {
-  CommandGiven,  // text: to_text(Command)
-  OutcomeTaken,  // text: its request count
+  CommandGiven,   // text: to_text(Command)
+  OutcomeTaken,   // text: its request count
+  SourceStarted,  // what stands before the first of these was given before any source
   SourceEnded,
-  RegistrationInForce,  // registration is set
+  RegistrationInForce,  // registration is set; without a pose: none is in force any more
   Alarm,                // text: what it says, empty when it is over
   Void,                 // text: why
   Confirmed,            // by a touch

@@ -33,7 +33,9 @@ RegistrationWorkOptions work_options(const OperationSetup& setup) {
   return options;
 }
 
-Operation::Operation(OperationSetup setup) : parts_(std::make_unique<Parts>(std::move(setup))) {}
+Operation::Operation(OperationSetup setup) : parts_(std::make_unique<Parts>(std::move(setup))) {
+  parts_->note_plan();  // what the registration was set up with, whatever is offered before a source runs
+}
 Operation::~Operation() = default;
 
 void Operation::start_source(const SourceSetup& source) {
@@ -50,6 +52,7 @@ void Operation::start_source(const SourceSetup& source) {
   p.second_look.emplace(declared, p.medium->other_index(), calibration_index);
   p.frame = {};
   p.frame_count = 0;
+  p.note(JournalKind::SourceStarted);
   p.tip.clear();
   p.evidence = p.plan ? std::optional<guidance::DrillEvidence>(p.plan->tunnel) : std::nullopt;
   p.drilled = {};
@@ -108,6 +111,7 @@ void Operation::take_outcome(const OutcomePtr& outcome) {
   const bool has_become_ready = outcome->bone_is_ready && (before == nullptr || !before->bone_is_ready);
   // Nothing more may come: what was drawn while the bone was being made ready is judged, nobody asking.
   if (has_become_ready && !p.strokes.points().empty()) p.ask(JudgeAll{});
+  if (!outcome->failure.empty()) p.is_fitting = p.fit_is_wanted = false;  // it will never come
   const auto& online = outcome->online;
   if (online != nullptr && (before == nullptr || before->online != online)) {
     // What was found with strokes that are gone or excluded since, before the registration heard of it, must

@@ -32,6 +32,12 @@ void Operation::Parts::note_in_force(bool is_given) {
   JournalEntry entry;
   entry.kind = JournalKind::RegistrationInForce;
   entry.registration = ledger.in_force().registration;
+  entry.of = ledger.now();
+  if (entry.registration == nullptr) {  // what was kept before must not be found again
+    auto none = std::make_shared<registration::RegistrationSummary>();
+    none->reasons = {"the world marker was placed anew"};
+    entry.registration = std::move(none);
+  }
   if (ledger.entry_in_force()) entry.of = (*ledger.entries())[*ledger.entry_in_force()].of;
   entry.registration_was_given = is_given;
   note(std::move(entry));
@@ -57,6 +63,8 @@ void Operation::Parts::follow_ledger() {
     if (in_force.registration != nullptr) {
       const RegistrationOrigin origin = (*ledger.entries())[*ledger.entry_in_force()].origin;
       note_in_force(origin == RegistrationOrigin::Given || origin == RegistrationOrigin::Resumed);
+    } else {
+      note_in_force(false);
     }
   }
   if (in_force.standing != followed_standing) {
@@ -79,6 +87,7 @@ void Operation::Parts::set_plan(const std::optional<PlannedTunnel>& next) {
   plan = next;
   // What was seen of the guide was relative to another plan.
   evidence = plan ? std::optional<guidance::DrillEvidence>(plan->tunnel) : std::nullopt;
+  evidence_is_seen = false;
   if (pipeline != nullptr)
     pipeline->set_plan(plan ? std::optional(plan->tunnel) : std::nullopt, plan ? plan->length_mm : 0);
   note_plan();
@@ -192,7 +201,7 @@ void Operation::Parts::look_for_registration() {
 }
 
 void Operation::Parts::register_strokes() {
-  if (is_fitting) return;
+  if (is_fitting || (outcome != nullptr && !outcome->failure.empty())) return;
   auto curves = std::make_shared<const strokes::Curves>(strokes.in_use());
   if (curves->empty()) return;
   fit_length_mm = length_mm(*curves);

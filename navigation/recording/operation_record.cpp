@@ -38,6 +38,8 @@ std::string_view kind_of(JournalKind kind) {
       return kCommandEvent;
     case JournalKind::OutcomeTaken:
       return kOutcomeEvent;
+    case JournalKind::SourceStarted:
+      return kSourceStartedEvent;
     case JournalKind::SourceEnded:
       return kSourceEndedEvent;
     case JournalKind::RegistrationInForce:

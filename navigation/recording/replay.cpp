@@ -134,6 +134,7 @@ class Rerun {
     next_event_ = 0;
     const SessionHeader& header = session.header();
     has_journal_ = !header.source_kind.empty();
+    play_before_source();
     operation::SourceSetup source;
     source.kind = sources::source_kind_from_text(header.source_kind).value_or(sources::SourceKind::Recording);
     source.title = header.source;
@@ -162,6 +163,16 @@ class Rerun {
   [[nodiscard]] operation::OperationStatePtr state() { return operation_.state(); }
 
  private:
+  // What was given before any source ran, where the record says so.
+  void play_before_source() {
+    const auto& events = session_->events();
+    const auto started = std::find_if(events.begin(), events.end(), [](const SessionEvent& event) {
+      return event.kind == kSourceStartedEvent;
+    });
+    if (started == events.end()) return;
+    while (events.begin() + static_cast<std::ptrdiff_t>(next_event_) != started) play(events[next_event_++]);
+  }
+
   operation::OperationStatePtr after_frame() {
     const operation::OperationStatePtr state = operation_.state();
     pass_on();

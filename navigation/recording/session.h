@@ -69,6 +69,7 @@ inline constexpr std::string_view kGivenRegistrationEvent =
     "registration given";                                     // text: file name; from elsewhere
 inline constexpr std::string_view kCommandEvent = "command";  // text: operation::Command as JSON
 inline constexpr std::string_view kOutcomeEvent = "outcome";  // text: request count of what was taken in
+inline constexpr std::string_view kSourceStartedEvent = "source started";  // what is before it came earlier
 inline constexpr std::string_view kSourceEndedEvent = "source ended";
 inline constexpr std::string_view kDroppedPicturesEvent = "pictures dropped";    // text: how many
 inline constexpr std::string_view kVideoStoppedEvent = "video stopped";          // text: why

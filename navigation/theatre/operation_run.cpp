@@ -1,5 +1,7 @@
 #include "navigation/theatre/operation_run.h"
 
+#include <utility>
+
 #include "navigation/pipeline/prefetched_source.h"
 #include "planning/geometry/error.h"
 
@@ -40,6 +42,7 @@ void OperationRun::begin_record() {
                                                            source_->info(), continues_);
     session_folder_ = folder;
     continues_ = folder.filename().string();
+    record_->add(std::exchange(early_, {}));
     // Where the video is costs nothing and makes the record one that can be run again.
     if (!source_->info().encoded_file.empty())
       record_->keep_video(KeepVideo::Refer, source_->info().encoded_file);
@@ -68,6 +71,9 @@ void OperationRun::pass_on() {
   for (operation::JournalEntry& entry : journal)
     if (entry.achieved && theatre_source_.truth) entry.achieved->truth = theatre_source_.truth();
   if (record_ != nullptr) return write([&](recording::OperationRecord& record) { record.add(journal); });
+  // Before the first source: it goes to the record of that one.
+  if (make_session_folder_ && session_folder_.empty() && record_trouble_.empty())
+    return void(early_.insert(early_.end(), journal.begin(), journal.end()));
   // After the end of a source: the decision belongs to its record.
   if (session_folder_.empty() || !record_trouble_.empty()) return;
   try {
@@ -103,7 +109,12 @@ OperationRun::Step OperationRun::step() {
   if (next.has_ended) end_source();
   (void)follow_registration();
   if (next.frame == nullptr) return {nullptr, next.has_ended};
-  operation_.process(*next.frame);
+  try {
+    operation_.process(*next.frame);
+  } catch (...) {
+    end_source();
+    throw;
+  }
   frame_state_ = operation_.state();
   write([&](recording::OperationRecord& record) { record.add_frame(next.frame, *frame_state_, is_live); });
   pass_on();

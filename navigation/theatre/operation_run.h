@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "navigation/operation/operation.h"
 #include "navigation/pipeline/prefetched_source.h"
@@ -43,7 +44,8 @@ class OperationRun {
     bool has_ended = false;    // the source has, and with it its record
   };
   // The next frame, worked in. A live source that gives none for a tenth of a second gives a step without a
-  // picture, so that whoever calls can do something else. Throws what the source throws, which ends it too.
+  // picture, so that whoever calls can do something else. Throws what the source or Operation::process
+  // throws, which ends it too.
   // Precondition: has_source().
   [[nodiscard]] Step step();
   // Ends the source and its record. A disk that fails is told by record_trouble().
@@ -80,6 +82,7 @@ class OperationRun {
   std::unique_ptr<pipeline::PrefetchedSource> source_;
   std::unique_ptr<recording::OperationRecord> record_;
   std::filesystem::path session_folder_;
+  std::vector<operation::JournalEntry> early_;  // from before the first source
   std::string continues_, record_trouble_;
   bool record_is_due_ = false;
   operation::OperationStatePtr frame_state_;  // after the newest frame

@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "navigation/registration/registration_file.h"
 #include "planning/files/atomic_file.h"
 #include "tests/app/command_line/marker_clip.h"
 #include "tests/temporary_folder.h"
@@ -147,6 +148,47 @@ TEST_F(BadInput, CaseThatIsNone) {
     EXPECT_EQ(result.exit_code, 3) << command;
     EXPECT_THAT(result.errors, HasSubstr("nothing.arthro")) << command;
   }
+}
+
+// A registration that was given by name and is of something else guides nothing: the file and what differs
+// are named, and no session is left behind. One that says nothing of it is taken at the user's word.
+TEST_F(BadInput, RegistrationOfSomethingElse) {
+  const std::string knee = folder_ / "knee.arthro";
+  ASSERT_EQ(run_program({"phantom", "-o", knee}).exit_code, 0);
+  const std::vector<std::string> arguments{"navigate",
+                                           knee,
+                                           "--video",
+                                           folder_ / "clip.mkv",
+                                           "--camera",
+                                           folder_ / "camera.json",
+                                           "--tools",
+                                           folder_ / "tools.json",
+                                           "--medium",
+                                           "air",
+                                           "--fixed-lens",
+                                           "--registration",
+                                           folder_ / "registration.json"};
+  registration::RegistrationSummary registration;
+  registration.has_pose = registration.reliable = true;
+  registration.reasons.clear();
+  registration.covariance.setIdentity();
+  registration::Provenance of;
+  of.source = sources::SourceKind::Recording;
+  of.world_marker_id = 0;
+  of.mesh_sha256 = "another mesh";
+  registration::write_registration_file(folder_ / "registration.json", registration, &of);
+  const auto other_mesh = run_program(arguments);
+  EXPECT_EQ(other_mesh.exit_code, 3);
+  EXPECT_THAT(other_mesh.errors, AllOf(HasSubstr("registration.json"), HasSubstr("mesh")));
+  of.mesh_sha256.clear();
+  of.source = sources::SourceKind::Simulation;
+  registration::write_registration_file(folder_ / "registration.json", registration, &of);
+  const auto simulated = run_program(arguments);
+  EXPECT_EQ(simulated.exit_code, 3);
+  EXPECT_THAT(simulated.errors, AllOf(HasSubstr("registration.json"), HasSubstr("simulation")));
+  EXPECT_FALSE(std::filesystem::exists(knee + "/sessions") && !std::filesystem::is_empty(knee + "/sessions"));
+  registration::write_registration_file(folder_ / "registration.json", registration);
+  EXPECT_NE(run_program(arguments).exit_code, 3);
 }
 
 }  // namespace

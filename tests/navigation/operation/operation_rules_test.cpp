@@ -1,0 +1,187 @@
+// What follows from commands and frames: plan, verification, control point, touches, the tunnel as drilled.
+#include <gtest/gtest.h>
+
+#include "tests/navigation/operation/phantom_operation.h"
+
+namespace arthronaut::operation {
+namespace {
+
+using registration::phantom_bone;
+using test::PhantomOperation;
+
+class OperationRules : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const SourceSetup source = test::scripted_source();
+    run_.start(source);
+    run_.show(run_.frame());
+  }
+  void give() {
+    run_.apply(
+        test::true_registration(trial_, provenance_of(run_.operation().setup(), test::scripted_source())));
+    ASSERT_EQ(run_.in_force().standing, Standing::Stands);
+  }
+  [[nodiscard]] Eigen::Vector3d on_bone(double dx_mm, double lifted_mm = 0) const {
+    return test::on_bone(trial_, dx_mm, lifted_mm);
+  }
+  experiments::Trial trial_ = phantom_bone().trial(experiments::TrialNoise::Dry, 1);
+  PhantomOperation run_;
+};
+
+// Guidance keeps the plan in force until the edited one is taken over.
+TEST_F(OperationRules, AnEditedPlanIsOfferedAndNotTakenUnasked) {
+  PlannedTunnel edited = test::phantom_plan();
+  edited.tunnel.entry_mm.x() += 2;
+  run_.apply(OfferPlan{test::phantom_plan()});
+  EXPECT_FALSE(run_.state()->plan_was_edited) << "it is the same";
+  run_.apply(OfferPlan{edited});
+  EXPECT_TRUE(run_.state()->plan_was_edited);
+  EXPECT_EQ(run_.state()->plan->tunnel.entry_mm, test::phantom_plan().tunnel.entry_mm);
+  EXPECT_EQ(run_.state()->next_action, NextAction::TakePlanOver);
+  run_.show(run_.frame());
+  EXPECT_EQ(run_.state()->plan->tunnel.entry_mm, test::phantom_plan().tunnel.entry_mm);
+  run_.apply(TakePlanOver{});
+  EXPECT_FALSE(run_.state()->plan_was_edited);
+  EXPECT_EQ(run_.state()->plan->tunnel.entry_mm, edited.tunnel.entry_mm);
+  ASSERT_EQ(run_.journal.back().kind, JournalKind::Plan);
+  EXPECT_EQ(run_.journal.back().plan->tunnel.entry_mm, edited.tunnel.entry_mm);
+  run_.apply(OfferPlan{});
+  EXPECT_TRUE(run_.state()->plan.has_value());
+  run_.apply(OfferPlan{edited});
+  EXPECT_FALSE(run_.state()->plan_was_edited) << "the edit was undone";
+}
+
+// What was seen of the guide was relative to the plan before.
+TEST_F(OperationRules, AnotherPlanForgetsTheEvidenceOfDrilling) {
+  give();
+  for (int i = 0; i < 30; ++i) run_.show_guide(0.5);
+  EXPECT_TRUE(run_.state()->drilled.has_evidence);
+  PlannedTunnel edited = test::phantom_plan();
+  edited.length_mm += 2;
+  run_.apply(OfferPlan{edited});
+  run_.apply(TakePlanOver{});
+  EXPECT_FALSE(run_.state()->drilled.has_evidence);
+}
+
+// Guidance that begins without a touch that verifies is not refused, and it is recorded, once.
+TEST_F(OperationRules, VerificationIsAskedForAndSkippingItIsRecorded) {
+  give();
+  run_.apply(Draw{false});
+  EXPECT_EQ(run_.state()->verification, Verification::NotYet);
+  EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch);
+  for (int i = 0; i < 3; ++i) run_.show_guide(-5);
+  EXPECT_EQ(run_.state()->verification, Verification::Skipped);
+  EXPECT_EQ(run_.count(JournalKind::VerificationSkipped), 1);
+  EXPECT_NE(run_.last_text(JournalKind::VerificationSkipped), "");
+  give();
+  EXPECT_EQ(run_.state()->verification, Verification::NotYet) << "of another registration nothing was said";
+  run_.apply(SkipVerification{});
+  EXPECT_EQ(run_.state()->verification, Verification::Skipped);
+  EXPECT_EQ(run_.last_text(JournalKind::VerificationSkipped), "asked for");
+  for (const double dx_mm : {0.0, 4.0, -4.0}) run_.touch(on_bone(dx_mm));
+  EXPECT_EQ(run_.state()->verification, Verification::ByTouches);
+  EXPECT_EQ(run_.count(JournalKind::Verified), 1);
+}
+
+TEST_F(OperationRules, SkippingWithoutARegistrationIsNothing) {
+  run_.apply(SkipVerification{});
+  EXPECT_EQ(run_.state()->verification, Verification::NotYet);
+  EXPECT_EQ(run_.count(JournalKind::VerificationSkipped), 0);
+}
+
+// Asked for after registration, after the marker was lost for 30 s, and before drilling when it was touched
+// more than five minutes ago.
+TEST_F(OperationRules, TheControlPointIsDueWhenTheMarkerMayHaveMoved) {
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None) << "nothing is registered";
+  give();
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::Set);
+  const Eigen::Vector3d control = on_bone(6);
+  run_.touch(control, TouchControlPoint{});
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
+
+  run_.wait(29);
+  run_.show(run_.frame());
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
+  pipeline::FrameResult lost = run_.frame();
+  lost.camera_from_world.is_valid = false;
+  run_.show(lost);
+  run_.wait(31);
+  run_.show(run_.frame());
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckAfterLoss);
+  EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch);
+  run_.apply(SkipVerification{});
+  EXPECT_EQ(run_.state()->next_action, NextAction::CheckControlPoint);
+  run_.touch(control, TouchControlPoint{});
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
+
+  run_.show_guide(-8);
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None) << "it was touched just now";
+  for (int i = 0; i < 16; ++i) {
+    run_.wait(20);
+    run_.show_guide(-8);
+  }
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckBeforeDrilling);
+}
+
+// A loss that is told once is over with the touch, whatever source it was in.
+TEST_F(OperationRules, ABumpedMarkerEndsGuidanceUntilItIsSaidWhatItWas) {
+  give();
+  const Eigen::Vector3d control = on_bone(6), bump(0, 0, 2.4);
+  run_.touch(control, TouchControlPoint{});
+  run_.touch(control + bump, TouchControlPoint{});
+  EXPECT_EQ(run_.in_force().standing, Standing::Stands);
+  run_.touch(control + bump, TouchControlPoint{});
+  EXPECT_EQ(run_.in_force().standing, Standing::Alarm);
+  EXPECT_FALSE(run_.in_force().registration->reliable);
+  EXPECT_EQ(run_.state()->next_action, NextAction::CheckWorldMarker);
+  EXPECT_EQ(run_.count(JournalKind::Alarm), 1);
+  run_.apply(ForgetTouches{});
+  EXPECT_EQ(run_.in_force().standing, Standing::Stands);
+  EXPECT_EQ(run_.last_text(JournalKind::Alarm), "") << "the alarm is over";
+}
+
+// The surgeon's word without a guide that stood on the bone records nothing.
+TEST_F(OperationRules, ATunnelThatNobodyDrilledIsNotRecorded) {
+  give();
+  for (int i = 0; i < 60; ++i) run_.show_guide(-4);
+  EXPECT_FALSE(run_.state()->drilled.has_evidence);
+  run_.apply(TunnelDrilled{});
+  EXPECT_EQ(run_.state()->drilled.outcome, DrilledState::Outcome::NoEvidence);
+  EXPECT_FALSE(run_.state()->drilled.tunnel);
+  EXPECT_EQ(run_.count(JournalKind::Drilled), 0);
+}
+
+// Evidence alone records nothing either; both together do, with the depth that the surgeon read.
+TEST_F(OperationRules, DrilledIsTheSurgeonsWordWithEvidence) {
+  give();
+  for (int i = 0; i < 60; ++i) run_.show_guide(0.2);
+  EXPECT_TRUE(run_.state()->drilled.has_evidence);
+  EXPECT_EQ(run_.state()->drilled.outcome, DrilledState::Outcome::NotSaid);
+  EXPECT_EQ(run_.count(JournalKind::Drilled), 0);
+  run_.apply(ReadDepthStop{24.5});
+  run_.apply(TunnelDrilled{});
+  ASSERT_EQ(run_.state()->drilled.outcome, DrilledState::Outcome::Recorded);
+  EXPECT_EQ(run_.state()->drilled.tunnel->depth_mm, 24.5);
+  EXPECT_EQ(run_.count(JournalKind::Drilled), 1);
+  EXPECT_EQ(run_.state()->next_action, NextAction::Finish);
+}
+
+// Refused with the reason, and the probe stops drawing: a touch must not be used in the fit.
+TEST_F(OperationRules, ATouchNeedsTheTipAtRest) {
+  run_.apply(Draw{true});
+  run_.apply(TakeTouch{});
+  EXPECT_EQ(run_.state()->touch_refusal, TouchRefusal::TipUnknown);
+  EXPECT_FALSE(run_.state()->draws);
+  for (int i = 0; i < 20; ++i) run_.show_tip({0.3 * i, 0, 0});
+  run_.apply(TakeTouch{});
+  EXPECT_EQ(run_.state()->touch_refusal, TouchRefusal::TipMoves);
+  run_.touch({1, 2, 3});
+  EXPECT_EQ(run_.state()->touch_refusal, TouchRefusal::None);
+  EXPECT_EQ(run_.state()->registration->touches.count(), 1U);
+  run_.operation().end_source();
+  run_.apply(TakeTouch{});
+  EXPECT_EQ(run_.state()->touch_refusal, TouchRefusal::NoSource);
+}
+
+}  // namespace
+}  // namespace arthronaut::operation

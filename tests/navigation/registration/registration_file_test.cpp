@@ -1,0 +1,59 @@
+#include "navigation/registration/registration_file.h"
+
+#include <gtest/gtest.h>
+
+#include "planning/files/atomic_file.h"
+#include "planning/geometry/error.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::registration {
+namespace {
+
+RegistrationSummary some_registration() {
+  RegistrationSummary summary;
+  summary.has_pose = summary.reliable = true;
+  summary.reasons.clear();
+  summary.marker_from_bone = {
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d(3, 2, 1).normalized())), {1.0 / 3, -2, 30}};
+  summary.covariance = geometry::Matrix6d::Identity() / 7;
+  summary.predicted_tre_mm = 1.0 / 3;
+  return summary;
+}
+
+// What it is of comes back, but for the placement, which no file can vouch for.
+TEST(RegistrationFile, WhatItIsOfComesBack) {
+  const test::TemporaryFolder folder;
+  const Provenance of{"ab12", bones::BoneKind::Tibia,   1, 3, "the camera", "the tools",
+                      1.3345, sources::SourceKind::Live};
+  write_registration_file(folder / "registration.json", some_registration(), &of);
+  const RegistrationRecord record = read_registration_record(folder / "registration.json");
+  ASSERT_TRUE(record.of);
+  EXPECT_EQ(record.of->placement, 0);
+  Provenance expected = of;
+  expected.placement = 0;
+  EXPECT_FALSE(mismatch_of(*record.of, expected));
+  EXPECT_EQ(record.of->camera, of.camera);
+  EXPECT_EQ(record.of->tools, of.tools);
+  EXPECT_EQ(record.of->mesh_sha256, of.mesh_sha256);
+  EXPECT_EQ(record.registration.marker_from_bone.translation_mm,
+            some_registration().marker_from_bone.translation_mm);
+  EXPECT_EQ(record.registration.covariance, some_registration().covariance);
+  write_registration_file(folder / "plain.json", some_registration());
+  EXPECT_FALSE(read_registration_record(folder / "plain.json").of) << "it does not say";
+}
+
+// A kind of source that does not exist must not pass for a real one.
+TEST(RegistrationFile, ABrokenOfIsRefused) {
+  const test::TemporaryFolder folder;
+  const Provenance of{"ab12", bones::BoneKind::Femur, 0, 0, "", "", 1, sources::SourceKind::Live};
+  write_registration_file(folder / "registration.json", some_registration(), &of);
+  std::string text = files::read_text(folder / "registration.json");
+  const std::size_t at = text.find("\"live\"");
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, 6, "\"alive\"");
+  files::write_atomically(folder / "registration.json", text);
+  EXPECT_THROW((void)read_registration_record(folder / "registration.json"), InvalidInput);
+}
+
+}  // namespace
+}  // namespace arthronaut::registration

@@ -1,0 +1,87 @@
+#include "navigation/theatre/live_operation.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/navigation/theatre/theatre_sources.h"
+
+namespace arthronaut::theatre {
+namespace {
+
+using Phase = LiveState::Phase;
+using sources::SourceKind;
+
+class LiveOperationTest : public ::testing::Test {
+ protected:
+  static LiveOptions options() {
+    LiveOptions options;
+    options.operation = test::phantom_setup();
+    options.bone = [] { return registration::phantom_bone().prepared; };
+    return options;
+  }
+  template <typename Condition>
+  static bool waits_for(const Condition& condition) {
+    for (int i = 0; i < 2000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return condition();
+  }
+  LiveOperation live_{options(), [] {}};
+};
+
+// A live source that fails stays the live source that failed: no simulation, no recording takes its place,
+// whatever is pressed after it.
+TEST_F(LiveOperationTest, SourceFailureNeverChangesTheKind) {
+  live_.start(test::plain_source(4, true, SourceKind::Live));
+  ASSERT_TRUE(waits_for([&] { return live_.latest()->phase == Phase::Failed; }));
+  EXPECT_NE(live_.latest()->message.find("unplugged"), std::string::npos) << live_.latest()->message;
+  live_.apply(operation::Draw{true});
+  live_.apply(operation::TakeTouch{});
+  live_.apply(operation::SkipVerification{});
+  live_.finish();
+  const auto latest = live_.latest();
+  EXPECT_EQ(latest->phase, Phase::Failed);
+  EXPECT_FALSE(latest->operation->has_source);
+  EXPECT_FALSE(latest->operation->draws);
+  ASSERT_NE(latest->operation->source, nullptr);
+  EXPECT_EQ(latest->operation->source->kind, SourceKind::Live);
+  EXPECT_EQ(live_.failure(), "");
+}
+
+TEST_F(LiveOperationTest, ASourceThatCannotBeOpenedIsAStateOfTheScreen) {
+  TheatreSource broken = test::plain_source(4, false, SourceKind::Live);
+  broken.open = []() -> std::unique_ptr<sources::FrameSource> { throw DeviceError("no such device"); };
+  live_.start(broken);
+  ASSERT_TRUE(waits_for([&] { return live_.latest()->phase == Phase::Failed; }));
+  EXPECT_FALSE(live_.latest()->operation->has_source);
+  live_.start(test::plain_source(4));
+  EXPECT_TRUE(waits_for([&] { return live_.latest()->phase == Phase::Ended; }));
+  EXPECT_EQ(live_.latest()->operation->frame_count, 4);
+}
+
+// A picture of another size than the camera's ends the source; the message says both sizes.
+TEST_F(LiveOperationTest, AnotherPictureSizeIsTold) {
+  TheatreSource source = test::plain_source(4);
+  source.setup.pipeline.calibration.image_size_px = {320, 240};
+  live_.start(source);
+  ASSERT_TRUE(waits_for([&] { return live_.latest()->phase == Phase::Failed; }));
+  live_.finish();
+  EXPECT_EQ(live_.latest()->phase, Phase::Failed) << "and nothing of it goes on";
+  EXPECT_NE(live_.latest()->message.find("160 x 120"), std::string::npos) << live_.latest()->message;
+  EXPECT_NE(live_.latest()->message.find("320 x 240"), std::string::npos) << live_.latest()->message;
+}
+
+// A record that cannot be begun is said on the screen and ends nothing.
+TEST(LiveOperationRecord, TroubleIsPublished) {
+  LiveOptions options;
+  options.operation = test::phantom_setup();
+  options.bone = [] { return registration::phantom_bone().prepared; };
+  options.make_session_folder = []() -> std::filesystem::path { throw IoError("sessions", "disk full"); };
+  LiveOperation live(options, [] {});
+  live.start(test::plain_source(4));
+  for (int i = 0; i < 2000 && live.latest()->phase != Phase::Ended; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(live.latest()->phase, Phase::Ended);
+  EXPECT_NE(live.latest()->record_trouble.find("disk full"), std::string::npos);
+  EXPECT_EQ(live.latest()->operation->frame_count, 4);
+}
+
+}  // namespace
+}  // namespace arthronaut::theatre

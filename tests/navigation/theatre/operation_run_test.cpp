@@ -1,0 +1,117 @@
+#include "navigation/theatre/operation_run.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "navigation/recording/session.h"
+#include "tests/navigation/theatre/theatre_sources.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::theatre {
+namespace {
+
+namespace fs = std::filesystem;
+using operation::Standing;
+
+class OperationRunTest : public ::testing::Test {
+ protected:
+  void give(OperationRun& run) const {
+    run.apply(test::true_registration(
+        trial_, operation::provenance_of(run.operation().setup(),
+                                         test::scripted_source(sources::SourceKind::Recording))));
+  }
+  // Steps to the end of the source; how many pictures there were.
+  static int run_to_end(OperationRun& run) {
+    for (int count = 0;; ++count)
+      if (run.step().has_ended) return count;
+  }
+  const test::TemporaryFolder folder_;
+  experiments::Trial trial_ = registration::phantom_bone().trial(experiments::TrialNoise::Dry, 1);
+  operation::OperationSetup setup_ = test::phantom_setup();
+};
+
+// A record that cannot begin is told and ends nothing: the operation goes on to the last frame, guiding.
+TEST_F(OperationRunTest, ARecordThatCannotBeginIsToldAndNothingEnds) {
+  OperationRun run(setup_, test::at_once(setup_),
+                   []() -> fs::path { throw IoError("sessions", "the folder is read-only"); });
+  run.start(test::plain_source(8));
+  EXPECT_NE(run.record_trouble().find("read-only"), std::string::npos) << run.record_trouble();
+  give(run);
+  EXPECT_EQ(run_to_end(run), 8);
+  EXPECT_EQ(run.state()->registration->in_force.standing, Standing::Stands);
+  EXPECT_EQ(run.state()->frame_count, 8);
+}
+
+// The same of a folder that is no place to write to; the next source gets its chance anew.
+TEST_F(OperationRunTest, AFolderThatCannotBeWrittenIsToldAndTheNextSourceIsRecorded) {
+  std::ofstream(folder_ / "file").put('x');
+  fs::path next = folder_ / "file" / "session";
+  OperationRun run(setup_, test::at_once(setup_), [&] { return next; });
+  run.start(test::plain_source(4));
+  EXPECT_NE(run.record_trouble(), "");
+  EXPECT_EQ(run_to_end(run), 4);
+  next = folder_ / "good";
+  fs::create_directory(next);
+  run.start(test::plain_source(4));
+  EXPECT_EQ(run.record_trouble(), "");
+  EXPECT_EQ(run_to_end(run), 4);
+  EXPECT_EQ(recording::RecordedSession(next).frames().size(), 4U);
+}
+
+// Midway the folder goes: that is told, the frames go on.
+TEST_F(OperationRunTest, ARecordThatFailsMidwayIsToldAndNothingEnds) {
+  const fs::path session = folder_ / "session";
+  OperationRun run(setup_, test::at_once(setup_), [&] {
+    fs::create_directory(session);
+    return session;
+  });
+  run.start(test::plain_source(40));
+  give(run);
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(run.step().picture);
+  fs::remove_all(session);
+  EXPECT_EQ(run_to_end(run), 30);
+  EXPECT_NE(run.record_trouble(), "");
+  EXPECT_EQ(run.state()->registration->in_force.standing, Standing::Stands);
+}
+
+// A source that fails ends itself and its record, whole; what was made stays in force, and its kind is what
+// it was.
+TEST_F(OperationRunTest, WhatWasMadeIsKeptWhenTheSourceFails) {
+  const fs::path session = folder_ / "session";
+  OperationRun run(setup_, test::at_once(setup_), [&] {
+    fs::create_directory(session);
+    return session;
+  });
+  run.start(test::plain_source(5, true));
+  give(run);
+  EXPECT_THROW(run_to_end(run), DeviceError);
+  EXPECT_FALSE(run.has_source());
+  EXPECT_FALSE(run.state()->has_source);
+  EXPECT_EQ(run.state()->source->kind, sources::SourceKind::Recording);
+  EXPECT_EQ(run.state()->registration->in_force.standing, Standing::Stands);
+  EXPECT_EQ(run.record_trouble(), "");
+  const recording::RecordedSession recorded(session);
+  EXPECT_TRUE(recorded.was_finished());
+  EXPECT_EQ(recorded.frames().size(), 5U);
+  ASSERT_TRUE(recorded.registration());
+  EXPECT_EQ(recorded.registration()->marker_from_bone.translation_mm, trial_.marker_from_bone.translation_mm);
+  // A decision after the end belongs to the same record.
+  run.apply(operation::SkipVerification{});
+  const recording::RecordedSession after(session);
+  EXPECT_TRUE(std::any_of(after.events().begin(), after.events().end(),
+                          [](const auto& event) { return event.kind == "verification skipped"; }));
+}
+
+// A source that cannot be opened is no source; what was there before has ended.
+TEST_F(OperationRunTest, ASourceThatCannotBeOpenedIsNone) {
+  OperationRun run(setup_, test::at_once(setup_), {});
+  run.start(test::plain_source(5));
+  TheatreSource broken = test::plain_source(5);
+  broken.open = []() -> std::unique_ptr<sources::FrameSource> { throw DeviceError("no such device"); };
+  EXPECT_THROW(run.start(broken), DeviceError);
+  EXPECT_FALSE(run.has_source());
+}
+
+}  // namespace
+}  // namespace arthronaut::theatre
