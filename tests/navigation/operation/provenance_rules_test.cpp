@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Change{"Marker",
                              [](SourceSetup& s) { s.pipeline.tools.world_markers[0].marker_id = 7; },
                              Mismatch::WorldMarker, false}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& tested) { return tested.param.name; });
 
 // What is given from elsewhere is judged by what it says it is of.
 TEST(GivenRegistration, OfAnotherMeshOrBoneIsVoidForGood) {

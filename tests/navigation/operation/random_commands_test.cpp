@@ -67,10 +67,13 @@ std::vector<std::uint64_t> digests_of(std::uint64_t seed) {
     digests.push_back(digest_of_decisions(*state));
     // Whatever came before: nothing that does not stand is handed to guidance as reliable.
     const RegistrationInForce& in_force = state->registration->in_force;
-    if (in_force.registration != nullptr)
+    if (in_force.registration != nullptr) {
       EXPECT_EQ(in_force.registration->reliable, in_force.standing == Standing::Stands) << "seed " << seed;
+    }
     EXPECT_EQ(in_force.standing == Standing::Void, in_force.mismatch.has_value());
-    if (state->drilled.tunnel) EXPECT_GE(state->drilled.tunnel->pose_count, 15);
+    if (state->drilled.tunnel) {
+      EXPECT_GE(state->drilled.tunnel->pose_count, 15);
+    }
   }
   return digests;
 }
