@@ -295,7 +295,9 @@ ControlPointDue Operation::Parts::control_point_due() const {
 }
 
 RegistrationStatePtr Operation::Parts::registration_state() {
-  if (!changed && published_registration != nullptr && published_registration->drawn == strokes.trace())
+  // Not by how often somebody asked: a point that the trace does not show counts too.
+  if (!changed && published_registration != nullptr && published_registration->drawn == strokes.trace() &&
+      published_registration->point_count == strokes.points().size())
     return published_registration;
   auto state = std::make_shared<RegistrationState>();
   state->drawn = strokes.trace();
