@@ -18,6 +18,12 @@ class FrameComparison {
       : summary_(summary), tolerance_mm_(tolerance_mm), tolerance_deg_(tolerance_deg) {}
 
   void compare(const RecordedFrame& then, const pipeline::FrameResult& now) {
+    compare_poses(then, now);
+    compare_tip(then, now);
+    compare_guidance(then.guidance, now.guidance);
+  }
+
+  void compare_poses(const RecordedFrame& then, const pipeline::FrameResult& now) {
     frame_ = then.index;
     rows_.clear();
     pipeline::append_pose_rows(now, rows_);
@@ -25,8 +31,6 @@ class FrameComparison {
     for (const strokes::PoseRow& row : rows_) {
       if (!find(then.poses, row.marker_id)) differs(pose_of(row.marker_id), "has a pose now and had none");
     }
-    compare_tip(then, now);
-    compare_guidance(then.guidance, now.guidance);
   }
 
  private:
@@ -137,6 +141,7 @@ class Rerun {
     play_before_source();
     operation::SourceSetup source;
     source.kind = sources::source_kind_from_text(header.source_kind).value_or(sources::SourceKind::Recording);
+    source.draws = header.probe_drew_at_start;
     source.title = header.source;
     source.pipeline = session.pipeline_options();
     operation_.start_source(source);
@@ -273,6 +278,31 @@ void compare_registration(const RecordedSession& session, const operation::Opera
     summary.differences.push_back({-1, "registration at the target", error_mm, "mm", ""});
 }
 
+// The pictures of a session that were kept, each at its frame.
+class Pictures {
+ public:
+  explicit Pictures(const RecordedSession& session) {
+    if (session.video().empty()) return;
+    video_ = open_recorded_video(session);
+    prefetched_ = std::make_unique<pipeline::PrefetchedSource>(*video_);
+    next_ = prefetched_->next();
+  }
+  [[nodiscard]] bool has_ended() const { return next_ == nullptr; }
+  // Before the first of().
+  [[nodiscard]] bool begins_with(const std::vector<RecordedFrame>& frames) const {
+    return next_ != nullptr && !frames.empty() && next_->index == frames.front().index;
+  }
+  // Frames in order; null where none was kept.
+  [[nodiscard]] camera::FramePtr of(std::int64_t frame) {
+    while (next_ != nullptr && next_->index < frame) next_ = prefetched_->next();
+    return next_ != nullptr && next_->index == frame ? next_ : nullptr;
+  }
+
+ private:
+  std::unique_ptr<sources::FrameSource> video_, prefetched_;
+  camera::FramePtr next_;
+};
+
 // States by their digests: the first that differs is told, with how many do.
 class StateComparison {
  public:
@@ -312,6 +342,7 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   summary.is_same_build = !reencoded && session.header().build == build_identity();
   FrameComparison comparison(summary, reencoded ? options.reencoded_tolerance_mm : options.tolerance_mm,
                              reencoded ? options.reencoded_tolerance_deg : options.tolerance_deg);
+  FrameComparison cold_comparison(summary, options.reencoded_tolerance_mm, options.reencoded_tolerance_deg);
   StateComparison states;
   const std::vector<RecordedSession> before = sessions_before(session, summary);
   Rerun rerun(setup_of(before.empty() ? session : before.front(), options), options);
@@ -324,24 +355,27 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
     rerun.play_rest();
   }
 
-  std::unique_ptr<sources::FrameSource> video, prefetched;
-  camera::FramePtr picture;
-  if (!session.video().empty()) {
-    video = open_recorded_video(session);
-    prefetched = std::make_unique<pipeline::PrefetchedSource>(*video);
-    picture = prefetched->next();
-  }
+  Pictures pictures(session);
+  // What was tracked depends on every picture before: where the first ones were not kept, tracking begins
+  // cold and comes out slightly different. What was decided is then run again from the recorded poses alone.
+  const bool is_fed = pictures.begins_with(session.frames());
+  std::optional<pipeline::NavigationPipeline> cold;
+  if (!is_fed && !pictures.has_ended()) cold.emplace(session.pipeline_options());
   rerun.start(session);
+  pipeline::FrameResult cold_result;
   for (const RecordedFrame& recorded : session.frames()) {
-    while (picture != nullptr && picture->index < recorded.index) picture = prefetched->next();
-    const bool has_picture = picture != nullptr && picture->index == recorded.index;
+    const camera::FramePtr picture = pictures.of(recorded.index);
     rerun.play_before(recorded.index);
-    const operation::OperationStatePtr state =
-        has_picture ? rerun.process(*picture) : rerun.process(recorded);
-    if (has_picture) comparison.compare(recorded, state->frame);
-    states.compare(recorded, *state, has_picture);
-    summary.replayed_frames += has_picture ? 1 : 0;
-    summary.frames_without_picture += has_picture ? 0 : 1;
+    const bool feeds = is_fed && picture != nullptr;
+    const operation::OperationStatePtr state = feeds ? rerun.process(*picture) : rerun.process(recorded);
+    if (feeds) comparison.compare(recorded, state->frame);
+    if (cold && picture != nullptr) {
+      cold->process(*picture, cold_result);
+      cold_comparison.compare_poses(recorded, cold_result);
+    }
+    states.compare(recorded, *state, feeds);
+    summary.replayed_frames += picture != nullptr ? 1 : 0;
+    summary.frames_without_picture += picture != nullptr ? 0 : 1;
     if (progress) progress(summary.replayed_frames + summary.frames_without_picture);
   }
   rerun.play_rest();

@@ -43,10 +43,11 @@ struct SessionHeader {
   // videos of older versions, which give slightly other ones.
   bool video_has_exact_luma = false;
   // Of the operation that this session is a part of; empty and 0 in records that are older than it.
-  std::string source_kind;        // "live", "recording", "simulation"
-  std::string mesh_sha256;        // of the bone's mesh
-  std::string continues;          // id of the session before it in the same operation
-  double registers_after_mm = 0;  // OperationSetup::registers_after_mm; 0: somebody was at the pedal
+  std::string source_kind;          // "live", "recording", "simulation"
+  std::string mesh_sha256;          // of the bone's mesh
+  bool probe_drew_at_start = true;  // SourceSetup::draws
+  std::string continues;            // id of the session before it in the same operation
+  double registers_after_mm = 0;    // OperationSetup::registers_after_mm; 0: somebody was at the pedal
   std::string program_version;
   std::string build;  // build_identity() of the program that recorded it
 };

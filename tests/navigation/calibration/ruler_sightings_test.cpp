@@ -71,7 +71,7 @@ TEST(RulerSightings, SaysWhyAFrameIsNotTaken) {
   camera::Frame black = *source.next();
   std::fill(black.bgr.begin(), black.bgr.end(), std::uint8_t{0});
   EXPECT_FALSE(sightings.look(black).is_taken);
-  EXPECT_THAT(sightings.look(black).reason, HasSubstr("lens mark"));
+  EXPECT_THAT(sightings.look(black).reason, HasSubstr("the rim of the view is not seen"));
 
   for (int i = 0; i < 5 && !sightings.is_full(); ++i) sightings.look(*source.next());
   ASSERT_TRUE(sightings.is_full());

@@ -60,7 +60,16 @@ TEST(NavigationPipelineAllocation, NothingPerFrameAfterTheFirstFrames) {
 // Votes on the medium, for and against, cost no memory either.
 TEST(MediumCheckAllocation, NothingPerFrame) {
   const std::vector<markers::DeclaredMarker> declared{{0, 4}};
-  const camera::CameraModel saline(test::small_calibration(), 0, 1.3345);
+  // As many pixels as a scope has: in small pictures every medium looks alike.
+  camera::Calibration scope = test::small_calibration();
+  constexpr double kTimes = 8;
+  scope.image_size_px *= static_cast<int>(kTimes);
+  scope.focal_px *= kTimes;
+  scope.principal_point_px *= kTimes;
+  scope.rotation_center_px *= kTimes;
+  scope.boundary.center_px *= kTimes;
+  scope.boundary.radius_px *= kTimes;
+  const camera::CameraModel saline(scope, 0, 1.3345);
   pipeline::PictureObservation view;
   view.intrinsics_are_known = true;
   view.camera = saline;
