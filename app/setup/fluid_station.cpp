@@ -30,8 +30,8 @@ void FluidStation::read_standing() {
   const std::string date = is_measured ? state.last->provenance.calibrated_utc.substr(0, 10) : "simulated";
   checked_.text = (state.is_trusted() ? medium + " fits, " : "refused in " + medium + ", ") + date;
   checked_.severity = !state.is_trusted() ? widgets::Severity::Bad
-                  : is_measured       ? widgets::Severity::Good
-                                      : widgets::Severity::Caution;
+                      : is_measured       ? widgets::Severity::Good
+                                          : widgets::Severity::Caution;
 }
 
 void FluidStation::keep_verdict() {

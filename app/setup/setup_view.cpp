@@ -142,8 +142,7 @@ void SetupView::add_actions(widgets::Actions& actions) {
   const auto has_run = [this] { return step().station->has_run(); };
   add("setup.next", "Next step", "Starts, takes, calibrates, adopts: whatever comes next", GLFW_KEY_SPACE,
       [this] { take_next_step(); });
-  add(
-      "setup.source", "Other source",
+  add("setup.source", "Other source",
       "Cameras, pictures, videos in turn; the simulator where there is no real scope", GLFW_KEY_O,
       [this] { choose_source(); }, {"take another source", has_run});
   add("setup.path", "Type a source", "The path of a video or of a folder of pictures, or: simulator",

@@ -25,8 +25,8 @@ enum class GuidanceState {
   WorldMarkerLost,
   GuideLost,
   LensStale,
-  Stale,    // the newest pose is too old
-  NoGuide,  // the tools hold no such guide, or it has no axis
+  Stale,        // the newest pose is too old
+  NoGuide,      // the tools hold no such guide, or it has no axis
   WrongMedium,  // the pictures contradict the medium that is said to be before the lens
 };
 [[nodiscard]] std::string_view to_text(GuidanceState state);

@@ -78,7 +78,8 @@ void MediumCheck::look(const PictureObservation& view) {
   wants_second_look_ = is_any_strained && is_unconfirmed && is_rested;
 }
 
-void MediumCheck::look_again(const PictureObservation& view, std::span<const markers::MarkerObservation> in_other_medium) {
+void MediumCheck::look_again(const PictureObservation& view,
+                             std::span<const markers::MarkerObservation> in_other_medium) {
   wants_second_look_ = false;
   has_looked_ = true;
   looked_ns_ = view.timestamp_ns;

@@ -75,7 +75,8 @@ class MediumCheck {
   // Markers are there and none speaks for the stated medium: see the picture of the last look() again.
   [[nodiscard]] bool wants_second_look() const { return wants_second_look_; }
   // What SecondLook saw in the picture of this view.
-  void look_again(const PictureObservation& view, std::span<const markers::MarkerObservation> in_other_medium);
+  void look_again(const PictureObservation& view,
+                  std::span<const markers::MarkerObservation> in_other_medium);
 
   [[nodiscard]] const MediumVerdict& verdict() const { return verdict_; }
   [[nodiscard]] double other_index() const { return verdict_.other_index; }

@@ -9,13 +9,13 @@
 
 namespace arthronaut::importing {
 
-// Writes the case with these bones into `folder`, and returns it. `name` becomes the case's name; empty: "Knee"
-// and the date, or the one it has. `source` is for messages.
+// Writes the case with these bones into `folder`, and returns it. `name` becomes the case's name; empty:
+// "Knee" and the date, or the one it has. `source` is for messages.
 //
 // A new case appears whole, by renaming, or not at all. In one that is there bones are replaced, and
 // landmarks on them go. Throws InvalidInput: a folder that holds something else; a knee of the other side, or
-// of neither; another patient's; a bone that is planned on, as its tunnel would lie somewhere else in another surface. Throws
-// IoError. The folder is then as before.
+// of neither; another patient's; a bone that is planned on, as its tunnel would lie somewhere else in another
+// surface. Throws IoError. The folder is then as before.
 cases::Case add_to_case(const std::filesystem::path& folder, const BoneImport& import,
                         const std::string& name, const std::filesystem::path& source);
 

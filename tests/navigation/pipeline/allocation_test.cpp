@@ -72,8 +72,8 @@ TEST(MediumCheckAllocation, NothingPerFrame) {
   const camera::CameraModel saline(scope, 0, 1.3345);
   pipeline::PictureObservation view;
   view.intrinsics_are_known = true;
-  view.camera = saline;
-  view.markers = {test::seen(0, {Eigen::Quaterniond(0, 1, 0, 0), {0, 0, 12}})};
+  view.camera = camera::CameraModel(scope, 0, 1.0);  // as is said; the picture is of saline
+  view.markers = {test::seen(0, {Eigen::Quaterniond(0, 1, 0, 0), {0, 0, 7}})};
   view.markers[0].camera_from_marker.rotation =
       Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX())) * Eigen::Quaterniond(0, 1, 0, 0);
   const auto corners_mm = markers::square_corners_mm(4);
