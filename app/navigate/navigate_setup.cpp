@@ -125,6 +125,9 @@ theatre::TheatreSource camera_setup(const open_case::PlanModel& model, bones::Bo
                                     double refractive_index) {
   theatre::TheatreSource source =
       real_setup(model, bone, case_folder, refractive_index, sources::SourceKind::Live);
+  for (const std::string& why_not :
+       {open_case::camera_is_not_for_live(case_folder), open_case::tools_are_not_for_live(case_folder)})
+    if (!why_not.empty()) throw InvalidInput(why_not);
   source.setup.title = camera.name;
   source.open = [turns, index = camera.index] { return turns.open(index); };
   return source;

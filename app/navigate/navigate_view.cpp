@@ -39,7 +39,7 @@ std::optional<sources::SourceKind> NavigateView::source_kind() const {
 }
 
 void NavigateView::case_opened(const mode::OpenCase& opened) {
-  bones_.open(opened.model, opened.folder);
+  bones_.open(opened.model, opened.folder, opened.read_only);
   live_ = TheatreBones::nothing();
   words_ = {};
   part_.reset();

@@ -3,6 +3,7 @@
 #include "app/navigate/tool_clearance.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::navigate {
 
@@ -58,18 +59,21 @@ class LineMaker {
 
 }  // namespace
 
-void TheatreBones::open(const open_case::PlanModel* model, const std::filesystem::path& case_folder) {
+void TheatreBones::open(const open_case::PlanModel* model, const std::filesystem::path& case_folder,
+                        const std::string& read_only) {
   for (auto& [kind, bone] : bones_)
     if (bone.operation != nullptr) bone.operation->request_stop();
   // A bone that is just being made ready would be waited for.
   ending_.end(std::exchange(bones_, {}));
   model_ = model;
   case_folder_ = case_folder;
+  read_only_ = read_only;
 }
 
 std::optional<PlannedTunnel> TheatreBones::plan_of(bones::BoneKind bone) const {
   const auto tunnel = model_->tunnel(bone);
-  if (!tunnel) return std::nullopt;
+  // One that was made on another surface would lie somewhere else in this one: nothing guides to it.
+  if (!tunnel || !model_->plan_fit(bone).is_valid()) return std::nullopt;
   return PlannedTunnel{*tunnel, model_->drawn_length_mm(bone)};
 }
 
@@ -97,7 +101,10 @@ std::unique_ptr<theatre::LiveOperation> TheatreBones::made(bones::BoneKind bone)
                          : std::make_shared<registration::SurfaceIndex>(mesh, cache);
   };
   if (has_folder)
-    options.make_session_folder = [folder = case_folder_] { return cases::create_session_folder(folder); };
+    options.make_session_folder = [folder = case_folder_, why_not = read_only_] {
+      if (!why_not.empty()) throw IoError("the case is open read-only: it " + why_not);
+      return cases::create_session_folder(folder);
+    };
   options.decorate = [maker =
                           std::make_shared<LineMaker>(options.operation.surface, model_->drawn_mesh(bone))](
                          const OperationState& state) { return (*maker)(state); };

@@ -28,7 +28,9 @@ class TheatreBones {
   explicit TheatreBones(std::function<void()> wake) : wake_(std::move(wake)) {}
 
   // Another case: ends what runs, in threads behind the screen. The model outlives this object's use of it.
-  void open(const open_case::PlanModel* model, const std::filesystem::path& case_folder);
+  // read_only: why nothing may be written into the case; empty when it may.
+  void open(const open_case::PlanModel* model, const std::filesystem::path& case_folder,
+            const std::string& read_only);
   // Made when it is first asked for; made anew while nothing hangs on it and its plan has changed, or its
   // bone could not be made ready. Precondition: the model has the bone.
   theatre::LiveOperation& operation(bones::BoneKind bone);
@@ -52,6 +54,7 @@ class TheatreBones {
   std::function<void()> wake_;
   const open_case::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
+  std::string read_only_;
   std::map<bones::BoneKind, Bone> bones_;
   sources::BackgroundEnd ending_;
 };
