@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "navigation/experiments/registration_experiment.h"
 #include "planning/bones/mesh_file.h"
@@ -13,7 +14,7 @@ namespace {
 using experiments::RegistrationExperimentResult;
 
 struct ExperimentArguments {
-  std::string bone, noise = "dry", side = "right", space, unit, plot, trial_folder;
+  std::string bone, noise = "dry", side = "right", space, unit, plot, trial_folder, registered_to, evidence;
   int trials = 10;
   std::uint64_t seed = 1;
   bool no_marker_prior = false;
@@ -73,6 +74,9 @@ void run(Context& context, const ExperimentArguments& arguments) {
     context.say(formatted("wrote %d trials; nothing was registered", options.trial_count));
     return;
   }
+  std::optional<geometry::TriangleMesh> other;
+  if (!arguments.registered_to.empty())
+    options.registered_to = &other.emplace(bones::read_mesh(arguments.registered_to, mesh_options));
   RegistrationExperimentResult result;
   {
     Progress progress("registering", options.trial_count);
@@ -81,7 +85,12 @@ void run(Context& context, const ExperimentArguments& arguments) {
   }
   if (!arguments.plot.empty())
     experiments::write_registration_plot(arguments.plot, result, options.series.noise);
-  say_result(context, result);
+  if (!arguments.evidence.empty()) experiments::write_verdict_evidence(arguments.evidence, result);
+  if (result.is_on_own_bone)
+    say_result(context, result);
+  else
+    context.say(formatted("taken for reliable on another bone: %d of %d", result.reliable_count,
+                          static_cast<int>(result.trials.size())));
   if (result.reliable_but_wrong_count > 0) {
     context.say_unreliable("the experiment", {"a registration that was wrong took itself for reliable"});
   }
@@ -115,11 +124,20 @@ void add_registration_experiment(CLI::App& experiment, Context& context) {
   command->add_option("--unit", arguments->unit, "Length unit of the mesh: mm, cm, m or in");
   command->add_option("--plot", arguments->plot, "PNG to draw the paper's plot into");
   command
+      ->add_option("--onto", arguments->registered_to,
+                   "Register the strokes to this mesh instead: another person's bone, so that none may be "
+                   "taken for reliable; read with the same --space and --unit")
+      ->excludes("--plot");
+  command->add_option("--evidence", arguments->evidence,
+                      "CSV of what each verdict rested on: misfit, lead and what was needed of it");
+  command
       ->add_option(
           "--write-trials", arguments->trial_folder,
           "Write the trials into this folder for other programs, instead of registering them: bone.ply, and "
           "for each trial its curves (trial_K.csv) and its truth (trial_K.json)")
       ->excludes("--plot")
+      ->excludes("--onto")
+      ->excludes("--evidence")
       ->excludes("--no-marker-prior");
   command->callback([&context, arguments] { run(context, *arguments); });
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <ctime>
 
+#include "planning/files/atomic_file.h"
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/quantile.h"
 
@@ -66,7 +68,8 @@ void count_outcomes(RegistrationExperimentResult& result) {
   for (const TrialOutcome& trial : result.trials) {
     seconds.push_back(trial.seconds);
     if (trial.has_pose) errors.push_back(trial.target_error_mm);
-    const bool is_right = trial.has_pose && trial.target_error_mm < RegistrationExperimentResult::success_mm;
+    const bool is_right = result.is_on_own_bone && trial.has_pose &&
+                          trial.target_error_mm < RegistrationExperimentResult::success_mm;
     if (is_right && trial.predicted_error_mm > 0)
       ratios.push_back(trial.target_error_mm / trial.predicted_error_mm);
     result.success_count += is_right;
@@ -85,11 +88,12 @@ RegistrationExperimentResult run_registration_experiment(const geometry::Triangl
                                                          const RegistrationExperimentOptions& options,
                                                          const std::function<void(int)>& progress) {
   if (options.trial_count < 1) throw InvalidInput("an experiment needs at least one trial");
-  const registration::SurfaceIndex bone(mesh);
+  const registration::SurfaceIndex bone(options.registered_to != nullptr ? *options.registered_to : mesh);
   const TrialSeries series(mesh, options.series);
   const Eigen::Vector3d& target = series.target_mm();
 
   RegistrationExperimentResult result;
+  result.is_on_own_bone = options.registered_to == nullptr;
   result.control_points = choose_control_points(mesh, target);
   std::vector<geometry::RigidTransform> found_from_true;
   for (int i = 0; i < options.trial_count; ++i) {
@@ -103,6 +107,7 @@ RegistrationExperimentResult run_registration_experiment(const geometry::Triangl
     outcome.reliable = found.reliable;
     outcome.reasons = found.reasons;
     outcome.predicted_error_mm = found.predicted_tre_mm;
+    outcome.evidence = found.evidence;
     const geometry::RigidTransform moved = found.marker_from_bone.inverse() * trial.marker_from_bone;
     outcome.target_error_mm = (moved * target - target).norm();
     if (found.reliable) found_from_true.push_back(moved);
@@ -120,6 +125,21 @@ RegistrationExperimentResult run_registration_experiment(const geometry::Triangl
   result.error_rms_mm = std::sqrt(error / count);
   count_outcomes(result);
   return result;
+}
+
+void write_verdict_evidence(const std::filesystem::path& file, const RegistrationExperimentResult& result) {
+  std::string text =
+      "trial,reliable,has_pose,target_error_mm,predicted_error_mm,stroke_length_mm,white_noise_mm,"
+      "excess_misfit_mm,bearable_excess_mm,lead,lead_needed\n";
+  for (std::size_t i = 0; i < result.trials.size(); ++i) {
+    const TrialOutcome& trial = result.trials[i];
+    const registration::VerdictEvidence& e = trial.evidence;
+    const std::string error = result.is_on_own_bone ? files::format("%.4f", trial.target_error_mm) : "";
+    text += files::format("%zu,%d,%d,%s,%.4f,%.1f,%.4f,%.4f,%.4f,%.3f,%.3f\n", i, trial.reliable ? 1 : 0,
+                          trial.has_pose ? 1 : 0, error.c_str(), trial.predicted_error_mm, e.stroke_length_mm,
+                          e.white_noise_mm, e.excess_misfit_mm, e.bearable_excess_mm, e.lead, e.lead_needed);
+  }
+  files::write_atomically(file, text);
 }
 
 }  // namespace arthronaut::experiments

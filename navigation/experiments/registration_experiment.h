@@ -17,12 +17,16 @@ struct RegistrationExperimentOptions {
   TrialSeriesOptions series;
   int trial_count = 10;
   bool use_marker_prior = true;
+  // The strokes of the trials' bone are registered to this one instead: another person's, so that no result
+  // is right and every reliable one is wrong. Null: to their own. Must outlive the run.
+  const geometry::TriangleMesh* registered_to = nullptr;
 };
 
 struct TrialOutcome {
   bool has_pose = false, reliable = false;
-  double target_error_mm = 0;  // against the truth
+  double target_error_mm = 0;  // against the truth; on another bone it means nothing
   double predicted_error_mm = 0;
+  registration::VerdictEvidence evidence;
   double seconds = 0;  // of the processor, for one registration
   std::vector<std::string> reasons;
 };
@@ -41,7 +45,8 @@ struct RegistrationExperimentResult {
   double median_target_error_mm = 0;           // of the trials with a pose
   double median_error_ratio = 0;               // error / predicted error, of the trials within success_mm
   double median_seconds = 0;
-  int success_count = 0;  // target error below success_mm
+  bool is_on_own_bone = true;
+  int success_count = 0;  // target error below success_mm, on the own bone
   int reliable_count = 0, reliable_but_wrong_count = 0, doubted_though_right_count = 0;
   static constexpr double success_mm = 2.0;
 };
@@ -51,6 +56,11 @@ struct RegistrationExperimentResult {
 [[nodiscard]] RegistrationExperimentResult run_registration_experiment(
     const geometry::TriangleMesh& mesh, const RegistrationExperimentOptions& options,
     const std::function<void(int)>& progress = {});
+
+// One row a trial: what its verdict rested on. CSV: trial, reliable, has_pose, target_error_mm (empty on
+// another bone), predicted_error_mm, stroke_length_mm, white_noise_mm, excess_misfit_mm, bearable_excess_mm,
+// lead, lead_needed. "-" is standard output. Throws IoError.
+void write_verdict_evidence(const std::filesystem::path& file, const RegistrationExperimentResult& result);
 
 // The paper's plot: spread and error at each control point. PNG. Throws IoError.
 void write_registration_plot(const std::filesystem::path& file, const RegistrationExperimentResult& result,

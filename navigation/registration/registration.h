@@ -59,6 +59,17 @@ struct RegistrationOptions {
 // What a registration made of the cartilage. None: without one, or it was taken to lie on the mesh.
 enum class CartilageUse { None, Solved, LeftOut };
 
+// What the verdict on a pose rests on besides the error at the target, for experiments that set its
+// thresholds.
+struct VerdictEvidence {
+  double stroke_length_mm = 0;
+  double white_noise_mm = 0;  // of the tip, one coordinate
+  // By how much the points miss the surface beyond what such noise explains, and how much is borne.
+  double excess_misfit_mm = 0, bearable_excess_mm = 0;
+  // Over the next pose, in independent measurements' log likelihood; and what this pose needs.
+  double lead = 0, lead_needed = 0;
+};
+
 struct RegistrationSummary {
   bool has_pose = false;  // false: nothing was found, the pose below is meaningless
   bool reliable = false;
@@ -86,6 +97,7 @@ struct RegistrationSummary {
   // What the residuals of different stretches of stroke share where they cross: the shape's own miss, since
   // errors of the tip differ from stretch to stretch.
   double shared_misfit_mm = 0;
+  VerdictEvidence evidence;
 };
 
 // Deterministic for a seed. Never throws on poor data: read the summary.

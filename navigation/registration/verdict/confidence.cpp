@@ -113,15 +113,26 @@ double lead_needed(double excess_misfit_mm, double predicted_error_mm, double le
                                   std::pow(predicted_error_mm, kPower));
 }
 
-std::vector<std::string> doubts(const RegistrationSummary& summary, const TouchedCurves& touched,
-                                double lead) {
+VerdictEvidence evidence_for(const RegistrationSummary& summary, const TouchedCurves& touched, double lead) {
+  VerdictEvidence evidence;
+  evidence.stroke_length_mm = touched.length_mm;
+  evidence.white_noise_mm = touched.white_noise_mm;
+  evidence.excess_misfit_mm = excess_misfit_mm(summary, touched.white_noise_mm);
+  evidence.bearable_excess_mm = max_excess_mm(touched.white_noise_mm);
+  evidence.lead = lead;
+  evidence.lead_needed = lead_needed(evidence.excess_misfit_mm, summary.predicted_tre_mm, touched.length_mm);
+  return evidence;
+}
+
+std::vector<std::string> doubts(const RegistrationSummary& summary, const TouchedCurves& touched) {
+  const VerdictEvidence& evidence = summary.evidence;
   constexpr double kMinInliers = 0.5;
   std::vector<std::string> reasons;
   if (touched.length_mm < kMinLength_mm) {
     reasons.push_back(files::format("too little was touched: draw %.0f mm more of stroke",
                                     std::ceil(kMinLength_mm - touched.length_mm)));
   }
-  if (share_of_bearable_misfit(summary, touched.white_noise_mm) > 1) {
+  if (evidence.excess_misfit_mm > evidence.bearable_excess_mm) {
     reasons.push_back(files::format(
         "the points miss the surface by %.2f mm, more than the tip's noise of %.2f mm explains: "
         "is it this patient's bone?",
@@ -131,10 +142,9 @@ std::vector<std::string> doubts(const RegistrationSummary& summary, const Touche
   if (summary.predicted_tre_mm > kMaxError_mm) {
     reasons.push_back("the touched patch does not hold the bone fast: touch other faces of the notch too");
   }
-  if (lead < kClearLead) {
+  if (evidence.lead < kClearLead) {
     reasons.push_back("two poses fit almost alike: touch other faces of the notch too");
-  } else if (lead < lead_needed(excess_misfit_mm(summary, touched.white_noise_mm), summary.predicted_tre_mm,
-                                touched.length_mm)) {
+  } else if (evidence.lead < evidence.lead_needed) {
     reasons.push_back(
         files::format("strokes that miss the surface by %.2f mm fit another bone too: draw more of them, "
                       "on other faces of the notch too",
@@ -228,7 +238,8 @@ RegistrationSummary summarise(const SurfaceIndex::Data& bone, const PosePool& po
   constexpr double kLeadAlone = 25;  // that no other was found says no more
   const double lead =
       pool.runner_up() ? lead_of(best.cost, pool.runner_up()->cost, touched.points) : kLeadAlone;
-  summary.reasons = doubts(summary, touched, lead);
+  summary.evidence = evidence_for(summary, touched, lead);
+  summary.reasons = doubts(summary, touched);
   if (!ShaftCollision(bone, touched.points)
            .is_possible(best.bone_from_marker.matrix().cast<float>(),
                         best.bone_from_marker.translation_mm.cast<float>())) {
