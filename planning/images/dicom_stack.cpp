@@ -1,0 +1,121 @@
+// From the slices of a series to the stack that a volume is made of.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "planning/files/format.h"
+#include "planning/geometry/error.h"
+#include "planning/geometry/quantile.h"
+#include "planning/images/dicom_study.h"
+
+namespace arthronaut::images {
+
+namespace {
+
+// Slices lie where their positions say, to the rounding of scanners' headers; a missing slice is 100 % off.
+constexpr double kPositionTolerance_fraction = 0.05;
+
+void refuse_odd_ones(const DicomSlices& slices) {
+  const DicomSlice& first = slices.front();
+  const auto refuse = [](const DicomSlice& s, const std::string& reason) {
+    throw InvalidInput(s.file, s.place(), reason);
+  };
+  for (const DicomSlice& s : slices) {
+    if (!s.has_geometry) refuse(s, "does not say where it lies in the patient");
+    if (s.frame.columns != first.frame.columns || s.frame.rows != first.frame.rows) {
+      refuse(s, "is " + std::to_string(s.frame.columns) + " x " + std::to_string(s.frame.rows) +
+                    " pixels, other images of the series are " + std::to_string(first.frame.columns) + " x " +
+                    std::to_string(first.frame.rows));
+    }
+    // Scout pictures across the others often share their series.
+    if (s.along_columns.dot(first.along_columns) < 0.9999 || s.along_rows.dot(first.along_rows) < 0.9999)
+      refuse(s, "lies at an angle to " + first.name() + " of the same series");
+    if (std::abs(s.column_spacing_mm - first.column_spacing_mm) > 1e-3 * first.column_spacing_mm ||
+        std::abs(s.row_spacing_mm - first.row_spacing_mm) > 1e-3 * first.row_spacing_mm) {
+      refuse(s, "has another pixel spacing than other images of the series");
+    }
+  }
+}
+
+// A multi-echo series has each slice several times: the first echo is the one with the most signal.
+void keep_first_echo(DicomSlices& slices, std::vector<std::string>& notes) {
+  std::map<double, std::size_t> echoes;
+  for (const DicomSlice& s : slices) {
+    if (!s.echo_time_ms) return;
+    ++echoes[*s.echo_time_ms];
+  }
+  if (echoes.size() < 2) return;
+  const auto [first_ms, count] = *echoes.begin();
+  // A series whose slices merely differ in their echo time has no position twice.
+  if (count == slices.size() || count < 2) return;
+  std::erase_if(slices, [first = first_ms](const DicomSlice& s) { return *s.echo_time_ms != first; });
+  notes.push_back("of " + std::to_string(echoes.size()) + " echoes the first was taken" +
+                  files::format(" (echo time %.3g ms)", first_ms));
+}
+
+bool has_position_twice(const DicomSlices& sorted) {
+  for (std::size_t i = 0; i + 1 < sorted.size(); ++i) {
+    if (sorted[i + 1].depth_mm() - sorted[i].depth_mm() < 0.01) return true;
+  }
+  return false;
+}
+
+void sort_by_position(DicomSlices& slices) {
+  std::stable_sort(slices.begin(), slices.end(),
+                   [](const DicomSlice& a, const DicomSlice& b) { return a.depth_mm() < b.depth_mm(); });
+}
+
+// The step from slice to slice, in the patient: not along the normal for a CT with a tilted gantry.
+Eigen::Vector3d slice_step_mm(const DicomSlices& sorted) {
+  std::vector<double> gaps;
+  for (std::size_t i = 0; i + 1 < sorted.size(); ++i)
+    gaps.push_back(sorted[i + 1].depth_mm() - sorted[i].depth_mm());
+  const double usual = geometry::median(gaps);
+  const Eigen::Vector3d step =
+      (sorted.back().position_mm - sorted.front().position_mm) / static_cast<double>(sorted.size() - 1);
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    const DicomSlice& next = sorted[i + 1];
+    if (std::abs(gaps[i] - usual) > kPositionTolerance_fraction * usual) {
+      throw InvalidInput(
+          next.file, next.place(),
+          files::format("lies %.2f mm from the slice before it, the others %.2f mm apart", gaps[i], usual) +
+              ": a slice is missing or one too many (" + sorted[i].file.filename().string() + ")");
+    }
+  }
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    const DicomSlice& next = sorted[i + 1];
+    const Eigen::Vector3d expected = sorted.front().position_mm + static_cast<double>(i + 1) * step;
+    if ((next.position_mm - expected).norm() > kPositionTolerance_fraction * usual + 0.02) {
+      throw InvalidInput(next.file, next.place(),
+                         files::format("lies %.2f mm beside the line of the other slices",
+                                       (next.position_mm - expected).norm()));
+    }
+  }
+  return step;
+}
+
+}  // namespace
+
+DicomStack stacked(const std::filesystem::path& source, DicomSlices slices) {
+  DicomStack stack;
+  refuse_odd_ones(slices);
+  sort_by_position(slices);
+  if (has_position_twice(slices)) keep_first_echo(slices, stack.notes);
+  if (slices.size() < 2) {
+    throw InvalidInput(source, "",
+                       std::filesystem::is_directory(source)
+                           ? "holds one slice only"
+                           : "is one slice: name the folder that holds its series");
+  }
+  for (std::size_t i = 0; i + 1 < slices.size(); ++i) {
+    if (slices[i + 1].depth_mm() - slices[i].depth_mm() < 0.01) {
+      throw InvalidInput(slices[i + 1].file, slices[i + 1].place(),
+                         "lies at the same place as " + slices[i].name());
+    }
+  }
+  stack.step_mm = slice_step_mm(slices);
+  stack.slices = std::move(slices);
+  return stack;
+}
+
+}  // namespace arthronaut::images
