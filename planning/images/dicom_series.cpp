@@ -14,8 +14,16 @@ namespace fs = std::filesystem;
 // Of the time that reading takes; the rest goes into the pixels.
 constexpr double kHeadersFraction = 0.5;
 
-// A volume can come of it: no scout, no picture of a screen.
 bool may_be_volume(const DicomSlices& slices) { return slices.size() > 1 && slices.front().has_geometry; }
+
+// A scout or a picture of a screen beside the volume: a lone image that is no slice of it.
+bool is_aside(const DicomSlices& slices, const DicomSlices& volume) {
+  const DicomSlice &lone = slices.front(), &of_volume = volume.front();
+  const bool is_like_a_slice = lone.has_geometry && lone.frame.columns == of_volume.frame.columns &&
+                               lone.frame.rows == of_volume.frame.rows &&
+                               lone.normal().dot(of_volume.normal()) > 0.99;
+  return slices.size() == 1 && !is_like_a_slice;
+}
 
 DicomSlices chosen_series(const fs::path& source, DicomStudy study, const std::string& wanted) {
   if (study.dicom_count == 0) throw InvalidInput(source, "", "holds no DICOM file");
@@ -28,11 +36,12 @@ DicomSlices chosen_series(const fs::path& source, DicomStudy study, const std::s
       matching.push_back(&members);
   }
   if (matching.empty()) throw InvalidInput(source, "", "holds no series " + wanted + ": " + list);
-  const auto volumes = std::count_if(matching.begin(), matching.end(),
-                                     [](const DicomSlices* slices) { return may_be_volume(*slices); });
-  // Beside the one volume lie scouts and pictures of screens, which nobody can mean.
-  if (matching.size() > 1 && volumes == 1)
-    std::erase_if(matching, [](const DicomSlices* slices) { return !may_be_volume(*slices); });
+  const auto volume = std::find_if(matching.begin(), matching.end(),
+                                   [](const DicomSlices* slices) { return may_be_volume(*slices); });
+  if (volume != matching.end() && matching.size() > 1) {
+    const DicomSlices& kept = **volume;
+    std::erase_if(matching, [&](const DicomSlices* slices) { return is_aside(*slices, kept); });
+  }
   if (matching.size() > 1) {
     throw InvalidInput(source, "",
                        "holds " + std::to_string(study.series.size()) +

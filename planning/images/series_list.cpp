@@ -66,7 +66,7 @@ ImageSeries series_of(const fs::path& source, DicomSlices slices) {
 ImageSeries volume_file(const fs::path& file, const VolumeFileOptions& options) {
   ImageSeries series{.description = file.filename().string(), .image_count = 1, .files = {file}};
   try {
-    const Volume volume = read_volume(file, {.most_bytes = options.most_bytes});
+    const Volume volume = read_volume(file, {.series = {}, .most_bytes = options.most_bytes});
     series.format = volume.format;
     series.size = volume.size;
     series.spacing_mm = volume.spacing_mm();

@@ -17,19 +17,20 @@
 namespace arthronaut::images {
 
 struct ImageSeries {
-  std::string uid;                    // DICOM: what VolumeFileOptions::series takes; empty for other files
-  std::string number;                 // DICOM: the series number
-  std::string format;                 // "DICOM", "NIfTI", "NRRD", "MetaImage"
-  std::string modality, description;  // as the file says; may be empty
-  int image_count = 0;                // slices as stored; several for each place in a multi-echo series
+  std::string uid = {};     // DICOM: what VolumeFileOptions::series takes; empty for other files
+  std::string number = {};  // DICOM: the series number
+  std::string format = {};  // "DICOM", "NIfTI", "NRRD", "MetaImage"
+  std::string modality = {}, description = {};  // as the file says; may be empty
+  int image_count = 0;  // slices as stored; several for each place in a multi-echo series
   // Columns, rows and slices of the volume that it makes, and their distances. Zero where unknown: of a
   // refused series what its first image says.
   Eigen::Vector3i size = Eigen::Vector3i::Zero();
   Eigen::Vector3d spacing_mm = Eigen::Vector3d::Zero();
   // In the order of the slices where there is one. A file of several frames stands once.
-  std::vector<std::filesystem::path> files;
-  std::string refusal;                // why it cannot be opened; empty when it can
-  std::vector<std::string> warnings;  // it can be opened, but a person should know: gaps, few slices, echoes
+  std::vector<std::filesystem::path> files = {};
+  std::string refusal = {};  // why it cannot be opened; empty when it can
+  std::vector<std::string> warnings =
+      {};  // it can be opened, but a person should know: gaps, few slices, echoes
 
   [[nodiscard]] bool is_readable() const { return refusal.empty(); }
 };
