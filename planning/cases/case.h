@@ -6,6 +6,7 @@
 //   case.lock      who works on it now (case_lock.h)
 //   femur.ply      bone meshes, binary PLY, LPS, mm
 //   femur_cartilage.ply         surface of what cartilage covers, where it was declared for the registration
+//   images/1.nrrd  the volume that the bones were made from (case_image.h); older cases have none
 //   camera.json, tools.json     copies of what this case is navigated with; absent until they are known
 //   sessions/ID/   one folder a session (navigation/recording)
 //   cache/         what can be made again from the rest; may be deleted at any time
@@ -22,6 +23,7 @@
 #include <vector>
 
 #include "planning/bones/bone.h"
+#include "planning/cases/case_image.h"
 #include "planning/landmarks/landmarks.h"
 #include "planning/tunnels/tunnel.h"
 
@@ -40,7 +42,8 @@ struct Case {
   std::map<bones::BoneKind, bones::Bone> bones;
   std::map<bones::BoneKind, landmarks::Landmarks> landmarks;
   Plan plan;
-  std::string plan_version = {};  // see plan_version(); of the moment when the case was loaded
+  std::vector<CaseImage> images = {};  // oldest first; empty for a case of meshes, and of older versions
+  std::string plan_version = {};       // see plan_version(); of the moment when the case was loaded
 };
 
 // Throws IoError or InvalidInput (file, place, reason): not a case, newer version, broken file, missing mesh.

@@ -33,6 +33,32 @@ landmarks::Landmarks landmarks_from(const files::JsonObject& bone) {
   return landmarks;
 }
 
+nlohmann::ordered_json image_to_json(const CaseImage& image) {
+  return {{"file", image.file},
+          {"modality", image.modality},
+          {"source", image.source},
+          {"label_map", image.is_label_map},
+          {"size", {image.size.x(), image.size.y(), image.size.z()}},
+          {"spacing_mm", files::to_json(image.spacing_mm)}};
+}
+
+CaseImage image_from(const files::JsonObject& node) {
+  CaseImage image;
+  image.file = node.text("file");
+  // A case from elsewhere must not make this program read any file of the machine.
+  const fs::path named(image.file);
+  if (named.parent_path() != "images" || named.filename() == ".." || named.extension() != ".nrrd")
+    node.fail("file", "must be a .nrrd in the folder images");
+  image.modality = node.text("modality");
+  if (node.has("source")) image.source = node.text("source");
+  if (node.has("label_map")) image.is_label_map = node.boolean("label_map");
+  const Eigen::Vector3d size = node.vector3("size");
+  if (size.minCoeff() < 1 || size.maxCoeff() > 65536) node.fail("size", "is out of range");
+  image.size = size.cast<int>();
+  image.spacing_mm = node.vector3("spacing_mm");
+  return image;
+}
+
 // Writing a mesh takes a while; most saves change only the plan.
 bool holds_mesh(const fs::path& file, const geometry::TriangleMesh& mesh) {
   if (!fs::exists(file)) return false;
@@ -74,6 +100,9 @@ Case load_case(const fs::path& folder) {
       result.landmarks[bone.kind] = std::move(landmarks);
     if (!result.bones.emplace(bone.kind, std::move(bone)).second) node.fail("kind", "is there twice");
   }
+  if (root.has("images")) {
+    for (const auto& node : root.objects("images")) result.images.push_back(image_from(node));
+  }
   read_plan(folder, result);
   return result;
 }
@@ -104,12 +133,14 @@ void save_case(const fs::path& folder, const Case& contents) {
     bones.push_back(std::move(node));
   }
   save_plan(folder, with_named_meshes(contents));
-  files::write_json(folder / "case.json", {{"format", kFormat},
-                                           {"version", kVersion},
-                                           {"name", contents.name},
-                                           {"side", bones::to_text(contents.side)},
-                                           {"created_utc", contents.created_utc},
-                                           {"bones", std::move(bones)}});
+  nlohmann::ordered_json document = {{"format", kFormat},
+                                     {"version", kVersion},
+                                     {"name", contents.name},
+                                     {"side", bones::to_text(contents.side)},
+                                     {"created_utc", contents.created_utc},
+                                     {"bones", std::move(bones)}};
+  for (const CaseImage& image : contents.images) document["images"].push_back(image_to_json(image));
+  files::write_json(folder / "case.json", document);
 }
 
 }  // namespace arthronaut::cases

@@ -8,7 +8,7 @@ namespace arthronaut::images {
 namespace {
 
 struct Header {
-  std::map<std::string, std::string> fields;
+  std::map<std::string, std::string> fields, pairs;  // "key: value" and "key:=value"
   std::size_t bytes = 0;
 
   [[nodiscard]] std::string field(std::string_view key, std::string_view other_key = "") const {
@@ -28,8 +28,12 @@ Header parse_header(const std::filesystem::path& file, std::string_view text) {
     header.bytes = std::min(end + 1, text.size());
     ++line_number;
     if (line.empty()) return header;  // the data follow
-    if (line.front() == '#' || line_number == 1 || line.find(":=") != std::string::npos) continue;
+    if (line.front() == '#' || line_number == 1) continue;
     const auto colon = line.find(": ");
+    if (const auto pair = line.find(":="); pair < colon) {
+      header.pairs[line.substr(0, pair)] = trimmed(std::string_view(line).substr(pair + 2));
+      continue;
+    }
     if (colon == std::string::npos) {
       throw InvalidInput(file, "line " + std::to_string(line_number), "is not a field of an NRRD header");
     }
@@ -93,6 +97,35 @@ Eigen::Vector3d lps_from_space(const std::filesystem::path& file, const std::str
                          : "\"" + name.substr(0, 40) + "\" is not a space of a patient that is read");
 }
 
+// 3D Slicer's segmentation: SegmentN_Name, SegmentN_LabelValue, and SegmentN_Layer where they overlap.
+struct StoredSegment : Segment {
+  int layer = 0;
+};
+
+std::vector<StoredSegment> segments_of(const std::filesystem::path& file, const Header& header) {
+  constexpr std::size_t kMostSegments = 1000;
+  std::vector<StoredSegment> segments;
+  const auto whole = [&](const std::string& key, int absent) {
+    const auto found = header.pairs.find(key);
+    if (found == header.pairs.end()) return absent;
+    const auto numbers = numbers_of(file, key, found->second);
+    if (numbers.size() != 1 || numbers[0] != std::floor(numbers[0]) || std::abs(numbers[0]) > 65535)
+      throw InvalidInput(file, key, "must be a whole number");
+    return static_cast<int>(numbers[0]);
+  };
+  for (std::size_t i = 0; i < kMostSegments; ++i) {
+    const std::string start = "Segment" + std::to_string(i) + "_";
+    const auto name = header.pairs.find(start + "Name");
+    if (name == header.pairs.end()) break;
+    StoredSegment segment;
+    segment.name = name->second;
+    segment.label = whole(start + "LabelValue", static_cast<int>(i) + 1);
+    segment.layer = whole(start + "Layer", 0);
+    segments.push_back(segment);
+  }
+  return segments;
+}
+
 // `storage` holds what is not in `text`.
 std::string_view voxel_bytes(const std::filesystem::path& file, const Header& header, std::string_view text,
                              std::size_t voxel_bytes_count, std::string& storage) {
@@ -116,24 +149,40 @@ std::string_view voxel_bytes(const std::filesystem::path& file, const Header& he
   return storage;
 }
 
-}  // namespace
+// Which axis of the file is the list of layers of a segmentation; -1 for a plain volume.
+int list_axis(const std::filesystem::path& file, const Header& header) {
+  const std::string dimension = header.field("dimension");
+  if (dimension == "3") return -1;
+  const std::string kinds = lower_case(header.field("kinds"));
+  if (dimension == "4" && kinds.starts_with("list")) return 0;
+  throw InvalidInput(file, "dimension", "is " + dimension.substr(0, 10) + ", expected 3");
+}
 
-Volume parse_nrrd(const std::filesystem::path& file, std::string_view text, std::size_t most_bytes) {
-  const Header header = parse_header(file, text);
-  Volume volume;
-  volume.format = "NRRD";
-  if (header.field("dimension") != "3") {
-    throw InvalidInput(file, "dimension", "is " + header.field("dimension").substr(0, 10) + ", expected 3");
+// One label map of layers that lie voxel by voxel side by side: each segment gets a label of its own. Where
+// segments overlap the last one counts.
+void merge_layers(Volume& volume, const std::filesystem::path& file, std::size_t layer_count,
+                  const std::vector<StoredSegment>& segments) {
+  const std::size_t count = volume.values.size() / layer_count;
+  std::vector<float> merged(count, 0);
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    const auto layer = static_cast<std::size_t>(segments[s].layer);
+    if (segments[s].layer < 0 || layer >= layer_count)
+      throw InvalidInput(file, "Segment" + std::to_string(s) + "_Layer", "is not in the file");
+    for (std::size_t v = 0; v < count; ++v) {
+      if (volume.values[v * layer_count + layer] == static_cast<float>(segments[s].label))
+        merged[v] = static_cast<float>(s + 1);
+    }
+    volume.segments.push_back({segments[s].name, static_cast<int>(s) + 1});
   }
-  const auto sizes = numbers_of(file, "sizes", header.field("sizes"));
-  if (sizes.size() != 3) throw InvalidInput(file, "sizes", "must hold 3 numbers");
-  for (int i = 0; i < 3; ++i) {
-    const double n = sizes[static_cast<std::size_t>(i)];
-    if (!(n >= 1 && n <= 65536) || n != std::floor(n)) throw InvalidInput(file, "sizes", "are out of range");
-    volume.size[i] = static_cast<int>(n);
-  }
+  volume.values = std::move(merged);
+  volume.notes.push_back("segments that overlap were laid over each other, the last on top");
+}
+
+void read_axes(const std::filesystem::path& file, const Header& header, Volume& volume) {
   const Eigen::Vector3d signs = lps_from_space(file, header.field("space"));
-  const auto directions = numbers_of(file, "space directions", header.field("space directions"));
+  std::string text = header.field("space directions");
+  if (lower_case(text).starts_with("none")) text.erase(0, 4);
+  const auto directions = numbers_of(file, "space directions", text);
   if (directions.size() != 9) throw InvalidInput(file, "space directions", "must hold 3 vectors");
   const std::string origin_text = header.field("space origin");
   const auto origin = numbers_of(file, "space origin", origin_text);
@@ -144,6 +193,35 @@ Volume parse_nrrd(const std::filesystem::path& file, std::string_view text, std:
     }
     volume.lps_from_index.translation()[axis] = signs[axis] * origin[static_cast<std::size_t>(axis)];
   }
+}
+
+// Of the volume's axes; what remains is the number of layers.
+std::size_t read_sizes(const std::filesystem::path& file, const Header& header, Volume& volume) {
+  auto sizes = numbers_of(file, "sizes", header.field("sizes"));
+  double layers = 1;
+  if (list_axis(file, header) == 0 && sizes.size() == 4) {
+    layers = sizes.front();
+    sizes.erase(sizes.begin());
+  }
+  if (sizes.size() != 3) throw InvalidInput(file, "sizes", "must hold 3 numbers");
+  const auto is_whole = [](double n) { return n >= 1 && n <= 65536 && n == std::floor(n); };
+  if (!is_whole(layers) || layers > 1000) throw InvalidInput(file, "sizes", "are out of range");
+  for (int i = 0; i < 3; ++i) {
+    const double n = sizes[static_cast<std::size_t>(i)];
+    if (!is_whole(n)) throw InvalidInput(file, "sizes", "are out of range");
+    volume.size[i] = static_cast<int>(n);
+  }
+  return static_cast<std::size_t>(layers);
+}
+
+}  // namespace
+
+Volume parse_nrrd(const std::filesystem::path& file, std::string_view text, std::size_t most_bytes) {
+  const Header header = parse_header(file, text);
+  Volume volume;
+  volume.format = "NRRD";
+  const std::size_t layers = read_sizes(file, header, volume);
+  read_axes(file, header, volume);
   Samples samples;
   samples.type = scalar_of(file, header.field("type"));
   const std::string endian = lower_case(header.field("endian"));
@@ -152,10 +230,24 @@ Volume parse_nrrd(const std::filesystem::path& file, std::string_view text, std:
   } else if (endian != "little" && bytes_per(samples.type) > 1) {
     throw InvalidInput(file, "endian", "must be little or big");
   }
-  const std::size_t width = bytes_per(samples.type);
-  const std::size_t count = checked_voxel_count(file, volume.size, width, most_bytes);
+  const std::size_t width = bytes_per(samples.type) * layers;
+  const std::size_t count = checked_voxel_count(file, volume.size, width, most_bytes / layers);
   std::string storage;
-  set_values(volume, file, voxel_bytes(file, header, text, count * width, storage), samples);
+  const std::string_view bytes = voxel_bytes(file, header, text, count * width, storage);
+  const auto segments = segments_of(file, header);
+  if (layers == 1) {
+    set_values(volume, file, bytes, samples);
+    volume.segments.assign(segments.begin(), segments.end());
+  } else {
+    // Layers run fastest: as one long row.
+    const Eigen::Vector3i size = volume.size;
+    volume.size.x() *= static_cast<int>(layers);
+    set_values(volume, file, bytes, samples);
+    volume.size = size;
+    merge_layers(volume, file, layers, segments);
+  }
+  if (const auto modality = header.pairs.find("modality"); modality != header.pairs.end())
+    volume.modality = modality->second.substr(0, 16);
   finish(volume, file);
   return volume;
 }

@@ -13,6 +13,12 @@ struct Patient {
   std::string name, id, birth_date;
 };
 
+// A named part of a label map, as 3D Slicer's .seg.nrrd has it.
+struct Segment {
+  std::string name;
+  int label = 0;  // the value of its voxels
+};
+
 struct Volume {
   Eigen::Vector3i size = Eigen::Vector3i::Zero();
   // Takes an index (i, j, k), the centre of that voxel, to LPS in mm. Oblique, sheared and mirrored axes are
@@ -23,6 +29,7 @@ struct Volume {
   std::string format;              // "DICOM", "NIfTI"
   Patient patient;                 // DICOM alone says so
   std::string modality;            // "CT", "MR"; empty when the file does not say
+  std::vector<Segment> segments;   // empty where the file names none
   std::vector<std::string> notes;  // choices that the reader made, for a person to see
 
   [[nodiscard]] std::size_t index(int i, int j, int k) const {

@@ -142,6 +142,13 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   const auto labels = labels_of(volume);
   result.identity = {volume.patient.name, volume.patient.id, volume.patient.birth_date};
   const bool is_label_map = labels.size() > 1 && labels.front().first >= 0 && volume.modality.empty();
+  result.image = ImportedImage{.image = {.file = {},
+                                         .modality = volume.modality,
+                                         .source = volume.format,
+                                         .is_label_map = is_label_map,
+                                         .size = volume.size,
+                                         .spacing_mm = spacing},
+                               .volume = encoded(volume)};
   const std::string& name = volume.format;
   try {
     if (!options.labels.empty()) {

@@ -14,6 +14,7 @@
 #include "planning/bones/bone.h"
 #include "planning/bones/mesh_file.h"
 #include "planning/bones/mesh_repair.h"
+#include "planning/cases/case_image.h"
 #include "planning/cases/identity.h"
 
 namespace arthronaut::importing {
@@ -42,6 +43,12 @@ struct ImportedBone {
   std::vector<std::string> doubts;  // why a person should look before relying on it
 };
 
+// The volume that the bones were made from, for the case to keep.
+struct ImportedImage {
+  cases::CaseImage image;  // no file yet
+  images::EncodedVolume volume;
+};
+
 struct BoneImport {
   std::vector<ImportedBone> bones;
   std::optional<bones::Side> side;  // nullopt: neither given nor in the name
@@ -50,6 +57,7 @@ struct BoneImport {
   // Whose bones they are, where the source says so (DICOM does). For identity.json alone: nothing else of the
   // import names a person, nor a file or folder, whose name often is the patient's.
   cases::Identity identity;
+  std::optional<ImportedImage> image;  // nullopt for a mesh
 };
 
 // Throws IoError or InvalidInput; a bone that cannot be told from the name is InvalidInput that says which

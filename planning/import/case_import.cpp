@@ -2,8 +2,10 @@
 
 #include <stdlib.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 
 #include "planning/cases/identity.h"
 #include "planning/files/utc_clock.h"
@@ -47,6 +49,23 @@ cases::Case case_to_extend(const fs::path& folder, const BoneImport& import, con
   return created;
 }
 
+// Byte by byte.
+bool holds_same(const fs::path& file, const images::EncodedVolume& volume) {
+  std::error_code error;
+  if (fs::file_size(file, error) != volume.header.size() + volume.voxels.size() || error) return false;
+  std::ifstream stream(file, std::ios::binary);
+  std::string chunk;
+  for (std::string_view expected : {std::string_view(volume.header), volume.voxels}) {
+    while (!expected.empty()) {
+      chunk.resize(std::min<std::size_t>(expected.size(), 1 << 20));
+      if (!stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size()))) return false;
+      if (expected.substr(0, chunk.size()) != chunk) return false;
+      expected.remove_prefix(chunk.size());
+    }
+  }
+  return true;
+}
+
 void add_bones(const fs::path& folder, cases::Case& target, const BoneImport& import) {
   for (const ImportedBone& imported : import.bones) {
     const bones::BoneKind kind = imported.bone.kind;
@@ -60,6 +79,24 @@ void add_bones(const fs::path& folder, cases::Case& target, const BoneImport& im
   }
 }
 
+// Beside the bones, which were made from it. The same volume once more takes its own place again.
+void add_image(const fs::path& folder, cases::Case& target, const BoneImport& import) {
+  if (!import.image) return;
+  cases::CaseImage image = import.image->image;
+  auto& there = target.images;
+  const auto same = std::find_if(there.begin(), there.end(), [&](const cases::CaseImage& other) {
+    return other.size == image.size && other.spacing_mm == image.spacing_mm &&
+           other.modality == image.modality && other.is_label_map == image.is_label_map &&
+           holds_same(folder / other.file, import.image->volume);
+  });
+  if (same != there.end()) return;
+  int number = 1;
+  const auto is_taken = [&] { return fs::exists(folder / ("images/" + std::to_string(number) + ".nrrd")); };
+  while (is_taken()) ++number;
+  cases::store_image(folder, number, import.image->volume, image);
+  there.push_back(image);
+}
+
 // Another patient's bone in a case would be navigated by.
 void refuse_another_patient(const fs::path& folder, const cases::Identity& of_import) {
   const auto of_case = cases::load_identity(folder);
@@ -70,7 +107,7 @@ void refuse_another_patient(const fs::path& folder, const cases::Identity& of_im
 }
 
 // Beside the target, under a name of its own, then renamed.
-void save_new(const fs::path& folder, const cases::Case& contents, const cases::Identity& identity) {
+void save_new(const fs::path& folder, cases::Case& contents, const BoneImport& import) {
   const fs::path named = without_slash(folder);
   const fs::path parent = named.has_parent_path() ? named.parent_path() : ".";
   std::error_code error;
@@ -80,8 +117,9 @@ void save_new(const fs::path& folder, const cases::Case& contents, const cases::
     throw IoError(folder,
                   std::string("cannot be created: ") + (error ? error.message() : std::strerror(errno)));
   try {
+    add_image(unfinished, contents, import);
     cases::save_case(unfinished, contents);
-    if (!identity.is_empty()) cases::save_identity(unfinished, identity);
+    if (!import.identity.is_empty()) cases::save_identity(unfinished, import.identity);
     fs::rename(unfinished, named, error);
     if (error) throw IoError(folder, "cannot be created: " + error.message());
   } catch (const IoError& failure) {
@@ -103,10 +141,11 @@ cases::Case add_to_case(const fs::path& folder, const BoneImport& import, const 
   add_bones(folder, target, import);
   if (fs::exists(folder / "case.json")) {
     refuse_another_patient(folder, import.identity);
+    add_image(folder, target, import);
     cases::save_case(folder, target);
     if (!import.identity.is_empty()) cases::save_identity(folder, import.identity);
   } else {
-    save_new(folder, target, import.identity);
+    save_new(folder, target, import);
   }
   return target;
 }

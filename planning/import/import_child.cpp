@@ -11,6 +11,7 @@
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/import/import_messages.h"
+#include "planning/import/shared_voxels.h"
 
 namespace arthronaut::importing {
 
@@ -68,7 +69,9 @@ std::string answer(int socket, const ChildRequest& request) {
     send_all(socket, message_of(ImportProgress{std::string(stage), fraction}));
   };
   try {
-    return message_of(import_bones(request.source, request.options, tell));
+    BoneImport import = import_bones(request.source, request.options, tell);
+    if (import.image && !put_voxels(kSharedDescriptor, import.image->volume.voxels)) import.image.reset();
+    return message_of(import);
   } catch (const std::bad_alloc&) {
     constexpr double kGib = 1024.0 * 1024 * 1024;
     return failure_message(request.source.string() + ": " +

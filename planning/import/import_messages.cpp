@@ -155,6 +155,21 @@ void describe(Archive& archive, ImportedBone& imported) {
   describe(archive, imported.doubts);
 }
 
+// The voxels go another way (shared_voxels.h).
+template <typename Archive>
+void describe(Archive& archive, std::optional<ImportedImage>& image) {
+  bool has_value = image.has_value();
+  describe(archive, has_value);
+  if (!has_value) return;
+  if (!image) image.emplace();
+  describe(archive, image->image.modality);
+  describe(archive, image->image.source);
+  describe(archive, image->image.is_label_map);
+  archive.bytes(image->image.size.data(), 3 * sizeof(int));
+  archive.bytes(image->image.spacing_mm.data(), 3 * sizeof(double));
+  describe(archive, image->volume.header);
+}
+
 template <typename Archive>
 void describe(Archive& archive, BoneImport& import) {
   import.bones.resize(archive.count(import.bones.size(), sizeof(bones::MeshRepairReport)));
@@ -165,6 +180,7 @@ void describe(Archive& archive, BoneImport& import) {
   describe(archive, import.identity.patient_name);
   describe(archive, import.identity.patient_id);
   describe(archive, import.identity.birth_date);
+  describe(archive, import.image);
 }
 
 std::string framed(MessageKind kind, const std::string& contents) {

@@ -11,11 +11,13 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/import/import_child.h"
 #include "planning/import/import_messages.h"
+#include "planning/import/shared_voxels.h"
 
 namespace arthronaut::importing {
 
@@ -29,14 +31,16 @@ std::uint64_t limit_bytes(double memory_limit_gib) {
   return static_cast<std::uint64_t>(memory_limit_gib * kBytesPerGib);
 }
 
-// Only the child's end of the socket goes with it, as its standard input; what it prints is lost.
-int spawned(const std::filesystem::path& program, int child_end) {
+// Only the child's end of the socket goes with it, as its standard input, and the memory for the voxels; what
+// it prints is lost.
+int spawned(const std::filesystem::path& program, int child_end, int shared) {
   posix_spawn_file_actions_t files;
   ::posix_spawn_file_actions_init(&files);
   ::posix_spawn_file_actions_adddup2(&files, child_end, STDIN_FILENO);
   ::posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   ::posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  ::posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
+  ::posix_spawn_file_actions_adddup2(&files, shared, kSharedDescriptor);
+  ::posix_spawn_file_actions_addclosefrom_np(&files, kSharedDescriptor + 1);
   // A group of its own: the terminal's Ctrl+C is for the parent, which then ends the child.
   posix_spawnattr_t attributes;
   ::posix_spawnattr_init(&attributes);
@@ -63,10 +67,12 @@ ImportProcess::ImportProcess(ImportRequest request) : request_(std::move(request
     throw IoError(std::string("no socket for the import: ") + std::strerror(errno));
   socket_ = ends[0];
   try {
-    process_id_ = spawned(request_.program, ends[1]);
+    shared_ = create_shared_memory(memory_limit_bytes);
+    process_id_ = spawned(request_.program, ends[1], shared_);
   } catch (...) {
     ::close(ends[0]);
     ::close(ends[1]);
+    if (shared_ >= 0) ::close(shared_);
     throw;
   }
   ::close(ends[1]);
@@ -105,8 +111,8 @@ void ImportProcess::take_in(const std::string& bytes) {
         progress_ = progress_from(message->contents);
       } else if (message->kind == MessageKind::Result) {
         result_ = import_from(message->contents);
+        take_image();
         state_ = State::Done;
-        static_cast<void>(ended_child());
         return;
       } else {
         fail(message->contents);
@@ -116,6 +122,19 @@ void ImportProcess::take_in(const std::string& bytes) {
   } catch (const InvalidInput& error) {
     fail(request_.source.string() + ": " + error.what());
   }
+}
+
+// After the child's end, which else could change it meanwhile.
+void ImportProcess::take_image() {
+  const int shared = std::exchange(shared_, -1);
+  static_cast<void>(ended_child());
+  if (result_.image) {
+    images::EncodedVolume taken = taken_voxels(shared);
+    taken.header = std::move(result_.image->volume.header);
+    result_.image->volume = std::move(taken);
+    if (result_.image->volume.voxels.empty()) result_.image.reset();
+  }
+  ::close(shared);
 }
 
 void ImportProcess::end_by_itself() {
@@ -149,7 +168,8 @@ int ImportProcess::ended_child() {
   }
   process_id_ = -1;
   if (socket_ >= 0) ::close(socket_);
-  socket_ = -1;
+  if (shared_ >= 0) ::close(shared_);
+  socket_ = shared_ = -1;
   return status;
 }
 

@@ -59,12 +59,13 @@ class ImportProcess {
 
  private:
   void take_in(const std::string& bytes);
+  void take_image();
   void end_by_itself();  // the child has closed its end
   int ended_child();     // its status
   void fail(const std::string& reason);
 
   ImportRequest request_;
-  int socket_ = -1, process_id_ = -1;
+  int socket_ = -1, process_id_ = -1, shared_ = -1;
   State state_ = State::Running;
   std::string buffer_, message_;
   ImportProgress progress_;

@@ -1,0 +1,101 @@
+#include "planning/images/volume_writer.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <vector>
+
+#include "planning/files/atomic_file.h"
+#include "planning/files/format.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::images {
+
+namespace {
+
+struct Range {
+  bool is_whole = true;
+  float low = 0, high = 0;
+};
+
+Range range_of(const std::vector<float>& values) {
+  Range range;
+  if (values.empty()) return range;
+  range.low = range.high = values.front();
+  for (const float v : values) {
+    range.low = std::min(range.low, v);
+    range.high = std::max(range.high, v);
+    if (v != std::floor(v)) range.is_whole = false;
+  }
+  return range;
+}
+
+template <typename T>
+void fill(EncodedVolume& encoded, const std::vector<float>& values) {
+  const auto voxels = std::make_shared<std::vector<T>>(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) (*voxels)[i] = static_cast<T>(values[i]);
+  encoded.voxels = {reinterpret_cast<const char*>(voxels->data()), voxels->size() * sizeof(T)};
+  encoded.owner = voxels;
+}
+
+std::string vector_text(const Eigen::Vector3d& v) {
+  return files::format("(%.17g,%.17g,%.17g)", v.x(), v.y(), v.z());
+}
+
+// What a line of the header may hold.
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\0'; }, ' ');
+  return text;
+}
+
+}  // namespace
+
+EncodedVolume encoded(const Volume& volume) {
+  EncodedVolume encoded;
+  const Range range = range_of(volume.values);
+  const char* type = "float";
+  if (range.is_whole && range.low >= 0 && range.high <= 255) {
+    type = "uint8";
+    fill<std::uint8_t>(encoded, volume.values);
+  } else if (range.is_whole && range.low >= -32768 && range.high <= 32767) {
+    type = "int16";
+    fill<std::int16_t>(encoded, volume.values);
+  } else {
+    fill<float>(encoded, volume.values);
+  }
+  const Eigen::Matrix3d axes = volume.lps_from_index.linear();
+  encoded.header =
+      std::string("NRRD0004\ntype: ") + type + "\ndimension: 3\nspace: left-posterior-superior\nsizes: " +
+      files::format("%d %d %d", volume.size.x(), volume.size.y(), volume.size.z()) +
+      "\nspace directions: " + vector_text(axes.col(0)) + " " + vector_text(axes.col(1)) + " " +
+      vector_text(axes.col(2)) + "\nkinds: domain domain domain\nendian: " +
+      (std::endian::native == std::endian::little ? "little" : "big") +
+      "\nencoding: raw\nspace origin: " + vector_text(volume.lps_from_index.translation()) + "\n";
+  if (!volume.modality.empty()) encoded.header += "modality:=" + one_line(volume.modality) + "\n";
+  for (std::size_t i = 0; i < volume.segments.size(); ++i) {
+    const std::string start = "Segment" + std::to_string(i) + "_";
+    encoded.header += start + "Name:=" + one_line(volume.segments[i].name) + "\n" + start +
+                      "LabelValue:=" + std::to_string(volume.segments[i].label) + "\n";
+  }
+  encoded.header += "\n";
+  return encoded;
+}
+
+void write_volume(const std::filesystem::path& file, const EncodedVolume& volume) {
+  files::write_atomically(file, [&](const std::filesystem::path& temporary) {
+    std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
+    stream.write(volume.header.data(), static_cast<std::streamsize>(volume.header.size()));
+    stream.write(volume.voxels.data(), static_cast<std::streamsize>(volume.voxels.size()));
+    stream.close();
+    if (!stream) throw IoError(temporary, "cannot be written: the disk may be full");
+  });
+}
+
+void write_volume(const std::filesystem::path& file, const Volume& volume) {
+  write_volume(file, encoded(volume));
+}
+
+}  // namespace arthronaut::images
