@@ -26,6 +26,7 @@ struct NavigateArguments {
   std::string case_folder, video, camera, tools, registration, probe = "probe", guide;
   std::string bone = "femur";
   std::optional<double> medium_index;
+  double duration_s = 0;  // 0: to the end
   bool fixed_lens = false, no_copy = false;
   CLI::Option* probe_option = nullptr;
   CartilageArguments cartilage;
@@ -123,7 +124,8 @@ std::optional<operation::GiveRegistration> known_registration(const Context& con
 theatre::NavigateOptions navigate_options(const Context& context, const NavigateArguments& arguments,
                                           const cases::Case& knee) {
   theatre::NavigateOptions options;
-  options.source.kind = sources::SourceKind::Recording;
+  options.source.kind = sources::kind_of_source(arguments.video);
+  if (arguments.duration_s > 0) options.duration_s = arguments.duration_s;
   options.source.title = arguments.video;
   options.source.pipeline = pipeline_options(arguments, knee);
   const bones::BoneKind bone = options.source.pipeline.bone;
@@ -191,7 +193,7 @@ void navigate(Context& context, const NavigateArguments& arguments) {
     options.operation.cartilage.emplace().points_mm = cartilage->vertices_mm;
     context.say(std::string("cartilage: ") + (arguments.cartilage.mesh.empty() ? "of the case" : "given"));
   }
-  const auto source = sources::open_video(arguments.video);
+  const auto source = sources::open_source(arguments.video);
   context.say("working medium: " + camera::medium_to_text(options.source.pipeline.refractive_index));
 
   NewSession session(arguments.case_folder);
@@ -203,8 +205,12 @@ void navigate(Context& context, const NavigateArguments& arguments) {
     observer.on_frame = [&](const auto&, const auto&) { progress.advance_to(++done); };
     theatre::RecordOptions record;
     record.folder = session.folder();
-    record.keep = arguments.no_copy ? recording::KeepVideo::Refer : recording::KeepVideo::Copy;
-    record.video = arguments.video;
+    if (source->info().is_live()) {
+      record.keep = arguments.no_copy ? recording::KeepVideo::No : recording::KeepVideo::Encode;
+    } else {
+      record.keep = arguments.no_copy ? recording::KeepVideo::Refer : recording::KeepVideo::Copy;
+      record.video = arguments.video;
+    }
     summary = theatre::navigate_source(*source, options, record, observer);
   }
   adopt(arguments.camera, cases::camera_file(arguments.case_folder));
@@ -212,6 +218,7 @@ void navigate(Context& context, const NavigateArguments& arguments) {
   if (!arguments.cartilage.mesh.empty()) cases::save_cartilage(arguments.case_folder, kind, *cartilage);
   session.keep();
 
+  if (!summary.ending.empty()) context.say("the source ended: " + summary.ending);
   say_statistics(context, summary.statistics);
   context.say(format("strokes: %.0f mm in %zu points", summary.stroke_length_mm, summary.curves.size()));
   say_registration(context, summary);
@@ -225,12 +232,16 @@ void navigate(Context& context, const NavigateArguments& arguments) {
 void add_navigate_command(CLI::App& app, Context& context) {
   CLI::App* command = add_subcommand(
       app, context, "navigate",
-      "Track, digitise, register and guide on a recorded video; writes a session into the case",
+      "Track, digitise, register and guide on a recorded video or a live source; writes a session into the "
+      "case",
       "arthronaut navigate knee.arthro --video scratch.mkv --camera camera.json --tools tools.json");
   const auto arguments = std::make_shared<NavigateArguments>();
   command->add_option("CASE", arguments->case_folder, "Case folder")->required();
   command
-      ->add_option("--video", arguments->video, "Video file, or a pattern of still images such as f_%04d.png")
+      ->add_option(
+          "--video", arguments->video,
+          "Video file, a pattern of still images such as f_%04d.png, or live: /dev/videoN, rtsp://..., "
+          "udp://HOST:PORT (MPEG-TS), gst:PIPELINE ! appsink")
       ->required();
   command->add_option("--camera", arguments->camera,
                       "camera.json; copied into the case. Default: the case's");
@@ -260,7 +271,11 @@ void add_navigate_command(CLI::App& app, Context& context) {
   command->add_flag("--fixed-lens", arguments->fixed_lens,
                     "The lens stays at the calibration's reference angle; the lens mark is not needed");
   command->add_flag("--no-copy", arguments->no_copy,
-                    "Keep only the video's path in the session, not a copy of it");
+                    "Keep only the video's path in the session, not a copy of it; of a live source, nothing");
+  command
+      ->add_option("--duration-s", arguments->duration_s,
+                   "Stop after so many seconds of pictures; default: at the source's end")
+      ->check(CLI::PositiveNumber);
   command->callback([&context, arguments] { navigate(context, *arguments); });
 }
 

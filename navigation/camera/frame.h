@@ -22,6 +22,7 @@ enum class CaptureClock {
   None,        // not live: there is no age to speak of
   HandedOver,  // the moment the picture left the driver; whatever it waited there is not seen
   Driver,      // the driver's own stamp
+  Network,     // when its data came over the network; what sender and network took is not seen
 };
 
 // One picture of a source: 8-bit BGR as OpenCV decodes it, rows packed. Immutable once published.

@@ -1,7 +1,9 @@
 #include "navigation/sources/capture_time.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 
 namespace arthronaut::sources {
 
@@ -12,6 +14,21 @@ CaptureTime capture_time(double driver_ms, std::int64_t handed_over_ns) {
   if (!(driver_ms > 0) || !(age_ms >= 0 && age_ms <= kOldest_ms)) return {.ns = handed_over_ns};
   // By way of the age: a double holds it to the nanosecond, but not the time since the machine was started.
   return {.ns = handed_over_ns - std::llround(age_ms * 1e6), .clock = camera::CaptureClock::Driver};
+}
+
+void StreamClock::arrived(std::int64_t stamp_ns, std::int64_t arrived_ns) {
+  constexpr std::int64_t kJump_ns = 2'000'000'000;
+  // Two quartz clocks drift apart by less than 100 millionths. The estimate gives way twice as fast, so that
+  // it follows a sender that runs slow.
+  constexpr std::int64_t kDrift_ppm = 200;
+  const std::int64_t apart_ns = arrived_ns - stamp_ns;
+  if (!has_begun_ || std::abs(apart_ns - apart_ns_) > kJump_ns) {
+    has_begun_ = true;
+    apart_ns_ = apart_ns;
+  } else {
+    apart_ns_ = std::min(apart_ns, apart_ns_ + (arrived_ns - at_ns_) / 1'000'000 * kDrift_ppm);
+  }
+  at_ns_ = arrived_ns;
 }
 
 std::int64_t steady_now_ns() {

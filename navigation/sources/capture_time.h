@@ -22,4 +22,21 @@ struct CaptureTime {
 
 [[nodiscard]] std::int64_t steady_now_ns();
 
+// Puts the time stamps of a stream (MPEG-TS, RTP) on the steady clock. A stream stamps its pictures by the
+// sender's clock, evenly; they arrive unevenly, and never earlier than they were sent. So the quickest
+// arrival of the last seconds tells how far the two clocks stand apart, and a picture that waited in a socket
+// or a decoder is seen to be as old as it is. What the quickest one took on its way is not seen.
+class StreamClock {
+ public:
+  // Both of one piece of data; stamps need not come in order. A stamp that jumps by more than 2 s against the
+  // arrivals (a sender that was started again) begins anew.
+  void arrived(std::int64_t stamp_ns, std::int64_t arrived_ns);
+  // On the steady clock, of a picture with this stamp. Precondition: something has arrived.
+  [[nodiscard]] std::int64_t captured_ns(std::int64_t stamp_ns) const { return stamp_ns + apart_ns_; }
+
+ private:
+  bool has_begun_ = false;
+  std::int64_t apart_ns_ = 0, at_ns_ = 0;
+};
+
 }  // namespace arthronaut::sources

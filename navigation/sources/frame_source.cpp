@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <optional>
 
+#include "navigation/sources/gstreamer_pipeline.h"
 #include "navigation/sources/logged_source.h"
+#include "navigation/sources/network_stream.h"
 #include "navigation/sources/source_files.h"
 #include "navigation/sources/still_images.h"
 #include "navigation/sources/video_file.h"
@@ -15,12 +19,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "rtsp://10.0.0.5/scope": a name, a colon and two slashes, of which a path keeps at least one.
-bool is_address(const std::string& text) {
+constexpr std::string_view kPipeline = "gst:", kVideoDevice = "/dev/video";
+
+// "rtsp://10.0.0.5/scope": a name, a colon and two slashes.
+bool is_address(std::string_view text) {
   const std::size_t colon = text.find("://");
-  if (colon == std::string::npos || colon < 2) return false;
+  if (colon == std::string_view::npos || colon < 2) return false;
   return std::all_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(colon),
                      [](unsigned char c) { return std::isalnum(c) || c == '+' || c == '-' || c == '.'; });
+}
+
+// "/dev/video2": 2.
+std::optional<int> device_index_of(std::string_view name) {
+  if (!name.starts_with(kVideoDevice)) return std::nullopt;
+  const std::string_view digits = name.substr(kVideoDevice.size());
+  int index = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+  if (error != std::errc() || end != digits.data() + digits.size() || index < 0) return std::nullopt;
+  return index;
 }
 
 // Reading a pipe waits until somebody writes into it, which may be never.
@@ -45,16 +61,34 @@ std::unique_ptr<FrameSource> open_video(const std::filesystem::path& video_or_pa
   // A file of that very name wins over its reading as a pattern.
   if (!std::filesystem::exists(video_or_pattern)) {
     if (is_printf_pattern(video_or_pattern)) return logged(open_still_images(video_or_pattern));
-    if (is_address(video_or_pattern.string())) {
-      throw InvalidInput(video_or_pattern, "",
-                         "is an address in a network, and streams can't be read; give a video file or the "
-                         "number of a camera");
+    if (is_stream_address(video_or_pattern.string())) {
+      throw InvalidInput(
+          video_or_pattern, "",
+          "is a stream, and this needs a recording, which can be read again: give a video file");
     }
     throw IoError(video_or_pattern, "no such file");
   }
   refuse_what_is_no_file(video_or_pattern);
   if (looks_like_picture(video_or_pattern)) return logged(open_still_images(video_or_pattern));
   return logged(open_video_file(video_or_pattern, LumaOf::Colours));
+}
+
+bool is_stream_address(std::string_view text) { return text.starts_with(kPipeline) || is_address(text); }
+
+std::unique_ptr<FrameSource> open_stream(const std::string& address) {
+  if (address.starts_with(kPipeline))
+    return logged(open_gstreamer_pipeline(address.substr(kPipeline.size())));
+  return logged(open_network_stream(address));
+}
+
+SourceKind kind_of_source(std::string_view name) {
+  return device_index_of(name) || is_stream_address(name) ? SourceKind::Live : SourceKind::Recording;
+}
+
+std::unique_ptr<FrameSource> open_source(const std::string& name) {
+  if (const auto device = device_index_of(name)) return open_device(*device);
+  if (is_stream_address(name)) return open_stream(name);
+  return open_video(name);
 }
 
 std::unique_ptr<FrameSource> open_video_with_exact_luma(const std::filesystem::path& video) {

@@ -47,6 +47,25 @@ class FrameSource {
 // DeviceError.
 [[nodiscard]] std::unique_ptr<FrameSource> open_device(int device_index);
 
+// A stream over the network, as it comes: "rtsp://...", "rtsps://...", "udp://HOST:PORT" (MPEG-TS; the host
+// is the interface or multicast group to listen on, "@" for any), "srt://...", "tcp://HOST:PORT", or any
+// other address that libavformat opens live; or "gst:PIPELINE ! appsink", what a GStreamer pipeline gives.
+// Live: frames carry the time when their data came (CaptureClock::Network; a pipeline's own stamps where they
+// can be true).
+//
+// A stream that breaks off is taken up again by itself, and pictures that came damaged are left out;
+// meanwhile nothing is given. After 15 s without a picture, and when pictures come in another size, next()
+// throws DeviceError. A pipeline that comes to its end gives null. Throws DeviceError when no picture comes
+// within 10 s, and InvalidInput for a pipeline that is none.
+[[nodiscard]] std::unique_ptr<FrameSource> open_stream(const std::string& address);
+// Whether text names a stream, by its form alone.
+[[nodiscard]] bool is_stream_address(std::string_view text);
+
+// What a user names: "/dev/videoN", a stream, or what open_video() opens.
+[[nodiscard]] std::unique_ptr<FrameSource> open_source(const std::string& name);
+// Live for a device and a stream, else a recording. By its form alone.
+[[nodiscard]] SourceKind kind_of_source(std::string_view name);
+
 // One still picture (PNG, JPEG, BMP, TIFF, WebP, PNM) as a frame. Grey pictures become BGR, alpha is dropped;
 // pictures of more than 8 bits, cut-off files and pictures whose header claims more than 64 million pixels
 // are refused, the last before anything is decoded. Throws IoError or InvalidInput.

@@ -3,37 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "navigation/sources/libav.h"
 #include "navigation/sources/matroska_end.h"
 #include "planning/geometry/error.h"
 
 extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
 #include <libavutil/log.h>
-#include <libswscale/swscale.h>
 }
 
 namespace arthronaut::sources {
 namespace {
 
 constexpr double kFallbackFramesPerSecond = 60;
-constexpr std::int64_t kMostPixels = 64'000'000;  // twice 8K
-
-struct FreeLibav {
-  void operator()(AVFormatContext* p) const { avformat_close_input(&p); }
-  void operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
-  void operator()(AVPacket* p) const { av_packet_free(&p); }
-  void operator()(AVFrame* p) const { av_frame_free(&p); }
-  void operator()(SwsContext* p) const { sws_freeContext(p); }
-};
-template <class T>
-using LibavPtr = std::unique_ptr<T, FreeLibav>;
-
-std::string libav_message(int error) {
-  char text[AV_ERROR_MAX_STRING_SIZE] = {};
-  av_strerror(error, text, sizeof text);
-  return text;
-}
 
 class VideoFile : public FrameSource {
  public:
@@ -41,6 +22,7 @@ class VideoFile : public FrameSource {
       : file_(file), luma_(luma), packet_(av_packet_alloc()), picture_(av_frame_alloc()) {
     // What goes wrong is told once, by exception, with file and frame.
     av_log_set_level(AV_LOG_QUIET);
+    if (luma_ == LumaOf::File) converter_.expect_full_range();
     open_container();
     open_decoder();
     const AVRational rate = stream().avg_frame_rate.num > 0 ? stream().avg_frame_rate : stream().r_frame_rate;
@@ -58,8 +40,6 @@ class VideoFile : public FrameSource {
     auto frame = std::make_shared<camera::Frame>();
     frame->index = next_index_;
     frame->timestamp_ns = timestamp_ns();
-    frame->width = picture_->width;
-    frame->height = picture_->height;
     convert(*frame);
     if (luma_ == LumaOf::File) copy_luma(*frame);
     ++next_index_;
@@ -95,7 +75,7 @@ class VideoFile : public FrameSource {
     decoder_.reset(avcodec_alloc_context3(codec));
     avcodec_parameters_to_context(decoder_.get(), stream().codecpar);
     decoder_->thread_count = 2;
-    decoder_->max_pixels = kMostPixels;  // a header that claims more is a broken one, or a bomb
+    decoder_->max_pixels = kMostPixels;
     decoder_->pkt_timebase = stream().time_base;
     if (const int error = avcodec_open2(decoder_.get(), codec, nullptr); error < 0) {
       throw InvalidInput(file_, "", "its video can't be decoded: " + libav_message(error));
@@ -169,22 +149,10 @@ class VideoFile : public FrameSource {
   }
 
   void convert(camera::Frame& frame) {
-    if (frame.width != info_.image_size_px.x() || frame.height != info_.image_size_px.y()) {
+    if (picture_->width != info_.image_size_px.x() || picture_->height != info_.image_size_px.y()) {
       fail("has another size than the frames before it");
     }
-    converter_.reset(sws_getCachedContext(
-        converter_.release(), frame.width, frame.height, static_cast<AVPixelFormat>(picture_->format),
-        frame.width, frame.height, AV_PIX_FMT_BGR24, SWS_BICUBIC, nullptr, nullptr, nullptr));
-    if (!converter_) fail("has a pixel format that can't be converted");
-    if (luma_ == LumaOf::File) {
-      const int* const bt601 = sws_getCoefficients(SWS_CS_ITU601);
-      constexpr int kFullRange = 1, kUnity = 1 << 16;
-      sws_setColorspaceDetails(converter_.get(), bt601, kFullRange, bt601, kFullRange, 0, kUnity, kUnity);
-    }
-    frame.bgr.resize(static_cast<std::size_t>(3) * frame.width * frame.height);
-    std::uint8_t* const planes[] = {frame.bgr.data()};
-    const int strides[] = {3 * frame.width};
-    sws_scale(converter_.get(), picture_->data, picture_->linesize, 0, frame.height, planes, strides);
+    if (!converter_.convert(*picture_, frame)) fail("has a pixel format that can't be converted");
   }
 
   void copy_luma(camera::Frame& frame) const {
@@ -205,7 +173,7 @@ class VideoFile : public FrameSource {
   LibavPtr<AVCodecContext> decoder_;
   LibavPtr<AVPacket> packet_;
   LibavPtr<AVFrame> picture_;
-  LibavPtr<SwsContext> converter_;
+  BgrConverter converter_;
   SourceInfo info_;
   int stream_index_ = -1;
   std::int64_t next_index_ = 0;

@@ -1,5 +1,8 @@
 #include "navigation/theatre/navigate_source.h"
 
+#include <limits>
+#include <utility>
+
 #include "navigation/operation/registration_work.h"
 #include "navigation/pipeline/prefetched_source.h"
 #include "planning/geometry/error.h"
@@ -131,8 +134,21 @@ NavigationSummary navigate_source(sources::FrameSource& source, const NavigateOp
                                   const RecordOptions& record, const NavigationObserver& observer) {
   Navigation navigation(source, options, record, observer);
   pipeline::PrefetchedSource prefetched(source);
-  while (const camera::FramePtr picture = prefetched.next()) navigation.take(picture);
-  return navigation.finish();
+  const double end_s = options.duration_s.value_or(std::numeric_limits<double>::infinity());
+  std::string ending;
+  try {
+    while (const camera::FramePtr picture = prefetched.next()) {
+      if (static_cast<double>(picture->timestamp_ns) * 1e-9 >= end_s) break;
+      navigation.take(picture);
+    }
+  } catch (const DeviceError& error) {
+    // What was made until then stays: a camera that is pulled out is the end of many an operation.
+    if (!source.info().is_live()) throw;
+    ending = error.what();
+  }
+  NavigationSummary summary = navigation.finish();
+  summary.ending = std::move(ending);
+  return summary;
 }
 
 }  // namespace arthronaut::theatre

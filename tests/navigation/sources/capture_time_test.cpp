@@ -33,5 +33,38 @@ TEST(LatePicture, TakesTheHandingOverWhereTheStampCannotBeTrue) {
   }
 }
 
+// A sender at 30 pictures a second whose clock says other things than ours, over a network that takes 2 to 30
+// ms: times are even again, and late by what the quickest one took. A picture that waited 200 ms is seen to
+// be old.
+TEST(StreamClock, TakesTheNetworksUnevennessOut) {
+  constexpr std::int64_t kMs = 1'000'000, kInterval = 33'333'333, kSender = 5'000'000'000'000,
+                         kOurs = 77'000'000'000;
+  StreamClock clock;
+  std::uint32_t draws = 1;
+  for (int i = 0; i < 3000; ++i) {
+    draws = draws * 1664525U + 1013904223U;
+    const std::int64_t sent = kOurs + i * kInterval, on_its_way = (2 + draws % 29) * kMs;
+    clock.arrived(kSender + i * kInterval, sent + on_its_way);
+    if (i < 100) continue;  // until a quick one has come
+    // Quickest 2 ms; in the second or so until the next such one the estimate gives way by 0.2 ms a second.
+    EXPECT_NEAR(static_cast<double>(clock.captured_ns(kSender + i * kInterval) - sent), 2.5 * kMs, 1.5 * kMs);
+  }
+  const std::int64_t late = 3000;
+  clock.arrived(kSender + late * kInterval, kOurs + late * kInterval + 200 * kMs);
+  EXPECT_NEAR(static_cast<double>(clock.captured_ns(kSender + late * kInterval) - (kOurs + late * kInterval)),
+              2.5 * kMs, 1.5 * kMs);
+}
+
+// A sender whose clock runs slow by 100 millionths is followed for an hour; one that was started again begins
+// anew.
+TEST(StreamClock, FollowsASlowClockAndANewOne) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  StreamClock clock;
+  for (std::int64_t s = 0; s < 3600; ++s) clock.arrived(s * kSecond - s * 100'000, s * kSecond);
+  EXPECT_NEAR(static_cast<double>(clock.captured_ns(3599 * kSecond - 3599 * 100'000)), 3599e9, 1e6);
+  clock.arrived(0, 4000 * kSecond);
+  EXPECT_EQ(clock.captured_ns(0), 4000 * kSecond);
+}
+
 }  // namespace
 }  // namespace arthronaut::sources

@@ -39,7 +39,7 @@ TEST(StalledSource, ADeviceFileAndAnAddressAreNamed) {
   for (const char* address :
        {"rtsp://10.0.0.5/scope", "tcp://tower:5000", "udp://@:1234", "http://a/b.mkv"}) {
     EXPECT_THAT(message_of<InvalidInput>([&] { (void)open_video(address); }),
-                HasSubstr("is an address in a network"))
+                HasSubstr("is a stream, and this needs a recording"))
         << address;
   }
   EXPECT_THAT(message_of<IoError>([] { (void)open_video("/nowhere/clip.mkv"); }), HasSubstr("no such file"));

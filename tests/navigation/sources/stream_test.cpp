@@ -1,0 +1,219 @@
+// Streams as they come: sent over the loopback by other programs, which are killed and started again.
+#include <gmock/gmock.h>
+#include <gst/rtsp-server/rtsp-server.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "navigation/sources/capture_time.h"
+#include "navigation/sources/frame_source.h"
+#include "planning/geometry/error.h"
+#include "planning/geometry/quantile.h"
+#include "tests/message_of.h"
+
+namespace arthronaut::sources {
+namespace {
+
+using test::message_of;
+using testing::HasSubstr;
+
+constexpr double kRate = 30;
+constexpr double kInterval_s = 1 / kRate;
+
+// A port of this process alone, so that tests side by side do not hear each other.
+std::string port(int offset) { return std::to_string(20000 + (::getpid() * 4 + offset) % 40000); }
+
+// ffmpeg sending a test picture as MPEG-TS, at its own rate, until it is killed.
+class Sender {
+ public:
+  Sender(const std::string& address, const std::string& size) : process_(::fork()) {
+    if (process_ != 0) return;
+    const std::string picture = "testsrc=size=" + size + ":rate=30";
+    const std::string target = address + "?pkt_size=1316";
+    ::execlp("ffmpeg", "ffmpeg", "-loglevel", "quiet", "-re", "-f", "lavfi", "-i", picture.c_str(), "-c:v",
+             "mpeg2video", "-g", "10", "-bf", "0", "-f", "mpegts", target.c_str(),
+             static_cast<char*>(nullptr));
+    ::_exit(127);
+  }
+  ~Sender() {
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+  }
+  Sender(const Sender&) = delete;
+  Sender& operator=(const Sender&) = delete;
+
+ private:
+  pid_t process_;
+};
+
+double age_s(const camera::Frame& frame) {
+  return static_cast<double>(steady_now_ns() - frame.captured_ns) * 1e-9;
+}
+
+double median_interval_s(const std::vector<camera::FramePtr>& frames) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < frames.size(); ++i)
+    intervals.push_back(static_cast<double>(frames[i]->timestamp_ns - frames[i - 1]->timestamp_ns) * 1e-9);
+  return geometry::median(std::move(intervals), 0);
+}
+
+std::vector<camera::FramePtr> take(FrameSource& source, int count) {
+  std::vector<camera::FramePtr> frames;
+  for (int i = 0; i < count; ++i) frames.push_back(source.next());
+  return frames;
+}
+
+void expect_live(FrameSource& source, camera::CaptureClock clock) {
+  EXPECT_TRUE(source.info().is_live());
+  EXPECT_EQ(source.info().image_size_px, Eigen::Vector2i(320, 240));
+  const auto frames = take(source, 60);
+  // A sender that keeps its rate: its own stamps say so to the 90 kHz of the stream, whatever the arrivals
+  // did.
+  EXPECT_NEAR(median_interval_s(frames), kInterval_s, 0.002);
+  EXPECT_EQ(frames.back()->index, 59);
+  EXPECT_EQ(frames.back()->capture_clock, clock);
+  EXPECT_EQ(frames.back()->bgr.size(), 320U * 240U * 3U);
+  // Taken as it came: no queue that grows. The rest is what a busy machine takes.
+  EXPECT_GE(age_s(*frames.back()), 0);
+  EXPECT_LT(age_s(*frames.back()), 1);
+}
+
+TEST(Stream, IsReadFromAUdpPort) {
+  const std::string address = "udp://127.0.0.1:" + port(0);
+  const Sender sender(address, "320x240");
+  const auto source = open_source(address);
+  expect_live(*source, camera::CaptureClock::Network);
+}
+
+// Pulled out and plugged in again: pictures go on, their numbers and times too.
+TEST(Stream, IsTakenUpAgain) {
+  const std::string address = "udp://127.0.0.1:" + port(1);
+  auto sender = std::make_unique<Sender>(address, "320x240");
+  const auto source = open_source(address);
+  const auto before = take(*source, 10);
+  sender.reset();
+  std::thread later([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    sender = std::make_unique<Sender>(address, "320x240");
+  });
+  // What was sent before is still on its way; then the gap shows in the times.
+  camera::FramePtr last = before.back(), next = source->next();
+  while (next->timestamp_ns - last->timestamp_ns < 1'000'000'000 && next->index < 200)
+    last = std::exchange(next, source->next());
+  later.join();
+  EXPECT_EQ(next->index, last->index + 1);
+  EXPECT_GT(next->timestamp_ns - last->timestamp_ns, 1'000'000'000);
+  EXPECT_LT(age_s(*next), 1);
+}
+
+// Another camera at the end of the cable is not what was calibrated.
+TEST(Stream, AnotherSizeIsAnotherCamera) {
+  const std::string address = "udp://127.0.0.1:" + port(2);
+  auto sender = std::make_unique<Sender>(address, "320x240");
+  const auto source = open_source(address);
+  (void)take(*source, 10);
+  sender = std::make_unique<Sender>(address, "640x480");
+  EXPECT_THAT(message_of<DeviceError>([&] { (void)take(*source, 200); }), HasSubstr("640 x 480 now"));
+}
+
+TEST(Stream, NobodyThereIsSaidAtOnce) {
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_THAT(message_of<DeviceError>([] { (void)open_source("rtsp://127.0.0.1:1/scope"); }),
+              HasSubstr("rtsp://127.0.0.1:1/scope: "));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+}
+
+// A server of GStreamer's in this process.
+class RtspServer {
+ public:
+  explicit RtspServer(const std::string& at_port) {
+    gst_init(nullptr, nullptr);
+    server_ = gst_rtsp_server_new();
+    gst_rtsp_server_set_service(server_, at_port.c_str());
+    GstRTSPMediaFactory* const factory = gst_rtsp_media_factory_new();
+    gst_rtsp_media_factory_set_launch(
+        factory,
+        "( videotestsrc is-live=true ! video/x-raw,format=I420,width=320,height=240,framerate=30/1 ! jpegenc "
+        "! "
+        "rtpjpegpay name=pay0 )");
+    GstRTSPMountPoints* const mounts = gst_rtsp_server_get_mount_points(server_);
+    gst_rtsp_mount_points_add_factory(mounts, "/scope", factory);
+    g_object_unref(mounts);
+    gst_rtsp_server_attach(server_, nullptr);
+    loop_ = g_main_loop_new(nullptr, FALSE);
+    thread_ = std::thread([this] { g_main_loop_run(loop_); });
+  }
+  ~RtspServer() {
+    g_main_loop_quit(loop_);
+    thread_.join();
+    g_main_loop_unref(loop_);
+    g_object_unref(server_);
+  }
+  RtspServer(const RtspServer&) = delete;
+  RtspServer& operator=(const RtspServer&) = delete;
+
+ private:
+  GstRTSPServer* server_;
+  GMainLoop* loop_;
+  std::thread thread_;
+};
+
+TEST(Stream, IsReadFromAnRtspServer) {
+  const RtspServer server(port(3));
+  const auto source = open_source("rtsp://127.0.0.1:" + port(3) + "/scope");
+  expect_live(*source, camera::CaptureClock::Network);
+}
+
+TEST(GStreamerPipeline, GivesItsPicturesAndStamps) {
+  const auto source = open_source(
+      "gst:videotestsrc is-live=true ! video/x-raw,width=320,height=240,framerate=30/1 ! appsink");
+  expect_live(*source, camera::CaptureClock::Driver);
+}
+
+// Grey is grey in every format on the way: 601's luma of a plain picture, to a step of rounding.
+TEST(GStreamerPipeline, EveryFormatHasTheSameLuma) {
+  for (const char* format : {"I420", "NV12", "BGR", "GRAY8", "YUY2", "UYVY", "RGBA", "Y42B"}) {
+    const auto source = open_source(
+        "gst:videotestsrc num-buffers=2 pattern=solid-color foreground-color=0xff808080 ! "
+        "video/x-raw,width=64,height=48,format=" +
+        std::string(format) + " ! appsink");
+    std::vector<std::uint8_t> gray;
+    camera::gray_from(*source->next(), gray);
+    EXPECT_NEAR(gray[64 * 24 + 32], 128, 2) << format;
+  }
+}
+
+TEST(GStreamerPipeline, EndsWhenItEnds) {
+  const auto source =
+      open_source("gst:videotestsrc num-buffers=3 ! video/x-raw,width=64,height=48 ! appsink");
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(source->next());
+  EXPECT_FALSE(source->next());
+}
+
+TEST(GStreamerPipeline, WhatIsNoneIsRefusedWithTheReason) {
+  EXPECT_THAT(message_of<InvalidInput>([] { (void)open_source("gst:nosuchthing ! appsink"); }),
+              HasSubstr("nosuchthing"));
+  EXPECT_THAT(message_of<InvalidInput>([] { (void)open_source("gst:videotestsrc ! fakesink"); }),
+              HasSubstr("must end in an appsink"));
+  EXPECT_THAT(
+      message_of<DeviceError>([] { (void)open_source("gst:filesrc location=/nowhere/clip ! appsink"); }),
+      HasSubstr("/nowhere/clip"));
+}
+
+TEST(SourceName, SaysWhatIsLive) {
+  for (const char* live :
+       {"/dev/video0", "/dev/video12", "rtsp://a/b", "udp://@:1234", "gst:videotestsrc ! appsink"})
+    EXPECT_EQ(kind_of_source(live), SourceKind::Live) << live;
+  for (const char* recording :
+       {"/dev/video", "/dev/videox", "clip.mkv", "f_%04d.png", "C:/clip.mkv", "/dev/video0/x"})
+    EXPECT_EQ(kind_of_source(recording), SourceKind::Recording) << recording;
+}
+
+}  // namespace
+}  // namespace arthronaut::sources
