@@ -277,7 +277,8 @@ class Demo {
     Progress progress(name, static_cast<long>(source.info().frame_count));
     long done = 0;
     theatre::NavigationObserver observer;
-    observer.on_frame = [&](const camera::FramePtr& frame, const operation::OperationState& state) {
+    observer.on_frame = [&](const camera::FramePtr& frame, const operation::OperationStatePtr& now) {
+      const operation::OperationState& state = *now;
       const pipeline::FrameResult& result = state.frame;
       watch(source, result);
       progress.advance_to(++done);

@@ -1,3 +1,4 @@
+#include <chrono>
 #include <memory>
 
 #include "app/command_line/cartilage_option.h"
@@ -6,6 +7,7 @@
 #include "app/command_line/tracking_report.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
+#include "navigation/openigtlink/igtl_server.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/registration/registration_file.h"
 #include "navigation/theatre/navigate_source.h"
@@ -27,6 +29,7 @@ struct NavigateArguments {
   std::string bone = "femur";
   std::optional<double> medium_index;
   double duration_s = 0;  // 0: to the end
+  int igtl_port = -1;     // -1: nothing is served
   bool fixed_lens = false, no_copy = false;
   CLI::Option* probe_option = nullptr;
   CartilageArguments cartilage;
@@ -179,6 +182,15 @@ void say_guidance(const Context& context, const theatre::NavigationSummary& summ
                        g.drill->depth_mm, g.drill->remaining_mm, g.drill->to_exit_mm, g.drill->sigma_mm));
 }
 
+// A recording is shown as if it were now.
+double captured_utc_s(const camera::Frame& picture) {
+  using std::chrono::duration;
+  const double now_s = duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  if (picture.captured_ns == 0) return now_s;
+  const double steady_s = duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return now_s - (steady_s - static_cast<double>(picture.captured_ns) * 1e-9);
+}
+
 void navigate(Context& context, const NavigateArguments& arguments) {
   const cases::CaseLock lock = cases::lock_or_refuse(arguments.case_folder);
   if (!lock.notice().empty()) context.say(lock.notice() + ".");
@@ -196,13 +208,21 @@ void navigate(Context& context, const NavigateArguments& arguments) {
   const auto source = sources::open_source(arguments.video);
   context.say("working medium: " + camera::medium_to_text(options.source.pipeline.refractive_index));
 
+  std::optional<openigtlink::IgtlServer> igtl;
+  if (arguments.igtl_port >= 0) {
+    igtl.emplace(arguments.igtl_port);
+    context.say("OpenIGTLink: port " + std::to_string(igtl->port()));
+  }
   NewSession session(arguments.case_folder);
   theatre::NavigationSummary summary;
   {
     Progress progress("navigating", static_cast<long>(source->info().frame_count));
     long done = 0;
     theatre::NavigationObserver observer;
-    observer.on_frame = [&](const auto&, const auto&) { progress.advance_to(++done); };
+    observer.on_frame = [&](const camera::FramePtr& picture, const operation::OperationStatePtr& state) {
+      progress.advance_to(++done);
+      if (igtl) igtl->publish(state, captured_utc_s(*picture));
+    };
     theatre::RecordOptions record;
     record.folder = session.folder();
     if (source->info().is_live()) {
@@ -272,6 +292,10 @@ void add_navigate_command(CLI::App& app, Context& context) {
                     "The lens stays at the calibration's reference angle; the lens mark is not needed");
   command->add_flag("--no-copy", arguments->no_copy,
                     "Keep only the video's path in the session, not a copy of it; of a live source, nothing");
+  command
+      ->add_option("--igtl", arguments->igtl_port,
+                   "Serve poses and states by OpenIGTLink on this port, 0 for any free one, while it runs")
+      ->check(CLI::Range(0, 65535));
   command
       ->add_option("--duration-s", arguments->duration_s,
                    "Stop after so many seconds of pictures; default: at the source's end")

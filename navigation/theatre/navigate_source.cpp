@@ -59,7 +59,7 @@ class Navigation {
     }
     if (record_) record_->add_frame(picture, *state, false);
     pass_on();
-    if (observer_.on_frame) observer_.on_frame(picture, *state);
+    if (observer_.on_frame) observer_.on_frame(picture, state);
     if (!observer_.pedal) return;
     for (const operation::Command& command : observer_.pedal(*state)) apply(command);
   }

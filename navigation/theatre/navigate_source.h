@@ -29,7 +29,7 @@ struct NavigateOptions {
 
 // Called in the thread of navigate_source.
 struct NavigationObserver {
-  std::function<void(const camera::FramePtr& picture, const operation::OperationState& state)> on_frame;
+  std::function<void(const camera::FramePtr& picture, const operation::OperationStatePtr& state)> on_frame;
   // Asked after each frame: commands to be given before the next one. A script at the pedal.
   std::function<std::vector<operation::Command>(const operation::OperationState& state)> pedal;
 };

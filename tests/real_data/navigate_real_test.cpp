@@ -81,7 +81,8 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
                                         {"tip_to_entry_mm", "axis_to_entry_mm", "angle_deg"});
   std::vector<double> tip_errors, offset_errors, angle_errors;
   theatre::NavigationObserver observer;
-  observer.on_frame = [&](const camera::FramePtr&, const operation::OperationState& state) {
+  observer.on_frame = [&](const camera::FramePtr&, const operation::OperationStatePtr& now) {
+    const operation::OperationState& state = *now;
     const pipeline::FrameResult& result = state.frame;
     if (!result.guidance.is_valid()) return;
     const auto row = static_cast<std::size_t>(result.frame_index);

@@ -54,7 +54,8 @@ TEST(OverlayReal, Hazard30StaysWhileGuidanceIsValid) {
   int guided = 0;
   double most_cleared = 0;
   theatre::NavigationObserver observer;
-  observer.on_frame = [&](const camera::FramePtr&, const operation::OperationState& state) {
+  observer.on_frame = [&](const camera::FramePtr&, const operation::OperationStatePtr& now) {
+    const operation::OperationState& state = *now;
     const pipeline::FrameResult& result = state.frame;
     if (!result.guidance.is_valid()) return;
     ++guided;

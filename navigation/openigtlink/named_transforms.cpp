@@ -1,0 +1,58 @@
+#include "navigation/openigtlink/named_transforms.h"
+
+namespace arthronaut::openigtlink {
+
+namespace {
+
+using geometry::RigidTransform;
+
+const pipeline::ToolPose* pose_of(const operation::OperationState& state, int marker_id) {
+  for (const pipeline::ToolPose& tool : state.frame.tools)
+    if (tool.marker_id == marker_id && tool.world_from_tool.is_valid) return &tool;
+  return nullptr;
+}
+
+}  // namespace
+
+RigidTransform ras_from_lps(const RigidTransform& target_from_source) {
+  const Eigen::Quaterniond& q = target_from_source.rotation;
+  const Eigen::Vector3d& t = target_from_source.translation_mm;
+  // Turning x and y about is a half turn about z, so the rotation's axis turns with them.
+  return {{q.w(), -q.x(), -q.y(), q.z()}, {-t.x(), -t.y(), t.z()}};
+}
+
+std::vector<NamedTransform> named_transforms(const operation::OperationState& state) {
+  std::vector<NamedTransform> named;
+  const auto add = [&](std::string name, const RigidTransform& target_from_source) {
+    named.push_back({std::move(name), ras_from_lps(target_from_source)});
+  };
+  if (!state.has_source || state.frame_count == 0 || state.source == nullptr) return named;
+  const pipeline::PipelineOptions& setup = state.source->pipeline;
+  if (state.frame.camera_from_world.is_valid) {
+    add(state.bone == bones::BoneKind::Femur ? "WorldFemur" : "WorldTibia",
+        state.frame.camera_from_world.target_from_source);
+  }
+  for (const tools::Tool& tool : setup.tools.tools) {
+    const pipeline::ToolPose* const seen = pose_of(state, tool.marker_id);
+    if (seen == nullptr) continue;
+    const RigidTransform& world_from_tool = seen->world_from_tool.target_from_source;
+    if (tool.name == setup.probe_name && tool.tip_mm)
+      add("ProbeTip_World", {world_from_tool.rotation, world_from_tool * *tool.tip_mm});
+    if (tool.name == setup.guide_name) add("Guide_World", world_from_tool);
+    if (tool.kind == tools::ToolKind::Drill) add("Drill_World", world_from_tool);
+  }
+  const operation::RegistrationInForce& in_force = state.registration->in_force;
+  if (in_force.standing == operation::Standing::Stands && in_force.registration != nullptr)
+    add("Bone_World", in_force.registration->marker_from_bone);
+  return named;
+}
+
+Status status_of(const operation::OperationState& state) {
+  if (!state.has_source) return {false, "no source"};
+  if (state.frame_count == 0) return {false, "no picture yet"};
+  const guidance::GuidanceNumbers& guidance = state.frame.guidance;
+  if (guidance.is_valid()) return {true, "OK"};
+  return {false, std::string(guidance::to_text(guidance.state))};
+}
+
+}  // namespace arthronaut::openigtlink

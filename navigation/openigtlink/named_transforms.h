@@ -1,0 +1,42 @@
+// What of an operation goes out to other programs, under the names that they know it by.
+//
+//   WorldFemur, WorldTibia   the world marker in the camera
+//   ProbeTip_World           the probe in the world, origin at its tip, axes of its marker
+//   Guide_World, Drill_World the guide's and the drill's marker frame in the world (tools.json says where
+//   their
+//                            axes and tips lie in it)
+//   Bone_World               the registration: the bone's frame in the world, while it may guide
+//
+// The world is the frame of the bone's world marker. 3D Slicer and OpenIGTLink keep everything in RAS; this
+// program in LPS. So each frame is taken with x and y turned about, the world's and the tools' too: with F =
+// diag(-1, -1, 1), what goes out is F * target_from_source * F, and the bone as Slicer shows it, put under
+// Bone_World, lies right to everything else.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "navigation/operation/operation_state.h"
+
+namespace arthronaut::openigtlink {
+
+struct NamedTransform {
+  std::string name;
+  geometry::RigidTransform target_from_source;  // in RAS
+};
+
+// F * t * F.
+[[nodiscard]] geometry::RigidTransform ras_from_lps(const geometry::RigidTransform& target_from_source);
+
+// What is valid in the newest frame, and nothing else: a transform has no place for its validity.
+[[nodiscard]] std::vector<NamedTransform> named_transforms(const operation::OperationState& state);
+
+// Why there is no guidance; "OK" while there is.
+struct Status {
+  bool is_ok = false;
+  std::string reason;
+};
+[[nodiscard]] Status status_of(const operation::OperationState& state);
+
+}  // namespace arthronaut::openigtlink
