@@ -12,6 +12,7 @@ find_package(VTK 9.1 REQUIRED COMPONENTS
   RenderingCore RenderingOpenGL2)
 find_package(DCMTK 3.6 REQUIRED CONFIG)
 find_package(GDCM REQUIRED)
+find_package(OpenIGTLink REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(nlohmann_json 3.11 REQUIRED)
