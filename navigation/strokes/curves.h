@@ -21,6 +21,9 @@ struct CurvePoint {
 };
 using Curves = std::vector<CurvePoint>;
 
+// How far the tip went, mm: from point to point, gaps between strokes left out.
+[[nodiscard]] double length_mm(const Curves& curves);
+
 // curves.csv. The columns shaft_x, shaft_y and shaft_z are read where they are there, and written when asked
 // for; their cells are empty where the direction is not known. Throws IoError or InvalidInput.
 enum class ShaftColumns { LeaveOut, Write };
