@@ -11,6 +11,8 @@ std::string words_of(NextAction action) {
       return "plan the tunnel (F1)";
     case NextAction::StartSource:
       return "start a source";
+    case NextAction::ConfirmTimeOut:
+      return "time-out: confirm patient, side, plan and tools";
     case NextAction::ShowWorldMarker:
       return "bring the bone marker into view";
     case NextAction::Draw:

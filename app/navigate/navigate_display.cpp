@@ -55,6 +55,10 @@ void explain(NavigateDisplay& display, const operation::OperationState& state) {
     case GuidanceState::WrongMedium:  // told above; a record may say it alone
       display.headline = "Wrong medium";
       break;
+    case GuidanceState::NotConfirmed:
+      display.headline = "Time-out not confirmed";
+      display.detail = "Patient, knee, plan, camera, tools and medium: Space confirms them";
+      break;
     case GuidanceState::NoGuide:
       display.headline = "No drill guide";
       display.detail = options.tools.find_tool(options.guide_name) == nullptr
@@ -150,8 +154,9 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
                           standing == operation::Standing::InDoubt;
   display.overlay_is_valid =
       result.camera_from_world.is_valid && result.intrinsics_are_known && !result.is_frozen && !is_revoked;
-  display.guidance_is_valid =
-      display.overlay_is_valid && result.guidance.is_valid() && standing == operation::Standing::Stands;
+  // What was not confirmed may be of another knee: no number, and none of the plan's lines.
+  display.guidance_is_valid = display.overlay_is_valid && state.time_out != operation::TimeOut::Due &&
+                              result.guidance.is_valid() && standing == operation::Standing::Stands;
   if (display.guidance_is_valid)
     display.guidance = result.guidance;
   else

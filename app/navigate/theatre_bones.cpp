@@ -26,7 +26,8 @@ class LineMaker {
     const geometry::RigidTransform& camera_from_world = frame.camera_from_world.target_from_source;
     const std::vector<scene::ClearDisc> clear = clear_discs_of(frame, state.source->pipeline.tools);
     const operation::RegistrationInForce& in_force = state.registration->in_force;
-    if (in_force.standing == operation::Standing::Stands) {
+    const bool may_guide = state.time_out != operation::TimeOut::Due;
+    if (in_force.standing == operation::Standing::Stands && may_guide) {
       prepare(state.plan);
       made->lines =
           model_->project(frame.camera, camera_from_world * in_force.registration->marker_from_bone, clear);
@@ -34,17 +35,19 @@ class LineMaker {
     points_.clear();
     for (const strokes::CurvePoint& point : *state.registration->drawn)
       points_.push_back(camera_from_world * point.position_mm);
+    // Strokes of before lie where they lay once a touch has shown that the marker does.
+    if (state.resumed != nullptr && in_force.standing == operation::Standing::Stands &&
+        (*state.registration->history)[*state.registration->entry_in_force].origin ==
+            operation::RegistrationOrigin::Resumed)
+      for (const strokes::CurvePoint& point : state.resumed->drawn)
+        points_.push_back(camera_from_world * point.position_mm);
     scene::add_curves(made->lines, frame.camera, points_, strokes::StrokeOptions{}.max_hop_mm, clear);
     return made;
   }
 
  private:
   void prepare(const std::optional<PlannedTunnel>& plan) {
-    if (model_ && plan.has_value() == plan_.has_value() &&
-        (!plan || (plan->tunnel.entry_mm == plan_->tunnel.entry_mm &&
-                   plan->tunnel.direction == plan_->tunnel.direction &&
-                   plan->tunnel.diameter_mm == plan_->tunnel.diameter_mm)))
-      return;
+    if (model_ && plan == plan_) return;
     plan_ = plan;
     model_.emplace(surface_, *drawn_, plan ? std::optional(plan->tunnel) : std::nullopt,
                    plan ? plan->length_mm : 0);
@@ -113,7 +116,8 @@ std::unique_ptr<theatre::LiveOperation> TheatreBones::made(bones::BoneKind bone)
 
 bool TheatreBones::is_worth_keeping(const theatre::LiveState& state) {
   const operation::RegistrationState& known = *state.operation->registration;
-  return state.operation->has_source || known.point_count > 0 || !known.history->empty();
+  return state.operation->has_source || state.operation->resumed != nullptr || known.point_count > 0 ||
+         !known.history->empty();
 }
 
 theatre::LiveOperation& TheatreBones::operation(bones::BoneKind kind) {

@@ -156,6 +156,8 @@ std::string_view to_text(GuidanceState state) {
       return "no drill guide with an axis";
     case GuidanceState::WrongMedium:
       return "wrong medium";
+    case GuidanceState::NotConfirmed:
+      return "time-out not confirmed";
   }
   return "unknown";
 }

@@ -1,7 +1,9 @@
 #include "navigation/operation/command.h"
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "navigation/registration/registration_file.h"
 #include "planning/files/json_document.h"
@@ -31,7 +33,9 @@ constexpr std::array<std::string_view, std::variant_size_v<Command>> kNames{"dra
                                                                             "marker placed anew",
                                                                             "depth stop",
                                                                             "tunnel drilled",
-                                                                            "give registration"};
+                                                                            "give registration",
+                                                                            "confirm time-out",
+                                                                            "resume operation"};
 
 void add(Json& json, const Draw& draw) { json["on"] = draw.on; }
 void add(Json& json, const ExcludeStroke& exclude) {
@@ -40,35 +44,60 @@ void add(Json& json, const ExcludeStroke& exclude) {
 }
 void add(Json& json, const ChooseRegistration& choose) { json["entry"] = choose.entry; }
 void add(Json& json, const ReadDepthStop& stop) { json["depth_mm"] = stop.depth_mm; }
-void add(Json& json, const OfferPlan& offer) {
-  if (!offer.plan) return;
-  const tunnels::Tunnel& tunnel = offer.plan->tunnel;
+void add(Json& json, const std::optional<PlannedTunnel>& plan) {
+  if (!plan) return;
+  const tunnels::Tunnel& tunnel = plan->tunnel;
   json["bone"] = bones::to_text(tunnel.bone);
   json["entry_mm"] = files::to_json(tunnel.entry_mm);
   json["direction"] = files::to_json(tunnel.direction);
   json["diameter_mm"] = tunnel.diameter_mm;
-  json["length_mm"] = offer.plan->length_mm;
+  json["length_mm"] = plan->length_mm;
+}
+void add(Json& json, const OfferPlan& offer) { add(json, offer.plan); }
+void add(Json& json, const registration::RegistrationSummary& registration,
+         const registration::Provenance& of) {
+  json["registration"] = registration::to_json(registration, &of);
+  json["placement"] = of.placement;
 }
 void add(Json& json, const GiveRegistration& give) {
-  json["registration"] = registration::to_json(give.registration, &give.of);
-  json["placement"] = give.of.placement;
+  add(json, give.registration, give.of);
   json["is_resumed"] = give.is_resumed;
+}
+void add(Json& json, const ConfirmTimeOut& time_out) {
+  json["patient_was_shown"] = time_out.patient_was_shown;
+}
+void add(Json& json, const ResumeOperation& resume) {
+  json["session"] = resume.session;
+  json["of"] = registration::to_json(resume.of);
+  if (resume.plan) add(json["plan"], resume.plan);
+  if (resume.depth_stop_mm) json["depth_stop_mm"] = *resume.depth_stop_mm;
+  if (resume.registration) add(json["in_force"], *resume.registration, resume.registration_of);
+  json["stroke_count"] = resume.stroke_count;
+  // Curve, x, y, z of every point: a flat list is shorter by half.
+  Json::array_t drawn, touches;
+  for (const strokes::CurvePoint& point : resume.drawn) {
+    drawn.emplace_back(point.curve);
+    for (const double x : point.position_mm) drawn.emplace_back(x);
+  }
+  for (const Eigen::Vector3d& touch : resume.touches_mm)
+    for (const double x : touch) touches.emplace_back(x);
+  json["drawn"] = std::move(drawn);
+  json["touches_mm"] = std::move(touches);
+  if (resume.control_point_mm) json["control_point_mm"] = files::to_json(*resume.control_point_mm);
 }
 // A command without a word beside its name.
 template <typename Plain>
 void add(Json&, const Plain&) {}
 
-OfferPlan plan_from(const files::JsonObject& json) {
-  OfferPlan offer;
-  if (!json.has("bone")) return offer;
+std::optional<PlannedTunnel> plan_from(const files::JsonObject& json) {
+  if (!json.has("bone")) return std::nullopt;
   PlannedTunnel plan;
   plan.tunnel.bone = bones::bone_kind_from_text(json.text("bone"));
   plan.tunnel.entry_mm = json.vector3("entry_mm");
   plan.tunnel.direction = json.vector3("direction");
   plan.tunnel.diameter_mm = json.positive_number("diameter_mm");
   plan.length_mm = json.number("length_mm");
-  offer.plan = plan;
-  return offer;
+  return plan;
 }
 
 GiveRegistration registration_from(const files::JsonObject& json) {
@@ -77,6 +106,42 @@ GiveRegistration registration_from(const files::JsonObject& json) {
   GiveRegistration give{record.registration, *record.of, json.boolean("is_resumed")};
   give.of.placement = static_cast<int>(json.integer("placement"));
   return give;
+}
+
+// A list of numbers, so many for each thing.
+std::vector<double> numbers_by(std::size_t size, const files::JsonObject& json, std::string_view key) {
+  std::vector<double> numbers = json.numbers(key);
+  if (numbers.size() % size != 0) json.fail(key, "is cut off");
+  return numbers;
+}
+
+ResumeOperation resume_from(const files::JsonObject& json) {
+  ResumeOperation resume;
+  resume.session = json.text("session");
+  const auto given = [](const files::JsonObject& from) {
+    const auto record = registration::registration_record_from(from.object("registration"));
+    if (!record.of) from.fail("registration", "does not say what it is of");
+    auto of = *record.of;
+    of.placement = static_cast<int>(from.integer("placement"));
+    return std::pair(record.registration, of);
+  };
+  resume.of = registration::provenance_from(json.object("of"));
+  if (json.has("plan")) resume.plan = plan_from(json.object("plan"));
+  if (json.has("depth_stop_mm")) resume.depth_stop_mm = json.number("depth_stop_mm");
+  if (json.has("in_force"))
+    std::tie(resume.registration, resume.registration_of) = given(json.object("in_force"));
+  resume.stroke_count = static_cast<int>(json.integer("stroke_count"));
+  const std::vector<double> drawn = numbers_by(4, json, "drawn");
+  for (std::size_t i = 0; i < drawn.size(); i += 4) {
+    strokes::CurvePoint& point = resume.drawn.emplace_back();
+    point.curve = static_cast<int>(std::clamp(drawn[i], 0.0, 1e9));
+    point.position_mm = {drawn[i + 1], drawn[i + 2], drawn[i + 3]};
+  }
+  const std::vector<double> touches = numbers_by(3, json, "touches_mm");
+  for (std::size_t i = 0; i < touches.size(); i += 3)
+    resume.touches_mm.emplace_back(touches[i], touches[i + 1], touches[i + 2]);
+  if (json.has("control_point_mm")) resume.control_point_mm = json.vector3("control_point_mm");
+  return resume;
 }
 
 // The command of that place in the variant, as it is without a word beside its name.
@@ -90,6 +155,12 @@ Command plain(std::size_t index) {
 }
 
 }  // namespace
+
+bool PlannedTunnel::operator==(const PlannedTunnel& other) const {
+  return tunnel.bone == other.tunnel.bone && tunnel.entry_mm == other.tunnel.entry_mm &&
+         tunnel.direction == other.tunnel.direction && tunnel.diameter_mm == other.tunnel.diameter_mm &&
+         length_mm == other.length_mm;
+}
 
 std::string_view name_of(const Command& command) { return kNames[command.index()]; }
 
@@ -117,7 +188,10 @@ Command command_from_text(const std::string& text, const std::string& name) {
     choose->entry = static_cast<std::size_t>(json.integer("entry"));
   }
   if (auto* stop = std::get_if<ReadDepthStop>(&command)) stop->depth_mm = json.number("depth_mm");
-  if (std::holds_alternative<OfferPlan>(command)) command = plan_from(json);
+  if (std::holds_alternative<OfferPlan>(command)) command = OfferPlan{plan_from(json)};
+  if (auto* time_out = std::get_if<ConfirmTimeOut>(&command))
+    time_out->patient_was_shown = json.boolean("patient_was_shown");
+  if (std::holds_alternative<ResumeOperation>(command)) command = resume_from(json);
   if (std::holds_alternative<GiveRegistration>(command)) command = registration_from(json);
   return command;
 }

@@ -7,9 +7,11 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "navigation/registration/provenance.h"
 #include "navigation/registration/registration.h"
+#include "navigation/strokes/curves.h"
 #include "planning/tunnels/tunnel.h"
 
 namespace arthronaut::operation {
@@ -18,6 +20,7 @@ namespace arthronaut::operation {
 struct PlannedTunnel {
   tunnels::Tunnel tunnel;
   double length_mm = 0;
+  [[nodiscard]] bool operator==(const PlannedTunnel& other) const;  // in every number
 };
 
 // The probe's tip draws on the bone from now on, or no more.
@@ -64,11 +67,33 @@ struct GiveRegistration {
   registration::Provenance of;
   bool is_resumed = false;  // from before a crash: void until one touch confirms it
 };
+// Patient, side, plan, camera, tools and medium were read out and are right: the time-out before the first
+// guidance with a live source.
+struct ConfirmTimeOut {
+  bool patient_was_shown = false;  // who it is stays out of the record; that it was on the screen does not
+};
+// What an operation had come to that a crash or a closed window cut off, for another one to go on with it.
+// All of it is here: nothing else is read to run it again. Takes effect once, before the first source.
+struct ResumeOperation {
+  std::string session;                // id of its newest record
+  registration::Provenance of;        // what the pictures were of at its end
+  std::optional<PlannedTunnel> plan;  // in force then
+  std::optional<double> depth_stop_mm;
+  // Void until one touch confirms it: nobody saw the marker meanwhile. Empty: nothing guided, or what did may
+  // not be brought back.
+  std::optional<registration::RegistrationSummary> registration;
+  registration::Provenance registration_of;
+  // History: they are shown, and say nothing of the marker as it sits now. World-marker frame.
+  strokes::Curves drawn;  // thinned
+  int stroke_count = 0;
+  std::vector<Eigen::Vector3d> touches_mm;
+  std::optional<Eigen::Vector3d> control_point_mm;  // as it was touched first: touched again it still tells
+};
 
-using Command =
-    std::variant<Draw, TakeTouch, TouchControlPoint, ForgetTouches, TakeBackStroke, ExcludeStroke,
-                 ClearStrokes, RegisterStrokes, ChooseRegistration, OfferPlan, TakePlanOver, SkipVerification,
-                 MarkerPlacedAnew, ReadDepthStop, TunnelDrilled, GiveRegistration>;
+using Command = std::variant<Draw, TakeTouch, TouchControlPoint, ForgetTouches, TakeBackStroke, ExcludeStroke,
+                             ClearStrokes, RegisterStrokes, ChooseRegistration, OfferPlan, TakePlanOver,
+                             SkipVerification, MarkerPlacedAnew, ReadDepthStop, TunnelDrilled,
+                             GiveRegistration, ConfirmTimeOut, ResumeOperation>;
 
 // "exclude stroke", ...: what the journal calls it.
 [[nodiscard]] std::string_view name_of(const Command& command);

@@ -17,6 +17,7 @@ namespace arthronaut::operation {
 enum class JournalKind {
   CommandGiven,   // text: to_text(Command)
   OutcomeTaken,   // text: its request count
+  LookTaken,      // text: index of the frame whose picture was seen in the other medium
   SourceStarted,  // what stands before the first of these was given before any source
   SourceEnded,
   RegistrationInForce,  // registration is set; without a pose: none is in force any more
@@ -25,8 +26,9 @@ enum class JournalKind {
   Confirmed,            // by a touch
   Verified,
   VerificationSkipped,
-  Plan,     // in force from now on: plan, or none
-  Drilled,  // achieved is set
+  TimeOutConfirmed,  // text: what was on the screen
+  Plan,              // in force from now on: plan, or none
+  Drilled,           // achieved is set
   Note,
 };
 

@@ -46,10 +46,11 @@ void Operation::start_source(const SourceSetup& source) {
   p.pipeline = std::move(pipeline);
   p.source = std::make_shared<const SourceSetup>(source);
   p.has_source = true;
-  const std::vector<markers::DeclaredMarker> declared = markers::declared_markers(source.pipeline.tools);
-  const double calibration_index = source.pipeline.calibration.refractive_index;
-  p.medium.emplace(declared, source.pipeline.refractive_index, calibration_index);
-  p.second_look.emplace(declared, p.medium->other_index(), calibration_index);
+  p.medium.emplace(markers::declared_markers(source.pipeline.tools), source.pipeline.refractive_index,
+                   source.pipeline.calibration.refractive_index);
+  ++p.source_number;
+  p.look_request.reset();
+  p.awaited_look.reset();
   p.frame = {};
   p.frame_count = 0;
   p.note(JournalKind::SourceStarted);
@@ -61,7 +62,8 @@ void Operation::start_source(const SourceSetup& source) {
   p.world_was_seen = p.guide_was_seen = false;
   p.control_touched_ns = 0;  // of another clock
   p.pipeline->set_plan(p.plan ? std::optional(p.plan->tunnel) : std::nullopt, p.plan ? p.plan->length_mm : 0);
-  if (p.offered)
+  // What differed from the plan of before the crash was offered by nobody who saw it: it is still asked for.
+  if (p.offered && !p.resumed_plan_waits)
     p.set_plan(*std::exchange(p.offered, std::nullopt));
   else
     p.note_plan();
@@ -73,8 +75,15 @@ void Operation::start_source(const SourceSetup& source) {
   p.hand_registration();
   if (p.ledger.in_force().registration != nullptr) p.note_in_force(true);
   p.followed_change = p.ledger.change_count();
+  // Each record says how it stands from its beginning on, whatever the one before it said.
+  p.followed_standing = Standing::None;
+  p.followed_verified = false;
   p.follow_ledger();
-  p.draws = source.draws && p.ledger.in_force().standing != Standing::Stands;
+  const RegistrationInForce& in_force = p.ledger.in_force();
+  // What was resumed waits for a touch; what is drawn meanwhile would be of a marker that nobody has checked.
+  const bool waits_for_touch =
+      p.resumed != nullptr && in_force.standing == Standing::Void && in_force.can_be_confirmed;
+  p.draws = source.draws && in_force.standing != Standing::Stands && !waits_for_touch;
 }
 
 void Operation::end_source() {
@@ -83,11 +92,13 @@ void Operation::end_source() {
   p.note(JournalKind::SourceEnded);
   p.has_source = p.draws = false;
   p.tip.clear();
+  p.look_request.reset();
+  p.awaited_look.reset();
 }
 
 void Operation::process(const camera::Frame& frame) {
   parts_->pipeline->process(frame, parts_->frame);
-  parts_->check_medium(frame);
+  parts_->check_medium();
   parts_->take_frame();
 }
 
@@ -133,6 +144,11 @@ void Operation::take_outcome(const OutcomePtr& outcome) {
   p.follow_ledger();
 }
 
+void Operation::take_look(const MediumLookPtr& look) { parts_->take_look(look); }
+std::optional<MediumLookRequest> Operation::take_look_request() {
+  return std::exchange(parts_->look_request, std::nullopt);
+}
+
 std::vector<RegistrationRequest> Operation::take_requests() { return std::exchange(parts_->requests, {}); }
 std::vector<JournalEntry> Operation::take_journal() { return std::exchange(parts_->journal, {}); }
 
@@ -149,6 +165,8 @@ OperationStatePtr Operation::state() {
   state->registration = p.registration_state();
   p.changed = false;
   state->verification = p.verification();
+  state->time_out = p.time_out();
+  state->resumed = p.resumed;
   state->control_point_due = p.control_point_due();
   state->touch_refusal = p.touch_refusal;
   state->touch_asked_ns = p.touch_asked_ns;
@@ -168,5 +186,6 @@ const strokes::Curves& Operation::points() const { return parts_->strokes.points
 strokes::Curves Operation::strokes_in_use() const { return parts_->strokes.in_use(); }
 const OperationSetup& Operation::setup() const { return parts_->setup; }
 const OutcomePtr& Operation::outcome() const { return parts_->outcome; }
+const registration::Provenance& Operation::now() const { return parts_->ledger.now(); }
 
 }  // namespace arthronaut::operation

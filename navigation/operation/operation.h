@@ -10,6 +10,7 @@
 //   for each frame:  operation.take_outcome(newest);  operation.apply(command)...;  operation.process(frame);
 //                    work.post(operation.take_requests());  record(operation.take_journal());
 //                    show(operation.state());
+// Second looks at the medium go the same way: take_look_request() after a frame, take_look() before another.
 //
 // Strokes, registrations and touches outlive the source: one that ends takes nothing of it away, and another
 // one is judged by what it is of (registration/provenance.h).
@@ -22,6 +23,7 @@
 
 #include "navigation/camera/frame.h"
 #include "navigation/operation/journal_entry.h"
+#include "navigation/operation/medium_look.h"
 #include "navigation/operation/operation_state.h"
 #include "navigation/operation/registration_work.h"
 
@@ -71,6 +73,11 @@ class Operation {
   // `result` as process() made it.
   void process_recorded(const pipeline::FrameResult& result);
 
+  // What was seen of the picture that take_look_request() asked for; anything else, and null, is ignored.
+  void take_look(const MediumLookPtr& look);
+
+  // The picture of the newest frame is to be seen in the other medium; once for each.
+  [[nodiscard]] std::optional<MediumLookRequest> take_look_request();
   // Since the last call, in order.
   [[nodiscard]] std::vector<RegistrationRequest> take_requests();
   [[nodiscard]] std::vector<JournalEntry> take_journal();
@@ -82,6 +89,7 @@ class Operation {
   [[nodiscard]] strokes::Curves strokes_in_use() const;
   [[nodiscard]] const OperationSetup& setup() const;
   [[nodiscard]] const OutcomePtr& outcome() const;  // the newest that was taken in; null before the first
+  [[nodiscard]] const registration::Provenance& now() const;  // what the pictures are of
 
  private:
   struct Parts;

@@ -47,7 +47,9 @@ struct Operation::Parts {
     note(std::move(entry));
   }
   void set_plan(const std::optional<PlannedTunnel>& next);
-  void check_medium(const camera::Frame& picture);
+  void check_medium();
+  void take_look(const MediumLookPtr& look);
+  void follow_medium(pipeline::MediumFit before);
   void take_frame();
   void draw_tip();
   void watch_marker();
@@ -60,6 +62,8 @@ struct Operation::Parts {
   [[nodiscard]] std::optional<std::size_t> guide_in_view() const;
   [[nodiscard]] ControlPointDue control_point_due() const;
   [[nodiscard]] Verification verification() const;
+  [[nodiscard]] TimeOut time_out() const;
+  void hide_guidance(guidance::GuidanceState reason);
   [[nodiscard]] std::optional<guidance::RegistrationBias> bias() const;
   [[nodiscard]] RegistrationStatePtr registration_state();
 
@@ -86,7 +90,10 @@ struct Operation::Parts {
   void apply(const ChooseRegistration& choose) { ledger.choose(choose.entry); }
   void apply(const OfferPlan& offer);
   void apply(const TakePlanOver&) {
-    if (offered) set_plan(*std::exchange(offered, std::nullopt));
+    if (!offered) return;
+    set_plan(*std::exchange(offered, std::nullopt));
+    resumed_plan_waits = false;
+    confirmed_plan = plan;  // that it is the right one was just said
   }
   void apply(const SkipVerification&) { skip_verification("asked for"); }
   void apply(const MarkerPlacedAnew&) {
@@ -96,6 +103,8 @@ struct Operation::Parts {
   void apply(const ReadDepthStop& stop) { depth_stop_mm = stop.depth_mm; }
   void apply(const TunnelDrilled&);
   void apply(const GiveRegistration& give);
+  void apply(const ConfirmTimeOut& time_out);
+  void apply(const ResumeOperation& resume);
   void skip_verification(const std::string& how);
 
   OperationSetup setup;
@@ -122,6 +131,7 @@ struct Operation::Parts {
 
   std::optional<PlannedTunnel> plan;
   std::optional<std::optional<PlannedTunnel>> offered;
+  bool resumed_plan_waits = false;  // what is offered is the case's, asked for even when a source starts
   std::optional<std::size_t> skipped_entry;  // of the ledger: it guided without a touch
   TouchRefusal touch_refusal = TouchRefusal::None;
   std::int64_t touch_asked_ns = 0;
@@ -131,14 +141,21 @@ struct Operation::Parts {
   bool evidence_is_seen = false;
   int frames_since_evidence = 0;
   std::optional<pipeline::MediumCheck> medium;  // of the source
-  std::optional<pipeline::SecondLook> second_look;
+  std::uint64_t source_number = 0;
+  std::optional<MediumLookRequest> look_request;
+  std::optional<std::int64_t> awaited_look;  // the frame whose picture is being seen again
   // How the registration that strokes give follows the errors of probe and camera; by stroke.
   std::map<int, guidance::BiasSums> bias_of_stroke;
   DrilledState drilled;
   std::optional<double> depth_stop_mm;
+  // What the time-out was confirmed of; empty: not yet.
+  std::optional<registration::Provenance> confirmed;
+  std::optional<PlannedTunnel> confirmed_plan;
+  std::shared_ptr<const ResumeOperation> resumed;  // null: nothing was
 
   std::uint64_t followed_change = 0;
   Standing followed_standing = Standing::None;
+  std::optional<std::size_t> followed_entry;  // of the ledger
   bool followed_verified = false;
   std::vector<RegistrationRequest> requests;
   std::uint64_t request_count = 0;

@@ -11,21 +11,6 @@ constexpr std::int64_t kLongLoss_ns = 30'000'000'000;
 // A control point that was touched so lately need not be touched again before drilling.
 constexpr std::int64_t kControlHolds_ns = 300'000'000'000;
 
-double length_mm(const strokes::Curves& curves) {
-  double sum_mm = 0;
-  for (std::size_t i = 1; i < curves.size(); ++i)
-    if (curves[i].curve == curves[i - 1].curve)
-      sum_mm += (curves[i].position_mm - curves[i - 1].position_mm).norm();
-  return sum_mm;
-}
-
-bool is_same(const std::optional<PlannedTunnel>& a, const std::optional<PlannedTunnel>& b) {
-  if (!a || !b) return a.has_value() == b.has_value();
-  return a->tunnel.bone == b->tunnel.bone && a->tunnel.entry_mm == b->tunnel.entry_mm &&
-         a->tunnel.direction == b->tunnel.direction && a->tunnel.diameter_mm == b->tunnel.diameter_mm &&
-         a->length_mm == b->length_mm;
-}
-
 }  // namespace
 
 void Operation::Parts::note_in_force(bool is_given) {
@@ -57,7 +42,8 @@ void Operation::Parts::hand_registration() {
 // What is in force guides from the next frame on; what is not any more does not guide in it.
 void Operation::Parts::follow_ledger() {
   const RegistrationInForce& in_force = ledger.in_force();
-  if (ledger.change_count() != followed_change) {
+  const bool is_another = ledger.change_count() != followed_change;
+  if (is_another) {
     followed_change = ledger.change_count();
     if (pipeline != nullptr) hand_registration();
     if (in_force.registration != nullptr) {
@@ -67,17 +53,20 @@ void Operation::Parts::follow_ledger() {
       note_in_force(false);
     }
   }
-  if (in_force.standing != followed_standing) {
+  // Of another one that is void too, the journal says so too.
+  if (in_force.standing != followed_standing || (is_another && in_force.standing == Standing::Void)) {
     const std::string why = in_force.registration != nullptr && !in_force.registration->reasons.empty()
                                 ? in_force.registration->reasons.front()
                                 : "";
     if (followed_standing == Standing::Alarm) note(JournalKind::Alarm);
     if (in_force.standing == Standing::Alarm) note(JournalKind::Alarm, why);
     if (in_force.standing == Standing::Void) note(JournalKind::Void, why);
-    if (followed_standing == Standing::Void && in_force.standing == Standing::Stands)
+    if (followed_standing == Standing::Void && in_force.standing == Standing::Stands &&
+        ledger.entry_in_force() == followed_entry)
       note(JournalKind::Confirmed, "by a touch");
     followed_standing = in_force.standing;
   }
+  followed_entry = ledger.entry_in_force();
   if (in_force.is_verified && !followed_verified) note(JournalKind::Verified);
   followed_verified = in_force.is_verified;
   changed = true;
@@ -103,6 +92,8 @@ std::optional<std::size_t> Operation::Parts::guide_in_view() const {
 
 void Operation::Parts::take_frame() {
   ++frame_count;
+  if (frame.guidance.is_valid() && time_out() == TimeOut::Due)
+    hide_guidance(guidance::GuidanceState::NotConfirmed);
   const double time_s = static_cast<double>(frame.timestamp_ns) * 1e-9;
   tip.add(time_s, frame.tip_is_valid ? std::optional(frame.tip_in_world_mm) : std::nullopt);
   draw_tip();
@@ -133,13 +124,32 @@ std::optional<guidance::RegistrationBias> Operation::Parts::bias() const {
   return sums.empty() ? std::nullopt : std::optional(sums.bias());
 }
 
-// In the wrong medium nothing that is reckoned from the pictures stands; the reason is the medium, not the
-// markers.
-void Operation::Parts::check_medium(const camera::Frame& picture) {
+void Operation::Parts::check_medium() {
   if (!medium) return;
   const pipeline::MediumFit before = medium->verdict().fit;
   medium->look(frame);
-  if (medium->wants_second_look()) medium->look_again(frame, second_look->look(picture, frame.camera));
+  if (medium->wants_second_look() && !awaited_look) {
+    const pipeline::PipelineOptions& options = source->pipeline;
+    awaited_look = frame.frame_index;
+    look_request = MediumLookRequest{source_number, frame, markers::declared_markers(options.tools),
+                                     medium->other_index(), options.calibration.refractive_index};
+  }
+  follow_medium(before);
+}
+
+void Operation::Parts::take_look(const MediumLookPtr& look) {
+  if (look == nullptr || look->source_number != source_number || awaited_look != look->view.frame_index)
+    return;
+  awaited_look.reset();
+  note(JournalKind::LookTaken, std::to_string(look->view.frame_index));
+  const pipeline::MediumFit before = medium->verdict().fit;
+  medium->look_again(look->view, look->in_other_medium);
+  follow_medium(before);
+}
+
+// In the wrong medium nothing that is reckoned from the pictures stands; the reason is the medium, not the
+// markers.
+void Operation::Parts::follow_medium(pipeline::MediumFit before) {
   if (medium->verdict().fit != before) {
     changed = true;
     if (medium->verdict().fit == pipeline::MediumFit::Contradicts)
@@ -148,10 +158,14 @@ void Operation::Parts::check_medium(const camera::Frame& picture) {
   if (medium->verdict().fit != pipeline::MediumFit::Contradicts) return;
   frame.camera_from_world.is_valid = frame.tip_is_valid = frame.intrinsics_are_known = false;
   for (pipeline::ToolPose& tool : frame.tools) tool.world_from_tool.is_valid = false;
+  hide_guidance(guidance::GuidanceState::WrongMedium);
+}
+
+void Operation::Parts::hide_guidance(guidance::GuidanceState reason) {
   const std::int64_t timestamp_ns = frame.guidance.timestamp_ns;
   frame.guidance = {};
   frame.guidance.timestamp_ns = timestamp_ns;
-  frame.guidance.state = guidance::GuidanceState::WrongMedium;
+  frame.guidance.state = reason;
 }
 
 void Operation::Parts::watch_marker() {
@@ -196,7 +210,7 @@ void Operation::Parts::look_for_registration() {
   const std::optional<std::size_t> entry = ledger.entry_in_force();
   const bool is_settled = entry && (*ledger.entries())[*entry].origin != RegistrationOrigin::WhileDrawing &&
                           ledger.in_force().standing == Standing::Stands;
-  if (is_settled || length_mm(strokes.in_use()) < fit_length_mm + *setup.registers_after_mm) return;
+  if (is_settled || strokes::length_mm(strokes.in_use()) < fit_length_mm + *setup.registers_after_mm) return;
   register_strokes();
 }
 
@@ -204,7 +218,7 @@ void Operation::Parts::register_strokes() {
   if (is_fitting || (outcome != nullptr && !outcome->failure.empty())) return;
   auto curves = std::make_shared<const strokes::Curves>(strokes.in_use());
   if (curves->empty()) return;
-  fit_length_mm = length_mm(*curves);
+  fit_length_mm = strokes::length_mm(*curves);
   fit_points = curves->size();
   is_fitting = fit_is_wanted = true;
   ask(FitAll{++fit_number, std::move(curves)});
@@ -241,7 +255,8 @@ void Operation::Parts::take_touch(bool is_control_point) {
 
 void Operation::Parts::apply(const OfferPlan& offer) {
   offered.reset();
-  if (is_same(offer.plan, plan)) return;
+  resumed_plan_waits = false;
+  if (offer.plan == plan) return;
   if (has_source)
     offered = offer.plan;
   else

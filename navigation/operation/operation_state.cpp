@@ -105,15 +105,25 @@ std::string_view to_text(Step step) {
 }
 
 std::string_view to_text(NextAction action) {
-  constexpr std::string_view kNames[] = {"plan tunnel",           "start source",
-                                         "show world marker",     "draw",
-                                         "go on drawing",         "register strokes",
-                                         "wait for registration", "check world marker",
-                                         "confirm by touch",      "register anew",
-                                         "take plan over",        "verify by touch",
-                                         "set control point",     "check control point",
-                                         "bring guide",           "follow bullseye",
-                                         "record drilled",        "finish"};
+  constexpr std::string_view kNames[] = {"plan tunnel",
+                                         "start source",
+                                         "confirm time-out",
+                                         "show world marker",
+                                         "draw",
+                                         "go on drawing",
+                                         "register strokes",
+                                         "wait for registration",
+                                         "check world marker",
+                                         "confirm by touch",
+                                         "register anew",
+                                         "take plan over",
+                                         "verify by touch",
+                                         "set control point",
+                                         "check control point",
+                                         "bring guide",
+                                         "follow bullseye",
+                                         "record drilled",
+                                         "finish"};
   return kNames[static_cast<std::size_t>(action)];
 }
 
@@ -129,6 +139,7 @@ NextAction next_action_of(const OperationState& state) {
     if (registration.is_fitting) return NextAction::WaitForRegistration;
     return may_register ? NextAction::RegisterStrokes : NextAction::StartSource;
   }
+  if (state.time_out == TimeOut::Due) return NextAction::ConfirmTimeOut;
   if (state.plan_was_edited) return NextAction::TakePlanOver;
   if (in_force.standing == Standing::Void && in_force.can_be_confirmed && !state.draws)
     return NextAction::ConfirmByTouch;
@@ -147,6 +158,7 @@ Step step_of(NextAction action) {
     case NextAction::TakePlanOver:
       return Step::Plan;
     case NextAction::StartSource:
+    case NextAction::ConfirmTimeOut:
     case NextAction::ShowWorldMarker:
       return Step::WorldMarker;
     case NextAction::Draw:
@@ -183,6 +195,9 @@ std::uint64_t digest_of_decisions(const OperationState& state) {
   add_registration(digest, *state.registration);
   digest.add(state.draws);
   digest.add(state.verification);
+  digest.add(state.time_out);
+  digest.add(state.resumed != nullptr);
+  digest.add(state.depth_stop_mm.value_or(-1));
   digest.add(state.control_point_due);
   digest.add(state.touch_refusal);
   digest.add(state.plan.has_value());

@@ -57,6 +57,10 @@ enum class TouchRefusal { None, NoSource, TipUnknown, TipMoves };
 // Whether a touch on the bone has shown that the registration holds, before it guides.
 enum class Verification { NotYet, ByTouches, Skipped };
 
+// Whether patient, side, plan, camera, tools and medium were confirmed. Only a live source asks: in a
+// recording and in a simulation nobody is drilled.
+enum class TimeOut { NotAsked, Due, Confirmed };
+
 // What the control point is wanted for.
 enum class ControlPointDue { None, Set, CheckBeforeDrilling, CheckAfterLoss };
 
@@ -68,6 +72,7 @@ enum class Step { Plan, Calibrate, WorldMarker, Tools, Digitise, Register, Verif
 enum class NextAction {
   PlanTunnel,
   StartSource,
+  ConfirmTimeOut,
   ShowWorldMarker,
   Draw,             // the probe is to draw, and does not
   GoOnDrawing,      // strokes are missing: the coach says which
@@ -107,13 +112,15 @@ struct OperationState {
   bool draws = false;
   RegistrationStatePtr registration = std::make_shared<const RegistrationState>();  // never null
   Verification verification = Verification::NotYet;
+  TimeOut time_out = TimeOut::NotAsked;
   ControlPointDue control_point_due = ControlPointDue::None;
   TouchRefusal touch_refusal = TouchRefusal::None;  // of the last touch that was asked for
   std::int64_t touch_asked_ns = 0;                  // in the source's time
   std::optional<PlannedTunnel> plan;                // in force
   bool plan_was_edited = false;                     // another one is offered and not taken over
-  std::optional<double> depth_stop_mm;
-  pipeline::MediumVerdict medium;  // whether the pictures fit the medium in force
+  std::optional<double> depth_stop_mm;              // as the surgeon read it last
+  std::shared_ptr<const ResumeOperation> resumed;   // what it went on from; null: it began afresh
+  pipeline::MediumVerdict medium;                   // whether the pictures fit the medium in force
   DrilledState drilled;
   Step step = Step::Plan;
   NextAction next_action = NextAction::PlanTunnel;

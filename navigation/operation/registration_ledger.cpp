@@ -109,6 +109,18 @@ void RegistrationLedger::give(RegistrationOrigin origin, const RegistrationPtr& 
   add({origin, registration, of});
 }
 
+void RegistrationLedger::bring_back(const registration::Provenance& of,
+                                    const std::vector<Eigen::Vector3d>& touches_mm,
+                                    const std::optional<Eigen::Vector3d>& control_point_mm) {
+  const int placement = now_.placement;
+  now_ = of;
+  registration::Provenance before = of;
+  before.placement = placement - 1;  // whether it is the same one, nobody has seen
+  now_.placement = placement;
+  touches_.bring_back(touches_mm, control_point_mm, before);
+  judge();
+}
+
 void RegistrationLedger::choose(std::size_t entry) {
   if (entry >= entries_->size() || entry == entry_in_force_ || (*entries_)[entry].marker_has_moved) return;
   entry_in_force_ = entry;

@@ -66,6 +66,11 @@ class RegistrationLedger {
   // From a file, or from before a crash: guides as far as `of` allows.
   void give(RegistrationOrigin origin, const RegistrationPtr& registration,
             const registration::Provenance& of);
+  // Of an operation that was cut off, before anything else is known: what its pictures were of, and its
+  // touches, which say nothing of the marker as it sits now. They are gone when the pictures turn out to be
+  // of another world.
+  void bring_back(const registration::Provenance& of, const std::vector<Eigen::Vector3d>& touches_mm,
+                  const std::optional<Eigen::Vector3d>& control_point_mm);
   // Makes another entry the one in force; nothing happens when there is none, or the marker has moved since.
   void choose(std::size_t entry);
 

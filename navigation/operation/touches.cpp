@@ -55,9 +55,11 @@ std::string in_words(const TouchAlarm& alarm) {
 }
 
 void Touches::add_touch(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of) {
-  // The same place touched again verifies nothing more.
+  // The same place touched again verifies nothing more; one that was touched under another provenance was not
+  // touched yet.
   const bool is_new_place = std::none_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
-    return (touch.tip_in_marker_mm - tip_in_marker_mm).norm() < limits_.apart_mm;
+    return (touch.tip_in_marker_mm - tip_in_marker_mm).norm() < limits_.apart_mm &&
+           !registration::mismatch_of(touch.of, of);
   });
   touches_.push_back({tip_in_marker_mm, of, is_new_place});
   last_ = Last::Kind::Touch;
@@ -76,6 +78,25 @@ void Touches::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
 }
 
 void Touches::clear() { *this = Touches(limits_); }
+
+void Touches::bring_back(const std::vector<Eigen::Vector3d>& touches_mm,
+                         const std::optional<Eigen::Vector3d>& control_point_mm,
+                         const registration::Provenance& of) {
+  clear();
+  for (const Eigen::Vector3d& touch_mm : touches_mm) add_touch(touch_mm, of);
+  if (control_point_mm) touch_control_point(*control_point_mm);
+  last_ = Last::Kind::None;
+}
+
+std::vector<Eigen::Vector3d> Touches::places_mm() const {
+  std::vector<Eigen::Vector3d> places_mm;
+  for (const Touch& touch : touches_) places_mm.push_back(touch.tip_in_marker_mm);
+  return places_mm;
+}
+
+std::optional<Eigen::Vector3d> Touches::control_point_mm() const {
+  return control_touches_mm_.empty() ? std::nullopt : std::optional(control_touches_mm_.front());
+}
 
 void Touches::judge(const registration::RegistrationSummary* registration, const geometry::Surface* surface,
                     const std::optional<registration::CartilageRegion>& cartilage,

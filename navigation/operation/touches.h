@@ -73,6 +73,9 @@ class Touches {
   void add_touch(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of);
   void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm);
   void clear();
+  // Those of an operation that was cut off, in place of all there are.
+  void bring_back(const std::vector<Eigen::Vector3d>& touches_mm,
+                  const std::optional<Eigen::Vector3d>& control_point_mm, const registration::Provenance& of);
   // Distances anew, by another registration, of the touches that are of `now`; none without a pose. On
   // cartilage they are to what is touched there.
   void judge(const registration::RegistrationSummary* registration, const geometry::Surface* surface,
@@ -81,6 +84,9 @@ class Touches {
 
   [[nodiscard]] bool has_control_point() const { return !control_touches_mm_.empty(); }
   [[nodiscard]] std::size_t count() const { return touches_.size(); }
+  // Where they were, world-marker frame; of the control point: as it was touched first.
+  [[nodiscard]] std::vector<Eigen::Vector3d> places_mm() const;
+  [[nodiscard]] std::optional<Eigen::Vector3d> control_point_mm() const;
   // Signed, mm, in the order of the touches; empty while there is no registration to judge by, nullopt on
   // cartilage of unknown thickness and for touches of another provenance.
   [[nodiscard]] const std::vector<std::optional<double>>& residuals_mm() const { return residuals_mm_; }

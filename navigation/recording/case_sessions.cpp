@@ -16,9 +16,6 @@ bool is_same_marker(const tools::WorldMarker* a, const tools::WorldMarker* b) {
   return a && b && a->marker_id == b->marker_id && a->size_mm == b->size_mm;
 }
 
-// The kind of event that Navigate records when the registration is in doubt.
-constexpr std::string_view kAlarmEvent = "alarm";
-
 // The alarm that came after the session's last registration; empty when none did.
 std::string alarm_after_registration(const std::filesystem::path& folder) {
   std::string alarm;

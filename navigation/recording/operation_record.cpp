@@ -39,6 +39,8 @@ std::string_view kind_of(JournalKind kind) {
       return kCommandEvent;
     case JournalKind::OutcomeTaken:
       return kOutcomeEvent;
+    case JournalKind::LookTaken:
+      return kLookEvent;
     case JournalKind::SourceStarted:
       return kSourceStartedEvent;
     case JournalKind::SourceEnded:
@@ -46,19 +48,21 @@ std::string_view kind_of(JournalKind kind) {
     case JournalKind::RegistrationInForce:
       return kRegistrationEvent;
     case JournalKind::Alarm:
-      return "alarm";
+      return kAlarmEvent;
     case JournalKind::Void:
-      return "registration void";
+      return kVoidEvent;
     case JournalKind::Confirmed:
       return "registration confirmed";
     case JournalKind::Verified:
-      return "registration verified";
+      return kVerifiedEvent;
     case JournalKind::VerificationSkipped:
       return "verification skipped";
+    case JournalKind::TimeOutConfirmed:
+      return "time-out confirmed";
     case JournalKind::Plan:
       return kPlanEvent;
     case JournalKind::Drilled:
-      return "tunnel drilled";
+      return kDrilledEvent;
     case JournalKind::Note:
       return "note";
   }

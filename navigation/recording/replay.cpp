@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "navigation/pipeline/prefetched_source.h"
-#include "navigation/recording/session_files.h"
+#include "navigation/recording/rerun.h"
 
 namespace arthronaut::recording {
 
@@ -89,172 +88,6 @@ class FrameComparison {
   std::int64_t frame_ = -1;
   std::vector<strokes::PoseRow> rows_;
 };
-
-pipeline::FrameResult result_of(const RecordedFrame& recorded, const pipeline::PipelineOptions& options) {
-  pipeline::FrameResult result;
-  result.frame_index = recorded.index;
-  result.timestamp_ns = recorded.timestamp_ns;
-  result.lens = recorded.lens;
-  result.intrinsics_are_known = recorded.intrinsics_are_known;
-  result.is_frozen = recorded.is_frozen;
-  const auto pose_of = [&](int marker_id) {
-    geometry::TrackedPose pose;
-    pose.timestamp_ns = recorded.timestamp_ns;
-    for (const strokes::PoseRow& row : recorded.poses) {
-      if (row.marker_id != marker_id) continue;
-      pose.is_valid = !recorded.is_frozen;
-      pose.target_from_source = row.camera_from_marker;
-    }
-    return pose;
-  };
-  if (const auto* world = options.tools.find_world_marker(options.bone))
-    result.camera_from_world = pose_of(world->marker_id);
-  const geometry::TrackedPose world_from_camera = geometry::inverse(result.camera_from_world);
-  for (const tools::Tool& tool : options.tools.tools)
-    result.tools.push_back({tool.marker_id, geometry::compose(world_from_camera, pose_of(tool.marker_id))});
-  result.tip_is_valid = recorded.tip_is_valid;
-  result.tip_in_world_mm = recorded.tip_in_world_mm;
-  for (std::size_t i = 0; i < result.tools.size(); ++i) {
-    const tools::Tool& tool = options.tools.tools[i];
-    const auto shaft = tools::shaft_direction(tool);
-    if (recorded.tip_is_valid && tool.name == options.probe_name && shaft)
-      result.shaft_in_world = result.tools[i].world_from_tool.target_from_source.rotate(*shaft);
-  }
-  result.guidance = recorded.guidance;
-  return result;
-}
-
-// The operation of a record, run again.
-class Rerun {
- public:
-  Rerun(const operation::OperationSetup& setup, const ReplayOptions& options) : operation_(setup) {
-    if (!options.bone) return;
-    work_.emplace([&] { return options.bone; }, operation::work_options(setup));
-    outcomes_[0] = work_->outcome();
-  }
-
-  void start(const RecordedSession& session) {
-    session_ = &session;
-    next_event_ = 0;
-    const SessionHeader& header = session.header();
-    has_journal_ = !header.source_kind.empty();
-    play_before_source();
-    operation::SourceSetup source;
-    source.kind = sources::source_kind_from_text(header.source_kind).value_or(sources::SourceKind::Recording);
-    source.draws = header.probe_drew_at_start;
-    source.title = header.source;
-    source.pipeline = session.pipeline_options();
-    operation_.start_source(source);
-    pass_on();
-  }
-  void play_before(std::int64_t frame) {
-    const auto& events = session_->events();
-    for (; next_event_ < events.size() && events[next_event_].after_frame < frame; ++next_event_)
-      play(events[next_event_]);
-  }
-  void play_rest() {
-    for (; next_event_ < session_->events().size(); ++next_event_) play(session_->events()[next_event_]);
-    operation_.end_source();
-    pass_on();
-  }
-  operation::OperationStatePtr process(const camera::Frame& picture) {
-    operation_.process(picture);
-    return after_frame();
-  }
-  operation::OperationStatePtr process(const RecordedFrame& recorded) {
-    operation_.process_recorded(result_of(recorded, session_->pipeline_options()));
-    return after_frame();
-  }
-  [[nodiscard]] operation::OperationStatePtr state() { return operation_.state(); }
-
- private:
-  // What was given before any source ran, where the record says so.
-  void play_before_source() {
-    const auto& events = session_->events();
-    const auto started = std::find_if(events.begin(), events.end(), [](const SessionEvent& event) {
-      return event.kind == kSourceStartedEvent;
-    });
-    if (started == events.end()) return;
-    while (events.begin() + static_cast<std::ptrdiff_t>(next_event_) != started) play(events[next_event_++]);
-  }
-
-  operation::OperationStatePtr after_frame() {
-    const operation::OperationStatePtr state = operation_.state();
-    pass_on();
-    return state;
-  }
-
-  void play(const SessionEvent& event) {
-    if (event.kind == kCommandEvent) {
-      operation_.apply(operation::command_from_text(event.text, database_file(session_->folder()).string()));
-    } else if (event.kind == kOutcomeEvent) {
-      const auto outcome = outcomes_.find(std::stoull(event.text));
-      if (outcome != outcomes_.end()) operation_.take_outcome(outcome->second);
-    } else if (event.kind == kSourceEndedEvent) {
-      operation_.end_source();
-    } else if (!has_journal_ && event.kind == kPlanEvent) {
-      const RecordedSession::PlanChange change = session_->plan_of(event);
-      operation::OfferPlan offer;
-      if (change.plan) offer.plan = {*change.plan, change.planned_length_mm};
-      operation_.apply(offer);
-      operation_.apply(operation::TakePlanOver{});
-    } else if (!has_journal_ && (event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent)) {
-      operation::SourceSetup source;
-      source.kind = sources::SourceKind::Recording;
-      source.pipeline = session_->pipeline_options();
-      operation_.apply(operation::GiveRegistration{session_->registration_of(event),
-                                                   operation::provenance_of(operation_.setup(), source)});
-    }
-    pass_on();
-  }
-
-  void pass_on() {
-    (void)operation_.take_journal();
-    for (const operation::RegistrationRequest& request : operation_.take_requests())
-      if (work_ && work_->work_in(request)) outcomes_[work_->outcome()->request_count] = work_->outcome();
-  }
-
-  operation::Operation operation_;
-  std::optional<operation::RegistrationWork> work_;
-  std::map<std::uint64_t, operation::OutcomePtr>
-      outcomes_;  // all there ever were: the record says which was taken
-  const RecordedSession* session_ = nullptr;
-  std::size_t next_event_ = 0;
-  bool has_journal_ = false;
-};
-
-// The sessions before it in the same operation, oldest first.
-std::vector<RecordedSession> sessions_before(const RecordedSession& session, ReplaySummary& summary) {
-  std::vector<RecordedSession> before;
-  std::string id = session.header().continues;
-  while (!id.empty()) {
-    const std::filesystem::path folder = session.folder().parent_path() / id;
-    if (!std::filesystem::exists(folder)) {
-      summary.differences.push_back({-1, "session before", 0, "", id + " is not there any more"});
-      break;
-    }
-    before.emplace_back(folder);
-    id = before.back().header().continues;
-  }
-  std::reverse(before.begin(), before.end());
-  return before;
-}
-
-operation::OperationSetup setup_of(const RecordedSession& first, const ReplayOptions& options) {
-  operation::OperationSetup setup;
-  setup.bone = first.header().bone;
-  setup.mesh_sha256 = first.header().mesh_sha256;
-  setup.surface = options.surface;
-  setup.cartilage = options.cartilage;
-  if (first.header().registers_after_mm > 0) setup.registers_after_mm = first.header().registers_after_mm;
-  for (const SessionEvent& event : first.events()) {
-    if (event.kind != kPlanEvent) continue;
-    const RecordedSession::PlanChange change = first.plan_of(event);
-    if (change.plan) setup.plan = {*change.plan, change.planned_length_mm};
-    break;
-  }
-  return setup;
-}
 
 void compare_registration(const RecordedSession& session, const operation::OperationState& now,
                           const ReplayOptions& options, ReplaySummary& summary) {
@@ -344,16 +177,15 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
                              reencoded ? options.reencoded_tolerance_deg : options.tolerance_deg);
   FrameComparison cold_comparison(summary, options.reencoded_tolerance_mm, options.reencoded_tolerance_deg);
   StateComparison states;
-  const std::vector<RecordedSession> before = sessions_before(session, summary);
-  Rerun rerun(setup_of(before.empty() ? session : before.front(), options), options);
-  for (const RecordedSession& earlier : before) {
-    rerun.start(earlier);
-    for (const RecordedFrame& frame : earlier.frames()) {
-      rerun.play_before(frame.index);
-      (void)rerun.process(frame);
-    }
-    rerun.play_rest();
-  }
+  const std::vector<RecordedSession> before = sessions_before(session, [&](const std::string& id) {
+    summary.differences.push_back({-1, "session before", 0, "", id + " is not there any more"});
+  });
+  operation::OperationSetup setup = setup_of(before.empty() ? session : before.front());
+  setup.surface = options.surface;
+  setup.cartilage = options.cartilage;
+  Rerun rerun(setup, options.bone != nullptr ? Registrations::FoundAgain : Registrations::NotFollowed,
+              options.bone);
+  for (const RecordedSession& earlier : before) rerun.run(earlier);
 
   Pictures pictures(session);
   // What was tracked depends on every picture before: where the first ones were not kept, tracking begins

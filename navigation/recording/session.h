@@ -67,9 +67,14 @@ struct SessionEvent {
 inline constexpr std::string_view kPlanEvent = "plan";                  // text: JSON; empty: no plan
 inline constexpr std::string_view kRegistrationEvent = "registration";  // text: file name; found here
 inline constexpr std::string_view kGivenRegistrationEvent =
-    "registration given";                                     // text: file name; from elsewhere
-inline constexpr std::string_view kCommandEvent = "command";  // text: operation::Command as JSON
-inline constexpr std::string_view kOutcomeEvent = "outcome";  // text: request count of what was taken in
+    "registration given";                                      // text: file name; from elsewhere
+inline constexpr std::string_view kCommandEvent = "command";   // text: operation::Command as JSON
+inline constexpr std::string_view kOutcomeEvent = "outcome";   // text: request count of what was taken in
+inline constexpr std::string_view kLookEvent = "second look";  // text: index of the frame that was seen again
+inline constexpr std::string_view kAlarmEvent = "alarm";       // text: what it says; empty: it is over
+inline constexpr std::string_view kVoidEvent = "registration void";  // text: why
+inline constexpr std::string_view kVerifiedEvent = "registration verified";
+inline constexpr std::string_view kDrilledEvent = "tunnel drilled";
 inline constexpr std::string_view kSourceStartedEvent = "source started";  // what is before it came earlier
 inline constexpr std::string_view kSourceEndedEvent = "source ended";
 inline constexpr std::string_view kDroppedPicturesEvent = "pictures dropped";    // text: how many

@@ -309,7 +309,8 @@ void SessionRecorder::finish() {
   s.finished = true;
   // A file that was moved or deleted while it is open takes everything without a word.
   if (!std::filesystem::exists(database_file(s.folder)))
-    throw IoError(s.folder, "was moved or deleted while it was being recorded; the end of the record is missing");
+    throw IoError(s.folder,
+                  "was moved or deleted while it was being recorded; the end of the record is missing");
   s.formats.finish();
   if (s.pictures) s.pictures->finish();
   s.database.execute("INSERT INTO ending VALUES(1)");

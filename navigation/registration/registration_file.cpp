@@ -12,32 +12,6 @@ namespace {
 constexpr const char* kFormat = "arthronaut.registration";
 constexpr int kVersion = 1;
 
-nlohmann::ordered_json to_json(const Provenance& of) {
-  nlohmann::ordered_json json;
-  json["mesh_sha256"] = of.mesh_sha256;
-  json["bone"] = bones::to_text(of.bone);
-  json["marker_id"] = of.world_marker_id;
-  json["camera"] = of.camera;
-  json["tools"] = of.tools;
-  json["medium"] = camera::medium_to_text(of.refractive_index);
-  json["source"] = sources::to_text(of.source);
-  return json;
-}
-
-Provenance provenance_from(const files::JsonObject& json) {
-  Provenance of;
-  of.mesh_sha256 = json.text("mesh_sha256");
-  of.bone = bones::bone_kind_from_text(json.text("bone"));
-  of.world_marker_id = static_cast<int>(json.integer("marker_id"));
-  of.camera = json.text("camera");
-  of.tools = json.text("tools");
-  of.refractive_index = camera::refractive_index_from_text(json.text("medium"));
-  const auto source = sources::source_kind_from_text(json.text("source"));
-  if (!source) json.fail("source", "must be live, recording or simulation");
-  of.source = *source;
-  return of;
-}
-
 RegistrationSummary summary_from(const files::JsonObject& document) {
   RegistrationSummary summary;
   // Other programs' files have a pose and don't say so.
@@ -64,6 +38,32 @@ RegistrationSummary summary_from(const files::JsonObject& document) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json to_json(const Provenance& of) {
+  nlohmann::ordered_json json;
+  json["mesh_sha256"] = of.mesh_sha256;
+  json["bone"] = bones::to_text(of.bone);
+  json["marker_id"] = of.world_marker_id;
+  json["camera"] = of.camera;
+  json["tools"] = of.tools;
+  json["medium"] = camera::medium_to_text(of.refractive_index);
+  json["source"] = sources::to_text(of.source);
+  return json;
+}
+
+Provenance provenance_from(const files::JsonObject& json) {
+  Provenance of;
+  of.mesh_sha256 = json.text("mesh_sha256");
+  of.bone = bones::bone_kind_from_text(json.text("bone"));
+  of.world_marker_id = static_cast<int>(json.integer("marker_id"));
+  of.camera = json.text("camera");
+  of.tools = json.text("tools");
+  of.refractive_index = camera::refractive_index_from_text(json.text("medium"));
+  const auto source = sources::source_kind_from_text(json.text("source"));
+  if (!source) json.fail("source", "must be live, recording or simulation");
+  of.source = *source;
+  return of;
+}
 
 RegistrationSummary read_registration_file(const std::filesystem::path& file) {
   return read_registration_record(file).registration;

@@ -31,5 +31,8 @@ void write_registration_file(const std::filesystem::path& file, const Registrati
 // The same document inside another one.
 [[nodiscard]] RegistrationRecord registration_record_from(const files::JsonObject& document);
 [[nodiscard]] nlohmann::ordered_json to_json(const RegistrationSummary& registration, const Provenance* of);
+// Its part `of` alone, also without the placement.
+[[nodiscard]] nlohmann::ordered_json to_json(const Provenance& of);
+[[nodiscard]] Provenance provenance_from(const files::JsonObject& document);
 
 }  // namespace arthronaut::registration

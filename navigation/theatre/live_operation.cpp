@@ -73,7 +73,7 @@ class Loop {
         run_(options.operation,
              registration_beside(options.bone, operation::work_options(options.operation),
                                  [&inbox] { inbox.post(FollowRegistration{}); }),
-             options.make_session_folder) {}
+             options.make_session_folder, looks_beside()) {}
 
   void run() {
     publish();

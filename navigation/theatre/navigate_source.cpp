@@ -5,6 +5,7 @@
 
 #include "navigation/operation/registration_work.h"
 #include "navigation/pipeline/prefetched_source.h"
+#include "navigation/theatre/operation_log.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::theatre {
@@ -12,14 +13,6 @@ namespace arthronaut::theatre {
 namespace {
 
 using operation::Standing;
-
-double length_mm(const strokes::Curves& curves) {
-  double sum_mm = 0;
-  for (std::size_t i = 1; i < curves.size(); ++i)
-    if (curves[i].curve == curves[i - 1].curve)
-      sum_mm += (curves[i].position_mm - curves[i - 1].position_mm).norm();
-  return sum_mm;
-}
 
 operation::OperationSetup setup_of(const NavigateOptions& options) {
   operation::OperationSetup setup = options.operation;
@@ -58,6 +51,8 @@ class Navigation {
       summary_.last_guidance = frame.guidance;
     }
     if (record_) record_->add_frame(picture, *state, false);
+    if (auto request = operation_.take_look_request())
+      operation_.take_look(looks_.look(std::move(*request), *picture));
     pass_on();
     if (observer_.on_frame) observer_.on_frame(picture, state);
     if (!observer_.pedal) return;
@@ -71,7 +66,7 @@ class Navigation {
     pass_on();
     summary_.curves = operation_.strokes_in_use();
     if (record_) record_->finish(summary_.curves);
-    summary_.stroke_length_mm = length_mm(summary_.curves);
+    summary_.stroke_length_mm = strokes::length_mm(summary_.curves);
     summary_.drilled = state->drilled;
     const operation::RegistrationState& known = *state->registration;
     summary_.standing = known.in_force.standing;
@@ -96,7 +91,9 @@ class Navigation {
   void pass_on() {
     for (;;) {
       const auto requests = operation_.take_requests();
-      if (record_) record_->add(operation_.take_journal());
+      const auto journal = operation_.take_journal();
+      log_entries(journal);
+      if (record_) record_->add(journal);
       if (requests.empty() || !work_) return;
       bool has_news = false;
       for (const operation::RegistrationRequest& request : requests)
@@ -124,6 +121,7 @@ class Navigation {
   const NavigationObserver& observer_;
   operation::Operation operation_;
   std::optional<operation::RegistrationWork> work_;
+  operation::MediumLookWork looks_;
   std::optional<recording::OperationRecord> record_;
   NavigationSummary summary_;
 };

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "navigation/pipeline/prefetched_source.h"
+#include "navigation/theatre/operation_log.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::theatre {
@@ -11,9 +12,10 @@ using recording::KeepVideo;
 
 OperationRun::OperationRun(const operation::OperationSetup& setup,
                            std::unique_ptr<RegistrationService> registration,
-                           MakeSessionFolder make_session_folder)
+                           MakeSessionFolder make_session_folder, std::unique_ptr<MediumLookService> looks)
     : operation_(setup),
       registration_(std::move(registration)),
+      looks_(std::move(looks)),
       make_session_folder_(std::move(make_session_folder)) {}
 
 OperationRun::~OperationRun() { end_source(); }
@@ -68,6 +70,7 @@ void OperationRun::pass_on() {
   if (!requests.empty()) registration_->post(std::move(requests));
   auto journal = operation_.take_journal();
   if (journal.empty()) return;
+  log_entries(journal);
   for (operation::JournalEntry& entry : journal)
     if (entry.achieved && theatre_source_.truth) entry.achieved->truth = theatre_source_.truth();
   if (record_ != nullptr) return write([&](recording::OperationRecord& record) { record.add(journal); });
@@ -87,6 +90,7 @@ void OperationRun::pass_on() {
 bool OperationRun::follow_registration() {
   const operation::OutcomePtr before = operation_.outcome();
   operation_.take_outcome(registration_->latest());
+  operation_.take_look(looks_->latest());
   pass_on();
   return operation_.outcome() != before;
 }
@@ -117,12 +121,18 @@ OperationRun::Step OperationRun::step() {
   }
   frame_state_ = operation_.state();
   write([&](recording::OperationRecord& record) { record.add_frame(next.frame, *frame_state_, is_live); });
+  if (auto look = operation_.take_look_request()) looks_->post(std::move(*look), next.frame);
   pass_on();
   return {next.frame, false};
 }
 
 void OperationRun::apply(const operation::Command& command) {
+  // The record of what follows goes on with that one's.
+  const auto* const resume = std::get_if<operation::ResumeOperation>(&command);
+  const bool had_resumed = resume != nullptr && operation_.state()->resumed != nullptr;
   operation_.apply(command);
+  if (resume != nullptr && !had_resumed && operation_.state()->resumed != nullptr)
+    continues_ = resume->session;
   pass_on();
 }
 

@@ -13,6 +13,7 @@
 #include "navigation/pipeline/prefetched_source.h"
 #include "navigation/recording/operation_record.h"
 #include "navigation/sources/frame_source.h"
+#include "navigation/theatre/medium_look_service.h"
 #include "navigation/theatre/registration_service.h"
 
 namespace arthronaut::theatre {
@@ -33,7 +34,8 @@ class OperationRun {
   using MakeSessionFolder = std::function<std::filesystem::path()>;
 
   OperationRun(const operation::OperationSetup& setup, std::unique_ptr<RegistrationService> registration,
-               MakeSessionFolder make_session_folder);
+               MakeSessionFolder make_session_folder,
+               std::unique_ptr<MediumLookService> looks = looks_at_once());
   ~OperationRun();
 
   // Ends the source before it and opens this one; its record begins with the first frame. Throws what opening
@@ -52,7 +54,8 @@ class OperationRun {
   void end_source();
 
   void apply(const operation::Command& command);
-  // Takes in what the registration has found meanwhile; true when that is something new. step() does it too.
+  // Takes in what the registration has found and what was seen of the medium meanwhile; true when the first
+  // is something new. step() does it too.
   bool follow_registration();
   // Video from now on, or no more; the journal goes on in any case. No effect without a source.
   void keep_video(bool on);
@@ -77,6 +80,7 @@ class OperationRun {
 
   operation::Operation operation_;
   std::unique_ptr<RegistrationService> registration_;
+  std::unique_ptr<MediumLookService> looks_;
   MakeSessionFolder make_session_folder_;
   TheatreSource theatre_source_;
   std::unique_ptr<pipeline::PrefetchedSource> source_;

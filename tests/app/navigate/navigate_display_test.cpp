@@ -290,5 +290,19 @@ TEST(Bullseye, PointIsWhereTheAxisMissesTheEntry) {
   EXPECT_NEAR(leaning.up_mm, 0, 1e-9);
 }
 
+// What was not confirmed guides nothing, whatever else stands: no number and no line of the plan.
+TEST(NavigateDisplay, Hazard20NothingIsShownBeforeTheTimeOut) {
+  Shown shown;
+  ASSERT_TRUE(shown.display().guidance_is_valid);
+  shown.operation.time_out = operation::TimeOut::Due;
+  EXPECT_FALSE(shown.display().guidance_is_valid) << "in the frame that was worked in before, too";
+  shown.operation.frame.guidance.state = GuidanceState::NotConfirmed;
+  EXPECT_FALSE(shown.display().guidance_is_valid);
+  EXPECT_EQ(shown.display().headline, "Time-out not confirmed");
+  shown.operation.time_out = operation::TimeOut::Confirmed;
+  shown.operation.frame.guidance.state = GuidanceState::Valid;
+  EXPECT_TRUE(shown.display().guidance_is_valid);
+}
+
 }  // namespace
 }  // namespace arthronaut::navigate

@@ -34,6 +34,22 @@ PlannedTunnel plan() {
   return plan;
 }
 
+ResumeOperation resume() {
+  ResumeOperation resume;
+  resume.session = "0007-20260131-120000";
+  resume.of = given().of;
+  resume.of.placement = 0;
+  resume.plan = plan();
+  resume.depth_stop_mm = 2.0 / 3;
+  resume.registration = given().registration;
+  resume.registration_of = given().of;
+  resume.drawn = {{3, std::nullopt, {1.0 / 3, -2, 5e-9}}, {4, std::nullopt, {0.1, 0.2, 0.3}}};
+  resume.stroke_count = 2;
+  resume.touches_mm = {{1.0 / 7, 2, 3}, {4, 5, 6}};
+  resume.control_point_mm = Eigen::Vector3d(7, 8, 1.0 / 9);
+  return resume;
+}
+
 const std::vector<Command>& all_commands() {
   static const std::vector<Command> commands{Draw{true},
                                              Draw{false},
@@ -53,7 +69,11 @@ const std::vector<Command>& all_commands() {
                                              MarkerPlacedAnew{},
                                              ReadDepthStop{1.0 / 3},
                                              TunnelDrilled{},
-                                             given()};
+                                             given(),
+                                             ConfirmTimeOut{true},
+                                             ConfirmTimeOut{false},
+                                             resume(),
+                                             ResumeOperation{}};
   return commands;
 }
 
@@ -92,6 +112,18 @@ TEST(Command, NumbersComeBackToTheLastBit) {
   EXPECT_EQ(give.registration.covariance, expected.registration.covariance);
   EXPECT_EQ(give.registration.predicted_tre_mm, expected.registration.predicted_tre_mm);
   EXPECT_EQ(give.of.placement, 2);
+  const auto back = std::get<ResumeOperation>(command_from_text(to_text(resume()), "journal"));
+  ASSERT_EQ(back.drawn.size(), 2U);
+  EXPECT_EQ(back.drawn[0].curve, 3);
+  EXPECT_EQ(back.drawn[0].position_mm, resume().drawn[0].position_mm);
+  EXPECT_EQ(back.touches_mm, resume().touches_mm);
+  EXPECT_EQ(*back.control_point_mm, *resume().control_point_mm);
+  EXPECT_EQ(back.plan, resume().plan);
+  EXPECT_EQ(back.depth_stop_mm, resume().depth_stop_mm);
+  EXPECT_EQ(back.registration->marker_from_bone.translation_mm,
+            expected.registration.marker_from_bone.translation_mm);
+  EXPECT_EQ(back.registration_of.placement, 2);
+  EXPECT_FALSE(registration::mismatch_of(back.of, resume().of));
   EXPECT_FALSE(registration::mismatch_of(give.of, expected.of));
 }
 
@@ -127,6 +159,7 @@ TEST(Command, BrokenTextIsRefusedAndNothingElse) {
        {"", "null", "[]", "{}", R"({"format":"arthronaut.command","version":1})",
         R"({"format":"arthronaut.command","version":1,"command":"explode"})",
         R"({"format":"arthronaut.command","version":1,"command":"draw","on":"yes"})",
+        R"({"format":"arthronaut.command","version":1,"command":"resume operation","session":"x"})",
         R"({"format":"arthronaut.command","version":1,"command":"choose registration","entry":-1})"})
     EXPECT_THROW((void)command_from_text(bad, "journal"), InvalidInput) << bad;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,10 @@ class PhantomOperation {
         work_([] { return registration::phantom_bone().prepared; }, operation::work_options(setup)) {}
 
   void start(const operation::SourceSetup& source) {
+    start_unconfirmed(source);
+    apply(operation::ConfirmTimeOut{});
+  }
+  void start_unconfirmed(const operation::SourceSetup& source) {
     source_ = source;
     time_s_ = 0;
     index_ = 0;
@@ -67,6 +72,7 @@ class PhantomOperation {
   }
   void show(const pipeline::FrameResult& frame) {
     operation_.process_recorded(frame);
+    if (on_frame) on_frame(*operation_.state());
     ++index_;
     time_s_ += 1.0 / 60;
     pass_on();
@@ -124,12 +130,17 @@ class PhantomOperation {
   }
 
   std::vector<operation::JournalEntry> journal;
+  // A record's way in: each frame, then what was journalled after it.
+  std::function<void(const operation::OperationState&)> on_frame;
+  std::function<void(const std::vector<operation::JournalEntry>&)> on_journal;
 
  private:
   void pass_on() {
     for (;;) {
       const auto requests = operation_.take_requests();
-      for (operation::JournalEntry& entry : operation_.take_journal()) journal.push_back(std::move(entry));
+      auto entries = operation_.take_journal();
+      if (on_journal) on_journal(entries);
+      for (operation::JournalEntry& entry : entries) journal.push_back(std::move(entry));
       if (requests.empty()) return;
       for (const operation::RegistrationRequest& request : requests) (void)work_.work_in(request);
       operation_.take_outcome(work_.outcome());

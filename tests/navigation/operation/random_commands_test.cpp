@@ -24,6 +24,15 @@ std::vector<std::uint64_t> digests_of(std::uint64_t seed) {
   std::vector<std::uint64_t> digests;
   std::size_t next_point = 0;
   for (int i = 0; i < 200; ++i) {
+    if (i == 0 && below(2) == 0) {
+      ResumeOperation resume;
+      resume.of = provenance_of(run.operation().setup(), test::scripted_source());
+      resume.registration = test::true_registration(trial, resume.of).registration;
+      resume.registration_of = resume.of;
+      resume.touches_mm = {test::on_bone(trial, 0)};
+      resume.control_point_mm = test::on_bone(trial, 2);
+      run.apply(resume);
+    }
     if (i == 0 || below(40) == 0) {
       SourceSetup source = test::scripted_source(
           std::array{SourceKind::Live, SourceKind::Recording, SourceKind::Simulation}.at(random() % 3));
@@ -61,6 +70,7 @@ std::vector<std::uint64_t> digests_of(std::uint64_t seed) {
                                         MarkerPlacedAnew{},
                                         ReadDepthStop{below(40) * 1.0},
                                         TunnelDrilled{},
+                                        ConfirmTimeOut{},
                                         give};
     run.apply(commands[random() % commands.size()]);
     const auto state = run.state();

@@ -56,6 +56,7 @@ class ReplayedOperation : public ::testing::Test {
             resumed,
             operation::ChooseRegistration{0},
             operation::ReadDepthStop{21.5},
+            operation::ConfirmTimeOut{},
             operation::TunnelDrilled{},
             operation::ForgetTouches{},
             operation::ClearStrokes{},
@@ -115,6 +116,42 @@ TEST_F(ReplayedOperation, WhatWasGivenBeforeTheFirstSourceIsReplayed) {
   expect_replays("session1", 20);
 }
 
+// An operation that goes on from one that was cut off holds all of it: it is replayed without the record
+// before, which may be gone.
+TEST_F(ReplayedOperation, AResumedOneIsReplayedFromItsOwnRecord) {
+  const TheatreSource source = test::plain_source(30);
+  operation::ResumeOperation resume;
+  resume.session = "session0";
+  resume.of = resume.registration_of = operation::provenance_of(setup_, source.setup);
+  resume.registration = test::true_registration(trial_, resume.of).registration;
+  resume.plan = test::phantom_plan();
+  resume.plan->length_mm += 1;
+  resume.drawn = trial_.curves;
+  resume.stroke_count = 3;
+  resume.touches_mm = {test::on_bone(trial_, 1)};
+  resume.control_point_mm = test::on_bone(trial_, 2);
+  resume.depth_stop_mm = 12.25;
+  {
+    OperationRun run(setup_, test::at_once(setup_), folders());
+    run.apply(resume);
+    run.start(source);
+    for (int i = 0; i < 30; ++i) {
+      ASSERT_TRUE(run.step().picture);
+      if (i == 10) run.apply(operation::TakePlanOver{});
+      if (i == 20) run.apply(operation::ReadDepthStop{13});
+    }
+    EXPECT_EQ(run.state()->registration->in_force.standing, operation::Standing::Void);
+    run.end_source();
+    run.start(test::plain_source(10));
+    while (run.step().picture != nullptr) {
+    }
+  }
+  EXPECT_EQ(recording::RecordedSession(folder_ / "session1").header().continues, "session0");
+  EXPECT_EQ(recording::RecordedSession(folder_ / "session2").header().continues, "session1");
+  expect_replays("session1", 30);
+  expect_replays("session2", 10);
+}
+
 // The simulator's pictures, kept by the record and tracked again: poses, strokes and decisions are the same
 // to the last bit.
 TEST_F(ReplayedOperation, TheSimulatorsPicturesGiveTheSameStates) {
@@ -145,6 +182,60 @@ TEST_F(ReplayedOperation, TheSimulatorsPicturesGiveTheSameStates) {
   }
   EXPECT_GT(with_tip, 5) << "the test must see something";
   expect_replays("session1", kFrames);
+}
+
+// Second looks that come when they come, as from a thread: each is handed out so many frames after it was
+// asked for.
+class LateLooks : public MediumLookService {
+ public:
+  explicit LateLooks(int frames_late) : frames_late_(frames_late) {}
+  void post(operation::MediumLookRequest request, const camera::FramePtr& picture) override {
+    coming_ = work_.look(std::move(request), *picture);
+    asked_for_ = 0;
+  }
+  [[nodiscard]] operation::MediumLookPtr latest() const override {
+    if (++asked_for_ > frames_late_) there_ = coming_;
+    return there_;
+  }
+
+ private:
+  int frames_late_;
+  operation::MediumLookWork work_;
+  operation::MediumLookPtr coming_;
+  mutable operation::MediumLookPtr there_;
+  mutable int asked_for_ = 0;
+};
+
+// The wrong medium is found by second looks, whenever they come: run again from the record, every state is
+// the same, since the record says after which frame each was taken in.
+TEST_F(ReplayedOperation, SecondLooksThatComeLateGiveTheSameStates) {
+  constexpr int kFrames = 30;
+  simulator::SimulationOptions options = simulator::phantom_options();
+  options.frame_count = kFrames;
+  TheatreSource source;
+  source.setup.kind = sources::SourceKind::Simulation;
+  source.setup.pipeline.calibration = options.camera;
+  source.setup.pipeline.tools = options.tools;
+  source.setup.pipeline.refractive_index = options.refractive_index > 1.1 ? 1.0 : 1.3345;
+  source.open = [=] {
+    return std::make_unique<simulator::SimulatedOperation>(options, simulator::Phase::Scratch);
+  };
+  int session = 0;
+  for (const int frames_late : {0, 2, 5}) {
+    {
+      OperationRun run(setup_, test::at_once(setup_), folders(), std::make_unique<LateLooks>(frames_late));
+      run.start(source);
+      run.keep_video(true);
+      for (int i = 0; i < kFrames; ++i) ASSERT_TRUE(run.step().picture);
+      run.end_source();
+    }
+    const std::string name = "session" + std::to_string(++session);
+    int looks = 0;
+    for (const recording::SessionEvent& event : recording::RecordedSession(folder_ / name).events())
+      looks += event.kind == recording::kLookEvent ? 1 : 0;
+    EXPECT_GT(looks, 1) << frames_late << " frames late";
+    expect_replays(name, kFrames);
+  }
 }
 
 }  // namespace

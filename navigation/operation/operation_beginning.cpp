@@ -1,0 +1,58 @@
+// How an operation begins: what is confirmed before anything guides, and what one that was cut off had come
+// to.
+#include "navigation/camera/medium.h"
+#include "navigation/operation/operation_parts.h"
+#include "planning/files/format.h"
+
+namespace arthronaut::operation {
+
+namespace {
+
+// What stood on the screen, as the record keeps it: hashes, and no patient.
+std::string in_words(const SourceSetup& source, const registration::Provenance& now,
+                     const std::optional<PlannedTunnel>& plan, bool patient_was_shown) {
+  std::string text = std::string(bones::to_text(source.pipeline.side)) + " " +
+                     std::string(bones::to_text(now.bone)) +
+                     (patient_was_shown ? ", patient shown" : ", patient not known");
+  text +=
+      plan ? files::format(", plan %.1f mm wide and %.1f mm long", plan->tunnel.diameter_mm, plan->length_mm)
+           : std::string(", no plan");
+  return text + ", mesh " + now.mesh_sha256.substr(0, 12) + ", camera " + now.camera.substr(0, 12) +
+         ", tools " + now.tools.substr(0, 12) + ", " + camera::medium_to_text(now.refractive_index);
+}
+
+}  // namespace
+
+TimeOut Operation::Parts::time_out() const {
+  if (source == nullptr || source->kind != sources::SourceKind::Live) return TimeOut::NotAsked;
+  if (!confirmed || confirmed_plan != plan) return TimeOut::Due;
+  // A marker that is placed anew changes nothing of what was confirmed.
+  registration::Provenance now = ledger.now();
+  now.placement = confirmed->placement;
+  return registration::mismatch_of(*confirmed, now) ? TimeOut::Due : TimeOut::Confirmed;
+}
+
+void Operation::Parts::apply(const ConfirmTimeOut& time_out_of) {
+  if (time_out() != TimeOut::Due) return;
+  confirmed = ledger.now();
+  confirmed_plan = plan;
+  note(JournalKind::TimeOutConfirmed, in_words(*source, ledger.now(), plan, time_out_of.patient_was_shown));
+}
+
+// Once, and before the first source: what is known of this operation by then is its plan.
+void Operation::Parts::apply(const ResumeOperation& resume) {
+  if (source != nullptr || resumed != nullptr) return;
+  resumed = std::make_shared<const ResumeOperation>(resume);
+  depth_stop_mm = resume.depth_stop_mm;
+  ledger.bring_back(resume.of, resume.touches_mm, resume.control_point_mm);
+  if (resume.plan && resume.plan != plan) {
+    // The one that guided then guides on; the case's, which is another one by now, waits to be taken over.
+    offered = plan;
+    resumed_plan_waits = true;
+    set_plan(resume.plan);
+  }
+  if (resume.registration) apply(GiveRegistration{*resume.registration, resume.registration_of, true});
+  changed = true;
+}
+
+}  // namespace arthronaut::operation

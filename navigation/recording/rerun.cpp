@@ -1,0 +1,224 @@
+#include "navigation/recording/rerun.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "navigation/recording/session_files.h"
+
+namespace arthronaut::recording {
+
+namespace {
+
+pipeline::FrameResult result_of(const RecordedFrame& recorded, const pipeline::PipelineOptions& options) {
+  pipeline::FrameResult result;
+  result.frame_index = recorded.index;
+  result.timestamp_ns = recorded.timestamp_ns;
+  result.lens = recorded.lens;
+  result.intrinsics_are_known = recorded.intrinsics_are_known;
+  result.is_frozen = recorded.is_frozen;
+  const auto pose_of = [&](int marker_id) {
+    geometry::TrackedPose pose;
+    pose.timestamp_ns = recorded.timestamp_ns;
+    for (const strokes::PoseRow& row : recorded.poses) {
+      if (row.marker_id != marker_id) continue;
+      pose.is_valid = !recorded.is_frozen;
+      pose.target_from_source = row.camera_from_marker;
+    }
+    return pose;
+  };
+  if (const auto* world = options.tools.find_world_marker(options.bone))
+    result.camera_from_world = pose_of(world->marker_id);
+  const geometry::TrackedPose world_from_camera = geometry::inverse(result.camera_from_world);
+  for (const tools::Tool& tool : options.tools.tools)
+    result.tools.push_back({tool.marker_id, geometry::compose(world_from_camera, pose_of(tool.marker_id))});
+  result.tip_is_valid = recorded.tip_is_valid;
+  result.tip_in_world_mm = recorded.tip_in_world_mm;
+  for (std::size_t i = 0; i < result.tools.size(); ++i) {
+    const tools::Tool& tool = options.tools.tools[i];
+    const auto shaft = tools::shaft_direction(tool);
+    if (recorded.tip_is_valid && tool.name == options.probe_name && shaft)
+      result.shaft_in_world = result.tools[i].world_from_tool.target_from_source.rotate(*shaft);
+  }
+  result.guidance = recorded.guidance;
+  return result;
+}
+
+operation::Command command_of(const RecordedSession& session, const SessionEvent& event) {
+  return operation::command_from_text(event.text, database_file(session.folder()).string());
+}
+
+bool is_registration(const SessionEvent& event) {
+  return event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent;
+}
+
+}  // namespace
+
+Rerun::Rerun(const operation::OperationSetup& setup, Registrations registrations,
+             const operation::SurfaceIndexPtr& bone)
+    : registrations_(registrations), operation_(setup) {
+  if (registrations != Registrations::FoundAgain) return;
+  work_.emplace([&] { return bone; }, operation::work_options(setup));
+  outcomes_[0] = work_->outcome();
+}
+
+void Rerun::start(const RecordedSession& session) {
+  session_ = &session;
+  pipeline_ = session.pipeline_options();
+  next_event_ = 0;
+  looks_.clear();
+  const SessionHeader& header = session.header();
+  has_journal_ = !header.source_kind.empty();
+  play_before_source();
+  operation::SourceSetup source;
+  source.kind = sources::source_kind_from_text(header.source_kind).value_or(sources::SourceKind::Recording);
+  source.draws = header.probe_drew_at_start;
+  source.title = header.source;
+  source.pipeline = pipeline_;
+  operation_.start_source(source);
+  pass_on();
+}
+
+void Rerun::play_before(std::int64_t frame) {
+  const auto& events = session_->events();
+  for (; next_event_ < events.size() && events[next_event_].after_frame < frame; ++next_event_)
+    play(events[next_event_]);
+}
+
+void Rerun::play_rest() {
+  for (; next_event_ < session_->events().size(); ++next_event_) play(session_->events()[next_event_]);
+  operation_.end_source();
+  pass_on();
+}
+
+operation::OperationStatePtr Rerun::process(const camera::Frame& picture) {
+  operation_.process(picture);
+  const operation::OperationStatePtr state = operation_.state();
+  if (auto request = operation_.take_look_request())
+    looks_[picture.index] = look_work_.look(std::move(*request), picture);
+  pass_on();
+  return state;
+}
+
+operation::OperationStatePtr Rerun::process(const RecordedFrame& recorded) {
+  operation_.process_recorded(result_of(recorded, pipeline_));
+  const operation::OperationStatePtr state = operation_.state();
+  pass_on();
+  return state;
+}
+
+void Rerun::run(const RecordedSession& session) {
+  start(session);
+  for (const RecordedFrame& frame : session.frames()) {
+    play_before(frame.index);
+    operation_.process_recorded(result_of(frame, pipeline_));
+    pass_on();
+  }
+  play_rest();
+}
+
+// What was given before any source ran, where the record says so.
+void Rerun::play_before_source() {
+  const auto& events = session_->events();
+  const auto started = std::find_if(events.begin(), events.end(), [](const SessionEvent& event) {
+    return event.kind == kSourceStartedEvent;
+  });
+  if (started == events.end()) return;
+  while (events.begin() + static_cast<std::ptrdiff_t>(next_event_) != started) play(events[next_event_++]);
+}
+
+void Rerun::play(const SessionEvent& event) {
+  if (event.kind == kCommandEvent) {
+    play_command(command_of(*session_, event));
+  } else if (event.kind == kOutcomeEvent) {
+    const auto outcome = outcomes_.find(std::stoull(event.text));
+    if (outcome != outcomes_.end()) operation_.take_outcome(outcome->second);
+  } else if (event.kind == kLookEvent) {
+    const auto look = looks_.find(std::stoll(event.text));
+    if (look != looks_.end()) operation_.take_look(look->second);
+  } else if (event.kind == kSourceEndedEvent) {
+    operation_.end_source();
+  } else if (!has_journal_ && event.kind == kPlanEvent) {
+    const RecordedSession::PlanChange change = session_->plan_of(event);
+    operation::OfferPlan offer;
+    if (change.plan) offer.plan = {*change.plan, change.planned_length_mm};
+    operation_.apply(offer);
+    operation_.apply(operation::TakePlanOver{});
+  } else if (is_registration(event) && (!has_journal_ || registrations_ == Registrations::AsRecorded)) {
+    play_registration(event);
+  }
+  pass_on();
+}
+
+// Which of the registrations is in force says the record itself, where they are taken from it.
+void Rerun::play_command(const operation::Command& command) {
+  const bool is_of_registrations = std::holds_alternative<operation::GiveRegistration>(command) ||
+                                   std::holds_alternative<operation::ChooseRegistration>(command) ||
+                                   std::holds_alternative<operation::RegisterStrokes>(command);
+  if (!is_of_registrations || registrations_ != Registrations::AsRecorded) operation_.apply(command);
+}
+
+void Rerun::play_registration(const SessionEvent& event) {
+  const registration::RegistrationSummary registration = session_->registration_of(event);
+  operation::SourceSetup source;
+  source.kind = sources::SourceKind::Recording;
+  source.pipeline = pipeline_;
+  const bool is_as_recorded = registrations_ == Registrations::AsRecorded;
+  // What does not guide anyway is left as it is: one that waits for a touch is void here as it was there.
+  const bool guides = operation_.state()->registration->in_force.standing == operation::Standing::Stands;
+  if (is_as_recorded && !registration.reliable && !guides) return;
+  operation_.apply(operation::GiveRegistration{
+      registration,
+      is_as_recorded ? operation_.now() : operation::provenance_of(operation_.setup(), source)});
+}
+
+void Rerun::pass_on() {
+  (void)operation_.take_journal();
+  for (const operation::RegistrationRequest& request : operation_.take_requests())
+    if (work_ && work_->work_in(request)) outcomes_[work_->outcome()->request_count] = work_->outcome();
+}
+
+std::vector<RecordedSession> sessions_before(const RecordedSession& session,
+                                             const std::function<void(const std::string& id)>& missing) {
+  std::vector<RecordedSession> before;
+  const auto goes_on_from = [](const RecordedSession& from) {
+    return resumed_by(from) ? std::string() : from.header().continues;
+  };
+  std::string id = goes_on_from(session);
+  while (!id.empty()) {
+    const std::filesystem::path folder = session.folder().parent_path() / id;
+    if (!std::filesystem::exists(folder)) {
+      missing(id);
+      break;
+    }
+    before.emplace_back(folder);
+    id = goes_on_from(before.back());
+  }
+  std::reverse(before.begin(), before.end());
+  return before;
+}
+
+operation::OperationSetup setup_of(const RecordedSession& first) {
+  operation::OperationSetup setup;
+  setup.bone = first.header().bone;
+  setup.mesh_sha256 = first.header().mesh_sha256;
+  if (first.header().registers_after_mm > 0) setup.registers_after_mm = first.header().registers_after_mm;
+  for (const SessionEvent& event : first.events()) {
+    if (event.kind != kPlanEvent) continue;
+    const RecordedSession::PlanChange change = first.plan_of(event);
+    if (change.plan) setup.plan = {*change.plan, change.planned_length_mm};
+    break;
+  }
+  return setup;
+}
+
+std::optional<operation::ResumeOperation> resumed_by(const RecordedSession& session) {
+  for (const SessionEvent& event : session.events()) {
+    if (event.kind == kSourceStartedEvent) break;
+    if (event.kind != kCommandEvent) continue;
+    operation::Command command = command_of(session, event);
+    if (auto* resume = std::get_if<operation::ResumeOperation>(&command)) return std::move(*resume);
+  }
+  return std::nullopt;
+}
+
+}  // namespace arthronaut::recording

@@ -1,0 +1,184 @@
+#include "navigation/recording/resumable.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "navigation/recording/rerun.h"
+#include "navigation/recording/session_files.h"
+#include "navigation/registration/registration_file.h"
+#include "planning/cases/case.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::recording {
+
+namespace {
+
+// The registration that guided at the end, as it was found, and whether it may be brought back.
+class LastRegistration {
+ public:
+  void follow(const RecordedSession& session) {
+    for (const SessionEvent& event : session.events()) follow(session, event);
+  }
+  [[nodiscard]] const std::optional<registration::RegistrationSummary>& registration() const { return good_; }
+  [[nodiscard]] const registration::Provenance& of() const { return of_; }
+  [[nodiscard]] bool was_verified() const { return was_verified_; }
+  [[nodiscard]] const std::string& alarm() const { return alarm_; }
+  [[nodiscard]] std::string refusal() const {
+    if (!alarm_.empty()) return "it was in doubt at the end: " + alarm_;
+    if (!doubt_.empty()) return doubt_;
+    return good_ ? "" : "nothing was registered";
+  }
+
+ private:
+  void follow(const RecordedSession& session, const SessionEvent& event) {
+    if (event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent)
+      take(registration::read_registration_record(session.folder() / event.text));
+    // What is void is of something else: what it is of decides again, and one touch, when it is brought back.
+    if (event.kind == kVoidEvent) doubt_.clear();
+    if (event.kind == kAlarmEvent && !event.text.empty()) alarm_ = event.text;
+    if (event.kind == kVerifiedEvent) was_verified_ = true;
+    if (event.kind == kCommandEvent)
+      take(operation::command_from_text(event.text, session.folder().string()));
+  }
+  void take(const registration::RegistrationRecord& record) {
+    if (!record.registration.has_pose) {  // the marker was placed anew
+      *this = {};
+      return;
+    }
+    // An alarm is over when what guided guides again, not when something else takes its place.
+    if (record.registration.reliable) return take(record.registration, record.of.value_or(of_));
+    doubt_ = "it is not reliable";
+    for (const std::string& reason : record.registration.reasons) doubt_ += "; " + reason;
+  }
+  void take(const operation::Command& command) {
+    const auto* given = std::get_if<operation::GiveRegistration>(&command);
+    if (given != nullptr && given->registration.reliable) take(given->registration, given->of);
+    const auto* resume = std::get_if<operation::ResumeOperation>(&command);
+    if (resume != nullptr && resume->registration) take(*resume->registration, resume->registration_of);
+  }
+  void take(const registration::RegistrationSummary& registration, const registration::Provenance& of) {
+    *this = {};
+    good_ = registration;
+    of_ = of;
+  }
+
+  std::optional<registration::RegistrationSummary> good_;
+  registration::Provenance of_;
+  std::string alarm_, doubt_;
+  bool was_verified_ = false;
+};
+
+std::chrono::system_clock::time_point last_written(const std::filesystem::path& session_folder) {
+  std::filesystem::file_time_type newest = std::filesystem::last_write_time(database_file(session_folder));
+  std::error_code none;  // the part that is not folded in yet
+  const auto waiting =
+      std::filesystem::last_write_time(database_file(session_folder).string() + "-wal", none);
+  if (!none) newest = std::max(newest, waiting);
+  return std::chrono::time_point_cast<std::chrono::system_clock::duration>(
+      std::chrono::file_clock::to_sys(newest));
+}
+
+bool has_event(const RecordedSession& session, std::string_view kind) {
+  return std::any_of(session.events().begin(), session.events().end(),
+                     [&](const SessionEvent& event) { return event.kind == kind; });
+}
+
+// What was drawn before and what was drawn since, numbered on; the newest when it is too much for a screen.
+strokes::Curves joined(const operation::ResumeOperation* before, const strokes::Curves& since) {
+  strokes::Curves all = before != nullptr ? before->drawn : strokes::Curves();
+  const int first = all.empty() ? 0 : all.back().curve + 1;
+  for (const strokes::CurvePoint& point : since) {
+    all.push_back({point.curve + first, std::nullopt, point.position_mm});
+  }
+  if (all.size() > operation::StrokeBook::kMostTraced)
+    all.erase(all.begin(), all.end() - static_cast<std::ptrdiff_t>(operation::StrokeBook::kMostTraced));
+  return all;
+}
+
+int stroke_count_of(const strokes::Curves& curves) {
+  int count = 0;
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    count += i == 0 || curves[i].curve != curves[i - 1].curve ? 1 : 0;
+  return count;
+}
+
+std::optional<Resumable> resumable_from(const RecordedSession& newest) {
+  const std::vector<RecordedSession> before = sessions_before(newest, [&](const std::string& id) {
+    throw IoError(newest.folder().parent_path() / id, "is not there any more");
+  });
+  Rerun rerun(setup_of(before.empty() ? newest : before.front()), Registrations::AsRecorded, nullptr);
+  LastRegistration last;
+  for (const RecordedSession& session : before) {
+    rerun.run(session);
+    last.follow(session);
+  }
+  rerun.run(newest);
+  last.follow(newest);
+
+  const operation::OperationStatePtr state = rerun.state();
+  const operation::Touches& touches = state->registration->touches;
+  Resumable found;
+  operation::ResumeOperation& resume = found.operation;
+  resume.session = newest.header().id;
+  resume.of = rerun.operation().now();
+  resume.of.placement = 0;  // of that operation; nobody counts it in this one
+  resume.plan = state->plan;
+  resume.depth_stop_mm = state->depth_stop_mm;
+  found.refusal = last.refusal();
+  if (found.refusal.empty()) {
+    resume.registration = last.registration();
+    resume.registration_of = last.of();
+    resume.registration_of.placement = 0;
+    found.was_verified = last.was_verified();
+  }
+  const strokes::Curves strokes = rerun.operation().strokes_in_use();
+  found.stroke_length_mm = strokes::length_mm(strokes);
+  // After an alarm nobody knows how the marker sits to what was drawn and touched under it.
+  if (last.alarm().empty()) {
+    resume.drawn = joined(state->resumed.get(), *state->registration->drawn);
+    resume.stroke_count =
+        stroke_count_of(strokes) + (state->resumed != nullptr ? state->resumed->stroke_count : 0);
+    resume.touches_mm = touches.places_mm();
+    resume.control_point_mm = touches.control_point_mm();
+  }
+  const bool has_come_to_something = resume.registration || !last.alarm().empty() ||
+                                     resume.stroke_count > 0 || !resume.touches_mm.empty() ||
+                                     resume.control_point_mm || resume.depth_stop_mm;
+  if (!has_come_to_something) return std::nullopt;
+  found.header = newest.header();
+  found.was_finished = newest.was_finished();
+  found.last_written = last_written(newest.folder());
+  return found;
+}
+
+}  // namespace
+
+std::optional<Resumable> find_resumable(const std::filesystem::path& case_folder, bones::BoneKind bone,
+                                        const std::string& mesh_sha256) {
+  std::vector<std::filesystem::path> folders = cases::session_folders(case_folder);
+  std::reverse(folders.begin(), folders.end());
+  std::vector<std::string> passed_over;
+  for (const std::filesystem::path& folder : folders) {
+    try {  // one broken session must not hide the others for good; that it was passed over is told
+      pipeline::PipelineOptions options;
+      if (read_session_header(folder, options).bone != bone) continue;
+      const RecordedSession session(folder);
+      const SessionHeader& header = session.header();
+      if (session.frames().empty() && header.continues.empty()) continue;
+      const bool was_somebody_there = !header.source_kind.empty() && header.registers_after_mm <= 0;
+      const bool is_same_mesh =
+          header.mesh_sha256.empty() || mesh_sha256.empty() || header.mesh_sha256 == mesh_sha256;
+      if (!was_somebody_there || !is_same_mesh || has_event(session, kDrilledEvent)) return std::nullopt;
+      auto found = resumable_from(session);
+      if (found) found->passed_over = std::move(passed_over);
+      return found;
+    } catch (const InvalidInput& error) {
+      passed_over.emplace_back(error.what());
+    } catch (const IoError& error) {
+      passed_over.emplace_back(error.what());
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace arthronaut::recording

@@ -1,0 +1,39 @@
+// What an operation left behind that was cut off, by a crash or by a window that was closed, or that nobody
+// has finished: what "Resume" offers.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "navigation/operation/command.h"
+#include "navigation/recording/session.h"
+
+namespace arthronaut::recording {
+
+struct Resumable {
+  operation::ResumeOperation operation;  // to be given to a new operation as it is
+  // Why no registration is brought back: "it was in doubt at the end: ...", "nothing was registered". Empty
+  // when one is.
+  std::string refusal;
+  bool was_verified = false;    // the registration, by touches; one touch has to confirm it all the same
+  double stroke_length_mm = 0;  // of the strokes that were drawn
+  SessionHeader header;         // of the newest session of it
+  std::chrono::system_clock::time_point last_written;  // when that was
+  bool was_finished = false;                           // false: it was cut off, as by a crash
+  std::vector<std::string> passed_over;  // newer sessions that cannot be read, with the reason each
+};
+
+// Of the newest session of this bone (by its number, see cases::session_folders) and of those that it goes on
+// from. That session decides, as in find_registration(): what was in doubt at its end brings no older
+// registration back, and after an alarm nothing that rests on the world marker. nullopt: there is none; it is
+// of another mesh (mesh_sha256 as bones::mesh_sha256; empty: not known, matches any); nobody was at its
+// pedal; its tunnel was drilled, so it came to its end; or it had come to nothing. Sessions without a frame
+// say nothing. Reads all of it, seconds after an hour of operation: not for the window's thread. Throws what
+// reading the case's folder throws.
+[[nodiscard]] std::optional<Resumable> find_resumable(const std::filesystem::path& case_folder,
+                                                      bones::BoneKind bone, const std::string& mesh_sha256);
+
+}  // namespace arthronaut::recording

@@ -1,0 +1,198 @@
+// How an operation begins: the time-out before the first guidance, and going on with one that was cut off.
+#include <gtest/gtest.h>
+
+#include "tests/navigation/operation/phantom_operation.h"
+
+namespace arthronaut::operation {
+namespace {
+
+using registration::phantom_bone;
+using sources::SourceKind;
+using test::PhantomOperation;
+
+const experiments::Trial& trial() {
+  static const experiments::Trial trial = phantom_bone().trial(experiments::TrialNoise::Dry, 1);
+  return trial;
+}
+
+GiveRegistration given(PhantomOperation& run, const SourceSetup& source) {
+  return test::true_registration(trial(), provenance_of(run.operation().setup(), source));
+}
+
+guidance::GuidanceState shown(PhantomOperation& run) {
+  run.show_guide(-5);
+  return run.state()->frame.guidance.state;
+}
+
+// A live source guides nothing, verifies nothing by itself and takes nothing for evidence before patient,
+// side, plan, camera, tools and medium were confirmed; that they were is one command and stands in the
+// journal.
+TEST(TimeOut, Hazard20NothingGuidesLiveBeforeItIsConfirmed) {
+  PhantomOperation run;
+  const SourceSetup source = test::scripted_source(SourceKind::Live);
+  run.start_unconfirmed(source);
+  EXPECT_EQ(run.state()->time_out, TimeOut::Due);
+  EXPECT_EQ(run.state()->next_action, NextAction::ConfirmTimeOut);
+  run.apply(given(run, source));
+  ASSERT_EQ(run.in_force().standing, Standing::Stands);
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(shown(run), guidance::GuidanceState::NotConfirmed);
+  EXPECT_EQ(run.state()->next_action, NextAction::ConfirmTimeOut);
+  EXPECT_FALSE(run.state()->drilled.has_evidence);
+  EXPECT_EQ(run.state()->verification, Verification::NotYet);
+  EXPECT_EQ(run.count(JournalKind::TimeOutConfirmed), 0);
+  run.apply(ConfirmTimeOut{true});
+  EXPECT_EQ(run.state()->time_out, TimeOut::Confirmed);
+  EXPECT_EQ(shown(run), guidance::GuidanceState::Valid);
+  ASSERT_EQ(run.count(JournalKind::TimeOutConfirmed), 1);
+  const std::string told = run.last_text(JournalKind::TimeOutConfirmed);
+  EXPECT_EQ(told.find("right femur, patient shown, plan 9.0 mm wide and 30.0 mm long, mesh "), 0U) << told;
+}
+
+// Nobody is drilled in a recording or a simulation: there it is not asked for.
+TEST(TimeOut, IsNotAskedForWhereNobodyIsDrilled) {
+  for (const SourceKind kind : {SourceKind::Recording, SourceKind::Simulation}) {
+    PhantomOperation run;
+    const SourceSetup source = test::scripted_source(kind);
+    run.start_unconfirmed(source);
+    EXPECT_EQ(run.state()->time_out, TimeOut::NotAsked);
+    run.apply(given(run, source));
+    EXPECT_EQ(shown(run), guidance::GuidanceState::Valid);
+  }
+}
+
+// What was confirmed holds for this camera, these tools, this medium, this side's bone and this plan: with
+// anything else it is asked for again. The same camera opened again goes on; so does a plan that was taken
+// over, which is a confirmation of its own, and a marker that was placed anew.
+TEST(TimeOut, HoldsForWhatWasConfirmedAlone) {
+  PhantomOperation run;
+  const SourceSetup source = test::scripted_source(SourceKind::Live);
+  run.start(source);
+  ASSERT_EQ(run.state()->time_out, TimeOut::Confirmed);
+  run.start_unconfirmed(source);
+  EXPECT_EQ(run.state()->time_out, TimeOut::Confirmed);
+  run.apply(MarkerPlacedAnew{});
+  EXPECT_EQ(run.state()->time_out, TimeOut::Confirmed);
+  PlannedTunnel edited = test::phantom_plan();
+  edited.length_mm += 1;
+  run.apply(OfferPlan{edited});
+  run.apply(TakePlanOver{});
+  EXPECT_EQ(run.state()->time_out, TimeOut::Confirmed);
+  run.operation().end_source();
+  edited.length_mm += 1;
+  run.apply(OfferPlan{edited});  // taken at once: no source runs
+  run.start_unconfirmed(source);
+  EXPECT_EQ(run.state()->time_out, TimeOut::Due);
+  run.apply(ConfirmTimeOut{});
+  for (const int what : {0, 1, 2}) {
+    SourceSetup other = source;
+    if (what == 0) other.pipeline.calibration.focal_px += 1;
+    if (what == 1) other.pipeline.refractive_index = 1.3345;
+    if (what == 2) other.pipeline.tools.tools.front().marker_id += 20;
+    run.start_unconfirmed(other);
+    EXPECT_EQ(run.state()->time_out, TimeOut::Due) << what;
+  }
+}
+
+ResumeOperation left_behind(PhantomOperation& run, const SourceSetup& source) {
+  ResumeOperation resume;
+  resume.session = "0003";
+  resume.of = resume.registration_of = provenance_of(run.operation().setup(), source);
+  resume.registration = given(run, source).registration;
+  resume.drawn = trial().curves;
+  resume.stroke_count = 7;
+  resume.touches_mm = {test::on_bone(trial(), 0), test::on_bone(trial(), 5)};
+  resume.control_point_mm = test::on_bone(trial(), 2);
+  resume.plan = test::phantom_plan();
+  resume.depth_stop_mm = 21.5;
+  return resume;
+}
+
+// All of it is there again; the registration guides nothing until one touch, and what was drawn and touched
+// says nothing of the marker as it sits now.
+TEST(Resumed, Hazard12BringsAllBackAndGuidesAfterOneTouch) {
+  PhantomOperation run;
+  const SourceSetup source = test::scripted_source();
+  run.apply(left_behind(run, source));
+  ASSERT_NE(run.state()->resumed, nullptr);
+  EXPECT_EQ(run.state()->resumed->session, "0003");
+  EXPECT_EQ(run.state()->next_action, NextAction::StartSource);
+  run.start(source);
+  EXPECT_EQ(run.in_force().standing, Standing::Void);
+  EXPECT_EQ(*run.in_force().mismatch, registration::Mismatch::Placement);
+  EXPECT_FALSE(run.state()->draws) << "a touch comes first";
+  EXPECT_EQ(run.state()->next_action, NextAction::ConfirmByTouch);
+  EXPECT_EQ(run.state()->depth_stop_mm, 21.5);
+  EXPECT_EQ(run.state()->registration->touches.count(), 2U);
+  EXPECT_TRUE(run.state()->registration->touches.has_control_point());
+  EXPECT_EQ(run.state()->registration->point_count, 0U) << "no stroke of before is used";
+  EXPECT_NE(shown(run), guidance::GuidanceState::Valid);
+  run.touch(test::on_bone(trial(), 0, 2));  // off the bone: confirms nothing
+  EXPECT_EQ(run.in_force().standing, Standing::Void);
+  run.touch(test::on_bone(trial(), 0));
+  EXPECT_EQ(run.in_force().standing, Standing::Stands);
+  EXPECT_FALSE(run.in_force().is_verified) << "touches of before verify nothing now";
+  EXPECT_EQ(shown(run), guidance::GuidanceState::Valid);
+}
+
+// The control point of before tells a marker that was bumped meanwhile.
+TEST(Resumed, TheControlPointStillTellsABumpedMarker) {
+  PhantomOperation run;
+  const SourceSetup source = test::scripted_source();
+  run.apply(left_behind(run, source));
+  run.start(source);
+  run.touch(test::on_bone(trial(), 0));
+  ASSERT_EQ(run.in_force().standing, Standing::Stands);
+  const Eigen::Vector3d bumped_mm(0, 0, 3);
+  run.touch(test::on_bone(trial(), 2) + bumped_mm, TouchControlPoint{});
+  run.touch(test::on_bone(trial(), 2) + bumped_mm, TouchControlPoint{});
+  EXPECT_EQ(run.in_force().standing, Standing::Alarm);
+}
+
+// What a simulation left behind is void for good in anything real, and its touches are of no real bone.
+TEST(Resumed, OfASimulationIsVoidForGoodInALiveSource) {
+  PhantomOperation run;
+  run.apply(left_behind(run, test::scripted_source(SourceKind::Simulation)));
+  run.start(test::scripted_source(SourceKind::Live));
+  EXPECT_EQ(run.in_force().standing, Standing::Void);
+  EXPECT_FALSE(run.in_force().can_be_confirmed);
+  run.touch(test::on_bone(trial(), 0));
+  EXPECT_EQ(run.in_force().standing, Standing::Void);
+  EXPECT_FALSE(run.state()->registration->touches.has_control_point());
+}
+
+// The plan that guided before guides again; the case's, edited since, waits to be taken over.
+TEST(Resumed, TheCasesPlanWaitsWhenItIsAnotherOneByNow) {
+  PhantomOperation run;
+  const SourceSetup source = test::scripted_source();
+  ResumeOperation resume = left_behind(run, source);
+  resume.plan->tunnel.entry_mm.x() += 1;
+  run.apply(resume);
+  EXPECT_EQ(run.state()->plan, resume.plan);
+  run.start(source);
+  EXPECT_EQ(run.state()->plan, resume.plan);
+  EXPECT_TRUE(run.state()->plan_was_edited);
+  EXPECT_EQ(run.state()->next_action, NextAction::TakePlanOver);
+  run.apply(TakePlanOver{});
+  EXPECT_EQ(run.state()->plan, test::phantom_plan());
+}
+
+// Once, and at the beginning: nothing of another operation comes into one that goes on.
+TEST(Resumed, TakesEffectOnceAndBeforeTheFirstSourceAlone) {
+  PhantomOperation run;
+  const SourceSetup source = test::scripted_source();
+  run.start(source);
+  run.apply(left_behind(run, source));
+  EXPECT_EQ(run.state()->resumed, nullptr);
+  EXPECT_EQ(run.in_force().standing, Standing::None);
+  EXPECT_EQ(run.state()->registration->touches.count(), 0U);
+  PhantomOperation twice;
+  twice.apply(left_behind(twice, source));
+  ResumeOperation again = left_behind(twice, source);
+  again.session = "0004";
+  twice.apply(again);
+  EXPECT_EQ(twice.state()->resumed->session, "0003");
+  EXPECT_EQ(twice.state()->registration->history->size(), 1U);
+}
+
+}  // namespace
+}  // namespace arthronaut::operation
