@@ -141,6 +141,11 @@ void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const Naviga
     block("Drill depth", g.drill->depth_mm, "", "mm " + widgets::plus_minus(g.drill->sigma_mm),
           widgets::Severity::Quiet);
     block("Remaining", g.drill->remaining_mm, "", "mm", guidance_severity::severity_of_drill(*g.drill));
+  } else if (const auto& stop_mm = screen.live->operation->depth_stop_mm) {
+    // The surgeon's reading, not a measurement: nothing is reckoned from it, least of all what remains.
+    const widgets::Rect row = rest.cut_top((area.height - ui.theme.px(36)) / 4);
+    widgets::number_block(ui, row, "Depth stop", widgets::fixed(*stop_mm, 1), "mm, as read",
+                          widgets::Severity::Quiet);
   }
 }
 

@@ -46,20 +46,20 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                {},
                [this] { start_video(); },
                {"start the video instead", running}});
-  actions.add(
-      {"navigate.stop",
-       "Stop",
-       "Ends the source",
-       GLFW_KEY_ESCAPE,
-       0,
-       false,
-       [this] { return live_->phase == theatre::LiveState::Phase::Running || !choices_.cameras.empty(); },
-       {},
-       [this] {
-         if (choices_.cameras.empty()) end_source();
-         choices_.cameras.clear();
-       },
-       {"stop", [this] { return choices_.cameras.empty(); }}});
+  actions.add({"navigate.stop",
+               "Stop",
+               "Ends the source",
+               GLFW_KEY_ESCAPE,
+               0,
+               false,
+               [this] { return is_running() || !choices_.cameras.empty() || left_behind() != nullptr; },
+               {},
+               [this] {
+                 if (!choices_.cameras.empty()) return choices_.cameras.clear();
+                 if (left_behind() != nullptr) return decline_resume();
+                 end_source();
+               },
+               {"stop", [this] { return is_running() && choices_.cameras.empty(); }}});
   actions.add({"navigate.camera",
                "Camera",
                "Navigates with a camera that is connected",
@@ -142,6 +142,24 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                [this] { return choices_.saline; },
                [this] { choices_.saline = !choices_.saline; }});
   add_registration_actions(actions);
+  add_answer_actions(actions);
+}
+
+void NavigateView::add_answer_actions(widgets::Actions& actions) {
+  actions.add({"navigate.depth_stop", "Depth stop",
+               "Keeps what the drill's depth stop reads: type the millimetres, then Enter", GLFW_KEY_E, 0,
+               false, [this] { return is_running(); }, [this] { return depth_.is_open(); },
+               [this] { depth_.open(); }});
+  actions.add({"navigate.marker_anew",
+               "Marker anew",
+               "The world marker was taken off or placed elsewhere: all that rests on it is void",
+               GLFW_KEY_N,
+               0,
+               false,
+               [this] { return is_running() || !registration().history->empty(); },
+               {},
+               [this] { ask(operation::MarkerPlacedAnew{}); },
+               {"say that the marker was placed anew"}});
 }
 
 void NavigateView::add_registration_actions(widgets::Actions& actions) {
@@ -266,8 +284,9 @@ void NavigateView::draw_controls(const widgets::Ui& ui, const widgets::Rect& are
   };
   row(area.y, {"navigate.next", "navigate.scratch", "navigate.drill", "navigate.video", "navigate.camera",
                "navigate.medium", "navigate.stop"});
-  row(area.y + height + gap, {"navigate.digitise", "navigate.register", "navigate.panel", "navigate.overlay",
-                              "navigate.undistort", "navigate.bone", "navigate.record"});
+  row(area.y + height + gap,
+      {"navigate.digitise", "navigate.register", "navigate.panel", "navigate.overlay", "navigate.undistort",
+       "navigate.bone", "navigate.depth_stop", "navigate.marker_anew", "navigate.record"});
 }
 
 }  // namespace arthronaut::navigate

@@ -24,6 +24,7 @@ struct NavigateScreen {
   int selected_stroke = -1;
   bool undistorts = false;     // shows the picture without the lens' distortion
   std::string next_step = "";  // "register what was touched"
+  std::string patient = "";    // in words; empty: not known
 
   // Of the newest picture; preconditions: display.has_picture.
   [[nodiscard]] const pipeline::FrameResult& frame() const { return live->operation->frame; }

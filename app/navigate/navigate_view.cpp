@@ -9,7 +9,9 @@
 #include "app/scene/scene_camera.h"
 #include "navigation/camera/medium.h"
 #include "navigation/sources/source_files.h"
+#include "planning/cases/identity.h"
 #include "planning/geometry/error.h"
+#include "planning/log/log.h"
 
 namespace arthronaut::navigate {
 
@@ -24,7 +26,7 @@ constexpr double kGuideAway_s = 2;
 
 NavigateView::NavigateView(std::function<void()> make_current, std::function<void()> wake,
                            const sources::DeviceTurns& turns)
-    : turns_(turns), scene_(std::move(make_current)), bones_(std::move(wake)) {}
+    : turns_(turns), scene_(std::move(make_current)), bones_(wake), resume_(wake) {}
 NavigateView::~NavigateView() = default;
 
 mode::ModeTitle NavigateView::title() const {
@@ -48,6 +50,14 @@ void NavigateView::case_opened(const mode::OpenCase& opened) {
   notice_.clear();
   model_ = opened.model;
   case_folder_ = opened.folder;
+  depth_ = {};
+  resume_.open(*opened.model, opened.folder, !opened.read_only.empty());
+  patient_.clear();
+  try {  // who it is is never guessed: what cannot be read is said
+    if (const auto identity = cases::load_identity(case_folder_)) patient_ = identity->in_words();
+  } catch (const std::runtime_error& error) {
+    notice_ = error.what();
+  }
   if (!model_->has_bone(choices_.bone)) choices_.bone = bones::BoneKind::Tibia;
   look_along_plan();
 }
@@ -66,6 +76,7 @@ void NavigateView::start(theatre::TheatreSource source) {
   choices_.guidance_seen_s = -1e9;
   kind_ = source.setup.kind;
   part_.reset();
+  resume_.answer(choices_.bone);  // it begins: afresh, unless it was resumed
   bones_.operation(choices_.bone).start(std::move(source));
   read_live();
   choices_.overlay_shown_at_s = theatre::LiveOperation::now_s();
@@ -164,8 +175,34 @@ void NavigateView::start_same_kind() {
   }
 }
 
-std::string NavigateView::next_step() const {
+const LeftBehind* NavigateView::left_behind() {
+  const bool has_begun = live_->phase != Phase::NoSource || live_->operation->resumed != nullptr;
+  return has_begun ? nullptr : resume_.of(choices_.bone);
+}
+
+// One step. What is brought back guides nothing until a touch; the source is the next step, of the same kind.
+void NavigateView::resume() {
+  const LeftBehind* const left = left_behind();
+  if (left == nullptr) return;
+  kind_ = sources::source_kind_from_text(left->found.header.source_kind);
+  ask(left->found.operation);
+  notice_ = left->found.operation.registration
+                ? "Resumed: what guided before guides again after one touch on the bone"
+                : "Resumed without a registration: " + left->found.refusal;
+  log::info("resumed: session " + left->found.operation.session);
+  resume_.answer(choices_.bone);
+}
+
+void NavigateView::decline_resume() {
+  if (const LeftBehind* const left = left_behind())
+    log::info("not resumed: session " + left->found.operation.session);
+  resume_.answer(choices_.bone);
+}
+
+std::string NavigateView::next_step() {
   if (model_ == nullptr) return "open a case";
+  if (resume_.is_looking()) return "wait: the case's last operation is looked for";
+  if (left_behind() != nullptr) return "resume the operation that was left";
   if (!choices_.cameras.empty()) return "open " + choices_.cameras[choices_.camera].name;
   const NextAction action = live_->operation->next_action;
   if (!model_->tunnel(choices_.bone)) return words_of(NextAction::PlanTunnel);
@@ -183,11 +220,15 @@ std::string NavigateView::next_step() const {
 void NavigateView::take_next_step() {
   if (!choices_.cameras.empty())
     return start_camera(sources::ConnectedCamera(choices_.cameras[choices_.camera]));
+  if (resume_.is_looking()) return;
+  if (left_behind() != nullptr) return resume();
   if (live_->phase == Phase::Starting || !model_->tunnel(choices_.bone)) return;
   switch (live_->operation->next_action) {
     case NextAction::StartSource:
     case NextAction::PlanTunnel:  // of an operation that was not told yet of the plan that is there
       return start_same_kind();
+    case NextAction::ConfirmTimeOut:
+      return ask(operation::ConfirmTimeOut{!patient_.empty()});
     case NextAction::Draw:
     case NextAction::RegisterAnew:
       return ask(operation::Draw{true});
@@ -257,7 +298,7 @@ NavigateLayout NavigateView::layout(double now_s) const {
   return choices_.layout.value_or(layout_of(*live_, now_s - choices_.guidance_seen_s));
 }
 
-NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double now_s) const {
+NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double now_s) {
   NavigateScreen screen{live_.get(), display, words_, choices_.bone};
   if (model_ != nullptr && model_->has_bone(choices_.bone)) {
     // The one that guides: an edit that was not taken over is drawn in Plan alone.
@@ -273,6 +314,7 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
   screen.selected_stroke = choices_.stroke;
   screen.undistorts = choices_.undistorts;
   screen.next_step = next_step();
+  screen.patient = patient_;
   return screen;
 }
 
@@ -300,7 +342,7 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   const widgets::Rect controls = rest.cut_bottom(ui.theme.px(100), gap);
   const widgets::Rect video = rest.cut_left(std::min(rest.height * 1.0F, rest.width * 0.5F), gap);
   draw_video(ui, video, screen, video_);
-  if (!choices_.cameras.empty()) draw_cameras(ui, video);
+  draw_questions(ui, video);
   if (screen.layout == NavigateLayout::Register) {
     draw_registration(ui, rest.cut_right(rest.width * 0.5F, gap), screen);
     const widgets::Rect tracking = rest.cut_bottom(rest.height * 0.47F, gap);
@@ -315,54 +357,6 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   }
   draw_controls(ui, controls);
   note_states(ui, screen);
-}
-
-void NavigateView::note_states(const widgets::Ui& ui, const NavigateScreen& screen) const {
-  const operation::Standing standing = registration().in_force.standing;
-  ui.log.note_state("guidance", screen.display.guidance_is_valid ? "valid" : screen.display.headline);
-  ui.log.note_state("detail", screen.display.detail);
-  ui.log.note_state("overlay", screen.overlay_opacity > 0.99F ? "full"
-                               : screen.overlay_opacity > 0   ? "faded"
-                                                              : "off");
-  ui.log.note_state("view", choices_.undistorts ? "undistorted" : "as it came");
-  ui.log.note_state("next", screen.next_step);
-  ui.log.note_state("calibration", screen.has_source() ? screen.live->operation->source->calibration : "");
-  ui.log.note_state("notice", notice_);
-  ui.log.note_state("layout", screen.layout == NavigateLayout::Register ? "register" : "guide");
-  ui.log.note_state("registration", standing == operation::Standing::None     ? "none"
-                                    : standing == operation::Standing::Stands ? "reliable"
-                                                                              : "unreliable");
-  ui.log.note_state("standing", to_text(standing));
-  ui.log.note_state("step", to_text(live_->operation->step));
-  ui.log.note_state("plan", live_->operation->plan_was_edited ? "edited" : "in force");
-  ui.log.note_state("registrations", std::to_string(registration().history->size()));
-  ui.log.note_state("strokes", std::to_string(words_.strokes.size()));
-  ui.log.note_state("recording", live_->keeps_video ? "on" : "off");
-  ui.log.note_state("journal", live_->record_trouble.empty() ? live_->session_folder.filename().string()
-                                                             : live_->record_trouble);
-  ui.log.note_state("picture", !screen.display.has_picture ? "none"
-                               : screen.display.is_live    ? "live"
-                                                           : "old");
-}
-
-void NavigateView::draw_cameras(const widgets::Ui& ui, const widgets::Rect& area) const {
-  const float row = ui.theme.px(56);
-  widgets::Rect box = widgets::Rect{area.x, area.center().y, area.width, 0}.inset(0);
-  box.height = row * (static_cast<float>(choices_.cameras.size()) + 1.5F);
-  box.y = area.center().y - box.height / 2;
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw.AddRectFilled(box.min(), box.max(), IM_COL32(10, 12, 15, 240));
-  widgets::text_centered(ui, box.cut_top(row), ui.theme.title, widgets::kText, "Which camera?");
-  for (std::size_t i = 0; i < choices_.cameras.size(); ++i) {
-    const widgets::Rect line = box.cut_top(row);
-    const bool is_selected = i == choices_.camera;
-    if (is_selected) draw.AddRectFilled(line.min(), line.max(), IM_COL32(28, 74, 104, 255));
-    widgets::text_centered(
-        ui, line, ui.theme.strong, is_selected ? widgets::kText : widgets::kQuietText,
-        choices_.cameras[i].name + "  (/dev/video" + std::to_string(choices_.cameras[i].index) + ")");
-  }
-  widgets::text_centered(ui, box, ui.theme.body, widgets::kQuietText,
-                         "K: the next one    Space: open it    Esc: none");
 }
 
 }  // namespace arthronaut::navigate

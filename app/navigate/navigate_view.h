@@ -8,6 +8,7 @@
 
 #include "app/case/plan_model.h"
 #include "app/mode/mode.h"
+#include "app/navigate/beginning_panel.h"
 #include "app/navigate/navigate_panels.h"
 #include "app/navigate/navigate_scene.h"
 #include "app/navigate/navigate_setup.h"
@@ -35,6 +36,7 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] bool has_running_work() const override { return is_running(); }
   [[nodiscard]] std::optional<sources::SourceKind> source_kind() const override;
   [[nodiscard]] std::string notice() const override { return notice_; }
+  [[nodiscard]] bool awaits_text() const override { return depth_.wants_focus(); }
 
  private:
   void start(theatre::TheatreSource source);
@@ -46,13 +48,18 @@ class NavigateView : public mode::Mode {
   // The same kind of source again: nothing but a key of its own ever changes the kind.
   void start_same_kind();
   void end_source();
+  // What is on offer now; null: nothing is, or something was begun.
+  [[nodiscard]] const LeftBehind* left_behind();
+  void resume();
+  void decline_resume();
   void take_next_step();
   void ask(operation::Command command);
   void take_touch(bool is_control_point);
   void add_registration_actions(widgets::Actions& actions);
+  void add_answer_actions(widgets::Actions& actions);
   void cycle_overlay();
   void look_along_plan();
-  [[nodiscard]] std::string next_step() const;
+  [[nodiscard]] std::string next_step();
   [[nodiscard]] bool can_simulate() const;
   [[nodiscard]] bool is_running() const;
   [[nodiscard]] const operation::RegistrationState& registration() const {
@@ -60,10 +67,12 @@ class NavigateView : public mode::Mode {
   }
   void read_live();
   [[nodiscard]] NavigateLayout layout(double now_s) const;
-  [[nodiscard]] NavigateScreen screen_of(const NavigateDisplay& display, double now_s) const;
-  void note_states(const widgets::Ui& ui, const NavigateScreen& screen) const;
+  [[nodiscard]] NavigateScreen screen_of(const NavigateDisplay& display, double now_s);
+  void note_states(const widgets::Ui& ui, const NavigateScreen& screen);
   [[nodiscard]] float overlay_opacity(double now_s) const;
   void draw_controls(const widgets::Ui& ui, const widgets::Rect& area);
+  // What asks something: an operation that was left, the cameras, the time-out, the depth stop.
+  void draw_questions(const widgets::Ui& ui, const widgets::Rect& video);
   void draw_cameras(const widgets::Ui& ui, const widgets::Rect& area) const;
 
   struct Choices {
@@ -87,6 +96,9 @@ class NavigateView : public mode::Mode {
   NavigateScene scene_;
   VideoTextures video_;
   TheatreBones bones_;
+  ResumeOffer resume_;
+  DepthEntry depth_;
+  std::string patient_;  // in words; empty: not known
   Choices choices_;
   theatre::LiveStatePtr live_ = TheatreBones::nothing();  // of this frame, of the chosen bone; never null
   RegistrationWords words_;                               // of its registration

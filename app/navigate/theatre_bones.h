@@ -38,6 +38,8 @@ class TheatreBones {
   [[nodiscard]] theatre::LiveOperation* known(bones::BoneKind bone) const;
   // What is known where no bone was looked at yet.
   [[nodiscard]] static theatre::LiveStatePtr nothing();
+  // The case's plan for the bone, where it is of this mesh: what an operation that begins now guides by.
+  [[nodiscard]] std::optional<operation::PlannedTunnel> plan_of(bones::BoneKind bone) const;
   // A plan that was edited is offered to the operation of its bone; it guides by the one in force until the
   // surgeon takes the other one over.
   void offer_plans();
@@ -48,7 +50,6 @@ class TheatreBones {
     std::uint64_t plan_revision = 0;  // of the model, when the plan was handed over last
   };
   [[nodiscard]] std::unique_ptr<theatre::LiveOperation> made(bones::BoneKind bone) const;
-  [[nodiscard]] std::optional<operation::PlannedTunnel> plan_of(bones::BoneKind bone) const;
   [[nodiscard]] static bool is_worth_keeping(const theatre::LiveState& state);
 
   std::function<void()> wake_;

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "app/guidance_severity/guidance_severity.h"
+#include "app/navigate/beginning_words.h"
 #include "app/navigate/navigate_panels.h"
-#include "navigation/camera/medium.h"
 
 namespace arthronaut::navigate {
 
@@ -125,6 +125,25 @@ void draw_record(const widgets::Ui& ui, const NavigateScreen& screen) {
           (is_dated ? ", " + widgets::fixed(1000 * screen.display.age_s, 0) + " ms old" : ""));
 }
 
+// What a time-out reads out, whether or not one was asked for, in few lines: the patient stands in the title,
+// camera and tools with the source.
+void draw_beginning(const widgets::Ui& ui, const NavigateScreen& screen) {
+  const operation::OperationState& state = *screen.live->operation;
+  std::string knee;
+  for (const CardLine& line : time_out_lines(state, screen.patient)) {
+    if (line.name == "Medium") widgets::status_row(ui, line.severity, line.name, line.text);
+    if (line.name == "Knee") knee = line.text;
+    if (line.name == "Plan") widgets::status_row(ui, line.severity, "Plan, " + knee, line.text);
+  }
+  if (state.depth_stop_mm)
+    widgets::status_row(ui, Severity::Quiet, "Depth stop",
+                        widgets::fixed(*state.depth_stop_mm, 1) + " mm, as read");
+  if (state.resumed != nullptr)
+    widgets::status_row(
+        ui, Severity::Quiet, "Resumed",
+        state.resumed->session + ", " + std::to_string(state.resumed->stroke_count) + " strokes as history");
+}
+
 }  // namespace
 
 void draw_tracking(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen) {
@@ -141,11 +160,10 @@ void draw_tracking(const widgets::Ui& ui, const widgets::Rect& area, const Navig
     draw_registration_row(ui, screen);
     draw_touch_row(ui, screen);
     draw_probe(ui, screen);
+    draw_beginning(ui, screen);
     draw_record(ui, screen);
-    const operation::SourceSetup& source = *screen.live->operation->source;
-    widgets::status_row(ui, Severity::Quiet, source.title, source.calibration);
-    widgets::status_row(ui, Severity::Quiet, "Medium",
-                        camera::medium_to_text(source.pipeline.refractive_index));
+    const operation::OperationState& state = *screen.live->operation;
+    widgets::status_row(ui, Severity::Quiet, state.source->title, state.source->calibration);
   }
   ImGui::PopStyleVar();
   widgets::end_panel();

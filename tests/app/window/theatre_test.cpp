@@ -214,5 +214,100 @@ TEST_F(Theatre, Hazard12AKilledWindowLeavesASessionThatCanBeRead) {
   EXPECT_EQ(app.wait_for_exit(60), 0);
 }
 
+// Killed in the middle of an operation, the case offers in Navigate what was left: one key brings it back,
+// and it guides nothing until one touch on the bone. The session that follows says what it goes on from, and
+// runs again to the same states.
+TEST_F(Theatre, Hazard12AKilledOperationIsResumedAndGuidesAfterOneTouch) {
+  const VirtualDisplay display(1280, 720);
+  std::string left, next;
+  {
+    RunningWorkstation app(display, folder_.path());
+    start_simulation(app);
+    ASSERT_TRUE(app.wait_for_state("standing", "stands", 400));
+    left = app.state("journal");
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));  // that it stands is committed by then
+    app.kill();
+  }
+  {
+    RunningWorkstation app(display, folder_.path());
+    show_navigate(app);
+    ASSERT_TRUE(app.wait_for_state("resume", left, 60));
+    ASSERT_TRUE(app.wait_for_widget("navigate.resume"));
+    EXPECT_TRUE(app.wait_for_state("next", "resume the operation that was left"));
+    EXPECT_EQ(app.state("standing"), "none") << "nothing is brought back unasked";
+    app.press("space");
+    ASSERT_TRUE(app.wait_for_state("resumed", left));
+    EXPECT_TRUE(app.wait_for_state("resume", "none"));
+    EXPECT_TRUE(app.wait_for_state("standing", "void"));
+    app.press("space");
+    ASSERT_TRUE(app.wait_for_state("picture", "live", 120));
+    EXPECT_EQ(app.state("source_kind"), "SIMULATION");
+    EXPECT_EQ(app.state("standing"), "void");
+    EXPECT_TRUE(app.wait_for_state("next", "touch the bone once: confirms the registration"));
+    // The simulated surgeon's probe rests on the bone now and then.
+    ASSERT_TRUE(becomes(
+        [&] {
+          app.press("t");
+          return app.wait_for_state("standing", "stands", 0.3);
+        },
+        400));
+    next = app.state("journal");
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    ASSERT_TRUE(app.hold_until("Escape", "guidance", "The source has ended", 60));
+    app.press("ctrl+q");
+    ASSERT_EQ(app.wait_for_exit(120), 0);
+  }
+  std::stringstream header;
+  header << std::ifstream(case_folder() / "sessions" / next / "session.json").rdbuf();
+  EXPECT_NE(header.str().find("\"continues\": \"" + left + "\""), std::string::npos) << header.str();
+  const auto [exit_code, output] = replay(next);
+  EXPECT_EQ(exit_code, 0) << output;
+}
+
+// Declined, the operation begins afresh, and nothing of the old one is there.
+TEST_F(Theatre, Hazard12WhatWasLeftCanBeDeclined) {
+  const VirtualDisplay display(1280, 720);
+  std::string left;
+  {
+    RunningWorkstation app(display, folder_.path());
+    start_simulation(app);
+    ASSERT_TRUE(becomes([&] { return !app.state("strokes").empty() && app.state("strokes") != "0"; }, 240));
+    left = app.state("journal");
+    // A window that is closed in the middle of an operation leaves it too.
+    EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+  }
+  RunningWorkstation app(display, folder_.path());
+  show_navigate(app);
+  ASSERT_TRUE(app.wait_for_state("resume", left, 60));
+  app.press("Escape");
+  EXPECT_TRUE(app.wait_for_state("resume", "none"));
+  EXPECT_TRUE(app.wait_for_state("next", "start the simulated operation"));
+  EXPECT_EQ(app.state("resumed"), "none");
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(60), 0);
+}
+
+// What the depth stop reads is typed, shown and kept; digits of it are no keys of the screen. A marker that
+// was placed anew is one key, held.
+TEST_F(Theatre, Hazard7TheDepthStopIsTypedAndTheMarkerPlacedAnewIsAKey) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  start_simulation(app);
+  app.press("e");
+  ASSERT_TRUE(app.wait_for_widget("navigate.depth_field"));
+  app.type("210");
+  app.press("Return");
+  EXPECT_FALSE(becomes([&] { return app.state("depth_stop") != "none"; }, 1)) << "no drill is so long";
+  app.type("21.5");
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("depth_stop", "21.5"));
+  EXPECT_EQ(app.state("picture"), "live");
+  app.press("n");
+  EXPECT_TRUE(app.wait_for_state("hold", "Hold N to say that the marker was placed anew (let go)"));
+  ASSERT_TRUE(becomes([&] { return !app.state("strokes").empty() && app.state("strokes") != "0"; }, 240));
+  EXPECT_TRUE(app.hold_until("n", "strokes", "0", 60));
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
 }  // namespace
 }  // namespace arthronaut::test

@@ -1,0 +1,106 @@
+#include "app/navigate/beginning_words.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "navigation/camera/medium.h"
+#include "planning/files/format.h"
+
+namespace arthronaut::navigate {
+
+namespace {
+
+using widgets::Severity;
+
+std::string plan_in_words(const std::optional<operation::PlannedTunnel>& plan) {
+  if (!plan) return "none";
+  return files::format("%.1f mm wide, %.1f mm long", plan->tunnel.diameter_mm, plan->length_mm);
+}
+
+std::string count_of(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : what == "touch" ? "es" : "s");
+}
+
+std::string ago(std::chrono::system_clock::duration time) {
+  const auto minutes = std::chrono::duration_cast<std::chrono::minutes>(time).count();
+  if (minutes < 0) return "at a time that this clock has not reached";
+  if (minutes < 1) return "less than a minute ago";
+  if (minutes < 120) return count_of(static_cast<std::size_t>(minutes), "minute") + " ago";
+  if (minutes < 48 * 60) return std::to_string(minutes / 60) + " hours ago";
+  return std::to_string(minutes / (24 * 60)) + " days ago";
+}
+
+CardLine registration_line(const recording::Resumable& left) {
+  if (!left.operation.registration)
+    return {Severity::Bad, "Registration", "is not brought back: " + left.refusal};
+  return {Severity::Caution, "Registration",
+          widgets::plus_minus(left.operation.registration->predicted_tre_mm) + " mm" +
+              (left.was_verified ? ", was verified" : "") + "; guides after one touch on the bone"};
+}
+
+}  // namespace
+
+std::vector<CardLine> time_out_lines(const operation::OperationState& state, const std::string& patient) {
+  const operation::SourceSetup& source = *state.source;
+  return {
+      {patient.empty() ? Severity::Caution : Severity::Quiet, "Patient",
+       patient.empty() ? "not known: the case names none" : patient},
+      {Severity::Quiet, "Knee",
+       std::string(bones::to_text(source.pipeline.side)) + ", " + std::string(bones::to_text(state.bone))},
+      {state.plan ? Severity::Quiet : Severity::Caution, "Plan", plan_in_words(state.plan)},
+      {Severity::Quiet, "Camera and tools", source.calibration},
+      {Severity::Quiet, "Medium", camera::medium_to_text(source.pipeline.refractive_index)}};
+}
+
+Card time_out_card(const operation::OperationState& state, const std::string& patient) {
+  return {"navigate.time_out", "Time-out: is all of this right?", time_out_lines(state, patient),
+          "Space: yes, all of it. Nothing guides before"};
+}
+
+Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedTunnel>& plan,
+                 std::chrono::system_clock::time_point now) {
+  const recording::Resumable& found = left.found;
+  const operation::ResumeOperation& was = found.operation;
+  Card card{
+      "navigate.resume", "Resume the operation that was left?", {}, "Space: resume    Esc: begin afresh"};
+  card.lines.push_back({Severity::Quiet, "Session",
+                        was.session + ", " + std::string(bones::to_text(found.header.bone)) + ", " +
+                            (found.was_finished ? "ended " : "cut off ") + ago(now - found.last_written)});
+  card.lines.push_back({Severity::Quiet, "Source", found.header.source_kind + ": " + found.header.source});
+  card.lines.push_back(registration_line(found));
+  card.lines.push_back({Severity::Quiet, "Kept as history",
+                        count_of(static_cast<std::size_t>(was.stroke_count), "stroke") +
+                            files::format(" (%.0f mm), ", found.stroke_length_mm) +
+                            count_of(was.touches_mm.size(), "touch") +
+                            (was.control_point_mm ? ", the control point" : "")});
+  const bool is_same_plan = was.plan == plan;
+  card.lines.push_back(
+      {is_same_plan ? Severity::Quiet : Severity::Caution, "Plan",
+       plan_in_words(was.plan) +
+           (is_same_plan ? "" : "; the case's is another one by now and waits to be taken over")});
+  card.lines.push_back({left.has_same_camera && left.has_same_tools ? Severity::Quiet : Severity::Caution,
+                        "Camera and tools",
+                        left.has_same_camera && left.has_same_tools ? "the case's"
+                        : left.has_same_camera                      ? "the tools are not the case's of now"
+                        : left.has_same_tools                       ? "the camera is not the case's of now"
+                                                                    : "neither is the case's of now"});
+  if (was.depth_stop_mm)
+    card.lines.push_back(
+        {Severity::Quiet, "Depth stop", files::format("%.1f mm, as read", *was.depth_stop_mm)});
+  for (const std::string& broken : found.passed_over)
+    card.lines.push_back({Severity::Bad, "Newer, cannot be read", broken});
+  return card;
+}
+
+std::optional<double> depth_from_text(std::string text) {
+  constexpr double kLongest_mm = 150;
+  std::replace(text.begin(), text.end(), ',', '.');
+  const auto is_space = [](char letter) { return letter == ' '; };
+  text.erase(std::remove_if(text.begin(), text.end(), is_space), text.end());
+  double depth_mm = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), depth_mm);
+  const bool is_number = error == std::errc() && end == text.data() + text.size();
+  return is_number && depth_mm >= 0 && depth_mm <= kLongest_mm ? std::optional(depth_mm) : std::nullopt;
+}
+
+}  // namespace arthronaut::navigate

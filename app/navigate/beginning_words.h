@@ -1,0 +1,41 @@
+// What stands on the cards with which an operation begins: the time-out, and an operation that was left in
+// the middle. Pure: state in, words out.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "app/navigate/resume_offer.h"
+#include "app/widgets/controls.h"
+#include "navigation/operation/operation_state.h"
+
+namespace arthronaut::navigate {
+
+struct CardLine {
+  widgets::Severity severity = widgets::Severity::Quiet;
+  std::string name, text;
+};
+// A question over the picture, and the keys that answer it.
+struct Card {
+  std::string name;  // for tests
+  std::string title;
+  std::vector<CardLine> lines;
+  std::string keys;
+};
+
+// Patient, knee, plan, camera, tools and medium, in the order in which they are read out. `patient`: in
+// words; empty: not known. Precondition: a source was started.
+[[nodiscard]] std::vector<CardLine> time_out_lines(const operation::OperationState& state,
+                                                   const std::string& patient);
+[[nodiscard]] Card time_out_card(const operation::OperationState& state, const std::string& patient);
+
+// `plan`: the case's, as an operation that begins afresh would have it.
+[[nodiscard]] Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedTunnel>& plan,
+                               std::chrono::system_clock::time_point now);
+
+// What is typed as the depth stop's reading: millimetres, with a point or a comma. Empty when it is no number
+// from 0 to 150, which is longer than any drill in a knee.
+[[nodiscard]] std::optional<double> depth_from_text(std::string text);
+
+}  // namespace arthronaut::navigate

@@ -1,0 +1,75 @@
+#include "app/navigate/resume_offer.h"
+
+#include <utility>
+
+#include "app/case/case_calibration.h"
+#include "navigation/registration/provenance.h"
+#include "planning/bones/mesh_hash.h"
+#include "planning/cases/case.h"
+#include "planning/log/log.h"
+
+namespace arthronaut::navigate {
+
+ResumeOffer::ResumeOffer(std::function<void()> wake)
+    : worker_(
+          worker::Backlog::NewestWins,
+          [](Worker::Inbox& inbox) {
+            while (const auto asked = inbox.next()) inbox.publish(search(*asked));
+          },
+          std::move(wake)) {}
+
+void ResumeOffer::open(const open_case::PlanModel& model, const std::filesystem::path& case_folder,
+                       bool is_read_only) {
+  ++number_;
+  left_.clear();
+  answered_.clear();
+  is_looking_ = !is_read_only && !case_folder.empty() && !cases::session_folders(case_folder).empty();
+  if (!is_looking_) return;
+  Search wanted{number_, case_folder, {}};
+  for (const auto& [kind, bone] : model.knee().bones) wanted.meshes.emplace(kind, bone.mesh);
+  worker_.post(std::move(wanted));
+}
+
+ResumeOffer::Found ResumeOffer::search(const Search& search) {
+  Found all{search.number, {}};
+  for (const auto& [kind, mesh] : search.meshes) {
+    try {  // without it the operation begins afresh: no reason to end anything
+      auto found = recording::find_resumable(search.case_folder, kind, bones::mesh_sha256(mesh));
+      if (!found) continue;
+      LeftBehind left{std::move(*found)};
+      const registration::Provenance& of = left.found.operation.of;
+      const bool is_simulated = of.source == sources::SourceKind::Simulation;
+      const auto camera = open_case::camera_of(is_simulated, search.case_folder);
+      const auto tools = open_case::tools_of(is_simulated, search.case_folder);
+      left.has_same_camera = registration::camera_identity(camera) == of.camera;
+      left.has_same_tools =
+          registration::tools_identity(tools, kind, left.found.header.probe_name) == of.tools;
+      all.left.emplace(kind, std::move(left));
+    } catch (const std::runtime_error& error) {
+      log::error(std::string("nothing can be resumed: ") + error.what());
+    }
+  }
+  return all;
+}
+
+void ResumeOffer::follow() {
+  if (!is_looking_) return;
+  const auto newest = worker_.latest();
+  if (worker_.has_ended()) is_looking_ = false;
+  if (newest == nullptr || newest->number != number_) return;
+  is_looking_ = false;
+  left_ = newest->left;
+}
+
+const LeftBehind* ResumeOffer::of(bones::BoneKind bone) {
+  follow();
+  const auto found = left_.find(bone);
+  return found == left_.end() || answered_.contains(bone) ? nullptr : &found->second;
+}
+
+bool ResumeOffer::is_looking() {
+  follow();
+  return is_looking_;
+}
+
+}  // namespace arthronaut::navigate

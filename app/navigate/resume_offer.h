@@ -1,0 +1,61 @@
+// Looks through the sessions of a case for an operation that was left in the middle, beside the screen, and
+// keeps what was found until the surgeon has answered.
+//
+// One thread, the window's; nothing here waits but the destructor, for the search at hand.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/case/plan_model.h"
+#include "navigation/recording/resumable.h"
+#include "navigation/worker/worker.h"
+
+namespace arthronaut::navigate {
+
+struct LeftBehind {
+  recording::Resumable found;
+  // What it was navigated with is what the case has now.
+  bool has_same_camera = false, has_same_tools = false;
+};
+
+class ResumeOffer {
+ public:
+  // wake: called from another thread when there is news.
+  explicit ResumeOffer(std::function<void()> wake);
+
+  // Another case. Nothing is offered in one that is read-only: what is left there may be going on elsewhere.
+  void open(const open_case::PlanModel& model, const std::filesystem::path& case_folder, bool is_read_only);
+  // Null: there is none, it is still looked for, or it was answered.
+  [[nodiscard]] const LeftBehind* of(bones::BoneKind bone);
+  [[nodiscard]] bool is_looking();
+  // Resumed, declined, or begun without it: it is not offered again while this case is open.
+  void answer(bones::BoneKind bone) { answered_.insert(bone); }
+
+ private:
+  struct Search {
+    int number = 0;
+    std::filesystem::path case_folder;
+    std::map<bones::BoneKind, geometry::TriangleMesh> meshes;
+  };
+  struct Found {
+    int number = 0;
+    std::map<bones::BoneKind, LeftBehind> left;
+  };
+  using Worker = worker::Worker<Search, Found>;
+  static Found search(const Search& search);
+  void follow();
+
+  int number_ = 0;  // of the newest search
+  bool is_looking_ = false;
+  std::map<bones::BoneKind, LeftBehind> left_;
+  std::set<bones::BoneKind> answered_;
+  Worker worker_;
+};
+
+}  // namespace arthronaut::navigate

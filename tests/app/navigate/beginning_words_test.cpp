@@ -1,0 +1,115 @@
+#include "app/navigate/beginning_words.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace arthronaut::navigate {
+namespace {
+
+using widgets::Severity;
+
+const CardLine& line_of(const Card& card, const std::string& name) {
+  const auto found = std::find_if(card.lines.begin(), card.lines.end(),
+                                  [&](const CardLine& line) { return line.name == name; });
+  if (found == card.lines.end()) throw std::runtime_error("no line " + name);
+  return *found;
+}
+
+operation::PlannedTunnel plan() {
+  operation::PlannedTunnel plan;
+  plan.tunnel.diameter_mm = 8.5;
+  plan.length_mm = 31.25;
+  return plan;
+}
+
+// All that is read out stands on one card; whom nobody knows is told, not left out.
+TEST(TimeOutCard, Hazard20NamesPatientKneePlanCameraToolsAndMedium) {
+  auto source = std::make_shared<operation::SourceSetup>();
+  source->calibration = "camera of 2026-11-21, 1 of 4 tools calibrated";
+  source->pipeline.side = bones::Side::Left;
+  source->pipeline.refractive_index = 1.3345;
+  operation::OperationState state;
+  state.source = source;
+  state.bone = bones::BoneKind::Tibia;
+  state.plan = plan();
+  const Card card = time_out_card(state, "Muster, Anna \u00B7 4711 \u00B7 1990-01-31");
+  EXPECT_EQ(line_of(card, "Patient").text, "Muster, Anna \u00B7 4711 \u00B7 1990-01-31");
+  EXPECT_EQ(line_of(card, "Knee").text, "left, tibia");
+  EXPECT_EQ(line_of(card, "Plan").text, "8.5 mm wide, 31.2 mm long");
+  EXPECT_EQ(line_of(card, "Camera and tools").text, source->calibration);
+  EXPECT_EQ(line_of(card, "Medium").text, "saline");
+  EXPECT_EQ(line_of(time_out_card(state, ""), "Patient").severity, Severity::Caution);
+  state.plan.reset();
+  EXPECT_EQ(line_of(time_out_card(state, ""), "Plan").text, "none");
+}
+
+LeftBehind left_behind() {
+  LeftBehind left;
+  left.has_same_camera = left.has_same_tools = true;
+  operation::ResumeOperation& was = left.found.operation;
+  was.session = "0007-20260131-120000";
+  was.plan = plan();
+  was.registration.emplace().predicted_tre_mm = 0.42;
+  was.stroke_count = 12;
+  was.touches_mm = {Eigen::Vector3d::Zero()};
+  was.control_point_mm = Eigen::Vector3d::Zero();
+  left.found.stroke_length_mm = 412.3;
+  left.found.was_verified = true;
+  left.found.header.source_kind = "live";
+  left.found.header.source = "Scope 30";
+  left.found.last_written = std::chrono::system_clock::time_point(std::chrono::hours(500'000));
+  return left;
+}
+
+Card card_of(const LeftBehind& left, std::chrono::seconds later = std::chrono::seconds(245)) {
+  return resume_card(left, plan(), left.found.last_written + later);
+}
+
+// What would be brought back, before it is: bone, time, source, registration, strokes, touches, plan, camera.
+TEST(ResumeCard, Hazard12SaysAllThatWouldBeBroughtBack) {
+  const Card card = card_of(left_behind());
+  EXPECT_EQ(line_of(card, "Session").text, "0007-20260131-120000, femur, cut off 4 minutes ago");
+  EXPECT_EQ(line_of(card, "Source").text, "live: Scope 30");
+  EXPECT_EQ(line_of(card, "Registration").text,
+            "\u00B1 0.4 mm, was verified; guides after one touch on the bone");
+  EXPECT_EQ(line_of(card, "Registration").severity, Severity::Caution);
+  EXPECT_EQ(line_of(card, "Kept as history").text, "12 strokes (412 mm), 1 touch, the control point");
+  EXPECT_EQ(line_of(card, "Plan").severity, Severity::Quiet);
+  EXPECT_EQ(line_of(card, "Camera and tools").text, "the case's");
+  EXPECT_EQ(card.keys, "Space: resume    Esc: begin afresh");
+}
+
+// What differs from the case of now, and what is not brought back, stands out with its reason.
+TEST(ResumeCard, Hazard16TellsWhatIsNotBroughtBackAndWhy) {
+  LeftBehind left = left_behind();
+  left.found.operation.registration.reset();
+  left.found.refusal = "it was in doubt at the end: The control point has moved by 3.0 mm";
+  left.found.operation.plan->length_mm += 1;
+  left.found.operation.depth_stop_mm = 21.5;
+  left.has_same_camera = false;
+  left.found.was_finished = true;
+  left.found.passed_over = {"0008/session.json: broken"};
+  const Card card = card_of(left, std::chrono::hours(3 * 24));
+  EXPECT_EQ(line_of(card, "Session").text, "0007-20260131-120000, femur, ended 3 days ago");
+  EXPECT_EQ(line_of(card, "Registration").severity, Severity::Bad);
+  EXPECT_EQ(line_of(card, "Registration").text,
+            "is not brought back: it was in doubt at the end: The control point has moved by 3.0 mm");
+  EXPECT_EQ(line_of(card, "Plan").severity, Severity::Caution);
+  EXPECT_EQ(line_of(card, "Camera and tools").text, "the camera is not the case's of now");
+  EXPECT_EQ(line_of(card, "Depth stop").text, "21.5 mm, as read");
+  EXPECT_EQ(line_of(card, "Newer, cannot be read").text, "0008/session.json: broken");
+}
+
+// A reading is millimetres with a point or a comma; anything else is asked for again.
+TEST(DepthStop, TakesMillimetresAndNothingElse) {
+  EXPECT_EQ(depth_from_text("21.5"), 21.5);
+  EXPECT_EQ(depth_from_text("21,5"), 21.5);
+  EXPECT_EQ(depth_from_text(" 30 "), 30);
+  EXPECT_EQ(depth_from_text("0"), 0);
+  for (const char* bad : {"", "-1", "151", "1e9", "nan", "inf", "21.5mm", "2.1.5", "twenty"})
+    EXPECT_FALSE(depth_from_text(bad)) << bad;
+}
+
+}  // namespace
+}  // namespace arthronaut::navigate
