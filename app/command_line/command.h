@@ -65,6 +65,7 @@ void add_plan_command(CLI::App& app, Context& context);
 void add_phantom_command(CLI::App& app, Context& context);
 void add_navigate_command(CLI::App& app, Context& context);
 void add_replay_command(CLI::App& app, Context& context);
+void add_resume_command(CLI::App& app, Context& context);
 void add_report_command(CLI::App& app, Context& context);
 void add_markers_command(CLI::App& app, Context& context);
 void add_demo_command(CLI::App& app, Context& context);

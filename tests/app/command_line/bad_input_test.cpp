@@ -140,7 +140,7 @@ TEST_F(BadInput, FolderThatIsNotThere) {
 }
 
 TEST_F(BadInput, CaseThatIsNone) {
-  for (const char* command : {"navigate", "replay", "report"}) {
+  for (const char* command : {"navigate", "replay", "report", "resume"}) {
     std::vector<std::string> arguments{command, folder_ / "nothing.arthro"};
     if (arguments[0] == "navigate") arguments.insert(arguments.end(), {"--video", folder_ / "clip.mkv"});
     if (arguments[0] == "report") arguments.insert(arguments.end(), {"-o", folder_ / "report.pdf"});

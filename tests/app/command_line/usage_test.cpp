@@ -35,7 +35,7 @@ TEST_P(Subcommand, RefusesAnUnknownOption) {
 INSTANTIATE_TEST_SUITE_P(All, Subcommand,
                          ::testing::Values("calibrate", "check-fluid", "track", "pivot", "digitise",
                                            "register", "import", "plan", "phantom", "navigate", "replay",
-                                           "report", "markers", "demo"),
+                                           "report", "resume", "markers", "demo"),
                          [](const auto& test) {
                            std::string name = test.param;
                            std::replace(name.begin(), name.end(), '-',

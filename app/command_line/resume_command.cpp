@@ -1,0 +1,96 @@
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/command_line/command.h"
+#include "navigation/recording/resumable.h"
+#include "planning/bones/mesh_hash.h"
+#include "planning/cases/case.h"
+#include "planning/files/json_document.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::command_line {
+
+namespace {
+
+struct ResumeArguments {
+  std::string case_folder, bone = "femur";
+  bool json = false;
+};
+
+nlohmann::ordered_json json_of(const recording::Resumable& found) {
+  const operation::ResumeOperation& was = found.operation;
+  nlohmann::ordered_json json;
+  json["session"] = was.session;
+  json["bone"] = bones::to_text(found.header.bone);
+  json["source"] = found.header.source_kind;
+  json["was_cut_off"] = !found.was_finished;
+  json["registration"] = nullptr;
+  if (was.registration) {
+    json["registration"] = {{"marker_from_bone", files::to_json(was.registration->marker_from_bone)},
+                            {"predicted_tre_mm", was.registration->predicted_tre_mm},
+                            {"was_verified", found.was_verified}};
+  }
+  json["refusal"] = found.refusal;
+  json["strokes"] = was.stroke_count;
+  json["stroke_length_mm"] = found.stroke_length_mm;
+  json["touches"] = was.touches_mm.size();
+  json["control_point"] = was.control_point_mm.has_value();
+  json["has_plan"] = was.plan.has_value();
+  json["depth_stop_mm"] = nullptr;
+  if (was.depth_stop_mm) json["depth_stop_mm"] = *was.depth_stop_mm;
+  json["passed_over"] = found.passed_over;
+  return json;
+}
+
+void say(const Context& context, const recording::Resumable& found) {
+  const operation::ResumeOperation& was = found.operation;
+  context.say("session " + was.session + ", " + std::string(bones::to_text(found.header.bone)) + ", " +
+              found.header.source_kind + (found.was_finished ? "" : ", cut off"));
+  if (was.registration)
+    context.say(format("registration: predicted error %.2f mm%s; guides after one touch on the bone",
+                       was.registration->predicted_tre_mm, found.was_verified ? ", was verified" : ""));
+  context.say(format("history: %d strokes (%.0f mm), %zu touches%s", was.stroke_count, found.stroke_length_mm,
+                     was.touches_mm.size(), was.control_point_mm ? ", the control point" : ""));
+  context.say(was.plan ? format("plan in force: %.1f mm wide, %.1f mm long", was.plan->tunnel.diameter_mm,
+                                was.plan->length_mm)
+                       : std::string("plan in force: none"));
+  if (was.depth_stop_mm) context.say(format("depth stop: %.1f mm, as read", *was.depth_stop_mm));
+  for (const std::string& broken : found.passed_over) context.say("passed over: " + broken);
+}
+
+void resume(Context& context, const ResumeArguments& arguments) {
+  const cases::Case knee = cases::load_case(arguments.case_folder);
+  const bones::BoneKind kind = bones::bone_kind_from_text(arguments.bone);
+  const auto bone = knee.bones.find(kind);
+  if (bone == knee.bones.end())
+    throw InvalidInput(arguments.case_folder, "", "the case has no " + arguments.bone);
+  const auto found =
+      recording::find_resumable(arguments.case_folder, kind, bones::mesh_sha256(bone->second.mesh));
+  if (arguments.json)
+    files::write_json("-", found ? json_of(*found) : nlohmann::ordered_json());
+  else if (found)
+    say(context, *found);
+  if (!found)
+    context.say_unreliable("what can be resumed",
+                           {"no operation on the " + arguments.bone + " was left in the middle"});
+  else if (!found->refusal.empty())
+    context.say_unreliable("the registration", {"is not brought back: " + found->refusal});
+}
+
+}  // namespace
+
+void add_resume_command(CLI::App& app, Context& context) {
+  CLI::App* command = add_subcommand(app, context, "resume",
+                                     "Say what an operation that was cut off or left in the middle has come "
+                                     "to, as Navigate offers to resume it",
+                                     "arthronaut resume knee.arthro --bone femur");
+  const auto arguments = std::make_shared<ResumeArguments>();
+  command->add_option("CASE", arguments->case_folder, "Case folder")->required();
+  command->add_option("--bone", arguments->bone, "femur or tibia")
+      ->check(CLI::IsMember({"femur", "tibia"}))
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json, "As JSON on standard output; null when there is nothing");
+  command->callback([&context, arguments] { resume(context, *arguments); });
+}
+
+}  // namespace arthronaut::command_line
