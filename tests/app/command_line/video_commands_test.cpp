@@ -117,6 +117,12 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   EXPECT_EQ(same.exit_code, 0) << same.output << same.errors;
   EXPECT_THAT(same.output, HasSubstr("24 of 24 frames replayed"));
 
+  // Nobody was at its pedal: there is no operation to go on with.
+  const auto resumed = run_program({"resume", knee, "--json"});
+  EXPECT_EQ(resumed.exit_code, 4) << resumed.errors;
+  EXPECT_EQ(resumed.output, "null\n");
+  EXPECT_THAT(resumed.errors, HasSubstr("no operation on the femur was left in the middle"));
+
   sqlite3* database = nullptr;
   ASSERT_EQ(sqlite3_open((session / "session.sqlite").c_str(), &database), SQLITE_OK);
   sqlite3_exec(database, "UPDATE markers SET tx_mm = tx_mm + 0.5 WHERE frame = 7 AND marker_id = 2", nullptr,

@@ -134,6 +134,24 @@ TEST(Resumed, Hazard12BringsAllBackAndGuidesAfterOneTouch) {
   EXPECT_EQ(shown(run), guidance::GuidanceState::Valid);
 }
 
+// Another registration in its place stands for itself: the journal tells of no touch that confirmed anything.
+// One void registration after another is told each time.
+TEST(Resumed, AnotherRegistrationInItsPlaceIsNoConfirmation) {
+  PhantomOperation run;
+  const SourceSetup source = test::scripted_source();
+  run.apply(left_behind(run, source));
+  run.start(source);
+  const long told = run.count(JournalKind::Void);
+  GiveRegistration again = given(run, source);
+  again.is_resumed = true;
+  again.registration.marker_from_bone.translation_mm.x() += 0.1;
+  run.apply(again);
+  EXPECT_EQ(run.count(JournalKind::Void), told + 1);
+  run.apply(given(run, source));
+  EXPECT_EQ(run.in_force().standing, Standing::Stands);
+  EXPECT_EQ(run.count(JournalKind::Confirmed), 0);
+}
+
 // The control point of before tells a marker that was bumped meanwhile.
 TEST(Resumed, TheControlPointStillTellsABumpedMarker) {
   PhantomOperation run;
