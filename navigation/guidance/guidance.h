@@ -25,9 +25,9 @@ enum class GuidanceState {
   WorldMarkerLost,
   GuideLost,
   LensStale,
-  Stale,        // the newest pose is too old
-  NoGuide,      // the tools hold no such guide, or it has no axis
-  WrongMedium,  // the pictures contradict the medium that is said to be before the lens
+  Stale,         // the newest pose is too old
+  NoGuide,       // the tools hold no such guide, or it has no axis
+  WrongMedium,   // the pictures contradict the medium that is said to be before the lens
   NotConfirmed,  // the time-out of a live operation is still to be done
 };
 [[nodiscard]] std::string_view to_text(GuidanceState state);
