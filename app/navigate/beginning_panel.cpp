@@ -68,6 +68,7 @@ std::optional<double> DepthEntry::draw(const widgets::Ui& ui, const widgets::Rec
   if (is_entered) {
     const std::optional<double> depth_mm = depth_from_text(text_);
     is_open_ = wants_focus_ = !depth_mm;
+    text_.clear();  // what is typed next is not added to what was refused
     trouble_ = depth_mm ? "" : "Not a number of millimetres from 0 to 150: once more, then Enter";
     return depth_mm;
   }
