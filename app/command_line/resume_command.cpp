@@ -5,6 +5,7 @@
 #include "navigation/recording/resumable.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
+#include "planning/files/format.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
 
@@ -47,14 +48,16 @@ void say(const Context& context, const recording::Resumable& found) {
   context.say("session " + was.session + ", " + std::string(bones::to_text(found.header.bone)) + ", " +
               found.header.source_kind + (found.was_finished ? "" : ", cut off"));
   if (was.registration)
-    context.say(format("registration: predicted error %.2f mm%s; guides after one touch on the bone",
-                       was.registration->predicted_tre_mm, found.was_verified ? ", was verified" : ""));
-  context.say(format("history: %d strokes (%.0f mm), %zu touches%s", was.stroke_count, found.stroke_length_mm,
-                     was.touches_mm.size(), was.control_point_mm ? ", the control point" : ""));
-  context.say(was.plan ? format("plan in force: %.1f mm wide, %.1f mm long", was.plan->tunnel.diameter_mm,
-                                was.plan->length_mm)
+    context.say(files::format("registration: predicted error %.2f mm%s; guides after one touch on the bone",
+                              was.registration->predicted_tre_mm,
+                              found.was_verified ? ", was verified" : ""));
+  context.say(files::format("history: %d strokes (%.0f mm), %zu touches%s", was.stroke_count,
+                            found.stroke_length_mm, was.touches_mm.size(),
+                            was.control_point_mm ? ", the control point" : ""));
+  context.say(was.plan ? files::format("plan in force: %.1f mm wide, %.1f mm long",
+                                       was.plan->tunnel.diameter_mm, was.plan->length_mm)
                        : std::string("plan in force: none"));
-  if (was.depth_stop_mm) context.say(format("depth stop: %.1f mm, as read", *was.depth_stop_mm));
+  if (was.depth_stop_mm) context.say(files::format("depth stop: %.1f mm, as read", *was.depth_stop_mm));
   for (const std::string& broken : found.passed_over) context.say("passed over: " + broken);
 }
 
