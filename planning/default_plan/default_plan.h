@@ -1,0 +1,64 @@
+// A first plan without a hand: tunnels through the expected footprints, aimed as a drill can follow. What the
+// window's one key and `arthronaut plan --default` call. A proposal: the surgeon moves it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning/bones/bone.h"
+#include "planning/geometry/surface.h"
+#include "planning/landmarks/landmarks.h"
+#include "planning/landmarks/propose.h"
+#include "planning/norms/insertion_norms.h"
+#include "planning/tunnels/tunnel.h"
+
+namespace arthronaut::default_plan {
+
+struct Options {
+  norms::Bundle bundle = norms::Bundle::Whole;
+  double diameter_mm = 9.0;  // 3 to 15
+  // Femur: the knee is flexed while the portal's drill goes in; the axis points at the portal then. 110 to 120
+  // degrees is customary through the anteromedial portal.
+  double flexion_deg = 115;
+  // Tibia: of the guide, between the tunnel and the plateau, in the sagittal plane.
+  double guide_deg = 55;
+  // Throws InvalidInput: field, value, range.
+  void check() const;
+};
+
+// A bone as the caller has it at hand. `landmarks` and `states` as in the case; what they lack is proposed.
+struct BoneInput {
+  const bones::Bone* bone = nullptr;
+  const geometry::Surface* surface = nullptr;  // of that mesh
+  landmarks::Landmarks landmarks;
+  landmarks::LandmarkStates states;
+  // Made before and kept by the caller, since it takes a second; without it it is made here.
+  const landmarks::Proposal* proposal = nullptr;
+};
+
+struct DefaultTunnel {
+  enum class Outcome {
+    NotRun,
+    Planned,
+    NoLandmarks,  // the shape gives no landmarks, and nobody placed those that the grid needs
+    NoFootprint,  // no bone at the norm's place of the grid
+    NoAim,        // no direction that a drill can follow stays in the bone
+  } outcome = Outcome::NotRun;
+  std::string message = "no default was asked for";
+  tunnels::Tunnel tunnel;
+  std::string source;                  // of the norm that the entry follows
+  std::vector<std::string> doubts;     // why the plan is not reliable: proposed landmarks, doubts of the shape
+  [[nodiscard]] bool is_usable() const { return outcome == Outcome::Planned; }
+};
+
+// One bone. Throws InvalidInput for options out of range alone.
+[[nodiscard]] DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options& options = {});
+
+// Every bone that is given, at once.
+[[nodiscard]] std::map<bones::BoneKind, DefaultTunnel> plan_knee(const std::vector<BoneInput>& bones,
+                                                                 bones::Side side, const Options& options = {});
+
+}  // namespace arthronaut::default_plan
