@@ -1,0 +1,200 @@
+#include "planning/landmarks/femur_shape.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "planning/files/format.h"
+#include "planning/geometry/rigid_transform.h"
+#include "planning/geometry/surface.h"
+#include "planning/landmarks/condyles.h"
+#include "planning/landmarks/long_axis.h"
+#include "planning/landmarks/notch.h"
+#include "planning/landmarks/rough_frame.h"
+#include "planning/landmarks/shape_samples.h"
+
+namespace arthronaut::landmarks {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr std::size_t kSamples = 20000;
+constexpr double kJointEnd_mm = 75;
+// The shaft begins above the condyles by this share of their depth; it is straight for so far (the femur is bowed).
+constexpr double kShaftFrom = 0.78, kShaftLength_mm = 110;
+// How well the long axis is known in the lateral view: by itself, from a shaft of a length, and from the roof of the
+// notch alone, which stands at 37 degrees to it (26 to 46 in Howell 1995).
+constexpr double kShaftSigma_deg = 2.5, kShaftSigmaOverLength_deg_mm = 70, kRoofSigma_deg = 5.5, kRoofSlope_deg = 37;
+constexpr std::size_t kEpicondyleSamples = 14;
+
+struct Shape {
+  RoughFrame rough;
+  std::vector<SurfaceSample> samples;
+  Condyles condyles;
+  Notch notch;
+  std::optional<LongAxis> shaft;
+};
+
+double lowest(const Shape& shape) {
+  const Vector3d z = shape.condyles.bone_from_frame.col(2);
+  return (shape.condyles.distal_minus.dot(z) + shape.condyles.distal_plus.dot(z)) / 2;
+}
+
+// Proximal in the lateral view: the shaft's, as far as there is one, and what the roof of the notch says.
+Vector3d proximal_of(const Shape& shape) {
+  const Vector3d x = shape.condyles.bone_from_frame.col(0);
+  const Vector3d forward = shape.notch.forward, into_bone = shape.notch.into_bone;
+  const double slope = geometry::rad_from_deg(kRoofSlope_deg);
+  const Vector3d by_roof = -std::cos(slope) * forward + std::sin(slope) * into_bone;
+  if (!shape.shaft) return by_roof;
+  const Vector3d away = shape.shaft->away();
+  const Vector3d by_shaft = (away - away.dot(x) * x).normalized();
+  const double sigma = std::hypot(kShaftSigma_deg, kShaftSigmaOverLength_deg_mm / shape.shaft->length_mm());
+  const double weight = 1 / (sigma * sigma), roof_weight = 1 / (kRoofSigma_deg * kRoofSigma_deg);
+  return (weight * by_shaft + roof_weight * by_roof).normalized();
+}
+
+std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geometry::Surface& surface,
+                                RoofConvention convention, std::string& reason) {
+  Shape shape;
+  const auto rough = rough_frame(mesh, bones::BoneKind::Femur);
+  if (!rough) {
+    reason = "the surface has no joint's end that comes near to its own mirror image";
+    return std::nullopt;
+  }
+  shape.rough = *rough;
+  const Vector3d z0 = rough->bone_from_frame.col(2);
+  for (const auto& s : sample_surface(mesh, kSamples)) {
+    const bool is_cut = rough->cut_normal && s.normal.dot(*rough->cut_normal) > 0.9 &&
+                        s.point_mm.dot(*rough->cut_normal) > rough->cut_offset_mm - 1.6;
+    if (!is_cut && (s.point_mm - rough->origin_mm).dot(z0) < kJointEnd_mm) shape.samples.push_back(s);
+  }
+  Matrix3d axes = rough->bone_from_frame;
+  Vector3d origin = rough->origin_mm;
+  for (int round = 0; round < 4; ++round) {
+    const auto condyles = find_condyles(shape.samples, axes, origin);
+    if (!condyles) {
+      reason = "it has no two condyles at its joint's end";
+      return std::nullopt;
+    }
+    shape.condyles = *condyles;
+    const auto notch = find_notch(surface, *condyles, convention);
+    if (!notch) {
+      reason = "between its condyles is no notch with a roof";
+      return std::nullopt;
+    }
+    shape.notch = *notch;
+    const Vector3d z = condyles->bone_from_frame.col(2);
+    const Vector3d foot = condyles->center_mm + (lowest(shape) - condyles->center_mm.dot(z)) * z;
+    const double first = kShaftFrom * condyles->depth_mm;
+    shape.shaft = find_long_axis(mesh, *rough, foot, z, first, first + kShaftLength_mm);
+    const Vector3d x = condyles->bone_from_frame.col(0);
+    axes.col(0) = x;
+    axes.col(2) = proximal_of(shape);
+    axes.col(1) = axes.col(2).cross(x);
+    origin = condyles->center_mm;
+  }
+  return shape;
+}
+
+// Positive: lateral is +x. Over the condyles the shaft stands lateral of their middle, and the lateral flank of the
+// groove reaches further forward.
+double side_score(const Shape& shape) {
+  const Matrix3d& axes = shape.condyles.bone_from_frame;
+  const double low = lowest(shape), depth = shape.condyles.depth_mm;
+  double front_minus = -1e9, front_plus = -1e9;
+  std::vector<double> left, right;
+  double area_x = 0, area = 0;
+  for (const auto& s : shape.samples) {
+    const Vector3d q = axes.transpose() * (s.point_mm - shape.condyles.center_mm);
+    const double height = s.point_mm.dot(axes.col(2)) - low;
+    if (height < 0.6 * depth && q.x() > 4) front_plus = std::max(front_plus, q.y());
+    if (height < 0.6 * depth && q.x() < -4) front_minus = std::max(front_minus, q.y());
+    if (height > 0.7 * depth && height < 0.9 * depth) area_x += q.x(), area += 1;
+  }
+  const double lean = area > 0 ? area_x / area : 0;
+  return lean / 2.0 + (front_plus - front_minus) / 4.0;
+}
+
+// The outermost patch, as large as kEpicondyleSamples, about the condyles' centres.
+Vector3d epicondyle(const Shape& shape, double sign) {
+  const Matrix3d& axes = shape.condyles.bone_from_frame;
+  const double within = 0.36 * shape.condyles.depth_mm;
+  std::vector<std::pair<double, Vector3d>> found;
+  for (const auto& s : shape.samples) {
+    const Vector3d q = axes.transpose() * (s.point_mm - shape.condyles.center_mm);
+    if (std::hypot(q.y(), q.z()) < within) found.push_back({sign * q.x(), s.point_mm});
+  }
+  const std::size_t count = std::min(kEpicondyleSamples, found.size());
+  std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), found.end(),
+                    [](const auto& a, const auto& b) { return a.first > b.first; });
+  Vector3d mean = Vector3d::Zero();
+  for (std::size_t i = 0; i < count; ++i) mean += found[i].second / static_cast<double>(count);
+  return mean;
+}
+
+// Where the outline of one condyle below the line reaches furthest along `direction`.
+Vector3d extent(const Shape& shape, double sign, const Vector3d& direction) {
+  const Vector3d x = shape.condyles.bone_from_frame.col(0);
+  std::vector<std::pair<double, Vector3d>> found;
+  for (const auto& s : shape.samples) {
+    const Vector3d from_roof = s.point_mm - shape.notch.anterior_mm;
+    if (sign * from_roof.dot(x) > 0 && from_roof.dot(shape.notch.into_bone) < 0)
+      found.push_back({s.point_mm.dot(direction), s.point_mm});
+  }
+  constexpr std::size_t kPatch = 6;
+  const std::size_t count = std::min(kPatch, found.size());
+  std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), found.end(),
+                    [](const auto& a, const auto& b) { return a.first > b.first; });
+  Vector3d mean = Vector3d::Zero();
+  for (std::size_t i = 0; i < count; ++i) mean += found[i].second / static_cast<double>(count);
+  return mean;
+}
+
+}  // namespace
+
+Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions& options) {
+  Proposal proposal;
+  proposal.outcome = Proposal::Outcome::NotThisBone;
+  proposal.reason.clear();
+  const geometry::Surface surface(mesh);
+  const auto shape = find_shape(mesh, surface, options.roof, proposal.reason);
+  if (!shape) return proposal;
+  proposal.outcome = Proposal::Outcome::Proposed;
+  const double score = side_score(*shape);
+  if (std::abs(score) > 0.5) proposal.side_by_shape = score > 0 ? bones::Side::Right : bones::Side::Left;
+  const bones::Side side = options.side.value_or(score > 0 ? bones::Side::Right : bones::Side::Left);
+  const double lateral = side == bones::Side::Right ? 1 : -1;
+  const Matrix3d& axes = shape->condyles.bone_from_frame;
+  proposal.axes = {AnatomicalAxes::Origin::FromLandmarks, axes.col(1), axes.col(2), lateral * axes.col(0)};
+  const bool is_plus = lateral > 0;
+  const Condyles& condyles = shape->condyles;
+  Landmarks& marks = proposal.landmarks;
+  marks["blumensaat_anterior"] = shape->notch.anterior_mm;
+  marks["blumensaat_posterior"] = shape->notch.posterior_mm;
+  marks["notch_apex"] = shape->notch.apex_mm;
+  marks["lateral_condyle_posterior"] = is_plus ? condyles.posterior_plus : condyles.posterior_minus;
+  marks["medial_condyle_posterior"] = is_plus ? condyles.posterior_minus : condyles.posterior_plus;
+  marks["lateral_condyle_center"] =
+      condyles.center_mm +
+      (marks["lateral_condyle_posterior"] - condyles.center_mm).dot(axes.col(0)) * axes.col(0);
+  marks["medial_condyle_center"] =
+      condyles.center_mm + (marks["medial_condyle_posterior"] - condyles.center_mm).dot(axes.col(0)) * axes.col(0);
+  marks["lateral_epicondyle"] = epicondyle(*shape, lateral);
+  marks["medial_epicondyle"] = epicondyle(*shape, -lateral);
+  marks["lateral_condyle_deep"] = extent(*shape, lateral, -shape->notch.forward);
+  marks["lateral_condyle_shallow"] = extent(*shape, lateral, shape->notch.forward);
+  marks["lateral_condyle_low"] = extent(*shape, lateral, -shape->notch.into_bone);
+  if (shape->shaft) {
+    marks["shaft_distal"] = shape->shaft->joint_end_mm;
+    marks["shaft_proximal"] = shape->shaft->far_end_mm;
+  }
+  proposal.roof = shape->notch.shape;
+  proposal.hill_mm = shape->notch.hill_mm;
+  return proposal;
+}
+
+}  // namespace arthronaut::landmarks

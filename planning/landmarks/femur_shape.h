@@ -1,0 +1,10 @@
+// The femur's landmarks from its shape. Inner header of landmarks; see propose.h for the way.
+#pragma once
+
+#include "planning/landmarks/propose.h"
+
+namespace arthronaut::landmarks {
+
+[[nodiscard]] Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions& options);
+
+}  // namespace arthronaut::landmarks

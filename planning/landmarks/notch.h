@@ -1,0 +1,31 @@
+// The intercondylar notch, seen from inside: its walls, its roof and Blumensaat's line. Inner header of landmarks.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "planning/geometry/surface.h"
+#include "planning/landmarks/condyles.h"
+#include "planning/landmarks/propose.h"
+
+namespace arthronaut::landmarks {
+
+struct Notch {
+  // In the lateral view: along the roof towards the front, and out of the notch into the bone. At right angles.
+  Eigen::Vector3d forward, into_bone;
+  Eigen::Vector3d anterior_mm, posterior_mm;  // the ends of Blumensaat's line by the convention; bone frame
+  Eigen::Vector3d apex_mm;                    // of the roof's ridge, halfway
+  double half_width_mm = 0;
+  RoofShape shape = RoofShape::Straight;
+  double hill_mm = 0;
+};
+
+// Rays from inside the notch onto its roof: of each cross section of the roof the deepest point is what the
+// lateral view shows as its outline. The roof ends where that outline bends away from its line by more than
+// 1 mm, in front into the groove of the kneecap, behind into the back of the shaft. The line's direction is found
+// anew until it stays. nullopt where between the condyles no such roof is.
+[[nodiscard]] std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& condyles,
+                                              RoofConvention convention);
+
+}  // namespace arthronaut::landmarks

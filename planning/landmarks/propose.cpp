@@ -1,0 +1,54 @@
+#include "planning/landmarks/propose.h"
+
+#include "planning/landmarks/femur_shape.h"
+#include "planning/landmarks/tibia_shape.h"
+
+namespace arthronaut::landmarks {
+
+std::string_view to_text(RoofConvention convention) {
+  return convention == RoofConvention::Flat ? "flat" : "ends";
+}
+
+std::string_view to_text(RoofShape shape) {
+  switch (shape) {
+    case RoofShape::Straight:
+      return "straight";
+    case RoofShape::SmallHill:
+      return "small hill";
+    case RoofShape::LargeHill:
+      return "large hill";
+  }
+  return "unknown";
+}
+
+Proposal propose(const geometry::TriangleMesh& mesh, bones::BoneKind bone, const ProposalOptions& options) {
+  Proposal proposal = bone == bones::BoneKind::Femur ? propose_femur(mesh, options) : propose_tibia(mesh, options);
+  if (proposal.is_usable() && options.side && proposal.side_by_shape && *options.side != *proposal.side_by_shape) {
+    proposal.doubts.push_back("by its shape the " + std::string(bones::to_text(bone)) + " is a " +
+                              std::string(bones::to_text(*proposal.side_by_shape)) + " one, and the case says " +
+                              std::string(bones::to_text(*options.side)));
+  }
+  if (proposal.is_usable() && !options.side && !proposal.side_by_shape)
+    proposal.doubts.push_back("the shape of the " + std::string(bones::to_text(bone)) + " does not tell its side");
+  return proposal;
+}
+
+void take_proposal(const Proposal& proposal, Landmarks& landmarks, LandmarkStates& states) {
+  for (const auto& [name, position] : proposal.landmarks) {
+    if (landmarks.contains(name) && state_of(states, name) == LandmarkState::Confirmed) continue;
+    landmarks[name] = position;
+    states[name] = LandmarkState::Proposed;
+  }
+}
+
+Landmarks completed(const Landmarks& landmarks, const LandmarkStates& states, const Proposal& proposal,
+                    bool& used_proposed) {
+  Landmarks all = landmarks;
+  LandmarkStates of_all = states;
+  take_proposal(proposal, all, of_all);
+  used_proposed = false;
+  for (const auto& [name, position] : all) used_proposed |= state_of(of_all, name) == LandmarkState::Proposed;
+  return all;
+}
+
+}  // namespace arthronaut::landmarks

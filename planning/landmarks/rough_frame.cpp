@@ -1,0 +1,266 @@
+#include "planning/landmarks/rough_frame.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "planning/geometry/rigid_transform.h"
+#include "planning/geometry/surface.h"
+#include "planning/landmarks/shape_samples.h"
+
+namespace arthronaut::landmarks {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr std::size_t kSamples = 4000;
+constexpr double kJointEnd_mm = 70;       // of the bone from the joint's end on: what the mirror plane is sought in
+constexpr double kLeastCut_mm2 = 300;     // a smaller plane face may be the bone's own
+constexpr double kCutThickness_mm = 0.8;  // marching cubes and smoothing round a cut's edge
+constexpr double kWholeElongation = 3;    // of standard deviations, along and across a bone without a cut
+constexpr double kGreatestMisfit_mm = 6;  // a mirrored point further off counts as so far off
+
+struct Cut {
+  Vector3d normal = Vector3d::UnitZ();
+  double offset_mm = 0, area_mm2 = 0;
+  [[nodiscard]] bool holds(const SurfaceSample& s) const {
+    return s.normal.dot(normal) > 0.9 && s.point_mm.dot(normal) > offset_mm - 2 * kCutThickness_mm;
+  }
+};
+
+// The largest plane face that supports the whole surface.
+std::optional<Cut> find_cut(const std::vector<SurfaceSample>& samples, double area_each_mm2) {
+  Cut best;
+  for (std::size_t i = 0; i < samples.size(); i += 8) {
+    Vector3d normal = samples[i].normal;
+    double offset = samples[i].point_mm.dot(normal);
+    std::size_t held = 0;
+    for (int round = 0; round < 2; ++round) {  // the second about the mean of the first
+      const double cosine = round == 0 ? 0.985 : 0.995;
+      Vector3d sum = Vector3d::Zero(), center = Vector3d::Zero();
+      held = 0;
+      for (const auto& s : samples) {
+        if (s.normal.dot(normal) < cosine || std::abs(s.point_mm.dot(normal) - offset) > kCutThickness_mm) continue;
+        sum += s.normal;
+        center += s.point_mm;
+        ++held;
+      }
+      if (held < 8) break;
+      normal = sum.normalized();
+      offset = center.dot(normal) / static_cast<double>(held);
+    }
+    const double area = static_cast<double>(held) * area_each_mm2;
+    if (held < 8 || area <= best.area_mm2) continue;
+    const auto beyond = std::count_if(samples.begin(), samples.end(), [&](const auto& s) {
+      return s.point_mm.dot(normal) > offset + kCutThickness_mm;
+    });
+    if (static_cast<double>(beyond) > 0.004 * static_cast<double>(samples.size())) continue;
+    best = {normal, offset, area};
+  }
+  if (best.area_mm2 < kLeastCut_mm2) return std::nullopt;
+  return best;
+}
+
+// A plane: normal and offset.
+struct Mirror {
+  Vector3d normal;
+  double offset_mm = 0, misfit_mm = 0, cost = 0;
+};
+
+class MirrorSearch {
+ public:
+  MirrorSearch(std::vector<Vector3d> points, const geometry::Surface& surface)
+      : points_(std::move(points)), surface_(surface) {
+    center_ = std::accumulate(points_.begin(), points_.end(), Vector3d(Vector3d::Zero())) /
+              static_cast<double>(points_.size());
+  }
+
+  // The best plane among those whose normal lies across `joint`, the direction of the joint's end.
+  [[nodiscard]] Mirror find(const Vector3d& joint) const {
+    std::vector<Mirror> starts;
+    const Vector3d u = joint.unitOrthogonal(), v = joint.cross(u);
+    constexpr int kTurns = 18;
+    for (const double lean : {-0.5, -0.25, 0.0, 0.25, 0.5}) {
+      for (int i = 0; i < kTurns; ++i) {
+        const double angle = geometry::kPi * i / kTurns;
+        const Vector3d across = std::cos(angle) * u + std::sin(angle) * v;
+        Mirror start{(std::cos(lean) * across + std::sin(lean) * joint).normalized(), 0, 0, 0};
+        start.offset_mm = center_.dot(start.normal);
+        start = step(start, 5);
+        starts.push_back(start);
+      }
+    }
+    std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
+    Mirror best{joint, 0, kGreatestMisfit_mm, 1e9};
+    for (std::size_t i = 0; i < 4 && i < starts.size(); ++i) {
+      Mirror refined = starts[i];
+      for (int k = 0; k < 15; ++k) refined = step(refined, 1);
+      if (refined.cost < best.cost && std::abs(refined.normal.dot(joint)) < 0.75) best = refined;
+    }
+    return best;
+  }
+
+ private:
+  // One step of the nearest-point iteration, over every `stride`th point: of all planes the one that takes the points
+  // nearest to their partners, which is the eigenvector of the smallest eigenvalue of their mutual moment.
+  [[nodiscard]] Mirror step(const Mirror& plane, std::size_t stride) const {
+    std::vector<std::pair<double, std::pair<Vector3d, Vector3d>>> pairs;
+    for (std::size_t i = 0; i < points_.size(); i += stride) {
+      const Vector3d& p = points_[i];
+      const Vector3d mirrored = p - 2 * (p.dot(plane.normal) - plane.offset_mm) * plane.normal;
+      const Vector3d nearest = surface_.closest_point(mirrored).point_mm;
+      pairs.push_back({(nearest - mirrored).norm(), {p, nearest}});
+    }
+    double misfit = 0;
+    for (const auto& pair : pairs) misfit += std::min(pair.first, kGreatestMisfit_mm);
+    misfit /= static_cast<double>(pairs.size());
+    const auto kept = static_cast<std::ptrdiff_t>(0.85 * static_cast<double>(pairs.size()));
+    std::nth_element(pairs.begin(), pairs.begin() + kept, pairs.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    pairs.resize(static_cast<std::size_t>(kept));
+    Vector3d mean = Vector3d::Zero();
+    for (const auto& [d, pair] : pairs) mean += (pair.first + pair.second) / 2;
+    mean /= static_cast<double>(kept);
+    Matrix3d moment = Matrix3d::Zero();
+    for (const auto& [d, pair] : pairs) moment += (pair.first - mean) * (pair.second - mean).transpose();
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(moment + moment.transpose());
+    Mirror next{solver.eigenvectors().col(0), 0, misfit, 0};
+    next.offset_mm = mean.dot(next.normal);
+    if (stride > 1) next.normal = plane.normal, next.offset_mm = plane.offset_mm;
+    next.cost = misfit / breadth(plane.normal);
+    return next;
+  }
+
+  // How much wider the joint's end is along the normal than along the widest line across it and the smallest extent:
+  // condyles and plateau are wider than they are deep.
+  [[nodiscard]] double breadth(const Vector3d& normal) const {
+    Matrix3d moment = Matrix3d::Zero();
+    for (const Vector3d& p : points_) moment += (p - center_) * (p - center_).transpose();
+    moment /= static_cast<double>(points_.size());
+    return std::sqrt(normal.dot(moment * normal));
+  }
+
+  std::vector<Vector3d> points_;
+  const geometry::Surface& surface_;
+  Vector3d center_;
+};
+
+// Which way along `forward` is the front: of a femur the notch lies behind; of a tibia the rim is bent in behind.
+double forwardness(const std::vector<Vector3d>& points, const geometry::Surface& surface, const Matrix3d& axes,
+                   const Vector3d& origin, bones::BoneKind bone) {
+  if (bone == bones::BoneKind::Tibia) {
+    const auto reach = [&](double sign, bool middle) {
+      double furthest = -1e9;
+      for (const Vector3d& p : points) {
+        const Vector3d q = axes.transpose() * (p - origin);
+        const double x = std::abs(q.x());
+        if (q.z() < -22 || (middle ? x > 5 : (x < 13 || x > 26))) continue;
+        furthest = std::max(furthest, sign * q.y());
+      }
+      return furthest;
+    };
+    return (reach(1, true) - reach(1, false)) - (reach(-1, true) - reach(-1, false));
+  }
+  double sum = 0, cells = 0;
+  for (double y = -45; y <= 45; y += 3) {
+    for (double z = 0; z <= 45; z += 3) {
+      const Vector3d start = origin + axes * Vector3d(-80, y, z);
+      const auto hits = surface.all_hits(start, axes.col(0));
+      const auto before =
+          std::count_if(hits.begin(), hits.end(), [](const auto& hit) { return hit.distance_mm < 80; });
+      if (before == 0 || before == static_cast<std::ptrdiff_t>(hits.size()) || before % 2 == 1) continue;
+      sum -= y;  // open in the middle and bone on both sides
+      cells += 1;
+    }
+  }
+  return cells > 0 ? sum / cells : 0;
+}
+
+struct JointEnd {
+  Vector3d direction;  // from the shaft to the joint
+};
+
+std::vector<JointEnd> joint_ends(const std::vector<SurfaceSample>& samples, const std::optional<Cut>& cut) {
+  Vector3d mean = Vector3d::Zero();
+  for (const auto& s : samples) mean += s.point_mm / static_cast<double>(samples.size());
+  Matrix3d moment = Matrix3d::Zero();
+  for (const auto& s : samples) moment += (s.point_mm - mean) * (s.point_mm - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> principal(moment);
+  const Vector3d longest = principal.eigenvectors().col(2);
+  const double elongation = std::sqrt(principal.eigenvalues()[2] / principal.eigenvalues()[1]);
+  if (cut) {
+    // A long piece's axis tells more than the saw's plane.
+    if (elongation > 1.6) return {{longest.dot(cut->normal) > 0 ? Vector3d(-longest) : longest}};
+    return {{-cut->normal}};
+  }
+  if (elongation > kWholeElongation) return {{longest}, {-longest}};
+  std::vector<JointEnd> ends;
+  for (int k = 0; k < 3; ++k) {
+    for (const double sign : {1.0, -1.0}) ends.push_back({sign * principal.eigenvectors().col(k)});
+  }
+  return ends;
+}
+
+}  // namespace
+
+std::optional<RoughFrame> rough_frame(const geometry::TriangleMesh& mesh, bones::BoneKind bone) {
+  const auto samples = sample_surface(mesh, kSamples);
+  if (samples.size() < kSamples / 2) return std::nullopt;
+  const double area_each = geometry::surface_area_mm2(mesh) / static_cast<double>(samples.size());
+  const auto cut = find_cut(samples, area_each);
+  const geometry::Surface surface(mesh);
+  std::optional<RoughFrame> best;
+  double best_cost = 1e9;
+  for (const JointEnd& end : joint_ends(samples, cut)) {
+    double tip = -1e9;
+    for (const auto& s : samples) tip = std::max(tip, s.point_mm.dot(end.direction));
+    std::vector<Vector3d> points;
+    for (const auto& s : samples) {
+      if (s.point_mm.dot(end.direction) > tip - kJointEnd_mm && !(cut && cut->holds(s))) points.push_back(s.point_mm);
+    }
+    if (points.size() < 200) continue;
+    if (points.size() > 500) {
+      std::vector<Vector3d> fewer;
+      for (std::size_t i = 0; i < 500; ++i) fewer.push_back(points[i * points.size() / 500]);
+      points = std::move(fewer);
+    }
+    const MirrorSearch search(points, surface);
+    const Mirror mirror = search.find(end.direction);
+    if (mirror.cost >= best_cost) continue;
+    RoughFrame frame;
+    const double up = bone == bones::BoneKind::Femur ? -1 : 1;
+    const Vector3d z = (up * (end.direction - end.direction.dot(mirror.normal) * mirror.normal)).normalized();
+    frame.bone_from_frame.col(0) = mirror.normal;
+    frame.bone_from_frame.col(2) = z;
+    frame.bone_from_frame.col(1) = z.cross(mirror.normal);
+    const double tip_z = bone == bones::BoneKind::Femur ? 1e9 : -1e9;
+    double end_z = tip_z;
+    Vector3d middle = Vector3d::Zero();
+    for (const Vector3d& p : points) {
+      end_z = bone == bones::BoneKind::Femur ? std::min(end_z, p.dot(z)) : std::max(end_z, p.dot(z));
+      middle += p / static_cast<double>(points.size());
+    }
+    frame.origin_mm = middle + (mirror.offset_mm - middle.dot(mirror.normal)) * mirror.normal;
+    frame.origin_mm += (end_z - frame.origin_mm.dot(z)) * z;
+    if (forwardness(points, surface, frame.bone_from_frame, frame.origin_mm, bone) < 0) {
+      frame.bone_from_frame.col(0) *= -1;
+      frame.bone_from_frame.col(1) *= -1;
+    }
+    frame.asymmetry_mm = mirror.misfit_mm;
+    if (cut) {
+      frame.cut_normal = cut->normal;
+      frame.cut_offset_mm = cut->offset_mm;
+    }
+    best_cost = mirror.cost;
+    best = frame;
+  }
+  return best;
+}
+
+}  // namespace arthronaut::landmarks

@@ -1,0 +1,4 @@
+#include "planning/landmarks/tibia_shape.h"
+namespace arthronaut::landmarks {
+Proposal propose_tibia(const geometry::TriangleMesh&, const ProposalOptions&) { return {}; }
+}
