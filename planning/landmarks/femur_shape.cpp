@@ -122,11 +122,13 @@ double side_score(const Shape& shape) {
 // The outermost patch, as large as kEpicondyleSamples, about the condyles' centres.
 Vector3d epicondyle(const Shape& shape, double sign) {
   const Matrix3d& axes = shape.condyles.bone_from_frame;
-  const double within = 0.36 * shape.condyles.depth_mm;
+  const double depth = shape.condyles.depth_mm;
   std::vector<std::pair<double, Vector3d>> found;
   for (const auto& s : shape.samples) {
     const Vector3d q = axes.transpose() * (s.point_mm - shape.condyles.center_mm);
-    if (std::hypot(q.y(), q.z()) < within) found.push_back({sign * q.x(), s.point_mm});
+    // The articular margin, where osteophytes stand out further, lies below and behind.
+    if (std::abs(q.y()) < 0.25 * depth && q.z() > -0.08 * depth && q.z() < 0.3 * depth)
+      found.push_back({sign * q.x(), s.point_mm});
   }
   const std::size_t count = std::min(kEpicondyleSamples, found.size());
   std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), found.end(),

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
+#include <string>
 
 namespace arthronaut::landmarks {
 
@@ -18,13 +19,41 @@ std::optional<Vector3d> find(const Landmarks& landmarks, const char* name) {
   return found->second;
 }
 
-// Unit, from the medial to the lateral side, at right angles to `across`.
-Vector3d lateral_of_femur(const Landmarks& landmarks, bones::Side side, const Vector3d& across) {
-  const auto lateral = find(landmarks, "lateral_condyle_posterior"),
-             medial = find(landmarks, "medial_condyle_posterior");
-  Vector3d axis = side == bones::Side::Right ? Vector3d(-1, 0, 0) : Vector3d(1, 0, 0);
-  if (lateral && medial && (*lateral - *medial).norm() > kLeastSpan_mm) axis = *lateral - *medial;
-  return (axis - axis.dot(across) * across).normalized();
+// Unit, from the medial to the lateral side: the direction of the true lateral view, in which the condyles are
+// superposed.
+std::optional<Vector3d> condylar_line(const Landmarks& landmarks) {
+  for (const char* part : {"center", "posterior"}) {
+    const auto lateral = find(landmarks, (std::string("lateral_condyle_") + part).c_str()),
+               medial = find(landmarks, (std::string("medial_condyle_") + part).c_str());
+    if (lateral && medial && (*lateral - *medial).norm() > kLeastSpan_mm)
+      return Vector3d((*lateral - *medial).normalized());
+  }
+  return std::nullopt;
+}
+
+struct Extents {
+  double deep = std::numeric_limits<double>::infinity(), shallow = -deep, low = 0;
+};
+
+// From the three landmarks where all are there, else the outline of the lateral condyle below the line; the medial one
+// and the shaft are other bones here.
+Extents extents_of(const geometry::TriangleMesh& femur, const Landmarks& landmarks, const FemoralQuadrant& quadrant,
+                   const Vector3d& front) {
+  Extents extents;
+  const auto deep = find(landmarks, "lateral_condyle_deep"), shallow = find(landmarks, "lateral_condyle_shallow"),
+             low = find(landmarks, "lateral_condyle_low");
+  if (deep && shallow && low) {
+    return {(*deep - front).dot(quadrant.shallow), (*shallow - front).dot(quadrant.shallow),
+            (*low - front).dot(quadrant.low)};
+  }
+  for (const Vector3d& vertex : femur.vertices_mm) {
+    const Vector3d from_roof = vertex - front;
+    if (from_roof.dot(quadrant.lateral) <= 0 || from_roof.dot(quadrant.low) < 0) continue;
+    extents.deep = std::min(extents.deep, from_roof.dot(quadrant.shallow));
+    extents.shallow = std::max(extents.shallow, from_roof.dot(quadrant.shallow));
+    extents.low = std::max(extents.low, from_roof.dot(quadrant.low));
+  }
+  return extents;
 }
 
 }  // namespace
@@ -45,26 +74,21 @@ std::optional<FemoralQuadrant> femoral_quadrant(const geometry::TriangleMesh& fe
   const auto front = find(landmarks, "blumensaat_anterior"), back = find(landmarks, "blumensaat_posterior");
   if (!front || !back || (*front - *back).norm() < kLeastSpan_mm) return std::nullopt;
   FemoralQuadrant quadrant;
-  quadrant.shallow = (*front - *back).normalized();
-  const Vector3d lateral = lateral_of_femur(landmarks, side, quadrant.shallow);
-  // Lateral, shallow, low: of the two normals of Blumensaat's line in the view, the one that points to the
-  // joint.
-  quadrant.low = lateral.cross(quadrant.shallow).normalized();
-  if (quadrant.low.z() > 0) quadrant.low = -quadrant.low;
-
-  double deep = std::numeric_limits<double>::infinity(), shallow = -deep, low = 0;
-  for (const Vector3d& vertex : femur.vertices_mm) {
-    const Vector3d from_roof = vertex - *front;
-    // The outline of the lateral condyle below the line; the medial one and the shaft are other bones here.
-    if (from_roof.dot(lateral) <= 0 || from_roof.dot(quadrant.low) < 0) continue;
-    deep = std::min(deep, from_roof.dot(quadrant.shallow));
-    shallow = std::max(shallow, from_roof.dot(quadrant.shallow));
-    low = std::max(low, from_roof.dot(quadrant.low));
-  }
-  if (shallow - deep < kLeastSpan_mm || low < kLeastSpan_mm) return std::nullopt;
-  quadrant.corner_mm = *front + deep * quadrant.shallow;
-  quadrant.depth_mm = shallow - deep;
-  quadrant.height_mm = low;
+  const Vector3d scanner = side == bones::Side::Right ? Vector3d(-Vector3d::UnitX()) : Vector3d::UnitX();
+  quadrant.lateral = condylar_line(landmarks).value_or(scanner);
+  // The grid lies in the view's plane: Blumensaat's line as the view shows it.
+  const Vector3d roof = *front - *back;
+  const Vector3d in_view = roof - roof.dot(quadrant.lateral) * quadrant.lateral;
+  if (in_view.norm() < kLeastSpan_mm) return std::nullopt;
+  quadrant.shallow = in_view.normalized();
+  // Lateral, anterior, proximal are right-handed in a right knee; low is behind and below.
+  quadrant.low = side == bones::Side::Right ? Vector3d(quadrant.shallow.cross(quadrant.lateral))
+                                            : Vector3d(quadrant.lateral.cross(quadrant.shallow));
+  const Extents extents = extents_of(femur, landmarks, quadrant, *front);
+  if (!(extents.shallow - extents.deep > kLeastSpan_mm) || !(extents.low > kLeastSpan_mm)) return std::nullopt;
+  quadrant.corner_mm = *front + extents.deep * quadrant.shallow;
+  quadrant.depth_mm = extents.shallow - extents.deep;
+  quadrant.height_mm = extents.low;
   return quadrant;
 }
 

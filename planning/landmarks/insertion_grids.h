@@ -21,6 +21,8 @@ namespace arthronaut::landmarks {
 struct FemoralQuadrant {
   Eigen::Vector3d corner_mm;     // deep and high, in the plane of the footprint-side condyle; bone frame
   Eigen::Vector3d shallow, low;  // unit, at right angles: along Blumensaat's line; away from it
+  // Unit, at right angles to both: the way out of the notch through the lateral condyle; the view is along it.
+  Eigen::Vector3d lateral = Eigen::Vector3d::UnitX();
   double depth_mm = 0, height_mm = 0;
 
   struct Percent {
@@ -31,9 +33,10 @@ struct FemoralQuadrant {
   [[nodiscard]] Eigen::Vector3d point_at(const Percent& percent) const;
 };
 
-// Needs blumensaat_anterior and blumensaat_posterior; the view is along the line through both posterior
-// condyles where these are known, else along the patient's x. nullopt when a landmark is missing or the two
-// lie closer than 5 mm.
+// Needs blumensaat_anterior and blumensaat_posterior. The view is exactly along the condylar line: through the
+// condyles' centres, else their posterior points, where either pair is known, else along the patient's x; Blumensaat's
+// line is taken as that view shows it. Extents: lateral_condyle_deep, _shallow and _low where all three are known, else the
+// outline of the mesh. nullopt when a landmark is missing or the line is shorter than 5 mm in the view.
 [[nodiscard]] std::optional<FemoralQuadrant> femoral_quadrant(const geometry::TriangleMesh& femur,
                                                               const Landmarks& landmarks, bones::Side side);
 

@@ -17,6 +17,7 @@ using Eigen::Vector3d;
 constexpr double kUsualSlope_deg = 37;  // of the roof against the long axis; 26 to 46 in Howell 1995
 constexpr double kStep_mm = 0.5, kReach_mm = 36;
 constexpr double kBend_mm = 1.0;         // off the line: the roof has ended
+constexpr double kFarOff_mm = 3.0, kLongestPit_mm = 6.0, kGap_mm = 3.0;
 constexpr double kHill_mm = 1.0;         // into the notch off the line: a hill
 constexpr double kLeastRoof_mm = 14;
 constexpr double kGreatestTurn = 0.45;  // of the roof against what was taken for its direction, tangent
@@ -103,24 +104,20 @@ Line fit(const std::vector<ProfilePoint>& profile, double from, double to, const
   return {(t1 - slope * s1) / n, slope};
 }
 
-// From `inside` outwards to where the outline has left the line, for good: over 2 mm and more.
+// From `inside` outwards to where the outline leaves the line for good: a pit in the roof is shallow or short, beyond
+// the end the bone falls away.
 double end_of_roof(const std::vector<ProfilePoint>& profile, const Line& line, double inside, double sign) {
-  double end = inside, off_since = 0;
-  bool is_off = false;
   std::vector<const ProfilePoint*> way;
   for (const auto& p : profile) {
     if (sign * (p.s - inside) >= 0) way.push_back(&p);
   }
-  std::sort(way.begin(), way.end(), [&](const auto* a, const auto* b) { return sign * a->s < sign * b->s; });
-  double before = inside;
+  if (sign < 0) std::reverse(way.begin(), way.end());
+  double end = inside, before = inside;
   for (const auto* p : way) {
-    if (sign * (p->s - before) > 3) break;  // the outline has a gap: nothing of the roof is beyond
+    const double off = p->t - line.at(p->s);
+    if (off > kFarOff_mm || sign * (p->s - end) > kLongestPit_mm || sign * (p->s - before) > kGap_mm) break;
     before = p->s;
-    const bool off = p->t - line.at(p->s) > kBend_mm;
-    if (off && !is_off) off_since = p->s;
-    is_off = off;
-    if (off && sign * (p->s - off_since) >= 2) break;
-    if (!off) end = p->s;
+    if (off < kBend_mm) end = p->s;
   }
   return end;
 }
