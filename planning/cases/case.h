@@ -44,6 +44,8 @@ struct Case {
   Plan plan;
   std::vector<CaseImage> images = {};  // oldest first; empty for a case of meshes, and of older versions
   std::string plan_version = {};       // see plan_version(); of the moment when the case was loaded
+  // Which landmarks are proposals; one that is not in it is confirmed (landmarks/landmarks.h).
+  std::map<bones::BoneKind, landmarks::LandmarkStates> landmark_states = {};
 };
 
 // Throws IoError or InvalidInput (file, place, reason): not a case, newer version, broken file, missing mesh.

@@ -16,19 +16,30 @@ namespace fs = std::filesystem;
 constexpr std::string_view kFormat = "arthronaut.case";
 constexpr int kVersion = 1;
 
-nlohmann::ordered_json landmarks_to_json(const landmarks::Landmarks& landmarks) {
+nlohmann::ordered_json landmarks_to_json(const landmarks::Landmarks& landmarks,
+                                         const landmarks::LandmarkStates& states) {
   auto json = nlohmann::ordered_json::array();
-  for (const auto& [name, position] : landmarks)
-    json.push_back({{"name", name}, {"position_mm", files::to_json(position)}});
+  for (const auto& [name, position] : landmarks) {
+    json.push_back({{"name", name},
+                    {"position_mm", files::to_json(position)},
+                    {"state", landmarks::to_text(landmarks::state_of(states, name))}});
+  }
   return json;
 }
 
-landmarks::Landmarks landmarks_from(const files::JsonObject& bone) {
+// A case that says no state is of a version before there were proposals: a person placed its landmarks.
+landmarks::Landmarks landmarks_from(const files::JsonObject& bone, landmarks::LandmarkStates& states) {
   landmarks::Landmarks landmarks;
   if (!bone.has("landmarks")) return landmarks;
   for (const auto& node : bone.objects("landmarks")) {
     if (!landmarks.emplace(node.text("name"), node.vector3("position_mm")).second)
       node.fail("name", "is there twice");
+    if (!node.has("state")) continue;
+    try {
+      states[node.text("name")] = landmarks::landmark_state_from_text(node.text("state"));
+    } catch (const InvalidInput&) {
+      node.fail("state", "must be proposed or confirmed");
+    }
   }
   return landmarks;
 }
@@ -96,8 +107,11 @@ Case load_case(const fs::path& folder) {
     if (node.has("source")) bone.source = node.text("source");
     bone.mesh = bones::read_mesh(mesh_file(folder, bone.kind),
                                  {.space = bones::Space::LPS, .unit = bones::LengthUnit::Millimetre});
-    if (auto landmarks = landmarks_from(node); !landmarks.empty())
+    landmarks::LandmarkStates states;
+    if (auto landmarks = landmarks_from(node, states); !landmarks.empty()) {
       result.landmarks[bone.kind] = std::move(landmarks);
+      result.landmark_states[bone.kind] = std::move(states);
+    }
     if (!result.bones.emplace(bone.kind, std::move(bone)).second) node.fail("kind", "is there twice");
   }
   if (root.has("images")) {
@@ -128,7 +142,9 @@ void save_case(const fs::path& folder, const Case& contents) {
       bones::write_mesh_ply(mesh_file(folder, kind), bone.mesh);
     nlohmann::ordered_json node = {{"kind", bones::to_text(kind)}, {"source", bone.source}};
     if (const auto marks = contents.landmarks.find(kind); marks != contents.landmarks.end()) {
-      node["landmarks"] = landmarks_to_json(marks->second);
+      const auto states = contents.landmark_states.find(kind);
+      node["landmarks"] = landmarks_to_json(
+          marks->second, states == contents.landmark_states.end() ? landmarks::LandmarkStates{} : states->second);
     }
     bones.push_back(std::move(node));
   }

@@ -76,6 +76,7 @@ void add_bones(const fs::path& folder, cases::Case& target, const BoneImport& im
     }
     target.bones[kind] = imported.bone;
     target.landmarks.erase(kind);
+    target.landmark_states.erase(kind);
   }
 }
 

@@ -5,6 +5,9 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
+
+#include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::landmarks {
 
@@ -82,31 +85,91 @@ bool agrees(const AnatomicalAxes& axes, const AnatomicalAxes& scanner) {
          axes.lateral.dot(scanner.lateral) > kLeastCosine;
 }
 
+// The long axis across `lateral`: what the joint's end says, and the landmarks of the shaft as far as they lie apart.
+std::optional<Vector3d> long_axis(const std::optional<Vector3d>& by_joint, double joint_sigma_deg,
+                                  const Landmarks& landmarks, const Vector3d& lateral) {
+  const auto distal = find(landmarks, "shaft_distal"), proximal = find(landmarks, "shaft_proximal");
+  const auto shaft = between(distal, proximal);
+  const auto by_shaft = shaft ? laid_across(*shaft, lateral) : std::nullopt;
+  if (!by_shaft) return by_joint;
+  if (!by_joint || by_joint->dot(*by_shaft) < kLeastCosine) return by_shaft;
+  const double sigma = shaft_sigma_deg((*proximal - *distal).norm());
+  const double weight = 1 / (sigma * sigma), joint_weight = 1 / (joint_sigma_deg * joint_sigma_deg);
+  return Vector3d((weight * *by_shaft + joint_weight * *by_joint).normalized());
+}
+
 std::optional<AnatomicalAxes> from_landmarks(bones::BoneKind bone, bones::Side side,
                                              const Landmarks& landmarks,
                                              const std::optional<Vector3d>& shaft) {
   const bool is_femur = bone == bones::BoneKind::Femur;
-  const auto medial = find(landmarks, is_femur ? "medial_epicondyle" : "plateau_medial");
-  const auto outer = find(landmarks, is_femur ? "lateral_epicondyle" : "plateau_lateral");
+  std::optional<Vector3d> medial, outer;
+  for (const char* part : is_femur ? std::array{"condyle_center", "epicondyle", "condyle_posterior"}
+                                   : std::array{"plateau", "plateau", "plateau"}) {
+    const std::string name = part;
+    medial = find(landmarks, (is_femur ? "medial_" + name : name + "_medial").c_str());
+    outer = find(landmarks, (is_femur ? "lateral_" + name : name + "_lateral").c_str());
+    if (medial && outer) break;
+  }
   const auto lateral = between(medial, outer);
   if (!lateral) return std::nullopt;
-  const auto behind = is_femur ? middle(find(landmarks, "medial_condyle_posterior"),
-                                        find(landmarks, "lateral_condyle_posterior"))
-                               : find(landmarks, "plateau_posterior");
-  const auto ahead = is_femur ? middle(medial, outer) : find(landmarks, "plateau_anterior");
-  std::optional<Vector3d> proximal;
-  if (const auto forward = between(behind, ahead)) {
-    if (const auto anterior = laid_across(*forward, *lateral)) {
-      proximal = side == bones::Side::Right ? Vector3d(lateral->cross(*anterior))
-                                            : Vector3d(anterior->cross(*lateral));
-    }
+  // Of an anterior direction in the joint, the proximal one at right angles to it.
+  const auto above = [&](const std::optional<Vector3d>& forward) -> std::optional<Vector3d> {
+    const auto anterior = forward ? laid_across(*forward, *lateral) : std::nullopt;
+    if (!anterior) return std::nullopt;
+    return side == bones::Side::Right ? Vector3d(lateral->cross(*anterior)) : Vector3d(anterior->cross(*lateral));
+  };
+  const auto turned = [&](const Vector3d& proximal, double forward_deg) {
+    const double angle = geometry::rad_from_deg(forward_deg);
+    return Vector3d(std::cos(angle) * proximal + std::sin(angle) * anterior_of(proximal, *lateral, side));
+  };
+  std::optional<Vector3d> by_joint;
+  double sigma_deg = kRoofSigma_deg;
+  if (is_femur) {
+    // Blumensaat's line runs forwards and, by 90 - 37 degrees, downwards.
+    const auto roof =
+        above(between(find(landmarks, "blumensaat_posterior"), find(landmarks, "blumensaat_anterior")));
+    if (roof) by_joint = turned(*roof, -(90 - kRoofSlope_deg));
+    const auto behind = middle(find(landmarks, "medial_condyle_posterior"), find(landmarks, "lateral_condyle_posterior"));
+    const auto ahead = middle(find(landmarks, "medial_epicondyle"), find(landmarks, "lateral_epicondyle"));
+    if (!by_joint) by_joint = above(between(behind, ahead));
+  } else {
+    sigma_deg = kSlopeSigma_deg;
+    const auto plateau =
+        above(between(find(landmarks, "plateau_posterior"), find(landmarks, "plateau_anterior")));
+    if (plateau) by_joint = turned(*plateau, kPlateauSlope_deg);
   }
+  auto proximal = long_axis(by_joint, sigma_deg, landmarks, *lateral);
   if (!proximal) proximal = laid_across(shaft.value_or(Vector3d::UnitZ()), *lateral);
   if (!proximal) return std::nullopt;
   return axes_from(AnatomicalAxes::Origin::FromLandmarks, *proximal, *lateral, side);
 }
 
+// Mixed-up landmarks turn a bone over: then most of it lies on the wrong side of its joint. Without a mesh, only the
+// scanner is left to compare with.
+bool is_upright(const AnatomicalAxes& axes, bones::BoneKind bone, bones::Side side, const Landmarks& landmarks,
+                const geometry::TriangleMesh& mesh) {
+  if (mesh.vertices_mm.empty()) return agrees(axes, scanner_axes(side));
+  const bool is_femur = bone == bones::BoneKind::Femur;
+  std::optional<Vector3d> joint;
+  for (const char* part : {"condyle_posterior", "condyle_center", "epicondyle"}) {
+    if (is_femur && !joint) {
+      joint = middle(find(landmarks, (std::string("medial_") + part).c_str()),
+                     find(landmarks, (std::string("lateral_") + part).c_str()));
+    }
+  }
+  if (!is_femur) joint = middle(find(landmarks, "plateau_medial"), find(landmarks, "plateau_lateral"));
+  if (!joint) return agrees(axes, scanner_axes(side));
+  Vector3d mean = Vector3d::Zero();
+  for (const Vector3d& v : mesh.vertices_mm) mean += v / static_cast<double>(mesh.vertices_mm.size());
+  return (is_femur ? 1 : -1) * (mean - *joint).dot(axes.proximal) > 0;
+}
+
 }  // namespace
+
+double shaft_sigma_deg(double length_mm) {
+  constexpr double kStraight_deg = 2.5, kOverLength_deg_mm = 70;
+  return std::hypot(kStraight_deg, kOverLength_deg_mm / length_mm);
+}
 
 std::string_view to_text(AnatomicalAxes::Origin origin) {
   switch (origin) {
@@ -130,7 +193,7 @@ AnatomicalAxes anatomical_axes(bones::BoneKind bone, bones::Side side, const Lan
   const AnatomicalAxes scanner = scanner_axes(side);
   const std::optional<Vector3d> shaft = shaft_of(mesh);
   const std::optional<AnatomicalAxes> named = from_landmarks(bone, side, landmarks, shaft);
-  if (named && agrees(*named, scanner)) return *named;
+  if (named && is_upright(*named, bone, side, landmarks, mesh)) return *named;
   if (!shaft) return scanner;
   const std::optional<Vector3d> lateral = laid_across(scanner.lateral, *shaft);
   if (!lateral) return scanner;

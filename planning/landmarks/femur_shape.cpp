@@ -25,9 +25,6 @@ constexpr std::size_t kSamples = 20000;
 constexpr double kJointEnd_mm = 75;
 // The shaft begins above the condyles by this share of their depth; it is straight for so far (the femur is bowed).
 constexpr double kShaftFrom = 0.78, kShaftLength_mm = 110;
-// How well the long axis is known in the lateral view: by itself, from a shaft of a length, and from the roof of the
-// notch alone, which stands at 37 degrees to it (26 to 46 in Howell 1995).
-constexpr double kShaftSigma_deg = 2.5, kShaftSigmaOverLength_deg_mm = 70, kRoofSigma_deg = 5.5, kRoofSlope_deg = 37;
 constexpr std::size_t kEpicondyleSamples = 14;
 
 struct Shape {
@@ -52,7 +49,7 @@ Vector3d proximal_of(const Shape& shape) {
   if (!shape.shaft) return by_roof;
   const Vector3d away = shape.shaft->away();
   const Vector3d by_shaft = (away - away.dot(x) * x).normalized();
-  const double sigma = std::hypot(kShaftSigma_deg, kShaftSigmaOverLength_deg_mm / shape.shaft->length_mm());
+  const double sigma = shaft_sigma_deg(shape.shaft->length_mm());
   const double weight = 1 / (sigma * sigma), roof_weight = 1 / (kRoofSigma_deg * kRoofSigma_deg);
   return (weight * by_shaft + roof_weight * by_roof).normalized();
 }

@@ -97,20 +97,33 @@ TibialGrid::Percent TibialGrid::percent_of(const Vector3d& point_mm) const {
           .medial_lateral = 100 * (point_mm - medial_mm).dot(lateral) / width_mm};
 }
 
+Vector3d TibialGrid::point_at(const Percent& percent) const {
+  const Vector3d corner = anterior_mm + (medial_mm - anterior_mm).dot(lateral) * lateral;
+  return corner + 0.01 * percent.anterior_posterior * depth_mm * posterior +
+         0.01 * percent.medial_lateral * width_mm * lateral;
+}
+
 std::optional<TibialGrid> tibial_grid(const Landmarks& landmarks) {
   const auto front = find(landmarks, "plateau_anterior"), back = find(landmarks, "plateau_posterior");
   const auto medial = find(landmarks, "plateau_medial"), lateral = find(landmarks, "plateau_lateral");
   if (!front || !back || !medial || !lateral) return std::nullopt;
-  // Both shares are read on a view from above: heights do not enter.
-  Vector3d across = *lateral - *medial, along = *back - *front;
-  across.z() = along.z() = 0;
-  if (across.norm() < kLeastSpan_mm || along.norm() < kLeastSpan_mm) return std::nullopt;
+  const Vector3d across = *lateral - *medial, along = *back - *front;
+  if (across.norm() < kLeastSpan_mm) return std::nullopt;
   TibialGrid grid{
       .anterior_mm = *front, .medial_mm = *medial, .posterior = {}, .lateral = across.normalized()};
-  grid.posterior = (along - along.dot(grid.lateral) * grid.lateral).normalized();
-  grid.depth_mm = along.dot(grid.posterior);
+  const Vector3d straight = along - along.dot(grid.lateral) * grid.lateral;
+  if (straight.norm() < kLeastSpan_mm) return std::nullopt;
+  grid.posterior = straight.normalized();
+  grid.up = grid.lateral.cross(grid.posterior);
+  const Vector3d middle = (*front + *back + *medial + *lateral) / 4;
+  double upwards = grid.up.z();
+  if (const auto tuberosity = find(landmarks, "tuberosity")) upwards = -(*tuberosity - middle).dot(grid.up);
+  for (const char* name : {"medial_eminence", "lateral_eminence"}) {
+    if (const auto eminence = find(landmarks, name)) upwards = (*eminence - middle).dot(grid.up);
+  }
+  if (upwards < 0) grid.up = -grid.up;
+  grid.depth_mm = straight.norm();
   grid.width_mm = across.norm();
-  if (grid.depth_mm < kLeastSpan_mm) return std::nullopt;
   return grid;
 }
 

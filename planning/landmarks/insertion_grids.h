@@ -40,19 +40,24 @@ struct FemoralQuadrant {
 [[nodiscard]] std::optional<FemoralQuadrant> femoral_quadrant(const geometry::TriangleMesh& femur,
                                                               const Landmarks& landmarks, bones::Side side);
 
-// Percentages on the tibial plateau, in the plane across the long axis.
+// Percentages on the tibial plateau, as seen from above: at right angles to the line through its sides and to the line
+// from front to back.
 struct TibialGrid {
   Eigen::Vector3d anterior_mm, medial_mm;  // where each share is 0; bone frame
   Eigen::Vector3d posterior, lateral;      // unit, at right angles
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  // unit, at right angles to both: the view from above is against it
   double depth_mm = 0, width_mm = 0;
 
   struct Percent {
     double anterior_posterior = 0, medial_lateral = 0;
   };
   [[nodiscard]] Percent percent_of(const Eigen::Vector3d& point_mm) const;
+  // In the plane through plateau_anterior.
+  [[nodiscard]] Eigen::Vector3d point_at(const Percent& percent) const;
 };
 
-// Needs the four plateau_* landmarks. nullopt when one is missing or two opposite ones lie closer than 5 mm.
+// Needs the four plateau_* landmarks; which side is up is told by an eminence or the tuberosity, without either by the
+// patient's z. nullopt when one is missing or two opposite ones lie closer than 5 mm.
 [[nodiscard]] std::optional<TibialGrid> tibial_grid(const Landmarks& landmarks);
 
 }  // namespace arthronaut::landmarks

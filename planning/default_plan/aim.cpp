@@ -1,0 +1,100 @@
+#include "planning/default_plan/aim.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::default_plan {
+
+namespace {
+
+using Eigen::Vector3d;
+using geometry::rad_from_deg;
+
+// Of the portal from the flexion axis, in the tibia's axes.
+constexpr double kPortalMedial_mm = 24, kPortalAnterior_mm = 35, kPortalDistal_mm = 15;
+constexpr double kCoronal_deg = 67.5;
+constexpr double kLeastFacing = 0.25;  // of the exit's normal along where it should look
+constexpr double kThickWall_mm = 2;
+// What a millimetre of missing wall or length, and a step away from what was asked for, count.
+constexpr double kPerWall = 4, kPerLength = 3, kPerStep = 0.6;
+
+struct Candidate {
+  Vector3d direction;
+  double steps = 0;  // away from what was asked for
+};
+
+std::vector<Candidate> through_portal(const tunnels::Tunnel& at, const Joint& joint, const Options& options) {
+  std::vector<Candidate> candidates;
+  const auto& axes = joint.axes;
+  for (const double more : {0.0, -5.0, 5.0, -10.0, 10.0, 15.0, -15.0}) {
+    for (const double medial : {0.0, -5.0, 5.0, 8.0}) {
+      for (const double distal : {0.0, -5.0, 5.0}) {
+        const double flexion = rad_from_deg(std::clamp(options.flexion_deg + more, 100.0, 130.0));
+        // The tibia's front turns to the femur's end, its long axis backwards.
+        const Vector3d front = std::cos(flexion) * axes.anterior - std::sin(flexion) * axes.proximal;
+        const Vector3d above = std::sin(flexion) * axes.anterior + std::cos(flexion) * axes.proximal;
+        const Vector3d portal =
+            joint.center_mm - (kPortalMedial_mm + medial) * joint.scale * axes.lateral +
+            joint.scale * kPortalAnterior_mm * front - (kPortalDistal_mm + distal) * joint.scale * above;
+        candidates.push_back({(at.entry_mm - portal).normalized(),
+                              std::abs(more) / 5 + std::abs(medial) / 5 + std::abs(distal) / 5});
+      }
+    }
+  }
+  return candidates;
+}
+
+std::vector<Candidate> along_guide(const Joint& joint, const Options& options) {
+  std::vector<Candidate> candidates;
+  const auto& axes = joint.axes;
+  for (const double guide : {0.0, -5.0, 5.0, -10.0, 10.0}) {
+    for (const double coronal : {0.0, -2.5, 2.5, -5.0, 5.0, -10.0}) {
+      const double forward = 1 / std::tan(rad_from_deg(options.guide_deg + guide));
+      const double medial = 1 / std::tan(rad_from_deg(kCoronal_deg + coronal));
+      candidates.push_back({(forward * axes.anterior - medial * axes.lateral - axes.proximal).normalized(),
+                            std::abs(guide) / 5 + std::abs(coronal) / 2.5});
+    }
+  }
+  return candidates;
+}
+
+}  // namespace
+
+std::optional<tunnels::Tunnel> aim(const tunnels::Tunnel& at_entry, const geometry::Surface& surface,
+                                   const Joint& joint, const Options& options) {
+  const bool is_femur = at_entry.bone == bones::BoneKind::Femur;
+  const auto& axes = joint.axes;
+  const Vector3d exit_side =
+      is_femur ? axes.lateral : Vector3d((axes.anterior - 0.7 * axes.lateral).normalized());
+  const std::array<double, 2> fitting_mm =
+      is_femur ? std::array<double, 2>{30, 45} : std::array<double, 2>{32, 55};
+  std::optional<tunnels::Tunnel> best;
+  double least_cost = std::numeric_limits<double>::infinity();
+  auto candidates = is_femur ? through_portal(at_entry, joint, options) : along_guide(joint, options);
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const auto& a, const auto& b) { return a.steps < b.steps; });
+  for (const Candidate& candidate : candidates) {
+    if (kPerStep * candidate.steps >= least_cost) break;  // the rest can only cost more
+    tunnels::Tunnel tunnel = at_entry;
+    tunnel.direction = candidate.direction;
+    const auto measured = tunnels::measure(tunnel, surface);
+    if (!measured.enters_bone || (measured.entry_on_surface_mm - tunnel.entry_mm).norm() > 2) continue;
+    if (surface.closest_point(measured.exit_mm).normal.dot(exit_side) < kLeastFacing) continue;
+    const double misfit = std::max({0.0, fitting_mm[0] - measured.length_mm, measured.length_mm - fitting_mm[1]});
+    const double cost = kPerStep * candidate.steps + kPerLength * misfit +
+                        kPerWall * std::max(0.0, kThickWall_mm - measured.wall_mm);
+    if (cost < least_cost) {
+      least_cost = cost;
+      best = tunnel;
+    }
+  }
+  return best;
+}
+
+}  // namespace arthronaut::default_plan

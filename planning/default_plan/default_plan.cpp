@@ -1,0 +1,126 @@
+#include "planning/default_plan/default_plan.h"
+
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "planning/default_plan/aim.h"
+#include "planning/files/format.h"
+#include "planning/geometry/error.h"
+#include "planning/landmarks/anatomical_axes.h"
+#include "planning/norms/footprint.h"
+
+namespace arthronaut::default_plan {
+
+namespace {
+
+using Eigen::Vector3d;
+using landmarks::Landmarks;
+using Outcome = DefaultTunnel::Outcome;
+
+constexpr double kUsualCondyles_mm = 48, kUsualPlateau_mm = 73;  // apart; across
+
+// What the entry follows from.
+std::vector<const char*> needed(bones::BoneKind bone) {
+  if (bone == bones::BoneKind::Femur)
+    return {"blumensaat_anterior", "blumensaat_posterior", "lateral_condyle_center", "medial_condyle_center",
+            "lateral_condyle_deep", "lateral_condyle_shallow", "lateral_condyle_low"};
+  return {"plateau_anterior", "plateau_posterior", "plateau_medial", "plateau_lateral"};
+}
+
+void check_range(const char* field, double value, double least, double greatest) {
+  if (!(value >= least && value <= greatest))
+    throw InvalidInput(files::format("default plan: %s is %g, must be %g to %g", field, value, least, greatest));
+}
+
+std::optional<Joint> joint_of(const BoneInput& input, const Landmarks& marks, bones::Side side) {
+  Joint joint;
+  joint.axes = landmarks::anatomical_axes(input.bone->kind, side, marks, input.bone->mesh);
+  if (joint.axes.origin != landmarks::AnatomicalAxes::Origin::FromLandmarks) return std::nullopt;
+  const bool is_femur = input.bone->kind == bones::BoneKind::Femur;
+  const char* lateral_name = is_femur ? "lateral_condyle_center" : "plateau_lateral";
+  const char* medial_name = is_femur ? "medial_condyle_center" : "plateau_medial";
+  const auto lateral = marks.find(lateral_name), medial = marks.find(medial_name);
+  if (lateral == marks.end() || medial == marks.end()) return std::nullopt;
+  joint.center_mm = (lateral->second + medial->second) / 2;
+  joint.scale = (lateral->second - medial->second).norm() / (is_femur ? kUsualCondyles_mm : kUsualPlateau_mm);
+  return joint;
+}
+
+}  // namespace
+
+void Options::check() const {
+  check_range("diameter_mm", diameter_mm, 3, 15);
+  check_range("flexion_deg", flexion_deg, 90, 140);
+  check_range("guide_deg", guide_deg, 35, 75);
+}
+
+DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options& options) {
+  options.check();
+  DefaultTunnel result;
+  const bones::BoneKind kind = input.bone->kind;
+  landmarks::Proposal made;
+  const landmarks::Proposal* proposal = input.proposal;
+  const auto is_confirmed = [&](const char* name) {
+    return input.landmarks.contains(name) &&
+           landmarks::state_of(input.states, name) == landmarks::LandmarkState::Confirmed;
+  };
+  bool all_confirmed = true;
+  for (const char* name : needed(kind)) all_confirmed &= is_confirmed(name);
+  Landmarks marks = input.landmarks;
+  if (!all_confirmed) {
+    if (proposal == nullptr) {
+      made = landmarks::propose(input.bone->mesh, kind, {.side = side});
+      proposal = &made;
+    }
+    landmarks::LandmarkStates states = input.states;
+    landmarks::take_proposal(*proposal, marks, states);
+    std::string names;
+    for (const char* name : needed(kind)) {
+      if (!is_confirmed(name)) names += std::string(names.empty() ? "" : ", ") + name;
+    }
+    result.doubts.push_back("the " + std::string(bones::to_text(kind)) +
+                            "'s landmarks are proposed and nobody has confirmed them: " + names);
+    result.doubts.insert(result.doubts.end(), proposal->doubts.begin(), proposal->doubts.end());
+  }
+  const auto joint = joint_of(input, marks, side);
+  if (!joint) {
+    result.outcome = Outcome::NoLandmarks;
+    result.message = "the " + std::string(bones::to_text(kind)) + "'s landmarks are not known" +
+                     (proposal != nullptr && !proposal->is_usable() ? ": " + proposal->reason : "");
+    return result;
+  }
+  const auto& norm = norms::default_norm(kind, options.bundle);
+  const auto footprint =
+      norms::expected_footprint(input.bone->mesh, *input.surface, kind, side, marks, norm);
+  if (!footprint) {
+    result.outcome = Outcome::NoFootprint;
+    result.message = "no bone is where the norm places the insertion";
+    return result;
+  }
+  result.source = norm.source;
+  const tunnels::Tunnel at_entry{.bone = kind,
+                                 .entry_mm = footprint->center_mm,
+                                 .direction = -footprint->normal,
+                                 .diameter_mm = options.diameter_mm};
+  const auto aimed = aim(at_entry, *input.surface, *joint, options);
+  if (!aimed) {
+    result.outcome = Outcome::NoAim;
+    result.message = "no direction that a drill can follow from there leaves the " +
+                     std::string(bones::to_text(kind)) + " on the right face";
+    return result;
+  }
+  result.tunnel = *aimed;
+  result.outcome = Outcome::Planned;
+  result.message.clear();
+  return result;
+}
+
+std::map<bones::BoneKind, DefaultTunnel> plan_knee(const std::vector<BoneInput>& bones, bones::Side side,
+                                                   const Options& options) {
+  std::map<bones::BoneKind, DefaultTunnel> plan;
+  for (const BoneInput& bone : bones) plan[bone.bone->kind] = plan_bone(bone, side, options);
+  return plan;
+}
+
+}  // namespace arthronaut::default_plan
