@@ -1,12 +1,17 @@
+#include <iostream>
+#include <nlohmann/json.hpp>
+
 #include "app/command_line/command.h"
+#include "app/command_line/plan_report.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
 #include "planning/cases/case_lock.h"
+#include "planning/default_plan/default_plan.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
-#include "planning/tunnels/aim.h"
-#include "planning/tunnels/plan_checks.h"
+#include "planning/plan_export/markups_file.h"
+#include "planning/plan_export/plan_export.h"
 #include "planning/tunnels/tunnel.h"
 
 namespace arthronaut::command_line {
@@ -20,37 +25,9 @@ struct PlanArguments {
   std::string case_folder, bone;
   Eigen::Vector3d entry_mm = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
   double diameter_mm = 9.0;
-  bool at_footprint = false, customary = false, list = false;
+  std::string type = "single", export_folder, markups;
+  bool at_footprint = false, by_default = false, list = false, as_json = false;
 };
-
-void describe(const Context& context, const cases::Case& knee, const tunnels::Tunnel& tunnel,
-              const geometry::Surface& surface) {
-  const auto measured = tunnels::measure(tunnel, surface);
-  const auto& e = tunnel.entry_mm;
-  const auto& d = tunnel.direction;
-  context.say(files::format("%s tunnel, %.1f mm", std::string(bones::to_text(tunnel.bone)).c_str(),
-                            tunnel.diameter_mm));
-  context.say(files::format("  entry      %.3f, %.3f, %.3f mm", e.x(), e.y(), e.z()));
-  context.say(files::format("  direction  %.5f, %.5f, %.5f", d.x(), d.y(), d.z()));
-  if (measured.enters_bone) {
-    const auto& x = measured.exit_mm;
-    context.say(files::format("  length     %.2f mm inside bone", measured.length_mm));
-    context.say(files::format("  exit       %.3f, %.3f, %.3f mm", x.x(), x.y(), x.z()));
-    context.say(files::format("  wall       %.2f mm at the thinnest", measured.wall_mm));
-  }
-  if (const auto fit = cases::plan_fit(knee, tunnel.bone); !fit.is_valid())
-    context.say("  ! not valid: " + fit.reason);
-  const auto marks = knee.landmarks.find(tunnel.bone);
-  const auto surroundings = tunnels::surroundings_of(
-      knee.bones.at(tunnel.bone).mesh, tunnel.bone,
-      marks == knee.landmarks.end() ? landmarks::Landmarks{} : marks->second, knee.side);
-  for (const auto& check : tunnels::check_plan(tunnel, measured, surroundings)) {
-    const bool is_amiss = check.verdict == tunnels::PlanCheck::Verdict::Look ||
-                          check.verdict == tunnels::PlanCheck::Verdict::Wrong;
-    const std::string source = is_amiss && !check.source.empty() ? " [" + check.source + "]" : "";
-    context.say((is_amiss ? "  ! " : "    ") + check.name + ": " + check.text + source);
-  }
-}
 
 tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case& knee, bones::BoneKind kind,
                                const geometry::Surface& surface, bool has_entry) {
@@ -58,7 +35,7 @@ tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case
                          .entry_mm = arguments.entry_mm,
                          .direction = arguments.direction.normalized(),
                          .diameter_mm = arguments.diameter_mm};
-  if (arguments.at_footprint || arguments.customary) {
+  if (arguments.at_footprint) {
     const auto marks = knee.landmarks.find(kind);
     if (marks == knee.landmarks.end() || !marks->second.contains("native_footprint")) {
       throw InvalidInput(arguments.case_folder, std::string(bones::to_text(kind)),
@@ -75,14 +52,71 @@ tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case
         files::format("plan: --entry lies %.1f mm off the bone, more than %.0f mm", off_mm, kSnapMm));
   }
   tunnel.entry_mm = nearest.point_mm;
-  if (arguments.customary) {
-    tunnel.direction = tunnels::customary_direction(kind, knee.side);
-    tunnel = tunnels::aim(tunnel, surface, tunnels::customary_aim(kind));
-  }
   if (!tunnels::measure(tunnel, surface).enters_bone) {
     throw InvalidInput("plan: --direction leads out of the bone at this entry");
   }
   return tunnel;
+}
+
+// By norms and landmarks. Throws InvalidInput where there is no default; `verdict` says how far it may be relied on.
+tunnels::Tunnel default_tunnel(const PlanArguments& arguments, const cases::Case& knee, bones::BoneKind kind,
+                               const geometry::Surface& surface, PlanVerdict& verdict) {
+  default_plan::BoneInput input{.bone = &knee.bones.at(kind), .surface = &surface, .landmarks = {}, .states = {}};
+  if (const auto marks = knee.landmarks.find(kind); marks != knee.landmarks.end()) input.landmarks = marks->second;
+  if (const auto states = knee.landmark_states.find(kind); states != knee.landmark_states.end())
+    input.states = states->second;
+  const auto planned = default_plan::plan_bone(
+      input, knee.side,
+      {.bundle = norms::bundle_from_text(arguments.type), .diameter_mm = arguments.diameter_mm});
+  if (!planned.is_usable()) throw InvalidInput(arguments.case_folder, "", "has no default plan: " + planned.message);
+  verdict = {planned.doubts.empty(), planned.doubts, planned.source};
+  return planned.tunnel;
+}
+
+// Tunnels as another program moved them; only those of bones that the case holds.
+void take_markups(const PlanArguments& arguments, cases::Case& knee) {
+  const auto markups = plan_export::read_markups(arguments.markups);
+  bool took = false;
+  for (const auto& [kind, tunnel] : markups.tunnels) {
+    const auto bone = knee.bones.find(kind);
+    if (bone == knee.bones.end()) continue;
+    if (!tunnels::measure(tunnel, geometry::Surface(bone->second.mesh)).enters_bone) {
+      throw InvalidInput(arguments.markups, std::string(bones::to_text(kind)) + " tunnel",
+                         "does not enter the case's bone: markups of another knee?");
+    }
+    knee.plan.tunnels[kind] = tunnel;
+    knee.plan.mesh_sha256[kind] = bones::mesh_sha256(bone->second.mesh);
+    took = true;
+  }
+  if (!took) throw InvalidInput(arguments.markups, "markups", "hold no line \"femur tunnel\" or \"tibia tunnel\"");
+}
+
+void show(const PlanArguments& arguments, const Context& context, const cases::Case& knee, const PlanVerdict& verdict) {
+  auto tunnels_json = nlohmann::ordered_json::array();
+  for (const auto& [kind, tunnel] : knee.plan.tunnels) {
+    if (!arguments.bone.empty() && arguments.bone != bones::to_text(kind)) continue;
+    if (!knee.bones.contains(kind))
+      throw InvalidInput(arguments.case_folder, "plan.json", "plans a bone that the case lacks");
+    const geometry::Surface surface(knee.bones.at(kind).mesh);
+    if (arguments.as_json) {
+      tunnels_json.push_back(tunnel_to_json(knee, tunnel, surface, verdict));
+    } else {
+      describe_tunnel(context, knee, tunnel, surface);
+    }
+  }
+  if (!arguments.as_json && knee.plan.tunnels.empty()) context.say("No tunnel is planned.");
+  if (!arguments.as_json) return;
+  if (!arguments.bone.empty()) {
+    std::cout << (tunnels_json.empty() ? nlohmann::ordered_json() : tunnels_json[0]).dump(2) << '\n';
+  } else {
+    std::cout << nlohmann::ordered_json({{"tunnels", tunnels_json}}).dump(2) << '\n';
+  }
+}
+
+void export_to(const PlanArguments& arguments, Context& context, const cases::Case& knee) {
+  const auto summary = plan_export::export_plan(knee, arguments.export_folder);
+  for (const auto& file : summary.files) context.say("Wrote " + file.string());
+  if (!summary.doubts.empty()) context.say_unreliable("The exported plan", summary.doubts);
 }
 
 }  // namespace
@@ -108,47 +142,57 @@ void add_plan_command(CLI::App& app, Context& context) {
   sub->add_option("--diameter-mm", arguments->diameter_mm, "Diameter")
       ->check(CLI::Range(3.0, 15.0))
       ->capture_default_str();
-  auto* customary =
-      sub->add_flag("--default", arguments->customary,
-                    "Through the native footprint in the customary direction, fitted to the bone")
+  auto* by_default =
+      sub->add_flag("--default", arguments->by_default,
+                    "By norms and landmarks, proposed ones where none are confirmed, aimed as a drill can follow")
           ->needs(bone)
           ->excludes(entry)
           ->excludes(direction)
           ->excludes(footprint);
-  sub->add_flag("--list", arguments->list, "Show the plan")->excludes(direction)->excludes(customary);
+  sub->add_option("--type", arguments->type, "With --default: single, am or pl")
+      ->check(CLI::IsMember({"single", "am", "pl"}))
+      ->needs(by_default)
+      ->capture_default_str();
+  auto* markups = sub->add_option("--from-markups", arguments->markups,
+                                  "Take the tunnels from a .mrk.json of 3D Slicer")
+                      ->excludes(by_default)
+                      ->excludes(direction);
+  sub->add_option("--export", arguments->export_folder,
+                  "Folder for plan.json, plan.csv, plan.mrk.json and the drilled bones");
+  sub->add_flag("--json", arguments->as_json, "Print the tunnel as JSON, without --bone every tunnel");
+  sub->add_flag("--list", arguments->list, "Show the plan")->excludes(direction)->excludes(by_default)->excludes(markups);
   entry->needs(direction);
   footprint->needs(direction);
   sub->callback([arguments, entry, direction, &context] {
-    const bool writes = direction->count() > 0 || arguments->customary;
+    const bool writes = direction->count() > 0 || arguments->by_default || !arguments->markups.empty();
     cases::CaseLock lock;
     if (writes) lock = cases::lock_or_refuse(arguments->case_folder);
-    if (!lock.notice().empty()) context.say(lock.notice() + ".");
+    if (!lock.notice().empty() && !arguments->as_json) context.say(lock.notice() + ".");
     auto knee = cases::load_case(arguments->case_folder);
-    if (!writes) {
-      if (knee.plan.tunnels.empty()) context.say("No tunnel is planned.");
-      for (const auto& [kind, tunnel] : knee.plan.tunnels) {
-        if (!arguments->bone.empty() && arguments->bone != bones::to_text(kind)) continue;
-        if (!knee.bones.contains(kind)) {
-          throw InvalidInput(arguments->case_folder, "plan.json", "plans a bone that the case lacks");
-        }
-        describe(context, knee, tunnel, geometry::Surface(knee.bones.at(kind).mesh));
+    PlanVerdict verdict;
+    if (!arguments->markups.empty()) {
+      take_markups(*arguments, knee);
+    } else if (writes) {
+      if (!arguments->by_default && arguments->direction.norm() < 1e-9)
+        throw InvalidInput("plan: --direction must not be zero");
+      const auto kind = bones::bone_kind_from_text(arguments->bone);
+      const auto bone_of_case = knee.bones.find(kind);
+      if (bone_of_case == knee.bones.end()) {
+        throw InvalidInput(arguments->case_folder, "case.json", "holds no " + arguments->bone);
       }
-      return;
+      const geometry::Surface surface(bone_of_case->second.mesh);
+      knee.plan.tunnels[kind] = arguments->by_default
+                                    ? default_tunnel(*arguments, knee, kind, surface, verdict)
+                                    : planned_tunnel(*arguments, knee, kind, surface, entry->count() > 0);
+      knee.plan.mesh_sha256[kind] = bones::mesh_sha256(bone_of_case->second.mesh);
     }
-    if (!arguments->customary && arguments->direction.norm() < 1e-9)
-      throw InvalidInput("plan: --direction must not be zero");
-    const auto kind = bones::bone_kind_from_text(arguments->bone);
-    const auto bone_of_case = knee.bones.find(kind);
-    if (bone_of_case == knee.bones.end()) {
-      throw InvalidInput(arguments->case_folder, "case.json", "holds no " + arguments->bone);
+    if (writes) {
+      cases::name_meshes(knee);
+      knee.plan_version = cases::save_plan_over(arguments->case_folder, knee.plan, knee.plan_version);
     }
-    const geometry::Surface surface(bone_of_case->second.mesh);
-    const auto tunnel = planned_tunnel(*arguments, knee, kind, surface, entry->count() > 0);
-    knee.plan.tunnels[kind] = tunnel;
-    knee.plan.mesh_sha256[kind] = bones::mesh_sha256(bone_of_case->second.mesh);
-    cases::name_meshes(knee);
-    knee.plan_version = cases::save_plan_over(arguments->case_folder, knee.plan, knee.plan_version);
-    describe(context, knee, tunnel, surface);
+    show(*arguments, context, knee, verdict);
+    if (!arguments->export_folder.empty()) export_to(*arguments, context, knee);
+    if (!verdict.is_reliable) context.say_unreliable("The default plan", verdict.reasons);
   });
 }
 

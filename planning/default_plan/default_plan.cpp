@@ -1,8 +1,5 @@
 #include "planning/default_plan/default_plan.h"
 
-#include <array>
-#include <cmath>
-#include <set>
 
 #include "planning/default_plan/aim.h"
 #include "planning/files/format.h"
@@ -18,14 +15,16 @@ using Eigen::Vector3d;
 using landmarks::Landmarks;
 using Outcome = DefaultTunnel::Outcome;
 
-constexpr double kUsualCondyles_mm = 48, kUsualPlateau_mm = 73;  // apart; across
+constexpr double kUsualCondyles_mm = 48, kCondyleRadius_mm = 21;
 
-// What the entry follows from.
-std::vector<const char*> needed(bones::BoneKind bone) {
-  if (bone == bones::BoneKind::Femur)
-    return {"blumensaat_anterior", "blumensaat_posterior", "lateral_condyle_center", "medial_condyle_center",
-            "lateral_condyle_deep", "lateral_condyle_shallow", "lateral_condyle_low"};
-  return {"plateau_anterior", "plateau_posterior", "plateau_medial", "plateau_lateral"};
+// What the entry follows from; of either pair that tells the direction of the view one will do.
+std::vector<std::string> needed(bones::BoneKind bone, const Landmarks& known) {
+  if (bone == bones::BoneKind::Tibia)
+    return {"plateau_anterior", "plateau_posterior", "plateau_medial", "plateau_lateral"};
+  const std::string pair = known.contains("lateral_condyle_center") && known.contains("medial_condyle_center")
+                               ? "center"
+                               : "posterior";
+  return {"blumensaat_anterior", "blumensaat_posterior", "lateral_condyle_" + pair, "medial_condyle_" + pair};
 }
 
 void check_range(const char* field, double value, double least, double greatest) {
@@ -38,13 +37,17 @@ std::optional<Joint> joint_of(const BoneInput& input, const Landmarks& marks, bo
   joint.axes = landmarks::anatomical_axes(input.bone->kind, side, marks, input.bone->mesh);
   if (joint.axes.origin != landmarks::AnatomicalAxes::Origin::FromLandmarks) return std::nullopt;
   const bool is_femur = input.bone->kind == bones::BoneKind::Femur;
-  const char* lateral_name = is_femur ? "lateral_condyle_center" : "plateau_lateral";
-  const char* medial_name = is_femur ? "medial_condyle_center" : "plateau_medial";
-  const auto lateral = marks.find(lateral_name), medial = marks.find(medial_name);
-  if (lateral == marks.end() || medial == marks.end()) return std::nullopt;
-  joint.center_mm = (lateral->second + medial->second) / 2;
-  joint.scale = (lateral->second - medial->second).norm() / (is_femur ? kUsualCondyles_mm : kUsualPlateau_mm);
-  return joint;
+  if (!is_femur) return joint;
+  for (const std::string part : {"center", "posterior"}) {
+    const auto lateral = marks.find("lateral_condyle_" + part), medial = marks.find("medial_condyle_" + part);
+    if (lateral == marks.end() || medial == marks.end()) continue;
+    joint.center_mm = (lateral->second + medial->second) / 2;
+    joint.scale = (lateral->second - medial->second).norm() / kUsualCondyles_mm;
+    // The axis of flexion lies a condyle's radius in front of its hindmost point.
+    if (part == "posterior") joint.center_mm += kCondyleRadius_mm * joint.scale * joint.axes.anterior;
+    return joint;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -61,12 +64,13 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
   const bones::BoneKind kind = input.bone->kind;
   landmarks::Proposal made;
   const landmarks::Proposal* proposal = input.proposal;
-  const auto is_confirmed = [&](const char* name) {
+  const auto is_confirmed = [&](const std::string& name) {
     return input.landmarks.contains(name) &&
            landmarks::state_of(input.states, name) == landmarks::LandmarkState::Confirmed;
   };
   bool all_confirmed = true;
-  for (const char* name : needed(kind)) all_confirmed &= is_confirmed(name);
+  const auto follows_from = needed(kind, input.landmarks);
+  for (const std::string& name : follows_from) all_confirmed &= is_confirmed(name);
   Landmarks marks = input.landmarks;
   if (!all_confirmed) {
     if (proposal == nullptr) {
@@ -76,8 +80,8 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
     landmarks::LandmarkStates states = input.states;
     landmarks::take_proposal(*proposal, marks, states);
     std::string names;
-    for (const char* name : needed(kind)) {
-      if (!is_confirmed(name)) names += std::string(names.empty() ? "" : ", ") + name;
+    for (const std::string& name : follows_from) {
+      if (!is_confirmed(name)) names += (names.empty() ? "" : ", ") + name;
     }
     result.doubts.push_back("the " + std::string(bones::to_text(kind)) +
                             "'s landmarks are proposed and nobody has confirmed them: " + names);
@@ -90,19 +94,25 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
                      (proposal != nullptr && !proposal->is_usable() ? ": " + proposal->reason : "");
     return result;
   }
-  const auto& norm = norms::default_norm(kind, options.bundle);
-  const auto footprint =
-      norms::expected_footprint(input.bone->mesh, *input.surface, kind, side, marks, norm);
-  if (!footprint) {
-    result.outcome = Outcome::NoFootprint;
-    result.message = "no bone is where the norm places the insertion";
-    return result;
+  tunnels::Tunnel at_entry{.bone = kind, .entry_mm = {}, .direction = {}, .diameter_mm = options.diameter_mm};
+  if (options.bundle == norms::Bundle::Whole && is_confirmed("native_footprint")) {
+    const auto on = input.surface->closest_point(input.landmarks.at("native_footprint"));
+    at_entry.entry_mm = on.point_mm;
+    at_entry.direction = -on.normal;
+    result.source = "the native footprint, as marked on this bone";
+  } else {
+    const auto& norm = norms::default_norm(kind, options.bundle);
+    const auto footprint =
+        norms::expected_footprint(input.bone->mesh, *input.surface, kind, side, marks, norm);
+    if (!footprint) {
+      result.outcome = Outcome::NoFootprint;
+      result.message = "no bone is where the norm places the insertion";
+      return result;
+    }
+    at_entry.entry_mm = footprint->center_mm;
+    at_entry.direction = -footprint->normal;
+    result.source = norm.source;
   }
-  result.source = norm.source;
-  const tunnels::Tunnel at_entry{.bone = kind,
-                                 .entry_mm = footprint->center_mm,
-                                 .direction = -footprint->normal,
-                                 .diameter_mm = options.diameter_mm};
   const auto aimed = aim(at_entry, *input.surface, *joint, options);
   if (!aimed) {
     result.outcome = Outcome::NoAim;

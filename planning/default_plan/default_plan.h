@@ -1,4 +1,5 @@
-// A first plan without a hand: tunnels through the expected footprints, aimed as a drill can follow. What the
+// A first plan without a hand: tunnels through the native footprint where a person marked it, else through the one that
+// norms expect, aimed as a drill can follow. What the
 // window's one key and `arthronaut plan --default` call. A proposal: the surgeon moves it.
 #pragma once
 

@@ -54,6 +54,36 @@ Vector3d proximal_of(const Shape& shape) {
   return (weight * by_shaft + roof_weight * by_roof).normalized();
 }
 
+// Condyles, notch and long axis in turn, until they agree.
+bool refine(Shape& shape, const geometry::TriangleMesh& mesh, const geometry::Surface& surface, Matrix3d axes,
+            RoofConvention convention, std::string& reason) {
+  Vector3d origin = shape.rough.origin_mm;
+  for (int round = 0; round < 4; ++round) {
+    const auto condyles = find_condyles(shape.samples, axes, origin);
+    if (!condyles) {
+      reason = "it has no two condyles at its joint's end";
+      return false;
+    }
+    shape.condyles = *condyles;
+    const auto notch = find_notch(surface, *condyles, convention);
+    if (!notch) {
+      reason = "between its condyles is no notch with a roof";
+      return false;
+    }
+    shape.notch = *notch;
+    const Vector3d z = condyles->bone_from_frame.col(2);
+    const Vector3d foot = condyles->center_mm + (lowest(shape) - condyles->center_mm.dot(z)) * z;
+    const double first = kShaftFrom * condyles->depth_mm;
+    shape.shaft = find_long_axis(mesh, shape.rough, foot, z, first, first + kShaftLength_mm);
+    const Vector3d x = condyles->bone_from_frame.col(0);
+    axes.col(0) = x;
+    axes.col(2) = proximal_of(shape);
+    axes.col(1) = axes.col(2).cross(x);
+    origin = condyles->center_mm;
+  }
+  return true;
+}
+
 std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geometry::Surface& surface,
                                 RoofConvention convention, std::string& reason) {
   Shape shape;
@@ -65,55 +95,44 @@ std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geomet
   shape.rough = *rough;
   const Vector3d z0 = rough->bone_from_frame.col(2);
   for (const auto& s : sample_surface(mesh, kSamples)) {
-    const bool is_cut = rough->cut_normal && s.normal.dot(*rough->cut_normal) > 0.9 &&
+    const bool is_cut = rough->cut_normal && s.normal.dot(*rough->cut_normal) > 0.7 &&
                         s.point_mm.dot(*rough->cut_normal) > rough->cut_offset_mm - 1.6;
     if (!is_cut && (s.point_mm - rough->origin_mm).dot(z0) < kJointEnd_mm) shape.samples.push_back(s);
   }
-  Matrix3d axes = rough->bone_from_frame;
-  Vector3d origin = rough->origin_mm;
-  for (int round = 0; round < 4; ++round) {
-    const auto condyles = find_condyles(shape.samples, axes, origin);
-    if (!condyles) {
-      reason = "it has no two condyles at its joint's end";
-      return std::nullopt;
-    }
-    shape.condyles = *condyles;
-    const auto notch = find_notch(surface, *condyles, convention);
-    if (!notch) {
-      reason = "between its condyles is no notch with a roof";
-      return std::nullopt;
-    }
-    shape.notch = *notch;
-    const Vector3d z = condyles->bone_from_frame.col(2);
-    const Vector3d foot = condyles->center_mm + (lowest(shape) - condyles->center_mm.dot(z)) * z;
-    const double first = kShaftFrom * condyles->depth_mm;
-    shape.shaft = find_long_axis(mesh, *rough, foot, z, first, first + kShaftLength_mm);
-    const Vector3d x = condyles->bone_from_frame.col(0);
-    axes.col(0) = x;
-    axes.col(2) = proximal_of(shape);
-    axes.col(1) = axes.col(2).cross(x);
-    origin = condyles->center_mm;
+  // A slanting cut misleads about the long axis; then the joint's end is looked at from a little in front or behind.
+  for (const double lean_deg : {0.0, 15.0, -15.0, 30.0, -30.0}) {
+    const Eigen::AngleAxisd lean(geometry::rad_from_deg(lean_deg), Vector3d::UnitX());
+    reason.clear();
+    if (refine(shape, mesh, surface, rough->bone_from_frame * lean, convention, reason)) return shape;
   }
-  return shape;
+  return std::nullopt;
 }
 
-// Positive: lateral is +x. Over the condyles the shaft stands lateral of their middle, and the lateral flank of the
+// Positive: lateral is +x. The shaft stands lateral of the condyles' middle and leans that way, and the lateral flank of the
 // groove reaches further forward.
-double side_score(const Shape& shape) {
+double side_score(const Shape& shape, const geometry::TriangleMesh& mesh) {
   const Matrix3d& axes = shape.condyles.bone_from_frame;
+  const Vector3d x = axes.col(0), z = axes.col(2);
   const double low = lowest(shape), depth = shape.condyles.depth_mm;
   double front_minus = -1e9, front_plus = -1e9;
-  std::vector<double> left, right;
-  double area_x = 0, area = 0;
   for (const auto& s : shape.samples) {
     const Vector3d q = axes.transpose() * (s.point_mm - shape.condyles.center_mm);
-    const double height = s.point_mm.dot(axes.col(2)) - low;
-    if (height < 0.6 * depth && q.x() > 4) front_plus = std::max(front_plus, q.y());
-    if (height < 0.6 * depth && q.x() < -4) front_minus = std::max(front_minus, q.y());
-    if (height > 0.7 * depth && height < 0.9 * depth) area_x += q.x(), area += 1;
+    if (s.point_mm.dot(z) - low > 0.6 * depth) continue;
+    if (q.x() > 4) front_plus = std::max(front_plus, q.y());
+    if (q.x() < -4) front_minus = std::max(front_minus, q.y());
   }
-  const double lean = area > 0 ? area_x / area : 0;
-  return lean / 2.0 + (front_plus - front_minus) / 4.0;
+  const Vector3d foot = shape.condyles.center_mm + (low - shape.condyles.center_mm.dot(z)) * z;
+  const double last = std::min(0.75 * depth, whole_until(mesh, shape.rough, foot, z)), first = 0.55 * depth;
+  double beside = 0, count = 0;
+  if (last > first) {
+    for (const auto& section : sections_across(mesh, z, low + first, 2, static_cast<std::size_t>((last - first) / 2) + 1)) {
+      if (section.area_mm2 > 50) beside += (section.center_mm - shape.condyles.center_mm).dot(x), count += 1;
+    }
+  }
+  double score = (front_plus - front_minus) / 4;
+  if (count > 0) score += beside / count / 1.5;
+  if (shape.shaft && shape.shaft->length_mm() > 15) score += shape.shaft->away().dot(x) / 0.1;
+  return score;
 }
 
 // The outermost patch, as large as kEpicondyleSamples, about the condyles' centres.
@@ -163,7 +182,7 @@ Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions
   const auto shape = find_shape(mesh, surface, options.roof, proposal.reason);
   if (!shape) return proposal;
   proposal.outcome = Proposal::Outcome::Proposed;
-  const double score = side_score(*shape);
+  const double score = side_score(*shape, mesh);
   if (std::abs(score) > 0.5) proposal.side_by_shape = score > 0 ? bones::Side::Right : bones::Side::Left;
   const bones::Side side = options.side.value_or(score > 0 ? bones::Side::Right : bones::Side::Left);
   const double lateral = side == bones::Side::Right ? 1 : -1;

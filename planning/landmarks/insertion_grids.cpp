@@ -2,8 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
+
+#include "planning/geometry/rigid_transform.h"
+#include "planning/landmarks/anatomical_axes.h"
 
 namespace arthronaut::landmarks {
 
@@ -122,7 +126,12 @@ std::optional<TibialGrid> tibial_grid(const Landmarks& landmarks) {
     if (const auto eminence = find(landmarks, name)) upwards = (*eminence - middle).dot(grid.up);
   }
   if (upwards < 0) grid.up = -grid.up;
-  grid.depth_mm = straight.norm();
+  // The plateau falls backwards; shares are read along the long axis, else a tall eminence leans forward.
+  const double slope = geometry::rad_from_deg(kPlateauSlope_deg);
+  const Vector3d in_plane = grid.posterior;
+  grid.posterior = std::cos(slope) * in_plane + std::sin(slope) * grid.up;
+  grid.up = std::cos(slope) * grid.up - std::sin(slope) * in_plane;
+  grid.depth_mm = along.dot(grid.posterior);
   grid.width_mm = across.norm();
   return grid;
 }

@@ -40,8 +40,8 @@ struct FemoralQuadrant {
 [[nodiscard]] std::optional<FemoralQuadrant> femoral_quadrant(const geometry::TriangleMesh& femur,
                                                               const Landmarks& landmarks, bones::Side side);
 
-// Percentages on the tibial plateau, as seen from above: at right angles to the line through its sides and to the line
-// from front to back.
+// Percentages on the tibial plateau, as seen from above along the long axis, which stands 8 degrees in front of what is
+// at right angles to the plateau's edges (kPlateauSlope_deg).
 struct TibialGrid {
   Eigen::Vector3d anterior_mm, medial_mm;  // where each share is 0; bone frame
   Eigen::Vector3d posterior, lateral;      // unit, at right angles

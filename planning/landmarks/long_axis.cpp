@@ -16,9 +16,8 @@ constexpr double kNearCut_mm = 2;  // its edge is round
 
 }  // namespace
 
-std::optional<LongAxis> find_long_axis(const geometry::TriangleMesh& mesh, const RoughFrame& rough,
-                                       const Vector3d& joint_mm, const Vector3d& away, double first_mm,
-                                       double last_mm) {
+double whole_until(const geometry::TriangleMesh& mesh, const RoughFrame& rough, const Vector3d& joint_mm,
+                   const Vector3d& away) {
   const double base = joint_mm.dot(away);
   double end = -1e9, cut_from = 1e9;
   for (const Vector3d& v : mesh.vertices_mm) {
@@ -27,7 +26,14 @@ std::optional<LongAxis> find_long_axis(const geometry::TriangleMesh& mesh, const
     if (rough.cut_normal && v.dot(*rough.cut_normal) > rough.cut_offset_mm - kNearCut_mm)
       cut_from = std::min(cut_from, height);
   }
-  const double last = std::min({last_mm, end - kNearCut_mm, cut_from});
+  return std::min(end - kNearCut_mm, cut_from);
+}
+
+std::optional<LongAxis> find_long_axis(const geometry::TriangleMesh& mesh, const RoughFrame& rough,
+                                       const Vector3d& joint_mm, const Vector3d& away, double first_mm,
+                                       double last_mm) {
+  const double base = joint_mm.dot(away);
+  const double last = std::min(last_mm, whole_until(mesh, rough, joint_mm, away));
   if (last - first_mm < kLeastLength_mm) return std::nullopt;
   const auto sections = sections_across(mesh, away, base + first_mm, kStep_mm,
                                         static_cast<std::size_t>((last - first_mm) / kStep_mm) + 1);

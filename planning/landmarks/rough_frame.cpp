@@ -22,6 +22,9 @@ using Eigen::Vector3d;
 constexpr std::size_t kSamples = 4000;
 constexpr double kJointEnd_mm = 70;       // of the bone from the joint's end on: what the mirror plane is sought in
 constexpr double kLeastCut_mm2 = 300;     // a smaller plane face may be the bone's own
+constexpr double kRoughCut_mm = 0.3;      // root mean square off its plane; a flat side of a condyle has 0.4
+// Under a cut the bone is about as wide as the cut; under a flat side of a condyle it widens at once.
+constexpr double kBelowCut_mm = 4, kWidening = 2.2;
 constexpr double kCutThickness_mm = 0.8;  // marching cubes and smoothing round a cut's edge
 constexpr double kWholeElongation = 3;    // of standard deviations, along and across a bone without a cut
 constexpr double kGreatestMisfit_mm = 6;  // a mirrored point further off counts as so far off
@@ -30,37 +33,62 @@ struct Cut {
   Vector3d normal = Vector3d::UnitZ();
   double offset_mm = 0, area_mm2 = 0;
   [[nodiscard]] bool holds(const SurfaceSample& s) const {
-    return s.normal.dot(normal) > 0.9 && s.point_mm.dot(normal) > offset_mm - 2 * kCutThickness_mm;
+    return s.normal.dot(normal) > 0.7 && s.point_mm.dot(normal) > offset_mm - 2 * kCutThickness_mm;
   }
 };
 
-// The largest plane face that supports the whole surface.
-std::optional<Cut> find_cut(const std::vector<SurfaceSample>& samples, double area_each_mm2) {
+// A noisy surface's triangles look anywhere: of each sample the mean normal about it.
+std::vector<SurfaceSample> smoothed(const std::vector<SurfaceSample>& samples) {
+  constexpr double kAbout_mm = 3;
+  std::vector<SurfaceSample> smooth = samples;
+  for (auto& s : smooth) {
+    Vector3d sum = Vector3d::Zero();
+    for (const auto& other : samples) {
+      if ((other.point_mm - s.point_mm).squaredNorm() < kAbout_mm * kAbout_mm && other.normal.dot(s.normal) > 0.3)
+        sum += other.normal;
+    }
+    if (sum.norm() > 0) s.normal = sum.normalized();
+  }
+  return smooth;
+}
+
+// The largest plane face that supports the whole surface and that the bone goes on under with about its width.
+std::optional<Cut> find_cut(const geometry::TriangleMesh& mesh, const std::vector<SurfaceSample>& given,
+                            double area_each_mm2) {
+  const auto samples = smoothed(given);
   Cut best;
   for (std::size_t i = 0; i < samples.size(); i += 8) {
     Vector3d normal = samples[i].normal;
     double offset = samples[i].point_mm.dot(normal);
     std::size_t held = 0;
-    for (int round = 0; round < 2; ++round) {  // the second about the mean of the first
-      const double cosine = round == 0 ? 0.985 : 0.995;
-      Vector3d sum = Vector3d::Zero(), center = Vector3d::Zero();
+    double off_plane_mm = 0;
+    for (int round = 0; round < 3; ++round) {  // each about the plane through what the one before it held
+      const double reach = round == 0 ? 2 * kCutThickness_mm : kCutThickness_mm;
+      Vector3d center = Vector3d::Zero();
+      Matrix3d moment = Matrix3d::Zero();
       held = 0;
       for (const auto& s : samples) {
-        if (s.normal.dot(normal) < cosine || std::abs(s.point_mm.dot(normal) - offset) > kCutThickness_mm) continue;
-        sum += s.normal;
+        if (s.normal.dot(normal) < (round == 0 ? 0.95 : 0.98) || std::abs(s.point_mm.dot(normal) - offset) > reach) continue;
         center += s.point_mm;
+        moment += s.point_mm * s.point_mm.transpose();
         ++held;
       }
       if (held < 8) break;
-      normal = sum.normalized();
-      offset = center.dot(normal) / static_cast<double>(held);
+      center /= static_cast<double>(held);
+      moment = moment / static_cast<double>(held) - center * center.transpose();
+      const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(moment);
+      const Vector3d fitted = solver.eigenvectors().col(0);
+      off_plane_mm = std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
+      normal = fitted.dot(normal) < 0 ? Vector3d(-fitted) : fitted;
+      offset = center.dot(normal);
     }
     const double area = static_cast<double>(held) * area_each_mm2;
-    if (held < 8 || area <= best.area_mm2) continue;
+    if (held < 8 || area <= best.area_mm2 || off_plane_mm > kRoughCut_mm) continue;
     const auto beyond = std::count_if(samples.begin(), samples.end(), [&](const auto& s) {
       return s.point_mm.dot(normal) > offset + kCutThickness_mm;
     });
     if (static_cast<double>(beyond) > 0.004 * static_cast<double>(samples.size())) continue;
+    if (sections_across(mesh, normal, offset - kBelowCut_mm, 1, 1)[0].area_mm2 > kWidening * area) continue;
     best = {normal, offset, area};
   }
   if (best.area_mm2 < kLeastCut_mm2) return std::nullopt;
@@ -213,7 +241,7 @@ std::optional<RoughFrame> rough_frame(const geometry::TriangleMesh& mesh, bones:
   const auto samples = sample_surface(mesh, kSamples);
   if (samples.size() < kSamples / 2) return std::nullopt;
   const double area_each = geometry::surface_area_mm2(mesh) / static_cast<double>(samples.size());
-  const auto cut = find_cut(samples, area_each);
+  const auto cut = find_cut(mesh, samples, area_each);
   const geometry::Surface surface(mesh);
   std::optional<RoughFrame> best;
   double best_cost = 1e9;

@@ -139,7 +139,7 @@ std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geomet
   shape.plateau = *plateau;
   const Vector3d normal = shape.plateau.bone_from_frame.col(2);
   for (const auto& s : sample_surface(mesh, kSamples)) {
-    const bool is_cut = rough->cut_normal && s.normal.dot(*rough->cut_normal) > 0.9 &&
+    const bool is_cut = rough->cut_normal && s.normal.dot(*rough->cut_normal) > 0.7 &&
                         s.point_mm.dot(*rough->cut_normal) > rough->cut_offset_mm - 1.6;
     if (!is_cut && (s.point_mm - shape.plateau.origin_mm).dot(normal) > -80) shape.samples.push_back(s);
   }

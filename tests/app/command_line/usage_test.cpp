@@ -34,8 +34,8 @@ TEST_P(Subcommand, RefusesAnUnknownOption) {
 
 INSTANTIATE_TEST_SUITE_P(All, Subcommand,
                          ::testing::Values("calibrate", "check-fluid", "track", "pivot", "digitise",
-                                           "register", "import", "plan", "phantom", "navigate", "replay",
-                                           "report", "resume", "markers", "demo"),
+                                           "register", "import", "landmarks", "plan", "phantom", "navigate",
+                                           "replay", "report", "resume", "series", "markers", "demo"),
                          [](const auto& test) {
                            std::string name = test.param;
                            std::replace(name.begin(), name.end(), '-',

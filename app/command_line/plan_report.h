@@ -1,0 +1,28 @@
+// A planned tunnel in words and as JSON, as `arthronaut plan` prints it.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "app/command_line/command.h"
+#include "planning/cases/case.h"
+#include "planning/geometry/surface.h"
+#include "planning/tunnels/tunnel.h"
+
+namespace arthronaut::command_line {
+
+// Lines for the user: entry, direction, what was measured, every check.
+void describe_tunnel(const Context& context, const cases::Case& knee, const tunnels::Tunnel& tunnel,
+                     const geometry::Surface& surface);
+
+// What a default plan says about itself beside the tunnel.
+struct PlanVerdict {
+  bool is_reliable = true;
+  std::vector<std::string> reasons;
+  std::string source;  // of the norm; empty without one
+};
+[[nodiscard]] nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const tunnels::Tunnel& tunnel,
+                                                    const geometry::Surface& surface, const PlanVerdict& verdict);
+
+}  // namespace arthronaut::command_line

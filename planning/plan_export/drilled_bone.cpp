@@ -1,0 +1,115 @@
+#include "planning/plan_export/drilled_bone.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/corefinement.h>
+#include <CGAL/Polygon_mesh_processing/orientation.h>
+#include <CGAL/Surface_mesh.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "planning/geometry/rigid_transform.h"
+#include "planning/geometry/surface.h"
+
+namespace arthronaut::plan_export {
+
+namespace {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+using Eigen::Vector3d;
+
+constexpr int kSides = 96;
+constexpr double kFurthestOut_mm = 15;  // beyond a mouth, where nothing else comes
+
+Mesh cgal_from(const geometry::TriangleMesh& mesh) {
+  Mesh result;
+  for (const Vector3d& v : mesh.vertices_mm) result.add_vertex({v.x(), v.y(), v.z()});
+  for (const auto& t : mesh.triangles) {
+    const auto vertex = [&](std::size_t k) { return Mesh::Vertex_index(static_cast<Mesh::size_type>(t[k])); };
+    result.add_face(vertex(0), vertex(1), vertex(2));
+  }
+  return result;
+}
+
+geometry::TriangleMesh mesh_from(Mesh& mesh) {
+  mesh.collect_garbage();
+  geometry::TriangleMesh result;
+  for (const auto v : mesh.vertices()) result.vertices_mm.emplace_back(mesh.point(v).x(), mesh.point(v).y(), mesh.point(v).z());
+  for (const auto f : mesh.faces()) {
+    std::array<std::int32_t, 3> triangle{};
+    std::size_t k = 0;
+    for (const auto v : CGAL::vertices_around_face(mesh.halfedge(f), mesh))
+      triangle[k++] = static_cast<std::int32_t>(static_cast<Mesh::size_type>(v));
+    result.triangles.push_back(triangle);
+  }
+  return result;
+}
+
+// A closed cylinder from one point to another.
+geometry::TriangleMesh cylinder(const Vector3d& from, const Vector3d& to, double radius) {
+  const Vector3d axis = (to - from).normalized(), u = axis.unitOrthogonal(), v = axis.cross(u);
+  geometry::TriangleMesh mesh;
+  for (int i = 0; i < kSides; ++i) {
+    const double angle = 2 * geometry::kPi * (i + 0.5) / kSides;
+    const Vector3d out = radius * (std::cos(angle) * u + std::sin(angle) * v);
+    mesh.vertices_mm.push_back(from + out);
+    mesh.vertices_mm.push_back(to + out);
+  }
+  mesh.vertices_mm.push_back(from);
+  mesh.vertices_mm.push_back(to);
+  for (std::int32_t i = 0; i < kSides; ++i) {
+    const std::int32_t a = 2 * i, b = 2 * ((i + 1) % kSides);
+    mesh.triangles.push_back({a, b, b + 1});
+    mesh.triangles.push_back({a, b + 1, a + 1});
+    mesh.triangles.push_back({2 * kSides, b, a});
+    mesh.triangles.push_back({2 * kSides + 1, a + 1, b + 1});
+  }
+  return mesh;
+}
+
+// How far the cylinder may go beyond a mouth at `from`, outwards.
+double room(const geometry::Surface& surface, const Vector3d& from, const Vector3d& outwards) {
+  constexpr double kClear_mm = 0.1;
+  const auto next = surface.first_hit(from + kClear_mm * outwards, outwards);
+  return next ? std::min(kFurthestOut_mm, 0.5 * next->distance_mm) : kFurthestOut_mm;
+}
+
+}  // namespace
+
+DrilledBone drill(const geometry::TriangleMesh& bone, const tunnels::Tunnel& tunnel) {
+  DrilledBone result;
+  const geometry::Surface surface(bone);
+  const auto measured = tunnels::measure(tunnel, surface);
+  if (!measured.enters_bone) {
+    result.outcome = DrilledBone::Outcome::MissesTheBone;
+    result.reason = "the tunnel misses the bone";
+    return result;
+  }
+  result.outcome = DrilledBone::Outcome::BrokenSurface;
+  result.reason = "the bone's surface is not closed or crosses itself";
+  const Vector3d& d = tunnel.direction;
+  // A polygon of the circle's area.
+  const double sector = 2 * geometry::kPi / kSides;
+  const double radius = 0.5 * tunnel.diameter_mm * std::sqrt(sector / std::sin(sector));
+  Mesh of_bone = cgal_from(bone);
+  Mesh of_drill = cgal_from(cylinder(measured.entry_on_surface_mm - room(surface, measured.entry_on_surface_mm, -d) * d,
+                                     measured.exit_mm + room(surface, measured.exit_mm, d) * d, radius));
+  if (!CGAL::is_closed(of_bone) || of_bone.number_of_faces() != bone.triangles.size()) return result;
+  Mesh drilled;
+  try {
+    if (!pmp::corefine_and_compute_difference(of_bone, of_drill, drilled,
+                                              CGAL::parameters::throw_on_self_intersection(true)))
+      return result;
+  } catch (const std::exception&) {  // CGAL's way to say that the surface crosses itself
+    return result;
+  }
+  result.mesh = mesh_from(drilled);
+  result.outcome = DrilledBone::Outcome::Drilled;
+  result.reason.clear();
+  return result;
+}
+
+}  // namespace arthronaut::plan_export

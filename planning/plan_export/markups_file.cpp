@@ -1,0 +1,158 @@
+#include "planning/plan_export/markups_file.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "planning/files/atomic_file.h"
+#include "planning/files/format.h"
+#include "planning/files/json_document.h"
+#include "planning/geometry/error.h"
+#include "planning/geometry/surface.h"
+
+namespace arthronaut::plan_export {
+
+namespace {
+
+using Eigen::Vector3d;
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr const char* kSchema =
+    "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"
+    "markups-schema-v1.0.3.json#";
+constexpr double kUsualDiameter_mm = 9, kLeastDiameter_mm = 1, kGreatestDiameter_mm = 30;
+
+std::string tunnel_name(bones::BoneKind bone) { return std::string(bones::to_text(bone)) + " tunnel"; }
+std::string landmarks_name(bones::BoneKind bone) { return std::string(bones::to_text(bone)) + " landmarks"; }
+
+ordered_json control_point(int id, const std::string& label, const Vector3d& position, const std::string& description) {
+  return {{"id", std::to_string(id)},
+          {"label", label},
+          {"description", description},
+          {"position", files::to_json(position)},
+          {"positionStatus", "defined"},
+          {"selected", true},
+          {"locked", false},
+          {"visibility", true}};
+}
+
+ordered_json markup(const char* type, const std::string& name, const std::string& description, ordered_json points) {
+  return {{"type", type},
+          {"name", name},
+          {"description", description},
+          {"coordinateSystem", "LPS"},
+          {"coordinateUnits", "mm"},
+          {"locked", false},
+          {"labelFormat", "%N-%d"},
+          {"controlPoints", std::move(points)}};
+}
+
+// The readers of files/json_document.h ask for a format and a version, which a foreign file has not.
+struct Place {
+  const std::filesystem::path& file;
+  std::string place;
+  [[noreturn]] void fail(const std::string& reason) const { throw InvalidInput(file, place, reason); }
+};
+
+std::string text_of(const json& node, const char* key, const std::string& otherwise) {
+  const auto found = node.find(key);
+  return found != node.end() && found->is_string() ? found->get<std::string>() : otherwise;
+}
+
+Vector3d position_of(const json& point, double sign, const Place& place) {
+  const auto found = point.find("position");
+  if (found == point.end() || !found->is_array() || found->size() != 3) place.fail("has no position of three numbers");
+  Vector3d position;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!(*found)[k].is_number()) place.fail("has a position that is no number");
+    position[static_cast<Eigen::Index>(k)] = (*found)[k].get<double>();
+  }
+  if (!position.allFinite()) place.fail("has a position that is not finite");
+  return {sign * position.x(), sign * position.y(), position.z()};
+}
+
+double diameter_of(const json& node, const Place& place) {
+  const std::string text = text_of(node, "description", "");
+  constexpr std::string_view kKey = "diameter_mm=";
+  const auto at = text.find(kKey);
+  if (at == std::string::npos) return kUsualDiameter_mm;
+  const double diameter = std::strtod(text.c_str() + at + kKey.size(), nullptr);
+  if (!(diameter >= kLeastDiameter_mm && diameter <= kGreatestDiameter_mm))
+    place.fail("has a diameter_mm that is none of a tunnel");
+  return diameter;
+}
+
+void read_markup(const json& node, const Place& place, MarkupsPlan& plan) {
+  if (!node.is_object()) place.fail("is no markup");
+  const std::string name = text_of(node, "name", "");
+  for (const auto bone : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
+    const bool is_tunnel = name == tunnel_name(bone);
+    if (!is_tunnel && name != landmarks_name(bone)) continue;
+    const std::string system = text_of(node, "coordinateSystem", "LPS");
+    if (system != "LPS" && system != "RAS" && system != "0" && system != "1")
+      place.fail("is in the coordinate system \"" + system + "\", neither LPS nor RAS");
+    const double sign = system == "RAS" || system == "0" ? -1 : 1;
+    if (const std::string unit = text_of(node, "coordinateUnits", "mm"); unit != "mm")
+      place.fail("is in \"" + unit + "\", not in mm");
+    const auto points = node.find("controlPoints");
+    if (points == node.end() || !points->is_array()) place.fail("has no controlPoints");
+    std::vector<Vector3d> positions;
+    for (std::size_t i = 0; i < points->size(); ++i) {
+      const Place here{place.file, place.place + ".controlPoints[" + std::to_string(i) + "]"};
+      if (!(*points)[i].is_object()) here.fail("is no control point");
+      positions.push_back(position_of((*points)[i], sign, here));
+      if (!is_tunnel) plan.landmarks[bone][text_of((*points)[i], "label", std::to_string(i))] = positions.back();
+    }
+    if (!is_tunnel) continue;
+    if (positions.size() != 2) place.fail("must have two control points, entry and exit");
+    const Vector3d along = positions[1] - positions[0];
+    if (along.norm() < 1) place.fail("is shorter than 1 mm");
+    if (!plan.tunnels.emplace(bone, tunnels::Tunnel{bone, positions[0], along.normalized(), diameter_of(node, place)}).second)
+      place.fail("is there twice");
+  }
+}
+
+}  // namespace
+
+std::string markups_of(const cases::Case& knee) {
+  auto markups = ordered_json::array();
+  for (const auto& [kind, tunnel] : knee.plan.tunnels) {
+    const auto bone = knee.bones.find(kind);
+    if (bone == knee.bones.end()) continue;
+    const auto measured = tunnels::measure(tunnel, geometry::Surface(bone->second.mesh));
+    const Vector3d exit =
+        measured.enters_bone ? measured.exit_mm : Vector3d(tunnel.entry_mm + 30 * tunnel.direction);
+    markups.push_back(markup("Line", tunnel_name(kind), files::format("diameter_mm=%.3f", tunnel.diameter_mm),
+                             {control_point(1, "entry", tunnel.entry_mm, "on the joint side"),
+                              control_point(2, "exit", exit, "where the axis leaves the bone")}));
+  }
+  for (const auto& [kind, marks] : knee.landmarks) {
+    auto points = ordered_json::array();
+    const auto states = knee.landmark_states.find(kind);
+    for (const auto& [name, position] : marks) {
+      const auto state = states == knee.landmark_states.end() ? landmarks::LandmarkState::Confirmed
+                                                              : landmarks::state_of(states->second, name);
+      points.push_back(control_point(static_cast<int>(points.size()) + 1, name, position,
+                                     std::string(landmarks::to_text(state))));
+    }
+    markups.push_back(markup("Fiducial", landmarks_name(kind), "", std::move(points)));
+  }
+  const ordered_json root = {{"@schema", kSchema}, {"markups", std::move(markups)}};
+  return root.dump(2) + "\n";
+}
+
+MarkupsPlan read_markups(const std::filesystem::path& file) {
+  const std::string text = files::read_text(file);
+  const json root = json::parse(text, nullptr, false);
+  if (root.is_discarded() || !root.is_object()) throw InvalidInput(file, "", "is no JSON object");
+  const auto markups = root.find("markups");
+  if (markups == root.end() || !markups->is_array()) throw InvalidInput(file, "markups", "is missing: no markups of 3D Slicer");
+  MarkupsPlan plan;
+  for (std::size_t i = 0; i < markups->size(); ++i)
+    read_markup((*markups)[i], {file, "markups[" + std::to_string(i) + "]"}, plan);
+  return plan;
+}
+
+}  // namespace arthronaut::plan_export
