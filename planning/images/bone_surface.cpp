@@ -1,47 +1,22 @@
 #include "planning/images/bone_surface.h"
 
-#include <vtkCellArray.h>
-#include <vtkFlyingEdges3D.h>
-#include <vtkImageData.h>
-#include <vtkNew.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkWindowedSincPolyDataFilter.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "planning/geometry/error.h"
+#include "planning/images/contour.h"
 #include "planning/images/voxel_mask.h"
 
 namespace arthronaut::images {
 
 namespace {
 
-// Smoothing of the surface, found on spheres and ellipsoids in grids of 0.4 to 3.3 mm: the steps of the
-// slices go, the volume stays within 1 %.
-constexpr int kSmoothingIterations = 20;
-constexpr double kSmoothingPassBand = 0.08;
 // Blur of a label's mask, in voxels: without it marching cubes finds nothing but half-way points.
 constexpr double kMaskBlur_voxels = 0.6;
 // What stands for "surely bone" and "surely not" beside the threshold: about the step from soft tissue to
 // cortex.
 constexpr float kSureStep = 300;
-
-// A part of a volume with room around it.
-struct Field {
-  Eigen::Vector3i first_index;  // of the volume, of the field's voxel (0, 0, 0); may be negative
-  Eigen::Vector3i size;
-  std::vector<float> values;
-
-  [[nodiscard]] std::size_t index(const Eigen::Vector3i& at) const {
-    return static_cast<std::size_t>(at.x()) +
-           static_cast<std::size_t>(size.x()) *
-               (static_cast<std::size_t>(at.y()) +
-                static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(at.z()));
-  }
-};
 
 template <typename IsInside>
 Field field_around(const Volume& volume, int margin, const IsInside& is_inside) {
@@ -62,20 +37,6 @@ Field field_around(const Volume& volume, int margin, const IsInside& is_inside) 
   return field;
 }
 
-// Calls visit(field voxel, volume voxel) for the voxels of the field that lie in the volume.
-template <typename Visit>
-void for_each_shared_voxel(const Field& field, const Volume& volume, const Visit& visit) {
-  for (int k = 0; k < field.size.z(); ++k) {
-    for (int j = 0; j < field.size.y(); ++j) {
-      for (int i = 0; i < field.size.x(); ++i) {
-        const Eigen::Vector3i here(i, j, k), there = field.first_index + here;
-        if ((there.array() < 0).any() || (there.array() >= volume.size.array()).any()) continue;
-        visit(field.index(here), volume.index(there.x(), there.y(), there.z()));
-      }
-    }
-  }
-}
-
 void blur(Field& field) {
   const double side = std::exp(-0.5 / (kMaskBlur_voxels * kMaskBlur_voxels));
   const auto center_weight = static_cast<float>(1 / (1 + 2 * side)),
@@ -94,59 +55,6 @@ void blur(Field& field) {
     }
     step *= n;
   }
-}
-
-// Marching cubes at `level` in index space, then to the patient, then smoothed.
-geometry::TriangleMesh contour(const Field& field, float level, const Volume& volume) {
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(field.size.x(), field.size.y(), field.size.z());
-  image->AllocateScalars(VTK_FLOAT, 1);
-  std::copy(field.values.begin(), field.values.end(), static_cast<float*>(image->GetScalarPointer()));
-  vtkNew<vtkFlyingEdges3D> cubes;
-  cubes->SetInputData(image);
-  cubes->SetValue(0, level);
-  cubes->ComputeNormalsOff();
-  cubes->ComputeGradientsOff();
-  cubes->ComputeScalarsOff();
-  cubes->Update();
-
-  vtkNew<vtkPolyData> in_patient;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  vtkPolyData* found = cubes->GetOutput();
-  points->SetNumberOfPoints(found->GetNumberOfPoints());
-  const Eigen::Vector3d first = field.first_index.cast<double>();
-  for (vtkIdType i = 0; i < found->GetNumberOfPoints(); ++i) {
-    const Eigen::Vector3d index = Eigen::Map<const Eigen::Vector3d>(found->GetPoint(i)) + first;
-    const Eigen::Vector3d p = volume.lps_from_index * index;
-    points->SetPoint(i, p.data());
-  }
-  in_patient->SetPoints(points);
-  in_patient->SetPolys(found->GetPolys());
-
-  vtkNew<vtkWindowedSincPolyDataFilter> smooth;
-  smooth->SetInputData(in_patient);
-  smooth->SetNumberOfIterations(kSmoothingIterations);
-  smooth->SetPassBand(kSmoothingPassBand);
-  smooth->NormalizeCoordinatesOn();
-  smooth->NonManifoldSmoothingOn();
-  smooth->FeatureEdgeSmoothingOff();
-  smooth->BoundarySmoothingOff();
-  smooth->Update();
-
-  geometry::TriangleMesh mesh;
-  vtkPolyData* surface = smooth->GetOutput();
-  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i) {
-    mesh.vertices_mm.emplace_back(Eigen::Map<const Eigen::Vector3d>(surface->GetPoint(i)));
-  }
-  vtkCellArray* cells = surface->GetPolys();
-  const vtkIdType* corners = nullptr;
-  vtkIdType count = 0;
-  for (cells->InitTraversal(); cells->GetNextCell(count, corners);) {
-    mesh.triangles.push_back({static_cast<std::int32_t>(corners[0]), static_cast<std::int32_t>(corners[1]),
-                              static_cast<std::int32_t>(corners[2])});
-  }
-  return mesh;
 }
 
 int axis_nearest_to_superior(const Volume& volume) {
@@ -250,12 +158,12 @@ BoneSurface surface_of_label(const Volume& volume, int label) {
   }
   const auto is_label = [&](std::size_t voxel) { return volume.values[voxel] == static_cast<float>(label); };
   Field field = field_around(volume, 2, is_label);
-  for_each_shared_voxel(field, volume, [&](std::size_t here, std::size_t there) {
+  for_each_shared_voxel(field, volume.size, [&](std::size_t here, std::size_t there) {
     field.values[here] = is_label(there) ? 1.0F : 0.0F;
   });
   blur(field);
   BoneSurface surface;
-  surface.mesh = contour(field, 0.5F, volume);
+  surface.mesh = contour(field, 0.5F, volume.lps_from_index);
   if (surface.mesh.empty())
     throw InvalidInput("label " + std::to_string(label) + " is too small for a surface");
   surface.notes.push_back("label " + std::to_string(label) + ": " + std::to_string(wanted->second) +
@@ -306,7 +214,7 @@ BoneSurface surface_above_threshold(const Volume& volume, const ThresholdOptions
   std::fill(field.values.begin(), field.values.end(), threshold - kSureStep);
   // Beside the bone the grey values say where within a voxel its surface runs; other bones and the marrow
   // must not.
-  for_each_shared_voxel(field, volume, [&](std::size_t here, std::size_t there) {
+  for_each_shared_voxel(field, volume.size, [&](std::size_t here, std::size_t there) {
     const float grey = volume.values[there];
     if (bone.inside[there]) {
       field.values[here] = grey >= threshold ? std::min(grey, threshold + kSureStep) : threshold + kSureStep;
@@ -316,7 +224,7 @@ BoneSurface surface_above_threshold(const Volume& volume, const ThresholdOptions
           grey >= threshold ? threshold - 0.5F * kSureStep : std::max(grey, threshold - kSureStep);
     }
   });
-  surface.mesh = contour(field, threshold, volume);
+  surface.mesh = contour(field, threshold, volume.lps_from_index);
   if (surface.mesh.empty()) throw InvalidInput("what is above the threshold is too small for a surface");
   return surface;
 }

@@ -59,16 +59,26 @@ void squared_distances_along(std::vector<double>& f, double spacing, std::vector
 // In place: 0 where a set voxel is, infinity elsewhere; becomes the squared distance in mm^2.
 void to_squared_distances(std::vector<float>& squared, const Eigen::Vector3i& size,
                           const Eigen::Vector3d& spacing_mm) {
+  constexpr float kFar = std::numeric_limits<float>::infinity();
   std::size_t step = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const auto n = static_cast<std::size_t>(size[axis]);
     std::vector<double> row(n), result(n), boundary(n + 1);
     std::vector<int> vertex(n + 1);
-    for (std::size_t start = 0; start < squared.size(); ++start) {
-      if (start / step % n != 0) continue;
-      for (std::size_t i = 0; i < n; ++i) row[i] = squared[start + i * step];
-      squared_distances_along(row, spacing_mm[axis], result, vertex, boundary);
-      for (std::size_t i = 0; i < n; ++i) squared[start + i * step] = static_cast<float>(result[i]);
+    for (std::size_t block = 0; block < squared.size(); block += step * n) {
+      for (std::size_t start = block; start < block + step; ++start) {
+        // Most rows of a volume are all near or all far.
+        bool has_near = false, has_far = false;
+        for (std::size_t i = 0; i < n; ++i) {
+          const float f = squared[start + i * step];
+          row[i] = f;
+          has_near = has_near || f < kFar;
+          has_far = has_far || f > 0;
+        }
+        if (!has_near || !has_far) continue;
+        squared_distances_along(row, spacing_mm[axis], result, vertex, boundary);
+        for (std::size_t i = 0; i < n; ++i) squared[start + i * step] = static_cast<float>(result[i]);
+      }
     }
     step *= n;
   }
@@ -159,6 +169,15 @@ std::vector<float> distances_mm(const Eigen::Vector3i& size, const std::vector<s
                             std::numeric_limits<float>::infinity());
   for (const std::size_t v : voxels) result[v] = 0;
   to_squared_distances(result, size, spacing_mm);
+  for (float& d : result) d = std::sqrt(d);
+  return result;
+}
+
+std::vector<float> depths_mm(const VoxelMask& mask, const Eigen::Vector3d& spacing_mm) {
+  std::vector<float> result(mask.inside.size());
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i] = mask.inside[i] ? std::numeric_limits<float>::infinity() : 0.0F;
+  to_squared_distances(result, mask.size, spacing_mm);
   for (float& d : result) d = std::sqrt(d);
   return result;
 }

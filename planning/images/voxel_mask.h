@@ -1,4 +1,4 @@
-// Sets of voxels: connected pieces, closing, filling. Inner header of images.
+// Sets of voxels: connected pieces, closing, filling. Inner header of images and segmentation.
 #pragma once
 
 #include <Eigen/Core>
@@ -39,6 +39,9 @@ void erode(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm)
 [[nodiscard]] std::vector<float> distances_mm(const Eigen::Vector3i& size,
                                               const std::vector<std::size_t>& voxels,
                                               const Eigen::Vector3d& spacing_mm);
+
+// Distance of every set voxel from the nearest unset one, in mm; 0 for those. Beyond the volume nothing is.
+[[nodiscard]] std::vector<float> depths_mm(const VoxelMask& mask, const Eigen::Vector3d& spacing_mm);
 
 // Adds what a ball of this radius cannot enter from outside. Beyond the volume nothing is inside.
 void close_gaps(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm);

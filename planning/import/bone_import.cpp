@@ -7,6 +7,8 @@
 #include "planning/geometry/error.h"
 #include "planning/images/bone_surface.h"
 #include "planning/images/volume_file.h"
+#include "planning/segmentation/anatomy_check.h"
+#include "planning/segmentation/ct_bones.h"
 
 namespace arthronaut::importing {
 
@@ -19,11 +21,8 @@ using namespace images;
 using Tell = std::function<void(std::string_view, double)>;
 constexpr double kUnknown = -1;  // of the time that a stage takes
 
-constexpr double kCtThreshold_hu = 250;
 // Air in a CT; no other modality has values this low that means anything.
 constexpr float kAir_hu = -500;
-// A bone this far to one side of the patient's middle is of that side, whatever a name says.
-constexpr double kClearlySideways_mm = 40;
 
 // The words of a file name, in lower case: runs of letters.
 std::vector<std::string> words_of(const std::filesystem::path& source) {
@@ -59,7 +58,7 @@ std::string formatted_size(const Eigen::Vector3d& size) {
 }
 
 ImportedBone finished(BoneKind kind, const std::string& source, const geometry::TriangleMesh& mesh,
-                      const std::optional<Side>& side, const Tell& tell) {
+                      const Tell& tell) {
   tell("Mending the mesh", kUnknown);
   bones::MeshRepair repair = bones::mend_mesh(mesh);
   ImportedBone imported;
@@ -70,12 +69,8 @@ ImportedBone finished(BoneKind kind, const std::string& source, const geometry::
                            formatted_size(bounds.size_mm()));
   for (const auto& line : repair.report.lines()) imported.lines.push_back("mended: " + line);
   imported.doubts = repair.report.doubts();
-  const double x = bounds.center_mm().x();
-  if (side && std::abs(x) > kClearlySideways_mm && (x > 0) != (*side == Side::Left)) {
-    imported.doubts.push_back("the bone lies " + std::to_string(std::lround(std::abs(x))) +
-                              " mm to the patient's " + (x > 0 ? "left" : "right") + ", but the side is " +
-                              std::string(bones::to_text(*side)) + ": check --side and --space");
-  }
+  // Of a mesh that is no bone at all there is enough to say already.
+  if (imported.doubts.empty()) imported.doubts = segmentation::anatomy_doubts(imported.bone.mesh, kind);
   return imported;
 }
 
@@ -98,21 +93,23 @@ void import_mesh(const std::filesystem::path& source, const BoneImportOptions& o
   result.lines.push_back(file.format + ", in " + std::string(bones::to_text(file.unit_in_file)) + ", " +
                          (file.space_in_file == bones::Space::LPS ? "LPS" : "RAS") + " (" + said_by + ")");
   try {
-    result.bones.push_back(finished(*kind, file.format, file.mesh, result.side, tell));
+    result.bones.push_back(finished(*kind, file.format, file.mesh, tell));
   } catch (const InvalidInput& error) {
     throw InvalidInput(source, "", error.what());
   }
 }
 
-double threshold_for(const std::filesystem::path& source, const BoneImportOptions& options,
-                     const Volume& volume) {
-  if (options.threshold) return *options.threshold;
+void refuse_without_threshold(const Volume& volume, const BoneImportOptions& options) {
+  if (options.threshold) return;
   const float least = *std::min_element(volume.values.begin(), volume.values.end());
-  if (volume.modality == "CT" || (volume.modality.empty() && least < kAir_hu)) return kCtThreshold_hu;
-  throw InvalidInput(source, "",
-                     "is no CT, so there is no threshold that finds bone: give --threshold, or import a "
-                     "label map or a mesh of it");
+  if (volume.modality == "CT" || (volume.modality.empty() && least < kAir_hu)) return;
+  throw InvalidInput(
+      "is no CT, so there is no threshold that finds bone: paint seeds and grow them (arthronaut segment), "
+      "give "
+      "--threshold, or import a label map or a mesh of it");
 }
+
+std::string word_of(BoneKind kind) { return std::string(bones::to_text(kind)); }
 
 std::string list_of(const std::vector<std::pair<int, std::size_t>>& labels) {
   std::string list;
@@ -120,6 +117,76 @@ std::string list_of(const std::vector<std::pair<int, std::size_t>>& labels) {
     if (value != 0) list += (list.empty() ? "" : ", ") + std::to_string(value);
   }
   return list;
+}
+
+// By the names of the segments; a name that stands twice is nobody's.
+std::map<BoneKind, int> labels_by_name(const Volume& volume, std::vector<std::string>& lines) {
+  std::map<BoneKind, int> labels;
+  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
+    std::vector<const Segment*> named;
+    for (const Segment& segment : volume.segments) {
+      const auto words = words_of(segment.name);
+      const std::string word(bones::to_text(kind));
+      const bool is_part = std::any_of(words.begin(), words.end(), [](const std::string& w) {
+        return w.starts_with("cart") || w == "cancellous" || w == "marrow";
+      });
+      if (!is_part && std::any_of(words.begin(), words.end(),
+                                  [&](const std::string& w) { return w.find(word) != std::string::npos; }))
+        named.push_back(&segment);
+    }
+    if (named.size() != 1) continue;
+    labels[kind] = named.front()->label;
+    lines.push_back("segment \"" + named.front()->name + "\" is the " + word_of(kind));
+  }
+  return labels;
+}
+
+void import_labels(const Volume& volume, const std::map<BoneKind, int>& labels,
+                   const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
+  for (const auto& [kind, label] : labels) {
+    if (options.kind && *options.kind != kind) continue;
+    tell("Making the surface", kUnknown);
+    const BoneSurface surface = surface_of_label(volume, label);
+    result.bones.push_back(
+        finished(kind, "label " + std::to_string(label) + " of " + volume.format, surface.mesh, tell));
+    auto& lines = result.bones.back().lines;
+    lines.insert(lines.begin(), surface.notes.begin(), surface.notes.end());
+  }
+  if (result.bones.empty()) throw InvalidInput("--label does not name the bone of --bone");
+}
+
+void import_ct(const Volume& volume, const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
+  segmentation::CtBonesOptions ct;
+  ct.threshold = options.threshold;
+  ct.only = options.kind;
+  ct.side = result.side;
+  ct.tell = tell;
+  const segmentation::CtBones found = segmentation::bones_of_ct(volume, ct);
+  result.lines.insert(result.lines.end(), found.notes.begin(), found.notes.end());
+  for (const segmentation::CtBone& bone : found.bones) {
+    result.bones.push_back(finished(bone.kind, volume.format, bone.mesh, tell));
+    ImportedBone& imported = result.bones.back();
+    imported.lines.insert(imported.lines.begin(), bone.notes.begin(), bone.notes.end());
+    imported.doubts.insert(imported.doubts.begin(), bone.doubts.begin(), bone.doubts.end());
+    if (found.side_by_fibula && result.side && *found.side_by_fibula != *result.side) {
+      const std::string seen(bones::to_text(*found.side_by_fibula));
+      imported.doubts.push_back("the fibula lies on the " + seen + " of the tibia, as in a " + seen +
+                                " knee, but the side is " + std::string(bones::to_text(*result.side)) +
+                                ": check --side");
+    }
+  }
+  if (!options.kind && found.bones.size() == 1) {
+    const bool has_femur = found.bones.front().kind == BoneKind::Femur;
+    result.bones.front().doubts.push_back(std::string("the volume shows no ") +
+                                          (has_femur ? "tibia" : "femur") +
+                                          ": --bone says that one is enough");
+  }
+  if (!result.side && found.side_by_fibula) {
+    result.side = found.side_by_fibula;
+    result.side_was_seen = true;
+    result.lines.push_back("the fibula says that it is a " + std::string(bones::to_text(*result.side)) +
+                           " knee");
+  }
 }
 
 void import_volume(const std::filesystem::path& source, const BoneImportOptions& options, BoneImport& result,
@@ -142,6 +209,27 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   const auto labels = labels_of(volume);
   result.identity = {volume.patient.name, volume.patient.id, volume.patient.birth_date};
   const bool is_label_map = labels.size() > 1 && labels.front().first >= 0 && volume.modality.empty();
+  try {
+    if (!options.labels.empty()) {
+      import_labels(volume, options.labels, options, result, tell);
+    } else if (is_label_map && !options.threshold) {
+      const auto named = labels_by_name(volume, result.lines);
+      if (named.empty() || (options.kind && !named.contains(*options.kind))) {
+        throw InvalidInput(
+            "is a label map with the labels " + list_of(labels) +
+            ": say which are the bones, for example --label femur=" + std::to_string(labels[1].first));
+      }
+      import_labels(volume, named, options, result, tell);
+    } else {
+      refuse_without_threshold(volume, options);
+      import_ct(volume, options, result, tell);
+    }
+  } catch (const InvalidInput& error) {
+    // Those of the surface speak of "the volume": the file's name goes before it, once.
+    const std::string message = error.what();
+    if (message.starts_with(source.string())) throw;
+    throw InvalidInput(source, "", message);
+  }
   result.image = ImportedImage{.image = {.file = {},
                                          .modality = volume.modality,
                                          .source = volume.format,
@@ -149,44 +237,6 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
                                          .size = volume.size,
                                          .spacing_mm = spacing},
                                .volume = encoded(volume)};
-  const std::string& name = volume.format;
-  try {
-    if (!options.labels.empty()) {
-      for (const auto& [kind, label] : options.labels) {
-        if (options.kind && *options.kind != kind) continue;
-        tell("Making the surface", kUnknown);
-        const BoneSurface surface = surface_of_label(volume, label);
-        result.bones.push_back(finished(kind, "label " + std::to_string(label) + " of " + name, surface.mesh,
-                                        result.side, tell));
-        result.bones.back().lines.insert(result.bones.back().lines.begin(), surface.notes.begin(),
-                                         surface.notes.end());
-      }
-      if (result.bones.empty()) throw InvalidInput("--label does not name the bone of --bone");
-      return;
-    }
-    if (is_label_map && !options.threshold) {
-      throw InvalidInput(
-          "is a label map with the labels " + list_of(labels) +
-          ": say which are the bones, for example --label femur=" + std::to_string(labels[1].first));
-    }
-    const auto kind = options.kind ? options.kind : bone_kind_in_name(source);
-    if (!kind)
-      throw InvalidInput("does not say which of its bones to take: add --bone femur or --bone tibia");
-    ThresholdOptions threshold;
-    threshold.threshold = threshold_for(source, options, volume);
-    threshold.piece = *kind == BoneKind::Femur ? Piece::Superior : Piece::Inferior;
-    tell("Making the surface", kUnknown);
-    const BoneSurface surface = surface_above_threshold(volume, threshold);
-    result.bones.push_back(finished(*kind, name, surface.mesh, result.side, tell));
-    ImportedBone& bone = result.bones.back();
-    bone.lines.insert(bone.lines.begin(), surface.notes.begin(), surface.notes.end());
-    bone.doubts.insert(bone.doubts.begin(), surface.doubts.begin(), surface.doubts.end());
-  } catch (const InvalidInput& error) {
-    // Those of the surface speak of "the volume": the file's name goes before it, once.
-    const std::string message = error.what();
-    if (message.starts_with(source.string())) throw;
-    throw InvalidInput(source, "", message);
-  }
 }
 
 }  // namespace

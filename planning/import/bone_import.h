@@ -20,19 +20,22 @@
 namespace arthronaut::importing {
 
 struct BoneImportOptions {
-  std::optional<bones::BoneKind> kind;    // else guessed from the name of the source
-  std::optional<bones::Side> side;        // else guessed from the name of the source
+  // Meshes: else guessed from the name of the source. Volumes: this bone alone; else femur and tibia.
+  std::optional<bones::BoneKind> kind;
+  std::optional<bones::Side> side;        // else guessed from the name of the source, or seen by the fibula
   std::optional<bones::Space> space;      // meshes: overrides what the file says
   std::optional<bones::LengthUnit> unit;  // meshes: of the file
-  std::map<bones::BoneKind, int> labels;  // label maps: which label is which bone
-  std::optional<double> threshold;        // grey volumes; else 250 HU for a CT, and refused for all others
-  std::string series;                     // DICOM: series number or UID
+  std::map<bones::BoneKind, int> labels;  // label maps: which label is which bone; else by
+                                          // the names of the segments
+  std::optional<double>
+      threshold;       // grey volumes; for a CT there is a default, other modalities are refused without
+  std::string series;  // DICOM: series number or UID
   // Volumes: what reading may take, as images::VolumeFileOptions has it.
   std::size_t most_bytes = std::size_t{2} << 30;
 };
 
 struct ImportProgress {
-  std::string stage;     // "Reading", "Making the surface", "Mending the mesh"
+  std::string stage;     // "Reading", "Finding the bones", "Making the surface", "Mending the mesh"
   double fraction = -1;  // of this stage, 0 to 1; below 0: not known
 };
 
@@ -52,8 +55,9 @@ struct ImportedImage {
 struct BoneImport {
   std::vector<ImportedBone> bones;
   std::optional<bones::Side> side;  // nullopt: neither given nor in the name
-  bool side_was_guessed = false;
-  std::vector<std::string> lines;  // about the source
+  bool side_was_guessed = false;    // by the name
+  bool side_was_seen = false;       // by the anatomy
+  std::vector<std::string> lines;   // about the source
   // Whose bones they are, where the source says so (DICOM does). For identity.json alone: nothing else of the
   // import names a person, nor a file or folder, whose name often is the patient's.
   cases::Identity identity;

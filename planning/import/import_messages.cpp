@@ -176,6 +176,7 @@ void describe(Archive& archive, BoneImport& import) {
   for (ImportedBone& imported : import.bones) describe(archive, imported);
   describe(archive, import.side);
   describe(archive, import.side_was_guessed);
+  describe(archive, import.side_was_seen);
   describe(archive, import.lines);
   describe(archive, import.identity.patient_name);
   describe(archive, import.identity.patient_id);

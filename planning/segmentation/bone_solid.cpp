@@ -1,0 +1,207 @@
+#include "planning/segmentation/bone_solid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace arthronaut::segmentation {
+
+namespace {
+
+using images::Volume;
+using images::VoxelMask;
+
+// An appendage is worn off from its bone within so much, and has at least this volume then, at most this part
+// of the bone's.
+constexpr double kDeepestNeck_mm = 4.5, kLeastAppendage_mm3 = 1000, kLargestAppendage_fraction = 0.35;
+
+// Voxels of the mask in its border face: axis, and whether the last or the first.
+template <typename Visit>
+void for_each_of_face(const VoxelMask& mask, int axis, bool is_last, const Visit& visit) {
+  Eigen::Vector3i at = Eigen::Vector3i::Zero();
+  at[axis] = is_last ? mask.size[axis] - 1 : 0;
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  for (at[v] = 0; at[v] < mask.size[v]; ++at[v]) {
+    for (at[u] = 0; at[u] < mask.size[u]; ++at[u]) visit(at);
+  }
+}
+
+// Fills what is enclosed within one border face: marrow that the end of the volume cuts open.
+void cap_face(VoxelMask& mask, int axis, bool is_last) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  VoxelMask face(Eigen::Vector3i(mask.size[u], mask.size[v], 1));
+  for_each_of_face(mask, axis, is_last, [&](const Eigen::Vector3i& at) {
+    face.inside[face.index(at[u], at[v], 0)] = mask.inside[mask.index(at.x(), at.y(), at.z())];
+  });
+  images::fill_enclosed(face, 2);
+  for_each_of_face(mask, axis, is_last, [&](const Eigen::Vector3i& at) {
+    mask.inside[mask.index(at.x(), at.y(), at.z())] = face.inside[face.index(at[u], at[v], 0)];
+  });
+}
+
+// What cannot be reached from the border through unset voxels, row by row.
+void fill_unreached(VoxelMask& mask) {
+  const auto nx = static_cast<std::size_t>(mask.size.x()),
+             plane = nx * static_cast<std::size_t>(mask.size.y());
+  std::vector<std::uint8_t> reached(mask.inside.size(), 0);
+  std::vector<std::size_t> front;
+  const auto visit = [&](std::size_t voxel) {
+    if (mask.inside[voxel] || reached[voxel]) return;
+    reached[voxel] = 1;
+    front.push_back(voxel);
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const bool is_last : {false, true}) {
+      for_each_of_face(mask, axis, is_last,
+                       [&](const Eigen::Vector3i& at) { visit(mask.index(at.x(), at.y(), at.z())); });
+    }
+  }
+  while (!front.empty()) {
+    const std::size_t v = front.back();
+    front.pop_back();
+    const std::size_t i = v % nx, jk = v % plane;
+    if (i > 0) visit(v - 1);
+    if (i + 1 < nx) visit(v + 1);
+    if (jk >= nx) visit(v - nx);
+    if (jk + nx < plane) visit(v + nx);
+    if (v >= plane) visit(v - plane);
+    if (v + plane < mask.inside.size()) visit(v + plane);
+  }
+  for (std::size_t v = 0; v < reached.size(); ++v) mask.inside[v] = reached[v] ? 0 : 1;
+}
+
+Box padded(const Volume& volume, const Eigen::Vector3i& low, const Eigen::Vector3i& high, double margin_mm) {
+  const Eigen::Vector3i margin = (margin_mm / volume.spacing_mm().array()).ceil().cast<int>() + 2;
+  Box box;
+  box.first = (low - margin).cwiseMax(0);
+  box.size = (high + margin).cwiseMin(volume.size.array().matrix() - Eigen::Vector3i::Ones()) - box.first +
+             Eigen::Vector3i::Ones();
+  return box;
+}
+
+void close_and_fill(const Volume& volume, BoneSolid& solid, double closing_radius_mm) {
+  if (closing_radius_mm > 0) images::close_gaps(solid.mask, volume.spacing_mm(), closing_radius_mm);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (solid.box.first[axis] == 0) cap_face(solid.mask, axis, false);
+    if (solid.box.first[axis] + solid.box.size[axis] == volume.size[axis]) cap_face(solid.mask, axis, true);
+  }
+  fill_unreached(solid.mask);
+}
+
+}  // namespace
+
+Eigen::Vector3d BoneSolid::lps_of(const Volume& volume, std::size_t voxel) const {
+  const auto nx = static_cast<std::size_t>(mask.size.x()), ny = static_cast<std::size_t>(mask.size.y());
+  const Eigen::Vector3i index(static_cast<int>(voxel % nx), static_cast<int>(voxel / nx % ny),
+                              static_cast<int>(voxel / (nx * ny)));
+  return volume.lps_from_index * (box.first + index).cast<double>();
+}
+
+BoneSolid solid_of(const Volume& volume, const std::vector<std::size_t>& voxels, double closing_radius_mm) {
+  const auto nx = static_cast<std::size_t>(volume.size.x()), ny = static_cast<std::size_t>(volume.size.y());
+  const auto at = [&](std::size_t v) {
+    return Eigen::Vector3i(static_cast<int>(v % nx), static_cast<int>(v / nx % ny),
+                           static_cast<int>(v / (nx * ny)));
+  };
+  Eigen::Vector3i low = volume.size, high = Eigen::Vector3i::Constant(-1);
+  for (const std::size_t v : voxels) {
+    low = low.cwiseMin(at(v));
+    high = high.cwiseMax(at(v));
+  }
+  BoneSolid solid;
+  solid.box = padded(volume, low, high, closing_radius_mm);
+  solid.mask = VoxelMask(solid.box.size);
+  for (const std::size_t v : voxels) {
+    const Eigen::Vector3i here = at(v) - solid.box.first;
+    solid.mask.inside[solid.mask.index(here.x(), here.y(), here.z())] = 1;
+  }
+  close_and_fill(volume, solid, closing_radius_mm);
+  return solid;
+}
+
+BoneSolid solid_of(const Volume& volume, const Box& box, const VoxelMask& part, double closing_radius_mm) {
+  BoneSolid solid{box, part};
+  close_and_fill(volume, solid, closing_radius_mm);
+  return solid;
+}
+
+double SectionProfile::largest_mm2() const {
+  return area_mm2.empty() ? 0 : *std::max_element(area_mm2.begin(), area_mm2.end());
+}
+
+double SectionProfile::largest_at_mm() const {
+  const auto at = std::max_element(area_mm2.begin(), area_mm2.end()) - area_mm2.begin();
+  return low_mm + (static_cast<double>(at) + 0.5) * step_mm;
+}
+
+SectionProfile profile_of(const Volume& volume, const BoneSolid& solid) {
+  SectionProfile profile;
+  const Eigen::RowVector3d rise = volume.lps_from_index.linear().row(2);
+  const double voxel_mm3 = std::abs(volume.lps_from_index.linear().determinant());
+  profile.step_mm = std::max(2.0, rise.cwiseAbs().maxCoeff());
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  std::size_t count = 0;
+  std::vector<double> heights;
+  const Eigen::Vector3i size = solid.mask.size;
+  const double base = (volume.lps_from_index * solid.box.first.cast<double>()).z();
+  const auto for_each = [&](const auto& visit) {
+    std::size_t v = 0;
+    for (int k = 0; k < size.z(); ++k) {
+      for (int j = 0; j < size.y(); ++j) {
+        for (int i = 0; i < size.x(); ++i, ++v) {
+          if (solid.mask.inside[v])
+            visit(Eigen::Vector3d(i, j, k), base + rise.x() * i + rise.y() * j + rise.z() * k);
+        }
+      }
+    }
+  };
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for_each([&](const Eigen::Vector3d& index, double z) {
+    low = std::min(low, z);
+    high = std::max(high, z);
+    sum += index;
+    ++count;
+  });
+  if (count == 0) return profile;
+  profile.low_mm = low - 0.5 * profile.step_mm;
+  profile.area_mm2.assign(static_cast<std::size_t>((high - profile.low_mm) / profile.step_mm) + 1, 0);
+  for_each([&](const Eigen::Vector3d&, double z) {
+    profile.area_mm2[static_cast<std::size_t>((z - profile.low_mm) / profile.step_mm)] +=
+        voxel_mm3 / profile.step_mm;
+  });
+  profile.center_mm =
+      volume.lps_from_index * (solid.box.first.cast<double>() + sum / static_cast<double>(count));
+  profile.volume_mm3 = voxel_mm3 * static_cast<double>(count);
+  return profile;
+}
+
+std::vector<Eigen::Vector3d> take_off_appendage(const Volume& volume, BoneSolid& solid) {
+  const Eigen::Vector3d spacing = volume.spacing_mm();
+  const double voxel_mm3 = std::abs(volume.lps_from_index.linear().determinant());
+  const std::vector<float> depths = images::depths_mm(solid.mask, spacing);
+  std::vector<Eigen::Vector3d> taken;
+  for (double radius = 1.5; radius <= kDeepestNeck_mm; radius += 1) {
+    VoxelMask worn = solid.mask;
+    for (std::size_t v = 0; v < depths.size(); ++v) worn.inside[v] = depths[v] > radius;
+    const auto pieces =
+        images::connected_pieces(worn, static_cast<std::size_t>(kLeastAppendage_mm3 / voxel_mm3));
+    if (pieces.size() < 2) continue;
+    if (static_cast<double>(pieces[1].count) >
+        kLargestAppendage_fraction * static_cast<double>(pieces[0].count))
+      continue;
+    std::vector<std::size_t> others;
+    for (std::size_t p = 1; p < pieces.size(); ++p)
+      others.insert(others.end(), pieces[p].voxels.begin(), pieces[p].voxels.end());
+    const auto to_kept = images::distances_mm(solid.mask.size, pieces[0].voxels, spacing),
+               to_others = images::distances_mm(solid.mask.size, others, spacing);
+    for (std::size_t v = 0; v < depths.size(); ++v) {
+      if (!solid.mask.inside[v] || to_kept[v] < to_others[v]) continue;
+      solid.mask.inside[v] = 0;
+      taken.push_back(solid.lps_of(volume, v));
+    }
+    return taken;
+  }
+  return taken;
+}
+
+}  // namespace arthronaut::segmentation

@@ -1,0 +1,310 @@
+#include "planning/segmentation/ct_bones.h"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "planning/files/format.h"
+#include "planning/geometry/error.h"
+#include "planning/segmentation/bone_solid.h"
+#include "planning/segmentation/edge_surface.h"
+#include "planning/segmentation/joint_space.h"
+
+namespace arthronaut::segmentation {
+
+namespace {
+
+using bones::BoneKind;
+using bones::Side;
+using images::Volume;
+using images::VoxelMask;
+
+// Cortical bone of adults in CT is above 250 HU, marrow and soft tissue below. In coarse voxels the thin
+// shell of the condyles and the plateau is seen through what lies beside it.
+constexpr double kCoarse_mm = 1.5, kOfCoarse_hu = 180, kOfFine_hu = 250;
+// A piece of less than this is a splinter or a sesamoid.
+constexpr double kLeastPiece_mm3 = 4000;
+// The condyles and the plateau of the smallest adults cover more in a slice; a fibula and a patella less.
+constexpr double kLeastSection_mm2 = 1300;
+// From the largest section of a femur down to its end; of a tibia up to the tip of its eminence. A piece that
+// goes on further on both sides holds both.
+constexpr double kMostBelowCondyles_mm = 42, kMostAbovePlateau_mm = 18;
+// A candidate that is alone is parted only where this much of a joint is seen, and into two that are bones.
+constexpr double kSureJoint_mm2 = 700, kLeastPart_mm3 = 8000;
+// Knees lie further apart than bones of one.
+constexpr double kBetweenKnees_mm = 70;
+
+struct Candidate {
+  BoneSolid solid;
+  SectionProfile profile;
+
+  [[nodiscard]] double above_mm() const { return profile.high_mm() - profile.largest_at_mm(); }
+  [[nodiscard]] double below_mm() const { return profile.largest_at_mm() - profile.low_mm; }
+  [[nodiscard]] bool may_hold_both() const {
+    return below_mm() > kMostBelowCondyles_mm && above_mm() > kMostAbovePlateau_mm;
+  }
+};
+
+struct Slender {
+  Eigen::Vector3d center_mm;
+  double height_mm = 0;
+};
+
+struct Found {
+  std::vector<Candidate> candidates;  // highest first
+  std::vector<Slender> slender;
+};
+
+void tell(const CtBonesOptions& options, double fraction) {
+  if (options.tell) options.tell("Finding the bones", fraction);
+}
+
+Found found_pieces(const Volume& volume, const CtBonesOptions& options) {
+  const auto threshold = static_cast<float>(options.threshold_for(volume));
+  VoxelMask above(volume.size);
+  for (std::size_t v = 0; v < volume.values.size(); ++v) above.inside[v] = volume.values[v] >= threshold;
+  tell(options, 0.05);
+  const double voxel_mm3 = std::abs(volume.lps_from_index.linear().determinant());
+  auto pieces = images::connected_pieces(above, static_cast<std::size_t>(kLeastPiece_mm3 / 8 / voxel_mm3));
+  tell(options, 0.25);
+  constexpr std::size_t kMostPieces = 12;
+  if (pieces.size() > kMostPieces) pieces.resize(kMostPieces);
+  Found found;
+  for (const auto& piece : pieces) {
+    Candidate candidate;
+    candidate.solid = solid_of(volume, piece.voxels, options.closing_radius_mm);
+    candidate.profile = profile_of(volume, candidate.solid);
+    if (candidate.profile.volume_mm3 < kLeastPiece_mm3) continue;
+    if (candidate.profile.largest_mm2() < kLeastSection_mm2) {
+      found.slender.push_back(
+          {candidate.profile.center_mm, candidate.profile.high_mm() - candidate.profile.low_mm});
+    } else {
+      found.candidates.push_back(std::move(candidate));
+    }
+  }
+  std::stable_sort(found.candidates.begin(), found.candidates.end(), [](const auto& a, const auto& b) {
+    return a.profile.center_mm.z() > b.profile.center_mm.z();
+  });
+  tell(options, 0.5);
+  return found;
+}
+
+// Of a volume with both knees the one that was asked for.
+void keep_one_knee(Found& found, const CtBonesOptions& options) {
+  auto& all = found.candidates;
+  std::vector<double> across;
+  for (const Candidate& c : all) across.push_back(c.profile.center_mm.x());
+  std::sort(across.begin(), across.end());
+  double middle = 0;
+  bool are_two = false;
+  for (std::size_t i = 0; i + 1 < across.size(); ++i) {
+    if (across[i + 1] - across[i] < kBetweenKnees_mm) continue;
+    are_two = true;
+    middle = 0.5 * (across[i] + across[i + 1]);
+  }
+  if (!are_two) return;
+  if (!options.side) throw InvalidInput("shows both knees: add --side left or --side right");
+  const bool is_left = *options.side == Side::Left;
+  std::erase_if(all, [&](const Candidate& c) { return (c.profile.center_mm.x() > middle) != is_left; });
+  std::erase_if(found.slender, [&](const Slender& s) { return (s.center_mm.x() > middle) != is_left; });
+}
+
+// The part of the candidate above or below the joint space, its largest piece.
+Candidate part_of(const Volume& volume, const Candidate& whole, const JointSpace& joint, bool is_above,
+                  double closing_radius_mm) {
+  const BoneSolid& solid = whole.solid;
+  const auto threshold_mask = solid.mask;
+  VoxelMask part(solid.mask.size);
+  for (std::size_t v = 0; v < part.inside.size(); ++v) {
+    if (!threshold_mask.inside[v]) continue;
+    const Eigen::Vector3d p = solid.lps_of(volume, v);
+    part.inside[v] = (p.z() > joint.height_at(p.x(), p.y())) == is_above;
+  }
+  const auto pieces = images::connected_pieces(part, 1);
+  std::fill(part.inside.begin(), part.inside.end(), std::uint8_t{0});
+  if (!pieces.empty()) {
+    for (const std::size_t v : pieces.front().voxels) part.inside[v] = 1;
+  }
+  Candidate candidate;
+  candidate.solid = solid_of(volume, solid.box, part, closing_radius_mm);
+  // What closing has taken across the cut goes back.
+  for (std::size_t v = 0; v < part.inside.size(); ++v)
+    candidate.solid.mask.inside[v] =
+        candidate.solid.mask.inside[v] && (part.inside[v] || !threshold_mask.inside[v]);
+  candidate.profile = profile_of(volume, candidate.solid);
+  return candidate;
+}
+
+// The joint is looked for between the shafts, from a little above the section that may be the condyles'.
+bool part_at_joint(const Volume& volume, Found& found, std::size_t at, const CtBonesOptions& options,
+                   CtBones& result) {
+  const Candidate& whole = found.candidates[at];
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9), high = -low;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3i index =
+        whole.solid.box.first +
+        Eigen::Vector3i(corner & 1, corner >> 1 & 1, corner >> 2 & 1).cwiseProduct(whole.solid.box.size);
+    const Eigen::Vector3d p = volume.lps_from_index * index.cast<double>();
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  constexpr double kAround_mm = 60;
+  const double middle = whole.profile.largest_at_mm();
+  low.z() = std::max(low.z(), middle - kAround_mm);
+  high.z() = std::min(high.z(), middle + kAround_mm);
+  const auto joint = find_joint_space(volume, low, high, options.threshold_for(volume));
+  const bool is_needed = whole.may_hold_both();
+  if (!joint || (!is_needed && joint->area_mm2 < kSureJoint_mm2)) return false;
+  Candidate femur = part_of(volume, whole, *joint, true, options.closing_radius_mm),
+            tibia = part_of(volume, whole, *joint, false, options.closing_radius_mm);
+  const double least = std::min(femur.profile.volume_mm3, tibia.profile.volume_mm3);
+  if (!is_needed && least < kLeastPart_mm3) return false;
+  result.notes.push_back("femur and tibia touch: parted along the joint space, of which " +
+                         std::to_string(std::lround(joint->area_mm2 / 100)) + " cm2 are seen");
+  found.candidates[at] = std::move(femur);
+  found.candidates.insert(found.candidates.begin() + static_cast<std::ptrdiff_t>(at) + 1, std::move(tibia));
+  return true;
+}
+
+// Which candidate is which bone; nullptr where there is none.
+struct Chosen {
+  Candidate *femur = nullptr, *tibia = nullptr;
+};
+
+Chosen chosen_of(Found& found) {
+  Chosen chosen;
+  auto& all = found.candidates;
+  const auto is_large = [&](const Candidate& c) {
+    double most = 0;
+    for (const Candidate& other : all) most = std::max(most, other.profile.volume_mm3);
+    return c.profile.volume_mm3 > 0.08 * most;
+  };
+  std::vector<Candidate*> large;
+  for (Candidate& c : all) {
+    if (is_large(c)) large.push_back(&c);
+  }
+  if (large.size() >= 2) {
+    chosen.femur = large[0];
+    chosen.tibia = large[1];
+  } else if (large.size() == 1) {
+    Candidate& only = *large.front();
+    (only.above_mm() > only.below_mm() ? chosen.femur : chosen.tibia) = &only;
+  }
+  return chosen;
+}
+
+CtBone surface_of(const Volume& volume, BoneKind kind, Candidate& candidate, const Candidate* other,
+                  std::vector<Eigen::Vector3d> appendage, const CtBonesOptions& options) {
+  CtBone bone;
+  bone.kind = kind;
+  const BoneSolid& solid = candidate.solid;
+  VoxelMask others(solid.mask.size);
+  if (other) {
+    for (int k = 0; k < solid.mask.size.z(); ++k) {
+      for (int j = 0; j < solid.mask.size.y(); ++j) {
+        for (int i = 0; i < solid.mask.size.x(); ++i) {
+          const Eigen::Vector3i there = solid.box.first + Eigen::Vector3i(i, j, k) - other->solid.box.first;
+          if ((there.array() < 0).any() || (there.array() >= other->solid.mask.size.array()).any()) continue;
+          others.inside[others.index(i, j, k)] =
+              other->solid.mask.inside[other->solid.mask.index(there.x(), there.y(), there.z())];
+        }
+      }
+    }
+  }
+  const Eigen::Affine3d index_from_lps = volume.lps_from_index.inverse();
+  for (const Eigen::Vector3d& p : appendage) {
+    const Eigen::Vector3i at = (index_from_lps * p).array().round().cast<int>().matrix() - solid.box.first;
+    others.inside[others.index(at.x(), at.y(), at.z())] = 1;
+  }
+  bone.mesh =
+      edge_surface(volume, solid.box, solid.mask, others, {.threshold = options.threshold_for(volume)});
+  bone.notes.push_back(
+      files::format("threshold %.0f HU, surface at the local edge; %.0f ml, marrow filled in",
+                    options.threshold_for(volume), candidate.profile.volume_mm3 / 1000));
+  if (!appendage.empty())
+    bone.notes.push_back(kind == BoneKind::Tibia ? "the fibula, which touches, was taken off"
+                                                 : "a bone that touches (the patella) was taken off");
+  return bone;
+}
+
+std::string values_in_words(const Volume& volume) {
+  const auto [low, high] = std::minmax_element(volume.values.begin(), volume.values.end());
+  return files::format("its values run from %.0f to %.0f", *low, *high);
+}
+
+}  // namespace
+
+double CtBonesOptions::threshold_for(const Volume& volume) const {
+  return threshold.value_or(volume.spacing_mm().maxCoeff() > kCoarse_mm ? kOfCoarse_hu : kOfFine_hu);
+}
+
+CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
+  CtBones result;
+  Found found = found_pieces(volume, options);
+  keep_one_knee(found, options);
+  if (found.candidates.empty()) {
+    throw InvalidInput(files::format("holds no femur and no tibia above the threshold of %.0f HU: ",
+                                     options.threshold_for(volume)) +
+                       values_in_words(volume));
+  }
+  bool is_joined = false;
+  for (std::size_t i = 0; i < found.candidates.size(); ++i) {
+    const bool holds_both = found.candidates[i].may_hold_both();
+    if (!holds_both && found.candidates.size() > 1) continue;
+    if (part_at_joint(volume, found, i, options, result)) {
+      ++i;
+    } else {
+      is_joined = is_joined || holds_both;
+    }
+  }
+  tell(options, 0.7);
+  const Chosen chosen = chosen_of(found);
+  std::vector<std::pair<BoneKind, Candidate*>> wanted;
+  if (chosen.femur && options.only != BoneKind::Tibia) wanted.emplace_back(BoneKind::Femur, chosen.femur);
+  if (chosen.tibia && options.only != BoneKind::Femur) wanted.emplace_back(BoneKind::Tibia, chosen.tibia);
+  if (wanted.empty()) {
+    throw InvalidInput("shows no " + std::string(bones::to_text(*options.only)) + ", only a " +
+                       (chosen.femur ? "femur" : "tibia"));
+  }
+  std::vector<std::vector<Eigen::Vector3d>> appendages(wanted.size());
+  const auto for_each_bone = [&](const auto& work) {
+    std::vector<std::thread> threads;
+    for (std::size_t i = 1; i < wanted.size(); ++i) threads.emplace_back([&work, i] { work(i); });
+    work(0);
+    for (auto& thread : threads) thread.join();
+  };
+  for_each_bone([&](std::size_t i) { appendages[i] = take_off_appendage(volume, wanted[i].second->solid); });
+  tell(options, 0.8);
+  result.bones.resize(wanted.size());
+  for_each_bone([&](std::size_t i) {
+    const Candidate* other = wanted[i].second == chosen.femur ? chosen.tibia : chosen.femur;
+    result.bones[i] = surface_of(volume, wanted[i].first, *wanted[i].second, other, appendages[i], options);
+  });
+  for (CtBone& bone : result.bones) {
+    if (is_joined)
+      bone.doubts.push_back("femur and tibia seem to touch, and no joint space is seen between them");
+  }
+  // Lateral is where the fibula is: the tallest slender piece beside the tibia, or what hung on it.
+  if (chosen.tibia) {
+    const SectionProfile tibia = profile_of(volume, chosen.tibia->solid);
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      if (wanted[i].first != BoneKind::Tibia || appendages[i].empty()) continue;
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      for (const Eigen::Vector3d& p : appendages[i]) sum += p;
+      found.slender.push_back({sum / static_cast<double>(appendages[i].size()), 1e3});
+    }
+    double tallest = 25;
+    for (const Slender& s : found.slender) {
+      const double aside = s.center_mm.x() - tibia.center_mm.x();
+      if (s.height_mm < tallest || s.center_mm.z() > tibia.high_mm() || std::abs(aside) < 8 ||
+          std::abs(aside) > 60)
+        continue;
+      tallest = s.height_mm;
+      result.side_by_fibula = aside > 0 ? Side::Left : Side::Right;
+    }
+  }
+  tell(options, 1);
+  return result;
+}
+
+}  // namespace arthronaut::segmentation
