@@ -23,6 +23,7 @@ struct PlanStatus {
     NotYet,    // the hand has not come to rest
     Failed,    // the model keeps what is not on disk
     ReadOnly,  // another program has the case: edits are refused
+    Conflict,  // another program has saved a plan since: nothing is written until somebody chooses
   } save = Save::Saved;
   std::string text = "saved";        // "saved at 11:04:22", or what went wrong
   std::string undo_what, redo_what;  // empty: nothing to undo, to redo

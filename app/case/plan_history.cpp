@@ -1,5 +1,6 @@
 #include "app/case/plan_history.h"
 
+#include <algorithm>
 #include <array>
 #include <ctime>
 #include <utility>
@@ -10,7 +11,12 @@ namespace arthronaut::open_case {
 
 namespace {
 
-constexpr double kRest_s = 0.5;
+constexpr double kRest_s = 0.5, kLookEvery_s = 1.0;
+
+bool is_same(const std::optional<tunnels::Tunnel>& a, const std::optional<tunnels::Tunnel>& b) {
+  if (!a || !b) return !a && !b;
+  return a->entry_mm == b->entry_mm && a->direction == b->direction && a->diameter_mm == b->diameter_mm;
+}
 
 std::string clock_text() {
   const std::time_t now = std::time(nullptr);
@@ -37,7 +43,7 @@ void PlanHistory::open(PlanModel* model, const std::filesystem::path& case_folde
 }
 
 void PlanHistory::apply(const PlanEdit& edit, double now_s) {
-  if (model_ == nullptr || is_read_only_) return;
+  if (model_ == nullptr || is_read_only_ || is_same(model_->tunnel(edit.bone), edit.tunnel)) return;
   if (is_moving_ && (!edit.continues || edit.what != steps_.back().what)) settle_now();
   if (!is_moving_) {
     steps_.resize(position_);  // what was undone can't be redone after a new step
@@ -48,8 +54,10 @@ void PlanHistory::apply(const PlanEdit& edit, double now_s) {
   model_->set_tunnel(edit.bone, edit.tunnel);
   steps_.back().after = model_->knee().plan;
   moved_at_s_ = now_s;
-  status_.save = PlanStatus::Save::NotYet;
-  status_.text = "not saved yet";
+  if (!is_in_conflict()) {
+    status_.save = PlanStatus::Save::NotYet;
+    status_.text = "not saved yet";
+  }
   describe();
 }
 
@@ -82,7 +90,59 @@ void PlanHistory::describe() {
   status_.redo_what = can_redo() ? steps_[position_].what : "";
 }
 
+void PlanHistory::go_to(std::size_t position) {
+  settle_now();
+  position = std::min(position, steps_.size());
+  if (position == position_ || model_ == nullptr) return;
+  model_->set_plan(position < position_ ? steps_[position].before : steps_[position - 1].after);
+  position_ = position;
+  save();
+  describe();
+}
+
+void PlanHistory::look_at_disk(double now_s) {
+  if (model_ == nullptr || is_read_only_ || is_in_conflict() || now_s - looked_at_s_ < kLookEvery_s) return;
+  looked_at_s_ = now_s;
+  if (status_.save == PlanStatus::Save::Failed) return;  // its reason stands
+  std::error_code error;
+  if (!std::filesystem::is_directory(case_folder_, error))
+    return;  // one that is gone is told by the next save
+  if (cases::plan_version(case_folder_) != version_) set_conflict();
+}
+
+void PlanHistory::set_conflict() {
+  status_.save = PlanStatus::Save::Conflict;
+  status_.text = "another program has saved another plan: take it, or keep this one";
+}
+
+void PlanHistory::take_theirs() {
+  if (!is_in_conflict()) return;
+  is_moving_ = false;  // what was moving stays a step, and is not written
+  try {
+    const cases::Case there = cases::load_case(case_folder_);
+    steps_.resize(position_);
+    steps_.push_back({"Take the plan of the other program", model_->knee().plan, there.plan});
+    ++position_;
+    model_->set_plan(there.plan);
+    version_ = there.plan_version;
+    status_.save = PlanStatus::Save::Saved;
+    status_.text = "as the other program saved it";
+    describe();
+  } catch (const std::exception& error) {  // a file of another program: whatever is wrong with it is said
+    status_.text = std::string("the other program's plan cannot be read: ") + error.what();
+  }
+}
+
+void PlanHistory::keep_ours() {
+  if (!is_in_conflict()) return;
+  is_moving_ = false;
+  version_ = cases::plan_version(case_folder_);
+  status_.save = PlanStatus::Save::NotYet;
+  save();
+}
+
 void PlanHistory::save() {
+  if (is_in_conflict()) return;
   const auto fail = [this](const std::exception& error) {
     status_.save = PlanStatus::Save::Failed;
     status_.text = std::string("not saved: ") + error.what();
@@ -93,8 +153,12 @@ void PlanHistory::save() {
     status_.text = "saved at " + clock_text();
   } catch (const IoError& error) {
     fail(error);
-  } catch (const InvalidInput& error) {  // another program has written it
-    fail(error);
+  } catch (const InvalidInput& error) {  // another program has written it, or the folder is gone
+    std::error_code none;
+    if (std::filesystem::is_directory(case_folder_, none))
+      set_conflict();
+    else
+      fail(error);
   }
 }
 

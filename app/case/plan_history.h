@@ -4,8 +4,8 @@
 // Edits that follow each other as one movement (a drag, a key held down) are one step, saved when the hand
 // rests. After every step, undo and redo the plan on disk is the model's, so that a crash resumes there. Two
 // things stand against that, and the status says which: a case that another program has open is read-only,
-// every edit is refused; a plan.json that another program has changed meanwhile is not written over, the
-// model keeps the change.
+// every edit is refused; a plan.json that another program has changed meanwhile is not written over: the
+// model keeps its plan, edits go on in memory, and the surgeon chooses by take_theirs() or keep_ours().
 //
 // GUI-free. One thread.
 #pragma once
@@ -26,6 +26,7 @@ class PlanHistory {
   void open(PlanModel* model, const std::filesystem::path& case_folder, const std::string& read_only = {});
   [[nodiscard]] const PlanModel* model() const { return model_; }  // null while no case is open
 
+  // An edit that changes nothing is no step.
   void apply(const PlanEdit& edit, double now_s);
   // Without effect when there is nothing to undo or redo.
   void undo();
@@ -37,6 +38,23 @@ class PlanHistory {
   void settle(double now_s);
   void settle_now();
   [[nodiscard]] bool is_moving() const { return is_moving_; }
+
+  // Whether another program has saved a plan: looks at plan.json, at most once a second. For every frame.
+  void look_at_disk(double now_s);
+  [[nodiscard]] bool is_in_conflict() const { return status_.save == PlanStatus::Save::Conflict; }
+  // The end of a conflict; without effect where there is none. Theirs comes into the model, as a step that
+  // undo takes back; ours is written over theirs. A plan.json that cannot be read leaves the conflict, with
+  // the reason.
+  void take_theirs();
+  void keep_ours();
+
+  // What was done, the oldest first, and how many of these are not undone: the list that a screen shows.
+  [[nodiscard]] std::size_t step_count() const { return steps_.size(); }
+  [[nodiscard]] std::size_t position() const { return position_; }
+  // Precondition: step < step_count().
+  [[nodiscard]] const std::string& step_name(std::size_t step) const { return steps_[step].what; }
+  // Undoes or redoes until so many steps are done; at most step_count().
+  void go_to(std::size_t position);
   [[nodiscard]] const PlanStatus& status() const { return status_; }
 
  private:
@@ -45,6 +63,7 @@ class PlanHistory {
     cases::Plan before, after;
   };
   void save();
+  void set_conflict();
   void describe();
 
   PlanModel* model_ = nullptr;
@@ -54,7 +73,7 @@ class PlanHistory {
   std::vector<Step> steps_;
   std::size_t position_ = 0;  // steps_[0, position_) are done
   bool is_moving_ = false;    // the last step is still going on
-  double moved_at_s_ = 0;
+  double moved_at_s_ = 0, looked_at_s_ = 0;
   PlanStatus status_;
 };
 

@@ -1,6 +1,9 @@
 #include "app/case/plan_model.h"
 
-#include "app/scene/scene_content.h"
+#include <algorithm>
+#include <limits>
+
+#include "app/scene/notch_cut.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/geometry/error.h"
 
@@ -13,15 +16,39 @@ landmarks::Landmarks landmarks_of(const cases::Case& knee, bones::BoneKind kind)
   return found == knee.landmarks.end() ? landmarks::Landmarks{} : found->second;
 }
 
+// Of the vertices within 80 mm of the joint, which is at the femur's lower end and at the tibia's upper one.
+geometry::Bounds joint_bounds_of(const geometry::TriangleMesh& mesh, bones::BoneKind kind,
+                                 const landmarks::AnatomicalAxes& axes) {
+  constexpr double kShown_mm = 80;
+  const Eigen::Vector3d into_bone =
+      kind == bones::BoneKind::Femur ? axes.proximal : Eigen::Vector3d(-axes.proximal);
+  double joint = std::numeric_limits<double>::infinity();
+  for (const auto& vertex : mesh.vertices_mm) joint = std::min(joint, vertex.dot(into_bone));
+  geometry::TriangleMesh part;
+  for (const auto& vertex : mesh.vertices_mm)
+    if (vertex.dot(into_bone) <= joint + kShown_mm) part.vertices_mm.push_back(vertex);
+  return geometry::bounds_of(part);
+}
+
+geometry::Bounds joined(geometry::Bounds all, const geometry::Bounds& other) {
+  all.min_mm = all.min_mm.cwiseMin(other.min_mm);
+  all.max_mm = all.max_mm.cwiseMax(other.max_mm);
+  return all;
+}
+
 }  // namespace
 
 PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
   for (const auto& [kind, bone] : knee_.bones) {
     if (bone.mesh.empty()) continue;
+    const landmarks::AnatomicalAxes axes =
+        landmarks::anatomical_axes(kind, knee_.side, landmarks_of(knee_, kind), bone.mesh);
     bones_.emplace(
         kind, BoneModel{scene::simplified(bone.mesh),
                         std::make_shared<geometry::Surface>(bone.mesh),
                         geometry::bounds_of(bone.mesh),
+                        joint_bounds_of(bone.mesh, kind, axes),
+                        axes,
                         bones::mesh_sha256(bone.mesh),
                         {},
                         tunnels::surroundings_of(bone.mesh, kind, landmarks_of(knee_, kind), knee_.side)});
@@ -69,11 +96,22 @@ double PlanModel::drawn_length_mm(bones::BoneKind kind) const {
 geometry::Bounds PlanModel::bounds(std::optional<bones::BoneKind> only) const {
   if (only && has_bone(*only)) return bones_.at(*only).bounds;
   geometry::Bounds all = bones_.begin()->second.bounds;
-  for (const auto& [kind, bone] : bones_) {
-    all.min_mm = all.min_mm.cwiseMin(bone.bounds.min_mm);
-    all.max_mm = all.max_mm.cwiseMax(bone.bounds.max_mm);
-  }
+  for (const auto& [kind, bone] : bones_) all = joined(all, bone.bounds);
   return all;
+}
+
+geometry::Bounds PlanModel::joint_bounds(std::optional<bones::BoneKind> only) const {
+  if (only && has_bone(*only)) return bones_.at(*only).joint_bounds;
+  geometry::Bounds all = bones_.begin()->second.joint_bounds;
+  for (const auto& [kind, bone] : bones_) all = joined(all, bone.joint_bounds);
+  return all;
+}
+
+std::optional<scene::CutPlane> PlanModel::notch_cut() const {
+  const auto femur = knee_.bones.find(bones::BoneKind::Femur);
+  if (femur == knee_.bones.end() || !has_bone(bones::BoneKind::Femur)) return std::nullopt;
+  return scene::notch_cut(femur->second.mesh, axes(bones::BoneKind::Femur),
+                          landmarks_of(knee_, bones::BoneKind::Femur));
 }
 
 void PlanModel::set_tunnel(bones::BoneKind kind, const std::optional<tunnels::Tunnel>& tunnel) {

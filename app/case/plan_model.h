@@ -13,8 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "app/scene/scene_content.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/surface.h"
+#include "planning/landmarks/anatomical_axes.h"
 #include "planning/tunnels/plan_checks.h"
 
 namespace arthronaut::open_case {
@@ -47,6 +49,14 @@ class PlanModel {
   // How far a tunnel is drawn: through the bone, or 30 mm where it misses.
   [[nodiscard]] double drawn_length_mm(bones::BoneKind kind) const;
   [[nodiscard]] geometry::Bounds bounds(std::optional<bones::BoneKind> only) const;
+  // What a surgeon looks at of them: within 80 mm of the joint, along the bone, of a bone that may be whole.
+  [[nodiscard]] geometry::Bounds joint_bounds(std::optional<bones::BoneKind> only) const;
+  // Which way is anterior, proximal and lateral. Precondition: has_bone(kind).
+  [[nodiscard]] const landmarks::AnatomicalAxes& axes(bones::BoneKind kind) const {
+    return bones_.at(kind).axes;
+  }
+  // Where the femur is cut open to see the lateral wall of its notch; nullopt without a femur.
+  [[nodiscard]] std::optional<scene::CutPlane> notch_cut() const;
 
   // nullopt removes the tunnel. One with another entry is planned on this case's mesh, where its entry was
   // put; one that was only turned or widened stays of the mesh that it was of. Precondition: has_bone(kind).
@@ -59,7 +69,8 @@ class PlanModel {
   struct BoneModel {
     std::shared_ptr<const geometry::TriangleMesh> drawn;
     std::shared_ptr<const geometry::Surface> surface;
-    geometry::Bounds bounds;
+    geometry::Bounds bounds, joint_bounds;
+    landmarks::AnatomicalAxes axes;
     std::string mesh_sha256;
     tunnels::TunnelGeometry measured;
     tunnels::PlanSurroundings surroundings;

@@ -5,15 +5,14 @@
 
 namespace arthronaut::plan {
 
-std::string anatomical_text(const Eigen::Vector3d& displacement_mm, bones::Side side) {
-  const double lateral = side == bones::Side::Right ? -displacement_mm.x() : displacement_mm.x();
+std::string anatomical_text(const Eigen::Vector3d& displacement_mm, const landmarks::AnatomicalAxes& axes) {
   struct Part {
     double value;
     const char *positive, *negative;
   };
-  const std::array<Part, 3> parts{Part{displacement_mm.z(), "proximal", "distal"},
-                                  Part{lateral, "lateral", "medial"},
-                                  Part{-displacement_mm.y(), "anterior", "posterior"}};
+  const std::array<Part, 3> parts{Part{displacement_mm.dot(axes.proximal), "proximal", "distal"},
+                                  Part{displacement_mm.dot(axes.lateral), "lateral", "medial"},
+                                  Part{displacement_mm.dot(axes.anterior), "anterior", "posterior"}};
   std::string text;
   for (const Part& part : parts) {
     if (std::abs(part.value) < 0.5) continue;

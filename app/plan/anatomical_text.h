@@ -4,12 +4,13 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "planning/bones/bone.h"
+#include "planning/landmarks/anatomical_axes.h"
 
 namespace arthronaut::plan {
 
-// "21 mm proximal, 14 mm lateral, 3 mm anterior" of a displacement in LPS; parts below half a millimetre are
-// left out.
-[[nodiscard]] std::string anatomical_text(const Eigen::Vector3d& displacement_mm, bones::Side side);
+// "21 mm proximal, 14 mm lateral, 3 mm anterior" of a displacement in the bone's frame, along the bone's
+// axes; parts below half a millimetre are left out.
+[[nodiscard]] std::string anatomical_text(const Eigen::Vector3d& displacement_mm,
+                                          const landmarks::AnatomicalAxes& axes);
 
 }  // namespace arthronaut::plan

@@ -30,6 +30,7 @@ widgets::Severity severity_of(open_case::PlanStatus::Save save) {
     case open_case::PlanStatus::Save::Failed:
       return widgets::Severity::Bad;
     case open_case::PlanStatus::Save::ReadOnly:
+    case open_case::PlanStatus::Save::Conflict:
       return widgets::Severity::Caution;
   }
   return widgets::Severity::Quiet;
@@ -82,7 +83,7 @@ void draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const ope
       widgets::text_in(
           ui.theme.body, widgets::kText,
           "Leaves the bone " +
-              anatomical_text(geometry.exit_mm - geometry.entry_on_surface_mm, model.knee().side) +
+              anatomical_text(geometry.exit_mm - geometry.entry_on_surface_mm, model.axes(bone)) +
               " of the entry");
     ImGui::Dummy({0, ui.theme.px(4)});
     for (const tunnels::PlanCheck& check : model.checks(bone)) {

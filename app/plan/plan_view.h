@@ -10,7 +10,7 @@
 #include "app/case/plan_history.h"
 #include "app/case/plan_model.h"
 #include "app/mode/mode.h"
-#include "app/widgets/scene_pane.h"
+#include "app/plan/bone_pane.h"
 
 namespace arthronaut::plan {
 
@@ -23,37 +23,39 @@ class PlanView : public mode::Mode {
   void add_actions(widgets::Actions& actions) override;
   void case_opened(const mode::OpenCase& opened) override;
   void leave() override { history_.settle_now(); }
-  void tick(double now_s) override { history_.settle(now_s); }
+  void tick(double now_s) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
   [[nodiscard]] bool is_busy() const override { return history_.is_moving(); }
 
  private:
+  // plan_actions.cpp
   void add_view_actions(widgets::Actions& actions);
   void add_history_actions(widgets::Actions& actions);
   void add_tunnel_actions(widgets::Actions& actions);
+  void add_placing_actions(widgets::Actions& actions);
+
   // The tunnel of the bone that is planned becomes this one; nothing where there is none.
   void change(const std::string& what, bool continues, const std::optional<tunnels::Tunnel>& tunnel);
   void look_from(scene::ViewDirection view);
   void draw_bones(const widgets::Ui& ui, const widgets::Rect& area);
-  void use_pane_input(const widgets::PaneInput& input);
-  void draw_handles(const widgets::Ui& ui, const widgets::Rect& area) const;
+  void draw_conflict(const widgets::Ui& ui, const widgets::Rect& area) const;
+  void show_content();
+  [[nodiscard]] std::vector<PaneMark> marks() const;
+  void follow(const PaneEvent& event);
+  void place_entry(const scene::SceneRay& ray);
   [[nodiscard]] std::optional<Eigen::Vector3d> aim_handle() const;
 
-  enum class Handle { None, Entry, Aim };
   struct ViewState {
     bones::BoneKind bone = bones::BoneKind::Femur;
-    std::optional<bones::BoneKind> only;
-    bool see_through = false, places_entry = false;
-    Handle dragged = Handle::None;
+    bool places_entry = false;
     bool has_dragged = false;
+    std::string hint = {};  // why a click did nothing; until the next one
     std::uint64_t shown_revision = 0;
-    double aspect = 1.5;
-    scene::ViewDirection looked_from = scene::ViewDirection::Anterior;
   };
 
   open_case::PlanModel* model_ = nullptr;  // null until a case is open
   open_case::PlanHistory history_;
-  widgets::ScenePane pane_;
+  BonePane bones_;
   ViewState state_;
 };
 

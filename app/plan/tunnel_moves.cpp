@@ -30,21 +30,17 @@ Eigen::Vector3d turned_towards(const Eigen::Vector3d& direction, const Eigen::Ve
 
 }  // namespace
 
-tunnels::Tunnel with_entry_at(const tunnels::Tunnel& tunnel, const scene::SceneRay& ray,
-                              const geometry::Surface& bone) {
+tunnels::Tunnel with_entry_at(const tunnels::Tunnel& tunnel, const Eigen::Vector3d& entry_mm) {
   tunnels::Tunnel result = tunnel;
-  if (const auto hit = bone.first_hit(ray.origin_mm, ray.direction)) result.entry_mm = hit->point_mm;
+  result.entry_mm = entry_mm;
   return result;
 }
 
-std::optional<tunnels::Tunnel> first_tunnel(bones::BoneKind kind, const scene::SceneRay& ray,
-                                            const geometry::Surface& bone) {
-  const auto hit = bone.first_hit(ray.origin_mm, ray.direction);
-  if (!hit) return std::nullopt;
+tunnels::Tunnel first_tunnel(bones::BoneKind kind, const VisiblePoint& at) {
   tunnels::Tunnel tunnel;
   tunnel.bone = kind;
-  tunnel.entry_mm = hit->point_mm;
-  tunnel.direction = hit->normal.dot(ray.direction) < 0 ? Eigen::Vector3d(-hit->normal) : hit->normal;
+  tunnel.entry_mm = at.point_mm;
+  tunnel.direction = -at.normal;
   return tunnel;
 }
 

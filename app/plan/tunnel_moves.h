@@ -1,18 +1,17 @@
 // The moves by which a surgeon places a tunnel, as plain functions: new tunnel out, nothing changed.
 #pragma once
 
+#include "app/plan/visible_bones.h"
 #include "app/scene/scene_camera.h"
 #include "planning/geometry/surface.h"
 #include "planning/tunnels/tunnel.h"
 
 namespace arthronaut::plan {
 
-// The entry where the ray meets the bone first; the same tunnel when it does not. The direction is kept.
-[[nodiscard]] tunnels::Tunnel with_entry_at(const tunnels::Tunnel& tunnel, const scene::SceneRay& ray,
-                                            const geometry::Surface& bone);
-// A first tunnel there: into the bone, against the surface's normal. nullopt when the ray misses.
-[[nodiscard]] std::optional<tunnels::Tunnel> first_tunnel(bones::BoneKind kind, const scene::SceneRay& ray,
-                                                          const geometry::Surface& bone);
+// The entry there; the direction is kept.
+[[nodiscard]] tunnels::Tunnel with_entry_at(const tunnels::Tunnel& tunnel, const Eigen::Vector3d& entry_mm);
+// A first tunnel there: into the bone, against the surface's normal.
+[[nodiscard]] tunnels::Tunnel first_tunnel(bones::BoneKind kind, const VisiblePoint& at);
 // Slides the entry over the bone by so many mm to the right and up as the camera sees it.
 [[nodiscard]] tunnels::Tunnel with_entry_slid(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera,
                                               const Eigen::Vector2d& right_up_mm,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/scene/notch_cut.h"
 #include "app/scene/offscreen_context.h"
 #include "app/scene/scene_camera.h"
 #include "app/scene/scene_content.h"
@@ -54,10 +55,16 @@ Image render_plan_picture(const PictureRequest& request) {
   const std::optional<bones::BoneKind> only = bone_of(request);
   SceneContent content;
   geometry::TriangleMesh all;
+  std::optional<landmarks::AnatomicalAxes> axes;  // the first bone's: the femur's where it is there
   for (const auto& [kind, bone] : request.knee->bones) {
     if ((only && kind != *only) || bone.mesh.empty()) continue;
     constexpr std::size_t kPictureTriangles = 60'000;
+    const auto marks = request.knee->landmarks.find(kind);
+    const landmarks::Landmarks named =
+        marks == request.knee->landmarks.end() ? landmarks::Landmarks{} : marks->second;
+    if (!axes) axes = landmarks::anatomical_axes(kind, request.knee->side, named, bone.mesh);
     content.bones.push_back({simplified(bone.mesh, kPictureTriangles), kBoneColor, 1.0});
+    if (request.view == ViewDirection::Notch) content.bones.back().cut = notch_cut(bone.mesh, *axes, named);
     all.vertices_mm.insert(all.vertices_mm.end(), bone.mesh.vertices_mm.begin(), bone.mesh.vertices_mm.end());
     const auto planned = request.knee->plan.tunnels.find(kind);
     if (planned != request.knee->plan.tunnels.end())
@@ -73,7 +80,7 @@ Image render_plan_picture(const PictureRequest& request) {
   if (request.light_background) view.set_background({0.96F, 0.97F, 0.98F}, {1.0F, 1.0F, 1.0F});
   view.resize(2 * request.width, 2 * request.height);
   view.show(content);
-  view.look(look_from(request.view, request.knee->side, geometry::bounds_of(all),
+  view.look(look_from(request.view, *axes, geometry::bounds_of(all),
                       static_cast<double>(request.width) / request.height));
   return halved(view.read_image());
 }

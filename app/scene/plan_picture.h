@@ -21,7 +21,7 @@ enum class ViewDirection {
   Medial,
   Lateral,
   Distal,   // the femur from the joint
-  Notch,    // the femur as through the anterolateral portal of a flexed knee
+  Notch,    // the lateral wall of the femur's notch, the medial condyle cut away
   Plateau,  // the tibia from the joint
 };
 [[nodiscard]] std::string_view to_text(ViewDirection view);  // "anterior", ...

@@ -29,26 +29,21 @@ struct Direction {
   Eigen::Vector3d ahead, up;
 };
 
-// LPS: +x is the patient's left, +y posterior, +z superior.
-Direction direction_of(ViewDirection view, bones::Side side) {
-  const double lateral = side == bones::Side::Right ? -1 : 1;
+Direction direction_of(ViewDirection view, const landmarks::AnatomicalAxes& axes) {
   switch (view) {
     case ViewDirection::Anterior:
-      return {{0, 1, 0}, {0, 0, 1}};
+      return {-axes.anterior, axes.proximal};
     case ViewDirection::Posterior:
-      return {{0, -1, 0}, {0, 0, 1}};
+      return {axes.anterior, axes.proximal};
     case ViewDirection::Medial:
-      return {{lateral, 0, 0}, {0, 0, 1}};
-    case ViewDirection::Lateral:
-      return {{-lateral, 0, 0}, {0, 0, 1}};
-    case ViewDirection::Distal:
-      return {{0, 0, 1}, {0, -1, 0}};
-    // From below and a little from the medial side and the back: between the condyles onto the lateral wall
-    // of the notch, where the footprint is.
     case ViewDirection::Notch:
-      return {Eigen::Vector3d(0.36 * lateral, -0.10, 0.93).normalized(), {0, -1, 0}};
+      return {axes.lateral, axes.proximal};
+    case ViewDirection::Lateral:
+      return {-axes.lateral, axes.proximal};
+    case ViewDirection::Distal:
+      return {axes.proximal, axes.anterior};
     case ViewDirection::Plateau:
-      return {{0, 0, -1}, {0, -1, 0}};
+      return {-axes.proximal, axes.anterior};
   }
   throw InvalidInput("unknown view");
 }
@@ -76,7 +71,12 @@ std::string_view to_text(ViewDirection view) {
 }
 
 SceneCamera look_from(ViewDirection view, bones::Side side, const geometry::Bounds& bounds, double aspect) {
-  const Direction direction = direction_of(view, side);
+  return look_from(view, landmarks::scanner_axes(side), bounds, aspect);
+}
+
+SceneCamera look_from(ViewDirection view, const landmarks::AnatomicalAxes& anatomy,
+                      const geometry::Bounds& bounds, double aspect) {
+  const Direction direction = direction_of(view, anatomy);
   SceneCamera camera = look_along(direction.ahead, bounds.center_mm(), 1.0, direction.up);
   const Axes axes = axes_of(camera);
   const Eigen::Vector3d half = 0.5 * bounds.size_mm();

@@ -7,6 +7,7 @@
 #include "app/scene/plan_picture.h"
 #include "planning/bones/bone.h"
 #include "planning/geometry/triangle_mesh.h"
+#include "planning/landmarks/anatomical_axes.h"
 
 namespace arthronaut::scene {
 
@@ -22,9 +23,13 @@ struct SceneRay {
   Eigen::Vector3d origin_mm, direction;  // direction is unit
 };
 
-// Sees all of `bounds` from a named side of a knee.
+// Sees all of `bounds` from a named side of a knee that lies along the scanner's axes.
 [[nodiscard]] SceneCamera look_from(ViewDirection view, bones::Side side, const geometry::Bounds& bounds,
                                     double aspect);
+// The same along the bone's own axes. Notch looks straight laterally, onto the wall that is left when the
+// medial condyle is cut away (notch_cut.h); the shaft stands up.
+[[nodiscard]] SceneCamera look_from(ViewDirection view, const landmarks::AnatomicalAxes& axes,
+                                    const geometry::Bounds& bounds, double aspect);
 // Along `direction` (unit) at `focus`, `distance_mm` away; `up_hint` is made perpendicular.
 [[nodiscard]] SceneCamera look_along(const Eigen::Vector3d& direction, const Eigen::Vector3d& focus_mm,
                                      double distance_mm, const Eigen::Vector3d& up_hint);

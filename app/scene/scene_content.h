@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "planning/geometry/triangle_mesh.h"
@@ -19,15 +20,24 @@ struct Color {
 
 // Safe for colour-blind eyes (after Okabe and Ito), and each has a shape of its own beside its colour.
 inline constexpr Color kBoneColor{0.87F, 0.82F, 0.73F};
+inline constexpr Color kSectionColor{0.42F, 0.30F, 0.27F};   // where a bone is cut open
 inline constexpr Color kPlanColor{0.34F, 0.71F, 0.91F};      // solid tube, entry ring
 inline constexpr Color kAchievedColor{0.90F, 0.62F, 0.00F};  // banded tube
 inline constexpr Color kGuideColor{0.94F, 0.89F, 0.26F};     // rod with a cone
 inline constexpr Color kCurveColor{0.25F, 0.85F, 0.65F};     // thin line
 
+// What lies on the normal's side of it is cut away.
+struct CutPlane {
+  Eigen::Vector3d point_mm = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::UnitX();  // unit
+  [[nodiscard]] bool cuts_away(const Eigen::Vector3d& x_mm) const { return normal.dot(x_mm - point_mm) > 0; }
+  bool operator==(const CutPlane&) const = default;
+};
+
 struct BoneItem {
   std::shared_ptr<const geometry::TriangleMesh> mesh;
   Color color = kBoneColor;
   double opacity = 1;
+  std::optional<CutPlane> cut = {};  // the section is drawn in one flat colour
   bool operator==(const BoneItem&) const = default;
 };
 

@@ -7,6 +7,7 @@
 #include <vtkLight.h>
 #include <vtkNew.h>
 #include <vtkOpenGLFramebufferObject.h>
+#include <vtkPlane.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRenderer.h>
@@ -52,6 +53,22 @@ void dress(vtkActor& actor, const BoneItem& item) {
     actor.ForceOpaqueOff();
     property->BackfaceCullingOff();
   }
+  actor.GetMapper()->RemoveAllClippingPlanes();
+  actor.SetBackfaceProperty(nullptr);
+  if (!item.cut) return;
+  vtkNew<vtkPlane> plane;  // VTK keeps what lies on its normal's side
+  const Eigen::Vector3d kept = -item.cut->normal;
+  plane->SetOrigin(item.cut->point_mm.x(), item.cut->point_mm.y(), item.cut->point_mm.z());
+  plane->SetNormal(kept.x(), kept.y(), kept.z());
+  actor.GetMapper()->AddClippingPlane(plane);
+  // The inside of the far wall, seen through the cut: in one flat colour it reads as the section.
+  vtkNew<vtkProperty> section;
+  section->SetColor(kSectionColor.red, kSectionColor.green, kSectionColor.blue);
+  section->SetAmbient(1);
+  section->SetDiffuse(0);
+  section->SetSpecular(0);
+  section->SetOpacity(item.opacity);
+  actor.SetBackfaceProperty(section);
 }
 
 void add_lights(vtkRenderer& renderer) {

@@ -6,6 +6,9 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 
+#include <utility>
+
+#include "app/widgets/key_labels.h"
 #include "app/widgets/key_queue.h"
 #include "planning/geometry/error.h"
 
@@ -18,6 +21,7 @@ struct GraphicsWindow::State {
   std::vector<KeyEvent> dealt;
   std::vector<KeyPress> keys;
   std::vector<int> released;
+  std::vector<std::filesystem::path> dropped;
   int frames_to_hold = 0;
 
   static State& of(GLFWwindow* window) { return *static_cast<State*>(glfwGetWindowUserPointer(window)); }
@@ -29,6 +33,9 @@ struct GraphicsWindow::State {
   }
   static void on_letter(GLFWwindow* window, unsigned codepoint) {
     of(window).queue.add({KeyEvent::Kind::Text, 0, 0, 0, codepoint});
+  }
+  static void on_drop(GLFWwindow* window, int count, const char** paths) {
+    for (int i = 0; i < count; ++i) of(window).dropped.emplace_back(paths[i]);
   }
   void deal_keys() {
     keys.clear();
@@ -53,10 +60,12 @@ struct GraphicsWindow::State {
                                  : is_repeat ? GLFW_REPEAT
                                              : GLFW_PRESS,
                                  event.mods);
+      const char* printed = glfwGetKeyName(event.key, event.scancode);
+      const LabelledKey key = labelled_key(event.key, event.mods & kOurs, printed != nullptr ? printed : "");
       if (is_release)
-        released.push_back(event.key);
+        released.push_back(key.key);
       else
-        keys.push_back({event.key, event.mods & kOurs, is_repeat});
+        keys.push_back({key.key, key.mods, is_repeat});
     }
   }
 };
@@ -102,6 +111,7 @@ GraphicsWindow::GraphicsWindow(const std::string& title) : state_(std::make_uniq
   // In the place of ImGui's own, which are called when a key's frame has come.
   glfwSetKeyCallback(state_->window, &State::on_key);
   glfwSetCharCallback(state_->window, &State::on_letter);
+  glfwSetDropCallback(state_->window, &State::on_drop);
   ImGui_ImplOpenGL3_Init("#version 330 core");
   int frame_width = 0, frame_height = 0;
   glfwGetFramebufferSize(state_->window, &frame_width, &frame_height);
@@ -160,6 +170,9 @@ void GraphicsWindow::await_text_field() {
 const std::vector<KeyPress>& GraphicsWindow::keys() const { return state_->keys; }
 const std::vector<int>& GraphicsWindow::released_keys() const { return state_->released; }
 void GraphicsWindow::keep_open() { glfwSetWindowShouldClose(state_->window, GLFW_FALSE); }
+std::vector<std::filesystem::path> GraphicsWindow::take_dropped() {
+  return std::exchange(state_->dropped, {});
+}
 bool GraphicsWindow::should_close() const { return glfwWindowShouldClose(state_->window) == GLFW_TRUE; }
 void GraphicsWindow::make_current() const { glfwMakeContextCurrent(state_->window); }
 const Theme& GraphicsWindow::theme() const { return state_->theme; }

@@ -4,6 +4,7 @@
 // draw UI -> swap. begin_frame() is the first step, end_frame() the last two.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,6 +37,8 @@ class GraphicsWindow {
   [[nodiscard]] const std::vector<KeyPress>& keys() const;
   // Keys let go in this frame (GLFW_KEY_*), also those that a text field has.
   [[nodiscard]] const std::vector<int>& released_keys() const;
+  // Files and folders that were dropped on the window since the last call.
+  [[nodiscard]] std::vector<std::filesystem::path> take_dropped();
   [[nodiscard]] bool should_close() const;
   void keep_open();  // takes back that it should close
   void make_current() const;

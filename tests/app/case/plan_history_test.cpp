@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <random>
 
 #include "planning/phantom/phantom_case.h"
@@ -138,17 +139,93 @@ TEST_F(PlanHistoryTest, Hazard15AReadOnlyCaseRefusesEditsWithTheReason) {
   EXPECT_NE(history_.status().text.find("anna on theatre-2"), std::string::npos);
 }
 
-// Hazard 15: a plan that another program changed meanwhile is not written over, and that is said.
-TEST_F(PlanHistoryTest, Hazard15APlanChangedElsewhereIsNotWrittenOver) {
-  cases::Plan elsewhere = model_.knee().plan;
-  elsewhere.tunnels.at(BoneKind::Femur).diameter_mm = 7.25;
-  cases::save_plan(folder_, elsewhere);
+// An edit that leaves the tunnel as it is makes no step: undo would seem to do nothing.
+TEST_F(PlanHistoryTest, AnEditThatChangesNothingIsNoStep) {
+  history_.apply(wider(0, false), 1.0);
+  history_.settle_now();
+  EXPECT_FALSE(history_.can_undo());
+  EXPECT_EQ(history_.status().save, PlanStatus::Save::Saved);
+}
+
+// The list of steps is walked to any place, and model and disk are what they were there.
+TEST_F(PlanHistoryTest, TheListOfStepsIsWalkedToAnyPlace) {
+  for (int i = 0; i < 3; ++i) {
+    history_.apply(wider(1, false), 2.0 * i);
+    history_.settle_now();
+  }
+  ASSERT_EQ(history_.step_count(), 3U);
+  EXPECT_EQ(history_.step_name(0), "Change the diameter of the femoral tunnel");
+  for (const std::size_t place : {0U, 2U, 1U, 3U}) {
+    history_.go_to(place);
+    EXPECT_EQ(history_.position(), place);
+    EXPECT_NEAR(saved_diameter_mm(), start_mm_ + static_cast<double>(place), 1e-9);
+  }
+}
+
+class PlanConflict : public PlanHistoryTest {
+ protected:
+  void save_elsewhere(double diameter_mm) {
+    cases::Plan elsewhere = model_.knee().plan;
+    elsewhere.tunnels.at(BoneKind::Femur).diameter_mm = diameter_mm;
+    cases::save_plan(folder_, elsewhere);
+  }
+};
+
+// Hazard 15: a plan that another program changed meanwhile is not written over, and that is said; whatever is
+// done after that stays in memory until the surgeon has chosen.
+TEST_F(PlanConflict, Hazard15APlanChangedElsewhereIsNotWrittenOver) {
+  save_elsewhere(7.25);
   history_.apply(wider(1, false), 1.0);
   history_.settle_now();
-  EXPECT_EQ(history_.status().save, PlanStatus::Save::Failed);
-  EXPECT_NE(history_.status().text.find("changed by another program"), std::string::npos);
+  EXPECT_TRUE(history_.is_in_conflict());
+  EXPECT_NE(history_.status().text.find("another program has saved another plan"), std::string::npos);
+  history_.apply(wider(1, false), 2.0);
+  history_.settle_now();
+  history_.undo();
+  EXPECT_TRUE(history_.is_in_conflict());
   EXPECT_EQ(saved_diameter_mm(), 7.25);
   EXPECT_NEAR(model_.tunnel(BoneKind::Femur)->diameter_mm, start_mm_ + 1, 1e-12);
+}
+
+// Hazard 15: it is noticed within a second, before anybody edits.
+TEST_F(PlanConflict, Hazard15AChangeElsewhereIsNoticedWithoutAnEdit) {
+  history_.look_at_disk(10.0);
+  EXPECT_FALSE(history_.is_in_conflict());
+  save_elsewhere(7.25);
+  history_.look_at_disk(10.5);
+  EXPECT_FALSE(history_.is_in_conflict()) << "the disk is looked at once a second";
+  history_.look_at_disk(11.1);
+  EXPECT_TRUE(history_.is_in_conflict());
+}
+
+// Hazard 15: theirs can be taken, and undo brings ours back; ours can be kept, and is then on disk.
+TEST_F(PlanConflict, Hazard15TheSurgeonChoosesBetweenTheTwo) {
+  save_elsewhere(7.25);
+  history_.look_at_disk(10.0);
+  history_.take_theirs();
+  EXPECT_FALSE(history_.is_in_conflict());
+  EXPECT_EQ(model_.tunnel(BoneKind::Femur)->diameter_mm, 7.25);
+  history_.undo();
+  EXPECT_EQ(model_.tunnel(BoneKind::Femur)->diameter_mm, start_mm_);
+  EXPECT_EQ(saved_diameter_mm(), start_mm_);
+  save_elsewhere(6.5);
+  history_.look_at_disk(20.0);
+  ASSERT_TRUE(history_.is_in_conflict());
+  history_.keep_ours();
+  EXPECT_EQ(history_.status().save, PlanStatus::Save::Saved);
+  EXPECT_EQ(saved_diameter_mm(), start_mm_);
+}
+
+// Hazard 15: what another program left broken is said, and nothing is lost.
+TEST_F(PlanConflict, Hazard15ABrokenPlanOfAnotherProgramIsSaid) {
+  std::ofstream(folder_ / "plan.json") << "{ \"format\": \"arthronaut.pl";
+  history_.look_at_disk(10.0);
+  history_.take_theirs();
+  EXPECT_TRUE(history_.is_in_conflict());
+  EXPECT_NE(history_.status().text.find("plan.json"), std::string::npos) << history_.status().text;
+  EXPECT_EQ(model_.tunnel(BoneKind::Femur)->diameter_mm, start_mm_);
+  history_.keep_ours();
+  EXPECT_EQ(saved_diameter_mm(), start_mm_);
 }
 
 }  // namespace

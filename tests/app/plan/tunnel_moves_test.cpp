@@ -22,23 +22,22 @@ tunnels::Tunnel straight() {
   return tunnel;
 }
 
-// A click puts the entry on the bone under it and keeps the aim; a click beside the bone changes nothing.
+// A click puts the entry there and keeps the aim.
 TEST(TunnelMoves, EntryFollowsTheClick) {
-  const geometry::Surface bone = slab();
-  const tunnels::Tunnel moved = with_entry_at(straight(), {{7, -100, 9}, {0, 1, 0}}, bone);
-  EXPECT_NEAR((moved.entry_mm - Eigen::Vector3d(7, 0, 9)).norm(), 0, 1e-9);
+  const tunnels::Tunnel moved = with_entry_at(straight(), {7, 0, 9});
+  EXPECT_EQ(moved.entry_mm, Eigen::Vector3d(7, 0, 9));
   EXPECT_EQ(moved.direction, straight().direction);
-  EXPECT_EQ(with_entry_at(straight(), {{90, -100, 0}, {0, 1, 0}}, bone).entry_mm, straight().entry_mm);
 }
 
-// A first tunnel goes into the bone, whichever way the mesh is oriented there.
+// A first tunnel goes into the bone.
 TEST(TunnelMoves, FirstTunnelGoesInwards) {
   const geometry::Surface bone = slab();
-  const auto tunnel = first_tunnel(bones::BoneKind::Tibia, {{7, -100, 9}, {0, 1, 0}}, bone);
-  ASSERT_TRUE(tunnel);
-  EXPECT_EQ(tunnel->bone, bones::BoneKind::Tibia);
-  EXPECT_NEAR((tunnel->direction - Eigen::Vector3d::UnitY()).norm(), 0, 1e-9);
-  EXPECT_FALSE(first_tunnel(bones::BoneKind::Tibia, {{90, -100, 0}, {0, 1, 0}}, bone));
+  const auto met = first_visible({{{bones::BoneKind::Tibia, &bone}}}, {{7, -100, 9}, {0, 1, 0}});
+  ASSERT_TRUE(met);
+  const tunnels::Tunnel tunnel = first_tunnel(bones::BoneKind::Tibia, *met);
+  EXPECT_EQ(tunnel.bone, bones::BoneKind::Tibia);
+  EXPECT_NEAR((tunnel.entry_mm - Eigen::Vector3d(7, 0, 9)).norm(), 0, 1e-9);
+  EXPECT_NEAR((tunnel.direction - Eigen::Vector3d::UnitY()).norm(), 0, 1e-9);
 }
 
 // One press of an arrow key turns by exactly its angle, and the far end moves that way on the screen.
@@ -83,12 +82,18 @@ TEST(TunnelMoves, DiameterIsClamped) {
   EXPECT_EQ(with_diameter(straight(), 0).diameter_mm, 4);
 }
 
-// LPS to words: lateral changes sign with the side, small parts are not named.
-TEST(AnatomicalText, FollowsTheSide) {
-  EXPECT_EQ(anatomical_text({-28, -12, 14}, bones::Side::Right),
+// A displacement in words: lateral changes sign with the side, small parts are not named, the axes are the
+// bone's.
+TEST(AnatomicalText, FollowsSideAndAxes) {
+  EXPECT_EQ(anatomical_text({-28, -12, 14}, landmarks::scanner_axes(bones::Side::Right)),
             "14 mm proximal, 28 mm lateral, 12 mm anterior");
-  EXPECT_EQ(anatomical_text({-28, 0.2, 0}, bones::Side::Left), "28 mm medial");
-  EXPECT_EQ(anatomical_text({0, 0, 0.3}, bones::Side::Left), "at the entry");
+  EXPECT_EQ(anatomical_text({-28, 0.2, 0}, landmarks::scanner_axes(bones::Side::Left)), "28 mm medial");
+  EXPECT_EQ(anatomical_text({0, 0, 0.3}, landmarks::scanner_axes(bones::Side::Left)), "at the entry");
+  landmarks::AnatomicalAxes turned;  // a bone that lies on its back, the shaft along +x
+  turned.proximal = Eigen::Vector3d::UnitX();
+  turned.anterior = Eigen::Vector3d::UnitZ();
+  turned.lateral = Eigen::Vector3d::UnitY();
+  EXPECT_EQ(anatomical_text({10, 0, -3}, turned), "10 mm proximal, 3 mm posterior");
 }
 
 }  // namespace

@@ -91,10 +91,13 @@ std::array<int, 3> Picture::at(int x, int y) const {
   return {rgb.at(i), rgb.at(i + 1), rgb.at(i + 2)};
 }
 
-RunningWorkstation::RunningWorkstation(const VirtualDisplay& display, const std::filesystem::path& data_home)
+RunningWorkstation::RunningWorkstation(const VirtualDisplay& display, const std::filesystem::path& data_home,
+                                       const std::vector<std::string>& arguments)
     : display_(display.name()), folder_(data_home) {
-  const auto [process, pipe] = start({ARTHRONAUT_PROGRAM, "--list-widgets"}, 1,
-                                     {{"DISPLAY", display_}, {"XDG_DATA_HOME", data_home.string()}});
+  std::vector<std::string> words{ARTHRONAUT_PROGRAM, "--list-widgets"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  const auto [process, pipe] =
+      start(words, 1, {{"DISPLAY", display_}, {"XDG_DATA_HOME", data_home.string()}});
   process_ = process;
   reader_ = std::thread([this, pipe = pipe] { read_output(pipe); });
 }
@@ -205,6 +208,11 @@ void RunningWorkstation::point_at(const std::string& widget) const {
 void RunningWorkstation::click(const std::string& widget) const {
   point_at(widget);
   hand("mousedown 1 sleep 0.2 mouseup 1");
+}
+
+void RunningWorkstation::click_at(int x, int y) const {
+  hand("mousemove " + std::to_string(x) + " " + std::to_string(y) +
+       " sleep 0.2 mousedown 1 sleep 0.2 mouseup 1");
 }
 
 void RunningWorkstation::drag(int x0, int y0, int x1, int y1) const {

@@ -46,8 +46,9 @@ struct Area {
 // The workstation with --list-widgets. What it prints is read as it comes.
 class RunningWorkstation {
  public:
-  // data_home holds the built-in case.
-  RunningWorkstation(const VirtualDisplay& display, const std::filesystem::path& data_home);
+  // data_home holds the built-in case, which is opened at once unless other arguments are given.
+  RunningWorkstation(const VirtualDisplay& display, const std::filesystem::path& data_home,
+                     const std::vector<std::string>& arguments = {"--built-in"});
   ~RunningWorkstation();
   RunningWorkstation(const RunningWorkstation&) = delete;
   RunningWorkstation& operator=(const RunningWorkstation&) = delete;
@@ -70,6 +71,7 @@ class RunningWorkstation {
   [[nodiscard]] bool hold_click_until(const std::string& widget, const std::string& state,
                                       const std::string& value, double seconds = 40) const;
   void freeze(double seconds) const;  // the program stands still, as a machine that is overloaded
+  void click_at(int x, int y) const;
   void drag(int x0, int y0, int x1, int y1) const;
   [[nodiscard]] Picture screenshot() const;
   // Holds the key down until the program has ended; the exit code, or -1 when it has not.

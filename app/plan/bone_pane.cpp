@@ -1,0 +1,164 @@
+#include "app/plan/bone_pane.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "app/scene/notch_cut.h"
+
+namespace arthronaut::plan {
+
+namespace {
+
+using bones::BoneKind;
+
+constexpr double kReach_px = 22;
+constexpr ImU32 kHidden = IM_COL32(232, 237, 242, 110);
+
+std::optional<BoneKind> only_bone_of(scene::ViewDirection view) {
+  if (view == scene::ViewDirection::Distal || view == scene::ViewDirection::Notch) return BoneKind::Femur;
+  if (view == scene::ViewDirection::Plateau) return BoneKind::Tibia;
+  return std::nullopt;
+}
+
+}  // namespace
+
+BonePane::BonePane(std::function<void()> make_current) : pane_(std::move(make_current)) {}
+
+void BonePane::open(const open_case::PlanModel* model) {
+  model_ = model;
+  beside_ = {};
+  is_see_through_ = false;
+  held_.clear();
+  look_from(scene::ViewDirection::Anterior);
+}
+
+void BonePane::look_from(scene::ViewDirection view) {
+  looked_from_ = view;
+  only_ = only_bone_of(view);
+  if (only_ && !model_->has_bone(*only_)) only_.reset();
+  const BoneKind of = only_.value_or(model_->has_bone(BoneKind::Femur) ? BoneKind::Femur : BoneKind::Tibia);
+  cut_.reset();
+  if (view == scene::ViewDirection::Notch && of == BoneKind::Femur) cut_ = model_->notch_cut();
+  pane_.look(scene::look_from(view, model_->axes(of), model_->joint_bounds(only_), aspect_));
+  is_stale_ = true;
+}
+
+void BonePane::see_through(bool on) {
+  is_see_through_ = on;
+  is_stale_ = true;
+}
+
+void BonePane::set_content(scene::SceneContent beside_the_bones) {
+  beside_ = std::move(beside_the_bones);
+  is_stale_ = true;
+}
+
+VisibleBones BonePane::visible() const {
+  VisibleBones seen;
+  seen.cut = cut_;
+  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia})
+    if (model_->has_bone(kind) && shows(kind)) seen.bones.push_back({kind, &model_->surface(kind)});
+  return seen;
+}
+
+void BonePane::show() {
+  scene::SceneContent content = beside_;
+  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
+    if (!model_->has_bone(kind) || !shows(kind)) continue;
+    content.bones.push_back(
+        {model_->drawn_mesh(kind), scene::kBoneColor, is_see_through_ ? 0.42 : 1.0, cut_});
+  }
+  pane_.show(content);
+  is_stale_ = false;
+}
+
+// Where the bone is translucent the eye sees what is behind it; not what is cut away.
+bool BonePane::is_out_of_sight(const PaneMark& mark) const {
+  const VisibleBones seen = visible();
+  if (is_see_through_) return seen.cut && seen.cut->cuts_away(mark.point_mm);
+  return is_hidden(seen, pane_.camera().position_mm, mark.point_mm);
+}
+
+PaneEvent BonePane::draw(const widgets::Ui& ui, const widgets::Rect& area,
+                         const std::vector<PaneMark>& marks) {
+  aspect_ = area.width / std::max(area.height, 1.F);
+  if (is_stale_) show();
+  const Eigen::Vector2d size(area.width, area.height);
+  const auto take_hold = [&](const Eigen::Vector2d& pixel) {
+    held_.clear();
+    double nearest = kReach_px * ui.theme.scale;
+    for (const PaneMark& mark : marks) {
+      if (!mark.can_be_dragged) continue;
+      const auto at = scene::project(pane_.camera(), mark.point_mm, size);
+      if (!at || (*at - pixel).norm() >= nearest || is_out_of_sight(mark)) continue;
+      nearest = (*at - pixel).norm();
+      held_ = mark.id;
+      held_offset_px_ = *at - pixel;
+    }
+    return !held_.empty();
+  };
+  const widgets::PaneInput input = pane_.draw(ui, "plan.view", area, take_hold);
+  draw_marks(ui, area, marks, input.is_hovered);
+  PaneEvent event;
+  if (input.was_clicked) event.click = scene::ray_through(pane_.camera(), input.mouse_px, input.size_px);
+  if (input.handle_pressed) event.pressed = held_;
+  if (input.handle_dragged) {
+    event.dragged = held_;
+    event.drag_ray = scene::ray_through(pane_.camera(), input.mouse_px + held_offset_px_, input.size_px);
+  }
+  return event;
+}
+
+void BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
+                          const std::vector<PaneMark>& marks, bool is_hovered) const {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.PushClipRect(area.min(), area.max(), true);
+  const Eigen::Vector2d size(area.width, area.height);
+  const float line = ui.theme.px(3);
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const PaneMark* under_mouse = nullptr;
+  for (const PaneMark& mark : marks) {
+    const auto projected = scene::project(pane_.camera(), mark.point_mm, size);
+    if (!projected) continue;
+    const ImVec2 at(area.x + static_cast<float>(projected->x()), area.y + static_cast<float>(projected->y()));
+    const bool is_behind = is_out_of_sight(mark);
+    const ImU32 color = is_behind ? kHidden : mark.color;
+    const float r =
+        ui.theme.px(mark.shape == PaneMark::Shape::Cross || mark.shape == PaneMark::Shape::Pin ? 8.F : 13.F);
+    switch (mark.shape) {
+      case PaneMark::Shape::Ring:
+        draw.AddCircle(at, r, color, 32, is_behind ? line * 0.5F : line);
+        if (!is_behind) draw.AddCircleFilled(at, r * 0.3F, color);
+        break;
+      case PaneMark::Shape::Diamond:
+        if (!is_behind)
+          draw.AddQuadFilled({at.x, at.y - r}, {at.x + r, at.y}, {at.x, at.y + r}, {at.x - r, at.y}, color);
+        draw.AddQuad({at.x, at.y - r}, {at.x + r, at.y}, {at.x, at.y + r}, {at.x - r, at.y},
+                     is_behind ? kHidden : widgets::kText, line * 0.7F);
+        break;
+      case PaneMark::Shape::Cross:
+        draw.AddLine({at.x - r, at.y}, {at.x + r, at.y}, color, line * 0.7F);
+        draw.AddLine({at.x, at.y - r}, {at.x, at.y + r}, color, line * 0.7F);
+        break;
+      case PaneMark::Shape::Pin:
+        draw.AddTriangleFilled(at, {at.x - r * 0.7F, at.y - r * 1.6F}, {at.x + r * 0.7F, at.y - r * 1.6F},
+                               color);
+        break;
+    }
+    if (!mark.word.empty()) {
+      const std::string word = mark.word + (is_behind ? " (behind)" : "");
+      const ImFont* font = is_behind ? ui.theme.body : ui.theme.strong;
+      const ImVec2 place(at.x + r * 1.4F,
+                         at.y - (mark.shape == PaneMark::Shape::Pin ? 2.1F * r : 0) - font->FontSize / 2);
+      draw.AddText(font, font->FontSize, {place.x + 1, place.y + 1}, widgets::kBackground, word.c_str());
+      draw.AddText(font, font->FontSize, place, is_behind ? kHidden : widgets::kText, word.c_str());
+    }
+    const bool is_near = std::abs(mouse.x - at.x) < r * 1.4F && std::abs(mouse.y - at.y) < r * 1.4F;
+    if (is_hovered && is_near && !mark.tooltip.empty()) under_mouse = &mark;
+    ui.log.note("plan." + mark.id + "_handle", {at.x - r, at.y - r}, {at.x + r, at.y + r});
+  }
+  if (under_mouse != nullptr) ImGui::SetTooltip("%s", under_mouse->tooltip.c_str());
+  draw.PopClipRect();
+}
+
+}  // namespace arthronaut::plan

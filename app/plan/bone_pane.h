@@ -1,0 +1,80 @@
+// The bones in 3D with what can be taken hold of. Shows what it is given, turns by the mouse, and tells what
+// the hand did; it changes nothing of the plan.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/case/plan_model.h"
+#include "app/plan/visible_bones.h"
+#include "app/widgets/scene_pane.h"
+
+namespace arthronaut::plan {
+
+// A place with a sign and a word over the picture. The signs differ in shape, not only in colour.
+struct PaneMark {
+  enum class Shape {
+    Ring,     // a ring with a dot: an entry
+    Diamond,  // an aim
+    Cross,    // a landmark
+    Pin,      // a place that is pointed at
+  } shape = Shape::Pin;
+  std::string id;    // "entry": stable, for events and tests
+  std::string word;  // beside it; empty: none
+  Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();
+  ImU32 color = widgets::kText;
+  bool can_be_dragged = false;
+  std::string tooltip = {};
+};
+
+struct PaneEvent {
+  std::optional<scene::SceneRay> click;  // pressed and let go in one place, on no mark
+  std::string pressed;                   // id of the mark that was pressed just now; empty: none
+  std::string dragged;                   // id of the mark that is dragged; empty: none
+  scene::SceneRay drag_ray =
+      {};  // through the mark, not the mouse: where it was taken hold of stays under the mouse
+};
+
+class BonePane {
+ public:
+  explicit BonePane(std::function<void()> make_current);
+
+  // Another case: looks at it from the front.
+  void open(const open_case::PlanModel* model);
+  // From a named side of the bone; Notch cuts the medial condyle away.
+  void look_from(scene::ViewDirection view);
+  [[nodiscard]] scene::ViewDirection looked_from() const { return looked_from_; }
+  // The one bone that the view is of; nullopt: both are shown.
+  [[nodiscard]] std::optional<bones::BoneKind> only() const { return only_; }
+  [[nodiscard]] bool shows(bones::BoneKind bone) const { return !only_ || *only_ == bone; }
+  [[nodiscard]] const scene::SceneCamera& camera() const { return pane_.camera(); }
+  void see_through(bool on);
+  [[nodiscard]] bool is_see_through() const { return is_see_through_; }
+  // What is drawn beside the bones, and the tunnels' lines; kept until it is set again.
+  void set_content(scene::SceneContent beside_the_bones);
+
+  PaneEvent draw(const widgets::Ui& ui, const widgets::Rect& area, const std::vector<PaneMark>& marks);
+  // What the eye sees of the bones, for picking.
+  [[nodiscard]] VisibleBones visible() const;
+
+ private:
+  void show();
+  [[nodiscard]] bool is_out_of_sight(const PaneMark& mark) const;
+  void draw_marks(const widgets::Ui& ui, const widgets::Rect& area, const std::vector<PaneMark>& marks,
+                  bool is_hovered) const;
+
+  const open_case::PlanModel* model_ = nullptr;
+  widgets::ScenePane pane_;
+  scene::SceneContent beside_;
+  scene::ViewDirection looked_from_ = scene::ViewDirection::Anterior;
+  std::optional<bones::BoneKind> only_;
+  std::optional<scene::CutPlane> cut_;
+  bool is_see_through_ = false, is_stale_ = true;
+  double aspect_ = 1.5;
+  std::string held_;                                          // the mark that is dragged
+  Eigen::Vector2d held_offset_px_ = Eigen::Vector2d::Zero();  // from the mouse to the mark
+};
+
+}  // namespace arthronaut::plan

@@ -1,0 +1,175 @@
+// What can be done in plan mode: buttons, keys and the list of keys are these.
+#include <GLFW/glfw3.h>
+
+#include <array>
+
+#include "app/plan/plan_view.h"
+#include "app/plan/tunnel_moves.h"
+
+namespace arthronaut::plan {
+
+using bones::BoneKind;
+
+namespace {
+
+std::string tunnel_name(BoneKind bone) { return bone == BoneKind::Femur ? "femoral" : "tibial"; }
+
+}  // namespace
+
+void PlanView::add_actions(widgets::Actions& actions) {
+  add_view_actions(actions);
+  add_placing_actions(actions);
+  add_tunnel_actions(actions);
+  add_history_actions(actions);
+  actions.add({"plan.bone",
+               "Other bone",
+               "Plan the tunnel of the other bone",
+               GLFW_KEY_TAB,
+               0,
+               false,
+               [this] {
+                 const BoneKind other = state_.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
+                 return model_ != nullptr && model_->has_bone(other);
+               },
+               {},
+               [this] {
+                 state_.bone = state_.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
+                 if (bones_.only()) look_from(scene::ViewDirection::Anterior);
+                 state_.hint.clear();
+               }});
+}
+
+// Each key makes a new tunnel of the one that is there.
+void PlanView::add_tunnel_actions(widgets::Actions& actions) {
+  const auto has_tunnel = [this] { return model_ != nullptr && model_->tunnel(state_.bone).has_value(); };
+  const auto add = [&](const std::string& id, const std::string& label, const char* tooltip, int key,
+                       int mods, const char* what, auto moved) {
+    actions.add({id, label, tooltip, key, mods, true, has_tunnel, {}, [this, what, moved] {
+                   change(what, true, moved(*model_->tunnel(state_.bone)));
+                 }});
+  };
+  add("plan.wider", "Wider", "Half a millimetre more", GLFW_KEY_EQUAL, 0, "Change the diameter of the",
+      [](const tunnels::Tunnel& t) { return with_diameter(t, t.diameter_mm + 0.5); });
+  add("plan.narrower", "Narrower", "Half a millimetre less", GLFW_KEY_MINUS, 0, "Change the diameter of the",
+      [](const tunnels::Tunnel& t) { return with_diameter(t, t.diameter_mm - 0.5); });
+  struct Arrow {
+    std::string word;
+    int key;
+    Eigen::Vector2d right_up;
+  };
+  const std::array<Arrow, 4> arrows{Arrow{"left", GLFW_KEY_LEFT, {-1, 0}},
+                                    Arrow{"right", GLFW_KEY_RIGHT, {1, 0}}, Arrow{"up", GLFW_KEY_UP, {0, 1}},
+                                    Arrow{"down", GLFW_KEY_DOWN, {0, -1}}};
+  for (const Arrow& arrow : arrows) {
+    add("plan.aim_" + arrow.word, "Aim " + arrow.word, "The far end of the tunnel moves that way by 1 degree",
+        arrow.key, 0, "Aim the",
+        [this, way = arrow.right_up](const tunnels::Tunnel& t) { return turned(t, bones_.camera(), way); });
+    add("plan.slide_" + arrow.word, "Slide entry " + arrow.word,
+        "The entry moves over the bone by half a millimetre", arrow.key, GLFW_MOD_SHIFT,
+        "Move the entry of the", [this, way = arrow.right_up](const tunnels::Tunnel& t) {
+          return with_entry_slid(t, bones_.camera(), 0.5 * way, model_->surface(state_.bone));
+        });
+  }
+  actions.add({"plan.remove",
+               "Remove tunnel",
+               "Undo brings it back",
+               GLFW_KEY_DELETE,
+               0,
+               false,
+               has_tunnel,
+               {},
+               [this] {
+                 history_.apply(
+                     {state_.bone, std::nullopt, "Remove the " + tunnel_name(state_.bone) + " tunnel", false},
+                     widgets::GraphicsWindow::now_s());
+               }});
+}
+
+void PlanView::add_history_actions(widgets::Actions& actions) {
+  actions.add({"plan.undo",
+               "Undo",
+               "Takes the last change of the plan back",
+               GLFW_KEY_Z,
+               GLFW_MOD_CONTROL,
+               true,
+               [this] { return history_.can_undo(); },
+               {},
+               [this] { history_.undo(); }});
+  actions.add({"plan.redo",
+               "Redo",
+               "Does it again",
+               GLFW_KEY_Y,
+               GLFW_MOD_CONTROL,
+               true,
+               [this] { return history_.can_redo(); },
+               {},
+               [this] { history_.redo(); }});
+  const auto in_conflict = [this] { return history_.is_in_conflict(); };
+  actions.add({"plan.take_theirs",
+               "Take theirs",
+               "The plan that the other program saved; undo brings this one back",
+               0,
+               0,
+               false,
+               in_conflict,
+               {},
+               [this] { history_.take_theirs(); }});
+  actions.add({"plan.keep_ours",
+               "Keep this one",
+               "Writes this plan over the one that the other program saved",
+               0,
+               0,
+               false,
+               in_conflict,
+               {},
+               [this] { history_.keep_ours(); },
+               {"write over the other program's plan"}});
+}
+
+void PlanView::add_placing_actions(widgets::Actions& actions) {
+  actions.add({"plan.place", "Place entry", "Then click where the tunnel is to begin on the bone", GLFW_KEY_P,
+               0, false, [this] { return model_ != nullptr; }, [this] { return state_.places_entry; },
+               [this] {
+                 state_.places_entry = !state_.places_entry;
+                 state_.hint.clear();
+               }});
+  actions.add({"plan.stop_placing",
+               "Cancel",
+               "Leaves the placing without a change",
+               GLFW_KEY_ESCAPE,
+               0,
+               false,
+               [this] { return state_.places_entry; },
+               {},
+               [this] {
+                 state_.places_entry = false;
+                 state_.hint.clear();
+               }});
+}
+
+void PlanView::add_view_actions(widgets::Actions& actions) {
+  struct Side {
+    const char *id, *label;
+    int key;
+    scene::ViewDirection view;
+    std::optional<BoneKind> of = {};  // the bone that it is of
+  };
+  const std::array<Side, 7> sides{
+      Side{"plan.anterior", "Anterior", GLFW_KEY_1, scene::ViewDirection::Anterior},
+      Side{"plan.posterior", "Posterior", GLFW_KEY_2, scene::ViewDirection::Posterior},
+      Side{"plan.medial", "Medial", GLFW_KEY_3, scene::ViewDirection::Medial},
+      Side{"plan.lateral", "Lateral", GLFW_KEY_4, scene::ViewDirection::Lateral},
+      Side{"plan.distal", "Distal", GLFW_KEY_5, scene::ViewDirection::Distal, BoneKind::Femur},
+      Side{"plan.notch", "Notch", GLFW_KEY_6, scene::ViewDirection::Notch, BoneKind::Femur},
+      Side{"plan.plateau", "Plateau", GLFW_KEY_7, scene::ViewDirection::Plateau, BoneKind::Tibia}};
+  for (const Side& side : sides)
+    actions.add({side.id, side.label, std::string("Look from ") + side.label, side.key, 0, false,
+                 [this, side] { return model_ != nullptr && (!side.of || model_->has_bone(*side.of)); },
+                 [this, side] { return model_ != nullptr && bones_.looked_from() == side.view; },
+                 [this, side] { look_from(side.view); }});
+  actions.add({"plan.see_through", "See through", "The bone turns translucent", GLFW_KEY_T, 0, false,
+               [this] { return model_ != nullptr; }, [this] { return bones_.is_see_through(); },
+               [this] { bones_.see_through(!bones_.is_see_through()); }});
+}
+
+}  // namespace arthronaut::plan

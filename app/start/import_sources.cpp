@@ -1,0 +1,101 @@
+#include "app/start/import_sources.h"
+
+#include <algorithm>
+
+#include "app/start/folder_listing.h"
+#include "planning/bones/mesh_file.h"
+#include "planning/files/format.h"
+#include "planning/geometry/error.h"
+#include "planning/import/bone_import.h"
+
+namespace arthronaut::start {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void add_mesh(ImportSources& found, const fs::path& file) {
+  ImportSource mesh;
+  mesh.source = file;
+  mesh.bone = importing::bone_kind_in_name(file);
+  mesh.title = "Mesh: " + file.filename().string();
+  std::error_code error;
+  mesh.detail = files::format("%.1f MB", static_cast<double>(fs::file_size(file, error)) / 1e6);
+  if (mesh.bone)
+    mesh.detail += ", the " + std::string(bones::to_text(*mesh.bone)) + " by its name";
+  else
+    mesh.refusal = "its name says neither femur nor tibia: name the file after the bone";
+  found.sources.push_back(std::move(mesh));
+}
+
+void add_meshes(ImportSources& found) {
+  std::error_code error;
+  if (!fs::is_directory(found.root, error)) {
+    if (bones::is_mesh_file(found.root)) add_mesh(found, found.root);
+    return;
+  }
+  for (const FolderEntry& entry : list_folder(found.root).entries)
+    if (entry.kind == FolderEntry::Kind::Mesh) add_mesh(found, entry.path);
+}
+
+}  // namespace
+
+ImportSource source_of(const fs::path& root, const images::ImageSeries& series) {
+  ImportSource source;
+  source.series = series;
+  // A file that is no DICOM is a volume of its own; a DICOM series is read from the folder by its UID.
+  source.source = series.uid.empty() && !series.files.empty() ? series.files.front() : root;
+  source.title = series.modality.empty() ? series.format : series.modality;
+  if (!series.number.empty()) source.title += " series " + series.number;
+  if (!series.description.empty())
+    source.title += ": " + series.description;
+  else if (series.uid.empty() && !series.files.empty())
+    source.title += ": " + series.files.front().filename().string();
+  source.detail = std::to_string(series.image_count) + (series.image_count == 1 ? " image" : " images");
+  if (series.size.minCoeff() > 0) {
+    source.detail += files::format(", %d \u00D7 %d \u00D7 %d", series.size.x(), series.size.y(), series.size.z());
+    if (series.spacing_mm.minCoeff() > 0)
+      source.detail += files::format(" voxels of %.2g \u00D7 %.2g \u00D7 %.2g mm", series.spacing_mm.x(),
+                                     series.spacing_mm.y(), series.spacing_mm.z());
+  }
+  source.refusal = series.refusal;
+  source.warnings = series.warnings;
+  return source;
+}
+
+std::optional<std::size_t> ImportSources::best() const {
+  std::optional<std::size_t> best;
+  const auto worth = [](const ImportSource& source) {
+    if (!source.series) return 1;
+    return source.series->modality == "CT" ? 1'000'000 + source.series->image_count : 2 + source.series->image_count;
+  };
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    if (!sources[i].can_be_imported()) continue;
+    if (!best || worth(sources[i]) > worth(sources[*best])) best = i;
+  }
+  return best;
+}
+
+ImportSources find_import_sources(const fs::path& root, const std::function<void(double)>& on_progress) {
+  ImportSources found;
+  found.root = root;
+  try {
+    std::error_code error;
+    if (fs::is_directory(root, error) || !bones::is_mesh_file(root)) {
+      images::VolumeFileOptions options;
+      options.on_progress = on_progress;
+      const images::SeriesList list = images::find_series(root, options);
+      for (const auto& series : list.series) found.sources.push_back(source_of(root, series));
+      for (const auto& skipped : list.skipped)
+        found.left_out.push_back(skipped.file.filename().string() + ": " + skipped.reason);
+    }
+    add_meshes(found);
+  } catch (const InvalidInput& error) {
+    found.failure = error.what();
+  } catch (const IoError& error) {
+    found.failure = error.what();
+  }
+  return found;
+}
+
+}  // namespace arthronaut::start

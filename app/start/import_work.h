@@ -1,0 +1,95 @@
+// An import as the window leads through it: looking what a folder holds, making the bones in a process of its own, the questions
+// that only a person can answer, writing the case. Nothing here waits.
+//
+//   Idle ─► Looking ─► Choosing ─► Running ─► Asking ─► Saving ─► Done
+//                         ▲  cancel() │  refused │ (with the reason, see failure())
+//                         └───────────┴──────────┘
+//
+// One thread; poll() once a frame. Threads of its own look, make thumbnails and write; `wake` is called from them.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/start/import_sources.h"
+#include "planning/import/bone_import.h"
+#include "planning/import/import_process.h"
+
+namespace arthronaut::start {
+
+struct ImportWishes {
+  std::vector<std::size_t> sources;  // of the list; one volume, or meshes of different bones
+  std::optional<bones::Side> side;   // nullopt: as names and images tell; asked for where they do not
+  std::optional<double> threshold;
+  bool keeps_identity = true;  // whose bones they are, in identity.json
+};
+
+class ImportWork {
+ public:
+  enum class State { Idle, Looking, Choosing, Running, Asking, Saving, Done };
+
+  // program: what answers importing::kImportChildWord.
+  explicit ImportWork(std::function<void()> wake, std::filesystem::path program = "/proc/self/exe");
+  ~ImportWork();  // cancels, and waits for its threads
+  ImportWork(const ImportWork&) = delete;
+  ImportWork& operator=(const ImportWork&) = delete;
+
+  void look_into(const std::filesystem::path& root);  // from any state; what ran is cancelled
+  void start(const ImportWishes& wishes);             // Choosing; without a source: nothing
+  void cancel();                                      // Running, Asking: back to Choosing. Looking: Idle
+  // Asking. The side must be known then. Name: of the case, empty for "Knee" and the date.
+  void set_side(bones::Side side);
+  void save(const std::filesystem::path& folder, const std::string& name);
+  void poll();
+
+  [[nodiscard]] State state() const { return state_; }
+  [[nodiscard]] bool is_busy() const;
+  [[nodiscard]] const ImportSources& sources() const { return sources_; }
+  // Of a series, when it has been made; null before, and for what has none.
+  [[nodiscard]] const images::Thumbnail* thumbnail(std::size_t source) const;
+  [[nodiscard]] double looked_fraction() const { return looked_; }  // Looking: 0 to 1
+  [[nodiscard]] const importing::ImportProgress& progress() const { return progress_; }
+  // Asking: what was made, and what should be looked at before it is relied on.
+  [[nodiscard]] const importing::BoneImport& result() const { return result_; }
+  [[nodiscard]] std::vector<std::string> doubts() const;
+  // Why the last step was refused or cancelled; empty when it was not.
+  [[nodiscard]] const std::string& failure() const { return failure_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }  // Done: the case
+
+ private:
+  struct Pictures;  // shared with the thread that makes them
+  void take_sources();
+  void take_bones();
+  void start_next();
+  void end_threads();
+
+  std::function<void()> wake_;
+  std::filesystem::path program_, folder_;
+  State state_ = State::Idle;
+  std::future<ImportSources> looking_;
+  std::shared_ptr<Pictures> pictures_;
+  std::future<void> painting_, saving_;
+  ImportSources sources_;
+  ImportWishes wishes_;
+  std::size_t next_ = 0;  // of the wished sources
+  std::unique_ptr<importing::ImportProcess> process_;
+  importing::ImportProgress progress_;
+  importing::BoneImport result_;
+  std::string failure_;
+  std::atomic<double> looked_{0};
+  std::atomic<bool> stops_looking_{false};
+};
+
+// A folder for a new case that is not there yet: FOLDER/NAME.arthro, with a number where that is taken. Characters that file
+// systems do not have are replaced.
+[[nodiscard]] std::filesystem::path new_case_folder(const std::filesystem::path& folder, const std::string& name);
+// Where imported cases go unless somebody says otherwise: beside the built-in case.
+[[nodiscard]] std::filesystem::path cases_folder();
+
+}  // namespace arthronaut::start

@@ -1,0 +1,120 @@
+// Plan mode from outside, as a hand works it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "planning/cases/case.h"
+#include "tests/app/window/display.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::test {
+namespace {
+
+class PlanWindow : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
+  }
+  [[nodiscard]] std::filesystem::path case_folder() const {
+    return folder_.path() / "arthronaut" / "Phantom.arthro";
+  }
+  [[nodiscard]] tunnels::Tunnel saved_tunnel() const {
+    return cases::load_case(case_folder()).plan.tunnels.at(bones::BoneKind::Femur);
+  }
+  static void open(const RunningWorkstation& app) {
+    ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+    ASSERT_TRUE(app.wait_for_widget("plan.entry_handle"));
+  }
+  static std::pair<int, int> middle(const RunningWorkstation& app, const std::string& widget) {
+    const Area area = app.widgets().at(widget);
+    return {area.x + area.width / 2, area.y + area.height / 2};
+  }
+  const TemporaryFolder folder_;
+};
+
+// From the front the femur hides its entry: a drag there turns the bone, and the plan stays. In the notch
+// view the entry is seen, and three pixels move it by what three pixels are.
+TEST_F(PlanWindow, OnlyAHandleThatIsSeenIsTakenHoldOf) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  const tunnels::Tunnel before = saved_tunnel();
+  const auto [x, y] = middle(app, "plan.entry_handle");
+  app.drag(x, y, x + 3, y);
+  app.press("6");
+  ASSERT_TRUE(app.wait_for_state("view_direction", "notch"));
+  EXPECT_EQ(app.state("undo"), "");
+  EXPECT_EQ(saved_tunnel().entry_mm, before.entry_mm);
+  const auto [seen_x, seen_y] = middle(app, "plan.entry_handle");
+  app.drag(seen_x, seen_y, seen_x + 3, seen_y);
+  ASSERT_TRUE(app.wait_for_state("undo", "Drag the entry of the femoral tunnel"));
+  ASSERT_TRUE(app.wait_for_state("plan", "saved"));
+  const double moved = (saved_tunnel().entry_mm - before.entry_mm).norm();
+  EXPECT_GT(moved, 0.1);
+  EXPECT_LT(moved, 2.5);  // 3 px of 0.25 mm on a wall that lies up to 70 degrees off the view
+}
+
+// P: Esc leaves it; a click on the other bone, or beside both, says so and leaves no step to undo.
+TEST_F(PlanWindow, PlacingCanBeLeftAndTakesNoOtherBone) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  app.press("p");
+  ASSERT_TRUE(app.wait_for_state("placing", "entry"));
+  app.press("Escape");
+  ASSERT_TRUE(app.wait_for_state("placing", "nothing"));
+  app.press("p");
+  const Area view = app.widgets().at("plan.view");
+  app.click_at(view.x + view.width / 2, view.y + view.height * 3 / 4);  // the tibia's shaft
+  EXPECT_TRUE(app.wait_for_state(
+      "hint", "That is the tibia. Click on the femur, or press Tab to plan the other bone."));
+  app.click_at(view.x + view.width / 20, view.y + view.height / 2);
+  EXPECT_TRUE(app.wait_for_state("hint", "That is beside the bone. Click on the femur, or press Esc."));
+  EXPECT_EQ(app.state("undo"), "");
+  EXPECT_EQ(app.state("placing"), "entry");
+  app.click_at(view.x + view.width / 2, view.y + view.height / 4);  // the femur's shaft
+  EXPECT_TRUE(app.wait_for_state("undo", "Place the entry of the femoral tunnel"));
+  EXPECT_EQ(app.state("placing"), "nothing");
+}
+
+// "+" is understood from every key that has it.
+TEST_F(PlanWindow, PlusAndTheNumberPadWiden) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  const double before = saved_tunnel().diameter_mm;
+  const auto fixed = [](double value) {
+    char text[16];
+    std::snprintf(text, sizeof(text), "%.2f", value);
+    return std::string(text);
+  };
+  int presses = 0;
+  for (const char* key : {"plus", "equal", "KP_Add"}) {
+    app.press(key);
+    ASSERT_TRUE(app.wait_for_state("diameter_mm", fixed(before + 0.5 * ++presses))) << key;
+  }
+  app.press("KP_Subtract");
+  EXPECT_TRUE(app.wait_for_state("diameter_mm", fixed(before + 1.0)));
+}
+
+// Hazard 15: a plan that another program saves is noticed, told, and never written over unasked.
+TEST_F(PlanWindow, Hazard15APlanOfAnotherProgramIsToldAndTheSurgeonChooses) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  cases::Plan elsewhere = cases::load_case(case_folder()).plan;
+  elsewhere.tunnels.at(bones::BoneKind::Femur).diameter_mm = 7.25;
+  cases::save_plan(case_folder(), elsewhere);
+  ASSERT_TRUE(app.wait_for_state("plan", "conflict"));
+  app.press("equal");
+  ASSERT_TRUE(app.wait_for_state("undo", "Change the diameter of the femoral tunnel"));
+  EXPECT_EQ(saved_tunnel().diameter_mm, 7.25);
+  ASSERT_TRUE(app.wait_for_widget("plan.take_theirs"));
+  app.click("plan.take_theirs");
+  ASSERT_TRUE(app.wait_for_state("plan", "saved"));
+  EXPECT_TRUE(app.wait_for_state("diameter_mm", "7.25"));
+}
+
+}  // namespace
+}  // namespace arthronaut::test
