@@ -9,7 +9,9 @@ int main(int argc, char** argv) {
   // program.
   std::signal(SIGXFSZ, SIG_IGN);
   return command_line::run_command_line(argc, argv, [](const command_line::WorkstationRequest& request) {
-    return window::run_workstation(
-        {.case_folder = request.case_folder, .frames = request.frames, .list_widgets = request.list_widgets});
+    return window::run_workstation({.case_folder = request.case_folder,
+                                    .built_in = request.built_in,
+                                    .frames = request.frames,
+                                    .list_widgets = request.list_widgets});
   });
 }

@@ -74,7 +74,8 @@ void add_experiment_command(CLI::App& app, Context& context);
 
 // What the user asked of the window.
 struct WorkstationRequest {
-  std::string case_folder;  // empty: the built-in case
+  std::string case_folder;  // or what is to be imported; empty: the list of cases
+  bool built_in = false;    // the built-in case
   long frames = 0;          // close after so many frames; 0: when the user quits
   bool list_widgets = false;
 };

@@ -97,7 +97,9 @@ int run_command_line(int argc, char** argv,
       "Exit codes: 0 done and reliable; 1 internal error; 2 wrong usage; 3 unreadable or invalid input;\n"
       "4 done, but the result is not reliable (it is written, with its reasons).");
   WorkstationRequest request;
-  app.add_option("case", request.case_folder, "Case folder to open in the workstation");
+  app.add_option("case", request.case_folder,
+                 "Case folder to open in the workstation, or images to import there");
+  app.add_flag("--built-in", request.built_in, "Open the workstation on the built-in knee");
   app.add_option("--frames", request.frames, "Close the workstation after so many frames")
       ->check(CLI::NonNegativeNumber);
   app.add_flag("--list-widgets", request.list_widgets,

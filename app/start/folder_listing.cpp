@@ -23,7 +23,8 @@ std::string lower(std::string text) {
 template <std::size_t N>
 bool ends_with_one(const fs::path& file, const std::array<std::string_view, N>& endings) {
   const std::string name = lower(file.filename().string());
-  return std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) { return name.ends_with(ending); });
+  return std::any_of(endings.begin(), endings.end(),
+                     [&](std::string_view ending) { return name.ends_with(ending); });
 }
 
 std::string size_text(std::uintmax_t bytes) {
@@ -40,8 +41,8 @@ bool is_case_folder(const fs::path& folder) {
 
 bool is_image_name(const fs::path& file) {
   if (lower(file.filename().string()) == "dicomdir") return true;
-  return ends_with_one(file, std::array<std::string_view, 9>{".nii", ".nii.gz", ".nrrd", ".nhdr", ".mha", ".mhd", ".dcm",
-                                                             ".ima", ".dicom"});
+  return ends_with_one(file, std::array<std::string_view, 9>{".nii", ".nii.gz", ".nrrd", ".nhdr", ".mha",
+                                                             ".mhd", ".dcm", ".ima", ".dicom"});
 }
 
 FolderListing list_folder(const fs::path& folder) {

@@ -11,7 +11,8 @@ struct FolderEntry {
   enum class Kind {
     Case,    // a folder with case.json
     Folder,  // any other
-    Image,   // a file that may be a volume, by its extension; DICOM files often have none and are taken with their folder
+    Image,   // a file that may be a volume, by its extension; DICOM files often have none and are taken with
+             // their folder
     Mesh,    // by its extension
   } kind = Kind::Folder;
   std::filesystem::path path;

@@ -53,7 +53,8 @@ ImportSource source_of(const fs::path& root, const images::ImageSeries& series) 
     source.title += ": " + series.files.front().filename().string();
   source.detail = std::to_string(series.image_count) + (series.image_count == 1 ? " image" : " images");
   if (series.size.minCoeff() > 0) {
-    source.detail += files::format(", %d \u00D7 %d \u00D7 %d", series.size.x(), series.size.y(), series.size.z());
+    source.detail +=
+        files::format(", %d \u00D7 %d \u00D7 %d", series.size.x(), series.size.y(), series.size.z());
     if (series.spacing_mm.minCoeff() > 0)
       source.detail += files::format(" voxels of %.2g \u00D7 %.2g \u00D7 %.2g mm", series.spacing_mm.x(),
                                      series.spacing_mm.y(), series.spacing_mm.z());
@@ -67,7 +68,8 @@ std::optional<std::size_t> ImportSources::best() const {
   std::optional<std::size_t> best;
   const auto worth = [](const ImportSource& source) {
     if (!source.series) return 1;
-    return source.series->modality == "CT" ? 1'000'000 + source.series->image_count : 2 + source.series->image_count;
+    return source.series->modality == "CT" ? 1'000'000 + source.series->image_count
+                                           : 2 + source.series->image_count;
   };
   for (std::size_t i = 0; i < sources.size(); ++i) {
     if (!sources[i].can_be_imported()) continue;

@@ -13,13 +13,13 @@
 namespace arthronaut::start {
 
 struct ImportSource {
-  std::filesystem::path source;  // what the import is given
+  std::filesystem::path source;               // what the import is given
   std::optional<images::ImageSeries> series;  // nullopt: a mesh
-  std::optional<bones::BoneKind> bone;  // of a mesh, by its name
-  std::string title;   // "CT series 3: Knee 0.6 bone"
-  std::string detail;  // "256 images, 512 x 512 x 256 voxels of 0.4 x 0.4 x 0.6 mm"
-  std::string refusal;                // why it cannot be imported; empty when it can
-  std::vector<std::string> warnings;  // it can, but a person should know
+  std::optional<bones::BoneKind> bone;        // of a mesh, by its name
+  std::string title;                          // "CT series 3: Knee 0.6 bone"
+  std::string detail;                         // "256 images, 512 x 512 x 256 voxels of 0.4 x 0.4 x 0.6 mm"
+  std::string refusal;                        // why it cannot be imported; empty when it can
+  std::vector<std::string> warnings;          // it can, but a person should know
   [[nodiscard]] bool can_be_imported() const { return refusal.empty(); }
 };
 
@@ -28,12 +28,13 @@ struct ImportSources {
   std::vector<ImportSource> sources;
   std::vector<std::string> left_out;  // "REPORT.dcm: is no image"
   std::string failure;                // why nothing could be looked at; empty else
-  // The one to begin with: the readable CT or label map with the most images, else the first that can be imported.
+  // The one to begin with: the readable CT or label map with the most images, else the first that can be
+  // imported.
   [[nodiscard]] std::optional<std::size_t> best() const;
 };
 
-// Looks through the folder; takes seconds: for a thread. on_progress is called on it and may throw, to stop. Never throws for
-// what it finds; what on_progress throws passes.
+// Looks through the folder; takes seconds: for a thread. on_progress is called on it and may throw, to stop.
+// Never throws for what it finds; what on_progress throws passes.
 [[nodiscard]] ImportSources find_import_sources(const std::filesystem::path& root,
                                                 const std::function<void(double)>& on_progress = nullptr);
 

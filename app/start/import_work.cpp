@@ -41,7 +41,8 @@ void ImportWork::end_threads() {
   if (painting_.valid()) painting_.wait();
   if (saving_.valid()) saving_.wait();
   looking_ = {};
-  painting_ = saving_ = {};
+  painting_ = {};
+  saving_ = {};
   pictures_.reset();
   process_.reset();
 }
@@ -77,19 +78,20 @@ void ImportWork::take_sources() {
   state_ = State::Choosing;
   pictures_ = std::make_shared<Pictures>();
   pictures_->made.resize(sources_.sources.size());
-  painting_ = std::async(std::launch::async, [pictures = pictures_, sources = sources_.sources, wake = wake_] {
-    for (std::size_t i = 0; i < sources.size() && !pictures->stops; ++i) {
-      if (!sources[i].series) continue;
-      try {
-        auto picture = std::make_unique<images::Thumbnail>(images::thumbnail_of(*sources[i].series));
-        const std::lock_guard lock(pictures->mutex);
-        pictures->made[i] = std::move(picture);
-      } catch (const std::exception&) {  // a list without this picture says why by the series' refusal
-        continue;
-      }
-      wake();
-    }
-  });
+  painting_ =
+      std::async(std::launch::async, [pictures = pictures_, sources = sources_.sources, wake = wake_] {
+        for (std::size_t i = 0; i < sources.size() && !pictures->stops; ++i) {
+          if (!sources[i].series) continue;
+          try {
+            auto picture = std::make_unique<images::Thumbnail>(images::thumbnail_of(*sources[i].series));
+            const std::lock_guard lock(pictures->mutex);
+            pictures->made[i] = std::move(picture);
+          } catch (const std::exception&) {  // a list without this picture says why by the series' refusal
+            continue;
+          }
+          wake();
+        }
+      });
 }
 
 const images::Thumbnail* ImportWork::thumbnail(std::size_t source) const {
@@ -119,7 +121,8 @@ void ImportWork::start_next() {
   try {
     process_ = std::make_unique<importing::ImportProcess>(
         importing::ImportRequest{.source = source.source, .options = options, .program = program_});
-  } catch (const std::exception& error) {  // no process could be started: said as any other failure of the import
+  } catch (
+      const std::exception& error) {  // no process could be started: said as any other failure of the import
     failure_ = error.what();
     state_ = State::Choosing;
   }
@@ -178,14 +181,15 @@ void ImportWork::save(const fs::path& folder, const std::string& name) {
   folder_ = folder;
   importing::BoneImport import = result_;
   if (!wishes_.keeps_identity) import.identity = {};
-  saving_ = std::async(std::launch::async, [this, folder, name, import = std::move(import), root = sources_.root] {
-    const struct AtEnd {
-      const std::function<void()>& call;
-      ~AtEnd() { call(); }
-    } at_end{wake_};
-    files::create_private_folder(folder.parent_path());
-    importing::add_to_case(folder, import, name, root);
-  });
+  saving_ =
+      std::async(std::launch::async, [this, folder, name, import = std::move(import), root = sources_.root] {
+        const struct AtEnd {
+          const std::function<void()>& call;
+          ~AtEnd() { call(); }
+        } at_end{wake_};
+        files::create_private_folder(folder.parent_path());
+        importing::add_to_case(folder, import, name, root);
+      });
 }
 
 void ImportWork::poll() {
@@ -217,7 +221,8 @@ std::vector<std::string> ImportWork::doubts() const {
 fs::path new_case_folder(const fs::path& folder, const std::string& name) {
   std::string safe = name.empty() ? "Knee" : name;
   std::replace_if(
-      safe.begin(), safe.end(), [](unsigned char c) { return c < 0x20 || c == '/' || c == '\\' || c == ':'; }, '-');
+      safe.begin(), safe.end(), [](unsigned char c) { return c < 0x20 || c == '/' || c == '\\' || c == ':'; },
+      '-');
   if (safe.front() == '.') safe.front() = '-';
   fs::path path = folder / (safe + ".arthro");
   std::error_code error;

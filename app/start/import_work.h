@@ -1,11 +1,12 @@
-// An import as the window leads through it: looking what a folder holds, making the bones in a process of its own, the questions
-// that only a person can answer, writing the case. Nothing here waits.
+// An import as the window leads through it: looking what a folder holds, making the bones in a process of its
+// own, the questions that only a person can answer, writing the case. Nothing here waits.
 //
 //   Idle ─► Looking ─► Choosing ─► Running ─► Asking ─► Saving ─► Done
 //                         ▲  cancel() │  refused │ (with the reason, see failure())
 //                         └───────────┴──────────┘
 //
-// One thread; poll() once a frame. Threads of its own look, make thumbnails and write; `wake` is called from them.
+// One thread; poll() once a frame. Threads of its own look, make thumbnails and write; `wake` is called from
+// them.
 #pragma once
 
 #include <atomic>
@@ -86,9 +87,10 @@ class ImportWork {
   std::atomic<bool> stops_looking_{false};
 };
 
-// A folder for a new case that is not there yet: FOLDER/NAME.arthro, with a number where that is taken. Characters that file
-// systems do not have are replaced.
-[[nodiscard]] std::filesystem::path new_case_folder(const std::filesystem::path& folder, const std::string& name);
+// A folder for a new case that is not there yet: FOLDER/NAME.arthro, with a number where that is taken.
+// Characters that file systems do not have are replaced.
+[[nodiscard]] std::filesystem::path new_case_folder(const std::filesystem::path& folder,
+                                                    const std::string& name);
 // Where imported cases go unless somebody says otherwise: beside the built-in case.
 [[nodiscard]] std::filesystem::path cases_folder();
 

@@ -22,8 +22,8 @@ constexpr std::size_t kMost = 20;
 
 std::optional<std::time_t> time_of(const std::string& utc) {
   std::tm parts{};
-  if (std::sscanf(utc.c_str(), "%d-%d-%dT%d:%d:%d", &parts.tm_year, &parts.tm_mon, &parts.tm_mday, &parts.tm_hour,
-                  &parts.tm_min, &parts.tm_sec) != 6)
+  if (std::sscanf(utc.c_str(), "%d-%d-%dT%d:%d:%d", &parts.tm_year, &parts.tm_mon, &parts.tm_mday,
+                  &parts.tm_hour, &parts.tm_min, &parts.tm_sec) != 6)
     return std::nullopt;
   parts.tm_year -= 1900;
   parts.tm_mon -= 1;

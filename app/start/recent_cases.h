@@ -1,5 +1,5 @@
-// The cases that were opened last, newest first, so that a surgeon finds his again. A file of the user's own beside the
-// built-in case; it names folders and cases, never a patient.
+// The cases that were opened last, newest first, so that a surgeon finds his again. A file of the user's own
+// beside the built-in case; it names folders and cases, never a patient.
 #pragma once
 
 #include <filesystem>
@@ -18,8 +18,8 @@ struct RecentCase {
 // $XDG_DATA_HOME/arthronaut/recent.json, else ~/.local/share/...
 [[nodiscard]] std::filesystem::path recent_cases_file();
 
-// Empty where there is no file, or one that cannot be read: it is a convenience. Cases whose folder is gone stand in it all the
-// same: a drive may be unplugged.
+// Empty where there is no file, or one that cannot be read: it is a convenience. Cases whose folder is gone
+// stand in it all the same: a drive may be unplugged.
 [[nodiscard]] std::vector<RecentCase> load_recent_cases(const std::filesystem::path& file);
 
 // Puts the case at the top, once; keeps the 20 newest. What cannot be written is left: nothing hangs on it.

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "app/navigate/navigate_view.h"
 #include "app/plan/plan_view.h"
@@ -12,7 +13,7 @@
 #include "app/widgets/hold_hint.h"
 #include "app/widgets/source_banner.h"
 #include "app/window/key_list.h"
-#include "planning/geometry/error.h"
+#include "planning/files/utc_clock.h"
 
 namespace arthronaut::window {
 
@@ -23,18 +24,34 @@ using widgets::GraphicsWindow;
 constexpr double kIdleWait_s = 0.2, kBusyWait_s = 0.05, kHeldWait_s = 0.02;
 // After input ImGui needs a few frames until hovering, pressing and layout have settled.
 constexpr int kFramesAfterInput = 4;
-constexpr const char* kNotice = "Research software, not a medical device";
 
 }  // namespace
 
 WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
     : options_(options),
       window_("Arthronaut"),
-      case_(options.case_folder, [] { GraphicsWindow::wake(); }),
       log_(options.list_widgets),
-      watch_([](const std::string& what) { spdlog::warn(what); }, std::chrono::milliseconds(500)) {
+      watch_([](const std::string& what) { spdlog::warn(what); }, std::chrono::milliseconds(500)),
+      start_([this](const std::filesystem::path& folder) { open(folder); }, [] { GraphicsWindow::wake(); }) {
   make_modes();
   add_actions();
+  start_.enter(false);
+  if (options.built_in)
+    open({});
+  else if (!options.case_folder.empty())
+    start_.take(options.case_folder);
+}
+
+void WorkstationWindow::open(const std::filesystem::path& folder) {
+  if (opening_ != nullptr || has_running_work()) return;
+  const std::filesystem::path wanted = folder.empty() ? open_case::built_in_case_folder() : folder;
+  std::error_code error;
+  if (model() != nullptr && std::filesystem::equivalent(wanted, case_->folder(), error)) {
+    shows_start_ = false;  // it is open
+    return;
+  }
+  failure_.clear();
+  opening_ = std::make_unique<open_case::CaseOpening>(folder, [] { GraphicsWindow::wake(); });
 }
 
 void WorkstationWindow::make_modes() {
@@ -50,14 +67,23 @@ void WorkstationWindow::make_modes() {
 }
 
 void WorkstationWindow::add_actions() {
-  const auto is_open = [this] { return case_.model() != nullptr; };
+  const auto is_open = [this] { return model() != nullptr; };
   for (std::size_t i = 0; i < modes_.size(); ++i) {
     const mode::ModeTitle title = modes_[i]->title();
     actions_.add(
         {std::string(title.action), std::string(title.label), std::string(title.tooltip), title.key, 0, false,
-         [this, is_open, i] { return is_open() && (!case_.is_read_only() || modes_[i]->works_read_only()); },
-         [this, i] { return shown_ == i; }, [this, i] { show(i); }});
+         [this, is_open, i] { return is_open() && (!case_->is_read_only() || modes_[i]->works_read_only()); },
+         [this, i] { return shown_ == i && !shows_start(); }, [this, i] { show(i); }});
   }
+  actions_.add({"app.cases", "Cases",
+                "Open another case, or import one; drop a folder on the window for the same", GLFW_KEY_F5, 0,
+                false, [this, is_open] { return is_open() && !has_running_work() && opening_ == nullptr; },
+                [this] { return shows_start(); },
+                [this] {
+                  if (std::exchange(shows_start_, !shows_start_)) return;
+                  shown().leave();
+                  start_.enter(true);
+                }});
   actions_.add({"app.keys",
                 "Keys",
                 "Every key of this mode",
@@ -77,6 +103,7 @@ void WorkstationWindow::add_actions() {
                 {},
                 [this] { quits_ = true; },
                 {"quit", [this] { return has_running_work(); }}});
+  start_.add_actions(actions_);
   for (const auto& mode : modes_) mode->add_actions(actions_);
 }
 
@@ -84,10 +111,10 @@ void WorkstationWindow::run() {
   int settle = 30;  // frames to draw without waiting
   for (long count = 0; !quits_ && !should_end() && (options_.frames == 0 || count < options_.frames);
        ++count) {
-    const double timeout = settle > 0                            ? 0
-                           : actions_.is_held()                  ? kHeldWait_s
-                           : modes_are_busy() || case_.is_busy() ? kBusyWait_s
-                                                                 : kIdleWait_s;
+    const double timeout = settle > 0                                                    ? 0
+                           : actions_.is_held()                                          ? kHeldWait_s
+                           : modes_are_busy() || start_.is_busy() || opening_ != nullptr ? kBusyWait_s
+                                                                                         : kIdleWait_s;
     const double started = GraphicsWindow::now_s();
     frame(timeout);
     const bool woken = timeout > 0 && GraphicsWindow::now_s() - started < timeout;
@@ -109,14 +136,18 @@ bool WorkstationWindow::modes_are_busy() const {
 }
 
 bool WorkstationWindow::has_running_work() const {
-  return std::any_of(modes_.begin(), modes_.end(), [](const auto& mode) { return mode->has_running_work(); });
+  return start_.has_running_work() ||
+         std::any_of(modes_.begin(), modes_.end(), [](const auto& mode) { return mode->has_running_work(); });
 }
 
 // poll -> queues and actions -> UI (with the scenes that are dirty) -> draw -> swap
 void WorkstationWindow::frame(double timeout_s) {
   window_.begin_frame(timeout_s);
+  take_dropped();
+  start_.tick();
   take_opened_case();
   dispatch_keys();
+  if (start_.wants_to_close()) shows_start_ = false;
   for (const auto& mode : modes_) mode->tick(GraphicsWindow::now_s());
   const widgets::Ui ui{window_.theme(), actions_, log_, GraphicsWindow::now_s()};
   heartbeat_.beat(ui.now_s, has_running_work());
@@ -128,10 +159,37 @@ void WorkstationWindow::frame(double timeout_s) {
 }
 
 void WorkstationWindow::take_opened_case() {
-  if (!case_.take()) return;
+  if (opening_ == nullptr) return;
+  const bool is_open = opening_->take();
+  if (!is_open && opening_->is_busy()) return;
+  if (!is_open) {
+    failure_ = opening_->failure();
+    opening_.reset();
+    return;
+  }
+  if (model() != nullptr) shown().leave();
   for (const auto& mode : modes_)
-    mode->case_opened({case_.model(), case_.folder(), case_.read_only_reason()});
+    mode->case_opened({opening_->model(), opening_->folder(), opening_->read_only_reason()});
+  case_ = std::move(opening_);  // the one before is let go when no mode knows it any more
+  const cases::Case& knee = model()->knee();
+  start::note_recent_case(
+      start::recent_cases_file(),
+      {case_->folder(), knee.name, std::string(bones::to_text(knee.side)), files::utc_now()});
+  shows_start_ = false;
   shown().enter();
+}
+
+void WorkstationWindow::take_dropped() {
+  const auto dropped = window_.take_dropped();
+  if (dropped.empty()) return;
+  if (has_running_work() || opening_ != nullptr) {
+    failure_ = "Stop what runs before another case is opened";
+    return;
+  }
+  failure_.clear();
+  shows_start_ = true;
+  start_.enter(model() != nullptr);
+  start_.take(dropped.front());
 }
 
 void WorkstationWindow::dispatch_keys() {
@@ -143,19 +201,24 @@ void WorkstationWindow::dispatch_keys() {
     }
     actions_.press(press, action_prefixes());
     // What is typed after the key that opens a text field is meant for the field.
-    if (shown().awaits_text()) window_.await_text_field();
+    if (!shows_start() && shown().awaits_text()) window_.await_text_field();
   }
   if (ImGui::GetIO().WantTextInput) actions_.let_go();
 }
 
 std::vector<std::string_view> WorkstationWindow::action_prefixes() const {
   std::vector<std::string_view> prefixes{"app.", "mode."};
+  if (shows_start()) {
+    if (opening_ == nullptr) prefixes.push_back("start.");
+    return prefixes;
+  }
   for (const std::string_view prefix : shown().action_prefixes()) prefixes.push_back(prefix);
   return prefixes;
 }
 
 void WorkstationWindow::show(std::size_t mode) {
   actions_.let_go();
+  shows_start_ = false;
   if (mode != shown_) shown().leave();
   shown_ = mode;
   shown().enter();
@@ -176,12 +239,19 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   draw_top_bar(ui, area.cut_top(ui.theme.px(72)));
   draw_status_bar(ui, area.cut_bottom(ui.theme.px(40)));
   widgets::Rect inner = area.inset(ui.theme.px(12));
-  if (case_.model() == nullptr)
-    draw_waiting(ui, inner);
+  if (!failure_.empty() && shows_start()) {
+    const widgets::Rect line = inner.cut_top(ui.theme.px(44));
+    ImGui::SetCursorScreenPos(line.min());
+    widgets::status_row(ui, widgets::Severity::Bad, "Not opened", failure_);
+  }
+  if (opening_ != nullptr)
+    widgets::text_centered(ui, inner, ui.theme.title, widgets::kText, "Opening the case");
+  else if (shows_start())
+    start_.draw(ui, inner);
   else
     shown().draw(ui, inner);
   if (shows_keys_) draw_key_list(ui, action_prefixes());
-  const auto kind = shown().source_kind();
+  const auto kind = shows_start() ? std::nullopt : shown().source_kind();
   if (kind) widgets::draw_source_frame(ui, {0, 0, size.x, size.y}, *kind);
   widgets::draw_hold_hint(ui, {0, 0, size.x, size.y});
   ImGui::PopFont();
@@ -189,80 +259,12 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   if (!kind) log_.note_state("source_kind", "none");
   log_.note_state("standstill", heartbeat_.words());
   log_.note_state("mode", shown().title().name);
-  log_.note_state("access", case_.is_read_only() ? "read-only" : "own");
-  log_.note_state("case", case_.model() != nullptr ? "open" : case_.failure().empty() ? "opening" : "failed");
-}
-
-void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect& area) {
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw.AddRectFilled(area.min(), area.max(), widgets::kPanel);
-  draw.AddLine({area.x, area.y + area.height}, area.max(), widgets::kPanelEdge);
-  const float middle = area.y + area.height / 2;
-  const ImFont* title = ui.theme.title;
-  const float width = ui.theme.px(172), height = ui.theme.px(50);
-  const widgets::Rect heart{area.x + ui.theme.px(14), middle - height / 2, height, height};
-  widgets::draw_heartbeat(ui, heart, heartbeat_);
-  // The same place in all modes: where the pictures come from, or else whose screen this is.
-  const widgets::Rect name{heart.x + heart.width + ui.theme.px(10), middle - ui.theme.px(29),
-                           ui.theme.px(330), ui.theme.px(58)};
-  if (const auto kind = shown().source_kind())
-    widgets::draw_source_word(ui, name, *kind);
-  else
-    draw.AddText(title, title->FontSize, {name.x, middle - title->FontSize / 2}, widgets::kText,
-                 "Arthronaut");
-  float x = name.x + name.width + ui.theme.px(12);
-  for (const auto& mode : modes_) {
-    ImGui::SetCursorScreenPos({x, middle - height / 2});
-    widgets::action_button(ui, mode->title().action, width, height);
-    x += width + ui.theme.px(10);
-  }
-  if (case_.model() != nullptr) {
-    const cases::Case& knee = case_.model()->knee();
-    const std::string text = knee.name + "  \u2013  " + std::string(bones::to_text(knee.side)) + " knee";
-    // Whose knee it is stands over the name of the case.
-    const std::string patient = case_.identity() ? case_.identity()->in_words() : "";
-    const float right = area.x + area.width - ui.theme.px(360);
-    const auto line = [&](const ImFont* font, float y, ImU32 color, const std::string& words) {
-      const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, words.c_str()).x;
-      draw.AddText(font, font->FontSize, {right - wide, y}, color, words.c_str());
-    };
-    const float row = ui.theme.strong->FontSize;
-    if (!patient.empty()) line(ui.theme.strong, middle - row, widgets::kText, patient);
-    line(ui.theme.strong, patient.empty() ? middle - row / 2 : middle,
-         patient.empty() ? widgets::kText : widgets::kQuietText, text);
-  }
-  const float small = ui.theme.px(156);
-  ImGui::SetCursorScreenPos({area.x + area.width - 2 * small - ui.theme.px(22), middle - height / 2});
-  widgets::action_button(ui, "app.keys", small, height);
-  ImGui::SetCursorScreenPos({area.x + area.width - small - ui.theme.px(12), middle - height / 2});
-  widgets::action_button(ui, "app.quit", small, height);
-}
-
-void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Rect& area) {
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw.AddRectFilled(area.min(), area.max(), widgets::kPanel);
-  const ImFont* font = ui.theme.body;
-  const float y = area.y + (area.height - font->FontSize) / 2;
-  draw.AddText(font, font->FontSize, {area.x + ui.theme.px(20), y}, widgets::kQuietText, kNotice);
-  const std::string standstill = heartbeat_.words();
-  const std::string notice = !case_.failure().empty() ? case_.failure()
-                             : !standstill.empty()    ? standstill
-                                                      : shown().notice();
-  const std::string access =
-      case_.is_read_only() ? "READ-ONLY: the case " + case_.read_only_reason() : case_.notice();
-  const std::string text = !notice.empty()            ? notice
-                           : !access.empty()          ? access
-                           : case_.model() != nullptr ? case_.folder().string()
-                                                      : std::string();
-  const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
-  draw.AddText(font, font->FontSize, {area.x + area.width - wide - ui.theme.px(20), y},
-               notice.empty() && access.empty() ? widgets::kQuietText : widgets::kCaution, text.c_str());
-}
-
-void WorkstationWindow::draw_waiting(const widgets::Ui& ui, const widgets::Rect& area) {
-  widgets::text_centered(
-      ui, area, ui.theme.title, case_.failure().empty() ? widgets::kText : widgets::kBad,
-      case_.failure().empty() ? "Opening the case" : "The case cannot be opened: " + case_.failure());
+  log_.note_state("access", model() != nullptr && case_->is_read_only() ? "read-only" : "own");
+  log_.note_state("screen", shows_start() ? "start" : "mode");
+  log_.note_state("case", opening_ != nullptr  ? "opening"
+                          : !failure_.empty()  ? "failed"
+                          : model() != nullptr ? "open"
+                                               : "none");
 }
 
 }  // namespace arthronaut::window

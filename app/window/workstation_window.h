@@ -7,6 +7,7 @@
 
 #include "app/case/case_opening.h"
 #include "app/mode/mode.h"
+#include "app/start/start_view.h"
 #include "app/widgets/graphics_window.h"
 #include "app/widgets/heartbeat.h"
 #include "app/window/draw_watch.h"
@@ -24,7 +25,10 @@ class WorkstationWindow {
   void make_modes();
   void add_actions();
   void frame(double timeout_s);
+  // Empty: the built-in case. The one that is open stays open until the other one is.
+  void open(const std::filesystem::path& folder);
   void take_opened_case();
+  void take_dropped();
   void dispatch_keys();
   // What the ids of the actions that work now start with.
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const;
@@ -32,7 +36,8 @@ class WorkstationWindow {
   void draw_screen(const widgets::Ui& ui);
   void draw_top_bar(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_status_bar(const widgets::Ui& ui, const widgets::Rect& area);
-  void draw_waiting(const widgets::Ui& ui, const widgets::Rect& area);
+  [[nodiscard]] open_case::PlanModel* model() const { return case_ != nullptr ? case_->model() : nullptr; }
+  [[nodiscard]] bool shows_start() const { return shows_start_ || model() == nullptr; }
   [[nodiscard]] bool should_end();  // the window was closed, and nothing runs that it would cut off
   [[nodiscard]] mode::Mode& shown() const { return *modes_[shown_]; }
   [[nodiscard]] bool modes_are_busy() const;    // in front or behind
@@ -40,14 +45,17 @@ class WorkstationWindow {
 
   WorkstationOptions options_;
   widgets::GraphicsWindow window_;
-  open_case::CaseOpening case_;
+  // The open case, and the one that is being opened in its place; null where there is none.
+  std::unique_ptr<open_case::CaseOpening> case_, opening_;
+  std::string failure_;  // why the last one could not be opened; empty when it could
   widgets::Actions actions_;
   widgets::WidgetLog log_;
   std::vector<std::unique_ptr<mode::Mode>> modes_;  // in the order of their buttons
   std::size_t shown_ = 0;
   widgets::Heartbeat heartbeat_;
   DrawWatch watch_;
-  bool shows_keys_ = false, quits_ = false;
+  start::StartView start_;
+  bool shows_keys_ = false, shows_start_ = false, quits_ = false;
 };
 
 }  // namespace arthronaut::window

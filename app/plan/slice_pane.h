@@ -1,0 +1,97 @@
+// One slice of the case's images in a pane: zoomed, shifted, scrolled and windowed by the mouse, with the
+// bones' outlines, the tunnels, the cross-hair, the patient's sides and a scale. It shows and tells; what is
+// common to the three of them is slice_panes.h's.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/scene/reslice.h"
+#include "app/widgets/controls.h"
+#include "app/widgets/grey_texture.h"
+
+namespace arthronaut::plan {
+
+// A surface whose outline is drawn.
+struct OutlinedMesh {
+  const geometry::TriangleMesh* mesh = nullptr;
+  ImU32 color = widgets::kText;
+  float line_px = 2;
+};
+
+// A named point that is drawn where the slice is near it.
+struct SliceMark {
+  std::string word;
+  Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();
+  ImU32 color = widgets::kText;
+};
+
+// A measured line or angle, in the patient.
+struct SliceLine {
+  std::vector<Eigen::Vector3d> points_mm;  // two or three
+  std::string word;
+};
+
+struct SliceContent {
+  const images::Volume* volume = nullptr;  // not null
+  std::uint64_t revision = 0;              // of the outlined meshes: another one draws their outlines anew
+  std::vector<OutlinedMesh> meshes;
+  std::vector<SliceMark> marks;
+  std::vector<SliceLine> lines;
+  Eigen::Vector3d cross_mm = Eigen::Vector3d::Zero();
+  scene::GreyWindow window;
+  bool measures = false;  // a click sets a point instead of the cross-hair
+};
+
+struct SliceEvent {
+  std::optional<Eigen::Vector3d> cross_mm;     // where the cross-hair is wanted
+  std::optional<scene::GreyWindow> window;     // while it is dragged
+  std::optional<Eigen::Vector3d> measured_mm;  // a point that was clicked
+  bool is_hovered = false;
+  std::optional<double> value;  // of the volume under the mouse
+};
+
+class SlicePane {
+ public:
+  // right and down: of the picture, unit, LPS. title: "Axial".
+  SlicePane(std::string title, const Eigen::Vector3d& right, const Eigen::Vector3d& down);
+
+  // All of the volume, centred.
+  void fit(const images::Volume& volume);
+  // Left: cross-hair. Wheel: through the slices, with Ctrl zoom. Right drag: level up and down, width right
+  // and left. Middle drag, or left with Shift: shift.
+  SliceEvent draw(const widgets::Ui& ui, const char* name, const widgets::Rect& rect,
+                  const SliceContent& content);
+  // How far one step of the wheel goes.
+  [[nodiscard]] double step_mm(const images::Volume& volume) const;
+  [[nodiscard]] Eigen::Vector3d normal() const { return right_.cross(down_); }
+
+ private:
+  [[nodiscard]] scene::SlicePlane plane_through(const Eigen::Vector3d& cross_mm) const;
+  SliceEvent follow_mouse(const widgets::Rect& rect, const SliceContent& content);
+  void draw_overlay(const widgets::Ui& ui, const widgets::Rect& rect, const SliceContent& content);
+  void draw_frame(const widgets::Ui& ui, const widgets::Rect& rect, const SliceContent& content) const;
+
+  std::string title_;
+  Eigen::Vector3d right_, down_;
+  Eigen::Vector3d center_mm_ =
+      Eigen::Vector3d::Zero();             // what stands in the middle of the pane, in the plane
+  double mm_per_px_ = 0.5, fit_mm_ = 150;  // fit_mm: of the shorter side, until it is zoomed
+  bool is_fitted_ = false, press_measures_ = false;
+  float press_travel_px_ = 0;
+  widgets::GreyTexture texture_;
+  std::vector<std::uint8_t> grey_;
+  struct Shown {
+    scene::SlicePlane plane;
+    Eigen::Vector2i size_px{0, 0};
+    scene::GreyWindow window;
+    const images::Volume* volume = nullptr;
+    std::uint64_t revision = 0;
+    bool operator==(const Shown&) const = default;
+  } shown_;
+  std::vector<std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>> outlines_;  // of each mesh
+};
+
+}  // namespace arthronaut::plan

@@ -1,0 +1,134 @@
+#include "app/plan/slice_panes.h"
+
+#include <chrono>
+#include <utility>
+
+#include "planning/cases/case_image.h"
+
+namespace arthronaut::plan {
+
+namespace {
+
+struct Stopped {};
+
+}  // namespace
+
+// Seen as radiologists hang them: axial from the feet, coronal from the front, sagittal from the patient's
+// left.
+SlicePanes::SlicePanes(std::function<void()> wake)
+    : wake_(std::move(wake)),
+      panes_{SlicePane("Axial", Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()),
+             SlicePane("Coronal", Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitZ()),
+             SlicePane("Sagittal", Eigen::Vector3d::UnitY(), -Eigen::Vector3d::UnitZ())} {}
+
+SlicePanes::~SlicePanes() { stop_loading(); }
+
+void SlicePanes::stop_loading() {
+  stops_ = true;
+  if (loading_.valid()) loading_.wait();
+  loading_ = {};
+  stops_ = false;
+}
+
+void SlicePanes::open(const cases::Case& knee, const std::filesystem::path& folder) {
+  stop_loading();
+  images_ = knee.images;
+  folder_ = folder;
+  volume_.reset();
+  failure_.clear();
+  tool_ = MeasuringTool::None;
+  points_mm_.clear();
+}
+
+void SlicePanes::want() {
+  if (images_.empty() || volume_ != nullptr || loading_.valid() || !failure_.empty()) return;
+  loaded_ = 0;
+  // A grey image rather than a label map; the last of them, which is the newest.
+  cases::CaseImage image = images_.back();
+  for (const cases::CaseImage& other : images_)
+    if (!other.is_label_map) image = other;
+  loading_ = std::async(std::launch::async, [this, image, folder = folder_] {
+    Loaded loaded;
+    try {  // the top of the loading thread
+      loaded.volume =
+          std::make_unique<images::Volume>(cases::load_image(folder, image, [this](double fraction) {
+            if (stops_) throw Stopped();
+            loaded_ = fraction;
+          }));
+      loaded.automatic = scene::automatic_window(*loaded.volume);
+    } catch (const Stopped&) {
+    } catch (const std::exception& error) {
+      loaded.volume.reset();
+      loaded.failure = error.what();
+    }
+    wake_();
+    return loaded;
+  });
+}
+
+void SlicePanes::tick() {
+  if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  Loaded loaded = loading_.get();
+  volume_ = std::move(loaded.volume);
+  failure_ = loaded.failure;
+  if (volume_ == nullptr) return;
+  automatic_ = loaded.automatic;
+  window_ = volume_->modality == "CT" ? scene::kBoneWindow : automatic_;
+  fit();
+}
+
+void SlicePanes::fit() {
+  if (volume_ == nullptr) return;
+  for (SlicePane& pane : panes_) pane.fit(*volume_);
+}
+
+std::string SlicePanes::reason() const {
+  if (volume_ != nullptr) return "";
+  if (!failure_.empty()) return "The images cannot be shown: " + failure_;
+  if (images_.empty()) return "This case has no images: it was made of meshes, or by an older version.";
+  return "Loading the images: " + widgets::fixed(100 * loaded_, 0) + " %";
+}
+
+void SlicePanes::use(MeasuringTool tool) {
+  tool_ = tool;
+  points_mm_.clear();
+}
+
+std::optional<std::vector<Eigen::Vector3d>> SlicePanes::take_measured() {
+  const std::size_t wanted = tool_ == MeasuringTool::Angle ? 3 : 2;
+  if (tool_ == MeasuringTool::None || points_mm_.size() < wanted) return std::nullopt;
+  return std::exchange(points_mm_, {});
+}
+
+void SlicePanes::draw(const widgets::Ui& ui, const std::array<widgets::Rect, 3>& areas,
+                      SliceContent content) {
+  if (volume_ == nullptr) return;
+  content.volume = volume_.get();
+  content.cross_mm = cross_mm_;
+  content.window = window_;
+  content.measures = tool_ != MeasuringTool::None;
+  if (!points_mm_.empty()) content.lines.push_back({points_mm_, ""});
+  constexpr std::array<const char*, 3> kNames{"plan.axial_slice", "plan.coronal_slice",
+                                              "plan.sagittal_slice"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SliceEvent event = panes_[i].draw(ui, kNames[i], areas[i], content);
+    if (event.cross_mm) cross_mm_ = *event.cross_mm;
+    if (event.window) window_ = *event.window;
+    if (event.measured_mm) points_mm_.push_back(*event.measured_mm);
+    if (event.value) {
+      const std::string text = widgets::fixed(*event.value, 0) + (volume_->modality == "CT" ? " HU" : "");
+      ImFont* font = ui.theme.body;
+      const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
+      ImGui::GetWindowDrawList()->AddText(
+          font, font->FontSize,
+          {areas[i].x + areas[i].width - wide - ui.theme.px(10), areas[i].y + ui.theme.px(8)}, widgets::kText,
+          text.c_str());
+    }
+  }
+  const auto& w = window_;
+  ui.log.note_state("window", widgets::fixed(w.level, 0) + " / " + widgets::fixed(w.width, 0));
+  ui.log.note_state("cross", widgets::fixed(cross_mm_.x(), 1) + " " + widgets::fixed(cross_mm_.y(), 1) + " " +
+                                 widgets::fixed(cross_mm_.z(), 1));
+}
+
+}  // namespace arthronaut::plan

@@ -1,0 +1,80 @@
+// The three slices of a case, linked by one cross-hair, with one window of grey values and the measuring
+// tools. The images are loaded on a thread of their own when they are first wanted.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/plan/slice_pane.h"
+#include "planning/cases/case.h"
+
+namespace arthronaut::plan {
+
+enum class MeasuringTool { None, Distance, Angle };
+
+class SlicePanes {
+ public:
+  // wake: called from the loading thread when it ends.
+  explicit SlicePanes(std::function<void()> wake);
+  ~SlicePanes();  // stops loading
+  SlicePanes(const SlicePanes&) = delete;
+  SlicePanes& operator=(const SlicePanes&) = delete;
+
+  // Another case; its images are not read yet.
+  void open(const cases::Case& knee, const std::filesystem::path& folder);
+  [[nodiscard]] bool has_images() const { return !images_.empty(); }
+  // Begins to load, once.
+  void want();
+  void tick();  // takes over what was loaded
+  [[nodiscard]] bool is_loading() const { return loading_.valid(); }
+  [[nodiscard]] const images::Volume* volume() const { return volume_.get(); }
+  // Why there is nothing to show; empty when there is.
+  [[nodiscard]] std::string reason() const;
+
+  void set_window(const scene::GreyWindow& window) { window_ = window; }
+  void set_automatic_window() { window_ = automatic_; }
+  [[nodiscard]] const scene::GreyWindow& window() const { return window_; }
+  void set_cross(const Eigen::Vector3d& point_mm) { cross_mm_ = point_mm; }
+  [[nodiscard]] const Eigen::Vector3d& cross_mm() const { return cross_mm_; }
+  void fit();
+
+  void use(MeasuringTool tool);
+  [[nodiscard]] MeasuringTool tool() const { return tool_; }
+  // A measurement whose last point was just set; once.
+  [[nodiscard]] std::optional<std::vector<Eigen::Vector3d>> take_measured();
+
+  // Over `areas`, axial, coronal and sagittal. content: meshes, marks, lines and revision; the rest is filled
+  // in.
+  void draw(const widgets::Ui& ui, const std::array<widgets::Rect, 3>& areas, SliceContent content);
+
+ private:
+  struct Loaded {
+    std::unique_ptr<images::Volume> volume;
+    scene::GreyWindow automatic;
+    std::string failure;
+  };
+  void stop_loading();
+
+  std::function<void()> wake_;
+  std::vector<cases::CaseImage> images_;
+  std::filesystem::path folder_;
+  std::future<Loaded> loading_;
+  std::atomic<double> loaded_{0};
+  std::atomic<bool> stops_{false};
+  std::unique_ptr<images::Volume> volume_;
+  std::string failure_;
+  scene::GreyWindow window_, automatic_;
+  Eigen::Vector3d cross_mm_ = Eigen::Vector3d::Zero();
+  MeasuringTool tool_ = MeasuringTool::None;
+  std::vector<Eigen::Vector3d> points_mm_;  // of the measurement that is being made
+  std::array<SlicePane, 3> panes_;
+};
+
+}  // namespace arthronaut::plan

@@ -1,0 +1,319 @@
+#include "app/start/start_view.h"
+
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "planning/files/utc_clock.h"
+
+namespace arthronaut::start {
+
+namespace fs = std::filesystem;
+using State = ImportWork::State;
+
+namespace {
+
+fs::path home_folder() {
+  const char* home = std::getenv("HOME");
+  return home != nullptr && *home != '\0' ? fs::path(home) : fs::path("/");
+}
+
+}  // namespace
+
+StartView::StartView(std::function<void(const fs::path&)> open, std::function<void()> wake)
+    : open_(std::move(open)), work_(std::move(wake)) {
+  state_.recent = load_recent_cases(recent_cases_file());
+}
+
+void StartView::enter(bool can_close) {
+  wants_to_close_ = false;
+  state_.can_close = can_close;
+  state_.recent = load_recent_cases(recent_cases_file());
+  if (!work_.is_busy() && work_.state() != State::Asking) {
+    state_.page = Page::Cases;
+    state_.selected = 0;
+  }
+}
+
+void StartView::take(const fs::path& path) {
+  std::error_code error;
+  if (is_case_folder(path)) return open_(path);
+  if (path.filename() == "case.json" && fs::exists(path, error)) return open_(path.parent_path());
+  state_.page = Page::Import;
+  state_.selected = 0;
+  state_.ticked.clear();
+  state_.side.reset();
+  thumbnails_.clear();
+  work_.look_into(path);
+}
+
+bool StartView::has_running_work() const {
+  return work_.state() == State::Running || work_.state() == State::Saving || work_.state() == State::Asking;
+}
+
+void StartView::tick() {
+  const State before = work_.state();
+  work_.poll();
+  const State now = work_.state();
+  if (before == State::Looking && now == State::Choosing) {
+    state_.ticked.clear();
+    if (const auto best = work_.sources().best()) {
+      state_.selected = *best;
+      state_.ticked = {*best};
+      // Meshes of different bones are one knee's.
+      const auto& sources = work_.sources().sources;
+      if (!sources[*best].series)
+        for (std::size_t i = 0; i < sources.size(); ++i)
+          if (i != *best && !sources[i].series && sources[i].can_be_imported() &&
+              sources[i].bone != sources[*best].bone) {
+            state_.ticked.push_back(i);
+            break;
+          }
+    }
+  }
+  if (before == State::Running && now == State::Asking) {
+    state_.side = work_.result().side;
+    state_.name = "Knee " + files::utc_now_as("%Y-%m-%d");
+  }
+  if (before == State::Saving && now == State::Done) {
+    state_.page = Page::Cases;
+    open_(work_.folder());
+  }
+}
+
+std::size_t StartView::row_count() const {
+  switch (state_.page) {
+    case Page::Cases:
+      return state_.recent.size() + 1;  // and the built-in knee
+    case Page::Browse:
+      return state_.listing.entries.size();
+    case Page::Import:
+      return work_.state() == State::Choosing ? work_.sources().sources.size() : 0;
+  }
+  return 0;
+}
+
+void StartView::move_selection(int by) {
+  const auto count = static_cast<long>(row_count());
+  if (count == 0) return;
+  state_.selected =
+      static_cast<std::size_t>(std::clamp(static_cast<long>(state_.selected) + by, 0L, count - 1));
+  state_.scrolls_to_selected = true;
+}
+
+void StartView::browse(const fs::path& folder) {
+  const fs::path from = state_.listing.folder;
+  state_.page = Page::Browse;
+  state_.listing = list_folder(folder);
+  state_.selected = 0;
+  // Going up: where one came from is selected, so that Enter goes back down.
+  for (std::size_t i = 0; i < state_.listing.entries.size(); ++i)
+    if (state_.listing.entries[i].path == from) state_.selected = i;
+  state_.scrolls_to_selected = true;
+}
+
+void StartView::go_back() {
+  switch (state_.page) {
+    case Page::Cases:
+      wants_to_close_ = state_.can_close;
+      return;
+    case Page::Browse:
+      state_.page = Page::Cases;
+      break;
+    case Page::Import:
+      if (work_.state() == State::Running || work_.state() == State::Asking)
+        work_.cancel();
+      else if (work_.state() != State::Saving) {
+        work_.cancel();
+        state_.page = state_.listing.folder.empty() ? Page::Cases : Page::Browse;
+      }
+      break;
+  }
+  state_.selected = 0;
+}
+
+void StartView::accept_entry() {
+  if (state_.selected >= state_.listing.entries.size()) return;
+  const FolderEntry entry = state_.listing.entries[state_.selected];
+  if (entry.kind == FolderEntry::Kind::Folder)
+    browse(entry.path);
+  else
+    take(entry.path);
+}
+
+void StartView::accept() {
+  switch (state_.page) {
+    case Page::Cases:
+      return open_(state_.selected < state_.recent.size() ? state_.recent[state_.selected].folder
+                                                          : fs::path());
+    case Page::Browse:
+      return accept_entry();
+    case Page::Import:
+      if (work_.state() == State::Choosing) start_import();
+      if (work_.state() == State::Asking) save_import();
+  }
+}
+
+void StartView::start_import() {
+  if (state_.ticked.empty()) return;
+  work_.start({.sources = state_.ticked, .side = state_.side, .threshold = std::nullopt});
+}
+
+void StartView::save_import() {
+  if (!state_.side) return;
+  work_.set_side(*state_.side);
+  work_.save(new_case_folder(cases_folder(), state_.name), state_.name);
+}
+
+void StartView::add_actions(widgets::Actions& actions) {
+  add_page_actions(actions);
+  add_import_actions(actions);
+}
+
+void StartView::add_page_actions(widgets::Actions& actions) {
+  const auto here = [this](Page page) { return [this, page] { return state_.page == page; }; };
+  actions.add({"start.built_in",
+               "Built-in knee",
+               "A knee to learn on; what is changed in it stays",
+               GLFW_KEY_B,
+               0,
+               false,
+               here(Page::Cases),
+               {},
+               [this] { open_({}); }});
+  actions.add({"start.browse",
+               "Open or import...",
+               "Looks for a case, for images or for meshes in the folders of this machine",
+               GLFW_KEY_O,
+               0,
+               false,
+               here(Page::Cases),
+               {},
+               [this] { browse(state_.listing.folder.empty() ? home_folder() : state_.listing.folder); }});
+  actions.add({"start.up",
+               "Folder above",
+               "Goes to the folder that this one is in",
+               GLFW_KEY_BACKSPACE,
+               0,
+               false,
+               here(Page::Browse),
+               {},
+               [this] { browse(state_.listing.folder.parent_path()); }});
+  actions.add({"start.home",
+               "Home",
+               "Goes to the user's own folder",
+               GLFW_KEY_HOME,
+               0,
+               false,
+               here(Page::Browse),
+               {},
+               [this] { browse(home_folder()); }});
+  actions.add({"start.import_folder",
+               "Import this folder",
+               "Looks for image series in this folder and all that are in it",
+               GLFW_KEY_I,
+               0,
+               false,
+               here(Page::Browse),
+               {},
+               [this] { take(state_.listing.folder); }});
+  struct Step {
+    const char *id, *label;
+    int key, by;
+  };
+  for (const Step& step :
+       {Step{"start.previous", "Up", GLFW_KEY_UP, -1}, Step{"start.next", "Down", GLFW_KEY_DOWN, 1},
+        Step{"start.page_up", "Ten up", GLFW_KEY_PAGE_UP, -10},
+        Step{"start.page_down", "Ten down", GLFW_KEY_PAGE_DOWN, 10}})
+    actions.add({step.id,
+                 step.label,
+                 "Goes through the list",
+                 step.key,
+                 0,
+                 true,
+                 [this] { return row_count() > 0; },
+                 {},
+                 [this, by = step.by] { move_selection(by); }});
+  actions.add({"start.accept",
+               "Open",
+               "Opens what is selected",
+               GLFW_KEY_ENTER,
+               0,
+               false,
+               [this] { return state_.page != Page::Import && row_count() > 0; },
+               {},
+               [this] { accept(); }});
+  actions.add(
+      {"start.back",
+       "Back",
+       "Goes back; an import that runs is stopped, and nothing of it stays",
+       GLFW_KEY_ESCAPE,
+       0,
+       false,
+       [this] { return (state_.page != Page::Cases || state_.can_close) && work_.state() != State::Saving; },
+       {},
+       [this] { go_back(); },
+       {"stop the import", [this] { return has_running_work(); }}});
+}
+
+void StartView::add_import_actions(widgets::Actions& actions) {
+  const auto chooses = [this] { return state_.page == Page::Import && work_.state() == State::Choosing; };
+  const auto asks = [this] { return state_.page == Page::Import && work_.state() == State::Asking; };
+  actions.add({"start.tick",
+               "Take it",
+               "Takes the selected series, or leaves it; meshes of different bones go together",
+               GLFW_KEY_SPACE,
+               0,
+               false,
+               [this, chooses] {
+                 return chooses() && state_.selected < work_.sources().sources.size() &&
+                        work_.sources().sources[state_.selected].can_be_imported();
+               },
+               {},
+               [this] {
+                 const auto& sources = work_.sources().sources;
+                 const auto at = std::find(state_.ticked.begin(), state_.ticked.end(), state_.selected);
+                 if (at != state_.ticked.end()) {
+                   state_.ticked.erase(at);
+                   return;
+                 }
+                 // A volume stands alone; a mesh beside meshes of other bones.
+                 const ImportSource& taken = sources[state_.selected];
+                 std::erase_if(state_.ticked, [&](std::size_t i) {
+                   return taken.series || sources[i].series || sources[i].bone == taken.bone;
+                 });
+                 state_.ticked.push_back(state_.selected);
+               }});
+  actions.add({"start.import",
+               "Make the bones",
+               "Cuts femur and tibia out of what was taken; in a process of its own",
+               GLFW_KEY_ENTER,
+               0,
+               false,
+               [this, chooses] { return chooses() && !state_.ticked.empty(); },
+               {},
+               [this] { start_import(); }});
+  actions.add({"start.save",
+               "Make the case",
+               "Writes the case and opens it",
+               GLFW_KEY_ENTER,
+               0,
+               false,
+               [this, asks] { return asks() && state_.side.has_value(); },
+               {},
+               [this] { save_import(); }});
+  const auto can_say_side = [chooses, asks] { return chooses() || asks(); };
+  actions.add({"start.right", "Right knee", "The images are of a right knee", GLFW_KEY_R, 0, false,
+               can_say_side, [this] { return state_.side == bones::Side::Right; },
+               [this] { state_.side = bones::Side::Right; }});
+  actions.add({"start.left", "Left knee", "The images are of a left knee", GLFW_KEY_L, 0, false, can_say_side,
+               [this] { return state_.side == bones::Side::Left; },
+               [this] { state_.side = bones::Side::Left; }});
+  actions.add({"start.side_unknown", "As the images tell",
+               "The side is read from names and images, and asked for where they do not tell", GLFW_KEY_U, 0,
+               false, chooses, [this] { return !state_.side; }, [this] { state_.side.reset(); }});
+}
+
+}  // namespace arthronaut::start

@@ -1,0 +1,79 @@
+// Before a case is open, and whenever another is wanted: recent cases, the built-in knee, a browser of
+// folders, and the import from what the hospital gave. Everything by mouse and by key; a folder that is
+// dropped on the window comes here.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/start/folder_listing.h"
+#include "app/start/import_work.h"
+#include "app/start/recent_cases.h"
+#include "app/widgets/controls.h"
+#include "app/widgets/grey_texture.h"
+
+namespace arthronaut::start {
+
+class StartView {
+ public:
+  // open: opens a case; an empty path is the built-in knee.
+  StartView(std::function<void(const std::filesystem::path&)> open, std::function<void()> wake);
+
+  void add_actions(widgets::Actions& actions);  // all start with "start."
+  // Comes to the front, on the list of cases. can_close: a case is open that one can go back to.
+  void enter(bool can_close);
+  // A folder or file from outside: a case is opened, anything else is looked into for the import.
+  void take(const std::filesystem::path& path);
+  void tick();
+  void draw(const widgets::Ui& ui, const widgets::Rect& area);
+
+  [[nodiscard]] bool is_busy() const { return work_.is_busy(); }
+  // An import runs that the end of the program would cut off.
+  [[nodiscard]] bool has_running_work() const;
+  [[nodiscard]] bool wants_to_close() const { return wants_to_close_; }
+
+ private:
+  enum class Page { Cases, Browse, Import };
+  void add_page_actions(widgets::Actions& actions);
+  void add_import_actions(widgets::Actions& actions);
+  void browse(const std::filesystem::path& folder);
+  void move_selection(int by);
+  void go_back();
+  void accept();  // Enter
+  void accept_entry();
+  void start_import();
+  void save_import();
+  [[nodiscard]] std::size_t row_count() const;
+
+  void draw_cases(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_browser(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_import(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_sources(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_result(const widgets::Ui& ui, const widgets::Rect& area);
+  // A row of a list; true when it was chosen by a click twice.
+  bool draw_row(const widgets::Ui& ui, const std::string& name, std::size_t row, float height);
+
+  struct ViewState {
+    Page page = Page::Cases;
+    std::size_t selected = 0;
+    bool scrolls_to_selected = false;
+    bool can_close = false;
+    FolderListing listing;
+    std::vector<RecentCase> recent;
+    std::vector<std::size_t> ticked;  // of the sources
+    std::optional<bones::Side> side;
+    std::string name;  // of the new case
+  };
+
+  std::function<void(const std::filesystem::path&)> open_;
+  ImportWork work_;
+  ViewState state_;
+  std::map<std::size_t, std::unique_ptr<widgets::GreyTexture>> thumbnails_;  // by source
+  bool wants_to_close_ = false;
+};
+
+}  // namespace arthronaut::start
