@@ -30,6 +30,7 @@ OpenedCase open_folder(const std::filesystem::path& folder) {
   if (folder.empty() && opened.lock.is_held() && !std::filesystem::exists(opened.folder / "case.json"))
     cases::save_case(opened.folder, phantom::case_of(phantom::make_phantom_knee(), "Phantom knee"));
   opened.model = std::make_unique<PlanModel>(cases::load_case(opened.folder));
+  opened.model->set_measurements(cases::load_measurements(opened.folder));
   opened.identity = cases::load_identity(opened.folder);
   return opened;
 }

@@ -34,7 +34,10 @@ void PlanHistory::open(PlanModel* model, const std::filesystem::path& case_folde
   *this = {};
   model_ = model;
   case_folder_ = case_folder;
-  if (model != nullptr) version_ = model->knee().plan_version;
+  if (model != nullptr) {
+    version_ = model->knee().plan_version;
+    saved_measurements_ = model->measurements();
+  }
   is_read_only_ = !read_only.empty();
   if (is_read_only_) {
     status_.save = PlanStatus::Save::ReadOnly;
@@ -47,12 +50,12 @@ void PlanHistory::apply(const PlanEdit& edit, double now_s) {
   if (is_moving_ && (!edit.continues || edit.what != steps_.back().what)) settle_now();
   if (!is_moving_) {
     steps_.resize(position_);  // what was undone can't be redone after a new step
-    steps_.push_back({edit.what, model_->knee().plan, {}});
+    steps_.push_back({edit.what, state(), {}});
     ++position_;
     is_moving_ = true;
   }
   model_->set_tunnel(edit.bone, edit.tunnel);
-  steps_.back().after = model_->knee().plan;
+  steps_.back().after = state();
   moved_at_s_ = now_s;
   if (!is_in_conflict()) {
     status_.save = PlanStatus::Save::NotYet;
@@ -61,10 +64,30 @@ void PlanHistory::apply(const PlanEdit& edit, double now_s) {
   describe();
 }
 
+void PlanHistory::apply_measurements(const std::vector<cases::Measurement>& measurements,
+                                     const std::string& what) {
+  if (model_ == nullptr || is_read_only_ || measurements == model_->measurements()) return;
+  settle_now();
+  steps_.resize(position_);
+  steps_.push_back({what, state(), {}});
+  ++position_;
+  model_->set_measurements(measurements);
+  steps_.back().after = state();
+  save();
+  describe();
+}
+
+PlanHistory::State PlanHistory::state() const { return {model_->knee().plan, model_->measurements()}; }
+
+void PlanHistory::put(const State& state) {
+  model_->set_plan(state.plan);
+  model_->set_measurements(state.measurements);
+}
+
 void PlanHistory::undo() {
   settle_now();
   if (!can_undo()) return;
-  model_->set_plan(steps_[--position_].before);
+  put(steps_[--position_].before);
   save();
   describe();
 }
@@ -72,7 +95,7 @@ void PlanHistory::undo() {
 void PlanHistory::redo() {
   settle_now();
   if (!can_redo()) return;
-  model_->set_plan(steps_[position_++].after);
+  put(steps_[position_++].after);
   save();
   describe();
 }
@@ -94,7 +117,7 @@ void PlanHistory::go_to(std::size_t position) {
   settle_now();
   position = std::min(position, steps_.size());
   if (position == position_ || model_ == nullptr) return;
-  model_->set_plan(position < position_ ? steps_[position].before : steps_[position - 1].after);
+  put(position < position_ ? steps_[position].before : steps_[position - 1].after);
   position_ = position;
   save();
   describe();
@@ -121,9 +144,10 @@ void PlanHistory::take_theirs() {
   try {
     const cases::Case there = cases::load_case(case_folder_);
     steps_.resize(position_);
-    steps_.push_back({"Take the plan of the other program", model_->knee().plan, there.plan});
+    steps_.push_back({"Take the plan of the other program", state(), {}});
     ++position_;
     model_->set_plan(there.plan);
+    steps_.back().after = state();
     version_ = there.plan_version;
     status_.save = PlanStatus::Save::Saved;
     status_.text = "as the other program saved it";
@@ -148,6 +172,10 @@ void PlanHistory::save() {
     status_.text = std::string("not saved: ") + error.what();
   };
   try {  // a disk that is full is a state of the screen, not the end of the frame
+    if (model_->measurements() != saved_measurements_) {
+      cases::save_measurements(case_folder_, model_->measurements());
+      saved_measurements_ = model_->measurements();
+    }
     version_ = cases::save_plan_over(case_folder_, model_->knee().plan, version_);
     status_.save = PlanStatus::Save::Saved;
     status_.text = "saved at " + clock_text();

@@ -28,6 +28,8 @@ class PlanHistory {
 
   // An edit that changes nothing is no step.
   void apply(const PlanEdit& edit, double now_s);
+  // What was measured becomes this list, as one step, saved at once.
+  void apply_measurements(const std::vector<cases::Measurement>& measurements, const std::string& what);
   // Without effect when there is nothing to undo or redo.
   void undo();
   void redo();
@@ -58,16 +60,23 @@ class PlanHistory {
   [[nodiscard]] const PlanStatus& status() const { return status_; }
 
  private:
+  struct State {
+    cases::Plan plan;
+    std::vector<cases::Measurement> measurements;
+  };
   struct Step {
     std::string what;
-    cases::Plan before, after;
+    State before, after;
   };
+  [[nodiscard]] State state() const;
+  void put(const State& state);
   void save();
   void set_conflict();
   void describe();
 
   PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
+  std::vector<cases::Measurement> saved_measurements_;
   std::string version_;  // of the plan on disk that the model's was made from
   bool is_read_only_ = false;
   std::vector<Step> steps_;

@@ -133,6 +133,11 @@ void PlanModel::set_plan(const cases::Plan& plan) {
   ++revision_;
 }
 
+void PlanModel::set_measurements(std::vector<cases::Measurement> measurements) {
+  measurements_ = std::move(measurements);
+  ++revision_;
+}
+
 void PlanModel::measure(bones::BoneKind kind) {
   BoneModel& bone = bones_.at(kind);
   const auto planned = tunnel(kind);

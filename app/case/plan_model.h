@@ -1,6 +1,6 @@
 // The open case as the plan mode sees it: the bones made ready for drawing and for exact queries, the tunnels
 // and what was measured of them. The one place where the plan lives while the program runs; it changes
-// through set_tunnel and set_plan alone.
+// through set_tunnel and set_plan alone; what was measured through set_measurements.
 //
 // Each tunnel names the mesh that it was planned on (cases::PlanFit). One of an older file, which names none,
 // is taken to be of the mesh that it is opened with.
@@ -15,6 +15,7 @@
 
 #include "app/scene/scene_content.h"
 #include "planning/cases/case.h"
+#include "planning/cases/measurements.h"
 #include "planning/geometry/surface.h"
 #include "planning/landmarks/anatomical_axes.h"
 #include "planning/tunnels/plan_checks.h"
@@ -55,6 +56,10 @@ class PlanModel {
   [[nodiscard]] const landmarks::AnatomicalAxes& axes(bones::BoneKind kind) const {
     return bones_.at(kind).axes;
   }
+  // The grids and what else is known of the bone beside the tunnel. Precondition: has_bone(kind).
+  [[nodiscard]] const tunnels::PlanSurroundings& surroundings(bones::BoneKind kind) const {
+    return bones_.at(kind).surroundings;
+  }
   // Where the femur is cut open to see the lateral wall of its notch; nullopt without a femur.
   [[nodiscard]] std::optional<scene::CutPlane> notch_cut() const;
 
@@ -63,6 +68,9 @@ class PlanModel {
   void set_tunnel(bones::BoneKind kind, const std::optional<tunnels::Tunnel>& tunnel);
   // As it is, with the meshes that it names: for undo.
   void set_plan(const cases::Plan& plan);
+  // Distances and angles that were measured in this case.
+  [[nodiscard]] const std::vector<cases::Measurement>& measurements() const { return measurements_; }
+  void set_measurements(std::vector<cases::Measurement> measurements);
   [[nodiscard]] std::uint64_t revision() const { return revision_; }  // counts the changes
 
  private:
@@ -79,6 +87,7 @@ class PlanModel {
 
   cases::Case knee_;
   std::map<bones::BoneKind, BoneModel> bones_;
+  std::vector<cases::Measurement> measurements_;
   std::uint64_t revision_ = 1;
 };
 

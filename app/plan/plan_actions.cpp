@@ -20,6 +20,8 @@ void PlanView::add_actions(widgets::Actions& actions) {
   add_view_actions(actions);
   add_placing_actions(actions);
   add_tunnel_actions(actions);
+  add_slice_actions(actions);
+  add_measuring_actions(actions);
   add_history_actions(actions);
   actions.add({"plan.bone",
                "Other bone",
@@ -35,6 +37,7 @@ void PlanView::add_actions(widgets::Actions& actions) {
                [this] {
                  state_.bone = state_.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
                  if (bones_.only()) look_from(scene::ViewDirection::Anterior);
+                 state_.shown_revision = 0;
                  state_.hint.clear();
                }});
 }
@@ -167,9 +170,104 @@ void PlanView::add_view_actions(widgets::Actions& actions) {
                  [this, side] { return model_ != nullptr && (!side.of || model_->has_bone(*side.of)); },
                  [this, side] { return model_ != nullptr && bones_.looked_from() == side.view; },
                  [this, side] { look_from(side.view); }});
+  actions.add({"plan.grid", "Grid",
+               "The published grid and where studies found the ligament: Bernard and Hertel on the femur, "
+               "Amis and Jakob on "
+               "the tibia",
+               GLFW_KEY_G, 0, false, [this] { return model_ != nullptr; },
+               [this] { return state_.shows_grid; },
+               [this] {
+                 state_.shows_grid = !state_.shows_grid;
+                 state_.shown_revision = 0;
+               }});
+  actions.add(
+      {"plan.xray", "Radiograph", "The true lateral view of the femur, with the grid on it", GLFW_KEY_X, 0,
+       false, [this] { return model_ != nullptr && model_->has_bone(BoneKind::Femur); },
+       [this] { return state_.shows_lateral; }, [this] { state_.shows_lateral = !state_.shows_lateral; }});
   actions.add({"plan.see_through", "See through", "The bone turns translucent", GLFW_KEY_T, 0, false,
                [this] { return model_ != nullptr; }, [this] { return bones_.is_see_through(); },
                [this] { bones_.see_through(!bones_.is_see_through()); }});
+}
+
+void PlanView::add_slice_actions(widgets::Actions& actions) {
+  const auto has_slices = [this] { return state_.shows_slices && slices_.volume() != nullptr; };
+  actions.add({"plan.slices", "Slices",
+               "Three slices of the images beside the bones, linked by the cross-hair", GLFW_KEY_S, 0, false,
+               [this] { return model_ != nullptr; }, [this] { return state_.shows_slices; },
+               [this] {
+                 state_.shows_slices = !state_.shows_slices;
+                 slices_.use(MeasuringTool::None);
+               }});
+  actions.add({"plan.window",
+               "Window",
+               "Bone, soft tissue, as the values are; or drag with the right button",
+               GLFW_KEY_W,
+               0,
+               false,
+               has_slices,
+               {},
+               [this] {
+                 if (slices_.window() == scene::kBoneWindow)
+                   slices_.set_window(scene::kSoftTissueWindow);
+                 else if (slices_.window() == scene::kSoftTissueWindow)
+                   slices_.set_automatic_window();
+                 else
+                   slices_.set_window(scene::kBoneWindow);
+               }});
+  actions.add(
+      {"plan.fit", "Whole", "Shows the whole slices again", GLFW_KEY_F, 0, false, has_slices, {}, [this] {
+         slices_.fit();
+       }});
+  actions.add({"plan.cross_to_entry",
+               "To entry",
+               "The cross-hair goes to the tunnel's entry",
+               GLFW_KEY_E,
+               0,
+               false,
+               [this, has_slices] { return has_slices() && model_->tunnel(state_.bone).has_value(); },
+               {},
+               [this] { slices_.set_cross(model_->tunnel(state_.bone)->entry_mm); }});
+}
+
+void PlanView::add_measuring_actions(widgets::Actions& actions) {
+  const auto has_slices = [this] { return state_.shows_slices && slices_.volume() != nullptr; };
+  const auto switch_to = [this](MeasuringTool tool) {
+    slices_.use(slices_.tool() == tool ? MeasuringTool::None : tool);
+  };
+  actions.add({"plan.distance", "Distance", "Click on two points of the slices", GLFW_KEY_D, 0, false,
+               has_slices, [this] { return slices_.tool() == MeasuringTool::Distance; },
+               [switch_to] { switch_to(MeasuringTool::Distance); }});
+  actions.add({"plan.angle", "Angle", "Click on three points of the slices; the angle is at the second",
+               GLFW_KEY_A, 0, false, has_slices, [this] { return slices_.tool() == MeasuringTool::Angle; },
+               [switch_to] { switch_to(MeasuringTool::Angle); }});
+  actions.add({"plan.unmeasure",
+               "Remove last",
+               "Removes the newest distance or angle; undo brings it back",
+               GLFW_KEY_BACKSPACE,
+               0,
+               false,
+               [this] { return model_ != nullptr && state_.shows_slices && !model_->measurements().empty(); },
+               {},
+               [this] {
+                 std::vector<cases::Measurement> measurements = model_->measurements();
+                 measurements.pop_back();
+                 history_.apply_measurements(measurements, "Remove a measurement");
+               }});
+  actions.add({"plan.stop_measuring",
+               "Stop measuring",
+               "The mouse moves the cross-hair again",
+               GLFW_KEY_ESCAPE,
+               0,
+               false,
+               [this] { return slices_.tool() != MeasuringTool::None; },
+               {},
+               [this] { slices_.use(MeasuringTool::None); }});
+  const auto page = [&](const char* id, const char* label, const char* tooltip, int key, PanelPage shown) {
+    actions.add({id, label, tooltip, key, 0, false, [this] { return model_ != nullptr; },
+                 [this, shown] { return state_.page == shown; }, [this, shown] { state_.page = shown; }});
+  };
+  page("plan.checks_page", "Checks", "Numbers and checks of the tunnel", GLFW_KEY_C, PanelPage::Checks);
+  page("plan.steps_page", "Steps", "Every change, to go back to any of them", GLFW_KEY_H, PanelPage::Steps);
 }
 
 }  // namespace arthronaut::plan

@@ -58,46 +58,58 @@ void button_pair(const widgets::Ui& ui, const char* left, const char* right) {
   widgets::action_button(ui, right, width);
 }
 
-void draw_history(const widgets::Ui& ui, const open_case::PlanStatus& status) {
+void draw_saved(const widgets::Ui& ui, const open_case::PlanStatus& status) {
   button_pair(ui, "plan.undo", "plan.redo");
-  widgets::text_in(ui.theme.body, widgets::kQuietText,
-                   status.undo_what.empty() ? "Nothing to undo" : "Last: " + status.undo_what);
   widgets::status_row(ui, severity_of(status.save), "Plan", status.text);
 }
 
-}  // namespace
+// What to do next, and the button that begins it.
+void draw_next(const widgets::Ui& ui, const NextStep& next) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x, edge = ui.theme.px(12);
+  ImFont* font = ui.theme.strong;
+  const float words = font->CalcTextSizeA(font->FontSize, 1e9F, width - 2 * edge, next.text.c_str()).y;
+  const float height = ui.theme.body->FontSize + words + 2 * edge;
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddRectFilled(at, {at.x + width, at.y + height}, IM_COL32(24, 44, 58, 255), ui.theme.px(6));
+  draw.AddRectFilled(at, {at.x + ui.theme.px(5), at.y + height}, widgets::kAccent, ui.theme.px(3));
+  draw.AddText(ui.theme.body, ui.theme.body->FontSize, {at.x + edge, at.y + edge * 0.7F}, widgets::kAccent,
+               "Next");
+  draw.AddText(font, font->FontSize, {at.x + edge, at.y + edge * 0.7F + ui.theme.body->FontSize},
+               widgets::kText, next.text.c_str(), nullptr, width - 2 * edge);
+  ImGui::PushID("next");
+  if (ImGui::InvisibleButton("do", {width, height})) ui.actions.run(next.action);
+  ImGui::PopID();
+  ui.log.note("plan.next", at, {at.x + width, at.y + height});
+}
 
-void draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const open_case::PlanModel& model,
-                     bones::BoneKind bone, const open_case::PlanStatus& status) {
-  widgets::begin_panel(ui, "plan.panel", area);
-  widgets::text_in(ui.theme.title, widgets::kText,
-                   bone == bones::BoneKind::Femur ? "Femoral tunnel" : "Tibial tunnel");
-  widgets::text_in(ui.theme.body, widgets::kQuietText,
-                   std::string(bones::to_text(model.knee().side)) + " knee \u2013 " + model.knee().name);
-  ImGui::Separator();
-  const auto tunnel = model.tunnel(bone);
-  if (tunnel) {
-    const tunnels::TunnelGeometry& geometry = model.measured(bone);
-    draw_numbers(ui, *tunnel, geometry);
-    if (geometry.enters_bone)
-      widgets::text_in(
-          ui.theme.body, widgets::kText,
-          "Leaves the bone " +
-              anatomical_text(geometry.exit_mm - geometry.entry_on_surface_mm, model.axes(bone)) +
-              " of the entry");
-    ImGui::Dummy({0, ui.theme.px(4)});
-    for (const tunnels::PlanCheck& check : model.checks(bone)) {
-      ImGui::BeginGroup();
-      widgets::status_row(ui, severity_of(check.verdict), check.name, check.text);
-      ImGui::EndGroup();
-      if (ImGui::IsItemHovered() && !check.source.empty()) ImGui::SetTooltip("%s", check.source.c_str());
-    }
-    widgets::text_in(ui.theme.body, widgets::kQuietText,
-                     "Customary values, not limits of safety. The surgeon decides.");
-  } else {
+void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
+  const auto tunnel = panel.model.tunnel(panel.bone);
+  if (!tunnel) {
     widgets::text_in(ui.theme.body, widgets::kText,
                      "No tunnel yet. Press P and click on the bone where it is to begin.");
+    return;
   }
+  const tunnels::TunnelGeometry& geometry = panel.model.measured(panel.bone);
+  draw_numbers(ui, *tunnel, geometry);
+  if (geometry.enters_bone)
+    widgets::text_in(
+        ui.theme.body, widgets::kText,
+        "Leaves the bone " +
+            anatomical_text(geometry.exit_mm - geometry.entry_on_surface_mm, panel.model.axes(panel.bone)) +
+            " of the entry");
+  ImGui::Dummy({0, ui.theme.px(4)});
+  for (const tunnels::PlanCheck& check : panel.model.checks(panel.bone)) {
+    ImGui::BeginGroup();
+    widgets::status_row(ui, severity_of(check.verdict), check.name, check.text);
+    ImGui::EndGroup();
+    if (ImGui::IsItemHovered() && !check.source.empty()) ImGui::SetTooltip("%s", check.source.c_str());
+  }
+  widgets::text_in(ui.theme.body, widgets::kQuietText,
+                   "Customary values, not limits of safety. The surgeon decides.");
+}
+
+void draw_tools(const widgets::Ui& ui) {
   ImGui::Separator();
   button_pair(ui, "plan.place", "plan.bone");
   button_pair(ui, "plan.narrower", "plan.wider");
@@ -105,9 +117,63 @@ void draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const ope
   widgets::text_in(
       ui.theme.body, widgets::kQuietText,
       "Arrow keys aim by 1\u00B0, with Shift they slide the entry by 0.5 mm. Handles can be dragged.");
-  ImGui::Separator();
-  draw_history(ui, status);
+}
+
+// Every step, the newest last; a click goes back, or forward, to it.
+std::optional<std::size_t> draw_steps(const widgets::Ui& ui, const open_case::PlanHistory& history) {
+  std::optional<std::size_t> clicked;
+  widgets::text_in(ui.theme.body, widgets::kQuietText, "Click on a step to go back or forward to it.");
+  ImGui::BeginChild("steps", {0, ImGui::GetContentRegionAvail().y - ui.theme.px(110)});
+  const float height = ui.theme.px(36);
+  for (std::size_t i = 0; i <= history.step_count(); ++i) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::InvisibleButton("step", {width, height})) clicked = i;
+    const bool is_here = i == history.position(), is_undone = i > history.position();
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    if (is_here || ImGui::IsItemHovered())
+      draw.AddRectFilled(at, {at.x + width, at.y + height},
+                         is_here ? IM_COL32(28, 74, 104, 255) : IM_COL32(38, 47, 57, 255), ui.theme.px(6));
+    if (is_here) ImGui::SetScrollHereY(1);
+    ImGui::PopID();
+    const std::string text = i == 0 ? "As it was opened" : history.step_name(i - 1);
+    ImFont* font = ui.theme.body;
+    draw.AddText(font, font->FontSize, {at.x + ui.theme.px(10), at.y + (height - font->FontSize) / 2},
+                 is_undone ? widgets::kPanelEdge
+                 : is_here ? widgets::kText
+                           : widgets::kQuietText,
+                 (text + (is_undone ? "  (undone)" : "")).c_str());
+    if (ImGui::IsRectVisible(at, {at.x + width, at.y + height}))
+      ui.log.note("plan.step." + std::to_string(i), at, {at.x + width, at.y + height});
+  }
+  ImGui::EndChild();
+  return clicked;
+}
+
+}  // namespace
+
+std::optional<std::size_t> draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area,
+                                           const PlanPanel& panel) {
+  std::optional<std::size_t> clicked;
+  widgets::begin_panel(ui, "plan.panel", area);
+  draw_next(ui, panel.next);
+  widgets::text_in(ui.theme.title, widgets::kText,
+                   panel.bone == bones::BoneKind::Femur ? "Femoral tunnel" : "Tibial tunnel");
+  button_pair(ui, "plan.checks_page", "plan.steps_page");
+  switch (panel.page) {
+    case PanelPage::Checks:
+      draw_checks(ui, panel);
+      draw_tools(ui);
+      ImGui::Separator();
+      break;
+    case PanelPage::Steps:
+      clicked = draw_steps(ui, panel.history);
+      break;
+  }
+  draw_saved(ui, panel.history.status());
   widgets::end_panel();
+  return clicked;
 }
 
 }  // namespace arthronaut::plan

@@ -2,7 +2,9 @@
 
 #include <GLFW/glfw3.h>
 
+#include "app/plan/grid_lines.h"
 #include "app/plan/tunnel_moves.h"
+#include "app/scene/solid_mesh.h"
 
 namespace arthronaut::plan {
 
@@ -32,7 +34,8 @@ const char* name_of(open_case::PlanStatus::Save save) {
 
 }  // namespace
 
-PlanView::PlanView(std::function<void()> make_current) : bones_(std::move(make_current)) {}
+PlanView::PlanView(std::function<void()> make_current, const std::function<void()>& wake)
+    : bones_(std::move(make_current)), slices_(wake) {}
 
 mode::ModeTitle PlanView::title() const {
   return {"plan", "mode.plan", "Plan", "Place the tunnels", GLFW_KEY_F1};
@@ -42,17 +45,23 @@ void PlanView::case_opened(const mode::OpenCase& opened) {
   model_ = opened.model;
   history_.open(opened.model, opened.folder, opened.read_only);
   state_ = {};
+  tunnel_meshes_.clear();
   if (!model_->has_bone(BoneKind::Femur)) state_.bone = BoneKind::Tibia;
   bones_.open(model_);
+  slices_.open(model_->knee(), opened.folder);
+  lateral_.open(model_);
+  slices_.set_cross(model_->joint_bounds(std::nullopt).center_mm());
 }
 
 void PlanView::tick(double now_s) {
   history_.settle(now_s);
   history_.look_at_disk(now_s);
+  slices_.tick();
 }
 
 void PlanView::look_from(scene::ViewDirection view) {
   bones_.look_from(view);
+  state_.shows_lateral = false;
   if (bones_.only()) state_.bone = *bones_.only();
   state_.shown_revision = 0;
 }
@@ -67,16 +76,36 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   const open_case::PlanStatus& status = history_.status();
   widgets::Rect rest = area;
   const widgets::Rect panel = rest.cut_right(ui.theme.px(470), ui.theme.px(12));
-  widgets::Rect views = rest.cut_top(ui.theme.px(44), ui.theme.px(10));
-  ImGui::SetCursorScreenPos(views.min());
-  for (const char* id : {"plan.anterior", "plan.posterior", "plan.medial", "plan.lateral", "plan.distal",
-                         "plan.notch", "plan.plateau", "plan.see_through"}) {
-    widgets::action_button(ui, id);
-    ImGui::SameLine();
-  }
+  const auto row = [&](std::initializer_list<const char*> ids) {
+    for (const char* id : ids) {
+      widgets::action_button(ui, id);
+      ImGui::SameLine(0, ui.theme.px(8));
+    }
+  };
+  ImGui::SetCursorScreenPos(rest.cut_top(ui.theme.px(44), ui.theme.px(8)).min());
+  row({"plan.anterior", "plan.posterior", "plan.medial", "plan.lateral", "plan.distal", "plan.notch",
+       "plan.plateau", "plan.see_through"});
+  ImGui::SetCursorScreenPos(rest.cut_top(ui.theme.px(44), ui.theme.px(10)).min());
+  row({"plan.grid", "plan.xray", "plan.slices"});
+  if (state_.shows_slices)
+    row({"plan.window", "plan.fit", "plan.cross_to_entry", "plan.distance", "plan.angle", "plan.unmeasure"});
   if (history_.is_in_conflict()) draw_conflict(ui, rest.cut_top(ui.theme.px(64), ui.theme.px(10)));
-  draw_bones(ui, rest);
-  draw_plan_panel(ui, panel, *model_, state_.bone, status);
+  if (state_.shows_slices) {
+    const float gap = ui.theme.px(6);
+    widgets::Rect left = rest.cut_left((rest.width - gap) / 2, gap);
+    const widgets::Rect bones = left.cut_top((left.height - gap) / 2, gap);
+    const widgets::Rect axial = rest.cut_top((rest.height - gap) / 2, gap);
+    draw_bones(ui, bones);
+    draw_slices(ui, {axial, left, rest});
+  } else {
+    draw_bones(ui, rest);
+  }
+  const StepState step{state_.bone, state_.places_entry, status.save == open_case::PlanStatus::Save::ReadOnly,
+                       history_.is_in_conflict()};
+  const NextStep next = next_step(*model_, step);
+  if (const auto to = draw_plan_panel(ui, panel, {*model_, history_, state_.bone, state_.page, next}))
+    history_.go_to(*to);
+  ui.log.note_state("plan_next", next.text);
   ui.log.note_state("plan", name_of(status.save));
   ui.log.note_state("undo", status.undo_what);
   ui.log.note_state("redo", status.redo_what);
@@ -85,6 +114,56 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("view_direction", scene::to_text(bones_.looked_from()));
   const auto tunnel = model_->tunnel(state_.bone);
   ui.log.note_state("diameter_mm", tunnel ? widgets::fixed(tunnel->diameter_mm, 2) : "");
+}
+
+void PlanView::draw_slices(const widgets::Ui& ui, const std::array<widgets::Rect, 3>& areas) {
+  slices_.want();
+  ui.log.note_state("slices", slices_.volume() != nullptr ? "shown"
+                              : slices_.is_loading()      ? "loading"
+                                                          : "none");
+  ui.log.note_state("measured",
+                    model_->measurements().empty() ? "" : model_->measurements().back().in_words());
+  if (slices_.volume() == nullptr) {
+    const widgets::Rect all{areas[1].x, areas[1].y, areas[2].x + areas[2].width - areas[1].x,
+                            areas[1].height};
+    widgets::text_centered(ui, all, ui.theme.title, widgets::kQuietText, slices_.reason());
+    return;
+  }
+  SliceContent content;
+  content.revision = model_->revision();
+  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
+    if (!model_->has_bone(kind)) continue;
+    content.meshes.push_back(
+        {&model_->knee().bones.at(kind).mesh, widgets::color_of(scene::kBoneColor), 1.5F});
+    const auto tunnel = model_->tunnel(kind);
+    if (!tunnel) continue;
+    content.meshes.push_back({&tunnel_mesh(kind), widgets::color_of(scene::kPlanColor), 2.5F});
+    content.marks.push_back({"Entry", tunnel->entry_mm, widgets::color_of(scene::kPlanColor)});
+  }
+  for (const cases::Measurement& measurement : model_->measurements())
+    content.lines.push_back({measurement.points_mm, measurement.in_words()});
+  slices_.draw(ui, areas, std::move(content));
+  const auto points = slices_.take_measured();
+  if (!points) return;
+  std::vector<cases::Measurement> measurements = model_->measurements();
+  measurements.push_back({*points});
+  history_.apply_measurements(measurements, points->size() == 3 ? "Measure an angle" : "Measure a distance");
+}
+
+// The drill's cylinder, made anew when the plan has changed.
+const geometry::TriangleMesh& PlanView::tunnel_mesh(BoneKind kind) {
+  TunnelMesh& kept = tunnel_meshes_[kind];
+  if (kept.revision == model_->revision()) return kept.mesh;
+  const tunnels::Tunnel tunnel = *model_->tunnel(kind);
+  scene::SolidMesh solid;
+  solid.add(scene::RodItem{tunnel.entry_mm - tunnel.direction,
+                           tunnel.entry_mm + (model_->drawn_length_mm(kind) + 1) * tunnel.direction,
+                           tunnel.diameter_mm, tunnel.diameter_mm, scene::kPlanColor, false});
+  kept.mesh = {};
+  for (const Eigen::Vector3f& point : solid.points_mm) kept.mesh.vertices_mm.push_back(point.cast<double>());
+  kept.mesh.triangles = solid.triangles;
+  kept.revision = model_->revision();
+  return kept.mesh;
 }
 
 // Over the bones, where it is not overlooked: nothing is saved until it is answered.
@@ -109,12 +188,18 @@ void PlanView::show_content() {
     if (!model_->has_bone(kind) || !bones_.shows(kind)) continue;
     if (const auto tunnel = model_->tunnel(kind))
       scene::add_planned_tunnel(content, *tunnel, model_->drawn_length_mm(kind));
+    if (!state_.shows_grid) continue;
+    if (const auto& quadrant = model_->surroundings(kind).quadrant; quadrant && kind == state_.bone)
+      add_grid(content, grid_lines(*quadrant));
+    if (const auto& plateau = model_->surroundings(kind).plateau; plateau && kind == state_.bone)
+      add_grid(content, grid_lines(*plateau));
   }
   bones_.set_content(std::move(content));
   state_.shown_revision = model_->revision();
 }
 
 void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
+  if (state_.shows_lateral) return lateral_.draw(ui, area);
   if (state_.shown_revision != model_->revision()) show_content();
   follow(bones_.draw(ui, area, marks()));
   if (!state_.places_entry) return;
@@ -160,7 +245,11 @@ void PlanView::follow(const PaneEvent& event) {
            aimed(*tunnel, bones_.camera(), event.drag_ray, *aim_handle()));
     state_.has_dragged = true;
   }
-  if (event.click && state_.places_entry) place_entry(*event.click);
+  if (!event.click) return;
+  if (state_.places_entry)
+    place_entry(*event.click);
+  else if (const auto met = first_visible(bones_.visible(), *event.click))
+    slices_.set_cross(met->point_mm);
 }
 
 // Where the eye sees the bone that is planned; anything else is said and changes nothing.

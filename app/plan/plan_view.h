@@ -2,7 +2,9 @@
 // goes through the history, which saves it.
 #pragma once
 
+#include <array>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,12 +13,19 @@
 #include "app/case/plan_model.h"
 #include "app/mode/mode.h"
 #include "app/plan/bone_pane.h"
+#include "app/plan/lateral_view.h"
+#include "app/plan/plan_steps.h"
+#include "app/plan/slice_panes.h"
 
 namespace arthronaut::plan {
 
+// What the column beside the bones shows.
+enum class PanelPage { Checks, Steps };
+
 class PlanView : public mode::Mode {
  public:
-  explicit PlanView(std::function<void()> make_current);
+  // wake: ends the window's wait, from any thread.
+  PlanView(std::function<void()> make_current, const std::function<void()>& wake);
 
   [[nodiscard]] mode::ModeTitle title() const override;
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const override { return {"plan."}; }
@@ -25,7 +34,7 @@ class PlanView : public mode::Mode {
   void leave() override { history_.settle_now(); }
   void tick(double now_s) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
-  [[nodiscard]] bool is_busy() const override { return history_.is_moving(); }
+  [[nodiscard]] bool is_busy() const override { return history_.is_moving() || slices_.is_loading(); }
 
  private:
   // plan_actions.cpp
@@ -33,34 +42,56 @@ class PlanView : public mode::Mode {
   void add_history_actions(widgets::Actions& actions);
   void add_tunnel_actions(widgets::Actions& actions);
   void add_placing_actions(widgets::Actions& actions);
+  void add_slice_actions(widgets::Actions& actions);
+  void add_measuring_actions(widgets::Actions& actions);
 
   // The tunnel of the bone that is planned becomes this one; nothing where there is none.
   void change(const std::string& what, bool continues, const std::optional<tunnels::Tunnel>& tunnel);
   void look_from(scene::ViewDirection view);
   void draw_bones(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_slices(const widgets::Ui& ui, const std::array<widgets::Rect, 3>& areas);
   void draw_conflict(const widgets::Ui& ui, const widgets::Rect& area) const;
   void show_content();
   [[nodiscard]] std::vector<PaneMark> marks() const;
   void follow(const PaneEvent& event);
   void place_entry(const scene::SceneRay& ray);
   [[nodiscard]] std::optional<Eigen::Vector3d> aim_handle() const;
+  [[nodiscard]] const geometry::TriangleMesh& tunnel_mesh(bones::BoneKind kind);
 
   struct ViewState {
     bones::BoneKind bone = bones::BoneKind::Femur;
     bool places_entry = false;
     bool has_dragged = false;
+    bool shows_slices = false, shows_lateral = false, shows_grid = true;
+    PanelPage page = PanelPage::Checks;
     std::string hint = {};  // why a click did nothing; until the next one
     std::uint64_t shown_revision = 0;
+  };
+
+  struct TunnelMesh {
+    geometry::TriangleMesh mesh;
+    std::uint64_t revision = 0;  // of the model that it was made for
   };
 
   open_case::PlanModel* model_ = nullptr;  // null until a case is open
   open_case::PlanHistory history_;
   BonePane bones_;
+  SlicePanes slices_;
+  LateralView lateral_;
+  std::map<bones::BoneKind, TunnelMesh> tunnel_meshes_;
   ViewState state_;
 };
 
-// The column of numbers, checks and buttons beside the bones.
-void draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const open_case::PlanModel& model,
-                     bones::BoneKind bone, const open_case::PlanStatus& status);
+// What the column beside the bones is drawn from.
+struct PlanPanel {
+  const open_case::PlanModel& model;
+  const open_case::PlanHistory& history;
+  bones::BoneKind bone;
+  PanelPage page;
+  NextStep next;
+};
+// Returns the step of the history that was clicked, as a position for PlanHistory::go_to().
+[[nodiscard]] std::optional<std::size_t> draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area,
+                                                         const PlanPanel& panel);
 
 }  // namespace arthronaut::plan

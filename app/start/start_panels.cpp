@@ -76,6 +76,10 @@ void StartView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("start", kPages[static_cast<std::size_t>(state_.page)]);
   ui.log.note_state("import", kStates[static_cast<std::size_t>(work_.state())]);
   ui.log.note_state("import_failure", work_.failure());
+  const auto& entries = state_.listing.entries;
+  ui.log.note_state("selected", state_.page == Page::Browse && state_.selected < entries.size()
+                                    ? entries[state_.selected].name
+                                    : std::to_string(state_.selected));
 }
 
 bool StartView::draw_row(const widgets::Ui& ui, const std::string& name, std::size_t row, float height) {
@@ -95,7 +99,9 @@ bool StartView::draw_row(const widgets::Ui& ui, const std::string& name, std::si
   } else if (hovered) {
     draw.AddRectFilled(at, to, IM_COL32(38, 47, 57, 255), ui.theme.px(6));
   }
-  if (ImGui::IsRectVisible(at, to)) ui.log.note(name, at, to);
+  std::string word = name;  // the list of widgets is one of words
+  std::replace(word.begin(), word.end(), ' ', '_');
+  if (ImGui::IsRectVisible(at, to)) ui.log.note(word, at, to);
   ImGui::SetCursorScreenPos(at);
   ImGui::Dummy({width, height});
   if (twice) state_.selected = row;

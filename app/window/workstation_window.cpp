@@ -47,7 +47,7 @@ void WorkstationWindow::open(const std::filesystem::path& folder) {
   const std::filesystem::path wanted = folder.empty() ? open_case::built_in_case_folder() : folder;
   std::error_code error;
   if (model() != nullptr && std::filesystem::equivalent(wanted, case_->folder(), error)) {
-    shows_start_ = false;  // it is open
+    close_start();  // it is open
     return;
   }
   failure_.clear();
@@ -59,7 +59,7 @@ void WorkstationWindow::make_modes() {
   const auto wake = [] { GraphicsWindow::wake(); };
   const sources::DeviceTurns camera_turns;  // Set up and Navigate open one camera after the other
   constexpr std::size_t kNavigate = 2;
-  modes_.push_back(std::make_unique<plan::PlanView>(make_current));
+  modes_.push_back(std::make_unique<plan::PlanView>(make_current, wake));
   modes_.push_back(std::make_unique<setup::SetupView>(
       wake, [this] { show(kNavigate); }, camera_turns));
   modes_.push_back(std::make_unique<navigate::NavigateView>(make_current, wake, camera_turns));
@@ -80,7 +80,8 @@ void WorkstationWindow::add_actions() {
                 false, [this, is_open] { return is_open() && !has_running_work() && opening_ == nullptr; },
                 [this] { return shows_start(); },
                 [this] {
-                  if (std::exchange(shows_start_, !shows_start_)) return;
+                  if (shows_start_) return close_start();
+                  shows_start_ = true;
                   shown().leave();
                   start_.enter(true);
                 }});
@@ -147,7 +148,7 @@ void WorkstationWindow::frame(double timeout_s) {
   start_.tick();
   take_opened_case();
   dispatch_keys();
-  if (start_.wants_to_close()) shows_start_ = false;
+  if (shows_start_ && start_.wants_to_close()) close_start();
   for (const auto& mode : modes_) mode->tick(GraphicsWindow::now_s());
   const widgets::Ui ui{window_.theme(), actions_, log_, GraphicsWindow::now_s()};
   heartbeat_.beat(ui.now_s, has_running_work());
@@ -167,7 +168,7 @@ void WorkstationWindow::take_opened_case() {
     opening_.reset();
     return;
   }
-  if (model() != nullptr) shown().leave();
+  if (!shows_start()) shown().leave();
   for (const auto& mode : modes_)
     mode->case_opened({opening_->model(), opening_->folder(), opening_->read_only_reason()});
   case_ = std::move(opening_);  // the one before is let go when no mode knows it any more
@@ -187,6 +188,7 @@ void WorkstationWindow::take_dropped() {
     return;
   }
   failure_.clear();
+  if (!shows_start()) shown().leave();
   shows_start_ = true;
   start_.enter(model() != nullptr);
   start_.take(dropped.front());
@@ -221,6 +223,11 @@ void WorkstationWindow::show(std::size_t mode) {
   shows_start_ = false;
   if (mode != shown_) shown().leave();
   shown_ = mode;
+  shown().enter();
+}
+
+void WorkstationWindow::close_start() {
+  if (!std::exchange(shows_start_, false)) return;
   shown().enter();
 }
 
@@ -260,6 +267,7 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   log_.note_state("standstill", heartbeat_.words());
   log_.note_state("mode", shown().title().name);
   log_.note_state("access", model() != nullptr && case_->is_read_only() ? "read-only" : "own");
+  log_.note_state("folder", model() != nullptr ? case_->folder().string() : "");
   log_.note_state("screen", shows_start() ? "start" : "mode");
   log_.note_state("case", opening_ != nullptr  ? "opening"
                           : !failure_.empty()  ? "failed"

@@ -29,6 +29,7 @@ class WorkstationWindow {
   void open(const std::filesystem::path& folder);
   void take_opened_case();
   void take_dropped();
+  void close_start();
   void dispatch_keys();
   // What the ids of the actions that work now start with.
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const;

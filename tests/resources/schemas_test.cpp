@@ -11,6 +11,7 @@
 #include "navigation/tools/tool_set.h"
 #include "planning/cases/case.h"
 #include "planning/cases/identity.h"
+#include "planning/cases/measurements.h"
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
 #include "tests/resources/json_schema.h"
@@ -120,6 +121,13 @@ TEST_F(Schemas, DescribeTheIdentity) {
   cases::save_identity(folder_.path(), {"Muster^Anna", "4711", "19900131"});
   expect_described(cases::identity_file(folder_.path()), "identity",
                    [&] { (void)cases::load_identity(folder_.path()); });
+}
+
+// What was measured: a distance and an angle.
+TEST_F(Schemas, DescribeTheMeasurements) {
+  cases::save_measurements(folder_.path(), {{{{1, 2, 3}, {4, 5, 6}}}, {{{1, 0, 0}, {0, 0, 0}, {0, 1, 0}}}});
+  expect_described(cases::measurements_file(folder_.path()), "measurements",
+                   [&] { (void)cases::load_measurements(folder_.path()); });
 }
 
 // A registration that stands, and one that found nothing.

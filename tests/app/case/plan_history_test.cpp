@@ -162,6 +162,22 @@ TEST_F(PlanHistoryTest, TheListOfStepsIsWalkedToAnyPlace) {
   }
 }
 
+// What was measured is a step like any other, on disk after each.
+TEST_F(PlanHistoryTest, MeasurementsAreUndoneAndSaved) {
+  const cases::Measurement distance{{{0, 0, 0}, {3, 4, 0}}};
+  history_.apply_measurements({distance}, "Measure a distance");
+  EXPECT_EQ(cases::load_measurements(folder_), std::vector{distance});
+  history_.apply(wider(1, false), 1.0);
+  history_.settle_now();
+  history_.undo();
+  EXPECT_EQ(model_.measurements().size(), 1U);
+  history_.undo();
+  EXPECT_TRUE(model_.measurements().empty());
+  EXPECT_TRUE(cases::load_measurements(folder_).empty());
+  history_.redo();
+  EXPECT_EQ(cases::load_measurements(folder_), std::vector{distance});
+}
+
 class PlanConflict : public PlanHistoryTest {
  protected:
   void save_elsewhere(double diameter_mm) {

@@ -96,8 +96,8 @@ RunningWorkstation::RunningWorkstation(const VirtualDisplay& display, const std:
     : display_(display.name()), folder_(data_home) {
   std::vector<std::string> words{ARTHRONAUT_PROGRAM, "--list-widgets"};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  const auto [process, pipe] =
-      start(words, 1, {{"DISPLAY", display_}, {"XDG_DATA_HOME", data_home.string()}});
+  const auto [process, pipe] = start(
+      words, 1, {{"DISPLAY", display_}, {"XDG_DATA_HOME", data_home.string()}, {"HOME", data_home.string()}});
   process_ = process;
   reader_ = std::thread([this, pipe = pipe] { read_output(pipe); });
 }

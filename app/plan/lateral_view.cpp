@@ -1,0 +1,129 @@
+#include "app/plan/lateral_view.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "app/plan/grid_lines.h"
+#include "app/scene/radiograph.h"
+
+namespace arthronaut::plan {
+
+namespace {
+
+using bones::BoneKind;
+
+constexpr const char* kNormSource =
+    "Yellow: where 13 studies found the ligament's centre, mean and one standard deviation: 28.4 \u00B1 5.1 "
+    "% deep to "
+    "shallow, 35.7 \u00B1 6.9 % high to low (Arthroscopy 2016). Means of studies, no limits of safety.";
+
+std::string percent_text(const landmarks::FemoralQuadrant::Percent& percent) {
+  return widgets::fixed(percent.deep_shallow, 1) + " % deep to shallow, " +
+         widgets::fixed(percent.high_low, 1) + " % high to low";
+}
+
+}  // namespace
+
+scene::SlicePlane lateral_plane(const landmarks::AnatomicalAxes& axes,
+                                const std::optional<landmarks::FemoralQuadrant>& quadrant,
+                                const geometry::Bounds& shown, const Eigen::Vector2i& size_px) {
+  Eigen::Vector3d medially = -axes.lateral;  // the way the beam goes
+  if (quadrant) {
+    medially = quadrant->shallow.cross(quadrant->low).normalized();
+    if (medially.dot(axes.lateral) > 0) medially = -medially;
+  }
+  scene::SlicePlane plane;
+  plane.down = (-axes.proximal + axes.proximal.dot(medially) * medially).normalized();
+  plane.right = plane.down.cross(medially);
+  plane.center_mm = shown.center_mm();
+  const Eigen::Vector3d half = 0.5 * shown.size_mm();
+  constexpr double kMargin = 1.08;
+  plane.mm_per_px = kMargin * std::max(2 * half.dot(plane.right.cwiseAbs()) / std::max(size_px.x(), 1),
+                                       2 * half.dot(plane.down.cwiseAbs()) / std::max(size_px.y(), 1));
+  return plane;
+}
+
+void LateralView::open(const open_case::PlanModel* model) {
+  model_ = model;
+  size_px_ = {0, 0};
+}
+
+void LateralView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
+  if (model_ == nullptr || !model_->has_bone(BoneKind::Femur)) {
+    widgets::text_centered(ui, area, ui.theme.title, widgets::kQuietText,
+                           "The lateral view is of a femur, which this case lacks.");
+    return;
+  }
+  const Eigen::Vector2i size(std::max(static_cast<int>(area.width), 1),
+                             std::max(static_cast<int>(area.height), 1));
+  const scene::SlicePlane plane =
+      lateral_plane(model_->axes(BoneKind::Femur), model_->surroundings(BoneKind::Femur).quadrant,
+                    model_->joint_bounds(BoneKind::Femur), size);
+  if (size != size_px_ || !(plane == plane_)) {
+    texture_.upload(size.x(), size.y(),
+                    scene::radiograph_from(
+                        scene::thickness_along(model_->knee().bones.at(BoneKind::Femur).mesh, plane, size)));
+    size_px_ = size;
+    plane_ = plane;
+  }
+  ImGui::SetCursorScreenPos(area.min());
+  ImGui::InvisibleButton("lateral", {area.width, area.height});
+  const bool is_hovered = ImGui::IsItemHovered();
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.PushClipRect(area.min(), area.max(), true);
+  draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_.texture())), area.min(),
+                area.max());
+  draw_grid(ui, area);
+  draw.PopClipRect();
+  ui.log.note("plan.lateral_view", area.min(), area.max());
+  const auto& quadrant = model_->surroundings(BoneKind::Femur).quadrant;
+  if (is_hovered && quadrant) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const auto percent =
+        quadrant->percent_of(plane_.point_at({mouse.x - area.x, mouse.y - area.y}, size_px_));
+    ImGui::SetTooltip("%s\n%s", percent_text(percent).c_str(), kNormSource);
+  }
+}
+
+void LateralView::draw_grid(const widgets::Ui& ui, const widgets::Rect& area) const {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const auto at = [&](const Eigen::Vector3d& point) {
+    const Eigen::Vector2d pixel = plane_.pixel_of(point, size_px_);
+    return ImVec2(area.x + static_cast<float>(pixel.x()), area.y + static_cast<float>(pixel.y()));
+  };
+  const auto& quadrant = model_->surroundings(BoneKind::Femur).quadrant;
+  std::string text = "True lateral view, condyles superposed";
+  if (quadrant) {
+    const GridLines lines = grid_lines(*quadrant);
+    const ImU32 grid = widgets::color_of(kGridColor), norm = widgets::color_of(kNormColor);
+    for (const auto& line : lines.rims) draw.AddLine(at(line.front()), at(line.back()), grid, ui.theme.px(3));
+    for (const auto& line : lines.divisions)
+      draw.AddLine(at(line.front()), at(line.back()), grid, ui.theme.px(1.2F));
+    std::vector<ImVec2> ellipse;
+    for (const Eigen::Vector3d& point : lines.norm) ellipse.push_back(at(point));
+    draw.AddPolyline(ellipse.data(), static_cast<int>(ellipse.size()), norm, ImDrawFlags_Closed,
+                     ui.theme.px(2.5F));
+    const ImVec2 blumensaat = at(quadrant->point_at({100, 0}));
+    draw.AddText(ui.theme.body, ui.theme.body->FontSize, {blumensaat.x + ui.theme.px(8), blumensaat.y}, grid,
+                 "Blumensaat's line");
+  } else {
+    text += ". No grid: Blumensaat's line is not marked";
+  }
+  if (const auto tunnel = model_->tunnel(BoneKind::Femur)) {
+    const ImU32 color = widgets::color_of(scene::kPlanColor);
+    const ImVec2 entry = at(tunnel->entry_mm);
+    const double length = model_->drawn_length_mm(BoneKind::Femur);
+    draw.AddLine(entry, at(tunnel->entry_mm + length * tunnel->direction), color, ui.theme.px(2));
+    const auto radius = static_cast<float>(tunnel->diameter_mm / 2 / plane_.mm_per_px);
+    draw.AddCircle(entry, radius, color, 40, ui.theme.px(2.5F));
+    draw.AddCircleFilled(entry, ui.theme.px(4), color);
+    if (quadrant) {
+      const std::string percent = percent_text(quadrant->percent_of(tunnel->entry_mm));
+      text += ". Entry: " + percent;
+      ui.log.note_state("lateral_percent", percent);
+    }
+  }
+  widgets::caption(ui, area, widgets::kText, text);
+}
+
+}  // namespace arthronaut::plan

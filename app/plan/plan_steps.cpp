@@ -1,0 +1,42 @@
+#include "app/plan/plan_steps.h"
+
+#include <algorithm>
+
+namespace arthronaut::plan {
+
+namespace {
+
+using bones::BoneKind;
+using Verdict = tunnels::PlanCheck::Verdict;
+
+std::string adjective(BoneKind bone) { return bone == BoneKind::Femur ? "femoral" : "tibial"; }
+
+}  // namespace
+
+NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
+  const std::string bone(bones::to_text(state.bone));
+  const BoneKind other = state.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
+  if (state.is_read_only) return {"Look only: another program has this case open", ""};
+  if (state.is_in_conflict) return {"Take the other program's plan, or keep this one", "plan.take_theirs"};
+  if (state.places_entry) return {"Click on the " + bone + " where the tunnel begins", ""};
+  if (!model.has_bone(state.bone)) return {"This case has no " + bone + ": plan the other bone", "plan.bone"};
+  if (!model.tunnel(state.bone))
+    return {"Place the entry of the " + adjective(state.bone) + " tunnel: press P, then click on the bone",
+            "plan.place"};
+  const auto checks = model.checks(state.bone);
+  const auto wrong = std::find_if(checks.begin(), checks.end(), [](const tunnels::PlanCheck& check) {
+    return check.verdict == Verdict::Wrong;
+  });
+  if (wrong != checks.end()) return {"Mend the " + adjective(state.bone) + " tunnel: " + wrong->name, ""};
+  if (model.has_bone(other) && !model.tunnel(other))
+    return {"Plan the " + adjective(other) + " tunnel: press Tab", "plan.bone"};
+  if (model.has_bone(other)) {
+    const auto others = model.checks(other);
+    if (std::any_of(others.begin(), others.end(),
+                    [](const tunnels::PlanCheck& check) { return check.verdict == Verdict::Wrong; }))
+      return {"Mend the " + adjective(other) + " tunnel: press Tab", "plan.bone"};
+  }
+  return {"The plan can be taken to theatre: set up the arthroscope", "mode.setup"};
+}
+
+}  // namespace arthronaut::plan

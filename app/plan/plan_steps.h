@@ -1,0 +1,25 @@
+// What to do next, named: the shortest way from an open case to a plan that can be taken to theatre.
+#pragma once
+
+#include <string>
+
+#include "app/case/plan_model.h"
+
+namespace arthronaut::plan {
+
+struct NextStep {
+  std::string text;    // "Place the entry of the femoral tunnel: press P, then click on the bone"
+  std::string action;  // the id of the action that does it or begins it; empty: none
+};
+
+struct StepState {
+  bones::BoneKind bone = bones::BoneKind::Femur;  // that is planned
+  bool places_entry = false;
+  bool is_read_only = false, is_in_conflict = false;
+};
+
+// The first of what is missing: an answer to a conflict, an entry, a tunnel that can be drilled, the other
+// bone's; else to theatre.
+[[nodiscard]] NextStep next_step(const open_case::PlanModel& model, const StepState& state);
+
+}  // namespace arthronaut::plan

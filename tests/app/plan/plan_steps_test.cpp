@@ -1,0 +1,51 @@
+#include "app/plan/plan_steps.h"
+
+#include <gtest/gtest.h>
+
+#include "planning/phantom/phantom_case.h"
+
+namespace arthronaut::plan {
+namespace {
+
+using bones::BoneKind;
+
+cases::Case knee() { return phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "test"); }
+
+// From an empty case to theatre, one step after the other, each with the action that begins it.
+TEST(NextStep, LeadsFromAnEmptyCaseToTheatre) {
+  const cases::Case planned = knee();
+  cases::Case empty = planned;
+  empty.plan = {};
+  open_case::PlanModel model(empty);
+  StepState state;
+  EXPECT_EQ(next_step(model, state).action, "plan.place");
+  state.places_entry = true;
+  EXPECT_EQ(next_step(model, state).text, "Click on the femur where the tunnel begins");
+  state.places_entry = false;
+  model.set_tunnel(BoneKind::Femur, planned.plan.tunnels.at(BoneKind::Femur));
+  EXPECT_EQ(next_step(model, state).action, "plan.bone");
+  state.bone = BoneKind::Tibia;
+  EXPECT_EQ(next_step(model, state).action, "plan.place");
+  model.set_tunnel(BoneKind::Tibia, planned.plan.tunnels.at(BoneKind::Tibia));
+  EXPECT_EQ(next_step(model, state).action, "mode.setup") << next_step(model, state).text;
+}
+
+// A tunnel that cannot be drilled is to be mended before anything else, from either bone.
+TEST(NextStep, ATunnelThatCannotBeDrilledComesFirst) {
+  open_case::PlanModel model(knee());
+  tunnels::Tunnel beside = *model.tunnel(BoneKind::Femur);
+  beside.entry_mm += Eigen::Vector3d(0, -300, 0);
+  model.set_tunnel(BoneKind::Femur, beside);
+  EXPECT_NE(next_step(model, {}).text.find("Mend the femoral tunnel"), std::string::npos);
+  EXPECT_EQ(next_step(model, {.bone = BoneKind::Tibia}).text, "Mend the femoral tunnel: press Tab");
+}
+
+// What stands against every edit is named first.
+TEST(NextStep, ReadOnlyAndConflictAreNamedFirst) {
+  const open_case::PlanModel model(knee());
+  EXPECT_NE(next_step(model, {.is_read_only = true}).text.find("Look only"), std::string::npos);
+  EXPECT_EQ(next_step(model, {.is_in_conflict = true}).action, "plan.take_theirs");
+}
+
+}  // namespace
+}  // namespace arthronaut::plan

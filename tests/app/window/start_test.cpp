@@ -1,0 +1,115 @@
+// From nothing to an open case, as a hand works it: the start, the browser of folders, the import.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "planning/bones/mesh_file.h"
+#include "planning/cases/case.h"
+#include "planning/phantom/phantom_case.h"
+#include "tests/app/window/display.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::test {
+namespace {
+
+class StartWindow : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
+  }
+  static cases::Case knee() {
+    return phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 3}), "Knee of a test");
+  }
+  void write_meshes() const {
+    std::filesystem::create_directory(folder_ / "given");
+    const cases::Case made = knee();
+    for (const auto& [kind, bone] : made.bones)
+      bones::write_mesh_stl(folder_ / "given" / (std::string(bones::to_text(kind)) + ".stl"), bone.mesh);
+  }
+  const TemporaryFolder folder_;
+};
+
+// A folder with two meshes: named on the command line, looked into, made, the side asked for, written, open.
+// Next time the case is the first of the list, and Enter opens it.
+TEST_F(StartWindow, ImportsAFolderAsksForTheSideAndFindsTheCaseAgain) {
+  write_meshes();
+  const VirtualDisplay display(1280, 720);
+  {
+    RunningWorkstation app(display, folder_.path(), {(folder_ / "given").string()});
+    ASSERT_TRUE(app.wait_for_state("import", "choosing", 120));
+    EXPECT_EQ(app.state("case"), "none");
+    ASSERT_TRUE(app.wait_for_widget("start.source.1"));
+    app.press("Return");
+    ASSERT_TRUE(app.wait_for_state("import", "asking", 240));
+    app.press("l");
+    app.press("Return");
+    ASSERT_TRUE(app.wait_for_state("case", "open", 240));
+    ASSERT_TRUE(app.wait_for_state("screen", "mode"));
+    ASSERT_TRUE(app.wait_for_state("mode", "plan"));
+    app.press("ctrl+q");
+    EXPECT_EQ(app.wait_for_exit(30), 0);
+  }
+  std::filesystem::path made;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "arthronaut" / "cases"))
+    made = entry.path();
+  EXPECT_EQ(cases::load_case(made).side, bones::Side::Left);
+  RunningWorkstation app(display, folder_.path(), {"--frames", "0"});
+  ASSERT_TRUE(app.wait_for_state("start", "cases"));
+  ASSERT_TRUE(app.wait_for_widget("start.case.0"));
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  EXPECT_EQ(app.state("screen"), "mode");
+}
+
+// By keys alone through the folders to a case; F5 and Esc go to the list and back; another case takes the
+// place of the first.
+TEST_F(StartWindow, FindsACaseInTheFoldersByKeys) {
+  std::filesystem::create_directory(folder_ / "cases");
+  cases::save_case(folder_ / "cases" / "A.arthro", knee());
+  cases::save_case(folder_ / "cases" / "B.arthro", knee());
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {(folder_ / "cases" / "B.arthro").string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F5");
+  ASSERT_TRUE(app.wait_for_state("screen", "start"));
+  app.press("Escape");
+  ASSERT_TRUE(app.wait_for_state("screen", "mode"));
+  app.press("F5");
+  ASSERT_TRUE(app.wait_for_state("screen", "start"));
+  app.press("o");
+  ASSERT_TRUE(app.wait_for_state("start", "browse"));
+  // The browser begins in the user's home, which is the test's folder.
+  ASSERT_TRUE(app.wait_for_widget("start.entry.cases"));
+  const auto select = [&](const std::string& entry) {
+    app.click("start.entry." + entry);
+    ASSERT_TRUE(app.wait_for_state("selected", entry));
+  };
+  select("cases");
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_widget("start.entry.A.arthro"));
+  app.press("Down");
+  ASSERT_TRUE(app.wait_for_state("selected", "B.arthro"));
+  app.press("Up");
+  ASSERT_TRUE(app.wait_for_state("selected", "A.arthro"));
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("folder", (folder_ / "cases" / "A.arthro").string(), 120));
+  EXPECT_EQ(app.state("case"), "open");
+}
+
+// What is no case and holds no images is said, and the start stays.
+TEST_F(StartWindow, SaysThatAFolderHoldsNothing) {
+  std::filesystem::create_directory(folder_ / "empty");
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {(folder_ / "empty").string()});
+  ASSERT_TRUE(app.wait_for_state("import", "choosing", 60));
+  EXPECT_EQ(app.state("screen"), "start");
+  app.press("Escape");
+  ASSERT_TRUE(app.wait_for_state("start", "cases"));
+  app.press("b");
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(30), 0);
+}
+
+}  // namespace
+}  // namespace arthronaut::test
