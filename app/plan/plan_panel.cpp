@@ -109,14 +109,22 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
                    "Customary values, not limits of safety. The surgeon decides.");
 }
 
+// Whose tunnel it is, and beside it the way to the other.
+void draw_title(const widgets::Ui& ui, bones::BoneKind bone) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ui.theme.px(170), height = ui.theme.px(44);
+  ImGui::GetWindowDrawList()->AddText(ui.theme.title, ui.theme.title->FontSize,
+                                      {at.x, at.y + (height - ui.theme.title->FontSize) / 2}, widgets::kText,
+                                      bone == bones::BoneKind::Femur ? "Femoral tunnel" : "Tibial tunnel");
+  ImGui::SetCursorScreenPos({at.x + ImGui::GetContentRegionAvail().x - width, at.y});
+  widgets::action_button(ui, "plan.bone", width, height);
+}
+
 void draw_tools(const widgets::Ui& ui) {
   ImGui::Separator();
-  button_pair(ui, "plan.place", "plan.bone");
+  widgets::action_button(ui, "plan.place", ImGui::GetContentRegionAvail().x);
   button_pair(ui, "plan.narrower", "plan.wider");
   widgets::action_button(ui, "plan.remove", ImGui::GetContentRegionAvail().x);
-  widgets::text_in(
-      ui.theme.body, widgets::kQuietText,
-      "Arrow keys aim by 1\u00B0, with Shift they slide the entry by 0.5 mm. Handles can be dragged.");
 }
 
 // Every step, the newest last; a click goes back, or forward, to it.
@@ -158,8 +166,7 @@ std::optional<std::size_t> draw_plan_panel(const widgets::Ui& ui, const widgets:
   std::optional<std::size_t> clicked;
   widgets::begin_panel(ui, "plan.panel", area);
   draw_next(ui, panel.next);
-  widgets::text_in(ui.theme.title, widgets::kText,
-                   panel.bone == bones::BoneKind::Femur ? "Femoral tunnel" : "Tibial tunnel");
+  draw_title(ui, panel.bone);
   button_pair(ui, "plan.checks_page", "plan.steps_page");
   switch (panel.page) {
     case PanelPage::Checks:

@@ -48,9 +48,8 @@ void PlanView::case_opened(const mode::OpenCase& opened) {
   tunnel_meshes_.clear();
   if (!model_->has_bone(BoneKind::Femur)) state_.bone = BoneKind::Tibia;
   bones_.open(model_);
-  slices_.open(model_->knee(), opened.folder);
+  slices_.open(model_->knee(), opened.folder, model_->joint_bounds(std::nullopt));
   lateral_.open(model_);
-  slices_.set_cross(model_->joint_bounds(std::nullopt).center_mm());
 }
 
 void PlanView::tick(double now_s) {

@@ -46,6 +46,12 @@ void SlicePane::fit(const images::Volume& volume) {
   is_fitted_ = true;
 }
 
+void SlicePane::show(const Eigen::Vector3d& center_mm, double extent_mm) {
+  center_mm_ = center_mm;
+  fit_mm_ = extent_mm;
+  is_fitted_ = true;
+}
+
 double SlicePane::step_mm(const images::Volume& volume) const {
   // The spacing of the volume's axis that runs nearest to the normal.
   const Eigen::Matrix3d axes = volume.lps_from_index.linear();

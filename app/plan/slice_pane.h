@@ -58,8 +58,9 @@ class SlicePane {
   // right and down: of the picture, unit, LPS. title: "Axial".
   SlicePane(std::string title, const Eigen::Vector3d& right, const Eigen::Vector3d& down);
 
-  // All of the volume, centred.
+  // All of the volume, centred; or so much about a point.
   void fit(const images::Volume& volume);
+  void show(const Eigen::Vector3d& center_mm, double extent_mm);
   // Left: cross-hair. Wheel: through the slices, with Ctrl zoom. Right drag: level up and down, width right
   // and left. Middle drag, or left with Shift: shift.
   SliceEvent draw(const widgets::Ui& ui, const char* name, const widgets::Rect& rect,

@@ -30,10 +30,13 @@ void SlicePanes::stop_loading() {
   stops_ = false;
 }
 
-void SlicePanes::open(const cases::Case& knee, const std::filesystem::path& folder) {
+void SlicePanes::open(const cases::Case& knee, const std::filesystem::path& folder,
+                      const geometry::Bounds& joint) {
   stop_loading();
   images_ = knee.images;
   folder_ = folder;
+  joint_ = joint;
+  cross_mm_ = joint.center_mm();
   volume_.reset();
   failure_.clear();
   tool_ = MeasuringTool::None;
@@ -74,7 +77,8 @@ void SlicePanes::tick() {
   if (volume_ == nullptr) return;
   automatic_ = loaded.automatic;
   window_ = volume_->modality == "CT" ? scene::kBoneWindow : automatic_;
-  fit();
+  constexpr double kAround = 1.15;
+  for (SlicePane& pane : panes_) pane.show(joint_.center_mm(), kAround * joint_.size_mm().maxCoeff());
 }
 
 void SlicePanes::fit() {

@@ -27,8 +27,9 @@ class SlicePanes {
   SlicePanes(const SlicePanes&) = delete;
   SlicePanes& operator=(const SlicePanes&) = delete;
 
-  // Another case; its images are not read yet.
-  void open(const cases::Case& knee, const std::filesystem::path& folder);
+  // Another case; its images are not read yet. joint: what is shown of them at first, the cross-hair in its
+  // middle.
+  void open(const cases::Case& knee, const std::filesystem::path& folder, const geometry::Bounds& joint);
   [[nodiscard]] bool has_images() const { return !images_.empty(); }
   // Begins to load, once.
   void want();
@@ -71,6 +72,7 @@ class SlicePanes {
   std::unique_ptr<images::Volume> volume_;
   std::string failure_;
   scene::GreyWindow window_, automatic_;
+  geometry::Bounds joint_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   Eigen::Vector3d cross_mm_ = Eigen::Vector3d::Zero();
   MeasuringTool tool_ = MeasuringTool::None;
   std::vector<Eigen::Vector3d> points_mm_;  // of the measurement that is being made

@@ -40,7 +40,7 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
     const std::string text = knee.name + "  \u2013  " + std::string(bones::to_text(knee.side)) + " knee";
     // Whose knee it is stands over the name of the case.
     const std::string patient = case_->identity() ? case_->identity()->in_words() : "";
-    const float right = area.x + area.width - ui.theme.px(470);
+    const float right = area.x + area.width - ui.theme.px(482);
     const auto line = [&](const ImFont* font, float y, ImU32 color, const std::string& words) {
       const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, words.c_str()).x;
       draw.AddText(font, font->FontSize, {right - wide, y}, color, words.c_str());
