@@ -158,7 +158,7 @@ void StartView::accept() {
 
 void StartView::start_import() {
   if (state_.ticked.empty()) return;
-  work_.start({.sources = state_.ticked, .side = state_.side, .threshold = std::nullopt});
+  work_.start({.sources = state_.ticked, .side = state_.side});
 }
 
 void StartView::save_import() {
