@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/scene/notch_cut.h"
+#include "app/widgets/tooltip.h"
 
 namespace arthronaut::plan {
 
@@ -157,7 +158,7 @@ void BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
     if (is_hovered && is_near && !mark.tooltip.empty()) under_mouse = &mark;
     ui.log.note("plan." + mark.id + "_handle", {at.x - r, at.y - r}, {at.x + r, at.y + r});
   }
-  if (under_mouse != nullptr) ImGui::SetTooltip("%s", under_mouse->tooltip.c_str());
+  if (under_mouse != nullptr) widgets::tooltip(ui.theme, under_mouse->tooltip);
   draw.PopClipRect();
 }
 

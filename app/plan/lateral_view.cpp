@@ -5,6 +5,7 @@
 
 #include "app/plan/grid_lines.h"
 #include "app/scene/radiograph.h"
+#include "app/widgets/tooltip.h"
 
 namespace arthronaut::plan {
 
@@ -81,7 +82,7 @@ void LateralView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const auto percent =
         quadrant->percent_of(plane_.point_at({mouse.x - area.x, mouse.y - area.y}, size_px_));
-    ImGui::SetTooltip("%s\n%s", percent_text(percent).c_str(), kNormSource);
+    widgets::tooltip(ui.theme, percent_text(percent) + "\n" + kNormSource);
   }
 }
 

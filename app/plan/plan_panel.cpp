@@ -2,6 +2,7 @@
 
 #include "app/plan/anatomical_text.h"
 #include "app/plan/plan_view.h"
+#include "app/widgets/tooltip.h"
 
 namespace arthronaut::plan {
 
@@ -103,7 +104,7 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
     ImGui::BeginGroup();
     widgets::status_row(ui, severity_of(check.verdict), check.name, check.text);
     ImGui::EndGroup();
-    if (ImGui::IsItemHovered() && !check.source.empty()) ImGui::SetTooltip("%s", check.source.c_str());
+    if (ImGui::IsItemHovered() && !check.source.empty()) widgets::tooltip(ui.theme, check.source);
   }
   widgets::text_in(ui.theme.body, widgets::kQuietText,
                    "Customary values, not limits of safety. The surgeon decides.");
@@ -112,7 +113,7 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
 // Whose tunnel it is, and beside it the way to the other.
 void draw_title(const widgets::Ui& ui, bones::BoneKind bone) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float width = ui.theme.px(170), height = ui.theme.px(44);
+  const float width = ui.theme.px(196), height = ui.theme.px(44);
   ImGui::GetWindowDrawList()->AddText(ui.theme.title, ui.theme.title->FontSize,
                                       {at.x, at.y + (height - ui.theme.title->FontSize) / 2}, widgets::kText,
                                       bone == bones::BoneKind::Femur ? "Femoral tunnel" : "Tibial tunnel");

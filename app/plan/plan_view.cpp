@@ -188,9 +188,14 @@ void PlanView::show_content() {
     if (const auto tunnel = model_->tunnel(kind))
       scene::add_planned_tunnel(content, *tunnel, model_->drawn_length_mm(kind));
     if (!state_.shows_grid) continue;
-    if (const auto& quadrant = model_->surroundings(kind).quadrant; quadrant && kind == state_.bone)
+    // In the views that face them: edge-on a grid is a line through the bone.
+    const scene::ViewDirection view = bones_.looked_from();
+    const bool is_sagittal = view == scene::ViewDirection::Medial || view == scene::ViewDirection::Lateral ||
+                             view == scene::ViewDirection::Notch;
+    if (const auto& quadrant = model_->surroundings(kind).quadrant; quadrant && is_sagittal)
       add_grid(content, grid_lines(*quadrant));
-    if (const auto& plateau = model_->surroundings(kind).plateau; plateau && kind == state_.bone)
+    if (const auto& plateau = model_->surroundings(kind).plateau;
+        plateau && view == scene::ViewDirection::Plateau)
       add_grid(content, grid_lines(*plateau));
   }
   bones_.set_content(std::move(content));

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "app/widgets/tooltip.h"
+
 namespace arthronaut::widgets {
 
 namespace {
@@ -94,7 +96,7 @@ void action_button(const Ui& ui, std::string_view action_id, float width, float 
   }
   draw.PopClipRect();
   if (hovered && !action->tooltip.empty())
-    ImGui::SetTooltip("%s%s", action->tooltip.c_str(), needs_hold ? ". Hold it down" : "");
+    tooltip(ui.theme, action->tooltip + (needs_hold ? ". Hold it down" : ""));
   ui.log.note(action->id, min, max);
   ImGui::PopID();
 }

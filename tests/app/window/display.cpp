@@ -215,6 +215,11 @@ void RunningWorkstation::click_at(int x, int y) const {
        " sleep 0.2 mousedown 1 sleep 0.2 mouseup 1");
 }
 
+void RunningWorkstation::scroll_up(const std::string& widget) const {
+  point_at(widget);
+  hand("click 4");
+}
+
 void RunningWorkstation::drag(int x0, int y0, int x1, int y1) const {
   const auto text = [](int x, int y) { return std::to_string(x) + " " + std::to_string(y); };
   hand("mousemove " + text(x0, y0) + " sleep 0.2 mousedown 1 sleep 0.2 mousemove " +

@@ -72,6 +72,7 @@ class RunningWorkstation {
                                       const std::string& value, double seconds = 40) const;
   void freeze(double seconds) const;  // the program stands still, as a machine that is overloaded
   void click_at(int x, int y) const;
+  void scroll_up(const std::string& widget) const;  // one step of the wheel over it
   void drag(int x0, int y0, int x1, int y1) const;
   [[nodiscard]] Picture screenshot() const;
   // Holds the key down until the program has ended; the exit code, or -1 when it has not.

@@ -1,10 +1,14 @@
 // Plan mode from outside, as a hand works it.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <thread>
 
 #include "planning/cases/case.h"
+#include "planning/cases/measurements.h"
+#include "planning/phantom/phantom_case.h"
 #include "tests/app/window/display.h"
 #include "tests/temporary_folder.h"
 
@@ -114,6 +118,57 @@ TEST_F(PlanWindow, Hazard15APlanOfAnotherProgramIsToldAndTheSurgeonChooses) {
   app.click("plan.take_theirs");
   ASSERT_TRUE(app.wait_for_state("plan", "saved"));
   EXPECT_TRUE(app.wait_for_state("diameter_mm", "7.25"));
+}
+
+// Slices of a case's images: shown beside the bones, scrolled by the wheel by one slice, windowed by a key; a
+// distance that is clicked is on disk, is what its two points are apart, and can be undone.
+TEST_F(PlanWindow, SlicesAreScrolledWindowedAndMeasuredIn) {
+  const auto folder = folder_ / "Imaged.arthro";
+  cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "imaged");
+  images::Volume volume;
+  volume.size = {60, 60, 60};
+  volume.modality = "CT";
+  volume.lps_from_index.linear() *= 2.5;
+  volume.lps_from_index.translation() = Eigen::Vector3d(-75, -75, -75);
+  for (int i = 0; i < 60 * 60 * 60; ++i) volume.values.push_back(static_cast<float>(i % 60 * 20));
+  cases::save_case(folder, knee);
+  knee.images.emplace_back();
+  cases::store_image(folder, 1, images::encoded(volume), knee.images.back());
+  cases::save_case(folder, knee);
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {folder.string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("s");
+  ASSERT_TRUE(app.wait_for_state("slices", "shown"));
+  ASSERT_TRUE(app.wait_for_widget("plan.axial_slice"));
+  EXPECT_EQ(app.state("window"), "480 / 2500");
+  app.press("w");
+  EXPECT_TRUE(app.wait_for_state("window", "40 / 400"));
+  const auto height = [&] {
+    std::string cross = app.state("cross");
+    cross = cross.substr(cross.rfind(' ') + 1);
+    const std::string minus = "\u2212";
+    return cross.starts_with(minus) ? -std::stod(cross.substr(minus.size())) : std::stod(cross);
+  };
+  const double before = height();
+  app.scroll_up("plan.axial_slice");
+  for (int i = 0; i < 500 && height() == before; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_NEAR(std::abs(height() - before), 2.5, 0.11);  // one slice; the state has a decimal
+  app.press("d");
+  const Area slice = app.widgets().at("plan.axial_slice");
+  app.click_at(slice.x + slice.width / 4, slice.y + slice.height / 2);
+  app.click_at(slice.x + slice.width / 2, slice.y + slice.height / 2);
+  ASSERT_TRUE(app.wait_for_state("undo", "Measure a distance"));
+  const auto measured = cases::load_measurements(folder);
+  ASSERT_EQ(measured.size(), 1U);
+  EXPECT_EQ(app.state("measured"), measured[0].in_words());
+  EXPECT_GT(measured[0].distance_mm(), 10);
+  EXPECT_NEAR(measured[0].points_mm[0].z(), measured[0].points_mm[1].z(), 1e-9)
+      << "both lie in the axial slice";
+  app.press("ctrl+z");
+  ASSERT_TRUE(app.wait_for_state("measured", ""));
+  EXPECT_TRUE(cases::load_measurements(folder).empty());
 }
 
 }  // namespace
