@@ -62,6 +62,7 @@ void add_register_command(CLI::App& app, Context& context);
 void add_import_command(CLI::App& app, Context& context);
 void add_series_command(CLI::App& app, Context& context);
 void add_landmarks_command(CLI::App& app, Context& context);
+void add_segment_command(CLI::App& app, Context& context);
 void add_plan_command(CLI::App& app, Context& context);
 void add_phantom_command(CLI::App& app, Context& context);
 void add_navigate_command(CLI::App& app, Context& context);

@@ -110,6 +110,7 @@ int run_command_line(int argc, char** argv,
   add_import_command(app, context);
   add_series_command(app, context);
   add_landmarks_command(app, context);
+  add_segment_command(app, context);
   add_plan_command(app, context);
   add_calibrate_command(app, context);
   add_check_fluid_command(app, context);

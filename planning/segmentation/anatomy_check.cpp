@@ -19,7 +19,10 @@ using Eigen::Vector3d;
 // Adults of all sizes, with room: the largest sections of 60 published and own femora and tibiae lie between
 // 2000 and 5000 mm^2.
 constexpr double kLeastSection_mm2 = 1300, kMostSection_mm2 = 7000;
-constexpr double kLeastLength_mm = 30;
+// Less of a bone, from top to bottom, is no bone to plan on; a bone that lies on its side is longer than a
+// knee is wide.
+constexpr double kLeastLength_mm = 30, kKneeWidth_mm = 110;
+constexpr double kMostDepth_mm = 84, kMostWidth_mm = 118, kLyingDown = 1.1;
 constexpr double kSectionStep_mm = 2;
 // The largest section of a femur lies above its condyles' ends, of a tibia below its plateau.
 constexpr double kMostBelowCondyles_mm = 48, kMostAbovePlateau_mm = 26;
@@ -127,8 +130,6 @@ bool falls_in_two(const Section& section) {
 std::string amiss_along(const geometry::TriangleMesh& mesh, BoneKind kind, const Vector3d& up) {
   const Sections sections = cut_across(mesh, up);
   const double length = sections.length_mm;
-  if (length < kLeastLength_mm)
-    return files::format("only %.0f mm of it are there: too little for a tunnel", length);
   const std::size_t largest = sections.largest();
   const double area = sections.all[largest].area_mm2, from_below = sections.height_mm(largest),
                from_above = length - from_below;
@@ -174,26 +175,65 @@ bool fits_about(const geometry::TriangleMesh& mesh, BoneKind kind, const Vector3
   return false;
 }
 
+// Where a scan or a cut ends a bone its surface is flat. The area of that along one direction.
+double cap_area_mm2(const geometry::TriangleMesh& mesh, const Vector3d& axis) {
+  constexpr double kFlat = 0.995, kAtEnd_mm = 2.5;
+  double end = -std::numeric_limits<double>::infinity(), area = 0;
+  for (const Vector3d& p : mesh.vertices_mm) end = std::max(end, p.dot(axis));
+  for (const auto& t : mesh.triangles) {
+    const Vector3d &a = mesh.vertices_mm[static_cast<std::size_t>(t[0])],
+                   &b = mesh.vertices_mm[static_cast<std::size_t>(t[1])],
+                   &c = mesh.vertices_mm[static_cast<std::size_t>(t[2])];
+    if (a.dot(axis) < end - kAtEnd_mm) continue;
+    const Vector3d normal = (b - a).cross(c - a);
+    if (normal.dot(axis) > kFlat * normal.norm()) area += 0.5 * normal.norm();
+  }
+  return area;
+}
+
+struct Direction {
+  Vector3d axis;
+  const char* name;
+};
+const std::array<Direction, 4>& sideways() {
+  static const std::array<Direction, 4> directions{{{Vector3d::UnitY(), "backwards"},
+                                                    {-Vector3d::UnitY(), "forwards"},
+                                                    {Vector3d::UnitX(), "to the patient's left"},
+                                                    {-Vector3d::UnitX(), "to the patient's right"}}};
+  return directions;
+}
+
+std::string wrong_axes(BoneKind kind, const char* name) {
+  return std::string("its shaft points ") + name + ", not " + (kind == BoneKind::Femur ? "up" : "down") +
+         ": the axes of the file are not the patient's (LPS); check --space and what wrote the file";
+}
+
 }  // namespace
 
 std::vector<std::string> anatomy_doubts(const geometry::TriangleMesh& mesh, BoneKind kind) {
   if (mesh.empty()) return {"it has no surface"};
+  const geometry::Bounds bounds = geometry::bounds_of(mesh);
+  // However it leans or lies.
+  if (const double most = bounds.size_mm().maxCoeff(), up = bounds.size_mm().z();
+      most < kLeastLength_mm || (up < kLeastLength_mm && most < kKneeWidth_mm))
+    return {files::format("only %.0f mm of it are there, from top to bottom: too little for a tunnel", up)};
+  // No knee is so deep from front to back, or so wide, unless it lies on its side.
+  const Vector3d size = bounds.size_mm();
+  if (size.y() > kMostDepth_mm && size.y() > kLyingDown * size.z())
+    return {wrong_axes(kind, "forwards or backwards")};
+  if (size.x() > kMostWidth_mm && size.x() > kLyingDown * size.z()) return {wrong_axes(kind, "sideways")};
+  // The shaft's cut end tells how a bone lies, whatever shape the rest has that way.
+  constexpr double kLeastCap_mm2 = 350, kMostOtherCap = 0.4;
+  const double sign = kind == BoneKind::Femur ? 1 : -1;
+  const double expected = cap_area_mm2(mesh, sign * Vector3d::UnitZ());
   const std::string amiss = amiss_along(mesh, kind, Vector3d::UnitZ());
-  if (amiss.empty() || fits_about(mesh, kind, Vector3d::UnitZ())) return {};
-  struct Direction {
-    Vector3d axis;
-    const char* name;
-  };
-  const std::array<Direction, 5> others{{{Vector3d::UnitY(), "backwards"},
-                                         {-Vector3d::UnitY(), "forwards"},
-                                         {-Vector3d::UnitZ(), "downwards"},
-                                         {Vector3d::UnitX(), "to the patient's left"},
-                                         {-Vector3d::UnitX(), "to the patient's right"}}};
-  for (const Direction& other : others) {
-    if (amiss_along(mesh, kind, other.axis).empty() || fits_about(mesh, kind, other.axis))
-      return {std::string("its upper end points ") + other.name +
-              ": the axes of the file are not the patient's (LPS); check --space and what wrote the file"};
+  for (const Direction& side : sideways()) {
+    const double cap = cap_area_mm2(mesh, side.axis);
+    if (cap > kLeastCap_mm2 && expected < kMostOtherCap * cap &&
+        (amiss_along(mesh, kind, sign * side.axis).empty() || fits_about(mesh, kind, sign * side.axis)))
+      return {wrong_axes(kind, side.name)};
   }
+  if (amiss.empty() || fits_about(mesh, kind, Vector3d::UnitZ())) return {};
   return {"it does not look like a " + std::string(bones::to_text(kind)) + ": " + amiss};
 }
 

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "planning/geometry/error.h"
+#include "planning/images/volume_writer.h"
+#include "planning/phantom/phantom_knee.h"
 #include "tests/message_of.h"
 #include "tests/planning/bones/mesh_text_forms.h"
 #include "tests/planning/geometry/shapes.h"
@@ -42,6 +44,12 @@ TEST(BoneImport, LabelsAreParsedStrictly) {
   }
 }
 
+phantom::PhantomOptions coarse() {
+  phantom::PhantomOptions options;
+  options.edge_length_mm = 2;
+  return options;
+}
+
 TEST(BoneImport, AMeshBecomesAClosedOutwardBone) {
   const TemporaryFolder folder;
   geometry::TriangleMesh mesh = test::ellipsoid({40, 30, 25}, 3, {-30, 0, 0});
@@ -58,18 +66,55 @@ TEST(BoneImport, AMeshBecomesAClosedOutwardBone) {
   EXPECT_TRUE(import.identity.is_empty());
   EXPECT_THAT(import.bones[0].lines, Contains(HasSubstr("inside out")));
   EXPECT_THAT(import.bones[0].lines, Contains(HasSubstr("1 hole")));
-  EXPECT_TRUE(import.bones[0].doubts.empty());
+  // Closed and outward, but no femur.
+  ASSERT_EQ(import.bones[0].doubts.size(), 1U);
+  EXPECT_THAT(import.bones[0].doubts[0], HasSubstr("does not look like a femur"));
 }
 
-// The classic: a RAS file read as LPS puts a right knee on the left.
-TEST(BoneImport, ABoneOnTheOtherSideRaisesADoubt) {
+// Where the table stood says nothing about the side: a left knee may lie on the scanner's right.
+TEST(BoneImport, ABoneOfTheBuiltInKneeRaisesNoDoubtWhereverItLies) {
   const TemporaryFolder folder;
-  test::write_bytes(folder / "femur.stl", test::binary_stl(test::ellipsoid({40, 30, 25}, 3, {90, 0, 0})));
-  BoneImportOptions options;
-  options.side = Side::Right;
-  EXPECT_THAT(import_bones(folder / "femur.stl", options).bones.at(0).doubts, Contains(HasSubstr("--space")));
-  options.space = bones::Space::RAS;
-  EXPECT_TRUE(import_bones(folder / "femur.stl", options).bones.at(0).doubts.empty());
+  for (const double x : {-90.0, 90.0}) {
+    geometry::TriangleMesh mesh = phantom::make_phantom_knee(coarse()).femur.mesh;
+    for (auto& p : mesh.vertices_mm) p.x() += x;
+    test::write_bytes(folder / "femur.stl", test::binary_stl(mesh));
+    BoneImportOptions options;
+    options.side = Side::Left;
+    EXPECT_THAT(import_bones(folder / "femur.stl", options).bones.at(0).doubts, testing::IsEmpty());
+  }
+}
+
+// A file whose second axis is up, read as if it were LPS.
+TEST(BoneImport, AxesThatAreNotThePatientsRaiseADoubt) {
+  const TemporaryFolder folder;
+  geometry::TriangleMesh mesh = phantom::make_phantom_knee(coarse()).femur.mesh;
+  for (auto& p : mesh.vertices_mm) p = Eigen::Vector3d(p.x(), p.z(), -p.y());
+  test::write_bytes(folder / "femur.stl", test::binary_stl(mesh));
+  EXPECT_THAT(import_bones(folder / "femur.stl").bones.at(0).doubts, Contains(HasSubstr("--space")));
+}
+
+// A label map of 3D Slicer says by names which label is which bone.
+TEST(BoneImport, SegmentsAreFoundByTheirNames) {
+  const TemporaryFolder folder;
+  images::Volume volume;
+  volume.size = {40, 40, 40};
+  volume.lps_from_index.linear() = Eigen::Vector3d(1, 1, 1).asDiagonal();
+  volume.values.assign(64000, 0.0F);
+  for (int k = 5; k < 35; ++k) {
+    for (int j = 5; j < 35; ++j) {
+      for (int i = 5; i < 35; ++i)
+        volume.values[volume.index(i, j, k)] = k < 15 ? 2.0F : k > 20 ? 9.0F : 0.0F;
+    }
+  }
+  volume.segments = {{"Femoral cartilage femur", 1}, {"Right Femur", 9}, {"tibia", 2}};
+  images::write_volume(folder / "knee.seg.nrrd", volume);
+  const BoneImport import = import_bones(folder / "knee.seg.nrrd");
+  ASSERT_EQ(import.bones.size(), 2U);
+  EXPECT_EQ(import.bones[0].bone.kind, BoneKind::Femur);
+  EXPECT_EQ(import.bones[0].bone.source, "label 9 of NRRD");
+  EXPECT_EQ(import.bones[1].bone.source, "label 2 of NRRD");
+  ASSERT_TRUE(import.image.has_value());
+  EXPECT_TRUE(import.image->image.is_label_map);
 }
 
 TEST(BoneImport, WhatIsNotSaidIsAskedFor) {

@@ -93,9 +93,8 @@ TEST_F(ImportProcessTest, PassesTheOptionsOn) {
 }
 
 TEST_F(ImportProcessTest, TellsHowFarItIs) {
-  test::write_bytes(folder_ / "knee.nrrd", test::uniform_nrrd({60, 60, 60}, 700));
+  test::write_bytes(folder_ / "knee.nrrd", test::uniform_nrrd({100, 100, 100}, 700));
   ImportRequest asked = request(folder_ / "knee.nrrd");
-  asked.options.kind = BoneKind::Femur;
   asked.options.threshold = 300;
   ImportProcess process(asked);
   std::set<std::string> stages;
