@@ -99,6 +99,7 @@ void import(Context& context, const ImportArguments& arguments) {
   cases::CaseLock lock;  // before the case is read; a new one nobody else knows of
   if (fs::exists(folder / "case.json")) lock = cases::lock_or_refuse(folder);
   if (!lock.notice().empty()) context.say(lock.notice() + ".");
+  importing::refuse_missing_side(folder, arguments.source, options_of(arguments));
   const Interruption interruption;  // over the writing as well, which takes no time
   importing::ImportProcess process({.source = arguments.source,
                                     .options = options_of(arguments),
@@ -121,7 +122,8 @@ void import(Context& context, const ImportArguments& arguments) {
     for (const auto& doubt : imported.doubts) doubts.push_back(bone + ": " + doubt);
   }
   context.say("Wrote " + folder.string() + ": a " + std::string(bones::to_text(target.side)) + " knee" +
-              (import.side_was_guessed ? " (by the name of the source)" : "") + ".");
+              (import.side_was_guessed ? " (by the name of the source)" : "") +
+              (import.side_was_seen ? " (by its fibula)" : "") + ".");
   if (!doubts.empty()) context.say_unreliable(folder.string(), doubts);
 }
 
@@ -140,18 +142,21 @@ void add_import_command(CLI::App& app, Context& context) {
          "NRRD, MetaImage)")
       ->required();
   sub->add_option("-o,--output", arguments->output, "Case folder to write or to add to")->required();
-  sub->add_option("--bone", arguments->bone, "femur or tibia; default: by the name of the source")
+  sub->add_option("--bone", arguments->bone,
+                  "femur or tibia; default: of a mesh by its name, of a CT or a label map both")
       ->check(CLI::IsMember({"femur", "tibia"}));
-  sub->add_option("--side", arguments->side, "left or right; default: by the name of the source")
+  sub->add_option("--side", arguments->side,
+                  "left or right; default: by the name of the source, or by the fibula in a CT")
       ->check(CLI::IsMember({"left", "right"}));
   sub->add_option("--unit", arguments->unit, "Unit of a mesh's coordinates: mm, cm, m or in")
       ->check(CLI::IsMember({"mm", "cm", "m", "in"}));
   sub->add_option("--space", arguments->space,
                   "Axes of a mesh: lps or ras; default: as the file says, else lps")
       ->check(CLI::IsMember({"lps", "ras"}, CLI::ignore_case));
-  sub->add_option("--label", arguments->labels, "Labels of a label map, as in femur=5,tibia=6");
+  sub->add_option("--label", arguments->labels,
+                  "Labels of a label map, as in femur=5,tibia=6; default: by the names of its segments");
   sub->add_option("--threshold", arguments->threshold,
-                  "Least value of bone in a grey volume; default for CT: 250 HU");
+                  "Least value of bone in a grey volume; default for CT: 250 HU, 180 HU for coarse voxels");
   sub->add_option("--series", arguments->series, "Series number or UID, for DICOM with several");
   sub->add_option("--name", arguments->name, "Name of the case; default: \"Knee\" and the date");
   sub->add_option("--memory-limit-gib", arguments->memory_limit_gib,

@@ -22,6 +22,10 @@ fs::path without_slash(const fs::path& folder) {
   return folder.has_filename() ? folder : folder.parent_path();
 }
 
+[[noreturn]] void refuse_unknown_side(const fs::path& source) {
+  throw InvalidInput(source, "", "its name does not say which knee it is: add --side left or --side right");
+}
+
 cases::Case case_to_extend(const fs::path& folder, const BoneImport& import, const std::string& name,
                            const fs::path& source) {
   if (fs::exists(folder / "case.json")) {
@@ -38,9 +42,7 @@ cases::Case case_to_extend(const fs::path& folder, const BoneImport& import, con
   if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder))) {
     throw InvalidInput(folder, "", "exists and is not a case: nothing was written");
   }
-  if (!import.side) {
-    throw InvalidInput(source, "", "its name does not say which knee it is: add --side left or --side right");
-  }
+  if (!import.side) refuse_unknown_side(source);
   cases::Case created;
   // Not by the source's or the folder's name: it often is the patient's.
   created.name = name.empty() ? files::utc_now_as("Knee %Y-%m-%d") : name;
@@ -135,6 +137,13 @@ void save_new(const fs::path& folder, cases::Case& contents, const BoneImport& i
 }
 
 }  // namespace
+
+void refuse_missing_side(const fs::path& folder, const fs::path& source, const BoneImportOptions& options) {
+  if (options.side || side_in_name(source) || fs::exists(folder / "case.json") || !fs::exists(source)) return;
+  const bool is_mesh = bones::is_mesh_file(source) && !fs::is_directory(source);
+  const bool says_kind = options.kind || bone_kind_in_name(source);  // else that is asked for first
+  if (!options.labels.empty() || (is_mesh && says_kind)) refuse_unknown_side(source);
+}
 
 cases::Case add_to_case(const fs::path& folder, const BoneImport& import, const std::string& name,
                         const fs::path& source) {

@@ -9,6 +9,11 @@
 
 namespace arthronaut::importing {
 
+// Throws InvalidInput when add_to_case() will need a side that nothing can say: before the import's work, not
+// after it. A volume may still show it by its fibula.
+void refuse_missing_side(const std::filesystem::path& folder, const std::filesystem::path& source,
+                         const BoneImportOptions& options);
+
 // Writes the case with these bones into `folder`, and returns it. `name` becomes the case's name; empty:
 // "Knee" and the date, or the one it has. `source` is for messages.
 //
