@@ -222,11 +222,13 @@ std::vector<std::string> anatomy_doubts(const geometry::TriangleMesh& mesh, Bone
   if (size.y() > kMostDepth_mm && size.y() > kLyingDown * size.z())
     return {wrong_axes(kind, "forwards or backwards")};
   if (size.x() > kMostWidth_mm && size.x() > kLyingDown * size.z()) return {wrong_axes(kind, "sideways")};
-  // The shaft's cut end tells how a bone lies, whatever shape the rest has that way.
+  const std::string amiss = amiss_along(mesh, kind, Vector3d::UnitZ());
+  if (amiss.empty()) return {};
+  // The shaft's cut end tells how a bone lies, whatever shape the rest has that way. Not asked of a bone that
+  // fits upright: the end of a volume may have cut it flat in front.
   constexpr double kLeastCap_mm2 = 350, kMostOtherCap = 0.4;
   const double sign = kind == BoneKind::Femur ? 1 : -1;
   const double expected = cap_area_mm2(mesh, sign * Vector3d::UnitZ());
-  const std::string amiss = amiss_along(mesh, kind, Vector3d::UnitZ());
   for (const Direction& side : sideways()) {
     const double cap = cap_area_mm2(mesh, side.axis);
     if (cap > kLeastCap_mm2 && expected < kMostOtherCap * cap &&
