@@ -16,6 +16,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kLeastSpan_mm = 5.0;
+constexpr double kRounding_mm = 1e-6;  // a vertex on the edge counts alike however the bone lies
 
 std::optional<Vector3d> find(const Landmarks& landmarks, const char* name) {
   const auto found = landmarks.find(name);
@@ -52,7 +53,7 @@ Extents extents_of(const geometry::TriangleMesh& femur, const Landmarks& landmar
   }
   for (const Vector3d& vertex : femur.vertices_mm) {
     const Vector3d from_roof = vertex - front;
-    if (from_roof.dot(quadrant.lateral) <= 0 || from_roof.dot(quadrant.low) < 0) continue;
+    if (from_roof.dot(quadrant.lateral) < kRounding_mm || from_roof.dot(quadrant.low) < -kRounding_mm) continue;
     extents.deep = std::min(extents.deep, from_roof.dot(quadrant.shallow));
     extents.shallow = std::max(extents.shallow, from_roof.dot(quadrant.shallow));
     extents.low = std::max(extents.low, from_roof.dot(quadrant.low));
@@ -79,9 +80,10 @@ std::optional<FemoralQuadrant> femoral_quadrant(const geometry::TriangleMesh& fe
   if (!front || !back || (*front - *back).norm() < kLeastSpan_mm) return std::nullopt;
   FemoralQuadrant quadrant;
   const Vector3d scanner = side == bones::Side::Right ? Vector3d(-Vector3d::UnitX()) : Vector3d::UnitX();
-  quadrant.lateral = condylar_line(landmarks).value_or(scanner);
-  // The grid lies in the view's plane: Blumensaat's line as the view shows it.
   const Vector3d roof = *front - *back;
+  const Vector3d along = roof.normalized();
+  quadrant.lateral = condylar_line(landmarks).value_or((scanner - scanner.dot(along) * along).normalized());
+  // The grid lies in the view's plane: Blumensaat's line as the view shows it.
   const Vector3d in_view = roof - roof.dot(quadrant.lateral) * quadrant.lateral;
   if (in_view.norm() < kLeastSpan_mm) return std::nullopt;
   quadrant.shallow = in_view.normalized();

@@ -22,6 +22,12 @@ std::string_view to_text(RoofShape shape) {
 }
 
 Proposal propose(const geometry::TriangleMesh& mesh, bones::BoneKind bone, const ProposalOptions& options) {
+  if (mesh.empty() || !(geometry::surface_area_mm2(mesh) > 0)) {
+    Proposal nothing;
+    nothing.outcome = Proposal::Outcome::NotThisBone;
+    nothing.reason = "the surface is empty";
+    return nothing;
+  }
   Proposal proposal = bone == bones::BoneKind::Femur ? propose_femur(mesh, options) : propose_tibia(mesh, options);
   if (proposal.is_usable() && options.side && proposal.side_by_shape && *options.side != *proposal.side_by_shape) {
     proposal.doubts.push_back("by its shape the " + std::string(bones::to_text(bone)) + " is a " +

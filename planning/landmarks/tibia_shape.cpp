@@ -217,6 +217,12 @@ Proposal propose_tibia(const geometry::TriangleMesh& mesh, const ProposalOptions
     proposal.reason = "the plateau has no rim";
     return proposal;
   }
+  if (!eminence(*shape, 1) && !eminence(*shape, -1)) {
+    proposal.landmarks.clear();
+    proposal.side_by_shape.reset();
+    proposal.reason = "between the halves of its joint's end stand no eminences";
+    return proposal;
+  }
   proposal.outcome = Proposal::Outcome::Proposed;
   proposal.axes = {AnatomicalAxes::Origin::FromLandmarks, axes.col(1), axes.col(2), lateral * axes.col(0)};
   put("lateral_eminence", eminence(*shape, lateral));

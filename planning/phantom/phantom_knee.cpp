@@ -72,9 +72,9 @@ Landmarks femur_landmarks(const FemurShape& shape, const AnatomicalBone& femur) 
   marks["blumensaat_anterior"] = on_roof(2 * scale);
   marks["notch_apex"] = on_roof(14 * scale);
   marks["blumensaat_posterior"] = on_roof(26 * scale);
-  // The grid is the one that plans are judged by. In this frame the lateral side is that of a left knee in
-  // LPS, and the wall is met from the middle of the notch.
-  const auto quadrant = landmarks::femoral_quadrant(femur.mesh, marks, bones::Side::Left);
+  // The grid is the one that plans are judged by. Lateral, anterior and superior are right-handed in this frame, as
+  // in a right knee, and the wall is met from the middle of the notch.
+  const auto quadrant = landmarks::femoral_quadrant(femur.mesh, marks, bones::Side::Right);
   if (!quadrant) throw std::logic_error("phantom: no quadrant on the femur");
   const Vector3d in_notch =
       quadrant->point_at({.deep_shallow = kFemurDeepShallow, .high_low = kFemurHighLow});

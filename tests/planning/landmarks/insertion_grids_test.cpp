@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "planning/geometry/rigid_transform.h"
 #include "tests/planning/geometry/shapes.h"
 
@@ -72,9 +74,17 @@ TEST(TibialGrid, ReadsSharesFromAbove) {
                         {"plateau_lateral", {-38, 1, 2}}};
   const auto grid = tibial_grid(marks);
   ASSERT_TRUE(grid);
-  const auto percent = grid->percent_of({38 - 0.47 * 76, -25 + 0.41 * 50, 17});
+  // Heights along the view do not enter; the view leans 8 degrees against what is at right angles to the edges.
+  const auto percent = grid->percent_of(
+      grid->point_at({.anterior_posterior = 41, .medial_lateral = 47}) + 17 * grid->up);
   EXPECT_NEAR(percent.anterior_posterior, 41, 1e-9);
   EXPECT_NEAR(percent.medial_lateral, 47, 1e-9);
+  const Vector3d across = (marks.at("plateau_lateral") - marks.at("plateau_medial")).normalized();
+  const Vector3d along = marks.at("plateau_posterior") - marks.at("plateau_anterior");
+  const Vector3d normal = across.cross(along - along.dot(across) * across).normalized();
+  EXPECT_NEAR(std::abs(normal.dot(grid->up)), std::cos(geometry::rad_from_deg(8)), 1e-9);
+  EXPECT_NEAR(grid->percent_of(marks.at("plateau_posterior")).anterior_posterior, 100, 1e-9);
+  EXPECT_NEAR(grid->percent_of(marks.at("plateau_lateral")).medial_lateral, 100, 1e-9);
   EXPECT_FALSE(tibial_grid({}));
 }
 

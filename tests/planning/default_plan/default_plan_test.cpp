@@ -1,0 +1,91 @@
+#include "planning/default_plan/default_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "planning/geometry/error.h"
+#include "planning/phantom/phantom_knee.h"
+
+namespace arthronaut::default_plan {
+namespace {
+
+using bones::BoneKind;
+using bones::Side;
+using Eigen::Vector3d;
+
+struct Knee {
+  phantom::PhantomKnee made;
+  geometry::Surface femur, tibia;
+  explicit Knee(Side side)
+      : made(phantom::make_phantom_knee({.side = side, .edge_length_mm = 1.5})), femur(made.femur.mesh), tibia(made.tibia.mesh) {}
+  [[nodiscard]] std::vector<BoneInput> inputs(bool with_landmarks) const {
+    auto of_femur = made.femur_landmarks, of_tibia = made.tibia_landmarks;
+    of_femur.erase("native_footprint");
+    of_tibia.erase("native_footprint");
+    if (!with_landmarks) of_femur.clear(), of_tibia.clear();
+    return {{.bone = &made.femur, .surface = &femur, .landmarks = of_femur, .states = {}},
+            {.bone = &made.tibia, .surface = &tibia, .landmarks = of_tibia, .states = {}}};
+  }
+};
+
+// A drill comes to the femur from the front, below and medially and leaves on the lateral side; to the tibia it goes down,
+// forwards and medially. In the phantom's frame: lateral is -x on the right, anterior -y, proximal z.
+TEST(DefaultPlan, AimsAsADrillCanFollow) {
+  for (const Side side : {Side::Left, Side::Right}) {
+    const Knee knee(side);
+    const double lateral = side == Side::Right ? -1 : 1;
+    const auto plan = plan_knee(knee.inputs(true), side);
+    const auto& femur = plan.at(BoneKind::Femur);
+    ASSERT_TRUE(femur.is_usable()) << femur.message;
+    EXPECT_TRUE(femur.doubts.empty()) << femur.doubts[0];
+    EXPECT_GT(lateral * femur.tunnel.direction.x(), 0.4);
+    EXPECT_LT(femur.tunnel.direction.y(), -0.2);
+    EXPECT_GT(femur.tunnel.direction.z(), 0.2);
+    const auto of_femur = tunnels::measure(femur.tunnel, knee.femur);
+    EXPECT_GT(of_femur.length_mm, 29);
+    EXPECT_GT(of_femur.wall_mm, 1);
+    const auto& tibia = plan.at(BoneKind::Tibia);
+    ASSERT_TRUE(tibia.is_usable()) << tibia.message;
+    EXPECT_LT(lateral * tibia.tunnel.direction.x(), -0.1);
+    EXPECT_LT(tibia.tunnel.direction.y(), -0.2);
+    EXPECT_LT(tibia.tunnel.direction.z(), -0.6);
+    EXPECT_GT(tunnels::measure(tibia.tunnel, knee.tibia).length_mm, 30);
+    // Entries are near to where the ligament was: 28/35 % there, the norm's 36/30 % here, of a grid of 52 by 30 mm.
+    EXPECT_LT((femur.tunnel.entry_mm - knee.made.femur_landmarks.at("native_footprint")).norm(), 6);
+    EXPECT_LT((tibia.tunnel.entry_mm - knee.made.tibia_landmarks.at("native_footprint")).norm(), 3);
+  }
+}
+
+// Without landmarks they are proposed, and that is a doubt which names them.
+TEST(DefaultPlan, SaysThatNobodyHasConfirmedItsLandmarks) {
+  const Knee knee(Side::Right);
+  for (const auto& [kind, tunnel] : plan_knee(knee.inputs(false), Side::Right)) {
+    ASSERT_TRUE(tunnel.is_usable()) << tunnel.message;
+    ASSERT_FALSE(tunnel.doubts.empty());
+    EXPECT_NE(tunnel.doubts[0].find(kind == BoneKind::Femur ? "blumensaat_anterior" : "plateau_medial"), std::string::npos);
+  }
+}
+
+// A native footprint that a person marked is better than any norm, for the whole ligament.
+TEST(DefaultPlan, EntersAtTheMarkedNativeFootprint) {
+  const Knee knee(Side::Right);
+  auto inputs = knee.inputs(true);
+  inputs[0].landmarks = knee.made.femur_landmarks;
+  const auto single = plan_bone(inputs[0], Side::Right);
+  ASSERT_TRUE(single.is_usable());
+  EXPECT_LT((single.tunnel.entry_mm - knee.made.femur_landmarks.at("native_footprint")).norm(), 1e-6);
+  const auto am = plan_bone(inputs[0], Side::Right, {.bundle = norms::Bundle::Anteromedial, .diameter_mm = 6});
+  const auto pl = plan_bone(inputs[0], Side::Right, {.bundle = norms::Bundle::Posterolateral, .diameter_mm = 6});
+  ASSERT_TRUE(am.is_usable() && pl.is_usable());
+  EXPECT_GT((am.tunnel.entry_mm - pl.tunnel.entry_mm).norm(), 5);
+}
+
+TEST(DefaultPlan, RefusesOptionsOutOfRange) {
+  const Knee knee(Side::Right);
+  EXPECT_THROW((void)plan_bone(knee.inputs(true)[0], Side::Right, {.diameter_mm = 20}), InvalidInput);
+  EXPECT_THROW((void)plan_bone(knee.inputs(true)[0], Side::Right, {.flexion_deg = 60}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace arthronaut::default_plan

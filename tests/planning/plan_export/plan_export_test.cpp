@@ -1,0 +1,119 @@
+#include "planning/plan_export/plan_export.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "planning/bones/mesh_file.h"
+#include "planning/bones/mesh_repair.h"
+#include "planning/files/atomic_file.h"
+#include "planning/files/csv_table.h"
+#include "planning/geometry/error.h"
+#include "planning/geometry/rigid_transform.h"
+#include "planning/phantom/phantom_case.h"
+#include "planning/phantom/phantom_knee.h"
+#include "planning/plan_export/drilled_bone.h"
+#include "planning/plan_export/markups_file.h"
+#include "tests/planning/geometry/shapes.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::plan_export {
+namespace {
+
+using bones::BoneKind;
+using Eigen::Vector3d;
+
+cases::Case knee_case() {
+  const auto knee = phantom::make_phantom_knee({.edge_length_mm = 2});
+  cases::Case contents;
+  contents.name = "Knee";
+  contents.side = knee.side;
+  contents.bones = {{BoneKind::Femur, knee.femur}, {BoneKind::Tibia, knee.tibia}};
+  contents.landmarks = {{BoneKind::Femur, knee.femur_landmarks}, {BoneKind::Tibia, knee.tibia_landmarks}};
+  contents.plan.tunnels = {{BoneKind::Femur, knee.femoral_tunnel}, {BoneKind::Tibia, knee.tibial_tunnel}};
+  cases::name_meshes(contents);
+  return contents;
+}
+
+// A hole of 8 mm through a slab of 20 mm takes away pi 4^2 20 mm^3; the drill has the circle's area.
+TEST(DrilledBone, TakesACylinderOutOfASlab) {
+  const auto slab = test::box({30, 30, 10});
+  const tunnels::Tunnel tunnel{BoneKind::Femur, {0.3, -0.2, 10}, -Vector3d::UnitZ(), 8};
+  const auto drilled = drill(slab, tunnel);
+  ASSERT_TRUE(drilled.is_usable()) << drilled.reason;
+  const double removed = geometry::signed_volume_mm3(slab) - geometry::signed_volume_mm3(drilled.mesh);
+  EXPECT_NEAR(removed, geometry::kPi * 16 * 20, 0.01);
+  EXPECT_TRUE(bones::mend_mesh(drilled.mesh).report.is_closed);
+  EXPECT_EQ(drill(slab, {BoneKind::Femur, {0, 0, 60}, Vector3d::UnitZ(), 8}).outcome,
+            DrilledBone::Outcome::MissesTheBone);
+  auto open = slab;
+  open.triangles.pop_back();
+  EXPECT_EQ(drill(open, tunnel).outcome, DrilledBone::Outcome::BrokenSurface);
+}
+
+TEST(PlanExport, WritesWhatIsReadBackTheSame) {
+  const test::TemporaryFolder folder;
+  const auto knee = knee_case();
+  const auto summary = export_plan(knee, folder.path() / "out");
+  EXPECT_TRUE(summary.doubts.empty()) << summary.doubts[0];
+  ASSERT_EQ(summary.files.size(), 5u);
+  for (const auto& file : summary.files) EXPECT_TRUE(std::filesystem::exists(file)) << file;
+  const auto table = files::CsvTable::read(summary.files[1], {"bone", "entry_x_mm", "length_mm", "wall_mm"});
+  EXPECT_EQ(table.row_count(), 2u);
+  const auto markups = read_markups(summary.files[2]);
+  for (const auto& [kind, tunnel] : knee.plan.tunnels) {
+    EXPECT_LT((markups.tunnels.at(kind).entry_mm - tunnel.entry_mm).norm(), 1e-9);
+    EXPECT_LT((markups.tunnels.at(kind).direction - tunnel.direction).norm(), 1e-6);
+    EXPECT_NEAR(markups.tunnels.at(kind).diameter_mm, tunnel.diameter_mm, 1e-3);
+    EXPECT_EQ(markups.landmarks.at(kind).size(), knee.landmarks.at(kind).size());
+  }
+  // Less bone than before, by about the tunnel.
+  const auto femur = bones::read_mesh(folder.path() / "out" / "femur_drilled.stl");
+  const auto& tunnel = knee.plan.tunnels.at(BoneKind::Femur);
+  const double length = tunnels::measure(tunnel, geometry::Surface(knee.bones.at(BoneKind::Femur).mesh)).length_mm;
+  const double removed = geometry::signed_volume_mm3(knee.bones.at(BoneKind::Femur).mesh) - geometry::signed_volume_mm3(femur);
+  EXPECT_NEAR(removed / (geometry::kPi * std::pow(tunnel.diameter_mm / 2, 2) * length), 1, 0.15);  // mouths slant
+}
+
+TEST(PlanExport, RefusesAnEmptyPlan) {
+  const test::TemporaryFolder folder;
+  auto knee = knee_case();
+  knee.plan.tunnels.clear();
+  EXPECT_THROW((void)export_plan(knee, folder.path() / "out"), InvalidInput);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+// 3D Slicer may hand back RAS; anything else is refused with the place.
+TEST(Markups, ReadRasAndRefuseTheRest) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "plan.mrk.json";
+  const auto with = [&](const std::string& system, const std::string& unit, const std::string& second) {
+    files::write_atomically(file, R"({"markups":[{"type":"Line","name":"femur tunnel","coordinateSystem":")" + system +
+                                      R"(","coordinateUnits":")" + unit +
+                                      R"(","controlPoints":[{"position":[1,2,3]},{"position":)" + second + "}]}]}");
+  };
+  with("RAS", "mm", "[1,2,33]");
+  const auto plan = read_markups(file);
+  EXPECT_EQ(plan.tunnels.at(BoneKind::Femur).entry_mm, Vector3d(-1, -2, 3));
+  EXPECT_EQ(plan.tunnels.at(BoneKind::Femur).direction, Vector3d(0, 0, 1));
+  for (const auto& [system, unit, second] : {std::array<const char*, 3>{"XYZ", "mm", "[1,2,33]"},
+                                             {"LPS", "cm", "[1,2,33]"},
+                                             {"LPS", "mm", "[1,2]"},
+                                             {"LPS", "mm", "[1,2,\"3\"]"},
+                                             {"LPS", "mm", "[1,2,3]"}}) {
+    with(system, unit, second);
+    try {
+      (void)read_markups(file);
+      ADD_FAILURE() << system << unit << second;
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find("plan.mrk.json: markups[0]"), std::string::npos) << error.what();
+    }
+  }
+  files::write_atomically(file, "{\"markups\": 3}");
+  EXPECT_THROW((void)read_markups(file), InvalidInput);
+  EXPECT_THROW((void)read_markups(folder.path() / "none.mrk.json"), IoError);
+}
+
+}  // namespace
+}  // namespace arthronaut::plan_export
