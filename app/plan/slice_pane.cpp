@@ -114,6 +114,7 @@ SliceEvent SlicePane::follow_mouse(const widgets::Rect& rect, const SliceContent
   if (event.is_hovered) event.value = scene::value_at(*content.volume, under_mouse);
   if (ImGui::IsItemActivated()) {
     press_travel_px_ = 0;
+    pressed_mm_ = under_mouse;
     press_measures_ = content.measures && ImGui::IsMouseDown(ImGuiMouseButton_Left);
   }
   if (ImGui::IsItemActive()) {
@@ -131,7 +132,7 @@ SliceEvent SlicePane::follow_mouse(const widgets::Rect& rect, const SliceContent
       event.cross_mm = under_mouse;
     }
   }
-  if (ImGui::IsItemDeactivated() && press_measures_ && press_travel_px_ < 5) event.measured_mm = under_mouse;
+  if (ImGui::IsItemDeactivated() && press_measures_ && press_travel_px_ < 5) event.measured_mm = pressed_mm_;
   if (event.is_hovered && io.MouseWheel != 0) {
     if (io.KeyCtrl) {  // what is under the mouse stays there
       const double zoom = std::clamp(mm_per_px_ * std::pow(0.88, io.MouseWheel), 0.01, 5.0);

@@ -37,6 +37,7 @@ PaneInput ScenePane::draw(const Ui& ui, const char* name, const Rect& rect,
   const bool left = ImGui::IsMouseDown(ImGuiMouseButton_Left);
   if (ImGui::IsItemActivated()) {
     press_travel_px_ = 0;
+    press_px_ = input.mouse_px;
     drags_handle_ = left && is_handle && is_handle(input.mouse_px);
     input.handle_pressed = drags_handle_;
   }
@@ -49,6 +50,8 @@ PaneInput ScenePane::draw(const Ui& ui, const char* name, const Rect& rect,
     input.was_clicked = !drags_handle_ && press_travel_px_ < kClickTravel_px && input.is_hovered &&
                         ImGui::IsMouseReleased(ImGuiMouseButton_Left);
     drags_handle_ = false;
+    // A slow frame sees the button let go where the mouse has gone since.
+    if (input.was_clicked) input.mouse_px = press_px_;
   }
   follow_mouse(input);
   ui.log.note(name, rect.min(), rect.max());

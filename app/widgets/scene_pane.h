@@ -15,7 +15,7 @@ struct PaneInput {
   bool is_hovered = false;
   Eigen::Vector2d mouse_px = Eigen::Vector2d::Zero();
   Eigen::Vector2d size_px = Eigen::Vector2d::Ones();
-  bool was_clicked = false;     // pressed and let go in one place
+  bool was_clicked = false;     // pressed and let go in one place, which mouse_px then is
   bool handle_pressed = false;  // pressed on a handle, see below
   bool handle_dragged = false;
   bool handle_released = false;
@@ -43,6 +43,7 @@ class ScenePane {
   scene::SceneCamera camera_, drawn_camera_;
   bool drags_handle_ = false, changed_ = true;
   float press_travel_px_ = 0;
+  Eigen::Vector2d press_px_ = Eigen::Vector2d::Zero();
   double changed_at_s_ = 0;
 };
 

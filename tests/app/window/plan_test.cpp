@@ -132,7 +132,11 @@ TEST_F(PlanWindow, SlicesAreScrolledWindowedAndMeasuredIn) {
   volume.lps_from_index.translation() = Eigen::Vector3d(-75, -75, -75);
   for (int i = 0; i < 60 * 60 * 60; ++i) volume.values.push_back(static_cast<float>(i % 60 * 20));
   cases::save_case(folder, knee);
-  knee.images.emplace_back();
+  knee.images.push_back({.file = "",
+                         .modality = volume.modality,
+                         .source = "NRRD",
+                         .size = volume.size,
+                         .spacing_mm = volume.spacing_mm()});
   cases::store_image(folder, 1, images::encoded(volume), knee.images.back());
   cases::save_case(folder, knee);
   const VirtualDisplay display(1280, 720);
@@ -162,7 +166,7 @@ TEST_F(PlanWindow, SlicesAreScrolledWindowedAndMeasuredIn) {
   ASSERT_TRUE(app.wait_for_state("undo", "Measure a distance"));
   const auto measured = cases::load_measurements(folder);
   ASSERT_EQ(measured.size(), 1U);
-  EXPECT_EQ(app.state("measured"), measured[0].in_words());
+  EXPECT_TRUE(app.wait_for_state("measured", measured[0].in_words()));
   EXPECT_GT(measured[0].distance_mm(), 10);
   EXPECT_NEAR(measured[0].points_mm[0].z(), measured[0].points_mm[1].z(), 1e-9)
       << "both lie in the axial slice";
