@@ -14,6 +14,7 @@
 
 #include "planning/geometry/error.h"
 #include "planning/geometry/triangle_distance.h"
+#include "planning/geometry/triangle_tree.h"
 
 namespace arthronaut::geometry {
 
@@ -36,6 +37,7 @@ struct Surface::Tree {
   std::vector<std::int32_t> mesh_triangle;  // index in the mesh given
   TriangleMesh merged;  // without degenerate triangles; points of the same place share an index
   std::optional<PseudoNormals> normals;  // of merged
+  std::optional<TriangleTree> boxes;     // of merged
   AabbTree aabb;
 
   void add_triangles(const TriangleMesh& mesh);
@@ -84,6 +86,7 @@ void Surface::Tree::add_triangles(const TriangleMesh& mesh) {
   }
   if (triangles.empty()) throw InvalidInput("mesh: holds no triangle with an area");
   normals.emplace(merged);
+  boxes.emplace(merged);
 }
 
 std::pair<NearestOnTriangle, std::size_t> Surface::Tree::closest(const Eigen::Vector3d& query) const {
@@ -146,6 +149,17 @@ std::vector<RayHit> Surface::all_hits(const Eigen::Vector3d& origin_mm,
   };
   hits.erase(std::unique(hits.begin(), hits.end(), is_same_crossing), hits.end());
   return hits;
+}
+
+const TriangleMesh& Surface::mesh() const { return tree_->merged; }
+
+const Eigen::Vector3d& Surface::normal(std::int32_t triangle) const {
+  return tree_->normal(static_cast<std::size_t>(triangle));
+}
+
+void Surface::triangles_near(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm, double radius_mm,
+                             std::vector<std::int32_t>& found) const {
+  tree_->boxes->near_segment(from_mm, to_mm, radius_mm, found);
 }
 
 std::optional<RayHit> Surface::first_hit(const Eigen::Vector3d& origin_mm,

@@ -1,5 +1,6 @@
-// Exact queries against a triangle mesh: nearest point, rays, inside or outside. Built once (a CGAL AABB
-// tree), then read by any number of threads.
+// Exact queries against a triangle mesh: nearest point, rays, inside or outside; and the triangles near a
+// line. Built once (a CGAL AABB tree, and a tree of boxes), then read by any number of threads: whoever asks
+// often keeps it for as long as the bone.
 #pragma once
 
 #include <memory>
@@ -37,6 +38,16 @@ class Surface {
                                                 const Eigen::Vector3d& direction) const;
   [[nodiscard]] std::vector<RayHit> all_hits(const Eigen::Vector3d& origin_mm,
                                              const Eigen::Vector3d& direction) const;
+
+  // What all of this is asked of: the mesh given, without its degenerate triangles, with one vertex where
+  // several lay in the same place. RayHit::triangle and SurfacePoint::triangle are of the mesh given, not of
+  // this one.
+  [[nodiscard]] const TriangleMesh& mesh() const;
+  // Unit, of a triangle of mesh().
+  [[nodiscard]] const Eigen::Vector3d& normal(std::int32_t triangle) const;
+  // Appends the triangles of mesh() near a segment, as TriangleTree::near_segment does.
+  void triangles_near(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm, double radius_mm,
+                      std::vector<std::int32_t>& found) const;
 
  private:
   struct Tree;

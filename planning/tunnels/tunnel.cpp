@@ -2,27 +2,45 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "planning/tunnels/axis_view.h"
+#include "planning/tunnels/tunnel_wall.h"
 
 namespace arthronaut::tunnels {
 
 namespace {
 
 constexpr double kEntrySearchMm = 5.0;
-constexpr double kWallStepMm = 0.5;
 
-// Bone beside the tunnel. Within a diameter of either mouth the nearest surface is the mouth itself: those
-// stretches are left out, and of a very short tunnel only the middle is looked at.
-double least_wall_mm(const Tunnel& tunnel, const Eigen::Vector3d& entry_mm, double length_mm,
-                     const geometry::Surface& bone) {
-  const double margin = std::min(tunnel.diameter_mm, 0.5 * length_mm);
-  double least = std::numeric_limits<double>::infinity();
-  for (double s = margin; s <= length_mm - margin + 1e-9; s += kWallStepMm) {
-    const Eigen::Vector3d axis_point = entry_mm + s * tunnel.direction;
-    const double to_surface = (bone.closest_point(axis_point).point_mm - axis_point).norm();
-    least = std::min(least, to_surface - 0.5 * tunnel.diameter_mm);
+// The mouths and the wall. Most walls are thin: what lies further off is asked for only where nothing is
+// near.
+void measure_sides(const Tunnel& tunnel, const geometry::Surface& bone, TunnelGeometry& result) {
+  const double rim_mm = rim_reach_mm(tunnel.diameter_mm), radius_mm = 0.5 * tunnel.diameter_mm;
+  const double whole_mm = geometry::bounds_of(bone.mesh()).size_mm().norm();
+  bool has_mouths = false;
+  for (const double reach_mm : {radius_mm + 5, radius_mm + 20, whole_mm}) {
+    const AxisView view(bone, result.entry_on_surface_mm, tunnel.direction, -rim_mm,
+                        result.length_mm + rim_mm, reach_mm);
+    if (!has_mouths) {
+      result.entry = mouth_at(view, 0, tunnel.diameter_mm, true);
+      result.exit = mouth_at(view, result.length_mm, tunnel.diameter_mm, false);
+      has_mouths = true;
+    }
+    const TunnelWall wall = thinnest_wall(view, {.length_mm = result.length_mm,
+                                                 .diameter_mm = tunnel.diameter_mm,
+                                                 .direction = tunnel.direction,
+                                                 .entry = result.entry,
+                                                 .exit = result.exit});
+    result.wall_mm = whole_mm;
+    result.thinnest_mm = result.exit_mm;
+    result.thinnest_station_mm = result.length_mm;
+    // What lies further than the view reaches is not the nearest for sure.
+    if (!wall.is_known || (wall.thickness_mm + radius_mm > reach_mm && reach_mm < whole_mm)) continue;
+    result.wall_mm = wall.thickness_mm;
+    result.thinnest_mm = wall.at_mm;
+    result.thinnest_station_mm = wall.station_mm;
+    return;
   }
-  return least;
 }
 
 }  // namespace
@@ -45,7 +63,7 @@ TunnelGeometry measure(const Tunnel& tunnel, const geometry::Surface& bone) {
   result.entry_on_surface_mm = entry->point_mm;
   result.exit_mm = exit->point_mm;
   result.length_mm = exit->distance_mm - entry->distance_mm;
-  result.wall_mm = least_wall_mm(tunnel, entry->point_mm, result.length_mm, bone);
+  measure_sides(tunnel, bone, result);
   return result;
 }
 

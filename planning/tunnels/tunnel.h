@@ -6,6 +6,7 @@
 
 #include "planning/bones/bone.h"
 #include "planning/geometry/surface.h"
+#include "planning/tunnels/tunnel_mouth.h"
 
 namespace arthronaut::tunnels {
 
@@ -21,10 +22,14 @@ struct TunnelGeometry {
   Eigen::Vector3d entry_on_surface_mm;  // where the axis enters the bone, within 5 mm of the planned entry
   Eigen::Vector3d exit_mm;              // where the axis leaves the bone
   double length_mm = 0;                 // inside bone, along the axis
-  double wall_mm = 0;  // least bone between the tunnel's side and the surface, beyond the entry
+  double wall_mm = 0;                   // the least bone beside the tunnel, mouth to mouth: see tunnel_wall.h
+  Eigen::Vector3d thinnest_mm = Eigen::Vector3d::Zero();  // on the bone's surface, where it is that thin
+  double thinnest_station_mm = 0;                         // along the axis, from the entry
+  TunnelMouth entry = {}, exit = {};
 };
 
-// Never throws: a tunnel that misses the bone gives enters_bone == false.
+// Never throws: a tunnel that misses the bone gives enters_bone == false. Keep the Surface for as long as the
+// bone: it is the index that makes this a matter of milliseconds.
 [[nodiscard]] TunnelGeometry measure(const Tunnel& tunnel, const geometry::Surface& bone);
 
 }  // namespace arthronaut::tunnels

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <map>
+#include <vector>
 
 #include "planning/geometry/rigid_transform.h"
 #include "planning/geometry/triangle_mesh.h"
@@ -59,6 +60,44 @@ inline geometry::TriangleMesh ellipsoid(const Eigen::Vector3d& radii_mm, int rou
     mesh.triangles = std::move(finer);
   }
   for (auto& v : mesh.vertices_mm) v = center_mm + v.normalized().cwiseProduct(radii_mm);
+  return mesh;
+}
+
+// A profile (y, z), counter-clockwise seen from +x and star-shaped about `star`, drawn out along x. Outward.
+inline geometry::TriangleMesh prism(const std::vector<Eigen::Vector2d>& profile_mm, double half_length_mm,
+                                    const Eigen::Vector2d& star_mm) {
+  geometry::TriangleMesh mesh;
+  const auto count = static_cast<std::int32_t>(profile_mm.size());
+  for (const double x : {-half_length_mm, half_length_mm}) {
+    for (const auto& p : profile_mm) mesh.vertices_mm.emplace_back(x, p.x(), p.y());
+  }
+  for (const double x : {-half_length_mm, half_length_mm})
+    mesh.vertices_mm.emplace_back(x, star_mm.x(), star_mm.y());
+  for (std::int32_t i = 0; i < count; ++i) {
+    const std::int32_t next = (i + 1) % count;
+    mesh.triangles.push_back({i, next, next + count});
+    mesh.triangles.push_back({i, next + count, i + count});
+    mesh.triangles.push_back({2 * count, next, i});
+    mesh.triangles.push_back({2 * count + 1, i + count, next + count});
+  }
+  return mesh;
+}
+
+// About z, its facets touching the radius from inside by radius * (1 - cos(pi / facets)). Outward.
+inline geometry::TriangleMesh cylinder(double radius_mm, double half_length_mm, int facets) {
+  std::vector<Eigen::Vector2d> circle;
+  for (int i = 0; i < facets; ++i) {
+    const double angle = 2 * geometry::kPi * i / facets;
+    circle.emplace_back(radius_mm * std::cos(angle), radius_mm * std::sin(angle));
+  }
+  auto mesh = prism(circle, half_length_mm, Eigen::Vector2d::Zero());
+  for (auto& v : mesh.vertices_mm) v = Eigen::Vector3d(v.y(), v.z(), v.x());
+  return mesh;
+}
+
+inline geometry::TriangleMesh moved(geometry::TriangleMesh mesh, const Eigen::Matrix3d& turn,
+                                    const Eigen::Vector3d& shift_mm) {
+  for (auto& v : mesh.vertices_mm) v = turn * v + shift_mm;
   return mesh;
 }
 

@@ -31,13 +31,13 @@ TEST(Aim, TiltsToFitTheLength) {
   EXPECT_EQ(aimed.entry_mm, straight.entry_mm);
 }
 
-// Near an edge the tunnel leans away from it, towards more bone.
+// Where bone narrows with depth the tunnel leans away from the narrowing side, towards more bone.
 TEST(Aim, LeansAwayFromAThinWall) {
-  const geometry::Surface slab(test::box({200, 30, 20}));
-  const Tunnel near_edge{.entry_mm = {0, 24, -20}, .direction = {0, 0, 1}};
-  const auto aimed = aim(near_edge, slab, {.least_length_mm = 30, .greatest_length_mm = 45});
+  const geometry::Surface wedge(test::prism({{30, -20}, {22, 20}, {-60, 20}, {-60, -20}}, 200, {-20, 0}));
+  const Tunnel near_side{.entry_mm = {0, 16.5, -20}, .direction = {0, 0, 1}};
+  const auto aimed = aim(near_side, wedge, {.least_length_mm = 36, .greatest_length_mm = 45});
   EXPECT_LT(aimed.direction.y(), -0.05);
-  EXPECT_GT(measure(aimed, slab).wall_mm, measure(near_edge, slab).wall_mm);
+  EXPECT_GT(measure(aimed, wedge).wall_mm, measure(near_side, wedge).wall_mm + 1);
 }
 
 // The custom is mirrored with the knee, and unit.

@@ -1,0 +1,103 @@
+#include "planning/geometry/triangle_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace arthronaut::geometry {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::int32_t kLeaf = 8;
+
+Bounds bounds_of(const TriangleMesh& mesh, std::int32_t triangle) {
+  const auto& corners = mesh.triangles[static_cast<std::size_t>(triangle)];
+  const auto at = [&](std::size_t k) -> const Vector3d& {
+    return mesh.vertices_mm[static_cast<std::size_t>(corners[k])];
+  };
+  return {at(0).cwiseMin(at(1)).cwiseMin(at(2)), at(0).cwiseMax(at(1)).cwiseMax(at(2))};
+}
+
+// Whether a segment meets a box widened by a radius: slab by slab.
+bool meets(const Vector3d& from, const Vector3d& along, double radius, const Vector3d& min,
+           const Vector3d& max) {
+  double enters = 0, leaves = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = min[axis] - radius - from[axis], high = max[axis] + radius - from[axis];
+    if (std::abs(along[axis]) < 1e-12) {
+      if (low > 0 || high < 0) return false;
+      continue;
+    }
+    const double a = low / along[axis], b = high / along[axis];
+    enters = std::max(enters, std::min(a, b));
+    leaves = std::min(leaves, std::max(a, b));
+    if (enters > leaves) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+TriangleTree::TriangleTree(const TriangleMesh& mesh) {
+  const auto count = static_cast<std::int32_t>(mesh.triangles.size());
+  if (count == 0) return;
+  std::vector<Vector3d> middles(mesh.triangles.size());
+  triangles_.resize(mesh.triangles.size());
+  for (std::int32_t t = 0; t < count; ++t) {
+    triangles_[static_cast<std::size_t>(t)] = t;
+    middles[static_cast<std::size_t>(t)] = bounds_of(mesh, t).center_mm();
+  }
+  nodes_.reserve(mesh.triangles.size() / 2);
+  build(mesh, middles, 0, count);
+  bounds_.reserve(mesh.triangles.size());
+  for (const std::int32_t t : triangles_) bounds_.push_back(bounds_of(mesh, t));
+}
+
+std::int32_t TriangleTree::build(const TriangleMesh& mesh, const std::vector<Vector3d>& middles,
+                                 std::int32_t begin, std::int32_t end) {
+  const auto index = static_cast<std::int32_t>(nodes_.size());
+  Bounds box = bounds_of(mesh, triangles_[static_cast<std::size_t>(begin)]);
+  for (std::int32_t i = begin + 1; i < end; ++i) {
+    const Bounds other = bounds_of(mesh, triangles_[static_cast<std::size_t>(i)]);
+    box = {box.min_mm.cwiseMin(other.min_mm), box.max_mm.cwiseMax(other.max_mm)};
+  }
+  nodes_.push_back({box.min_mm, box.max_mm, begin, end, 0});
+  if (end - begin <= kLeaf) return index;
+  Eigen::Index axis = 0;
+  box.size_mm().maxCoeff(&axis);
+  const std::int32_t half = begin + (end - begin) / 2;
+  std::nth_element(triangles_.begin() + begin, triangles_.begin() + half, triangles_.begin() + end,
+                   [&](std::int32_t a, std::int32_t b) {
+                     return middles[static_cast<std::size_t>(a)][axis] <
+                            middles[static_cast<std::size_t>(b)][axis];
+                   });
+  build(mesh, middles, begin, half);
+  nodes_[static_cast<std::size_t>(index)].further = build(mesh, middles, half, end);
+  return index;
+}
+
+void TriangleTree::near_segment(const Vector3d& from_mm, const Vector3d& to_mm, double radius_mm,
+                                std::vector<std::int32_t>& found) const {
+  if (nodes_.empty()) return;
+  const Vector3d along = to_mm - from_mm;
+  std::array<std::int32_t, 64> open{};  // deeper than any tree that halves 2^31 triangles
+  std::size_t count = 1;
+  while (count > 0) {
+    const std::int32_t index = open[--count];
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (!meets(from_mm, along, radius_mm, node.min_mm, node.max_mm)) continue;
+    if (node.further > 0) {
+      open[count++] = node.further;
+      open[count++] = index + 1;
+      continue;
+    }
+    for (auto i = static_cast<std::size_t>(node.begin); i < static_cast<std::size_t>(node.end); ++i) {
+      if (meets(from_mm, along, radius_mm, bounds_[i].min_mm, bounds_[i].max_mm))
+        found.push_back(triangles_[i]);
+    }
+  }
+}
+
+}  // namespace arthronaut::geometry
