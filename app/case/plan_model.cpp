@@ -43,15 +43,18 @@ PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
     if (bone.mesh.empty()) continue;
     const landmarks::AnatomicalAxes axes =
         landmarks::anatomical_axes(kind, knee_.side, landmarks_of(knee_, kind), bone.mesh);
-    bones_.emplace(
-        kind, BoneModel{scene::simplified(bone.mesh),
-                        std::make_shared<geometry::Surface>(bone.mesh),
-                        geometry::bounds_of(bone.mesh),
-                        joint_bounds_of(bone.mesh, kind, axes),
-                        axes,
-                        bones::mesh_sha256(bone.mesh),
-                        {},
-                        tunnels::surroundings_of(bone.mesh, kind, landmarks_of(knee_, kind), knee_.side)});
+    const auto surface = std::make_shared<geometry::Surface>(bone.mesh);
+    bones_.emplace(kind, BoneModel{scene::simplified(bone.mesh),
+                                   surface,
+                                   geometry::bounds_of(bone.mesh),
+                                   joint_bounds_of(bone.mesh, kind, axes),
+                                   axes,
+                                   bones::mesh_sha256(bone.mesh),
+                                   {},
+                                   tunnels::surroundings_of(bone.mesh, kind, landmarks_of(knee_, kind),
+                                                            knee_.side, surface)});
+    if (kind == bones::BoneKind::Femur)
+      knee_surroundings_ = tunnels::knee_surroundings_of(bone.mesh, bones_.at(kind).surroundings);
     if (knee_.plan.tunnels.contains(kind))
       knee_.plan.mesh_sha256.try_emplace(kind, bones_.at(kind).mesh_sha256);
     measure(kind);
@@ -73,6 +76,18 @@ std::vector<tunnels::PlanCheck> PlanModel::checks(bones::BoneKind kind) const {
   const auto planned = tunnel(kind);
   if (!planned) return {};
   auto checks = tunnels::check_plan(*planned, measured(kind), bones_.at(kind).surroundings);
+  const auto femoral = tunnel(bones::BoneKind::Femur), tibial = tunnel(bones::BoneKind::Tibia);
+  tunnels::KneePlan plan;
+  if (femoral && has_bone(bones::BoneKind::Femur)) {
+    plan.femoral = &*femoral;
+    plan.femoral_measured = &measured(bones::BoneKind::Femur);
+  }
+  if (tibial && has_bone(bones::BoneKind::Tibia)) {
+    plan.tibial = &*tibial;
+    plan.tibial_measured = &measured(bones::BoneKind::Tibia);
+  }
+  for (tunnels::PlanCheck& check : tunnels::check_knee(kind, plan, knee_surroundings_))
+    checks.push_back(std::move(check));
   if (const cases::PlanFit fit = plan_fit(kind); !fit.is_valid()) {
     checks.insert(checks.begin(), {.verdict = tunnels::PlanCheck::Verdict::Wrong,
                                    .name = "Bone",

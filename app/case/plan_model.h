@@ -18,6 +18,7 @@
 #include "planning/cases/measurements.h"
 #include "planning/geometry/surface.h"
 #include "planning/landmarks/anatomical_axes.h"
+#include "planning/tunnels/knee_checks.h"
 #include "planning/tunnels/plan_checks.h"
 
 namespace arthronaut::open_case {
@@ -43,7 +44,13 @@ class PlanModel {
   [[nodiscard]] std::optional<tunnels::Tunnel> tunnel(bones::BoneKind kind) const;
   [[nodiscard]] const tunnels::TunnelGeometry& measured(
       bones::BoneKind kind) const;  // meaningful with a tunnel
-  // Empty without a tunnel. That it was planned on another mesh is the first check, and a wrong one.
+  // Which way is anterior, proximal and lateral, and what else the checks know of the bone. Precondition:
+  // has_bone(kind).
+  [[nodiscard]] const tunnels::PlanSurroundings& surroundings(bones::BoneKind kind) const {
+    return bones_.at(kind).surroundings;
+  }
+  // Those of the bone and those of the whole knee that concern it. Empty without a tunnel. That it was
+  // planned on another mesh is the first check, and a wrong one.
   [[nodiscard]] std::vector<tunnels::PlanCheck> checks(bones::BoneKind kind) const;
   // Whether the bone's tunnel is of the bone's mesh: what is not valid must not be guided by.
   [[nodiscard]] cases::PlanFit plan_fit(bones::BoneKind kind) const;
@@ -88,6 +95,7 @@ class PlanModel {
   cases::Case knee_;
   std::map<bones::BoneKind, BoneModel> bones_;
   std::vector<cases::Measurement> measurements_;
+  tunnels::KneeSurroundings knee_surroundings_;
   std::uint64_t revision_ = 1;
 };
 

@@ -1,9 +1,12 @@
 #include "app/command_line/plan_report.h"
 
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
+#include "planning/tunnels/knee_checks.h"
 #include "planning/tunnels/plan_checks.h"
 
 namespace arthronaut::command_line {
@@ -12,13 +15,64 @@ namespace {
 
 using tunnels::PlanCheck;
 
+landmarks::Landmarks landmarks_of(const cases::Case& knee, bones::BoneKind kind) {
+  const auto found = knee.landmarks.find(kind);
+  return found == knee.landmarks.end() ? landmarks::Landmarks{} : found->second;
+}
+
+// The tunnel of the other bone, measured, for what concerns both.
+struct OtherTunnel {
+  std::optional<tunnels::Tunnel> tunnel;
+  tunnels::TunnelGeometry measured;
+};
+
+OtherTunnel other_tunnel(const cases::Case& knee, bones::BoneKind kind) {
+  const bones::BoneKind other =
+      kind == bones::BoneKind::Femur ? bones::BoneKind::Tibia : bones::BoneKind::Femur;
+  const auto planned = knee.plan.tunnels.find(other);
+  const auto bone = knee.bones.find(other);
+  if (planned == knee.plan.tunnels.end() || bone == knee.bones.end()) return {};
+  return {planned->second, tunnels::measure(planned->second, geometry::Surface(bone->second.mesh))};
+}
+
+tunnels::KneeSurroundings knee_surroundings_of(const cases::Case& knee) {
+  const auto femur = knee.bones.find(bones::BoneKind::Femur);
+  if (femur == knee.bones.end()) return {};
+  return tunnels::knee_surroundings_of(
+      femur->second.mesh, tunnels::surroundings_of(femur->second.mesh, bones::BoneKind::Femur,
+                                                   landmarks_of(knee, bones::BoneKind::Femur), knee.side));
+}
+
+// Those of the bone, then those of the whole knee that concern it.
 std::vector<PlanCheck> checks_of(const cases::Case& knee, const tunnels::Tunnel& tunnel,
                                  const tunnels::TunnelGeometry& measured) {
-  const auto marks = knee.landmarks.find(tunnel.bone);
-  const auto surroundings = tunnels::surroundings_of(
-      knee.bones.at(tunnel.bone).mesh, tunnel.bone,
-      marks == knee.landmarks.end() ? landmarks::Landmarks{} : marks->second, knee.side);
-  return tunnels::check_plan(tunnel, measured, surroundings);
+  const auto surroundings = tunnels::surroundings_of(knee.bones.at(tunnel.bone).mesh, tunnel.bone,
+                                                     landmarks_of(knee, tunnel.bone), knee.side);
+  auto checks = tunnels::check_plan(tunnel, measured, surroundings);
+  if (!measured.enters_bone) return checks;
+  const OtherTunnel other = other_tunnel(knee, tunnel.bone);
+  tunnels::KneePlan plan{&tunnel, &measured, other.tunnel ? &*other.tunnel : nullptr, &other.measured};
+  if (tunnel.bone == bones::BoneKind::Tibia) {
+    std::swap(plan.femoral, plan.tibial);
+    std::swap(plan.femoral_measured, plan.tibial_measured);
+  }
+  for (auto& check : tunnels::check_knee(tunnel.bone, plan, knee_surroundings_of(knee)))
+    checks.push_back(std::move(check));
+  return checks;
+}
+
+const char* sign_of(PlanCheck::Verdict verdict) {
+  switch (verdict) {
+    case PlanCheck::Verdict::Look:
+    case PlanCheck::Verdict::Wrong:
+      return "  ! ";
+    case PlanCheck::Verdict::NotChecked:
+      return "  ? ";
+    case PlanCheck::Verdict::Fine:
+    case PlanCheck::Verdict::Note:
+      break;
+  }
+  return "    ";
 }
 
 const char* to_text(PlanCheck::Verdict verdict) {
@@ -29,9 +83,12 @@ const char* to_text(PlanCheck::Verdict verdict) {
       return "look";
     case PlanCheck::Verdict::Wrong:
       return "wrong";
-    default:
-      return "note";
+    case PlanCheck::Verdict::NotChecked:
+      return "not checked";
+    case PlanCheck::Verdict::Note:
+      break;
   }
+  return "note";
 }
 
 }  // namespace
@@ -57,7 +114,7 @@ void describe_tunnel(const Context& context, const cases::Case& knee, const tunn
     const bool is_amiss =
         check.verdict == PlanCheck::Verdict::Look || check.verdict == PlanCheck::Verdict::Wrong;
     const std::string source = is_amiss && !check.source.empty() ? " [" + check.source + "]" : "";
-    context.say((is_amiss ? "  ! " : "    ") + check.name + ": " + check.text + source);
+    context.say(sign_of(check.verdict) + check.name + ": " + check.text + source);
   }
 }
 

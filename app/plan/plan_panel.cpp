@@ -17,6 +17,7 @@ widgets::Severity severity_of(tunnels::PlanCheck::Verdict verdict) {
     case tunnels::PlanCheck::Verdict::Wrong:
       return widgets::Severity::Bad;
     case tunnels::PlanCheck::Verdict::Note:
+    case tunnels::PlanCheck::Verdict::NotChecked:
       return widgets::Severity::Quiet;
   }
   return widgets::Severity::Quiet;

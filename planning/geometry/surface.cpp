@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "planning/geometry/error.h"
+#include "planning/geometry/smooth_normals.h"
 #include "planning/geometry/triangle_distance.h"
 #include "planning/geometry/triangle_tree.h"
 
@@ -38,6 +39,7 @@ struct Surface::Tree {
   TriangleMesh merged;  // without degenerate triangles; points of the same place share an index
   std::optional<PseudoNormals> normals;  // of merged
   std::optional<TriangleTree> boxes;     // of merged
+  std::vector<std::array<Eigen::Vector3d, 3>> smooth_normals;
   AabbTree aabb;
 
   void add_triangles(const TriangleMesh& mesh);
@@ -87,6 +89,7 @@ void Surface::Tree::add_triangles(const TriangleMesh& mesh) {
   if (triangles.empty()) throw InvalidInput("mesh: holds no triangle with an area");
   normals.emplace(merged);
   boxes.emplace(merged);
+  smooth_normals = smooth_corner_normals(merged);
 }
 
 std::pair<NearestOnTriangle, std::size_t> Surface::Tree::closest(const Eigen::Vector3d& query) const {
@@ -155,6 +158,10 @@ const TriangleMesh& Surface::mesh() const { return tree_->merged; }
 
 const Eigen::Vector3d& Surface::normal(std::int32_t triangle) const {
   return tree_->normal(static_cast<std::size_t>(triangle));
+}
+
+const std::array<Eigen::Vector3d, 3>& Surface::smooth_normals(std::int32_t triangle) const {
+  return tree_->smooth_normals[static_cast<std::size_t>(triangle)];
 }
 
 void Surface::triangles_near(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm, double radius_mm,

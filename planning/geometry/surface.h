@@ -3,6 +3,7 @@
 // often keeps it for as long as the bone.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -43,8 +44,9 @@ class Surface {
   // several lay in the same place. RayHit::triangle and SurfacePoint::triangle are of the mesh given, not of
   // this one.
   [[nodiscard]] const TriangleMesh& mesh() const;
-  // Unit, of a triangle of mesh().
+  // Of a triangle of mesh(), unit: its own, and those of its corners as smooth_normals.h says.
   [[nodiscard]] const Eigen::Vector3d& normal(std::int32_t triangle) const;
+  [[nodiscard]] const std::array<Eigen::Vector3d, 3>& smooth_normals(std::int32_t triangle) const;
   // Appends the triangles of mesh() near a segment, as TriangleTree::near_segment does.
   void triangles_near(const Eigen::Vector3d& from_mm, const Eigen::Vector3d& to_mm, double radius_mm,
                       std::vector<std::int32_t>& found) const;

@@ -64,6 +64,7 @@ AxisView::AxisView(const geometry::Surface& bone, const Vector3d& entry_mm, cons
     triangle.nearest_mm = nearest_to_axis(triangle.corners_mm);
     if (triangle.nearest_mm > reach_mm) continue;
     triangle.normal = into_view(bone.normal(t));
+    for (std::size_t k = 0; k < 3; ++k) triangle.smooth_normals[k] = into_view(bone.smooth_normals(t)[k]);
     triangles_.push_back(triangle);
   }
 }

@@ -12,9 +12,10 @@
 namespace arthronaut::tunnels {
 
 struct AxisTriangle {
-  std::array<Eigen::Vector3d, 3> corners_mm;  // x, y, station
-  Eigen::Vector3d normal;                     // unit, out of the bone, in the same frame
-  double nearest_mm = 0;                      // to the axis, less or equal to the true distance
+  std::array<Eigen::Vector3d, 3> corners_mm;      // x, y, station
+  Eigen::Vector3d normal;                         // unit, out of the bone, in the same frame
+  std::array<Eigen::Vector3d, 3> smooth_normals;  // at the corners
+  double nearest_mm = 0;                          // to the axis, less or equal to the true distance
 };
 
 class AxisView {

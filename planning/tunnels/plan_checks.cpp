@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "planning/files/format.h"
 #include "planning/geometry/rigid_transform.h"
+#include "planning/tunnels/place_checks.h"
 
 namespace arthronaut::tunnels {
 
@@ -11,29 +11,38 @@ namespace {
 
 using Verdict = PlanCheck::Verdict;
 
-std::string number(double value, const char* unit) { return files::format("%.1f %s", value, unit); }
-
-// Without a needless ".0": limits are round numbers mostly.
-std::string limit(double value, const char* unit) { return files::format("%g %s", value, unit); }
-
 PlanCheck check_length(const Tunnel& tunnel, const TunnelGeometry& geometry, const PlanNorms& norms) {
-  PlanCheck check{Verdict::Fine, "Length", number(geometry.length_mm, "mm"), ""};
+  PlanCheck check{.verdict = Verdict::Fine,
+                  .name = "Length",
+                  .text = number_text(geometry.length_mm, "mm"),
+                  .value = geometry.length_mm,
+                  .unit = "mm",
+                  .at_mm = geometry.exit_mm};
   if (tunnel.bone == bones::BoneKind::Femur) {
-    check.source = "studies find 34 to 39 mm (Tompkins 2013, Sim 2017); " +
-                   limit(norms.too_short_femoral_tunnel_mm, "") + "to " +
-                   limit(norms.short_femoral_tunnel_mm, "mm") + " as a limit is customary";
+    check.source = "studies find 34 to 39 mm (Tompkins 2013, Sim 2017), 29.6 to 50.5 mm (Hodel 2021); " +
+                   limit_text(norms.too_short_femoral_tunnel_mm, "") + "to " +
+                   limit_text(norms.short_femoral_tunnel_mm, "mm") + " as a limit is customary";
+    check.least = norms.short_femoral_tunnel_mm;
+    check.greatest = norms.long_femoral_tunnel_mm;
     if (geometry.length_mm < norms.too_short_femoral_tunnel_mm) {
       check.verdict = Verdict::Look;
       check.text +=
-          ": shorter than " + limit(norms.too_short_femoral_tunnel_mm, "mm") + ", little graft in bone";
+          ": shorter than " + limit_text(norms.too_short_femoral_tunnel_mm, "mm") + ", little graft in bone";
     } else if (geometry.length_mm < norms.short_femoral_tunnel_mm) {
       check.verdict = Verdict::Look;
-      check.text += ": shorter than " + limit(norms.short_femoral_tunnel_mm, "mm");
+      check.text += ": shorter than " + limit_text(norms.short_femoral_tunnel_mm, "mm");
+    } else if (geometry.length_mm > norms.long_femoral_tunnel_mm) {
+      check.verdict = Verdict::Wrong;
+      check.text +=
+          ": longer than " + limit_text(norms.long_femoral_tunnel_mm, "mm") + ", it runs across the bone";
     }
     return check;
   }
   const auto& [center, radius] = norms.tibial_length_mm;
-  check.source = limit(center - radius, "") + "to " + limit(center + radius, "mm") + " is customary";
+  check.source =
+      limit_text(center - radius, "") + "to " + limit_text(center + radius, "mm") + " is customary";
+  check.least = center - radius;
+  check.greatest = center + radius;
   if (std::abs(geometry.length_mm - center) > radius) {
     check.verdict = Verdict::Look;
     check.text += geometry.length_mm < center ? ": short" : ": long";
@@ -41,16 +50,23 @@ PlanCheck check_length(const Tunnel& tunnel, const TunnelGeometry& geometry, con
   return check;
 }
 
-// The back wall is a femoral matter. A tibial tunnel leaves through a slanting face, where its wall thins out
-// by itself: there only a wall that is nearly gone is worth a look.
+// The limits of the back wall are the femur's; of the tibia nobody has published one.
 PlanCheck check_wall(const Tunnel& tunnel, const TunnelGeometry& geometry, const PlanNorms& norms) {
-  PlanCheck check{Verdict::Fine, "Wall", number(geometry.wall_mm, "mm"), ""};
+  PlanCheck check{
+      .verdict = Verdict::Fine,
+      .name = "Wall",
+      .text = number_text(geometry.wall_mm, "mm") + " at " + number_text(geometry.thinnest_station_mm, "mm") +
+              " of depth",
+      .value = geometry.wall_mm,
+      .unit = "mm",
+      .least = tunnel.bone == bones::BoneKind::Femur ? norms.thin_wall_mm : norms.breaking_wall_mm,
+      .at_mm = geometry.thinnest_mm};
   if (tunnel.bone == bones::BoneKind::Tibia) {
     check.source = "no published limit for the tibia";
     if (geometry.wall_mm < norms.breaking_wall_mm) {
-      check.verdict = Verdict::Look;
-      check.text +=
-          ": less than " + limit(norms.breaking_wall_mm, "mm") + " beside the tunnel or at its slanting exit";
+      check.verdict = geometry.wall_mm <= 0 ? Verdict::Wrong : Verdict::Look;
+      check.text += geometry.wall_mm <= 0 ? std::string(": breaks out of the bone")
+                                          : ": less than " + limit_text(norms.breaking_wall_mm, "mm");
     }
     return check;
   }
@@ -60,17 +76,24 @@ PlanCheck check_wall(const Tunnel& tunnel, const TunnelGeometry& geometry, const
     check.text += ": breaks out of the bone";
   } else if (geometry.wall_mm < norms.breaking_wall_mm) {
     check.verdict = Verdict::Wrong;
-    check.text += ": may break out, less than " + limit(norms.breaking_wall_mm, "mm");
+    check.text += ": may break out, less than " + limit_text(norms.breaking_wall_mm, "mm");
   } else if (geometry.wall_mm < norms.thin_wall_mm) {
     check.verdict = Verdict::Look;
-    check.text += ": thinner than " + limit(norms.thin_wall_mm, "mm");
+    check.text += ": thinner than " + limit_text(norms.thin_wall_mm, "mm");
   }
   return check;
 }
 
 PlanCheck check_diameter(const Tunnel& tunnel, const PlanNorms& norms) {
-  PlanCheck check{Verdict::Fine, "Diameter", number(tunnel.diameter_mm, "mm"),
-                  "grafts of 8 mm and more are called adequate (PMC6024536); up to 11 mm is customary"};
+  PlanCheck check{
+      .verdict = Verdict::Fine,
+      .name = "Diameter",
+      .text = number_text(tunnel.diameter_mm, "mm"),
+      .source = "grafts of 8 mm and more are called adequate (PMC6024536); up to 11 mm is customary",
+      .value = tunnel.diameter_mm,
+      .unit = "mm",
+      .least = norms.small_diameter_mm,
+      .greatest = norms.wide_diameter_mm};
   const bool is_small =
       tunnel.diameter_mm<norms.small_diameter_mm, is_wide = tunnel.diameter_mm> norms.wide_diameter_mm;
   if (is_small || is_wide) {
@@ -82,23 +105,40 @@ PlanCheck check_diameter(const Tunnel& tunnel, const PlanNorms& norms) {
 
 PlanCheck check_share(const char* name, double percent, const NormRange& norm, const char* below,
                       const char* above, const char* source) {
-  PlanCheck check{Verdict::Fine, name, number(percent, "%"), source};
+  PlanCheck check{.verdict = Verdict::Fine,
+                  .name = name,
+                  .text = number_text(percent, "%"),
+                  .source = source,
+                  .value = percent,
+                  .unit = "%",
+                  .least = norm.center - norm.radius,
+                  .greatest = norm.center + norm.radius};
   if (std::abs(percent - norm.center) > norm.radius) {
     check.verdict = Verdict::Look;
-    check.text += std::string(": ") + (percent < norm.center ? below : above) + " than " +
-                  limit(percent < norm.center ? norm.center - norm.radius : norm.center + norm.radius, "%");
+    check.text +=
+        std::string(": ") + (percent < norm.center ? below : above) + " than " +
+        limit_text(percent < norm.center ? norm.center - norm.radius : norm.center + norm.radius, "%");
   }
   return check;
 }
 
-PlanCheck check_coronal_angle(const Tunnel& tunnel, const PlanNorms& norms) {
-  const double angle = coronal_angle_deg(tunnel.direction);
+PlanCheck check_coronal_angle(const Tunnel& tunnel, const landmarks::AnatomicalAxes& axes,
+                              const PlanNorms& norms) {
+  const double angle = coronal_angle_deg(tunnel.direction, axes);
   const auto& [center, radius] = norms.tibial_coronal_deg;
-  PlanCheck check{Verdict::Fine, "Coronal angle", number(angle, "deg"),
-                  "65 to 70 deg is advised; at 75 deg and more flexion and tightness suffer (Howell)"};
+  PlanCheck check{
+      .verdict = Verdict::Fine,
+      .name = "Coronal angle",
+      .text = number_text(angle, "deg"),
+      .source = "65 to 70 deg is advised; at 75 deg and more flexion and tightness suffer (Howell); by " +
+                std::string(to_text(axes.origin)),
+      .value = angle,
+      .unit = "deg",
+      .least = center - radius,
+      .greatest = center + radius};
   if (angle >= norms.too_steep_tibial_coronal_deg) {
     check.verdict = Verdict::Look;
-    check.text += ": " + limit(norms.too_steep_tibial_coronal_deg, "deg") + " or steeper";
+    check.text += ": " + limit_text(norms.too_steep_tibial_coronal_deg, "deg") + " or steeper";
   } else if (std::abs(angle - center) > radius) {
     check.verdict = Verdict::Note;
     check.text += angle < center ? ": flatter than advised" : ": steeper than advised";
@@ -108,29 +148,53 @@ PlanCheck check_coronal_angle(const Tunnel& tunnel, const PlanNorms& norms) {
 
 }  // namespace
 
-double coronal_angle_deg(const Eigen::Vector3d& direction) {
-  return geometry::deg_from_rad(std::atan2(std::abs(direction.z()), std::abs(direction.x())));
+std::string_view to_text(PlanCheck::Verdict verdict) {
+  switch (verdict) {
+    case Verdict::Fine:
+      return "fine";
+    case Verdict::Look:
+      return "look";
+    case Verdict::Wrong:
+      return "wrong";
+    case Verdict::Note:
+      return "note";
+    case Verdict::NotChecked:
+      return "not checked";
+  }
+  return "unknown";
+}
+
+double coronal_angle_deg(const Eigen::Vector3d& direction, const landmarks::AnatomicalAxes& axes) {
+  return geometry::deg_from_rad(
+      std::atan2(std::abs(direction.dot(axes.proximal)), std::abs(direction.dot(axes.lateral))));
 }
 
 PlanSurroundings surroundings_of(const geometry::TriangleMesh& bone, bones::BoneKind kind,
-                                 const landmarks::Landmarks& landmarks, bones::Side side) {
+                                 const landmarks::Landmarks& landmarks, bones::Side side,
+                                 std::shared_ptr<const geometry::Surface> surface) {
   PlanSurroundings known;
   if (kind == bones::BoneKind::Femur) known.quadrant = landmarks::femoral_quadrant(bone, landmarks, side);
   if (kind == bones::BoneKind::Tibia) known.plateau = landmarks::tibial_grid(landmarks);
   if (const auto at = landmarks.find("native_footprint"); at != landmarks.end())
     known.native_footprint_mm = at->second;
+  known.axes = landmarks::anatomical_axes(kind, side, landmarks, bone);
+  known.extents = bone_extents(bone, kind, *known.axes);
+  known.landmarks = landmarks;
+  known.surface = std::move(surface);
   return known;
 }
 
-std::vector<PlanCheck> check_plan(const Tunnel& tunnel, const TunnelGeometry& geometry,
-                                  const PlanSurroundings& surroundings, const PlanNorms& norms) {
-  if (!geometry.enters_bone) {
-    return {{Verdict::Wrong, "Axis", "misses the bone: place the entry on it and aim inwards", ""}};
-  }
-  std::vector<PlanCheck> checks{check_length(tunnel, geometry, norms), check_wall(tunnel, geometry, norms),
-                                check_diameter(tunnel, norms)};
-  const Eigen::Vector3d& entry = geometry.entry_on_surface_mm;
-  if (tunnel.bone == bones::BoneKind::Femur && surroundings.quadrant) {
+namespace {
+
+void add_grid_checks(const Tunnel& tunnel, const Eigen::Vector3d& entry, const PlanSurroundings& surroundings,
+                     const PlanNorms& norms, std::vector<PlanCheck>& checks) {
+  if (tunnel.bone == bones::BoneKind::Femur) {
+    if (!surroundings.quadrant) {
+      for (const char* name : {"Deep to shallow", "High to low"})
+        checks.push_back(
+            not_checked(name, "Blumensaat's line, blumensaat_anterior and blumensaat_posterior,"));
+      return;
+    }
     const auto percent = surroundings.quadrant->percent_of(entry);
     checks.push_back(check_share(
         "Deep to shallow", percent.deep_shallow, norms.femur_deep_shallow_percent, "deeper", "shallower",
@@ -139,24 +203,44 @@ std::vector<PlanCheck> check_plan(const Tunnel& tunnel, const TunnelGeometry& ge
     checks.push_back(check_share("High to low", percent.high_low, norms.femur_high_low_percent, "higher",
                                  "lower",
                                  "Bernard-Hertel 35.7 +- 6.9 %, review of 13 studies (Arthroscopy 2016)"));
+    return;
   }
+  if (!surroundings.plateau) {
+    for (const char* name : {"Anterior to posterior", "Medial to lateral"})
+      checks.push_back(not_checked(name, "one of the four plateau landmarks"));
+    return;
+  }
+  const auto percent = surroundings.plateau->percent_of(entry);
+  checks.push_back(check_share("Anterior to posterior", percent.anterior_posterior,
+                               norms.tibia_anterior_posterior_percent, "more anterior", "more posterior",
+                               "Amis-Jakob 40.9 %, 38.0 to 45.0 (Cho 2017, PMC5686853)"));
+  checks.push_back(check_share("Medial to lateral", percent.medial_lateral,
+                               norms.tibia_medial_lateral_percent, "more medial", "more lateral",
+                               "46.7 +- 2.0 % (10.1177/23259671231208678)"));
+}
+
+}  // namespace
+
+std::vector<PlanCheck> check_plan(const Tunnel& tunnel, const TunnelGeometry& geometry,
+                                  const PlanSurroundings& surroundings, const PlanNorms& norms) {
+  if (!geometry.enters_bone) {
+    return {{.verdict = Verdict::Wrong,
+             .name = "Axis",
+             .text = "misses the bone: place the entry on it and aim inwards"}};
+  }
+  std::vector<PlanCheck> checks{check_length(tunnel, geometry, norms), check_wall(tunnel, geometry, norms),
+                                check_diameter(tunnel, norms),
+                                check_entry_place(tunnel, geometry, surroundings),
+                                check_exit_place(tunnel, geometry, surroundings)};
+  add_grid_checks(tunnel, geometry.entry_on_surface_mm, surroundings, norms, checks);
   if (tunnel.bone == bones::BoneKind::Tibia) {
-    if (surroundings.plateau) {
-      const auto percent = surroundings.plateau->percent_of(entry);
-      checks.push_back(check_share("Anterior to posterior", percent.anterior_posterior,
-                                   norms.tibia_anterior_posterior_percent, "more anterior", "more posterior",
-                                   "Amis-Jakob 40.9 %, 38.0 to 45.0 (Cho 2017, PMC5686853)"));
-      checks.push_back(check_share("Medial to lateral", percent.medial_lateral,
-                                   norms.tibia_medial_lateral_percent, "more medial", "more lateral",
-                                   "46.7 +- 2.0 % (10.1177/23259671231208678)"));
-    }
-    checks.push_back(check_coronal_angle(tunnel, norms));
+    checks.push_back(surroundings.axes ? check_coronal_angle(tunnel, *surroundings.axes, norms)
+                                       : not_checked("Coronal angle", "the bone's axes"));
   }
-  if (surroundings.native_footprint_mm) {
-    checks.push_back({Verdict::Note, "Footprint",
-                      number((entry - *surroundings.native_footprint_mm).norm(), "mm") + " from its centre",
-                      ""});
-  }
+  for (PlanCheck& check : check_exit_neighbours(tunnel, geometry, surroundings, norms))
+    checks.push_back(std::move(check));
+  checks.push_back(check_mouth(geometry, norms));
+  for (PlanCheck& check : check_footprint(geometry, surroundings)) checks.push_back(std::move(check));
   return checks;
 }
 

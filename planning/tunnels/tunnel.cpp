@@ -18,7 +18,7 @@ void measure_sides(const Tunnel& tunnel, const geometry::Surface& bone, TunnelGe
   const double rim_mm = rim_reach_mm(tunnel.diameter_mm), radius_mm = 0.5 * tunnel.diameter_mm;
   const double whole_mm = geometry::bounds_of(bone.mesh()).size_mm().norm();
   bool has_mouths = false;
-  for (const double reach_mm : {radius_mm + 5, radius_mm + 20, whole_mm}) {
+  for (const double reach_mm : {radius_mm + 8, radius_mm + 25, whole_mm}) {
     const AxisView view(bone, result.entry_on_surface_mm, tunnel.direction, -rim_mm,
                         result.length_mm + rim_mm, reach_mm);
     if (!has_mouths) {
@@ -43,10 +43,11 @@ void measure_sides(const Tunnel& tunnel, const geometry::Surface& bone, TunnelGe
   }
 }
 
-}  // namespace
+struct Passage {
+  geometry::RayHit entry, exit;
+};
 
-TunnelGeometry measure(const Tunnel& tunnel, const geometry::Surface& bone) {
-  TunnelGeometry result;
+std::optional<Passage> passage_of(const Tunnel& tunnel, const geometry::Surface& bone) {
   const auto hits = bone.all_hits(tunnel.entry_mm - kEntrySearchMm * tunnel.direction, tunnel.direction);
   // The hit into the bone that lies nearest to the planned entry, and the next one out of it.
   const auto enters = [&](const geometry::RayHit& hit) { return hit.normal.dot(tunnel.direction) < 0; };
@@ -56,13 +57,28 @@ TunnelGeometry measure(const Tunnel& tunnel, const geometry::Surface& bone) {
     if (!enters(*hit) || off > kEntrySearchMm) continue;
     if (entry == hits.end() || off < std::abs(entry->distance_mm - kEntrySearchMm)) entry = hit;
   }
-  if (entry == hits.end()) return result;
+  if (entry == hits.end()) return std::nullopt;
   const auto exit = std::find_if(entry + 1, hits.end(), [&](const auto& hit) { return !enters(hit); });
-  if (exit == hits.end()) return result;
+  if (exit == hits.end()) return std::nullopt;
+  return Passage{*entry, *exit};
+}
+
+}  // namespace
+
+std::optional<double> length_along(const Tunnel& tunnel, const geometry::Surface& bone) {
+  const auto passage = passage_of(tunnel, bone);
+  if (!passage) return std::nullopt;
+  return passage->exit.distance_mm - passage->entry.distance_mm;
+}
+
+TunnelGeometry measure(const Tunnel& tunnel, const geometry::Surface& bone) {
+  TunnelGeometry result;
+  const auto passage = passage_of(tunnel, bone);
+  if (!passage) return result;
   result.enters_bone = true;
-  result.entry_on_surface_mm = entry->point_mm;
-  result.exit_mm = exit->point_mm;
-  result.length_mm = exit->distance_mm - entry->distance_mm;
+  result.entry_on_surface_mm = passage->entry.point_mm;
+  result.exit_mm = passage->exit.point_mm;
+  result.length_mm = passage->exit.distance_mm - passage->entry.distance_mm;
   measure_sides(tunnel, bone, result);
   return result;
 }

@@ -32,4 +32,7 @@ struct TunnelGeometry {
 // bone: it is the index that makes this a matter of milliseconds.
 [[nodiscard]] TunnelGeometry measure(const Tunnel& tunnel, const geometry::Surface& bone);
 
+// TunnelGeometry::length_mm alone, in microseconds; nullopt for a tunnel that misses the bone.
+[[nodiscard]] std::optional<double> length_along(const Tunnel& tunnel, const geometry::Surface& bone);
+
 }  // namespace arthronaut::tunnels

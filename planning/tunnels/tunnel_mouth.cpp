@@ -65,7 +65,9 @@ TunnelMouth mouth_at(const AxisView& view, double station_mm, double diameter_mm
       off_mm = std::abs(*station - station_mm);
       nearest = triangle;
     }
-    if (nearest) normals.push_back(nearest->normal);
+    if (nearest)
+      normals.push_back((nearest->smooth_normals[0] + nearest->smooth_normals[1] + nearest->smooth_normals[2])
+                            .normalized());
   }
   Vector3d mean = Vector3d::Zero(), face = Vector3d::Zero();
   for (const Vector3d& normal : normals) mean += normal;

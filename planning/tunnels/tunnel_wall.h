@@ -11,8 +11,10 @@
 //   by
 //           more than 15 deg (at the exit: faces away from it)
 //   wall    all that comes after it. A face that turns away for less than 1 mm is roughness of the lip.
-// So an edge beside the mouth, a second face through which the side shows, a groove along a cortex and a
-// tunnel that grazes the bone are walls; a flat or bowed face that is met at a slant is not.
+// Which way a face looks is taken without the roughness of its triangles (geometry/smooth_normals.h), so that
+// the number does not jump while a tunnel is dragged over a surface out of a CT. So an edge beside the mouth,
+// a second face through which the side shows, a groove along a cortex and a tunnel that grazes the bone are
+// walls; a flat or bowed face that is met at a slant is not.
 //
 // Exact in the triangles along every half plane; in between, half planes are halved around the thinnest
 // places until they are 0.1 deg apart.

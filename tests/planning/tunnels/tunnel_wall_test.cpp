@@ -147,7 +147,7 @@ TEST(TunnelWall, AgreesWithDenseSampling) {
     tunnel.entry_mm = bone.closest_point({off(random), off(random), -30}).point_mm;
     const auto measured = measure(tunnel, bone);
     if (!measured.enters_bone) continue;
-    const auto dense = test::dense_wall(tunnel, measured, bone, 180, 0.05);
+    const auto dense = test::dense_wall(tunnel, measured, bone, {.count = 180, .step_mm = 0.05});
     EXPECT_NEAR(measured.wall_mm, dense.thickness_mm, 0.05) << i;
     ++compared;
   }

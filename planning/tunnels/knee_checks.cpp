@@ -1,0 +1,166 @@
+#include "planning/tunnels/knee_checks.h"
+
+#include "planning/files/format.h"
+#include "planning/graft/graft_course.h"
+#include "planning/graft/roof_clearance.h"
+#include "planning/tunnels/place_checks.h"
+#include "planning/tunnels/tunnel_pair.h"
+
+namespace arthronaut::tunnels {
+
+namespace {
+
+using Verdict = PlanCheck::Verdict;
+
+// Empty when both tunnels are there.
+std::string missing_tunnel(const KneePlan& plan) {
+  const auto is_there = [](const Tunnel* tunnel, const TunnelGeometry* measured) {
+    return tunnel && measured && measured->enters_bone;
+  };
+  if (!is_there(plan.femoral, plan.femoral_measured)) return "the femoral tunnel";
+  return is_there(plan.tibial, plan.tibial_measured) ? "" : "the tibial tunnel";
+}
+
+graft::GraftEnd end_of(const Tunnel& tunnel, const TunnelGeometry& measured) {
+  return {measured.entry_on_surface_mm, tunnel.direction};
+}
+
+PlanCheck check_graft_length(const KneePlan& plan) {
+  const double in_joint_mm =
+      (plan.femoral_measured->entry_on_surface_mm - plan.tibial_measured->entry_on_surface_mm).norm();
+  const double all_mm = in_joint_mm + plan.femoral_measured->length_mm + plan.tibial_measured->length_mm;
+  return {
+      .verdict = Verdict::Note,
+      .name = "Graft length",
+      .text = number_text(in_joint_mm, "mm") + " in the joint, " + number_text(all_mm, "mm") + " in all",
+      .source = "as imaged, straight between the openings; the ligament measures 40.6 +- 3.6 mm (PMC7120849)",
+      .value = in_joint_mm,
+      .unit = "mm"};
+}
+
+PlanCheck check_length_change(const graft::GraftCourse& course, const graft::FlexionAxis& axis,
+                              const PlanNorms& norms) {
+  PlanCheck check{.verdict = Verdict::Fine,
+                  .name = "Length over flexion",
+                  .text = number_text(course.change_mm(), "mm") + " from 0 to 120 deg, longest at " +
+                          number_text(course.longest_at_deg, "deg"),
+                  .source = "the tibia turned about " + std::string(graft::to_text(axis.origin)) +
+                            ", no roll-back; up to 2 to 3 mm is customary",
+                  .value = course.change_mm(),
+                  .unit = "mm",
+                  .greatest = norms.isometric_change_mm};
+  if (course.change_mm() > norms.isometric_change_mm) {
+    check.verdict = Verdict::Look;
+    check.text += ": more than " + limit_text(norms.isometric_change_mm, "mm");
+  }
+  return check;
+}
+
+PlanCheck note_bend(const char* name, double extended_deg, double greatest_deg) {
+  return {.verdict = Verdict::Note,
+          .name = name,
+          .text = number_text(extended_deg, "deg") + " extended, " + number_text(greatest_deg, "deg") +
+                  " at most",
+          .source =
+              "between tunnel and graft; 65 to 85 deg at the femur for drilling at 100 to 130 deg of flexion "
+              "(2643247); no accepted limit",
+          .value = greatest_deg,
+          .unit = "deg"};
+}
+
+PlanCheck check_roof(const KneePlan& plan, const KneeSurroundings& surroundings, const PlanNorms& norms) {
+  const auto& marks = surroundings.femur_landmarks;
+  const auto anterior = marks.find("blumensaat_anterior"), posterior = marks.find("blumensaat_posterior");
+  if (anterior == marks.end() || posterior == marks.end() || !surroundings.femur_axes)
+    return not_checked("Roof",
+                       "Blumensaat's line, blumensaat_anterior and blumensaat_posterior of the femur,");
+  const auto clearance =
+      graft::roof_clearance({.tibial_opening_mm = plan.tibial_measured->entry_on_surface_mm,
+                             .into_tibia = plan.tibial->direction,
+                             .diameter_mm = plan.tibial->diameter_mm,
+                             .blumensaat_anterior_mm = anterior->second,
+                             .blumensaat_posterior_mm = posterior->second,
+                             .femur_axes = *surroundings.femur_axes});
+  if (!clearance) return not_checked("Roof", "a Blumensaat's line that the lateral view shows");
+  const double least_mm = std::min(clearance->outlet_mm, clearance->opening_mm);
+  PlanCheck check{
+      .verdict = Verdict::Fine,
+      .name = "Roof",
+      .text = number_text(least_mm, "mm") + " between roof and graft in extension",
+      .source =
+          "the tibial tunnel prolonged, against Blumensaat's line, as imaged; the opening behind the "
+          "roof's slope (Howell 1995)",
+      .value = least_mm,
+      .unit = "mm",
+      .least = norms.least_roof_clearance_mm,
+      .at_mm = anterior->second};
+  if (least_mm < norms.least_roof_clearance_mm) {
+    check.verdict = Verdict::Look;
+    check.text += ": the roof presses on it";
+  }
+  return check;
+}
+
+}  // namespace
+
+KneeSurroundings knee_surroundings_of(const geometry::TriangleMesh& femur, const PlanSurroundings& of_femur) {
+  KneeSurroundings knee;
+  knee.femur_axes = of_femur.axes;
+  knee.femur_landmarks = of_femur.landmarks;
+  if (of_femur.axes) knee.axis = graft::flexion_axis(of_femur.landmarks, femur, *of_femur.axes);
+  return knee;
+}
+
+std::vector<PlanCheck> check_knee(bones::BoneKind bone, const KneePlan& plan,
+                                  const KneeSurroundings& surroundings, const PlanNorms& norms) {
+  const bool is_femur = bone == bones::BoneKind::Femur;
+  const char* bend = is_femur ? "Bend at the femur" : "Bend at the tibia";
+  const std::string missing = missing_tunnel(plan);
+  if (!missing.empty()) {
+    if (!is_femur) return {not_checked("Roof", missing), not_checked(bend, missing)};
+    return {not_checked("Graft length", missing), not_checked("Length over flexion", missing),
+            not_checked(bend, missing)};
+  }
+  std::vector<PlanCheck> checks;
+  checks.push_back(is_femur ? check_graft_length(plan) : check_roof(plan, surroundings, norms));
+  if (!surroundings.axis) {
+    const char* needed = "the flexion axis: two condyles' centres, their posterior points or the epicondyles";
+    if (is_femur) checks.push_back(not_checked("Length over flexion", needed));
+    checks.push_back(not_checked(bend, needed));
+    return checks;
+  }
+  const graft::GraftCourse course =
+      graft::graft_course(end_of(*plan.femoral, *plan.femoral_measured),
+                          end_of(*plan.tibial, *plan.tibial_measured), *surroundings.axis);
+  const graft::GraftState& extended = course.states.front();
+  if (is_femur) {
+    checks.push_back(check_length_change(course, *surroundings.axis, norms));
+    checks.push_back(note_bend(bend, extended.femoral_bend_deg, course.greatest_femoral_bend_deg));
+  } else {
+    checks.push_back(note_bend(bend, extended.tibial_bend_deg, course.greatest_tibial_bend_deg));
+  }
+  return checks;
+}
+
+PlanCheck check_pair(const Tunnel& first, const TunnelGeometry& first_measured, const Tunnel& second,
+                     const TunnelGeometry& second_measured, const PlanNorms& norms) {
+  const TunnelGap gap = gap_between(first, first_measured, second, second_measured);
+  PlanCheck check{.verdict = Verdict::Fine,
+                  .name = "Between the tunnels",
+                  .text = number_text(gap.bone_mm, "mm") + " of bone",
+                  .source = limit_text(norms.thin_bone_between_tunnels_mm, "mm") + " is customary",
+                  .value = gap.bone_mm,
+                  .unit = "mm",
+                  .least = norms.thin_bone_between_tunnels_mm,
+                  .at_mm = gap.at_mm};
+  if (gap.bone_mm <= 0) {
+    check.verdict = Verdict::Wrong;
+    check.text = "they run into each other";
+  } else if (gap.bone_mm < norms.thin_bone_between_tunnels_mm) {
+    check.verdict = Verdict::Look;
+    check.text += ": less than " + limit_text(norms.thin_bone_between_tunnels_mm, "mm");
+  }
+  return check;
+}
+
+}  // namespace arthronaut::tunnels

@@ -1,0 +1,43 @@
+// What a plan of both bones is asked: the graft between the two tunnels. Femur and tibia lie in the same
+// frame of the case (LPS), as they were imaged, which is taken for the knee in extension; planning/graft says
+// by what models.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "planning/graft/flexion_axis.h"
+#include "planning/tunnels/plan_checks.h"
+
+namespace arthronaut::tunnels {
+
+// What is known of the knee beside its tunnels. Made once a case.
+struct KneeSurroundings {
+  std::optional<graft::FlexionAxis> axis = {};
+  std::optional<landmarks::AnatomicalAxes> femur_axes = {};
+  landmarks::Landmarks femur_landmarks = {};
+};
+[[nodiscard]] KneeSurroundings knee_surroundings_of(const geometry::TriangleMesh& femur,
+                                                    const PlanSurroundings& of_femur);
+
+// As measured; null where there is none.
+struct KneePlan {
+  const Tunnel* femoral = nullptr;
+  const TunnelGeometry* femoral_measured = nullptr;
+  const Tunnel* tibial = nullptr;
+  const TunnelGeometry* tibial_measured = nullptr;
+};
+
+// Femur: length of the graft in the joint and in all, its change over flexion, its bend at the femur. Tibia:
+// the roof in extension, the bend at the tibia. What lacks a tunnel, an axis or Blumensaat's line is said to
+// be not checked.
+[[nodiscard]] std::vector<PlanCheck> check_knee(bones::BoneKind bone, const KneePlan& plan,
+                                                const KneeSurroundings& surroundings,
+                                                const PlanNorms& norms = {});
+
+// The bone between two tunnels of one bone. Precondition: both enter it.
+[[nodiscard]] PlanCheck check_pair(const Tunnel& first, const TunnelGeometry& first_measured,
+                                   const Tunnel& second, const TunnelGeometry& second_measured,
+                                   const PlanNorms& norms = {});
+
+}  // namespace arthronaut::tunnels

@@ -1,0 +1,25 @@
+// The checks of where a tunnel begins, opens and ends. Inner header of tunnels: see plan_checks.h.
+#pragma once
+
+#include "planning/tunnels/plan_checks.h"
+
+namespace arthronaut::tunnels {
+
+[[nodiscard]] PlanCheck not_checked(const char* name, const std::string& missing);
+[[nodiscard]] std::string number_text(double value, const char* unit);  // "24.1 mm"
+[[nodiscard]] std::string limit_text(double value, const char* unit);   // "25 mm"
+
+[[nodiscard]] PlanCheck check_entry_place(const Tunnel& tunnel, const TunnelGeometry& geometry,
+                                          const PlanSurroundings& surroundings);
+[[nodiscard]] PlanCheck check_exit_place(const Tunnel& tunnel, const TunnelGeometry& geometry,
+                                         const PlanSurroundings& surroundings);
+// What the exit comes near: the lateral epicondyle and the posterior cortex; the tuberosity.
+[[nodiscard]] std::vector<PlanCheck> check_exit_neighbours(const Tunnel& tunnel,
+                                                           const TunnelGeometry& geometry,
+                                                           const PlanSurroundings& surroundings,
+                                                           const PlanNorms& norms);
+[[nodiscard]] PlanCheck check_mouth(const TunnelGeometry& geometry, const PlanNorms& norms);
+[[nodiscard]] std::vector<PlanCheck> check_footprint(const TunnelGeometry& geometry,
+                                                     const PlanSurroundings& surroundings);
+
+}  // namespace arthronaut::tunnels
