@@ -63,10 +63,6 @@ class PlanModel {
   [[nodiscard]] const landmarks::AnatomicalAxes& axes(bones::BoneKind kind) const {
     return bones_.at(kind).axes;
   }
-  // The grids and what else is known of the bone beside the tunnel. Precondition: has_bone(kind).
-  [[nodiscard]] const tunnels::PlanSurroundings& surroundings(bones::BoneKind kind) const {
-    return bones_.at(kind).surroundings;
-  }
   // Where the femur is cut open to see the lateral wall of its notch; nullopt without a femur.
   [[nodiscard]] std::optional<scene::CutPlane> notch_cut() const;
 

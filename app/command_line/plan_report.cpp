@@ -75,22 +75,6 @@ const char* sign_of(PlanCheck::Verdict verdict) {
   return "    ";
 }
 
-const char* to_text(PlanCheck::Verdict verdict) {
-  switch (verdict) {
-    case PlanCheck::Verdict::Fine:
-      return "fine";
-    case PlanCheck::Verdict::Look:
-      return "look";
-    case PlanCheck::Verdict::Wrong:
-      return "wrong";
-    case PlanCheck::Verdict::NotChecked:
-      return "not checked";
-    case PlanCheck::Verdict::Note:
-      break;
-  }
-  return "note";
-}
-
 }  // namespace
 
 void describe_tunnel(const Context& context, const cases::Case& knee, const tunnels::Tunnel& tunnel,
