@@ -49,10 +49,10 @@ TEST(RealWall, AgreesWithDenseSampling) {
     const auto coarse = test::dense_wall(tunnel, measured, femur,
                                          {.count = 72, .step_mm = 0.1, .roughness_mm = 1.2}),
                fine = test::dense_wall(tunnel, measured, femur,
-                                       {.from_rad = angle - 0.001,
-                                        .to_rad = angle + 0.001,
-                                        .count = 8,
-                                        .step_mm = 0.005,
+                                       {.from_rad = angle - 0.0001,
+                                        .to_rad = angle + 0.0001,
+                                        .count = 2,
+                                        .step_mm = 0.0008,
                                         .roughness_mm = 0.99});
     EXPECT_GT(coarse.thickness_mm, measured.wall_mm - 0.02) << i;
     EXPECT_LT(fine.thickness_mm, measured.wall_mm + 0.02) << i;
