@@ -39,8 +39,8 @@ NamedPlace place_from(const std::string& text) {
   if (landmarks::find_landmark(place.bone, place.name) == nullptr) {
     std::string known;
     for (const auto& kind : landmarks::known_landmarks(place.bone)) known += " " + std::string(kind.name);
-    throw InvalidInput("landmarks: the " + std::string(bones::to_text(place.bone)) + " has no landmark \"" + place.name +
-                       "\"; it has" + known);
+    throw InvalidInput("landmarks: the " + std::string(bones::to_text(place.bone)) + " has no landmark \"" +
+                       place.name + "\"; it has" + known);
   }
   return place;
 }
@@ -87,13 +87,15 @@ void refuse_far_off(const bones::Bone& bone, const NamedPlace& place) {
   }
 }
 
-nlohmann::ordered_json to_json(const cases::Case& knee, const std::map<BoneKind, landmarks::Proposal>& proposals) {
+nlohmann::ordered_json to_json(const cases::Case& knee,
+                               const std::map<BoneKind, landmarks::Proposal>& proposals) {
   auto bones = nlohmann::ordered_json::array();
   for (const auto& [kind, bone] : knee.bones) {
     nlohmann::ordered_json node = {{"bone", bones::to_text(kind)}};
     if (const auto made = proposals.find(kind); made != proposals.end()) {
       const auto& by_shape = made->second.side_by_shape;
-      node["side_by_shape"] = by_shape ? nlohmann::ordered_json(bones::to_text(*by_shape)) : nlohmann::ordered_json();
+      node["side_by_shape"] =
+          by_shape ? nlohmann::ordered_json(bones::to_text(*by_shape)) : nlohmann::ordered_json();
       if (kind == BoneKind::Femur && made->second.is_usable()) {
         node["roof"] = landmarks::to_text(made->second.roof);
         node["hill_mm"] = made->second.hill_mm;
@@ -107,8 +109,9 @@ nlohmann::ordered_json to_json(const cases::Case& knee, const std::map<BoneKind,
     const auto states = knee.landmark_states.find(kind);
     for (const auto& known : landmarks::known_landmarks(kind)) {
       if (marks == knee.landmarks.end() || !marks->second.contains(std::string(known.name))) continue;
-      const auto state = states == knee.landmark_states.end() ? LandmarkState::Confirmed
-                                                              : landmarks::state_of(states->second, known.name);
+      const auto state = states == knee.landmark_states.end()
+                             ? LandmarkState::Confirmed
+                             : landmarks::state_of(states->second, known.name);
       list.push_back({{"name", known.name},
                       {"position_mm", files::to_json(marks->second.at(std::string(known.name)))},
                       {"state", landmarks::to_text(state)}});
@@ -116,7 +119,10 @@ nlohmann::ordered_json to_json(const cases::Case& knee, const std::map<BoneKind,
     node["landmarks"] = std::move(list);
     bones.push_back(std::move(node));
   }
-  return {{"format", "arthronaut.landmarks"}, {"version", 1}, {"side", bones::to_text(knee.side)}, {"bones", bones}};
+  return {{"format", "arthronaut.landmarks"},
+          {"version", 1},
+          {"side", bones::to_text(knee.side)},
+          {"bones", bones}};
 }
 
 void list(const Context& context, const cases::Case& knee) {
@@ -138,17 +144,20 @@ void list(const Context& context, const cases::Case& knee) {
 }
 
 // True when something was changed.
-bool change(const LandmarkArguments& arguments, cases::Case& knee, std::map<BoneKind, landmarks::Proposal>& proposals) {
+bool change(const LandmarkArguments& arguments, cases::Case& knee,
+            std::map<BoneKind, landmarks::Proposal>& proposals) {
   std::vector<NamedPlace> placed, confirmed;
   for (const std::string& text : arguments.set) placed.push_back(placed_from(text));
   for (const std::string& text : arguments.confirm) confirmed.push_back(place_from(text));
-  for (const NamedPlace& place : placed) refuse_far_off(bone_of(knee, place.bone, arguments.case_folder), place);
+  for (const NamedPlace& place : placed)
+    refuse_far_off(bone_of(knee, place.bone, arguments.case_folder), place);
   if (arguments.propose) {
     for (const auto& [kind, bone] : knee.bones) {
-      proposals[kind] = landmarks::propose(
-          bone.mesh, kind,
-          {.side = knee.side,
-           .roof = arguments.roof == "ends" ? landmarks::RoofConvention::Ends : landmarks::RoofConvention::Flat});
+      proposals[kind] =
+          landmarks::propose(bone.mesh, kind,
+                             {.side = knee.side,
+                              .roof = arguments.roof == "ends" ? landmarks::RoofConvention::Ends
+                                                               : landmarks::RoofConvention::Flat});
       if (proposals[kind].is_usable())
         landmarks::take_proposal(proposals[kind], knee.landmarks[kind], knee.landmark_states[kind]);
     }
@@ -160,9 +169,11 @@ bool change(const LandmarkArguments& arguments, cases::Case& knee, std::map<Bone
   for (const NamedPlace& place : confirmed) {
     const auto marks = knee.landmarks.find(place.bone);
     if (marks == knee.landmarks.end() || (!place.name.empty() && !marks->second.contains(place.name)))
-      throw InvalidInput(arguments.case_folder, "case.json", "holds no landmark to confirm there; --propose first");
+      throw InvalidInput(arguments.case_folder, "case.json",
+                         "holds no landmark to confirm there; --propose first");
     for (const auto& [name, at] : marks->second) {
-      if (place.name.empty() || place.name == name) knee.landmark_states[place.bone][name] = LandmarkState::Confirmed;
+      if (place.name.empty() || place.name == name)
+        knee.landmark_states[place.bone][name] = LandmarkState::Confirmed;
     }
   }
   return arguments.propose || !placed.empty() || !confirmed.empty();
@@ -172,15 +183,17 @@ bool change(const LandmarkArguments& arguments, cases::Case& knee, std::map<Bone
 
 void add_landmarks_command(CLI::App& app, Context& context) {
   const auto arguments = std::make_shared<LandmarkArguments>();
-  CLI::App* sub = add_subcommand(app, context, "landmarks",
-                                 "Propose a bone's landmarks from its shape, place or confirm them, or list them",
-                                 "arthronaut landmarks Knee.arthro --propose --set femur.notch_apex=-71.2,8.1,44.0");
+  CLI::App* sub =
+      add_subcommand(app, context, "landmarks",
+                     "Propose a bone's landmarks from its shape, place or confirm them, or list them",
+                     "arthronaut landmarks Knee.arthro --propose --set femur.notch_apex=-71.2,8.1,44.0");
   sub->add_option("case", arguments->case_folder, "Case folder")->required();
   sub->add_flag("--propose", arguments->propose, "Propose from the shape what nobody has confirmed");
   sub->add_option("--set", arguments->set, "BONE.NAME=x,y,z in mm, LPS: placed by hand, and so confirmed");
   sub->add_option("--confirm", arguments->confirm, "BONE.NAME, or BONE for all of it: looked at and right");
   sub->add_option("--roof", arguments->roof,
-                  "How Blumensaat's line is proposed: flat (through the roof without its hill) or ends (joins its ends)")
+                  "How Blumensaat's line is proposed: flat (through the roof without its hill) or ends "
+                  "(joins its ends)")
       ->check(CLI::IsMember({"flat", "ends"}))
       ->capture_default_str();
   sub->add_flag("--json", arguments->as_json, "Print the landmarks as JSON");
@@ -200,7 +213,8 @@ void add_landmarks_command(CLI::App& app, Context& context) {
     std::vector<std::string> reasons;
     for (const auto& [kind, proposal] : proposals) {
       if (!proposal.is_usable())
-        reasons.push_back("the " + std::string(bones::to_text(kind)) + " gives no landmarks: " + proposal.reason);
+        reasons.push_back("the " + std::string(bones::to_text(kind)) +
+                          " gives no landmarks: " + proposal.reason);
       reasons.insert(reasons.end(), proposal.doubts.begin(), proposal.doubts.end());
     }
     if (!reasons.empty()) context.say_unreliable("The proposed landmarks", reasons);

@@ -58,17 +58,21 @@ tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case
   return tunnel;
 }
 
-// By norms and landmarks. Throws InvalidInput where there is no default; `verdict` says how far it may be relied on.
+// By norms and landmarks. Throws InvalidInput where there is no default; `verdict` says how far it may be
+// relied on.
 tunnels::Tunnel default_tunnel(const PlanArguments& arguments, const cases::Case& knee, bones::BoneKind kind,
                                const geometry::Surface& surface, PlanVerdict& verdict) {
-  default_plan::BoneInput input{.bone = &knee.bones.at(kind), .surface = &surface, .landmarks = {}, .states = {}};
-  if (const auto marks = knee.landmarks.find(kind); marks != knee.landmarks.end()) input.landmarks = marks->second;
+  default_plan::BoneInput input{
+      .bone = &knee.bones.at(kind), .surface = &surface, .landmarks = {}, .states = {}};
+  if (const auto marks = knee.landmarks.find(kind); marks != knee.landmarks.end())
+    input.landmarks = marks->second;
   if (const auto states = knee.landmark_states.find(kind); states != knee.landmark_states.end())
     input.states = states->second;
   const auto planned = default_plan::plan_bone(
       input, knee.side,
       {.bundle = norms::bundle_from_text(arguments.type), .diameter_mm = arguments.diameter_mm});
-  if (!planned.is_usable()) throw InvalidInput(arguments.case_folder, "", "has no default plan: " + planned.message);
+  if (!planned.is_usable())
+    throw InvalidInput(arguments.case_folder, "", "has no default plan: " + planned.message);
   verdict = {planned.doubts.empty(), planned.doubts, planned.source};
   return planned.tunnel;
 }
@@ -88,10 +92,12 @@ void take_markups(const PlanArguments& arguments, cases::Case& knee) {
     knee.plan.mesh_sha256[kind] = bones::mesh_sha256(bone->second.mesh);
     took = true;
   }
-  if (!took) throw InvalidInput(arguments.markups, "markups", "hold no line \"femur tunnel\" or \"tibia tunnel\"");
+  if (!took)
+    throw InvalidInput(arguments.markups, "markups", "hold no line \"femur tunnel\" or \"tibia tunnel\"");
 }
 
-void show(const PlanArguments& arguments, const Context& context, const cases::Case& knee, const PlanVerdict& verdict) {
+void show(const PlanArguments& arguments, const Context& context, const cases::Case& knee,
+          const PlanVerdict& verdict) {
   auto tunnels_json = nlohmann::ordered_json::array();
   for (const auto& [kind, tunnel] : knee.plan.tunnels) {
     if (!arguments.bone.empty() && arguments.bone != bones::to_text(kind)) continue;
@@ -143,8 +149,9 @@ void add_plan_command(CLI::App& app, Context& context) {
       ->check(CLI::Range(3.0, 15.0))
       ->capture_default_str();
   auto* by_default =
-      sub->add_flag("--default", arguments->by_default,
-                    "By norms and landmarks, proposed ones where none are confirmed, aimed as a drill can follow")
+      sub->add_flag(
+             "--default", arguments->by_default,
+             "By norms and landmarks, proposed ones where none are confirmed, aimed as a drill can follow")
           ->needs(bone)
           ->excludes(entry)
           ->excludes(direction)
@@ -153,14 +160,17 @@ void add_plan_command(CLI::App& app, Context& context) {
       ->check(CLI::IsMember({"single", "am", "pl"}))
       ->needs(by_default)
       ->capture_default_str();
-  auto* markups = sub->add_option("--from-markups", arguments->markups,
-                                  "Take the tunnels from a .mrk.json of 3D Slicer")
-                      ->excludes(by_default)
-                      ->excludes(direction);
+  auto* markups =
+      sub->add_option("--from-markups", arguments->markups, "Take the tunnels from a .mrk.json of 3D Slicer")
+          ->excludes(by_default)
+          ->excludes(direction);
   sub->add_option("--export", arguments->export_folder,
                   "Folder for plan.json, plan.csv, plan.mrk.json and the drilled bones");
   sub->add_flag("--json", arguments->as_json, "Print the tunnel as JSON, without --bone every tunnel");
-  sub->add_flag("--list", arguments->list, "Show the plan")->excludes(direction)->excludes(by_default)->excludes(markups);
+  sub->add_flag("--list", arguments->list, "Show the plan")
+      ->excludes(direction)
+      ->excludes(by_default)
+      ->excludes(markups);
   entry->needs(direction);
   footprint->needs(direction);
   sub->callback([arguments, entry, direction, &context] {

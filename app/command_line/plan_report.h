@@ -23,6 +23,7 @@ struct PlanVerdict {
   std::string source;  // of the norm; empty without one
 };
 [[nodiscard]] nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const tunnels::Tunnel& tunnel,
-                                                    const geometry::Surface& surface, const PlanVerdict& verdict);
+                                                    const geometry::Surface& surface,
+                                                    const PlanVerdict& verdict);
 
 }  // namespace arthronaut::command_line

@@ -143,8 +143,9 @@ void save_case(const fs::path& folder, const Case& contents) {
     nlohmann::ordered_json node = {{"kind", bones::to_text(kind)}, {"source", bone.source}};
     if (const auto marks = contents.landmarks.find(kind); marks != contents.landmarks.end()) {
       const auto states = contents.landmark_states.find(kind);
-      node["landmarks"] = landmarks_to_json(
-          marks->second, states == contents.landmark_states.end() ? landmarks::LandmarkStates{} : states->second);
+      node["landmarks"] = landmarks_to_json(marks->second, states == contents.landmark_states.end()
+                                                               ? landmarks::LandmarkStates{}
+                                                               : states->second);
     }
     bones.push_back(std::move(node));
   }

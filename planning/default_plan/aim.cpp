@@ -39,9 +39,9 @@ std::vector<Candidate> through_portal(const tunnels::Tunnel& at, const Joint& jo
         // The tibia's front turns to the femur's end, its long axis backwards.
         const Vector3d front = std::cos(flexion) * axes.anterior - std::sin(flexion) * axes.proximal;
         const Vector3d above = std::sin(flexion) * axes.anterior + std::cos(flexion) * axes.proximal;
-        const Vector3d portal =
-            joint.center_mm - (kPortalMedial_mm + medial) * joint.scale * axes.lateral +
-            joint.scale * kPortalAnterior_mm * front - (kPortalDistal_mm + distal) * joint.scale * above;
+        const Vector3d portal = joint.center_mm - (kPortalMedial_mm + medial) * joint.scale * axes.lateral +
+                                joint.scale * kPortalAnterior_mm * front -
+                                (kPortalDistal_mm + distal) * joint.scale * above;
         candidates.push_back({(at.entry_mm - portal).normalized(),
                               std::abs(more) / 5 + std::abs(medial) / 5 + std::abs(distal) / 5});
       }
@@ -86,7 +86,8 @@ std::optional<tunnels::Tunnel> aim(const tunnels::Tunnel& at_entry, const geomet
     const auto measured = tunnels::measure(tunnel, surface);
     if (!measured.enters_bone || (measured.entry_on_surface_mm - tunnel.entry_mm).norm() > 2) continue;
     if (surface.closest_point(measured.exit_mm).normal.dot(exit_side) < kLeastFacing) continue;
-    const double misfit = std::max({0.0, fitting_mm[0] - measured.length_mm, measured.length_mm - fitting_mm[1]});
+    const double misfit =
+        std::max({0.0, fitting_mm[0] - measured.length_mm, measured.length_mm - fitting_mm[1]});
     const double cost = kPerStep * candidate.steps + kPerLength * misfit +
                         kPerWall * std::max(0.0, kThickWall_mm - measured.wall_mm);
     if (cost < least_cost) {

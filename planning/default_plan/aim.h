@@ -1,4 +1,5 @@
-// Directions that a drill can follow from an entry, in the bone's own anatomical axes. Inner header of default_plan.
+// Directions that a drill can follow from an entry, in the bone's own anatomical axes. Inner header of
+// default_plan.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,13 +18,15 @@ struct Joint {
   double scale = 1;  // of the bone against an average one
 };
 
-// Femur: the drill comes from the accessory anteromedial portal, 24 mm medial of the middle, 35 mm in front of and 15 mm below
-// the flexion axis in the tibia's axes, about which the tibia is turned by the flexion. Tibia: along the guide, 55 degrees to
-// the plateau in the sagittal view and 67.5 degrees in the coronal one (Howell). About either, flexion (100 to 130 degrees)
-// and portal, or the guide's two angles (+-10 degrees), are varied, and the direction nearest to the asked one is taken that
-// leaves on the right face (femur: lateral, tibia: anteromedial), has a length of 30 to 45 mm in the femur, 32 to 55 mm in
-// the tibia, and a wall of 2 mm; less wall, then less length, where none has. nullopt when none leaves there.
-[[nodiscard]] std::optional<tunnels::Tunnel> aim(const tunnels::Tunnel& at_entry, const geometry::Surface& surface,
-                                                 const Joint& joint, const Options& options);
+// Femur: the drill comes from the accessory anteromedial portal, 24 mm medial of the middle, 35 mm in front
+// of and 15 mm below the flexion axis in the tibia's axes, about which the tibia is turned by the flexion.
+// Tibia: along the guide, 55 degrees to the plateau in the sagittal view and 67.5 degrees in the coronal one
+// (Howell). About either, flexion (100 to 130 degrees) and portal, or the guide's two angles (+-10 degrees),
+// are varied, and the direction nearest to the asked one is taken that leaves on the right face (femur:
+// lateral, tibia: anteromedial), has a length of 30 to 45 mm in the femur, 32 to 55 mm in the tibia, and a
+// wall of 2 mm; less wall, then less length, where none has. nullopt when none leaves there.
+[[nodiscard]] std::optional<tunnels::Tunnel> aim(const tunnels::Tunnel& at_entry,
+                                                 const geometry::Surface& surface, const Joint& joint,
+                                                 const Options& options);
 
 }  // namespace arthronaut::default_plan

@@ -1,6 +1,5 @@
 #include "planning/default_plan/default_plan.h"
 
-
 #include "planning/default_plan/aim.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -29,7 +28,8 @@ std::vector<std::string> needed(bones::BoneKind bone, const Landmarks& known) {
 
 void check_range(const char* field, double value, double least, double greatest) {
   if (!(value >= least && value <= greatest))
-    throw InvalidInput(files::format("default plan: %s is %g, must be %g to %g", field, value, least, greatest));
+    throw InvalidInput(
+        files::format("default plan: %s is %g, must be %g to %g", field, value, least, greatest));
 }
 
 std::optional<Joint> joint_of(const BoneInput& input, const Landmarks& marks, bones::Side side) {

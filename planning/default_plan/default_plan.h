@@ -1,6 +1,6 @@
-// A first plan without a hand: tunnels through the native footprint where a person marked it, else through the one that
-// norms expect, aimed as a drill can follow. What the
-// window's one key and `arthronaut plan --default` call. A proposal: the surgeon moves it.
+// A first plan without a hand: tunnels through the native footprint where a person marked it, else through
+// the one that norms expect, aimed as a drill can follow. What the window's one key and `arthronaut plan
+// --default` call. A proposal: the surgeon moves it.
 #pragma once
 
 #include <map>
@@ -21,8 +21,8 @@ namespace arthronaut::default_plan {
 struct Options {
   norms::Bundle bundle = norms::Bundle::Whole;
   double diameter_mm = 9.0;  // 3 to 15
-  // Femur: the knee is flexed while the portal's drill goes in; the axis points at the portal then. 110 to 120
-  // degrees is customary through the anteromedial portal.
+  // Femur: the knee is flexed while the portal's drill goes in; the axis points at the portal then. 110 to
+  // 120 degrees is customary through the anteromedial portal.
   double flexion_deg = 115;
   // Tibia: of the guide, between the tunnel and the plateau, in the sagittal plane.
   double guide_deg = 55;
@@ -50,8 +50,8 @@ struct DefaultTunnel {
   } outcome = Outcome::NotRun;
   std::string message = "no default was asked for";
   tunnels::Tunnel tunnel;
-  std::string source;                  // of the norm that the entry follows
-  std::vector<std::string> doubts;     // why the plan is not reliable: proposed landmarks, doubts of the shape
+  std::string source;               // of the norm that the entry follows
+  std::vector<std::string> doubts;  // why the plan is not reliable: proposed landmarks, doubts of the shape
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Planned; }
 };
 
@@ -60,6 +60,7 @@ struct DefaultTunnel {
 
 // Every bone that is given, at once.
 [[nodiscard]] std::map<bones::BoneKind, DefaultTunnel> plan_knee(const std::vector<BoneInput>& bones,
-                                                                 bones::Side side, const Options& options = {});
+                                                                 bones::Side side,
+                                                                 const Options& options = {});
 
 }  // namespace arthronaut::default_plan

@@ -85,7 +85,8 @@ bool agrees(const AnatomicalAxes& axes, const AnatomicalAxes& scanner) {
          axes.lateral.dot(scanner.lateral) > kLeastCosine;
 }
 
-// The long axis across `lateral`: what the joint's end says, and the landmarks of the shaft as far as they lie apart.
+// The long axis across `lateral`: what the joint's end says, and the landmarks of the shaft as far as they
+// lie apart.
 std::optional<Vector3d> long_axis(const std::optional<Vector3d>& by_joint, double joint_sigma_deg,
                                   const Landmarks& landmarks, const Vector3d& lateral) {
   const auto distal = find(landmarks, "shaft_distal"), proximal = find(landmarks, "shaft_proximal");
@@ -116,7 +117,8 @@ std::optional<AnatomicalAxes> from_landmarks(bones::BoneKind bone, bones::Side s
   const auto above = [&](const std::optional<Vector3d>& forward) -> std::optional<Vector3d> {
     const auto anterior = forward ? laid_across(*forward, *lateral) : std::nullopt;
     if (!anterior) return std::nullopt;
-    return side == bones::Side::Right ? Vector3d(lateral->cross(*anterior)) : Vector3d(anterior->cross(*lateral));
+    return side == bones::Side::Right ? Vector3d(lateral->cross(*anterior))
+                                      : Vector3d(anterior->cross(*lateral));
   };
   const auto turned = [&](const Vector3d& proximal, double forward_deg) {
     const double angle = geometry::rad_from_deg(forward_deg);
@@ -129,7 +131,8 @@ std::optional<AnatomicalAxes> from_landmarks(bones::BoneKind bone, bones::Side s
     const auto roof =
         above(between(find(landmarks, "blumensaat_posterior"), find(landmarks, "blumensaat_anterior")));
     if (roof) by_joint = turned(*roof, -(90 - kRoofSlope_deg));
-    const auto behind = middle(find(landmarks, "medial_condyle_posterior"), find(landmarks, "lateral_condyle_posterior"));
+    const auto behind =
+        middle(find(landmarks, "medial_condyle_posterior"), find(landmarks, "lateral_condyle_posterior"));
     const auto ahead = middle(find(landmarks, "medial_epicondyle"), find(landmarks, "lateral_epicondyle"));
     if (!by_joint) by_joint = above(between(behind, ahead));
   } else {
@@ -144,10 +147,10 @@ std::optional<AnatomicalAxes> from_landmarks(bones::BoneKind bone, bones::Side s
   return axes_from(AnatomicalAxes::Origin::FromLandmarks, *proximal, *lateral, side);
 }
 
-// Mixed-up landmarks turn a bone over: then most of it lies on the wrong side of its joint. Without a mesh, only the
-// scanner is left to compare with.
-bool is_upright(const AnatomicalAxes& axes, bones::BoneKind bone, bones::Side side, const Landmarks& landmarks,
-                const geometry::TriangleMesh& mesh) {
+// Mixed-up landmarks turn a bone over: then most of it lies on the wrong side of its joint. Without a mesh,
+// only the scanner is left to compare with.
+bool is_upright(const AnatomicalAxes& axes, bones::BoneKind bone, bones::Side side,
+                const Landmarks& landmarks, const geometry::TriangleMesh& mesh) {
   if (mesh.vertices_mm.empty()) return agrees(axes, scanner_axes(side));
   const bool is_femur = bone == bones::BoneKind::Femur;
   std::optional<Vector3d> joint;

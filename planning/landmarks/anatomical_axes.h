@@ -24,22 +24,24 @@ struct AnatomicalAxes {
 // Those of LPS.
 [[nodiscard]] AnatomicalAxes scanner_axes(bones::Side side);
 
-// How well the joint's end alone tells the long axis in the lateral view, one sigma. Femur: the roof of the notch stands at
-// 37 degrees to it, 26 to 46 in Howell 1995. Tibia: the plateau falls backwards by 8 degrees.
+// How well the joint's end alone tells the long axis in the lateral view, one sigma. Femur: the roof of the
+// notch stands at 37 degrees to it, 26 to 46 in Howell 1995. Tibia: the plateau falls backwards by 8 degrees.
 inline constexpr double kRoofSlope_deg = 37, kRoofSigma_deg = 5.5;
 inline constexpr double kPlateauSlope_deg = 8, kSlopeSigma_deg = 4;
-// How well a stretch of the shaft tells it: 2.5 degrees, and 70 degrees over its length in mm, added in squares.
+// How well a stretch of the shaft tells it: 2.5 degrees, and 70 degrees over its length in mm, added in
+// squares.
 [[nodiscard]] double shaft_sigma_deg(double length_mm);
 
-// Landmarks, proposed or confirmed: lateral runs through the centres of the condyles, else the epicondyles, else the
-// condyles' posterior points (femur); through the plateau's medial and lateral edges (tibia). Proximal is across it: what the joint's
-// end tells (femur: Blumensaat's line, else the epicondyles in front of the posterior condyles; tibia: the plateau's anterior
-// and posterior edges) and the landmarks of the shaft, weighted by how well either tells it; the mesh's shaft or the scanner
-// where neither is there. Not taken when most of the mesh then lies on the wrong side of the joint (mixed-up landmarks);
-// without a mesh, when an axis is more than 60 degrees off the scanner's.
-// Without landmarks: proximal is the shaft, the longest principal axis of the surface, when its variance
-// is more than 1.6 times the next one's; lateral is the scanner's, laid across it, unless more than 60 degrees off
-// the scanner's. Never throws; an empty mesh has no shape.
+// Landmarks, proposed or confirmed: lateral runs through the centres of the condyles, else the epicondyles,
+// else the condyles' posterior points (femur); through the plateau's medial and lateral edges (tibia).
+// Proximal is across it: what the joint's end tells (femur: Blumensaat's line, else the epicondyles in front
+// of the posterior condyles; tibia: the plateau's anterior and posterior edges) and the landmarks of the
+// shaft, weighted by how well either tells it; the mesh's shaft or the scanner where neither is there. Not
+// taken when most of the mesh then lies on the wrong side of the joint (mixed-up landmarks); without a mesh,
+// when an axis is more than 60 degrees off the scanner's. Without landmarks: proximal is the shaft, the
+// longest principal axis of the surface, when its variance is more than 1.6 times the next one's; lateral is
+// the scanner's, laid across it, unless more than 60 degrees off the scanner's. Never throws; an empty mesh
+// has no shape.
 [[nodiscard]] AnatomicalAxes anatomical_axes(bones::BoneKind bone, bones::Side side,
                                              const Landmarks& landmarks, const geometry::TriangleMesh& mesh);
 

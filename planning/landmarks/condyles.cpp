@@ -30,7 +30,8 @@ Vector3d reach(const std::vector<Vector3d>& points, const Vector3d& direction) {
     const double far = p.dot(direction);
     if (far <= best.back().first) continue;
     best.back() = {far, &p};
-    for (std::size_t i = kReach - 1; i > 0 && best[i].first > best[i - 1].first; --i) std::swap(best[i], best[i - 1]);
+    for (std::size_t i = kReach - 1; i > 0 && best[i].first > best[i - 1].first; --i)
+      std::swap(best[i], best[i - 1]);
   }
   Vector3d mean = Vector3d::Zero();
   for (const auto& [far, p] : best) mean += *p / static_cast<double>(kReach);
@@ -44,7 +45,8 @@ struct Halves {
 
 Halves halves_of(const std::vector<SurfaceSample>& samples, const Matrix3d& axes, const Vector3d& middle) {
   Halves halves;
-  for (const auto& s : samples) halves.lowest = std::min(halves.lowest, (s.point_mm - middle).dot(axes.col(2)));
+  for (const auto& s : samples)
+    halves.lowest = std::min(halves.lowest, (s.point_mm - middle).dot(axes.col(2)));
   for (const auto& s : samples) {
     const Vector3d q = axes.transpose() * (s.point_mm - middle);
     if (q.z() > halves.lowest + kJointEnd_mm) continue;
@@ -58,8 +60,8 @@ Halves halves_of(const std::vector<SurfaceSample>& samples, const Matrix3d& axes
 
 }  // namespace
 
-std::optional<Condyles> find_condyles(const std::vector<SurfaceSample>& samples, const Matrix3d& bone_from_frame,
-                                      const Vector3d& origin_mm) {
+std::optional<Condyles> find_condyles(const std::vector<SurfaceSample>& samples,
+                                      const Matrix3d& bone_from_frame, const Vector3d& origin_mm) {
   Condyles result;
   Matrix3d& axes = result.bone_from_frame;
   axes = bone_from_frame;

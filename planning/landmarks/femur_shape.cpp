@@ -23,7 +23,8 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kSamples = 20000;
 constexpr double kJointEnd_mm = 75;
-// The shaft begins above the condyles by this share of their depth; it is straight for so far (the femur is bowed).
+// The shaft begins above the condyles by this share of their depth; it is straight for so far (the femur is
+// bowed).
 constexpr double kShaftFrom = 0.78, kShaftLength_mm = 110;
 constexpr std::size_t kEpicondyleSamples = 14;
 
@@ -99,7 +100,8 @@ std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geomet
                         s.point_mm.dot(*rough->cut_normal) > rough->cut_offset_mm - 1.6;
     if (!is_cut && (s.point_mm - rough->origin_mm).dot(z0) < kJointEnd_mm) shape.samples.push_back(s);
   }
-  // A slanting cut misleads about the long axis; then the joint's end is looked at from a little in front or behind.
+  // A slanting cut misleads about the long axis; then the joint's end is looked at from a little in front or
+  // behind.
   for (const double lean_deg : {0.0, 15.0, -15.0, 30.0, -30.0}) {
     const Eigen::AngleAxisd lean(geometry::rad_from_deg(lean_deg), Vector3d::UnitX());
     reason.clear();
@@ -108,8 +110,8 @@ std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geomet
   return std::nullopt;
 }
 
-// Positive: lateral is +x. The shaft stands lateral of the condyles' middle and leans that way, and the lateral flank of the
-// groove reaches further forward.
+// Positive: lateral is +x. The shaft stands lateral of the condyles' middle and leans that way, and the
+// lateral flank of the groove reaches further forward.
 double side_score(const Shape& shape, const geometry::TriangleMesh& mesh) {
   const Matrix3d& axes = shape.condyles.bone_from_frame;
   const Vector3d x = axes.col(0), z = axes.col(2);
@@ -125,7 +127,8 @@ double side_score(const Shape& shape, const geometry::TriangleMesh& mesh) {
   const double last = std::min(0.75 * depth, whole_until(mesh, shape.rough, foot, z)), first = 0.55 * depth;
   double beside = 0, count = 0;
   if (last > first) {
-    for (const auto& section : sections_across(mesh, z, low + first, 2, static_cast<std::size_t>((last - first) / 2) + 1)) {
+    for (const auto& section :
+         sections_across(mesh, z, low + first, 2, static_cast<std::size_t>((last - first) / 2) + 1)) {
       if (section.area_mm2 > 50) beside += (section.center_mm - shape.condyles.center_mm).dot(x), count += 1;
     }
   }
@@ -200,7 +203,8 @@ Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions
       condyles.center_mm +
       (marks["lateral_condyle_posterior"] - condyles.center_mm).dot(axes.col(0)) * axes.col(0);
   marks["medial_condyle_center"] =
-      condyles.center_mm + (marks["medial_condyle_posterior"] - condyles.center_mm).dot(axes.col(0)) * axes.col(0);
+      condyles.center_mm +
+      (marks["medial_condyle_posterior"] - condyles.center_mm).dot(axes.col(0)) * axes.col(0);
   marks["lateral_epicondyle"] = epicondyle(*shape, lateral);
   marks["medial_epicondyle"] = epicondyle(*shape, -lateral);
   marks["lateral_condyle_deep"] = extent(*shape, lateral, -shape->notch.forward);

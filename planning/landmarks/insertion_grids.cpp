@@ -24,8 +24,8 @@ std::optional<Vector3d> find(const Landmarks& landmarks, const char* name) {
   return found->second;
 }
 
-// Unit, from the medial to the lateral side: the direction of the true lateral view, in which the condyles are
-// superposed.
+// Unit, from the medial to the lateral side: the direction of the true lateral view, in which the condyles
+// are superposed.
 std::optional<Vector3d> condylar_line(const Landmarks& landmarks) {
   for (const char* part : {"center", "posterior"}) {
     const auto lateral = find(landmarks, (std::string("lateral_condyle_") + part).c_str()),
@@ -40,12 +40,13 @@ struct Extents {
   double deep = std::numeric_limits<double>::infinity(), shallow = -deep, low = 0;
 };
 
-// From the three landmarks where all are there, else the outline of the lateral condyle below the line; the medial one
-// and the shaft are other bones here.
-Extents extents_of(const geometry::TriangleMesh& femur, const Landmarks& landmarks, const FemoralQuadrant& quadrant,
-                   const Vector3d& front) {
+// From the three landmarks where all are there, else the outline of the lateral condyle below the line; the
+// medial one and the shaft are other bones here.
+Extents extents_of(const geometry::TriangleMesh& femur, const Landmarks& landmarks,
+                   const FemoralQuadrant& quadrant, const Vector3d& front) {
   Extents extents;
-  const auto deep = find(landmarks, "lateral_condyle_deep"), shallow = find(landmarks, "lateral_condyle_shallow"),
+  const auto deep = find(landmarks, "lateral_condyle_deep"),
+             shallow = find(landmarks, "lateral_condyle_shallow"),
              low = find(landmarks, "lateral_condyle_low");
   if (deep && shallow && low) {
     return {(*deep - front).dot(quadrant.shallow), (*shallow - front).dot(quadrant.shallow),
@@ -53,7 +54,8 @@ Extents extents_of(const geometry::TriangleMesh& femur, const Landmarks& landmar
   }
   for (const Vector3d& vertex : femur.vertices_mm) {
     const Vector3d from_roof = vertex - front;
-    if (from_roof.dot(quadrant.lateral) < kRounding_mm || from_roof.dot(quadrant.low) < -kRounding_mm) continue;
+    if (from_roof.dot(quadrant.lateral) < kRounding_mm || from_roof.dot(quadrant.low) < -kRounding_mm)
+      continue;
     extents.deep = std::min(extents.deep, from_roof.dot(quadrant.shallow));
     extents.shallow = std::max(extents.shallow, from_roof.dot(quadrant.shallow));
     extents.low = std::max(extents.low, from_roof.dot(quadrant.low));
@@ -91,7 +93,8 @@ std::optional<FemoralQuadrant> femoral_quadrant(const geometry::TriangleMesh& fe
   quadrant.low = side == bones::Side::Right ? Vector3d(quadrant.shallow.cross(quadrant.lateral))
                                             : Vector3d(quadrant.lateral.cross(quadrant.shallow));
   const Extents extents = extents_of(femur, landmarks, quadrant, *front);
-  if (!(extents.shallow - extents.deep > kLeastSpan_mm) || !(extents.low > kLeastSpan_mm)) return std::nullopt;
+  if (!(extents.shallow - extents.deep > kLeastSpan_mm) || !(extents.low > kLeastSpan_mm))
+    return std::nullopt;
   quadrant.corner_mm = *front + extents.deep * quadrant.shallow;
   quadrant.depth_mm = extents.shallow - extents.deep;
   quadrant.height_mm = extents.low;

@@ -21,7 +21,8 @@ namespace arthronaut::landmarks {
 struct FemoralQuadrant {
   Eigen::Vector3d corner_mm;     // deep and high, in the plane of the footprint-side condyle; bone frame
   Eigen::Vector3d shallow, low;  // unit, at right angles: along Blumensaat's line; away from it
-  // Unit, at right angles to both: the way out of the notch through the lateral condyle; the view is along it.
+  // Unit, at right angles to both: the way out of the notch through the lateral condyle; the view is along
+  // it.
   Eigen::Vector3d lateral = Eigen::Vector3d::UnitX();
   double depth_mm = 0, height_mm = 0;
 
@@ -33,19 +34,21 @@ struct FemoralQuadrant {
   [[nodiscard]] Eigen::Vector3d point_at(const Percent& percent) const;
 };
 
-// Needs blumensaat_anterior and blumensaat_posterior. The view is exactly along the condylar line: through the
-// condyles' centres, else their posterior points, where either pair is known, else along the patient's x laid across the line; Blumensaat's
-// line is taken as that view shows it. Extents: lateral_condyle_deep, _shallow and _low where all three are known, else the
-// outline of the mesh. nullopt when a landmark is missing or the line is shorter than 5 mm in the view.
+// Needs blumensaat_anterior and blumensaat_posterior. The view is exactly along the condylar line: through
+// the condyles' centres, else their posterior points, where either pair is known, else along the patient's x
+// laid across the line; Blumensaat's line is taken as that view shows it. Extents: lateral_condyle_deep,
+// _shallow and _low where all three are known, else the outline of the mesh. nullopt when a landmark is
+// missing or the line is shorter than 5 mm in the view.
 [[nodiscard]] std::optional<FemoralQuadrant> femoral_quadrant(const geometry::TriangleMesh& femur,
                                                               const Landmarks& landmarks, bones::Side side);
 
-// Percentages on the tibial plateau, as seen from above along the long axis, which stands 8 degrees in front of what is
-// at right angles to the plateau's edges (kPlateauSlope_deg).
+// Percentages on the tibial plateau, as seen from above along the long axis, which stands 8 degrees in front
+// of what is at right angles to the plateau's edges (kPlateauSlope_deg).
 struct TibialGrid {
   Eigen::Vector3d anterior_mm, medial_mm;  // where each share is 0; bone frame
   Eigen::Vector3d posterior, lateral;      // unit, at right angles
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  // unit, at right angles to both: the view from above is against it
+  Eigen::Vector3d up =
+      Eigen::Vector3d::UnitZ();  // unit, at right angles to both: the view from above is against it
   double depth_mm = 0, width_mm = 0;
 
   struct Percent {
@@ -56,8 +59,8 @@ struct TibialGrid {
   [[nodiscard]] Eigen::Vector3d point_at(const Percent& percent) const;
 };
 
-// Needs the four plateau_* landmarks; which side is up is told by an eminence or the tuberosity, without either by the
-// patient's z. nullopt when one is missing or two opposite ones lie closer than 5 mm.
+// Needs the four plateau_* landmarks; which side is up is told by an eminence or the tuberosity, without
+// either by the patient's z. nullopt when one is missing or two opposite ones lie closer than 5 mm.
 [[nodiscard]] std::optional<TibialGrid> tibial_grid(const Landmarks& landmarks);
 
 }  // namespace arthronaut::landmarks

@@ -14,7 +14,8 @@ constexpr std::array kFemur{
                  "where the roof of the notch turns into the groove of the kneecap"},
     LandmarkKind{"blumensaat_posterior", "Blumensaat's line, posterior end",
                  "where the roof of the notch turns into the back of the shaft"},
-    LandmarkKind{"notch_apex", "Notch, apex", "the middle of the roof's ridge, halfway along Blumensaat's line"},
+    LandmarkKind{"notch_apex", "Notch, apex",
+                 "the middle of the roof's ridge, halfway along Blumensaat's line"},
     LandmarkKind{"lateral_condyle_center", "Lateral condyle, centre",
                  "centre of the circle that its posterior outline follows in the lateral view"},
     LandmarkKind{"medial_condyle_center", "Medial condyle, centre",
@@ -73,7 +74,8 @@ std::span<const LandmarkKind> known_landmarks(bones::BoneKind bone) {
 
 const LandmarkKind* find_landmark(bones::BoneKind bone, std::string_view name) {
   const auto known = known_landmarks(bone);
-  const auto found = std::find_if(known.begin(), known.end(), [&](const auto& kind) { return kind.name == name; });
+  const auto found =
+      std::find_if(known.begin(), known.end(), [&](const auto& kind) { return kind.name == name; });
   return found == known.end() ? nullptr : &*found;
 }
 

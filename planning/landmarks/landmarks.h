@@ -15,8 +15,8 @@ namespace arthronaut::landmarks {
 // By name; the names are those of known_landmarks().
 using Landmarks = std::map<std::string, Eigen::Vector3d>;
 
-// Proposed: by the program, from the bone's shape (propose.h), and looked at by nobody yet. Confirmed: a person
-// placed it, moved it or said that it is right.
+// Proposed: by the program, from the bone's shape (propose.h), and looked at by nobody yet. Confirmed: a
+// person placed it, moved it or said that it is right.
 enum class LandmarkState { Proposed, Confirmed };
 [[nodiscard]] std::string_view to_text(LandmarkState state);  // "proposed", "confirmed"
 // Throws InvalidInput for any other word.

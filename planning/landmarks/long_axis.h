@@ -15,16 +15,17 @@ struct LongAxis {
   [[nodiscard]] double length_mm() const { return (far_end_mm - joint_end_mm).norm(); }
 };
 
-// How far along `away`, the unit direction from the joint into the shaft, beyond `joint_mm` cross sections are whole: to the end
-// of the bone, or to where a cut across it begins, however it slants.
+// How far along `away`, the unit direction from the joint into the shaft, beyond `joint_mm` cross sections
+// are whole: to the end of the bone, or to where a cut across it begins, however it slants.
 [[nodiscard]] double whole_until(const geometry::TriangleMesh& mesh, const RoughFrame& rough,
                                  const Eigen::Vector3d& joint_mm, const Eigen::Vector3d& away);
 
-// The straight line through the centres of the cross sections across `away`, the unit direction from the joint into the
-// shaft, from `first_mm` to at most `last_mm` along it beyond `joint_mm`, where the sections are whole: a cut across the
-// shaft ends them. nullopt where that is less than 8 mm.
-[[nodiscard]] std::optional<LongAxis> find_long_axis(const geometry::TriangleMesh& mesh, const RoughFrame& rough,
-                                                     const Eigen::Vector3d& joint_mm, const Eigen::Vector3d& away,
-                                                     double first_mm, double last_mm);
+// The straight line through the centres of the cross sections across `away`, the unit direction from the
+// joint into the shaft, from `first_mm` to at most `last_mm` along it beyond `joint_mm`, where the sections
+// are whole: a cut across the shaft ends them. nullopt where that is less than 8 mm.
+[[nodiscard]] std::optional<LongAxis> find_long_axis(const geometry::TriangleMesh& mesh,
+                                                     const RoughFrame& rough, const Eigen::Vector3d& joint_mm,
+                                                     const Eigen::Vector3d& away, double first_mm,
+                                                     double last_mm);
 
 }  // namespace arthronaut::landmarks

@@ -16,9 +16,9 @@ using Eigen::Vector3d;
 
 constexpr double kUsualSlope_deg = 37;  // of the roof against the long axis; 26 to 46 in Howell 1995
 constexpr double kStep_mm = 0.5, kReach_mm = 36;
-constexpr double kBend_mm = 1.0;         // off the line: the roof has ended
+constexpr double kBend_mm = 1.0;  // off the line: the roof has ended
 constexpr double kFarOff_mm = 3.0, kLongestPit_mm = 6.0, kGap_mm = 3.0;
-constexpr double kHill_mm = 1.0;         // into the notch off the line: a hill
+constexpr double kHill_mm = 1.0;  // into the notch off the line: a hill
 constexpr double kLeastRoof_mm = 14;
 constexpr double kGreatestTurn = 0.45;  // of the roof against what was taken for its direction, tangent
 
@@ -45,8 +45,10 @@ std::optional<Walls> find_walls(const View& view) {
       for (const double x : {-4.0, 0.0, 4.0}) {
         const Vector3d inside =
             view.center + view.scale * (s * view.forward + t * view.into_bone + x * view.across);
-        const auto plus = view.femur.first_hit(inside, view.across), minus = view.femur.first_hit(inside, -view.across);
-        if (!plus || !minus || plus->normal.dot(view.across) > 0 || minus->normal.dot(view.across) < 0) continue;
+        const auto plus = view.femur.first_hit(inside, view.across),
+                   minus = view.femur.first_hit(inside, -view.across);
+        if (!plus || !minus || plus->normal.dot(view.across) > 0 || minus->normal.dot(view.across) < 0)
+          continue;
         const double from = (minus->point_mm - view.center).dot(view.across),
                      to = (plus->point_mm - view.center).dot(view.across);
         if (to - from < 6 || to - from > 40) continue;
@@ -63,8 +65,8 @@ std::optional<Walls> find_walls(const View& view) {
   return Walls{median(middles), median(widths)};
 }
 
-// The roof's outline in the lateral view. Of each cross section the third deepest ray, so that a vessel's hole
-// does not count.
+// The roof's outline in the lateral view. Of each cross section the third deepest ray, so that a vessel's
+// hole does not count.
 std::vector<ProfilePoint> outline(const View& view, const Walls& walls) {
   std::vector<ProfilePoint> profile;
   const double start = 9 * view.scale, spread = 0.6 * walls.half_width_mm;
@@ -104,8 +106,8 @@ Line fit(const std::vector<ProfilePoint>& profile, double from, double to, const
   return {(t1 - slope * s1) / n, slope};
 }
 
-// From `inside` outwards to where the outline leaves the line for good: a pit in the roof is shallow or short, beyond
-// the end the bone falls away.
+// From `inside` outwards to where the outline leaves the line for good: a pit in the roof is shallow or
+// short, beyond the end the bone falls away.
 double end_of_roof(const std::vector<ProfilePoint>& profile, const Line& line, double inside, double sign) {
   std::vector<const ProfilePoint*> way;
   for (const auto& p : profile) {
@@ -159,7 +161,8 @@ std::optional<Roof> find_roof(const std::vector<ProfilePoint>& profile, double s
 
 }  // namespace
 
-std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& condyles, RoofConvention convention) {
+std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& condyles,
+                                RoofConvention convention) {
   const Eigen::Matrix3d& axes = condyles.bone_from_frame;
   double slope = geometry::rad_from_deg(kUsualSlope_deg);
   View view{femur, condyles.center_mm, axes.col(0), {}, {}, condyles.depth_mm / 65};

@@ -1,4 +1,5 @@
-// The intercondylar notch, seen from inside: its walls, its roof and Blumensaat's line. Inner header of landmarks.
+// The intercondylar notch, seen from inside: its walls, its roof and Blumensaat's line. Inner header of
+// landmarks.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +13,8 @@
 namespace arthronaut::landmarks {
 
 struct Notch {
-  // In the lateral view: along the roof towards the front, and out of the notch into the bone. At right angles.
+  // In the lateral view: along the roof towards the front, and out of the notch into the bone. At right
+  // angles.
   Eigen::Vector3d forward, into_bone;
   Eigen::Vector3d anterior_mm, posterior_mm;  // the ends of Blumensaat's line by the convention; bone frame
   Eigen::Vector3d apex_mm;                    // of the roof's ridge, halfway
@@ -23,8 +25,8 @@ struct Notch {
 
 // Rays from inside the notch onto its roof: of each cross section of the roof the deepest point is what the
 // lateral view shows as its outline. The roof ends where that outline bends away from its line by more than
-// 1 mm, in front into the groove of the kneecap, behind into the back of the shaft. The line's direction is found
-// anew until it stays. nullopt where between the condyles no such roof is.
+// 1 mm, in front into the groove of the kneecap, behind into the back of the shaft. The line's direction is
+// found anew until it stays. nullopt where between the condyles no such roof is.
 [[nodiscard]] std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& condyles,
                                               RoofConvention convention);
 

@@ -13,8 +13,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kDeepest_mm = -30, kAbove_mm = 40;
-constexpr double kRim_mm = 6;        // below the plane: over the edge
-constexpr double kInner_mm = 10;     // to either side of the middle: eminences
+constexpr double kRim_mm = 6;     // below the plane: over the edge
+constexpr double kInner_mm = 10;  // to either side of the middle: eminences
 constexpr double kLeastHalf_mm2 = 250;
 constexpr int kRounds = 10;
 
@@ -40,7 +40,8 @@ void each_cell(const Relief& relief, const Visit& visit) {
   for (int row = -Relief::kHalf; row <= Relief::kHalf; ++row) {
     for (int column = -Relief::kHalf; column <= Relief::kHalf; ++column) {
       const double height = relief.at(column, row);
-      if (height != Relief::kEmpty) visit(Vector2d(column * Relief::kCell_mm, row * Relief::kCell_mm), height);
+      if (height != Relief::kEmpty)
+        visit(Vector2d(column * Relief::kCell_mm, row * Relief::kCell_mm), height);
     }
   }
 }
@@ -78,7 +79,8 @@ std::optional<Plateau> find_plateau(const geometry::Surface& tibia, const RoughF
         if (std::abs(at.x()) > kInner_mm) heights.push_back(height);
       });
       if (heights.size() < 200) return std::nullopt;
-      const auto at = heights.begin() + static_cast<std::ptrdiff_t>(0.6 * static_cast<double>(heights.size()));
+      const auto at =
+          heights.begin() + static_cast<std::ptrdiff_t>(0.6 * static_cast<double>(heights.size()));
       std::nth_element(heights.begin(), at, heights.end());
       plane.z() = *at;
     }

@@ -28,14 +28,17 @@ Proposal propose(const geometry::TriangleMesh& mesh, bones::BoneKind bone, const
     nothing.reason = "the surface is empty";
     return nothing;
   }
-  Proposal proposal = bone == bones::BoneKind::Femur ? propose_femur(mesh, options) : propose_tibia(mesh, options);
-  if (proposal.is_usable() && options.side && proposal.side_by_shape && *options.side != *proposal.side_by_shape) {
+  Proposal proposal =
+      bone == bones::BoneKind::Femur ? propose_femur(mesh, options) : propose_tibia(mesh, options);
+  if (proposal.is_usable() && options.side && proposal.side_by_shape &&
+      *options.side != *proposal.side_by_shape) {
     proposal.doubts.push_back("by its shape the " + std::string(bones::to_text(bone)) + " is a " +
-                              std::string(bones::to_text(*proposal.side_by_shape)) + " one, and the case says " +
-                              std::string(bones::to_text(*options.side)));
+                              std::string(bones::to_text(*proposal.side_by_shape)) +
+                              " one, and the case says " + std::string(bones::to_text(*options.side)));
   }
   if (proposal.is_usable() && !options.side && !proposal.side_by_shape)
-    proposal.doubts.push_back("the shape of the " + std::string(bones::to_text(bone)) + " does not tell its side");
+    proposal.doubts.push_back("the shape of the " + std::string(bones::to_text(bone)) +
+                              " does not tell its side");
   return proposal;
 }
 

@@ -1,11 +1,12 @@
-// Landmarks from a bone's shape alone: no scanner axis enters, so that a bone gives the same points however it
-// lies, of either side, whole or cut off above (femur) or below (tibia) the joint.
+// Landmarks from a bone's shape alone: no scanner axis enters, so that a bone gives the same points however
+// it lies, of either side, whole or cut off above (femur) or below (tibia) the joint.
 //
 // The way, each step in a file of its own:
 //   1. rough_frame     the cut face or the long axis tells the joint's end; the plane in which the bone comes
-//                      nearest to its own mirror image tells medial-lateral; what is missing behind the mirror plane
-//                      (the notch; the plateau's rear) tells front from back.
-//   2. femur_shape     circles through the posterior outline of either condyle give the condylar line, the view in
+//                      nearest to its own mirror image tells medial-lateral; what is missing behind the
+//                      mirror plane (the notch; the plateau's rear) tells front from back.
+//   2. femur_shape     circles through the posterior outline of either condyle give the condylar line, the
+//   view in
 //                      which the condyles are superposed; rays from inside the notch give its walls, its
 //                      roof and the line through the roof; extremes in this view give the rest.
 //   3. tibia_shape     the two halves of the plateau give its plane, its rim the four edges, the ridges
@@ -49,26 +50,26 @@ struct Proposal {
     NotThisBone,  // no condyles and no notch, or no plateau: nothing is proposed
   } outcome = Outcome::NotRun;
   std::string reason = "propose was not called";  // why nothing is proposed; empty when something is
-  Landmarks landmarks;                            // by the names of known_landmarks(), all but native_footprint
-  std::optional<bones::Side> side_by_shape;       // nullopt: the shape does not tell
-  AnatomicalAxes axes;                            // Origin::FromLandmarks, when Proposed
-  RoofShape roof = RoofShape::Straight;           // femur
-  double hill_mm = 0;                             // femur: how far the hill stands into the notch
-  std::vector<std::string> doubts;                // why a person should look closer, in sentences
+  Landmarks landmarks;                       // by the names of known_landmarks(), all but native_footprint
+  std::optional<bones::Side> side_by_shape;  // nullopt: the shape does not tell
+  AnatomicalAxes axes;                       // Origin::FromLandmarks, when Proposed
+  RoofShape roof = RoofShape::Straight;      // femur
+  double hill_mm = 0;                        // femur: how far the hill stands into the notch
+  std::vector<std::string> doubts;           // why a person should look closer, in sentences
 
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Proposed; }
 };
 
-// mesh: closed, outward, mm (bones::mend_mesh). Never throws for a shape that it does not know: read the outcome.
-// A mesh of 200,000 triangles takes in the order of a second.
+// mesh: closed, outward, mm (bones::mend_mesh). Never throws for a shape that it does not know: read the
+// outcome. A mesh of 200,000 triangles takes in the order of a second.
 [[nodiscard]] Proposal propose(const geometry::TriangleMesh& mesh, bones::BoneKind bone,
                                const ProposalOptions& options = {});
 
 // Puts the proposed landmarks where there are none or proposed ones; confirmed ones stay.
 void take_proposal(const Proposal& proposal, Landmarks& landmarks, LandmarkStates& states);
 
-// The landmarks to plan by: the given ones, and proposed ones where there are none. `used_proposed` is set when
-// one of the result is proposed.
+// The landmarks to plan by: the given ones, and proposed ones where there are none. `used_proposed` is set
+// when one of the result is proposed.
 [[nodiscard]] Landmarks completed(const Landmarks& landmarks, const LandmarkStates& states,
                                   const Proposal& proposal, bool& used_proposed);
 

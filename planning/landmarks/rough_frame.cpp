@@ -20,9 +20,10 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr std::size_t kSamples = 4000;
-constexpr double kJointEnd_mm = 70;       // of the bone from the joint's end on: what the mirror plane is sought in
-constexpr double kLeastCut_mm2 = 300;     // a smaller plane face may be the bone's own
-constexpr double kRoughCut_mm = 0.3;      // root mean square off its plane; a flat side of a condyle has 0.4
+constexpr double kJointEnd_mm =
+    70;  // of the bone from the joint's end on: what the mirror plane is sought in
+constexpr double kLeastCut_mm2 = 300;  // a smaller plane face may be the bone's own
+constexpr double kRoughCut_mm = 0.3;   // root mean square off its plane; a flat side of a condyle has 0.4
 // Under a cut the bone is about as wide as the cut; under a flat side of a condyle it widens at once.
 constexpr double kBelowCut_mm = 4, kWidening = 2.2;
 constexpr double kCutThickness_mm = 0.8;  // marching cubes and smoothing round a cut's edge
@@ -44,7 +45,8 @@ std::vector<SurfaceSample> smoothed(const std::vector<SurfaceSample>& samples) {
   for (auto& s : smooth) {
     Vector3d sum = Vector3d::Zero();
     for (const auto& other : samples) {
-      if ((other.point_mm - s.point_mm).squaredNorm() < kAbout_mm * kAbout_mm && other.normal.dot(s.normal) > 0.3)
+      if ((other.point_mm - s.point_mm).squaredNorm() < kAbout_mm * kAbout_mm &&
+          other.normal.dot(s.normal) > 0.3)
         sum += other.normal;
     }
     if (sum.norm() > 0) s.normal = sum.normalized();
@@ -52,7 +54,8 @@ std::vector<SurfaceSample> smoothed(const std::vector<SurfaceSample>& samples) {
   return smooth;
 }
 
-// The largest plane face that supports the whole surface and that the bone goes on under with about its width.
+// The largest plane face that supports the whole surface and that the bone goes on under with about its
+// width.
 std::optional<Cut> find_cut(const geometry::TriangleMesh& mesh, const std::vector<SurfaceSample>& given,
                             double area_each_mm2) {
   const auto samples = smoothed(given);
@@ -68,7 +71,9 @@ std::optional<Cut> find_cut(const geometry::TriangleMesh& mesh, const std::vecto
       Matrix3d moment = Matrix3d::Zero();
       held = 0;
       for (const auto& s : samples) {
-        if (s.normal.dot(normal) < (round == 0 ? 0.95 : 0.98) || std::abs(s.point_mm.dot(normal) - offset) > reach) continue;
+        if (s.normal.dot(normal) < (round == 0 ? 0.95 : 0.98) ||
+            std::abs(s.point_mm.dot(normal) - offset) > reach)
+          continue;
         center += s.point_mm;
         moment += s.point_mm * s.point_mm.transpose();
         ++held;
@@ -135,8 +140,9 @@ class MirrorSearch {
   }
 
  private:
-  // One step of the nearest-point iteration, over every `stride`th point: of all planes the one that takes the points
-  // nearest to their partners, which is the eigenvector of the smallest eigenvalue of their mutual moment.
+  // One step of the nearest-point iteration, over every `stride`th point: of all planes the one that takes
+  // the points nearest to their partners, which is the eigenvector of the smallest eigenvalue of their mutual
+  // moment.
   [[nodiscard]] Mirror step(const Mirror& plane, std::size_t stride) const {
     std::vector<std::pair<double, std::pair<Vector3d, Vector3d>>> pairs;
     for (std::size_t i = 0; i < points_.size(); i += stride) {
@@ -165,8 +171,8 @@ class MirrorSearch {
     return next;
   }
 
-  // How much wider the joint's end is along the normal than along the widest line across it and the smallest extent:
-  // condyles and plateau are wider than they are deep.
+  // How much wider the joint's end is along the normal than along the widest line across it and the smallest
+  // extent: condyles and plateau are wider than they are deep.
   [[nodiscard]] double breadth(const Vector3d& normal) const {
     Matrix3d moment = Matrix3d::Zero();
     for (const Vector3d& p : points_) moment += (p - center_) * (p - center_).transpose();
@@ -179,9 +185,10 @@ class MirrorSearch {
   Vector3d center_;
 };
 
-// Which way along `forward` is the front: of a femur the notch lies behind; of a tibia the rim is bent in behind.
-double forwardness(const std::vector<Vector3d>& points, const geometry::Surface& surface, const Matrix3d& axes,
-                   const Vector3d& origin, bones::BoneKind bone) {
+// Which way along `forward` is the front: of a femur the notch lies behind; of a tibia the rim is bent in
+// behind.
+double forwardness(const std::vector<Vector3d>& points, const geometry::Surface& surface,
+                   const Matrix3d& axes, const Vector3d& origin, bones::BoneKind bone) {
   if (bone == bones::BoneKind::Tibia) {
     const auto reach = [&](double sign, bool middle) {
       double furthest = -1e9;
@@ -250,7 +257,8 @@ std::optional<RoughFrame> rough_frame(const geometry::TriangleMesh& mesh, bones:
     for (const auto& s : samples) tip = std::max(tip, s.point_mm.dot(end.direction));
     std::vector<Vector3d> points;
     for (const auto& s : samples) {
-      if (s.point_mm.dot(end.direction) > tip - kJointEnd_mm && !(cut && cut->holds(s))) points.push_back(s.point_mm);
+      if (s.point_mm.dot(end.direction) > tip - kJointEnd_mm && !(cut && cut->holds(s)))
+        points.push_back(s.point_mm);
     }
     if (points.size() < 200) continue;
     if (points.size() > 500) {

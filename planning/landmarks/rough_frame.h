@@ -12,15 +12,17 @@ namespace arthronaut::landmarks {
 // Right-handed: x to the patient's right (lateral in a right knee), y anterior, z proximal.
 struct RoughFrame {
   Eigen::Matrix3d bone_from_frame = Eigen::Matrix3d::Identity();  // columns are the axes
-  Eigen::Vector3d origin_mm = Eigen::Vector3d::Zero();  // on the mirror plane, at the middle of the joint's end
-  // A plane face that everything else lies behind: where the bone was cut off. Unit, outward; unset for a whole bone.
+  Eigen::Vector3d origin_mm =
+      Eigen::Vector3d::Zero();  // on the mirror plane, at the middle of the joint's end
+  // A plane face that everything else lies behind: where the bone was cut off. Unit, outward; unset for a
+  // whole bone.
   std::optional<Eigen::Vector3d> cut_normal;
-  double cut_offset_mm = 0;     // of the face along its normal
-  double asymmetry_mm = 0;      // mean distance of the mirrored joint end to the bone
+  double cut_offset_mm = 0;  // of the face along its normal
+  double asymmetry_mm = 0;   // mean distance of the mirrored joint end to the bone
 };
 
-// nullopt: nothing here looks like the joint's end of a bone (no area, no mirror plane). Within 25 degrees of the
-// anatomical axes for bones of which 55 mm or more are there.
+// nullopt: nothing here looks like the joint's end of a bone (no area, no mirror plane). Within 25 degrees of
+// the anatomical axes for bones of which 55 mm or more are there.
 [[nodiscard]] std::optional<RoughFrame> rough_frame(const geometry::TriangleMesh& mesh, bones::BoneKind bone);
 
 }  // namespace arthronaut::landmarks

@@ -46,8 +46,8 @@ std::vector<SurfaceSample> sample_surface(const geometry::TriangleMesh& mesh, st
   return samples;
 }
 
-std::vector<Section> sections_across(const geometry::TriangleMesh& mesh, const Vector3d& axis, double first_mm,
-                                     double step_mm, std::size_t count) {
+std::vector<Section> sections_across(const geometry::TriangleMesh& mesh, const Vector3d& axis,
+                                     double first_mm, double step_mm, std::size_t count) {
   const Vector3d u = axis.unitOrthogonal(), v = axis.cross(u);
   std::vector<Section> sections(count);
   std::vector<Eigen::Vector2d> moment(count, Eigen::Vector2d::Zero());
@@ -69,7 +69,8 @@ std::vector<Section> sections_across(const geometry::TriangleMesh& mesh, const V
         ends[found++] = {q.dot(u), q.dot(v)};
       }
       if (found < 2) continue;
-      if ((ends[1] - ends[0]).dot(Eigen::Vector2d(along.dot(u), along.dot(v))) < 0) std::swap(ends[0], ends[1]);
+      if ((ends[1] - ends[0]).dot(Eigen::Vector2d(along.dot(u), along.dot(v))) < 0)
+        std::swap(ends[0], ends[1]);
       const double cross = ends[0].x() * ends[1].y() - ends[0].y() * ends[1].x();
       const auto index = static_cast<std::size_t>(i);
       sections[index].area_mm2 += cross / 2;

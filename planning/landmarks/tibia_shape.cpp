@@ -40,8 +40,8 @@ Vector3d over_plateau(const Shape& shape, const Vector3d& p) {
   return shape.plateau.bone_from_frame.transpose() * (p - shape.plateau.origin_mm);
 }
 
-// Positive when y of the plateau's frame is anterior: the eminences stand behind the middle, the rim is bent in behind,
-// and below the front edge the bone comes forward to the tuberosity, which one sees from above.
+// Positive when y of the plateau's frame is anterior: the eminences stand behind the middle, the rim is bent
+// in behind, and below the front edge the bone comes forward to the tuberosity, which one sees from above.
 double forward_score(const Relief& relief) {
   double eminence_y = 0, eminence = 0, seen_below = 0, front_bend = 0, back_bend = 0;
   double front_middle = -1e9, front_sides = -1e9, back_middle = -1e9, back_sides = -1e9;
@@ -63,8 +63,8 @@ double forward_score(const Relief& relief) {
   return stands_behind / 3 + (front_bend - back_bend) / 4 + std::clamp(seen_below / 30, -1.5, 1.5);
 }
 
-// Positive when x of the plateau's frame is lateral: the medial half is the larger, the rim's foremost part stands on the
-// medial side of the middle, and the tuberosity on the lateral one.
+// Positive when x of the plateau's frame is lateral: the medial half is the larger, the rim's foremost part
+// stands on the medial side of the middle, and the tuberosity on the lateral one.
 double side_score(const Shape& shape, const std::optional<Vector3d>& tuberosity) {
   const Plateau& plateau = shape.plateau;
   const double minus = plateau.area_minus_mm2, plus = plateau.area_plus_mm2;
@@ -88,7 +88,8 @@ double side_score(const Shape& shape, const std::optional<Vector3d>& tuberosity)
 
 // The mean of those samples that `among` admits and that reach furthest along `direction`.
 template <typename Predicate>
-std::optional<Vector3d> furthest(const Shape& shape, const Vector3d& direction, std::size_t patch, Predicate among) {
+std::optional<Vector3d> furthest(const Shape& shape, const Vector3d& direction, std::size_t patch,
+                                 Predicate among) {
   std::vector<std::pair<double, Vector3d>> found;
   for (const auto& s : shape.samples) {
     if (among(over_plateau(shape, s.point_mm))) found.push_back({s.point_mm.dot(direction), s.point_mm});
@@ -196,7 +197,8 @@ Proposal propose_tibia(const geometry::TriangleMesh& mesh, const ProposalOptions
   if (!shape) return proposal;
   const auto tuberosity = tuberosity_of(*shape);
   const double score = side_score(*shape, tuberosity);
-  if (std::abs(score) > kSureSide) proposal.side_by_shape = score > 0 ? bones::Side::Right : bones::Side::Left;
+  if (std::abs(score) > kSureSide)
+    proposal.side_by_shape = score > 0 ? bones::Side::Right : bones::Side::Left;
   const bones::Side side = options.side.value_or(score > 0 ? bones::Side::Right : bones::Side::Left);
   const double lateral = side == bones::Side::Right ? 1 : -1;
   const Matrix3d& axes = shape->axes;

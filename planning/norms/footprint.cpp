@@ -64,16 +64,19 @@ std::vector<Vector3d> laid_on_bone(const Grid& grid, const Spot& center, const V
   return outline;
 }
 
-// In mm of the grid: unit, from the anteromedial to the posterolateral bundle, the way in which the footprint is long.
+// In mm of the grid: unit, from the anteromedial to the posterolateral bundle, the way in which the footprint
+// is long.
 Vector2d long_way(const Grid& grid, bones::BoneKind bone) {
-  const InsertionNorm &am = default_norm(bone, Bundle::Anteromedial), &pl = default_norm(bone, Bundle::Posterolateral);
+  const InsertionNorm &am = default_norm(bone, Bundle::Anteromedial),
+                      &pl = default_norm(bone, Bundle::Posterolateral);
   const Vector2d percent(pl.along.mean - am.along.mean, pl.across.mean - am.across.mean);
   return percent.cwiseProduct(grid.mm_per_percent()).normalized();
 }
 
 }  // namespace
 
-std::optional<geometry::SurfacePoint> femoral_point(const geometry::Surface& femur, const FemoralQuadrant& quadrant,
+std::optional<geometry::SurfacePoint> femoral_point(const geometry::Surface& femur,
+                                                    const FemoralQuadrant& quadrant,
                                                     const FemoralQuadrant::Percent& percent) {
   // The grid stands in the middle of the notch; a hill of the roof may lie in between.
   for (const auto& hit : femur.all_hits(quadrant.point_at(percent), quadrant.lateral)) {

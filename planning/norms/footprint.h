@@ -1,4 +1,5 @@
-// The expected footprint: where the ligament inserted on this bone, as an area on its surface with its spread.
+// The expected footprint: where the ligament inserted on this bone, as an area on its surface with its
+// spread.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,13 +28,15 @@ struct ExpectedFootprint {
 [[nodiscard]] std::optional<geometry::SurfacePoint> femoral_point(
     const geometry::Surface& femur, const landmarks::FemoralQuadrant& quadrant,
     const landmarks::FemoralQuadrant::Percent& percent);
-[[nodiscard]] std::optional<geometry::SurfacePoint> tibial_point(const geometry::Surface& tibia,
-                                                                 const landmarks::TibialGrid& grid,
-                                                                 const landmarks::TibialGrid::Percent& percent);
+[[nodiscard]] std::optional<geometry::SurfacePoint> tibial_point(
+    const geometry::Surface& tibia, const landmarks::TibialGrid& grid,
+    const landmarks::TibialGrid::Percent& percent);
 
 // nullopt when the landmarks give no grid or no bone lies there. `mesh` is the surface's.
-[[nodiscard]] std::optional<ExpectedFootprint> expected_footprint(
-    const geometry::TriangleMesh& mesh, const geometry::Surface& surface, bones::BoneKind bone,
-    bones::Side side, const landmarks::Landmarks& landmarks, const InsertionNorm& norm);
+[[nodiscard]] std::optional<ExpectedFootprint> expected_footprint(const geometry::TriangleMesh& mesh,
+                                                                  const geometry::Surface& surface,
+                                                                  bones::BoneKind bone, bones::Side side,
+                                                                  const landmarks::Landmarks& landmarks,
+                                                                  const InsertionNorm& norm);
 
 }  // namespace arthronaut::norms

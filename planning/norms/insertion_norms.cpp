@@ -12,38 +12,74 @@ namespace {
 
 using bones::BoneKind;
 
-// Two families of studies place the femoral centre differently. On grids laid over radiographs and CT it lies at 25 to 31 %
-// from deep to shallow (mean 28.1 %); measured on the wall of the notch itself it lies 43 % of the way from the wall's
-// deep to its shallow margin (Piefer 2012), which is 38.5 % of the grid on real femora, where the wall begins at 20 % and
-// ends at 63 %. The default weighs them 1 to 4: the margins of the wall are seen in the bone within 2 mm, where the deep
-// side of a grid is laid differs between studies and readers by twice as much. Its height is the mean of the grid studies.
+// Two families of studies place the femoral centre differently. On grids laid over radiographs and CT it lies
+// at 25 to 31 % from deep to shallow (mean 28.1 %); measured on the wall of the notch itself it lies 43 % of
+// the way from the wall's deep to its shallow margin (Piefer 2012), which is 38.5 % of the grid on real
+// femora, where the wall begins at 20 % and ends at 63 %. The default weighs them 1 to 4: the margins of the
+// wall are seen in the bone within 2 mm, where the deep side of a grid is laid differs between studies and
+// readers by twice as much. Its height is the mean of the grid studies.
 constexpr std::array kNorms{
-    InsertionNorm{BoneKind::Femur, Bundle::Whole, {36.4, 5.0}, {29.5, 6.0},
-                  "pooled: 43 % of the notch wall (Piefer 2012, PubMed 22301358) and the grids of Bernard 1997, Musahl 2003, "
+    InsertionNorm{BoneKind::Femur,
+                  Bundle::Whole,
+                  {36.4, 5.0},
+                  {29.5, 6.0},
+                  "pooled: 43 % of the notch wall (Piefer 2012, PubMed 22301358) and the grids of Bernard "
+                  "1997, Musahl 2003, "
                   "Arthroscopy 2016 (13 studies), AJSM 2016"},
-    InsertionNorm{BoneKind::Femur, Bundle::Whole, {28.4, 5.1}, {35.7, 6.9}, "review of 13 studies (Arthroscopy 2016)"},
-    InsertionNorm{BoneKind::Femur, Bundle::Whole, {24.8, 5.1}, {28.5, 6.9}, "Bernard, Hertel 1997 (PubMed 9051173)"},
-    InsertionNorm{BoneKind::Femur, Bundle::Whole, {31.0, 5.1}, {23.5, 6.9},
+    InsertionNorm{
+        BoneKind::Femur, Bundle::Whole, {28.4, 5.1}, {35.7, 6.9}, "review of 13 studies (Arthroscopy 2016)"},
+    InsertionNorm{
+        BoneKind::Femur, Bundle::Whole, {24.8, 5.1}, {28.5, 6.9}, "Bernard, Hertel 1997 (PubMed 9051173)"},
+    InsertionNorm{BoneKind::Femur,
+                  Bundle::Whole,
+                  {31.0, 5.1},
+                  {23.5, 6.9},
                   "functional cortical footprint (AJSM 2016, 10.1177/0363546516665804)"},
     InsertionNorm{BoneKind::Femur, Bundle::Whole, {29.0, 5.1}, {35.0, 6.9}, "Parkar 2017", true},
-    InsertionNorm{BoneKind::Femur, Bundle::Anteromedial, {32.2, 4.0}, {15.4, 5.2},
-                  "the pooled centre, and from it what a review finds between the centres (Arthroscopy 2016)"},
-    InsertionNorm{BoneKind::Femur, Bundle::Anteromedial, {24.2, 4.0}, {21.6, 5.2}, "review (Arthroscopy 2016)"},
+    InsertionNorm{
+        BoneKind::Femur,
+        Bundle::Anteromedial,
+        {32.2, 4.0},
+        {15.4, 5.2},
+        "the pooled centre, and from it what a review finds between the centres (Arthroscopy 2016)"},
+    InsertionNorm{
+        BoneKind::Femur, Bundle::Anteromedial, {24.2, 4.0}, {21.6, 5.2}, "review (Arthroscopy 2016)"},
     InsertionNorm{BoneKind::Femur, Bundle::Anteromedial, {22.8, 4.0}, {23.2, 5.2}, "Sullivan 2015 (HSS J)"},
-    InsertionNorm{BoneKind::Femur, Bundle::Posterolateral, {40.8, 4.7}, {40.5, 4.9},
-                  "the pooled centre, and from it what a review finds between the centres (Arthroscopy 2016)"},
-    InsertionNorm{BoneKind::Femur, Bundle::Posterolateral, {32.8, 4.7}, {46.7, 4.9}, "review (Arthroscopy 2016)"},
+    InsertionNorm{
+        BoneKind::Femur,
+        Bundle::Posterolateral,
+        {40.8, 4.7},
+        {40.5, 4.9},
+        "the pooled centre, and from it what a review finds between the centres (Arthroscopy 2016)"},
+    InsertionNorm{
+        BoneKind::Femur, Bundle::Posterolateral, {32.8, 4.7}, {46.7, 4.9}, "review (Arthroscopy 2016)"},
     InsertionNorm{BoneKind::Femur, Bundle::Posterolateral, {32.5, 4.7}, {50.0, 4.9}, "Sullivan 2015 (HSS J)"},
-    InsertionNorm{BoneKind::Tibia, Bundle::Whole, {39.7, 3.5}, {46.3, 2.2},
-                  "mean of Cho 2017 (PMC5686853) and Meuffels 2012 (CT); across: 10.1177/23259671231208678 (46.7 and 45.9 %)"},
-    InsertionNorm{BoneKind::Tibia, Bundle::Whole, {40.9, 3.5}, {46.7, 2.0},
+    InsertionNorm{BoneKind::Tibia,
+                  Bundle::Whole,
+                  {39.7, 3.5},
+                  {46.3, 2.2},
+                  "mean of Cho 2017 (PMC5686853) and Meuffels 2012 (CT); across: 10.1177/23259671231208678 "
+                  "(46.7 and 45.9 %)"},
+    InsertionNorm{BoneKind::Tibia,
+                  Bundle::Whole,
+                  {40.9, 3.5},
+                  {46.7, 2.0},
                   "Amis-Jakob, Cho 2017 (PMC5686853); across: 10.1177/23259671231208678"},
     InsertionNorm{BoneKind::Tibia, Bundle::Whole, {46.2, 2.8}, {46.7, 2.0}, "Musahl 2003"},
-    InsertionNorm{BoneKind::Tibia, Bundle::Whole, {41.2, 5.1}, {46.7, 2.0}, "Staubli, Rauschning 1994: 21 of 51 mm"},
-    InsertionNorm{BoneKind::Tibia, Bundle::Anteromedial, {30.5, 3.5}, {46.3, 2.2},
-                  "a quarter of the footprint's length (18.1 mm, Ferretti 2012) in front of its centre", true},
-    InsertionNorm{BoneKind::Tibia, Bundle::Posterolateral, {48.9, 3.5}, {46.3, 2.2},
-                  "a quarter of the footprint's length (18.1 mm, Ferretti 2012) behind its centre", true},
+    InsertionNorm{
+        BoneKind::Tibia, Bundle::Whole, {41.2, 5.1}, {46.7, 2.0}, "Staubli, Rauschning 1994: 21 of 51 mm"},
+    InsertionNorm{BoneKind::Tibia,
+                  Bundle::Anteromedial,
+                  {30.5, 3.5},
+                  {46.3, 2.2},
+                  "a quarter of the footprint's length (18.1 mm, Ferretti 2012) in front of its centre",
+                  true},
+    InsertionNorm{BoneKind::Tibia,
+                  Bundle::Posterolateral,
+                  {48.9, 3.5},
+                  {46.3, 2.2},
+                  "a quarter of the footprint's length (18.1 mm, Ferretti 2012) behind its centre",
+                  true},
 };
 
 }  // namespace

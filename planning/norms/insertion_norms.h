@@ -1,5 +1,5 @@
-// Where studies found the ligament's insertions, in percent of the grids of landmarks/insertion_grids.h. Means of
-// studies with their spread and their source: no limits of safety; the surgeon decides.
+// Where studies found the ligament's insertions, in percent of the grids of landmarks/insertion_grids.h.
+// Means of studies with their spread and their source: no limits of safety; the surgeon decides.
 #pragma once
 
 #include <span>

@@ -72,8 +72,8 @@ Landmarks femur_landmarks(const FemurShape& shape, const AnatomicalBone& femur) 
   marks["blumensaat_anterior"] = on_roof(2 * scale);
   marks["notch_apex"] = on_roof(14 * scale);
   marks["blumensaat_posterior"] = on_roof(26 * scale);
-  // The grid is the one that plans are judged by. Lateral, anterior and superior are right-handed in this frame, as
-  // in a right knee, and the wall is met from the middle of the notch.
+  // The grid is the one that plans are judged by. Lateral, anterior and superior are right-handed in this
+  // frame, as in a right knee, and the wall is met from the middle of the notch.
   const auto quadrant = landmarks::femoral_quadrant(femur.mesh, marks, bones::Side::Right);
   if (!quadrant) throw std::logic_error("phantom: no quadrant on the femur");
   const Vector3d in_notch =

@@ -37,7 +37,8 @@ Mesh cgal_from(const geometry::TriangleMesh& mesh) {
 geometry::TriangleMesh mesh_from(Mesh& mesh) {
   mesh.collect_garbage();
   geometry::TriangleMesh result;
-  for (const auto v : mesh.vertices()) result.vertices_mm.emplace_back(mesh.point(v).x(), mesh.point(v).y(), mesh.point(v).z());
+  for (const auto v : mesh.vertices())
+    result.vertices_mm.emplace_back(mesh.point(v).x(), mesh.point(v).y(), mesh.point(v).z());
   for (const auto f : mesh.faces()) {
     std::array<std::int32_t, 3> triangle{};
     std::size_t k = 0;
@@ -95,8 +96,9 @@ DrilledBone drill(const geometry::TriangleMesh& bone, const tunnels::Tunnel& tun
   const double sector = 2 * geometry::kPi / kSides;
   const double radius = 0.5 * tunnel.diameter_mm * std::sqrt(sector / std::sin(sector));
   Mesh of_bone = cgal_from(bone);
-  Mesh of_drill = cgal_from(cylinder(measured.entry_on_surface_mm - room(surface, measured.entry_on_surface_mm, -d) * d,
-                                     measured.exit_mm + room(surface, measured.exit_mm, d) * d, radius));
+  Mesh of_drill =
+      cgal_from(cylinder(measured.entry_on_surface_mm - room(surface, measured.entry_on_surface_mm, -d) * d,
+                         measured.exit_mm + room(surface, measured.exit_mm, d) * d, radius));
   if (!CGAL::is_closed(of_bone) || of_bone.number_of_faces() != bone.triangles.size()) return result;
   Mesh drilled;
   try {

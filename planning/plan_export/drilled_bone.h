@@ -1,4 +1,5 @@
-// The bone with its tunnel drilled out, as a closed surface: for printing, for finite elements, for other programs.
+// The bone with its tunnel drilled out, as a closed surface: for printing, for finite elements, for other
+// programs.
 #pragma once
 
 #include <string>
@@ -12,16 +13,17 @@ struct DrilledBone {
   enum class Outcome {
     NotRun,
     Drilled,
-    MissesTheBone,   // the tunnel's axis does not enter it
-    BrokenSurface,   // not closed, or it crosses itself: no inside to take away from
+    MissesTheBone,  // the tunnel's axis does not enter it
+    BrokenSurface,  // not closed, or it crosses itself: no inside to take away from
   } outcome = Outcome::NotRun;
   std::string reason = "drill was not called";  // empty when drilled
   geometry::TriangleMesh mesh;                  // closed, outward, bone frame, mm
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Drilled; }
 };
 
-// The bone less a cylinder about the tunnel's axis, by CGAL's exact boolean (corefinement). The cylinder has 96 sides and
-// the tunnel's cross-section area; it runs through both mouths and ends in the open, half way to whatever comes next.
+// The bone less a cylinder about the tunnel's axis, by CGAL's exact boolean (corefinement). The cylinder has
+// 96 sides and the tunnel's cross-section area; it runs through both mouths and ends in the open, half way to
+// whatever comes next.
 [[nodiscard]] DrilledBone drill(const geometry::TriangleMesh& bone, const tunnels::Tunnel& tunnel);
 
 }  // namespace arthronaut::plan_export

@@ -27,7 +27,8 @@ constexpr double kUsualDiameter_mm = 9, kLeastDiameter_mm = 1, kGreatestDiameter
 std::string tunnel_name(bones::BoneKind bone) { return std::string(bones::to_text(bone)) + " tunnel"; }
 std::string landmarks_name(bones::BoneKind bone) { return std::string(bones::to_text(bone)) + " landmarks"; }
 
-ordered_json control_point(int id, const std::string& label, const Vector3d& position, const std::string& description) {
+ordered_json control_point(int id, const std::string& label, const Vector3d& position,
+                           const std::string& description) {
   return {{"id", std::to_string(id)},
           {"label", label},
           {"description", description},
@@ -38,7 +39,8 @@ ordered_json control_point(int id, const std::string& label, const Vector3d& pos
           {"visibility", true}};
 }
 
-ordered_json markup(const char* type, const std::string& name, const std::string& description, ordered_json points) {
+ordered_json markup(const char* type, const std::string& name, const std::string& description,
+                    ordered_json points) {
   return {{"type", type},
           {"name", name},
           {"description", description},
@@ -63,7 +65,8 @@ std::string text_of(const json& node, const char* key, const std::string& otherw
 
 Vector3d position_of(const json& point, double sign, const Place& place) {
   const auto found = point.find("position");
-  if (found == point.end() || !found->is_array() || found->size() != 3) place.fail("has no position of three numbers");
+  if (found == point.end() || !found->is_array() || found->size() != 3)
+    place.fail("has no position of three numbers");
   Vector3d position;
   for (std::size_t k = 0; k < 3; ++k) {
     if (!(*found)[k].is_number()) place.fail("has a position that is no number");
@@ -103,13 +106,16 @@ void read_markup(const json& node, const Place& place, MarkupsPlan& plan) {
       const Place here{place.file, place.place + ".controlPoints[" + std::to_string(i) + "]"};
       if (!(*points)[i].is_object()) here.fail("is no control point");
       positions.push_back(position_of((*points)[i], sign, here));
-      if (!is_tunnel) plan.landmarks[bone][text_of((*points)[i], "label", std::to_string(i))] = positions.back();
+      if (!is_tunnel)
+        plan.landmarks[bone][text_of((*points)[i], "label", std::to_string(i))] = positions.back();
     }
     if (!is_tunnel) continue;
     if (positions.size() != 2) place.fail("must have two control points, entry and exit");
     const Vector3d along = positions[1] - positions[0];
     if (along.norm() < 1) place.fail("is shorter than 1 mm");
-    if (!plan.tunnels.emplace(bone, tunnels::Tunnel{bone, positions[0], along.normalized(), diameter_of(node, place)}).second)
+    if (!plan.tunnels
+             .emplace(bone, tunnels::Tunnel{bone, positions[0], along.normalized(), diameter_of(node, place)})
+             .second)
       place.fail("is there twice");
   }
 }
@@ -148,7 +154,8 @@ MarkupsPlan read_markups(const std::filesystem::path& file) {
   const json root = json::parse(text, nullptr, false);
   if (root.is_discarded() || !root.is_object()) throw InvalidInput(file, "", "is no JSON object");
   const auto markups = root.find("markups");
-  if (markups == root.end() || !markups->is_array()) throw InvalidInput(file, "markups", "is missing: no markups of 3D Slicer");
+  if (markups == root.end() || !markups->is_array())
+    throw InvalidInput(file, "markups", "is missing: no markups of 3D Slicer");
   MarkupsPlan plan;
   for (std::size_t i = 0; i < markups->size(); ++i)
     read_markup((*markups)[i], {file, "markups[" + std::to_string(i) + "]"}, plan);

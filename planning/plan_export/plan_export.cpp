@@ -24,15 +24,16 @@ std::string plan_csv(const cases::Case& knee) {
   for (const auto& [kind, tunnel] : knee.plan.tunnels) {
     const auto& e = tunnel.entry_mm;
     const auto& d = tunnel.direction;
-    text += files::format("%s,%.4f,%.4f,%.4f,%.7f,%.7f,%.7f,%.3f", std::string(bones::to_text(kind)).c_str(), e.x(),
-                          e.y(), e.z(), d.x(), d.y(), d.z(), tunnel.diameter_mm);
+    text += files::format("%s,%.4f,%.4f,%.4f,%.7f,%.7f,%.7f,%.3f", std::string(bones::to_text(kind)).c_str(),
+                          e.x(), e.y(), e.z(), d.x(), d.y(), d.z(), tunnel.diameter_mm);
     const auto bone = knee.bones.find(kind);
     const auto measured = bone == knee.bones.end()
                               ? tunnels::TunnelGeometry{}
                               : tunnels::measure(tunnel, geometry::Surface(bone->second.mesh));
     if (measured.enters_bone) {
       const auto& x = measured.exit_mm;
-      text += files::format(",%.4f,%.4f,%.4f,%.3f,%.3f\n", x.x(), x.y(), x.z(), measured.length_mm, measured.wall_mm);
+      text += files::format(",%.4f,%.4f,%.4f,%.3f,%.3f\n", x.x(), x.y(), x.z(), measured.length_mm,
+                            measured.wall_mm);
     } else {
       text += ",,,,,\n";
     }
@@ -41,7 +42,8 @@ std::string plan_csv(const cases::Case& knee) {
 }
 
 ExportSummary export_plan(const cases::Case& knee, const fs::path& folder) {
-  if (knee.plan.tunnels.empty()) throw InvalidInput("plan: nothing is planned, so there is nothing to export");
+  if (knee.plan.tunnels.empty())
+    throw InvalidInput("plan: nothing is planned, so there is nothing to export");
   ExportSummary summary;
   std::map<bones::BoneKind, geometry::TriangleMesh> drilled;
   for (const auto& [kind, tunnel] : knee.plan.tunnels) {

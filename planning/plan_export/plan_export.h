@@ -11,16 +11,18 @@
 namespace arthronaut::plan_export {
 
 struct ExportSummary {
-  std::vector<std::filesystem::path> files;  // written, in the order plan.json, plan.csv, plan.mrk.json, meshes
-  std::vector<std::string> doubts;           // a tunnel that is not of this mesh, a bone that could not be drilled
+  std::vector<std::filesystem::path>
+      files;                        // written, in the order plan.json, plan.csv, plan.mrk.json, meshes
+  std::vector<std::string> doubts;  // a tunnel that is not of this mesh, a bone that could not be drilled
 };
 
-// Writes plan.json, plan.csv, plan.mrk.json and, of every bone that is planned on, femur_drilled.stl or tibia_drilled.stl (LPS,
-// mm). Everything is computed before anything is written, each file whole or not at all; the folder is made where needed. Throws
-// InvalidInput when nothing is planned, IoError.
+// Writes plan.json, plan.csv, plan.mrk.json and, of every bone that is planned on, femur_drilled.stl or
+// tibia_drilled.stl (LPS, mm). Everything is computed before anything is written, each file whole or not at
+// all; the folder is made where needed. Throws InvalidInput when nothing is planned, IoError.
 [[nodiscard]] ExportSummary export_plan(const cases::Case& knee, const std::filesystem::path& folder);
 
-// One row a tunnel, header first: bone, entry, direction, exit, length, wall, diameter; empty where the tunnel misses.
+// One row a tunnel, header first: bone, entry, direction, exit, length, wall, diameter; empty where the
+// tunnel misses.
 [[nodiscard]] std::string plan_csv(const cases::Case& knee);
 
 }  // namespace arthronaut::plan_export

@@ -18,7 +18,9 @@ struct Knee {
   phantom::PhantomKnee made;
   geometry::Surface femur, tibia;
   explicit Knee(Side side)
-      : made(phantom::make_phantom_knee({.side = side, .edge_length_mm = 1.5})), femur(made.femur.mesh), tibia(made.tibia.mesh) {}
+      : made(phantom::make_phantom_knee({.side = side, .edge_length_mm = 1.5})),
+        femur(made.femur.mesh),
+        tibia(made.tibia.mesh) {}
   [[nodiscard]] std::vector<BoneInput> inputs(bool with_landmarks) const {
     auto of_femur = made.femur_landmarks, of_tibia = made.tibia_landmarks;
     of_femur.erase("native_footprint");
@@ -29,8 +31,9 @@ struct Knee {
   }
 };
 
-// A drill comes to the femur from the front, below and medially and leaves on the lateral side; to the tibia it goes down,
-// forwards and medially. In the phantom's frame: lateral is -x on the right, anterior -y, proximal z.
+// A drill comes to the femur from the front, below and medially and leaves on the lateral side; to the tibia
+// it goes down, forwards and medially. In the phantom's frame: lateral is -x on the right, anterior -y,
+// proximal z.
 TEST(DefaultPlan, AimsAsADrillCanFollow) {
   for (const Side side : {Side::Left, Side::Right}) {
     const Knee knee(side);
@@ -51,7 +54,8 @@ TEST(DefaultPlan, AimsAsADrillCanFollow) {
     EXPECT_LT(tibia.tunnel.direction.y(), -0.2);
     EXPECT_LT(tibia.tunnel.direction.z(), -0.6);
     EXPECT_GT(tunnels::measure(tibia.tunnel, knee.tibia).length_mm, 30);
-    // Entries are near to where the ligament was: 28/35 % there, the norm's 36/30 % here, of a grid of 52 by 30 mm.
+    // Entries are near to where the ligament was: 28/35 % there, the norm's 36/30 % here, of a grid of 52 by
+    // 30 mm.
     EXPECT_LT((femur.tunnel.entry_mm - knee.made.femur_landmarks.at("native_footprint")).norm(), 6);
     EXPECT_LT((tibia.tunnel.entry_mm - knee.made.tibia_landmarks.at("native_footprint")).norm(), 3);
   }
@@ -63,7 +67,8 @@ TEST(DefaultPlan, SaysThatNobodyHasConfirmedItsLandmarks) {
   for (const auto& [kind, tunnel] : plan_knee(knee.inputs(false), Side::Right)) {
     ASSERT_TRUE(tunnel.is_usable()) << tunnel.message;
     ASSERT_FALSE(tunnel.doubts.empty());
-    EXPECT_NE(tunnel.doubts[0].find(kind == BoneKind::Femur ? "blumensaat_anterior" : "plateau_medial"), std::string::npos);
+    EXPECT_NE(tunnel.doubts[0].find(kind == BoneKind::Femur ? "blumensaat_anterior" : "plateau_medial"),
+              std::string::npos);
   }
 }
 
@@ -75,8 +80,10 @@ TEST(DefaultPlan, EntersAtTheMarkedNativeFootprint) {
   const auto single = plan_bone(inputs[0], Side::Right);
   ASSERT_TRUE(single.is_usable());
   EXPECT_LT((single.tunnel.entry_mm - knee.made.femur_landmarks.at("native_footprint")).norm(), 1e-6);
-  const auto am = plan_bone(inputs[0], Side::Right, {.bundle = norms::Bundle::Anteromedial, .diameter_mm = 6});
-  const auto pl = plan_bone(inputs[0], Side::Right, {.bundle = norms::Bundle::Posterolateral, .diameter_mm = 6});
+  const auto am =
+      plan_bone(inputs[0], Side::Right, {.bundle = norms::Bundle::Anteromedial, .diameter_mm = 6});
+  const auto pl =
+      plan_bone(inputs[0], Side::Right, {.bundle = norms::Bundle::Posterolateral, .diameter_mm = 6});
   ASSERT_TRUE(am.is_usable() && pl.is_usable());
   EXPECT_GT((am.tunnel.entry_mm - pl.tunnel.entry_mm).norm(), 5);
 }

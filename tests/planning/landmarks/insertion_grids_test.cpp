@@ -74,9 +74,10 @@ TEST(TibialGrid, ReadsSharesFromAbove) {
                         {"plateau_lateral", {-38, 1, 2}}};
   const auto grid = tibial_grid(marks);
   ASSERT_TRUE(grid);
-  // Heights along the view do not enter; the view leans 8 degrees against what is at right angles to the edges.
-  const auto percent = grid->percent_of(
-      grid->point_at({.anterior_posterior = 41, .medial_lateral = 47}) + 17 * grid->up);
+  // Heights along the view do not enter; the view leans 8 degrees against what is at right angles to the
+  // edges.
+  const auto percent =
+      grid->percent_of(grid->point_at({.anterior_posterior = 41, .medial_lateral = 47}) + 17 * grid->up);
   EXPECT_NEAR(percent.anterior_posterior, 41, 1e-9);
   EXPECT_NEAR(percent.medial_lateral, 47, 1e-9);
   const Vector3d across = (marks.at("plateau_lateral") - marks.at("plateau_medial")).normalized();

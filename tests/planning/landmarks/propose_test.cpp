@@ -69,8 +69,10 @@ TEST_P(EitherBone, TellsTheSideOfAMirrorImage) {
   ASSERT_TRUE(proposal.is_usable()) << proposal.reason;
   EXPECT_EQ(proposal.side_by_shape, Side::Left);
   EXPECT_TRUE(proposal.doubts.empty());
-  // Where a rounded roof ends is a matter of a threshold, which other samples reach elsewhere: 3 mm, as by hand.
-  for (const char* name : {"blumensaat_anterior", "blumensaat_posterior", "plateau_anterior", "medial_eminence"}) {
+  // Where a rounded roof ends is a matter of a threshold, which other samples reach elsewhere: 3 mm, as by
+  // hand.
+  for (const char* name :
+       {"blumensaat_anterior", "blumensaat_posterior", "plateau_anterior", "medial_eminence"}) {
     const auto at = straight(GetParam()).landmarks.find(name);
     if (at == straight(GetParam()).landmarks.end()) continue;
     EXPECT_LT((proposal.landmarks.at(name) - mirror * at->second).norm(), 3.0) << name;
@@ -99,7 +101,8 @@ TEST_P(EitherBone, RefusesWhatIsNoBone) {
 INSTANTIATE_TEST_SUITE_P(Both, EitherBone, ::testing::Values(BoneKind::Femur, BoneKind::Tibia),
                          [](const auto& test) { return std::string(bones::to_text(test.param)); });
 
-// The phantom knows where its landmarks are. 3 mm is what points picked by hand are worth; Blumensaat's line 4 degrees.
+// The phantom knows where its landmarks are. 3 mm is what points picked by hand are worth; Blumensaat's line
+// 4 degrees.
 TEST(Propose, FindsThePhantomsOwnLandmarks) {
   for (const std::uint64_t seed : {1u, 4u}) {
     const auto made = phantom::make_phantom_knee({.side = Side::Left, .seed = seed, .edge_length_mm = 1.5});
@@ -111,7 +114,8 @@ TEST(Propose, FindsThePhantomsOwnLandmarks) {
       return Vector3d((marks.at("blumensaat_anterior") - marks.at("blumensaat_posterior")).normalized());
     };
     EXPECT_GT(line(femur.landmarks).dot(line(truth)), std::cos(geometry::rad_from_deg(4)));
-    // How far back a condyle reaches; how high on its round outline that is nobody can tell. The apex: off the roof's line.
+    // How far back a condyle reaches; how high on its round outline that is nobody can tell. The apex: off
+    // the roof's line.
     for (const char* name : {"medial_condyle_posterior", "lateral_condyle_posterior"}) {
       const Vector3d off = femur.landmarks.at(name) - truth.at(name);
       EXPECT_LT(std::abs(off.dot(femur.axes.anterior)), 1.5) << name << " of seed " << seed;
@@ -123,7 +127,8 @@ TEST(Propose, FindsThePhantomsOwnLandmarks) {
     ASSERT_TRUE(tibia.is_usable()) << tibia.reason;
     EXPECT_EQ(tibia.side_by_shape, Side::Left);
     for (const char* name : {"medial_eminence", "lateral_eminence"})
-      EXPECT_LT((tibia.landmarks.at(name) - made.tibia_landmarks.at(name)).norm(), 3.0) << name << " of seed " << seed;
+      EXPECT_LT((tibia.landmarks.at(name) - made.tibia_landmarks.at(name)).norm(), 3.0)
+          << name << " of seed " << seed;
   }
 }
 

@@ -25,8 +25,9 @@ TEST(InsertionNorms, EveryBundleOfEveryBoneHasADefaultWithASource) {
   EXPECT_THROW((void)bundle_from_text("whole"), InvalidInput);
 }
 
-// The phantom's insertions were put at 28 and 35 % (femur) and 41 and 47 % (tibia) of the grid of its landmarks: a norm
-// of that place finds them. On the tibia the phantom looks along its z, the grid along the long axis that the edges tell.
+// The phantom's insertions were put at 28 and 35 % (femur) and 41 and 47 % (tibia) of the grid of its
+// landmarks: a norm of that place finds them. On the tibia the phantom looks along its z, the grid along the
+// long axis that the edges tell.
 TEST(ExpectedFootprint, LiesWhereThePhantomsInsertionIs) {
   for (const Side side : {Side::Left, Side::Right}) {
     const auto knee = phantom::make_phantom_knee({.side = side, .edge_length_mm = 1.5});

@@ -71,9 +71,12 @@ TEST(PlanExport, WritesWhatIsReadBackTheSame) {
   // Less bone than before, by about the tunnel.
   const auto femur = bones::read_mesh(folder.path() / "out" / "femur_drilled.stl");
   const auto& tunnel = knee.plan.tunnels.at(BoneKind::Femur);
-  const double length = tunnels::measure(tunnel, geometry::Surface(knee.bones.at(BoneKind::Femur).mesh)).length_mm;
-  const double removed = geometry::signed_volume_mm3(knee.bones.at(BoneKind::Femur).mesh) - geometry::signed_volume_mm3(femur);
-  EXPECT_NEAR(removed / (geometry::kPi * std::pow(tunnel.diameter_mm / 2, 2) * length), 1, 0.15);  // mouths slant
+  const double length =
+      tunnels::measure(tunnel, geometry::Surface(knee.bones.at(BoneKind::Femur).mesh)).length_mm;
+  const double removed =
+      geometry::signed_volume_mm3(knee.bones.at(BoneKind::Femur).mesh) - geometry::signed_volume_mm3(femur);
+  EXPECT_NEAR(removed / (geometry::kPi * std::pow(tunnel.diameter_mm / 2, 2) * length), 1,
+              0.15);  // mouths slant
 }
 
 TEST(PlanExport, RefusesAnEmptyPlan) {
@@ -89,9 +92,10 @@ TEST(Markups, ReadRasAndRefuseTheRest) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "plan.mrk.json";
   const auto with = [&](const std::string& system, const std::string& unit, const std::string& second) {
-    files::write_atomically(file, R"({"markups":[{"type":"Line","name":"femur tunnel","coordinateSystem":")" + system +
-                                      R"(","coordinateUnits":")" + unit +
-                                      R"(","controlPoints":[{"position":[1,2,3]},{"position":)" + second + "}]}]}");
+    files::write_atomically(file, R"({"markups":[{"type":"Line","name":"femur tunnel","coordinateSystem":")" +
+                                      system + R"(","coordinateUnits":")" + unit +
+                                      R"(","controlPoints":[{"position":[1,2,3]},{"position":)" + second +
+                                      "}]}]}");
   };
   with("RAS", "mm", "[1,2,33]");
   const auto plan = read_markups(file);
@@ -107,7 +111,8 @@ TEST(Markups, ReadRasAndRefuseTheRest) {
       (void)read_markups(file);
       ADD_FAILURE() << system << unit << second;
     } catch (const InvalidInput& error) {
-      EXPECT_NE(std::string(error.what()).find("plan.mrk.json: markups[0]"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("plan.mrk.json: markups[0]"), std::string::npos)
+          << error.what();
     }
   }
   files::write_atomically(file, "{\"markups\": 3}");

@@ -1,0 +1,72 @@
+// Default entries, without a hand, against the attachments that lenhart2015 gives; and the side of every real
+// bone.
+#include <gtest/gtest.h>
+
+#include "planning/bones/mesh_file.h"
+#include "planning/bones/mesh_repair.h"
+#include "planning/default_plan/default_plan.h"
+#include "planning/files/csv_table.h"
+#include "tests/real_data/real_data.h"
+
+namespace arthronaut::default_plan {
+namespace {
+
+using bones::BoneKind;
+using bones::Side;
+using Eigen::Vector3d;
+
+// The files are in metres and in axes of their own (x anterior, y up): the shape alone has to tell how they
+// lie.
+void expect_entry_near(const std::filesystem::path& folder, BoneKind kind, const char* file, const char* body,
+                       double limit_mm) {
+  const bones::Bone bone{kind,
+                         bones::mend_mesh(bones::read_mesh(folder / file, {.space = bones::Space::LPS,
+                                                                           .unit = bones::LengthUnit::Metre}))
+                             .mesh,
+                         ""};
+  const auto table = files::CsvTable::read(folder / "acl_pcl_attachments.csv",
+                                           {"ligament_strand", "body", "x_m", "y_m", "z_m"});
+  Vector3d truth = Vector3d::Zero();
+  double count = 0;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    if (table.text(row, "body") != body || !table.text(row, "ligament_strand").starts_with("ACL")) continue;
+    truth += 1000 * Vector3d(table.number(row, "x_m"), table.number(row, "y_m"), table.number(row, "z_m"));
+    count += 1;
+  }
+  ASSERT_GT(count, 0);
+  const geometry::Surface surface(bone.mesh);
+  const auto proposal = landmarks::propose(bone.mesh, kind);
+  ASSERT_TRUE(proposal.is_usable()) << proposal.reason;
+  EXPECT_EQ(proposal.side_by_shape, Side::Right);
+  const auto planned =
+      plan_bone({.bone = &bone, .surface = &surface, .landmarks = {}, .states = {}, .proposal = &proposal},
+                Side::Right);
+  ASSERT_TRUE(planned.is_usable()) << planned.message;
+  EXPECT_LT((planned.tunnel.entry_mm - truth / count).norm(), limit_mm);
+}
+
+TEST(RealDefaultPlan, EntersTheFemurNearTheTrueAttachment) {
+  ARTHRONAUT_REQUIRE_DATA(folder, "bones/lenhart2015");
+  expect_entry_near(folder, BoneKind::Femur, "lenhart2015-R-femur-bone.stl", "femur_distal_r", 4.0);
+}
+
+TEST(RealDefaultPlan, EntersTheTibiaNearTheTrueAttachment) {
+  ARTHRONAUT_REQUIRE_DATA(folder, "bones/lenhart2015");
+  expect_entry_near(folder, BoneKind::Tibia, "lenhart2015-R-tibia-bone.stl", "tibia_proximal_r", 5.0);
+}
+
+TEST(RealLandmarks, TellTheSideOfEveryRealBone) {
+  ARTHRONAUT_REQUIRE_DATA(folder, "bones/mri-femora");
+  for (const char* file : {"1_RIGHT_femur_Nov_02_2021.vtk", "3_RIGHT_femur_Nov_02_2021.vtk",
+                           "femur_mesh_10k_pts.vtk", "tibia_smoothed_image_10k_pts_thick_regions.vtk"}) {
+    auto mesh = bones::mend_mesh(bones::read_mesh(folder / file)).mesh;
+    const auto kind = std::string(file).starts_with("tibia") ? BoneKind::Tibia : BoneKind::Femur;
+    EXPECT_EQ(landmarks::propose(mesh, kind).side_by_shape, Side::Right) << file;
+    for (auto& v : mesh.vertices_mm) v.x() = -v.x();
+    for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+    EXPECT_EQ(landmarks::propose(mesh, kind).side_by_shape, Side::Left) << file << ", mirrored";
+  }
+}
+
+}  // namespace
+}  // namespace arthronaut::default_plan
