@@ -98,13 +98,10 @@ Landmarks tibia_landmarks(const TibiaShape& shape, const AnatomicalBone& tibia) 
   marks["tuberosity"] = tibia.hit({4 * width, 60 * scale, top - 38 * scale}, -Vector3d::UnitY());
   const auto grid = landmarks::tibial_grid(marks);
   if (!grid) throw std::logic_error("phantom: no grid on the tibia");
-  // The two shares meet where both lines cross, seen from above.
-  const Vector3d along = 0.01 * kTibiaAnteroposterior * grid->depth_mm * grid->posterior;
-  const Vector3d across = 0.01 * kTibiaMediolateral * grid->width_mm * grid->lateral;
-  const Vector3d corner =
-      grid->anterior_mm + (grid->medial_mm - grid->anterior_mm).dot(grid->lateral) * grid->lateral;
-  const Vector3d footprint = corner + along + across;
-  marks["native_footprint"] = from_above(footprint.x(), footprint.y());
+  // Where the view from above that the shares are read in meets the plateau.
+  const Vector3d in_plane =
+      grid->point_at({.anterior_posterior = kTibiaAnteroposterior, .medial_lateral = kTibiaMediolateral});
+  marks["native_footprint"] = tibia.hit(in_plane + 40 * scale * grid->up, -grid->up);
   return marks;
 }
 
