@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <ctime>
+#include <map>
 #include <utility>
 
 #include "planning/geometry/error.h"
@@ -36,7 +37,7 @@ void PlanHistory::open(PlanModel* model, const std::filesystem::path& case_folde
   case_folder_ = case_folder;
   if (model != nullptr) {
     version_ = model->knee().plan_version;
-    saved_measurements_ = model->measurements();
+    saved_ = state();
   }
   is_read_only_ = !read_only.empty();
   if (is_read_only_) {
@@ -45,16 +46,16 @@ void PlanHistory::open(PlanModel* model, const std::filesystem::path& case_folde
   }
 }
 
-void PlanHistory::apply(const PlanEdit& edit, double now_s) {
-  if (model_ == nullptr || is_read_only_ || is_same(model_->tunnel(edit.bone), edit.tunnel)) return;
-  if (is_moving_ && (!edit.continues || edit.what != steps_.back().what)) settle_now();
-  if (!is_moving_) {
-    steps_.resize(position_);  // what was undone can't be redone after a new step
-    steps_.push_back({edit.what, state(), {}});
-    ++position_;
-    is_moving_ = true;
-  }
-  model_->set_tunnel(edit.bone, edit.tunnel);
+void PlanHistory::begin(const std::string& what, bool continues) {
+  if (is_moving_ && (!continues || what != steps_.back().what)) settle_now();
+  if (is_moving_) return;
+  steps_.resize(position_);  // what was undone can't be redone after a new step
+  steps_.push_back({what, state(), {}});
+  ++position_;
+  is_moving_ = true;
+}
+
+void PlanHistory::moved(double now_s) {
   steps_.back().after = state();
   moved_at_s_ = now_s;
   if (!is_in_conflict()) {
@@ -62,6 +63,36 @@ void PlanHistory::apply(const PlanEdit& edit, double now_s) {
     status_.text = "not saved yet";
   }
   describe();
+}
+
+void PlanHistory::apply(const PlanEdit& edit, double now_s) {
+  if (model_ == nullptr || is_read_only_ || is_same(model_->tunnel(edit.bone), edit.tunnel)) return;
+  begin(edit.what, edit.continues);
+  model_->set_tunnel(edit.bone, edit.tunnel);
+  moved(now_s);
+}
+
+void PlanHistory::apply_landmarks(bones::BoneKind bone, const landmarks::Landmarks& landmarks,
+                                  const landmarks::LandmarkStates& states, const std::string& what,
+                                  bool continues, double now_s) {
+  if (model_ == nullptr || is_read_only_) return;
+  if (landmarks == model_->landmarks(bone) && states == model_->landmark_states(bone)) return;
+  begin(what, continues);
+  model_->set_landmarks(bone, landmarks, states);
+  moved(now_s);
+}
+
+void PlanHistory::apply_tunnels(const std::map<bones::BoneKind, tunnels::Tunnel>& tunnels,
+                                const std::string& what) {
+  if (model_ == nullptr || is_read_only_) return;
+  if (std::all_of(tunnels.begin(), tunnels.end(),
+                  [&](const auto& one) { return is_same(model_->tunnel(one.first), one.second); }))
+    return;
+  settle_now();
+  begin(what, false);
+  for (const auto& [bone, tunnel] : tunnels) model_->set_tunnel(bone, tunnel);
+  moved(moved_at_s_);
+  settle_now();
 }
 
 void PlanHistory::apply_measurements(const std::vector<cases::Measurement>& measurements,
@@ -77,11 +108,19 @@ void PlanHistory::apply_measurements(const std::vector<cases::Measurement>& meas
   describe();
 }
 
-PlanHistory::State PlanHistory::state() const { return {model_->knee().plan, model_->measurements()}; }
+PlanHistory::State PlanHistory::state() const {
+  return {model_->knee().plan, model_->measurements(), model_->knee().landmarks,
+          model_->knee().landmark_states};
+}
 
 void PlanHistory::put(const State& state) {
   model_->set_plan(state.plan);
   model_->set_measurements(state.measurements);
+  for (const auto& [bone, landmarks] : state.landmarks) {
+    const auto& states = state.landmark_states.at(bone);
+    if (landmarks != model_->landmarks(bone) || states != model_->landmark_states(bone))
+      model_->set_landmarks(bone, landmarks, states);
+  }
 }
 
 void PlanHistory::undo() {
@@ -172,11 +211,16 @@ void PlanHistory::save() {
     status_.text = std::string("not saved: ") + error.what();
   };
   try {  // a disk that is full is a state of the screen, not the end of the frame
-    if (model_->measurements() != saved_measurements_) {
-      cases::save_measurements(case_folder_, model_->measurements());
-      saved_measurements_ = model_->measurements();
+    const State now = state();
+    if (now.measurements != saved_.measurements) cases::save_measurements(case_folder_, now.measurements);
+    if (now.landmarks != saved_.landmarks || now.landmark_states != saved_.landmark_states) {
+      if (cases::plan_version(case_folder_) != version_) return set_conflict();
+      cases::save_case(case_folder_, model_->knee());  // the plan with it
+      version_ = cases::plan_version(case_folder_);
+    } else {
+      version_ = cases::save_plan_over(case_folder_, now.plan, version_);
     }
-    version_ = cases::save_plan_over(case_folder_, model_->knee().plan, version_);
+    saved_ = now;
     status_.save = PlanStatus::Save::Saved;
     status_.text = "saved at " + clock_text();
   } catch (const IoError& error) {

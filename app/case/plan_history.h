@@ -11,6 +11,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,12 @@ class PlanHistory {
 
   // An edit that changes nothing is no step.
   void apply(const PlanEdit& edit, double now_s);
+  // Several tunnels at once, as one step: a default plan.
+  void apply_tunnels(const std::map<bones::BoneKind, tunnels::Tunnel>& tunnels, const std::string& what);
+  // A bone's landmarks become these. continues: belongs to the step before it, as a drag does.
+  void apply_landmarks(bones::BoneKind bone, const landmarks::Landmarks& landmarks,
+                       const landmarks::LandmarkStates& states, const std::string& what, bool continues,
+                       double now_s);
   // What was measured becomes this list, as one step, saved at once.
   void apply_measurements(const std::vector<cases::Measurement>& measurements, const std::string& what);
   // Without effect when there is nothing to undo or redo.
@@ -63,6 +70,8 @@ class PlanHistory {
   struct State {
     cases::Plan plan;
     std::vector<cases::Measurement> measurements;
+    std::map<bones::BoneKind, landmarks::Landmarks> landmarks;
+    std::map<bones::BoneKind, landmarks::LandmarkStates> landmark_states;
   };
   struct Step {
     std::string what;
@@ -70,13 +79,16 @@ class PlanHistory {
   };
   [[nodiscard]] State state() const;
   void put(const State& state);
+  // Before and after a change: begins a step, or goes on with the one that is moving.
+  void begin(const std::string& what, bool continues);
+  void moved(double now_s);
   void save();
   void set_conflict();
   void describe();
 
   PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
-  std::vector<cases::Measurement> saved_measurements_;
+  State saved_;          // what is on disk, but for the plan
   std::string version_;  // of the plan on disk that the model's was made from
   bool is_read_only_ = false;
   std::vector<Step> steps_;

@@ -11,9 +11,11 @@ namespace arthronaut::open_case {
 
 namespace {
 
-landmarks::Landmarks landmarks_of(const cases::Case& knee, bones::BoneKind kind) {
-  const auto found = knee.landmarks.find(kind);
-  return found == knee.landmarks.end() ? landmarks::Landmarks{} : found->second;
+// Whether the landmarks say where on the bone a point lies, in the percentages of the norms.
+bool has_grid(const landmarks::Landmarks& marks, bones::BoneKind kind, const geometry::TriangleMesh& mesh,
+              bones::Side side) {
+  return kind == bones::BoneKind::Femur ? landmarks::femoral_quadrant(mesh, marks, side).has_value()
+                                        : landmarks::tibial_grid(marks).has_value();
 }
 
 // Of the vertices within 80 mm of the joint, which is at the femur's lower end and at the tibia's upper one.
@@ -41,25 +43,60 @@ geometry::Bounds joined(geometry::Bounds all, const geometry::Bounds& other) {
 PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
   for (const auto& [kind, bone] : knee_.bones) {
     if (bone.mesh.empty()) continue;
-    const landmarks::AnatomicalAxes axes =
-        landmarks::anatomical_axes(kind, knee_.side, landmarks_of(knee_, kind), bone.mesh);
-    const auto surface = std::make_shared<geometry::Surface>(bone.mesh);
-    bones_.emplace(kind, BoneModel{scene::simplified(bone.mesh),
-                                   surface,
-                                   geometry::bounds_of(bone.mesh),
-                                   joint_bounds_of(bone.mesh, kind, axes),
-                                   axes,
-                                   bones::mesh_sha256(bone.mesh),
-                                   {},
-                                   tunnels::surroundings_of(bone.mesh, kind, landmarks_of(knee_, kind),
-                                                            knee_.side, surface)});
-    if (kind == bones::BoneKind::Femur)
-      knee_surroundings_ = tunnels::knee_surroundings_of(bone.mesh, bones_.at(kind).surroundings);
-    if (knee_.plan.tunnels.contains(kind))
-      knee_.plan.mesh_sha256.try_emplace(kind, bones_.at(kind).mesh_sha256);
+    BoneModel& made = bones_[kind];
+    made.drawn = scene::simplified(bone.mesh);
+    made.surface = std::make_shared<geometry::Surface>(bone.mesh);
+    made.bounds = geometry::bounds_of(bone.mesh);
+    made.mesh_sha256 = bones::mesh_sha256(bone.mesh);
+    landmarks::LandmarkStates& states = knee_.landmark_states[kind];
+    if (!has_grid(knee_.landmarks[kind], kind, bone.mesh, knee_.side)) {
+      made.proposal = landmarks::propose(bone.mesh, kind, {.side = knee_.side});
+      landmarks::take_proposal(*made.proposal, knee_.landmarks[kind], states);
+    }
+    use_landmarks(kind);
+    if (knee_.plan.tunnels.contains(kind)) knee_.plan.mesh_sha256.try_emplace(kind, made.mesh_sha256);
     measure(kind);
   }
   if (bones_.empty()) throw InvalidInput("the case \"" + knee_.name + "\" has no bone to show");
+}
+
+void PlanModel::use_landmarks(bones::BoneKind kind) {
+  const geometry::TriangleMesh& mesh = knee_.bones.at(kind).mesh;
+  BoneModel& bone = bones_.at(kind);
+  bone.axes = landmarks::anatomical_axes(kind, knee_.side, landmarks(kind), mesh);
+  bone.joint_bounds = joint_bounds_of(mesh, kind, bone.axes);
+  bone.surroundings = tunnels::surroundings_of(mesh, kind, landmarks(kind), knee_.side, bone.surface);
+  bone.footprint = norms::expected_footprint(mesh, *bone.surface, kind, knee_.side, landmarks(kind),
+                                             norms::default_norm(kind, norms::Bundle::Whole));
+  if (bone.footprint) bone.surroundings.footprint_outline_mm = bone.footprint->outline_mm;
+  if (kind == bones::BoneKind::Femur)
+    knee_surroundings_ = tunnels::knee_surroundings_of(mesh, bone.surroundings);
+}
+
+const landmarks::Landmarks& PlanModel::landmarks(bones::BoneKind kind) const {
+  return knee_.landmarks.at(kind);
+}
+
+const landmarks::LandmarkStates& PlanModel::landmark_states(bones::BoneKind kind) const {
+  return knee_.landmark_states.at(kind);
+}
+
+void PlanModel::set_landmarks(bones::BoneKind kind, landmarks::Landmarks landmarks,
+                              landmarks::LandmarkStates states) {
+  knee_.landmarks[kind] = std::move(landmarks);
+  knee_.landmark_states[kind] = std::move(states);
+  use_landmarks(kind);
+  ++revision_;
+}
+
+default_plan::DefaultTunnel PlanModel::default_tunnel(bones::BoneKind kind) const {
+  const BoneModel& bone = bones_.at(kind);
+  return default_plan::plan_bone({.bone = &knee_.bones.at(kind),
+                                  .surface = bone.surface.get(),
+                                  .landmarks = landmarks(kind),
+                                  .states = landmark_states(kind),
+                                  .proposal = bone.proposal ? &*bone.proposal : nullptr},
+                                 knee_.side);
 }
 
 std::optional<tunnels::Tunnel> PlanModel::tunnel(bones::BoneKind kind) const {
@@ -126,7 +163,7 @@ std::optional<scene::CutPlane> PlanModel::notch_cut() const {
   const auto femur = knee_.bones.find(bones::BoneKind::Femur);
   if (femur == knee_.bones.end() || !has_bone(bones::BoneKind::Femur)) return std::nullopt;
   return scene::notch_cut(femur->second.mesh, axes(bones::BoneKind::Femur),
-                          landmarks_of(knee_, bones::BoneKind::Femur));
+                          landmarks(bones::BoneKind::Femur));
 }
 
 void PlanModel::set_tunnel(bones::BoneKind kind, const std::optional<tunnels::Tunnel>& tunnel) {

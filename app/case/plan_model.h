@@ -16,8 +16,11 @@
 #include "app/scene/scene_content.h"
 #include "planning/cases/case.h"
 #include "planning/cases/measurements.h"
+#include "planning/default_plan/default_plan.h"
 #include "planning/geometry/surface.h"
 #include "planning/landmarks/anatomical_axes.h"
+#include "planning/landmarks/propose.h"
+#include "planning/norms/footprint.h"
 #include "planning/tunnels/knee_checks.h"
 #include "planning/tunnels/plan_checks.h"
 
@@ -25,7 +28,8 @@ namespace arthronaut::open_case {
 
 class PlanModel {
  public:
-  // Takes about a second a bone: run it in a job. Throws InvalidInput when the case has no bone.
+  // Proposes landmarks of a bone that the case has no grid for. Takes about two seconds such a bone: run it
+  // in a job. Throws InvalidInput when the case has no bone.
   explicit PlanModel(cases::Case knee);
 
   [[nodiscard]] const cases::Case& knee() const { return knee_; }
@@ -63,6 +67,21 @@ class PlanModel {
   [[nodiscard]] const landmarks::AnatomicalAxes& axes(bones::BoneKind kind) const {
     return bones_.at(kind).axes;
   }
+  // The named points that are planned by: the case's own, and proposed ones where it has none. Preconditions
+  // as above.
+  [[nodiscard]] const landmarks::Landmarks& landmarks(bones::BoneKind kind) const;
+  [[nodiscard]] const landmarks::LandmarkStates& landmark_states(bones::BoneKind kind) const;
+  // What the shape alone gives, with its doubts; nullopt where nothing had to be proposed.
+  [[nodiscard]] const std::optional<landmarks::Proposal>& proposal(bones::BoneKind kind) const {
+    return bones_.at(kind).proposal;
+  }
+  // Where the ligament is expected by the norm; nullopt where the landmarks give no grid.
+  [[nodiscard]] const std::optional<norms::ExpectedFootprint>& footprint(bones::BoneKind kind) const {
+    return bones_.at(kind).footprint;
+  }
+  // A tunnel by norms and landmarks; read the outcome. Takes a moment.
+  [[nodiscard]] default_plan::DefaultTunnel default_tunnel(bones::BoneKind kind) const;
+  void set_landmarks(bones::BoneKind kind, landmarks::Landmarks landmarks, landmarks::LandmarkStates states);
   // Where the femur is cut open to see the lateral wall of its notch; nullopt without a femur.
   [[nodiscard]] std::optional<scene::CutPlane> notch_cut() const;
 
@@ -82,11 +101,14 @@ class PlanModel {
     std::shared_ptr<const geometry::Surface> surface;
     geometry::Bounds bounds, joint_bounds;
     landmarks::AnatomicalAxes axes;
+    std::optional<landmarks::Proposal> proposal;
+    std::optional<norms::ExpectedFootprint> footprint;
     std::string mesh_sha256;
     tunnels::TunnelGeometry measured;
     tunnels::PlanSurroundings surroundings;
   };
   void measure(bones::BoneKind kind);
+  void use_landmarks(bones::BoneKind kind);  // what follows from them
 
   cases::Case knee_;
   std::map<bones::BoneKind, BoneModel> bones_;

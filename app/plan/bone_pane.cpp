@@ -44,6 +44,27 @@ void BonePane::look_from(scene::ViewDirection view) {
   is_stale_ = true;
 }
 
+void BonePane::look_at(const Eigen::Vector3d& point_mm, BoneKind bone) {
+  constexpr double kAway_mm = 160;
+  looked_from_.reset();
+  only_ = bone;
+  cut_.reset();
+  is_stale_ = true;
+  const landmarks::AnatomicalAxes& axes = model_->axes(bone);
+  Eigen::Vector3d outwards = model_->surface(bone).closest_point(point_mm).normal;
+  if (is_hidden(visible(), point_mm + kAway_mm * outwards, point_mm)) {
+    // In a hollow: from the first of these sides that sees it.
+    for (const Eigen::Vector3d& side : {Eigen::Vector3d(-axes.proximal), Eigen::Vector3d(axes.anterior),
+                                        Eigen::Vector3d(-axes.anterior), Eigen::Vector3d(axes.proximal)})
+      if (!is_hidden(visible(), point_mm + kAway_mm * side, point_mm)) {
+        outwards = side;
+        break;
+      }
+  }
+  const Eigen::Vector3d up = std::abs(outwards.dot(axes.proximal)) > 0.9 ? axes.anterior : axes.proximal;
+  pane_.look(scene::look_along(-outwards, point_mm, kAway_mm, up));
+}
+
 void BonePane::see_through(bool on) {
   is_see_through_ = on;
   is_stale_ = true;

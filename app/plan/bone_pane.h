@@ -45,7 +45,10 @@ class BonePane {
   void open(const open_case::PlanModel* model);
   // From a named side of the bone; Notch cuts the medial condyle away.
   void look_from(scene::ViewDirection view);
-  [[nodiscard]] scene::ViewDirection looked_from() const { return looked_from_; }
+  // A point of a bone straight from outside, 160 mm away; the bone alone and whole.
+  void look_at(const Eigen::Vector3d& point_mm, bones::BoneKind bone);
+  // nullopt: from no named side, at a point.
+  [[nodiscard]] const std::optional<scene::ViewDirection>& looked_from() const { return looked_from_; }
   // The one bone that the view is of; nullopt: both are shown.
   [[nodiscard]] std::optional<bones::BoneKind> only() const { return only_; }
   [[nodiscard]] bool shows(bones::BoneKind bone) const { return !only_ || *only_ == bone; }
@@ -68,7 +71,7 @@ class BonePane {
   const open_case::PlanModel* model_ = nullptr;
   widgets::ScenePane pane_;
   scene::SceneContent beside_;
-  scene::ViewDirection looked_from_ = scene::ViewDirection::Anterior;
+  std::optional<scene::ViewDirection> looked_from_;
   std::optional<bones::BoneKind> only_;
   std::optional<scene::CutPlane> cut_;
   bool is_see_through_ = false, is_stale_ = true;

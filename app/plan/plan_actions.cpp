@@ -18,6 +18,7 @@ std::string tunnel_name(BoneKind bone) { return bone == BoneKind::Femur ? "femor
 
 void PlanView::add_actions(widgets::Actions& actions) {
   add_view_actions(actions);
+  add_landmark_actions(actions);
   add_placing_actions(actions);
   add_tunnel_actions(actions);
   add_slice_actions(actions);
@@ -142,10 +143,10 @@ void PlanView::add_placing_actions(widgets::Actions& actions) {
                GLFW_KEY_ESCAPE,
                0,
                false,
-               [this] { return state_.places_entry; },
+               [this] { return state_.places_entry || state_.places_landmark || !state_.hint.empty(); },
                {},
                [this] {
-                 state_.places_entry = false;
+                 state_.places_entry = state_.places_landmark = false;
                  state_.hint.clear();
                }});
 }
@@ -267,6 +268,9 @@ void PlanView::add_measuring_actions(widgets::Actions& actions) {
                  [this, shown] { return state_.page == shown; }, [this, shown] { state_.page = shown; }});
   };
   page("plan.checks_page", "Checks", "Numbers and checks of the tunnel", GLFW_KEY_C, PanelPage::Checks);
+  page("plan.landmarks_page", "Landmarks",
+       "The points that grids and directions follow from: look at each, move or confirm it", GLFW_KEY_L,
+       PanelPage::Landmarks);
   page("plan.steps_page", "Steps", "Every change, to go back to any of them", GLFW_KEY_H, PanelPage::Steps);
 }
 

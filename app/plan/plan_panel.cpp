@@ -124,7 +124,7 @@ void draw_title(const widgets::Ui& ui, bones::BoneKind bone) {
 
 void draw_tools(const widgets::Ui& ui) {
   ImGui::Separator();
-  widgets::action_button(ui, "plan.place", ImGui::GetContentRegionAvail().x);
+  button_pair(ui, "plan.default", "plan.place");
   button_pair(ui, "plan.narrower", "plan.wider");
   widgets::action_button(ui, "plan.remove", ImGui::GetContentRegionAvail().x);
 }
@@ -163,21 +163,30 @@ std::optional<std::size_t> draw_steps(const widgets::Ui& ui, const open_case::Pl
 
 }  // namespace
 
-std::optional<std::size_t> draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area,
-                                           const PlanPanel& panel) {
-  std::optional<std::size_t> clicked;
+PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, const PlanPanel& panel) {
+  PanelClick clicked;
   widgets::begin_panel(ui, "plan.panel", area);
   draw_next(ui, panel.next);
   draw_title(ui, panel.bone);
-  button_pair(ui, "plan.checks_page", "plan.steps_page");
+  const float third = (ImGui::GetContentRegionAvail().x - 2 * ui.theme.px(6)) / 3;
+  for (const char* id : {"plan.checks_page", "plan.landmarks_page", "plan.steps_page"}) {
+    widgets::action_button(ui, id, third);
+    ImGui::SameLine(0, ui.theme.px(6));
+  }
+  ImGui::NewLine();
   switch (panel.page) {
     case PanelPage::Checks:
       draw_checks(ui, panel);
       draw_tools(ui);
       ImGui::Separator();
       break;
+    case PanelPage::Landmarks:
+      clicked.landmark = draw_landmark_list(ui, panel.model, panel.bone, panel.landmark);
+      button_pair(ui, "plan.landmark_confirm", "plan.landmark_place");
+      widgets::action_button(ui, "plan.landmark_reset", ImGui::GetContentRegionAvail().x);
+      break;
     case PanelPage::Steps:
-      clicked = draw_steps(ui, panel.history);
+      clicked.step = draw_steps(ui, panel.history);
       break;
   }
   draw_saved(ui, panel.history.status());

@@ -11,6 +11,15 @@ using Verdict = tunnels::PlanCheck::Verdict;
 
 std::string adjective(BoneKind bone) { return bone == BoneKind::Femur ? "femoral" : "tibial"; }
 
+// Whether the percentages follow from points that nobody has looked at.
+bool grid_is_proposed(const open_case::PlanModel& model, BoneKind bone) {
+  const auto& states = model.landmark_states(bone);
+  return std::any_of(states.begin(), states.end(), [](const auto& one) {
+    return (one.first.starts_with("blumensaat_") || one.first.starts_with("plateau_")) &&
+           one.second == landmarks::LandmarkState::Proposed;
+  });
+}
+
 }  // namespace
 
 NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
@@ -20,6 +29,8 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
   if (state.is_in_conflict) return {"Take the other program's plan, or keep this one", "plan.take_theirs"};
   if (state.places_entry) return {"Click on the " + bone + " where the tunnel begins", ""};
   if (!model.has_bone(state.bone)) return {"This case has no " + bone + ": plan the other bone", "plan.bone"};
+  if (!model.tunnel(state.bone) && model.footprint(state.bone))
+    return {"Make the default plan, then move it: press N", "plan.default"};
   if (!model.tunnel(state.bone))
     return {"Place the entry of the " + adjective(state.bone) + " tunnel: press P, then click on the bone",
             "plan.place"};
@@ -28,6 +39,9 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
     return check.verdict == Verdict::Wrong;
   });
   if (wrong != checks.end()) return {"Mend the " + adjective(state.bone) + " tunnel: " + wrong->name, ""};
+  if (grid_is_proposed(model, state.bone))
+    return {"Look at the " + bone + "'s landmarks, which nobody has confirmed: press L",
+            "plan.landmarks_page"};
   if (model.has_bone(other) && !model.tunnel(other))
     return {"Plan the " + adjective(other) + " tunnel: press Tab", "plan.bone"};
   if (model.has_bone(other)) {

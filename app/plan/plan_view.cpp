@@ -5,6 +5,7 @@
 #include "app/plan/grid_lines.h"
 #include "app/plan/tunnel_moves.h"
 #include "app/scene/solid_mesh.h"
+#include "planning/tunnels/aim.h"
 
 namespace arthronaut::plan {
 
@@ -13,6 +14,7 @@ namespace {
 using bones::BoneKind;
 
 constexpr double kAimHandleBeyond_mm = 12;
+constexpr scene::Color kFootprintColor{0.25F, 0.85F, 0.65F};
 
 std::string tunnel_name(BoneKind bone) { return bone == BoneKind::Femur ? "femoral" : "tibial"; }
 
@@ -102,15 +104,22 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   const StepState step{state_.bone, state_.places_entry, status.save == open_case::PlanStatus::Save::ReadOnly,
                        history_.is_in_conflict()};
   const NextStep next = next_step(*model_, step);
-  if (const auto to = draw_plan_panel(ui, panel, {*model_, history_, state_.bone, state_.page, next}))
-    history_.go_to(*to);
+  const PanelClick clicked =
+      draw_plan_panel(ui, panel, {*model_, history_, state_.bone, state_.page, state_.landmark, next});
+  if (clicked.step) history_.go_to(*clicked.step);
+  if (clicked.landmark) select_landmark(*clicked.landmark);
+  ui.log.note_state("landmark", state_.page == PanelPage::Landmarks ? landmark() : "");
+  ui.log.note_state("landmarks", confirmed_in_words(landmark_rows(*model_, state_.bone)));
   ui.log.note_state("plan_next", next.text);
   ui.log.note_state("plan", name_of(status.save));
   ui.log.note_state("undo", status.undo_what);
   ui.log.note_state("redo", status.redo_what);
-  ui.log.note_state("placing", state_.places_entry ? "entry" : "nothing");
+  ui.log.note_state("placing", state_.places_entry      ? "entry"
+                               : state_.places_landmark ? "landmark"
+                                                        : "nothing");
   ui.log.note_state("hint", state_.hint);
-  ui.log.note_state("view_direction", scene::to_text(bones_.looked_from()));
+  ui.log.note_state("view_direction",
+                    bones_.looked_from() ? scene::to_text(*bones_.looked_from()) : "a landmark");
   const auto tunnel = model_->tunnel(state_.bone);
   ui.log.note_state("diameter_mm", tunnel ? widgets::fixed(tunnel->diameter_mm, 2) : "");
 }
@@ -188,8 +197,12 @@ void PlanView::show_content() {
     if (const auto tunnel = model_->tunnel(kind))
       scene::add_planned_tunnel(content, *tunnel, model_->drawn_length_mm(kind));
     if (!state_.shows_grid) continue;
+    if (const auto& footprint = model_->footprint(kind)) {
+      content.lines.push_back({footprint->outline_mm, 0.9, true, kFootprintColor, true});
+      content.lines.push_back({footprint->spread_mm, 0.4, true, kFootprintColor, true});
+    }
     // In the views that face them: edge-on a grid is a line through the bone.
-    const scene::ViewDirection view = bones_.looked_from();
+    const std::optional<scene::ViewDirection> view = bones_.looked_from();
     const bool is_sagittal = view == scene::ViewDirection::Medial || view == scene::ViewDirection::Lateral ||
                              view == scene::ViewDirection::Notch;
     if (const auto& quadrant = model_->surroundings(kind).quadrant; quadrant && is_sagittal)
@@ -206,14 +219,18 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
   if (state_.shows_lateral) return lateral_.draw(ui, area);
   if (state_.shown_revision != model_->revision()) show_content();
   follow(bones_.draw(ui, area, marks()));
-  if (!state_.places_entry) return;
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
   const std::string bone(bones::to_text(state_.bone));
-  const std::string text = state_.hint.empty()
-                               ? "Click on the " + bone + ": the tunnel begins there. Esc leaves it."
-                               : state_.hint;
-  draw.AddText(ui.theme.title, ui.theme.title->FontSize, {area.x + ui.theme.px(20), area.y + ui.theme.px(16)},
-               state_.hint.empty() ? widgets::kAccent : widgets::kCaution, text.c_str());
+  std::string text = state_.hint;
+  if (text.empty() && state_.places_entry)
+    text = "Click on the " + bone + ": the tunnel begins there. Esc leaves it.";
+  if (text.empty() && state_.places_landmark)
+    text = "Click on the " + bone + " where the landmark is. Esc leaves it.";
+  if (text.empty()) return;
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  ImFont* font = text.size() > 90 ? ui.theme.strong : ui.theme.title;
+  draw.AddText(font, font->FontSize, {area.x + ui.theme.px(20), area.y + ui.theme.px(16)},
+               state_.hint.empty() ? widgets::kAccent : widgets::kCaution, text.c_str(), nullptr,
+               area.width - ui.theme.px(40));
 }
 
 std::optional<Eigen::Vector3d> PlanView::aim_handle() const {
@@ -224,8 +241,29 @@ std::optional<Eigen::Vector3d> PlanView::aim_handle() const {
 
 std::vector<PaneMark> PlanView::marks() const {
   std::vector<PaneMark> marks;
+  if (!bones_.shows(state_.bone) || !model_->has_bone(state_.bone)) return marks;
+  if (state_.page == PanelPage::Landmarks) {
+    add_landmark_marks(marks);
+    return marks;
+  }
+  if (const auto& footprint = model_->footprint(state_.bone); footprint && state_.shows_grid)
+    marks.push_back({PaneMark::Shape::Cross, "footprint", "", footprint->center_mm,
+                     widgets::color_of(kFootprintColor), false,
+                     "The expected footprint, and where its centre lies in two knees of three: " +
+                         std::string(footprint->norm.source)});
   const auto tunnel = model_->tunnel(state_.bone);
-  if (!tunnel || !bones_.shows(state_.bone)) return marks;
+  if (!tunnel) return marks;
+  const tunnels::TunnelGeometry& measured = model_->measured(state_.bone);
+  if (measured.enters_bone) {
+    const tunnels::PlanNorms norms;
+    const ImU32 color = measured.wall_mm < norms.breaking_wall_mm ? widgets::kBad
+                        : measured.wall_mm < norms.thin_wall_mm   ? widgets::kCaution
+                                                                  : widgets::kGood;
+    marks.push_back({PaneMark::Shape::Pin, "thinnest", widgets::fixed(measured.wall_mm, 1) + " mm",
+                     measured.thinnest_mm, color, false, "Here the wall of the tunnel is thinnest"});
+    marks.push_back({PaneMark::Shape::Pin, "exit", "Exit", measured.exit_mm, widgets::kText, false,
+                     "Here the drill leaves the bone"});
+  }
   marks.push_back({PaneMark::Shape::Ring, "entry", "Entry", tunnel->entry_mm, widgets::kText, true,
                    "The entry: drag it over the bone"});
   marks.push_back({PaneMark::Shape::Diamond, "aim", "Aim", *aim_handle(),
@@ -249,8 +287,34 @@ void PlanView::follow(const PaneEvent& event) {
            aimed(*tunnel, bones_.camera(), event.drag_ray, *aim_handle()));
     state_.has_dragged = true;
   }
+  if (state_.page == PanelPage::Landmarks && !event.dragged.empty()) {
+    const auto& marks = model_->landmarks(state_.bone);
+    if (const auto at = marks.find(landmark()); at != marks.end() && event.dragged == at->first) {
+      const auto to =
+          dragged_over(bones_.visible(), state_.bone, at->second, event.drag_ray, bones_.is_see_through());
+      if (to)
+        put_landmark(*to, "Drag a landmark of the " + std::string(bones::to_text(state_.bone)),
+                     state_.has_dragged);
+      state_.has_dragged = state_.has_dragged || to.has_value();
+    }
+  }
+  if (state_.page == PanelPage::Landmarks && !event.pressed.empty()) {
+    const auto rows = landmark_rows(*model_, state_.bone);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (rows[i].name == event.pressed) state_.landmark = i;
+  }
   if (!event.click) return;
-  if (state_.places_entry)
+  if (state_.places_landmark) {
+    const auto met = first_visible(bones_.visible(), *event.click);
+    if (!met || met->is_section || met->bone != state_.bone) {
+      state_.hint = "That is not the surface of the " + std::string(bones::to_text(state_.bone)) +
+                    ". Click on it, or press Esc.";
+      return;
+    }
+    put_landmark(met->point_mm, "Place a landmark of the " + std::string(bones::to_text(state_.bone)), false);
+    state_.places_landmark = false;
+    state_.hint.clear();
+  } else if (state_.places_entry)
     place_entry(*event.click);
   else if (const auto met = first_visible(bones_.visible(), *event.click))
     slices_.set_cross(met->point_mm);
@@ -275,7 +339,9 @@ void PlanView::place_entry(const scene::SceneRay& ray) {
   }
   const auto tunnel = model_->tunnel(state_.bone);
   change("Place the entry of the", false,
-         tunnel ? with_entry_at(*tunnel, met->point_mm) : first_tunnel(state_.bone, *met));
+         tunnel ? with_entry_at(*tunnel, met->point_mm)
+                : tunnels::first_tunnel(state_.bone, met->point_mm, model_->axes(state_.bone),
+                                        model_->surface(state_.bone)));
   state_.places_entry = false;
   state_.hint.clear();
 }

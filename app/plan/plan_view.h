@@ -13,6 +13,7 @@
 #include "app/case/plan_model.h"
 #include "app/mode/mode.h"
 #include "app/plan/bone_pane.h"
+#include "app/plan/landmark_panel.h"
 #include "app/plan/lateral_view.h"
 #include "app/plan/plan_steps.h"
 #include "app/plan/slice_panes.h"
@@ -20,7 +21,7 @@
 namespace arthronaut::plan {
 
 // What the column beside the bones shows.
-enum class PanelPage { Checks, Steps };
+enum class PanelPage { Checks, Landmarks, Steps };
 
 class PlanView : public mode::Mode {
  public:
@@ -45,6 +46,15 @@ class PlanView : public mode::Mode {
   void add_slice_actions(widgets::Actions& actions);
   void add_measuring_actions(widgets::Actions& actions);
 
+  // landmark_actions.cpp
+  void add_landmark_actions(widgets::Actions& actions);
+  void select_landmark(std::size_t row);
+  void confirm_landmarks(bool all);
+  void put_landmark(const Eigen::Vector3d& point_mm, const std::string& what, bool continues);
+  [[nodiscard]] std::string landmark() const;  // that is selected; empty without a bone
+  void make_default_plan();
+  void add_landmark_marks(std::vector<PaneMark>& marks) const;
+
   // The tunnel of the bone that is planned becomes this one; nothing where there is none.
   void change(const std::string& what, bool continues, const std::optional<tunnels::Tunnel>& tunnel);
   void look_from(scene::ViewDirection view);
@@ -60,7 +70,8 @@ class PlanView : public mode::Mode {
 
   struct ViewState {
     bones::BoneKind bone = bones::BoneKind::Femur;
-    bool places_entry = false;
+    bool places_entry = false, places_landmark = false;
+    std::size_t landmark = 0;  // row of landmark_rows()
     bool has_dragged = false;
     bool shows_slices = false, shows_lateral = false, shows_grid = true;
     PanelPage page = PanelPage::Checks;
@@ -88,10 +99,14 @@ struct PlanPanel {
   const open_case::PlanHistory& history;
   bones::BoneKind bone;
   PanelPage page;
+  std::size_t landmark;  // the row that is selected
   NextStep next;
 };
-// Returns the step of the history that was clicked, as a position for PlanHistory::go_to().
-[[nodiscard]] std::optional<std::size_t> draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area,
-                                                         const PlanPanel& panel);
+struct PanelClick {
+  std::optional<std::size_t> step;      // of the history, as a position for PlanHistory::go_to()
+  std::optional<std::size_t> landmark;  // row
+};
+[[nodiscard]] PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area,
+                                         const PlanPanel& panel);
 
 }  // namespace arthronaut::plan

@@ -36,14 +36,6 @@ tunnels::Tunnel with_entry_at(const tunnels::Tunnel& tunnel, const Eigen::Vector
   return result;
 }
 
-tunnels::Tunnel first_tunnel(bones::BoneKind kind, const VisiblePoint& at) {
-  tunnels::Tunnel tunnel;
-  tunnel.bone = kind;
-  tunnel.entry_mm = at.point_mm;
-  tunnel.direction = -at.normal;
-  return tunnel;
-}
-
 tunnels::Tunnel with_entry_slid(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera,
                                 const Eigen::Vector2d& right_up_mm, const geometry::Surface& bone) {
   const ScreenAxes axes = axes_of(camera);

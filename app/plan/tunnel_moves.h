@@ -10,8 +10,6 @@ namespace arthronaut::plan {
 
 // The entry there; the direction is kept.
 [[nodiscard]] tunnels::Tunnel with_entry_at(const tunnels::Tunnel& tunnel, const Eigen::Vector3d& entry_mm);
-// A first tunnel there: into the bone, against the surface's normal.
-[[nodiscard]] tunnels::Tunnel first_tunnel(bones::BoneKind kind, const VisiblePoint& at);
 // Slides the entry over the bone by so many mm to the right and up as the camera sees it.
 [[nodiscard]] tunnels::Tunnel with_entry_slid(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera,
                                               const Eigen::Vector2d& right_up_mm,

@@ -178,6 +178,46 @@ TEST_F(PlanHistoryTest, MeasurementsAreUndoneAndSaved) {
   EXPECT_EQ(cases::load_measurements(folder_), std::vector{distance});
 }
 
+// Landmarks are moved, confirmed and undone like the plan, and what follows from them follows; a case file
+// that holds them is never written over a plan that another program has saved.
+TEST_F(PlanHistoryTest, LandmarksAreUndoneAndSaved) {
+  landmarks::Landmarks marks = model_.landmarks(BoneKind::Femur);
+  landmarks::LandmarkStates states = model_.landmark_states(BoneKind::Femur);
+  const Eigen::Vector3d before = marks.at("blumensaat_anterior");
+  marks["blumensaat_anterior"] = before + Eigen::Vector3d(0, -2, 0);
+  states["blumensaat_anterior"] = landmarks::LandmarkState::Confirmed;
+  history_.apply_landmarks(BoneKind::Femur, marks, states, "Drag a landmark of the femur", true, 1.0);
+  marks["blumensaat_anterior"] = before + Eigen::Vector3d(0, -3, 0);
+  history_.apply_landmarks(BoneKind::Femur, marks, states, "Drag a landmark of the femur", true, 1.1);
+  history_.settle_now();
+  EXPECT_EQ(history_.step_count(), 1U);
+  EXPECT_EQ(cases::load_case(folder_).landmarks.at(BoneKind::Femur).at("blumensaat_anterior"),
+            marks.at("blumensaat_anterior"));
+  history_.undo();
+  EXPECT_EQ(model_.landmarks(BoneKind::Femur).at("blumensaat_anterior"), before);
+  EXPECT_EQ(cases::load_case(folder_).landmarks.at(BoneKind::Femur).at("blumensaat_anterior"), before);
+  cases::Plan elsewhere = model_.knee().plan;
+  elsewhere.tunnels.at(BoneKind::Femur).diameter_mm = 7.25;
+  cases::save_plan(folder_, elsewhere);
+  history_.redo();
+  EXPECT_TRUE(history_.is_in_conflict());
+  EXPECT_EQ(saved_diameter_mm(), 7.25);
+}
+
+// A default plan is one step, of however many tunnels.
+TEST_F(PlanHistoryTest, SeveralTunnelsAreOneStep) {
+  const cases::Plan before = model_.knee().plan;
+  std::map<BoneKind, tunnels::Tunnel> tunnels = before.tunnels;
+  for (auto& [bone, tunnel] : tunnels) tunnel.diameter_mm = 7;
+  history_.apply_tunnels(tunnels, "Make the default plan");
+  history_.apply_tunnels(tunnels, "Make the default plan");
+  EXPECT_EQ(history_.step_count(), 1U) << "the second changes nothing";
+  EXPECT_EQ(saved_diameter_mm(), 7);
+  history_.undo();
+  EXPECT_EQ(saved_diameter_mm(), start_mm_);
+  EXPECT_EQ(model_.tunnel(BoneKind::Tibia)->diameter_mm, before.tunnels.at(BoneKind::Tibia).diameter_mm);
+}
+
 class PlanConflict : public PlanHistoryTest {
  protected:
   void save_elsewhere(double diameter_mm) {

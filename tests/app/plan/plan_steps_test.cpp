@@ -18,14 +18,14 @@ TEST(NextStep, LeadsFromAnEmptyCaseToTheatre) {
   empty.plan = {};
   open_case::PlanModel model(empty);
   StepState state;
-  EXPECT_EQ(next_step(model, state).action, "plan.place");
+  EXPECT_EQ(next_step(model, state).action, "plan.default");
   state.places_entry = true;
   EXPECT_EQ(next_step(model, state).text, "Click on the femur where the tunnel begins");
   state.places_entry = false;
   model.set_tunnel(BoneKind::Femur, planned.plan.tunnels.at(BoneKind::Femur));
   EXPECT_EQ(next_step(model, state).action, "plan.bone");
   state.bone = BoneKind::Tibia;
-  EXPECT_EQ(next_step(model, state).action, "plan.place");
+  EXPECT_EQ(next_step(model, state).action, "plan.default");
   model.set_tunnel(BoneKind::Tibia, planned.plan.tunnels.at(BoneKind::Tibia));
   EXPECT_EQ(next_step(model, state).action, "mode.setup") << next_step(model, state).text;
 }
@@ -38,6 +38,18 @@ TEST(NextStep, ATunnelThatCannotBeDrilledComesFirst) {
   model.set_tunnel(BoneKind::Femur, beside);
   EXPECT_NE(next_step(model, {}).text.find("Mend the femoral tunnel"), std::string::npos);
   EXPECT_EQ(next_step(model, {.bone = BoneKind::Tibia}).text, "Mend the femoral tunnel: press Tab");
+}
+
+// A grid that follows from points that nobody has looked at is not the end; one of confirmed points is.
+TEST(NextStep, ProposedLandmarksAreToBeLookedAt) {
+  open_case::PlanModel model(knee());
+  landmarks::LandmarkStates states = model.landmark_states(BoneKind::Femur);
+  states["blumensaat_anterior"] = landmarks::LandmarkState::Proposed;
+  model.set_landmarks(BoneKind::Femur, model.landmarks(BoneKind::Femur), states);
+  EXPECT_EQ(next_step(model, {}).action, "plan.landmarks_page");
+  states["blumensaat_anterior"] = landmarks::LandmarkState::Confirmed;
+  model.set_landmarks(BoneKind::Femur, model.landmarks(BoneKind::Femur), states);
+  EXPECT_EQ(next_step(model, {}).action, "mode.setup");
 }
 
 // What stands against every edit is named first.

@@ -29,17 +29,6 @@ TEST(TunnelMoves, EntryFollowsTheClick) {
   EXPECT_EQ(moved.direction, straight().direction);
 }
 
-// A first tunnel goes into the bone.
-TEST(TunnelMoves, FirstTunnelGoesInwards) {
-  const geometry::Surface bone = slab();
-  const auto met = first_visible({{{bones::BoneKind::Tibia, &bone}}}, {{7, -100, 9}, {0, 1, 0}});
-  ASSERT_TRUE(met);
-  const tunnels::Tunnel tunnel = first_tunnel(bones::BoneKind::Tibia, *met);
-  EXPECT_EQ(tunnel.bone, bones::BoneKind::Tibia);
-  EXPECT_NEAR((tunnel.entry_mm - Eigen::Vector3d(7, 0, 9)).norm(), 0, 1e-9);
-  EXPECT_NEAR((tunnel.direction - Eigen::Vector3d::UnitY()).norm(), 0, 1e-9);
-}
-
 // One press of an arrow key turns by exactly its angle, and the far end moves that way on the screen.
 TEST(TunnelMoves, AimTurnsTheFarEndThatWay) {
   const tunnels::Tunnel right = turned(straight(), anterior(), {1, 0});

@@ -175,5 +175,30 @@ TEST_F(PlanWindow, SlicesAreScrolledWindowedAndMeasuredIn) {
   EXPECT_TRUE(cases::load_measurements(folder).empty());
 }
 
+// One key makes both tunnels, one undo takes them back; landmarks are gone through by keys, and confirming
+// one is a step that is on disk.
+TEST_F(PlanWindow, DefaultPlanAndLandmarksByKeys) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  const tunnels::Tunnel before = saved_tunnel();
+  app.press("n");
+  ASSERT_TRUE(app.wait_for_state("undo", "Make the default plan"));
+  ASSERT_TRUE(app.wait_for_state("plan", "saved"));
+  EXPECT_NE(saved_tunnel().entry_mm, before.entry_mm);
+  app.press("ctrl+z");
+  ASSERT_TRUE(app.wait_for_state("redo", "Make the default plan"));
+  EXPECT_EQ(saved_tunnel().entry_mm, before.entry_mm);
+  app.press("l");
+  ASSERT_TRUE(app.wait_for_state("landmark", "blumensaat_anterior"));
+  app.press("Next");  // Page down
+  ASSERT_TRUE(app.wait_for_state("landmark", "blumensaat_posterior"));
+  app.press("shift+Return");
+  ASSERT_TRUE(app.wait_for_state("undo", "Confirm all landmarks"));
+  ASSERT_TRUE(app.wait_for_state("plan", "saved"));
+  for (const auto& [name, state] : cases::load_case(case_folder()).landmark_states.at(bones::BoneKind::Femur))
+    EXPECT_EQ(state, landmarks::LandmarkState::Confirmed) << name;
+}
+
 }  // namespace
 }  // namespace arthronaut::test

@@ -1,0 +1,164 @@
+// Landmarks in plan mode: gone through, confirmed, moved; and the default plan that follows from them.
+#include <GLFW/glfw3.h>
+
+#include "app/plan/plan_view.h"
+
+namespace arthronaut::plan {
+
+using bones::BoneKind;
+using landmarks::LandmarkState;
+
+std::string PlanView::landmark() const {
+  const auto rows = landmark_rows(*model_, state_.bone);
+  return rows.empty() ? "" : rows[std::min(state_.landmark, rows.size() - 1)].name;
+}
+
+// Looked at straight from outside, near enough to judge; the bone may be turned from there.
+void PlanView::select_landmark(std::size_t row) {
+  state_.landmark = row;
+  state_.hint.clear();
+  const auto& marks = model_->landmarks(state_.bone);
+  const auto at = marks.find(landmark());
+  if (at == marks.end()) return;
+  bones_.look_at(at->second, state_.bone);
+  state_.shown_revision = 0;
+  slices_.set_cross(at->second);
+}
+
+void PlanView::put_landmark(const Eigen::Vector3d& point_mm, const std::string& what, bool continues) {
+  landmarks::Landmarks marks = model_->landmarks(state_.bone);
+  landmarks::LandmarkStates states = model_->landmark_states(state_.bone);
+  marks[landmark()] = point_mm;
+  states[landmark()] = LandmarkState::Confirmed;
+  history_.apply_landmarks(state_.bone, marks, states, what, continues, widgets::GraphicsWindow::now_s());
+}
+
+void PlanView::confirm_landmarks(bool all) {
+  landmarks::LandmarkStates states = model_->landmark_states(state_.bone);
+  const auto& marks = model_->landmarks(state_.bone);
+  for (const auto& [name, position] : marks)
+    if (all || name == landmark()) states[name] = LandmarkState::Confirmed;
+  history_.apply_landmarks(state_.bone, marks, states, all ? "Confirm all landmarks" : "Confirm a landmark",
+                           false, widgets::GraphicsWindow::now_s());
+  history_.settle_now();
+  if (const auto next = next_proposed(landmark_rows(*model_, state_.bone), state_.landmark))
+    select_landmark(*next);
+}
+
+void PlanView::make_default_plan() {
+  std::map<BoneKind, tunnels::Tunnel> tunnels;
+  std::string doubts;
+  for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia}) {
+    if (!model_->has_bone(bone)) continue;
+    const default_plan::DefaultTunnel made = model_->default_tunnel(bone);
+    if (made.is_usable()) {
+      tunnels.emplace(bone, made.tunnel);
+      if (doubts.empty() && !made.doubts.empty())
+        doubts = "A proposal that follows from landmarks: look at them (L) before you rely on it.";
+    } else {
+      doubts = "No default for the " + std::string(bones::to_text(bone)) + ": " + made.message;
+    }
+  }
+  if (!tunnels.empty()) history_.apply_tunnels(tunnels, "Make the default plan");
+  state_.hint = doubts;
+  state_.page = PanelPage::Checks;
+}
+
+void PlanView::add_landmark_marks(std::vector<PaneMark>& marks) const {
+  const std::string selected = landmark();
+  const auto& points = model_->landmarks(state_.bone);
+  for (const LandmarkRow& row : landmark_rows(*model_, state_.bone)) {
+    const auto at = points.find(row.name);
+    if (at == points.end()) continue;
+    const bool is_selected = row.name == selected, is_confirmed = row.state == LandmarkRow::State::Confirmed;
+    marks.push_back({is_selected ? PaneMark::Shape::Ring : PaneMark::Shape::Cross, row.name,
+                     is_selected ? row.title : "", at->second,
+                     is_confirmed ? widgets::kGood : widgets::kCaution, true,
+                     row.title + (is_confirmed ? ", confirmed: " : ", proposed: ") + row.meaning});
+  }
+}
+
+void PlanView::add_landmark_actions(widgets::Actions& actions) {
+  const auto here = [this] {
+    return model_ != nullptr && state_.page == PanelPage::Landmarks && model_->has_bone(state_.bone);
+  };
+  const auto is_there = [this, here] {
+    return here() && model_->landmarks(state_.bone).contains(landmark());
+  };
+  const auto go = [this](int by) {
+    const auto count = static_cast<int>(landmark_rows(*model_, state_.bone).size());
+    select_landmark(static_cast<std::size_t>((static_cast<int>(state_.landmark) + by + count) % count));
+  };
+  actions.add({"plan.landmark_next",
+               "Next landmark",
+               "Looks at the next one",
+               GLFW_KEY_PAGE_DOWN,
+               0,
+               true,
+               here,
+               {},
+               [go] { go(1); }});
+  actions.add({"plan.landmark_previous",
+               "Landmark before",
+               "Looks at the one before",
+               GLFW_KEY_PAGE_UP,
+               0,
+               true,
+               here,
+               {},
+               [go] { go(-1); }});
+  actions.add({"plan.landmark_confirm",
+               "Confirm",
+               "The landmark is where it should be; goes on to the next proposed one",
+               GLFW_KEY_ENTER,
+               0,
+               false,
+               is_there,
+               {},
+               [this] { confirm_landmarks(false); }});
+  actions.add({"plan.landmark_confirm_all",
+               "Confirm all",
+               "Every landmark of this bone is where it should be",
+               GLFW_KEY_ENTER,
+               GLFW_MOD_SHIFT,
+               false,
+               here,
+               {},
+               [this] { confirm_landmarks(true); }});
+  actions.add({"plan.landmark_place", "Place", "Then click where the landmark is", GLFW_KEY_P, 0, false, here,
+               [this] { return state_.places_landmark; },
+               [this] {
+                 state_.places_landmark = !state_.places_landmark;
+                 state_.hint.clear();
+               }});
+  actions.add({"plan.landmark_reset",
+               "As proposed",
+               "Back to where the bone's shape puts it",
+               GLFW_KEY_BACKSPACE,
+               0,
+               false,
+               [this, here] {
+                 return here() && model_->proposal(state_.bone) &&
+                        model_->proposal(state_.bone)->landmarks.contains(landmark());
+               },
+               {},
+               [this] {
+                 landmarks::Landmarks marks = model_->landmarks(state_.bone);
+                 landmarks::LandmarkStates states = model_->landmark_states(state_.bone);
+                 marks[landmark()] = model_->proposal(state_.bone)->landmarks.at(landmark());
+                 states[landmark()] = LandmarkState::Proposed;
+                 history_.apply_landmarks(state_.bone, marks, states, "Take the proposed landmark", false,
+                                          widgets::GraphicsWindow::now_s());
+               }});
+  actions.add({"plan.default",
+               "Default plan",
+               "Both tunnels by the norms and the landmarks: a proposal to begin with, undo takes it back",
+               GLFW_KEY_N,
+               0,
+               false,
+               [this] { return model_ != nullptr; },
+               {},
+               [this] { make_default_plan(); }});
+}
+
+}  // namespace arthronaut::plan

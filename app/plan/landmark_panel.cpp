@@ -1,0 +1,82 @@
+#include "app/plan/landmark_panel.h"
+
+#include <algorithm>
+
+#include "app/widgets/tooltip.h"
+
+namespace arthronaut::plan {
+
+std::vector<LandmarkRow> landmark_rows(const open_case::PlanModel& model, bones::BoneKind bone) {
+  std::vector<LandmarkRow> rows;
+  if (!model.has_bone(bone)) return rows;
+  for (const landmarks::LandmarkKind& kind : landmarks::known_landmarks(bone)) {
+    LandmarkRow row{std::string(kind.name), std::string(kind.title), std::string(kind.meaning)};
+    if (model.landmarks(bone).contains(row.name))
+      row.state =
+          landmarks::state_of(model.landmark_states(bone), row.name) == landmarks::LandmarkState::Confirmed
+              ? LandmarkRow::State::Confirmed
+              : LandmarkRow::State::Proposed;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::string confirmed_in_words(const std::vector<LandmarkRow>& rows) {
+  const auto confirmed = std::count_if(rows.begin(), rows.end(), [](const LandmarkRow& row) {
+    return row.state == LandmarkRow::State::Confirmed;
+  });
+  return std::to_string(confirmed) + " of " + std::to_string(rows.size()) + " confirmed";
+}
+
+std::optional<std::size_t> next_proposed(const std::vector<LandmarkRow>& rows, std::size_t from) {
+  for (std::size_t i = 1; i <= rows.size(); ++i) {
+    const std::size_t at = (from + i) % rows.size();
+    if (rows[at].state == LandmarkRow::State::Proposed) return at;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_case::PlanModel& model,
+                                              bones::BoneKind bone, std::size_t selected) {
+  std::optional<std::size_t> clicked;
+  const std::vector<LandmarkRow> rows = landmark_rows(model, bone);
+  if (rows.empty()) return clicked;
+  widgets::text_in(ui.theme.body, widgets::kQuietText, confirmed_in_words(rows));
+  ImGui::BeginChild("landmarks", {0, ImGui::GetContentRegionAvail().y - ui.theme.px(300)});
+  const float height = ui.theme.px(34);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::InvisibleButton("landmark", {width, height})) clicked = i;
+    const bool is_hovered = ImGui::IsItemHovered();
+    ImGui::PopID();
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    if (i == selected || is_hovered)
+      draw.AddRectFilled(at, {at.x + width, at.y + height},
+                         i == selected ? IM_COL32(28, 74, 104, 255) : IM_COL32(38, 47, 57, 255),
+                         ui.theme.px(6));
+    const auto severity = rows[i].state == LandmarkRow::State::Confirmed  ? widgets::Severity::Good
+                          : rows[i].state == LandmarkRow::State::Proposed ? widgets::Severity::Caution
+                                                                          : widgets::Severity::Quiet;
+    widgets::draw_sign(draw, {at.x + ui.theme.px(14), at.y + height / 2}, ui.theme.px(8), severity);
+    ImFont* font = i == selected ? ui.theme.strong : ui.theme.body;
+    draw.AddText(font, font->FontSize, {at.x + ui.theme.px(32), at.y + (height - font->FontSize) / 2},
+                 widgets::kText, rows[i].title.c_str());
+    if (is_hovered) widgets::tooltip(ui.theme, rows[i].title + ": " + rows[i].meaning);
+    if (ImGui::IsRectVisible(at, {at.x + width, at.y + height}))
+      ui.log.note("plan.landmark." + rows[i].name, at, {at.x + width, at.y + height});
+  }
+  ImGui::EndChild();
+  const LandmarkRow& row = rows[std::min(selected, rows.size() - 1)];
+  const char* word = row.state == LandmarkRow::State::Confirmed ? "confirmed"
+                     : row.state == LandmarkRow::State::Proposed
+                         ? "proposed by the shape, looked at by nobody"
+                         : "not there: P, then click where it is";
+  widgets::text_in(ui.theme.body, widgets::kText, row.title + ": " + row.meaning + ".");
+  widgets::text_in(ui.theme.body,
+                   row.state == LandmarkRow::State::Proposed ? widgets::kCaution : widgets::kQuietText, word);
+  return clicked;
+}
+
+}  // namespace arthronaut::plan

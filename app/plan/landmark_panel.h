@@ -1,0 +1,33 @@
+// The landmarks of a bone as a list: which are proposed by the shape and which a person has looked at, what
+// each means, and the one that is worked on. What can be done with it are actions of plan mode.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/case/plan_model.h"
+#include "app/widgets/controls.h"
+
+namespace arthronaut::plan {
+
+struct LandmarkRow {
+  std::string name, title, meaning;
+  enum class State { Confirmed, Proposed, Missing } state = State::Missing;
+};
+// Every landmark of the bone, in the order in which they are best gone through; those that only somebody who
+// saw it can give
+// ("native_footprint") stand last.
+[[nodiscard]] std::vector<LandmarkRow> landmark_rows(const open_case::PlanModel& model, bones::BoneKind bone);
+// "6 of 15 confirmed"
+[[nodiscard]] std::string confirmed_in_words(const std::vector<LandmarkRow>& rows);
+// The first that is proposed, after `from` and round again; nullopt when every one is confirmed or missing.
+[[nodiscard]] std::optional<std::size_t> next_proposed(const std::vector<LandmarkRow>& rows,
+                                                       std::size_t from);
+
+// Returns the row that was clicked.
+[[nodiscard]] std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui,
+                                                            const open_case::PlanModel& model,
+                                                            bones::BoneKind bone, std::size_t selected);
+
+}  // namespace arthronaut::plan
