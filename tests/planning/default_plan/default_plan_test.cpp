@@ -54,9 +54,9 @@ TEST(DefaultPlan, AimsAsADrillCanFollow) {
     EXPECT_LT(tibia.tunnel.direction.y(), -0.2);
     EXPECT_LT(tibia.tunnel.direction.z(), -0.6);
     EXPECT_GT(tunnels::measure(tibia.tunnel, knee.tibia).length_mm, 30);
-    // Entries are near to where the ligament was: 28/35 % there, the norm's 36/30 % here, of a grid of 52 by
-    // 30 mm.
-    EXPECT_LT((femur.tunnel.entry_mm - knee.made.femur_landmarks.at("native_footprint")).norm(), 6);
+    // Where the ligament was: 28/35 % there, the norm's 28.4/35.7 % here, of a grid of 52 by 30 mm; a
+    // millimetre is how far apart the wall is met from two places in the notch.
+    EXPECT_LT((femur.tunnel.entry_mm - knee.made.femur_landmarks.at("native_footprint")).norm(), 1.5);
     EXPECT_LT((tibia.tunnel.entry_mm - knee.made.tibia_landmarks.at("native_footprint")).norm(), 3);
   }
 }
