@@ -52,7 +52,7 @@ void expect_entry_near(const std::filesystem::path& folder, BoneKind kind, const
 // right part of it.
 TEST(RealDefaultPlan, EntersTheFemurWithinTheFootprint) {
   ARTHRONAUT_REQUIRE_DATA(folder, "bones/lenhart2015");
-  expect_entry_near(folder, BoneKind::Femur, "lenhart2015-R-femur-bone.stl", "femur_distal_r", 8.0);
+  expect_entry_near(folder, BoneKind::Femur, "lenhart2015-R-femur-bone.stl", "femur_distal_r", 16.3 / 2);
 }
 
 TEST(RealDefaultPlan, EntersTheTibiaNearTheTrueAttachment) {
