@@ -9,6 +9,7 @@
 #include "planning/cases/case.h"
 #include "planning/cases/measurements.h"
 #include "planning/phantom/phantom_case.h"
+#include "planning/phantom/phantom_knee.h"
 #include "tests/app/window/display.h"
 #include "tests/temporary_folder.h"
 
@@ -178,8 +179,13 @@ TEST_F(PlanWindow, SlicesAreScrolledWindowedAndMeasuredIn) {
 // One key makes both tunnels, one undo takes them back; landmarks are gone through by keys, and confirming
 // one is a step that is on disk.
 TEST_F(PlanWindow, DefaultPlanAndLandmarksByKeys) {
+  // A case that nobody has put a landmark in: all of them are proposed.
+  const phantom::PhantomKnee made = phantom::make_phantom_knee();
+  cases::Case knee = phantom::case_of(made, "Phantom");
+  knee.landmarks.clear();
+  cases::save_case(case_folder(), knee);
   const VirtualDisplay display(1280, 720);
-  RunningWorkstation app(display, folder_.path());
+  RunningWorkstation app(display, folder_.path(), {case_folder().string()});
   open(app);
   const tunnels::Tunnel before = saved_tunnel();
   app.press("n");
@@ -196,8 +202,13 @@ TEST_F(PlanWindow, DefaultPlanAndLandmarksByKeys) {
   app.press("shift+Return");
   ASSERT_TRUE(app.wait_for_state("undo", "Confirm all landmarks"));
   ASSERT_TRUE(app.wait_for_state("plan", "saved"));
-  for (const auto& [name, state] : cases::load_case(case_folder()).landmark_states.at(bones::BoneKind::Femur))
-    EXPECT_EQ(state, landmarks::LandmarkState::Confirmed) << name;
+  const cases::Case saved = cases::load_case(case_folder());
+  const auto states = saved.landmark_states.find(bones::BoneKind::Femur);
+  ASSERT_FALSE(saved.landmarks.at(bones::BoneKind::Femur).empty());
+  for (const auto& [name, position] : saved.landmarks.at(bones::BoneKind::Femur)) {
+    if (states == saved.landmark_states.end()) break;  // what is not said to be proposed is confirmed
+    EXPECT_EQ(landmarks::state_of(states->second, name), landmarks::LandmarkState::Confirmed) << name;
+  }
 }
 
 }  // namespace
