@@ -176,7 +176,10 @@ PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, con
   ImGui::NewLine();
   switch (panel.page) {
     case PanelPage::Checks:
+      // The checks scroll; what is pressed stays in sight.
+      ImGui::BeginChild("checks", {0, ImGui::GetContentRegionAvail().y - ui.theme.px(262)});
       draw_checks(ui, panel);
+      ImGui::EndChild();
       draw_tools(ui);
       ImGui::Separator();
       break;
