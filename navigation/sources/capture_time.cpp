@@ -26,7 +26,7 @@ void StreamClock::arrived(std::int64_t stamp_ns, std::int64_t arrived_ns) {
     has_begun_ = true;
     apart_ns_ = apart_ns;
   } else {
-    apart_ns_ = std::min(apart_ns, apart_ns_ + (arrived_ns - at_ns_) / 1'000'000 * kDrift_ppm);
+    apart_ns_ = std::min(apart_ns, apart_ns_ + (arrived_ns - at_ns_) * kDrift_ppm / 1'000'000);
   }
   at_ns_ = arrived_ns;
 }

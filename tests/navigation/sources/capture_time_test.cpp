@@ -62,6 +62,12 @@ TEST(StreamClock, FollowsASlowClockAndANewOne) {
   StreamClock clock;
   for (std::int64_t s = 0; s < 3600; ++s) clock.arrived(s * kSecond - s * 100'000, s * kSecond);
   EXPECT_NEAR(static_cast<double>(clock.captured_ns(3599 * kSecond - 3599 * 100'000)), 3599e9, 1e6);
+  // The same in packets half a millisecond apart.
+  constexpr std::int64_t kPacket = 500'000;
+  StreamClock packets;
+  for (std::int64_t i = 0; i < 240'000; ++i) packets.arrived(i * kPacket - i * kPacket / 10'000, i * kPacket);
+  const std::int64_t last = 239'999 * kPacket;
+  EXPECT_NEAR(static_cast<double>(packets.captured_ns(last - last / 10'000) - last), 0, 1e6);
   clock.arrived(0, 4000 * kSecond);
   EXPECT_EQ(clock.captured_ns(0), 4000 * kSecond);
 }
