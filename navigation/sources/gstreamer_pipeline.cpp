@@ -18,6 +18,7 @@ constexpr GstClockTime kOpensWithin = 10 * GST_SECOND, kGivesUpAfter = 15 * GST_
 
 struct Unref {
   void operator()(GstElement* p) const { gst_object_unref(p); }
+  void operator()(GstClock* p) const { gst_object_unref(p); }
   void operator()(GstSample* p) const { gst_sample_unref(p); }
   void operator()(GstMessage* p) const { gst_message_unref(p); }
   void operator()(GstBus* p) const { gst_object_unref(p); }
@@ -28,6 +29,13 @@ struct Unref {
 };
 template <class T>
 using GstPtr = std::unique_ptr<T, Unref>;
+// A pipeline must not run any more when it is let go.
+struct StopAndUnref {
+  void operator()(GstElement* p) const {
+    gst_element_set_state(p, GST_STATE_NULL);
+    gst_object_unref(p);
+  }
+};
 
 // The formats whose way to BGR is OpenCV's; the first is what tracking gets without a detour.
 constexpr const char* kCaps = "video/x-raw,format=(string){ I420, NV12, BGR, GRAY8, YUY2, UYVY }";
@@ -40,14 +48,18 @@ std::string with_conversion(const std::string& pipeline) {
   return pipeline.substr(0, sink) + "videoconvert ! " + pipeline.substr(sink);
 }
 
+// Empty: OpenCV has no way for it, as for colours at half the size in a picture of odd size.
 cv::Mat to_bgr(const GstVideoFrame& mapped) {
   const int width = GST_VIDEO_FRAME_WIDTH(&mapped), height = GST_VIDEO_FRAME_HEIGHT(&mapped);
+  const GstVideoFormat given = GST_VIDEO_FRAME_FORMAT(&mapped);
+  const bool has_whole_colours = given == GST_VIDEO_FORMAT_BGR || given == GST_VIDEO_FORMAT_GRAY8;
+  if (!has_whole_colours && (width % 2 != 0 || height % 2 != 0)) return {};
   const auto plane = [&](int i, int rows, int columns, int type) {
     return cv::Mat(rows, columns, type, GST_VIDEO_FRAME_PLANE_DATA(&mapped, i),
                    static_cast<std::size_t>(GST_VIDEO_FRAME_PLANE_STRIDE(&mapped, i)));
   };
   cv::Mat bgr;
-  switch (GST_VIDEO_FRAME_FORMAT(&mapped)) {
+  switch (given) {
     case GST_VIDEO_FORMAT_I420: {  // OpenCV wants the planes under one another, without gaps
       cv::Mat packed(height * 3 / 2, width, CV_8UC1);
       plane(0, height, width, CV_8UC1).copyTo(packed.rowRange(0, height));
@@ -98,20 +110,16 @@ class GStreamerPipeline final : public FrameSource {
       throw InvalidInput(info_.name + ": is no pipeline: it has no source");
     find_sink();
     // Its stamps are then on the clock that ages are told by.
-    gst_pipeline_use_clock(GST_PIPELINE(pipeline_.get()), gst_system_clock_obtain());
+    const GstPtr<GstClock> clock(gst_system_clock_obtain());
+    gst_pipeline_use_clock(GST_PIPELINE(pipeline_.get()), clock.get());
     gst_element_set_state(pipeline_.get(), GST_STATE_PLAYING);
     first_ = pull(kOpensWithin);
     if (first_ == nullptr) {
       const std::string reason = told_on_bus();
-      stop();
       throw DeviceError(info_.name + ": " + (reason.empty() ? "gives no picture" : reason));
     }
     info_.image_size_px = {first_->width, first_->height};
   }
-  ~GStreamerPipeline() override { stop(); }
-  GStreamerPipeline(const GStreamerPipeline&) = delete;
-  GStreamerPipeline& operator=(const GStreamerPipeline&) = delete;
-
   const SourceInfo& info() const override { return info_; }
 
   camera::FramePtr next() override {
@@ -129,10 +137,6 @@ class GStreamerPipeline final : public FrameSource {
 
  private:
   GstAppSink* sink() const { return GST_APP_SINK(sink_.get()); }
-
-  void stop() {
-    if (pipeline_ != nullptr) gst_element_set_state(pipeline_.get(), GST_STATE_NULL);
-  }
 
   void find_sink() {
     const GstPtr<GstIterator> sinks(
@@ -173,6 +177,10 @@ class GStreamerPipeline final : public FrameSource {
       throw DeviceError(info_.name + ": gave a picture that can't be read");
     const cv::Mat bgr = to_bgr(mapped);
     gst_video_frame_unmap(&mapped);
+    if (bgr.empty())
+      throw DeviceError(info_.name +
+                        ": gives pictures of an odd size or format: put \"videoconvert ! "
+                        "video/x-raw,format=BGR\" before the appsink");
     if (format.fps_d > 0) info_.frames_per_second = static_cast<double>(format.fps_n) / format.fps_d;
     auto frame = std::make_shared<camera::Frame>();
     frame->width = bgr.cols;
@@ -208,7 +216,8 @@ class GStreamerPipeline final : public FrameSource {
   }
 
   SourceInfo info_;
-  GstPtr<GstElement> pipeline_, sink_;
+  std::unique_ptr<GstElement, StopAndUnref> pipeline_;
+  GstPtr<GstElement> sink_;
   std::string complaint_;
   camera::FramePtr first_;
   std::int64_t started_at_ns_ = 0, last_timestamp_ns_ = -1, next_index_ = 0;
