@@ -59,7 +59,8 @@ bool send_state(igtl::Socket& socket, const Published& published) {
   return send(socket, *message, "Arthronaut", time);
 }
 
-// Sends to one client until that fails; then the worker has ended.
+// Sends to one client until that fails; then the worker has ended. Letting it go waits for the message at
+// hand, kPatience_ms at most.
 class Client {
  public:
   explicit Client(igtl::ClientSocket::Pointer socket)
@@ -68,11 +69,6 @@ class Client {
           while (const auto published = inbox.next())
             if (!send_state(*socket, *published)) return;
         }) {}
-  // A send that waits comes back once the connection is closed.
-  ~Client() { socket_->CloseSocket(); }
-  Client(const Client&) = delete;
-  Client& operator=(const Client&) = delete;
-
   void post(const Published& published) { worker_.post(published); }
   [[nodiscard]] bool has_ended() const { return worker_.has_ended(); }
 
