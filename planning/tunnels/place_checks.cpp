@@ -39,6 +39,8 @@ Finding say(FemoralExit exit) {
       return {Verdict::Fine, "out of the lateral cortex"};
     case FemoralExit::MedialSide:
       return {Verdict::Wrong, "out of the medial side: the wrong side"};
+    case FemoralExit::IntoNotch:
+      return {Verdict::Wrong, "into the notch"};
     case FemoralExit::JointSurface:
       break;
   }
@@ -133,8 +135,10 @@ PlanCheck check_exit_place(const Tunnel& tunnel, const TunnelGeometry& geometry,
                            const PlanSurroundings& surroundings) {
   if (!surroundings.axes) return not_checked("Exit", "the bone's axes");
   const landmarks::AnatomicalAxes& axes = *surroundings.axes;
+  if (tunnel.bone == bones::BoneKind::Femur && !surroundings.surface)
+    return not_checked("Exit", "the bone's surface");
   const Finding finding = tunnel.bone == bones::BoneKind::Femur
-                              ? say(femoral_exit(geometry, axes, surroundings.extents))
+                              ? say(femoral_exit(*surroundings.surface, geometry, axes, surroundings.extents))
                               : say(tibial_exit(geometry, axes));
   return found("Exit", finding, axes, geometry.exit_mm);
 }

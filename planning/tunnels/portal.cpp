@@ -81,7 +81,7 @@ std::vector<Vector3d> outside_in_aims(const Tunnel& at_entry, const geometry::Su
       if (!measured.enters_bone || measured.wall_mm < norms.breaking_wall_mm ||
           measured.length_mm < norms.short_femoral_tunnel_mm ||
           measured.length_mm > norms.long_femoral_tunnel_mm ||
-          femoral_exit(measured, axes, surroundings.extents) != FemoralExit::LateralCortex)
+          femoral_exit(femur, measured, axes, surroundings.extents) != FemoralExit::LateralCortex)
         continue;
       const auto epicondyle = surroundings.landmarks.find("lateral_epicondyle");
       if (epicondyle != surroundings.landmarks.end() &&

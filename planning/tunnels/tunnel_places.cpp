@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "planning/geometry/rigid_transform.h"
 
@@ -21,6 +22,21 @@ bool has_bone(const geometry::Surface& bone, const Vector3d& from, const Vector3
               double within_mm) {
   const auto hit = bone.first_hit(from, direction);
   return hit && hit->distance_mm < within_mm && hit->normal.dot(direction) < 0;
+}
+
+// Where a place is looked at from, over the surface.
+constexpr double kAbove_mm = 0.5;
+
+// How much bone a line goes through.
+double bone_along(const geometry::Surface& bone, const Vector3d& from, const Vector3d& direction) {
+  double inside_mm = 0, entered_mm = -1;
+  for (const geometry::RayHit& hit : bone.all_hits(from, direction)) {
+    if (hit.normal.dot(direction) < 0)
+      entered_mm = hit.distance_mm;
+    else if (entered_mm >= 0)
+      inside_mm += hit.distance_mm - std::exchange(entered_mm, -1);
+  }
+  return inside_mm;
 }
 
 }  // namespace
@@ -51,7 +67,6 @@ BoneExtents bone_extents(const geometry::TriangleMesh& mesh, bones::BoneKind bon
 
 FemoralEntry femoral_entry(const geometry::Surface& femur, const TunnelMouth& entry,
                            const landmarks::AnatomicalAxes& axes, const BoneExtents& extents) {
-  constexpr double kAbove_mm = 0.5;
   const Vector3d above = entry.at_mm + kAbove_mm * entry.normal;
   const double within_mm = 0.5 * extents.width_mm();
   if (std::abs(entry.normal.dot(axes.anterior)) > cosine(35) ||
@@ -62,12 +77,14 @@ FemoralEntry femoral_entry(const geometry::Surface& femur, const TunnelMouth& en
   return faces_laterally > sine(25) ? FemoralEntry::MedialWall : FemoralEntry::Roof;
 }
 
-FemoralExit femoral_exit(const TunnelGeometry& tunnel, const landmarks::AnatomicalAxes& axes,
-                         const BoneExtents& extents) {
+FemoralExit femoral_exit(const geometry::Surface& femur, const TunnelGeometry& tunnel,
+                         const landmarks::AnatomicalAxes& axes, const BoneExtents& extents) {
   const Vector3d& faces = tunnel.exit.normal;
   if ((tunnel.exit_mm - tunnel.entry_on_surface_mm).dot(axes.lateral) <= 0 ||
       faces.dot(axes.lateral) < -sine(45))
     return FemoralExit::MedialSide;
+  if (bone_along(femur, tunnel.exit_mm + kAbove_mm * faces, axes.lateral) > 0.1 * extents.width_mm())
+    return FemoralExit::IntoNotch;
   const double height = tunnel.exit_mm.dot(axes.proximal) - extents.lowest_mm;
   const bool is_low = height < 0.5 * extents.width_mm();
   if (is_low && (faces.dot(axes.proximal) < -sine(30) || std::abs(faces.dot(axes.lateral)) < sine(45)))

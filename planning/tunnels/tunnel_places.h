@@ -38,11 +38,14 @@ enum class FemoralExit {
   LateralCortex,
   MedialSide,    // of where it began, or out of a face that looks medially
   JointSurface,  // condyle or groove
+  IntoNotch,     // more bone lies laterally of it
 };
 // Joint surface: less than half the bone's width above its lowest point, out of a face that looks downwards
 // (by more than 30 deg), or one that looks neither laterally nor medially (within 45 deg of straight on).
-[[nodiscard]] FemoralExit femoral_exit(const TunnelGeometry& tunnel, const landmarks::AnatomicalAxes& axes,
-                                       const BoneExtents& extents);
+// Into the notch: from 0.5 mm above the surface straight laterally there is a tenth of the bone's width of
+// bone or more.
+[[nodiscard]] FemoralExit femoral_exit(const geometry::Surface& femur, const TunnelGeometry& tunnel,
+                                       const landmarks::AnatomicalAxes& axes, const BoneExtents& extents);
 
 enum class TibialEntry { BetweenCondyles, MedialPlateau, LateralPlateau, BesidePlateau };
 // Beside: further than a fifth of the width below the top, or out of a face that looks up by less than 30

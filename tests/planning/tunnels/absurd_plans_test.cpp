@@ -118,6 +118,20 @@ TEST_P(AbsurdPlans, ThroughTheJointSurfaceAndToTheWrongSide) {
   EXPECT_THAT(femur_.check(medial, "Exit").text, ::testing::HasSubstr("wrong side"));
 }
 
+// From outside through the medial condyle: the drill comes out where it should have gone in, and the lateral
+// cortex is beyond the notch.
+TEST_P(AbsurdPlans, IntoTheNotchIsNotTheLateralCortex) {
+  const Vector3d entry = knee_.femoral_tunnel.entry_mm;
+  const auto wall = femur_.surface->first_hit(entry - 1.0 * axes_.lateral, -axes_.lateral);
+  ASSERT_TRUE(wall);
+  const auto outer = femur_.surface->first_hit(wall->point_mm - 200 * axes_.lateral, axes_.lateral);
+  ASSERT_TRUE(outer);
+  const Tunnel across{.bone = BoneKind::Femur, .entry_mm = outer->point_mm, .direction = axes_.lateral};
+  const auto exit = femur_.check(across, "Exit");
+  EXPECT_EQ(exit.verdict, Verdict::Wrong);
+  EXPECT_THAT(exit.text, ::testing::HasSubstr("into the notch"));
+}
+
 TEST_P(AbsurdPlans, TibialOnes) {
   const auto& axes = *tibia_.known.axes;
   Tunnel back = knee_.tibial_tunnel;
