@@ -1,8 +1,8 @@
 #include "app/case/plan_model.h"
 
 #include <algorithm>
-#include <limits>
 
+#include "app/scene/lateral_plane.h"
 #include "app/scene/notch_cut.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/geometry/error.h"
@@ -18,20 +18,6 @@ bool has_grid(const landmarks::Landmarks& marks, bones::BoneKind kind, const geo
                                         : landmarks::tibial_grid(marks).has_value();
 }
 
-// Of the vertices within 80 mm of the joint, which is at the femur's lower end and at the tibia's upper one.
-geometry::Bounds joint_bounds_of(const geometry::TriangleMesh& mesh, bones::BoneKind kind,
-                                 const landmarks::AnatomicalAxes& axes) {
-  constexpr double kShown_mm = 80;
-  const Eigen::Vector3d into_bone =
-      kind == bones::BoneKind::Femur ? axes.proximal : Eigen::Vector3d(-axes.proximal);
-  double joint = std::numeric_limits<double>::infinity();
-  for (const auto& vertex : mesh.vertices_mm) joint = std::min(joint, vertex.dot(into_bone));
-  geometry::TriangleMesh part;
-  for (const auto& vertex : mesh.vertices_mm)
-    if (vertex.dot(into_bone) <= joint + kShown_mm) part.vertices_mm.push_back(vertex);
-  return geometry::bounds_of(part);
-}
-
 geometry::Bounds joined(geometry::Bounds all, const geometry::Bounds& other) {
   all.min_mm = all.min_mm.cwiseMin(other.min_mm);
   all.max_mm = all.max_mm.cwiseMax(other.max_mm);
@@ -45,7 +31,7 @@ PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
     if (bone.mesh.empty()) continue;
     BoneModel& made = bones_[kind];
     made.drawn = scene::simplified(bone.mesh);
-    made.surface = std::make_shared<geometry::Surface>(bone.mesh);
+    made.review.surface = std::make_shared<const geometry::Surface>(bone.mesh);
     made.bounds = geometry::bounds_of(bone.mesh);
     made.mesh_sha256 = bones::mesh_sha256(bone.mesh);
     landmarks::LandmarkStates& states = knee_.landmark_states[kind];
@@ -64,13 +50,10 @@ void PlanModel::use_landmarks(bones::BoneKind kind) {
   const geometry::TriangleMesh& mesh = knee_.bones.at(kind).mesh;
   BoneModel& bone = bones_.at(kind);
   bone.axes = landmarks::anatomical_axes(kind, knee_.side, landmarks(kind), mesh);
-  bone.joint_bounds = joint_bounds_of(mesh, kind, bone.axes);
-  bone.surroundings = tunnels::surroundings_of(mesh, kind, landmarks(kind), knee_.side, bone.surface);
-  bone.footprint = norms::expected_footprint(mesh, *bone.surface, kind, knee_.side, landmarks(kind),
-                                             norms::default_norm(kind, norms::Bundle::Whole));
-  if (bone.footprint) bone.surroundings.footprint_outline_mm = bone.footprint->outline_mm;
+  bone.joint_bounds = scene::joint_bounds(mesh, kind, bone.axes);
+  bone.review = plan_review::review_bone(mesh, kind, knee_.side, landmarks(kind), bone.review.surface);
   if (kind == bones::BoneKind::Femur)
-    knee_surroundings_ = tunnels::knee_surroundings_of(mesh, bone.surroundings);
+    knee_surroundings_ = tunnels::knee_surroundings_of(mesh, bone.review.surroundings);
 }
 
 const landmarks::Landmarks& PlanModel::landmarks(bones::BoneKind kind) const {
@@ -92,7 +75,7 @@ void PlanModel::set_landmarks(bones::BoneKind kind, landmarks::Landmarks landmar
 default_plan::DefaultTunnel PlanModel::default_tunnel(bones::BoneKind kind) const {
   const BoneModel& bone = bones_.at(kind);
   return default_plan::plan_bone({.bone = &knee_.bones.at(kind),
-                                  .surface = bone.surface.get(),
+                                  .surface = bone.review.surface.get(),
                                   .landmarks = landmarks(kind),
                                   .states = landmark_states(kind),
                                   .proposal = bone.proposal ? &*bone.proposal : nullptr},
@@ -110,21 +93,16 @@ const tunnels::TunnelGeometry& PlanModel::measured(bones::BoneKind kind) const {
 }
 
 std::vector<tunnels::PlanCheck> PlanModel::checks(bones::BoneKind kind) const {
-  const auto planned = tunnel(kind);
-  if (!planned) return {};
-  auto checks = tunnels::check_plan(*planned, measured(kind), bones_.at(kind).surroundings);
-  const auto femoral = tunnel(bones::BoneKind::Femur), tibial = tunnel(bones::BoneKind::Tibia);
-  tunnels::KneePlan plan;
-  if (femoral && has_bone(bones::BoneKind::Femur)) {
-    plan.femoral = &*femoral;
-    plan.femoral_measured = &measured(bones::BoneKind::Femur);
-  }
-  if (tibial && has_bone(bones::BoneKind::Tibia)) {
-    plan.tibial = &*tibial;
-    plan.tibial_measured = &measured(bones::BoneKind::Tibia);
-  }
-  for (tunnels::PlanCheck& check : tunnels::check_knee(kind, plan, knee_surroundings_))
-    checks.push_back(std::move(check));
+  if (!knee_.plan.tunnels.contains(kind)) return {};
+  const auto measured_tunnel = [&](bones::BoneKind of) {
+    const auto planned = knee_.plan.tunnels.find(of);
+    return planned == knee_.plan.tunnels.end() || !has_bone(of)
+               ? plan_review::MeasuredTunnel{}
+               : plan_review::MeasuredTunnel{&planned->second, &measured(of)};
+  };
+  auto checks =
+      plan_review::checks_of(kind, measured_tunnel(bones::BoneKind::Femur),
+                             measured_tunnel(bones::BoneKind::Tibia), surroundings(kind), knee_surroundings_);
   if (const cases::PlanFit fit = plan_fit(kind); !fit.is_valid()) {
     checks.insert(checks.begin(), {.verdict = tunnels::PlanCheck::Verdict::Wrong,
                                    .name = "Bone",
@@ -193,7 +171,7 @@ void PlanModel::set_measurements(std::vector<cases::Measurement> measurements) {
 void PlanModel::measure(bones::BoneKind kind) {
   BoneModel& bone = bones_.at(kind);
   const auto planned = tunnel(kind);
-  bone.measured = planned ? tunnels::measure(*planned, *bone.surface) : tunnels::TunnelGeometry{};
+  bone.measured = planned ? tunnels::measure(*planned, *bone.review.surface) : tunnels::TunnelGeometry{};
 }
 
 }  // namespace arthronaut::open_case

@@ -20,9 +20,7 @@
 #include "planning/geometry/surface.h"
 #include "planning/landmarks/anatomical_axes.h"
 #include "planning/landmarks/propose.h"
-#include "planning/norms/footprint.h"
-#include "planning/tunnels/knee_checks.h"
-#include "planning/tunnels/plan_checks.h"
+#include "planning/plan_review/plan_review.h"
 
 namespace arthronaut::open_case {
 
@@ -36,10 +34,10 @@ class PlanModel {
   [[nodiscard]] bool has_bone(bones::BoneKind kind) const { return bones_.contains(kind); }
   // Preconditions of these three: has_bone(kind).
   [[nodiscard]] const geometry::Surface& surface(bones::BoneKind kind) const {
-    return *bones_.at(kind).surface;
+    return *bones_.at(kind).review.surface;
   }
   [[nodiscard]] std::shared_ptr<const geometry::Surface> shared_surface(bones::BoneKind kind) const {
-    return bones_.at(kind).surface;
+    return bones_.at(kind).review.surface;
   }
   [[nodiscard]] const std::shared_ptr<const geometry::TriangleMesh>& drawn_mesh(bones::BoneKind kind) const {
     return bones_.at(kind).drawn;
@@ -51,8 +49,10 @@ class PlanModel {
   // Which way is anterior, proximal and lateral, and what else the checks know of the bone. Precondition:
   // has_bone(kind).
   [[nodiscard]] const tunnels::PlanSurroundings& surroundings(bones::BoneKind kind) const {
-    return bones_.at(kind).surroundings;
+    return bones_.at(kind).review.surroundings;
   }
+  // What the checks know of the knee beside its tunnels.
+  [[nodiscard]] const tunnels::KneeSurroundings& knee_surroundings() const { return knee_surroundings_; }
   // Those of the bone and those of the whole knee that concern it. Empty without a tunnel. That it was
   // planned on another mesh is the first check, and a wrong one.
   [[nodiscard]] std::vector<tunnels::PlanCheck> checks(bones::BoneKind kind) const;
@@ -77,7 +77,7 @@ class PlanModel {
   }
   // Where the ligament is expected by the norm; nullopt where the landmarks give no grid.
   [[nodiscard]] const std::optional<norms::ExpectedFootprint>& footprint(bones::BoneKind kind) const {
-    return bones_.at(kind).footprint;
+    return bones_.at(kind).review.footprint;
   }
   // A tunnel by norms and landmarks; read the outcome. Takes a moment.
   [[nodiscard]] default_plan::DefaultTunnel default_tunnel(bones::BoneKind kind) const;
@@ -98,14 +98,12 @@ class PlanModel {
  private:
   struct BoneModel {
     std::shared_ptr<const geometry::TriangleMesh> drawn;
-    std::shared_ptr<const geometry::Surface> surface;
+    plan_review::ReviewedBone review;
     geometry::Bounds bounds, joint_bounds;
     landmarks::AnatomicalAxes axes;
     std::optional<landmarks::Proposal> proposal;
-    std::optional<norms::ExpectedFootprint> footprint;
     std::string mesh_sha256;
     tunnels::TunnelGeometry measured;
-    tunnels::PlanSurroundings surroundings;
   };
   void measure(bones::BoneKind kind);
   void use_landmarks(bones::BoneKind kind);  // what follows from them

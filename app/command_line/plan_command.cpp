@@ -98,16 +98,16 @@ void take_markups(const PlanArguments& arguments, cases::Case& knee) {
 
 void show(const PlanArguments& arguments, const Context& context, const cases::Case& knee,
           const PlanVerdict& verdict) {
+  const plan_review::CaseReview review(knee);
   auto tunnels_json = nlohmann::ordered_json::array();
   for (const auto& [kind, tunnel] : knee.plan.tunnels) {
     if (!arguments.bone.empty() && arguments.bone != bones::to_text(kind)) continue;
-    if (!knee.bones.contains(kind))
+    if (!review.has_bone(kind))
       throw InvalidInput(arguments.case_folder, "plan.json", "plans a bone that the case lacks");
-    const geometry::Surface surface(knee.bones.at(kind).mesh);
     if (arguments.as_json) {
-      tunnels_json.push_back(tunnel_to_json(knee, tunnel, surface, verdict));
+      tunnels_json.push_back(tunnel_to_json(knee, review, kind, verdict));
     } else {
-      describe_tunnel(context, knee, tunnel, surface);
+      describe_tunnel(context, knee, review, kind);
     }
   }
   if (!arguments.as_json && knee.plan.tunnels.empty()) context.say("No tunnel is planned.");

@@ -1,65 +1,15 @@
 #include "app/command_line/plan_report.h"
 
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <utility>
 
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
-#include "planning/tunnels/knee_checks.h"
-#include "planning/tunnels/plan_checks.h"
 
 namespace arthronaut::command_line {
 
 namespace {
 
 using tunnels::PlanCheck;
-
-landmarks::Landmarks landmarks_of(const cases::Case& knee, bones::BoneKind kind) {
-  const auto found = knee.landmarks.find(kind);
-  return found == knee.landmarks.end() ? landmarks::Landmarks{} : found->second;
-}
-
-// The tunnel of the other bone, measured, for what concerns both.
-struct OtherTunnel {
-  std::optional<tunnels::Tunnel> tunnel;
-  tunnels::TunnelGeometry measured;
-};
-
-OtherTunnel other_tunnel(const cases::Case& knee, bones::BoneKind kind) {
-  const bones::BoneKind other =
-      kind == bones::BoneKind::Femur ? bones::BoneKind::Tibia : bones::BoneKind::Femur;
-  const auto planned = knee.plan.tunnels.find(other);
-  const auto bone = knee.bones.find(other);
-  if (planned == knee.plan.tunnels.end() || bone == knee.bones.end()) return {};
-  return {planned->second, tunnels::measure(planned->second, geometry::Surface(bone->second.mesh))};
-}
-
-tunnels::KneeSurroundings knee_surroundings_of(const cases::Case& knee) {
-  const auto femur = knee.bones.find(bones::BoneKind::Femur);
-  if (femur == knee.bones.end()) return {};
-  return tunnels::knee_surroundings_of(
-      femur->second.mesh, tunnels::surroundings_of(femur->second.mesh, bones::BoneKind::Femur,
-                                                   landmarks_of(knee, bones::BoneKind::Femur), knee.side));
-}
-
-// Those of the bone, then those of the whole knee that concern it.
-std::vector<PlanCheck> checks_of(const cases::Case& knee, const tunnels::Tunnel& tunnel,
-                                 const tunnels::TunnelGeometry& measured) {
-  const auto surroundings = tunnels::surroundings_of(knee.bones.at(tunnel.bone).mesh, tunnel.bone,
-                                                     landmarks_of(knee, tunnel.bone), knee.side);
-  auto checks = tunnels::check_plan(tunnel, measured, surroundings);
-  if (!measured.enters_bone) return checks;
-  const OtherTunnel other = other_tunnel(knee, tunnel.bone);
-  tunnels::KneePlan plan{&tunnel, &measured, other.tunnel ? &*other.tunnel : nullptr, &other.measured};
-  if (tunnel.bone == bones::BoneKind::Tibia) {
-    std::swap(plan.femoral, plan.tibial);
-    std::swap(plan.femoral_measured, plan.tibial_measured);
-  }
-  for (auto& check : tunnels::check_knee(tunnel.bone, plan, knee_surroundings_of(knee)))
-    checks.push_back(std::move(check));
-  return checks;
-}
 
 const char* sign_of(PlanCheck::Verdict verdict) {
   switch (verdict) {
@@ -77,9 +27,10 @@ const char* sign_of(PlanCheck::Verdict verdict) {
 
 }  // namespace
 
-void describe_tunnel(const Context& context, const cases::Case& knee, const tunnels::Tunnel& tunnel,
-                     const geometry::Surface& surface) {
-  const auto measured = tunnels::measure(tunnel, surface);
+void describe_tunnel(const Context& context, const cases::Case& knee, const plan_review::CaseReview& review,
+                     bones::BoneKind kind) {
+  const tunnels::Tunnel& tunnel = *review.tunnel(kind).tunnel;
+  const tunnels::TunnelGeometry& measured = *review.tunnel(kind).geometry;
   const auto& e = tunnel.entry_mm;
   const auto& d = tunnel.direction;
   context.say(files::format("%s tunnel, %.1f mm", std::string(bones::to_text(tunnel.bone)).c_str(),
@@ -94,7 +45,7 @@ void describe_tunnel(const Context& context, const cases::Case& knee, const tunn
   }
   if (const auto fit = cases::plan_fit(knee, tunnel.bone); !fit.is_valid())
     context.say("  ! not valid: " + fit.reason);
-  for (const auto& check : checks_of(knee, tunnel, measured)) {
+  for (const auto& check : review.checks(kind)) {
     const bool is_amiss =
         check.verdict == PlanCheck::Verdict::Look || check.verdict == PlanCheck::Verdict::Wrong;
     const std::string source = is_amiss && !check.source.empty() ? " [" + check.source + "]" : "";
@@ -102,9 +53,10 @@ void describe_tunnel(const Context& context, const cases::Case& knee, const tunn
   }
 }
 
-nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const tunnels::Tunnel& tunnel,
-                                      const geometry::Surface& surface, const PlanVerdict& verdict) {
-  const auto measured = tunnels::measure(tunnel, surface);
+nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const plan_review::CaseReview& review,
+                                      bones::BoneKind kind, const PlanVerdict& verdict) {
+  const tunnels::Tunnel& tunnel = *review.tunnel(kind).tunnel;
+  const tunnels::TunnelGeometry& measured = *review.tunnel(kind).geometry;
   nlohmann::ordered_json node = {{"bone", bones::to_text(tunnel.bone)},
                                  {"entry_mm", files::to_json(tunnel.entry_mm)},
                                  {"direction", files::to_json(tunnel.direction)},
@@ -116,7 +68,7 @@ nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const tunnels::Tu
     node["wall_mm"] = measured.wall_mm;
   }
   auto checks = nlohmann::ordered_json::array();
-  for (const auto& check : checks_of(knee, tunnel, measured)) {
+  for (const auto& check : review.checks(kind)) {
     checks.push_back({{"name", check.name},
                       {"verdict", to_text(check.verdict)},
                       {"text", check.text},

@@ -7,14 +7,14 @@
 
 #include "app/command_line/command.h"
 #include "planning/cases/case.h"
-#include "planning/geometry/surface.h"
-#include "planning/tunnels/tunnel.h"
+#include "planning/plan_review/plan_review.h"
 
 namespace arthronaut::command_line {
 
 // Lines for the user: entry, direction, what was measured, every check.
-void describe_tunnel(const Context& context, const cases::Case& knee, const tunnels::Tunnel& tunnel,
-                     const geometry::Surface& surface);
+// Precondition of both: the review, which is of this case, has the tunnel.
+void describe_tunnel(const Context& context, const cases::Case& knee, const plan_review::CaseReview& review,
+                     bones::BoneKind kind);
 
 // What a default plan says about itself beside the tunnel.
 struct PlanVerdict {
@@ -22,8 +22,8 @@ struct PlanVerdict {
   std::vector<std::string> reasons;
   std::string source;  // of the norm; empty without one
 };
-[[nodiscard]] nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const tunnels::Tunnel& tunnel,
-                                                    const geometry::Surface& surface,
-                                                    const PlanVerdict& verdict);
+[[nodiscard]] nlohmann::ordered_json tunnel_to_json(const cases::Case& knee,
+                                                    const plan_review::CaseReview& review,
+                                                    bones::BoneKind kind, const PlanVerdict& verdict);
 
 }  // namespace arthronaut::command_line

@@ -3,7 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "app/plan/grid_lines.h"
+#include "app/scene/grid_lines.h"
+#include "app/scene/lateral_plane.h"
 #include "app/scene/radiograph.h"
 #include "app/widgets/tooltip.h"
 
@@ -25,25 +26,6 @@ std::string percent_text(const landmarks::FemoralQuadrant::Percent& percent) {
 
 }  // namespace
 
-scene::SlicePlane lateral_plane(const landmarks::AnatomicalAxes& axes,
-                                const std::optional<landmarks::FemoralQuadrant>& quadrant,
-                                const geometry::Bounds& shown, const Eigen::Vector2i& size_px) {
-  Eigen::Vector3d medially = -axes.lateral;  // the way the beam goes
-  if (quadrant) {
-    medially = quadrant->shallow.cross(quadrant->low).normalized();
-    if (medially.dot(axes.lateral) > 0) medially = -medially;
-  }
-  scene::SlicePlane plane;
-  plane.down = (-axes.proximal + axes.proximal.dot(medially) * medially).normalized();
-  plane.right = plane.down.cross(medially);
-  plane.center_mm = shown.center_mm();
-  const Eigen::Vector3d half = 0.5 * shown.size_mm();
-  constexpr double kMargin = 1.08;
-  plane.mm_per_px = kMargin * std::max(2 * half.dot(plane.right.cwiseAbs()) / std::max(size_px.x(), 1),
-                                       2 * half.dot(plane.down.cwiseAbs()) / std::max(size_px.y(), 1));
-  return plane;
-}
-
 void LateralView::open(const open_case::PlanModel* model) {
   model_ = model;
   size_px_ = {0, 0};
@@ -58,8 +40,8 @@ void LateralView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   const Eigen::Vector2i size(std::max(static_cast<int>(area.width), 1),
                              std::max(static_cast<int>(area.height), 1));
   const scene::SlicePlane plane =
-      lateral_plane(model_->axes(BoneKind::Femur), model_->surroundings(BoneKind::Femur).quadrant,
-                    model_->joint_bounds(BoneKind::Femur), size);
+      scene::lateral_plane(model_->axes(BoneKind::Femur), model_->surroundings(BoneKind::Femur).quadrant,
+                           model_->joint_bounds(BoneKind::Femur), size);
   if (size != size_px_ || !(plane == plane_)) {
     texture_.upload(size.x(), size.y(),
                     scene::radiograph_from(
@@ -95,8 +77,8 @@ void LateralView::draw_grid(const widgets::Ui& ui, const widgets::Rect& area) co
   const auto& quadrant = model_->surroundings(BoneKind::Femur).quadrant;
   std::string text = "True lateral view, condyles superposed";
   if (quadrant) {
-    const GridLines lines = grid_lines(*quadrant);
-    const ImU32 grid = widgets::color_of(kGridColor), norm = widgets::color_of(kNormColor);
+    const scene::GridLines lines = scene::grid_lines(*quadrant);
+    const ImU32 grid = widgets::color_of(scene::kGridColor), norm = widgets::color_of(scene::kNormColor);
     for (const auto& line : lines.rims) draw.AddLine(at(line.front()), at(line.back()), grid, ui.theme.px(3));
     for (const auto& line : lines.divisions)
       draw.AddLine(at(line.front()), at(line.back()), grid, ui.theme.px(1.2F));

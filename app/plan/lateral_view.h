@@ -12,12 +12,6 @@
 
 namespace arthronaut::plan {
 
-// The plane of the picture, looked at from the lateral side: across the grid's own plane where there is a
-// grid, else across the bone's lateral axis. Centred on the joint's end of the femur; all of `shown` fits in.
-[[nodiscard]] scene::SlicePlane lateral_plane(const landmarks::AnatomicalAxes& axes,
-                                              const std::optional<landmarks::FemoralQuadrant>& quadrant,
-                                              const geometry::Bounds& shown, const Eigen::Vector2i& size_px);
-
 class LateralView {
  public:
   void open(const open_case::PlanModel* model);  // another case

@@ -2,8 +2,8 @@
 
 #include <GLFW/glfw3.h>
 
-#include "app/plan/grid_lines.h"
 #include "app/plan/tunnel_moves.h"
+#include "app/scene/grid_lines.h"
 #include "app/scene/solid_mesh.h"
 #include "planning/tunnels/aim.h"
 
@@ -37,7 +37,7 @@ const char* name_of(open_case::PlanStatus::Save save) {
 }  // namespace
 
 PlanView::PlanView(std::function<void()> make_current, const std::function<void()>& wake)
-    : bones_(std::move(make_current)), slices_(wake) {}
+    : bones_(std::move(make_current)), slices_(wake), survey_(wake) {}
 
 mode::ModeTitle PlanView::title() const {
   return {"plan", "mode.plan", "Plan", "Place the tunnels", GLFW_KEY_F1};
@@ -87,7 +87,7 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   row({"plan.anterior", "plan.posterior", "plan.medial", "plan.lateral", "plan.distal", "plan.notch",
        "plan.plateau", "plan.see_through"});
   ImGui::SetCursorScreenPos(rest.cut_top(ui.theme.px(44), ui.theme.px(10)).min());
-  row({"plan.grid", "plan.xray", "plan.slices"});
+  row({"plan.grid", "plan.map", "plan.aims", "plan.xray", "plan.slices"});
   if (state_.shows_slices)
     row({"plan.window", "plan.fit", "plan.cross_to_entry", "plan.distance", "plan.angle", "plan.unmeasure"});
   if (history_.is_in_conflict()) draw_conflict(ui, rest.cut_top(ui.theme.px(64), ui.theme.px(10)));
@@ -194,8 +194,11 @@ void PlanView::show_content() {
   scene::SceneContent content;
   for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
     if (!model_->has_bone(kind) || !bones_.shows(kind)) continue;
-    if (const auto tunnel = model_->tunnel(kind))
+    if (const auto tunnel = model_->tunnel(kind)) {
       scene::add_planned_tunnel(content, *tunnel, model_->drawn_length_mm(kind));
+      if (kind == state_.bone && state_.shows_aims && state_.survey != nullptr)
+        add_aims(content, *state_.survey, *tunnel, model_->drawn_length_mm(kind));
+    }
     if (!state_.shows_grid) continue;
     if (const auto& footprint = model_->footprint(kind)) {
       content.lines.push_back({footprint->outline_mm, 0.9, true, kFootprintColor, true});
@@ -206,10 +209,10 @@ void PlanView::show_content() {
     const bool is_sagittal = view == scene::ViewDirection::Medial || view == scene::ViewDirection::Lateral ||
                              view == scene::ViewDirection::Notch;
     if (const auto& quadrant = model_->surroundings(kind).quadrant; quadrant && is_sagittal)
-      add_grid(content, grid_lines(*quadrant));
+      scene::add_grid(content, scene::grid_lines(*quadrant));
     if (const auto& plateau = model_->surroundings(kind).plateau;
         plateau && view == scene::ViewDirection::Plateau)
-      add_grid(content, grid_lines(*plateau));
+      scene::add_grid(content, scene::grid_lines(*plateau));
   }
   bones_.set_content(std::move(content));
   state_.shown_revision = model_->revision();
@@ -217,8 +220,13 @@ void PlanView::show_content() {
 
 void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
   if (state_.shows_lateral) return lateral_.draw(ui, area);
+  if (auto survey = wanted_survey(); survey != state_.survey) {
+    state_.survey = std::move(survey);
+    state_.shown_revision = 0;
+  }
   if (state_.shown_revision != model_->revision()) show_content();
   follow(bones_.draw(ui, area, marks()));
+  draw_survey_legend(ui, area);
   const std::string bone(bones::to_text(state_.bone));
   std::string text = state_.hint;
   if (text.empty() && state_.places_entry)
@@ -251,6 +259,7 @@ std::vector<PaneMark> PlanView::marks() const {
                      widgets::color_of(kFootprintColor), false,
                      "The expected footprint, and where its centre lies in two knees of three: " +
                          std::string(footprint->norm.source)});
+  add_map_marks(marks);
   const auto tunnel = model_->tunnel(state_.bone);
   if (!tunnel) return marks;
   const tunnels::TunnelGeometry& measured = model_->measured(state_.bone);

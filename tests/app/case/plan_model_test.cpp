@@ -31,6 +31,20 @@ TEST(PlanModel, MeasuresAnewWithEveryChange) {
   EXPECT_TRUE(model.checks(BoneKind::Femur).empty());
 }
 
+// Screen, command line and report say the same of one plan.
+TEST(PlanModel, SaysWhatTheReviewOfTheCaseSays) {
+  const PlanModel model(phantom());
+  const plan_review::CaseReview review(model.knee());
+  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
+    const auto here = model.checks(kind), there = review.checks(kind);
+    ASSERT_EQ(here.size(), there.size());
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      EXPECT_EQ(here[i].text, there[i].text);
+      EXPECT_EQ(here[i].verdict, there[i].verdict) << here[i].name;
+    }
+  }
+}
+
 // A case without a bone is refused with its name.
 TEST(PlanModel, RefusesACaseWithoutBones) {
   cases::Case empty;

@@ -1,10 +1,10 @@
-#include "app/plan/grid_lines.h"
+#include "app/scene/grid_lines.h"
 
 #include <gtest/gtest.h>
 
 #include "planning/phantom/phantom_case.h"
 
-namespace arthronaut::plan {
+namespace arthronaut::scene {
 namespace {
 
 using bones::BoneKind;
@@ -41,7 +41,7 @@ TEST(GridLines, OfTheTibiaLieAtTheirPercentages) {
   ASSERT_TRUE(grid);
   for (const landmarks::TibialGrid::Percent wanted :
        {landmarks::TibialGrid::Percent{0, 0}, {41.5, 46.7}, {100, 100}}) {
-    const auto percent = grid->percent_of(point_at(*grid, wanted));
+    const auto percent = grid->percent_of(grid->point_at(wanted));
     EXPECT_NEAR(percent.anterior_posterior, wanted.anterior_posterior, 1e-9);
     EXPECT_NEAR(percent.medial_lateral, wanted.medial_lateral, 1e-9);
   }
@@ -49,4 +49,4 @@ TEST(GridLines, OfTheTibiaLieAtTheirPercentages) {
 }
 
 }  // namespace
-}  // namespace arthronaut::plan
+}  // namespace arthronaut::scene

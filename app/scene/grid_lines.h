@@ -9,7 +9,7 @@
 #include "planning/landmarks/insertion_grids.h"
 #include "planning/tunnels/plan_checks.h"
 
-namespace arthronaut::plan {
+namespace arthronaut::scene {
 
 // Points in the bone's frame; each line two or more.
 struct GridLines {
@@ -22,11 +22,8 @@ struct GridLines {
                                    const tunnels::PlanNorms& norms = {});
 // In the plane through the plateau's anterior edge.
 [[nodiscard]] GridLines grid_lines(const landmarks::TibialGrid& grid, const tunnels::PlanNorms& norms = {});
-// The point of that plane at these percentages.
-[[nodiscard]] Eigen::Vector3d point_at(const landmarks::TibialGrid& grid,
-                                       const landmarks::TibialGrid::Percent& percent);
 
-inline constexpr scene::Color kGridColor{0.80F, 0.47F, 0.65F}, kNormColor{0.94F, 0.89F, 0.26F};
-void add_grid(scene::SceneContent& content, const GridLines& lines);
+inline constexpr Color kGridColor{0.80F, 0.47F, 0.65F}, kNormColor{0.94F, 0.89F, 0.26F};
+void add_grid(SceneContent& content, const GridLines& lines);
 
-}  // namespace arthronaut::plan
+}  // namespace arthronaut::scene

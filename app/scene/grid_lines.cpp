@@ -1,10 +1,10 @@
-#include "app/plan/grid_lines.h"
+#include "app/scene/grid_lines.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 
-namespace arthronaut::plan {
+namespace arthronaut::scene {
 
 namespace {
 
@@ -42,23 +42,15 @@ GridLines grid_lines(const landmarks::FemoralQuadrant& quadrant, const tunnels::
 GridLines grid_lines(const landmarks::TibialGrid& grid, const tunnels::PlanNorms& norms) {
   return lines_of(
       [&](double back, double lateral) {
-        return point_at(grid, {back, lateral});
+        return grid.point_at({back, lateral});
       },
       norms.tibia_anterior_posterior_percent, norms.tibia_medial_lateral_percent);
 }
 
-Eigen::Vector3d point_at(const landmarks::TibialGrid& grid, const landmarks::TibialGrid::Percent& percent) {
-  const Eigen::Vector3d up = grid.posterior.cross(grid.lateral);
-  return (grid.posterior.dot(grid.anterior_mm) + percent.anterior_posterior / 100 * grid.depth_mm) *
-             grid.posterior +
-         (grid.lateral.dot(grid.medial_mm) + percent.medial_lateral / 100 * grid.width_mm) * grid.lateral +
-         up.dot(grid.anterior_mm) * up;
-}
-
-void add_grid(scene::SceneContent& content, const GridLines& lines) {
+void add_grid(SceneContent& content, const GridLines& lines) {
   for (const auto& line : lines.rims) content.lines.push_back({line, 0.6, false, kGridColor, true});
   for (const auto& line : lines.divisions) content.lines.push_back({line, 0.3, false, kGridColor, true});
   content.lines.push_back({lines.norm, 0.5, true, kNormColor, true});
 }
 
-}  // namespace arthronaut::plan
+}  // namespace arthronaut::scene

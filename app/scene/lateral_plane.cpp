@@ -1,0 +1,42 @@
+#include "app/scene/lateral_plane.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+
+namespace arthronaut::scene {
+
+using bones::BoneKind;
+
+geometry::Bounds joint_bounds(const geometry::TriangleMesh& mesh, BoneKind kind,
+                              const landmarks::AnatomicalAxes& axes) {
+  constexpr double kShown_mm = 80;
+  const Eigen::Vector3d into_bone = kind == BoneKind::Femur ? axes.proximal : Eigen::Vector3d(-axes.proximal);
+  double joint = std::numeric_limits<double>::infinity();
+  for (const auto& vertex : mesh.vertices_mm) joint = std::min(joint, vertex.dot(into_bone));
+  geometry::TriangleMesh part;
+  for (const auto& vertex : mesh.vertices_mm)
+    if (vertex.dot(into_bone) <= joint + kShown_mm) part.vertices_mm.push_back(vertex);
+  return geometry::bounds_of(part);
+}
+
+SlicePlane lateral_plane(const landmarks::AnatomicalAxes& axes,
+                         const std::optional<landmarks::FemoralQuadrant>& quadrant,
+                         const geometry::Bounds& shown, const Eigen::Vector2i& size_px) {
+  Eigen::Vector3d medially = -axes.lateral;  // the way the beam goes
+  if (quadrant) {
+    medially = quadrant->shallow.cross(quadrant->low).normalized();
+    if (medially.dot(axes.lateral) > 0) medially = -medially;
+  }
+  SlicePlane plane;
+  plane.down = (-axes.proximal + axes.proximal.dot(medially) * medially).normalized();
+  plane.right = plane.down.cross(medially);
+  plane.center_mm = shown.center_mm();
+  const Eigen::Vector3d half = 0.5 * shown.size_mm();
+  constexpr double kMargin = 1.08;
+  plane.mm_per_px = kMargin * std::max(2 * half.dot(plane.right.cwiseAbs()) / std::max(size_px.x(), 1),
+                                       2 * half.dot(plane.down.cwiseAbs()) / std::max(size_px.y(), 1));
+  return plane;
+}
+
+}  // namespace arthronaut::scene

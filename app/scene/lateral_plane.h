@@ -1,0 +1,24 @@
+// The picture plane of the true lateral view of a femur: the condyles superposed.
+#pragma once
+
+#include <optional>
+
+#include "app/scene/reslice.h"
+#include "planning/bones/bone.h"
+#include "planning/landmarks/anatomical_axes.h"
+#include "planning/landmarks/insertion_grids.h"
+
+namespace arthronaut::scene {
+
+// Of the vertices within 80 mm of the joint, which is at the femur's lower end and at the tibia's upper one:
+// what a surgeon looks at of a bone that may be whole.
+[[nodiscard]] geometry::Bounds joint_bounds(const geometry::TriangleMesh& mesh, bones::BoneKind kind,
+                                            const landmarks::AnatomicalAxes& axes);
+
+// The plane of the picture, looked at from the lateral side: across the grid's own plane where there is a
+// grid, else across the bone's lateral axis. Centred on the joint's end of the femur; all of `shown` fits in.
+[[nodiscard]] SlicePlane lateral_plane(const landmarks::AnatomicalAxes& axes,
+                                       const std::optional<landmarks::FemoralQuadrant>& quadrant,
+                                       const geometry::Bounds& shown, const Eigen::Vector2i& size_px);
+
+}  // namespace arthronaut::scene

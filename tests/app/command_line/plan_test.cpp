@@ -1,0 +1,107 @@
+// plan and landmarks on the built-in knee, as a user types them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "planning/cases/case.h"
+#include "planning/phantom/phantom_case.h"
+#include "planning/phantom/phantom_knee.h"
+#include "tests/app/command_line/program.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut {
+namespace {
+
+using test::run_program;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class PlanCommand : public ::testing::Test {
+ protected:
+  PlanCommand() { save(knee_); }
+  void save(const cases::Case& knee) const { cases::save_case(folder_ / "knee.arthro", knee); }
+  [[nodiscard]] test::ProgramResult run(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin() + 1, folder_ / "knee.arthro");
+    return run_program(arguments);
+  }
+
+  const test::TemporaryFolder folder_;
+  const phantom::PhantomKnee made_ = phantom::make_phantom_knee();
+  cases::Case knee_ = phantom::case_of(made_, "Phantom");
+};
+
+}  // namespace
+
+// The same checks as the window's: the entry's place, the footprint, the graft between both tunnels.
+TEST_F(PlanCommand, ChecksAllThatTheWindowChecks) {
+  const auto result = run({"plan", "--bone", "femur"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("Entry: on the lateral wall of the notch"));
+  EXPECT_THAT(result.output, HasSubstr("Footprint opened: "));
+  EXPECT_THAT(result.output, HasSubstr("Graft length: "));
+  EXPECT_THAT(result.output, Not(HasSubstr("not checked")));
+}
+
+// An entry on the outer side of the medial condyle, straight across the femur.
+TEST_F(PlanCommand, SaysThatAnAbsurdPlanIsWrong) {
+  const geometry::Surface femur(made_.femur.mesh);
+  // A right knee: medial is +x.
+  const Eigen::Vector3d outer = femur.closest_point(made_.femur_landmarks.at("medial_epicondyle")).point_mm;
+  knee_.plan.tunnels[bones::BoneKind::Femur].entry_mm = outer;
+  knee_.plan.tunnels[bones::BoneKind::Femur].direction = -Eigen::Vector3d::UnitX();
+  save(knee_);
+  const auto result = run({"plan", "--bone", "femur"});
+  EXPECT_THAT(result.output, HasSubstr("  ! Entry: "));
+  EXPECT_THAT(result.output, HasSubstr("  ! Exit: into the notch"));
+}
+
+TEST_F(PlanCommand, MakesADefaultPlanAndPrintsIt) {
+  const auto result = run({"plan", "--bone", "tibia", "--default", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.output << result.errors;
+  const auto tunnel = nlohmann::json::parse(result.output);
+  EXPECT_EQ(tunnel.at("bone"), "tibia");
+  EXPECT_TRUE(tunnel.at("reliable").get<bool>());
+  const cases::Case saved = cases::load_case(folder_ / "knee.arthro");
+  EXPECT_NEAR(saved.plan.tunnels.at(bones::BoneKind::Tibia).entry_mm.x(),
+              tunnel.at("entry_mm").at(0).get<double>(), 1e-6);
+}
+
+// A knee without landmarks: they are proposed, and that is a reason to look before relying on it.
+TEST_F(PlanCommand, ADefaultOnProposedLandmarksIsNotReliable) {
+  knee_.landmarks.clear();
+  save(knee_);
+  const auto result = run({"plan", "--bone", "femur", "--default"});
+  EXPECT_EQ(result.exit_code, 4) << result.output << result.errors;
+  EXPECT_THAT(result.output + result.errors, HasSubstr("blumensaat_anterior"));
+}
+
+TEST_F(PlanCommand, ExportsPlanAndDrilledBones) {
+  const auto result = run({"plan", "--export", folder_ / "out"});
+  EXPECT_EQ(result.exit_code, 0) << result.output << result.errors;
+  for (const char* file :
+       {"plan.json", "plan.csv", "plan.mrk.json", "femur_drilled.stl", "tibia_drilled.stl"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / file)) << file;
+  // Read back, they are the same plan.
+  EXPECT_EQ(run({"plan", "--from-markups", folder_ / "out" / "plan.mrk.json"}).exit_code, 0);
+  const cases::Case saved = cases::load_case(folder_ / "knee.arthro");
+  const auto& before = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  EXPECT_LT((saved.plan.tunnels.at(bones::BoneKind::Femur).entry_mm - before.entry_mm).norm(), 1e-3);
+}
+
+TEST_F(PlanCommand, LandmarksAreProposedSetAndKept) {
+  knee_.landmarks.clear();
+  save(knee_);
+  const auto proposed = run({"landmarks", "--propose", "--json"});
+  EXPECT_EQ(proposed.exit_code, 0) << proposed.output << proposed.errors;
+  EXPECT_TRUE(nlohmann::json::accept(proposed.output)) << proposed.output;
+  EXPECT_EQ(run({"landmarks", "--set", "femur.notch_apex=1,2,3"}).exit_code, 0);
+  const cases::Case saved = cases::load_case(folder_ / "knee.arthro");
+  EXPECT_EQ(saved.landmarks.at(bones::BoneKind::Femur).at("notch_apex"), Eigen::Vector3d(1, 2, 3));
+  EXPECT_GT(saved.landmarks.at(bones::BoneKind::Femur).size(), 5U);
+  const auto unknown = run({"landmarks", "--set", "femur.no_such_point=1,2,3"});
+  EXPECT_NE(unknown.exit_code, 0);
+  EXPECT_THAT(unknown.errors, HasSubstr("no_such_point"));
+}
+
+}  // namespace arthronaut
