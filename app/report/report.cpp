@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "app/report/pdf_document.h"
+#include "app/report/plan_sheet.h"
 #include "app/report/versions.h"
 #include "app/scene/plan_picture.h"
 #include "navigation/camera/camera_file.h"
@@ -85,6 +86,11 @@ class Report {
 
   void write(const std::filesystem::path& file) {
     plan_page();
+    if (!content_.knee.plan.tunnels.empty()) {
+      begin_page("The plan on one sheet");
+      draw_plan_sheet(pdf_, {.left_mm = kLeftMm, .top_mm = y_, .width_mm = kWidthMm}, content_.knee,
+                      content_.folder);
+    }
     navigate_page();
     settings();
     pdf_.save(file);

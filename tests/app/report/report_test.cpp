@@ -12,6 +12,7 @@
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
+#include "planning/plan_review/plan_review.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::report {
@@ -63,6 +64,20 @@ TEST_F(Report, OfAPlanAloneSaysThatNothingWasNavigated) {
   expect_contains(text, "No session with a registration");
   expect_contains(text, "femur");
   expect_contains(text, "OpenCV");
+}
+
+// The sheet has every check of both tunnels, in words, and the percentages of the entries.
+TEST_F(Report, HasThePlanOnOneSheet) {
+  write_report(knee_folder(), pdf());
+  const std::string text = pdf_text();
+  expect_contains(text, "The plan on one sheet");
+  expect_contains(text, "True lateral view");
+  expect_contains(text, "Entry at ");
+  const plan_review::CaseReview review(cases::load_case(knee_folder()));
+  for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
+    expect_contains(text, "Checks of the " + std::string(bones::to_text(kind)));
+    for (const auto& check : review.checks(kind)) expect_contains(text, check.name + ":");
+  }
 }
 
 // One bone is a case too: neither page asks for a picture of the other.

@@ -1,0 +1,261 @@
+#include "app/report/plan_sheet.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "app/scene/grid_lines.h"
+#include "app/scene/lateral_plane.h"
+#include "app/scene/plan_picture.h"
+#include "app/scene/radiograph.h"
+#include "app/scene/reslice.h"
+#include "planning/cases/case_image.h"
+#include "planning/files/format.h"
+#include "planning/plan_review/plan_review.h"
+
+namespace arthronaut::report {
+
+namespace {
+
+using bones::BoneKind;
+using Eigen::Vector3d;
+using tunnels::PlanCheck;
+
+constexpr Ink kGrid{0.80, 0.47, 0.65}, kNorm{0.85, 0.72, 0.10}, kPlan{0.20, 0.62, 0.90},
+    kBone{0.85, 0.55, 0.20};
+constexpr TextStyle kCaption{.size_pt = 7.5, .ink = kGray};
+
+// A plane drawn on the page: its picture's place, and what of it lies where.
+struct PlanePicture {
+  double x_mm, y_mm, width_mm, height_mm;  // on the page
+  scene::SlicePlane plane;
+  Eigen::Vector2i size_px;
+
+  [[nodiscard]] Eigen::Vector2d on_page(const Vector3d& point) const {
+    const Eigen::Vector2d pixel = plane.pixel_of(point, size_px);
+    return {x_mm + (pixel.x() + 0.5) * width_mm / size_px.x(),
+            y_mm + (pixel.y() + 0.5) * height_mm / size_px.y()};
+  }
+  [[nodiscard]] bool holds(const Eigen::Vector2d& p) const {
+    return p.x() >= x_mm && p.x() <= x_mm + width_mm && p.y() >= y_mm && p.y() <= y_mm + height_mm;
+  }
+};
+
+class Sheet {
+ public:
+  Sheet(PdfDocument& pdf, const SheetFrame& frame, const cases::Case& knee, std::filesystem::path folder)
+      : pdf_(pdf), frame_(frame), knee_(knee), folder_(std::move(folder)), review_(knee) {}
+
+  void draw();
+
+ private:
+  double lateral(double x_mm, double y_mm, double width_mm);
+  void plateau(double x_mm, double y_mm, double width_mm);
+  void slices(double y_mm);
+  void slice(const PlanePicture& picture, BoneKind kind, const std::optional<images::Volume>& volume);
+  void checks(BoneKind kind, double x_mm, double y_mm, double width_mm);
+  void put_grey(const PlanePicture& picture, const std::vector<std::uint8_t>& grey);
+  // Where both ends lie in the picture.
+  void line(const PlanePicture& picture, const Vector3d& from, const Vector3d& to, double width_mm,
+            const Ink& ink);
+  void tunnel_outline(const PlanePicture& picture, BoneKind kind);
+  [[nodiscard]] std::optional<images::Volume> volume() const;
+  [[nodiscard]] landmarks::AnatomicalAxes axes(BoneKind kind) const;
+
+  PdfDocument& pdf_;
+  SheetFrame frame_;
+  const cases::Case& knee_;
+  std::filesystem::path folder_;
+  plan_review::CaseReview review_;
+};
+
+landmarks::AnatomicalAxes Sheet::axes(BoneKind kind) const {
+  const auto marks = knee_.landmarks.find(kind);
+  return landmarks::anatomical_axes(kind, knee_.side,
+                                    marks == knee_.landmarks.end() ? landmarks::Landmarks{} : marks->second,
+                                    knee_.bones.at(kind).mesh);
+}
+
+// Grey images, not label maps; the newest.
+std::optional<images::Volume> Sheet::volume() const {
+  const auto grey = std::find_if(knee_.images.rbegin(), knee_.images.rend(),
+                                 [](const cases::CaseImage& image) { return !image.is_label_map; });
+  if (grey == knee_.images.rend()) return std::nullopt;
+  return cases::load_image(folder_, *grey);
+}
+
+void Sheet::put_grey(const PlanePicture& picture, const std::vector<std::uint8_t>& grey) {
+  std::vector<std::uint8_t> rgb;
+  rgb.reserve(3 * grey.size());
+  for (const std::uint8_t value : grey) rgb.insert(rgb.end(), 3, value);
+  pdf_.image(picture.x_mm, picture.y_mm, picture.width_mm, rgb, picture.size_px.x(), picture.size_px.y());
+}
+
+void Sheet::line(const PlanePicture& picture, const Vector3d& from, const Vector3d& to, double width_mm,
+                 const Ink& ink) {
+  const Eigen::Vector2d a = picture.on_page(from), b = picture.on_page(to);
+  if (picture.holds(a) && picture.holds(b)) pdf_.line(a.x(), a.y(), b.x(), b.y(), width_mm, ink);
+}
+
+double Sheet::lateral(double x_mm, double y_mm, double width_mm) {
+  constexpr double kAspect = 0.78;
+  PlanePicture picture{x_mm, y_mm, width_mm, kAspect * width_mm, {}, {760, static_cast<int>(kAspect * 760)}};
+  if (!review_.has_bone(BoneKind::Femur)) return picture.height_mm;
+  const auto& quadrant = review_.bone(BoneKind::Femur).surroundings.quadrant;
+  const geometry::TriangleMesh& mesh = knee_.bones.at(BoneKind::Femur).mesh;
+  const landmarks::AnatomicalAxes bone_axes = axes(BoneKind::Femur);
+  picture.plane = scene::lateral_plane(
+      bone_axes, quadrant, scene::joint_bounds(mesh, BoneKind::Femur, bone_axes), picture.size_px);
+  put_grey(picture, scene::radiograph_from(scene::thickness_along(mesh, picture.plane, picture.size_px)));
+  std::string caption = "True lateral view, condyles superposed";
+  if (quadrant) {
+    const scene::GridLines grid = scene::grid_lines(*quadrant);
+    for (const auto& rim : grid.rims) line(picture, rim.front(), rim.back(), 0.35, kGrid);
+    for (const auto& division : grid.divisions) line(picture, division.front(), division.back(), 0.15, kGrid);
+    for (std::size_t i = 0; i < grid.norm.size(); ++i)
+      line(picture, grid.norm[i], grid.norm[(i + 1) % grid.norm.size()], 0.3, kNorm);
+  } else {
+    caption += "; no grid, since Blumensaat's line is not marked";
+  }
+  if (const auto planned = review_.tunnel(BoneKind::Femur); planned.tunnel != nullptr) {
+    tunnel_outline(picture, BoneKind::Femur);
+    if (quadrant) {
+      const auto percent = quadrant->percent_of(planned.tunnel->entry_mm);
+      caption += files::format(
+          ". Entry at %.1f %% deep to shallow, %.1f %% high to low; yellow: mean and one "
+          "standard deviation of 13 studies (Arthroscopy 2016)",
+          percent.deep_shallow, percent.high_low);
+    }
+  }
+  return picture.height_mm +
+         pdf_.paragraph(x_mm, y_mm + picture.height_mm + 3.5, width_mm, caption, kCaption) -
+         (y_mm + picture.height_mm);
+}
+
+void Sheet::plateau(double x_mm, double y_mm, double width_mm) {
+  if (!review_.has_bone(BoneKind::Tibia)) return;
+  scene::PictureRequest request;
+  request.knee = &knee_;
+  request.view = scene::ViewDirection::Plateau;
+  request.width = 900;
+  request.height = 702;
+  request.light_background = true;
+  const auto picture = scene::render_plan_picture(request);
+  const double height = pdf_.image(x_mm, y_mm, width_mm, picture.rgb, picture.width, picture.height);
+  std::string caption = "The tibial plateau from above";
+  const auto planned = review_.tunnel(BoneKind::Tibia);
+  if (const auto& grid = review_.bone(BoneKind::Tibia).surroundings.plateau;
+      grid && planned.tunnel != nullptr) {
+    const auto percent = grid->percent_of(planned.tunnel->entry_mm);
+    caption += files::format(". Entry at %.1f %% from anterior, %.1f %% from medial",
+                             percent.anterior_posterior, percent.medial_lateral);
+  }
+  pdf_.paragraph(x_mm, y_mm + height + 3.5, width_mm, caption, kCaption);
+}
+
+// The tunnel's two sides, its mouth and its end, as they lie in the picture's plane.
+void Sheet::tunnel_outline(const PlanePicture& picture, BoneKind kind) {
+  const auto planned = review_.tunnel(kind);
+  const tunnels::Tunnel& tunnel = *planned.tunnel;
+  const Vector3d side = tunnel.diameter_mm / 2 * tunnel.direction.cross(picture.plane.normal()).normalized();
+  const double length_mm = planned.geometry->enters_bone ? planned.geometry->length_mm : 30;
+  const Vector3d from = tunnel.entry_mm, to = from + length_mm * tunnel.direction;
+  constexpr double kWidth = 0.4;
+  line(picture, from + side, to + side, kWidth, kPlan);
+  line(picture, from - side, to - side, kWidth, kPlan);
+  line(picture, from + side, from - side, kWidth, kPlan);
+  line(picture, to + side, to - side, kWidth, kPlan);
+}
+
+void Sheet::slice(const PlanePicture& picture, BoneKind kind, const std::optional<images::Volume>& volume) {
+  std::vector<std::uint8_t> grey(static_cast<std::size_t>(picture.size_px.prod()), 255);
+  if (volume) {
+    const bool is_ct = std::any_of(knee_.images.begin(), knee_.images.end(),
+                                   [](const cases::CaseImage& image) { return image.modality == "CT"; });
+    scene::reslice(*volume, picture.plane, picture.size_px,
+                   is_ct ? scene::kBoneWindow : scene::automatic_window(*volume), grey);
+  }
+  put_grey(picture, grey);
+  for (const auto& [from, to] :
+       scene::outline_of(knee_.bones.at(kind).mesh, picture.plane.center_mm, picture.plane.normal()))
+    line(picture, from, to, 0.2, volume ? kBone : kBlack);
+  tunnel_outline(picture, kind);
+}
+
+// Two planes through each axis: one as upright as it can stand, one across.
+void Sheet::slices(double y_mm) {
+  constexpr int kCount = 4;
+  constexpr double kGap_mm = 3, kShown_mm = 70;
+  const double width_mm = (frame_.width_mm - (kCount - 1) * kGap_mm) / kCount;
+  const auto volume = this->volume();
+  double x_mm = frame_.left_mm;
+  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
+    const auto planned = review_.tunnel(kind);
+    for (const bool is_upright : {true, false}) {
+      if (planned.tunnel != nullptr) {
+        const Vector3d direction = planned.tunnel->direction.normalized();
+        PlanePicture picture{x_mm, y_mm, width_mm, width_mm, {}, {320, 320}};
+        const Vector3d up = axes(kind).proximal;
+        Vector3d across = direction.cross(up);
+        across = across.norm() > 0.1 ? across.normalized() : direction.unitOrthogonal();
+        const Vector3d in_plane = is_upright ? across.cross(direction) : across;
+        // Up on the page is up in the bone, as far as the plane allows.
+        const Vector3d normal = direction.cross(in_plane);
+        Vector3d page_up = up - up.dot(normal) * normal;
+        page_up = page_up.norm() > 0.1 ? page_up.normalized() : direction;
+        picture.plane = {planned.tunnel->entry_mm + 0.3 * kShown_mm * direction,
+                         (-page_up).cross(normal).normalized(), -page_up, kShown_mm / picture.size_px.x()};
+        slice(picture, kind, volume);
+        pdf_.text(x_mm, y_mm + width_mm + 3.5,
+                  std::string(bones::to_text(kind)) +
+                      (is_upright ? ", upright along the axis, 70 mm" : ", across it, 70 mm"),
+                  kCaption);
+      }
+      x_mm += width_mm + kGap_mm;
+    }
+  }
+}
+
+void Sheet::checks(BoneKind kind, double x_mm, double y_mm, double width_mm) {
+  constexpr double kWord_mm = 17, kStep_mm = 3.6;
+  pdf_.text(x_mm, y_mm, "Checks of the " + std::string(bones::to_text(kind)), {.size_pt = 9, .bold = true});
+  y_mm += 4;
+  if (!review_.has_bone(kind) || review_.tunnel(kind).tunnel == nullptr) {
+    pdf_.text(x_mm, y_mm, review_.has_bone(kind) ? "No tunnel is planned." : "The case has no such bone.",
+              kCaption);
+    return;
+  }
+  for (const PlanCheck& check : review_.checks(kind)) {
+    const bool is_amiss =
+        check.verdict == PlanCheck::Verdict::Look || check.verdict == PlanCheck::Verdict::Wrong;
+    pdf_.text(x_mm, y_mm, to_text(check.verdict),
+              {.size_pt = 7.5, .bold = is_amiss, .ink = is_amiss ? kWarning : kGray});
+    const std::string source = is_amiss && !check.source.empty() ? " [" + check.source + "]" : "";
+    y_mm = pdf_.paragraph(x_mm + kWord_mm, y_mm, width_mm - kWord_mm, check.name + ": " + check.text + source,
+                          {.size_pt = 7.5});
+    y_mm += 0.3 * kStep_mm;
+  }
+}
+
+void Sheet::draw() {
+  const double half_mm = (frame_.width_mm - 6) / 2, right_mm = frame_.left_mm + half_mm + 6;
+  double y_mm = frame_.top_mm;
+  plateau(right_mm, y_mm, half_mm);
+  y_mm += lateral(frame_.left_mm, y_mm, half_mm) + 3;
+  slices(y_mm);
+  y_mm += (frame_.width_mm - 9) / 4 + 11;
+  checks(BoneKind::Femur, frame_.left_mm, y_mm, half_mm);
+  checks(BoneKind::Tibia, right_mm, y_mm, half_mm);
+}
+
+}  // namespace
+
+void draw_plan_sheet(PdfDocument& pdf, const SheetFrame& frame, const cases::Case& knee,
+                     const std::filesystem::path& case_folder) {
+  Sheet(pdf, frame, knee, case_folder).draw();
+}
+
+}  // namespace arthronaut::report

@@ -1,0 +1,23 @@
+// The plan on one page: the true lateral view with its grid, the plateau, slices along each tunnel, and every
+// check with its verdict in a word.
+#pragma once
+
+#include <filesystem>
+
+#include "app/report/pdf_document.h"
+#include "planning/cases/case.h"
+
+namespace arthronaut::report {
+
+struct SheetFrame {
+  double left_mm = 20, top_mm = 28, width_mm = 170;
+};
+
+// Draws on the last page, which is to be empty below frame.top_mm. Slices show the case's images where it
+// keeps some, else the outlines of the bones alone. Without a tunnel it says so. Throws IoError and
+// InvalidInput when an image of the case can't be read, DeviceError when no picture of the plateau can be
+// made.
+void draw_plan_sheet(PdfDocument& pdf, const SheetFrame& frame, const cases::Case& knee,
+                     const std::filesystem::path& case_folder);
+
+}  // namespace arthronaut::report
