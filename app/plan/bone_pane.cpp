@@ -143,10 +143,13 @@ void BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
     const auto projected = scene::project(pane_.camera(), mark.point_mm, size);
     if (!projected) continue;
     const ImVec2 at(area.x + static_cast<float>(projected->x()), area.y + static_cast<float>(projected->y()));
-    const bool is_behind = is_out_of_sight(mark);
+    const bool is_behind = is_out_of_sight(mark), is_one_of_many = mark.id.empty();
+    if (is_behind && is_one_of_many) continue;
     const ImU32 color = is_behind ? kHidden : mark.color;
     const float r =
-        ui.theme.px(mark.shape == PaneMark::Shape::Cross || mark.shape == PaneMark::Shape::Pin ? 8.F : 13.F);
+        ui.theme.px(is_one_of_many                                                               ? 4.F
+                    : mark.shape == PaneMark::Shape::Cross || mark.shape == PaneMark::Shape::Pin ? 8.F
+                                                                                                 : 13.F);
     switch (mark.shape) {
       case PaneMark::Shape::Ring:
         draw.AddCircle(at, r, color, 32, is_behind ? line * 0.5F : line);
@@ -166,6 +169,16 @@ void BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
         draw.AddTriangleFilled(at, {at.x - r * 0.7F, at.y - r * 1.6F}, {at.x + r * 0.7F, at.y - r * 1.6F},
                                color);
         break;
+      case PaneMark::Shape::Dot:
+        draw.AddCircleFilled(at, r, color);
+        break;
+      case PaneMark::Shape::Circle:
+        draw.AddCircle(at, r, color, 12, line * 0.5F);
+        break;
+      case PaneMark::Shape::Saltire:
+        draw.AddLine({at.x - r, at.y - r}, {at.x + r, at.y + r}, color, line * 0.5F);
+        draw.AddLine({at.x - r, at.y + r}, {at.x + r, at.y - r}, color, line * 0.5F);
+        break;
     }
     if (!mark.word.empty()) {
       const std::string word = mark.word + (is_behind ? " (behind)" : "");
@@ -177,7 +190,8 @@ void BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
     }
     const bool is_near = std::abs(mouse.x - at.x) < r * 1.4F && std::abs(mouse.y - at.y) < r * 1.4F;
     if (is_hovered && is_near && !mark.tooltip.empty()) under_mouse = &mark;
-    ui.log.note("plan." + mark.id + "_handle", {at.x - r, at.y - r}, {at.x + r, at.y + r});
+    if (!is_one_of_many)
+      ui.log.note("plan." + mark.id + "_handle", {at.x - r, at.y - r}, {at.x + r, at.y + r});
   }
   if (under_mouse != nullptr) widgets::tooltip(ui.theme, under_mouse->tooltip);
   draw.PopClipRect();

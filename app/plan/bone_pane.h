@@ -20,8 +20,11 @@ struct PaneMark {
     Diamond,  // an aim
     Cross,    // a landmark
     Pin,      // a place that is pointed at
+    Dot,      // one of many places that are good, to be looked at,
+    Circle,
+    Saltire,  // or bad
   } shape = Shape::Pin;
-  std::string id;    // "entry": stable, for events and tests
+  std::string id;    // "entry": stable, for events and tests; empty: one of many
   std::string word;  // beside it; empty: none
   Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();
   ImU32 color = widgets::kText;

@@ -21,6 +21,7 @@ void PlanView::add_actions(widgets::Actions& actions) {
   add_landmark_actions(actions);
   add_placing_actions(actions);
   add_tunnel_actions(actions);
+  add_survey_actions(actions);
   add_slice_actions(actions);
   add_measuring_actions(actions);
   add_history_actions(actions);

@@ -17,6 +17,7 @@
 #include "app/plan/lateral_view.h"
 #include "app/plan/plan_steps.h"
 #include "app/plan/slice_panes.h"
+#include "app/plan/tunnel_survey.h"
 
 namespace arthronaut::plan {
 
@@ -55,6 +56,12 @@ class PlanView : public mode::Mode {
   void make_default_plan();
   void add_landmark_marks(std::vector<PaneMark>& marks) const;
 
+  // Where else the tunnel could begin, and from where it can be drilled: survey_view.cpp.
+  void add_survey_actions(widgets::Actions& actions);
+  [[nodiscard]] std::shared_ptr<const Survey> wanted_survey();
+  void add_map_marks(std::vector<PaneMark>& marks) const;
+  void draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& area) const;
+
   // The tunnel of the bone that is planned becomes this one; nothing where there is none.
   void change(const std::string& what, bool continues, const std::optional<tunnels::Tunnel>& tunnel);
   void look_from(scene::ViewDirection view);
@@ -74,6 +81,8 @@ class PlanView : public mode::Mode {
     std::size_t landmark = 0;  // row of landmark_rows()
     bool has_dragged = false;
     bool shows_slices = false, shows_lateral = false, shows_grid = true;
+    bool shows_map = false, shows_aims = false;
+    std::shared_ptr<const Survey> survey = nullptr;  // of what is planned now; null: none is there
     PanelPage page = PanelPage::Checks;
     std::string hint = {};  // why a click did nothing; until the next one
     std::uint64_t shown_revision = 0;
@@ -89,6 +98,7 @@ class PlanView : public mode::Mode {
   BonePane bones_;
   SlicePanes slices_;
   LateralView lateral_;
+  TunnelSurvey survey_;
   std::map<bones::BoneKind, TunnelMesh> tunnel_meshes_;
   ViewState state_;
 };

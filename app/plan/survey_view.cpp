@@ -1,0 +1,95 @@
+// The survey of a tunnel over the bones: the map of entries about its own, and the ways to drill it.
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+
+#include "app/plan/plan_view.h"
+
+namespace arthronaut::plan {
+
+void PlanView::add_survey_actions(widgets::Actions& actions) {
+  const auto has_tunnel = [this] { return model_ != nullptr && model_->tunnel(state_.bone).has_value(); };
+  actions.add(
+      {"plan.map", "Entry map",
+       "Where else the entry could be: about it every check is made of a tunnel of the same direction "
+       "and diameter",
+       GLFW_KEY_M, 0, false, has_tunnel, [this] { return state_.shows_map; },
+       [this] { state_.shows_map = !state_.shows_map; }});
+  actions.add(
+      {"plan.aims", "Aims",
+       "The ways to this entry: through the anteromedial portal at 100 to 130 degrees of flexion, and from "
+       "outside in",
+       GLFW_KEY_O, 0, false,
+       [this, has_tunnel] { return has_tunnel() && state_.bone == bones::BoneKind::Femur; },
+       [this] { return state_.shows_aims; },
+       [this] {
+         state_.shows_aims = !state_.shows_aims;
+         state_.shown_revision = 0;
+       }});
+}
+
+// While a handle moves, every step would be surveyed for nothing.
+std::shared_ptr<const Survey> PlanView::wanted_survey() {
+  if ((!state_.shows_map && !state_.shows_aims) || history_.is_moving()) return nullptr;
+  return survey_.of(*model_, state_.bone);
+}
+
+void PlanView::add_map_marks(std::vector<PaneMark>& marks) const {
+  if (!state_.shows_map || state_.survey == nullptr) return;
+  for (const tunnels::EntrySample& sample : state_.survey->entries) {
+    const bool is_fine = sample.verdict == tunnels::PlanCheck::Verdict::Fine;
+    const bool is_wrong = sample.verdict == tunnels::PlanCheck::Verdict::Wrong;
+    marks.push_back({is_fine    ? PaneMark::Shape::Dot
+                     : is_wrong ? PaneMark::Shape::Saltire
+                                : PaneMark::Shape::Circle,
+                     "", "", sample.entry_mm,
+                     is_fine    ? widgets::kGood
+                     : is_wrong ? widgets::kBad
+                                : widgets::kCaution,
+                     false, is_fine ? "An entry here passes every check that can be made" : sample.reason});
+  }
+}
+
+void PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& area) const {
+  if (!state_.shows_map && !state_.shows_aims) return;
+  std::vector<std::string> lines;
+  if (state_.survey == nullptr) {
+    lines.emplace_back(model_->tunnel(state_.bone) ? "Looking about the entry ..."
+                                                   : "There is no tunnel yet");
+  } else {
+    if (state_.shows_map) {
+      const auto count = [&](tunnels::PlanCheck::Verdict verdict) {
+        return std::to_string(
+            std::ranges::count(state_.survey->entries, verdict, &tunnels::EntrySample::verdict));
+      };
+      using Verdict = tunnels::PlanCheck::Verdict;
+      lines.push_back("Entries of a tunnel of this direction: dot, every check passed (" +
+                      count(Verdict::Fine) + "); ring, to be looked at (" + count(Verdict::Look) +
+                      "); cross, wrong (" + count(Verdict::Wrong) + ")");
+    }
+    if (state_.shows_aims && state_.bone == bones::BoneKind::Femur) {
+      const auto& aims = state_.survey->portal;
+      const auto clear = std::ranges::count(aims, true, &tunnels::PortalAim::is_clear);
+      const double off_deg = tunnels::off_portal_deg(model_->tunnel(state_.bone)->direction, aims);
+      lines.push_back(aims.empty() ? "Portal: not known, since the flexion axis is missing"
+                      : clear == 0 ? "Portal: no way is clear of the femur"
+                                   : "Portal (yellow): " + std::to_string(clear) + " of " +
+                                         std::to_string(aims.size()) + " ways are clear; this tunnel is " +
+                                         widgets::fixed(off_deg, 0) + " degrees off the nearest");
+      lines.push_back("From outside in (violet): " + std::to_string(state_.survey->outside_in.size()) +
+                      " ways leave well");
+    }
+  }
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const float font = ui.theme.body->FontSize, step = font * 1.25F;
+  float y = area.y + area.height - ui.theme.px(14) - step * static_cast<float>(lines.size());
+  for (const std::string& line : lines) {
+    const ImVec2 at{area.x + ui.theme.px(16), y};
+    draw.AddText(ui.theme.body, font, {at.x + 1, at.y + 1}, widgets::kBackground, line.c_str());
+    draw.AddText(ui.theme.body, font, at, widgets::kText, line.c_str());
+    y += step;
+  }
+  ui.log.note_state("survey", state_.survey == nullptr ? "" : lines.front());
+}
+
+}  // namespace arthronaut::plan

@@ -1,0 +1,115 @@
+#include "app/plan/tunnel_survey.h"
+
+#include <utility>
+
+namespace arthronaut::plan {
+
+namespace {
+
+using bones::BoneKind;
+
+constexpr double kMapRadius_mm = 10, kMapSpacing_mm = 1.25;
+constexpr double kDrill_mm = 4.5;       // the cannulated drill's guide wire and its play, not the tunnel
+constexpr double kShownBefore_mm = 45;  // of the way from a portal
+constexpr double kShownBeyond_mm = 25;  // of the way from outside in, beyond the cortex
+constexpr double kAimLine_mm = 0.5;
+constexpr scene::Color kOutsideInColor{0.80F, 0.47F, 0.65F};
+
+}  // namespace
+
+std::optional<SurveyRequest> survey_request(const open_case::PlanModel& model, BoneKind bone) {
+  if (!model.has_bone(bone)) return std::nullopt;
+  const auto tunnel = model.tunnel(bone);
+  if (!tunnel) return std::nullopt;
+  SurveyRequest request{.revision = model.revision(),
+                        .bone = bone,
+                        .tunnel = *tunnel,
+                        .surface = model.shared_surface(bone),
+                        .surroundings = model.surroundings(bone),
+                        .knee = model.knee_surroundings(),
+                        .other = {},
+                        .other_measured = {}};
+  const BoneKind other = bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
+  if (model.has_bone(other)) {
+    request.other = model.tunnel(other);
+    request.other_measured = model.measured(other);
+  }
+  return request;
+}
+
+Survey survey(const SurveyRequest& request, const std::function<bool()>& is_cancelled) {
+  Survey found{.revision = request.revision,
+               .surface = request.surface,
+               .entries = {},
+               .portal = {},
+               .outside_in = {}};
+  const geometry::Surface& bone = *request.surface;
+  const auto knee_checks = [&](const tunnels::Tunnel& tunnel, const tunnels::TunnelGeometry& measured) {
+    const bool is_femur = request.bone == BoneKind::Femur;
+    const tunnels::Tunnel* other = request.other ? &*request.other : nullptr;
+    const tunnels::TunnelGeometry* other_measured = other != nullptr ? &request.other_measured : nullptr;
+    const tunnels::KneePlan plan = is_femur ? tunnels::KneePlan{&tunnel, &measured, other, other_measured}
+                                            : tunnels::KneePlan{other, other_measured, &tunnel, &measured};
+    return tunnels::check_knee(request.bone, plan, request.knee);
+  };
+  found.entries = tunnels::map_entries(
+      {.entries_mm = tunnels::entries_around(bone, request.tunnel.entry_mm, kMapRadius_mm, kMapSpacing_mm),
+       .like = request.tunnel,
+       .aim_at = {},
+       .further = knee_checks},
+      bone, request.surroundings, {}, is_cancelled);
+  if (request.bone != BoneKind::Femur || !request.surroundings.axes) return found;
+  if (request.knee.axis)
+    found.portal =
+        tunnels::portal_aims(request.tunnel.entry_mm, kDrill_mm,
+                             tunnels::anteromedial_portal(*request.knee.axis, *request.surroundings.axes),
+                             *request.knee.axis, bone);
+  found.outside_in = tunnels::outside_in_aims(request.tunnel, bone, request.surroundings, {}, is_cancelled);
+  return found;
+}
+
+void add_aims(scene::SceneContent& content, const Survey& survey, const tunnels::Tunnel& tunnel,
+              double length_mm) {
+  for (const tunnels::PortalAim& aim : survey.portal) {
+    if (!aim.is_clear) continue;
+    content.lines.push_back({{tunnel.entry_mm, tunnel.entry_mm - kShownBefore_mm * aim.direction},
+                             kAimLine_mm,
+                             false,
+                             scene::kGuideColor,
+                             true});
+  }
+  for (const Eigen::Vector3d& direction : survey.outside_in)
+    content.lines.push_back({{tunnel.entry_mm, tunnel.entry_mm + (length_mm + kShownBeyond_mm) * direction},
+                             kAimLine_mm,
+                             false,
+                             kOutsideInColor,
+                             true});
+}
+
+TunnelSurvey::TunnelSurvey(const std::function<void()>& wake)
+    : worker_(
+          worker::Backlog::NewestWins,
+          [](auto& inbox) {
+            while (const auto request = inbox.next()) {
+              Survey found = survey(*request, [&] { return inbox.stops() || inbox.has_message(); });
+              if (!inbox.stops() && !inbox.has_message()) inbox.publish(std::move(found));
+            }
+          },
+          wake) {}
+
+std::shared_ptr<const Survey> TunnelSurvey::of(const open_case::PlanModel& model, BoneKind bone) {
+  if (!model.has_bone(bone)) return nullptr;
+  const auto surface = model.shared_surface(bone);
+  if (const auto found = worker_.latest();
+      found != nullptr && found->revision == model.revision() && found->surface == surface)
+    return found;
+  if (asked_revision_ == model.revision() && asked_surface_ == surface) return nullptr;
+  auto request = survey_request(model, bone);
+  if (!request) return nullptr;
+  asked_revision_ = model.revision();
+  asked_surface_ = surface;
+  worker_.post(std::move(*request));
+  return nullptr;
+}
+
+}  // namespace arthronaut::plan
