@@ -92,8 +92,14 @@ const tunnels::TunnelGeometry& PlanModel::measured(bones::BoneKind kind) const {
   return bones_.at(kind).measured;
 }
 
-std::vector<tunnels::PlanCheck> PlanModel::checks(bones::BoneKind kind) const {
-  if (!knee_.plan.tunnels.contains(kind)) return {};
+const std::vector<tunnels::PlanCheck>& PlanModel::checks(bones::BoneKind kind) const {
+  Checked& checked = checked_[kind];
+  if (checked.revision != revision_) checked = {revision_, check(kind)};
+  return checked.checks;
+}
+
+std::vector<tunnels::PlanCheck> PlanModel::check(bones::BoneKind kind) const {
+  if (!knee_.plan.tunnels.contains(kind) || !has_bone(kind)) return {};
   const auto measured_tunnel = [&](bones::BoneKind of) {
     const auto planned = knee_.plan.tunnels.find(of);
     return planned == knee_.plan.tunnels.end() || !has_bone(of)

@@ -54,8 +54,9 @@ class PlanModel {
   // What the checks know of the knee beside its tunnels.
   [[nodiscard]] const tunnels::KneeSurroundings& knee_surroundings() const { return knee_surroundings_; }
   // Those of the bone and those of the whole knee that concern it. Empty without a tunnel. That it was
-  // planned on another mesh is the first check, and a wrong one.
-  [[nodiscard]] std::vector<tunnels::PlanCheck> checks(bones::BoneKind kind) const;
+  // planned on another mesh is the first check, and a wrong one. Made when first asked after a change; the
+  // reference holds until the next change.
+  [[nodiscard]] const std::vector<tunnels::PlanCheck>& checks(bones::BoneKind kind) const;
   // Whether the bone's tunnel is of the bone's mesh: what is not valid must not be guided by.
   [[nodiscard]] cases::PlanFit plan_fit(bones::BoneKind kind) const;
   // How far a tunnel is drawn: through the bone, or 30 mm where it misses.
@@ -105,6 +106,11 @@ class PlanModel {
     std::string mesh_sha256;
     tunnels::TunnelGeometry measured;
   };
+  struct Checked {
+    std::uint64_t revision = 0;
+    std::vector<tunnels::PlanCheck> checks;
+  };
+  [[nodiscard]] std::vector<tunnels::PlanCheck> check(bones::BoneKind kind) const;
   void measure(bones::BoneKind kind);
   void use_landmarks(bones::BoneKind kind);  // what follows from them
 
@@ -113,6 +119,8 @@ class PlanModel {
   std::vector<cases::Measurement> measurements_;
   tunnels::KneeSurroundings knee_surroundings_;
   std::uint64_t revision_ = 1;
+  // Every frame asks, and every change costs a dozen milliseconds.
+  mutable std::map<bones::BoneKind, Checked> checked_;
 };
 
 }  // namespace arthronaut::open_case

@@ -34,7 +34,7 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
   if (!model.tunnel(state.bone))
     return {"Place the entry of the " + adjective(state.bone) + " tunnel: press P, then click on the bone",
             "plan.place"};
-  const auto checks = model.checks(state.bone);
+  const auto& checks = model.checks(state.bone);
   const auto wrong = std::find_if(checks.begin(), checks.end(), [](const tunnels::PlanCheck& check) {
     return check.verdict == Verdict::Wrong;
   });
@@ -45,7 +45,7 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
   if (model.has_bone(other) && !model.tunnel(other))
     return {"Plan the " + adjective(other) + " tunnel: press Tab", "plan.bone"};
   if (model.has_bone(other)) {
-    const auto others = model.checks(other);
+    const auto& others = model.checks(other);
     if (std::any_of(others.begin(), others.end(),
                     [](const tunnels::PlanCheck& check) { return check.verdict == Verdict::Wrong; }))
       return {"Mend the " + adjective(other) + " tunnel: press Tab", "plan.bone"};
