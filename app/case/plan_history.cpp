@@ -95,6 +95,15 @@ void PlanHistory::apply_tunnels(const std::map<bones::BoneKind, tunnels::Tunnel>
   settle_now();
 }
 
+void PlanHistory::apply_plan(const cases::Plan& plan, const std::string& what) {
+  if (model_ == nullptr || is_read_only_) return;
+  settle_now();
+  begin(what, false);
+  model_->set_plan(plan);
+  moved(moved_at_s_);
+  settle_now();
+}
+
 void PlanHistory::apply_measurements(const std::vector<cases::Measurement>& measurements,
                                      const std::string& what) {
   if (model_ == nullptr || is_read_only_ || measurements == model_->measurements()) return;

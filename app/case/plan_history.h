@@ -31,6 +31,8 @@ class PlanHistory {
   void apply(const PlanEdit& edit, double now_s);
   // Several tunnels at once, as one step: a default plan.
   void apply_tunnels(const std::map<bones::BoneKind, tunnels::Tunnel>& tunnels, const std::string& what);
+  // Another plan as a whole, with the meshes that it names, as one step: a version that was kept.
+  void apply_plan(const cases::Plan& plan, const std::string& what);
   // A bone's landmarks become these. continues: belongs to the step before it, as a drag does.
   void apply_landmarks(bones::BoneKind bone, const landmarks::Landmarks& landmarks,
                        const landmarks::LandmarkStates& states, const std::string& what, bool continues,

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -6,6 +7,7 @@
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
 #include "planning/cases/case_lock.h"
+#include "planning/cases/plan_versions.h"
 #include "planning/default_plan/default_plan.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -27,6 +29,8 @@ struct PlanArguments {
   double diameter_mm = 9.0;
   std::string type = "single", export_folder, markups;
   bool at_footprint = false, by_default = false, list = false, as_json = false;
+  bool keeps = false, lists_versions = false;
+  int version = 0;  // that is to be taken; 0: none
 };
 
 tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case& knee, bones::BoneKind kind,
@@ -119,6 +123,29 @@ void show(const PlanArguments& arguments, const Context& context, const cases::C
   }
 }
 
+// Of the same bones' meshes as it was kept: plan_fit says where that is no longer the case's.
+void take_version(const PlanArguments& arguments, cases::Case& knee) {
+  const auto versions = cases::load_plan_versions(arguments.case_folder);
+  const auto found = std::ranges::find(versions, arguments.version, &cases::PlanVersion::number);
+  if (found == versions.end()) {
+    throw InvalidInput(arguments.case_folder, "plan_versions",
+                       "holds no version " + std::to_string(arguments.version) + " (it holds " +
+                           std::to_string(versions.size()) + ")");
+  }
+  knee.plan = found->plan;
+}
+
+void list_versions(const PlanArguments& arguments, const Context& context, const cases::Case& knee) {
+  const auto versions = cases::load_plan_versions(arguments.case_folder);
+  if (versions.empty()) context.say("No version is kept. --keep keeps the plan as it is.");
+  for (const cases::PlanVersion& version : versions) {
+    context.say("Version " + std::to_string(version.number) + ", kept " + version.kept_utc +
+                ", against the plan as it is:");
+    for (const auto& difference : cases::compare_plans(knee.plan, version.plan))
+      context.say("  " + difference.in_words());
+  }
+}
+
 void export_to(const PlanArguments& arguments, Context& context, const cases::Case& knee) {
   const auto summary = plan_export::export_plan(knee, arguments.export_folder);
   for (const auto& file : summary.files) context.say("Wrote " + file.string());
@@ -171,17 +198,31 @@ void add_plan_command(CLI::App& app, Context& context) {
       ->excludes(direction)
       ->excludes(by_default)
       ->excludes(markups);
+  auto* take = sub->add_option("--take", arguments->version, "Take a kept version as the plan")
+                   ->check(CLI::PositiveNumber)
+                   ->excludes(by_default)
+                   ->excludes(markups)
+                   ->excludes(direction);
+  sub->add_flag("--keep", arguments->keeps, "Keep the plan as a version beside the one that is worked on");
+  sub->add_flag("--versions", arguments->lists_versions, "List the kept versions and how each differs")
+      ->excludes(by_default)
+      ->excludes(markups)
+      ->excludes(direction)
+      ->excludes(take);
   entry->needs(direction);
   footprint->needs(direction);
   sub->callback([arguments, entry, direction, &context] {
-    const bool writes = direction->count() > 0 || arguments->by_default || !arguments->markups.empty();
+    const bool writes = direction->count() > 0 || arguments->by_default || !arguments->markups.empty() ||
+                        arguments->version > 0;
     cases::CaseLock lock;
-    if (writes) lock = cases::lock_or_refuse(arguments->case_folder);
+    if (writes || arguments->keeps) lock = cases::lock_or_refuse(arguments->case_folder);
     if (!lock.notice().empty() && !arguments->as_json) context.say(lock.notice() + ".");
     auto knee = cases::load_case(arguments->case_folder);
     PlanVerdict verdict;
     if (!arguments->markups.empty()) {
       take_markups(*arguments, knee);
+    } else if (arguments->version > 0) {
+      take_version(*arguments, knee);
     } else if (writes) {
       if (!arguments->by_default && arguments->direction.norm() < 1e-9)
         throw InvalidInput("plan: --direction must not be zero");
@@ -200,7 +241,12 @@ void add_plan_command(CLI::App& app, Context& context) {
       cases::name_meshes(knee);
       knee.plan_version = cases::save_plan_over(arguments->case_folder, knee.plan, knee.plan_version);
     }
+    if (arguments->lists_versions) return list_versions(*arguments, context, knee);
     show(*arguments, context, knee, verdict);
+    if (arguments->keeps) {
+      const auto kept = cases::keep_plan_version(arguments->case_folder, knee.plan);
+      if (!arguments->as_json) context.say("Kept as version " + std::to_string(kept.number) + ".");
+    }
     if (!arguments->export_folder.empty()) export_to(*arguments, context, knee);
     if (!verdict.is_reliable) context.say_unreliable("The default plan", verdict.reasons);
   });

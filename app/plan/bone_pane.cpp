@@ -180,7 +180,8 @@ void BonePane::draw_marks(const widgets::Ui& ui, const widgets::Rect& area,
         draw.AddLine({at.x - r, at.y + r}, {at.x + r, at.y - r}, color, line * 0.5F);
         break;
     }
-    if (!mark.word.empty()) {
+    // What cannot be taken hold of is named where it is seen.
+    if (!mark.word.empty() && (!is_behind || mark.can_be_dragged)) {
       const std::string word = mark.word + (is_behind ? " (behind)" : "");
       const ImFont* font = is_behind ? ui.theme.body : ui.theme.strong;
       const ImVec2 place(at.x + r * 1.4F,

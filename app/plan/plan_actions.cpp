@@ -109,6 +109,18 @@ void PlanView::add_history_actions(widgets::Actions& actions) {
                [this] { return history_.can_redo(); },
                {},
                [this] { history_.redo(); }});
+  actions.add({"plan.keep",
+               "Keep version",
+               "The plan as it is now stays beside the one that is worked on, to be compared and taken again",
+               GLFW_KEY_K,
+               0,
+               false,
+               [this] {
+                 return model_ != nullptr && !model_->knee().plan.tunnels.empty() &&
+                        history_.status().save != open_case::PlanStatus::Save::ReadOnly;
+               },
+               {},
+               [this] { keep_version(); }});
   const auto in_conflict = [this] { return history_.is_in_conflict(); };
   actions.add({"plan.take_theirs",
                "Take theirs",

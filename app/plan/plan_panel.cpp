@@ -1,4 +1,6 @@
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <utility>
 
 #include "app/plan/anatomical_text.h"
 #include "app/plan/plan_view.h"
@@ -129,33 +131,71 @@ void draw_tools(const widgets::Ui& ui) {
   widgets::action_button(ui, "plan.remove", ImGui::GetContentRegionAvail().x);
 }
 
+// One of a list that can be clicked on.
+struct ListRow {
+  std::string id, text;
+  bool is_here = false, is_faint = false;
+};
+
+bool draw_row(const widgets::Ui& ui, const ListRow& row) {
+  const float height = ui.theme.px(36), width = ImGui::GetContentRegionAvail().x;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImGui::PushID(row.id.c_str());
+  const bool is_clicked = ImGui::InvisibleButton("row", {width, height});
+  ImGui::PopID();
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  if (row.is_here || ImGui::IsItemHovered())
+    draw.AddRectFilled(at, {at.x + width, at.y + height},
+                       row.is_here ? IM_COL32(28, 74, 104, 255) : IM_COL32(38, 47, 57, 255), ui.theme.px(6));
+  ImFont* font = ui.theme.body;
+  draw.AddText(font, font->FontSize, {at.x + ui.theme.px(10), at.y + (height - font->FontSize) / 2},
+               row.is_faint  ? widgets::kPanelEdge
+               : row.is_here ? widgets::kText
+                             : widgets::kQuietText,
+               row.text.c_str());
+  if (ImGui::IsRectVisible(at, {at.x + width, at.y + height}))
+    ui.log.note("plan." + row.id, at, {at.x + width, at.y + height});
+  return is_clicked;
+}
+
 // Every step, the newest last; a click goes back, or forward, to it.
 std::optional<std::size_t> draw_steps(const widgets::Ui& ui, const open_case::PlanHistory& history) {
   std::optional<std::size_t> clicked;
   widgets::text_in(ui.theme.body, widgets::kQuietText, "Click on a step to go back or forward to it.");
-  ImGui::BeginChild("steps", {0, ImGui::GetContentRegionAvail().y - ui.theme.px(110)});
-  const float height = ui.theme.px(36);
+  ImGui::BeginChild("steps", {0, 0.55F * (ImGui::GetContentRegionAvail().y - ui.theme.px(110))});
   for (std::size_t i = 0; i <= history.step_count(); ++i) {
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float width = ImGui::GetContentRegionAvail().x;
-    ImGui::PushID(static_cast<int>(i));
-    if (ImGui::InvisibleButton("step", {width, height})) clicked = i;
     const bool is_here = i == history.position(), is_undone = i > history.position();
-    ImDrawList& draw = *ImGui::GetWindowDrawList();
-    if (is_here || ImGui::IsItemHovered())
-      draw.AddRectFilled(at, {at.x + width, at.y + height},
-                         is_here ? IM_COL32(28, 74, 104, 255) : IM_COL32(38, 47, 57, 255), ui.theme.px(6));
-    if (is_here) ImGui::SetScrollHereY(1);
-    ImGui::PopID();
     const std::string text = i == 0 ? "As it was opened" : history.step_name(i - 1);
-    ImFont* font = ui.theme.body;
-    draw.AddText(font, font->FontSize, {at.x + ui.theme.px(10), at.y + (height - font->FontSize) / 2},
-                 is_undone ? widgets::kPanelEdge
-                 : is_here ? widgets::kText
-                           : widgets::kQuietText,
-                 (text + (is_undone ? "  (undone)" : "")).c_str());
-    if (ImGui::IsRectVisible(at, {at.x + width, at.y + height}))
-      ui.log.note("plan.step." + std::to_string(i), at, {at.x + width, at.y + height});
+    if (draw_row(ui,
+                 {"step." + std::to_string(i), text + (is_undone ? "  (undone)" : ""), is_here, is_undone}))
+      clicked = i;
+    if (is_here) ImGui::SetScrollHereY(1);
+  }
+  ImGui::EndChild();
+  return clicked;
+}
+
+// What was kept, the newest first, each with how it differs from the plan that is worked on; a click takes
+// it.
+std::optional<std::size_t> draw_versions(const widgets::Ui& ui, const PlanPanel& panel) {
+  std::optional<std::size_t> clicked;
+  ImGui::Separator();
+  widgets::action_button(ui, "plan.keep", ImGui::GetContentRegionAvail().x);
+  ImGui::BeginChild("versions", {0, ImGui::GetContentRegionAvail().y - ui.theme.px(110)});
+  if (panel.versions.empty())
+    widgets::text_in(ui.theme.body, widgets::kQuietText,
+                     "No version is kept. One that is can be compared with, and taken again.");
+  for (std::size_t i = panel.versions.size(); i-- > 0;) {
+    const cases::PlanVersion& version = panel.versions[i];
+    const auto differences = cases::compare_plans(panel.model.knee().plan, version.plan);
+    const bool is_same = std::ranges::all_of(differences, [](const cases::TunnelDifference& difference) {
+      return difference.kind == cases::TunnelDifference::Kind::Same;
+    });
+    if (draw_row(ui, {"version." + std::to_string(version.number),
+                      "Version " + std::to_string(version.number) + ", " + version.kept_utc, is_same, false}))
+      clicked = i;
+    for (const cases::TunnelDifference& difference : differences)
+      widgets::text_in(ui.theme.body, widgets::kQuietText, "   " + difference.in_words());
   }
   ImGui::EndChild();
   return clicked;
@@ -168,9 +208,12 @@ PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, con
   widgets::begin_panel(ui, "plan.panel", area);
   draw_next(ui, panel.next);
   draw_title(ui, panel.bone);
-  const float third = (ImGui::GetContentRegionAvail().x - 2 * ui.theme.px(6)) / 3;
-  for (const char* id : {"plan.checks_page", "plan.landmarks_page", "plan.steps_page"}) {
-    widgets::action_button(ui, id, third);
+  const float page_width = ImGui::GetContentRegionAvail().x - 2 * ui.theme.px(6);
+  // The longest word has the most room.
+  for (const auto& [id, share] :
+       {std::pair("plan.checks_page", 0.31F), std::pair("plan.landmarks_page", 0.4F),
+        std::pair("plan.steps_page", 0.29F)}) {
+    widgets::action_button(ui, id, share * page_width);
     ImGui::SameLine(0, ui.theme.px(6));
   }
   ImGui::NewLine();
@@ -190,6 +233,7 @@ PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, con
       break;
     case PanelPage::Steps:
       clicked.step = draw_steps(ui, panel.history);
+      clicked.version = draw_versions(ui, panel);
       break;
   }
   draw_saved(ui, panel.history.status());

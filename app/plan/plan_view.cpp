@@ -46,6 +46,8 @@ mode::ModeTitle PlanView::title() const {
 void PlanView::case_opened(const mode::OpenCase& opened) {
   model_ = opened.model;
   history_.open(opened.model, opened.folder, opened.read_only);
+  case_folder_ = opened.folder;
+  load_versions();
   state_ = {};
   tunnel_meshes_.clear();
   if (!model_->has_bone(BoneKind::Femur)) state_.bone = BoneKind::Tibia;
@@ -65,6 +67,32 @@ void PlanView::look_from(scene::ViewDirection view) {
   state_.shows_lateral = false;
   if (bones_.only()) state_.bone = *bones_.only();
   state_.shown_revision = 0;
+}
+
+// What is wrong with the versions says the place that a click's answer has: it stands in nobody's way.
+void PlanView::load_versions() {
+  versions_.clear();
+  try {
+    versions_ = cases::load_plan_versions(case_folder_);
+  } catch (const std::runtime_error& error) {  // a file of the case that was changed by hand
+    state_.hint = error.what();
+  }
+}
+
+void PlanView::keep_version() {
+  history_.settle_now();
+  try {  // a full disk is a state of the screen
+    const cases::PlanVersion kept = cases::keep_plan_version(case_folder_, model_->knee().plan);
+    state_.hint = "Kept as version " + std::to_string(kept.number);
+    load_versions();
+  } catch (const std::runtime_error& error) {
+    state_.hint = error.what();
+  }
+}
+
+void PlanView::take_version(std::size_t version) {
+  history_.apply_plan(versions_.at(version).plan,
+                      "Take version " + std::to_string(versions_[version].number));
 }
 
 void PlanView::change(const std::string& what, bool continues, const std::optional<tunnels::Tunnel>& tunnel) {
@@ -104,10 +132,11 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   const StepState step{state_.bone, state_.places_entry, status.save == open_case::PlanStatus::Save::ReadOnly,
                        history_.is_in_conflict()};
   const NextStep next = next_step(*model_, step);
-  const PanelClick clicked =
-      draw_plan_panel(ui, panel, {*model_, history_, state_.bone, state_.page, state_.landmark, next});
+  const PanelClick clicked = draw_plan_panel(
+      ui, panel, {*model_, history_, state_.bone, state_.page, state_.landmark, versions_, next});
   if (clicked.step) history_.go_to(*clicked.step);
   if (clicked.landmark) select_landmark(*clicked.landmark);
+  if (clicked.version) take_version(*clicked.version);
   ui.log.note_state("landmark", state_.page == PanelPage::Landmarks ? landmark() : "");
   ui.log.note_state("landmarks", confirmed_in_words(landmark_rows(*model_, state_.bone)));
   ui.log.note_state("plan_next", next.text);

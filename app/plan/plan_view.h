@@ -18,6 +18,7 @@
 #include "app/plan/plan_steps.h"
 #include "app/plan/slice_panes.h"
 #include "app/plan/tunnel_survey.h"
+#include "planning/cases/plan_versions.h"
 
 namespace arthronaut::plan {
 
@@ -62,6 +63,10 @@ class PlanView : public mode::Mode {
   void add_map_marks(std::vector<PaneMark>& marks) const;
   void draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& area) const;
 
+  void load_versions();
+  void keep_version();
+  void take_version(std::size_t version);
+
   // The tunnel of the bone that is planned becomes this one; nothing where there is none.
   void change(const std::string& what, bool continues, const std::optional<tunnels::Tunnel>& tunnel);
   void look_from(scene::ViewDirection view);
@@ -99,6 +104,8 @@ class PlanView : public mode::Mode {
   SlicePanes slices_;
   LateralView lateral_;
   TunnelSurvey survey_;
+  std::filesystem::path case_folder_;
+  std::vector<cases::PlanVersion> versions_;  // that were kept, the oldest first
   std::map<bones::BoneKind, TunnelMesh> tunnel_meshes_;
   ViewState state_;
 };
@@ -110,11 +117,13 @@ struct PlanPanel {
   bones::BoneKind bone;
   PanelPage page;
   std::size_t landmark;  // the row that is selected
+  const std::vector<cases::PlanVersion>& versions;
   NextStep next;
 };
 struct PanelClick {
   std::optional<std::size_t> step;      // of the history, as a position for PlanHistory::go_to()
   std::optional<std::size_t> landmark;  // row
+  std::optional<std::size_t> version;   // place in PlanPanel::versions
 };
 [[nodiscard]] PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area,
                                          const PlanPanel& panel);

@@ -51,7 +51,9 @@ void PlanView::add_map_marks(std::vector<PaneMark>& marks) const {
 }
 
 void PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& area) const {
-  if (!state_.shows_map && !state_.shows_aims) return;
+  const bool is_shown = state_.shows_map || state_.shows_aims;
+  ui.log.note_state("survey", !is_shown ? "none" : state_.survey == nullptr ? "working" : "shown");
+  if (!is_shown) return;
   std::vector<std::string> lines;
   if (state_.survey == nullptr) {
     lines.emplace_back(model_->tunnel(state_.bone) ? "Looking about the entry ..."
@@ -89,7 +91,6 @@ void PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& ar
     draw.AddText(ui.theme.body, font, at, widgets::kText, line.c_str());
     y += step;
   }
-  ui.log.note_state("survey", state_.survey == nullptr ? "" : lines.front());
 }
 
 }  // namespace arthronaut::plan

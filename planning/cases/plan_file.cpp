@@ -13,13 +13,13 @@ namespace arthronaut::cases {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::string_view kFormat = "arthronaut.plan";
-constexpr int kVersion = 1;
 
 fs::path plan_file(const fs::path& case_folder) { return case_folder / "plan.json"; }
 
+}  // namespace
+
 Plan plan_from(const std::string& text, const fs::path& file) {
-  const auto root = files::parse_json(text, file, kFormat, kVersion);
+  const auto root = files::parse_json(text, file, kPlanFormat, kPlanFormatVersion);
   Plan plan;
   for (const auto& node : root.objects("tunnels")) {
     tunnels::Tunnel tunnel;
@@ -38,8 +38,6 @@ Plan plan_from(const std::string& text, const fs::path& file) {
   }
   return plan;
 }
-
-}  // namespace
 
 void read_plan(const fs::path& case_folder, Case& contents) {
   const fs::path file = plan_file(case_folder);
@@ -61,7 +59,7 @@ Plan with_named_meshes(const Case& contents) {
 
 void name_meshes(Case& contents) { contents.plan = with_named_meshes(contents); }
 
-void save_plan(const fs::path& folder, const Plan& plan) {
+nlohmann::ordered_json to_json(const Plan& plan) {
   auto tunnels = nlohmann::ordered_json::array();
   for (const auto& [kind, tunnel] : plan.tunnels) {
     nlohmann::ordered_json node = {{"bone", bones::to_text(kind)},
@@ -73,8 +71,11 @@ void save_plan(const fs::path& folder, const Plan& plan) {
     }
     tunnels.push_back(std::move(node));
   }
-  files::write_json(plan_file(folder),
-                    {{"format", kFormat}, {"version", kVersion}, {"tunnels", std::move(tunnels)}});
+  return {{"format", kPlanFormat}, {"version", kPlanFormatVersion}, {"tunnels", std::move(tunnels)}};
+}
+
+void save_plan(const fs::path& folder, const Plan& plan) {
+  files::write_json(plan_file(folder), to_json(plan));
 }
 
 std::string plan_version(const fs::path& folder) {

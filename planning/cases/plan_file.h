@@ -2,10 +2,20 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
 
 #include "planning/cases/case.h"
 
 namespace arthronaut::cases {
+
+inline constexpr std::string_view kPlanFormat = "arthronaut.plan";
+inline constexpr int kPlanFormatVersion = 1;
+
+// file: for what is wrong with the text. Throws InvalidInput (file, place, reason).
+[[nodiscard]] Plan plan_from(const std::string& text, const std::filesystem::path& file);
+[[nodiscard]] nlohmann::ordered_json to_json(const Plan& plan);
 
 // Fills in plan and plan_version, of one and the same reading. A case without plan.json has an empty plan.
 // Throws IoError or InvalidInput (file, place, reason).

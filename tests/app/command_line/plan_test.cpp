@@ -89,6 +89,22 @@ TEST_F(PlanCommand, ExportsPlanAndDrilledBones) {
   EXPECT_LT((saved.plan.tunnels.at(bones::BoneKind::Femur).entry_mm - before.entry_mm).norm(), 1e-3);
 }
 
+// Kept, changed, compared, taken again.
+TEST_F(PlanCommand, VersionsAreKeptComparedAndTaken) {
+  EXPECT_THAT(run({"plan", "--versions"}).output, HasSubstr("No version is kept"));
+  EXPECT_EQ(run({"plan", "--keep"}).exit_code, 0);
+  EXPECT_EQ(run({"plan", "--bone", "tibia", "--default"}).exit_code, 0);
+  const auto listed = run({"plan", "--versions"});
+  EXPECT_THAT(listed.output, HasSubstr("femur: the same"));
+  EXPECT_THAT(listed.output, HasSubstr("tibia: entry "));
+  const auto unknown = run({"plan", "--take", "7"});
+  EXPECT_EQ(unknown.exit_code, 3);
+  EXPECT_THAT(unknown.errors, HasSubstr("no version 7"));
+  EXPECT_EQ(run({"plan", "--take", "1"}).exit_code, 0);
+  const auto taken = cases::load_case(folder_ / "knee.arthro").plan.tunnels.at(bones::BoneKind::Tibia);
+  EXPECT_LT((taken.entry_mm - knee_.plan.tunnels.at(bones::BoneKind::Tibia).entry_mm).norm(), 1e-6);
+}
+
 TEST_F(PlanCommand, LandmarksAreProposedSetAndKept) {
   knee_.landmarks.clear();
   save(knee_);

@@ -16,6 +16,13 @@
 namespace arthronaut::test {
 namespace {
 
+// As the window's log of states writes lengths.
+std::string fixed(double value) {
+  char text[16];
+  std::snprintf(text, sizeof(text), "%.2f", value);
+  return text;
+}
+
 class PlanWindow : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -89,11 +96,6 @@ TEST_F(PlanWindow, PlusAndTheNumberPadWiden) {
   RunningWorkstation app(display, folder_.path());
   open(app);
   const double before = saved_tunnel().diameter_mm;
-  const auto fixed = [](double value) {
-    char text[16];
-    std::snprintf(text, sizeof(text), "%.2f", value);
-    return std::string(text);
-  };
   int presses = 0;
   for (const char* key : {"plus", "equal", "KP_Add"}) {
     app.press(key);
@@ -209,6 +211,40 @@ TEST_F(PlanWindow, DefaultPlanAndLandmarksByKeys) {
     if (states == saved.landmark_states.end()) break;  // what is not said to be proposed is confirmed
     EXPECT_EQ(landmarks::state_of(states->second, name), landmarks::LandmarkState::Confirmed) << name;
   }
+}
+
+// A version is kept, found again beside the one that was changed, and taken back as a step that undo ends.
+TEST_F(PlanWindow, AVersionIsKeptAndTakenAgain) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  const double before_mm = saved_tunnel().diameter_mm;
+  app.press("k");
+  ASSERT_TRUE(app.wait_for_state("hint", "Kept as version 1"));
+  app.press("equal");
+  ASSERT_TRUE(app.wait_for_state("diameter_mm", fixed(before_mm + 0.5)));
+  app.press("h");
+  ASSERT_TRUE(app.wait_for_widget("plan.version.1"));
+  app.click("plan.version.1");
+  ASSERT_TRUE(app.wait_for_state("undo", "Take version 1"));
+  ASSERT_TRUE(app.wait_for_state("plan", "saved"));
+  EXPECT_EQ(saved_tunnel().diameter_mm, before_mm);
+  app.press("ctrl+z");
+  EXPECT_TRUE(app.wait_for_state("diameter_mm", fixed(before_mm + 0.5)));
+}
+
+// The map of entries is of the tunnel as it is: an edit takes it away until it is made anew.
+TEST_F(PlanWindow, TheMapOfEntriesFollowsThePlan) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  app.press("m");
+  ASSERT_TRUE(app.wait_for_state("survey", "shown"));
+  app.press("equal");
+  ASSERT_TRUE(app.wait_for_state("survey", "working"));
+  ASSERT_TRUE(app.wait_for_state("survey", "shown"));
+  app.press("m");
+  EXPECT_TRUE(app.wait_for_state("survey", "none"));
 }
 
 }  // namespace

@@ -1,0 +1,109 @@
+#include "planning/cases/plan_versions.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "planning/cases/plan_file.h"
+#include "planning/files/atomic_file.h"
+#include "planning/files/format.h"
+#include "planning/files/json_document.h"
+#include "planning/files/private_folder.h"
+#include "planning/files/utc_clock.h"
+#include "planning/geometry/error.h"
+#include "planning/geometry/rigid_transform.h"
+
+namespace arthronaut::cases {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path versions_folder(const fs::path& case_folder) { return case_folder / "plan_versions"; }
+
+// 0: no version's name.
+int number_of(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  int number = 0;
+  const auto [end, error] = std::from_chars(stem.data(), stem.data() + stem.size(), number);
+  const bool is_number = error == std::errc() && end == stem.data() + stem.size() && number > 0;
+  return is_number && file.extension() == ".json" ? number : 0;
+}
+
+}  // namespace
+
+std::vector<PlanVersion> load_plan_versions(const fs::path& case_folder) {
+  std::vector<PlanVersion> versions;
+  const fs::path folder = versions_folder(case_folder);
+  if (!fs::exists(folder)) return versions;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const int number = number_of(entry.path());
+    if (number == 0) continue;
+    const std::string text = files::read_text(entry.path());
+    versions.push_back(
+        {number, files::parse_json(text, entry.path(), kPlanFormat, kPlanFormatVersion).text("kept_utc"),
+         plan_from(text, entry.path())});
+  }
+  std::ranges::sort(versions, {}, &PlanVersion::number);
+  return versions;
+}
+
+PlanVersion keep_plan_version(const fs::path& case_folder, const Plan& plan) {
+  if (plan.tunnels.empty()) throw InvalidInput(case_folder, "plan", "has no tunnel to keep");
+  int last = 0;
+  const fs::path folder = versions_folder(case_folder);
+  if (fs::exists(folder))
+    for (const auto& entry : fs::directory_iterator(folder)) last = std::max(last, number_of(entry.path()));
+  PlanVersion kept{last + 1, files::utc_now(), plan};
+  files::create_private_folder(folder);
+  nlohmann::ordered_json node = to_json(plan);
+  node["kept_utc"] = kept.kept_utc;
+  files::write_json(folder / (std::to_string(kept.number) + ".json"), node);
+  return kept;
+}
+
+std::string TunnelDifference::in_words() const {
+  const std::string name(bones::to_text(bone));
+  switch (kind) {
+    case Kind::Same:
+      return name + ": the same";
+    case Kind::OnlyHere:
+      return name + ": not planned there";
+    case Kind::OnlyThere:
+      return name + ": planned there alone";
+    case Kind::Moved:
+      break;
+  }
+  return name +
+         files::format(": entry %.1f mm off, %.1f deg, %+.1f mm wide", entry_mm, angle_deg, diameter_mm);
+}
+
+std::vector<TunnelDifference> compare_plans(const Plan& here, const Plan& there) {
+  using Kind = TunnelDifference::Kind;
+  std::set<bones::BoneKind> planned;
+  for (const Plan* plan : {&here, &there})
+    for (const auto& [bone, tunnel] : plan->tunnels) planned.insert(bone);
+  std::vector<TunnelDifference> differences;
+  for (const bones::BoneKind bone : planned) {
+    const auto a = here.tunnels.find(bone), b = there.tunnels.find(bone);
+    TunnelDifference difference{.bone = bone};
+    if (a == here.tunnels.end() || b == there.tunnels.end()) {
+      difference.kind = a == here.tunnels.end() ? Kind::OnlyThere : Kind::OnlyHere;
+    } else {
+      difference.entry_mm = (b->second.entry_mm - a->second.entry_mm).norm();
+      difference.angle_deg =
+          geometry::deg_from_rad(geometry::angle_between_rad(a->second.direction, b->second.direction));
+      difference.diameter_mm = b->second.diameter_mm - a->second.diameter_mm;
+      constexpr double kSeen = 0.05;
+      if (difference.entry_mm > kSeen || difference.angle_deg > kSeen ||
+          std::abs(difference.diameter_mm) > kSeen)
+        difference.kind = Kind::Moved;
+    }
+    differences.push_back(difference);
+  }
+  return differences;
+}
+
+}  // namespace arthronaut::cases
