@@ -45,7 +45,7 @@ AchievedTunnel read_achieved_file(const std::filesystem::path& file) {
   AchievedTunnel achieved;
   achieved.planned = tunnel_from(root.object("planned"), bone);
   achieved.measured = tunnel_from(root.object("measured"), bone);
-  achieved.depth_mm = root.number("depth_mm");
+  if (root.has("depth_mm")) achieved.depth_mm = root.number("depth_mm");
   achieved.timestamp_ns = root.integer("timestamp_ns");
   achieved.pose_count = static_cast<int>(root.integer("pose_count"));
   achieved.sigma_offset_mm = root.number("sigma_offset_mm");
@@ -61,12 +61,12 @@ void write_achieved_file(const std::filesystem::path& file, const AchievedTunnel
       {"bone", bones::to_text(achieved.planned.bone)},
       {"planned", to_json(achieved.planned)},
       {"measured", to_json(achieved.measured)},
-      {"depth_mm", achieved.depth_mm},
       {"timestamp_ns", achieved.timestamp_ns},
       {"pose_count", achieved.pose_count},
       {"sigma_offset_mm", achieved.sigma_offset_mm},
       {"sigma_angle_deg", achieved.sigma_angle_deg},
   };
+  if (achieved.depth_mm) json["depth_mm"] = *achieved.depth_mm;
   if (achieved.truth) json["truth"] = to_json(*achieved.truth);
   files::write_json(file, json);
 }

@@ -12,8 +12,10 @@ namespace arthronaut::operation {
 
 struct AchievedTunnel {
   tunnels::Tunnel planned;
-  tunnels::Tunnel measured;       // by navigation, in the bone's frame
-  double depth_mm = 0;            // of the drill beyond the entry
+  tunnels::Tunnel measured;  // by navigation, in the bone's frame
+  // Of the drill beyond the entry: of one with a marker of its own, else as the surgeon read it off the depth
+  // stop. Empty: nobody knows it.
+  std::optional<double> depth_mm;
   std::int64_t timestamp_ns = 0;  // of the last pose it rests on
   int pose_count = 0;             // it is the median of so many poses
   double sigma_offset_mm = 0;     // predicted, one sigma

@@ -92,6 +92,7 @@ void Operation::end_source() {
   p.note(JournalKind::SourceEnded);
   p.has_source = p.draws = false;
   p.tip.clear();
+  p.end_frame();
   p.look_request.reset();
   p.awaited_look.reset();
 }

@@ -64,6 +64,7 @@ struct Operation::Parts {
   [[nodiscard]] Verification verification() const;
   [[nodiscard]] TimeOut time_out() const;
   void hide_guidance(guidance::GuidanceState reason);
+  void end_frame();
   [[nodiscard]] std::optional<guidance::RegistrationBias> bias() const;
   [[nodiscard]] RegistrationStatePtr registration_state();
 
@@ -98,6 +99,8 @@ struct Operation::Parts {
   void apply(const SkipVerification&) { skip_verification("asked for"); }
   void apply(const MarkerPlacedAnew&) {
     clear_strokes();
+    drilled = {};
+    depth_stop_mm.reset();
     ledger.marker_placed_anew();
   }
   void apply(const ReadDepthStop& stop) { depth_stop_mm = stop.depth_mm; }

@@ -46,6 +46,10 @@ void Operation::Parts::follow_ledger() {
   if (is_another) {
     followed_change = ledger.change_count();
     if (pipeline != nullptr) hand_registration();
+    // The picture's numbers, and what was seen of the guide, were by what is not in force any more.
+    hide_guidance(guidance::GuidanceState::Stale);
+    if (evidence) evidence->clear();
+    evidence_is_seen = false;
     if (in_force.registration != nullptr) {
       const RegistrationOrigin origin = (*ledger.entries())[*ledger.entry_in_force()].origin;
       note_in_force(origin == RegistrationOrigin::Given || origin == RegistrationOrigin::Resumed);
@@ -62,8 +66,10 @@ void Operation::Parts::follow_ledger() {
     if (in_force.standing == Standing::Alarm) note(JournalKind::Alarm, why);
     if (in_force.standing == Standing::Void) note(JournalKind::Void, why);
     if (followed_standing == Standing::Void && in_force.standing == Standing::Stands &&
-        ledger.entry_in_force() == followed_entry)
+        ledger.entry_in_force() == followed_entry) {
       note(JournalKind::Confirmed, "by a touch");
+      skipped_entry.reset();  // that was under other circumstances
+    }
     followed_standing = in_force.standing;
   }
   followed_entry = ledger.entry_in_force();
@@ -74,9 +80,12 @@ void Operation::Parts::follow_ledger() {
 
 void Operation::Parts::set_plan(const std::optional<PlannedTunnel>& next) {
   plan = next;
-  // What was seen of the guide was relative to another plan.
+  // What was seen, read and drilled was of another plan; the numbers of the last picture are too.
   evidence = plan ? std::optional<guidance::DrillEvidence>(plan->tunnel) : std::nullopt;
   evidence_is_seen = false;
+  drilled = {};
+  depth_stop_mm.reset();
+  hide_guidance(guidance::GuidanceState::Stale);
   if (pipeline != nullptr)
     pipeline->set_plan(plan ? std::optional(plan->tunnel) : std::nullopt, plan ? plan->length_mm : 0);
   note_plan();
@@ -156,8 +165,7 @@ void Operation::Parts::follow_medium(pipeline::MediumFit before) {
       note(JournalKind::Note, pipeline::reason_text(medium->verdict()));
   }
   if (medium->verdict().fit != pipeline::MediumFit::Contradicts) return;
-  frame.camera_from_world.is_valid = frame.tip_is_valid = frame.intrinsics_are_known = false;
-  for (pipeline::ToolPose& tool : frame.tools) tool.world_from_tool.is_valid = false;
+  end_frame();
   hide_guidance(guidance::GuidanceState::WrongMedium);
 }
 
@@ -166,6 +174,13 @@ void Operation::Parts::hide_guidance(guidance::GuidanceState reason) {
   frame.guidance = {};
   frame.guidance.timestamp_ns = timestamp_ns;
   frame.guidance.state = reason;
+}
+
+// Nothing that was reckoned from the picture stands.
+void Operation::Parts::end_frame() {
+  frame.camera_from_world.is_valid = frame.tip_is_valid = frame.intrinsics_are_known = false;
+  for (pipeline::ToolPose& tool : frame.tools) tool.world_from_tool.is_valid = false;
+  hide_guidance(guidance::GuidanceState::Stale);
 }
 
 void Operation::Parts::watch_marker() {
@@ -278,7 +293,13 @@ void Operation::Parts::apply(const TunnelDrilled&) {
   tunnel.measured = plan->tunnel;  // bone and diameter: the drill is the planned one
   tunnel.measured.entry_mm = seen.entry_mm;
   tunnel.measured.direction = seen.direction;
-  tunnel.depth_mm = depth_stop_mm.value_or(seen.depth_mm);
+  // Where its axis goes into the bone, which is seldom in the plane that the poses were compared in.
+  if (setup.surface != nullptr)
+    if (const auto geometry = tunnels::measure(tunnel.measured, *setup.surface); geometry.enters_bone)
+      tunnel.measured.entry_mm = geometry.entry_on_surface_mm;
+  // A guide's end stays on the bone while the drill runs through it.
+  tunnel.depth_mm = seen.is_of_drill ? std::optional(seen.depth_mm) : depth_stop_mm;
+  depth_stop_mm.reset();  // of this hole
   tunnel.timestamp_ns = seen.timestamp_ns;
   tunnel.pose_count = seen.pose_count;
   tunnel.sigma_offset_mm = seen.sigma_offset_mm;

@@ -35,6 +35,11 @@ class Digest {
     add(pose.target_from_source);
     add_matrix(pose.covariance);
   }
+  void add(const tunnels::Tunnel& tunnel) {
+    add_matrix(tunnel.entry_mm);
+    add_matrix(tunnel.direction);
+    add(tunnel.diameter_mm);
+  }
   [[nodiscard]] std::uint64_t value() const { return hash_; }
 
  private:
@@ -46,9 +51,12 @@ void add_guidance(Digest& digest, const guidance::GuidanceNumbers& g) {
   if (!g.is_valid()) return;
   digest.add_matrix(g.guide_point_mm);
   digest.add_matrix(g.guide_direction);
-  for (const double number : {g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg, g.offset_anterior_mm,
-                              g.offset_proximal_mm, g.depth_mm, g.sigma_offset_mm, g.sigma_angle_deg})
+  for (const double number :
+       {g.tip_to_entry_mm, g.axis_to_entry_mm, g.angle_deg, g.offset_mm, g.offset_anterior_mm,
+        g.offset_proximal_mm, g.offset_lateral_mm, g.depth_mm, g.sigma_offset_mm, g.sigma_angle_deg})
     digest.add(number);
+  digest.add(g.drill.has_value());
+  if (g.drill) digest.add(g.drill->depth_mm);
 }
 
 void add_frame(Digest& digest, const pipeline::FrameResult& frame) {
@@ -78,6 +86,11 @@ void add_registration(Digest& digest, const RegistrationState& state) {
     digest.add(r->predicted_tre_mm);
   }
   digest.add(state.alarm.kind);
+  digest.add(state.is_chosen);
+  digest.add(state.entry_in_force.has_value());
+  if (state.entry_in_force) digest.add(*state.entry_in_force);
+  digest.add(state.set_aside_count);
+  digest.add(state.bone_trouble.empty());
   digest.add(state.touches.count());
   for (const auto& residual_mm : state.touches.residuals_mm()) digest.add(residual_mm.value_or(-1));
   if (state.online != nullptr) {
@@ -131,8 +144,9 @@ NextAction next_action_of(const OperationState& state) {
   const RegistrationState& registration = *state.registration;
   const RegistrationInForce& in_force = registration.in_force;
   if (!state.plan) return NextAction::PlanTunnel;
-  if (state.drilled.outcome == DrilledState::Outcome::Recorded) return NextAction::Finish;
   if (registration.alarm) return NextAction::CheckWorldMarker;
+  const bool is_drilled = state.drilled.outcome == DrilledState::Outcome::Recorded;
+  if (is_drilled && !state.plan_was_edited) return NextAction::Finish;
   if (!state.has_source) {
     const bool may_register =
         in_force.standing != Standing::Stands && registration.point_count >= kEnoughPoints;
@@ -201,8 +215,17 @@ std::uint64_t digest_of_decisions(const OperationState& state) {
   digest.add(state.control_point_due);
   digest.add(state.touch_refusal);
   digest.add(state.plan.has_value());
+  if (state.plan) {
+    digest.add(state.plan->tunnel);
+    digest.add(state.plan->length_mm);
+  }
   digest.add(state.plan_was_edited);
   digest.add(state.drilled.outcome);
+  digest.add(state.drilled.tunnel.has_value());
+  if (state.drilled.tunnel) {
+    digest.add(state.drilled.tunnel->measured);
+    digest.add(state.drilled.tunnel->depth_mm.value_or(-1));
+  }
   digest.add(state.next_action);
   return digest.value();
 }

@@ -132,13 +132,17 @@ void RegistrationLedger::add_touch(const Eigen::Vector3d& tip_in_marker_mm) {
   touches_.add_touch(tip_in_marker_mm, now_);
   judge();
   if (in_force_.standing == Standing::Void && in_force_.can_be_confirmed && touches_.last_confirms()) {
-    change_entry(*entry_in_force_, [this](RegistrationEntry& entry) { entry.of = now_; });
+    // One touch confirms; what verified it before was under other circumstances.
+    change_entry(*entry_in_force_, [this](RegistrationEntry& entry) {
+      entry.of = now_;
+      entry.is_verified = false;
+    });
     judge();
   }
 }
 
 void RegistrationLedger::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
-  touches_.touch_control_point(tip_in_marker_mm);
+  touches_.touch_control_point(tip_in_marker_mm, now_);
   judge();
 }
 

@@ -63,9 +63,14 @@ void Touches::add_touch(const Eigen::Vector3d& tip_in_marker_mm, const registrat
   });
   touches_.push_back({tip_in_marker_mm, of, is_new_place});
   last_ = Last::Kind::Touch;
+  last_of_ = of;
+  last_is_of_now_ = true;
 }
 
-void Touches::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
+void Touches::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm,
+                                  const registration::Provenance& of) {
+  last_of_ = of;
+  last_is_of_now_ = true;
   control_touches_mm_.push_back(tip_in_marker_mm);
   if (control_touches_mm_.size() == 1) {
     last_ = Last::Kind::ControlSet;
@@ -84,7 +89,7 @@ void Touches::bring_back(const std::vector<Eigen::Vector3d>& touches_mm,
                          const registration::Provenance& of) {
   clear();
   for (const Eigen::Vector3d& touch_mm : touches_mm) add_touch(touch_mm, of);
-  if (control_point_mm) touch_control_point(*control_point_mm);
+  if (control_point_mm) touch_control_point(*control_point_mm, of);
   last_ = Last::Kind::None;
 }
 
@@ -101,6 +106,7 @@ std::optional<Eigen::Vector3d> Touches::control_point_mm() const {
 void Touches::judge(const registration::RegistrationSummary* registration, const geometry::Surface* surface,
                     const std::optional<registration::CartilageRegion>& cartilage,
                     const registration::Provenance& now) {
+  last_is_of_now_ = !registration::mismatch_of(last_of_, now);
   residuals_mm_.clear();
   if (registration == nullptr || !registration->has_pose || surface == nullptr) return;
   const geometry::RigidTransform bone_from_marker = registration->marker_from_bone.inverse();
@@ -121,6 +127,7 @@ void Touches::judge(const registration::RegistrationSummary* registration, const
 }
 
 Touches::Last Touches::last() const {
+  if (!last_is_of_now_) return {};
   Last last{last_, static_cast<int>(touches_.size()), true, std::nullopt, false};
   if (!touches_.empty()) last.is_new_place = touches_.back().is_new_place;
   if (last_ == Last::Kind::ControlAgain) last.distance_mm = control_shift_mm_;

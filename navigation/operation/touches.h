@@ -71,7 +71,7 @@ class Touches {
   // `of`: what the pictures were of when it was taken. A touch under another provenance is kept and says
   // nothing about a registration of this one.
   void add_touch(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of);
-  void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm);
+  void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm, const registration::Provenance& of);
   void clear();
   // Those of an operation that was cut off, in place of all there are.
   void bring_back(const std::vector<Eigen::Vector3d>& touches_mm,
@@ -90,6 +90,7 @@ class Touches {
   // Signed, mm, in the order of the touches; empty while there is no registration to judge by, nullopt on
   // cartilage of unknown thickness and for touches of another provenance.
   [[nodiscard]] const std::vector<std::optional<double>>& residuals_mm() const { return residuals_mm_; }
+  // None where the pictures are of something else by now.
   [[nodiscard]] Last last() const;
   [[nodiscard]] TouchAlarm alarm() const;
   // Enough of them lie on the bone, at different places.
@@ -111,6 +112,8 @@ class Touches {
   double control_shift_mm_ = 0;
   int control_violations_ = 0;
   Last::Kind last_ = Last::Kind::None;
+  registration::Provenance last_of_;
+  bool last_is_of_now_ = true;  // as it was judged last
 };
 
 }  // namespace arthronaut::operation

@@ -9,6 +9,12 @@ namespace {
 using registration::phantom_bone;
 using test::PhantomOperation;
 
+PlannedTunnel phantom_plan_moved() {
+  PlannedTunnel plan = test::phantom_plan();
+  plan.tunnel.entry_mm.x() += 2;
+  return plan;
+}
+
 class OperationRules : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -17,8 +23,7 @@ class OperationRules : public ::testing::Test {
     run_.show(run_.frame());
   }
   void give() {
-    run_.apply(
-        test::true_registration(trial_, provenance_of(run_.operation().setup(), test::scripted_source())));
+    run_.apply(test::true_registration(trial_, run_.operation().now()));
     ASSERT_EQ(run_.in_force().standing, Standing::Stands);
   }
   [[nodiscard]] Eigen::Vector3d on_bone(double dx_mm, double lifted_mm = 0) const {
@@ -164,6 +169,61 @@ TEST_F(OperationRules, DrilledIsTheSurgeonsWordWithEvidence) {
   EXPECT_EQ(run_.state()->drilled.tunnel->depth_mm, 24.5);
   EXPECT_EQ(run_.count(JournalKind::Drilled), 1);
   EXPECT_EQ(run_.state()->next_action, NextAction::Finish);
+}
+
+// A guide's end stays on the bone: how deep the drill went nobody has seen, and nobody read it for this hole.
+TEST_F(OperationRules, Hazard7ADepthThatNobodyReadIsNotInvented) {
+  give();
+  run_.apply(ReadDepthStop{24.5});
+  for (int i = 0; i < 60; ++i) run_.show_guide(0.2);
+  run_.apply(TunnelDrilled{});
+  ASSERT_TRUE(run_.state()->drilled.tunnel);
+  EXPECT_FALSE(run_.state()->depth_stop_mm) << "it was of that hole";
+  for (int i = 0; i < 60; ++i) run_.show_guide(0.2);
+  run_.apply(TunnelDrilled{});
+  ASSERT_TRUE(run_.state()->drilled.tunnel);
+  EXPECT_FALSE(run_.state()->drilled.tunnel->depth_mm);
+  run_.apply(ReadDepthStop{24.5});
+  PlannedTunnel other = phantom_plan_moved();
+  run_.apply(OfferPlan{other});
+  run_.apply(TakePlanOver{});
+  EXPECT_FALSE(run_.state()->depth_stop_mm);
+  EXPECT_EQ(run_.state()->drilled.outcome, DrilledState::Outcome::NotSaid);
+}
+
+// What a command makes untrue is gone in the state that follows it, not with the next picture.
+TEST_F(OperationRules, Hazard5NumbersOfAnotherPlanOrRegistrationAreGoneAtOnce) {
+  give();
+  run_.show_guide(-4);
+  ASSERT_TRUE(run_.state()->frame.guidance.is_valid());
+  run_.apply(OfferPlan{phantom_plan_moved()});
+  EXPECT_TRUE(run_.state()->frame.guidance.is_valid()) << "the plan in force is the old one";
+  run_.apply(TakePlanOver{});
+  EXPECT_FALSE(run_.state()->frame.guidance.is_valid());
+  run_.show_guide(-4);
+  ASSERT_TRUE(run_.state()->frame.guidance.is_valid());
+  run_.apply(MarkerPlacedAnew{});
+  EXPECT_FALSE(run_.state()->frame.guidance.is_valid());
+  give();
+  run_.show_guide(-4);
+  ASSERT_TRUE(run_.state()->frame.guidance.is_valid());
+  run_.operation().end_source();
+  EXPECT_FALSE(run_.state()->frame.guidance.is_valid());
+  EXPECT_FALSE(run_.state()->frame.camera_from_world.is_valid);
+}
+
+// Poses under a registration that does not hold any more are no evidence of a tunnel.
+TEST_F(OperationRules, Hazard29EvidenceIsOfOneRegistrationAlone) {
+  give();
+  for (int i = 0; i < 60; ++i) run_.show_guide(0.2);
+  ASSERT_TRUE(run_.state()->drilled.has_evidence);
+  give();
+  EXPECT_TRUE(run_.state()->drilled.has_evidence) << "the same registration again";
+  run_.apply(MarkerPlacedAnew{});
+  EXPECT_FALSE(run_.state()->drilled.has_evidence);
+  give();
+  run_.apply(TunnelDrilled{});
+  EXPECT_EQ(run_.state()->drilled.outcome, DrilledState::Outcome::NoEvidence);
 }
 
 // Refused with the reason, and the probe stops drawing: a touch must not be used in the fit.

@@ -55,6 +55,23 @@ TEST_P(RegistrationIsVoid, InTheSameFrameUntilATouchMayConfirmIt) {
   EXPECT_EQ(run.count(JournalKind::Confirmed), GetParam().can_be_confirmed ? 1 : 0);
 }
 
+// Three touches verified it with the camera of before. With another one a touch brings it back, unverified.
+TEST(RegistrationIsVoid, OneTouchConfirmsAndDoesNotVerify) {
+  PhantomOperation run;
+  SourceSetup source = test::scripted_source();
+  run.start(source);
+  run.apply(test::true_registration(trial(), run.operation().now()));
+  for (const double dx_mm : {0.0, 4.0, 8.0}) run.touch(test::on_bone(trial(), dx_mm));
+  ASSERT_EQ(run.state()->verification, Verification::ByTouches);
+  source.pipeline.calibration.focal_px += 0.5;
+  run.start(source);
+  run.touch(test::on_bone(trial(), 4));
+  EXPECT_EQ(run.in_force().standing, Standing::Stands);
+  EXPECT_EQ(run.state()->verification, Verification::NotYet);
+  for (const double dx_mm : {0.0, 8.0}) run.touch(test::on_bone(trial(), dx_mm));
+  EXPECT_EQ(run.state()->verification, Verification::ByTouches) << "three places, all with this camera";
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Changes, RegistrationIsVoid,
     ::testing::Values(Change{"Camera", [](SourceSetup& s) { s.pipeline.calibration.focal_px += 0.5; },

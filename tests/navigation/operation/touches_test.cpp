@@ -131,17 +131,23 @@ TEST(Touches, TouchesOnCartilageAreJudgedByItsThickness) {
 TEST(Touches, AControlPointTellsABumpedMarker) {
   using Kind = Touches::Last::Kind;
   Touches touches;
-  touches.touch_control_point({3, 4, 5});
+  touches.touch_control_point({3, 4, 5}, kHere);
   EXPECT_EQ(touches.last().kind, Kind::ControlSet);
-  touches.touch_control_point({3, 4, 5.3});
+  touches.touch_control_point({3, 4, 5.3}, kHere);
   EXPECT_EQ(touches.last().kind, Kind::ControlAgain);
   EXPECT_NEAR(touches.last().distance_mm.value(), 0.3, 1e-9);
-  touches.touch_control_point({3, 4, 7.1});
+  touches.touch_control_point({3, 4, 7.1}, kHere);
   EXPECT_FALSE(touches.alarm());
-  touches.touch_control_point({3, 4, 7.2});
+  touches.touch_control_point({3, 4, 7.2}, kHere);
   EXPECT_EQ(in_words(touches.alarm()), "The control point has moved by 2.2 mm");
-  touches.touch_control_point({3, 4, 5.1});
+  touches.touch_control_point({3, 4, 5.1}, kHere);
   EXPECT_FALSE(touches.alarm());
+  // That it is where it was is said of what the pictures are of now, and of nothing else.
+  registration::Provenance elsewhere = kHere;
+  ++elsewhere.placement;
+  touches.judge(nullptr, nullptr, std::nullopt, elsewhere);
+  EXPECT_EQ(touches.last().kind, Kind::None);
+  EXPECT_TRUE(touches.has_control_point());
 }
 
 }  // namespace
