@@ -53,50 +53,6 @@ class WatchedOperation : public sources::FrameSource {
   std::map<std::int64_t, double> depth_mm_;
 };
 
-// Robust mean of guidance while the drill ran.
-class DrillRecord {
- public:
-  void add(const guidance::GuidanceNumbers& g, double depth_mm) {
-    for (int i = 0; i < 3; ++i) {
-      const auto axis = static_cast<std::size_t>(i);
-      point_[axis].push_back(g.guide_point_mm[i]);
-      direction_[axis].push_back(g.guide_direction[i]);
-    }
-    sigma_offset_.push_back(g.sigma_offset_mm);
-    sigma_angle_.push_back(g.sigma_angle_deg);
-    depth_mm_ = depth_mm;
-    timestamp_ns_ = g.timestamp_ns;
-  }
-  [[nodiscard]] int count() const { return static_cast<int>(sigma_offset_.size()); }
-
-  // Precondition: count() > 0. The depth is read off the drill's scale, to the millimetre.
-  [[nodiscard]] operation::AchievedTunnel achieved(const tunnels::Tunnel& planned,
-                                                   const geometry::Surface& bone) const {
-    operation::AchievedTunnel achieved;
-    achieved.planned = achieved.measured = planned;
-    for (int i = 0; i < 3; ++i) {
-      const auto axis = static_cast<std::size_t>(i);
-      achieved.measured.entry_mm[i] = geometry::median(point_[axis]);
-      achieved.measured.direction[i] = geometry::median(direction_[axis]);
-    }
-    achieved.measured.direction.normalize();
-    const tunnels::TunnelGeometry geometry = tunnels::measure(achieved.measured, bone);
-    if (geometry.enters_bone) achieved.measured.entry_mm = geometry.entry_on_surface_mm;
-    achieved.depth_mm = std::round(depth_mm_);
-    achieved.timestamp_ns = timestamp_ns_;
-    achieved.pose_count = count();
-    achieved.sigma_offset_mm = geometry::median(sigma_offset_);
-    achieved.sigma_angle_deg = geometry::median(sigma_angle_);
-    return achieved;
-  }
-
- private:
-  std::array<std::vector<double>, 3> point_, direction_;
-  std::vector<double> sigma_offset_, sigma_angle_;
-  double depth_mm_ = 0;
-  std::int64_t timestamp_ns_ = 0;
-};
-
 class Demo {
  public:
   Demo(Context& context, const DemoOptions& options)
@@ -230,7 +186,7 @@ class Demo {
   void scratch() {
     step("Scratch: the probe draws on the notch wall, and the femur is found from nothing");
     navigation_.bone = std::make_shared<const registration::SurfaceIndex>(simulation_.knee.femur.mesh);
-    const theatre::NavigationSummary summary = navigate(Phase::Scratch, "scratch", [](auto&, const auto&) {});
+    const theatre::NavigationSummary summary = navigate(Phase::Scratch, "scratch");
     navigation_.bone = nullptr;
     if (summary.registration)
       navigation_.registration = {*summary.registration,
@@ -248,28 +204,24 @@ class Demo {
 
   bool drill() {
     step("Drill: the guide is led to the plan, and the tunnel is drilled");
-    DrillRecord record;
-    const theatre::NavigationSummary summary = navigate(
-        Phase::Drill, "drill", [&](const WatchedOperation& source, const pipeline::FrameResult& result) {
-          const double depth_mm = source.depth_mm(result.frame_index);
-          if (depth_mm > 0 && result.guidance.is_valid()) record.add(result.guidance, depth_mm);
-        });
-    context_.say(format("          guidance in %ld of %ld frames, the tunnel measured in %d of them",
-                        summary.frames_with_guidance, summary.statistics.frame_count, record.count()));
-    if (record.count() == 0) {
-      context_.say_unreliable("the drilled tunnel", {"there was no guidance while the drill ran: " +
-                                                     std::string(guidance::to_text(summary.last_state))});
+    const theatre::NavigationSummary summary = navigate(Phase::Drill, "drill");
+    context_.say(format("          guidance in %ld of %ld frames", summary.frames_with_guidance,
+                        summary.statistics.frame_count));
+    if (!summary.drilled.tunnel) {
+      context_.say_unreliable("the drilled tunnel",
+                              {std::string(guidance::to_text(summary.drilled.evidence)) + ": " +
+                               std::string(guidance::to_text(summary.last_state))});
       return false;
     }
-    achieved_ = record.achieved(simulation_.plan, *femur_);
+    achieved_ = *summary.drilled.tunnel;
+    context_.say(format("          the tunnel measured in %d poses of the guide", achieved_.pose_count));
     achieved_.truth = true_tunnel_;
     operation::write_achieved_file(last_session_ / "achieved.json", achieved_);
     return true;
   }
 
   // One phase as a session of the case; its last frame with a registration becomes a picture.
-  template <typename Watch>
-  theatre::NavigationSummary navigate(Phase phase, const std::string& name, const Watch& watch) {
+  theatre::NavigationSummary navigate(Phase phase, const std::string& name) {
     WatchedOperation source(simulation_, phase);
     last_session_ = cases::create_session_folder(options_.case_folder);
     camera::FramePtr last_frame;
@@ -280,11 +232,19 @@ class Demo {
     observer.on_frame = [&](const camera::FramePtr& frame, const operation::OperationStatePtr& now) {
       const operation::OperationState& state = *now;
       const pipeline::FrameResult& result = state.frame;
-      watch(source, result);
       progress.advance_to(++done);
       if (!result.camera_from_world.is_valid) return;
       last_frame = frame;
       last_result = result;
+    };
+    // With the last picture the surgeon reads the depth stop, to the millimetre, and says that he has
+    // drilled.
+    observer.pedal = [&](const operation::OperationState& state) -> std::vector<operation::Command> {
+      const bool has_drilled =
+          phase == Phase::Drill && state.frame.frame_index + 1 == source.info().frame_count;
+      if (!has_drilled) return {};
+      return {operation::ReadDepthStop{std::round(source.depth_mm(state.frame.frame_index))},
+              operation::TunnelDrilled{}};
     };
     theatre::RecordOptions record;
     record.folder = last_session_;

@@ -148,6 +148,8 @@ theatre::NavigateOptions navigate_options(const Context& context, const Navigate
       bone, knee.side, landmarks != knee.landmarks.end() ? landmarks->second : landmarks::Landmarks(),
       found->second.mesh);
   options.registration = known_registration(context, arguments, options);
+  // Case, bone, medium and source are all named by whoever typed the command.
+  options.is_confirmed = true;
   return options;
 }
 
@@ -244,7 +246,9 @@ void navigate(Context& context, const NavigateArguments& arguments) {
   say_registration(context, summary);
   say_guidance(context, summary);
   context.say("session: " + session.folder().string());
-  if (!summary.reasons.empty()) context.say_unreliable("the navigation", summary.reasons);
+  auto reasons = summary.reasons;
+  if (!summary.record_trouble.empty()) reasons.push_back("the record ended early: " + summary.record_trouble);
+  if (!reasons.empty()) context.say_unreliable("the navigation", reasons);
 }
 
 }  // namespace

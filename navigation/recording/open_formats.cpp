@@ -3,12 +3,14 @@
 #include <algorithm>
 
 #include "navigation/recording/session_files.h"
+#include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::recording {
 
-OpenFormats::Table::Table(const std::filesystem::path& named)
-    : file(named), part(named.string() + ".part"), stream(part, std::ios::binary | std::ios::trunc) {
+OpenFormats::Table::Table(const std::filesystem::path& named) : file(named), part(named.string() + ".part") {
+  files::begin_private_file(part);
+  stream.open(part, std::ios::binary | std::ios::trunc);
   check();
 }
 

@@ -2,6 +2,8 @@
 
 #include <arthronaut/version.h>
 
+#include "navigation/recording/session_files.h"
+#include "navigation/registration/registration_file.h"
 #include "planning/cases/case.h"
 
 namespace arthronaut::recording {
@@ -69,13 +71,42 @@ std::string_view kind_of(JournalKind kind) {
   return "note";
 }
 
-}  // namespace
-
+// nullopt for those that have a place of their own in a session.
 std::optional<SessionEvent> event_of(const JournalEntry& entry) {
   if (entry.kind == JournalKind::RegistrationInForce || entry.kind == JournalKind::Plan) return std::nullopt;
   SessionEvent event{entry.timestamp_ns, std::string(kind_of(entry.kind)), entry.text, entry.after_frame};
   if (entry.kind == JournalKind::Drilled) event.text = "achieved.json";
   return event;
+}
+
+// The next file that no registration of the session has yet.
+std::string next_registration_name(const std::filesystem::path& session_folder) {
+  for (int number = 1;; ++number)
+    if (const std::string name = registration_name(number); !std::filesystem::exists(session_folder / name))
+      return name;
+}
+
+}  // namespace
+
+void append_entries(const std::filesystem::path& session_folder, const std::vector<JournalEntry>& entries) {
+  for (const JournalEntry& entry : entries) {
+    SessionEvent event{entry.timestamp_ns, "", "", entry.after_frame};
+    if (entry.kind == JournalKind::RegistrationInForce) {
+      event.kind = entry.registration_was_given ? kGivenRegistrationEvent : kRegistrationEvent;
+      event.text = next_registration_name(session_folder);
+      for (const std::string& name : {event.text, std::string("registration.json")})
+        registration::write_registration_file(session_folder / name, *entry.registration, &entry.of);
+    } else if (entry.kind == JournalKind::Plan) {
+      event.kind = kPlanEvent;
+      event.text = entry.plan ? plan_to_text(entry.plan->tunnel, entry.plan->length_mm)
+                              : plan_to_text(std::nullopt, 0);
+    } else {
+      event = *event_of(entry);
+    }
+    if (entry.kind == JournalKind::Drilled)
+      operation::write_achieved_file(session_folder / "achieved.json", *entry.achieved);
+    append_event(session_folder, event);
+  }
 }
 
 OperationRecord::OperationRecord(const std::filesystem::path& folder, const operation::OperationSetup& setup,

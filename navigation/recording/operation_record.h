@@ -47,7 +47,9 @@ class OperationRecord {
   std::unique_ptr<SessionRecorder> recorder_;
 };
 
-// One entry as an event of a session; nullopt for those that have a place of their own there.
-[[nodiscard]] std::optional<SessionEvent> event_of(const operation::JournalEntry& entry);
+// The same of an operation whose session is finished already: the surgeon decides after the source has ended,
+// too. Throws IoError or InvalidInput; what came before is written then.
+void append_entries(const std::filesystem::path& session_folder,
+                    const std::vector<operation::JournalEntry>& entries);
 
 }  // namespace arthronaut::recording

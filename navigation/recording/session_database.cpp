@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::recording {
@@ -111,6 +112,7 @@ void SessionDatabase::execute(const char* sql) {
 }
 
 SessionDatabase SessionDatabase::create(const std::filesystem::path& file) {
+  files::begin_private_file(file);  // the log beside it takes its rights
   SessionDatabase database(file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
   database.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;");
   database.execute(kTables);

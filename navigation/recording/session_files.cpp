@@ -123,6 +123,8 @@ void append_guidance_line(std::int64_t frame, std::int64_t timestamp_ns, const g
   text += '\n';
 }
 
+std::string registration_name(int number) { return "registration_" + std::to_string(number) + ".json"; }
+
 std::string plan_to_text(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm) {
   if (!plan) return "";
   nlohmann::ordered_json json;

@@ -27,6 +27,8 @@ inline constexpr std::string_view kGuidanceHeader =
 void append_guidance_line(std::int64_t frame, std::int64_t timestamp_ns,
                           const guidance::GuidanceNumbers& guidance, std::string& text);
 
+// The file of the nth registration of a session, from 1.
+[[nodiscard]] std::string registration_name(int number);
 // The text of a plan event.
 [[nodiscard]] std::string plan_to_text(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm);
 [[nodiscard]] RecordedSession::PlanChange plan_from_text(const std::string& text,

@@ -286,7 +286,7 @@ void SessionRecorder::set_plan(const std::optional<tunnels::Tunnel>& plan, doubl
 
 void SessionRecorder::set_registration(const registration::RegistrationSummary& registration,
                                        bool found_in_this_session, const registration::Provenance* of) {
-  const std::string name = "registration_" + std::to_string(++state_->registration_count) + ".json";
+  const std::string name = registration_name(++state_->registration_count);
   state_->send(RegistrationFile{name, registration, of != nullptr ? std::optional(*of) : std::nullopt});
   state_->send_event(found_in_this_session ? kRegistrationEvent : kGivenRegistrationEvent, name);
 }

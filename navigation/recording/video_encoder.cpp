@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
 
 extern "C" {
@@ -91,6 +92,7 @@ struct VideoEncoder::State {
     avcodec_parameters_from_context(stream->codecpar, encoder.get());
     stream->time_base = encoder->time_base;
     stream->avg_frame_rate = encoder->framerate;
+    files::begin_private_file(file);
     check(avio_open(&container->pb, file.c_str(), AVIO_FLAG_WRITE), "cannot create");
     container->flags |= AVFMT_FLAG_FLUSH_PACKETS;
     AVDictionary* settings = nullptr;

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::recording {
@@ -13,6 +14,7 @@ namespace fs = std::filesystem;
 void copy_one(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::copy_file(from, to, error);
+  if (!error && files::is_private(to.parent_path())) files::make_private(to);
   if (!error) return;
   std::error_code ignored;
   fs::remove(to, ignored);  // half a video would pass for a whole one

@@ -25,7 +25,10 @@ class Navigation {
  public:
   Navigation(sources::FrameSource& source, const NavigateOptions& options, const RecordOptions& record,
              const NavigationObserver& observer)
-      : options_(options), observer_(observer), operation_(setup_of(options)) {
+      : options_(options),
+        observer_(observer),
+        operation_(setup_of(options)),
+        is_live_(options.source.kind == sources::SourceKind::Live) {
     if (options.bone != nullptr)
       work_.emplace([&] { return options.bone; }, operation::work_options(operation_.setup()));
     operation_.start_source(options.source);
@@ -35,6 +38,7 @@ class Navigation {
     }
     summary_.statistics = pipeline::ViewStatistics(options.source.pipeline.tools);
     if (options.registration) give(*options.registration);
+    if (options.is_confirmed) apply(operation::ConfirmTimeOut{});
     // Somebody who stands by may draw whatever is known: it verifies what was given.
     apply(operation::Draw{true});
   }
@@ -50,7 +54,7 @@ class Navigation {
       ++summary_.frames_with_guidance;
       summary_.last_guidance = frame.guidance;
     }
-    if (record_) record_->add_frame(picture, *state, false);
+    write([&](recording::OperationRecord& to) { to.add_frame(picture, *state, is_live_); });
     if (auto request = operation_.take_look_request())
       operation_.take_look(looks_.look(std::move(*request), *picture));
     pass_on();
@@ -65,7 +69,7 @@ class Navigation {
     operation_.end_source();
     pass_on();
     summary_.curves = operation_.strokes_in_use();
-    if (record_) record_->finish(summary_.curves);
+    write([&](recording::OperationRecord& to) { to.finish(summary_.curves); });
     summary_.stroke_length_mm = strokes::length_mm(summary_.curves);
     summary_.drilled = state->drilled;
     const operation::RegistrationState& known = *state->registration;
@@ -87,13 +91,25 @@ class Navigation {
     pass_on();
   }
 
+  // A disk that fails ends the record, never the operation; what was written until then stays.
+  template <typename What>
+  void write(const What& what) {
+    if (!record_) return;
+    try {
+      what(*record_);
+    } catch (const IoError& error) {
+      summary_.record_trouble = error.what();
+      record_.reset();
+    }
+  }
+
   // The registration works each request in at once, so that the next frame has what comes of it.
   void pass_on() {
     for (;;) {
       const auto requests = operation_.take_requests();
       const auto journal = operation_.take_journal();
       log_entries(journal);
-      if (record_) record_->add(journal);
+      write([&](recording::OperationRecord& to) { to.add(journal); });
       if (requests.empty() || !work_) return;
       bool has_news = false;
       for (const operation::RegistrationRequest& request : requests)
@@ -120,6 +136,7 @@ class Navigation {
   const NavigateOptions& options_;
   const NavigationObserver& observer_;
   operation::Operation operation_;
+  const bool is_live_;
   std::optional<operation::RegistrationWork> work_;
   operation::MediumLookWork looks_;
   std::optional<recording::OperationRecord> record_;

@@ -23,6 +23,9 @@ struct NavigateOptions {
   operation::SurfaceIndexPtr bone;
   // Used from the first frame; what it is of is checked like any other.
   std::optional<operation::GiveRegistration> registration;
+  // Of a live source: whoever began it has said by what patient, bone, plan, camera and tools. Without that
+  // it guides nobody.
+  bool is_confirmed = false;
   double retry_after_mm = 40;        // see OperationSetup::registers_after_mm
   std::optional<double> duration_s;  // frames of later than this are not taken; else to the source's end
 };
@@ -47,6 +50,7 @@ struct NavigationSummary {
   guidance::GuidanceState last_state = guidance::GuidanceState::NoPlan;
   operation::DrilledState drilled;
   std::string ending;                // why a live source ended; empty when nothing failed
+  std::string record_trouble;        // why the record ended before the source; empty when it did not
   std::vector<std::string> reasons;  // why the result is not reliable; empty when it is
 };
 
@@ -59,8 +63,8 @@ struct RecordOptions {
 
 // Deterministic for a source, options and seed. Decoding runs in a thread of its own. Throws InvalidInput
 // when the options break their contract or a frame has another size than the camera's, IoError when the
-// record fails, and what the source throws; a live source that fails after its first picture has ended, which
-// the summary's `ending` tells.
+// record can't be begun, and what the source throws; a live source that fails after its first picture has
+// ended, which the summary's `ending` tells.
 [[nodiscard]] NavigationSummary navigate_source(sources::FrameSource& source, const NavigateOptions& options,
                                                 const RecordOptions& record = {},
                                                 const NavigationObserver& observer = {});

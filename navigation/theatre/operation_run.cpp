@@ -80,8 +80,7 @@ void OperationRun::pass_on() {
   // After the end of a source: the decision belongs to its record.
   if (session_folder_.empty() || !record_trouble_.empty()) return;
   try {
-    for (const operation::JournalEntry& entry : journal)
-      if (const auto event = recording::event_of(entry)) recording::append_event(session_folder_, *event);
+    recording::append_entries(session_folder_, journal);
   } catch (const std::runtime_error& error) {
     record_trouble_ = error.what();
   }

@@ -40,6 +40,12 @@ void create_private_folder(const fs::path& folder) {
   take_rights_of_others(folder);
 }
 
+void begin_private_file(const fs::path& file) noexcept {
+  if (!is_private(file.parent_path())) return;
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (descriptor >= 0) ::close(descriptor);
+}
+
 bool is_private(const fs::path& folder) {
   struct stat status {};
   return ::stat(folder.c_str(), &status) == 0 && (status.st_mode & kOfOthers) == 0;

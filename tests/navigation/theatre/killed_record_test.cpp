@@ -107,6 +107,9 @@ class Child {
     end_ = Clock::now();
     ::waitpid(process_, nullptr, 0);
     process_ = -1;
+    // What it said and nobody had read yet was given too.
+    std::int32_t count = 0;
+    while (::read(pipe_, &count, sizeof count) == static_cast<ssize_t>(sizeof count)) given_.push_back(end_);
   }
   [[nodiscard]] Killed killed() const {
     Killed killed;

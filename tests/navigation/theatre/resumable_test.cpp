@@ -244,6 +244,34 @@ TEST_F(ResumableTest, ComesBackASecondTime) {
   EXPECT_EQ(second->operation.stroke_count, first->operation.stroke_count);
 }
 
+// What is decided when the source has ended already is as much a part of the record: a registration found
+// then comes back, and one whose marker was placed anew then does not.
+TEST_F(ResumableTest, Hazard16WhatWasDecidedAfterTheEndCounts) {
+  PhantomOperation run;
+  const SourceSetup source = test::scripted_source(SourceKind::Live);
+  begin(run, source);
+  run.apply(Draw{true});
+  run.draw(trial_.curves);
+  const bool was_found_while_drawing = run.in_force().standing != Standing::None;
+  end(run);
+  run.on_journal = [this](const auto& entries) {
+    recording::append_entries(cases::session_folders(folder_.path()).back(), entries);
+  };
+  if (!was_found_while_drawing) {
+    EXPECT_FALSE(found()->operation.registration);
+  }
+  run.apply(RegisterStrokes{});
+  ASSERT_TRUE(run.in_force().registration);
+  ASSERT_TRUE(run.in_force().registration->reliable);
+  const auto with = found();
+  ASSERT_TRUE(with && with->operation.registration);
+  EXPECT_EQ(with->operation.registration->marker_from_bone.translation_mm,
+            run.in_force().registration->marker_from_bone.translation_mm);
+  run.apply(MarkerPlacedAnew{});
+  const auto without = found();
+  EXPECT_FALSE(without && without->operation.registration);
+}
+
 TEST_F(ResumableTest, IsNoneWhereNothingWasLeftInTheMiddle) {
   EXPECT_FALSE(found()) << "no session";
   const SourceSetup source = test::scripted_source(SourceKind::Live);
