@@ -42,7 +42,8 @@ std::vector<NamedTransform> named_transforms(const operation::OperationState& st
     if (tool.kind == tools::ToolKind::Drill) add("Drill_World", world_from_tool);
   }
   const operation::RegistrationInForce& in_force = state.registration->in_force;
-  if (in_force.standing == operation::Standing::Stands && in_force.registration != nullptr)
+  if (in_force.standing == operation::Standing::Stands && in_force.registration != nullptr &&
+      state.time_out != operation::TimeOut::Due)
     add("Bone_World", in_force.registration->marker_from_bone);
   return named;
 }
