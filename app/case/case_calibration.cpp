@@ -1,6 +1,5 @@
 #include "app/case/case_calibration.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "navigation/camera/camera_file.h"
@@ -44,20 +43,6 @@ tools::ToolSet tools_of(bool is_simulated, const fs::path& case_folder) {
                                                     : tools::standard_tools();
 }
 
-std::string calibration_in_words(bool is_simulated, const fs::path& case_folder) {
-  std::string words = "built-in camera";
-  if (!is_simulated || has_simulated_camera(case_folder)) {
-    const std::string date = camera::read_camera_file(cases::camera_file(case_folder)).date_utc;
-    words = "camera of " + (date.empty() ? std::string("camera.json") : date.substr(0, 10));
-  }
-  if (!uses_tools_file(is_simulated, case_folder)) return words + ", built-in tools";
-  const tools::ToolSet tools = tools_of(is_simulated, case_folder);
-  const auto calibrated = std::count_if(tools.tools.begin(), tools.tools.end(),
-                                        [](const tools::Tool& tool) { return tool.residual_mm.has_value(); });
-  return words + ", " + std::to_string(calibrated) + " of " + std::to_string(tools.tools.size()) +
-         " tools calibrated";
-}
-
 CaseProvenance provenance_of(bool is_simulated, const fs::path& case_folder) {
   CaseProvenance all;
   all.camera = {provenance::Origin::Simulated, ""};
@@ -83,6 +68,20 @@ std::string in_words(const provenance::Provenance& provenance, const std::string
   if (*days < 0) return words + ", date lies ahead: is the clock right?";
   if (*days == 0) return provenance.origin == Origin::Measured ? words : words + " today";
   return words + ", " + std::to_string(std::lround(*days)) + (*days == 1 ? " day old" : " days old");
+}
+
+std::string calibration_in_words(bool is_simulated, const fs::path& case_folder, const std::string& now_utc) {
+  const CaseProvenance all = provenance_of(is_simulated, case_folder);
+  const bool is_built_in =
+      all.camera.origin == provenance::Origin::Simulated && all.camera.calibrated_utc.empty();
+  std::string words = is_built_in ? "camera built in" : "camera " + in_words(all.camera, now_utc), nominal;
+  for (const NamedProvenance& tool : all.tools) {
+    if (tool.provenance.origin == provenance::Origin::Nominal)
+      nominal += (nominal.empty() ? "" : ", ") + tool.name;
+    else
+      words += "; " + tool.name + " " + in_words(tool.provenance, now_utc);
+  }
+  return nominal.empty() ? words : words + "; nominal: " + nominal;
 }
 
 bool has_real_camera(const fs::path& case_folder) {

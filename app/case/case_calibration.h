@@ -22,9 +22,6 @@ inline constexpr const char* kSimulatedScope = "Simulated arthroscope";
 // the standard tools: a tools.json that stands beside a real scope's camera.json is not of them. Throws
 // InvalidInput or IoError.
 [[nodiscard]] tools::ToolSet tools_of(bool is_simulated, const std::filesystem::path& case_folder);
-// Both in words: "camera of 2026-11-21, 1 of 4 tools calibrated". Throws as those.
-[[nodiscard]] std::string calibration_in_words(bool is_simulated, const std::filesystem::path& case_folder);
-
 // Where the numbers come from: of camera_of() and of each tool of tools_of(). What is built in is nominal,
 // but for the simulated arthroscope's own camera, which is simulated. Throws as those.
 struct NamedProvenance {
@@ -39,6 +36,10 @@ struct CaseProvenance {
 // For the screen, at this time (ISO 8601): "measured 2026-11-21", from the next day on "measured 2026-11-21,
 // 3 days old"; "nominal"; "simulated, 3 days old". A measurement without a date says that it has none.
 [[nodiscard]] std::string in_words(const provenance::Provenance& provenance, const std::string& now_utc);
+// All of it for the screen: "camera measured 2026-11-21; probe measured 2026-11-21; nominal: femoral guide".
+// Throws as those.
+[[nodiscard]] std::string calibration_in_words(bool is_simulated, const std::filesystem::path& case_folder,
+                                               const std::string& now_utc);
 
 // The case has the calibration of a real scope: its camera.json is not of the simulator. One that can't be
 // read counts as real; it is not replaced by something simulated.

@@ -3,6 +3,7 @@
 #include "app/case/case_calibration.h"
 #include "navigation/camera/medium.h"
 #include "navigation/simulator/simulated_operation.h"
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 #include "planning/landmarks/anatomical_axes.h"
 
@@ -65,7 +66,7 @@ theatre::TheatreSource simulated_setup(const open_case::PlanModel& model, bones:
   setup.title = part == SimulatedPart::Scratch ? "Simulated operation: probe" : "Simulated operation: drill";
   setup.pipeline.calibration = open_case::camera_of(true, case_folder);
   setup.pipeline.tools = open_case::tools_of(true, case_folder);
-  setup.calibration = open_case::calibration_in_words(true, case_folder);
+  setup.calibration = open_case::calibration_in_words(true, case_folder, files::utc_now());
   setup.pipeline.refractive_index = camera::kSalineIndex;
   setup.draws = part == SimulatedPart::Scratch;
   simulator::SimulationOptions simulation;
@@ -100,7 +101,7 @@ theatre::TheatreSource real_setup(const open_case::PlanModel& model, bones::Bone
   operation::SourceSetup& setup = source.setup;
   setup.pipeline.calibration = camera::read_camera_file(cases::camera_file(case_folder)).calibration;
   setup.pipeline.tools = tools::read_tools_file(cases::tools_file(case_folder));
-  setup.calibration = open_case::calibration_in_words(false, case_folder);
+  setup.calibration = open_case::calibration_in_words(false, case_folder, files::utc_now());
   setup.pipeline.refractive_index = refractive_index;
   if (setup.pipeline.tools.find_world_marker(bone) == nullptr)
     throw InvalidInput("tools.json declares no world marker for the " + std::string(bones::to_text(bone)));
