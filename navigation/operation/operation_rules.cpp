@@ -73,7 +73,7 @@ void Operation::Parts::follow_ledger() {
     followed_standing = in_force.standing;
   }
   followed_entry = ledger.entry_in_force();
-  if (in_force.is_verified && !followed_verified) note(JournalKind::Verified);
+  if (in_force.is_verified && (!followed_verified || is_another)) note(JournalKind::Verified);
   followed_verified = in_force.is_verified;
   changed = true;
 }
