@@ -42,14 +42,16 @@ CardLine registration_line(const recording::Resumable& left) {
 
 std::vector<CardLine> time_out_lines(const operation::OperationState& state, const std::string& patient) {
   const operation::SourceSetup& source = *state.source;
+  using Topic = CardLine::Topic;
   return {
       {patient.empty() ? Severity::Caution : Severity::Quiet, "Patient",
-       patient.empty() ? "not known: the case names none" : patient},
+       patient.empty() ? "not known: the case names none" : patient, Topic::Patient},
       {Severity::Quiet, "Knee",
-       std::string(bones::to_text(source.pipeline.side)) + ", " + std::string(bones::to_text(state.bone))},
-      {state.plan ? Severity::Quiet : Severity::Caution, "Plan", plan_in_words(state.plan)},
-      {Severity::Quiet, "Camera and tools", source.calibration},
-      {Severity::Quiet, "Medium", camera::medium_to_text(source.pipeline.refractive_index)}};
+       std::string(bones::to_text(source.pipeline.side)) + ", " + std::string(bones::to_text(state.bone)),
+       Topic::Knee},
+      {state.plan ? Severity::Quiet : Severity::Caution, "Plan", plan_in_words(state.plan), Topic::Plan},
+      {Severity::Quiet, "Camera and tools", source.calibration, Topic::CameraAndTools},
+      {Severity::Quiet, "Medium", camera::medium_to_text(source.pipeline.refractive_index), Topic::Medium}};
 }
 
 Card time_out_card(const operation::OperationState& state, const std::string& patient) {

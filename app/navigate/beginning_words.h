@@ -13,8 +13,11 @@
 namespace arthronaut::navigate {
 
 struct CardLine {
+  // What it tells of, for whoever wants some of the lines alone.
+  enum class Topic { Other, Patient, Knee, Plan, CameraAndTools, Medium };
   widgets::Severity severity = widgets::Severity::Quiet;
   std::string name, text;
+  Topic topic = Topic::Other;
 };
 // A question over the picture, and the keys that answer it.
 struct Card {

@@ -52,6 +52,8 @@ std::string words_of(NextAction action) {
 std::string touch_notice(const operation::OperationState& state) {
   constexpr std::int64_t kReadable_ns = 8'000'000'000;
   if (state.frame.timestamp_ns - state.touch_asked_ns > kReadable_ns) return "";
+  // The last picture's time stands still when its source has ended: what was refused then is no news.
+  if (!state.has_source && state.touch_refusal != operation::TouchRefusal::NoSource) return "";
   switch (state.touch_refusal) {
     case operation::TouchRefusal::None:
       return "";

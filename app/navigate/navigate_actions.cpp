@@ -46,20 +46,21 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                {},
                [this] { start_video(); },
                {"start the video instead", running}});
-  actions.add({"navigate.stop",
-               "Stop",
-               "Ends the source",
-               GLFW_KEY_ESCAPE,
-               0,
-               false,
-               [this] { return is_running() || !choices_.cameras.empty() || left_behind() != nullptr; },
-               {},
-               [this] {
-                 if (!choices_.cameras.empty()) return choices_.cameras.clear();
-                 if (left_behind() != nullptr) return decline_resume();
-                 end_source();
-               },
-               {"stop", [this] { return is_running() && choices_.cameras.empty(); }}});
+  actions.add(
+      {"navigate.stop",
+       "Stop",
+       "Ends the source",
+       GLFW_KEY_ESCAPE,
+       0,
+       false,
+       [this] { return is_under_way(*live_) || !choices_.cameras.empty() || left_behind() != nullptr; },
+       {},
+       [this] {
+         if (!choices_.cameras.empty()) return choices_.cameras.clear();
+         if (left_behind() != nullptr) return decline_resume();
+         end_source();
+       },
+       {"stop", [this] { return is_under_way(*live_) && choices_.cameras.empty(); }}});
   actions.add({"navigate.camera",
                "Camera",
                "Navigates with a camera that is connected",
@@ -117,24 +118,13 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                GLFW_KEY_TAB,
                0,
                false,
-               [this] {
-                 const auto other = choices_.bone == bones::BoneKind::Femur ? bones::BoneKind::Tibia
-                                                                            : bones::BoneKind::Femur;
-                 return model_ != nullptr && model_->has_bone(other);
-               },
+               [this] { return model_ != nullptr && model_->has_bone(choices_.other_bone()); },
                {},
-               [this] {
-                 if (is_running()) {
-                   notice_ = "Stop the source first, then take the other bone";
-                   return;
-                 }
-                 choices_.bone = choices_.bone == bones::BoneKind::Femur ? bones::BoneKind::Tibia
-                                                                         : bones::BoneKind::Femur;
-                 look_along_plan();
-               }});
+               [this] { take_other_bone(); }});
   actions.add({"navigate.medium",
-               "Saline",
-               "Saline while on, air while off; for the next video",
+               "Next: saline",
+               "The next video or camera looks through saline while on, through air while off; the source "
+               "that runs keeps its medium",
                GLFW_KEY_M,
                0,
                false,

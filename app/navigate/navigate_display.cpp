@@ -21,6 +21,21 @@ void tell(NavigateDisplay& display, const Trouble& trouble) {
   display.detail = trouble.advice;
 }
 
+// Why there is no guidance: as the frame says it, and where it was taken back since, as it is known by now.
+GuidanceState cause_of(const operation::OperationState& state) {
+  const GuidanceState said = state.frame.guidance.state;
+  if (said != GuidanceState::Valid && said != GuidanceState::Stale) return said;
+  if (state.time_out == operation::TimeOut::Due) return GuidanceState::NotConfirmed;
+  switch (state.registration->in_force.standing) {
+    case operation::Standing::None:
+      return GuidanceState::NoRegistration;
+    case operation::Standing::NotReliable:
+      return GuidanceState::RegistrationUnreliable;
+    default:
+      return said;
+  }
+}
+
 void explain(NavigateDisplay& display, const operation::OperationState& state) {
   const pipeline::FrameResult& result = state.frame;
   const pipeline::PipelineOptions& options = state.source->pipeline;
@@ -45,7 +60,7 @@ void explain(NavigateDisplay& display, const operation::OperationState& state) {
   }
   if (standing == Standing::Void || standing == Standing::InDoubt)
     return tell(display, trouble_of(registration));
-  switch (result.guidance.state) {
+  switch (cause_of(state)) {
     case GuidanceState::Valid:
       break;
     case GuidanceState::NoPlan:
@@ -107,6 +122,14 @@ void explain(NavigateDisplay& display, const operation::OperationState& state) {
 
 }  // namespace
 
+bool is_under_way(const theatre::LiveState& live) {
+  return live.phase == Phase::Starting || live.phase == Phase::Running;
+}
+
+bool is_of_source_before(const theatre::LiveState& live) {
+  return live.phase == Phase::Starting || (live.phase == Phase::Failed && live.picture == nullptr);
+}
+
 NavigateLayout layout_of(const theatre::LiveState& live, double since_guidance_s) {
   constexpr double kHold_s = 2;
   if (live.phase == Phase::NoSource || since_guidance_s < kHold_s) return NavigateLayout::Guide;
@@ -127,8 +150,9 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
     return display;
   }
   if (live->picture == nullptr) {
-    display.headline = live->phase == Phase::Ended ? "No picture in the source" : "Starting";
-    display.detail = "Waiting for the first picture";
+    const bool has_ended = live->phase == Phase::Ended;
+    display.headline = has_ended ? "No picture in the source" : "Starting";
+    display.detail = has_ended ? "It ended before its first picture" : "Waiting for the first picture";
     return display;
   }
   display.has_picture = true;
@@ -155,8 +179,10 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   display.overlay_is_valid =
       result.camera_from_world.is_valid && result.intrinsics_are_known && !result.is_frozen && !is_revoked;
   // What was not confirmed may be of another knee: no number, and none of the plan's lines.
-  display.guidance_is_valid = display.overlay_is_valid && state.time_out != operation::TimeOut::Due &&
-                              result.guidance.is_valid() && standing == operation::Standing::Stands;
+  display.plan_is_valid = display.overlay_is_valid && standing == operation::Standing::Stands &&
+                          state.time_out != operation::TimeOut::Due;
+  display.tip_is_valid = display.plan_is_valid && result.tip_is_valid;
+  display.guidance_is_valid = display.plan_is_valid && result.guidance.is_valid();
   if (display.guidance_is_valid)
     display.guidance = result.guidance;
   else

@@ -13,12 +13,20 @@ namespace arthronaut::navigate {
 struct NavigateDisplay {
   bool has_picture = false;       // a picture may be shown; false: nothing but the reason
   bool is_live = false;           // ... and it is of now
-  bool overlay_is_valid = false;  // the plan's lines belong to this picture
+  bool overlay_is_valid = false;  // what was touched lies on this picture where it was touched
+  bool plan_is_valid = false;     // ... and the plan's lines belong to it: a registration stands
+  bool tip_is_valid = false;      // ... and where the probe's tip is to the bone is known
   bool guidance_is_valid = false;
   double age_s = 0;              // of the picture, from its capture to now; with is_live or when it is late
   std::string headline, detail;  // why not; empty while guidance is valid
   guidance::GuidanceNumbers guidance;  // meaningful when guidance_is_valid
 };
+
+// A source runs or is being opened: it has to be stopped before the other bone is taken.
+[[nodiscard]] bool is_under_way(const theatre::LiveState& live);
+// What live.operation says is of the source before: the one that was started last is still being opened, or
+// could not be.
+[[nodiscard]] bool is_of_source_before(const theatre::LiveState& live);
 
 // What fills the screen beside the picture: the registration that is being made, or the way to the plan.
 enum class NavigateLayout { Register, Guide };

@@ -29,11 +29,11 @@ struct NavigateScreen {
   // Of the newest picture; preconditions: display.has_picture.
   [[nodiscard]] const pipeline::FrameResult& frame() const { return live->operation->frame; }
   [[nodiscard]] const pipeline::PipelineOptions& options() const { return live->operation->source->pipeline; }
-  [[nodiscard]] const scene::PlanOverlay& lines() const;  // of the picture; empty when there are none
-  // A source runs or has run: there is something to say about it.
+  [[nodiscard]] const PictureLines& lines() const;  // of the picture; empty when there are none
+  // A source runs or has run, and what is known is of this one: there is something to say about it.
   [[nodiscard]] bool has_source() const {
     return live != nullptr && live->phase != theatre::LiveState::Phase::NoSource &&
-           live->operation->source != nullptr;
+           live->operation->source != nullptr && !is_of_source_before(*live);
   }
 };
 

@@ -7,7 +7,8 @@ void NavigateView::draw_questions(const widgets::Ui& ui, const widgets::Rect& vi
   const operation::OperationState& state = *live_->operation;
   if (const LeftBehind* const left = left_behind())
     draw_card(ui, video, resume_card(*left, bones_.plan_of(choices_.bone), std::chrono::system_clock::now()));
-  else if (state.has_source && state.time_out == operation::TimeOut::Due && choices_.cameras.empty())
+  else if (state.has_source && !is_of_source_before(*live_) && state.time_out == operation::TimeOut::Due &&
+           choices_.cameras.empty())
     draw_card(ui, video, time_out_card(state, patient_));
   if (!choices_.cameras.empty()) draw_cameras(ui, video);
   if (const auto depth_mm = depth_.draw(ui, video)) ask(operation::ReadDepthStop{*depth_mm});

@@ -43,8 +43,7 @@ NavigateScene::Shown NavigateScene::shown_of(const NavigateScreen& screen) {
   shown.registration = screen.live->operation->registration;
   if (!screen.display.overlay_is_valid) return shown;
   const pipeline::FrameResult& frame = screen.frame();
-  const bool stands = shown.registration->in_force.standing == operation::Standing::Stands;
-  if (stands && frame.tip_is_valid) shown.tip_frame = frame.frame_index;
+  if (screen.display.tip_is_valid) shown.tip_frame = frame.frame_index;
   if (screen.display.guidance_is_valid) shown.guide_frame = frame.frame_index;
   return shown;
 }

@@ -36,7 +36,8 @@ mode::ModeTitle NavigateView::title() const {
 std::optional<sources::SourceKind> NavigateView::source_kind() const {
   if (live_->phase == Phase::NoSource) return std::nullopt;
   // Before its first picture, or where it gives none, the operation knows of the source before it alone.
-  if (live_->picture == nullptr) return kind_;
+  const auto started = started_.find(choices_.bone);
+  if (live_->picture == nullptr) return started != started_.end() ? std::optional(started->second) : kind_;
   return live_->operation->source->kind;
 }
 
@@ -46,6 +47,8 @@ void NavigateView::case_opened(const mode::OpenCase& opened) {
   words_ = {};
   part_.reset();
   kind_.reset();
+  started_.clear();
+  stops_once_open_ = false;
   choices_ = {};
   notice_.clear();
   model_ = opened.model;
@@ -66,7 +69,23 @@ void NavigateView::enter() { choices_.videos = sources::videos_in(case_folder_);
 
 void NavigateView::end_source() {
   choices_.guidance_seen_s = -1e9;
+  notice_.clear();
+  // Nothing cuts an opening short; it ends right after it, before its first picture.
+  stops_once_open_ = live_->phase == Phase::Starting;
   if (theatre::LiveOperation* const operation = bones_.known(choices_.bone)) operation->end_source();
+}
+
+void NavigateView::take_other_bone() {
+  if (is_under_way(*live_)) {
+    notice_ = "Stop the source first, then take the other bone";
+    return;
+  }
+  choices_.take_other_bone();
+  notice_.clear();
+  part_.reset();
+  depth_ = {};
+  read_live();  // what is asked next is asked of this bone
+  look_along_plan();
 }
 
 void NavigateView::start(theatre::TheatreSource source) {
@@ -74,7 +93,8 @@ void NavigateView::start(theatre::TheatreSource source) {
   choices_.layout.reset();
   choices_.cameras.clear();
   choices_.guidance_seen_s = -1e9;
-  kind_ = source.setup.kind;
+  stops_once_open_ = false;
+  kind_ = started_[choices_.bone] = source.setup.kind;
   part_.reset();
   resume_.answer(choices_.bone);  // it begins: afresh, unless it was resumed
   bones_.operation(choices_.bone).start(std::move(source));
@@ -101,7 +121,6 @@ void NavigateView::start_simulation(SimulatedPart part) {
   try {
     start(simulated_setup(*model_, choices_.bone, case_folder_, part));
     part_ = part;
-    kind_ = sources::SourceKind::Simulation;
   } catch (const std::runtime_error& error) {  // as in start_video()
     notice_ = error.what();
   }
@@ -117,7 +136,6 @@ void NavigateView::start_video() {
   try {
     start(video_setup(*model_, choices_.bone, case_folder_, choices_.videos[choices_.video],
                       choices_.saline ? camera::kSalineIndex : camera::kAirIndex));
-    kind_ = sources::SourceKind::Recording;
     ++choices_.video;
   } catch (const std::runtime_error& error) {  // a file that cannot be used is a notice on this screen
     notice_ = error.what();
@@ -128,7 +146,6 @@ void NavigateView::start_camera(const sources::ConnectedCamera& camera) {
   try {
     start(camera_setup(*model_, choices_.bone, case_folder_, camera, turns_,
                        choices_.saline ? camera::kSalineIndex : camera::kAirIndex));
-    kind_ = sources::SourceKind::Live;
   } catch (const std::runtime_error& error) {
     notice_ = error.what();
     choices_.cameras.clear();
@@ -206,7 +223,8 @@ std::string NavigateView::next_step() {
   if (!choices_.cameras.empty()) return "open " + choices_.cameras[choices_.camera].name;
   const NextAction action = live_->operation->next_action;
   if (!model_->tunnel(choices_.bone)) return words_of(NextAction::PlanTunnel);
-  if (live_->phase == Phase::Starting) return "wait for the first picture";
+  if (live_->phase == Phase::Starting)
+    return stops_once_open_ ? "wait: it stops once it is open" : "wait for the first picture";
   const bool starts = action == NextAction::StartSource || action == NextAction::PlanTunnel;
   if (!starts) return words_of(action);
   const bool simulates =
@@ -276,9 +294,7 @@ void NavigateView::cycle_overlay() {
   choices_.overlay_shown_at_s = now;
 }
 
-bool NavigateView::is_busy() const {
-  return live_->phase == Phase::Running || live_->phase == Phase::Starting || registration().is_fitting;
-}
+bool NavigateView::is_busy() const { return is_under_way(*live_) || registration().is_fitting; }
 
 void NavigateView::read_live() {
   const theatre::LiveStatePtr seen = live_;
@@ -288,8 +304,9 @@ void NavigateView::read_live() {
   } else {
     live_ = TheatreBones::nothing();
   }
-  if (live_->operation->registration == seen->operation->registration) return;
-  words_ = words_of(registration());
+  const bool is_same = live_->operation->registration == seen->operation->registration;
+  if (is_same && is_of_source_before(*live_) == is_of_source_before(*seen)) return;
+  words_ = words_of(*live_);
   if (registration().change_count != seen->operation->registration->change_count)
     choices_.overlay_shown_at_s = theatre::LiveOperation::now_s();
 }

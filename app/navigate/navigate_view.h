@@ -4,11 +4,13 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 
 #include "app/case/plan_model.h"
 #include "app/mode/mode.h"
 #include "app/navigate/beginning_panel.h"
+#include "app/navigate/navigate_choices.h"
 #include "app/navigate/navigate_panels.h"
 #include "app/navigate/navigate_scene.h"
 #include "app/navigate/navigate_setup.h"
@@ -48,6 +50,7 @@ class NavigateView : public mode::Mode {
   // The same kind of source again: nothing but a key of its own ever changes the kind.
   void start_same_kind();
   void end_source();
+  void take_other_bone();
   // What is on offer now; null: nothing is, or something was begun.
   [[nodiscard]] const LeftBehind* left_behind();
   void resume();
@@ -75,21 +78,6 @@ class NavigateView : public mode::Mode {
   void draw_questions(const widgets::Ui& ui, const widgets::Rect& video);
   void draw_cameras(const widgets::Ui& ui, const widgets::Rect& area) const;
 
-  struct Choices {
-    bones::BoneKind bone = bones::BoneKind::Femur;
-    bool saline = true;
-    std::vector<std::filesystem::path> videos;  // of the case, when this mode was entered
-    std::size_t video = 0;                      // the next of those
-    bool overlay_on = true;
-    double overlay_shown_at_s = 0;
-    bool undistorts = false;
-    std::optional<NavigateLayout> layout;           // empty: as things stand
-    double guidance_seen_s = -1e9;                  // when guidance was valid last
-    int stroke = -1;                                // selected
-    std::vector<sources::ConnectedCamera> cameras;  // on offer now; empty: none
-    std::size_t camera = 0;                         // of those
-  };
-
   const open_case::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
   sources::DeviceTurns turns_;
@@ -99,11 +87,13 @@ class NavigateView : public mode::Mode {
   ResumeOffer resume_;
   DepthEntry depth_;
   std::string patient_;  // in words; empty: not known
-  Choices choices_;
+  NavigateChoices choices_;
   theatre::LiveStatePtr live_ = TheatreBones::nothing();  // of this frame, of the chosen bone; never null
   RegistrationWords words_;                               // of its registration
   std::optional<SimulatedPart> part_;                     // of the simulation that was started last
   std::optional<sources::SourceKind> kind_;  // of the source that was started last; empty: none yet
+  std::map<bones::BoneKind, sources::SourceKind> started_;  // the same, of each bone's
+  bool stops_once_open_ = false;  // the source that is being opened is not wanted any more
   std::string notice_;
 };
 

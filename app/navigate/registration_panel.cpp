@@ -72,24 +72,26 @@ void draw_rows(const widgets::Ui& ui, const std::vector<Row>& rows, std::size_t 
   }
 }
 
-void draw_lists(const widgets::Ui& ui, const operation::RegistrationState& status,
-                const RegistrationWords& words, int selected_stroke) {
-  const std::vector<StrokeRow>& strokes = words.strokes;
+void draw_lists(const widgets::Ui& ui, const NavigateScreen& screen) {
+  const operation::RegistrationState& status = *screen.live->operation->registration;
+  const std::vector<StrokeRow>& strokes = screen.words.strokes;
   if (!strokes.empty()) {
     const std::string count = strokes.size() > kShownStrokes ? ", " + std::to_string(kShownStrokes) + " of " +
                                                                    std::to_string(strokes.size())
                                                              : "";
     widgets::text_in(ui.theme.strong, widgets::kAccent, "Strokes" + count + " (Up, Down)");
     draw_rows(
-        ui, strokes, kShownStrokes, [&](std::size_t i) { return strokes[i].curve == selected_stroke; },
+        ui, strokes, kShownStrokes, [&](std::size_t i) { return strokes[i].curve == screen.selected_stroke; },
         [&](const StrokeRow& row) {
           widgets::status_row(ui, row.text.severity, row.text.name, row.text.text);
         });
   }
-  const std::vector<SeverityText>& history = words.history;
+  const std::vector<SeverityText>& history = screen.words.history;
   if (history.empty()) return;
-  const std::string used =
-      status.entry_in_force ? ", in use: " + std::to_string(*status.entry_in_force + 1) : "";
+  const bool guides = screen.has_source() && status.in_force.standing == operation::Standing::Stands;
+  const std::string used = guides && status.entry_in_force
+                               ? ", in use: " + std::to_string(*status.entry_in_force + 1)
+                               : ", none in use";
   widgets::text_in(ui.theme.strong, widgets::kAccent,
                    "Registrations" + used + (status.is_chosen ? " (chosen)" : ""));
   draw_rows(
@@ -110,8 +112,8 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
   widgets::begin_panel(ui, "navigate.registration", rest);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui.theme.px(8), ui.theme.px(7)});
   draw_state(ui, screen.words);
-  draw_touch(ui, screen.words.touch, touch_notice(*screen.live->operation));
-  draw_lists(ui, *screen.live->operation->registration, screen.words, screen.selected_stroke);
+  draw_touch(ui, screen.words.touch, screen.has_source() ? touch_notice(*screen.live->operation) : "");
+  draw_lists(ui, screen);
   ImGui::PopStyleVar();
   widgets::end_panel();
   const float width = (buttons.width - gap) / 2;

@@ -4,11 +4,14 @@
 #include <cmath>
 
 #include "app/navigate/live_words.h"
+#include "app/navigate/navigate_display.h"
+#include "navigation/operation/operation.h"
 
 namespace arthronaut::navigate {
 
 namespace {
 
+using operation::Standing;
 using registration::OnlineState;
 using widgets::Severity;
 
@@ -17,10 +20,40 @@ constexpr double kShownLength_mm = 2;
 // As confidence.cpp counts them: below the first two poses are taken for alike; the second is its "no rival".
 constexpr double kRivalRatio = 1.15, kNoRivalRatio = 10;
 
+// Whose figures may be shown; null: nobody's.
 const registration::RegistrationSummary* pose_of(const operation::RegistrationState& state) {
-  if (state.online != nullptr && state.online->registration.has_pose) return &state.online->registration;
-  const operation::RegistrationPtr& in_force = state.in_force.registration;
-  return in_force != nullptr && in_force->has_pose ? in_force.get() : nullptr;
+  if (state.in_force.standing == Standing::Stands) return state.in_force.registration.get();
+  const bool runs_along = state.online != nullptr && state.online->registration.has_pose;
+  return state.in_force.standing == Standing::None && runs_along ? &state.online->registration : nullptr;
+}
+
+// What a registration must be of to guide now; nullopt before the first source. The mesh stays the same in an
+// operation; the placement of the marker is that of the newest entry under it.
+std::optional<registration::Provenance> now_of(const operation::OperationState& state) {
+  if (state.source == nullptr) return std::nullopt;
+  operation::OperationSetup setup;
+  setup.bone = state.bone;
+  int placement = 0;
+  for (const operation::RegistrationEntry& entry : *state.registration->history)
+    if (!entry.marker_has_moved) placement = std::max(placement, entry.of.placement);
+  return operation::provenance_of(setup, *state.source, placement);
+}
+
+// What is said against an entry now; empty: nothing.
+SeverityText against(const operation::RegistrationState& state, std::size_t i,
+                     const std::optional<registration::Provenance>& now) {
+  const operation::RegistrationEntry& entry = (*state.history)[i];
+  if (entry.marker_has_moved) return {Severity::Quiet, "", "the marker has moved since"};
+  if (i == state.entry_in_force) {
+    const Standing standing = state.in_force.standing;
+    const bool is_revoked =
+        standing == Standing::Void || standing == Standing::Alarm || standing == Standing::InDoubt;
+    if (!is_revoked || state.in_force.registration->reasons.empty()) return {};
+    return {standing == Standing::Void ? Severity::Quiet : Severity::Bad, "",
+            state.in_force.registration->reasons.front()};
+  }
+  const auto mismatch = now ? registration::mismatch_of(entry.of, *now) : std::nullopt;
+  return {Severity::Quiet, "", mismatch ? registration::in_words(*mismatch, entry.of, *now) : ""};
 }
 
 // Nobody should read a nought where something was measured.
@@ -32,12 +65,12 @@ std::string tenths_of_mm(double value) {
 
 SeverityText state_of(const operation::RegistrationState& state) {
   if (!state.bone_trouble.empty()) return {Severity::Bad, "The bone can't be registered", state.bone_trouble};
-  const operation::Standing standing = state.in_force.standing;
-  if (standing == operation::Standing::Void || standing == operation::Standing::Alarm ||
-      standing == operation::Standing::InDoubt) {
-    const Trouble trouble = trouble_of(state);
-    return {Severity::Bad, trouble.headline, trouble.advice + "."};
-  }
+  const Standing standing = state.in_force.standing;
+  const Trouble trouble = trouble_of(state);
+  // While the probe draws for one that is reliable, the coach says more.
+  const bool is_drawn_anew = standing == Standing::NotReliable && state.online != nullptr &&
+                             state.online->state < OnlineState::Confirmed;
+  if (!trouble.empty() && !is_drawn_anew) return {Severity::Bad, trouble.headline, trouble.advice + "."};
   if (is_verified(state)) return {Severity::Good, "Verified", "The touches lie on the bone."};
   if (state.online == nullptr)
     return {Severity::Quiet, "Collecting",
@@ -50,6 +83,7 @@ SeverityText state_of(const operation::RegistrationState& state) {
     case OnlineState::Candidate:
       return {Severity::Caution, "Candidate, not confirmed yet", advice};
     case OnlineState::Confirmed:
+      if (standing != Standing::Stands) return {Severity::Caution, "Candidate, not in force", advice};
       return {Severity::Good, "Confirmed", "Touch three places that you know, to verify."};
   }
   return {};
@@ -82,23 +116,24 @@ std::vector<SeverityText> numbers_of(const operation::RegistrationState& state) 
   const registration::RegistrationSummary* pose = pose_of(state);
   if (pose == nullptr || state.alarm) return {};  // an alarm belies them
   const double error_mm = pose->predicted_tre_mm;
-  const bool runs_along = state.online != nullptr && pose == &state.online->registration;
+  const bool is_candidate = state.in_force.standing != Standing::Stands;
+  const Severity good = is_candidate ? Severity::Caution : Severity::Good;
   std::vector<SeverityText> rows;
   rows.push_back(
-      {error_mm < 1     ? Severity::Good
+      {error_mm < 1     ? good
        : error_mm < 1.5 ? Severity::Caution
                         : Severity::Bad,
        "At the tunnel",
        widgets::plus_minus(error_mm) + " mm" +
-           (runs_along ? ", " + widgets::plus_minus(state.online->predicted_angle_deg) + "\u00B0" : "")});
+           (is_candidate ? ", " + widgets::plus_minus(state.online->predicted_angle_deg) + "\u00B0" : "")});
   const double ratio = pose->runner_up_ratio;
   if (ratio >= kNoRivalRatio)
-    rows.push_back({Severity::Good, "Next best pose", "none comes near"});
+    rows.push_back({good, "Next best pose", "none comes near"});
   else
     rows.push_back(
         {ratio < kRivalRatio ? Severity::Bad
          : ratio < 2         ? Severity::Caution
-                             : Severity::Good,
+                             : good,
          "Next best pose",
          ratio < kRivalRatio ? "fits almost alike" : "fits " + widgets::fixed(ratio, 1) + " times worse"});
   return rows;
@@ -129,6 +164,8 @@ std::optional<TouchText> touch_of(const operation::RegistrationState& state) {
                      "Cartilage of unknown thickness: touch bare bone."};
   if (!last.distance_mm)
     return TouchText{{Severity::Quiet, name, "kept"}, "Judged when there is a registration."};
+  if (state.in_force.standing == Standing::Void && !state.in_force.can_be_confirmed)
+    return TouchText{{Severity::Quiet, name, "tells nothing"}, "The registration is void, whatever it hits."};
   const double off_mm = std::abs(*last.distance_mm);
   const bool is_inside = *last.distance_mm < 0;
   std::string sentence = off_mm < 0.5 ? "On the bone model."
@@ -142,6 +179,7 @@ std::vector<StrokeRow> stroke_rows(const operation::RegistrationState& state) {
   std::vector<StrokeRow> rows;
   if (state.online == nullptr) return rows;
   const bool has_pose = state.online->registration.has_pose;
+  const bool is_void = state.in_force.standing == Standing::Void;
   for (const registration::StrokeInfo& stroke : state.online->strokes) {
     if (stroke.length_mm < kShownLength_mm) continue;
     StrokeRow row{stroke.curve, state.excluded.contains(stroke.curve), {}};
@@ -149,10 +187,8 @@ std::vector<StrokeRow> stroke_rows(const operation::RegistrationState& state) {
     row.text.text = widgets::fixed(stroke.length_mm, 0) + " mm";
     if (has_pose) row.text.text += ", " + tenths_of_mm(stroke.median_residual_mm) + " off";
     row.text.severity = has_pose ? severity_of_residual(stroke.median_residual_mm) : Severity::Quiet;
-    if (row.is_excluded) {
-      row.text.severity = Severity::Quiet;
-      row.text.text += ", excluded";
-    }
+    if (row.is_excluded) row.text.text += ", excluded";
+    if (row.is_excluded || is_void) row.text.severity = Severity::Quiet;
     rows.push_back(row);
   }
   return rows;
@@ -167,7 +203,8 @@ int neighbour_stroke(const std::vector<StrokeRow>& rows, int curve, int step) {
   return rows[static_cast<std::size_t>(at)].curve;
 }
 
-std::vector<SeverityText> history_rows(const operation::RegistrationState& state) {
+std::vector<SeverityText> history_rows(const operation::RegistrationState& state,
+                                       const std::optional<registration::Provenance>& now) {
   std::vector<SeverityText> rows;
   for (std::size_t i = 0; i < state.history->size(); ++i) {
     const operation::RegistrationEntry& entry = (*state.history)[i];
@@ -178,18 +215,32 @@ std::vector<SeverityText> history_rows(const operation::RegistrationState& state
                    ? "not reliable"
                    : widgets::plus_minus(entry.registration->predicted_tre_mm) + " mm, fit " +
                          tenths_of_mm(entry.registration->rms_mm) + (entry.is_verified ? ", verified" : "");
-    if (entry.marker_has_moved) {
-      row.severity = Severity::Quiet;
-      row.text = "the marker has moved since";
+    const SeverityText objection = against(state, i, now);
+    if (!objection.text.empty()) {
+      row.severity = objection.severity;
+      row.text = objection.text;
     }
     rows.push_back(row);
   }
   return rows;
 }
 
-RegistrationWords words_of(const operation::RegistrationState& state) {
-  return {state_of(state),   progress_of(state), missing_of(state),  assumed_of(state),
-          numbers_of(state), touch_of(state),    stroke_rows(state), history_rows(state)};
+RegistrationWords words_of(const theatre::LiveState& live) {
+  const operation::RegistrationState& state = *live.operation->registration;
+  RegistrationWords words{state_of(state),    progress_of(state),
+                          missing_of(state),  assumed_of(state),
+                          numbers_of(state),  touch_of(state),
+                          stroke_rows(state), history_rows(state, now_of(*live.operation))};
+  if (!is_of_source_before(live)) return words;
+  words.state = {Severity::Quiet, "No picture yet", "What guides by its pictures is judged when they come."};
+  words.progress = 0;
+  words.missing.clear();
+  words.assumed.clear();
+  words.numbers.clear();
+  words.touch.reset();
+  for (StrokeRow& row : words.strokes) row.text.severity = Severity::Quiet;
+  for (SeverityText& row : words.history) row.severity = Severity::Quiet;
+  return words;
 }
 
 widgets::Severity severity_of_residual(double residual_mm) {

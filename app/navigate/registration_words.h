@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/widgets/controls.h"
-#include "navigation/operation/operation_state.h"
+#include "navigation/theatre/live_operation.h"
 
 namespace arthronaut::navigate {
 
@@ -26,8 +26,9 @@ struct SeverityText {
 [[nodiscard]] std::string assumed_of(const operation::RegistrationState& state);
 // Whether touches that it was not fitted to lie on the bone, by the registration that guides.
 [[nodiscard]] bool is_verified(const operation::RegistrationState& state);
-// Predicted error at the tunnel, and how near the next best pose comes; of the pose that runs along, else of
-// the one in force. Empty without a pose.
+// Predicted error at the tunnel, and how near the next best pose comes: of the registration in force while it
+// stands, and while there is none of the candidate that runs along, which is never called good. Empty else:
+// what is void, in doubt or not reliable has no figures.
 [[nodiscard]] std::vector<SeverityText> numbers_of(const operation::RegistrationState& state);
 
 // The last touch, for a large number: name "Touch 2", text "0.4 mm" with its sign; and a sentence beside it.
@@ -49,10 +50,12 @@ struct StrokeRow {
 // none.
 [[nodiscard]] int neighbour_stroke(const std::vector<StrokeRow>& rows, int curve, int step);
 
-// One row an entry of the history: name "2  while drawing", text "± 0.6 mm, fit 0.3 mm".
-[[nodiscard]] std::vector<SeverityText> history_rows(const operation::RegistrationState& state);
+// One row an entry of the history: name "2  while drawing", text "± 0.6 mm, fit 0.3 mm", or why it is void.
+// now: what the pictures are of; nullopt: not known, then void is what is judged to be.
+[[nodiscard]] std::vector<SeverityText> history_rows(const operation::RegistrationState& state,
+                                                     const std::optional<registration::Provenance>& now);
 
-// All of the above at once, to be kept until the status changes.
+// All of the above at once, to be kept until the status or the source changes.
 struct RegistrationWords {
   SeverityText state;
   double progress = 0;
@@ -62,7 +65,9 @@ struct RegistrationWords {
   std::vector<StrokeRow> strokes;
   std::vector<SeverityText> history;
 };
-[[nodiscard]] RegistrationWords words_of(const operation::RegistrationState& state);
+// While another source is being opened, or could not be, nothing in them is good: nobody knows yet what its
+// pictures are of.
+[[nodiscard]] RegistrationWords words_of(const theatre::LiveState& live);
 
 // How far a touched point may lie off the bone to be good; beyond caution it is bad.
 [[nodiscard]] widgets::Severity severity_of_residual(double residual_mm);

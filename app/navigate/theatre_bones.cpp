@@ -22,14 +22,14 @@ class LineMaker {
   std::shared_ptr<const theatre::Decoration> operator()(const OperationState& state) {
     const pipeline::FrameResult& frame = state.frame;
     if (!frame.camera_from_world.is_valid) return nullptr;
-    auto made = std::make_shared<PlanLines>();
+    auto made = std::make_shared<PictureLines>();
     const geometry::RigidTransform& camera_from_world = frame.camera_from_world.target_from_source;
     const std::vector<scene::ClearDisc> clear = clear_discs_of(frame, state.source->pipeline.tools);
     const operation::RegistrationInForce& in_force = state.registration->in_force;
     const bool may_guide = state.time_out != operation::TimeOut::Due;
     if (in_force.standing == operation::Standing::Stands && may_guide) {
       prepare(state.plan);
-      made->lines =
+      made->plan =
           model_->project(frame.camera, camera_from_world * in_force.registration->marker_from_bone, clear);
     }
     points_.clear();
@@ -41,7 +41,7 @@ class LineMaker {
             operation::RegistrationOrigin::Resumed)
       for (const strokes::CurvePoint& point : state.resumed->drawn)
         points_.push_back(camera_from_world * point.position_mm);
-    scene::add_curves(made->lines, frame.camera, points_, strokes::StrokeOptions{}.max_hop_mm, clear);
+    scene::add_curves(made->touched, frame.camera, points_, strokes::StrokeOptions{}.max_hop_mm, clear);
     return made;
   }
 

@@ -17,9 +17,10 @@
 
 namespace arthronaut::navigate {
 
-// The plan's lines and the strokes, over the very picture that they were projected for.
-struct PlanLines : theatre::Decoration {
-  scene::PlanOverlay lines;
+// The plan's lines and the strokes, over the very picture that they were projected for. Apart: they may be
+// shown as long as different things are true.
+struct PictureLines : theatre::Decoration {
+  scene::PlanOverlay plan, touched;
 };
 
 class TheatreBones {

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "app/guidance_severity/guidance_severity.h"
-#include "app/navigate/beginning_words.h"
 #include "app/navigate/navigate_panels.h"
+#include "app/navigate/tracking_words.h"
 
 namespace arthronaut::navigate {
 
@@ -97,51 +97,15 @@ void draw_touch_row(const widgets::Ui& ui, const NavigateScreen& screen) {
 
 // Touch a place that you know: how far the tip is from the bone model, while both are known.
 void draw_probe(const widgets::Ui& ui, const NavigateScreen& screen) {
+  if (!screen.display.tip_is_valid || screen.surface == nullptr) return;
   const operation::RegistrationInForce& in_force = screen.live->operation->registration->in_force;
-  if (!screen.display.is_live || in_force.standing != operation::Standing::Stands ||
-      screen.surface == nullptr)
-    return;
-  const pipeline::FrameResult& result = screen.frame();
-  if (!result.tip_is_valid) return;
   const double distance = screen.surface->signed_distance_mm(
-      in_force.registration->marker_from_bone.inverse() * result.tip_in_world_mm);
+      in_force.registration->marker_from_bone.inverse() * screen.frame().tip_in_world_mm);
   widgets::status_row(ui, Severity::Quiet, "Probe tip to bone", widgets::fixed(distance, 1) + " mm");
 }
 
-// The journal is written in any case: what is worth saying is that it is not, and whether video is kept.
-void draw_record(const widgets::Ui& ui, const NavigateScreen& screen) {
-  const theatre::LiveState& live = *screen.live;
-  if (!live.record_trouble.empty())
-    widgets::status_row(ui, Severity::Bad, "Nothing is recorded", live.record_trouble);
-  else
-    widgets::status_row(ui, live.keeps_video ? Severity::Good : Severity::Quiet, "Recording",
-                        live.keeps_video ? "video and journal" : "journal");
-  if (live.picture == nullptr) return;
-  const bool is_dated = live.operation->source->kind == sources::SourceKind::Live;
-  widgets::status_row(
-      ui, Severity::Quiet, "Rate",
-      widgets::fixed(live.frames_per_second, 0) + " pictures/s, " +
-          widgets::fixed(screen.frame().processing_ms, 0) + " ms each" +
-          (is_dated ? ", " + widgets::fixed(1000 * screen.display.age_s, 0) + " ms old" : ""));
-}
-
-// What a time-out reads out, whether or not one was asked for, in few lines: the patient stands in the title,
-// camera and tools with the source.
-void draw_beginning(const widgets::Ui& ui, const NavigateScreen& screen) {
-  const operation::OperationState& state = *screen.live->operation;
-  std::string knee;
-  for (const CardLine& line : time_out_lines(state, screen.patient)) {
-    if (line.name == "Medium") widgets::status_row(ui, line.severity, line.name, line.text);
-    if (line.name == "Knee") knee = line.text;
-    if (line.name == "Plan") widgets::status_row(ui, line.severity, "Plan, " + knee, line.text);
-  }
-  if (state.depth_stop_mm)
-    widgets::status_row(ui, Severity::Quiet, "Depth stop",
-                        widgets::fixed(*state.depth_stop_mm, 1) + " mm, as read");
-  if (state.resumed != nullptr)
-    widgets::status_row(
-        ui, Severity::Quiet, "Resumed",
-        state.resumed->session + ", " + std::to_string(state.resumed->stroke_count) + " strokes as history");
+void draw_rows(const widgets::Ui& ui, const std::vector<SeverityText>& rows) {
+  for (const SeverityText& row : rows) widgets::status_row(ui, row.severity, row.name, row.text);
 }
 
 }  // namespace
@@ -160,9 +124,9 @@ void draw_tracking(const widgets::Ui& ui, const widgets::Rect& area, const Navig
     draw_registration_row(ui, screen);
     draw_touch_row(ui, screen);
     draw_probe(ui, screen);
-    draw_beginning(ui, screen);
-    draw_record(ui, screen);
     const operation::OperationState& state = *screen.live->operation;
+    draw_rows(ui, beginning_rows(state, screen.patient));
+    draw_rows(ui, record_rows(*screen.live, screen.display));
     widgets::status_row(ui, Severity::Quiet, state.source->title, state.source->calibration);
   }
   ImGui::PopStyleVar();

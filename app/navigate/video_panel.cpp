@@ -57,10 +57,10 @@ void draw_reason(const widgets::Ui& ui, const widgets::Rect& area, const Navigat
 
 }  // namespace
 
-const scene::PlanOverlay& NavigateScreen::lines() const {
-  static const scene::PlanOverlay kNone;
-  const auto* made = live != nullptr ? dynamic_cast<const PlanLines*>(live->decoration.get()) : nullptr;
-  return made != nullptr ? made->lines : kNone;
+const PictureLines& NavigateScreen::lines() const {
+  static const PictureLines kNone;
+  const auto* made = live != nullptr ? dynamic_cast<const PictureLines*>(live->decoration.get()) : nullptr;
+  return made != nullptr ? *made : kNone;
 }
 
 void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen,
@@ -79,15 +79,18 @@ void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const Navigate
   }
   const DrawnPicture picture = draw_picture(area, screen, textures);
   draw.PushClipRect(picture.area.min(), picture.area.max(), true);
-  if (display.overlay_is_valid && screen.overlay_opacity > 0)
-    draw_overlay_lines(draw, picture.placement, screen.lines(), screen.overlay_opacity, ui.theme.scale);
+  const auto draw_lines = [&](const scene::PlanOverlay& lines) {
+    draw_overlay_lines(draw, picture.placement, lines, screen.overlay_opacity, ui.theme.scale);
+  };
+  if (display.plan_is_valid && screen.overlay_opacity > 0) draw_lines(screen.lines().plan);
+  if (display.overlay_is_valid && screen.overlay_opacity > 0) draw_lines(screen.lines().touched);
   draw.PopClipRect();
   if (screen.undistorts)
     draw.AddText(ui.theme.strong, ui.theme.strong->FontSize,
                  {area.x + ui.theme.px(14), area.y + ui.theme.px(9)}, widgets::kQuietText, "Undistorted");
   // Numbers without lines beside them ask for a reason.
   if (display.guidance_is_valid) {
-    const std::string reason = why_no_plan_line(screen.lines(), screen.overlay_opacity);
+    const std::string reason = why_no_plan_line(screen.lines().plan, screen.overlay_opacity);
     ui.log.note_state("no_overlay", reason);
     widgets::Rect below = area;
     (void)below.cut_top(ui.theme.px(screen.undistorts ? 44 : 0));

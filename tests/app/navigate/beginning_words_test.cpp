@@ -39,6 +39,8 @@ TEST(TimeOutCard, Hazard20NamesPatientKneePlanCameraToolsAndMedium) {
   EXPECT_EQ(line_of(card, "Plan").text, "8.5 mm wide, 31.2 mm long");
   EXPECT_EQ(line_of(card, "Camera and tools").text, source->calibration);
   EXPECT_EQ(line_of(card, "Medium").text, "saline");
+  EXPECT_EQ(line_of(card, "Medium").topic, CardLine::Topic::Medium);
+  EXPECT_EQ(line_of(card, "Plan").topic, CardLine::Topic::Plan);
   EXPECT_EQ(line_of(time_out_card(state, ""), "Patient").severity, Severity::Caution);
   state.plan.reset();
   EXPECT_EQ(line_of(time_out_card(state, ""), "Plan").text, "none");

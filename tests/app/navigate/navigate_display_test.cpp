@@ -109,6 +109,42 @@ TEST(NavigateDisplay, AnOldPictureIsNotLive) {
   EXPECT_EQ(display.headline, "No new picture for 2.0 s");
 }
 
+// The plan's lines need a registration that stands now, whatever the frame was worked in with; what was
+// touched is drawn without one, while it is made.
+TEST(NavigateDisplay, Hazard1ThePlanIsDrawnOnlyWhileARegistrationStands) {
+  EXPECT_TRUE(display_after([](Shown&) {}).plan_is_valid);
+  for (const Standing standing :
+       {Standing::None, Standing::NotReliable, Standing::Void, Standing::Alarm, Standing::InDoubt}) {
+    const NavigateDisplay display = display_after([&](Shown& shown) {
+      shown.stand(standing, {"the world marker was placed anew"});
+      shown.operation.frame.tip_is_valid = true;
+    });
+    EXPECT_FALSE(display.plan_is_valid || display.tip_is_valid || display.guidance_is_valid)
+        << to_text(standing);
+    const bool is_made = standing == Standing::None || standing == Standing::NotReliable;
+    EXPECT_EQ(display.overlay_is_valid, is_made) << to_text(standing);
+    EXPECT_FALSE(display.headline.empty()) << to_text(standing);
+  }
+}
+
+// Both are said of the source that was started last: while it is opened it has to be stopped like one that
+// runs, and what is known is still of the one before.
+TEST(NavigateDisplay, Hazard2ASourceThatIsBeingOpenedIsUnderWayAndNotKnownYet) {
+  theatre::LiveState live;
+  const auto expect = [&](Phase phase, bool is_on, bool is_of_before) {
+    live.phase = phase;
+    EXPECT_EQ(is_under_way(live), is_on) << static_cast<int>(phase);
+    EXPECT_EQ(is_of_source_before(live), is_of_before) << static_cast<int>(phase);
+  };
+  expect(Phase::NoSource, false, false);
+  expect(Phase::Starting, true, true);
+  expect(Phase::Running, true, false);
+  expect(Phase::Ended, false, false);
+  expect(Phase::Failed, false, true);
+  live.picture = std::make_shared<camera::Frame>();
+  expect(Phase::Failed, false, false);
+}
+
 // The end of a source and a failure are said, and nothing of them is live.
 TEST(NavigateDisplay, EndAndFailureAreNotLive) {
   const auto ended = display_after([](Shown& shown) { shown.live.phase = Phase::Ended; });
@@ -121,6 +157,11 @@ TEST(NavigateDisplay, EndAndFailureAreNotLive) {
   EXPECT_FALSE(failed.has_picture);
   EXPECT_EQ(failed.detail, "clip.mkv: frame 12 is cut off");
   EXPECT_FALSE(display_of(nullptr, kNow_s).has_picture);
+  const auto without_picture = display_after([](Shown& shown) {
+    shown.live.phase = Phase::Ended;
+    shown.live.picture = nullptr;
+  });
+  EXPECT_EQ(without_picture.detail, "It ended before its first picture");
 }
 
 // An alarm hides everything from this moment on, even in a frame that was computed before it.
@@ -293,9 +334,13 @@ TEST(Bullseye, PointIsWhereTheAxisMissesTheEntry) {
 // What was not confirmed guides nothing, whatever else stands: no number and no line of the plan.
 TEST(NavigateDisplay, Hazard20NothingIsShownBeforeTheTimeOut) {
   Shown shown;
-  ASSERT_TRUE(shown.display().guidance_is_valid);
+  shown.operation.frame.tip_is_valid = true;
+  ASSERT_TRUE(shown.display().guidance_is_valid && shown.display().tip_is_valid);
   shown.operation.time_out = operation::TimeOut::Due;
   EXPECT_FALSE(shown.display().guidance_is_valid) << "in the frame that was worked in before, too";
+  EXPECT_EQ(shown.display().headline, "Time-out not confirmed");
+  EXPECT_FALSE(shown.display().plan_is_valid);
+  EXPECT_FALSE(shown.display().tip_is_valid) << "how far the tip is from the bone is a number too";
   shown.operation.frame.guidance.state = GuidanceState::NotConfirmed;
   EXPECT_FALSE(shown.display().guidance_is_valid);
   EXPECT_EQ(shown.display().headline, "Time-out not confirmed");

@@ -1,0 +1,22 @@
+// Rows of the tracking panel that are words alone. Pure. Precondition of all: what is known is of the source
+// that was started last (is_of_source_before() is false).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/navigate/navigate_display.h"
+#include "app/navigate/registration_words.h"
+
+namespace arthronaut::navigate {
+
+// What a time-out reads out, whether or not one was asked for, in few lines: the patient stands in the title,
+// camera and tools with the source.
+[[nodiscard]] std::vector<SeverityText> beginning_rows(const operation::OperationState& state,
+                                                       const std::string& patient);
+// Whether something is recorded, and how fast pictures come. The journal is written in any case: what is
+// worth saying is that it is not, and whether video is kept. Nothing of a source that gives no pictures now.
+[[nodiscard]] std::vector<SeverityText> record_rows(const theatre::LiveState& live,
+                                                    const NavigateDisplay& display);
+
+}  // namespace arthronaut::navigate

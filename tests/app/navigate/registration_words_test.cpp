@@ -1,0 +1,185 @@
+#include "app/navigate/registration_words.h"
+
+#include <gtest/gtest.h>
+
+#include "navigation/operation/operation.h"
+
+namespace arthronaut::navigate {
+namespace {
+
+using operation::RegistrationOrigin;
+using operation::Standing;
+using widgets::Severity;
+using Phase = theatre::LiveState::Phase;
+
+constexpr const char* kReason = "the medium was saline and is air now";
+
+operation::SourceSetup source_of(sources::SourceKind kind) {
+  operation::SourceSetup source;
+  source.kind = kind;
+  source.pipeline.tools = tools::standard_tools();
+  return source;
+}
+
+operation::RegistrationEntry entry_of(sources::SourceKind kind) {
+  auto found = std::make_shared<registration::RegistrationSummary>();
+  found->has_pose = found->reliable = true;
+  found->reasons.clear();
+  found->assumptions = {"the cartilage was left out"};
+  found->predicted_tre_mm = 0.7;
+  found->rms_mm = 0.2;
+  found->runner_up_ratio = 20;
+  operation::RegistrationEntry entry;
+  entry.registration = found;
+  entry.of = operation::provenance_of({}, source_of(kind));
+  return entry;
+}
+
+// A live source; in force is one that was found with it, and what is drawn on makes a better candidate with
+// one stroke that fits well.
+struct Known {
+  operation::RegistrationState registration;
+  std::vector<operation::RegistrationEntry> history{entry_of(sources::SourceKind::Live)};
+  theatre::LiveState live;
+
+  Known() {
+    auto online = std::make_shared<registration::OnlineResult>();
+    online->state = registration::OnlineState::Candidate;
+    online->registration = *history[0].registration;
+    online->registration.predicted_tre_mm = 0.3;
+    online->coach.progress = 0.8;
+    online->strokes.resize(1);
+    online->strokes[0].length_mm = 30;
+    online->strokes[0].median_residual_mm = 0.2;
+    registration.online = online;
+    live.phase = Phase::Running;
+    stand(Standing::Stands);
+  }
+  void stand(Standing standing) {
+    auto summary = std::make_shared<registration::RegistrationSummary>(*history[0].registration);
+    summary->reliable = standing == Standing::Stands;
+    if (!summary->reliable) summary->reasons = {kReason};
+    registration.in_force = {};
+    registration.in_force.standing = standing;
+    registration.in_force.is_verified = standing == Standing::Stands;
+    registration.entry_in_force.reset();
+    if (standing == Standing::None) return;
+    registration.in_force.registration = summary;
+    registration.entry_in_force = 0;
+  }
+  [[nodiscard]] RegistrationWords words() const {
+    operation::RegistrationState known = registration;
+    known.history = std::make_shared<const std::vector<operation::RegistrationEntry>>(history);
+    auto operation = std::make_shared<operation::OperationState>();
+    operation->source = std::make_shared<const operation::SourceSetup>(source_of(sources::SourceKind::Live));
+    operation->registration = std::make_shared<const operation::RegistrationState>(known);
+    theatre::LiveState whole = live;
+    whole.operation = operation;
+    return words_of(whole);
+  }
+};
+
+bool is_good(const RegistrationWords& words) {
+  bool is_good = words.state.severity == Severity::Good;
+  for (const SeverityText& row : words.numbers) is_good = is_good || row.severity == Severity::Good;
+  for (const SeverityText& row : words.history) is_good = is_good || row.severity == Severity::Good;
+  for (const StrokeRow& row : words.strokes) is_good = is_good || row.text.severity == Severity::Good;
+  return is_good;
+}
+
+// The figures are those of what guides, not of a candidate that runs along beside it.
+TEST(RegistrationWords, ShowsTheFiguresOfWhatStands) {
+  const RegistrationWords words = Known().words();
+  ASSERT_EQ(words.numbers.size(), 2U);
+  EXPECT_EQ(words.numbers[0].text, widgets::plus_minus(0.7) + " mm");
+  EXPECT_EQ(words.numbers[0].severity, Severity::Good);
+  EXPECT_EQ(words.numbers[1].text, "none comes near");
+  EXPECT_EQ(words.state.name, "Verified");
+  EXPECT_EQ(words.strokes.at(0).text.severity, Severity::Good);
+}
+
+// What must not guide has no figures, whatever runs along.
+TEST(RegistrationWords, WhatDoesNotStandHasNoFigures) {
+  for (const Standing standing :
+       {Standing::NotReliable, Standing::Void, Standing::Alarm, Standing::InDoubt}) {
+    Known known;
+    known.stand(standing);
+    const RegistrationWords words = known.words();
+    EXPECT_TRUE(words.numbers.empty()) << to_text(standing);
+    EXPECT_TRUE(words.assumed.empty()) << to_text(standing);
+    EXPECT_NE(words.state.severity, Severity::Good) << to_text(standing);
+  }
+}
+
+// Before anything is in force the candidate's figures help to draw on; nothing of them is called good.
+TEST(RegistrationWords, FiguresOfACandidateAreNeverGood) {
+  Known known;
+  known.history.clear();
+  known.registration.in_force = {};
+  known.registration.entry_in_force.reset();
+  const RegistrationWords words = known.words();
+  ASSERT_EQ(words.numbers.size(), 2U);
+  EXPECT_NE(words.numbers[0].text.find("0.3"), std::string::npos);
+  for (const SeverityText& row : words.numbers) EXPECT_EQ(row.severity, Severity::Caution) << row.name;
+}
+
+// A void registration is told with its reason and without a verdict, and so is every other one in the list
+// that is not of these pictures; the strokes beside it say nothing good either.
+TEST(RegistrationWords, Hazard1AVoidRegistrationIsNowhereGood) {
+  Known known;
+  known.stand(Standing::Void);
+  known.history = {entry_of(sources::SourceKind::Simulation), entry_of(sources::SourceKind::Simulation)};
+  const RegistrationWords words = known.words();
+  EXPECT_FALSE(is_good(words));
+  EXPECT_EQ(words.history.at(0).severity, Severity::Quiet);
+  EXPECT_EQ(words.history.at(0).text, kReason);
+  EXPECT_EQ(words.history.at(1).severity, Severity::Quiet);
+  EXPECT_NE(words.history.at(1).text.find("another kind of pictures"), std::string::npos);
+  EXPECT_EQ(words.strokes.at(0).text.severity, Severity::Quiet);
+  // One that was found with these pictures may be taken.
+  known.history.push_back(entry_of(sources::SourceKind::Live));
+  EXPECT_EQ(known.words().history.at(2).severity, Severity::Good);
+}
+
+// An alarm and a doubt belie the figures of the list as well.
+TEST(RegistrationWords, TheListCallsNothingGoodThatIsInDoubt) {
+  for (const Standing standing : {Standing::Alarm, Standing::InDoubt}) {
+    Known known;
+    known.stand(standing);
+    EXPECT_EQ(known.words().history.at(0).severity, Severity::Bad) << to_text(standing);
+    EXPECT_EQ(known.words().history.at(0).text, kReason) << to_text(standing);
+  }
+}
+
+// A candidate that is confirmed while something else is in force, which is not reliable, guides nothing.
+TEST(RegistrationWords, WhatIsNotInForceIsNotCalledConfirmed) {
+  Known known;
+  auto online = std::make_shared<registration::OnlineResult>(*known.registration.online);
+  online->state = registration::OnlineState::Confirmed;
+  known.registration.online = online;
+  known.stand(Standing::NotReliable);
+  EXPECT_EQ(known.words().state.name, "Registration not reliable");
+  known.stand(Standing::None);
+  EXPECT_NE(known.words().state.severity, Severity::Good);
+}
+
+// While another source is being opened nobody knows what the registration is worth with it; one that could
+// not be opened leaves it so.
+TEST(RegistrationWords, Hazard2NothingIsGoodBeforeTheFirstPictureOfASource) {
+  Known known;
+  ASSERT_TRUE(is_good(known.words()));
+  for (const Phase phase : {Phase::Starting, Phase::Failed}) {
+    known.live.phase = phase;
+    const RegistrationWords words = known.words();
+    EXPECT_FALSE(is_good(words));
+    EXPECT_EQ(words.state.name, "No picture yet");
+    EXPECT_TRUE(words.numbers.empty());
+    EXPECT_EQ(words.progress, 0);
+    EXPECT_EQ(words.strokes.size(), 1U) << "what was drawn can still be chosen";
+  }
+  known.live.picture = std::make_shared<camera::Frame>();  // it gave some before it failed
+  EXPECT_TRUE(is_good(known.words()));
+}
+
+}  // namespace
+}  // namespace arthronaut::navigate
