@@ -44,6 +44,43 @@ std::string neutral_source(const std::string& source) {
   return extension.empty() ? source : "recording (" + extension.substr(1) + ")";
 }
 
+std::string kind_in_words(const recording::SessionHeader& header) {
+  const auto kind = sources::source_kind_from_text(header.source_kind);
+  if (!kind) return "not recorded";
+  return *kind == sources::SourceKind::Live        ? "live: a camera, as it came"
+         : *kind == sources::SourceKind::Recording ? "recording: a video that was made before"
+                                                   : "simulation: nobody's knee";
+}
+
+// What was asked before the guide was followed, and what spoke against it, as the session's events say it.
+std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session) {
+  bool is_verified = false, was_verified = false, was_skipped = false, is_confirmed = false;
+  std::string alarms;
+  for (const recording::SessionEvent& event : session.events()) {
+    const bool is_another =
+        event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent;
+    is_verified = event.kind == recording::kVerifiedEvent || (is_verified && !is_another);
+    was_verified = was_verified || is_verified;
+    was_skipped = was_skipped || event.kind == "verification skipped";
+    is_confirmed = is_confirmed || event.kind == "time-out confirmed";
+    if (event.kind == recording::kAlarmEvent || event.kind == recording::kVoidEvent)
+      alarms += (alarms.empty() ? "" : "; ") + (event.text.empty() ? "over" : event.text);
+  }
+  const std::string verified =
+      is_verified    ? "verified by touches"
+      : was_verified ? "verified by touches earlier; of the last registration nothing is recorded"
+      : was_skipped  ? "SKIPPED"
+                     : "not verified";
+  const std::string& kind = session.header().source_kind;
+  const bool is_live = kind == sources::to_text(sources::SourceKind::Live);
+  return {{"Verification", verified + (was_skipped ? "; guidance began without it" : "")},
+          {"Time-out", is_confirmed   ? "confirmed"
+                       : is_live      ? "not confirmed in this session"
+                       : kind.empty() ? "not recorded"
+                                      : "not asked: no live source"},
+          {"Alarms, void registrations", alarms.empty() ? "none" : alarms}};
+}
+
 // What the report tells of: the case and, where there is one, the session that matters.
 struct Content {
   std::filesystem::path folder;
@@ -253,7 +290,7 @@ void Report::result_section(const operation::AchievedTunnel& achieved) {
                     number(measured_true.angle_deg, "°", 2)});
   }
   table({86, 28, 28, 28}, rows);
-  sentence("Depth reached " + number(achieved.depth_mm, " mm") +
+  sentence("Depth reached " + (achieved.depth_mm ? number(*achieved.depth_mm, " mm") : "not known") +
                ". Predicted error of these figures, one sigma: " +
                number(achieved.sigma_offset_mm, " mm", 2) + ", " + number(achieved.sigma_angle_deg, "°", 2) +
                ". Median of " + std::to_string(achieved.pose_count) + " poses of the guide while drilling.",
@@ -277,16 +314,20 @@ void Report::navigate_page() {
     with_mark += frame.lens.mark == lens::MarkState::Found;
   }
   const double frames = std::max<double>(1, static_cast<double>(session.frames().size()));
-  table({70, 100}, {{"Session", ""},
-                    {"Id", header.id},
-                    {"Started", header.started_utc},
-                    {"Bone", std::string(bones::to_text(header.bone))},
-                    {"Video", content_.identity ? header.source : neutral_source(header.source)},
-                    {"Medium", camera::medium_to_text(header.refractive_index)},
-                    {"Frames", std::to_string(session.frames().size()) +
-                                   (session.was_finished() ? "" : " (cut off by a crash)")},
-                    {"World marker tracked", number(100 * with_world / frames, " % of the frames")},
-                    {"Lens mark found", number(100 * with_mark / frames, " % of the frames")}});
+  std::vector<std::vector<std::string>> rows{
+      {"Session", ""},
+      {"Id", header.id},
+      {"Started", header.started_utc},
+      {"Bone", std::string(bones::to_text(header.bone))},
+      {"Source", kind_in_words(header)},
+      {"Video", content_.identity ? header.source : neutral_source(header.source)},
+      {"Medium", camera::medium_to_text(header.refractive_index)},
+      {"Frames",
+       std::to_string(session.frames().size()) + (session.was_finished() ? "" : " (cut off by a crash)")},
+      {"World marker tracked", number(100 * with_world / frames, " % of the frames")},
+      {"Lens mark found", number(100 * with_mark / frames, " % of the frames")}};
+  for (auto& row : safety_rows(session)) rows.push_back(std::move(row));
+  table({70, 100}, rows);
   if (session.registration()) registration_section(*session.registration());
   if (content_.achieved) result_section(*content_.achieved);
   if (y_ > 195) begin_page("Pictures of the result");

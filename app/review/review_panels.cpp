@@ -82,9 +82,10 @@ void draw_achieved(const widgets::Ui& ui, const SessionReview& review) {
   draw_difference(ui, "As navigation measured it", operation::compare(achieved.planned, achieved.measured));
   if (achieved.truth)
     draw_difference(ui, "As it truly is (simulated)", operation::compare(achieved.planned, *achieved.truth));
-  if (achieved.depth_mm > 1)
-    widgets::text_in(ui.theme.body, widgets::kQuietText,
-                     "Depth " + widgets::fixed(achieved.depth_mm, 1) + " mm");
+  widgets::text_in(ui.theme.body, widgets::kQuietText,
+                   achieved.depth_mm.value_or(0) > 1
+                       ? "Depth " + widgets::fixed(*achieved.depth_mm, 1) + " mm"
+                       : "Depth not known");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/widgets/source_banner.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
 
@@ -185,6 +186,7 @@ void ReviewView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
     widgets::text_centered(ui, rest, ui.theme.title, widgets::kQuietText, text);
     return;
   }
+  draw_origin(ui, rest.cut_top(ui.theme.px(58), gap));
   const widgets::Rect line = rest.cut_bottom(ui.theme.px(300), gap);
   const widgets::Rect moment = rest.cut_right(ui.theme.px(430), gap);
   const widgets::Rect picture = rest.cut_left((rest.width - gap) / 2, gap);
@@ -215,6 +217,23 @@ void ReviewView::draw_sessions(const widgets::Ui& ui, const widgets::Rect& area)
     widgets::status_row(ui, widgets::Severity::Caution, "Cut off",
                         "the program ended before the session did");
   widgets::end_panel();
+}
+
+// As large as the word in the bar above, and in its colour: what a recording is of changes nothing of what it
+// is.
+void ReviewView::draw_origin(const widgets::Ui& ui, const widgets::Rect& area) const {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  ImFont* const font = ui.theme.afar;
+  const std::string words = origin_in_words(review_->session->header());
+  const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0, words.c_str());
+  const float margin = ui.theme.px(14);
+  const widgets::Rect plate{area.x, area.y, size.x + 2 * margin, area.height};
+  draw.AddRectFilled(plate.min(), plate.max(), widgets::banner_color(sources::SourceKind::Recording),
+                     ui.theme.px(6));
+  draw.AddText(font, font->FontSize, {plate.x + margin, plate.center().y - size.y / 2}, widgets::kBackground,
+               words.c_str());
+  ui.log.note("review.origin", plate.min(), plate.max());
+  ui.log.note_state("origin", words);
 }
 
 void ReviewView::draw_picture(const widgets::Ui& ui, const widgets::Rect& area) {
@@ -263,11 +282,12 @@ void ReviewView::show_scene() {
   content.bones.push_back({model_->drawn_mesh(bone), scene::kBoneColor, 1.0});
   const recording::RecordedSession::PlanChange& plan = review_->plan;
   if (plan.plan) scene::add_planned_tunnel(content, *plan.plan, plan.planned_length_mm);
-  if (review_->achieved)
-    // A depth of nought means that the guide alone was seen: the tunnel is drawn as long as planned.
-    scene::add_achieved_tunnel(
-        content, review_->achieved->measured,
-        review_->achieved->depth_mm > 1 ? review_->achieved->depth_mm : plan.planned_length_mm);
+  if (review_->achieved) {
+    // Of a depth that nobody knows, in older records nought, the tunnel is drawn as long as planned.
+    const double depth_mm = review_->achieved->depth_mm.value_or(0);
+    scene::add_achieved_tunnel(content, review_->achieved->measured,
+                               depth_mm > 1 ? depth_mm : plan.planned_length_mm);
+  }
   if (session.registration() && session.registration()->has_pose) {
     const geometry::RigidTransform bone_from_marker = session.registration()->marker_from_bone.inverse();
     std::vector<Eigen::Vector3d> touched;

@@ -38,7 +38,7 @@ class ReviewView : public mode::Mode {
   void add_actions(widgets::Actions& actions) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
   [[nodiscard]] bool is_busy() const override;
-  // Whatever a session was made of, what is shown of it is a recording.
+  // Whatever a session was made of, what is shown of it is a recording; draw_origin() says what of.
   [[nodiscard]] std::optional<sources::SourceKind> source_kind() const override;
   [[nodiscard]] std::string notice() const override { return notice_; }
 
@@ -49,6 +49,7 @@ class ReviewView : public mode::Mode {
   void step(long frames);
   [[nodiscard]] bool has_frames() const;
   void draw_sessions(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_origin(const widgets::Ui& ui, const widgets::Rect& area) const;
   void draw_picture(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_scene(const widgets::Ui& ui, const widgets::Rect& area);
   void show_scene();

@@ -63,6 +63,20 @@ SessionReview read_review(const std::filesystem::path& session_folder) {
   return review;
 }
 
+std::string origin_in_words(const recording::SessionHeader& header) {
+  const auto kind = sources::source_kind_from_text(header.source_kind);
+  if (!kind) return "RECORDING";
+  switch (*kind) {
+    case sources::SourceKind::Live:
+      return "RECORDING of a live camera";
+    case sources::SourceKind::Recording:
+      return "RECORDING of a video";
+    case sources::SourceKind::Simulation:
+      return "RECORDING of a simulation";
+  }
+  return "RECORDING";
+}
+
 double time_s(const recording::RecordedSession& session, std::size_t frame) {
   return static_cast<double>(session.frames()[frame].timestamp_ns - session.frames().front().timestamp_ns) *
          1e-9;

@@ -36,6 +36,10 @@ struct SessionReview {
 // Throws IoError or InvalidInput.
 [[nodiscard]] SessionReview read_review(const std::filesystem::path& session_folder);
 
+// What the pictures of a session are, in words to be read from across the room: "RECORDING of a simulation";
+// of older records, which do not say it, "RECORDING".
+[[nodiscard]] std::string origin_in_words(const recording::SessionHeader& header);
+
 // Seconds from the first frame. Preconditions: the session has frames; frame is one of them.
 [[nodiscard]] double time_s(const recording::RecordedSession& session, std::size_t frame);
 // The frame that was shown at that time: the last one not after it.

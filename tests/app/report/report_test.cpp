@@ -32,6 +32,27 @@ class Report : public ::testing::Test {
   std::string pdf_info() const { return output_of("pdfinfo " + pdf().string()); }
   std::string pdf_text() const { return output_of("pdftotext -layout " + pdf().string() + " - 2>/dev/null"); }
 
+  // The report of a session of this kind of source with a registration, and with these events after it.
+  std::string text_of_session(const std::string& source_kind,
+                              const std::vector<std::pair<std::string_view, std::string>>& events) const {
+    const auto session_folder = cases::create_session_folder(knee_folder());
+    pipeline::PipelineOptions options;
+    options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
+    options.tools = tools::standard_tools();
+    recording::SessionHeader header;
+    header.id = session_folder.filename().string();
+    header.source_kind = source_kind;
+    registration::RegistrationSummary registration;
+    registration.has_pose = registration.reliable = true;
+    registration.reasons.clear();
+    recording::SessionRecorder recorder(session_folder, header, options);
+    recorder.set_registration(registration);
+    for (const auto& [kind, text] : events) recorder.add_event({0, std::string(kind), text, -1});
+    recorder.finish();
+    write_report(knee_folder(), pdf());
+    return pdf_text();
+  }
+
   cases::Case knee_;
 
  private:
@@ -133,6 +154,30 @@ TEST_F(Report, ComparesPlannedAndAchieved) {
   expect_contains(text, "2.00 mm");  // plan to truth
   expect_contains(text, "0.75 mm");  // measured to truth
   expect_contains(text, "water");
+}
+
+// Hazard 2: nobody takes the figures of a simulation for a patient's.
+TEST_F(Report, Hazard2NamesTheKindOfSource) {
+  expect_contains(text_of_session("simulation", {}), "simulation: nobody's knee");
+  expect_contains(text_of_session("recording", {}), "recording: a video that was made before");
+  const std::string live = text_of_session("live", {});
+  expect_contains(live, "live: a camera, as it came");
+  expect_contains(live, "not confirmed in this session");
+  expect_contains(live, "not verified");
+}
+
+// What was asked before the guide was followed, and what spoke against it, is in the report.
+TEST_F(Report, SaysHowItWasVerifiedConfirmedAndDoubted) {
+  const std::string good = text_of_session("live", {{"time-out confirmed", "right femur"},
+                                                    {recording::kVerifiedEvent, ""},
+                                                    {recording::kAlarmEvent, "The control point has moved"},
+                                                    {recording::kAlarmEvent, ""}});
+  expect_contains(good, "verified by touches");
+  expect_contains(good, "The control point has moved; over");
+  EXPECT_EQ(good.find("not confirmed in this session"), std::string::npos);
+  const std::string skipped = text_of_session("simulation", {{"verification skipped", "guidance began"}});
+  expect_contains(skipped, "SKIPPED; guidance began without it");
+  expect_contains(skipped, "not asked: no live source");
 }
 
 // Hazard 19: nobody is named unless that was asked for.

@@ -41,5 +41,17 @@ TEST(SessionReview, HoldsThePlanThatGuided) {
   EXPECT_FALSE(review.achieved);
 }
 
+// What a session was made of is told with the word that it is a recording: a simulated one is nobody's knee.
+TEST(SessionReview, Hazard2SaysWhatTheRecordingIsOf) {
+  recording::SessionHeader header = test::session_header();
+  EXPECT_EQ(origin_in_words(header), "RECORDING") << "older records do not say it";
+  header.source_kind = "live";
+  EXPECT_EQ(origin_in_words(header), "RECORDING of a live camera");
+  header.source_kind = "recording";
+  EXPECT_EQ(origin_in_words(header), "RECORDING of a video");
+  header.source_kind = "simulation";
+  EXPECT_EQ(origin_in_words(header), "RECORDING of a simulation");
+}
+
 }  // namespace
 }  // namespace arthronaut::review
