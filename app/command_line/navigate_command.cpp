@@ -82,7 +82,7 @@ pipeline::PipelineOptions pipeline_options(const NavigateArguments& arguments, c
   options.probe_name = arguments.probe;
   options.guide_name = arguments.guide;
   if (options.guide_name.empty()) {
-    options.guide_name = options.bone == bones::BoneKind::Femur ? "femoral guide" : "tibial guide";
+    options.guide_name = tools::standard_guide_name(options.bone);
   } else if (!options.tools.find_tool(options.guide_name)) {
     throw InvalidInput("--guide: the tools declare no tool named \"" + options.guide_name + "\"");
   }

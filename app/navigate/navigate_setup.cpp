@@ -13,10 +13,6 @@ namespace {
 
 constexpr int kPlacesToTouch = 4;  // three verify, one is the control point
 
-std::string guide_name_of(bones::BoneKind bone) {
-  return bone == bones::BoneKind::Femur ? "femoral guide" : "tibial guide";
-}
-
 const landmarks::Landmarks& landmarks_of(const cases::Case& knee, bones::BoneKind bone) {
   static const landmarks::Landmarks kNone;
   const auto found = knee.landmarks.find(bone);
@@ -29,7 +25,7 @@ theatre::TheatreSource source_of(const open_case::PlanModel& model, bones::BoneK
   source.setup.kind = kind;
   source.setup.pipeline.bone = bone;
   source.setup.pipeline.side = model.knee().side;
-  source.setup.pipeline.guide_name = guide_name_of(bone);
+  source.setup.pipeline.guide_name = tools::standard_guide_name(bone);
   source.setup.pipeline.axes = landmarks::anatomical_axes(
       bone, model.knee().side, landmarks_of(model.knee(), bone), model.knee().bones.at(bone).mesh);
   return source;

@@ -61,8 +61,8 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
         event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent;
     is_verified = event.kind == recording::kVerifiedEvent || (is_verified && !is_another);
     was_verified = was_verified || is_verified;
-    was_skipped = was_skipped || event.kind == "verification skipped";
-    is_confirmed = is_confirmed || event.kind == "time-out confirmed";
+    was_skipped = was_skipped || event.kind == recording::kVerificationSkippedEvent;
+    is_confirmed = is_confirmed || event.kind == recording::kTimeOutConfirmedEvent;
     if (event.kind == recording::kAlarmEvent || event.kind == recording::kVoidEvent)
       alarms += (alarms.empty() ? "" : "; ") + (event.text.empty() ? "over" : event.text);
   }

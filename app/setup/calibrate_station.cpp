@@ -7,6 +7,7 @@
 #include "app/case/case_calibration.h"
 #include "navigation/camera/camera_file.h"
 #include "planning/cases/case.h"
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::setup {
@@ -34,7 +35,7 @@ void CalibrateStation::read_adopted() {
     if (form_.head_name.empty()) form_.head_name = record.head_name;
     const bool is_measured = record.provenance.origin == provenance::Origin::Measured;
     adopted_ = {is_measured ? widgets::Severity::Good : widgets::Severity::Caution, "Camera",
-                open_case::in_words(record.provenance, cases::utc_now())};
+                open_case::in_words(record.provenance, files::utc_now())};
   } catch (const std::runtime_error& error) {
     adopted_ = {widgets::Severity::Bad, "Camera", error.what()};
   }

@@ -5,6 +5,7 @@
 #include "app/case/case_calibration.h"
 #include "navigation/camera/medium.h"
 #include "planning/cases/case.h"
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::setup {
@@ -20,7 +21,7 @@ void FluidStation::read_standing() {
   using open_case::FluidStanding;
   const bool is_simulated = !open_case::has_real_camera(case_folder_);
   const open_case::FluidState state =
-      open_case::fluid_state(case_folder_, refractive_index_, is_simulated, cases::utc_now());
+      open_case::fluid_state(case_folder_, refractive_index_, is_simulated, files::utc_now());
   standing_ = state.text;
   checked_ = {widgets::Severity::Caution, "Fluid", state.text};
   if (state.standing == FluidStanding::Unreadable) checked_.severity = widgets::Severity::Bad;
@@ -42,7 +43,7 @@ void FluidStation::keep_verdict() {
   try {  // a disk that is full is a state of the screen
     const std::string why_not = open_case::keep_fluid_verdict(
         case_folder_, calibration::record_of(*summary, status_.job.refractive_index), source.is_simulated,
-        source.name, cases::utc_now());
+        source.name, files::utc_now());
     read_standing();
     if (!why_not.empty()) checked_ = {widgets::Severity::Caution, "Fluid", "not kept: " + why_not};
   } catch (const IoError& error) {

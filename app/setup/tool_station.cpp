@@ -7,6 +7,7 @@
 #include "app/case/case_calibration.h"
 #include "navigation/camera/medium.h"
 #include "planning/cases/case.h"
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::setup {
@@ -106,7 +107,7 @@ void ToolStation::adopt() {
         std::filesystem::exists(file) ? tools::read_tools_file(file) : tools::standard_tools();
     using provenance::Origin;
     const provenance::Provenance found{finds_simulated_ ? Origin::Simulated : Origin::Measured,
-                                       cases::utc_now()};
+                                       files::utc_now()};
     tools::write_tools_file(file, with_result(known, choice().tool_name, *result, found));
     adopted_result_ = result;
     run_->post([result](ToolJob& job) { job.settle(result); });

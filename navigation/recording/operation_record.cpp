@@ -5,6 +5,7 @@
 #include "navigation/recording/session_files.h"
 #include "navigation/registration/registration_file.h"
 #include "planning/cases/case.h"
+#include "planning/files/utc_clock.h"
 
 namespace arthronaut::recording {
 
@@ -18,7 +19,7 @@ SessionHeader header_of(const std::filesystem::path& folder, const operation::Op
                         const std::string& continues) {
   SessionHeader header;
   header.id = folder.filename().string();
-  header.started_utc = cases::utc_now();
+  header.started_utc = files::utc_now();
   header.bone = source.pipeline.bone;
   header.side = source.pipeline.side;
   header.refractive_index = source.pipeline.refractive_index;
@@ -54,13 +55,13 @@ std::string_view kind_of(JournalKind kind) {
     case JournalKind::Void:
       return kVoidEvent;
     case JournalKind::Confirmed:
-      return "registration confirmed";
+      return kConfirmedEvent;
     case JournalKind::Verified:
       return kVerifiedEvent;
     case JournalKind::VerificationSkipped:
-      return "verification skipped";
+      return kVerificationSkippedEvent;
     case JournalKind::TimeOutConfirmed:
-      return "time-out confirmed";
+      return kTimeOutConfirmedEvent;
     case JournalKind::Plan:
       return kPlanEvent;
     case JournalKind::Drilled:

@@ -74,6 +74,10 @@ inline constexpr std::string_view kLookEvent = "second look";  // text: index of
 inline constexpr std::string_view kAlarmEvent = "alarm";       // text: what it says; empty: it is over
 inline constexpr std::string_view kVoidEvent = "registration void";  // text: why
 inline constexpr std::string_view kVerifiedEvent = "registration verified";
+inline constexpr std::string_view kConfirmedEvent = "registration confirmed";          // text: by what
+inline constexpr std::string_view kVerificationSkippedEvent = "verification skipped";  // text: how
+inline constexpr std::string_view kTimeOutConfirmedEvent =
+    "time-out confirmed";  // text: what was on the screen
 inline constexpr std::string_view kDrilledEvent = "tunnel drilled";
 inline constexpr std::string_view kSourceStartedEvent = "source started";  // what is before it came earlier
 inline constexpr std::string_view kSourceEndedEvent = "source ended";

@@ -346,9 +346,8 @@ const tools::Tool& probe_of(const tools::ToolSet& tools) {
 }
 
 const tools::Tool& guide_of(const SimulationOptions& options) {
-  const std::string name =
-      std::string(bones::to_text(options.bone)) == "femur" ? "femoral guide" : "tibial guide";
-  if (const tools::Tool* named = options.tools.find_tool(name); named && named->axis) return *named;
+  const tools::Tool* const named = options.tools.find_tool(tools::standard_guide_name(options.bone));
+  if (named != nullptr && named->axis) return *named;
   for (const tools::Tool& tool : options.tools.tools) {
     if (tool.axis) return tool;
   }

@@ -139,6 +139,10 @@ const WorldMarker* ToolSet::find_world_marker(bones::BoneKind bone) const {
   return nullptr;
 }
 
+std::string_view standard_guide_name(bones::BoneKind bone) {
+  return bone == bones::BoneKind::Femur ? "femoral guide" : "tibial guide";
+}
+
 ToolSet standard_tools() {
   // A hooked probe whose plate stands across the shaft, and two aiming arms whose sleeve runs along the
   // marker's -y.
@@ -146,8 +150,8 @@ ToolSet standard_tools() {
   ToolSet set;
   set.world_markers = {{bones::BoneKind::Femur, 0, 4.0}, {bones::BoneKind::Tibia, 1, 4.0}};
   set.tools = {{"probe", 2, 4.0, Eigen::Vector3d(0, -22.8, -13.1), std::nullopt},
-               {"femoral guide", 3, 4.0, std::nullopt, guide_axis},
-               {"tibial guide", 4, 4.0, std::nullopt, guide_axis}};
+               {std::string(standard_guide_name(bones::BoneKind::Femur)), 3, 4.0, std::nullopt, guide_axis},
+               {std::string(standard_guide_name(bones::BoneKind::Tibia)), 4, 4.0, std::nullopt, guide_axis}};
   return set;
 }
 

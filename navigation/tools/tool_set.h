@@ -78,6 +78,9 @@ struct ToolSet {
 // instruments' geometry.
 [[nodiscard]] ToolSet standard_tools();
 
+// What the guide of a bone's tunnel is called there, and wherever nobody says another name.
+[[nodiscard]] std::string_view standard_guide_name(bones::BoneKind bone);
+
 // Refuses a marker id used twice, ids outside DICT_4X4_50, sizes that are not above 0, a zero axis direction,
 // a drill without tip or axis, an error below 0.
 // Throws IoError or InvalidInput.

@@ -113,7 +113,4 @@ void save_cartilage(const std::filesystem::path& case_folder, bones::BoneKind ki
 // time. Throws IoError.
 [[nodiscard]] std::filesystem::path create_session_folder(const std::filesystem::path& case_folder);
 
-// See files/utc_clock.h.
-[[nodiscard]] std::string utc_now();
-
 }  // namespace arthronaut::cases

@@ -84,8 +84,6 @@ std::vector<fs::path> session_folders(const fs::path& case_folder) {
   return folders;
 }
 
-std::string utc_now() { return files::utc_now(); }
-
 fs::path create_session_folder(const fs::path& case_folder) {
   const fs::path sessions = case_folder / "sessions";
   files::create_private_folder(sessions);
