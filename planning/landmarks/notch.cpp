@@ -16,11 +16,10 @@ using Eigen::Vector3d;
 
 constexpr double kUsualSlope_deg = 37;  // of the roof against the long axis; 26 to 46 in Howell 1995
 constexpr double kStep_mm = 0.5, kReach_mm = 36;
-constexpr double kBend_mm = 1.0;  // off the line: the roof has ended
-constexpr double kFarOff_mm = 3.0, kLongestPit_mm = 6.0, kGap_mm = 3.0;
-constexpr double kHill_mm = 1.0;  // into the notch off the line: a hill
-constexpr double kLeastRoof_mm = 14;
-constexpr double kGreatestTurn = 0.45;  // of the roof against what was taken for its direction, tangent
+constexpr double kBeyond_mm = 8.0, kLeastBeyond_mm = 5.0;  // of the back of the shaft and of the groove
+constexpr double kLeastRise = 0.25;                        // of either against the roof, tangent
+constexpr double kHill_mm = 1.0;                           // into the notch off the line: a hill
+constexpr double kLeastRoof_mm = 16, kLongestRoof_mm = 45;
 
 struct ProfilePoint {
   double s = 0, t = 0;  // along the roof, into the bone; from the middle of the condyles
@@ -93,70 +92,79 @@ struct Line {
   [[nodiscard]] double at(double s) const { return offset + slope * s; }
 };
 
-Line fit(const std::vector<ProfilePoint>& profile, double from, double to, const Line* without_hill_of) {
-  double n = 0, s1 = 0, s2 = 0, t1 = 0, st = 0;
-  for (const auto& p : profile) {
-    if (p.s < from || p.s > to) continue;
-    if (without_hill_of != nullptr && p.t < without_hill_of->at(p.s) - 0.7 * kHill_mm) continue;
-    n += 1, s1 += p.s, s2 += p.s * p.s, t1 += p.t, st += p.s * p.t;
-  }
-  const double determinant = n * s2 - s1 * s1;
-  if (n < 6 || determinant < 1e-9) return {};
-  const double slope = (n * st - s1 * t1) / determinant;
-  return {(t1 - slope * s1) / n, slope};
-}
-
-// From `inside` outwards to where the outline leaves the line for good: a pit in the roof is shallow or
-// short, beyond the end the bone falls away.
-double end_of_roof(const std::vector<ProfilePoint>& profile, const Line& line, double inside, double sign) {
-  std::vector<const ProfilePoint*> way;
-  for (const auto& p : profile) {
-    if (sign * (p.s - inside) >= 0) way.push_back(&p);
-  }
-  if (sign < 0) std::reverse(way.begin(), way.end());
-  double end = inside, before = inside;
-  for (const auto* p : way) {
-    const double off = p->t - line.at(p->s);
-    if (off > kFarOff_mm || sign * (p->s - end) > kLongestPit_mm || sign * (p->s - before) > kGap_mm) break;
-    before = p->s;
-    if (off < kBend_mm) end = p->s;
-  }
-  return end;
-}
-
 const ProfilePoint& nearest(const std::vector<ProfilePoint>& profile, double s) {
   return *std::min_element(profile.begin(), profile.end(), [&](const auto& a, const auto& b) {
     return std::abs(a.s - s) < std::abs(b.s - s);
   });
 }
 
+// The straight line through the roof by least squares, and again without what stands off it into the notch.
+Line without_hill(const std::vector<ProfilePoint>& profile, double from, double to, Line line) {
+  for (int round = 0; round < 6; ++round) {
+    double n = 0, s1 = 0, s2 = 0, t1 = 0, st = 0;
+    for (const auto& p : profile) {
+      if (p.s < from || p.s > to || p.t < line.at(p.s) - 0.7 * kHill_mm) continue;
+      n += 1, s1 += p.s, s2 += p.s * p.s, t1 += p.t, st += p.s * p.t;
+    }
+    const double determinant = n * s2 - s1 * s1;
+    if (n < 6 || determinant < 1e-9) return line;
+    const double slope = (n * st - s1 * t1) / determinant;
+    line = {(t1 - slope * s1) / n, slope};
+  }
+  return line;
+}
+
+// The outline as the lateral view shows it: the back of the shaft, the roof, the groove of the kneecap, each
+// straight over kBeyond_mm next to the roof. `from` and `to` are where they meet.
 struct Roof {
   double from = 0, to = 0;
   Line line;
+  double misfit_mm = 0;  // root mean square
+  // The longer of two that the outline comes equally near to: in a bent roof a short piece is always
+  // straight.
+  [[nodiscard]] double cost() const { return misfit_mm / (to - from); }
 };
 
-std::optional<Roof> grow_roof(const std::vector<ProfilePoint>& profile, Roof roof) {
-  for (int round = 0; round < 10; ++round) {
-    const double inset = 0.08 * (roof.to - roof.from);
-    const Line all = fit(profile, roof.from + inset, roof.to - inset, nullptr);
-    roof.line = fit(profile, roof.from + inset, roof.to - inset, &all);
-    if (std::abs(roof.line.slope) > kGreatestTurn) return std::nullopt;
-    const double middle = (roof.from + roof.to) / 2;
-    roof.from = end_of_roof(profile, roof.line, middle, -1);
-    roof.to = end_of_roof(profile, roof.line, middle, 1);
-    if (roof.to - roof.from < kLeastRoof_mm) return std::nullopt;
+// Three straight pieces that meet at `from` and `to`, by least squares.
+std::optional<Roof> three_pieces(const std::vector<ProfilePoint>& profile, double from, double to) {
+  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  double squares = 0, count = 0, behind = 0, ahead = 0;
+  for (const auto& p : profile) {
+    if (p.s < from - kBeyond_mm || p.s > to + kBeyond_mm) continue;
+    const Eigen::Vector4d row(1, p.s, std::max(0.0, from - p.s), std::max(0.0, p.s - to));
+    normal += row * row.transpose();
+    right += p.t * row;
+    squares += p.t * p.t;
+    count += 1, behind += p.s<from, ahead += p.s> to;
   }
-  return roof;
+  if (std::min(behind, ahead) < kLeastBeyond_mm / kStep_mm) return std::nullopt;
+  const Eigen::Vector4d pieces = normal.ldlt().solve(right);
+  // Behind and in front of the roof the bone falls away.
+  if (pieces[2] - pieces[1] < kLeastRise || pieces[3] + pieces[1] < kLeastRise) return std::nullopt;
+  const double left = std::max(0.0, squares - pieces.dot(right));
+  return Roof{from, to, {pieces[0], pieces[1]}, std::sqrt(left / count)};
 }
 
-// The longest straight stretch, wherever it is looked for first.
-std::optional<Roof> find_roof(const std::vector<ProfilePoint>& profile, double scale) {
-  std::optional<Roof> longest;
-  for (double start = -10; start <= 18; start += 4) {
-    const auto grown = grow_roof(profile, {(start - 6) * scale, (start + 6) * scale, {}});
-    if (grown && (!longest || grown->to - grown->from > longest->to - longest->from)) longest = grown;
+// Of all places of both ends the one that the outline comes nearest to.
+std::optional<Roof> find_roof(const std::vector<ProfilePoint>& profile) {
+  std::optional<Roof> best;
+  const auto search = [&](double from_least, double from_most, double to_least, double to_most, double step) {
+    for (double from = from_least; from <= from_most; from += step) {
+      for (double to = std::max(to_least, from + kLeastRoof_mm);
+           to <= std::min(to_most, from + kLongestRoof_mm); to += step) {
+        const auto roof = three_pieces(profile, from, to);
+        if (roof && (!best || roof->cost() < best->cost())) best = roof;
+      }
+    }
+  };
+  search(-kReach_mm, kReach_mm, -kReach_mm, kReach_mm, 2);
+  if (!best) return std::nullopt;
+  for (const double step : {0.5, 0.1}) {
+    const Roof about = *best;
+    search(about.from - 4 * step, about.from + 4 * step, about.to - 4 * step, about.to + 4 * step, step);
   }
-  return longest;
+  return best;
 }
 
 }  // namespace
@@ -176,8 +184,9 @@ std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& 
     if (!walls) return std::nullopt;
     profile = outline(view, *walls);
     if (profile.size() < 20) return std::nullopt;
-    roof = find_roof(profile, view.scale);
+    roof = find_roof(profile);
     if (!roof) return std::nullopt;
+    roof->line = without_hill(profile, roof->from, roof->to, roof->line);
     const double turn = std::atan(roof->line.slope);
     if (round == 5 || std::abs(turn) < 1e-4) break;
     slope += turn;

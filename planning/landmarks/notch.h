@@ -24,8 +24,9 @@ struct Notch {
 };
 
 // Rays from inside the notch onto its roof: of each cross section of the roof the deepest point is what the
-// lateral view shows as its outline. The roof ends where that outline bends away from its line by more than
-// 1 mm, in front into the groove of the kneecap, behind into the back of the shaft. The line's direction is
+// lateral view shows as its outline. The roof ends where three straight pieces that follow the outline best
+// meet: the back of the shaft, the roof, the groove of the kneecap. Roofs are bent like an S, so that an end
+// is not where the outline leaves the line by so much, but where it turns for good. The line's direction is
 // found anew until it stays. nullopt where between the condyles no such roof is.
 [[nodiscard]] std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& condyles,
                                               RoofConvention convention);
