@@ -19,24 +19,7 @@ using Eigen::Vector3d;
 constexpr double kJointEnd_mm = 42, kInner_mm = 8;
 // Of the directions: 0 straight back, 90 straight down.
 constexpr int kFirst_deg = -10, kLast_deg = 100, kStep_deg = 10;
-constexpr std::size_t kReach = 12;  // samples that a reach is the mean of
 constexpr int kRounds = 12;
-
-// The mean of the `kReach` samples that reach furthest.
-Vector3d reach(const std::vector<Vector3d>& points, const Vector3d& direction) {
-  std::array<std::pair<double, const Vector3d*>, kReach> best;
-  best.fill({-1e9, nullptr});
-  for (const Vector3d& p : points) {
-    const double far = p.dot(direction);
-    if (far <= best.back().first) continue;
-    best.back() = {far, &p};
-    for (std::size_t i = kReach - 1; i > 0 && best[i].first > best[i - 1].first; --i)
-      std::swap(best[i], best[i - 1]);
-  }
-  Vector3d mean = Vector3d::Zero();
-  for (const auto& [far, p] : best) mean += *p / static_cast<double>(kReach);
-  return mean;
-}
 
 struct Halves {
   std::vector<Vector3d> minus, plus;
@@ -58,6 +41,25 @@ Halves halves_of(const std::vector<SurfaceSample>& samples, const Matrix3d& axes
   return halves;
 }
 
+// Everything but the frame's direction and the misfit.
+void measure(Condyles& condyles, const Halves& halves) {
+  const Matrix3d& axes = condyles.bone_from_frame;
+  const Vector3d behind = -axes.col(1), below = -axes.col(2);
+  condyles.posterior_minus = *furthest(halves.minus, behind);
+  condyles.posterior_plus = *furthest(halves.plus, behind);
+  condyles.distal_minus = *furthest(halves.minus, below);
+  condyles.distal_plus = *furthest(halves.plus, below);
+  condyles.depth_mm = halves.foremost - halves.hindmost;
+  const double third = 0.33 * condyles.depth_mm;
+  const Vector3d posterior = (condyles.posterior_minus + condyles.posterior_plus) / 2,
+                 distal = (condyles.distal_minus + condyles.distal_plus) / 2;
+  condyles.center_mm = posterior.dot(axes.col(0)) * axes.col(0) +
+                       (posterior.dot(axes.col(1)) + third) * axes.col(1) +
+                       (distal.dot(axes.col(2)) + third) * axes.col(2);
+}
+
+bool is_too_few(const Halves& halves) { return halves.minus.size() < 100 || halves.plus.size() < 100; }
+
 }  // namespace
 
 std::optional<Condyles> find_condyles(const std::vector<SurfaceSample>& samples,
@@ -65,17 +67,17 @@ std::optional<Condyles> find_condyles(const std::vector<SurfaceSample>& samples,
   Condyles result;
   Matrix3d& axes = result.bone_from_frame;
   axes = bone_from_frame;
-  Vector3d middle = origin_mm;
+  result.center_mm = origin_mm;
   for (int round = 0; round < kRounds; ++round) {
-    const Halves halves = halves_of(samples, axes, middle);
-    if (halves.minus.size() < 100 || halves.plus.size() < 100) return std::nullopt;
+    const Halves halves = halves_of(samples, axes, result.center_mm);
+    if (is_too_few(halves)) return std::nullopt;
     Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
     Vector2d right = Vector2d::Zero();
     double squares = 0, count = 0;
     for (int degrees = kFirst_deg; degrees <= kLast_deg; degrees += kStep_deg) {
       const double angle = geometry::rad_from_deg(degrees);
       const Vector3d direction = -std::cos(angle) * axes.col(1) - std::sin(angle) * axes.col(2);
-      const Vector3d apart = reach(halves.plus, direction) - reach(halves.minus, direction);
+      const Vector3d apart = *furthest(halves.plus, direction) - *furthest(halves.minus, direction);
       // Turning x by small angles towards y and z takes this much off what is left along the direction.
       const Vector2d row = Vector2d(-std::cos(angle), -std::sin(angle)) * apart.dot(axes.col(0));
       normal += row * row.transpose();
@@ -84,18 +86,7 @@ std::optional<Condyles> find_condyles(const std::vector<SurfaceSample>& samples,
       count += 1;
     }
     result.misfit_mm = std::sqrt(squares / count);
-    const Vector3d behind = -axes.col(1), below = -axes.col(2);
-    result.posterior_minus = reach(halves.minus, behind);
-    result.posterior_plus = reach(halves.plus, behind);
-    result.distal_minus = reach(halves.minus, below);
-    result.distal_plus = reach(halves.plus, below);
-    result.depth_mm = halves.foremost - halves.hindmost;
-    const double third = 0.33 * result.depth_mm;
-    const Vector3d posterior = (result.posterior_minus + result.posterior_plus) / 2,
-                   distal = (result.distal_minus + result.distal_plus) / 2;
-    middle = posterior.dot(axes.col(0)) * axes.col(0) + (posterior.dot(axes.col(1)) + third) * axes.col(1) +
-             (distal.dot(axes.col(2)) + third) * axes.col(2);
-    result.center_mm = middle;
+    measure(result, halves);
     if (round == kRounds - 1) break;
     const Vector2d turn = normal.ldlt().solve(right);
     const Vector3d x = (axes.col(0) + turn.x() * axes.col(1) + turn.y() * axes.col(2)).normalized();
@@ -107,6 +98,20 @@ std::optional<Condyles> find_condyles(const std::vector<SurfaceSample>& samples,
   const double apart = (result.posterior_plus - result.posterior_minus).dot(axes.col(0));
   if (result.depth_mm < 40 || result.depth_mm > 100 || apart < 25 || apart > 80) return std::nullopt;
   return result;
+}
+
+Condyles seen_upright(const std::vector<SurfaceSample>& samples, const Condyles& condyles,
+                      const Vector3d& proximal) {
+  Condyles upright = condyles;
+  Matrix3d& axes = upright.bone_from_frame;
+  axes.col(2) = (proximal - proximal.dot(axes.col(0)) * axes.col(0)).normalized();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  for (int round = 0; round < 3; ++round) {
+    const Halves halves = halves_of(samples, axes, upright.center_mm);
+    if (is_too_few(halves)) return condyles;
+    measure(upright, halves);
+  }
+  return upright;
 }
 
 }  // namespace arthronaut::landmarks

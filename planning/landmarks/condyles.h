@@ -31,4 +31,9 @@ struct Condyles {
                                                     const Eigen::Matrix3d& bone_from_frame,
                                                     const Eigen::Vector3d& origin_mm);
 
+// The same view turned about its own direction until `proximal` is up: what is hindmost and lowest depends on
+// it, the condylar line does not.
+[[nodiscard]] Condyles seen_upright(const std::vector<SurfaceSample>& samples, const Condyles& condyles,
+                                    const Eigen::Vector3d& proximal);
+
 }  // namespace arthronaut::landmarks

@@ -26,7 +26,6 @@ constexpr double kJointEnd_mm = 75;
 // The shaft begins above the condyles by this share of their depth; it is straight for so far (the femur is
 // bowed).
 constexpr double kShaftFrom = 0.78, kShaftLength_mm = 110;
-constexpr std::size_t kEpicondyleSamples = 14;
 
 struct Shape {
   RoughFrame rough;
@@ -41,12 +40,18 @@ double lowest(const Shape& shape) {
   return (shape.condyles.distal_minus.dot(z) + shape.condyles.distal_plus.dot(z)) / 2;
 }
 
-// Proximal in the lateral view: the shaft's, as far as there is one, and what the roof of the notch says.
-Vector3d proximal_of(const Shape& shape) {
-  const Vector3d x = shape.condyles.bone_from_frame.col(0);
-  const Vector3d forward = shape.notch.forward, into_bone = shape.notch.into_bone;
+// Proximal in the lateral view, as far as the roof of the notch tells it.
+Vector3d proximal_by_roof(const Shape& shape) {
+  const Vector3d forward = shape.notch.roof;
+  const Vector3d into_bone =
+      (shape.notch.into_bone - shape.notch.into_bone.dot(forward) * forward).normalized();
   const double slope = geometry::rad_from_deg(kRoofSlope_deg);
-  const Vector3d by_roof = -std::cos(slope) * forward + std::sin(slope) * into_bone;
+  return -std::cos(slope) * forward + std::sin(slope) * into_bone;
+}
+
+// The same with the shaft, as far as there is one.
+Vector3d proximal_of(const Shape& shape) {
+  const Vector3d x = shape.condyles.bone_from_frame.col(0), by_roof = proximal_by_roof(shape);
   if (!shape.shaft) return by_roof;
   const Vector3d away = shape.shaft->away();
   const Vector3d by_shaft = (away - away.dot(x) * x).normalized();
@@ -55,11 +60,22 @@ Vector3d proximal_of(const Shape& shape) {
   return (weight * by_shaft + roof_weight * by_roof).normalized();
 }
 
-// Condyles, notch and long axis in turn, until they agree.
+std::optional<LongAxis> find_shaft(const Shape& shape, const geometry::TriangleMesh& mesh) {
+  const Condyles& condyles = shape.condyles;
+  const Vector3d z = condyles.bone_from_frame.col(2);
+  const Vector3d foot = condyles.center_mm + (lowest(shape) - condyles.center_mm.dot(z)) * z;
+  const double first = kShaftFrom * condyles.depth_mm;
+  return find_long_axis(mesh, shape.rough, foot, z, first, first + kShaftLength_mm);
+}
+
+// Condyles and notch in turn, until they agree: each as the other lets it be seen, and without the shaft, of
+// which more or less may be there. Then the shaft.
 bool refine(Shape& shape, const geometry::TriangleMesh& mesh, const geometry::Surface& surface, Matrix3d axes,
             RoofConvention convention, std::string& reason) {
   Vector3d origin = shape.rough.origin_mm;
-  for (int round = 0; round < 4; ++round) {
+  constexpr int kRounds = 5;
+  constexpr double kSettled = 0.001;  // of the axes' directions
+  for (int round = 0; round < kRounds; ++round) {
     const auto condyles = find_condyles(shape.samples, axes, origin);
     if (!condyles) {
       reason = "it has no two condyles at its joint's end";
@@ -72,15 +88,16 @@ bool refine(Shape& shape, const geometry::TriangleMesh& mesh, const geometry::Su
       return false;
     }
     shape.notch = *notch;
-    const Vector3d z = condyles->bone_from_frame.col(2);
-    const Vector3d foot = condyles->center_mm + (lowest(shape) - condyles->center_mm.dot(z)) * z;
-    const double first = kShaftFrom * condyles->depth_mm;
-    shape.shaft = find_long_axis(mesh, shape.rough, foot, z, first, first + kShaftLength_mm);
-    const Vector3d x = condyles->bone_from_frame.col(0);
-    axes.col(0) = x;
-    axes.col(2) = proximal_of(shape);
-    axes.col(1) = axes.col(2).cross(x);
+    const Matrix3d before = axes;
+    axes.col(0) = condyles->bone_from_frame.col(0);
+    axes.col(2) = proximal_by_roof(shape);
+    axes.col(1) = axes.col(2).cross(axes.col(0));
     origin = condyles->center_mm;
+    if ((axes - before).norm() < kSettled) break;
+  }
+  for (int round = 0; round < 3; ++round) {
+    shape.shaft = find_shaft(shape, mesh);
+    shape.condyles = seen_upright(shape.samples, shape.condyles, proximal_of(shape));
   }
   return true;
 }
@@ -100,14 +117,19 @@ std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geomet
                         s.point_mm.dot(*rough->cut_normal) > rough->cut_offset_mm - 1.6;
     if (!is_cut && (s.point_mm - rough->origin_mm).dot(z0) < kJointEnd_mm) shape.samples.push_back(s);
   }
-  // A slanting cut misleads about the long axis; then the joint's end is looked at from a little in front or
-  // behind.
+  // A slanting cut misleads about the long axis: the joint's end is looked at from in front and from behind,
+  // too, and of what is found there the roof is taken that the outline shows best.
+  std::optional<Shape> best;
+  std::string reason_of_last;
   for (const double lean_deg : {0.0, 15.0, -15.0, 30.0, -30.0}) {
+    if (std::abs(lean_deg) > 20 && best) break;
     const Eigen::AngleAxisd lean(geometry::rad_from_deg(lean_deg), Vector3d::UnitX());
-    reason.clear();
-    if (refine(shape, mesh, surface, rough->bone_from_frame * lean, convention, reason)) return shape;
+    if (refine(shape, mesh, surface, rough->bone_from_frame * lean, convention, reason_of_last) &&
+        (!best || shape.notch.cost < best->notch.cost))
+      best = shape;
   }
-  return std::nullopt;
+  if (!best) reason = reason_of_last;
+  return best;
 }
 
 // Positive: lateral is +x. The shaft stands lateral of the condyles' middle and leans that way, and the
@@ -138,41 +160,29 @@ double side_score(const Shape& shape, const geometry::TriangleMesh& mesh) {
   return score;
 }
 
-// The outermost patch, as large as kEpicondyleSamples, about the condyles' centres.
-Vector3d epicondyle(const Shape& shape, double sign) {
+// The outermost part about the condyles' centres.
+std::optional<Vector3d> epicondyle(const Shape& shape, double sign) {
   const Matrix3d& axes = shape.condyles.bone_from_frame;
   const double depth = shape.condyles.depth_mm;
-  std::vector<std::pair<double, Vector3d>> found;
+  std::vector<Vector3d> found;
   for (const auto& s : shape.samples) {
     const Vector3d q = axes.transpose() * (s.point_mm - shape.condyles.center_mm);
     // The articular margin, where osteophytes stand out further, lies below and behind.
     if (std::abs(q.y()) < 0.25 * depth && q.z() > -0.08 * depth && q.z() < 0.3 * depth)
-      found.push_back({sign * q.x(), s.point_mm});
+      found.push_back(s.point_mm);
   }
-  const std::size_t count = std::min(kEpicondyleSamples, found.size());
-  std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), found.end(),
-                    [](const auto& a, const auto& b) { return a.first > b.first; });
-  Vector3d mean = Vector3d::Zero();
-  for (std::size_t i = 0; i < count; ++i) mean += found[i].second / static_cast<double>(count);
-  return mean;
+  return furthest(found, sign * axes.col(0));
 }
 
 // Where the outline of one condyle below the line reaches furthest along `direction`.
-Vector3d extent(const Shape& shape, double sign, const Vector3d& direction) {
+std::optional<Vector3d> extent(const Shape& shape, double sign, const Vector3d& direction) {
   const Vector3d x = shape.condyles.bone_from_frame.col(0);
-  std::vector<std::pair<double, Vector3d>> found;
+  std::vector<Vector3d> found;
   for (const auto& s : shape.samples) {
     const Vector3d from_roof = s.point_mm - shape.notch.anterior_mm;
-    if (sign * from_roof.dot(x) > 0 && from_roof.dot(shape.notch.into_bone) < 0)
-      found.push_back({s.point_mm.dot(direction), s.point_mm});
+    if (sign * from_roof.dot(x) > 0 && from_roof.dot(shape.notch.into_bone) < 0) found.push_back(s.point_mm);
   }
-  constexpr std::size_t kPatch = 6;
-  const std::size_t count = std::min(kPatch, found.size());
-  std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), found.end(),
-                    [](const auto& a, const auto& b) { return a.first > b.first; });
-  Vector3d mean = Vector3d::Zero();
-  for (std::size_t i = 0; i < count; ++i) mean += found[i].second / static_cast<double>(count);
-  return mean;
+  return furthest(found, direction);
 }
 
 }  // namespace
@@ -205,11 +215,14 @@ Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions
   marks["medial_condyle_center"] =
       condyles.center_mm +
       (marks["medial_condyle_posterior"] - condyles.center_mm).dot(axes.col(0)) * axes.col(0);
-  marks["lateral_epicondyle"] = epicondyle(*shape, lateral);
-  marks["medial_epicondyle"] = epicondyle(*shape, -lateral);
-  marks["lateral_condyle_deep"] = extent(*shape, lateral, -shape->notch.forward);
-  marks["lateral_condyle_shallow"] = extent(*shape, lateral, shape->notch.forward);
-  marks["lateral_condyle_low"] = extent(*shape, lateral, -shape->notch.into_bone);
+  const auto put = [&](const char* name, const std::optional<Vector3d>& at) {
+    if (at) marks[name] = *at;
+  };
+  put("lateral_epicondyle", epicondyle(*shape, lateral));
+  put("medial_epicondyle", epicondyle(*shape, -lateral));
+  put("lateral_condyle_deep", extent(*shape, lateral, -shape->notch.forward));
+  put("lateral_condyle_shallow", extent(*shape, lateral, shape->notch.forward));
+  put("lateral_condyle_low", extent(*shape, lateral, -shape->notch.into_bone));
   if (shape->shaft) {
     marks["shaft_distal"] = shape->shaft->joint_end_mm;
     marks["shaft_proximal"] = shape->shaft->far_end_mm;

@@ -17,9 +17,13 @@ using Eigen::Vector3d;
 constexpr double kUsualSlope_deg = 37;  // of the roof against the long axis; 26 to 46 in Howell 1995
 constexpr double kStep_mm = 0.5, kReach_mm = 36;
 constexpr double kBeyond_mm = 8.0, kLeastBeyond_mm = 5.0;  // of the back of the shaft and of the groove
-constexpr double kLeastRise = 0.25;                        // of either against the roof, tangent
-constexpr double kHill_mm = 1.0;                           // into the notch off the line: a hill
-constexpr double kLeastRoof_mm = 16, kLongestRoof_mm = 45;
+constexpr double kLeastBend_rad = 0.4;                     // of either against the roof
+constexpr double kUnusual_rad = 0.3;  // of the slope: 5.5 degrees, and what the long axis is uncertain by
+constexpr double kCoarse_mm = 2.0, kFine_mm = 0.75,
+                 kRound_mm = 3.0;                           // steps of the search; how round an end may be
+constexpr double kAboutAsGood = 0.15;                       // of the cost of the best
+constexpr double kHill_mm = 1.0;                            // into the notch off the line: a hill
+constexpr double kLeastRoof_mm = 17, kLongestRoof_mm = 45;  // of a femur 65 mm deep
 
 struct ProfilePoint {
   double s = 0, t = 0;  // along the roof, into the bone; from the middle of the condyles
@@ -92,10 +96,21 @@ struct Line {
   [[nodiscard]] double at(double s) const { return offset + slope * s; }
 };
 
-const ProfilePoint& nearest(const std::vector<ProfilePoint>& profile, double s) {
-  return *std::min_element(profile.begin(), profile.end(), [&](const auto& a, const auto& b) {
-    return std::abs(a.s - s) < std::abs(b.s - s);
-  });
+// The outline's depth at a place, smoothed over 4 mm.
+double outline_at(const std::vector<ProfilePoint>& profile, double s) {
+  constexpr double kAbout_mm = 2;
+  double sum = 0, weights = 0;
+  for (const auto& p : profile) {
+    const double off = (p.s - s) / kAbout_mm;
+    if (std::abs(off) >= 1) continue;
+    const double weight = std::pow(1 - off * off, 2);
+    sum += weight * p.t;
+    weights += weight;
+  }
+  if (weights > 0) return sum / weights;
+  return std::min_element(profile.begin(), profile.end(),
+                          [&](const auto& a, const auto& b) { return std::abs(a.s - s) < std::abs(b.s - s); })
+      ->t;
 }
 
 // The straight line through the roof by least squares, and again without what stands off it into the notch.
@@ -119,14 +134,13 @@ Line without_hill(const std::vector<ProfilePoint>& profile, double from, double 
 struct Roof {
   double from = 0, to = 0;
   Line line;
-  double misfit_mm = 0;  // root mean square
-  // The longer of two that the outline comes equally near to: in a bent roof a short piece is always
-  // straight.
-  [[nodiscard]] double cost() const { return misfit_mm / (to - from); }
+  double cost = 0;
 };
 
-// Three straight pieces that meet at `from` and `to`, by least squares.
-std::optional<Roof> three_pieces(const std::vector<ProfilePoint>& profile, double from, double to) {
+// Three straight pieces that meet at `from` and `to`, by least squares. `usual` is the slope that a usual
+// roof would have in the outline.
+std::optional<Roof> three_pieces(const std::vector<ProfilePoint>& profile, double from, double to,
+                                 std::optional<double> usual_rad) {
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
   Eigen::Vector4d right = Eigen::Vector4d::Zero();
   double squares = 0, count = 0, behind = 0, ahead = 0;
@@ -141,30 +155,56 @@ std::optional<Roof> three_pieces(const std::vector<ProfilePoint>& profile, doubl
   if (std::min(behind, ahead) < kLeastBeyond_mm / kStep_mm) return std::nullopt;
   const Eigen::Vector4d pieces = normal.ldlt().solve(right);
   // Behind and in front of the roof the bone falls away.
-  if (pieces[2] - pieces[1] < kLeastRise || pieces[3] + pieces[1] < kLeastRise) return std::nullopt;
-  const double left = std::max(0.0, squares - pieces.dot(right));
-  return Roof{from, to, {pieces[0], pieces[1]}, std::sqrt(left / count)};
+  const double turn = std::atan(pieces[1]), bend_behind = turn - std::atan(pieces[1] - pieces[2]),
+               bend_ahead = std::atan(pieces[1] + pieces[3]) - turn;
+  const double unusual = usual_rad ? (turn - *usual_rad) / kUnusual_rad : 0;
+  if (std::min(bend_behind, bend_ahead) < kLeastBend_rad || std::abs(unusual) > 2) return std::nullopt;
+  // Of a bent roof a short piece is straighter, but it does not end in corners.
+  const double misfit_mm = std::sqrt(std::max(0.0, squares - pieces.dot(right)) / count);
+  return Roof{from,
+              to,
+              {pieces[0], pieces[1]},
+              misfit_mm * (1 + unusual * unusual) / ((to - from) * bend_behind * bend_ahead)};
 }
 
-// Of all places of both ends the one that the outline comes nearest to.
-std::optional<Roof> find_roof(const std::vector<ProfilePoint>& profile) {
+// Of all places of both ends the ones that the outline comes nearest to.
+std::optional<Roof> find_roof(const std::vector<ProfilePoint>& profile, double scale, double usual_rad) {
   std::optional<Roof> best;
-  const auto search = [&](double from_least, double from_most, double to_least, double to_most, double step) {
-    for (double from = from_least; from <= from_most; from += step) {
-      for (double to = std::max(to_least, from + kLeastRoof_mm);
-           to <= std::min(to_most, from + kLongestRoof_mm); to += step) {
-        const auto roof = three_pieces(profile, from, to);
-        if (roof && (!best || roof->cost() < best->cost())) best = roof;
-      }
+  for (double from = -kReach_mm; from < kReach_mm; from += kCoarse_mm) {
+    for (double to = from + kLeastRoof_mm * scale; to < std::min(kReach_mm, from + kLongestRoof_mm * scale);
+         to += kCoarse_mm) {
+      const auto roof = three_pieces(profile, from, to, usual_rad);
+      if (roof && (!best || roof->cost < best->cost)) best = roof;
     }
-  };
-  search(-kReach_mm, kReach_mm, -kReach_mm, kReach_mm, 2);
-  if (!best) return std::nullopt;
-  for (const double step : {0.5, 0.1}) {
-    const Roof about = *best;
-    search(about.from - 4 * step, about.from + 4 * step, about.to - 4 * step, about.to + 4 * step, step);
   }
   return best;
+}
+
+// The mean of all places of the ends about `about` that are about as good as the best, since an end may be
+// round. What is usual does not enter any more.
+std::optional<Roof> settle(const std::vector<ProfilePoint>& profile, const Roof& about) {
+  std::vector<Roof> found;
+  for (double from = about.from - kRound_mm; from <= about.from + kRound_mm; from += kFine_mm) {
+    for (double to = about.to - kRound_mm; to <= about.to + kRound_mm; to += kFine_mm) {
+      if (const auto roof = three_pieces(profile, from, to, std::nullopt)) found.push_back(*roof);
+    }
+  }
+  if (found.empty()) return std::nullopt;
+  const double best = std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) {
+                        return a.cost < b.cost;
+                      })->cost;
+  Roof mean;
+  double weights = 0;
+  for (const Roof& roof : found) {
+    const double weight = std::exp((1 - roof.cost / best) / kAboutAsGood);
+    mean.from += weight * roof.from;
+    mean.to += weight * roof.to;
+    mean.line.offset += weight * roof.line.offset;
+    mean.line.slope += weight * roof.line.slope;
+    weights += weight;
+  }
+  return Roof{
+      mean.from / weights, mean.to / weights, {mean.line.offset / weights, mean.line.slope / weights}, best};
 }
 
 }  // namespace
@@ -172,23 +212,26 @@ std::optional<Roof> find_roof(const std::vector<ProfilePoint>& profile) {
 std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& condyles,
                                 RoofConvention convention) {
   const Eigen::Matrix3d& axes = condyles.bone_from_frame;
-  double slope = geometry::rad_from_deg(kUsualSlope_deg);
+  const double usual = geometry::rad_from_deg(kUsualSlope_deg);
+  double slope = usual;
   View view{femur, condyles.center_mm, axes.col(0), {}, {}, condyles.depth_mm / 65};
   std::vector<ProfilePoint> profile;
   std::optional<Roof> roof;
   std::optional<Walls> walls;
-  for (int round = 0; round < 6; ++round) {
+  constexpr int kRounds = 8, kGlobal = 3;
+  for (int round = 0; round < kRounds; ++round) {
     view.forward = std::sin(slope) * axes.col(1) - std::cos(slope) * axes.col(2);
     view.into_bone = std::cos(slope) * axes.col(1) + std::sin(slope) * axes.col(2);
     walls = find_walls(view);
     if (!walls) return std::nullopt;
     profile = outline(view, *walls);
     if (profile.size() < 20) return std::nullopt;
-    roof = find_roof(profile);
+    if (round < kGlobal) roof = find_roof(profile, view.scale, usual - slope);
+    if (roof) roof = settle(profile, *roof);
     if (!roof) return std::nullopt;
     roof->line = without_hill(profile, roof->from, roof->to, roof->line);
     const double turn = std::atan(roof->line.slope);
-    if (round == 5 || std::abs(turn) < 1e-4) break;
+    if (round == kRounds - 1 || (round >= kGlobal && std::abs(turn) < 1e-3)) break;
     slope += turn;
   }
   Notch notch;
@@ -203,23 +246,25 @@ std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& 
     // Yahagi 2018: the small hill stands in the posterior half of the line alone.
     notch.shape = hill_at < (roof->from + roof->to) / 2 ? RoofShape::SmallHill : RoofShape::LargeHill;
   }
-  const ProfilePoint &front = nearest(profile, roof->to), &back = nearest(profile, roof->from);
   // Which ray is the deepest wanders over the vault; its middle does not.
   double ridge = 0, of = 0;
   for (const auto& p : profile) {
     if (p.s >= roof->from && p.s <= roof->to) ridge += (p.at - view.center).dot(view.across), of += 1;
   }
   ridge /= of;
-  const auto laid = [&](const ProfilePoint& p) -> Vector3d {
-    const double t = convention == RoofConvention::Ends ? p.t : roof->line.at(p.s);
-    return view.center + ridge * view.across + p.s * view.forward + t * view.into_bone;
+  const auto at = [&](double s, double t) -> Vector3d {
+    return view.center + ridge * view.across + s * view.forward + t * view.into_bone;
   };
-  notch.anterior_mm = laid(front);
-  notch.posterior_mm = laid(back);
-  const ProfilePoint& middle = nearest(profile, (roof->from + roof->to) / 2);
-  notch.apex_mm = view.center + ridge * view.across + middle.s * view.forward + middle.t * view.into_bone;
-  const Vector3d along = notch.anterior_mm - notch.posterior_mm;
-  notch.forward = (along - along.dot(view.across) * view.across).normalized();
+  const auto laid = [&](double s) {
+    return at(s, convention == RoofConvention::Ends ? outline_at(profile, s) : roof->line.at(s));
+  };
+  notch.anterior_mm = laid(roof->to);
+  notch.posterior_mm = laid(roof->from);
+  const double middle = (roof->from + roof->to) / 2;
+  notch.apex_mm = at(middle, outline_at(profile, middle));
+  notch.cost = roof->cost;
+  notch.roof = view.forward;
+  notch.forward = (notch.anterior_mm - notch.posterior_mm).normalized();
   notch.into_bone = (view.into_bone - view.into_bone.dot(notch.forward) * notch.forward).normalized();
   return notch;
 }

@@ -13,14 +13,17 @@
 namespace arthronaut::landmarks {
 
 struct Notch {
-  // In the lateral view: along the roof towards the front, and out of the notch into the bone. At right
-  // angles.
+  // In the lateral view: along Blumensaat's line towards the front, and out of the notch into the bone. At
+  // right angles.
   Eigen::Vector3d forward, into_bone;
+  Eigen::Vector3d roof;  // forward along the best straight line through the roof, whatever the convention
   Eigen::Vector3d anterior_mm, posterior_mm;  // the ends of Blumensaat's line by the convention; bone frame
   Eigen::Vector3d apex_mm;                    // of the roof's ridge, halfway
   double half_width_mm = 0;
   RoofShape shape = RoofShape::Straight;
   double hill_mm = 0;
+  double cost =
+      0;  // of the roof's misfit, to compare what was found from different sides; the less the better
 };
 
 // Rays from inside the notch onto its roof: of each cross section of the roof the deepest point is what the

@@ -40,7 +40,7 @@ struct ProposalOptions {
   // The side that the case says. Without it, the one that the shape tells; where the two differ the case's is
   // followed and a doubt is raised.
   std::optional<bones::Side> side;
-  RoofConvention roof = RoofConvention::Flat;
+  RoofConvention roof = RoofConvention::Ends;
 };
 
 struct Proposal {

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace arthronaut::landmarks {
 
@@ -44,6 +45,27 @@ std::vector<SurfaceSample> sample_surface(const geometry::TriangleMesh& mesh, st
     before += area;
   }
   return samples;
+}
+
+std::optional<Vector3d> furthest(const std::vector<Vector3d>& points_mm, const Vector3d& direction) {
+  if (points_mm.size() < kReach) return std::nullopt;
+  std::vector<double> heights;
+  heights.reserve(points_mm.size());
+  for (const Vector3d& p : points_mm) heights.push_back(p.dot(direction));
+  std::vector<double> top = heights;
+  std::nth_element(top.begin(), top.begin() + kReach - 1, top.end(), std::greater<>());
+  double reach = 0;
+  for (std::size_t i = 0; i < kReach; ++i) reach += top[i] / static_cast<double>(kReach);
+  Vector3d sum = Vector3d::Zero();
+  double weights = 0;
+  for (std::size_t i = 0; i < points_mm.size(); ++i) {
+    const double weight = 1 - (reach - heights[i]) / kCap_mm;
+    if (weight <= 0) continue;
+    sum += weight * points_mm[i];
+    weights += weight;
+  }
+  const Vector3d middle = sum / weights;
+  return Vector3d(middle + (reach - middle.dot(direction)) * direction);
 }
 
 std::vector<Section> sections_across(const geometry::TriangleMesh& mesh, const Vector3d& axis,
