@@ -91,6 +91,18 @@ std::vector<ProfilePoint> outline(const View& view, const Walls& walls) {
   return profile;
 }
 
+// A groove that runs back over the roof is met by no ray: the outline is taken on steeply where it ends in
+// front.
+std::vector<ProfilePoint> carried_on(std::vector<ProfilePoint> profile) {
+  constexpr double kSteep = 1.7;  // tangent
+  for (ProfilePoint p = profile.back(); p.s + kStep_mm <= kReach_mm + kBeyond_mm;) {
+    p.s += kStep_mm;
+    p.t += kSteep * kStep_mm;
+    profile.push_back(p);
+  }
+  return profile;
+}
+
 struct Line {
   double offset = 0, slope = 0;
   [[nodiscard]] double at(double s) const { return offset + slope * s; }
@@ -180,31 +192,37 @@ std::optional<Roof> find_roof(const std::vector<ProfilePoint>& profile, double s
   return best;
 }
 
-// The mean of all places of the ends about `about` that are about as good as the best, since an end may be
-// round. What is usual does not enter any more.
-std::optional<Roof> settle(const std::vector<ProfilePoint>& profile, const Roof& about) {
-  std::vector<Roof> found;
+template <typename Visit>
+void each_about(const Roof& about, const Visit& visit) {
   for (double from = about.from - kRound_mm; from <= about.from + kRound_mm; from += kFine_mm) {
-    for (double to = about.to - kRound_mm; to <= about.to + kRound_mm; to += kFine_mm) {
-      if (const auto roof = three_pieces(profile, from, to, std::nullopt)) found.push_back(*roof);
-    }
+    for (double to = about.to - kRound_mm; to <= about.to + kRound_mm; to += kFine_mm) visit(from, to);
   }
-  if (found.empty()) return std::nullopt;
-  const double best = std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) {
-                        return a.cost < b.cost;
-                      })->cost;
-  Roof mean;
+}
+
+// Of all places of the ends about `about`, the best; what is usual does not enter any more.
+std::optional<Roof> settle(const std::vector<ProfilePoint>& profile, const Roof& about) {
+  std::optional<Roof> best;
+  each_about(about, [&](double from, double to) {
+    const auto roof = three_pieces(profile, from, to, std::nullopt);
+    if (roof && (!best || roof->cost < best->cost)) best = roof;
+  });
+  return best;
+}
+
+// An end may be round: the mean of all places about the best that are about as good.
+Roof mean_about(const std::vector<ProfilePoint>& profile, const Roof& best) {
+  Roof mean = best;
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
   double weights = 0;
-  for (const Roof& roof : found) {
-    const double weight = std::exp((1 - roof.cost / best) / kAboutAsGood);
-    mean.from += weight * roof.from;
-    mean.to += weight * roof.to;
-    mean.line.offset += weight * roof.line.offset;
-    mean.line.slope += weight * roof.line.slope;
+  each_about(best, [&](double from, double to) {
+    const auto roof = three_pieces(profile, from, to, std::nullopt);
+    if (!roof) return;
+    const double weight = std::exp((1 - roof->cost / best.cost) / kAboutAsGood);
+    sum += weight * Eigen::Vector4d(from, to, roof->line.offset, roof->line.slope);
     weights += weight;
-  }
-  return Roof{
-      mean.from / weights, mean.to / weights, {mean.line.offset / weights, mean.line.slope / weights}, best};
+  });
+  if (weights > 0) sum /= weights, mean = {sum[0], sum[1], {sum[2], sum[3]}, best.cost};
+  return mean;
 }
 
 }  // namespace
@@ -216,7 +234,8 @@ std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& 
   double slope = usual;
   View view{femur, condyles.center_mm, axes.col(0), {}, {}, condyles.depth_mm / 65};
   std::vector<ProfilePoint> profile;
-  std::optional<Roof> roof;
+  std::optional<Roof> best;
+  Roof roof;
   std::optional<Walls> walls;
   constexpr int kRounds = 8, kGlobal = 3;
   for (int round = 0; round < kRounds; ++round) {
@@ -226,11 +245,13 @@ std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& 
     if (!walls) return std::nullopt;
     profile = outline(view, *walls);
     if (profile.size() < 20) return std::nullopt;
-    if (round < kGlobal) roof = find_roof(profile, view.scale, usual - slope);
-    if (roof) roof = settle(profile, *roof);
-    if (!roof) return std::nullopt;
-    roof->line = without_hill(profile, roof->from, roof->to, roof->line);
-    const double turn = std::atan(roof->line.slope);
+    profile = carried_on(std::move(profile));
+    if (round < kGlobal) best = find_roof(profile, view.scale, usual - slope);
+    if (best) best = settle(profile, *best);
+    if (!best) return std::nullopt;
+    roof = mean_about(profile, *best);
+    roof.line = without_hill(profile, roof.from, roof.to, roof.line);
+    const double turn = std::atan(roof.line.slope);
     if (round == kRounds - 1 || (round >= kGlobal && std::abs(turn) < 1e-3)) break;
     slope += turn;
   }
@@ -238,31 +259,31 @@ std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& 
   notch.half_width_mm = walls->half_width_mm;
   double deepest_hill = 0, hill_at = 0;
   for (const auto& p : profile) {
-    if (p.s < roof->from + 2 || p.s > roof->to - 2) continue;
-    if (roof->line.at(p.s) - p.t > deepest_hill) deepest_hill = roof->line.at(p.s) - p.t, hill_at = p.s;
+    if (p.s < roof.from + 2 || p.s > roof.to - 2) continue;
+    if (roof.line.at(p.s) - p.t > deepest_hill) deepest_hill = roof.line.at(p.s) - p.t, hill_at = p.s;
   }
   notch.hill_mm = deepest_hill;
   if (deepest_hill > kHill_mm) {
     // Yahagi 2018: the small hill stands in the posterior half of the line alone.
-    notch.shape = hill_at < (roof->from + roof->to) / 2 ? RoofShape::SmallHill : RoofShape::LargeHill;
+    notch.shape = hill_at < (roof.from + roof.to) / 2 ? RoofShape::SmallHill : RoofShape::LargeHill;
   }
   // Which ray is the deepest wanders over the vault; its middle does not.
   double ridge = 0, of = 0;
   for (const auto& p : profile) {
-    if (p.s >= roof->from && p.s <= roof->to) ridge += (p.at - view.center).dot(view.across), of += 1;
+    if (p.s >= roof.from && p.s <= roof.to) ridge += (p.at - view.center).dot(view.across), of += 1;
   }
   ridge /= of;
   const auto at = [&](double s, double t) -> Vector3d {
     return view.center + ridge * view.across + s * view.forward + t * view.into_bone;
   };
   const auto laid = [&](double s) {
-    return at(s, convention == RoofConvention::Ends ? outline_at(profile, s) : roof->line.at(s));
+    return at(s, convention == RoofConvention::Ends ? outline_at(profile, s) : roof.line.at(s));
   };
-  notch.anterior_mm = laid(roof->to);
-  notch.posterior_mm = laid(roof->from);
-  const double middle = (roof->from + roof->to) / 2;
+  notch.anterior_mm = laid(roof.to);
+  notch.posterior_mm = laid(roof.from);
+  const double middle = (roof.from + roof.to) / 2;
   notch.apex_mm = at(middle, outline_at(profile, middle));
-  notch.cost = roof->cost;
+  notch.cost = roof.cost;
   notch.roof = view.forward;
   notch.forward = (notch.anterior_mm - notch.posterior_mm).normalized();
   notch.into_bone = (view.into_bone - view.into_bone.dot(notch.forward) * notch.forward).normalized();
