@@ -103,19 +103,14 @@ bool refine(Shape& shape, const geometry::TriangleMesh& mesh, const geometry::Su
 }
 
 std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geometry::Surface& surface,
-                                RoofConvention convention, std::string& reason) {
+                                const RoughFrame& rough, RoofConvention convention, std::string& reason) {
   Shape shape;
-  const auto rough = rough_frame(mesh, bones::BoneKind::Femur);
-  if (!rough) {
-    reason = "the surface has no joint's end that comes near to its own mirror image";
-    return std::nullopt;
-  }
-  shape.rough = *rough;
-  const Vector3d z0 = rough->bone_from_frame.col(2);
+  shape.rough = rough;
+  const Vector3d z0 = rough.bone_from_frame.col(2);
   for (const auto& s : sample_surface(mesh, kSamples)) {
-    const bool is_cut = rough->cut_normal && s.normal.dot(*rough->cut_normal) > 0.7 &&
-                        s.point_mm.dot(*rough->cut_normal) > rough->cut_offset_mm - 1.6;
-    if (!is_cut && (s.point_mm - rough->origin_mm).dot(z0) < kJointEnd_mm) shape.samples.push_back(s);
+    const bool is_cut = rough.cut_normal && s.normal.dot(*rough.cut_normal) > 0.7 &&
+                        s.point_mm.dot(*rough.cut_normal) > rough.cut_offset_mm - 1.6;
+    if (!is_cut && (s.point_mm - rough.origin_mm).dot(z0) < kJointEnd_mm) shape.samples.push_back(s);
   }
   // A slanting cut misleads about the long axis: the joint's end is looked at from in front and from behind,
   // too, and of what is found there the roof is taken that the outline shows best.
@@ -124,7 +119,7 @@ std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geomet
   for (const double lean_deg : {0.0, 15.0, -15.0, 30.0, -30.0}) {
     if (std::abs(lean_deg) > 20 && best) break;
     const Eigen::AngleAxisd lean(geometry::rad_from_deg(lean_deg), Vector3d::UnitX());
-    if (refine(shape, mesh, surface, rough->bone_from_frame * lean, convention, reason_of_last) &&
+    if (refine(shape, mesh, surface, rough.bone_from_frame * lean, convention, reason_of_last) &&
         (!best || shape.notch.cost < best->notch.cost))
       best = shape;
   }
@@ -192,8 +187,14 @@ Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions
   proposal.outcome = Proposal::Outcome::NotThisBone;
   proposal.reason.clear();
   const geometry::Surface surface(mesh);
-  const auto shape = find_shape(mesh, surface, options.roof, proposal.reason);
+  std::optional<Shape> shape;
+  proposal.reason = "the surface has no joint's end that comes near to its own mirror image";
+  for (const RoughFrame& rough : rough_frames(mesh, bones::BoneKind::Femur)) {
+    shape = find_shape(mesh, surface, rough, options.roof, proposal.reason);
+    if (shape) break;
+  }
   if (!shape) return proposal;
+  proposal.reason.clear();
   proposal.outcome = Proposal::Outcome::Proposed;
   const double score = side_score(*shape, mesh);
   if (std::abs(score) > 0.5) proposal.side_by_shape = score > 0 ? bones::Side::Right : bones::Side::Left;

@@ -28,6 +28,7 @@ constexpr double kRoughCut_mm = 0.3;   // root mean square off its plane; a flat
 constexpr double kBelowCut_mm = 4, kWidening = 2.2;
 constexpr double kCutThickness_mm = 0.8;  // marching cubes and smoothing round a cut's edge
 constexpr double kWholeElongation = 3;    // of standard deviations, along and across a bone without a cut
+constexpr double kSlantingSine = 0.5;     // a cut 20 degrees off, and the valgus of the shaft
 constexpr double kGreatestMisfit_mm = 6;  // a mirrored point further off counts as so far off
 
 struct Cut {
@@ -40,7 +41,7 @@ struct Cut {
 
 // A noisy surface's triangles look anywhere: of each sample the mean normal about it.
 std::vector<SurfaceSample> smoothed(const std::vector<SurfaceSample>& samples) {
-  constexpr double kAbout_mm = 3;
+  constexpr double kAbout_mm = 4.5;
   std::vector<SurfaceSample> smooth = samples;
   for (auto& s : smooth) {
     Vector3d sum = Vector3d::Zero();
@@ -114,8 +115,9 @@ class MirrorSearch {
               static_cast<double>(points_.size());
   }
 
-  // The best plane among those whose normal lies across `joint`, the direction of the joint's end.
-  [[nodiscard]] Mirror find(const Vector3d& joint) const {
+  // The best plane among those whose normal lies across `joint`, the direction of the joint's end, to at most
+  // this sine.
+  [[nodiscard]] Mirror find(const Vector3d& joint, double greatest_sine) const {
     std::vector<Mirror> starts;
     const Vector3d u = joint.unitOrthogonal(), v = joint.cross(u);
     constexpr int kTurns = 18;
@@ -134,7 +136,7 @@ class MirrorSearch {
     for (std::size_t i = 0; i < 4 && i < starts.size(); ++i) {
       Mirror refined = starts[i];
       for (int k = 0; k < 15; ++k) refined = step(refined, 1);
-      if (refined.cost < best.cost && std::abs(refined.normal.dot(joint)) < 0.75) best = refined;
+      if (refined.cost < best.cost && std::abs(refined.normal.dot(joint)) < greatest_sine) best = refined;
     }
     return best;
   }
@@ -218,7 +220,8 @@ double forwardness(const std::vector<Vector3d>& points, const geometry::Surface&
 }
 
 struct JointEnd {
-  Vector3d direction;  // from the shaft to the joint
+  Vector3d direction;           // from the shaft to the joint
+  double greatest_sine = 0.75;  // of what it may be off
 };
 
 std::vector<JointEnd> joint_ends(const std::vector<SurfaceSample>& samples, const std::optional<Cut>& cut) {
@@ -231,8 +234,9 @@ std::vector<JointEnd> joint_ends(const std::vector<SurfaceSample>& samples, cons
   const double elongation = std::sqrt(principal.eigenvalues()[2] / principal.eigenvalues()[1]);
   if (cut) {
     // A long piece's axis tells more than the saw's plane.
-    if (elongation > 1.6) return {{longest.dot(cut->normal) > 0 ? Vector3d(-longest) : longest}};
-    return {{-cut->normal}};
+    if (elongation > 1.6)
+      return {{longest.dot(cut->normal) > 0 ? Vector3d(-longest) : longest, kSlantingSine}};
+    return {{-cut->normal, kSlantingSine}};
   }
   if (elongation > kWholeElongation) return {{longest}, {-longest}};
   std::vector<JointEnd> ends;
@@ -244,14 +248,13 @@ std::vector<JointEnd> joint_ends(const std::vector<SurfaceSample>& samples, cons
 
 }  // namespace
 
-std::optional<RoughFrame> rough_frame(const geometry::TriangleMesh& mesh, bones::BoneKind bone) {
+std::vector<RoughFrame> rough_frames(const geometry::TriangleMesh& mesh, bones::BoneKind bone) {
   const auto samples = sample_surface(mesh, kSamples);
-  if (samples.size() < kSamples / 2) return std::nullopt;
+  if (samples.size() < kSamples / 2) return {};
   const double area_each = geometry::surface_area_mm2(mesh) / static_cast<double>(samples.size());
   const auto cut = find_cut(mesh, samples, area_each);
   const geometry::Surface surface(mesh);
-  std::optional<RoughFrame> best;
-  double best_cost = 1e9;
+  std::vector<std::pair<double, RoughFrame>> found;
   for (const JointEnd& end : joint_ends(samples, cut)) {
     double tip = -1e9;
     for (const auto& s : samples) tip = std::max(tip, s.point_mm.dot(end.direction));
@@ -267,8 +270,7 @@ std::optional<RoughFrame> rough_frame(const geometry::TriangleMesh& mesh, bones:
       points = std::move(fewer);
     }
     const MirrorSearch search(points, surface);
-    const Mirror mirror = search.find(end.direction);
-    if (mirror.cost >= best_cost) continue;
+    const Mirror mirror = search.find(end.direction, end.greatest_sine);
     RoughFrame frame;
     const double up = bone == bones::BoneKind::Femur ? -1 : 1;
     const Vector3d z = (up * (end.direction - end.direction.dot(mirror.normal) * mirror.normal)).normalized();
@@ -293,10 +295,13 @@ std::optional<RoughFrame> rough_frame(const geometry::TriangleMesh& mesh, bones:
       frame.cut_normal = cut->normal;
       frame.cut_offset_mm = cut->offset_mm;
     }
-    best_cost = mirror.cost;
-    best = frame;
+    found.push_back({mirror.cost, frame});
   }
-  return best;
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<RoughFrame> frames;
+  for (const auto& [cost, frame] : found) frames.push_back(frame);
+  return frames;
 }
 
 }  // namespace arthronaut::landmarks

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "planning/bones/bone.h"
 #include "planning/geometry/triangle_mesh.h"
@@ -21,8 +22,10 @@ struct RoughFrame {
   double asymmetry_mm = 0;   // mean distance of the mirrored joint end to the bone
 };
 
-// nullopt: nothing here looks like the joint's end of a bone (no area, no mirror plane). Within 25 degrees of
-// the anatomical axes for bones of which 55 mm or more are there.
-[[nodiscard]] std::optional<RoughFrame> rough_frame(const geometry::TriangleMesh& mesh, bones::BoneKind bone);
+// One for each end of the surface that may be the joint's, the likeliest first: the one that comes nearest to
+// its own mirror image. Where the cut was found there is one. Empty: nothing here looks like the joint's end
+// of a bone (no area, no mirror plane). The right one lies within 25 degrees of the anatomical axes for bones
+// of which 55 mm or more are there.
+[[nodiscard]] std::vector<RoughFrame> rough_frames(const geometry::TriangleMesh& mesh, bones::BoneKind bone);
 
 }  // namespace arthronaut::landmarks

@@ -86,20 +86,14 @@ double side_score(const Shape& shape, const std::optional<Vector3d>& tuberosity)
   return score;
 }
 
-// The mean of those samples that `among` admits and that reach furthest along `direction`.
+// Of the samples that `among` admits.
 template <typename Predicate>
-std::optional<Vector3d> furthest(const Shape& shape, const Vector3d& direction, std::size_t patch,
-                                 Predicate among) {
-  std::vector<std::pair<double, Vector3d>> found;
+std::optional<Vector3d> furthest_of(const Shape& shape, const Vector3d& direction, Predicate among) {
+  std::vector<Vector3d> found;
   for (const auto& s : shape.samples) {
-    if (among(over_plateau(shape, s.point_mm))) found.push_back({s.point_mm.dot(direction), s.point_mm});
+    if (among(over_plateau(shape, s.point_mm))) found.push_back(s.point_mm);
   }
-  if (found.size() < patch) return std::nullopt;
-  std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(patch), found.end(),
-                    [](const auto& a, const auto& b) { return a.first > b.first; });
-  Vector3d mean = Vector3d::Zero();
-  for (std::size_t i = 0; i < patch; ++i) mean += found[i].second / static_cast<double>(patch);
-  return mean;
+  return furthest(found, direction);
 }
 
 Matrix3d anatomical(const Shape& shape) {
@@ -119,15 +113,10 @@ Matrix3d anatomical(const Shape& shape) {
 }
 
 std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geometry::Surface& surface,
-                                std::string& reason) {
+                                const RoughFrame& rough, std::string& reason) {
   Shape shape;
-  const auto rough = rough_frame(mesh, bones::BoneKind::Tibia);
-  if (!rough) {
-    reason = "the surface has no joint's end that comes near to its own mirror image";
-    return std::nullopt;
-  }
-  shape.rough = *rough;
-  auto plateau = find_plateau(surface, *rough);
+  shape.rough = rough;
+  auto plateau = find_plateau(surface, rough);
   if (plateau && forward_score(plateau->relief) < 0) {
     shape.rough.bone_from_frame.col(0) *= -1;
     shape.rough.bone_from_frame.col(1) *= -1;
@@ -140,13 +129,13 @@ std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geomet
   shape.plateau = *plateau;
   const Vector3d normal = shape.plateau.bone_from_frame.col(2);
   for (const auto& s : sample_surface(mesh, kSamples)) {
-    const bool is_cut = rough->cut_normal && s.normal.dot(*rough->cut_normal) > 0.7 &&
-                        s.point_mm.dot(*rough->cut_normal) > rough->cut_offset_mm - 1.6;
+    const bool is_cut = rough.cut_normal && s.normal.dot(*rough.cut_normal) > 0.7 &&
+                        s.point_mm.dot(*rough.cut_normal) > rough.cut_offset_mm - 1.6;
     if (!is_cut && (s.point_mm - shape.plateau.origin_mm).dot(normal) > -80) shape.samples.push_back(s);
   }
   for (int round = 0; round < 3; ++round) {
     shape.axes = anatomical(shape);
-    shape.shaft = find_long_axis(mesh, *rough, shape.plateau.origin_mm, -shape.axes.col(2), kShaftFrom_mm,
+    shape.shaft = find_long_axis(mesh, rough, shape.plateau.origin_mm, -shape.axes.col(2), kShaftFrom_mm,
                                  kShaftFrom_mm + kShaftLength_mm);
   }
   shape.axes = anatomical(shape);
@@ -183,7 +172,7 @@ std::optional<Vector3d> tuberosity_of(const Shape& shape) {
   const auto below = [](const Vector3d& q) {
     return std::abs(q.x()) < 18 && q.y() > 0 && q.z() < -kTuberosityFrom_mm && q.z() > -kTuberosityTo_mm;
   };
-  return furthest(shape, shape.axes.col(1), 14, below);
+  return furthest_of(shape, shape.axes.col(1), below);
 }
 
 }  // namespace
@@ -193,8 +182,16 @@ Proposal propose_tibia(const geometry::TriangleMesh& mesh, const ProposalOptions
   proposal.outcome = Proposal::Outcome::NotThisBone;
   proposal.reason.clear();
   const geometry::Surface surface(mesh);
-  const auto shape = find_shape(mesh, surface, proposal.reason);
+  std::optional<Shape> shape;
+  proposal.reason = "the surface has no joint's end that comes near to its own mirror image";
+  for (const RoughFrame& rough : rough_frames(mesh, bones::BoneKind::Tibia)) {
+    shape = find_shape(mesh, surface, rough, proposal.reason);
+    if (shape && (eminence(*shape, 1) || eminence(*shape, -1))) break;
+    if (shape) proposal.reason = "between the halves of its joint's end stand no eminences";
+    shape.reset();
+  }
   if (!shape) return proposal;
+  proposal.reason.clear();
   const auto tuberosity = tuberosity_of(*shape);
   const double score = side_score(*shape, tuberosity);
   if (std::abs(score) > kSureSide)
@@ -203,26 +200,19 @@ Proposal propose_tibia(const geometry::TriangleMesh& mesh, const ProposalOptions
   const double lateral = side == bones::Side::Right ? 1 : -1;
   const Matrix3d& axes = shape->axes;
   const auto on_plateau = [](const Vector3d& q) { return q.z() > kRim_mm && q.z() < 5; };
-  constexpr std::size_t kPatch = 6;
   Landmarks& marks = proposal.landmarks;
   const auto put = [&](const char* name, const std::optional<Vector3d>& at) {
     if (at) marks[name] = *at;
   };
-  put("plateau_anterior", furthest(*shape, axes.col(1), kPatch, on_plateau));
-  put("plateau_posterior", furthest(*shape, -axes.col(1), kPatch, on_plateau));
+  put("plateau_anterior", furthest_of(*shape, axes.col(1), on_plateau));
+  put("plateau_posterior", furthest_of(*shape, -axes.col(1), on_plateau));
   // Side ends are flat: beside the halves' middles, so that the line through both runs straight across.
   const auto beside = [&](const Vector3d& q) { return on_plateau(q) && std::abs(q.y()) < kBeside_mm; };
-  put("plateau_lateral", furthest(*shape, lateral * axes.col(0), kPatch, beside));
-  put("plateau_medial", furthest(*shape, -lateral * axes.col(0), kPatch, beside));
+  put("plateau_lateral", furthest_of(*shape, lateral * axes.col(0), beside));
+  put("plateau_medial", furthest_of(*shape, -lateral * axes.col(0), beside));
   if (marks.size() < 4) {
     proposal.landmarks.clear();
     proposal.reason = "the plateau has no rim";
-    return proposal;
-  }
-  if (!eminence(*shape, 1) && !eminence(*shape, -1)) {
-    proposal.landmarks.clear();
-    proposal.side_by_shape.reset();
-    proposal.reason = "between the halves of its joint's end stand no eminences";
     return proposal;
   }
   proposal.outcome = Proposal::Outcome::Proposed;
