@@ -23,6 +23,7 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kSamples = 20000;
 constexpr double kJointEnd_mm = 75;
+constexpr double kEpicondyle_mm = 0.5;  // of its tip
 // The shaft begins above the condyles by this share of their depth; it is straight for so far (the femur is
 // bowed).
 constexpr double kShaftFrom = 0.78, kShaftLength_mm = 110;
@@ -166,7 +167,7 @@ std::optional<Vector3d> epicondyle(const Shape& shape, double sign) {
     if (std::abs(q.y()) < 0.25 * depth && q.z() > -0.08 * depth && q.z() < 0.3 * depth)
       found.push_back(s.point_mm);
   }
-  return furthest(found, sign * axes.col(0));
+  return furthest(found, sign * axes.col(0), kEpicondyle_mm);
 }
 
 // Where the outline of one condyle below the line reaches furthest along `direction`.

@@ -47,7 +47,8 @@ std::vector<SurfaceSample> sample_surface(const geometry::TriangleMesh& mesh, st
   return samples;
 }
 
-std::optional<Vector3d> furthest(const std::vector<Vector3d>& points_mm, const Vector3d& direction) {
+std::optional<Vector3d> furthest(const std::vector<Vector3d>& points_mm, const Vector3d& direction,
+                                 double cap_mm) {
   if (points_mm.size() < kReach) return std::nullopt;
   std::vector<double> heights;
   heights.reserve(points_mm.size());
@@ -59,7 +60,7 @@ std::optional<Vector3d> furthest(const std::vector<Vector3d>& points_mm, const V
   Vector3d sum = Vector3d::Zero();
   double weights = 0;
   for (std::size_t i = 0; i < points_mm.size(); ++i) {
-    const double weight = 1 - (reach - heights[i]) / kCap_mm;
+    const double weight = 1 - (reach - heights[i]) / cap_mm;
     if (weight <= 0) continue;
     sum += weight * points_mm[i];
     weights += weight;

@@ -19,12 +19,11 @@ struct SurfaceSample {
                                                         std::size_t count);
 
 // Where samples reach furthest along the unit `direction`: as far as the mean of the `kReach` furthest, and
-// across it in the middle of what lies within kCap_mm of there, the nearer to it the more. A single sample
+// across it in the middle of what lies within cap_mm of there, the nearer to it the more. A single sample
 // wanders over a flat side; this does not. nullopt for fewer than kReach.
 inline constexpr std::size_t kReach = 12;
-inline constexpr double kCap_mm = 1.0;
 [[nodiscard]] std::optional<Eigen::Vector3d> furthest(const std::vector<Eigen::Vector3d>& points_mm,
-                                                      const Eigen::Vector3d& direction);
+                                                      const Eigen::Vector3d& direction, double cap_mm = 1.0);
 
 // What a plane at right angles to the unit `axis` cuts out of a closed mesh.
 struct Section {
