@@ -20,7 +20,7 @@ struct LandmarkArguments {
   std::string case_folder;
   std::vector<std::string> set, confirm;
   bool propose = false, as_json = false;
-  std::string roof = "flat";
+  std::string roof = "ends";
 };
 
 struct NamedPlace {

@@ -91,6 +91,20 @@ std::vector<ProfilePoint> outline(const View& view, const Walls& walls) {
   return profile;
 }
 
+// Each depth the mean of those within 1 mm: what a noisy surface adds is not the outline's.
+std::vector<ProfilePoint> smoothed(const std::vector<ProfilePoint>& profile) {
+  constexpr double kAbout_mm = 1;
+  std::vector<ProfilePoint> smooth = profile;
+  for (std::size_t i = 0; i < profile.size(); ++i) {
+    double sum = 0, count = 0;
+    for (std::size_t k = i < 4 ? 0 : i - 4; k < std::min(profile.size(), i + 5); ++k) {
+      if (std::abs(profile[k].s - profile[i].s) <= kAbout_mm) sum += profile[k].t, count += 1;
+    }
+    smooth[i].t = sum / count;
+  }
+  return smooth;
+}
+
 // A groove that runs back over the roof is met by no ray: the outline is taken on steeply where it ends in
 // front.
 std::vector<ProfilePoint> carried_on(std::vector<ProfilePoint> profile) {
@@ -245,7 +259,7 @@ std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& 
     if (!walls) return std::nullopt;
     profile = outline(view, *walls);
     if (profile.size() < 20) return std::nullopt;
-    profile = carried_on(std::move(profile));
+    profile = carried_on(smoothed(profile));
     if (round < kGlobal) best = find_roof(profile, view.scale, usual - slope);
     if (best) best = settle(profile, *best);
     if (!best) return std::nullopt;

@@ -5,10 +5,11 @@
 //   1. rough_frame     the cut face or the long axis tells the joint's end; the plane in which the bone comes
 //                      nearest to its own mirror image tells medial-lateral; what is missing behind the
 //                      mirror plane (the notch; the plateau's rear) tells front from back.
-//   2. femur_shape     circles through the posterior outline of either condyle give the condylar line, the
-//   view in
-//                      which the condyles are superposed; rays from inside the notch give its walls, its
-//                      roof and the line through the roof; extremes in this view give the rest.
+//   2. femur_shape     the direction in which the outlines of both condyles cover each other is the true
+//                      lateral view; in it the outline of the notch's roof, from its corner with the back of
+//                      the shaft to its corner with the groove, gives Blumensaat's line; extremes in this
+//                      view give the rest. Where a slanting cut misleads, the joint's end is looked at from
+//                      in front and behind, too.
 //   3. tibia_shape     the two halves of the plateau give its plane, its rim the four edges, the ridges
 //                      between the halves the eminences.
 //   4. the side        where the shaft stands over the condyles and which half reaches further forward.
@@ -29,8 +30,8 @@ namespace arthronaut::landmarks {
 // The roof of the notch is straight in one knee of three; in others a hill stands in it (Yahagi 2018, KSSTA
 // 26:455), and grids differ by where Blumensaat's line is laid.
 enum class RoofConvention {
-  Flat,  // the best straight line through the roof, hill left out: what the published grids mostly did
-  Ends,  // from the posterior to the anterior end of the roof
+  Flat,  // the best straight line through the roof, hill left out
+  Ends,  // from the corner with the back of the shaft to the corner with the groove: as the line is defined
 };
 [[nodiscard]] std::string_view to_text(RoofConvention convention);  // "flat", "ends"
 enum class RoofShape { Straight, SmallHill, LargeHill };
@@ -61,7 +62,7 @@ struct Proposal {
 };
 
 // mesh: closed, outward, mm (bones::mend_mesh). Never throws for a shape that it does not know: read the
-// outcome. A mesh of 200,000 triangles takes in the order of a second.
+// outcome. A femur takes a few seconds, a tibia about one.
 [[nodiscard]] Proposal propose(const geometry::TriangleMesh& mesh, bones::BoneKind bone,
                                const ProposalOptions& options = {});
 
