@@ -47,9 +47,9 @@ void expect_entry_near(const std::filesystem::path& folder, BoneKind kind, const
   EXPECT_LT(off_mm, limit_mm);
 }
 
-// How far the review's centre lies from this model's attachment is said in docs/benchmarks.md; what is held
-// here is that it is no further than a footprint is long (16 mm, Hensler 2011): on the right wall and the
-// right part of it.
+// The model's attachment lies further forward than any study has its centre, whatever slope Blumensaat's line
+// is given (docs/benchmarks.md). What is held here is that the review's centre is no further from it than a
+// footprint is long (16 mm, Hensler 2011): on the right wall and the right part of it.
 TEST(RealDefaultPlan, EntersTheFemurWithinTheFootprint) {
   ARTHRONAUT_REQUIRE_DATA(folder, "bones/lenhart2015");
   expect_entry_near(folder, BoneKind::Femur, "lenhart2015-R-femur-bone.stl", "femur_distal_r", 16.3 / 2);
