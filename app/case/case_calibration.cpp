@@ -74,7 +74,11 @@ std::string calibration_in_words(bool is_simulated, const fs::path& case_folder,
   const CaseProvenance all = provenance_of(is_simulated, case_folder);
   const bool is_built_in =
       all.camera.origin == provenance::Origin::Simulated && all.camera.calibrated_utc.empty();
+  const bool is_any_calibrated = std::ranges::any_of(all.tools, [](const NamedProvenance& tool) {
+    return tool.provenance.origin != provenance::Origin::Nominal;
+  });
   std::string words = is_built_in ? "camera built in" : "camera " + in_words(all.camera, now_utc), nominal;
+  if (!is_any_calibrated) return words + "; tools nominal";
   for (const NamedProvenance& tool : all.tools) {
     if (tool.provenance.origin == provenance::Origin::Nominal)
       nominal += (nominal.empty() ? "" : ", ") + tool.name;

@@ -36,8 +36,8 @@ struct CaseProvenance {
 // For the screen, at this time (ISO 8601): "measured 2026-11-21", from the next day on "measured 2026-11-21,
 // 3 days old"; "nominal"; "simulated, 3 days old". A measurement without a date says that it has none.
 [[nodiscard]] std::string in_words(const provenance::Provenance& provenance, const std::string& now_utc);
-// All of it for the screen: "camera measured 2026-11-21; probe measured 2026-11-21; nominal: femoral guide".
-// Throws as those.
+// All of it for the screen: "camera measured 2026-11-21; probe measured 2026-11-21; nominal: femoral guide";
+// "camera built in; tools nominal". Throws as those.
 [[nodiscard]] std::string calibration_in_words(bool is_simulated, const std::filesystem::path& case_folder,
                                                const std::string& now_utc);
 

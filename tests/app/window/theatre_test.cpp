@@ -63,6 +63,19 @@ class Theatre : public ::testing::Test {
   [[nodiscard]] std::pair<int, std::string> replay(const std::string& session) const {
     return run_arthronaut("replay '" + case_folder().string() + "' --session " + session);
   }
+  // How many there are is the machine's speed; all of them must be the same.
+  void expect_same_states(const std::string& session) const {
+    const auto [exit_code, output] = replay(session);
+    EXPECT_EQ(exit_code, 0) << output;
+    const std::string words = "states the same to the last bit: ";
+    const std::size_t at = output.find(words);
+    ASSERT_NE(at, std::string::npos) << output;
+    long equal = 0, compared = 0;
+    std::istringstream(output.substr(at + words.size())) >> equal;
+    std::istringstream(output.substr(output.find(" of ", at) + 4)) >> compared;
+    EXPECT_GT(compared, 0);
+    EXPECT_EQ(equal, compared) << output;
+  }
   const phantom::PhantomKnee knee_ = phantom::make_phantom_knee({});
   const TemporaryFolder folder_;
 };
@@ -75,7 +88,8 @@ bool becomes(const std::function<bool()>& is_so, double seconds) {
   return is_so();
 }
 
-// What was registered in a simulation guides nothing of a video: it is void, and the screen says why.
+// What was registered in a simulation guides nothing of a video: it is void, and the screen says why. Both
+// sessions run again to the same states, the registration and its end with them.
 TEST_F(Theatre, Hazard1ARegistrationOfASimulationIsVoidInAVideo) {
   adopt_real_scope();
   write_clip(90);
@@ -83,6 +97,7 @@ TEST_F(Theatre, Hazard1ARegistrationOfASimulationIsVoidInAVideo) {
   RunningWorkstation app(display, folder_.path());
   start_simulation(app);
   ASSERT_TRUE(app.wait_for_state("standing", "stands", 400));
+  const std::string simulated = app.state("journal");
   ASSERT_TRUE(app.hold_until("o", "source_kind", "RECORDING"));
   EXPECT_TRUE(app.wait_for_state("standing", "void", 60));
   EXPECT_NE(app.state("guidance"), "valid");
@@ -90,7 +105,11 @@ TEST_F(Theatre, Hazard1ARegistrationOfASimulationIsVoidInAVideo) {
       becomes([&] { return app.state("detail").find("another kind of pictures") != std::string::npos; }, 60))
       << app.state("detail");
   EXPECT_EQ(app.state("guidance"), "Registration void");
+  const std::string of_video = app.state("journal");
+  EXPECT_NE(of_video, simulated);
   EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+  expect_same_states(simulated);
+  expect_same_states(of_video);
 }
 
 // A source that fails starts no other kind, whatever ran before it and however often the pedal is pressed.
@@ -156,16 +175,7 @@ TEST_F(Theatre, Hazard12ASessionOfTheWindowReplaysToTheLastBit) {
     app.press("ctrl+q");
     ASSERT_EQ(app.wait_for_exit(120), 0);
   }
-  const auto [exit_code, output] = replay(session);
-  EXPECT_EQ(exit_code, 0) << output;
-  const std::string words = "states the same to the last bit: ";
-  const std::size_t at = output.find(words);
-  ASSERT_NE(at, std::string::npos) << output;
-  long equal = 0, compared = 0;
-  std::istringstream(output.substr(at + words.size())) >> equal;
-  std::istringstream(output.substr(output.find(" of ", at) + 4)) >> compared;
-  EXPECT_GT(compared, 0);  // how many there are is the machine's speed; all of them must be the same
-  EXPECT_EQ(equal, compared) << output;
+  expect_same_states(session);
 }
 
 // Nothing can be written where sessions belong: the operation goes on, and the screen says why it is not
