@@ -1,5 +1,6 @@
 #include "app/case/case_calibration.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "navigation/camera/camera_file.h"
