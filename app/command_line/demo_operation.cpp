@@ -222,11 +222,11 @@ class Demo {
 
   // One phase as a session of the case; its last frame with a registration becomes a picture.
   theatre::NavigationSummary navigate(Phase phase, const std::string& name) {
-    WatchedOperation source(simulation_, phase);
+    const auto source = std::make_shared<WatchedOperation>(simulation_, phase);
     last_session_ = cases::create_session_folder(options_.case_folder);
     camera::FramePtr last_frame;
     pipeline::FrameResult last_result;
-    Progress progress(name, static_cast<long>(source.info().frame_count));
+    Progress progress(name, static_cast<long>(source->info().frame_count));
     long done = 0;
     theatre::NavigationObserver observer;
     observer.on_frame = [&](const camera::FramePtr& frame, const operation::OperationStatePtr& now) {
@@ -241,9 +241,9 @@ class Demo {
     // drilled.
     observer.pedal = [&](const operation::OperationState& state) -> std::vector<operation::Command> {
       const bool has_drilled =
-          phase == Phase::Drill && state.frame.frame_index + 1 == source.info().frame_count;
+          phase == Phase::Drill && state.frame.frame_index + 1 == source->info().frame_count;
       if (!has_drilled) return {};
-      return {operation::ReadDepthStop{std::round(source.depth_mm(state.frame.frame_index))},
+      return {operation::ReadDepthStop{std::round(source->depth_mm(state.frame.frame_index))},
               operation::TunnelDrilled{}};
     };
     theatre::RecordOptions record;
@@ -252,8 +252,8 @@ class Demo {
     navigation_.source.title = "Simulated operation: " + name;
     const theatre::NavigationSummary summary =
         theatre::navigate_source(source, navigation_, record, observer);
-    true_marker_from_bone_ = source.operation().marker_from_bone();
-    if (phase == Phase::Drill) true_tunnel_ = source.operation().drilled_tunnel();
+    true_marker_from_bone_ = source->operation().marker_from_bone();
+    if (phase == Phase::Drill) true_tunnel_ = source->operation().drilled_tunnel();
     if (last_frame) {
       write_frame_picture(options_.case_folder / "pictures" / (name + ".png"), *last_frame, last_result,
                           summary.registration, simulation_.knee.femur.mesh, simulation_.plan,

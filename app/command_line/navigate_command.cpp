@@ -207,7 +207,7 @@ void navigate(Context& context, const NavigateArguments& arguments) {
     options.operation.cartilage.emplace().points_mm = cartilage->vertices_mm;
     context.say(std::string("cartilage: ") + (arguments.cartilage.mesh.empty() ? "of the case" : "given"));
   }
-  const auto source = sources::open_source(arguments.video);
+  const std::shared_ptr<sources::FrameSource> source = sources::open_source(arguments.video);
   context.say("working medium: " + camera::medium_to_text(options.source.pipeline.refractive_index));
 
   std::optional<openigtlink::IgtlServer> igtl;
@@ -233,7 +233,7 @@ void navigate(Context& context, const NavigateArguments& arguments) {
       record.keep = arguments.no_copy ? recording::KeepVideo::Refer : recording::KeepVideo::Copy;
       record.video = arguments.video;
     }
-    summary = theatre::navigate_source(*source, options, record, observer);
+    summary = theatre::navigate_source(source, options, record, observer);
   }
   adopt(arguments.camera, cases::camera_file(arguments.case_folder));
   adopt(arguments.tools, cases::tools_file(arguments.case_folder));

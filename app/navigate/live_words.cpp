@@ -1,5 +1,7 @@
 #include "app/navigate/live_words.h"
 
+#include "app/widgets/controls.h"
+
 namespace arthronaut::navigate {
 
 using operation::NextAction;
@@ -37,6 +39,8 @@ std::string words_of(NextAction action) {
       return "set the control point: touch a mark on the bone";
     case NextAction::CheckControlPoint:
       return "touch the control point again";
+    case NextAction::CheckGuide:
+      return "nominal guide: hold its tip on the control point";
     case NextAction::BringGuide:
       return "take the guide";
     case NextAction::FollowBullseye:
@@ -59,9 +63,13 @@ std::string touch_notice(const operation::OperationState& state) {
       return "";
     case operation::TouchRefusal::NoSource:
       return "no pictures come";
+    case operation::TouchRefusal::NoControlPoint:
+      return "touch the control point with the probe first";
     case operation::TouchRefusal::TipUnknown:
+      if (state.touch_is_of_guide) return "the guide's tip is not known now: show guide and bone marker";
       return "the probe's tip is not known now: show probe and bone marker";
     case operation::TouchRefusal::TipMoves:
+      if (state.touch_is_of_guide) return "the guide moves: hold its tip still";
       return "the probe moves: hold its tip still";
   }
   return "";
@@ -87,6 +95,22 @@ Trouble trouble_of(const operation::RegistrationState& registration) {
               why + ". Touch the control point again; if it stays off, clear the points (C) and draw anew"};
     case Standing::InDoubt:
       return {"Registration in doubt", why + ". Draw more, or exclude the strokes that are wrong"};
+  }
+  return {};
+}
+
+Trouble trouble_of(const operation::GuideCheckState& guide, const std::string& name) {
+  switch (guide.standing) {
+    case operation::GuideStanding::NotAsked:
+    case operation::GuideStanding::Checked:
+    case operation::GuideStanding::Trusted:
+      return {};
+    case operation::GuideStanding::Due:
+      return {"Guide not checked",
+              "The numbers of the " + name + " are nominal: hold its tip on the control point, then Space"};
+    case operation::GuideStanding::Off:
+      return {"Guide is off", "Its tip is " + widgets::fixed(guide.error_mm, 1) +
+                                  " mm from the control point: measure the " + name + " in Set up"};
   }
   return {};
 }

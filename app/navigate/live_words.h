@@ -20,6 +20,8 @@ struct Trouble {
 };
 // Why what is in force may not guide; empty while it stands, and while there is nothing in force.
 [[nodiscard]] Trouble trouble_of(const operation::RegistrationState& registration);
+// Why a nominal guide of that name may not guide; empty while it may.
+[[nodiscard]] Trouble trouble_of(const operation::GuideCheckState& guide, const std::string& name);
 // While the mark is found on its track: empty.
 [[nodiscard]] Trouble trouble_of(const lens::LensObservation& lens);
 

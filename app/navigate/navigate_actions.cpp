@@ -217,6 +217,16 @@ void NavigateView::add_registration_actions(widgets::Actions& actions) {
        GLFW_KEY_P, 0, false, has_tip, [this] { return registration().touches.has_control_point(); },
        [this] { take_touch(true); }});
   actions.add(
+      {"navigate.check_guide",
+       "Check guide",
+       "The guide's tip rests on the control point: a nominal guide guides live only when it is there",
+       GLFW_KEY_A,
+       0,
+       false,
+       [this] { return is_running() && !live_->operation->guide_check.may_guide(); },
+       {},
+       [this] { ask(operation::CheckGuide{}); }});
+  actions.add(
       {"navigate.forget_touches",
        "Forget touches",
        "Touches and control point were wrong, not the marker: takes an alarm away",

@@ -32,7 +32,7 @@ GuidanceState cause_of(const operation::OperationState& state) {
     case operation::Standing::NotReliable:
       return GuidanceState::RegistrationUnreliable;
     default:
-      return said;
+      return state.guide_check.may_guide() ? said : GuidanceState::GuideNotChecked;
   }
 }
 
@@ -73,6 +73,10 @@ void explain(NavigateDisplay& display, const operation::OperationState& state) {
     case GuidanceState::NotConfirmed:
       display.headline = "Time-out not confirmed";
       display.detail = "Patient, knee, plan, camera, tools and medium: Space confirms them";
+      break;
+    case GuidanceState::GuideNotChecked:
+      tell(display, trouble_of(state.guide_check, options.guide_name));
+      if (display.headline.empty()) tell(display, {"Guide checked", "It guides from the next picture on"});
       break;
     case GuidanceState::NoGuide:
       display.headline = "No drill guide";

@@ -261,6 +261,8 @@ void NavigateView::take_next_step() {
     case NextAction::SetControlPoint:
     case NextAction::CheckControlPoint:
       return take_touch(true);
+    case NextAction::CheckGuide:
+      return ask(operation::CheckGuide{});
     case NextAction::RecordDrilled:
       return ask(operation::TunnelDrilled{});
     case NextAction::ShowWorldMarker:

@@ -85,6 +85,16 @@ void draw_registration_row(const widgets::Ui& ui, const NavigateScreen& screen) 
                           (known.is_chosen ? ", an earlier one" : ""));
 }
 
+// What came of holding a nominal guide against the control point; while it hides guidance that is said in
+// large.
+void draw_guide_check(const widgets::Ui& ui, const operation::GuideCheckState& guide) {
+  if (guide.standing == operation::GuideStanding::Checked)
+    widgets::status_row(ui, Severity::Good, "Nominal guide",
+                        widgets::fixed(guide.error_mm, 1) + " mm at the control point");
+  if (guide.standing == operation::GuideStanding::Trusted)
+    widgets::status_row(ui, Severity::Caution, "Nominal guide", "nobody checked it");
+}
+
 // The last touch, where the large number of the registration panel is not shown.
 void draw_touch_row(const widgets::Ui& ui, const NavigateScreen& screen) {
   if (screen.layout == NavigateLayout::Register) return;
@@ -122,6 +132,7 @@ void draw_tracking(const widgets::Ui& ui, const widgets::Rect& area, const Navig
       draw_markers(ui, screen);
     }
     draw_registration_row(ui, screen);
+    draw_guide_check(ui, screen.live->operation->guide_check);
     draw_touch_row(ui, screen);
     draw_probe(ui, screen);
     const operation::OperationState& state = *screen.live->operation;

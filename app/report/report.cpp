@@ -55,7 +55,7 @@ std::string kind_in_words(const recording::SessionHeader& header) {
 // What was asked before the guide was followed, and what spoke against it, as the session's events say it.
 std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session) {
   bool is_verified = false, was_verified = false, was_skipped = false, is_confirmed = false;
-  std::string alarms;
+  std::string alarms, guide;
   for (const recording::SessionEvent& event : session.events()) {
     const bool is_another =
         event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent;
@@ -63,6 +63,7 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
     was_verified = was_verified || is_verified;
     was_skipped = was_skipped || event.kind == recording::kVerificationSkippedEvent;
     is_confirmed = is_confirmed || event.kind == recording::kTimeOutConfirmedEvent;
+    if (event.kind == recording::kGuideCheckedEvent) guide = event.text;
     if (event.kind == recording::kAlarmEvent || event.kind == recording::kVoidEvent)
       alarms += (alarms.empty() ? "" : "; ") + (event.text.empty() ? "over" : event.text);
   }
@@ -78,6 +79,7 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
                        : is_live      ? "not confirmed in this session"
                        : kind.empty() ? "not recorded"
                                       : "not asked: no live source"},
+          {"Check of a nominal guide", guide.empty() ? "none" : guide},
           {"Alarms, void registrations", alarms.empty() ? "none" : alarms}};
 }
 

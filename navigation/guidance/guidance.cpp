@@ -158,6 +158,8 @@ std::string_view to_text(GuidanceState state) {
       return "wrong medium";
     case GuidanceState::NotConfirmed:
       return "time-out not confirmed";
+    case GuidanceState::GuideNotChecked:
+      return "nominal drill guide not checked";
   }
   return "unknown";
 }

@@ -25,10 +25,11 @@ enum class GuidanceState {
   WorldMarkerLost,
   GuideLost,
   LensStale,
-  Stale,         // the newest pose is too old
-  NoGuide,       // the tools hold no such guide, or it has no axis
-  WrongMedium,   // the pictures contradict the medium that is said to be before the lens
-  NotConfirmed,  // the time-out of a live operation is still to be done
+  Stale,            // the newest pose is too old
+  NoGuide,          // the tools hold no such guide, or it has no axis
+  WrongMedium,      // the pictures contradict the medium that is said to be before the lens
+  NotConfirmed,     // the time-out of a live operation is still to be done
+  GuideNotChecked,  // a live operation's guide is nominal and was not held against a known point yet
 };
 [[nodiscard]] std::string_view to_text(GuidanceState state);
 

@@ -35,6 +35,8 @@ constexpr std::array<std::string_view, std::variant_size_v<Command>> kNames{"dra
                                                                             "tunnel drilled",
                                                                             "give registration",
                                                                             "confirm time-out",
+                                                                            "check guide",
+                                                                            "trust guide",
                                                                             "resume operation"};
 
 void add(Json& json, const Draw& draw) { json["on"] = draw.on; }

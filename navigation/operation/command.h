@@ -72,6 +72,11 @@ struct GiveRegistration {
 struct ConfirmTimeOut {
   bool patient_was_shown = false;  // who it is stays out of the record; that it was on the screen does not
 };
+// The guide's tip rests on the control point: a nominal guide guides live only when it is found there.
+struct CheckGuide {};
+// A nominal guide guides unchecked: said by whoever starts a live operation where nobody can hold a guide
+// against anything. That is recorded; the window has no such way.
+struct TrustGuide {};
 // What an operation had come to that a crash or a closed window cut off, for another one to go on with it.
 // All of it is here: nothing else is read to run it again. Takes effect once, before the first source.
 struct ResumeOperation {
@@ -93,7 +98,7 @@ struct ResumeOperation {
 using Command = std::variant<Draw, TakeTouch, TouchControlPoint, ForgetTouches, TakeBackStroke, ExcludeStroke,
                              ClearStrokes, RegisterStrokes, ChooseRegistration, OfferPlan, TakePlanOver,
                              SkipVerification, MarkerPlacedAnew, ReadDepthStop, TunnelDrilled,
-                             GiveRegistration, ConfirmTimeOut, ResumeOperation>;
+                             GiveRegistration, ConfirmTimeOut, CheckGuide, TrustGuide, ResumeOperation>;
 
 // "exclude stroke", ...: what the journal calls it.
 [[nodiscard]] std::string_view name_of(const Command& command);

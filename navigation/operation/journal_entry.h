@@ -27,6 +27,7 @@ enum class JournalKind {
   Verified,
   VerificationSkipped,
   TimeOutConfirmed,  // text: what was on the screen
+  GuideChecked,      // text: how far its tip was off, or that nobody checked it
   Plan,              // in force from now on: plan, or none
   Drilled,           // achieved is set
   Note,

@@ -46,21 +46,21 @@ void Operation::start_source(const SourceSetup& source) {
   p.pipeline = std::move(pipeline);
   p.source = std::make_shared<const SourceSetup>(source);
   p.has_source = true;
-  p.medium.emplace(markers::declared_markers(source.pipeline.tools), source.pipeline.refractive_index,
-                   source.pipeline.calibration.refractive_index);
-  ++p.source_number;
-  p.look_request.reset();
-  p.awaited_look.reset();
+  p.medium.check.emplace(markers::declared_markers(source.pipeline.tools), source.pipeline.refractive_index,
+                         source.pipeline.calibration.refractive_index);
+  ++p.medium.source_number;
+  p.medium.request.reset();
+  p.medium.awaited.reset();
   p.frame = {};
   p.frame_count = 0;
   p.note(JournalKind::SourceStarted);
   p.tip.clear();
-  p.evidence = p.plan ? std::optional<guidance::DrillEvidence>(p.plan->tunnel) : std::nullopt;
-  p.drilled = {};
-  p.evidence_is_seen = false;
-  p.touch_refusal = TouchRefusal::None;
-  p.world_was_seen = p.guide_was_seen = false;
-  p.control_touched_ns = 0;  // of another clock
+  p.drilling.evidence = p.plan ? std::optional<guidance::DrillEvidence>(p.plan->tunnel) : std::nullopt;
+  p.drilling.drilled = {};
+  p.drilling.evidence_is_seen = false;
+  p.touch.refusal = TouchRefusal::None;
+  p.in_view.world_was_seen = p.in_view.guide_was_seen = false;
+  p.in_view.control_touched_ns = 0;  // of another clock
   p.pipeline->set_plan(p.plan ? std::optional(p.plan->tunnel) : std::nullopt, p.plan ? p.plan->length_mm : 0);
   // What differed from the plan of before the crash was offered by nobody who saw it: it is still asked for.
   if (p.offered && !p.resumed_plan_waits)
@@ -68,16 +68,17 @@ void Operation::start_source(const SourceSetup& source) {
   else
     p.note_plan();
   p.ledger.set_now(now);
+  p.guide_check.begin(source.pipeline, now, source.kind == sources::SourceKind::Live);
   if (!p.strokes.points().empty() && registration::mismatch_of(p.strokes_of, now)) {
     p.set_aside_count += p.strokes.points().size();
     p.clear_strokes();
   }
   p.hand_registration();
   if (p.ledger.in_force().registration != nullptr) p.note_in_force(true);
-  p.followed_change = p.ledger.change_count();
+  p.followed.change = p.ledger.change_count();
   // Each record says how it stands from its beginning on, whatever the one before it said.
-  p.followed_standing = Standing::None;
-  p.followed_verified = false;
+  p.followed.standing = Standing::None;
+  p.followed.is_verified = false;
   p.follow_ledger();
   const RegistrationInForce& in_force = p.ledger.in_force();
   // What was resumed waits for a touch; what is drawn meanwhile would be of a marker that nobody has checked.
@@ -92,9 +93,10 @@ void Operation::end_source() {
   p.note(JournalKind::SourceEnded);
   p.has_source = p.draws = false;
   p.tip.clear();
+  p.guide_check.end_source();
   p.end_frame();
-  p.look_request.reset();
-  p.awaited_look.reset();
+  p.medium.request.reset();
+  p.medium.awaited.reset();
 }
 
 void Operation::process(const camera::Frame& frame) {
@@ -123,7 +125,7 @@ void Operation::take_outcome(const OutcomePtr& outcome) {
   const bool has_become_ready = outcome->bone_is_ready && (before == nullptr || !before->bone_is_ready);
   // Nothing more may come: what was drawn while the bone was being made ready is judged, nobody asking.
   if (has_become_ready && !p.strokes.points().empty()) p.ask(JudgeAll{});
-  if (!outcome->failure.empty()) p.is_fitting = p.fit_is_wanted = false;  // it will never come
+  if (!outcome->failure.empty()) p.fitting.is_under_way = p.fitting.is_wanted = false;  // it will never come
   const auto& online = outcome->online;
   if (online != nullptr && (before == nullptr || before->online != online)) {
     // What was found with strokes that are gone or excluded since, before the registration heard of it, must
@@ -137,17 +139,17 @@ void Operation::take_outcome(const OutcomePtr& outcome) {
     }
   }
   if (outcome->fit_number > (before != nullptr ? before->fit_number : 0) &&
-      outcome->fit_number == p.fit_number) {
-    p.is_fitting = false;
-    if (std::exchange(p.fit_is_wanted, false))
-      p.ledger.take_fit(outcome->fit, p.fit_request, p.fit_length_mm);
+      outcome->fit_number == p.fitting.number) {
+    p.fitting.is_under_way = false;
+    if (std::exchange(p.fitting.is_wanted, false))
+      p.ledger.take_fit(outcome->fit, p.fitting.request, p.fitting.length_mm);
   }
   p.follow_ledger();
 }
 
 void Operation::take_look(const MediumLookPtr& look) { parts_->take_look(look); }
 std::optional<MediumLookRequest> Operation::take_look_request() {
-  return std::exchange(parts_->look_request, std::nullopt);
+  return std::exchange(parts_->medium.request, std::nullopt);
 }
 
 std::vector<RegistrationRequest> Operation::take_requests() { return std::exchange(parts_->requests, {}); }
@@ -169,14 +171,16 @@ OperationStatePtr Operation::state() {
   state->time_out = p.time_out();
   state->resumed = p.resumed;
   state->control_point_due = p.control_point_due();
-  state->touch_refusal = p.touch_refusal;
-  state->touch_asked_ns = p.touch_asked_ns;
+  state->touch_refusal = p.touch.refusal;
+  state->guide_check = p.guide_check.state();
+  state->touch_is_of_guide = p.touch.is_of_guide;
+  state->touch_asked_ns = p.touch.time_ns;
   state->plan = p.plan;
   state->plan_was_edited = p.offered.has_value();
-  state->depth_stop_mm = p.depth_stop_mm;
-  state->drilled = p.drilled;
-  state->drilled.has_evidence = p.evidence_is_seen;
-  if (p.medium) state->medium = p.medium->verdict();
+  state->depth_stop_mm = p.drilling.depth_stop_mm;
+  state->drilled = p.drilling.drilled;
+  state->drilled.has_evidence = p.drilling.evidence_is_seen;
+  if (p.medium.check) state->medium = p.medium.check->verdict();
   state->next_action = next_action_of(*state);
   state->step = step_of(state->next_action);
   return state;

@@ -39,11 +39,34 @@ void Operation::Parts::apply(const ConfirmTimeOut& time_out_of) {
   note(JournalKind::TimeOutConfirmed, in_words(*source, ledger.now(), plan, time_out_of.patient_was_shown));
 }
 
+// Held against the control point by the one guide that this source has; what it shows guides from the next
+// frame on, or no more from this one.
+void Operation::Parts::apply(const CheckGuide&) {
+  draws = false;
+  if (guide_check.state().standing == GuideStanding::NotAsked) return;
+  touch = {TouchRefusal::NoSource, true, frame.timestamp_ns};
+  if (!has_source) return;
+  touch.refusal = guide_check.check(ledger.touches().control_point_mm(), setup.limits);
+  if (touch.refusal != TouchRefusal::None) return;
+  const GuideCheckState& state = guide_check.state();
+  note(JournalKind::GuideChecked,
+       files::format("its tip lies %.1f mm from the control point", state.error_mm) +
+           (state.may_guide() ? "" : files::format(", more than %.1f mm", setup.limits.max_guide_error_mm)));
+  if (!state.may_guide() && frame.guidance.is_valid())
+    hide_guidance(guidance::GuidanceState::GuideNotChecked);
+}
+
+void Operation::Parts::apply(const TrustGuide&) {
+  if (guide_check.state().may_guide()) return;
+  guide_check.trust();
+  note(JournalKind::GuideChecked, "nominal, and nobody checked it");
+}
+
 // Once, and before the first source: what is known of this operation by then is its plan.
 void Operation::Parts::apply(const ResumeOperation& resume) {
   if (source != nullptr || resumed != nullptr) return;
   resumed = std::make_shared<const ResumeOperation>(resume);
-  depth_stop_mm = resume.depth_stop_mm;
+  drilling.depth_stop_mm = resume.depth_stop_mm;
   ledger.bring_back(resume.of, resume.touches_mm, resume.control_point_mm);
   if (resume.plan && resume.plan != plan) {
     // The one that guided then guides on; the case's, which is another one by now, waits to be taken over.

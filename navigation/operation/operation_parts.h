@@ -11,6 +11,7 @@
 
 #include "navigation/guidance/drill_evidence.h"
 #include "navigation/guidance/registration_bias.h"
+#include "navigation/operation/guide_check.h"
 #include "navigation/operation/operation.h"
 #include "navigation/pipeline/medium_check.h"
 
@@ -56,7 +57,7 @@ struct Operation::Parts {
   void watch_guidance();
   void look_for_registration();
   void register_strokes();
-  void strokes_changed() { fit_is_wanted = false; }
+  void strokes_changed() { fitting.is_wanted = false; }
   void clear_strokes();
   void take_touch(bool is_control_point);
   [[nodiscard]] std::optional<std::size_t> guide_in_view() const;
@@ -99,14 +100,16 @@ struct Operation::Parts {
   void apply(const SkipVerification&) { skip_verification("asked for"); }
   void apply(const MarkerPlacedAnew&) {
     clear_strokes();
-    drilled = {};
-    depth_stop_mm.reset();
+    drilling.drilled = {};
+    drilling.depth_stop_mm.reset();
     ledger.marker_placed_anew();
   }
-  void apply(const ReadDepthStop& stop) { depth_stop_mm = stop.depth_mm; }
+  void apply(const ReadDepthStop& stop) { drilling.depth_stop_mm = stop.depth_mm; }
   void apply(const TunnelDrilled&);
   void apply(const GiveRegistration& give);
   void apply(const ConfirmTimeOut& time_out);
+  void apply(const CheckGuide&);
+  void apply(const TrustGuide&);
   void apply(const ResumeOperation& resume);
   void skip_verification(const std::string& how);
 
@@ -125,41 +128,57 @@ struct Operation::Parts {
 
   OutcomePtr outcome;  // the newest that was taken in
   std::shared_ptr<const registration::OnlineResult> online;
-  int fit_number = 0;  // of the newest that was asked for
-  std::uint64_t fit_request = 0;
-  double fit_length_mm = 0;
-  std::size_t fit_points = 0;
-  bool is_fitting = false, fit_is_wanted = false;
-  int frames_since_look = 0;
+  // The registration of all strokes.
+  struct Fitting {
+    int number = 0;  // of the newest that was asked for
+    std::uint64_t request = 0;
+    double length_mm = 0;  // of the strokes it was asked of
+    bool is_under_way = false, is_wanted = false;
+    int frames_since_look = 0;
+  } fitting;
+  // How the registration that strokes give follows the errors of probe and camera; by stroke.
+  std::map<int, guidance::BiasSums> bias_of_stroke;
 
   std::optional<PlannedTunnel> plan;
   std::optional<std::optional<PlannedTunnel>> offered;
   bool resumed_plan_waits = false;  // what is offered is the case's, asked for even when a source starts
   std::optional<std::size_t> skipped_entry;  // of the ledger: it guided without a touch
-  TouchRefusal touch_refusal = TouchRefusal::None;
-  std::int64_t touch_asked_ns = 0;
-  std::int64_t world_seen_ns = 0, control_touched_ns = 0;
-  bool world_was_seen = false, was_lost_for_long = false, guide_was_seen = false;
-  std::optional<guidance::DrillEvidence> evidence;  // of the plan in force
-  bool evidence_is_seen = false;
-  int frames_since_evidence = 0;
-  std::optional<pipeline::MediumCheck> medium;  // of the source
-  std::uint64_t source_number = 0;
-  std::optional<MediumLookRequest> look_request;
-  std::optional<std::int64_t> awaited_look;  // the frame whose picture is being seen again
-  // How the registration that strokes give follows the errors of probe and camera; by stroke.
-  std::map<int, guidance::BiasSums> bias_of_stroke;
-  DrilledState drilled;
-  std::optional<double> depth_stop_mm;
+  struct Asked {                             // the last touch, or check of the guide
+    TouchRefusal refusal = TouchRefusal::None;
+    bool is_of_guide = false;
+    std::int64_t time_ns = 0;
+  } touch;
+  GuideCheck guide_check;
+  // What was in view, and when the control point was touched last; of the source.
+  struct InView {
+    std::int64_t world_ns = 0, control_touched_ns = 0;
+    bool world_was_seen = false, was_lost_for_long = false, guide_was_seen = false;
+  } in_view;
+  struct Medium {
+    std::optional<pipeline::MediumCheck> check;
+    std::uint64_t source_number = 0;
+    std::optional<MediumLookRequest> request;
+    std::optional<std::int64_t> awaited;  // the frame whose picture is being seen again
+  } medium;
+  struct Drilling {
+    std::optional<guidance::DrillEvidence> evidence;  // of the plan in force
+    bool evidence_is_seen = false;
+    int frames_since_look = 0;
+    std::optional<double> depth_stop_mm;
+    DrilledState drilled;
+  } drilling;
   // What the time-out was confirmed of; empty: not yet.
   std::optional<registration::Provenance> confirmed;
   std::optional<PlannedTunnel> confirmed_plan;
   std::shared_ptr<const ResumeOperation> resumed;  // null: nothing was
 
-  std::uint64_t followed_change = 0;
-  Standing followed_standing = Standing::None;
-  std::optional<std::size_t> followed_entry;  // of the ledger
-  bool followed_verified = false;
+  // The ledger as it was told of last.
+  struct Followed {
+    std::uint64_t change = 0;
+    Standing standing = Standing::None;
+    std::optional<std::size_t> entry;
+    bool is_verified = false;
+  } followed;
   std::vector<RegistrationRequest> requests;
   std::uint64_t request_count = 0;
   std::vector<JournalEntry> journal;

@@ -42,14 +42,14 @@ void Operation::Parts::hand_registration() {
 // What is in force guides from the next frame on; what is not any more does not guide in it.
 void Operation::Parts::follow_ledger() {
   const RegistrationInForce& in_force = ledger.in_force();
-  const bool is_another = ledger.change_count() != followed_change;
+  const bool is_another = ledger.change_count() != followed.change;
   if (is_another) {
-    followed_change = ledger.change_count();
+    followed.change = ledger.change_count();
     if (pipeline != nullptr) hand_registration();
     // The picture's numbers, and what was seen of the guide, were by what is not in force any more.
     hide_guidance(guidance::GuidanceState::Stale);
-    if (evidence) evidence->clear();
-    evidence_is_seen = false;
+    if (drilling.evidence) drilling.evidence->clear();
+    drilling.evidence_is_seen = false;
     if (in_force.registration != nullptr) {
       const RegistrationOrigin origin = (*ledger.entries())[*ledger.entry_in_force()].origin;
       note_in_force(origin == RegistrationOrigin::Given || origin == RegistrationOrigin::Resumed);
@@ -58,33 +58,33 @@ void Operation::Parts::follow_ledger() {
     }
   }
   // Of another one that is void too, the journal says so too.
-  if (in_force.standing != followed_standing || (is_another && in_force.standing == Standing::Void)) {
+  if (in_force.standing != followed.standing || (is_another && in_force.standing == Standing::Void)) {
     const std::string why = in_force.registration != nullptr && !in_force.registration->reasons.empty()
                                 ? in_force.registration->reasons.front()
                                 : "";
-    if (followed_standing == Standing::Alarm) note(JournalKind::Alarm);
+    if (followed.standing == Standing::Alarm) note(JournalKind::Alarm);
     if (in_force.standing == Standing::Alarm) note(JournalKind::Alarm, why);
     if (in_force.standing == Standing::Void) note(JournalKind::Void, why);
-    if (followed_standing == Standing::Void && in_force.standing == Standing::Stands &&
-        ledger.entry_in_force() == followed_entry) {
+    if (followed.standing == Standing::Void && in_force.standing == Standing::Stands &&
+        ledger.entry_in_force() == followed.entry) {
       note(JournalKind::Confirmed, "by a touch");
       skipped_entry.reset();  // that was under other circumstances
     }
-    followed_standing = in_force.standing;
+    followed.standing = in_force.standing;
   }
-  followed_entry = ledger.entry_in_force();
-  if (in_force.is_verified && (!followed_verified || is_another)) note(JournalKind::Verified);
-  followed_verified = in_force.is_verified;
+  followed.entry = ledger.entry_in_force();
+  if (in_force.is_verified && (!followed.is_verified || is_another)) note(JournalKind::Verified);
+  followed.is_verified = in_force.is_verified;
   changed = true;
 }
 
 void Operation::Parts::set_plan(const std::optional<PlannedTunnel>& next) {
   plan = next;
   // What was seen, read and drilled was of another plan; the numbers of the last picture are too.
-  evidence = plan ? std::optional<guidance::DrillEvidence>(plan->tunnel) : std::nullopt;
-  evidence_is_seen = false;
-  drilled = {};
-  depth_stop_mm.reset();
+  drilling.evidence = plan ? std::optional<guidance::DrillEvidence>(plan->tunnel) : std::nullopt;
+  drilling.evidence_is_seen = false;
+  drilling.drilled = {};
+  drilling.depth_stop_mm.reset();
   hide_guidance(guidance::GuidanceState::Stale);
   if (pipeline != nullptr)
     pipeline->set_plan(plan ? std::optional(plan->tunnel) : std::nullopt, plan ? plan->length_mm : 0);
@@ -103,7 +103,10 @@ void Operation::Parts::take_frame() {
   ++frame_count;
   if (frame.guidance.is_valid() && time_out() == TimeOut::Due)
     hide_guidance(guidance::GuidanceState::NotConfirmed);
+  if (frame.guidance.is_valid() && !guide_check.state().may_guide())
+    hide_guidance(guidance::GuidanceState::GuideNotChecked);
   const double time_s = static_cast<double>(frame.timestamp_ns) * 1e-9;
+  guide_check.add(frame);
   tip.add(time_s, frame.tip_is_valid ? std::optional(frame.tip_in_world_mm) : std::nullopt);
   draw_tip();
   watch_marker();
@@ -134,37 +137,38 @@ std::optional<guidance::RegistrationBias> Operation::Parts::bias() const {
 }
 
 void Operation::Parts::check_medium() {
-  if (!medium) return;
-  const pipeline::MediumFit before = medium->verdict().fit;
-  medium->look(frame);
-  if (medium->wants_second_look() && !awaited_look) {
+  if (!medium.check) return;
+  const pipeline::MediumFit before = medium.check->verdict().fit;
+  medium.check->look(frame);
+  if (medium.check->wants_second_look() && !medium.awaited) {
     const pipeline::PipelineOptions& options = source->pipeline;
-    awaited_look = frame.frame_index;
-    look_request = MediumLookRequest{source_number, frame, markers::declared_markers(options.tools),
-                                     medium->other_index(), options.calibration.refractive_index};
+    medium.awaited = frame.frame_index;
+    medium.request = MediumLookRequest{medium.source_number, frame, markers::declared_markers(options.tools),
+                                       medium.check->other_index(), options.calibration.refractive_index};
   }
   follow_medium(before);
 }
 
 void Operation::Parts::take_look(const MediumLookPtr& look) {
-  if (look == nullptr || look->source_number != source_number || awaited_look != look->view.frame_index)
+  if (look == nullptr || look->source_number != medium.source_number ||
+      medium.awaited != look->view.frame_index)
     return;
-  awaited_look.reset();
+  medium.awaited.reset();
   note(JournalKind::LookTaken, std::to_string(look->view.frame_index));
-  const pipeline::MediumFit before = medium->verdict().fit;
-  medium->look_again(look->view, look->in_other_medium);
+  const pipeline::MediumFit before = medium.check->verdict().fit;
+  medium.check->look_again(look->view, look->in_other_medium);
   follow_medium(before);
 }
 
 // In the wrong medium nothing that is reckoned from the pictures stands; the reason is the medium, not the
 // markers.
 void Operation::Parts::follow_medium(pipeline::MediumFit before) {
-  if (medium->verdict().fit != before) {
+  if (medium.check->verdict().fit != before) {
     changed = true;
-    if (medium->verdict().fit == pipeline::MediumFit::Contradicts)
-      note(JournalKind::Note, pipeline::reason_text(medium->verdict()));
+    if (medium.check->verdict().fit == pipeline::MediumFit::Contradicts)
+      note(JournalKind::Note, pipeline::reason_text(medium.check->verdict()));
   }
-  if (medium->verdict().fit != pipeline::MediumFit::Contradicts) return;
+  if (medium.check->verdict().fit != pipeline::MediumFit::Contradicts) return;
   end_frame();
   hide_guidance(guidance::GuidanceState::WrongMedium);
 }
@@ -185,22 +189,22 @@ void Operation::Parts::end_frame() {
 
 void Operation::Parts::watch_marker() {
   if (frame.camera_from_world.is_valid) {
-    if (world_was_seen && frame.timestamp_ns - world_seen_ns > kLongLoss_ns)
-      was_lost_for_long = changed = true;
-    world_was_seen = true;
-    world_seen_ns = frame.timestamp_ns;
+    if (in_view.world_was_seen && frame.timestamp_ns - in_view.world_ns > kLongLoss_ns)
+      in_view.was_lost_for_long = changed = true;
+    in_view.world_was_seen = true;
+    in_view.world_ns = frame.timestamp_ns;
   }
 }
 
 void Operation::Parts::watch_guidance() {
   const bool guide_is_seen = guide_in_view().has_value();
-  if (guide_is_seen && !guide_was_seen) changed = true;
-  guide_was_seen = guide_was_seen || guide_is_seen;
-  if (evidence) evidence->add(frame.guidance);
+  if (guide_is_seen && !in_view.guide_was_seen) changed = true;
+  in_view.guide_was_seen = in_view.guide_was_seen || guide_is_seen;
+  if (drilling.evidence) drilling.evidence->add(frame.guidance);
   // Summing it up costs more than a frame should: twice a second is soon enough to be asked.
-  if (++frames_since_evidence >= kFramesBetweenLooks) {
-    frames_since_evidence = 0;
-    evidence_is_seen = evidence && evidence->summary().is_usable();
+  if (++drilling.frames_since_look >= kFramesBetweenLooks) {
+    drilling.frames_since_look = 0;
+    drilling.evidence_is_seen = drilling.evidence && drilling.evidence->summary().is_usable();
   }
   if (!frame.guidance.is_valid()) return;
   if (verification() == Verification::NotYet) skip_verification("guidance began without one");
@@ -219,25 +223,26 @@ Verification Operation::Parts::verification() const {
 }
 
 void Operation::Parts::look_for_registration() {
-  if (!setup.registers_after_mm || !plan || !guide_in_view() || ++frames_since_look < kFramesBetweenLooks)
+  if (!setup.registers_after_mm || !plan || !guide_in_view() ||
+      ++fitting.frames_since_look < kFramesBetweenLooks)
     return;
-  frames_since_look = 0;
+  fitting.frames_since_look = 0;
   const std::optional<std::size_t> entry = ledger.entry_in_force();
   const bool is_settled = entry && (*ledger.entries())[*entry].origin != RegistrationOrigin::WhileDrawing &&
                           ledger.in_force().standing == Standing::Stands;
-  if (is_settled || strokes::length_mm(strokes.in_use()) < fit_length_mm + *setup.registers_after_mm) return;
+  if (is_settled || strokes::length_mm(strokes.in_use()) < fitting.length_mm + *setup.registers_after_mm)
+    return;
   register_strokes();
 }
 
 void Operation::Parts::register_strokes() {
-  if (is_fitting || (outcome != nullptr && !outcome->failure.empty())) return;
+  if (fitting.is_under_way || (outcome != nullptr && !outcome->failure.empty())) return;
   auto curves = std::make_shared<const strokes::Curves>(strokes.in_use());
   if (curves->empty()) return;
-  fit_length_mm = strokes::length_mm(*curves);
-  fit_points = curves->size();
-  is_fitting = fit_is_wanted = true;
-  ask(FitAll{++fit_number, std::move(curves)});
-  fit_request = request_count;
+  fitting.length_mm = strokes::length_mm(*curves);
+  fitting.is_under_way = fitting.is_wanted = true;
+  ask(FitAll{++fitting.number, std::move(curves)});
+  fitting.request = request_count;
   changed = true;
 }
 
@@ -247,24 +252,21 @@ void Operation::Parts::clear_strokes() {
   ask(StrokesCleared{});
   strokes_changed();
   online.reset();
-  fit_length_mm = 0;
+  fitting.length_mm = 0;
   ledger.forget_strokes();
 }
 
 void Operation::Parts::take_touch(bool is_control_point) {
   draws = false;
-  touch_asked_ns = frame.timestamp_ns;
+  touch = {TouchRefusal::None, false, frame.timestamp_ns};
   const auto tip_mm = tip.position_mm();
   if (!has_source || !tip_mm) {
-    touch_refusal = !has_source                                      ? TouchRefusal::NoSource
-                    : tip.why_not() == SteadyTip::Reason::TipUnknown ? TouchRefusal::TipUnknown
-                                                                     : TouchRefusal::TipMoves;
+    touch.refusal = !has_source ? TouchRefusal::NoSource : refusal_of(tip.why_not());
     return;
   }
-  touch_refusal = TouchRefusal::None;
   if (!is_control_point) return ledger.add_touch(*tip_mm);
-  control_touched_ns = frame.timestamp_ns;
-  was_lost_for_long = false;
+  in_view.control_touched_ns = frame.timestamp_ns;
+  in_view.was_lost_for_long = false;
   ledger.touch_control_point(*tip_mm);
 }
 
@@ -280,11 +282,11 @@ void Operation::Parts::apply(const OfferPlan& offer) {
 
 // That a tunnel was drilled is the surgeon's word; where it runs is what was seen meanwhile, or not known.
 void Operation::Parts::apply(const TunnelDrilled&) {
-  drilled = {};
-  drilled.outcome = DrilledState::Outcome::NoEvidence;
-  if (!evidence) return;
-  const guidance::DrillEvidenceSummary seen = evidence->summary();
-  drilled.evidence = seen.outcome;
+  drilling.drilled = {};
+  drilling.drilled.outcome = DrilledState::Outcome::NoEvidence;
+  if (!drilling.evidence) return;
+  const guidance::DrillEvidenceSummary seen = drilling.evidence->summary();
+  drilling.drilled.evidence = seen.outcome;
   if (!seen.is_usable())
     return note(JournalKind::Note,
                 "drilled, by the surgeon's word; " + std::string(guidance::to_text(seen.outcome)));
@@ -298,16 +300,16 @@ void Operation::Parts::apply(const TunnelDrilled&) {
     if (const auto geometry = tunnels::measure(tunnel.measured, *setup.surface); geometry.enters_bone)
       tunnel.measured.entry_mm = geometry.entry_on_surface_mm;
   // A guide's end stays on the bone while the drill runs through it.
-  tunnel.depth_mm = seen.is_of_drill ? std::optional(seen.depth_mm) : depth_stop_mm;
-  depth_stop_mm.reset();  // of this hole
+  tunnel.depth_mm = seen.is_of_drill ? std::optional(seen.depth_mm) : drilling.depth_stop_mm;
+  drilling.depth_stop_mm.reset();  // of this hole
   tunnel.timestamp_ns = seen.timestamp_ns;
   tunnel.pose_count = seen.pose_count;
   tunnel.sigma_offset_mm = seen.sigma_offset_mm;
   tunnel.sigma_angle_deg = seen.sigma_angle_deg;
-  drilled.outcome = DrilledState::Outcome::Recorded;
-  drilled.tunnel = tunnel;
-  evidence->clear();
-  evidence_is_seen = false;
+  drilling.drilled.outcome = DrilledState::Outcome::Recorded;
+  drilling.drilled.tunnel = tunnel;
+  drilling.evidence->clear();
+  drilling.evidence_is_seen = false;
   JournalEntry entry = entry_of(JournalKind::Drilled, "");
   entry.achieved = tunnel;
   note(std::move(entry));
@@ -324,8 +326,8 @@ void Operation::Parts::apply(const GiveRegistration& give) {
 ControlPointDue Operation::Parts::control_point_due() const {
   if (!has_source || ledger.in_force().standing != Standing::Stands) return ControlPointDue::None;
   if (!ledger.touches().has_control_point()) return ControlPointDue::Set;
-  if (was_lost_for_long) return ControlPointDue::CheckAfterLoss;
-  return guide_was_seen && frame.timestamp_ns - control_touched_ns > kControlHolds_ns
+  if (in_view.was_lost_for_long) return ControlPointDue::CheckAfterLoss;
+  return in_view.guide_was_seen && frame.timestamp_ns - in_view.control_touched_ns > kControlHolds_ns
              ? ControlPointDue::CheckBeforeDrilling
              : ControlPointDue::None;
 }
@@ -348,7 +350,7 @@ RegistrationStatePtr Operation::Parts::registration_state() {
   state->alarm = ledger.alarm();
   state->touches = ledger.touches();
   state->bone_is_ready = outcome != nullptr && outcome->bone_is_ready;
-  state->is_fitting = is_fitting;
+  state->is_fitting = fitting.is_under_way;
   if (outcome != nullptr) state->bone_trouble = outcome->failure;
   state->set_aside_count = set_aside_count;
   published_registration = std::move(state);

@@ -133,6 +133,7 @@ std::string_view to_text(NextAction action) {
                                          "verify by touch",
                                          "set control point",
                                          "check control point",
+                                         "check guide",
                                          "bring guide",
                                          "follow bullseye",
                                          "record drilled",
@@ -162,6 +163,8 @@ NextAction next_action_of(const OperationState& state) {
   if (state.verification == Verification::NotYet && !guides) return NextAction::VerifyByTouch;
   if (state.control_point_due == ControlPointDue::Set && !guides) return NextAction::SetControlPoint;
   if (state.control_point_due > ControlPointDue::Set) return NextAction::CheckControlPoint;
+  if (!state.guide_check.may_guide())
+    return registration.touches.has_control_point() ? NextAction::CheckGuide : NextAction::SetControlPoint;
   if (state.drilled.has_evidence) return NextAction::RecordDrilled;
   return guides ? NextAction::FollowBullseye : NextAction::BringGuide;
 }
@@ -187,6 +190,7 @@ Step step_of(NextAction action) {
     case NextAction::VerifyByTouch:
     case NextAction::SetControlPoint:
     case NextAction::CheckControlPoint:
+    case NextAction::CheckGuide:
       return Step::Verify;
     case NextAction::BringGuide:
     case NextAction::FollowBullseye:
@@ -214,6 +218,9 @@ std::uint64_t digest_of_decisions(const OperationState& state) {
   digest.add(state.depth_stop_mm.value_or(-1));
   digest.add(state.control_point_due);
   digest.add(state.touch_refusal);
+  digest.add(state.guide_check.standing);
+  digest.add(state.guide_check.error_mm);
+  digest.add(state.touch_is_of_guide);
   digest.add(state.plan.has_value());
   if (state.plan) {
     digest.add(state.plan->tunnel);

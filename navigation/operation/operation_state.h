@@ -12,6 +12,7 @@
 #include "navigation/guidance/drill_evidence.h"
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/operation/command.h"
+#include "navigation/operation/guide_check.h"
 #include "navigation/operation/registration_ledger.h"
 #include "navigation/operation/stroke_book.h"
 #include "navigation/pipeline/medium_check.h"
@@ -51,9 +52,6 @@ struct RegistrationState {
 };
 using RegistrationStatePtr = std::shared_ptr<const RegistrationState>;
 
-// Why a touch that was asked for was not taken.
-enum class TouchRefusal { None, NoSource, TipUnknown, TipMoves };
-
 // Whether a touch on the bone has shown that the registration holds, before it guides.
 enum class Verification { NotYet, ByTouches, Skipped };
 
@@ -85,6 +83,7 @@ enum class NextAction {
   VerifyByTouch,
   SetControlPoint,
   CheckControlPoint,
+  CheckGuide,  // a nominal guide: its tip on the control point
   BringGuide,
   FollowBullseye,
   RecordDrilled,
@@ -114,13 +113,15 @@ struct OperationState {
   Verification verification = Verification::NotYet;
   TimeOut time_out = TimeOut::NotAsked;
   ControlPointDue control_point_due = ControlPointDue::None;
-  TouchRefusal touch_refusal = TouchRefusal::None;  // of the last touch that was asked for
+  TouchRefusal touch_refusal = TouchRefusal::None;  // of the last touch, or check of the guide, asked for
+  bool touch_is_of_guide = false;                   // a check of it
   std::int64_t touch_asked_ns = 0;                  // in the source's time
-  std::optional<PlannedTunnel> plan;                // in force
-  bool plan_was_edited = false;                     // another one is offered and not taken over
-  std::optional<double> depth_stop_mm;              // as the surgeon read it last
-  std::shared_ptr<const ResumeOperation> resumed;   // what it went on from; null: it began afresh
-  pipeline::MediumVerdict medium;                   // whether the pictures fit the medium in force
+  GuideCheckState guide_check;
+  std::optional<PlannedTunnel> plan;               // in force
+  bool plan_was_edited = false;                    // another one is offered and not taken over
+  std::optional<double> depth_stop_mm;             // as the surgeon read it last
+  std::shared_ptr<const ResumeOperation> resumed;  // what it went on from; null: it began afresh
+  pipeline::MediumVerdict medium;                  // whether the pictures fit the medium in force
   DrilledState drilled;
   Step step = Step::Plan;
   NextAction next_action = NextAction::PlanTunnel;

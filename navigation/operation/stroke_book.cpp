@@ -9,8 +9,6 @@ namespace {
 
 const strokes::StrokeOptions kLimits;
 
-using Iterator = strokes::Curves::const_iterator;
-
 constexpr double kTraceCell_mm = 0.5;
 // The trace is handed to the screen a few times a second, not for every point of it.
 constexpr std::size_t kPointsBetweenTraces = 6;
@@ -25,24 +23,12 @@ std::uint64_t cell_of(const Eigen::Vector3d& point_mm) {
   return key;
 }
 
-// The path from point to point: what cuts strokes measures them so too.
-bool is_long_enough(Iterator first, Iterator end) {
-  double length_mm = 0;
-  for (Iterator it = first; it != end && std::next(it) != end; ++it)
-    length_mm += (std::next(it)->position_mm - it->position_mm).norm();
-  return length_mm >= kLimits.min_length_mm;
-}
-
 }  // namespace
 
 strokes::CurvePoint StrokeBook::add(double time_s, const Eigen::Vector3d& tip_in_marker_mm,
                                     const std::optional<Eigen::Vector3d>& shaft_direction) {
-  if (!is_cut_ && !points_.empty()) {
-    const strokes::CurvePoint& last = points_.back();
-    is_cut_ = time_s - last.time_s.value_or(time_s) > kLimits.max_gap_s ||
-              time_s < last.time_s.value_or(time_s) ||
-              (tip_in_marker_mm - last.position_mm).norm() > kLimits.max_hop_mm;
-  }
+  if (!is_cut_ && !points_.empty())
+    is_cut_ = !strokes::goes_on(points_.back(), time_s, tip_in_marker_mm, kLimits);
   if (is_cut_) ++next_curve_;
   is_cut_ = false;
   points_.push_back({next_curve_ - 1, time_s, tip_in_marker_mm, shaft_direction});
@@ -57,7 +43,7 @@ int StrokeBook::take_back() {
     const int curve = points_.back().curve;
     const auto first = std::find_if(points_.begin(), points_.end(),
                                     [&](const strokes::CurvePoint& point) { return point.curve == curve; });
-    was_long_enough = is_long_enough(first, points_.end());
+    was_long_enough = strokes::counts({first, points_.end()}, kLimits);
     excluded_.erase(curve);
     points_.erase(first, points_.end());
     ++count;
@@ -94,7 +80,7 @@ strokes::Curves StrokeBook::in_use() const {
   for (auto first = points_.begin(); first != points_.end();) {
     const auto end = std::find_if(
         first, points_.end(), [&](const strokes::CurvePoint& point) { return point.curve != first->curve; });
-    if (!excluded_.contains(first->curve) && is_long_enough(first, end))
+    if (!excluded_.contains(first->curve) && strokes::counts({first, end}, kLimits))
       curves.insert(curves.end(), first, end);
     first = end;
   }

@@ -23,6 +23,8 @@ struct TouchLimits {
   double max_verified_median_mm = 0.6;  // ... in the median than this
   // One touch that shows that a void registration holds all the same must lie nearer than this.
   double max_confirming_mm = 1.0;
+  // Of a nominal guide's tip on the control point, where that is to guide: as far as a touch may be off.
+  double max_guide_error_mm = 1.5;
   double apart_mm = 3;  // touches nearer to each other are of the same place
 };
 

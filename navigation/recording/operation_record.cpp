@@ -62,6 +62,8 @@ std::string_view kind_of(JournalKind kind) {
       return kVerificationSkippedEvent;
     case JournalKind::TimeOutConfirmed:
       return kTimeOutConfirmedEvent;
+    case JournalKind::GuideChecked:
+      return kGuideCheckedEvent;
     case JournalKind::Plan:
       return kPlanEvent;
     case JournalKind::Drilled:

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,13 @@ struct StrokeOptions {
   double max_hop_mm = 1.5;     // and where the tip jumps further between two frames
   double min_length_mm = 2.0;  // shorter strokes are left out
 };
+
+// The two rules by which a path is cut into strokes, while it is drawn and from a file alike.
+// Whether the tip, here and now, goes on with the stroke whose newest point is `last`.
+[[nodiscard]] bool goes_on(const CurvePoint& last, double time_s, const Eigen::Vector3d& tip_in_marker_mm,
+                           const StrokeOptions& options);
+// Whether a stroke is long enough to say anything, measured from point to point.
+[[nodiscard]] bool counts(std::span<const CurvePoint> stroke, const StrokeOptions& options);
 
 // Tip positions wherever world marker and tool are seen in the same frame. An empty result is not an error.
 // Throws InvalidInput when the tools declare no such world marker or tool, or the tool has no tip.

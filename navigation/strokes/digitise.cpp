@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "navigation/strokes/curves.h"
 #include "planning/geometry/error.h"
 
@@ -5,47 +7,37 @@ namespace arthronaut::strokes {
 
 namespace {
 
-// Collects the points of one stroke after the other and drops those that are too short to say anything.
-class StrokeCutter {
- public:
-  explicit StrokeCutter(const StrokeOptions& options) : options_(options) {}
-
-  void add(double time_s, const Eigen::Vector3d& tip_mm,
-           const std::optional<Eigen::Vector3d>& shaft_direction) {
-    if (!stroke_.empty()) {
-      const bool gap = time_s - *stroke_.back().time_s > options_.max_gap_s;
-      const double hop_mm = (tip_mm - stroke_.back().position_mm).norm();
-      if (gap || hop_mm > options_.max_hop_mm) {
-        finish_stroke();
-      } else {
-        length_mm_ += hop_mm;
-      }
+// Those that count, numbered from 0.
+Curves strokes_that_count(const Curves& points, const StrokeOptions& options) {
+  Curves curves;
+  int number = 0;
+  for (auto first = points.begin(); first != points.end();) {
+    const auto end = std::find_if(first, points.end(),
+                                  [&](const CurvePoint& point) { return point.curve != first->curve; });
+    if (counts({first, end}, options)) {
+      for (auto it = first; it != end; ++it) curves.push_back(*it), curves.back().curve = number;
+      ++number;
     }
-    stroke_.push_back({next_curve_, time_s, tip_mm, shaft_direction});
+    first = end;
   }
-
-  Curves take() {
-    finish_stroke();
-    return std::move(curves_);
-  }
-
- private:
-  void finish_stroke() {
-    if (length_mm_ >= options_.min_length_mm) {
-      curves_.insert(curves_.end(), stroke_.begin(), stroke_.end());
-      ++next_curve_;
-    }
-    stroke_.clear();
-    length_mm_ = 0;
-  }
-
-  StrokeOptions options_;
-  Curves curves_, stroke_;
-  double length_mm_ = 0;
-  int next_curve_ = 0;
-};
+  return curves;
+}
 
 }  // namespace
+
+bool goes_on(const CurvePoint& last, double time_s, const Eigen::Vector3d& tip_in_marker_mm,
+             const StrokeOptions& options) {
+  const double since_s = time_s - last.time_s.value_or(time_s);
+  return since_s >= 0 && since_s <= options.max_gap_s &&
+         (tip_in_marker_mm - last.position_mm).norm() <= options.max_hop_mm;
+}
+
+bool counts(std::span<const CurvePoint> stroke, const StrokeOptions& options) {
+  double length_mm = 0;
+  for (std::size_t i = 1; i < stroke.size(); ++i)
+    length_mm += (stroke[i].position_mm - stroke[i - 1].position_mm).norm();
+  return length_mm >= options.min_length_mm;
+}
 
 Curves digitise(const std::vector<PoseRow>& poses, const tools::ToolSet& tools, bones::BoneKind bone,
                 std::string_view tool_name, const StrokeOptions& options) {
@@ -59,7 +51,7 @@ Curves digitise(const std::vector<PoseRow>& poses, const tools::ToolSet& tools, 
   if (!tool->tip_mm) throw InvalidInput("the tool \"" + std::string(tool_name) + "\" has no tip_mm");
 
   const std::optional<Eigen::Vector3d> shaft_in_tool = tools::shaft_direction(*tool);
-  StrokeCutter cutter(options);
+  Curves points;
   for (std::size_t first = 0; first < poses.size();) {
     const PoseRow* world_row = nullptr;
     const PoseRow* tool_row = nullptr;
@@ -73,11 +65,15 @@ Curves digitise(const std::vector<PoseRow>& poses, const tools::ToolSet& tools, 
           world_row->camera_from_marker.inverse() * tool_row->camera_from_marker;
       std::optional<Eigen::Vector3d> shaft_in_world;
       if (shaft_in_tool) shaft_in_world = world_from_tool.rotation * *shaft_in_tool;
-      cutter.add(poses[first].time_s, world_from_tool * *tool->tip_mm, shaft_in_world);
+      const double time_s = poses[first].time_s;
+      const Eigen::Vector3d tip_mm = world_from_tool * *tool->tip_mm;
+      const int before = points.empty() ? 0 : points.back().curve;
+      const bool is_new = !points.empty() && !goes_on(points.back(), time_s, tip_mm, options);
+      points.push_back({before + (is_new ? 1 : 0), time_s, tip_mm, shaft_in_world});
     }
     first = next;
   }
-  return cutter.take();
+  return strokes_that_count(points, options);
 }
 
 }  // namespace arthronaut::strokes

@@ -130,11 +130,13 @@ class Loop {
     try {  // a source that fails ends, and what was made stays
       step = run_.step();
     } catch (const std::exception& error) {
+      run_.end_source();
       live_.phase = LiveState::Phase::Failed;
       live_.message = error.what();
       return publish();
     }
     if (step.has_ended) {
+      run_.end_source();
       live_.phase = LiveState::Phase::Ended;
       return publish();
     }

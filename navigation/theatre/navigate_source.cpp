@@ -3,9 +3,7 @@
 #include <limits>
 #include <utility>
 
-#include "navigation/operation/registration_work.h"
-#include "navigation/pipeline/prefetched_source.h"
-#include "navigation/theatre/operation_log.h"
+#include "navigation/theatre/operation_run.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::theatre {
@@ -14,38 +12,75 @@ namespace {
 
 using operation::Standing;
 
+// A source that somebody else has opened, up to a time.
+class SharedSource : public sources::FrameSource {
+ public:
+  SharedSource(std::shared_ptr<sources::FrameSource> source, double end_s)
+      : source_(std::move(source)), end_s_(end_s) {}
+  [[nodiscard]] const sources::SourceInfo& info() const override { return source_->info(); }
+  [[nodiscard]] camera::FramePtr next() override {
+    camera::FramePtr frame = source_->next();
+    const bool is_later = frame != nullptr && static_cast<double>(frame->timestamp_ns) * 1e-9 >= end_s_;
+    return is_later ? nullptr : frame;
+  }
+
+ private:
+  const std::shared_ptr<sources::FrameSource> source_;
+  const double end_s_;
+};
+
+// Where there is no bone nothing is ever found.
+class NoRegistration : public RegistrationService {
+  void post(std::vector<operation::RegistrationRequest>) override {}
+  [[nodiscard]] operation::OutcomePtr latest() const override { return nullptr; }
+};
+
 operation::OperationSetup setup_of(const NavigateOptions& options) {
   operation::OperationSetup setup = options.operation;
   if (options.bone != nullptr) setup.registers_after_mm = options.retry_after_mm;
   return setup;
 }
 
+std::unique_ptr<RegistrationService> registration_of(const NavigateOptions& options) {
+  if (options.bone == nullptr) return std::make_unique<NoRegistration>();
+  return registration_at_once([bone = options.bone] { return bone; },
+                              operation::work_options(setup_of(options)));
+}
+
 // One operation on its way through the source.
 class Navigation {
  public:
-  Navigation(sources::FrameSource& source, const NavigateOptions& options, const RecordOptions& record,
-             const NavigationObserver& observer)
-      : options_(options),
-        observer_(observer),
-        operation_(setup_of(options)),
-        is_live_(options.source.kind == sources::SourceKind::Live) {
-    if (options.bone != nullptr)
-      work_.emplace([&] { return options.bone; }, operation::work_options(operation_.setup()));
-    operation_.start_source(options.source);
-    if (!record.folder.empty()) {
-      record_.emplace(record.folder, operation_.setup(), options.source, source.info(), record.continues);
-      record_->keep_video(record.keep, record.video);
-    }
+  Navigation(const std::shared_ptr<sources::FrameSource>& source, const NavigateOptions& options,
+             const RecordOptions& record, const NavigationObserver& observer)
+      : observer_(observer),
+        run_(
+            setup_of(options), registration_of(options),
+            record.folder.empty() ? OperationRun::MakeSessionFolder()
+                                  : [folder = record.folder] { return folder; }) {
     summary_.statistics = pipeline::ViewStatistics(options.source.pipeline.tools);
-    if (options.registration) give(*options.registration);
-    if (options.is_confirmed) apply(operation::ConfirmTimeOut{});
+    const double end_s = options.duration_s.value_or(std::numeric_limits<double>::infinity());
+    run_.start({.setup = options.source,
+                .open = [source, end_s] { return std::make_unique<SharedSource>(source, end_s); },
+                .truth = {}});
+    if (!record.folder.empty()) {
+      if (!run_.record_trouble().empty()) throw IoError(run_.record_trouble());
+      run_.keep_video(record.keep, record.video);
+    }
+    if (options.registration) apply(*options.registration);
+    if (options.is_confirmed) {
+      apply(operation::ConfirmTimeOut{});
+      apply(operation::TrustGuide{});
+    }
     // Somebody who stands by may draw whatever is known: it verifies what was given.
     apply(operation::Draw{true});
   }
 
-  void take(const camera::FramePtr& picture) {
-    operation_.process(*picture);
-    const operation::OperationStatePtr state = operation_.state();
+  // False at the end.
+  bool take_frame() {
+    const OperationRun::Step step = run_.step();
+    if (step.has_ended) return false;
+    if (step.picture == nullptr) return true;
+    const operation::OperationStatePtr state = run_.state_of_frame();
     const pipeline::FrameResult& frame = state->frame;
     summary_.statistics.add(frame, frame.processing_ms);
     summary_.frames_with_tip += frame.tip_is_valid ? 1 : 0;
@@ -54,22 +89,19 @@ class Navigation {
       ++summary_.frames_with_guidance;
       summary_.last_guidance = frame.guidance;
     }
-    write([&](recording::OperationRecord& to) { to.add_frame(picture, *state, is_live_); });
-    if (auto request = operation_.take_look_request())
-      operation_.take_look(looks_.look(std::move(*request), *picture));
-    pass_on();
-    if (observer_.on_frame) observer_.on_frame(picture, state);
-    if (!observer_.pedal) return;
+    follow_registration();
+    if (observer_.on_frame) observer_.on_frame(step.picture, state);
+    if (!observer_.pedal) return true;
     for (const operation::Command& command : observer_.pedal(*state)) apply(command);
+    return true;
   }
 
   NavigationSummary finish() {
     apply(operation::RegisterStrokes{});
-    const operation::OperationStatePtr state = operation_.state();
-    operation_.end_source();
-    pass_on();
-    summary_.curves = operation_.strokes_in_use();
-    write([&](recording::OperationRecord& to) { to.finish(summary_.curves); });
+    const operation::OperationStatePtr state = run_.state();
+    run_.end_source();
+    summary_.record_trouble = run_.record_trouble();
+    summary_.curves = run_.operation().strokes_in_use();
     summary_.stroke_length_mm = strokes::length_mm(summary_.curves);
     summary_.drilled = state->drilled;
     const operation::RegistrationState& known = *state->registration;
@@ -84,37 +116,13 @@ class Navigation {
   }
 
  private:
-  void give(operation::GiveRegistration given) { apply(given); }
-
   void apply(const operation::Command& command) {
-    operation_.apply(command);
-    pass_on();
+    run_.apply(command);
+    follow_registration();
   }
-
-  // A disk that fails ends the record, never the operation; what was written until then stays.
-  template <typename What>
-  void write(const What& what) {
-    if (!record_) return;
-    try {
-      what(*record_);
-    } catch (const IoError& error) {
-      summary_.record_trouble = error.what();
-      record_.reset();
-    }
-  }
-
-  // The registration works each request in at once, so that the next frame has what comes of it.
-  void pass_on() {
-    for (;;) {
-      const auto requests = operation_.take_requests();
-      const auto journal = operation_.take_journal();
-      log_entries(journal);
-      write([&](recording::OperationRecord& to) { to.add(journal); });
-      if (requests.empty() || !work_) return;
-      bool has_news = false;
-      for (const operation::RegistrationRequest& request : requests)
-        has_news = work_->work_in(request) || has_news;
-      if (has_news) operation_.take_outcome(work_->outcome());
+  // What comes of it is taken in at once, so that the next frame and command find it.
+  void follow_registration() {
+    while (run_.follow_registration()) {
     }
   }
 
@@ -133,32 +141,24 @@ class Navigation {
     }
   }
 
-  const NavigateOptions& options_;
   const NavigationObserver& observer_;
-  operation::Operation operation_;
-  const bool is_live_;
-  std::optional<operation::RegistrationWork> work_;
-  operation::MediumLookWork looks_;
-  std::optional<recording::OperationRecord> record_;
+  OperationRun run_;
   NavigationSummary summary_;
 };
 
 }  // namespace
 
-NavigationSummary navigate_source(sources::FrameSource& source, const NavigateOptions& options,
-                                  const RecordOptions& record, const NavigationObserver& observer) {
+NavigationSummary navigate_source(const std::shared_ptr<sources::FrameSource>& source,
+                                  const NavigateOptions& options, const RecordOptions& record,
+                                  const NavigationObserver& observer) {
   Navigation navigation(source, options, record, observer);
-  pipeline::PrefetchedSource prefetched(source);
-  const double end_s = options.duration_s.value_or(std::numeric_limits<double>::infinity());
   std::string ending;
   try {
-    while (const camera::FramePtr picture = prefetched.next()) {
-      if (static_cast<double>(picture->timestamp_ns) * 1e-9 >= end_s) break;
-      navigation.take(picture);
+    while (navigation.take_frame()) {
     }
   } catch (const DeviceError& error) {
     // What was made until then stays: a camera that is pulled out is the end of many an operation.
-    if (!source.info().is_live()) throw;
+    if (!source->info().is_live()) throw;
     ending = error.what();
   }
   NavigationSummary summary = navigation.finish();

@@ -1,10 +1,12 @@
 // A whole operation from a source, with nobody at the pedal: the probe draws from the first frame, strokes
 // are registered as they come, all of them when the guide comes into view and at the end. What `arthronaut
-// navigate` and the demo do. The same operation as the window's; only who gives the commands differs.
+// navigate` and the demo do. It is the window's OperationRun, with registration and second looks worked in at
+// once; only who gives the commands differs.
 #pragma once
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,8 +25,8 @@ struct NavigateOptions {
   operation::SurfaceIndexPtr bone;
   // Used from the first frame; what it is of is checked like any other.
   std::optional<operation::GiveRegistration> registration;
-  // Of a live source: whoever began it has said by what patient, bone, plan, camera and tools. Without that
-  // it guides nobody.
+  // Of a live source: whoever began it has said by what patient, bone, plan, camera and tools, and that a
+  // nominal guide is used as it is. Without that it guides nobody.
   bool is_confirmed = false;
   double retry_after_mm = 40;        // see OperationSetup::registers_after_mm
   std::optional<double> duration_s;  // frames of later than this are not taken; else to the source's end
@@ -58,14 +60,14 @@ struct RecordOptions {
   std::filesystem::path folder;  // exists and is empty; empty path: no record
   recording::KeepVideo keep = recording::KeepVideo::No;
   std::filesystem::path video;  // the source's file or pattern, for Copy and Refer
-  std::string continues;        // id of the session before it in the same operation
 };
 
-// Deterministic for a source, options and seed. Decoding runs in a thread of its own. Throws InvalidInput
-// when the options break their contract or a frame has another size than the camera's, IoError when the
-// record can't be begun, and what the source throws; a live source that fails after its first picture has
-// ended, which the summary's `ending` tells.
-[[nodiscard]] NavigationSummary navigate_source(sources::FrameSource& source, const NavigateOptions& options,
+// Deterministic for a source, options and seed. Decoding runs in a thread of its own, which shares the
+// source. Throws InvalidInput when the options break their contract or a frame has another size than the
+// camera's, IoError when the record can't be begun, and what the source throws; a live source that fails
+// after its first picture has ended, which the summary's `ending` tells.
+[[nodiscard]] NavigationSummary navigate_source(const std::shared_ptr<sources::FrameSource>& source,
+                                                const NavigateOptions& options,
                                                 const RecordOptions& record = {},
                                                 const NavigationObserver& observer = {});
 

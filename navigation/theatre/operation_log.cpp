@@ -49,6 +49,8 @@ std::string what_of(const JournalEntry& entry) {
       return "verification skipped";
     case JournalKind::TimeOutConfirmed:
       return "time-out confirmed";
+    case JournalKind::GuideChecked:
+      return "nominal guide checked";
     case JournalKind::Plan:
       return entry.plan ? "plan in force" : "no plan in force";
     case JournalKind::Drilled:

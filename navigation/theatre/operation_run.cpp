@@ -98,26 +98,15 @@ OperationRun::Step OperationRun::step() {
   constexpr double kWait_s = 0.1;
   const bool is_live = theatre_source_.setup.kind == sources::SourceKind::Live;
   pipeline::NextFrame next;
-  try {
-    if (is_live) {
-      next = source_->next_within(kWait_s);
-    } else {
-      next.frame = source_->next();
-      next.has_ended = next.frame == nullptr;
-    }
-  } catch (...) {
-    end_source();
-    throw;
+  if (is_live) {
+    next = source_->next_within(kWait_s);
+  } else {
+    next.frame = source_->next();
+    next.has_ended = next.frame == nullptr;
   }
-  if (next.has_ended) end_source();
   (void)follow_registration();
   if (next.frame == nullptr) return {nullptr, next.has_ended};
-  try {
-    operation_.process(*next.frame);
-  } catch (...) {
-    end_source();
-    throw;
-  }
+  operation_.process(*next.frame);
   frame_state_ = operation_.state();
   write([&](recording::OperationRecord& record) { record.add_frame(next.frame, *frame_state_, is_live); });
   if (auto look = operation_.take_look_request()) looks_->post(std::move(*look), next.frame);
@@ -156,7 +145,11 @@ void OperationRun::keep_video(bool on) {
   if (source_ == nullptr) return;
   const std::filesystem::path& file = source_->info().encoded_file;
   const KeepVideo otherwise = file.empty() ? KeepVideo::No : KeepVideo::Refer;
-  write([&](recording::OperationRecord& record) { record.keep_video(on ? way_to_keep() : otherwise, file); });
+  keep_video(on ? way_to_keep() : otherwise, file);
+}
+
+void OperationRun::keep_video(KeepVideo keep, const std::filesystem::path& video) {
+  write([&](recording::OperationRecord& record) { record.keep_video(keep, video); });
 }
 
 const sources::SourceInfo& OperationRun::source_info() const { return source_->info(); }

@@ -1,5 +1,5 @@
 // An operation with its source, its registration and its record: one step a frame. Thread-free: the window
-// runs it on a worker (live_operation.h), the command line and the demo call step() in a loop.
+// runs it on a worker (live_operation.h), `arthronaut navigate` and the demo in a loop (navigate_source.h).
 #pragma once
 
 #include <filesystem>
@@ -43,11 +43,11 @@ class OperationRun {
   void start(const TheatreSource& source);
   struct Step {
     camera::FramePtr picture;  // worked in; null when none came
-    bool has_ended = false;    // the source has, and with it its record
+    bool has_ended = false;    // the source gives no more; end_source() is the caller's
   };
   // The next frame, worked in. A live source that gives none for a tenth of a second gives a step without a
   // picture, so that whoever calls can do something else. Throws what the source or Operation::process
-  // throws, which ends it too.
+  // throws: there is nothing to be done then but end_source().
   // Precondition: has_source().
   [[nodiscard]] Step step();
   // Ends the source and its record. A disk that fails is told by record_trouble().
@@ -59,6 +59,7 @@ class OperationRun {
   bool follow_registration();
   // Video from now on, or no more; the journal goes on in any case. No effect without a source.
   void keep_video(bool on);
+  void keep_video(recording::KeepVideo keep, const std::filesystem::path& video);  // see OperationRecord
 
   [[nodiscard]] bool has_source() const { return source_ != nullptr; }
   // Of the source that runs; precondition: has_source().

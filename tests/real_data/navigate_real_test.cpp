@@ -55,8 +55,8 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
   theatre::NavigateOptions scratch = options_of(probe_clip, plan);
   scratch.bone =
       std::make_shared<const registration::SurfaceIndex>(bones::read_mesh_file(probe_clip / "bone.stl").mesh);
-  const auto probe_video = sources::open_video(probe_clip / "clip.mkv");
-  const theatre::NavigationSummary scratched = theatre::navigate_source(*probe_video, scratch);
+  const std::shared_ptr<sources::FrameSource> probe_video = sources::open_video(probe_clip / "clip.mkv");
+  const theatre::NavigationSummary scratched = theatre::navigate_source(probe_video, scratch);
   ASSERT_TRUE(scratched.registration.has_value());
   const auto truth = files::read_json(probe_clip / "gt/registration_gt.json", "arthronaut.registration", 1)
                          .rigid_transform("marker_from_bone");
@@ -92,8 +92,8 @@ TEST(NavigateReal, RegistersByScratchingAndGuidesTheDrill) {
     EXPECT_LT(std::abs(offset_errors.back()), kOffsetErrorMm) << "frame " << row;
     EXPECT_LT(std::abs(angle_errors.back()), kAngleErrorDeg) << "frame " << row;
   };
-  const auto guide_video = sources::open_video(guide_clip / "clip.mkv");
-  const theatre::NavigationSummary guided = theatre::navigate_source(*guide_video, drill, {}, observer);
+  const std::shared_ptr<sources::FrameSource> guide_video = sources::open_video(guide_clip / "clip.mkv");
+  const theatre::NavigationSummary guided = theatre::navigate_source(guide_video, drill, {}, observer);
   ASSERT_GT(guided.frames_with_guidance, 30);  // of 40: the guide is free in all of them
   const std::size_t last = gt.row_count() - 1;
   std::printf(
@@ -114,11 +114,11 @@ TEST(NavigateReal, ReplaysEncodedFramesToTheLastBit) {
   theatre::NavigateOptions options = options_of(guide_clip, true_plan(guide_clip));
   options.registration = {registration::read_registration_file(guide_clip / "gt/registration_gt.json"),
                           operation::provenance_of(options.operation, options.source)};
-  const auto video = sources::open_video(guide_clip / "clip.mkv");
+  const std::shared_ptr<sources::FrameSource> video = sources::open_video(guide_clip / "clip.mkv");
   theatre::RecordOptions record;
   record.folder = folder.path();
   record.keep = recording::KeepVideo::Encode;
-  (void)theatre::navigate_source(*video, options, record);
+  (void)theatre::navigate_source(video, options, record);
   const recording::RecordedSession session(folder.path());
   const recording::ReplaySummary replay = recording::replay_session(session, {});
   std::printf(

@@ -82,8 +82,8 @@ TEST(OverlayReal, Hazard30StaysWhileGuidanceIsValid) {
         EXPECT_FALSE(is_on_sleeve(result, marker->camera_from_marker, *guide->axis, pixel))
             << "frame " << result.frame_index;
   };
-  const auto video = sources::open_video(clip / "clip.mkv");
-  (void)theatre::navigate_source(*video, options, {}, observer);
+  const std::shared_ptr<sources::FrameSource> video = sources::open_video(clip / "clip.mkv");
+  (void)theatre::navigate_source(video, options, {}, observer);
   std::printf("guide_wet: %d frames guided, at most %.0f %% of the view cleared\n", guided,
               100 * most_cleared);
   EXPECT_GT(guided, 30);

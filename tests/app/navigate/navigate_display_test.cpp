@@ -349,5 +349,29 @@ TEST(NavigateDisplay, Hazard20NothingIsShownBeforeTheTimeOut) {
   EXPECT_TRUE(shown.display().guidance_is_valid);
 }
 
+// A nominal guide that nobody checked, and one that was found elsewhere: no number of it, and what to do. The
+// plan lies where it lies: that is not the guide's.
+TEST(NavigateDisplay, Hazard6ANominalGuideThatWasNotCheckedGivesNoNumber) {
+  Shown shown;
+  operation::GuideCheckState& guide = shown.operation.guide_check;
+  guide.standing = operation::GuideStanding::Due;
+  shown.operation.frame.guidance.state = GuidanceState::GuideNotChecked;
+  EXPECT_FALSE(shown.display().guidance_is_valid);
+  EXPECT_TRUE(shown.display().plan_is_valid);
+  EXPECT_EQ(shown.display().headline, "Guide not checked");
+  EXPECT_EQ(shown.display().detail,
+            "The numbers of the femoral guide are nominal: hold its tip on the control point, then Space");
+  guide = {operation::GuideStanding::Off, 3.24};
+  EXPECT_EQ(shown.display().headline, "Guide is off");
+  EXPECT_EQ(shown.display().detail,
+            "Its tip is 3.2 mm from the control point: measure the femoral guide in Set up");
+  // Found to be there after this picture was worked in.
+  guide = {operation::GuideStanding::Checked, 0.4};
+  EXPECT_FALSE(shown.display().guidance_is_valid);
+  EXPECT_EQ(shown.display().headline, "Guide checked");
+  shown.operation.frame.guidance.state = GuidanceState::Valid;
+  EXPECT_TRUE(shown.display().guidance_is_valid);
+}
+
 }  // namespace
 }  // namespace arthronaut::navigate

@@ -71,6 +71,8 @@ const std::vector<Command>& all_commands() {
                                              TunnelDrilled{},
                                              given(),
                                              ConfirmTimeOut{true},
+                                             CheckGuide{},
+                                             TrustGuide{},
                                              ConfirmTimeOut{false},
                                              resume(),
                                              ResumeOperation{}};

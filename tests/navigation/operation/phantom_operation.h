@@ -34,6 +34,8 @@ inline operation::SourceSetup scripted_source(sources::SourceKind kind = sources
   source.kind = kind;
   source.title = "script";
   source.pipeline = scripted_options();
+  for (tools::Tool& tool : source.pipeline.tools.tools)
+    tool.provenance.origin = provenance::Origin::Measured;  // a nominal guide is a case of its own
   return source;
 }
 

@@ -37,6 +37,7 @@ std::vector<std::uint64_t> digests_of(std::uint64_t seed) {
       SourceSetup source = test::scripted_source(
           std::array{SourceKind::Live, SourceKind::Recording, SourceKind::Simulation}.at(random() % 3));
       if (below(3) == 0) source.pipeline.refractive_index = 1.3345;
+      if (below(2) == 0) source.pipeline.tools.tools.back().provenance.origin = provenance::Origin::Nominal;
       run.start(source);
     }
     if (below(60) == 0) run.operation().end_source();
@@ -71,6 +72,8 @@ std::vector<std::uint64_t> digests_of(std::uint64_t seed) {
                                         ReadDepthStop{below(40) * 1.0},
                                         TunnelDrilled{},
                                         ConfirmTimeOut{},
+                                        CheckGuide{},
+                                        TrustGuide{},
                                         give};
     run.apply(commands[random() % commands.size()]);
     const auto state = run.state();
@@ -81,6 +84,7 @@ std::vector<std::uint64_t> digests_of(std::uint64_t seed) {
       EXPECT_EQ(in_force.registration->reliable, in_force.standing == Standing::Stands) << "seed " << seed;
     }
     EXPECT_EQ(in_force.standing == Standing::Void, in_force.mismatch.has_value());
+    EXPECT_FALSE(state->frame.guidance.is_valid() && !state->guide_check.may_guide()) << "seed " << seed;
     if (state->drilled.tunnel) {
       EXPECT_GE(state->drilled.tunnel->pose_count, 15);
     }

@@ -21,10 +21,12 @@ class OperationRunTest : public ::testing::Test {
         trial_, operation::provenance_of(run.operation().setup(),
                                          test::scripted_source(sources::SourceKind::Recording))));
   }
-  // Steps to the end of the source; how many pictures there were.
+  // Steps to the end of the source, and ends it; how many pictures there were.
   static int run_to_end(OperationRun& run) {
-    for (int count = 0;; ++count)
-      if (run.step().has_ended) return count;
+    int count = 0;
+    while (!run.step().has_ended) ++count;
+    run.end_source();
+    return count;
   }
   const test::TemporaryFolder folder_;
   experiments::Trial trial_ = registration::phantom_bone().trial(experiments::TrialNoise::Dry, 1);
@@ -75,8 +77,8 @@ TEST_F(OperationRunTest, ARecordThatFailsMidwayIsToldAndNothingEnds) {
   EXPECT_EQ(run.state()->registration->in_force.standing, Standing::Stands);
 }
 
-// A source that fails ends itself and its record, whole; what was made stays in force, and its kind is what
-// it was.
+// A source that fails is ended with its record, whole; what was made stays in force, and its kind is what it
+// was.
 TEST_F(OperationRunTest, WhatWasMadeIsKeptWhenTheSourceFails) {
   const fs::path session = folder_ / "session";
   OperationRun run(setup_, test::at_once(setup_), [&] {
@@ -86,6 +88,7 @@ TEST_F(OperationRunTest, WhatWasMadeIsKeptWhenTheSourceFails) {
   run.start(test::plain_source(5, true));
   give(run);
   EXPECT_THROW(run_to_end(run), DeviceError);
+  run.end_source();
   EXPECT_FALSE(run.has_source());
   EXPECT_FALSE(run.state()->has_source);
   EXPECT_EQ(run.state()->source->kind, sources::SourceKind::Recording);
