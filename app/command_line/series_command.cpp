@@ -7,10 +7,17 @@
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
 #include "planning/images/series_list.h"
+#include "planning/import/series_process.h"
 
 namespace arthronaut::command_line {
 
 namespace {
+
+struct Arguments {
+  std::string source;
+  bool as_json = false;
+  double memory_limit_gib = importing::SeriesRequest{}.memory_limit_gib;
+};
 
 nlohmann::ordered_json json_of(const images::ImageSeries& series) {
   auto files = nlohmann::ordered_json::array();
@@ -62,21 +69,28 @@ void print(const Context& context, const images::SeriesList& list) {
     context.say(std::to_string(list.other_count) + (list.other_count == 1 ? " other file" : " other files"));
 }
 
-void list_series(const Context& context, const std::string& source, bool as_json) {
-  images::SeriesList list;
-  {
-    Progress progress("Looking", 100);
-    images::VolumeFileOptions options;
-    options.on_progress = [&](double fraction) { progress.advance_to(static_cast<long>(100 * fraction)); };
-    list = images::find_series(source, options);
-  }
+// In a process of its own, as the import: what the files hold ends in a message, not in this program's end.
+images::SeriesList found_series(const Arguments& arguments) {
+  using State = importing::SeriesProcess::State;
+  constexpr double kLongestWait_s = 0.1;
+  Progress progress("Looking", 100);
+  importing::SeriesProcess process(
+      {.source = arguments.source, .memory_limit_gib = arguments.memory_limit_gib});
+  while (process.wait_for(kLongestWait_s) == State::Running)
+    progress.advance_to(static_cast<long>(100 * process.looked_fraction()));
+  if (process.state() != State::Done) throw InvalidInput(process.message());
+  return process.list().value();
+}
+
+void list_series(const Context& context, const Arguments& arguments) {
+  const images::SeriesList list = found_series(arguments);
   if (list.series.empty()) {
     const std::string first = list.skipped.empty() ? ""
                                                    : " (" + list.skipped.front().file.filename().string() +
                                                          ": " + list.skipped.front().reason + ")";
-    throw InvalidInput(source, "", "holds no image" + first);
+    throw InvalidInput(arguments.source, "", "holds no image" + first);
   }
-  if (as_json) {
+  if (arguments.as_json) {
     print_json(list);
   } else {
     print(context, list);
@@ -86,10 +100,6 @@ void list_series(const Context& context, const std::string& source, bool as_json
 }  // namespace
 
 void add_series_command(CLI::App& app, Context& context) {
-  struct Arguments {
-    std::string source;
-    bool as_json = false;
-  };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* sub =
       add_subcommand(app, context, "series",
@@ -99,7 +109,10 @@ void add_series_command(CLI::App& app, Context& context) {
                      "  arthronaut import /media/cdrom --series UID -o Knee.arthro");
   sub->add_option("FOLDER", arguments->source, "Folder, DICOMDIR, or one volume file")->required();
   sub->add_flag("--json", arguments->as_json, "The list as JSON");
-  sub->callback([&context, arguments] { list_series(context, arguments->source, arguments->as_json); });
+  sub->add_option("--memory-limit-gib", arguments->memory_limit_gib,
+                  "Memory that looking may take; default: 2")
+      ->check(CLI::PositiveNumber);
+  sub->callback([&context, arguments] { list_series(context, *arguments); });
 }
 
 }  // namespace arthronaut::command_line

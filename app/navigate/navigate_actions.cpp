@@ -46,31 +46,30 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                {},
                [this] { start_video(); },
                {"start the video instead", running}});
-  actions.add(
-      {"navigate.stop",
-       "Stop",
-       "Ends the source",
-       GLFW_KEY_ESCAPE,
-       0,
-       false,
-       [this] { return is_under_way(*live_) || !choices_.cameras.empty() || left_behind() != nullptr; },
-       {},
-       [this] {
-         if (!choices_.cameras.empty()) return choices_.cameras.clear();
-         if (left_behind() != nullptr) return decline_resume();
-         end_source();
-       },
-       {"stop", [this] { return is_under_way(*live_) && choices_.cameras.empty(); }}});
+  actions.add({"navigate.stop",
+               "Stop",
+               "Ends the source",
+               GLFW_KEY_ESCAPE,
+               0,
+               false,
+               [this] { return is_under_way(*live_) || cameras_.is_open() || left_behind() != nullptr; },
+               {},
+               [this] {
+                 if (cameras_.is_open()) return cameras_.close();
+                 if (left_behind() != nullptr) return decline_resume();
+                 end_source();
+               },
+               {"stop", [this] { return is_under_way(*live_) && !cameras_.is_open(); }}});
   actions.add({"navigate.camera",
                "Camera",
-               "Navigates with a camera that is connected",
+               "Navigates with a camera that is connected, or with a stream",
                GLFW_KEY_K,
                0,
                false,
                [this] { return model_ != nullptr && model_->has_bone(choices_.bone); },
-               [this] { return !choices_.cameras.empty(); },
+               [this] { return cameras_.is_open(); },
                [this] { choose_camera(); },
-               {"choose a camera instead", [this] { return is_running() && choices_.cameras.empty(); }}});
+               {"choose a camera instead", [this] { return is_running() && !cameras_.is_open(); }}});
   actions.add({"navigate.digitise", "Probe draws",
                "While on, where the probe's tip goes is kept for the registration", GLFW_KEY_D, 0, false,
                running, [this] { return is_running() && live_->operation->draws; },

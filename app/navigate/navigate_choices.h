@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "app/navigate/navigate_display.h"
-#include "navigation/sources/connected_cameras.h"
 
 namespace arthronaut::navigate {
 
@@ -18,11 +17,9 @@ struct NavigateChoices {
   bool overlay_on = true;
   double overlay_shown_at_s = 0;
   bool undistorts = false;
-  std::optional<NavigateLayout> layout;           // empty: as things stand
-  double guidance_seen_s = -1e9;                  // when guidance was valid last
-  int stroke = -1;                                // selected
-  std::vector<sources::ConnectedCamera> cameras;  // on offer now; empty: none
-  std::size_t camera = 0;                         // of those
+  std::optional<NavigateLayout> layout;  // empty: as things stand
+  double guidance_seen_s = -1e9;         // when guidance was valid last
+  int stroke = -1;                       // selected
 
   [[nodiscard]] bones::BoneKind other_bone() const {
     return bone == bones::BoneKind::Femur ? bones::BoneKind::Tibia : bones::BoneKind::Femur;
@@ -33,8 +30,6 @@ struct NavigateChoices {
     layout.reset();
     guidance_seen_s = -1e9;
     stroke = -1;
-    cameras.clear();
-    camera = 0;
   }
 };
 

@@ -8,9 +8,9 @@ void NavigateView::draw_questions(const widgets::Ui& ui, const widgets::Rect& vi
   if (const LeftBehind* const left = left_behind())
     draw_card(ui, video, resume_card(*left, bones_.plan_of(choices_.bone), std::chrono::system_clock::now()));
   else if (state.has_source && !is_of_source_before(*live_) && state.time_out == operation::TimeOut::Due &&
-           choices_.cameras.empty())
+           !cameras_.is_open())
     draw_card(ui, video, time_out_card(state, patient_));
-  if (!choices_.cameras.empty()) draw_cameras(ui, video);
+  if (const auto pictures = cameras_.draw(ui, video)) start_live(*pictures);
   if (const auto depth_mm = depth_.draw(ui, video)) ask(operation::ReadDepthStop{*depth_mm});
 }
 
@@ -46,30 +46,13 @@ void NavigateView::note_states(const widgets::Ui& ui, const NavigateScreen& scre
   ui.log.note_state("time_out", state.time_out == operation::TimeOut::Due         ? "due"
                                 : state.time_out == operation::TimeOut::Confirmed ? "confirmed"
                                                                                   : "not asked");
+  ui.log.note_state("cameras", !cameras_.is_open() ? "none"
+                               : cameras_.chosen() ? cameras_.chosen()->name
+                                                   : "address");
   ui.log.note_state("depth_stop", state.depth_stop_mm ? widgets::fixed(*state.depth_stop_mm, 1) : "none");
   ui.log.note_state("picture", !screen.display.has_picture ? "none"
                                : screen.display.is_live    ? "live"
                                                            : "old");
-}
-
-void NavigateView::draw_cameras(const widgets::Ui& ui, const widgets::Rect& area) const {
-  const float row = ui.theme.px(56);
-  widgets::Rect box = widgets::Rect{area.x, area.center().y, area.width, 0}.inset(0);
-  box.height = row * (static_cast<float>(choices_.cameras.size()) + 1.5F);
-  box.y = area.center().y - box.height / 2;
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw.AddRectFilled(box.min(), box.max(), IM_COL32(10, 12, 15, 240));
-  widgets::text_centered(ui, box.cut_top(row), ui.theme.title, widgets::kText, "Which camera?");
-  for (std::size_t i = 0; i < choices_.cameras.size(); ++i) {
-    const widgets::Rect line = box.cut_top(row);
-    const bool is_selected = i == choices_.camera;
-    if (is_selected) draw.AddRectFilled(line.min(), line.max(), IM_COL32(28, 74, 104, 255));
-    widgets::text_centered(
-        ui, line, ui.theme.strong, is_selected ? widgets::kText : widgets::kQuietText,
-        choices_.cameras[i].name + "  (/dev/video" + std::to_string(choices_.cameras[i].index) + ")");
-  }
-  widgets::text_centered(ui, box, ui.theme.body, widgets::kQuietText,
-                         "K: the next one    Space: open it    Esc: none");
 }
 
 }  // namespace arthronaut::navigate

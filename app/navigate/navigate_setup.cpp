@@ -117,16 +117,21 @@ theatre::TheatreSource video_setup(const open_case::PlanModel& model, bones::Bon
 }
 
 theatre::TheatreSource camera_setup(const open_case::PlanModel& model, bones::BoneKind bone,
-                                    const std::filesystem::path& case_folder,
-                                    const sources::ConnectedCamera& camera, const sources::DeviceTurns& turns,
-                                    double refractive_index) {
+                                    const std::filesystem::path& case_folder, const LivePictures& pictures,
+                                    const sources::DeviceTurns& turns, double refractive_index) {
   theatre::TheatreSource source =
       real_setup(model, bone, case_folder, refractive_index, sources::SourceKind::Live);
   for (const std::string& why_not :
        {open_case::camera_is_not_for_live(case_folder), open_case::tools_are_not_for_live(case_folder)})
     if (!why_not.empty()) throw InvalidInput(why_not);
-  source.setup.title = camera.name;
-  source.open = [turns, index = camera.index] { return turns.open(index); };
+  // A device answers soon or is broken; a stream takes up to 10 s to its first picture.
+  constexpr double kDevicePatience_s = 5, kStreamPatience_s = 15;
+  source.setup.title = pictures.name;
+  source.patience_s = pictures.device ? kDevicePatience_s : kStreamPatience_s;
+  if (pictures.device)
+    source.open = [turns, index = *pictures.device] { return turns.open(index); };
+  else
+    source.open = [address = pictures.address] { return sources::open_stream(address); };
   return source;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "app/case/plan_model.h"
-#include "navigation/sources/connected_cameras.h"
+#include "app/navigate/camera_choice.h"
 #include "navigation/sources/device_turns.h"
 #include "navigation/theatre/operation_run.h"
 
@@ -28,10 +28,11 @@ enum class SimulatedPart { Scratch, Drill };
                                                  const std::filesystem::path& case_folder,
                                                  const std::filesystem::path& video, double refractive_index);
 
-// The same with a camera that is connected, /dev/videoN. It is opened on the worker, in its turn.
+// The same with live pictures: a camera that is connected, or a stream. Opened on the worker, a camera in its
+// turn. Throws InvalidInput, too, when camera.json or tools.json may not be used live.
 [[nodiscard]] theatre::TheatreSource camera_setup(const open_case::PlanModel& model, bones::BoneKind bone,
                                                   const std::filesystem::path& case_folder,
-                                                  const sources::ConnectedCamera& camera,
+                                                  const LivePictures& pictures,
                                                   const sources::DeviceTurns& turns, double refractive_index);
 
 // Whether the case is of a real arthroscope: it has a calibration that is not the simulated one's.

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/navigate/known_streams.h"
 #include "app/navigate/overlay_lines.h"
 #include "app/scene/scene_camera.h"
 #include "navigation/camera/medium.h"
+#include "navigation/sources/connected_cameras.h"
 #include "navigation/sources/source_files.h"
 #include "planning/cases/identity.h"
 #include "planning/geometry/error.h"
@@ -54,6 +56,7 @@ void NavigateView::case_opened(const mode::OpenCase& opened) {
   model_ = opened.model;
   case_folder_ = opened.folder;
   depth_ = {};
+  cameras_.close();
   resume_.open(*opened.model, opened.folder, !opened.read_only.empty());
   patient_.clear();
   try {  // who it is is never guessed: what cannot be read is said
@@ -81,6 +84,7 @@ void NavigateView::take_other_bone() {
     return;
   }
   choices_.take_other_bone();
+  cameras_.close();
   notice_.clear();
   part_.reset();
   depth_ = {};
@@ -91,7 +95,7 @@ void NavigateView::take_other_bone() {
 void NavigateView::start(theatre::TheatreSource source) {
   notice_.clear();
   choices_.layout.reset();
-  choices_.cameras.clear();
+  cameras_.close();
   choices_.guidance_seen_s = -1e9;
   stops_once_open_ = false;
   kind_ = started_[choices_.bone] = source.setup.kind;
@@ -142,29 +146,21 @@ void NavigateView::start_video() {
   }
 }
 
-void NavigateView::start_camera(const sources::ConnectedCamera& camera) {
+void NavigateView::start_live(const LivePictures& pictures) {
   try {
-    start(camera_setup(*model_, choices_.bone, case_folder_, camera, turns_,
+    start(camera_setup(*model_, choices_.bone, case_folder_, pictures, turns_,
                        choices_.saline ? camera::kSalineIndex : camera::kAirIndex));
+    if (!pictures.device) note_stream(known_streams_file(), pictures.address);
   } catch (const std::runtime_error& error) {
     notice_ = error.what();
-    choices_.cameras.clear();
+    cameras_.close();
   }
 }
 
 void NavigateView::choose_camera() {
-  if (!choices_.cameras.empty()) {
-    choices_.camera = (choices_.camera + 1) % choices_.cameras.size();
-    return;
-  }
-  std::vector<sources::ConnectedCamera> cameras = sources::connected_cameras();
-  if (cameras.empty()) {
-    notice_ = "No camera is connected: there is no /dev/video";
-    return;
-  }
-  if (cameras.size() == 1) return start_camera(cameras.front());
-  choices_.camera = 0;
-  choices_.cameras = std::move(cameras);
+  if (cameras_.is_open()) return cameras_.choose_next();
+  cameras_.open(sources::connected_cameras(), load_known_streams(known_streams_file()));
+  if (const auto only = cameras_.chosen(); only && only->device && cameras_.count() == 1) start_live(*only);
 }
 
 bool NavigateView::is_running() const { return live_->phase == Phase::Running; }
@@ -220,7 +216,10 @@ std::string NavigateView::next_step() {
   if (model_ == nullptr) return "open a case";
   if (resume_.is_looking()) return "wait: the case's last operation is looked for";
   if (left_behind() != nullptr) return "resume the operation that was left";
-  if (!choices_.cameras.empty()) return "open " + choices_.cameras[choices_.camera].name;
+  if (cameras_.is_open()) {
+    const auto pictures = cameras_.chosen();
+    return pictures ? "open " + pictures->name : "type the address of a stream, then Enter";
+  }
   const NextAction action = live_->operation->next_action;
   if (!model_->tunnel(choices_.bone)) return words_of(NextAction::PlanTunnel);
   if (live_->phase == Phase::Starting)
@@ -236,8 +235,10 @@ std::string NavigateView::next_step() {
 
 // One pedal: carries out what is a command, and starts nothing but the kind of source that was chosen.
 void NavigateView::take_next_step() {
-  if (!choices_.cameras.empty())
-    return start_camera(sources::ConnectedCamera(choices_.cameras[choices_.camera]));
+  if (cameras_.is_open()) {
+    if (const auto pictures = cameras_.chosen()) start_live(*pictures);
+    return;
+  }
   if (resume_.is_looking()) return;
   if (left_behind() != nullptr) return resume();
   if (live_->phase == Phase::Starting || !model_->tunnel(choices_.bone)) return;

@@ -10,6 +10,7 @@
 #include "app/case/plan_model.h"
 #include "app/mode/mode.h"
 #include "app/navigate/beginning_panel.h"
+#include "app/navigate/camera_choice.h"
 #include "app/navigate/navigate_choices.h"
 #include "app/navigate/navigate_panels.h"
 #include "app/navigate/navigate_scene.h"
@@ -38,14 +39,14 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] bool has_running_work() const override { return is_running(); }
   [[nodiscard]] std::optional<sources::SourceKind> source_kind() const override;
   [[nodiscard]] std::string notice() const override { return notice_; }
-  [[nodiscard]] bool awaits_text() const override { return depth_.wants_focus(); }
+  [[nodiscard]] bool awaits_text() const override { return depth_.wants_focus() || cameras_.wants_text(); }
 
  private:
   void start(theatre::TheatreSource source);
   void start_simulation(SimulatedPart part);
   void start_video();
-  void start_camera(const sources::ConnectedCamera& camera);
-  // One camera is opened at once, several are offered, none is told.
+  void start_live(const LivePictures& pictures);
+  // The one camera that there is, is opened at once; else cameras and streams are offered.
   void choose_camera();
   // The same kind of source again: nothing but a key of its own ever changes the kind.
   void start_same_kind();
@@ -76,7 +77,6 @@ class NavigateView : public mode::Mode {
   void draw_controls(const widgets::Ui& ui, const widgets::Rect& area);
   // What asks something: an operation that was left, the cameras, the time-out, the depth stop.
   void draw_questions(const widgets::Ui& ui, const widgets::Rect& video);
-  void draw_cameras(const widgets::Ui& ui, const widgets::Rect& area) const;
 
   const open_case::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
@@ -86,6 +86,7 @@ class NavigateView : public mode::Mode {
   TheatreBones bones_;
   ResumeOffer resume_;
   DepthEntry depth_;
+  CameraChoice cameras_;
   std::string patient_;  // in words; empty: not known
   NavigateChoices choices_;
   theatre::LiveStatePtr live_ = TheatreBones::nothing();  // of this frame, of the chosen bone; never null

@@ -5,7 +5,6 @@
 #include "app/start/folder_listing.h"
 #include "planning/bones/mesh_file.h"
 #include "planning/files/format.h"
-#include "planning/geometry/error.h"
 #include "planning/import/bone_import.h"
 
 namespace arthronaut::start {
@@ -78,25 +77,18 @@ std::optional<std::size_t> ImportSources::best() const {
   return best;
 }
 
-ImportSources find_import_sources(const fs::path& root, const std::function<void(double)>& on_progress) {
+bool may_hold_series(const fs::path& root) {
+  std::error_code error;
+  return fs::is_directory(root, error) || !bones::is_mesh_file(root);
+}
+
+ImportSources import_sources(const fs::path& root, const images::SeriesList& list) {
   ImportSources found;
   found.root = root;
-  try {
-    std::error_code error;
-    if (fs::is_directory(root, error) || !bones::is_mesh_file(root)) {
-      images::VolumeFileOptions options;
-      options.on_progress = on_progress;
-      const images::SeriesList list = images::find_series(root, options);
-      for (const auto& series : list.series) found.sources.push_back(source_of(root, series));
-      for (const auto& skipped : list.skipped)
-        found.left_out.push_back(skipped.file.filename().string() + ": " + skipped.reason);
-    }
-    add_meshes(found);
-  } catch (const InvalidInput& error) {
-    found.failure = error.what();
-  } catch (const IoError& error) {
-    found.failure = error.what();
-  }
+  for (const auto& series : list.series) found.sources.push_back(source_of(root, series));
+  for (const auto& skipped : list.skipped)
+    found.left_out.push_back(skipped.file.filename().string() + ": " + skipped.reason);
+  add_meshes(found);
   return found;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,16 +26,17 @@ struct ImportSources {
   std::filesystem::path root;
   std::vector<ImportSource> sources;
   std::vector<std::string> left_out;  // "REPORT.dcm: is no image"
-  std::string failure;                // why nothing could be looked at; empty else
   // The one to begin with: the readable CT or label map with the most images, else the first that can be
   // imported.
   [[nodiscard]] std::optional<std::size_t> best() const;
 };
 
-// Looks through the folder; takes seconds: for a thread. on_progress is called on it and may throw, to stop.
-// Never throws for what it finds; what on_progress throws passes.
-[[nodiscard]] ImportSources find_import_sources(const std::filesystem::path& root,
-                                                const std::function<void(double)>& on_progress = nullptr);
+// Whether the root is to be looked through for series, by importing::SeriesProcess: a mesh holds none.
+[[nodiscard]] bool may_hold_series(const std::filesystem::path& root);
+
+// The series of the list, in its order, and then the meshes of the root. Opens no file: of a mesh its name
+// and size are known. Never throws for what it finds.
+[[nodiscard]] ImportSources import_sources(const std::filesystem::path& root, const images::SeriesList& list);
 
 // What the list says of a series.
 [[nodiscard]] ImportSource source_of(const std::filesystem::path& root, const images::ImageSeries& series);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <mutex>
 #include <utility>
 
 #include "app/case/case_opening.h"
@@ -13,15 +12,7 @@ namespace arthronaut::start {
 
 namespace fs = std::filesystem;
 
-struct ImportWork::Pictures {
-  std::atomic<bool> stops{false};
-  mutable std::mutex mutex;  // of the list; a picture that is there stays where it is
-  std::vector<std::unique_ptr<images::Thumbnail>> made;
-};
-
 namespace {
-
-struct Stopped {};
 
 bool is_ready(const auto& future) {
   return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
@@ -32,73 +23,78 @@ bool is_ready(const auto& future) {
 ImportWork::ImportWork(std::function<void()> wake, fs::path program)
     : wake_(std::move(wake)), program_(std::move(program)) {}
 
-ImportWork::~ImportWork() { end_threads(); }
+ImportWork::~ImportWork() { end_work(); }
 
-void ImportWork::end_threads() {
-  stops_looking_ = true;
-  if (pictures_ != nullptr) pictures_->stops = true;
-  if (looking_.valid()) looking_.wait();
-  if (painting_.valid()) painting_.wait();
+void ImportWork::end_work() {
   if (saving_.valid()) saving_.wait();
-  looking_ = {};
-  painting_ = {};
   saving_ = {};
-  pictures_.reset();
+  series_.reset();
   process_.reset();
 }
 
 void ImportWork::look_into(const fs::path& root) {
-  end_threads();
+  end_work();
   sources_ = {};
+  sources_.root = root;
   result_ = {};
   failure_.clear();
-  looked_ = 0;
-  stops_looking_ = false;
-  state_ = State::Looking;
-  looking_ = std::async(std::launch::async, [this, root] {
-    ImportSources found;
-    found.root = root;
-    try {
-      found = find_import_sources(root, [this](double fraction) {
-        if (stops_looking_) throw Stopped();
-        looked_ = fraction;
-      });
-    } catch (const Stopped&) {
-    } catch (const std::exception& error) {  // the top of a thread
-      found.failure = error.what();
-    }
-    wake_();
-    return found;
-  });
+  noted_ = 0;
+  state_ = State::Looking;  // until poll(), whatever it is: the window sees every step
+  if (!may_hold_series(root)) return;
+  try {
+    series_ = std::make_unique<importing::SeriesProcess>(
+        importing::SeriesRequest{.source = root, .with_pictures = true, .program = program_});
+  } catch (
+      const std::exception& error) {  // no process could be started: said as any other failure of looking
+    failure_ = error.what();
+  }
 }
 
 void ImportWork::take_sources() {
-  sources_ = looking_.get();
-  failure_ = sources_.failure;
+  images::SeriesList list;
+  if (series_ != nullptr) {
+    if (series_->list()) {
+      list = *series_->list();
+    } else if (series_->state() == importing::SeriesProcess::State::Running) {
+      return;
+    } else {
+      failure_ = series_->message();
+    }
+  }
+  // Without a list there may be meshes all the same.
+  sources_ = import_sources(sources_.root, list);
   state_ = State::Choosing;
-  pictures_ = std::make_shared<Pictures>();
-  pictures_->made.resize(sources_.sources.size());
-  painting_ =
-      std::async(std::launch::async, [pictures = pictures_, sources = sources_.sources, wake = wake_] {
-        for (std::size_t i = 0; i < sources.size() && !pictures->stops; ++i) {
-          if (!sources[i].series) continue;
-          try {
-            auto picture = std::make_unique<images::Thumbnail>(images::thumbnail_of(*sources[i].series));
-            const std::lock_guard lock(pictures->mutex);
-            pictures->made[i] = std::move(picture);
-          } catch (const std::exception&) {  // a list without this picture says why by the series' refusal
-            continue;
-          }
-          wake();
-        }
-      });
+}
+
+// A series whose middle slice cannot be read is better known before the import than by it.
+void ImportWork::note_pictures() {
+  const auto& pictures = series_->pictures();
+  const auto note = [this](const std::string& reason) {  // before thick slices and the like
+    auto& warnings = sources_.sources.at(noted_).warnings;
+    warnings.insert(warnings.begin(), "No picture: " + reason);
+  };
+  for (; noted_ < pictures.size(); ++noted_)
+    if (!pictures[noted_].is_there()) note(pictures[noted_].refusal);
+  const std::size_t count = series_->list() ? series_->list()->series.size() : 0;
+  if (series_->state() != importing::SeriesProcess::State::Failed || noted_ >= count) return;
+  note(series_->message());
+  sources_.left_out.push_back("the pictures from \"" + sources_.sources.at(noted_).title +
+                              "\" on: " + series_->message());
+  noted_ = count;
 }
 
 const images::Thumbnail* ImportWork::thumbnail(std::size_t source) const {
-  if (pictures_ == nullptr || source >= sources_.sources.size()) return nullptr;
-  const std::lock_guard lock(pictures_->mutex);
-  return pictures_->made[source].get();
+  if (series_ == nullptr || source >= series_->pictures().size()) return nullptr;
+  const importing::SeriesPicture& picture = series_->pictures()[source];
+  return picture.is_there() ? &picture.thumbnail : nullptr;
 }
+
+bool ImportWork::makes_pictures() const {
+  return state_ != State::Looking && series_ != nullptr &&
+         series_->state() == importing::SeriesProcess::State::Running;
+}
+
+double ImportWork::looked_fraction() const { return series_ != nullptr ? series_->looked_fraction() : 0; }
 
 void ImportWork::start(const ImportWishes& wishes) {
   if (state_ != State::Choosing || wishes.sources.empty()) return;
@@ -161,8 +157,10 @@ void ImportWork::take_bones() {
 
 void ImportWork::cancel() {
   if (state_ == State::Looking) {
-    end_threads();
+    end_work();
     state_ = State::Idle;
+  } else if (state_ == State::Choosing) {
+    if (series_ != nullptr) series_->cancel();
   } else if (state_ == State::Running || state_ == State::Asking) {
     process_.reset();  // ends the child
     failure_.clear();
@@ -193,7 +191,9 @@ void ImportWork::save(const fs::path& folder, const std::string& name) {
 }
 
 void ImportWork::poll() {
-  if (state_ == State::Looking && is_ready(looking_)) take_sources();
+  if (series_ != nullptr) series_->poll();
+  if (state_ == State::Looking) take_sources();
+  if (state_ != State::Looking && series_ != nullptr) note_pictures();
   if (state_ == State::Running) take_bones();
   if (state_ == State::Saving && is_ready(saving_)) {
     try {  // the top of the saving thread

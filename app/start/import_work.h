@@ -1,15 +1,15 @@
-// An import as the window leads through it: looking what a folder holds, making the bones in a process of its
-// own, the questions that only a person can answer, writing the case. Nothing here waits.
+// An import as the window leads through it: looking what a folder holds and making the bones, each in a
+// process of its own; the questions that only a person can answer; writing the case. Nothing here waits.
 //
 //   Idle ─► Looking ─► Choosing ─► Running ─► Asking ─► Saving ─► Done
 //                         ▲  cancel() │  refused │ (with the reason, see failure())
 //                         └───────────┴──────────┘
 //
-// One thread; poll() once a frame. Threads of its own look, make thumbnails and write; `wake` is called from
-// them.
+// The list is there with Choosing, its pictures come after it.
+//
+// One thread; poll() once a frame. A thread of its own writes; `wake` is called from it.
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <future>
@@ -21,6 +21,7 @@
 #include "app/start/import_sources.h"
 #include "planning/import/bone_import.h"
 #include "planning/import/import_process.h"
+#include "planning/import/series_process.h"
 
 namespace arthronaut::start {
 
@@ -37,13 +38,14 @@ class ImportWork {
 
   // program: what answers importing::kImportChildWord.
   explicit ImportWork(std::function<void()> wake, std::filesystem::path program = "/proc/self/exe");
-  ~ImportWork();  // cancels, and waits for its threads
+  ~ImportWork();  // cancels, and waits for what is being written
   ImportWork(const ImportWork&) = delete;
   ImportWork& operator=(const ImportWork&) = delete;
 
   void look_into(const std::filesystem::path& root);  // from any state; what ran is cancelled
   void start(const ImportWishes& wishes);             // Choosing; without a source: nothing
-  void cancel();                                      // Running, Asking: back to Choosing. Looking: Idle
+  // Running, Asking: back to Choosing. Looking: Idle. Choosing: no more pictures are made.
+  void cancel();
   // Asking. The side must be known then. Name: of the case, empty for "Knee" and the date.
   void set_side(bones::Side side);
   void save(const std::filesystem::path& folder, const std::string& name);
@@ -52,9 +54,11 @@ class ImportWork {
   [[nodiscard]] State state() const { return state_; }
   [[nodiscard]] bool is_busy() const;
   [[nodiscard]] const ImportSources& sources() const { return sources_; }
-  // Of a series, when it has been made; null before, and for what has none.
+  // Of a series, until the next poll(); null before it has been made, and for what has none. Why a series has
+  // none is then among its warnings.
   [[nodiscard]] const images::Thumbnail* thumbnail(std::size_t source) const;
-  [[nodiscard]] double looked_fraction() const { return looked_; }  // Looking: 0 to 1
+  [[nodiscard]] bool makes_pictures() const;     // after the list
+  [[nodiscard]] double looked_fraction() const;  // Looking: 0 to 1
   [[nodiscard]] const importing::ImportProgress& progress() const { return progress_; }
   // Asking: what was made, and what should be looked at before it is relied on.
   [[nodiscard]] const importing::BoneImport& result() const { return result_; }
@@ -64,18 +68,18 @@ class ImportWork {
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }  // Done: the case
 
  private:
-  struct Pictures;  // shared with the thread that makes them
   void take_sources();
+  void note_pictures();
   void take_bones();
   void start_next();
-  void end_threads();
+  void end_work();
 
   std::function<void()> wake_;
   std::filesystem::path program_, folder_;
   State state_ = State::Idle;
-  std::future<ImportSources> looking_;
-  std::shared_ptr<Pictures> pictures_;
-  std::future<void> painting_, saving_;
+  std::unique_ptr<importing::SeriesProcess> series_;
+  std::size_t noted_ = 0;  // of its pictures
+  std::future<void> saving_;
   ImportSources sources_;
   ImportWishes wishes_;
   std::size_t next_ = 0;  // of the wished sources
@@ -83,8 +87,6 @@ class ImportWork {
   importing::ImportProgress progress_;
   importing::BoneImport result_;
   std::string failure_;
-  std::atomic<double> looked_{0};
-  std::atomic<bool> stops_looking_{false};
 };
 
 // A folder for a new case that is not there yet: FOLDER/NAME.arthro, with a number where that is taken.

@@ -31,7 +31,8 @@ class StartView {
   void tick();
   void draw(const widgets::Ui& ui, const widgets::Rect& area);
 
-  [[nodiscard]] bool is_busy() const { return work_.is_busy(); }
+  // Something will change without anybody's doing.
+  [[nodiscard]] bool is_busy() const { return work_.is_busy() || work_.makes_pictures(); }
   // An import runs that the end of the program would cut off.
   [[nodiscard]] bool has_running_work() const;
   [[nodiscard]] bool wants_to_close() const { return wants_to_close_; }

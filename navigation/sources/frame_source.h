@@ -61,6 +61,10 @@ class FrameSource {
 // Whether text names a stream, by its form alone.
 [[nodiscard]] bool is_stream_address(std::string_view text);
 
+// As an address may stand on a screen, in a message and in a record: "rtsp://user:password@host/scope"
+// without what is before the "@".
+[[nodiscard]] std::string shown_address(const std::string& address);
+
 // What a user names: "/dev/videoN", a stream, or what open_video() opens.
 [[nodiscard]] std::unique_ptr<FrameSource> open_source(const std::string& name);
 // Live for a device and a stream, else a recording. By its form alone.

@@ -89,7 +89,7 @@ class Connection {
     return av_rescale_q(ticks, stream().time_base, {1, static_cast<int>(kSecond_ns)});
   }
   [[noreturn]] static void fail(const std::string& address, const std::string& reason) {
-    throw DeviceError(address + ": " + reason);
+    throw DeviceError(shown_address(address) + ": " + reason);
   }
 
   void open_decoder(const std::string& address) {
@@ -129,13 +129,13 @@ class Connection {
 class NetworkStream final : public FrameSource {
  public:
   explicit NetworkStream(const std::string& address) : address_(address) {
+    info_.name = shown_address(address_);
     av_log_set_level(AV_LOG_QUIET);
     avformat_network_init();
     const std::int64_t deadline_ns = steady_now_ns() + kOpensWithin_ns;
     connection_ = std::make_unique<Connection>(address_, deadline_ns);
     const AVFrame* const picture = connection_->next(deadline_ns);
-    if (picture == nullptr) throw DeviceError(address_ + ": gives no picture");
-    info_.name = address_;
+    if (picture == nullptr) throw DeviceError(info_.name + ": gives no picture");
     info_.image_size_px = {picture->width, picture->height};
     info_.frames_per_second = connection_->frames_per_second();
     info_.kind = SourceKind::Live;
@@ -152,17 +152,17 @@ class NetworkStream final : public FrameSource {
       if (!connection_ && !connect_again(give_up_ns)) continue;
       if (const AVFrame* const picture = connection_->next(steady_now_ns() + kSilence_ns))
         return frame_of(*picture);
-      log::warning("stream broke off: " + address_);
+      log::warning("stream broke off: " + info_.name);
       connection_.reset();
     }
-    throw DeviceError(address_ + ": has given no picture for 15 s");
+    throw DeviceError(info_.name + ": has given no picture for 15 s");
   }
 
  private:
   bool connect_again(std::int64_t give_up_ns) {
     try {
       connection_ = std::make_unique<Connection>(address_, give_up_ns);
-      log::info("stream taken up again: " + address_);
+      log::info("stream taken up again: " + info_.name);
       return true;
     } catch (const DeviceError&) {  // told when it lasts
       std::this_thread::sleep_for(kBeforeAgain);
@@ -172,14 +172,14 @@ class NetworkStream final : public FrameSource {
 
   camera::FramePtr frame_of(const AVFrame& picture) {
     if (picture.width != info_.image_size_px.x() || picture.height != info_.image_size_px.y()) {
-      throw DeviceError(address_ + ": gives pictures of " + std::to_string(picture.width) + " x " +
+      throw DeviceError(info_.name + ": gives pictures of " + std::to_string(picture.width) + " x " +
                         std::to_string(picture.height) + " now, and gave such of " +
                         std::to_string(info_.image_size_px.x()) + " x " +
                         std::to_string(info_.image_size_px.y()));
     }
     auto frame = std::make_shared<camera::Frame>();
     if (!converter_.convert(picture, *frame))
-      throw DeviceError(address_ + ": has a pixel format that can't be converted");
+      throw DeviceError(info_.name + ": has a pixel format that can't be converted");
     frame->index = next_index_++;
     frame->captured_ns = connection_->captured_ns();
     last_timestamp_ns_ = std::max(frame->captured_ns - started_at_ns_, last_timestamp_ns_ + 1);

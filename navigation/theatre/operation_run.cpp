@@ -22,11 +22,7 @@ OperationRun::~OperationRun() { end_source(); }
 
 void OperationRun::start(const TheatreSource& source) {
   end_source();
-  // A device answers soon or is broken; a simulation has to find its place first.
-  constexpr double kLivePatience_s = 5, kOtherPatience_s = 300;
-  const bool is_live = source.setup.kind == sources::SourceKind::Live;
-  auto opened =
-      std::make_unique<pipeline::PrefetchedSource>(source.open, is_live ? kLivePatience_s : kOtherPatience_s);
+  auto opened = std::make_unique<pipeline::PrefetchedSource>(source.open, source.patience_s);
   operation_.start_source(source.setup);
   theatre_source_ = source;
   source_ = std::move(opened);

@@ -23,6 +23,9 @@ struct TheatreSource {
   operation::SourceSetup setup;
   std::function<std::unique_ptr<sources::FrameSource>()>
       open;  // called where the frames are taken; may throw
+  // How long opening it may take, and a picture of what is not live: a simulation has to find its place
+  // first.
+  double patience_s = 300;
   // Where the tunnel truly goes; the simulated source alone knows, once it is open.
   std::function<std::optional<tunnels::Tunnel>()> truth;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -74,6 +75,8 @@ ImageSeries volume_file(const fs::path& file, const VolumeFileOptions& options) 
     series.warnings.insert(series.warnings.end(), volume.notes.begin(), volume.notes.end());
   } catch (const std::runtime_error& error) {
     series.refusal = error.what();
+  } catch (const std::bad_alloc&) {  // where memory is limited, one large volume must not hide the others
+    series.refusal = file.string() + ": needs more memory than there is";
   }
   return series;
 }

@@ -10,6 +10,7 @@
 
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
+#include "planning/images/series_list.h"
 #include "planning/import/import_messages.h"
 #include "planning/import/shared_voxels.h"
 
@@ -64,22 +65,59 @@ void end_with(int socket) {
   }).detach();
 }
 
-std::string answer(int socket, const ChildRequest& request) {
-  const auto tell = [&](std::string_view stage, double fraction) {
-    send_all(socket, message_of(ImportProgress{std::string(stage), fraction}));
-  };
+std::string needs_more(const ChildRequest& request) {
+  constexpr double kGib = 1024.0 * 1024 * 1024;
+  return files::format("needs more than the %.3g GiB of memory that an import may take",
+                       static_cast<double>(request.memory_limit_bytes) / kGib) +
+         ": --memory-limit-gib allows more";
+}
+
+void make_bones(int socket, const ChildRequest& request) {
+  BoneImport import =
+      import_bones(request.source, request.options, [&](std::string_view stage, double fraction) {
+        send_all(socket, message_of(ImportProgress{std::string(stage), fraction}));
+      });
+  if (import.image && !put_voxels(kSharedDescriptor, import.image->volume.voxels)) import.image.reset();
+  send_all(socket, message_of(import));
+}
+
+// A series that has none may well be listed, and so may those after it.
+SeriesPicture picture_of(const images::ImageSeries& series, const ChildRequest& request) {
   try {
-    BoneImport import = import_bones(request.source, request.options, tell);
-    if (import.image && !put_voxels(kSharedDescriptor, import.image->volume.voxels)) import.image.reset();
-    return message_of(import);
+    return {images::thumbnail_of(series, kLongestPictureSide), ""};
   } catch (const std::bad_alloc&) {
-    constexpr double kGib = 1024.0 * 1024 * 1024;
-    return failure_message(request.source.string() + ": " +
-                           files::format("needs more than the %.3g GiB of memory that an import may take",
-                                         static_cast<double>(request.memory_limit_bytes) / kGib) +
-                           ": --memory-limit-gib allows more");
+    return {{}, needs_more(request)};
   } catch (const std::exception& error) {
-    return failure_message(error.what());
+    return {{}, error.what()};
+  }
+}
+
+// The list is sent before the first picture is made: what dies at that leaves it behind.
+void look_through(int socket, const ChildRequest& request) {
+  images::VolumeFileOptions reading{.series = {}, .most_bytes = request.memory_limit_bytes};
+  reading.on_progress = [&](double fraction) {
+    send_all(socket, message_of(ImportProgress{"Looking", fraction}));
+  };
+  const images::SeriesList list = images::find_series(request.source, reading);
+  const std::string message = message_of(list);
+  if (message.size() > kLongestList_bytes)
+    throw InvalidInput(request.source, "", "holds more than can be listed");
+  send_all(socket, message);
+  if (request.work != ChildWork::ListSeriesWithPictures) return;
+  for (const images::ImageSeries& series : list.series)
+    send_all(socket, message_of(picture_of(series, request)));
+}
+
+void answer(int socket, const ChildRequest& request) {
+  try {
+    if (request.work == ChildWork::MakeBones)
+      make_bones(socket, request);
+    else
+      look_through(socket, request);
+  } catch (const std::bad_alloc&) {
+    send_all(socket, failure_message(request.source.string() + ": " + needs_more(request)));
+  } catch (const std::exception& error) {
+    send_all(socket, failure_message(error.what()));
   }
 }
 
@@ -90,7 +128,7 @@ int run_import_child(int socket) {
   if (!request) return 2;
   end_with(socket);
   give_up_rights(request->memory_limit_bytes);
-  send_all(socket, answer(socket, *request));
+  answer(socket, *request);
   return 0;
 }
 

@@ -1,5 +1,6 @@
 #include "planning/import/import_messages.h"
 
+#include <cmath>
 #include <cstring>
 #include <type_traits>
 
@@ -41,6 +42,9 @@ class Reader {
     if (text_.size() < count) throw InvalidInput("the importing process sent a message that is cut off");
     if (count > 0) std::memcpy(to, text_.data(), count);
     text_.remove_prefix(count);
+  }
+  void refuse_rest() const {
+    if (!text_.empty()) throw InvalidInput("the importing process sent a message with something behind it");
   }
   // Refuses what the rest of the message cannot hold, before it is allocated.
   std::size_t count(std::size_t, std::size_t least_bytes_each) {
@@ -91,10 +95,21 @@ void describe(Archive& archive, std::optional<T>& value) {
   value = held;
 }
 
-template <typename Archive>
-void describe(Archive& archive, std::vector<std::string>& lines) {
-  lines.resize(archive.count(lines.size(), sizeof(std::size_t)));
-  for (std::string& line : lines) describe(archive, line);
+// What one of a list takes in a message at the least. A text, and whatever begins with one: its length.
+template <typename T>
+constexpr std::size_t kLeastBytes = sizeof(std::size_t);
+template <>
+constexpr std::size_t kLeastBytes<images::SkippedFile> = 2 * sizeof(std::size_t);
+template <>
+constexpr std::size_t kLeastBytes<images::ImageSeries> = 8 * sizeof(std::size_t) + 4 * sizeof(int) +
+                                                         3 * sizeof(double);
+template <>
+constexpr std::size_t kLeastBytes<ImportedBone> = sizeof(bones::MeshRepairReport);
+
+template <typename Archive, typename T>
+void describe(Archive& archive, std::vector<T>& values) {
+  values.resize(archive.count(values.size(), kLeastBytes<T>));
+  for (T& value : values) describe(archive, value);
 }
 
 template <typename Archive>
@@ -134,6 +149,7 @@ void describe(Archive& archive, BoneImportOptions& options) {
 
 template <typename Archive>
 void describe(Archive& archive, ChildRequest& request) {
+  describe(archive, request.work);
   describe(archive, request.source);
   describe(archive, request.options);
   describe(archive, request.memory_limit_bytes);
@@ -172,8 +188,7 @@ void describe(Archive& archive, std::optional<ImportedImage>& image) {
 
 template <typename Archive>
 void describe(Archive& archive, BoneImport& import) {
-  import.bones.resize(archive.count(import.bones.size(), sizeof(bones::MeshRepairReport)));
-  for (ImportedBone& imported : import.bones) describe(archive, imported);
+  describe(archive, import.bones);
   describe(archive, import.side);
   describe(archive, import.side_was_guessed);
   describe(archive, import.side_was_seen);
@@ -182,6 +197,65 @@ void describe(Archive& archive, BoneImport& import) {
   describe(archive, import.identity.patient_id);
   describe(archive, import.identity.birth_date);
   describe(archive, import.image);
+}
+
+template <typename Archive>
+void describe(Archive& archive, images::ImageSeries& series) {
+  describe(archive, series.uid);
+  describe(archive, series.number);
+  describe(archive, series.format);
+  describe(archive, series.modality);
+  describe(archive, series.description);
+  describe(archive, series.image_count);
+  archive.bytes(series.size.data(), 3 * sizeof(int));
+  archive.bytes(series.spacing_mm.data(), 3 * sizeof(double));
+  describe(archive, series.files);
+  describe(archive, series.refusal);
+  describe(archive, series.warnings);
+}
+
+template <typename Archive>
+void describe(Archive& archive, images::SkippedFile& skipped) {
+  describe(archive, skipped.file);
+  describe(archive, skipped.reason);
+}
+
+template <typename Archive>
+void describe(Archive& archive, images::SeriesList& list) {
+  describe(archive, list.series);
+  describe(archive, list.skipped);
+  describe(archive, list.other_count);
+}
+
+template <typename Archive>
+void describe(Archive& archive, SeriesPicture& picture) {
+  images::Thumbnail& thumbnail = picture.thumbnail;
+  describe(archive, thumbnail.width);
+  describe(archive, thumbnail.height);
+  thumbnail.grey.resize(archive.count(thumbnail.grey.size(), 1));
+  archive.bytes(thumbnail.grey.data(), thumbnail.grey.size());
+  describe(archive, picture.refusal);
+}
+
+// Every text that may be as long as a file likes.
+template <typename Use>
+void with_each_text(images::SeriesList& list, const Use& use) {
+  const auto use_path = [&](std::filesystem::path& path) {
+    std::string text = path.string();
+    use(text);
+    path = text;
+  };
+  for (images::ImageSeries& series : list.series) {
+    for (std::string* text : {&series.uid, &series.number, &series.format, &series.modality,
+                              &series.description, &series.refusal})
+      use(*text);
+    for (std::string& warning : series.warnings) use(warning);
+    for (std::filesystem::path& file : series.files) use_path(file);
+  }
+  for (images::SkippedFile& skipped : list.skipped) {
+    use_path(skipped.file);
+    use(skipped.reason);
+  }
 }
 
 std::string framed(MessageKind kind, const std::string& contents) {
@@ -204,7 +278,35 @@ T read(std::string_view contents) {
   Reader reader(contents);
   T value;
   describe(reader, value);
+  reader.refuse_rest();
   return value;
+}
+
+void refuse_unsound(const ImportProgress& progress) {
+  if (progress.stage.size() > kLongestText_bytes || !std::isfinite(progress.fraction))
+    throw InvalidInput("the importing process sent a progress that is none");
+}
+
+void refuse_unsound(images::SeriesList& list) {
+  constexpr int kMostImages = 100'000'000;
+  bool is_sound = true;
+  with_each_text(list,
+                 [&](const std::string& text) { is_sound = is_sound && text.size() <= kLongestText_bytes; });
+  for (const images::ImageSeries& series : list.series)
+    is_sound = is_sound && series.image_count >= 0 && series.image_count <= kMostImages &&
+               series.size.minCoeff() >= 0 && series.spacing_mm.allFinite();
+  if (!is_sound) throw InvalidInput("the importing process sent a list of series that is none");
+}
+
+// A picture without pixels is none, and has no size.
+void refuse_unsound(const SeriesPicture& picture) {
+  const auto& [width, height, grey] = picture.thumbnail;
+  const auto is_side = [](int side) { return side >= 1 && side <= kLongestPictureSide; };
+  const bool is_none = width == 0 && height == 0 && grey.empty();
+  const bool is_picture =
+      is_side(width) && is_side(height) && grey.size() == static_cast<std::size_t>(width * height);
+  if ((!is_none && !is_picture) || picture.refusal.size() > kLongestText_bytes)
+    throw InvalidInput("the importing process sent a picture that is none");
 }
 
 void refuse_unsound(const BoneImport& import) {
@@ -223,12 +325,37 @@ void refuse_unsound(const BoneImport& import) {
   }
 }
 
+template <typename T>
+T sound(std::string_view contents) {
+  T value = read<T>(contents);
+  refuse_unsound(value);
+  return value;
+}
+
 }  // namespace
 
 std::string message_of(const ChildRequest& request) { return written(MessageKind::Request, request); }
 std::string message_of(const ImportProgress& progress) { return written(MessageKind::Progress, progress); }
 std::string message_of(const BoneImport& import) { return written(MessageKind::Result, import); }
-std::string failure_message(const std::string& reason) { return framed(MessageKind::Failure, reason); }
+std::string message_of(const images::SeriesList& list) {
+  images::SeriesList shown = list;
+  with_each_text(shown, [](std::string& text) { text = clipped(std::move(text)); });
+  return written(MessageKind::SeriesList, shown);
+}
+std::string message_of(const SeriesPicture& picture) {
+  return written(MessageKind::SeriesPicture, SeriesPicture{picture.thumbnail, clipped(picture.refusal)});
+}
+std::string failure_message(const std::string& reason) {
+  return framed(MessageKind::Failure, clipped(reason));
+}
+
+std::string clipped(std::string text) {
+  if (text.size() <= kLongestText_bytes) return text;
+  std::size_t end = kLongestText_bytes;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  text.resize(end);
+  return text;
+}
 
 std::optional<Message> take_message(std::string& buffer, std::uint64_t most_bytes) {
   Header header;
@@ -243,11 +370,9 @@ std::optional<Message> take_message(std::string& buffer, std::uint64_t most_byte
 }
 
 ChildRequest request_from(std::string_view contents) { return read<ChildRequest>(contents); }
-ImportProgress progress_from(std::string_view contents) { return read<ImportProgress>(contents); }
-BoneImport import_from(std::string_view contents) {
-  BoneImport import = read<BoneImport>(contents);
-  refuse_unsound(import);
-  return import;
-}
+ImportProgress progress_from(std::string_view contents) { return sound<ImportProgress>(contents); }
+BoneImport import_from(std::string_view contents) { return sound<BoneImport>(contents); }
+images::SeriesList series_list_from(std::string_view contents) { return sound<images::SeriesList>(contents); }
+SeriesPicture series_picture_from(std::string_view contents) { return sound<SeriesPicture>(contents); }
 
 }  // namespace arthronaut::importing

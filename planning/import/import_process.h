@@ -6,17 +6,17 @@
 // add_to_case(), so that there is nothing to clean up after a cancellation, a crash or a kill.
 //
 //   Running ─► Done        the bones are there
-//           ─► Failed      the source is refused (file, place, reason), needs too much memory, or ended the
-//           child ─► Cancelled   by cancel()
+//           ─► Failed, Cancelled   as ChildProcess says
 //
 // For one thread, which asks it now and then (a window in each of its frames) and never waits unless it wants
-// to.
+// to. What there is to import in a folder is looked for in the same way by SeriesProcess.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
 #include "planning/import/bone_import.h"
+#include "planning/import/child_process.h"
 
 namespace arthronaut::importing {
 
@@ -30,44 +30,34 @@ struct ImportRequest {
 
 class ImportProcess {
  public:
-  enum class State { Running, Done, Failed, Cancelled };
+  using State = ChildProcess::State;
 
   // Starts at once. Throws InvalidInput when the limit is not positive, IoError when no process can be
   // started.
   explicit ImportProcess(ImportRequest request);
-  // Cancels what still runs; the child is gone when this returns.
-  ~ImportProcess();
-  ImportProcess(const ImportProcess&) = delete;
-  ImportProcess& operator=(const ImportProcess&) = delete;
 
   // Takes in what the child has sent. poll() returns at once, wait_for() after so long at the latest, earlier
   // when something came.
   State poll() { return wait_for(0); }
   State wait_for(double seconds);
+  // Ends the child at once, as letting go of the process does. A result that came before stays.
+  void cancel() { child_.cancel(); }
 
-  [[nodiscard]] State state() const { return state_; }
+  [[nodiscard]] State state() const { return child_.state(); }
   [[nodiscard]] const ImportProgress& progress() const { return progress_; }
   // Why it failed or was cancelled, for a person; empty otherwise.
-  [[nodiscard]] const std::string& message() const { return message_; }
+  [[nodiscard]] const std::string& message() const { return child_.message(); }
   // The bones, once; the state must be Done.
   [[nodiscard]] BoneImport take_result();
 
-  // Ends the child at once. A result that came before stays.
-  void cancel();
-
-  [[nodiscard]] int process_id() const { return process_id_; }  // -1 once it has ended
+  [[nodiscard]] int process_id() const { return child_.process_id(); }  // -1 once it has ended
 
  private:
-  void take_in(const std::string& bytes);
+  bool take(const Message& message);  // true: the last one
   void take_image();
-  void end_by_itself();  // the child has closed its end
-  int ended_child();     // its status
-  void fail(const std::string& reason);
 
   ImportRequest request_;
-  int socket_ = -1, process_id_ = -1, shared_ = -1;
-  State state_ = State::Running;
-  std::string buffer_, message_;
+  ChildProcess child_;
   ImportProgress progress_;
   BoneImport result_;
 };

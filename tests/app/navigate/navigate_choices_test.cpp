@@ -15,14 +15,11 @@ TEST(NavigateChoices, TheOtherBoneBeginsWithoutWhatWasOfThisOne) {
   choices.layout = NavigateLayout::Register;
   choices.guidance_seen_s = 99;
   choices.stroke = 4;
-  choices.cameras.resize(2);
-  choices.camera = 1;
   choices.take_other_bone();
   EXPECT_EQ(choices.bone, bones::BoneKind::Tibia);
   EXPECT_FALSE(choices.layout);
   EXPECT_LT(choices.guidance_seen_s, -1e6);
   EXPECT_EQ(choices.stroke, -1);
-  EXPECT_TRUE(choices.cameras.empty());
   EXPECT_TRUE(choices.undistorts && !choices.saline && choices.video == 3);
   choices.take_other_bone();
   EXPECT_EQ(choices.bone, bones::BoneKind::Femur);

@@ -1,5 +1,6 @@
 #include "app/start/import_work.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -9,6 +10,7 @@
 #include "planning/bones/mesh_file.h"
 #include "planning/cases/case.h"
 #include "planning/phantom/phantom_case.h"
+#include "tests/planning/images/volume_forms.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::start {
@@ -28,13 +30,27 @@ class ImportWorkTest : public ::testing::Test {
     bones::write_mesh_stl(folder_ / femur, knee().bones.at(BoneKind::Femur).mesh);
     bones::write_mesh_stl(folder_ / tibia, knee().bones.at(BoneKind::Tibia).mesh);
   }
+  // Of every slice the first so many pixels alone.
+  void write_slices(const std::string& name, const std::string& uid, std::size_t pixels = 35) const {
+    std::filesystem::create_directories(folder_ / name);
+    for (auto& [file, slice] : test::dicom_slices(test::oblique_volume())) {
+      test::DicomSliceForm form = slice;
+      form.series_uid = uid;
+      form.stored.resize(pixels);
+      test::write_bytes(folder_ / name / file, test::dicom(form));
+    }
+  }
   // As the window does, frame after frame; slow machines are waited for.
-  bool reach(State state) {
-    for (int i = 0; i < 12'000 && work_.state() != state; ++i) {
-      work_.poll();
+  template <typename Condition>
+  static bool reach(ImportWork& work, const Condition& is_so) {
+    for (int i = 0; i < 12'000 && !is_so(); ++i) {
+      work.poll();
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-    return work_.state() == state;
+    return is_so();
+  }
+  bool reach(State state) {
+    return reach(work_, [&] { return work_.state() == state; });
   }
   const test::TemporaryFolder folder_;
   ImportWork work_{[] {}, ARTHRONAUT_PROGRAM};
@@ -94,6 +110,63 @@ TEST_F(ImportWorkTest, RefusalAndCancelLeadBackToTheChoice) {
   work_.cancel();
   EXPECT_EQ(work_.state(), State::Choosing);
   EXPECT_EQ(work_.failure(), "");
+}
+
+// The list first, then a picture of each series, the same as made here; a series whose pixels are cut off has
+// none, and the reason is told.
+TEST_F(ImportWorkTest, ListsTheSeriesAndThenShowsThem) {
+  write_slices("disc/whole", "1.2.3.4");
+  write_slices("disc/cut", "1.2.3.5", 10);
+  work_.look_into(folder_ / "disc");
+  EXPECT_EQ(work_.thumbnail(0), nullptr);
+  ASSERT_TRUE(reach(State::Choosing));
+  EXPECT_EQ(work_.failure(), "");
+  const images::SeriesList here = images::find_series(folder_ / "disc");
+  ASSERT_EQ(work_.sources().sources.size(), 2U);
+  EXPECT_EQ(work_.sources().sources[0].series->uid, "1.2.3.4");
+  EXPECT_EQ(work_.sources().sources[0].series->files, here.series[0].files);
+  ASSERT_TRUE(reach(work_, [&] { return !work_.makes_pictures(); }));
+  ASSERT_NE(work_.thumbnail(0), nullptr);
+  const images::Thumbnail made = images::thumbnail_of(here.series[0]);
+  EXPECT_EQ(work_.thumbnail(0)->width, made.width);
+  EXPECT_EQ(work_.thumbnail(0)->grey, made.grey);
+  EXPECT_EQ(work_.sources().sources[0].warnings, here.series[0].warnings);
+  EXPECT_EQ(work_.thumbnail(1), nullptr);
+  EXPECT_THAT(work_.sources().sources[1].warnings.at(0),
+              testing::AllOf(testing::StartsWith("No picture: "), testing::HasSubstr("end early")));
+}
+
+// Whatever ends the process that looks: it is said, meshes are listed all the same, and the next look is as
+// ever.
+TEST_F(ImportWorkTest, AProcessThatDiesWhileLookingIsAReasonAndNoHarm) {
+  write_meshes("right_femur.stl", "right_tibia.stl");
+  ImportWork work([] {}, "/bin/false");
+  work.look_into(folder_.path());
+  ASSERT_TRUE(reach(work, [&] { return work.state() == State::Choosing; }));
+  EXPECT_THAT(work.failure(),
+              testing::AllOf(testing::HasSubstr(folder_.path().string()), testing::HasSubstr("code 1")));
+  EXPECT_EQ(work.sources().sources.size(), 2U);
+  EXPECT_FALSE(work.makes_pictures());
+  // No program at all.
+  ImportWork without([] {}, folder_ / "absent");
+  without.look_into(folder_.path());
+  ASSERT_TRUE(reach(without, [&] { return without.state() == State::Choosing; }));
+  EXPECT_THAT(without.failure(), testing::HasSubstr("cannot be started"));
+}
+
+// One that hangs is left by cancel, in no time.
+TEST_F(ImportWorkTest, CancelLeavesAProcessThatHangs) {
+  test::write_bytes(folder_ / "hang.sh", "#!/bin/sh\nexec sleep 60\n");
+  std::filesystem::permissions(folder_ / "hang.sh", std::filesystem::perms{0755});
+  ImportWork work([] {}, folder_ / "hang.sh");
+  const auto start = std::chrono::steady_clock::now();
+  work.look_into(folder_.path());
+  for (int i = 0; i < 10; ++i) work.poll();
+  EXPECT_EQ(work.state(), State::Looking);
+  EXPECT_TRUE(work.is_busy());
+  work.cancel();
+  EXPECT_EQ(work.state(), State::Idle);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
 }
 
 // Looking somewhere else forgets what was found; a folder without anything says so by an empty list; one that

@@ -297,6 +297,45 @@ TEST_F(Theatre, Hazard12WhatWasLeftCanBeDeclined) {
   EXPECT_EQ(app.wait_for_exit(60), 0);
 }
 
+// A stream is named in the window: what is typed is no key of the screen, what is no address is told, and the
+// kind of source is live, with all that it asks for. The next time it is offered.
+TEST_F(Theatre, AStreamIsNamedInTheWindowAndIsLive) {
+  adopt_real_scope();
+  const VirtualDisplay display(1280, 720);
+  {
+    RunningWorkstation app(display, folder_.path());
+    show_navigate(app);
+    app.press("k");
+    ASSERT_TRUE(app.wait_for_state("cameras", "address"));
+    app.type("desk");
+    app.press("Return");
+    EXPECT_EQ(app.state("cameras"), "address");
+    EXPECT_EQ(app.state("depth_stop"), "none") << "E is no key while it is typed";
+    EXPECT_EQ(app.state("view"), "as it came");
+    app.press("Escape");
+    ASSERT_TRUE(app.wait_for_state("cameras", "none"));
+    app.press("k");
+    ASSERT_TRUE(app.wait_for_state("cameras", "address"));
+    app.type("gst:videotestsrc is-live=true ! video/x-raw,width=1920,height=1080,framerate=20/1 ! appsink");
+    app.press("Return");
+    ASSERT_TRUE(app.wait_for_state("time_out", "due", 60));
+    EXPECT_EQ(app.state("source_kind"), "LIVE");
+    EXPECT_EQ(app.state("next"), "time-out: confirm patient, side, plan and tools");
+    app.press("space");
+    EXPECT_TRUE(app.wait_for_state("time_out", "confirmed"));
+    EXPECT_NE(app.state("guidance"), "valid");
+    EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+  }
+  RunningWorkstation app(display, folder_.path());
+  show_navigate(app);
+  if (app.state("resume") != "none") app.press("Escape");
+  app.press("k");
+  ASSERT_TRUE(becomes([&] { return app.state("cameras").starts_with("gst:videotestsrc"); }, 20));
+  app.press("Escape");
+  EXPECT_TRUE(app.wait_for_state("cameras", "none"));
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
 // What the depth stop reads is typed, shown and kept; digits of it are no keys of the screen. A marker that
 // was placed anew is one key, held.
 TEST_F(Theatre, Hazard7TheDepthStopIsTypedAndTheMarkerPlacedAnewIsAKey) {

@@ -21,7 +21,9 @@ namespace arthronaut::sources {
 namespace {
 
 using test::message_of;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr double kRate = 30;
 constexpr double kInterval_s = 1 / kRate;
@@ -120,6 +122,15 @@ TEST(Stream, AnotherSizeIsAnotherCamera) {
   (void)take(*source, 10);
   sender = std::make_unique<Sender>(address, "640x480");
   EXPECT_THAT(message_of<DeviceError>([&] { (void)take(*source, 200); }), HasSubstr("640 x 480 now"));
+}
+
+TEST(Stream, AnAddressIsShownWithoutItsPassword) {
+  EXPECT_EQ(shown_address("rtsp://user:secret@tower:554/scope@2"), "rtsp://tower:554/scope@2");
+  EXPECT_EQ(shown_address("rtsp://user@tower"), "rtsp://tower");
+  for (const char* plain : {"rtsp://tower/scope", "udp://@:5000", "gst:a@b ! appsink", "rtsp://tower/a@b"})
+    EXPECT_EQ(shown_address(plain), plain);
+  EXPECT_THAT(message_of<DeviceError>([] { (void)open_source("rtsp://user:secret@127.0.0.1:1/scope"); }),
+              AllOf(HasSubstr("rtsp://127.0.0.1:1/scope: "), Not(HasSubstr("secret"))));
 }
 
 TEST(Stream, NobodyThereIsSaidAtOnce) {

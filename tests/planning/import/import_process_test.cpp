@@ -13,6 +13,7 @@
 #include "tests/planning/bones/mesh_text_forms.h"
 #include "tests/planning/geometry/shapes.h"
 #include "tests/planning/images/large_volume.h"
+#include "tests/planning/import/child_script.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::importing {
@@ -34,11 +35,8 @@ class ImportProcessTest : public testing::Test {
     request.program = ARTHRONAUT_IMPORT_CHILD;
     return request;
   }
-  // A program that does something else than to import.
   [[nodiscard]] std::filesystem::path script(const std::string& line) const {
-    test::write_bytes(folder_ / "child.sh", "#!/bin/sh\n" + line + "\n");
-    std::filesystem::permissions(folder_ / "child.sh", std::filesystem::perms{0755});
-    return folder_ / "child.sh";
+    return test::child_script(folder_.path(), line);
   }
   static State finished(ImportProcess& process) {
     while (process.wait_for(60) == State::Running) {

@@ -1,0 +1,85 @@
+#include "app/navigate/camera_choice.h"
+
+#include <imgui_stdlib.h>
+
+#include "navigation/sources/frame_source.h"
+
+namespace arthronaut::navigate {
+
+void CameraChoice::open(const std::vector<sources::ConnectedCamera>& cameras,
+                        const std::vector<std::string>& streams) {
+  *this = {};
+  is_open_ = true;
+  for (const sources::ConnectedCamera& camera : cameras) offered_.push_back({camera.name, camera.index, ""});
+  for (const std::string& address : streams)
+    offered_.push_back({sources::shown_address(address), std::nullopt, address});
+  wants_focus_ = offered_.empty();
+}
+
+void CameraChoice::choose_next() {
+  chosen_ = (chosen_ + 1) % (offered_.size() + 1);
+  wants_focus_ = chosen_ == offered_.size();
+}
+
+std::optional<LivePictures> CameraChoice::chosen() const {
+  return is_open_ && chosen_ < offered_.size() ? std::optional(offered_[chosen_]) : std::nullopt;
+}
+
+std::optional<LivePictures> CameraChoice::take_address(std::string typed) {
+  const std::size_t first = typed.find_first_not_of(" \t"), last = typed.find_last_not_of(" \t");
+  typed = first == std::string::npos ? "" : typed.substr(first, last - first + 1);
+  if (sources::is_stream_address(typed))
+    return LivePictures{sources::shown_address(typed), std::nullopt, typed};
+  trouble_ = "Not an address of a stream: rtsp://HOST/PATH, udp://@:PORT, or gst:PIPELINE ! appsink";
+  return std::nullopt;
+}
+
+void CameraChoice::draw_rows(const widgets::Ui& ui, widgets::Rect& box) const {
+  const float row = ui.theme.px(56);
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  for (std::size_t i = 0; i < offered_.size(); ++i) {
+    const widgets::Rect line = box.cut_top(row);
+    const bool is_chosen = i == chosen_;
+    if (is_chosen) draw.AddRectFilled(line.min(), line.max(), IM_COL32(28, 74, 104, 255));
+    const LivePictures& one = offered_[i];
+    widgets::text_centered(
+        ui, line, ui.theme.strong, is_chosen ? widgets::kText : widgets::kQuietText,
+        one.device ? one.name + "  (/dev/video" + std::to_string(*one.device) + ")" : one.name);
+  }
+}
+
+std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widgets::Rect& video) {
+  if (!is_open_) return std::nullopt;
+  const float row = ui.theme.px(56);
+  widgets::Rect box = video;
+  box.height = row * (static_cast<float>(offered_.size()) + 4);
+  box.y = video.center().y - box.height / 2;
+  ImGui::GetWindowDrawList()->AddRectFilled(box.min(), box.max(), IM_COL32(10, 12, 15, 240));
+  widgets::text_centered(ui, box.cut_top(row), ui.theme.title, widgets::kText, "Which camera?");
+  draw_rows(ui, box);
+  const std::string hint = !trouble_.empty()  ? trouble_
+                           : offered_.empty() ? "No camera is connected. The address of a stream, then Enter"
+                                              : "Or the address of a stream, then Enter";
+  widgets::text_centered(ui, box.cut_top(row), ui.theme.strong,
+                         trouble_.empty() ? widgets::kQuietText : widgets::kCaution, hint);
+  const widgets::Rect field = box.cut_top(row).inset(ui.theme.px(6));
+  ImGui::SetCursorScreenPos(field.min());
+  ImGui::SetNextItemWidth(field.width);
+  if (wants_focus_) ImGui::SetKeyboardFocusHere();
+  const bool is_entered = ImGui::InputText("##stream", &text_, ImGuiInputTextFlags_EnterReturnsTrue);
+  ui.log.note("navigate.stream_field", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+  is_typing_ = ImGui::IsItemActive();
+  const bool was_left = !wants_focus_ && ImGui::IsItemDeactivated();
+  wants_focus_ = false;
+  widgets::text_centered(ui, box, ui.theme.body, widgets::kQuietText,
+                         "K: the next one    Space: open it    Esc: none");
+  if (is_entered) {
+    if (auto taken = take_address(text_)) return taken;
+    wants_focus_ = true;
+  } else if (was_left) {
+    close();  // Esc, while it was typed in
+  }
+  return std::nullopt;
+}
+
+}  // namespace arthronaut::navigate

@@ -1,0 +1,84 @@
+// `arthronaut series`: what images::find_series says of a folder, and a message where the folder is not to be
+// read.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "planning/images/series_list.h"
+#include "tests/app/command_line/program.h"
+#include "tests/planning/images/volume_forms.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut {
+namespace {
+
+using test::run_program;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class SeriesCommand : public ::testing::Test {
+ protected:
+  SeriesCommand() {
+    std::filesystem::create_directories(folder_ / "disc");
+    for (const auto& [name, slice] : test::dicom_slices(test::oblique_volume()))
+      test::write_bytes(folder_ / "disc" / name, test::dicom(slice));
+    test::write_bytes(folder_ / "disc" / "broken.nrrd", "NRRD0004\n");
+    test::write_bytes(folder_ / "disc" / "readme.txt", "hello");
+  }
+  const test::TemporaryFolder folder_;
+};
+
+TEST_F(SeriesCommand, WritesTheListAsJson) {
+  const auto result = run_program({"series", folder_ / "disc", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto document = nlohmann::json::parse(result.output);
+  const images::SeriesList list = images::find_series(folder_ / "disc");
+  EXPECT_EQ(document.at("format"), "arthronaut.series");
+  EXPECT_EQ(document.at("other_files"), 1);
+  ASSERT_EQ(document.at("series").size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& written = document["series"][i];
+    const images::ImageSeries& series = list.series[i];
+    EXPECT_EQ(written.at("uid"), series.uid);
+    EXPECT_EQ(written.at("modality"), series.modality);
+    EXPECT_EQ(written.at("description"), series.description);
+    EXPECT_EQ(written.at("images"), series.image_count);
+    EXPECT_EQ(written.at("readable"), series.is_readable());
+    EXPECT_EQ(written.at("files").size(), series.files.size());
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(written.at("size").at(static_cast<std::size_t>(axis)), series.size[axis]);
+      EXPECT_EQ(written.at("spacing_mm").at(static_cast<std::size_t>(axis)), series.spacing_mm[axis]);
+    }
+    const std::string& wrong = series.is_readable() ? series.warnings.at(0) : series.refusal;
+    EXPECT_EQ(written.at("wrong").at(0), wrong);
+  }
+}
+
+TEST_F(SeriesCommand, SaysTheListInWords) {
+  const auto result = run_program({"series", folder_ / "disc"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(
+      result.output,
+      AllOf(HasSubstr("CT series 3\n    UID 1.2.3.4\n    4 images; 7 x 5 x 4 voxels of"),
+            HasSubstr("\"broken.nrrd\""), HasSubstr("cannot be opened: "), HasSubstr("1 other file")));
+}
+
+// As of an import: the reason on standard error, exit code 3, nothing on standard output.
+TEST_F(SeriesCommand, WhatCannotBeLookedIntoIsSaid) {
+  const auto expect_refused = [](const std::vector<std::string>& arguments, const std::string& reason) {
+    const auto result = run_program(arguments);
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_THAT(result.errors, HasSubstr(reason));
+    EXPECT_EQ(result.output, "");
+  };
+  expect_refused({"series", folder_ / "absent"}, "absent: does not exist");
+  expect_refused({"series", folder_ / "disc" / "readme.txt"}, "readme.txt: is no folder and no volume");
+  // Without memory for the files' own codecs: the folder is named, and the program ends as it should.
+  expect_refused({"series", folder_ / "disc", "--memory-limit-gib", "0.001"},
+                 (folder_ / "disc").string() + ": ");
+  EXPECT_EQ(run_program({"series", folder_ / "disc", "--memory-limit-gib", "0"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace arthronaut

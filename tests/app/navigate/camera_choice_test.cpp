@@ -1,0 +1,82 @@
+#include "app/navigate/camera_choice.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "app/navigate/known_streams.h"
+#include "planning/files/private_folder.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::navigate {
+namespace {
+
+TEST(CameraChoice, OffersCamerasThenStreamsThenTheField) {
+  CameraChoice choice;
+  EXPECT_FALSE(choice.chosen());
+  choice.open({{2, "Capture card"}}, {"rtsp://nurse:secret@tower/scope"});
+  ASSERT_TRUE(choice.chosen());
+  EXPECT_EQ(choice.chosen()->name, "Capture card");
+  EXPECT_EQ(choice.chosen()->device, 2);
+  choice.choose_next();
+  ASSERT_TRUE(choice.chosen());
+  EXPECT_EQ(choice.chosen()->device, std::nullopt);
+  EXPECT_EQ(choice.chosen()->address, "rtsp://nurse:secret@tower/scope");
+  EXPECT_EQ(choice.chosen()->name, "rtsp://tower/scope") << "no password on the screen";
+  EXPECT_FALSE(choice.wants_text());
+  choice.choose_next();
+  EXPECT_FALSE(choice.chosen()) << "the field";
+  EXPECT_TRUE(choice.wants_text());
+  choice.choose_next();
+  EXPECT_EQ(choice.chosen()->name, "Capture card");
+  choice.close();
+  EXPECT_FALSE(choice.is_open() || choice.chosen() || choice.wants_text());
+}
+
+// Where nothing is connected and nothing known, an address is all there is to say.
+TEST(CameraChoice, WithoutAnyTheFieldWaits) {
+  CameraChoice choice;
+  choice.open({}, {});
+  EXPECT_TRUE(choice.is_open());
+  EXPECT_FALSE(choice.chosen());
+  EXPECT_TRUE(choice.wants_text());
+}
+
+TEST(CameraChoice, TakesTheAddressOfAStreamAndNothingElse) {
+  CameraChoice choice;
+  choice.open({}, {});
+  for (const char* typed : {"rtsp://tower/scope", "  udp://@:5000\t", "gst:videotestsrc ! appsink"}) {
+    const auto taken = choice.take_address(typed);
+    ASSERT_TRUE(taken) << typed;
+    EXPECT_FALSE(taken->device);
+  }
+  EXPECT_EQ(choice.take_address(" udp://@:5000 ")->address, "udp://@:5000");
+  for (const char* typed : {"", "  ", "tower", "/dev/video0", "clip.mkv", "://"})
+    EXPECT_FALSE(choice.take_address(typed)) << typed;
+}
+
+TEST(KnownStreams, AreKeptTheNewestFirstAndForTheirUserAlone) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "data/streams.json";
+  EXPECT_TRUE(load_known_streams(file).empty());
+  for (const char* address : {"udp://@:1", "udp://@:2", "udp://@:1"}) note_stream(file, address);
+  EXPECT_EQ(load_known_streams(file), (std::vector<std::string>{"udp://@:1", "udp://@:2"}));
+  EXPECT_TRUE(files::is_private(file.parent_path()));
+  for (int port = 10; port < 20; ++port) note_stream(file, "udp://@:" + std::to_string(port));
+  EXPECT_EQ(load_known_streams(file).size(), 5U);
+  EXPECT_EQ(load_known_streams(file).front(), "udp://@:19");
+}
+
+TEST(KnownStreams, AFileThatCannotBeReadIsNoneAtAll) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "streams.json";
+  std::ofstream(file) << "{\"format\": \"something else\"";
+  EXPECT_TRUE(load_known_streams(file).empty());
+  note_stream(file, "udp://@:1");
+  EXPECT_EQ(load_known_streams(file).size(), 1U);
+  note_stream(folder / "streams.json/of/a/file", "udp://@:1");  // told to nobody: nothing depends on it
+}
+
+}  // namespace
+}  // namespace arthronaut::navigate
