@@ -30,7 +30,7 @@ std::optional<LivePictures> CameraChoice::take_address(std::string typed) {
   typed = first == std::string::npos ? "" : typed.substr(first, last - first + 1);
   if (sources::is_stream_address(typed))
     return LivePictures{sources::shown_address(typed), std::nullopt, typed};
-  trouble_ = "Not an address of a stream: rtsp://HOST/PATH, udp://@:PORT, or gst:PIPELINE ! appsink";
+  trouble_ = "No stream: rtsp://HOST/PATH, udp://@:PORT, gst:PIPELINE ! appsink";
   return std::nullopt;
 }
 

@@ -77,7 +77,7 @@ inline constexpr std::string_view kVerifiedEvent = "registration verified";
 inline constexpr std::string_view kConfirmedEvent = "registration confirmed";          // text: by what
 inline constexpr std::string_view kVerificationSkippedEvent = "verification skipped";  // text: how
 inline constexpr std::string_view kTimeOutConfirmedEvent =
-    "time-out confirmed";  // text: what was on the screen
+    "time-out confirmed";                                                // text: what was on the screen
 inline constexpr std::string_view kGuideCheckedEvent = "guide checked";  // text: how far its tip was off
 inline constexpr std::string_view kDrilledEvent = "tunnel drilled";
 inline constexpr std::string_view kSourceStartedEvent = "source started";  // what is before it came earlier
