@@ -54,7 +54,7 @@ std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widg
   widgets::Rect box = video;
   box.height = row * (static_cast<float>(offered_.size()) + 4);
   box.y = video.center().y - box.height / 2;
-  ImGui::GetWindowDrawList()->AddRectFilled(box.min(), box.max(), IM_COL32(10, 12, 15, 240));
+  ImGui::GetWindowDrawList()->AddRectFilled(box.min(), box.max(), IM_COL32(10, 12, 15, 255));
   widgets::text_centered(ui, box.cut_top(row), ui.theme.title, widgets::kText, "Which camera?");
   draw_rows(ui, box);
   const std::string hint = !trouble_.empty()  ? trouble_

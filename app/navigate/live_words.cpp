@@ -106,8 +106,7 @@ Trouble trouble_of(const operation::GuideCheckState& guide, const std::string& n
     case operation::GuideStanding::Trusted:
       return {};
     case operation::GuideStanding::Due:
-      return {"Guide not checked",
-              "The numbers of the " + name + " are nominal: hold its tip on the control point, then Space"};
+      return {"Guide not checked", "The " + name + " is nominal: hold its tip on the control point (A)"};
     case operation::GuideStanding::Off:
       return {"Guide is off", "Its tip is " + widgets::fixed(guide.error_mm, 1) +
                                   " mm from the control point: measure the " + name + " in Set up"};

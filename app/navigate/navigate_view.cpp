@@ -230,7 +230,8 @@ std::string NavigateView::next_step() {
       kind_ ? *kind_ == sources::SourceKind::Simulation : can_simulate() && !has_real_scope(case_folder_);
   const bool stands = registration().in_force.standing == operation::Standing::Stands;
   if (simulates) return stands ? "drill (simulation)" : "start the simulated operation";
-  return kind_ == sources::SourceKind::Live ? "open the camera again" : "open the next video";
+  if (kind_ == sources::SourceKind::Live) return "open the camera again";
+  return kind_ || !choices_.videos.empty() ? "open the next video" : "choose a camera";
 }
 
 // One pedal: carries out what is a command, and starts nothing but the kind of source that was chosen.

@@ -53,6 +53,9 @@ class FrameSource {
 // Live: frames carry the time when their data came (CaptureClock::Network; a pipeline's own stamps where they
 // can be true).
 //
+// What an encoder holds back counts: with B-frames a picture is some frames old before it is sent, too old to
+// guide. Encoders of live pictures go without them.
+//
 // A stream that breaks off is taken up again by itself, and pictures that came damaged are left out;
 // meanwhile nothing is given. After 15 s without a picture, and when pictures come in another size, next()
 // throws DeviceError. A pipeline that comes to its end gives null. Throws DeviceError when no picture comes

@@ -359,8 +359,7 @@ TEST(NavigateDisplay, Hazard6ANominalGuideThatWasNotCheckedGivesNoNumber) {
   EXPECT_FALSE(shown.display().guidance_is_valid);
   EXPECT_TRUE(shown.display().plan_is_valid);
   EXPECT_EQ(shown.display().headline, "Guide not checked");
-  EXPECT_EQ(shown.display().detail,
-            "The numbers of the femoral guide are nominal: hold its tip on the control point, then Space");
+  EXPECT_EQ(shown.display().detail, "The femoral guide is nominal: hold its tip on the control point (A)");
   guide = {operation::GuideStanding::Off, 3.24};
   EXPECT_EQ(shown.display().headline, "Guide is off");
   EXPECT_EQ(shown.display().detail,
