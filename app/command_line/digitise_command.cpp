@@ -25,7 +25,7 @@ void digitise(Context& context, const DigitiseArguments& arguments) {
   if (arguments.output != "-") {
     char line[120];
     std::snprintf(line, sizeof line, "%zu points on %d strokes, %.0f mm", curves.size(),
-                  curves.empty() ? 0 : curves.back().curve + 1, strokes::stroke_length_mm(curves));
+                  curves.empty() ? 0 : curves.back().curve + 1, strokes::smoothed_length_mm(curves));
     context.say(line);
   }
   if (curves.empty()) {

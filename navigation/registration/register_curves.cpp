@@ -136,7 +136,7 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
     outcome.cost = cartilage.cost;  // not of fewer points where the region was left out
   }
   outcome.summary = summarise(
-      bone, pool, {curves, points, strokes::stroke_length_mm(curves), white_noise_mm, std::move(offsets_mm)},
+      bone, pool, {curves, points, strokes::smoothed_length_mm(curves), white_noise_mm, std::move(offsets_mm)},
       options);
   if (setting.cartilage && outcome.summary.has_pose) {
     const Eigen::Vector3d centroid_mm = pool.best().bone_from_marker * points.centroid_mm;

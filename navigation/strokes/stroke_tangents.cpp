@@ -162,7 +162,7 @@ std::vector<OrientedPoint> oriented_points(const Curves& curves, const TangentOp
   return oriented;
 }
 
-double stroke_length_mm(const Curves& curves) {
+double smoothed_length_mm(const Curves& curves) {
   double length_mm = 0;
   for_each_stroke(curves, [&](std::size_t first, std::size_t last) {
     Points points;

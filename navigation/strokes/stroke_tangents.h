@@ -30,6 +30,6 @@ struct TangentOptions {
                                                          const TangentOptions& options = {});
 
 // The length of the touched path, mm, with the noise of dense samples taken out.
-[[nodiscard]] double stroke_length_mm(const Curves& curves);
+[[nodiscard]] double smoothed_length_mm(const Curves& curves);
 
 }  // namespace arthronaut::strokes

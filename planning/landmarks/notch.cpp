@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "planning/geometry/quantile.h"
 #include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::landmarks {
@@ -61,11 +62,7 @@ std::optional<Walls> find_walls(const View& view) {
     }
   }
   if (middles.size() < 12) return std::nullopt;
-  const auto median = [](std::vector<double>& v) {
-    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-    return v[v.size() / 2];
-  };
-  return Walls{median(middles), median(widths)};
+  return Walls{geometry::median(std::move(middles)), geometry::median(std::move(widths))};
 }
 
 // The roof's outline in the lateral view. Of each cross section the third deepest ray, so that a vessel's

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "planning/geometry/error.h"
+#include "planning/geometry/quantile.h"
 #include "planning/images/contour.h"
 #include "planning/images/voxel_mask.h"
 #include "planning/segmentation/box_blur.h"
@@ -56,10 +58,9 @@ double noise_of(const Grid& grid) {
   for (std::size_t v = 0; v + 1 < grid.count(); v += stride)
     differences.push_back(std::abs(grid.grey[v + 1] - grid.grey[v]));
   if (differences.empty()) return 1;
-  const auto middle = differences.begin() + std::ssize(differences) / 2;
-  std::nth_element(differences.begin(), middle, differences.end());
+  const float middle = geometry::median_in_place(std::span(differences));
   const auto [low, high] = std::minmax_element(grid.grey.begin(), grid.grey.end());
-  return std::max<double>(*middle, 1e-3 * (*high - *low) + 1e-6F);
+  return std::max<double>(middle, 1e-3 * (*high - *low) + 1e-6F);
 }
 
 // Shortest paths from what is labelled to what is not, by buckets of whole costs (Dial 1969). Voxels for

@@ -34,7 +34,7 @@ void StrokeSet::measure() {
     if (stroke.measured_count == stroke.points.size()) continue;
     stroke.measured_count = stroke.points.size();
     stroke.oriented = strokes::oriented_points(stroke.points);
-    stroke.length_mm = strokes::stroke_length_mm(stroke.points);
+    stroke.length_mm = strokes::smoothed_length_mm(stroke.points);
   }
 }
 

@@ -64,8 +64,8 @@ TEST(StrokeTangents, SpikesDontBendTangents) {
 
 // Noise of dense samples does not lengthen the path; 75 mm of circle at 0.05 mm steps with 0.1 mm of noise.
 TEST(StrokeTangents, LengthIsThatOfThePathNotOfTheNoise) {
-  EXPECT_NEAR(stroke_length_mm(circle(0.4, 0)), 75.0, 1.0);
-  EXPECT_NEAR(stroke_length_mm(circle(0.05, 0.1)), 75.0, 8.0);
+  EXPECT_NEAR(smoothed_length_mm(circle(0.4, 0)), 75.0, 1.0);
+  EXPECT_NEAR(smoothed_length_mm(circle(0.05, 0.1)), 75.0, 8.0);
 }
 
 // Points that say nothing about a direction give none.
@@ -73,7 +73,7 @@ TEST(StrokeTangents, DwellAndTooFewPointsGiveNothing) {
   EXPECT_TRUE(oriented_points({}).empty());
   EXPECT_TRUE(oriented_points(Curves(100)).empty());
   EXPECT_TRUE(oriented_points(circle(0.4, 0, 0.05)).empty());
-  EXPECT_EQ(stroke_length_mm({}), 0.0);
+  EXPECT_EQ(smoothed_length_mm({}), 0.0);
 }
 
 }  // namespace arthronaut::strokes
