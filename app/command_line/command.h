@@ -68,6 +68,7 @@ void add_phantom_command(CLI::App& app, Context& context);
 void add_navigate_command(CLI::App& app, Context& context);
 void add_replay_command(CLI::App& app, Context& context);
 void add_resume_command(CLI::App& app, Context& context);
+void add_compare_command(CLI::App& app, Context& context);
 void add_report_command(CLI::App& app, Context& context);
 void add_markers_command(CLI::App& app, Context& context);
 void add_demo_command(CLI::App& app, Context& context);

@@ -137,6 +137,7 @@ images::Volume known_ct(const std::vector<geometry::TriangleMesh>& bones, const 
           static_cast<float>(options.marrow_hu - options.soft_tissue_hu) * marrow;
     }
   }
+  if (options.operate) options.operate(volume);
   for (int axis = 0; axis < 3; ++axis)
     blur_along(volume.values, volume.size, axis, options.blur_mm / options.spacing_mm[axis]);
   std::mt19937_64 random(options.seed);

@@ -2,6 +2,7 @@
 // covers, noise. What its import should give is known exactly.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "planning/geometry/triangle_mesh.h"
@@ -20,6 +21,8 @@ struct KnownCtOptions {
   int samples = 3;  // rays a voxel along j and along k; along i coverage is exact
   // The volume ends here: what lies beyond is cut off. LPS.
   double lowest_mm = -1e9, highest_mm = 1e9;
+  // What is done to the bones before the scanner sees them: no blur and no noise yet.
+  std::function<void(images::Volume&)> operate = nullptr;
 };
 
 [[nodiscard]] images::Volume known_ct(const std::vector<geometry::TriangleMesh>& bones,

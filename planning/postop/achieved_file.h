@@ -1,0 +1,19 @@
+// achieved.json, what comparisons found: format "arthronaut.achieved".
+//
+// Numbers of a tunnel or a bone that was not found are null; its "reliable" is false and its "reasons" say
+// why. Beside what was asked for: "comes_out", one sigma of entry and direction, "widths" along the tunnel
+// and the share of metal in it; of a bone how much of its surface was seen and lies on an edge.
+#pragma once
+
+#include <filesystem>
+#include <map>
+
+#include "planning/postop/comparison.h"
+
+namespace arthronaut::postop {
+
+// Atomic; "-" is standard output. Throws IoError; nothing is written then.
+void write_achieved_file(const std::filesystem::path& file,
+                         const std::map<bones::BoneKind, Comparison>& comparisons);
+
+}  // namespace arthronaut::postop

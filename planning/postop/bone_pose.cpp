@@ -1,0 +1,89 @@
+#include "planning/postop/bone_pose.h"
+
+#include <cmath>
+
+#include "planning/files/format.h"
+
+namespace arthronaut::postop {
+
+namespace {
+
+constexpr double kRadius_mm = 90;
+constexpr std::size_t kSamples = 3000;
+// Less of the surface on an edge, edges more uneven, or a bone that would have to be longer or shorter to fit
+// is another bone. That all edges lie outside, or inside, by as much is another scanner or another threshold.
+constexpr double kLeastOnEdge = 0.85, kMostSpread_mm = 0.25, kMostBias_mm = 0.6, kMostStretch = 0.005;
+// Less of the surface about the joint in view does not tell one bone from another.
+constexpr double kLeastInView = 0.5;
+constexpr double kMostSigma_mm = 0.3;
+// So little on an edge: the bone is not in these images at all.
+constexpr double kNothingOnEdge = 0.4;
+
+bool is_settled(const EdgePose& pose) {
+  return pose.on_edge_share >= kLeastOnEdge && pose.spread_mm <= kMostSpread_mm &&
+         pose.stretch <= kMostStretch && pose.in_view_share >= kLeastInView;
+}
+
+// What is out of view counts half: else a corner of the bone that happens to fit would win.
+double merit(const EdgePose& pose) {
+  return pose.on_edge_share * pose.in_view_share + 0.3 * (1 - pose.in_view_share);
+}
+
+}  // namespace
+
+FoundBone find_bone(const VolumeSampler& postop, const BoneField& field, const geometry::TriangleMesh& bone,
+                    const Eigen::Vector3d& near_mm) {
+  FoundBone found;
+  const auto samples = surface_samples(bone, near_mm, kRadius_mm, kSamples);
+  if (samples.empty()) {
+    found.reasons = {"the plan's bone has no surface near the planned entry"};
+    return found;
+  }
+  double best = -1;
+  for (const Turns turns : {Turns::Small, Turns::Large}) {
+    for (const CoarsePose& coarse : coarse_poses(field, samples, turns)) {
+      const EdgePose pose = edge_pose(postop, samples, coarse.postop_from_plan);
+      if (!(pose.in_view_share > 0) || merit(pose) <= best) continue;
+      best = merit(pose);
+      found.pose = pose;
+    }
+    if (best >= 0 && is_settled(found.pose)) break;
+  }
+  found.reasons.clear();
+  const EdgePose& pose = found.pose;
+  if (best < 0 || pose.on_edge_share < kNothingOnEdge) {
+    found.reasons.emplace_back("nothing in the images looks like it");
+    return found;
+  }
+  found.is_found = true;
+  if (pose.in_view_share < kLeastInView)
+    found.reasons.push_back(
+        files::format("only %.0f %% of it about the joint are in the images, %.0f %% are needed",
+                      100 * pose.in_view_share, 100 * kLeastInView));
+  if (pose.on_edge_share < kLeastOnEdge)
+    found.reasons.push_back(files::format(
+        "only %.0f %% of its surface lie on an edge of the images, %.0f %% are needed: it may be another "
+        "patient's bone, or the other side's",
+        100 * pose.on_edge_share, 100 * kLeastOnEdge));
+  if (pose.spread_mm > kMostSpread_mm)
+    found.reasons.push_back(files::format(
+        "its surface is unevenly off the edges of the images, by %.2f mm (rms), %.2f mm are borne: it may be "
+        "another patient's bone",
+        pose.spread_mm, kMostSpread_mm));
+  if (std::abs(pose.bias_mm) > kMostBias_mm)
+    found.reasons.push_back(
+        files::format("its surface lies %.2f mm off the edges of the images all over, %.2f mm are borne",
+                      pose.bias_mm, kMostBias_mm));
+  if (pose.stretch > kMostStretch)
+    found.reasons.push_back(files::format(
+        "it would have to be %.1f %% longer or shorter to fit the images, %.1f %% are borne: it "
+        "may be another patient's bone, or slices too thick",
+        100 * pose.stretch, 100 * kMostStretch));
+  if (const double sigma = pose.sigma_at_mm(near_mm); sigma > kMostSigma_mm)
+    found.reasons.push_back(files::format(
+        "where it lies is known to %.2f mm at the planned entry, %.2f mm are needed", sigma, kMostSigma_mm));
+  found.reliable = found.reasons.empty();
+  return found;
+}
+
+}  // namespace arthronaut::postop

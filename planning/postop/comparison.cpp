@@ -1,0 +1,86 @@
+#include "planning/postop/comparison.h"
+
+#include <cmath>
+
+#include "planning/files/format.h"
+#include "planning/postop/bone_pose.h"
+#include "planning/postop/drilled_tunnel.h"
+
+namespace arthronaut::postop {
+
+namespace {
+
+// A stretch says how wide the bore is where so much of its wall is seen, free of metal.
+constexpr double kSeenOfStretch = 0.5, kMetalOfStretch = 0.3, kMostWidthSigma_mm = 0.5;
+
+AchievedBone told(const FoundBone& found) {
+  AchievedBone bone;
+  bone.is_found = found.is_found;
+  bone.reliable = found.reliable;
+  bone.reasons = found.reasons;
+  if (!found.is_found) return bone;
+  bone.plan_from_postop = found.pose.postop_from_plan.inverse();
+  bone.rms_mm = found.pose.rms_mm;
+  bone.on_edge_share = found.pose.on_edge_share;
+  bone.in_view_share = found.pose.in_view_share;
+  return bone;
+}
+
+AchievedTunnel told(const DrilledTunnel& drilled, const FoundBone& bone, const tunnels::Tunnel& plan) {
+  AchievedTunnel achieved;
+  achieved.is_found = drilled.is_found;
+  achieved.reasons = drilled.reasons;
+  if (drilled.is_found) {
+    achieved.tunnel = drilled.tunnel;
+    achieved.length_mm = drilled.length_mm;
+    achieved.comes_out = drilled.comes_out;
+    achieved.offset_mm = (drilled.tunnel.entry_mm - plan.entry_mm).norm();
+    achieved.angle_rad = geometry::angle_between_rad(drilled.tunnel.direction, plan.direction);
+    achieved.entry_sigma_mm =
+        std::hypot(drilled.entry_sigma_mm, bone.pose.sigma_at_mm(drilled.tunnel.entry_mm));
+    achieved.direction_sigma_rad = drilled.direction_sigma_rad;
+    achieved.metal_share = drilled.metal_share;
+    for (const Stretch& stretch : drilled.stretches) {
+      if (stretch.seen_share >= kSeenOfStretch && stretch.metal_share <= kMetalOfStretch &&
+          stretch.sigma_mm <= kMostWidthSigma_mm)
+        achieved.widths.push_back({stretch.from_entry_mm, stretch.diameter_mm});
+    }
+  }
+  if (!bone.reliable)
+    achieved.reasons.insert(achieved.reasons.begin(),
+                            "where the " + std::string(bones::to_text(plan.bone)) + " lies is not reliable");
+  achieved.reliable = drilled.reliable && bone.reliable;
+  return achieved;
+}
+
+}  // namespace
+
+struct PostopImages::Prepared {
+  const images::Volume& volume;
+  VolumeSampler sampler;
+  BoneField field;
+};
+
+PostopImages::PostopImages(const images::Volume& postop, const ComparisonOptions& options)
+    : prepared_(std::make_unique<Prepared>(
+          Prepared{postop, VolumeSampler(postop), bone_field(postop, options.threshold_hu)})) {}
+PostopImages::~PostopImages() = default;
+PostopImages::PostopImages(PostopImages&&) noexcept = default;
+PostopImages& PostopImages::operator=(PostopImages&&) noexcept = default;
+
+Comparison PostopImages::compare(const geometry::TriangleMesh& bone, const tunnels::Tunnel& plan) const {
+  Comparison comparison;
+  const FoundBone found = find_bone(prepared_->sampler, prepared_->field, bone, plan.entry_mm);
+  comparison.bone = told(found);
+  if (!found.is_found) {
+    comparison.tunnel.reasons = {"the " + std::string(bones::to_text(plan.bone)) +
+                                 " was not found in the images"};
+    return comparison;
+  }
+  const DrilledTunnel drilled =
+      find_drilled(prepared_->volume, found.pose.postop_from_plan, geometry::Surface(bone), plan);
+  comparison.tunnel = told(drilled, found, plan);
+  return comparison;
+}
+
+}  // namespace arthronaut::postop

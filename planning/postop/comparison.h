@@ -1,0 +1,93 @@
+// What was planned against what was achieved, from a CT after the operation.
+//
+// For each planned tunnel:
+//   1. The plan's bone is found in the images, from nothing and however the patient lay (bone_pose.h), with a
+//      verdict. The images' own surfaces are not segmented: an opened bone has no inside that could be told
+//      from its outside, and the edges where the plan's surface should be tell the pose to 0.05 mm.
+//   2. The drilled tunnel is sought in the voxels within the plan's bone, within 18 mm and 35 degrees of the
+//      plan (tunnel_search.h): a straight, round bore, darker than the bone all around it.
+//   3. Axis and diameter are fitted to the grey about its wall, metal and what is beside it passed over
+//      (tunnel_fit.h). Where the axis crosses the surface of the plan's bone is the entry.
+//   4. It is a tunnel only where the cortex under the bone's surface is missing at the entry and there beside
+//      it. It ends where it comes out in the same way, or where the grey of its middle steps up.
+//
+// Use it for CT. What it does not tell: a tunnel whose graft is as dense as the marrow and that has no denser
+// rim (its cortex alone gives a place, no direction: said to be unreliable); which of two tunnels is the
+// planned one (the nearer, unreliable); a bore that is bent, or drilled in steps of two diameters beyond the
+// first of them. A loose screw alone in a tunnel says nothing of the tunnel.
+//
+// Frames: everything is in the plan's LPS, mm, unless its name says otherwise. Angles in rad.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "planning/bones/bone.h"
+#include "planning/geometry/rigid_transform.h"
+#include "planning/images/volume.h"
+#include "planning/tunnels/tunnel.h"
+
+namespace arthronaut::postop {
+
+// How wide the tunnel is, from the entry on.
+struct Width {
+  double from_entry_mm = 0;
+  double diameter_mm = 0;
+};
+
+struct AchievedTunnel {
+  bool is_found = false;      // false: the numbers are meaningless
+  tunnels::Tunnel tunnel;     // the entry on the plan's bone, the direction in the plan's sense
+  double length_mm = 0;       // within the bone, to where it comes out or ends
+  bool comes_out = false;     // else it is a socket
+  double offset_mm = 0;       // of the entry from the planned one
+  double angle_rad = 0;       // between the axes
+  double entry_sigma_mm = 0;  // one sigma, by the scatter of the grey and the bone's pose
+  double direction_sigma_rad = 0;
+  double metal_share = 0;     // of what is inside it
+  std::vector<Width> widths;  // where its wall is seen
+  bool reliable = false;
+  std::vector<std::string> reasons = {"compare was not called"};  // why it is not reliable
+};
+
+struct AchievedBone {
+  bool is_found = false;  // false: the pose is meaningless
+  geometry::RigidTransform plan_from_postop;
+  double rms_mm = 0;         // of the surface off the images' edges, the worst tenth left out
+  double on_edge_share = 0;  // of the surface in the images: an edge within 1 mm
+  double in_view_share = 0;  // of the surface within 90 mm of the planned entry
+  bool reliable = false;
+  std::vector<std::string> reasons = {"compare was not called"};
+};
+
+// One planned tunnel.
+struct Comparison {
+  AchievedBone bone;
+  AchievedTunnel tunnel;  // reliable only when the bone is
+};
+
+struct ComparisonOptions {
+  // What is as bright is taken for bone where the bone's place is sought from nothing; nothing else.
+  double threshold_hu = 200;
+};
+
+// The images of one operation, made ready once for all of its bones. The volume must outlive it.
+class PostopImages {
+ public:
+  // Throws InvalidInput when the images show no bone at all.
+  explicit PostopImages(const images::Volume& postop, const ComparisonOptions& options = {});
+  ~PostopImages();
+  PostopImages(PostopImages&&) noexcept;
+  PostopImages& operator=(PostopImages&&) noexcept;
+
+  // `bone`: closed, outward, as it was planned on. Never throws on poor images: read the reasons. The same
+  // input gives the same result. 3 to 10 s.
+  [[nodiscard]] Comparison compare(const geometry::TriangleMesh& bone, const tunnels::Tunnel& plan) const;
+
+ private:
+  struct Prepared;
+  std::unique_ptr<Prepared> prepared_;
+};
+
+}  // namespace arthronaut::postop

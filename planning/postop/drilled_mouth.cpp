@@ -1,0 +1,161 @@
+#include "planning/postop/drilled_mouth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "planning/geometry/quantile.h"
+#include "planning/postop/bone_grid.h"
+
+namespace arthronaut::postop {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kEntryReach_mm = 10;
+// The cortex is looked for from here to there under the surface.
+constexpr double kFrom_mm = 0.3, kTo_mm = 2.1, kStep_mm = 0.3;
+constexpr double kLeastSoft_hu = -100;
+constexpr int kTurns = 16;
+
+struct Column {
+  double most_hu = 0, outside_hu = 0;
+};
+
+std::optional<Column> column_at(const VolumeSampler& postop, const geometry::RigidTransform& postop_from_plan,
+                                const geometry::Surface& bone, const Vector3d& place, const Vector3d& inward,
+                                double reach_mm) {
+  std::optional<geometry::RayHit> entry;
+  for (const auto& hit : bone.all_hits(place - reach_mm * inward, inward)) {
+    if (hit.normal.dot(inward) >= 0 || hit.distance_mm > 2 * reach_mm) continue;
+    if (!entry || std::abs(hit.distance_mm - reach_mm) < std::abs(entry->distance_mm - reach_mm)) entry = hit;
+  }
+  if (!entry) return std::nullopt;
+  Column column{-1e4, 0};
+  for (double t = kFrom_mm; t <= kTo_mm; t += kStep_mm) {
+    const double v = postop.at(postop_from_plan * (entry->point_mm + t * inward));
+    if (std::isfinite(v)) column.most_hu = std::max(column.most_hu, v);
+  }
+  column.outside_hu = postop.at(postop_from_plan * (entry->point_mm - 2 * inward));
+  if (column.most_hu < -9e3 || !std::isfinite(column.outside_hu)) return std::nullopt;
+  return column;
+}
+
+}  // namespace
+
+std::optional<Passage> passage_of(const geometry::Surface& bone, const Vector3d& near_mm,
+                                  const Vector3d& direction) {
+  const auto hits = bone.all_hits(near_mm - kEntryReach_mm * direction, direction);
+  auto entry = hits.end();
+  const auto off = [&](const geometry::RayHit& hit) { return std::abs(hit.distance_mm - kEntryReach_mm); };
+  for (auto hit = hits.begin(); hit != hits.end(); ++hit) {
+    if (hit->normal.dot(direction) >= 0 || off(*hit) > kEntryReach_mm) continue;
+    if (entry == hits.end() || off(*hit) < off(*entry)) entry = hit;
+  }
+  if (entry == hits.end()) return std::nullopt;
+  const auto exit = std::find_if(entry + 1, hits.end(),
+                                 [&](const geometry::RayHit& hit) { return hit.normal.dot(direction) >= 0; });
+  if (exit == hits.end()) return std::nullopt;
+  return Passage{entry->point_mm, exit->point_mm};
+}
+
+SeenMouth mouth_at(const VolumeSampler& postop, const geometry::RigidTransform& postop_from_plan,
+                   const geometry::Surface& bone, const Vector3d& place_mm, const Vector3d& inward,
+                   double radius_mm) {
+  const Vector3d u = inward.unitOrthogonal(), v = inward.cross(u);
+  const double reach_mm = 2 * radius_mm + 4;
+  const auto columns_at = [&](std::initializer_list<double> offs) {
+    std::vector<Column> columns;
+    for (const double off : offs) {
+      for (int turn = 0; turn < kTurns; ++turn) {
+        const double angle = 2 * M_PI * turn / kTurns;
+        const auto column =
+            column_at(postop, postop_from_plan, bone,
+                      place_mm + off * (std::cos(angle) * u + std::sin(angle) * v), inward, reach_mm);
+        if (column) columns.push_back(*column);
+      }
+    }
+    return columns;
+  };
+  const auto disc = columns_at({0.2 * radius_mm, 0.45 * radius_mm, 0.7 * radius_mm}),
+             ring = columns_at({radius_mm + 0.8, radius_mm + 1.6, radius_mm + 2.4});
+  SeenMouth mouth;
+  if (disc.size() < kTurns || ring.size() < kTurns) return mouth;
+  std::vector<double> cortex, outside;
+  for (const Column& column : ring) {
+    cortex.push_back(std::min(column.most_hu, kMetal_hu));
+    outside.push_back(std::max(column.outside_hu, kLeastSoft_hu));
+  }
+  const double soft = geometry::median(outside), hard = geometry::median(cortex), level = 0.5 * (soft + hard);
+  mouth.step_hu = hard - soft;
+  for (const Column& column : disc)
+    mouth.open_share +=
+        (column.most_hu < level || column.most_hu > kMetal_hu ? 1.0 : 0.0) / static_cast<double>(disc.size());
+  for (const Column& column : ring)
+    mouth.closed_share += (column.most_hu >= level ? 1.0 : 0.0) / static_cast<double>(ring.size());
+  return mouth;
+}
+
+std::optional<double> blind_end_mm(const VolumeSampler& postop,
+                                   const geometry::RigidTransform& postop_from_plan, const Passage& passage,
+                                   double radius_mm, double contrast_hu) {
+  const double length = passage.length_mm();
+  const Vector3d d = (passage.exit_mm - passage.entry_mm).normalized(), u = d.unitOrthogonal(),
+                 v = d.cross(u);
+  constexpr double kSpacing_mm = 0.5, kFirst_mm = 2.5, kLeast_mm = 6;
+  // Mean of the middle of the bore, station by station; of a station in metal that before it.
+  std::vector<double> grey;
+  for (double t = kFirst_mm; t < length - 0.5; t += kSpacing_mm) {
+    double sum = 0;
+    int count = 0;
+    for (const double off : {0.3, 0.55, 0.8}) {
+      for (int turn = 0; turn < kTurns; ++turn) {
+        const double angle = 2 * M_PI * turn / kTurns;
+        const double hu =
+            postop.at(postop_from_plan * (passage.entry_mm + t * d +
+                                          off * radius_mm * (std::cos(angle) * u + std::sin(angle) * v)));
+        if (!std::isfinite(hu) || hu > kMetal_hu) continue;
+        sum += hu;
+        ++count;
+      }
+    }
+    if (count >= kTurns) {
+      grey.push_back(sum / count);
+    } else if (!grey.empty()) {
+      grey.push_back(grey.back());
+    } else {
+      grey.push_back(0);
+    }
+  }
+  // Between what lies before and the 5 mm that follow.
+  const auto behind = static_cast<std::ptrdiff_t>(5 / kSpacing_mm), ahead = behind;
+  const auto median_of = [&](std::ptrdiff_t from, std::ptrdiff_t to) {
+    return geometry::median({grey.begin() + from, grey.begin() + to});
+  };
+  std::vector<double> jumps;
+  for (std::size_t i = 1; i < grey.size(); ++i) jumps.push_back(std::abs(grey[i] - grey[i - 1]));
+  const double noise = geometry::median(std::move(jumps), 0);
+  const double least = std::max({30.0, 5 * noise, 0.5 * contrast_hu});
+  const auto rise_at = [&](std::ptrdiff_t i) {
+    return median_of(i, std::min(std::ssize(grey), i + ahead)) -
+           median_of(std::max<std::ptrdiff_t>(0, i - behind), i);
+  };
+  std::ptrdiff_t at = static_cast<std::ptrdiff_t>((kLeast_mm - kFirst_mm) / kSpacing_mm);
+  const std::ptrdiff_t last = std::ssize(grey) - 4;
+  while (at <= last && rise_at(at) < least) ++at;
+  if (at > last) return std::nullopt;
+  while (at + 1 <= last && rise_at(at + 1) > rise_at(at)) ++at;
+  // Half-way up.
+  const double before = median_of(std::max<std::ptrdiff_t>(0, at - behind), at),
+               after = median_of(at, std::min(std::ssize(grey), at + ahead)), level = 0.5 * (before + after);
+  for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(1, at - behind);
+       i < std::min(std::ssize(grey), at + ahead); ++i) {
+    const double a = grey[static_cast<std::size_t>(i) - 1], b = grey[static_cast<std::size_t>(i)];
+    if (a >= level || b < level) continue;
+    return kFirst_mm + kSpacing_mm * (static_cast<double>(i) - 1 + (level - a) / (b - a));
+  }
+  return kFirst_mm + kSpacing_mm * static_cast<double>(at);
+}
+
+}  // namespace arthronaut::postop

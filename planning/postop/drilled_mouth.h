@@ -1,0 +1,44 @@
+// Whether a bore opens through the bone's surface, and where it ends within the bone. Inner header of postop.
+#pragma once
+
+#include <optional>
+
+#include "planning/geometry/rigid_transform.h"
+#include "planning/geometry/surface.h"
+#include "planning/postop/volume_sampler.h"
+
+namespace arthronaut::postop {
+
+// Where a line runs within the bone.
+struct Passage {
+  Eigen::Vector3d entry_mm, exit_mm;
+  [[nodiscard]] double length_mm() const { return (exit_mm - entry_mm).norm(); }
+};
+// The line's entry into the bone that is nearest to `near_mm`, and the next exit. nullopt when it does not
+// enter within 10 mm of it.
+[[nodiscard]] std::optional<Passage> passage_of(const geometry::Surface& bone, const Eigen::Vector3d& near_mm,
+                                                const Eigen::Vector3d& direction);
+
+struct SeenMouth {
+  double open_share = 0;    // of the bore's opening: no cortex under the bone's surface, or metal
+  double closed_share = 0;  // of what lies 0.8 to 2.4 mm beside it: there is cortex
+  double step_hu = 0;       // of the cortex beside it above what lies outside
+
+  [[nodiscard]] bool is_open() const { return open_share >= 0.75 && closed_share >= 0.6 && step_hu >= 150; }
+};
+
+// `place_mm`: on the bone's surface. `inward`: unit, along the bore into the bone.
+[[nodiscard]] SeenMouth mouth_at(const VolumeSampler& postop,
+                                 const geometry::RigidTransform& postop_from_plan,
+                                 const geometry::Surface& bone, const Eigen::Vector3d& place_mm,
+                                 const Eigen::Vector3d& inward, double radius_mm);
+
+// How far from the entry a bore ends that does not come out: where the grey of its middle first steps up by
+// half of `contrast_hu`, what its wall stands out by. nullopt when no step is seen that stands out of the
+// noise.
+[[nodiscard]] std::optional<double> blind_end_mm(const VolumeSampler& postop,
+                                                 const geometry::RigidTransform& postop_from_plan,
+                                                 const Passage& passage, double radius_mm,
+                                                 double contrast_hu);
+
+}  // namespace arthronaut::postop

@@ -1,0 +1,268 @@
+#include "planning/postop/drilled_tunnel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "planning/files/format.h"
+#include "planning/geometry/quantile.h"
+#include "planning/postop/tunnel_search.h"
+
+namespace arthronaut::postop {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kGridRadius_mm = 70;
+constexpr double kReach_mm = 8;         // of the voxels beside a bore, beyond its radius
+constexpr double kFirstLength_mm = 26;  // that the first fit looks at, until it is known how long the bore is
+constexpr double kShortest_mm = 8;
+constexpr double kLeastDiameter_mm = 3.5, kMostDiameter_mm = 14;
+// Of the wall that must be seen; of the wall beside a screw.
+constexpr double kLeastSeen = 0.5;
+constexpr double kMostEntrySigma_mm = 0.25, kMostDirectionSigma_deg = 0.5;
+// Pieces of the bore lie off its axis by no more than this.
+constexpr double kMostBend_mm = 0.6, kPiece_mm = 8, kPieceKnown_mm = 0.2;
+constexpr double kMetalOfPiece = 0.05;
+// Of a stretch, from which on it says nothing of the wall.
+constexpr double kMetalFilled = 0.5;
+// Bone beside a screw, not graft.
+constexpr double kBoneBeside_hu = 150;
+
+struct Candidate {
+  TunnelFit fit;
+  Passage passage{};
+  SeenMouth mouth;
+  double length_mm = 0, seen_share = 0, metal_share = 0, clear_mm = 0, bend_mm = 0;
+  bool comes_out = false, has_end = false, is_by_screw = false;
+  std::vector<std::string> doubts;
+
+  [[nodiscard]] double merit() const {
+    return seen_share * std::min(length_mm, 30.0) + (mouth.is_open() ? 100 : 0) + 20 * mouth.open_share;
+  }
+};
+
+Bore bore_of(const TunnelFit& fit, const Passage& passage) {
+  return {passage.entry_mm, fit.direction, fit.radius_mm, 0};
+}
+
+class Finder {
+ public:
+  Finder(const images::Volume& postop, const geometry::RigidTransform& postop_from_plan,
+         const geometry::Surface& bone, const tunnels::Tunnel& plan)
+      : volume_(postop),
+        sampler_(postop),
+        postop_from_plan_(postop_from_plan),
+        bone_(bone),
+        grid_(bone_grid(sampler_, postop_from_plan, bone, plan.entry_mm, kGridRadius_mm)) {}
+
+  [[nodiscard]] const BoneGrid& grid() const { return grid_; }
+
+  [[nodiscard]] std::optional<Candidate> measured(const Bore& found) const {
+    Candidate candidate;
+    const auto first = passage_of(bone_, found.entry_mm, found.direction);
+    if (!first) return std::nullopt;
+    const double whole_mm = first->length_mm();
+    const auto voxels = wall_voxels(volume_, postop_from_plan_.inverse(), grid_, found, whole_mm + 8,
+                                    found.radius_mm + kReach_mm);
+    Bore bore{first->entry_mm, found.direction, found.radius_mm, 0};
+    if (!fitted(voxels, bore, std::min(whole_mm, kFirstLength_mm), candidate)) return std::nullopt;
+    // Once more, to where it ends.
+    for (int round = 0; round < 2; ++round) {
+      find_end(candidate);
+      if (candidate.length_mm < kShortest_mm) return std::nullopt;
+      if (!fitted(voxels, bore_of(candidate.fit, candidate.passage), candidate.length_mm, candidate))
+        return std::nullopt;
+    }
+    find_end(candidate);
+    if (candidate.length_mm < kShortest_mm) return std::nullopt;
+    candidate.mouth = mouth_at(sampler_, postop_from_plan_, bone_, candidate.passage.entry_mm,
+                               candidate.fit.direction, candidate.fit.radius_mm);
+    candidate.bend_mm = bend(voxels, candidate);
+    describe(candidate);
+    return candidate;
+  }
+
+ private:
+  // False when nothing is fitted, or what is fitted is no tunnel.
+  bool fitted(const std::vector<WallVoxel>& voxels, const Bore& bore, double length_mm,
+              Candidate& candidate) const {
+    candidate.is_by_screw = false;
+    candidate.fit = fit_tunnel(voxels, bore, 0, length_mm, Wall::Clear);
+    if (!candidate.fit.is_fitted) return false;
+    double clear_mm = 0, filled_mm = 0;
+    for (const Stretch& stretch : candidate.fit.stretches)
+      (stretch.metal_share > kMetalFilled ? filled_mm : clear_mm) +=
+          length_mm / static_cast<double>(candidate.fit.stretches.size());
+    if (clear_mm < kShortest_mm && filled_mm > kShortest_mm) {
+      const TunnelFit by_screw = fit_tunnel(voxels, bore, 0, length_mm, Wall::Screw);
+      if (by_screw.is_fitted) {
+        candidate.fit = by_screw;
+        candidate.is_by_screw = true;
+      }
+    }
+    const auto passage = passage_of(bone_, on_axis(candidate.fit, bore.entry_mm), candidate.fit.direction);
+    if (!passage) return false;
+    candidate.passage = *passage;
+    const double diameter = 2 * candidate.fit.radius_mm;
+    return diameter > kLeastDiameter_mm - 1 && diameter < kMostDiameter_mm + 2 &&
+           (candidate.passage.entry_mm - bore.entry_mm).norm() < 6;
+  }
+
+  // The axis' point beside a place.
+  [[nodiscard]] static Vector3d on_axis(const TunnelFit& fit, const Vector3d& place) {
+    return fit.point_mm + (place - fit.point_mm).dot(fit.direction) * fit.direction;
+  }
+
+  void find_end(Candidate& candidate) const {
+    const double whole_mm = candidate.passage.length_mm();
+    candidate.length_mm = whole_mm;
+    candidate.comes_out = mouth_at(sampler_, postop_from_plan_, bone_, candidate.passage.exit_mm,
+                                   -candidate.fit.direction, candidate.fit.radius_mm)
+                              .is_open();
+    candidate.has_end = candidate.comes_out;
+    if (candidate.comes_out) return;
+    std::vector<double> contrasts;
+    for (const Stretch& stretch : candidate.fit.stretches)
+      if (stretch.seen_share > kLeastSeen) contrasts.push_back(stretch.outside_hu - stretch.inside_hu);
+    const auto end = blind_end_mm(sampler_, postop_from_plan_, candidate.passage, candidate.fit.radius_mm,
+                                  geometry::median(std::move(contrasts), 0));
+    candidate.has_end = end.has_value();
+    if (end) candidate.length_mm = *end;
+  }
+
+  // How far pieces of the bore lie off its axis, at most.
+  [[nodiscard]] double bend(const std::vector<WallVoxel>& voxels, const Candidate& candidate) const {
+    double most = 0;
+    const Bore bore = bore_of(candidate.fit, candidate.passage);
+    for (double from = 0; from + kPiece_mm <= candidate.length_mm + 0.5; from += 0.5 * kPiece_mm) {
+      const TunnelFit piece =
+          fit_tunnel(voxels, bore, from, from + kPiece_mm, candidate.is_by_screw ? Wall::Screw : Wall::Clear);
+      if (!piece.is_fitted || piece.stretches.empty()) continue;
+      const bool is_seen = std::all_of(piece.stretches.begin(), piece.stretches.end(), [&](const Stretch& s) {
+        return s.seen_share > kLeastSeen && (candidate.is_by_screw || s.metal_share < kMetalOfPiece);
+      });
+      if (!is_seen) continue;
+      const Vector3d middle = bore.entry_mm + (from + 0.5 * kPiece_mm) * bore.direction;
+      // At its middle a piece's place and tilt do not depend on each other.
+      const double known =
+          std::sqrt(std::max(0.0, std::pow(piece.entry_sigma_mm, 2) -
+                                      std::pow((from + 0.5 * kPiece_mm) * piece.direction_sigma_rad, 2)));
+      if (known < kPieceKnown_mm) most = std::max(most, (on_axis(piece, middle) - middle).norm());
+    }
+    return most;
+  }
+
+  static void describe(Candidate& c) {
+    double seen = 0, weight = 0, metal = 0;
+    for (const Stretch& stretch : c.fit.stretches) {
+      metal += stretch.metal_share / static_cast<double>(c.fit.stretches.size());
+      if (stretch.metal_share > kMetalFilled && !c.is_by_screw) continue;
+      seen += stretch.seen_share;
+      weight += 1;
+    }
+    c.seen_share = weight > 0 ? seen / weight : 0;
+    c.metal_share = metal;
+    c.clear_mm = c.length_mm * weight / static_cast<double>(c.fit.stretches.size());
+    auto& doubts = c.doubts;
+    if (c.seen_share < kLeastSeen)
+      doubts.push_back(files::format("only %.0f %% of its wall are seen, %.0f %% are needed",
+                                     100 * c.seen_share, 100 * kLeastSeen));
+    if (c.clear_mm < kShortest_mm)
+      doubts.push_back(files::format("only %.0f mm of it are free of metal, %.0f mm are needed", c.clear_mm,
+                                     kShortest_mm));
+    if (c.is_by_screw) {
+      double beside = 1e4;
+      for (const Stretch& stretch : c.fit.stretches)
+        if (stretch.metal_share > kMetalFilled) beside = std::min(beside, stretch.outside_hu);
+      if (beside < kBoneBeside_hu)
+        doubts.emplace_back("only its screw is seen, which does not fill it: the tunnel may lie beside it");
+    }
+    if (c.fit.entry_sigma_mm > kMostEntrySigma_mm)
+      doubts.push_back(files::format("its entry is known to %.2f mm, %.2f mm are needed",
+                                     c.fit.entry_sigma_mm, kMostEntrySigma_mm));
+    const double sigma_deg = geometry::deg_from_rad(c.fit.direction_sigma_rad);
+    if (sigma_deg > kMostDirectionSigma_deg)
+      doubts.push_back(files::format("its direction is known to %.2f deg, %.2f deg are needed", sigma_deg,
+                                     kMostDirectionSigma_deg));
+    if (c.bend_mm > kMostBend_mm)
+      doubts.push_back(files::format("it is not straight: pieces of it lie %.1f mm off its axis", c.bend_mm));
+    const double diameter = 2 * c.fit.radius_mm;
+    if (diameter < kLeastDiameter_mm || diameter > kMostDiameter_mm)
+      doubts.push_back(files::format("its diameter of %.1f mm is none of a tunnel", diameter));
+    if (!c.has_end) doubts.emplace_back("where it ends is not seen");
+  }
+
+  const images::Volume& volume_;
+  VolumeSampler sampler_;
+  geometry::RigidTransform postop_from_plan_;
+  const geometry::Surface& bone_;
+  BoneGrid grid_;
+};
+
+bool is_same(const Candidate& a, const Candidate& b) {
+  return (a.passage.entry_mm - b.passage.entry_mm).norm() < a.fit.radius_mm + b.fit.radius_mm;
+}
+
+DrilledTunnel told(const Candidate& candidate, const tunnels::Tunnel& plan) {
+  DrilledTunnel drilled;
+  drilled.is_found = true;
+  drilled.tunnel = {.bone = plan.bone,
+                    .entry_mm = candidate.passage.entry_mm,
+                    .direction = candidate.fit.direction,
+                    .diameter_mm = 2 * candidate.fit.radius_mm};
+  drilled.length_mm = candidate.length_mm;
+  drilled.comes_out = candidate.comes_out;
+  drilled.entry_sigma_mm = candidate.fit.entry_sigma_mm;
+  drilled.direction_sigma_rad = candidate.fit.direction_sigma_rad;
+  drilled.seen_share = candidate.seen_share;
+  drilled.metal_share = candidate.metal_share;
+  drilled.stretches = candidate.fit.stretches;
+  drilled.reasons = candidate.doubts;
+  return drilled;
+}
+
+}  // namespace
+
+DrilledTunnel find_drilled(const images::Volume& postop, const geometry::RigidTransform& postop_from_plan,
+                           const geometry::Surface& bone, const tunnels::Tunnel& plan) {
+  const Finder finder(postop, postop_from_plan, bone, plan);
+  std::vector<Candidate> candidates;
+  for (const Bore& bore : search_bores(finder.grid(), plan)) {
+    if (auto candidate = finder.measured(bore)) candidates.push_back(std::move(*candidate));
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.merit() > b.merit(); });
+  DrilledTunnel none;
+  if (candidates.empty() || !candidates.front().mouth.is_open()) {
+    none.reasons = {
+        files::format("no tunnel is seen within %.0f mm and %.0f deg of the plan: nothing there is "
+                      "open at the bone's surface and stands out from the bone around it",
+                      kSearched_mm, kSearched_deg)};
+    return none;
+  }
+  // Of several that stand, the one nearest to the plan; the others are told.
+  std::vector<const Candidate*> standing;
+  for (const Candidate& candidate : candidates) {
+    if (!candidate.mouth.is_open() || !candidate.doubts.empty()) continue;
+    if (std::none_of(standing.begin(), standing.end(),
+                     [&](const Candidate* other) { return is_same(*other, candidate); }))
+      standing.push_back(&candidate);
+  }
+  const Candidate* chosen = &candidates.front();
+  const auto off_plan = [&](const Candidate* c) { return (c->passage.entry_mm - plan.entry_mm).norm(); };
+  for (const Candidate* candidate : standing)
+    if (!chosen->doubts.empty() || off_plan(candidate) < off_plan(chosen)) chosen = candidate;
+  DrilledTunnel drilled = told(*chosen, plan);
+  for (const Candidate* other : standing) {
+    if (other == chosen || is_same(*other, *chosen)) continue;
+    drilled.reasons.push_back(
+        files::format("another tunnel opens %.1f mm beside it: this one is nearer to the plan",
+                      (other->passage.entry_mm - chosen->passage.entry_mm).norm()));
+  }
+  drilled.reliable = drilled.reasons.empty();
+  return drilled;
+}
+
+}  // namespace arthronaut::postop

@@ -1,0 +1,30 @@
+// The tunnel that was drilled in a bone, found in a post-operative CT and measured. Inner header of postop.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "planning/postop/drilled_mouth.h"
+#include "planning/postop/tunnel_fit.h"
+
+namespace arthronaut::postop {
+
+struct DrilledTunnel {
+  bool is_found = false;   // false: the numbers are meaningless
+  tunnels::Tunnel tunnel;  // in the plan's frame; the entry where the axis enters the plan's bone
+  double length_mm = 0;    // within the bone, to where it comes out or ends
+  bool comes_out = false;
+  double entry_sigma_mm = 0, direction_sigma_rad = 0;
+  double seen_share = 0;           // of its wall
+  double metal_share = 0;          // of what is inside it
+  std::vector<Stretch> stretches;  // from the entry to the end
+  bool reliable = false;
+  std::vector<std::string> reasons = {"no tunnel was looked for"};
+};
+
+// `bone`: the plan's, before the operation.
+[[nodiscard]] DrilledTunnel find_drilled(const images::Volume& postop,
+                                         const geometry::RigidTransform& postop_from_plan,
+                                         const geometry::Surface& bone, const tunnels::Tunnel& plan);
+
+}  // namespace arthronaut::postop

@@ -1,0 +1,59 @@
+// The axis and the diameter of a bore from the voxels about its wall. Inner header of postop.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "planning/postop/bone_grid.h"
+#include "planning/postop/tunnel_search.h"
+
+namespace arthronaut::postop {
+
+// Which voxels tell of the wall: those free of metal, or those of a screw that fills the bore.
+enum class Wall { Clear, Screw };
+
+// A stretch of the bore, 4 mm long.
+struct Stretch {
+  double from_entry_mm = 0;  // of its middle, along the axis
+  double diameter_mm = 0, sigma_mm = std::numeric_limits<double>::infinity();
+  // Of its wall within the bone: grey differs across it, the same way all around. What differs the other way
+  // is taken off.
+  double seen_share = 0;
+  double metal_share = 0;  // of the voxels inside it
+  // Of its seen wall outside the bore, HU, and inside it.
+  double outside_hu = 0, inside_hu = 0;
+};
+
+struct TunnelFit {
+  bool is_fitted = false;
+  Eigen::Vector3d point_mm = Eigen::Vector3d::Zero();  // on the axis, in the plan's frame
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
+  double radius_mm = 0;  // median over what is seen
+  // One sigma, by the scatter of the grey: of the axis at the entry, across it, and of its direction.
+  double entry_sigma_mm = std::numeric_limits<double>::infinity();
+  double direction_sigma_rad = std::numeric_limits<double>::infinity();
+  std::vector<Stretch> stretches;  // from the entry on
+};
+
+// A voxel of the images within the bone and near the bore.
+struct WallVoxel {
+  Eigen::Vector3d p_mm;  // in the plan's frame
+  float hu;
+  bool is_metal, is_by_metal;  // denser than bone; or within 1 mm of what is
+};
+
+// The voxels within the bone within `reach_mm` of the bore's axis.
+[[nodiscard]] std::vector<WallVoxel> wall_voxels(const images::Volume& postop,
+                                                 const geometry::RigidTransform& plan_from_postop,
+                                                 const BoneGrid& grid, const Bore& bore, double length_mm,
+                                                 double reach_mm);
+
+// From a bore that is right to a millimetre or so. The voxels are explained as the blurred picture of two
+// levels, parted where the wall is: one inside a stretch of the bore, one outside for each eighth of the
+// turn; axis and radii by robust least squares on the grey (Gauss-Newton), so that what differs much tells
+// much, what does not differ tells nothing, and the bore may be brighter than the marrow or darker. Only
+// stations `from_mm` to `to_mm` along the axis from the bore's entry count.
+[[nodiscard]] TunnelFit fit_tunnel(const std::vector<WallVoxel>& voxels, const Bore& bore, double from_mm,
+                                   double to_mm, Wall wall);
+
+}  // namespace arthronaut::postop

@@ -1,0 +1,165 @@
+// compare on the built-in knee, drilled and scanned, as a user types it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "planning/cases/case.h"
+#include "planning/cases/identity.h"
+#include "planning/files/atomic_file.h"
+#include "planning/images/volume_writer.h"
+#include "planning/phantom/phantom_case.h"
+#include "planning/plan_export/drilled_bone.h"
+#include "tests/app/command_line/program.h"
+#include "tests/planning/postop/postop_ct.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut {
+namespace {
+
+using bones::BoneKind;
+using nlohmann::json;
+using test::run_program;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class CompareCommand : public ::testing::Test {
+ protected:
+  CompareCommand() {
+    knee_.plan.tunnels.erase(BoneKind::Tibia);
+    cases::save_case(folder_ / "knee.arthro", knee_);
+  }
+  // A scan of the femur with this tunnel, or without any.
+  void scan(const std::string& name, const std::optional<tunnels::Tunnel>& tunnel) const {
+    test::KnownCtOptions options;
+    options.spacing_mm = {0.6, 0.6, 0.8};
+    std::vector<test::Drilled> drilled;
+    if (tunnel) drilled.push_back({.tunnel = *tunnel});
+    images::write_volume(folder_ / name, test::postop_ct({made_.femur.mesh}, drilled, lying_, options));
+  }
+  [[nodiscard]] test::ProgramResult compare(const std::string& source, const std::string& output) const {
+    return run_program({"compare", folder_ / "knee.arthro", "--postop", folder_ / source, "-o",
+                        output == "-" ? output : (folder_ / output).string()});
+  }
+  [[nodiscard]] json read(const std::string& name) const {
+    return json::parse(files::read_text(folder_ / name));
+  }
+
+  const test::TemporaryFolder folder_;
+  const phantom::PhantomKnee made_ = phantom::make_phantom_knee();
+  cases::Case knee_ = phantom::case_of(made_, "Phantom");
+  const geometry::RigidTransform lying_ = test::lying(25, {1, -1, 2}, {20, 40, -30});
+};
+
+Eigen::Vector3d vector_of(const json& values) {
+  return {values.at(0).get<double>(), values.at(1).get<double>(), values.at(2).get<double>()};
+}
+
+}  // namespace
+
+// The file is what the interface says, the numbers are the truth's.
+TEST_F(CompareCommand, WritesWhatWasAchieved) {
+  const auto tunnel =
+      test::moved_tunnel(made_.femoral_tunnel, geometry::Surface(made_.femur.mesh), {3, -2}, {6, 5});
+  scan("postop.nrrd", tunnel);
+  const auto result = compare("postop.nrrd", "achieved.json");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, AllOf(HasSubstr("off the plan"), HasSubstr("achieved.json")));
+  const json achieved = read("achieved.json");
+  ASSERT_EQ(achieved.at("tunnels").size(), 1U);
+  const json& found = achieved.at("tunnels").at(0);
+  EXPECT_EQ(found.at("bone"), "femur");
+  EXPECT_TRUE(found.at("reliable").get<bool>());
+  EXPECT_TRUE(found.at("reasons").empty());
+  EXPECT_LT((vector_of(found.at("entry_mm")) - tunnel.entry_mm).norm(), 0.3);
+  EXPECT_GT(vector_of(found.at("direction")).dot(tunnel.direction), std::cos(geometry::rad_from_deg(0.6)));
+  EXPECT_NEAR(found.at("diameter_mm").get<double>(), 9, 0.3);
+  EXPECT_NEAR(found.at("offset_mm").get<double>(), (tunnel.entry_mm - made_.femoral_tunnel.entry_mm).norm(),
+              0.3);
+  EXPECT_NEAR(
+      found.at("angle_deg").get<double>(),
+      geometry::deg_from_rad(geometry::angle_between_rad(tunnel.direction, made_.femoral_tunnel.direction)),
+      0.6);
+  EXPECT_GT(found.at("length_mm").get<double>(), 25);
+  const json& bone = achieved.at("bones").at(0);
+  EXPECT_TRUE(bone.at("reliable").get<bool>());
+  EXPECT_LT(bone.at("rms_mm").get<double>(), 0.3);
+  const json& pose = bone.at("plan_from_postop");
+  const json& q = pose.at("q_wxyz");
+  const geometry::RigidTransform plan_from_postop{
+      Eigen::Quaterniond(q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>(),
+                         q.at(3).get<double>()),
+      vector_of(pose.at("t_mm"))};
+  EXPECT_LT((plan_from_postop * (lying_ * tunnel.entry_mm) - tunnel.entry_mm).norm(), 0.1);
+}
+
+// Not drilled: written, with the reasons, and exit code 4. What is not known is null.
+TEST_F(CompareCommand, AWholeBoneIsSaid) {
+  scan("postop.nrrd", std::nullopt);
+  const auto result = compare("postop.nrrd", "achieved.json");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.errors, HasSubstr("no tunnel is seen"));
+  const json found = read("achieved.json").at("tunnels").at(0);
+  EXPECT_FALSE(found.at("reliable").get<bool>());
+  EXPECT_FALSE(found.at("reasons").empty());
+  EXPECT_TRUE(found.at("entry_mm").is_null());
+}
+
+// Another knee's plan, and images that name another patient.
+TEST_F(CompareCommand, AnotherPatientIsNotReliable) {
+  scan("postop.nrrd", made_.femoral_tunnel);
+  auto other = phantom::case_of(phantom::make_phantom_knee({.seed = 7}), "Another");
+  other.plan.tunnels.erase(BoneKind::Tibia);
+  cases::save_case(folder_ / "other.arthro", other);
+  const auto result = run_program({"compare", folder_ / "other.arthro", "--postop", folder_ / "postop.nrrd",
+                                   "-o", folder_ / "achieved.json"});
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.errors, HasSubstr("another patient"));
+  const json achieved = read("achieved.json");
+  EXPECT_FALSE(achieved.at("tunnels").at(0).at("reliable").get<bool>());
+  EXPECT_FALSE(achieved.at("bones").at(0).at("reliable").get<bool>());
+}
+
+// The drilled bone as a mesh, as the plan's own export makes it.
+TEST_F(CompareCommand, TakesAMeshOfTheDrilledBone) {
+  const auto drilled = plan_export::drill(made_.femur.mesh, made_.femoral_tunnel);
+  ASSERT_TRUE(drilled.is_usable());
+  bones::write_mesh_stl(folder_ / "drilled.stl", drilled.mesh);
+  const auto result = compare("drilled.stl", "-");
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  const json found = json::parse(result.output).at("tunnels").at(0);
+  EXPECT_LT(found.at("offset_mm").get<double>(), 0.2);
+  EXPECT_LT(found.at("angle_deg").get<double>(), 0.3);
+  EXPECT_NEAR(found.at("diameter_mm").get<double>(), 9, 0.2);
+}
+
+// Refused with file and reason, before any work; nothing is written.
+TEST_F(CompareCommand, RefusesWhatCannotBeCompared) {
+  test::write_file(folder_ / "broken.nrrd", "NRRD0004\ntype: short\n");
+  const auto broken = compare("broken.nrrd", "achieved.json");
+  EXPECT_EQ(broken.exit_code, 3);
+  EXPECT_THAT(broken.errors, HasSubstr("broken.nrrd"));
+  EXPECT_EQ(compare("none.nrrd", "achieved.json").exit_code, 3);
+
+  images::Volume soft;
+  soft.size = {30, 30, 30};
+  soft.modality = "CT";
+  soft.values.assign(27000, 40.0F);
+  images::write_volume(folder_ / "soft.nrrd", soft);
+  const auto nothing = compare("soft.nrrd", "achieved.json");
+  EXPECT_EQ(nothing.exit_code, 3);
+  EXPECT_THAT(nothing.errors, AllOf(HasSubstr("soft.nrrd"), HasSubstr("no bone")));
+
+  const auto no_tibia = run_program({"compare", folder_ / "knee.arthro", "--postop", folder_ / "soft.nrrd",
+                                     "--bone", "tibia", "-o", folder_ / "achieved.json"});
+  EXPECT_EQ(no_tibia.exit_code, 3);
+  EXPECT_THAT(no_tibia.errors, AllOf(HasSubstr("plan.json"), HasSubstr("tibia")));
+  knee_.plan = {};
+  cases::save_case(folder_ / "knee.arthro", knee_);
+  const auto no_plan = compare("soft.nrrd", "achieved.json");
+  EXPECT_EQ(no_plan.exit_code, 3);
+  EXPECT_THAT(no_plan.errors, AllOf(HasSubstr("plan.json"), HasSubstr("no tunnel")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "achieved.json"));
+}
+
+}  // namespace arthronaut

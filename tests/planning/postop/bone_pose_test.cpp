@@ -1,0 +1,92 @@
+// Bones of the plan found in a CT in which they were put: where, and what is refused.
+#include "planning/postop/bone_pose.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "planning/geometry/error.h"
+#include "planning/phantom/phantom_knee.h"
+#include "tests/message_of.h"
+#include "tests/planning/postop/postop_ct.h"
+
+namespace arthronaut::postop {
+namespace {
+
+using geometry::RigidTransform;
+using testing::HasSubstr;
+
+const phantom::PhantomKnee& knee() {
+  static const auto made = phantom::make_phantom_knee();
+  return made;
+}
+
+test::KnownCtOptions half_fine() {
+  test::KnownCtOptions options;
+  options.spacing_mm = {0.6, 0.6, 0.8};
+  return options;
+}
+
+FoundBone found_in(const images::Volume& volume, const phantom::PhantomKnee& sought, bones::BoneKind kind) {
+  const bool is_femur = kind == bones::BoneKind::Femur;
+  const VolumeSampler sampler(volume);
+  return find_bone(sampler, bone_field(volume, 200), (is_femur ? sought.femur : sought.tibia).mesh,
+                   (is_femur ? sought.femoral_tunnel : sought.tibial_tunnel).entry_mm);
+}
+
+double off_mm(const FoundBone& found, const RigidTransform& truth, const Eigen::Vector3d& p_in_plan) {
+  return (found.pose.postop_from_plan * p_in_plan - truth * p_in_plan).norm();
+}
+
+class AnyLie : public ::testing::TestWithParam<double> {};
+
+// Whichever way the patient lay, beside the other bone and with a hole in it: a tenth of a voxel.
+TEST_P(AnyLie, BothBonesAreFound) {
+  const RigidTransform truth = test::lying(GetParam(), {1, 2, 3}, {30, -20, 60});
+  const auto volume = test::postop_ct({knee().femur.mesh, knee().tibia.mesh},
+                                      {{.tunnel = knee().femoral_tunnel}}, truth, half_fine());
+  for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
+    const FoundBone found = found_in(volume, knee(), kind);
+    EXPECT_TRUE(found.reliable) << testing::PrintToString(found.reasons);
+    for (const Eigen::Vector3d& p : {knee().femoral_tunnel.entry_mm, Eigen::Vector3d(40, 0, 20)})
+      EXPECT_LT(off_mm(found, truth, p), 0.06);
+    EXPECT_GT(found.pose.on_edge_share, 0.97);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Turns, AnyLie, ::testing::Values(0, 35, 170));
+
+// Other knees, one of them (2) so much alike that its surface is 0.2 mm off at most places; and the other
+// side's.
+TEST(BonePose, AnotherPatientsBoneIsNotReliable) {
+  const RigidTransform truth = test::lying(20, {1, 2, 3}, {30, -20, 60});
+  const auto volume = test::postop_ct({knee().femur.mesh}, {}, truth, half_fine());
+  for (const std::uint64_t seed : {2U, 3U, 4U, 6U, 8U})
+    EXPECT_FALSE(
+        found_in(volume, phantom::make_phantom_knee({.seed = seed}), bones::BoneKind::Femur).reliable)
+        << seed;
+  const FoundBone left =
+      found_in(volume, phantom::make_phantom_knee({.side = bones::Side::Left}), bones::BoneKind::Femur);
+  EXPECT_FALSE(left.reliable);
+  EXPECT_FALSE(left.reasons.empty());
+  const FoundBone tibia = found_in(volume, knee(), bones::BoneKind::Tibia);
+  EXPECT_FALSE(tibia.is_found);
+  EXPECT_FALSE(tibia.reliable);
+}
+
+// A scan that ends within the condyles.
+TEST(BonePose, ABoneThatIsCutOffIsNotReliable) {
+  test::KnownCtOptions options = half_fine();
+  const RigidTransform truth = test::lying(0, {0, 0, 1}, {0, 0, 0});
+  options.highest_mm = geometry::bounds_of(knee().femur.mesh).min_mm.z() + 16;
+  const auto volume = test::postop_ct({knee().femur.mesh}, {}, truth, options);
+  EXPECT_FALSE(found_in(volume, knee(), bones::BoneKind::Femur).reliable);
+}
+
+TEST(BonePose, NoBoneAtAllIsRefused) {
+  images::Volume empty;
+  empty.size = {40, 40, 40};
+  empty.values.assign(64000, 60.0F);
+  EXPECT_THAT(test::message_of<InvalidInput>([&] { (void)bone_field(empty, 200); }), HasSubstr("no bone"));
+}
+
+}  // namespace
+}  // namespace arthronaut::postop

@@ -1,0 +1,105 @@
+#include "tests/planning/postop/postop_ct.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace arthronaut::test {
+
+namespace {
+
+using Eigen::Vector3d;
+
+// Along the axis and off it; off the screw's axis.
+struct Place {
+  double along_mm, off_mm, off_screw_mm;
+};
+
+Place place_of(const Drilled& drilled, const Vector3d& p) {
+  const Vector3d from_entry = p - drilled.tunnel.entry_mm, d = drilled.tunnel.direction;
+  const double along = from_entry.dot(d);
+  const Vector3d off = from_entry - along * d;
+  return {along, off.norm(), (off - drilled.screw_aside_mm * d.unitOrthogonal()).norm()};
+}
+
+void drill(images::Volume& volume, const Drilled& drilled, const geometry::RigidTransform& postop_from_plan,
+           double marrow_hu, double soft_hu) {
+  constexpr int kSub = 3;
+  const geometry::RigidTransform plan_from_postop = postop_from_plan.inverse();
+  const double reach = 0.5 * drilled.tunnel.diameter_mm + drilled.widened_mm + drilled.rim_mm + 2;
+  std::size_t v = 0;
+  for (int k = 0; k < volume.size.z(); ++k) {
+    for (int j = 0; j < volume.size.y(); ++j) {
+      for (int i = 0; i < volume.size.x(); ++i, ++v) {
+        const auto place_at = [&](const Vector3d& index) {
+          return place_of(drilled, plan_from_postop * (volume.lps_from_index * index));
+        };
+        const Place middle = place_at(Vector3d(i, j, k));
+        if (middle.off_mm > reach || middle.along_mm < drilled.from_mm - 1 ||
+            middle.along_mm > drilled.to_mm + 1)
+          continue;
+        const float before = volume.values[v];
+        double sum = 0;
+        for (int s = 0; s < kSub * kSub * kSub; ++s) {
+          const auto part = [](int n) { return (n + 0.5) / kSub - 0.5; };
+          const Place at =
+              place_at(Vector3d(i + part(s % kSub), j + part(s / kSub % kSub), k + part(s / kSub / kSub)));
+          const double fading = std::clamp(1 - at.along_mm / drilled.widened_to_mm, 0.0, 1.0),
+                       radius = 0.5 * (drilled.tunnel.diameter_mm + drilled.widened_mm * fading);
+          const bool is_along = at.along_mm > drilled.from_mm && at.along_mm < drilled.to_mm;
+          if (drilled.screw_diameter_mm > 0 && at.off_screw_mm < 0.5 * drilled.screw_diameter_mm &&
+              at.along_mm > drilled.screw_from_mm && at.along_mm < drilled.screw_to_mm) {
+            sum += drilled.screw_hu;
+          } else if (is_along && at.off_mm < radius) {
+            // In the open it is what was there before.
+            sum += before > soft_hu + 5 ? drilled.content_hu : std::min<double>(before, drilled.content_hu);
+          } else if (is_along && drilled.rim_hu > 0 && at.off_mm < radius + drilled.rim_mm &&
+                     std::abs(before - marrow_hu) < 1) {
+            sum += drilled.rim_hu;
+          } else {
+            sum += before;
+          }
+        }
+        volume.values[v] = static_cast<float>(sum / (kSub * kSub * kSub));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+images::Volume postop_ct(const std::vector<geometry::TriangleMesh>& bones_in_plan,
+                         const std::vector<Drilled>& drilled,
+                         const geometry::RigidTransform& postop_from_plan, KnownCtOptions options) {
+  auto bones = bones_in_plan;
+  for (auto& bone : bones)
+    for (auto& p : bone.vertices_mm) p = postop_from_plan * p;
+  options.operate = [&](images::Volume& volume) {
+    for (const Drilled& one : drilled)
+      drill(volume, one, postop_from_plan, options.marrow_hu, options.soft_tissue_hu);
+  };
+  return known_ct(bones, options);
+}
+
+geometry::RigidTransform lying(double turn_deg, const Vector3d& axis, const Vector3d& shift_mm) {
+  return {Eigen::Quaterniond(Eigen::AngleAxisd(geometry::rad_from_deg(turn_deg), axis.normalized())),
+          shift_mm};
+}
+
+tunnels::Tunnel moved_tunnel(const tunnels::Tunnel& plan, const geometry::Surface& bone,
+                             const Eigen::Vector2d& shift_mm, const Eigen::Vector2d& tilt_deg) {
+  const Vector3d u = plan.direction.unitOrthogonal(), v = plan.direction.cross(u);
+  tunnels::Tunnel moved = plan;
+  moved.direction = (plan.direction + std::tan(geometry::rad_from_deg(tilt_deg.x())) * u +
+                     std::tan(geometry::rad_from_deg(tilt_deg.y())) * v)
+                        .normalized();
+  const Vector3d through = plan.entry_mm + shift_mm.x() * u + shift_mm.y() * v;
+  double nearest = 1e9;
+  for (const auto& hit : bone.all_hits(through - 20 * moved.direction, moved.direction)) {
+    if (hit.normal.dot(moved.direction) >= 0 || std::abs(hit.distance_mm - 20) >= nearest) continue;
+    nearest = std::abs(hit.distance_mm - 20);
+    moved.entry_mm = hit.point_mm;
+  }
+  return moved;
+}
+
+}  // namespace arthronaut::test

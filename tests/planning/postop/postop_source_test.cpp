@@ -1,0 +1,71 @@
+// What post-operative images are read from, and what is refused.
+#include "planning/postop/postop_source.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "planning/bones/mesh_file.h"
+#include "planning/geometry/error.h"
+#include "planning/images/volume_writer.h"
+#include "tests/message_of.h"
+#include "tests/planning/geometry/shapes.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::postop {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class PostopSource : public ::testing::Test {
+ protected:
+  std::string refusal(const std::string& name, const PostopSourceOptions& options = {}) {
+    return test::message_of<InvalidInput>([&] { (void)read_postop(folder_ / name, options); });
+  }
+  images::Volume small(const std::string& modality) {
+    images::Volume volume;
+    volume.size = {4, 4, 4};
+    volume.values.assign(64, 0.0F);
+    volume.values[21] = 2;
+    volume.values[22] = 5;
+    volume.modality = modality;
+    return volume;
+  }
+  test::TemporaryFolder folder_;
+};
+
+// 1000 HU in it, 0 HU outside, and as much of the bone in all voxels as there is.
+TEST_F(PostopSource, AMeshBecomesAPicture) {
+  bones::write_mesh_stl(folder_ / "ball.stl", test::ellipsoid({12, 10, 15}, 4, {5, 6, 7}));
+  const images::Volume volume = read_postop(folder_ / "ball.stl");
+  double sum = 0;
+  for (const float value : volume.values) sum += value;
+  const double volume_mm3 = 4.0 / 3 * M_PI * 12 * 10 * 15;
+  EXPECT_NEAR(sum / 1000 * std::pow(volume.spacing_mm().x(), 3) / volume_mm3, 1, 0.01);
+  const Eigen::Vector3d middle = volume.lps_from_index.inverse() * Eigen::Vector3d(5, 6, 7);
+  EXPECT_NEAR(
+      volume.at(static_cast<int>(middle.x()), static_cast<int>(middle.y()), static_cast<int>(middle.z())),
+      1000, 1);
+}
+
+TEST_F(PostopSource, LabelsBecomeBone) {
+  images::write_volume(folder_ / "labels.nrrd", small(""));
+  EXPECT_EQ(read_postop(folder_ / "labels.nrrd").values[22], 1000);
+  const auto named = read_postop(folder_ / "labels.nrrd", {.labels = {2}});
+  EXPECT_EQ(named.values[21], 1000);
+  EXPECT_EQ(named.values[22], 0);
+  EXPECT_THAT(refusal("labels.nrrd", {.labels = {3}}), AllOf(HasSubstr("labels.nrrd"), HasSubstr("label 3")));
+}
+
+TEST_F(PostopSource, WhatShowsNoTunnelIsRefused) {
+  images::write_volume(folder_ / "mr.nrrd", small("MR"));
+  EXPECT_THAT(refusal("mr.nrrd"), AllOf(HasSubstr("mr.nrrd"), HasSubstr("MR")));
+  std::ofstream(folder_ / "notes.txt") << "no images";
+  EXPECT_THAT(refusal("notes.txt"), HasSubstr("notes.txt"));
+  EXPECT_THROW((void)read_postop(folder_ / "none.nrrd"), IoError);
+}
+
+}  // namespace
+}  // namespace arthronaut::postop
