@@ -19,12 +19,16 @@ struct Passage {
 [[nodiscard]] std::optional<Passage> passage_of(const geometry::Surface& bone, const Eigen::Vector3d& near_mm,
                                                 const Eigen::Vector3d& direction);
 
+inline constexpr double kLeastOpen = 0.75, kLeastClosed = 0.6, kLeastCortex_hu = 150;
+
 struct SeenMouth {
   double open_share = 0;    // of the bore's opening: no cortex under the bone's surface, or metal
   double closed_share = 0;  // of what lies 0.8 to 2.4 mm beside it: there is cortex
   double step_hu = 0;       // of the cortex beside it above what lies outside
 
-  [[nodiscard]] bool is_open() const { return open_share >= 0.75 && closed_share >= 0.6 && step_hu >= 150; }
+  [[nodiscard]] bool is_open() const {
+    return open_share >= kLeastOpen && closed_share >= kLeastClosed && step_hu >= kLeastCortex_hu;
+  }
 };
 
 // `place_mm`: on the bone's surface. `inward`: unit, along the bore into the bone.

@@ -242,24 +242,21 @@ DrilledTunnel find_drilled(const images::Volume& postop, const geometry::RigidTr
                       kSearched_mm, kSearched_deg)};
     return none;
   }
-  // Of several that stand, the one nearest to the plan; the others are told.
-  std::vector<const Candidate*> standing;
+  // Of several that stand, the one nearest to the plan; that there are others is told.
+  const Candidate* chosen = &candidates.front();
+  const auto off_plan = [&](const Candidate& c) { return (c.passage.entry_mm - plan.entry_mm).norm(); };
   for (const Candidate& candidate : candidates) {
     if (!candidate.mouth.is_open() || !candidate.doubts.empty()) continue;
-    if (std::none_of(standing.begin(), standing.end(),
-                     [&](const Candidate* other) { return is_same(*other, candidate); }))
-      standing.push_back(&candidate);
+    if (is_same(candidate, *chosen) && chosen->doubts.empty()) continue;
+    if (!chosen->doubts.empty() || off_plan(candidate) < off_plan(*chosen)) chosen = &candidate;
   }
-  const Candidate* chosen = &candidates.front();
-  const auto off_plan = [&](const Candidate* c) { return (c->passage.entry_mm - plan.entry_mm).norm(); };
-  for (const Candidate* candidate : standing)
-    if (!chosen->doubts.empty() || off_plan(candidate) < off_plan(chosen)) chosen = candidate;
   DrilledTunnel drilled = told(*chosen, plan);
-  for (const Candidate* other : standing) {
-    if (other == chosen || is_same(*other, *chosen)) continue;
-    drilled.reasons.push_back(
-        files::format("another tunnel opens %.1f mm beside it: this one is nearer to the plan",
-                      (other->passage.entry_mm - chosen->passage.entry_mm).norm()));
+  for (const Candidate& other : candidates) {
+    if (!other.mouth.is_open() || other.seen_share < kLeastSeen || is_same(other, *chosen)) continue;
+    drilled.reasons.push_back(files::format(
+        "another tunnel opens %.1f mm beside it: this one is the nearer to the plan, or the better seen",
+        (other.passage.entry_mm - chosen->passage.entry_mm).norm()));
+    break;
   }
   drilled.reliable = drilled.reasons.empty();
   return drilled;

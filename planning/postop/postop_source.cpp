@@ -16,6 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr float kBone_hu = 1000;
+// Whole numbers alone make no label map where some are as large as bone is dense: a CT without noise.
+constexpr int kLeastBone_hu = 200;
 constexpr double kMeshVoxel_mm = 0.5, kRoom_mm = 8;
 constexpr double kLargest_mm = 600;  // a mesh in other units is no bone
 
@@ -104,7 +106,8 @@ images::Volume read_postop(const std::filesystem::path& source, const PostopSour
                        "is " + volume.modality + ": a tunnel is found in a CT, or in a label map");
   const auto labels = images::labels_of(volume);
   const bool is_label_map =
-      !options.labels.empty() || (labels.size() > 1 && labels.front().first >= 0 && volume.modality.empty());
+      !options.labels.empty() || (labels.size() > 1 && labels.front().first >= 0 &&
+                                  labels.back().first < kLeastBone_hu && volume.modality.empty());
   if (is_label_map) make_picture_of_labels(volume, options.labels, source);
   return volume;
 }

@@ -18,7 +18,9 @@ using Eigen::Vector3d;
 constexpr int kSectors = 8;
 constexpr double kStretch_mm = 4;
 constexpr double kBin_mm = 2;  // of the levels
-constexpr double kWindow_mm = 1.8;
+// From the wall inwards and outwards. A bored bone heals with a dense rim, thin as a cortex: further out the
+// grey is the marrow's again.
+constexpr double kInward_mm = 1.8, kOutward_mm = 1.2, kBesideWallFrom_mm = 0.6;
 constexpr double kBesideMetal_mm = 1.5;
 // Near the bone's own surface its own edge is in the picture.
 constexpr double kLeastDepth_mm = 0.9;
@@ -31,7 +33,7 @@ constexpr double kMetalOfBin = 0.02, kBesideWall_mm = 1.5;
 constexpr double kCorrelated = 4;
 constexpr double kLeastNoise_hu = 6;
 // Differences that are no chance.
-constexpr double kSeenSigmas = 4, kSeen_hu = 15;
+constexpr double kSeenSigmas = 3, kSeen_hu = 15;
 // Radii of neighbouring stretches differ by this, one sigma.
 constexpr double kRadiusChange_mm = 0.4;
 constexpr double kHuber = 2.5;
@@ -59,6 +61,11 @@ struct Level {
     sum += v;
     squares += v * v;
     ++count;
+  }
+  void add(const Level& other) {
+    sum += other.sum;
+    squares += other.squares;
+    count += other.count;
   }
   [[nodiscard]] double mean() const { return count > 0 ? sum / count : 0; }
   [[nodiscard]] double variance() const {
@@ -137,10 +144,10 @@ class Fit {
       if (!placed) continue;
       const double off = placed->off - radius_[placed->stretch];
       if (off < -0.4) metal_[placed->stretch].add(voxels_[i].is_metal ? 1 : 0);
-      if (!counts(voxels_[i], *placed) || std::abs(off) > kWindow_mm + (off < 0 ? 1 : 0)) continue;
-      if (off < -0.7) inside_[placed->bin].add(voxels_[i].hu);
-      if (off > 0.7 && off < kWindow_mm) outside_[placed->bin * kSectors + placed->sector].add(voxels_[i].hu);
-      if (std::abs(off) < kWindow_mm) placed_.emplace_back(*placed, voxels_[i].hu);
+      if (!counts(voxels_[i], *placed) || off > kOutward_mm || off < -kInward_mm - 1) continue;
+      if (off < -kBesideWallFrom_mm) inside_[placed->bin].add(voxels_[i].hu);
+      if (off > kBesideWallFrom_mm) outside_[placed->bin * kSectors + placed->sector].add(voxels_[i].hu);
+      if (off > -kInward_mm) placed_.emplace_back(*placed, voxels_[i].hu);
     }
     std::vector<double> off_model;
     for (const auto& [placed, hu] : placed_) {
@@ -220,10 +227,17 @@ class Fit {
     std::vector<Stretch> result(stretches_);
     std::vector<double> seen(stretches_, 0), darker(stretches_, 0), all(stretches_, 0), in(stretches_, 0),
         out(stretches_, 0);
+    std::vector<Level> within(stretches_), beside(stretches_ * kSectors);
     for (std::size_t bin = 0; bin < bins_; ++bin) {
       const std::size_t s = std::min(stretches_ - 1, (2 * bin + 1) * stretches_ / (2 * bins_));
+      within[s].add(inside_[bin]);
+      for (std::size_t sector = 0; sector < kSectors; ++sector)
+        beside[s * kSectors + sector].add(outside_[bin * kSectors + sector]);
+    }
+    for (std::size_t s = 0; s < stretches_; ++s) {
+      const Level& a = within[s];
       for (std::size_t sector = 0; sector < kSectors; ++sector) {
-        const Level &a = inside_[bin], &b = outside_[bin * kSectors + sector];
+        const Level& b = beside[s * kSectors + sector];
         if (b.count < 4) continue;
         const double weight = b.count;
         all[s] += weight;

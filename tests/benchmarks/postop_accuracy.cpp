@@ -1,5 +1,6 @@
 // Prints how near tunnels found in a post-operative CT come to those that were drilled in it:
-//   postop_accuracy [-n TRIALS] [FEMUR...]    femora as meshes, LPS, mm; default: the built-in knee
+//   postop_accuracy [-n TRIALS] [-k KIND] [FEMUR...]
+// Femora as meshes, LPS, mm; default: the built-in knee. KIND: the CTs whose name holds this word.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -100,6 +101,8 @@ void try_one(const Subject& subject, const Kind& kind, std::mt19937_64& random, 
   const auto found = postop::PostopImages(volume).compare(subject.mesh, subject.plan).tunnel;
   figures.seconds.push_back(processor_seconds() - start);
   ++figures.trials;
+  for (const std::string& reason : found.reasons)
+    std::fprintf(stderr, "%s, %s: %s\n", kind.name, subject.name.c_str(), reason.c_str());
   if (!found.is_found) return;
   ++figures.found;
   const double entry = (found.tunnel.entry_mm - how.tunnel.entry_mm).norm(),
@@ -137,10 +140,13 @@ std::vector<Subject> subjects_of(const std::vector<std::string>& files) {
 
 int run(int argc, char** argv) {
   int trials = 6;
+  std::string kind_word;
   std::vector<std::string> files;
   for (int i = 1; i < argc; ++i) {
     if (std::string(argv[i]) == "-n" && i + 1 < argc) {
       trials = std::atoi(argv[++i]);
+    } else if (std::string(argv[i]) == "-k" && i + 1 < argc) {
+      kind_word = argv[++i];
     } else {
       files.emplace_back(argv[i]);
     }
@@ -150,8 +156,9 @@ int run(int argc, char** argv) {
       "| CT | trials | found | reliable | of those wrong | entry mm | angle deg | diameter mm | length mm | "
       "s "
       "|\n|---|---|---|---|---|---|---|---|---|---|\n");
-  std::mt19937_64 random(1);
   for (const Kind& kind : kinds()) {
+    if (std::string(kind.name).find(kind_word) == std::string::npos) continue;
+    std::mt19937_64 random(1);
     Figures f;
     for (int trial = 0; trial < trials; ++trial)
       try_one(subjects[static_cast<std::size_t>(trial) % subjects.size()], kind, random, f);

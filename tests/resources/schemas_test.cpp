@@ -14,6 +14,7 @@
 #include "planning/cases/measurements.h"
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
+#include "planning/postop/achieved_file.h"
 #include "tests/resources/json_schema.h"
 #include "tests/temporary_folder.h"
 
@@ -145,6 +146,23 @@ TEST_F(Schemas, DescribeTheRegistration) {
   }
   registration::write_registration_file(file, found);
   expect_described(file, "registration", [&] { (void)registration::read_registration_file(file); });
+}
+
+// A tunnel and a bone that were found, and ones that were not.
+TEST_F(Schemas, DescribeWhatWasAchieved) {
+  const fs::path file = folder_ / "achieved.json";
+  postop::Comparison found;
+  found.bone.is_found = found.tunnel.is_found = true;
+  found.tunnel.widths = {{.from_entry_mm = 2, .diameter_mm = 9.5}};
+  postop::write_achieved_file(file, {{bones::BoneKind::Femur, found}, {bones::BoneKind::Tibia, {}}});
+  const json written = read(file);
+  EXPECT_EQ(violations_of(written, "achieved"), "");
+  EXPECT_TRUE(written.at("tunnels").at(1).at("entry_mm").is_null());
+  for (const char* key : {"/tunnels/0/offset_mm", "/tunnels/1/reasons", "/bones/0/rms_mm", "/bones"}) {
+    json broken = written;
+    broken[json::json_pointer(key)] = "none";
+    EXPECT_NE(violations_of(broken, "achieved"), "") << key;
+  }
 }
 
 // The check itself: wrong types, numbers out of bounds, members that nobody described.
