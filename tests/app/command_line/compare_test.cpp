@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "planning/bones/mesh_file.h"
 #include "planning/cases/case.h"
 #include "planning/cases/identity.h"
 #include "planning/files/atomic_file.h"
