@@ -18,6 +18,7 @@ constexpr double kEntryReach_mm = 10;
 constexpr double kFrom_mm = 0.3, kTo_mm = 2.1, kStep_mm = 0.3;
 constexpr double kLeastSoft_hu = -100;
 constexpr int kTurns = 16;
+constexpr double kLeastStep_hu = 30;  // of the grey where a bore ends
 
 struct Column {
   double most_hu = 0, outside_hu = 0;
@@ -133,15 +134,21 @@ std::optional<double> blind_end_mm(const VolumeSampler& postop,
   const auto median_of = [&](std::ptrdiff_t from, std::ptrdiff_t to) {
     return geometry::median({grey.begin() + from, grey.begin() + to});
   };
+  const auto first = static_cast<std::ptrdiff_t>((kLeast_mm - kFirst_mm) / kSpacing_mm);
+  if (std::ssize(grey) <= first) return std::nullopt;
+  // What is denser than the bone about the bore counts no more than that: else the far cortex would outdo the
+  // marrow before it.
+  const double densest = median_of(0, first) + 1.2 * std::max(contrast_hu, kLeastStep_hu);
+  for (double& hu : grey) hu = std::min(hu, densest);
   std::vector<double> jumps;
   for (std::size_t i = 1; i < grey.size(); ++i) jumps.push_back(std::abs(grey[i] - grey[i - 1]));
   const double noise = geometry::median(std::move(jumps), 0);
-  const double least = std::max({30.0, 5 * noise, 0.5 * contrast_hu});
+  const double least = std::max({kLeastStep_hu, 5 * noise, 0.5 * contrast_hu});
   const auto rise_at = [&](std::ptrdiff_t i) {
     return median_of(i, std::min(std::ssize(grey), i + ahead)) -
            median_of(std::max<std::ptrdiff_t>(0, i - behind), i);
   };
-  std::ptrdiff_t at = static_cast<std::ptrdiff_t>((kLeast_mm - kFirst_mm) / kSpacing_mm);
+  std::ptrdiff_t at = first;
   const std::ptrdiff_t last = std::ssize(grey) - 4;
   while (at <= last && rise_at(at) < least) ++at;
   if (at > last) return std::nullopt;

@@ -24,6 +24,8 @@ constexpr double kLeastSeen = 0.5;
 constexpr double kMostEntrySigma_mm = 0.25, kMostDirectionSigma_deg = 0.5;
 // Pieces of the bore lie off its axis by no more than this.
 constexpr double kMostBend_mm = 0.6, kPiece_mm = 8, kPieceKnown_mm = 0.2;
+// Beyond the end of a socket there is no wall.
+constexpr double kBeyondFrom_mm = 2, kBeyondTo_mm = 10, kAsWide_mm = 1;
 constexpr double kMetalOfPiece = 0.05;
 // Of a stretch, from which on it says nothing of the wall.
 constexpr double kMetalFilled = 0.5;
@@ -35,7 +37,7 @@ struct Candidate {
   Passage passage{};
   SeenMouth mouth;
   double length_mm = 0, seen_share = 0, metal_share = 0, clear_mm = 0, bend_mm = 0;
-  bool comes_out = false, has_end = false, is_by_screw = false;
+  bool comes_out = false, has_end = false, goes_on = false, is_by_screw = false;
   std::vector<std::string> doubts;
 
   [[nodiscard]] double merit() const {
@@ -80,6 +82,7 @@ class Finder {
     candidate.mouth = mouth_at(sampler_, postop_from_plan_, bone_, candidate.passage.entry_mm,
                                candidate.fit.direction, candidate.fit.radius_mm);
     candidate.bend_mm = bend(voxels, candidate);
+    candidate.goes_on = goes_on(voxels, candidate);
     describe(candidate);
     return candidate;
   }
@@ -154,6 +157,17 @@ class Finder {
     return most;
   }
 
+  // Whether its wall is seen beyond where it is said to end, as wide as before.
+  [[nodiscard]] bool goes_on(const std::vector<WallVoxel>& voxels, const Candidate& candidate) const {
+    const double from = candidate.length_mm + kBeyondFrom_mm, to = candidate.length_mm + kBeyondTo_mm;
+    if (candidate.comes_out || to > candidate.passage.length_mm()) return false;
+    const TunnelFit beyond =
+        fit_tunnel(voxels, bore_of(candidate.fit, candidate.passage), from, to, Wall::Clear);
+    return beyond.is_fitted && std::abs(beyond.radius_mm - candidate.fit.radius_mm) < kAsWide_mm &&
+           std::all_of(beyond.stretches.begin(), beyond.stretches.end(),
+                       [](const Stretch& stretch) { return stretch.seen_share > kLeastSeen; });
+  }
+
   static void describe(Candidate& c) {
     double seen = 0, weight = 0, metal = 0;
     for (const Stretch& stretch : c.fit.stretches) {
@@ -191,6 +205,7 @@ class Finder {
     const double diameter = 2 * c.fit.radius_mm;
     if (diameter < kLeastDiameter_mm || diameter > kMostDiameter_mm)
       doubts.push_back(files::format("its diameter of %.1f mm is none of a tunnel", diameter));
+    if (c.goes_on) doubts.emplace_back("its wall goes on beyond where it seems to end");
     if (!c.has_end) doubts.emplace_back("where it ends is not seen");
   }
 
