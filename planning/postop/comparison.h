@@ -12,9 +12,9 @@
 //      it. It ends where it comes out in the same way, or where the grey of its middle steps up.
 //
 // Use it for CT. What it does not tell: a tunnel whose graft is as dense as the marrow and that has no denser
-// rim (its cortex alone gives a place, no direction: said to be unreliable); which of two tunnels is the
-// planned one (the nearer, unreliable); a bore that is bent, or drilled in steps of two diameters beyond the
-// first of them. A loose screw alone in a tunnel says nothing of the tunnel.
+// rim, or that lies in marrow of fat (not found); which of two tunnels is the planned one (the nearer,
+// unreliable); a bore that is bent, or one of two diameters beyond the first of them. A loose screw alone in
+// a tunnel says nothing of the tunnel. Slices of 2 mm and more may be refused: they make a bone look longer.
 //
 // Frames: everything is in the plan's LPS, mm, unless its name says otherwise. Angles in rad.
 #pragma once
