@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 
+#include "app/case/case_calibration.h"
 #include "app/command_line/demo_pictures.h"
 #include "app/command_line/tracking_report.h"
 #include "app/report/report.h"
@@ -16,6 +17,7 @@
 #include "navigation/tools/pivot_calibration.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/quantile.h"
 #include "planning/phantom/phantom_case.h"
 
@@ -114,13 +116,14 @@ class Demo {
     }
     calibration::CalibrationOptions options;
     options.square_mm = simulation_.square_mm;
-    options.scope_name = "simulated arthroscope";
-    const calibration::CalibrationSummary summary = calibration::calibrate(pictures, options);
+    options.scope_name = open_case::kSimulatedScope;
+    calibration::CalibrationSummary summary = calibration::calibrate(pictures, options);
     if (!summary.is_usable()) {
       context_.say_unreliable("the calibration", summary.reasons);
       return false;
     }
     for (const std::string& note : summary.notes) context_.say("          " + note);
+    summary.record.provenance = {provenance::Origin::Simulated, summary.record.date_utc};
     camera::write_camera_file(cases::camera_file(options_.case_folder), summary.record);
     navigation_.source.pipeline.calibration = summary.record.calibration;
     const camera::Calibration& found = summary.record.calibration;
@@ -169,6 +172,9 @@ class Demo {
     }
     if (summary.is_usable()) {
       probe->tip_mm = summary.tip_in_tool_mm;
+      probe->tip_covariance_mm2 = summary.tip_error_mm2();
+      probe->residual_mm = summary.rms_mm;
+      probe->provenance = {provenance::Origin::Simulated, files::utc_now()};
     } else {
       context_.say_unreliable("the pivot (the tip stays as made)", summary.reasons);
     }

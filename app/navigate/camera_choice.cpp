@@ -2,17 +2,21 @@
 
 #include <imgui_stdlib.h>
 
+#include <algorithm>
+
 #include "navigation/sources/frame_source.h"
 
 namespace arthronaut::navigate {
 
 void CameraChoice::open(const std::vector<sources::ConnectedCamera>& cameras,
-                        const std::vector<std::string>& streams) {
+                        const std::vector<std::string>& streams, const std::optional<LivePictures>& before) {
   *this = {};
   is_open_ = true;
   for (const sources::ConnectedCamera& camera : cameras) offered_.push_back({camera.name, camera.index, ""});
   for (const std::string& address : streams)
     offered_.push_back({sources::shown_address(address), std::nullopt, address});
+  const auto same = std::find(offered_.begin(), offered_.end(), before);
+  if (same != offered_.end()) chosen_ = static_cast<std::size_t>(same - offered_.begin());
   wants_focus_ = offered_.empty();
 }
 
@@ -69,7 +73,7 @@ std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widg
   const bool is_entered = ImGui::InputText("##stream", &text_, ImGuiInputTextFlags_EnterReturnsTrue);
   ui.log.note("navigate.stream_field", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   is_typing_ = ImGui::IsItemActive();
-  const bool was_left = !wants_focus_ && ImGui::IsItemDeactivated();
+  const bool was_left = !wants_focus_ && ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGuiKey_Escape);
   wants_focus_ = false;
   widgets::text_centered(ui, box, ui.theme.body, widgets::kQuietText,
                          "K: the next one    Space: open it    Esc: none");
@@ -77,7 +81,7 @@ std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widg
     if (auto taken = take_address(text_)) return taken;
     wants_focus_ = true;
   } else if (was_left) {
-    close();  // Esc, while it was typed in
+    close();
   }
   return std::nullopt;
 }

@@ -16,12 +16,15 @@ struct LivePictures {
   std::string name;           // for the screen: what the camera is called, the address without a password
   std::optional<int> device;  // of /dev/videoN
   std::string address;        // of a stream, where it is no device
+  [[nodiscard]] bool operator==(const LivePictures& other) const = default;
 };
 
 class CameraChoice {
  public:
-  // Offers them, the first one chosen. Where there is none at all the field waits for an address.
-  void open(const std::vector<sources::ConnectedCamera>& cameras, const std::vector<std::string>& streams);
+  // Offers them; the one that was used before is chosen, else the first. Where there is none at all the field
+  // waits for an address.
+  void open(const std::vector<sources::ConnectedCamera>& cameras, const std::vector<std::string>& streams,
+            const std::optional<LivePictures>& before = std::nullopt);
   void close() { *this = {}; }
   [[nodiscard]] bool is_open() const { return is_open_; }
   // In turn; after the last one the field, in which an address is typed.

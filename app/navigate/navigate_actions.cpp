@@ -222,7 +222,9 @@ void NavigateView::add_registration_actions(widgets::Actions& actions) {
        GLFW_KEY_A,
        0,
        false,
-       [this] { return is_running() && !live_->operation->guide_check.may_guide(); },
+       [this] {
+         return is_running() && live_->operation->guide_check.standing != operation::GuideStanding::NotAsked;
+       },
        {},
        [this] { ask(operation::CheckGuide{}); }});
   actions.add(

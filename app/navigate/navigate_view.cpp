@@ -150,7 +150,8 @@ void NavigateView::start_live(const LivePictures& pictures) {
   try {
     start(camera_setup(*model_, choices_.bone, case_folder_, pictures, turns_,
                        choices_.saline ? camera::kSalineIndex : camera::kAirIndex));
-    if (!pictures.device) note_stream(known_streams_file(), pictures.address);
+    used_before_ = pictures;
+    stream_is_new_ = !pictures.device;
   } catch (const std::runtime_error& error) {
     notice_ = error.what();
     cameras_.close();
@@ -159,7 +160,7 @@ void NavigateView::start_live(const LivePictures& pictures) {
 
 void NavigateView::choose_camera() {
   if (cameras_.is_open()) return cameras_.choose_next();
-  cameras_.open(sources::connected_cameras(), load_known_streams(known_streams_file()));
+  cameras_.open(sources::connected_cameras(), load_known_streams(known_streams_file()), used_before_);
   if (const auto only = cameras_.chosen(); only && only->device && cameras_.count() == 1) start_live(*only);
 }
 
@@ -307,6 +308,11 @@ void NavigateView::read_live() {
     if (const std::string failure = operation->failure(); !failure.empty()) notice_ = failure;
   } else {
     live_ = TheatreBones::nothing();
+  }
+  // An address that gave no picture is not worth keeping.
+  if (stream_is_new_ && live_->phase == Phase::Running && live_->picture != nullptr) {
+    stream_is_new_ = false;
+    note_stream(known_streams_file(), used_before_->address);
   }
   const bool is_same = live_->operation->registration == seen->operation->registration;
   if (is_same && is_of_source_before(*live_) == is_of_source_before(*seen)) return;

@@ -87,7 +87,9 @@ class NavigateView : public mode::Mode {
   ResumeOffer resume_;
   DepthEntry depth_;
   CameraChoice cameras_;
-  std::string patient_;  // in words; empty: not known
+  std::optional<LivePictures> used_before_;  // live, last
+  bool stream_is_new_ = false;               // that, and it gave no picture yet
+  std::string patient_;                      // in words; empty: not known
   NavigateChoices choices_;
   theatre::LiveStatePtr live_ = TheatreBones::nothing();  // of this frame, of the chosen bone; never null
   RegistrationWords words_;                               // of its registration

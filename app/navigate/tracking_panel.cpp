@@ -90,7 +90,7 @@ void draw_registration_row(const widgets::Ui& ui, const NavigateScreen& screen) 
 void draw_guide_check(const widgets::Ui& ui, const operation::GuideCheckState& guide) {
   if (guide.standing == operation::GuideStanding::Checked)
     widgets::status_row(ui, Severity::Good, "Nominal guide",
-                        widgets::fixed(guide.error_mm, 1) + " mm at the control point");
+                        widgets::fixed(guide.error_mm, 1) + " mm off where it was checked");
   if (guide.standing == operation::GuideStanding::Trusted)
     widgets::status_row(ui, Severity::Caution, "Nominal guide", "nobody checked it");
 }

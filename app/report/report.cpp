@@ -79,7 +79,7 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
                        : is_live      ? "not confirmed in this session"
                        : kind.empty() ? "not recorded"
                                       : "not asked: no live source"},
-          {"Check of a nominal guide", guide.empty() ? "none" : guide},
+          {"Check of a nominal guide", guide.empty() ? "none in this session" : guide},
           {"Alarms, void registrations", alarms.empty() ? "none" : alarms}};
 }
 

@@ -55,6 +55,10 @@ TouchRefusal GuideCheck::check(const std::optional<Eigen::Vector3d>& control_poi
   return TouchRefusal::None;
 }
 
+void GuideCheck::forget_point() {
+  if (state_.standing == GuideStanding::Off) state_ = {GuideStanding::Due};
+}
+
 void GuideCheck::trust() {
   if (!state_.may_guide()) state_ = {GuideStanding::Trusted};
 }

@@ -32,7 +32,8 @@ enum class GuideStanding {
 
 struct GuideCheckState {
   GuideStanding standing = GuideStanding::NotAsked;
-  double error_mm = 0;  // with Off and Checked: tip to control point
+  double error_mm = 0;     // with Off and Checked: tip to control point
+  bool has_point = false;  // a control point to hold it on, touched with this camera, probe and medium
   [[nodiscard]] bool may_guide() const {
     return standing != GuideStanding::Due && standing != GuideStanding::Off;
   }
@@ -51,6 +52,8 @@ class GuideCheck {
   // changes with a refusal.
   TouchRefusal check(const std::optional<Eigen::Vector3d>& control_point_mm, const TouchLimits& limits);
   void trust();
+  // The control point that it was held on is gone: that it was off there says nothing any more.
+  void forget_point();
 
   [[nodiscard]] const GuideCheckState& state() const { return state_; }
 

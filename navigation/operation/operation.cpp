@@ -69,6 +69,7 @@ void Operation::start_source(const SourceSetup& source) {
     p.note_plan();
   p.ledger.set_now(now);
   p.guide_check.begin(source.pipeline, now, source.kind == sources::SourceKind::Live);
+  p.note_guide_check();
   if (!p.strokes.points().empty() && registration::mismatch_of(p.strokes_of, now)) {
     p.set_aside_count += p.strokes.points().size();
     p.clear_strokes();
@@ -114,6 +115,7 @@ void Operation::apply(const Command& command) {
   Parts& p = *parts_;
   p.note(JournalKind::CommandGiven, to_text(command));
   std::visit([&](const auto& c) { p.apply(c); }, command);
+  if (!p.ledger.touches().has_control_point()) p.guide_check.forget_point();
   p.follow_ledger();
 }
 
@@ -173,6 +175,7 @@ OperationStatePtr Operation::state() {
   state->control_point_due = p.control_point_due();
   state->touch_refusal = p.touch.refusal;
   state->guide_check = p.guide_check.state();
+  state->guide_check.has_point = p.control_point_of_now_mm().has_value();
   state->touch_is_of_guide = p.touch.is_of_guide;
   state->touch_asked_ns = p.touch.time_ns;
   state->plan = p.plan;

@@ -46,20 +46,38 @@ void Operation::Parts::apply(const CheckGuide&) {
   if (guide_check.state().standing == GuideStanding::NotAsked) return;
   touch = {TouchRefusal::NoSource, true, frame.timestamp_ns};
   if (!has_source) return;
-  touch.refusal = guide_check.check(ledger.touches().control_point_mm(), setup.limits);
+  touch.refusal = guide_check.check(control_point_of_now_mm(), setup.limits);
   if (touch.refusal != TouchRefusal::None) return;
   const GuideCheckState& state = guide_check.state();
   note(JournalKind::GuideChecked,
        files::format("its tip lies %.1f mm from the control point", state.error_mm) +
            (state.may_guide() ? "" : files::format(", more than %.1f mm", setup.limits.max_guide_error_mm)));
-  if (!state.may_guide() && frame.guidance.is_valid())
-    hide_guidance(guidance::GuidanceState::GuideNotChecked);
+  if (state.may_guide()) return;
+  // What was seen of it was seen by wrong numbers.
+  if (drilling.evidence) drilling.evidence->clear();
+  drilling.evidence_is_seen = false;
+  if (frame.guidance.is_valid()) hide_guidance(guidance::GuidanceState::GuideNotChecked);
+}
+
+// Where the guide is held: none while the control point itself tells that the marker has moved.
+std::optional<Eigen::Vector3d> Operation::Parts::control_point_of_now_mm() const {
+  return ledger.alarm() ? std::nullopt : ledger.touches().control_point_mm(ledger.now());
+}
+
+// Each record says how the guide stands from its beginning on.
+void Operation::Parts::note_guide_check() {
+  const GuideCheckState& state = guide_check.state();
+  if (state.standing == GuideStanding::Checked)
+    note(JournalKind::GuideChecked,
+         files::format("before this source: its tip lay %.1f mm from the control point", state.error_mm));
+  if (state.standing == GuideStanding::Trusted)
+    note(JournalKind::GuideChecked, "nominal, and nobody checked it");
 }
 
 void Operation::Parts::apply(const TrustGuide&) {
   if (guide_check.state().may_guide()) return;
   guide_check.trust();
-  note(JournalKind::GuideChecked, "nominal, and nobody checked it");
+  note_guide_check();
 }
 
 // Once, and before the first source: what is known of this operation by then is its plan.

@@ -61,6 +61,7 @@ struct Operation::Parts {
   void clear_strokes();
   void take_touch(bool is_control_point);
   [[nodiscard]] std::optional<std::size_t> guide_in_view() const;
+  [[nodiscard]] std::optional<Eigen::Vector3d> control_point_of_now_mm() const;
   [[nodiscard]] ControlPointDue control_point_due() const;
   [[nodiscard]] Verification verification() const;
   [[nodiscard]] TimeOut time_out() const;
@@ -112,6 +113,7 @@ struct Operation::Parts {
   void apply(const TrustGuide&);
   void apply(const ResumeOperation& resume);
   void skip_verification(const std::string& how);
+  void note_guide_check();
 
   OperationSetup setup;
   RegistrationLedger ledger;

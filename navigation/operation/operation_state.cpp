@@ -164,7 +164,9 @@ NextAction next_action_of(const OperationState& state) {
   if (state.control_point_due == ControlPointDue::Set && !guides) return NextAction::SetControlPoint;
   if (state.control_point_due > ControlPointDue::Set) return NextAction::CheckControlPoint;
   if (!state.guide_check.may_guide())
-    return registration.touches.has_control_point() ? NextAction::CheckGuide : NextAction::SetControlPoint;
+    return state.guide_check.has_point                ? NextAction::CheckGuide
+           : registration.touches.has_control_point() ? NextAction::CheckControlPoint
+                                                      : NextAction::SetControlPoint;
   if (state.drilled.has_evidence) return NextAction::RecordDrilled;
   return guides ? NextAction::FollowBullseye : NextAction::BringGuide;
 }

@@ -71,12 +71,12 @@ void Touches::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm,
                                   const registration::Provenance& of) {
   last_of_ = of;
   last_is_of_now_ = true;
-  control_touches_mm_.push_back(tip_in_marker_mm);
-  if (control_touches_mm_.size() == 1) {
+  control_touches_.push_back({tip_in_marker_mm, of});
+  if (control_touches_.size() == 1) {
     last_ = Last::Kind::ControlSet;
     return;
   }
-  control_shift_mm_ = (tip_in_marker_mm - control_touches_mm_.front()).norm();
+  control_shift_mm_ = (tip_in_marker_mm - control_touches_.front().tip_in_marker_mm).norm();
   // One that is back where it was takes the suspicion away.
   control_violations_ = control_shift_mm_ > limits_.max_control_shift_mm ? control_violations_ + 1 : 0;
   last_ = Last::Kind::ControlAgain;
@@ -100,7 +100,13 @@ std::vector<Eigen::Vector3d> Touches::places_mm() const {
 }
 
 std::optional<Eigen::Vector3d> Touches::control_point_mm() const {
-  return control_touches_mm_.empty() ? std::nullopt : std::optional(control_touches_mm_.front());
+  return control_touches_.empty() ? std::nullopt : std::optional(control_touches_.front().tip_in_marker_mm);
+}
+
+std::optional<Eigen::Vector3d> Touches::control_point_mm(const registration::Provenance& now) const {
+  const bool is_of_now =
+      !control_touches_.empty() && !registration::mismatch_of(control_touches_.back().of, now);
+  return is_of_now ? std::optional(control_touches_.back().tip_in_marker_mm) : std::nullopt;
 }
 
 void Touches::judge(const registration::RegistrationSummary* registration, const geometry::Surface* surface,

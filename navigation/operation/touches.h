@@ -84,11 +84,14 @@ class Touches {
              const std::optional<registration::CartilageRegion>& cartilage,
              const registration::Provenance& now);
 
-  [[nodiscard]] bool has_control_point() const { return !control_touches_mm_.empty(); }
+  [[nodiscard]] bool has_control_point() const { return !control_touches_.empty(); }
   [[nodiscard]] std::size_t count() const { return touches_.size(); }
   // Where they were, world-marker frame; of the control point: as it was touched first.
   [[nodiscard]] std::vector<Eigen::Vector3d> places_mm() const;
   [[nodiscard]] std::optional<Eigen::Vector3d> control_point_mm() const;
+  // As it was touched last with this camera, probe, medium, source and placement of the marker; empty: it was
+  // not. The one before tells a bumped marker all the same.
+  [[nodiscard]] std::optional<Eigen::Vector3d> control_point_mm(const registration::Provenance& now) const;
   // Signed, mm, in the order of the touches; empty while there is no registration to judge by, nullopt on
   // cartilage of unknown thickness and for touches of another provenance.
   [[nodiscard]] const std::vector<std::optional<double>>& residuals_mm() const { return residuals_mm_; }
@@ -107,9 +110,13 @@ class Touches {
     registration::Provenance of;
     bool is_new_place;
   };
+  struct ControlTouch {
+    Eigen::Vector3d tip_in_marker_mm;
+    registration::Provenance of;
+  };
   TouchLimits limits_;
   std::vector<Touch> touches_;
-  std::vector<Eigen::Vector3d> control_touches_mm_;
+  std::vector<ControlTouch> control_touches_;
   std::vector<std::optional<double>> residuals_mm_;
   double control_shift_mm_ = 0;
   int control_violations_ = 0;

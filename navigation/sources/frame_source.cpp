@@ -63,7 +63,7 @@ std::unique_ptr<FrameSource> open_video(const std::filesystem::path& video_or_pa
     if (is_printf_pattern(video_or_pattern)) return logged(open_still_images(video_or_pattern));
     if (is_stream_address(video_or_pattern.string())) {
       throw InvalidInput(
-          video_or_pattern, "",
+          shown_address(video_or_pattern.string()), "",
           "is a stream, and this needs a recording, which can be read again: give a video file");
     }
     throw IoError(video_or_pattern, "no such file");
@@ -74,16 +74,6 @@ std::unique_ptr<FrameSource> open_video(const std::filesystem::path& video_or_pa
 }
 
 bool is_stream_address(std::string_view text) { return text.starts_with(kPipeline) || is_address(text); }
-
-std::string shown_address(const std::string& address) {
-  const std::size_t scheme = address.find("://");
-  if (scheme == std::string::npos) return address;
-  const std::size_t host = scheme + 3, path = std::min(address.find('/', host), address.size());
-  const std::size_t at = address.rfind('@', path);
-  // In "udp://@:5000" nobody is before it: there it stands for every interface.
-  if (at == std::string::npos || at <= host || at >= path) return address;
-  return address.substr(0, host) + address.substr(at + 1);
-}
 
 std::unique_ptr<FrameSource> open_stream(const std::string& address) {
   if (address.starts_with(kPipeline))

@@ -64,8 +64,9 @@ class FrameSource {
 // Whether text names a stream, by its form alone.
 [[nodiscard]] bool is_stream_address(std::string_view text);
 
-// As an address may stand on a screen, in a message and in a record: "rtsp://user:password@host/scope"
-// without what is before the "@".
+// As an address or a pipeline may stand on a screen, in a message and in a record: of
+// "rtsp://user:password@host/scope" without what is before the "@", and "***" for a password that is given by
+// name ("user-pw=...").
 [[nodiscard]] std::string shown_address(const std::string& address);
 
 // What a user names: "/dev/videoN", a stream, or what open_video() opens.

@@ -44,7 +44,8 @@ constexpr const char* kCaps = "video/x-raw,format=(string){ I420, NV12, BGR, GRA
 std::string with_conversion(const std::string& pipeline) {
   const std::size_t sink = pipeline.rfind("appsink");
   if (sink == std::string::npos)
-    throw InvalidInput("gst:" + pipeline + ": must end in an appsink: gst:videotestsrc ! appsink");
+    throw InvalidInput(shown_address("gst:" + pipeline) +
+                       ": must end in an appsink: gst:videotestsrc ! appsink");
   return pipeline.substr(0, sink) + "videoconvert ! " + pipeline.substr(sink);
 }
 
@@ -98,7 +99,7 @@ class GStreamerPipeline final : public FrameSource {
  public:
   explicit GStreamerPipeline(const std::string& pipeline) {
     gst_init(nullptr, nullptr);
-    info_.name = "gst:" + pipeline;
+    info_.name = shown_address("gst:" + pipeline);
     info_.kind = SourceKind::Live;
     GError* problem = nullptr;
     pipeline_.reset(gst_parse_launch(with_conversion(pipeline).c_str(), &problem));

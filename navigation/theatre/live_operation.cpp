@@ -109,8 +109,18 @@ class Loop {
   }
   void take(const EndSource&) {
     if (!run_.has_source()) return;
-    run_.end_source();
-    live_.phase = LiveState::Phase::Ended;
+    end(LiveState::Phase::Ended);
+  }
+  // Whatever ending it throws: the screen knows that it has ended.
+  void end(LiveState::Phase phase, const std::string& message = "") {
+    live_.phase = phase;
+    live_.message = message;
+    try {
+      run_.end_source();
+    } catch (const std::exception& error) {
+      live_.phase = LiveState::Phase::Failed;
+      live_.message = error.what();
+    }
     publish();
   }
   void take(const KeepVideo& keep) {
@@ -130,16 +140,9 @@ class Loop {
     try {  // a source that fails ends, and what was made stays
       step = run_.step();
     } catch (const std::exception& error) {
-      run_.end_source();
-      live_.phase = LiveState::Phase::Failed;
-      live_.message = error.what();
-      return publish();
+      return end(LiveState::Phase::Failed, error.what());
     }
-    if (step.has_ended) {
-      run_.end_source();
-      live_.phase = LiveState::Phase::Ended;
-      return publish();
-    }
+    if (step.has_ended) return end(LiveState::Phase::Ended);
     if (step.picture == nullptr) return;  // the screen sees for itself how old the last one is
     const operation::OperationStatePtr state = run_.state_of_frame();
     if (options_.decorate) live_.decoration = options_.decorate(*state);

@@ -96,6 +96,9 @@ class Navigation {
     return true;
   }
 
+  // Nothing comes of it: a copy of the video is not worth its time.
+  void give_up() { run_.keep_video(recording::KeepVideo::No, {}); }
+
   NavigationSummary finish() {
     apply(operation::RegisterStrokes{});
     const operation::OperationStatePtr state = run_.state();
@@ -158,8 +161,14 @@ NavigationSummary navigate_source(const std::shared_ptr<sources::FrameSource>& s
     }
   } catch (const DeviceError& error) {
     // What was made until then stays: a camera that is pulled out is the end of many an operation.
-    if (!source->info().is_live()) throw;
+    if (!source->info().is_live()) {
+      navigation.give_up();
+      throw;
+    }
     ending = error.what();
+  } catch (...) {
+    navigation.give_up();
+    throw;
   }
   NavigationSummary summary = navigation.finish();
   summary.ending = std::move(ending);

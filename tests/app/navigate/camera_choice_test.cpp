@@ -34,6 +34,16 @@ TEST(CameraChoice, OffersCamerasThenStreamsThenTheField) {
   EXPECT_FALSE(choice.is_open() || choice.chosen() || choice.wants_text());
 }
 
+// What was used before is what is opened again.
+TEST(CameraChoice, WhatWasUsedBeforeIsChosen) {
+  const LivePictures stream{"udp://@:5000", std::nullopt, "udp://@:5000"};
+  CameraChoice choice;
+  choice.open({{0, "Webcam"}}, {"rtsp://tower/scope", "udp://@:5000"}, stream);
+  EXPECT_EQ(choice.chosen(), stream);
+  choice.open({{0, "Webcam"}}, {"rtsp://tower/scope"}, stream);
+  EXPECT_EQ(choice.chosen()->name, "Webcam") << "it is gone";
+}
+
 // Where nothing is connected and nothing known, an address is all there is to say.
 TEST(CameraChoice, WithoutAnyTheFieldWaits) {
   CameraChoice choice;

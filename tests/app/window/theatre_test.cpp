@@ -312,7 +312,7 @@ TEST_F(Theatre, AStreamIsNamedInTheWindowAndIsLive) {
     EXPECT_EQ(app.state("cameras"), "address");
     EXPECT_EQ(app.state("depth_stop"), "none") << "E is no key while it is typed";
     EXPECT_EQ(app.state("view"), "as it came");
-    // The field takes two frames to be typed in again, and a key meanwhile is nobody's.
+    // The field takes two frames to be typed in again.
     const auto closes = [&] {
       app.press("Escape");
       return app.wait_for_state("cameras", "none", 2);

@@ -117,6 +117,65 @@ TEST(GuideCheck, IsRefusedWithItsReason) {
   EXPECT_EQ(run.count(JournalKind::GuideChecked), 0);
 }
 
+// The place that the guide is held on is the one that this probe, seen this way, has touched: a control point
+// of before tells a bumped marker, and nothing of the guide.
+TEST(GuideCheck, Hazard6AControlPointOfBeforeIsNoPlaceToHoldItOn) {
+  PhantomOperation run;
+  run.start(nominal_source(SourceKind::Recording));
+  const Eigen::Vector3d before_mm = test::on_bone(trial(), 2);
+  run.touch(before_mm, TouchControlPoint{});
+  const SourceSetup source = nominal_source();
+  run.start(source);
+  run.apply(test::true_registration(trial(), provenance_of(run.operation().setup(), source)));
+  for (const double dx_mm : {0.0, 4.0, -4.0}) run.touch(test::on_bone(trial(), dx_mm));
+  hold_guide(run, before_mm);
+  run.apply(CheckGuide{});
+  EXPECT_EQ(run.state()->touch_refusal, TouchRefusal::NoControlPoint);
+  EXPECT_EQ(run.state()->next_action, NextAction::CheckControlPoint);
+  const Eigen::Vector3d now_mm = before_mm + Eigen::Vector3d(0.9, 0, 0);
+  run.touch(now_mm, TouchControlPoint{});
+  hold_guide(run, now_mm + Eigen::Vector3d(1, 0, 0));
+  EXPECT_EQ(run.state()->next_action, NextAction::CheckGuide);
+  run.apply(CheckGuide{});
+  EXPECT_NEAR(run.state()->guide_check.error_mm, 1, 1e-9) << "from where it was touched now";
+  EXPECT_EQ(run.state()->guide_check.standing, GuideStanding::Checked);
+}
+
+// A marker that was bumped is no guide that is off: with the control point that verdict goes, and while an
+// alarm stands none is found.
+TEST(GuideCheck, ThatItIsOffGoesWithTheControlPoint) {
+  PhantomOperation run;
+  bring_to_the_guide(run, nominal_source());
+  hold_guide(run, test::on_bone(trial(), 2) + Eigen::Vector3d(5, 0, 0));
+  run.apply(CheckGuide{});
+  ASSERT_EQ(run.state()->guide_check.standing, GuideStanding::Off);
+  run.apply(MarkerPlacedAnew{});
+  EXPECT_EQ(run.state()->guide_check.standing, GuideStanding::Due);
+  EXPECT_EQ(run.state()->guide_check.error_mm, 0);
+  PhantomOperation bumped;
+  bring_to_the_guide(bumped, nominal_source());
+  for (int i = 0; i < 2; ++i)
+    bumped.touch(test::on_bone(trial(), 2) + Eigen::Vector3d(4, 0, 0), TouchControlPoint{});
+  ASSERT_EQ(bumped.in_force().standing, Standing::Alarm);
+  hold_guide(bumped, test::on_bone(trial(), 2));
+  bumped.apply(CheckGuide{});
+  EXPECT_EQ(bumped.state()->guide_check.standing, GuideStanding::Due);
+}
+
+// What was seen of a guide that turns out to be off is no evidence of a tunnel.
+TEST(GuideCheck, AGuideThatIsOffLeavesNoEvidence) {
+  PhantomOperation run;
+  bring_to_the_guide(run, nominal_source());
+  run.apply(TrustGuide{});
+  for (int i = 0; i < 200; ++i) run.show_guide(0.1 * i);
+  ASSERT_TRUE(run.state()->drilled.has_evidence);
+  hold_guide(run, test::on_bone(trial(), 2) + Eigen::Vector3d(5, 0, 0));
+  run.apply(CheckGuide{});
+  EXPECT_FALSE(run.state()->drilled.has_evidence);
+  run.apply(TunnelDrilled{});
+  EXPECT_FALSE(run.state()->drilled.tunnel);
+}
+
 // A guide that was measured, and whatever drills nobody, is not held against anything; nor is a bone whose
 // tools hold no guide.
 TEST(GuideCheck, IsAskedForANominalGuideInALiveSourceAlone) {
@@ -152,6 +211,8 @@ TEST(GuideCheck, HoldsForThisGuideSeenThisWayAlone) {
   check();
   run.start(source);
   EXPECT_EQ(run.state()->guide_check.standing, GuideStanding::Checked);
+  EXPECT_EQ(run.last_text(JournalKind::GuideChecked),
+            "before this source: its tip lay 0.0 mm from the control point");
   run.apply(MarkerPlacedAnew{});
   run.start(source);
   EXPECT_EQ(run.state()->guide_check.standing, GuideStanding::Checked);

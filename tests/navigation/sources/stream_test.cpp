@@ -127,8 +127,17 @@ TEST(Stream, AnotherSizeIsAnotherCamera) {
 TEST(Stream, AnAddressIsShownWithoutItsPassword) {
   EXPECT_EQ(shown_address("rtsp://user:secret@tower:554/scope@2"), "rtsp://tower:554/scope@2");
   EXPECT_EQ(shown_address("rtsp://user@tower"), "rtsp://tower");
+  EXPECT_EQ(shown_address("rtsp://user:sec/ret@tower/scope"), "rtsp://tower/scope");
+  EXPECT_EQ(shown_address("rtsp://user:se@cret@tower/scope"), "rtsp://tower/scope");
+  EXPECT_EQ(shown_address("gst:rtspsrc location=\"rtsp://user:secret@tower/a\" user-pw=secret ! appsink"),
+            "gst:rtspsrc location=\"rtsp://tower/a\" user-pw=*** ! appsink");
+  EXPECT_EQ(shown_address("srt://tower:9000?passphrase=secret&mode=caller"),
+            "srt://tower:9000?passphrase=***&mode=caller");
   for (const char* plain : {"rtsp://tower/scope", "udp://@:5000", "gst:a@b ! appsink", "rtsp://tower/a@b"})
     EXPECT_EQ(shown_address(plain), plain);
+  EXPECT_THAT(message_of<InvalidInput>(
+                  [] { (void)open_source("gst:rtspsrc location=rtsp://user:secret@tower/a ! fakesink"); }),
+              AllOf(HasSubstr("rtsp://tower/a"), Not(HasSubstr("secret"))));
   EXPECT_THAT(message_of<DeviceError>([] { (void)open_source("rtsp://user:secret@127.0.0.1:1/scope"); }),
               AllOf(HasSubstr("rtsp://127.0.0.1:1/scope: "), Not(HasSubstr("secret"))));
 }
