@@ -111,7 +111,7 @@ void import(Context& context, const ImportArguments& arguments) {
   }
   if (process.state() != importing::ImportProcess::State::Done) throw InvalidInput(process.message());
   importing::BoneImport import = process.take_result();
-  if (arguments.without_identity) import.identity = {};
+  if (arguments.without_identity) import.forget_patient();
   const cases::Case target = importing::add_to_case(folder, import, arguments.name, arguments.source);
 
   for (const auto& line : import.lines) context.say(line);
@@ -162,8 +162,9 @@ void add_import_command(CLI::App& app, Context& context) {
   sub->add_option("--memory-limit-gib", arguments->memory_limit_gib,
                   "Memory that reading and surface making may take; default: 2")
       ->check(CLI::PositiveNumber);
-  sub->add_flag("--without-identity", arguments->without_identity,
-                "Do not keep whose bones they are; else identity.json holds what a DICOM source says");
+  sub->add_flag(
+      "--without-identity", arguments->without_identity,
+      "Do not keep whose bones they are; else identity.json and study.json hold what a DICOM source says");
   sub->callback([&context, arguments] { import(context, *arguments); });
   // What ImportProcess starts this program with; not for a person.
   CLI::App* child = app.add_subcommand(importing::kImportChildWord)->group("");

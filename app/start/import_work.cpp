@@ -178,7 +178,7 @@ void ImportWork::save(const fs::path& folder, const std::string& name) {
   failure_.clear();
   folder_ = folder;
   importing::BoneImport import = result_;
-  if (!wishes_.keeps_identity) import.identity = {};
+  if (!wishes_.keeps_identity) import.forget_patient();
   saving_ =
       std::async(std::launch::async, [this, folder, name, import = std::move(import), root = sources_.root] {
         const struct AtEnd {

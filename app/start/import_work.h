@@ -29,7 +29,7 @@ struct ImportWishes {
   std::vector<std::size_t> sources;      // of the list; one volume, or meshes of different bones
   std::optional<bones::Side> side = {};  // nullopt: as names and images tell; asked for where they do not
   std::optional<double> threshold = {};
-  bool keeps_identity = true;  // whose bones they are, in identity.json
+  bool keeps_identity = true;  // whose bones they are, in identity.json and study.json
 };
 
 class ImportWork {

@@ -1,12 +1,10 @@
 #include "planning/cases/identity.h"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "planning/files/atomic_file.h"
+#include "planning/cases/private_json.h"
 #include "planning/files/json_document.h"
-#include "planning/geometry/error.h"
 
 namespace arthronaut::cases {
 
@@ -57,28 +55,12 @@ std::optional<Identity> load_identity(const fs::path& case_folder) {
 
 void save_identity(const fs::path& case_folder, const Identity& identity) {
   const fs::path file = identity_file(case_folder);
-  if (identity.is_empty()) {
-    std::error_code error;
-    fs::remove(file, error);
-    if (error) throw IoError(file, "cannot remove: " + error.message());
-    return;
-  }
-  const nlohmann::ordered_json json = {{"format", kFormat},
-                                       {"version", kVersion},
-                                       {"patient_name", identity.patient_name},
-                                       {"patient_id", identity.patient_id},
-                                       {"birth_date", identity.birth_date}};
-  // Names in an old character set must not stop the import: bytes that are no UTF-8 are replaced.
-  const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-  files::write_atomically(file, [&](const fs::path& temporary) {
-    std::ofstream stream(temporary, std::ios::binary);
-    // Before the first byte is in it.
-    std::error_code error;
-    fs::permissions(temporary, fs::perms::owner_read | fs::perms::owner_write, error);
-    if (!stream || error) throw IoError(temporary, "cannot create");
-    stream << text << std::flush;
-    if (!stream) throw IoError(temporary, "cannot write");
-  });
+  if (identity.is_empty()) return remove_private_json(file);
+  write_private_json(file, {{"format", kFormat},
+                            {"version", kVersion},
+                            {"patient_name", identity.patient_name},
+                            {"patient_id", identity.patient_id},
+                            {"birth_date", identity.birth_date}});
 }
 
 }  // namespace arthronaut::cases

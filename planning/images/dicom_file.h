@@ -27,6 +27,8 @@ namespace arthronaut::images {
 
 // All values of the element, a backslash between them, without blanks around; empty when absent.
 [[nodiscard]] std::string text_of(DcmItem& item, const DcmTagKey& key);
+// The same in UTF-8, from the character set that the data set names. Text that is not of it stays as it is.
+[[nodiscard]] std::string utf8_text_of(DcmItem& dataset, const DcmTagKey& key);
 // nullopt unless the element holds exactly `count` finite numbers.
 [[nodiscard]] std::optional<std::vector<double>> decimals_of(DcmItem& item, const DcmTagKey& key,
                                                              std::size_t count);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <iterator>
+#include <set>
 
 #include "planning/geometry/error.h"
 #include "planning/images/dicom_study.h"
@@ -50,6 +51,20 @@ DicomSlices chosen_series(const fs::path& source, DicomStudy study, const std::s
   return std::move(*matching.front());
 }
 
+// Of one series, so its first slice speaks for all; the images are all that are of its class.
+DicomOrigin origin_of(const DicomSlices& slices) {
+  DicomOrigin origin = *slices.front().origin;
+  std::set<const DicomOrigin*> seen{slices.front().origin.get()};
+  for (const DicomSlice& slice : slices) {
+    // Frames of one file share theirs.
+    if (slice.origin->sop_class_uid != origin.sop_class_uid || !seen.insert(slice.origin.get()).second)
+      continue;
+    const auto& uids = slice.origin->sop_instance_uids;
+    origin.sop_instance_uids.insert(origin.sop_instance_uids.end(), uids.begin(), uids.end());
+  }
+  return origin;
+}
+
 }  // namespace
 
 Volume read_dicom(const fs::path& source, const VolumeFileOptions& options) {
@@ -60,6 +75,7 @@ Volume read_dicom(const fs::path& source, const VolumeFileOptions& options) {
   DicomStack stack = stacked(source, std::move(chosen));
   DicomSlices& slices = stack.slices;
   const DicomSlice& first = slices.front();
+  if (options.on_origin) options.on_origin(origin_of(slices));
   Volume volume;
   volume.format = "DICOM";
   volume.notes = {description};

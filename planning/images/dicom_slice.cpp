@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <utility>
 
 #include "planning/geometry/error.h"
 #include "planning/images/dicom_file.h"
@@ -14,6 +15,26 @@ namespace arthronaut::images {
 
 namespace {
 
+DicomOrigin origin_of(DcmDataset& dataset) {
+  DicomOrigin origin;
+  const std::pair<DcmTagKey, std::string*> texts[] = {
+      {DCM_StudyInstanceUID, &origin.study_uid},
+      {DCM_StudyID, &origin.study_id},
+      {DCM_AccessionNumber, &origin.accession_number},
+      {DCM_ReferringPhysicianName, &origin.referring_physician},
+      {DCM_StudyDate, &origin.study_date},
+      {DCM_StudyTime, &origin.study_time},
+      {DCM_PatientSex, &origin.patient_sex},
+      {DCM_IssuerOfPatientID, &origin.patient_id_issuer},
+      {DCM_SeriesInstanceUID, &origin.series_uid},
+      {DCM_FrameOfReferenceUID, &origin.frame_of_reference_uid},
+      {DCM_SOPClassUID, &origin.sop_class_uid}};
+  for (const auto& [key, text] : texts) *text = utf8_text_of(dataset, key);
+  if (std::string uid = text_of(dataset, DCM_SOPInstanceUID); !uid.empty())
+    origin.sop_instance_uids.push_back(std::move(uid));
+  return origin;
+}
+
 DicomSlice common_part(const std::filesystem::path& file, DcmDataset& dataset) {
   DicomSlice slice;
   slice.file = file;
@@ -21,8 +42,9 @@ DicomSlice common_part(const std::filesystem::path& file, DcmDataset& dataset) {
   slice.series_number = text_of(dataset, DCM_SeriesNumber);
   slice.description = text_of(dataset, DCM_SeriesDescription);
   slice.modality = text_of(dataset, DCM_Modality);
-  slice.patient = {text_of(dataset, DCM_PatientName), text_of(dataset, DCM_PatientID),
+  slice.patient = {utf8_text_of(dataset, DCM_PatientName), utf8_text_of(dataset, DCM_PatientID),
                    text_of(dataset, DCM_PatientBirthDate)};
+  slice.origin = std::make_shared<const DicomOrigin>(origin_of(dataset));
   slice.frame.rows = unsigned_short_of(dataset, DCM_Rows, 0);
   slice.frame.columns = unsigned_short_of(dataset, DCM_Columns, 0);
   if (const auto frames = decimals_of(dataset, DCM_NumberOfFrames, 1)) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "planning/images/dicom_origin.h"
 #include "planning/images/dicom_pixels.h"
 #include "planning/images/volume.h"
 
@@ -26,6 +27,7 @@ struct DicomSlice {
   Eigen::Vector3d along_rows = Eigen::Vector3d::Zero();     // unit, of increasing row index
   double column_spacing_mm = 0, row_spacing_mm = 0;
   std::optional<double> echo_time_ms;
+  std::shared_ptr<const DicomOrigin> origin;  // of the whole file
   std::shared_ptr<const DicomPixels> pixels;  // of the whole file
 
   [[nodiscard]] Eigen::Vector3d normal() const;

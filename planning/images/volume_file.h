@@ -11,6 +11,7 @@
 #include <functional>
 #include <string>
 
+#include "planning/images/dicom_origin.h"
 #include "planning/images/volume.h"
 
 namespace arthronaut::images {
@@ -23,6 +24,8 @@ struct VolumeFileOptions {
   std::size_t most_bytes = std::size_t{2} << 30;
   // Called now and then on the same thread, with a fraction that grows to 1. May throw, to stop.
   std::function<void(double fraction)> on_progress = nullptr;
+  // DICOM: called once on the same thread, before the pixels are read, with what the chosen series is of.
+  std::function<void(const DicomOrigin& origin)> on_origin = nullptr;
 };
 
 // Throws IoError when something cannot be read, InvalidInput (file, place, reason) for everything else: no

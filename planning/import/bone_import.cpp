@@ -197,6 +197,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   }
   VolumeFileOptions reading{.series = options.series, .most_bytes = options.most_bytes};
   reading.on_progress = [&](double fraction) { tell("Reading", fraction); };
+  reading.on_origin = [&](const DicomOrigin& origin) { result.origin = origin; };
   const Volume volume = read_volume(source, reading);
   const Eigen::Vector3d spacing = volume.spacing_mm();
   result.lines.push_back(volume.format + ", " +

@@ -16,6 +16,7 @@
 #include "planning/bones/mesh_repair.h"
 #include "planning/cases/case_image.h"
 #include "planning/cases/identity.h"
+#include "planning/images/dicom_origin.h"
 
 namespace arthronaut::importing {
 
@@ -61,7 +62,15 @@ struct BoneImport {
   // Whose bones they are, where the source says so (DICOM does). For identity.json alone: nothing else of the
   // import names a person, nor a file or folder, whose name often is the patient's.
   cases::Identity identity;
+  // Of which study the images were, for study.json alone; empty unless they were DICOM.
+  images::DicomOrigin origin;
   std::optional<ImportedImage> image;  // nullopt for a mesh
+
+  // Lets go of all that leads to the patient.
+  void forget_patient() {
+    identity = {};
+    origin = {};
+  }
 };
 
 // Throws IoError or InvalidInput; a bone that cannot be told from the name is InvalidInput that says which

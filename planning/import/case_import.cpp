@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "planning/cases/identity.h"
+#include "planning/cases/study.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
@@ -100,6 +101,16 @@ void add_image(const fs::path& folder, cases::Case& target, const BoneImport& im
   there.push_back(image);
 }
 
+// Of the bones that were added, and of no other: one that is now a mesh is no longer of the images.
+void save_studies_of(const fs::path& folder, const BoneImport& import) {
+  cases::Studies studies = cases::load_studies(folder);
+  for (const ImportedBone& imported : import.bones) {
+    studies.erase(imported.bone.kind);
+    if (!import.origin.is_empty()) studies[imported.bone.kind] = import.origin;
+  }
+  cases::save_studies(folder, studies);
+}
+
 // Another patient's bone in a case would be navigated by.
 void refuse_another_patient(const fs::path& folder, const cases::Identity& of_import) {
   const auto of_case = cases::load_identity(folder);
@@ -123,6 +134,7 @@ void save_new(const fs::path& folder, cases::Case& contents, const BoneImport& i
     add_image(unfinished, contents, import);
     cases::save_case(unfinished, contents);
     if (!import.identity.is_empty()) cases::save_identity(unfinished, import.identity);
+    save_studies_of(unfinished, import);
     fs::rename(unfinished, named, error);
     if (error) throw IoError(folder, "cannot be created: " + error.message());
   } catch (const IoError& failure) {
@@ -154,6 +166,7 @@ cases::Case add_to_case(const fs::path& folder, const BoneImport& import, const 
     add_image(folder, target, import);
     cases::save_case(folder, target);
     if (!import.identity.is_empty()) cases::save_identity(folder, import.identity);
+    save_studies_of(folder, import);
   } else {
     save_new(folder, target, import);
   }

@@ -187,6 +187,16 @@ void describe(Archive& archive, std::optional<ImportedImage>& image) {
 }
 
 template <typename Archive>
+void describe(Archive& archive, images::DicomOrigin& origin) {
+  for (std::string* text :
+       {&origin.study_uid, &origin.study_id, &origin.accession_number, &origin.referring_physician,
+        &origin.study_date, &origin.study_time, &origin.patient_sex, &origin.patient_id_issuer,
+        &origin.series_uid, &origin.frame_of_reference_uid, &origin.sop_class_uid})
+    describe(archive, *text);
+  describe(archive, origin.sop_instance_uids);
+}
+
+template <typename Archive>
 void describe(Archive& archive, BoneImport& import) {
   describe(archive, import.bones);
   describe(archive, import.side);
@@ -196,6 +206,7 @@ void describe(Archive& archive, BoneImport& import) {
   describe(archive, import.identity.patient_name);
   describe(archive, import.identity.patient_id);
   describe(archive, import.identity.birth_date);
+  describe(archive, import.origin);
   describe(archive, import.image);
 }
 

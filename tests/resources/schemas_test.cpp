@@ -12,6 +12,7 @@
 #include "planning/cases/case.h"
 #include "planning/cases/identity.h"
 #include "planning/cases/measurements.h"
+#include "planning/cases/study.h"
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
 #include "planning/postop/achieved_file.h"
@@ -122,6 +123,16 @@ TEST_F(Schemas, DescribeTheIdentity) {
   cases::save_identity(folder_.path(), {"Muster^Anna", "4711", "19900131"});
   expect_described(cases::identity_file(folder_.path()), "identity",
                    [&] { (void)cases::load_identity(folder_.path()); });
+}
+
+// Of which study its images were.
+TEST_F(Schemas, DescribeTheStudy) {
+  images::DicomOrigin origin;
+  origin.study_uid = "1.2.3";
+  origin.sop_instance_uids = {"1.2.3.4"};
+  cases::save_studies(folder_.path(), {{bones::BoneKind::Femur, origin}, {bones::BoneKind::Tibia, origin}});
+  expect_described(cases::study_file(folder_.path()), "study",
+                   [&] { (void)cases::load_studies(folder_.path()); });
 }
 
 // What was measured: a distance and an angle.

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "planning/cases/study.h"
 #include "planning/geometry/error.h"
 #include "tests/message_of.h"
 #include "tests/planning/bones/mesh_text_forms.h"
@@ -75,6 +76,22 @@ TEST(CaseImport, WhatItRefusesStaysAsItWas) {
                   [&] { add_to_case(folder / "a", imported(BoneKind::Tibia, Side::Left), "", "bone.stl"); }),
               HasSubstr("right knee"));
   EXPECT_EQ(cases::load_case(folder / "a").bones.size(), 1U);
+}
+
+// Of each bone the case knows its study; a mesh that takes a bone's place is of none.
+TEST(CaseImport, KeepsOfWhichStudyABoneIs) {
+  const TemporaryFolder folder;
+  BoneImport of_images = imported(BoneKind::Femur);
+  of_images.origin.study_uid = "1.2.3";
+  add_to_case(folder / "a", of_images, "", "ct");
+  EXPECT_EQ(cases::load_studies(folder / "a").at(BoneKind::Femur), of_images.origin);
+  of_images.bones[0].bone.kind = BoneKind::Tibia;
+  of_images.origin.study_uid = "1.2.4";
+  add_to_case(folder / "a", of_images, "", "ct");
+  add_to_case(folder / "a", imported(BoneKind::Femur), "", "bone.stl");
+  const cases::Studies studies = cases::load_studies(folder / "a");
+  ASSERT_EQ(studies.size(), 1U);
+  EXPECT_EQ(studies.at(BoneKind::Tibia), of_images.origin);
 }
 
 // A bone that is planned on is not exchanged under its tunnel.

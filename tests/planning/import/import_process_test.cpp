@@ -12,6 +12,7 @@
 #include "tests/message_of.h"
 #include "tests/planning/bones/mesh_text_forms.h"
 #include "tests/planning/geometry/shapes.h"
+#include "tests/planning/images/dicom_series_form.h"
 #include "tests/planning/images/large_volume.h"
 #include "tests/planning/import/child_script.h"
 #include "tests/temporary_folder.h"
@@ -69,6 +70,24 @@ TEST_F(ImportProcessTest, GivesTheSameBonesAsAnImportInThisProcess) {
   EXPECT_EQ(apart.side, Side::Right);
   EXPECT_TRUE(apart.side_was_guessed);
   EXPECT_EQ(apart.lines, here.lines);
+}
+
+// Whose images they were comes along, text by text.
+TEST_F(ImportProcessTest, TheStudyComesAlong) {
+  const test::DicomSeriesForm form;
+  test::write_dicom_series(folder_ / "ct", test::ellipsoid_ct(), form);
+  ImportRequest asked = request(folder_ / "ct");
+  asked.options.kind = BoneKind::Femur;
+  asked.options.threshold = 300;
+  ImportProcess process(asked);
+  ASSERT_EQ(finished(process), State::Done) << process.message();
+  BoneImport import = process.take_result();
+  EXPECT_EQ(import.identity, (cases::Identity{"Muster^Anna", "4711", "19900131"}));
+  EXPECT_EQ(import.origin.sop_instance_uids.size(), 44U);
+  import.origin.sop_instance_uids.clear();
+  EXPECT_EQ(import.origin, form.origin);
+  import.forget_patient();
+  EXPECT_TRUE(import.origin.is_empty() && import.identity.is_empty());
 }
 
 // Every option arrives: without one of them the bone would be another, or none.

@@ -1,0 +1,75 @@
+// Which study a series is of, as the reader passes it on.
+#include "planning/images/dicom_origin.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "planning/images/volume_file.h"
+#include "tests/planning/images/dicom_series_form.h"
+#include "tests/planning/images/volume_forms.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::images {
+namespace {
+
+struct Read {
+  Volume volume;
+  int count = 0;
+  DicomOrigin origin;
+};
+Read read(const std::filesystem::path& source) {
+  Read read;
+  VolumeFileOptions options;
+  options.on_origin = [&](const DicomOrigin& origin) {
+    ++read.count;
+    read.origin = origin;
+  };
+  read.volume = read_volume(source, options);
+  return read;
+}
+
+TEST(DicomOrigin, IsThatOfTheSeriesWithAllItsImages) {
+  const test::TemporaryFolder folder;
+  test::DicomSeriesForm form;
+  test::write_dicom_series(folder.path(), test::oblique_volume(), form);
+  const Read found = read(folder.path());
+  EXPECT_EQ(found.count, 1);
+  for (int k = 0; k < 4; ++k)
+    form.origin.sop_instance_uids.push_back(form.origin.series_uid + "." + std::to_string(k));
+  // The volume may begin at either end.
+  DicomOrigin origin = found.origin;
+  std::sort(origin.sop_instance_uids.begin(), origin.sop_instance_uids.end());
+  EXPECT_EQ(origin, form.origin);
+}
+
+// Names are in UTF-8 whatever the hospital writes: Latin 1 here.
+TEST(DicomOrigin, NamesAreInUtf8) {
+  const test::TemporaryFolder folder;
+  test::DicomSeriesForm form;
+  form.patient.name = "M\xfcller^J\xf6rg";
+  form.origin.referring_physician = "H\xe4user";
+  form.character_set = "ISO_IR 100";
+  test::write_dicom_series(folder.path(), test::oblique_volume(), form);
+  const Read found = read(folder.path());
+  EXPECT_EQ(found.volume.patient.name, "Müller^Jörg");
+  EXPECT_EQ(found.origin.referring_physician, "Häuser");
+}
+
+// Where the data set names no character set, or another than it is, the bytes stay.
+TEST(DicomOrigin, NamesOfAnUnknownCharacterSetStayAsTheyAre) {
+  const test::TemporaryFolder folder;
+  test::DicomSeriesForm form;
+  form.patient.name = "M\xfcller";
+  form.character_set = "ISO_IR 4711";
+  test::write_dicom_series(folder.path(), test::oblique_volume(), form);
+  EXPECT_EQ(read(folder.path()).volume.patient.name, "M\xfcller");
+}
+
+TEST(DicomOrigin, OtherVolumesHaveNone) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "a.nrrd", test::nrrd(test::oblique_volume(), false, false));
+  EXPECT_EQ(read(folder / "a.nrrd").count, 0);
+}
+
+}  // namespace
+}  // namespace arthronaut::images
