@@ -186,4 +186,17 @@ void PdfDocument::save(const std::filesystem::path& file) {
   });
 }
 
+std::string PdfDocument::bytes() {
+  pdf_->check();
+  HPDF_SaveToStream(pdf_->document);
+  pdf_->check();
+  std::string bytes(HPDF_GetStreamSize(pdf_->document), '\0');
+  HPDF_ResetStream(pdf_->document);
+  auto length = static_cast<HPDF_UINT32>(bytes.size());
+  HPDF_ReadFromStream(pdf_->document, reinterpret_cast<HPDF_BYTE*>(bytes.data()), &length);
+  pdf_->check();
+  if (length != bytes.size()) throw IoError("the PDF writer gave less than the whole document");
+  return bytes;
+}
+
 }  // namespace arthronaut::report

@@ -52,6 +52,8 @@ class PdfDocument {
 
   // Atomic. Throws IoError.
   void save(const std::filesystem::path& file);
+  // What save() would write. Throws IoError.
+  [[nodiscard]] std::string bytes();
 
  private:
   struct Pdf;

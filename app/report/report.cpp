@@ -121,9 +121,13 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
 
 class Report {
  public:
-  Report(const Content& content) : content_(content), pdf_("Arthronaut report: " + content.knee.name) {}
+  Report(const Content& content, const ReportOptions& options)
+      : content_(content),
+        says_when_made_(options.says_when_made),
+        pdf_("Arthronaut report: " + content.knee.name) {}
 
-  void write(const std::filesystem::path& file) {
+  // Whole.
+  PdfDocument& drawn() {
     plan_page();
     if (!content_.knee.plan.tunnels.empty()) {
       begin_page("The plan on one sheet");
@@ -132,7 +136,7 @@ class Report {
     }
     navigate_page();
     settings();
-    pdf_.save(file);
+    return pdf_;
   }
 
  private:
@@ -206,6 +210,7 @@ class Report {
   void settings();
 
   const Content& content_;
+  bool says_when_made_;
   PdfDocument pdf_;
   double y_ = 0;
   int page_ = 0;
@@ -217,8 +222,8 @@ void Report::plan_page() {
   if (content_.identity) about.push_back({"Patient", content_.identity->in_words()});
   about.insert(about.end(), {{"Name", content_.knee.name},
                              {"Side", std::string(bones::to_text(content_.knee.side))},
-                             {"Created", content_.knee.created_utc},
-                             {"Report made", files::utc_now_as("%Y-%m-%d %H:%M UTC")}});
+                             {"Created", content_.knee.created_utc}});
+  if (says_when_made_) about.push_back({"Report made", files::utc_now_as("%Y-%m-%d %H:%M UTC")});
   table({45, 125}, about);
   sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
   heading("Planned tunnels");
@@ -386,13 +391,23 @@ void Report::settings() {
   sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
 }
 
+Content reportable(const std::filesystem::path& case_folder, const ReportOptions& options) {
+  Content content = gather(case_folder, options);
+  if (content.knee.bones.empty()) throw InvalidInput(case_folder, "case.json", "holds no bone to report on");
+  return content;
+}
+
 }  // namespace
 
 void write_report(const std::filesystem::path& case_folder, const std::filesystem::path& output_pdf,
                   const ReportOptions& options) {
-  const Content content = gather(case_folder, options);
-  if (content.knee.bones.empty()) throw InvalidInput(case_folder, "case.json", "holds no bone to report on");
-  Report(content).write(output_pdf);
+  const Content content = reportable(case_folder, options);
+  Report(content, options).drawn().save(output_pdf);
+}
+
+std::string make_report(const std::filesystem::path& case_folder, const ReportOptions& options) {
+  const Content content = reportable(case_folder, options);
+  return Report(content, options).drawn().bytes();
 }
 
 }  // namespace arthronaut::report

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace arthronaut::report {
 
@@ -9,6 +10,8 @@ struct ReportOptions {
   // Names the patient as identity.json does. Without it nothing of identity.json is in the report, nor the
   // name of the video's file, which often is the patient's.
   bool with_identity = false;
+  // Says when it was made; without it the same case gives the same bytes at any time.
+  bool says_when_made = true;
 };
 
 // The newest session with a registration or an achieved tunnel is reported; the report says so when there is
@@ -16,5 +19,8 @@ struct ReportOptions {
 // pictures).
 void write_report(const std::filesystem::path& case_folder, const std::filesystem::path& output_pdf,
                   const ReportOptions& options = {});
+// The bytes of such a file. Throws as write_report.
+[[nodiscard]] std::string make_report(const std::filesystem::path& case_folder,
+                                      const ReportOptions& options = {});
 
 }  // namespace arthronaut::report

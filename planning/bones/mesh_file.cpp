@@ -155,8 +155,8 @@ void write_mesh_ply(const std::filesystem::path& file, const geometry::TriangleM
   files::write_atomically(file, bytes);
 }
 
-void write_mesh_stl(const std::filesystem::path& file, const geometry::TriangleMesh& mesh) {
-  refuse_unwritable(file, mesh);
+std::string mesh_as_stl(const std::filesystem::path& name, const geometry::TriangleMesh& mesh) {
+  refuse_unwritable(name, mesh);
   std::string bytes = "Arthronaut, mm, SPACE=LPS";
   bytes.resize(80, ' ');
   append(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
@@ -170,7 +170,11 @@ void write_mesh_stl(const std::filesystem::path& file, const geometry::TriangleM
     }
     append(bytes, std::uint16_t{0});
   }
-  files::write_atomically(file, bytes);
+  return bytes;
+}
+
+void write_mesh_stl(const std::filesystem::path& file, const geometry::TriangleMesh& mesh) {
+  files::write_atomically(file, mesh_as_stl(file, mesh));
 }
 
 }  // namespace arthronaut::bones

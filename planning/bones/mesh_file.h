@@ -60,5 +60,7 @@ struct MeshFile {
 void write_mesh_ply(const std::filesystem::path& file, const geometry::TriangleMesh& mesh);
 // Binary STL, float coordinates as the format has it. Atomic, errors as above.
 void write_mesh_stl(const std::filesystem::path& file, const geometry::TriangleMesh& mesh);
+// The bytes of such a file; `name` stands in messages.
+[[nodiscard]] std::string mesh_as_stl(const std::filesystem::path& name, const geometry::TriangleMesh& mesh);
 
 }  // namespace arthronaut::bones

@@ -35,8 +35,8 @@ TEST_P(Subcommand, RefusesAnUnknownOption) {
 INSTANTIATE_TEST_SUITE_P(All, Subcommand,
                          ::testing::Values("calibrate", "check-fluid", "compare", "track", "pivot",
                                            "digitise", "register", "import", "landmarks", "plan", "phantom",
-                                           "navigate", "replay", "report", "resume", "segment", "series",
-                                           "markers", "demo"),
+                                           "navigate", "replay", "report", "dicom", "resume", "segment",
+                                           "series", "markers", "demo"),
                          [](const auto& test) {
                            std::string name = test.param;
                            std::replace(name.begin(), name.end(), '-',

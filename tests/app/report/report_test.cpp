@@ -191,6 +191,18 @@ TEST_F(Report, Hazard19NamesThePatientOnlyWhenAsked) {
   expect_contains(pdf_text(), "1990-01-31");
 }
 
+// In memory it is the same document as in a file; without its date it is the same at any time.
+TEST_F(Report, CanBeTheSameBytesEachTime) {
+  const std::string report = make_report(knee_folder(), {.says_when_made = false});
+  EXPECT_EQ(report.substr(0, 5), "%PDF-");
+  EXPECT_EQ(report, make_report(knee_folder(), {.says_when_made = false}));
+  write_report(knee_folder(), pdf(), {.says_when_made = false});
+  EXPECT_EQ(report, files::read_text(pdf()));
+  EXPECT_EQ(pdf_text().find("Report made"), std::string::npos);
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "Report made");
+}
+
 // Hazard 21: a plan of another mesh is no valid plan, and the report says so.
 TEST_F(Report, Hazard21SaysThatThePlanIsOfAnotherMesh) {
   write_report(knee_folder(), pdf());

@@ -1,0 +1,95 @@
+#include <algorithm>
+
+#include "app/command_line/command.h"
+#include "app/report/report.h"
+#include "navigation/sources/frame_source.h"
+#include "planning/dicom_out/dicom_export.h"
+
+namespace arthronaut::command_line {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DicomArguments {
+  std::string case_folder, output;
+  bool is_deidentified = false;
+};
+
+// Of the newest session, by its folder (0007-20260131-120000), else of the case: what is exported was true
+// then, and a clock would make the same case another one each time.
+std::string moment_of(const fs::path& case_folder, const cases::Case& knee) {
+  const auto sessions = cases::session_folders(case_folder);
+  if (sessions.empty()) return knee.created_utc;
+  constexpr std::size_t kMomentLength = 15;
+  const std::string name = sessions.back().filename().string();
+  if (name.size() < kMomentLength) return knee.created_utc;
+  const std::string digits = name.substr(name.size() - kMomentLength);
+  const auto part = [&](std::size_t at, std::size_t count) { return digits.substr(at, count); };
+  return part(0, 4) + "-" + part(4, 2) + "-" + part(6, 2) + "T" + part(9, 2) + ":" + part(11, 2) + ":" +
+         part(13, 2) + "Z";
+}
+
+// Those in the case's own folder of pictures, by name.
+std::vector<dicom_out::KeyPicture> pictures_of(const fs::path& case_folder) {
+  std::vector<fs::path> files;
+  const fs::path folder = case_folder / "pictures";
+  if (fs::is_directory(folder)) {
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      const std::string extension = entry.path().extension().string();
+      if (entry.is_regular_file() && (extension == ".png" || extension == ".jpg"))
+        files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  std::vector<dicom_out::KeyPicture> pictures;
+  for (const fs::path& file : files) {
+    camera::Frame frame = sources::read_picture(file);
+    for (std::size_t at = 0; at + 2 < frame.bgr.size(); at += 3) std::swap(frame.bgr[at], frame.bgr[at + 2]);
+    // Not by the file's name: it may be the patient's.
+    pictures.push_back({.title = "Picture of the operation " + std::to_string(pictures.size() + 1),
+                        .width = frame.width,
+                        .height = frame.height,
+                        .rgb = std::move(frame.bgr)});
+  }
+  return pictures;
+}
+
+void export_dicom(Context& context, const DicomArguments& arguments) {
+  dicom_out::refuse_taken_folder(arguments.output);  // before the work
+  dicom_out::ExportContents contents{.knee = cases::load_case(arguments.case_folder),
+                                     .identity = std::nullopt,
+                                     .studies = {},
+                                     .moment_utc = {},
+                                     .report_pdf = {},
+                                     .pictures = {},
+                                     .is_deidentified = arguments.is_deidentified};
+  contents.moment_utc = moment_of(arguments.case_folder, contents.knee);
+  contents.studies = cases::load_studies(arguments.case_folder);
+  if (!arguments.is_deidentified) contents.identity = cases::load_identity(arguments.case_folder);
+  contents.report_pdf = report::make_report(
+      arguments.case_folder, {.with_identity = !arguments.is_deidentified, .says_when_made = false});
+  contents.pictures = pictures_of(arguments.case_folder);
+  const auto summary = dicom_out::export_dicom(contents, arguments.output);
+  for (const std::string& note : summary.notes) context.say(note);
+  for (const fs::path& file : summary.files) context.say("Wrote " + file.string());
+  if (!summary.doubts.empty()) context.say_unreliable(arguments.output, summary.doubts);
+}
+
+}  // namespace
+
+void add_dicom_command(CLI::App& app, Context& context) {
+  const auto arguments = std::make_shared<DicomArguments>();
+  CLI::App* sub = add_subcommand(
+      app, context, "dicom",
+      "Write bones, drilled bones, report and pictures as DICOM, beside the study that the images came from",
+      "arthronaut dicom Knee.arthro -o for_the_archive");
+  sub->add_option("case", arguments->case_folder, "Case folder")->required();
+  sub->add_option("-o,--output", arguments->output, "Folder to write: absent, or empty")->required();
+  sub->add_flag(
+      "--deidentified", arguments->is_deidentified,
+      "Without patient, study, dates and pictures; else the patient and the study of the images are named");
+  sub->callback([&context, arguments] { export_dicom(context, *arguments); });
+}
+
+}  // namespace arthronaut::command_line

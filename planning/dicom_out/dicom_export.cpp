@@ -1,0 +1,184 @@
+#include "planning/dicom_out/dicom_export.h"
+
+#include <stdlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <tuple>
+
+#include "planning/bones/mesh_file.h"
+#include "planning/dicom_out/dicom_object.h"
+#include "planning/dicom_out/object_bytes.h"
+#include "planning/dicom_out/uid.h"
+#include "planning/files/atomic_file.h"
+#include "planning/files/format.h"
+#include "planning/geometry/error.h"
+#include "planning/plan_export/drilled_bone.h"
+
+namespace arthronaut::dicom_out {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Belongings = std::map<bones::BoneKind, Belonging>;
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+void add_bones(const ExportContents& contents, const ObjectSetting& setting, const Belongings& belongings,
+               std::vector<Object>& objects) {
+  for (const auto& [kind, bone] : contents.knee.bones) {
+    const std::string name(bones::to_text(kind));
+    objects.push_back(
+        model_object(belongings.at(kind), setting,
+                     capitalised(name) + " of a " + std::string(bones::to_text(setting.side)) + " knee",
+                     bones::mesh_as_stl(name, bone.mesh), false));
+    objects.back().file_name = name + ".dcm";
+  }
+}
+
+// A tunnel of another surface would lie somewhere else in this one: such a bone is not drilled.
+void add_drilled_bones(const ExportContents& contents, const ObjectSetting& setting,
+                       const Belongings& belongings, std::vector<Object>& objects, ExportSummary& summary) {
+  for (const auto& [kind, tunnel] : contents.knee.plan.tunnels) {
+    const std::string name(bones::to_text(kind));
+    if (const auto fit = cases::plan_fit(contents.knee, kind); !fit.is_valid()) {
+      summary.doubts.push_back("the " + name + " is not there drilled: " + fit.reason);
+      continue;
+    }
+    const auto drilled = plan_export::drill(contents.knee.bones.at(kind).mesh, tunnel);
+    if (!drilled.is_usable()) {
+      summary.doubts.push_back("the " + name + " is not there drilled: " + drilled.reason);
+      continue;
+    }
+    const std::string title = files::format(
+        "%s of a %s knee, with its planned tunnel of %.1f mm drilled out", capitalised(name).c_str(),
+        std::string(bones::to_text(setting.side)).c_str(), tunnel.diameter_mm);
+    objects.push_back(model_object(belongings.at(kind), setting, title,
+                                   bones::mesh_as_stl(name + ", drilled", drilled.mesh), true));
+    objects.back().file_name = name + "_drilled.dcm";
+  }
+}
+
+void add_pictures(const ExportContents& contents, const ObjectSetting& setting, const Belonging& belonging,
+                  std::vector<Object>& objects, ExportSummary& summary) {
+  if (contents.is_deidentified) {
+    if (!contents.pictures.empty())
+      summary.notes.push_back("Pictures are left out: a name may be drawn into them.");
+    return;
+  }
+  constexpr int kLargest_px = 65535;  // what a number of rows has room for
+  int count = 0;
+  for (const KeyPicture& picture : contents.pictures) {
+    const auto bytes = 3 * static_cast<std::size_t>(std::max(picture.width, 0)) *
+                       static_cast<std::size_t>(std::max(picture.height, 0));
+    if (bytes == 0 || picture.width > kLargest_px || picture.height > kLargest_px ||
+        picture.rgb.size() != bytes)
+      throw InvalidInput("picture " + picture.title + ": its bytes do not fit its size");
+    objects.push_back(picture_object(belonging, setting, picture));
+    objects.back().file_name = files::format("image_%03d.dcm", ++count);
+  }
+}
+
+// A series is of one study, one kind and one frame; its identifier follows from all that is in it.
+void form_series(std::vector<Object>& objects) {
+  using Key = std::tuple<std::string, std::string, std::string>;
+  std::map<Key, std::vector<Object*>> series;
+  for (Object& object : objects) {
+    const images::DicomOrigin& study = object.belonging.study;
+    series[{study.study_uid, object.kind.modality, study.frame_of_reference_uid}].push_back(&object);
+  }
+  for (const auto& [key, members] : series) {
+    std::string contents;
+    for (Object* object : members) contents += uid_of("contents", bytes_of(*object->dataset)) + "\n";
+    const std::string uid = uid_of("series", contents);
+    int instance_number = 0;
+    for (Object* object : members) number(*object, uid, ++instance_number);
+  }
+}
+
+void say_of_which_study(const ExportContents& contents, const Belongings& belongings,
+                        ExportSummary& summary) {
+  if (contents.is_deidentified) {
+    summary.notes.push_back("Without patient, study and dates, in a new study.");
+    return;
+  }
+  bool is_of_images = false, is_of_meshes = false;
+  for (const auto& [kind, belonging] : belongings) {
+    is_of_images = is_of_images || belonging.is_of_images;
+    is_of_meshes = is_of_meshes || !contents.studies.contains(kind);
+  }
+  if (!is_of_images) {
+    summary.notes.push_back("The case knows of no study that its bones are of: a new one was made.");
+  } else if (is_of_meshes) {
+    summary.notes.push_back("A bone that was no DICOM image lies in a frame of reference of its own.");
+  }
+  if (!contents.identity) summary.notes.push_back("The case knows no patient: none is named.");
+}
+
+// Beside the folder, under a name of its own, then renamed.
+void write_all(const fs::path& folder, std::vector<Object>& objects, ExportSummary& summary) {
+  const fs::path named = folder.has_filename() ? folder : folder.parent_path();
+  const fs::path parent = named.has_parent_path() ? named.parent_path() : ".";
+  std::error_code error;
+  fs::create_directories(parent, error);
+  std::string unfinished = (parent / ("." + named.filename().string() + "-XXXXXX")).string();
+  if (error || !::mkdtemp(unfinished.data()))
+    throw IoError(folder,
+                  std::string("cannot be created: ") + (error ? error.message() : std::strerror(errno)));
+  try {
+    for (Object& object : objects) {
+      DcmFileFormat file(object.dataset.release(), OFFalse);  // which deletes it
+      files::write_atomically(fs::path(unfinished) / object.file_name, bytes_of(file));
+      summary.files.push_back(named / object.file_name);
+    }
+    fs::rename(unfinished, named, error);
+    if (error) throw IoError(folder, "cannot be created: " + error.message());
+  } catch (const IoError& failure) {
+    std::error_code ignored;
+    fs::remove_all(unfinished, ignored);
+    // Of the folder that was asked for, not of the name it had meanwhile.
+    std::string reason = failure.what();
+    if (const auto at = reason.find(unfinished); at != std::string::npos)
+      reason.replace(at, unfinished.size(), named.string());
+    throw IoError(reason);
+  }
+}
+
+}  // namespace
+
+void refuse_taken_folder(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) return;
+  if (!fs::is_directory(folder, error))
+    throw InvalidInput(folder, "", "is a file, not a folder: nothing was written");
+  if (!fs::is_empty(folder, error) || error)
+    throw InvalidInput(folder, "", "exists and is not empty: nothing was written");
+}
+
+ExportSummary export_dicom(const ExportContents& contents, const fs::path& folder) {
+  refuse_taken_folder(folder);
+  if (contents.knee.bones.empty()) throw InvalidInput("dicom: the case holds no bone");
+  const Belongings belongings = belongings_of(contents);
+  const Belonging& of_case = belongings.begin()->second;
+  const ObjectSetting setting{.side = contents.knee.side, .moment = moment_from(contents.moment_utc)};
+  ExportSummary summary;
+  say_of_which_study(contents, belongings, summary);
+  std::vector<Object> objects;
+  add_bones(contents, setting, belongings, objects);
+  add_drilled_bones(contents, setting, belongings, objects, summary);
+  if (!contents.report_pdf.empty()) {
+    objects.push_back(report_object(of_case, setting, contents.report_pdf));
+    objects.back().file_name = "report.dcm";
+  }
+  add_pictures(contents, setting, of_case, objects, summary);
+  form_series(objects);
+  write_all(folder, objects, summary);
+  return summary;
+}
+
+}  // namespace arthronaut::dicom_out

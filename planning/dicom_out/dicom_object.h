@@ -1,0 +1,52 @@
+// The data sets of the objects, module by module as DICOM PS3.3 has them. Inner header of dicom_out.
+#pragma once
+
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dctk.h>
+
+#include <memory>
+#include <string>
+
+#include "planning/dicom_out/belonging.h"
+
+namespace arthronaut::dicom_out {
+
+// What every object says of itself.
+struct ObjectKind {
+  const char* modality = "";
+  const char* series_description = "";
+  int series_number = 0;
+};
+// Far above what scanners count, so that no series of the images has the same number.
+inline constexpr ObjectKind kModels{"M3D", "Arthronaut: bones", 9001};
+inline constexpr ObjectKind kDocument{"DOC", "Arthronaut: report", 9002};
+inline constexpr ObjectKind kPictures{"OT", "Arthronaut: pictures", 9003};
+
+struct Object {
+  std::string file_name;
+  Belonging belonging;
+  ObjectKind kind;
+  std::unique_ptr<DcmDataset>
+      dataset;  // whole but for the identifiers of series and instance, and its number
+};
+
+// What they have in common.
+struct ObjectSetting {
+  bones::Side side = bones::Side::Right;
+  DicomMoment moment;  // of the contents, UTC
+};
+
+// Encapsulated STL (A.85.1). `stl` is binary. Throw IoError when DCMTK refuses an element.
+[[nodiscard]] Object model_object(const Belonging& belonging, const ObjectSetting& setting,
+                                  const std::string& title, const std::string& stl, bool is_modified);
+// Encapsulated PDF (A.45.1).
+[[nodiscard]] Object report_object(const Belonging& belonging, const ObjectSetting& setting,
+                                   const std::string& pdf);
+// Secondary Capture (A.8.1).
+[[nodiscard]] Object picture_object(const Belonging& belonging, const ObjectSetting& setting,
+                                    const KeyPicture& picture);
+
+// Gives the object its place in a series, and an identifier that follows from all that is in it.
+void number(Object& object, const std::string& series_uid, int instance_number);
+
+}  // namespace arthronaut::dicom_out

@@ -1,0 +1,167 @@
+// dicom on a knee that came from a hospital's CT, and on the built-in one.
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dctk.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <map>
+
+#include "app/scene/image.h"
+#include "planning/cases/case.h"
+#include "planning/files/atomic_file.h"
+#include "planning/phantom/phantom_case.h"
+#include "planning/phantom/phantom_knee.h"
+#include "tests/app/command_line/program.h"
+#include "tests/planning/images/dicom_series_form.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut {
+namespace {
+
+namespace fs = std::filesystem;
+using test::run_program;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string text(DcmDataset& dataset, const DcmTagKey& key) {
+  OFString value;
+  return dataset.findAndGetOFStringArray(key, value).good() ? std::string(value.c_str()) : "(absent)";
+}
+
+std::map<std::string, std::string> contents_of(const fs::path& folder) {
+  std::map<std::string, std::string> contents;
+  for (const auto& entry : fs::directory_iterator(folder))
+    contents[entry.path().filename().string()] = files::read_text(entry.path());
+  return contents;
+}
+
+class DicomCommand : public ::testing::Test {
+ protected:
+  // A case of one bone by the import that a user types.
+  void import_ct() const {
+    test::write_dicom_series(folder_ / "ct", test::ellipsoid_ct());
+    const auto result = run_program({"import", folder_ / "ct", "-o", folder_ / "knee.arthro", "--bone",
+                                     "femur", "--side", "right", "--threshold", "300"});
+    // An ellipsoid is doubted to be a femur, and written all the same.
+    ASSERT_TRUE(result.exit_code == 0 || result.exit_code == 4) << result.output << result.errors;
+  }
+  void take_phantom() const {
+    cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4.0}), "Phantom");
+    cases::save_case(folder_ / "knee.arthro", knee);
+    fs::create_directory(folder_ / "knee.arthro/pictures");
+    scene::write_png(folder_ / "knee.arthro/pictures/a.png",
+                     {.width = 2, .height = 1, .rgb = {255, 0, 0, 0, 0, 255}});
+  }
+  [[nodiscard]] test::ProgramResult run(const std::string& output,
+                                        std::vector<std::string> options = {}) const {
+    options.insert(options.begin(), {"dicom", folder_ / "knee.arthro", "-o", folder_ / output});
+    return run_program(options);
+  }
+  // What a person reads in the report.
+  [[nodiscard]] std::string report_text(const std::string& output) const {
+    DcmFileFormat format;
+    const Uint8* bytes = nullptr;
+    unsigned long length = 0;
+    if (format.loadFile((folder_ / output / "report.dcm").c_str()).bad() ||
+        format.getDataset()->findAndGetUint8Array(DCM_EncapsulatedDocument, bytes, &length).bad())
+      return "(none)";
+    const fs::path pdf = folder_ / "report.pdf", words = folder_ / "report.txt";
+    files::write_atomically(pdf, std::string_view(reinterpret_cast<const char*>(bytes), length));
+    if (std::system(("pdftotext " + pdf.string() + " " + words.string()).c_str()) != 0) return "(no PDF)";
+    return files::read_text(words);
+  }
+
+  const test::TemporaryFolder folder_;
+};
+
+TEST_F(DicomCommand, PutsTheCaseBesideItsImages) {
+  import_ct();
+  const auto result = run("out");
+  ASSERT_EQ(result.exit_code, 0) << result.output << result.errors;
+  for (const char* name : {"femur.dcm", "report.dcm"}) {
+    DcmFileFormat slice, object;
+    ASSERT_TRUE(slice.loadFile((folder_ / "ct/slice1000.dcm").c_str()).good());
+    ASSERT_TRUE(object.loadFile((folder_ / "out" / name).c_str()).good()) << name;
+    for (const DcmTagKey& key : {DCM_PatientName, DCM_PatientID, DCM_StudyInstanceUID, DCM_AccessionNumber})
+      EXPECT_EQ(text(*object.getDataset(), key), text(*slice.getDataset(), key));
+    const std::string frame =
+        name == std::string("femur.dcm") ? text(*slice.getDataset(), DCM_FrameOfReferenceUID) : "(absent)";
+    EXPECT_EQ(text(*object.getDataset(), DCM_FrameOfReferenceUID), frame);
+  }
+  EXPECT_THAT(report_text("out"), HasSubstr("Muster, Anna"));
+}
+
+TEST_F(DicomCommand, Hazard19DeidentifiedNamesNobody) {
+  import_ct();
+  const auto result = run("out", {"--deidentified"});
+  ASSERT_EQ(result.exit_code, 0) << result.output << result.errors;
+  EXPECT_THAT(report_text("out"), AllOf(HasSubstr("ACL reconstruction"), Not(HasSubstr("Muster"))));
+  for (const auto& [name, bytes] : contents_of(folder_ / "out"))
+    for (const char* word : {"Muster", "19900131", "A-0815", "1.2.826.0.1.3680043.8.498"})
+      EXPECT_EQ(bytes.find(word), std::string::npos) << name << ": " << word;
+}
+
+// Import without identity keeps no study either.
+TEST_F(DicomCommand, Hazard19WhatWasNotKeptIsNotTold) {
+  test::write_dicom_series(folder_ / "ct", test::ellipsoid_ct());
+  (void)run_program({"import", folder_ / "ct", "-o", folder_ / "knee.arthro", "--bone", "femur", "--side",
+                     "right", "--threshold", "300", "--without-identity"});
+  EXPECT_FALSE(fs::exists(folder_ / "knee.arthro/study.json"));
+  const auto result = run("out");
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("a new one was made"));
+}
+
+TEST_F(DicomCommand, TheSameCaseGivesTheSameBytes) {
+  take_phantom();
+  ASSERT_EQ(run("a").exit_code, 0);
+  ASSERT_EQ(run("b").exit_code, 0);
+  const auto written = contents_of(folder_ / "a");
+  EXPECT_EQ(written.size(), 6U);
+  EXPECT_EQ(written, contents_of(folder_ / "b"));
+}
+
+// By the validator of David Clunie's dicom3tools (installer/debian/packages.txt): no error in any object.
+TEST_F(DicomCommand, EveryObjectIsWhatTheStandardAsksFor) {
+  ASSERT_EQ(std::system("command -v dciodvfy > /dev/null"), 0) << "dciodvfy (package dicom3tools) is needed";
+  take_phantom();
+  ASSERT_EQ(run("out").exit_code, 0);
+  ASSERT_EQ(run("nobody", {"--deidentified"}).exit_code, 0);
+  for (const char* output : {"out", "nobody"}) {
+    for (const auto& entry : fs::directory_iterator(folder_ / output)) {
+      const fs::path found = folder_ / "found.txt";
+      (void)std::system(
+          ("dciodvfy -new " + entry.path().string() + " > " + found.string() + " 2>&1").c_str());
+      const std::string lines = files::read_text(found);
+      EXPECT_THAT(lines, Not(HasSubstr("Error"))) << entry.path();
+      EXPECT_THAT(lines, testing::AnyOf(HasSubstr("EncapsulatedSTL"), HasSubstr("EncapsulatedPDF"),
+                                        HasSubstr("SCImage")))
+          << entry.path();
+    }
+  }
+}
+
+TEST_F(DicomCommand, RefusesATakenFolderAndWhatIsNoCase) {
+  take_phantom();
+  fs::create_directory(folder_ / "out");
+  test::write_file(folder_ / "out/letter.txt", "Dear colleague");
+  const auto taken = run("out");
+  EXPECT_EQ(taken.exit_code, 3);
+  EXPECT_THAT(taken.errors, HasSubstr("exists and is not empty"));
+  EXPECT_EQ(contents_of(folder_ / "out").size(), 1U);
+  const auto none = run_program({"dicom", folder_ / "none.arthro", "-o", folder_ / "new"});
+  EXPECT_EQ(none.exit_code, 3);
+  EXPECT_THAT(none.errors, HasSubstr("none.arthro"));
+  EXPECT_FALSE(fs::exists(folder_ / "new"));
+  // A study that was spoilt is told, not left out.
+  test::write_file(folder_ / "knee.arthro/study.json", "{\"format\": \"arthronaut.study\", \"version\": 2}");
+  const auto newer = run("new");
+  EXPECT_EQ(newer.exit_code, 3);
+  EXPECT_THAT(newer.errors, HasSubstr("study.json"));
+  EXPECT_FALSE(fs::exists(folder_ / "new"));
+}
+
+}  // namespace
+}  // namespace arthronaut
