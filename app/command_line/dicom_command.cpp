@@ -82,7 +82,7 @@ void add_dicom_command(CLI::App& app, Context& context) {
   const auto arguments = std::make_shared<DicomArguments>();
   CLI::App* sub = add_subcommand(
       app, context, "dicom",
-      "Write bones, drilled bones, report and pictures as DICOM, beside the study that the images came from",
+      "Write bones, drilled bones, plan, report and pictures as DICOM, beside the images' study",
       "arthronaut dicom Knee.arthro -o for_the_archive");
   sub->add_option("case", arguments->case_folder, "Case folder")->required();
   sub->add_option("-o,--output", arguments->output, "Folder to write: absent, or empty")->required();

@@ -2,7 +2,7 @@
 //
 //   case.json      format "arthronaut.case": side, bones, sources
 //   plan.json      format "arthronaut.plan": tunnels, and which mesh each was planned on
-//   identity.json  whose knee it is, where that is known (identity.h); nowhere else in the folder
+//   identity.json  whose knee it is (identity.h), and study.json of which study (study.h): nowhere else
 //   case.lock      who works on it now (case_lock.h)
 //   femur.ply      bone meshes, binary PLY, LPS, mm
 //   femur_cartilage.ply         surface of what cartilage covers, where it was declared for the registration

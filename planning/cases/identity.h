@@ -1,5 +1,5 @@
 // Whose knee a case is, kept apart from everything else: identity.json, which no export takes along unless it
-// is asked to.
+// is asked to; what is written as DICOM for the hospital (dicom_out) is.
 //
 // A case that was imported without patient data (a mesh, a phantom) has none.
 #pragma once

@@ -15,6 +15,7 @@
 #include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
+#include "planning/geometry/surface.h"
 #include "planning/plan_export/drilled_bone.h"
 
 namespace arthronaut::dicom_out {
@@ -62,6 +63,21 @@ void add_drilled_bones(const ExportContents& contents, const ObjectSetting& sett
                                    bones::mesh_as_stl(name + ", drilled", drilled.mesh), true));
     objects.back().file_name = name + "_drilled.dcm";
   }
+}
+
+// Of the tunnels that are of the case's surfaces and enter them; that others are left out was said already.
+void add_plan(const ExportContents& contents, const ObjectSetting& setting, const Belongings& belongings,
+              std::vector<Object>& objects) {
+  std::vector<PlannedTunnel> planned;
+  for (const auto& [kind, tunnel] : contents.knee.plan.tunnels) {
+    if (!cases::plan_fits(contents.knee, kind)) continue;
+    const auto measured = tunnels::measure(tunnel, geometry::Surface(contents.knee.bones.at(kind).mesh));
+    if (measured.enters_bone)
+      planned.push_back({tunnel, measured.exit_mm, belongings.at(kind).study.frame_of_reference_uid});
+  }
+  if (planned.empty()) return;
+  objects.push_back(plan_object(belongings.begin()->second, setting, planned));
+  objects.back().file_name = "plan.dcm";
 }
 
 void add_pictures(const ExportContents& contents, const ObjectSetting& setting, const Belonging& belonging,
@@ -171,6 +187,7 @@ ExportSummary export_dicom(const ExportContents& contents, const fs::path& folde
   std::vector<Object> objects;
   add_bones(contents, setting, belongings, objects);
   add_drilled_bones(contents, setting, belongings, objects, summary);
+  add_plan(contents, setting, belongings, objects);
   if (!contents.report_pdf.empty()) {
     objects.push_back(report_object(of_case, setting, contents.report_pdf));
     objects.back().file_name = "report.dcm";

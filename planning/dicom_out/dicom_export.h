@@ -1,8 +1,10 @@
 // A case as DICOM objects that a hospital files beside the images that the case was made from.
 //
-//   femur.dcm, tibia.dcm                    Encapsulated STL (PS3.3, A.85.1), the bones as they were planned
-//   on femur_drilled.dcm, tibia_drilled.dcm    the same, less the planned tunnel report.dcm Encapsulated PDF
-//   (A.45.1) image_001.dcm, ...                      Secondary Capture (A.8.1), 8 bit RGB
+//   femur.dcm, tibia.dcm           Encapsulated STL (PS3.3, A.85.1): the bones
+//   femur_drilled.dcm, tibia_...   the same, less the planned tunnel
+//   plan.dcm                       Spatial Fiducials (A.40): entry, exit and axis of each tunnel
+//   report.dcm                     Encapsulated PDF (A.45.1)
+//   image_001.dcm, ...             Secondary Capture (A.8.1), 8 bit RGB
 //
 // Part 10 files, explicit VR little endian, text in UTF-8. Models are in mm, in the frame of reference of the
 // images (LPS), and name the images that they were made from.
@@ -10,11 +12,13 @@
 // Of which study: a bone from DICOM images belongs to their study and frame of reference (cases/study.h), for
 // the patient that identity.json names. A bone that was a mesh belongs to the study of the case's other bone,
 // but to a frame of its own, as nobody says that the mesh lies where the images do. Without any study (a
-// phantom, meshes, a case of an older version) there is a new one. Report and pictures belong to the study of
-// the first bone. No patient's data are made up: what is not known is empty.
+// phantom, meshes, a case of an older version) there is a new one. Plan, report and pictures belong to the
+// study of the first bone, and each tunnel to the frame of its own. No patient's data are made up: what is
+// not known is empty.
 //
-// De-identified, patient and study are new, dates are empty, no image is named, and pictures are left out,
-// since a name may be drawn into them. The report must then name nobody: that is for who makes it.
+// De-identified, patient and study are new, dates are empty (1900 where one is asked for), no image is named,
+// and pictures are left out, since a name may be drawn into them. The report must then name nobody: that is
+// for who makes it.
 //
 // The same contents give the same bytes: identifiers follow from what they name (uid.h), and no clock is
 // asked. Anything that changes gives other identifiers of object and series, so that nothing in an archive is

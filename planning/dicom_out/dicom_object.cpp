@@ -6,41 +6,13 @@
 #include <iterator>
 #include <vector>
 
+#include "planning/dicom_out/elements.h"
 #include "planning/dicom_out/object_bytes.h"
 #include "planning/dicom_out/uid.h"
-#include "planning/geometry/error.h"
 
 namespace arthronaut::dicom_out {
 
 namespace {
-
-void check(const OFCondition& condition, const DcmTagKey& key) {
-  if (condition.good()) return;
-  throw IoError(std::string("DICOM element ") + DcmTag(key).getTagName() +
-                " cannot be written: " + condition.text());
-}
-
-// Empty: the element stands there without a value, as one of type 2 that is not known.
-void put(DcmItem& item, const DcmTagKey& key, const std::string& value) {
-  check(value.empty() ? item.insertEmptyElement(key) : item.putAndInsertString(key, value.c_str()), key);
-}
-void put_if_known(DcmItem& item, const DcmTagKey& key, const std::string& value) {
-  if (!value.empty()) put(item, key, value);
-}
-void put_number(DcmItem& item, const DcmTagKey& key, int value) {
-  check(item.putAndInsertUint16(key, static_cast<Uint16>(value)), key);
-}
-void put_bytes(DcmItem& item, const DcmTagKey& key, const char* bytes, std::size_t count) {
-  check(item.putAndInsertUint8Array(key, reinterpret_cast<const Uint8*>(bytes),
-                                    static_cast<unsigned long>(count)),
-        key);
-}
-
-DcmItem& item_of(DcmItem& item, const DcmTagKey& sequence, long number) {
-  DcmItem* found = nullptr;
-  check(item.findOrCreateSequenceItem(sequence, found, number), sequence);
-  return *found;
-}
 
 // Patient (C.7.1.1), general study (C.7.2.1).
 void add_patient_and_study(DcmDataset& dataset, const Belonging& belonging) {
@@ -66,22 +38,6 @@ void add_patient_and_study(DcmDataset& dataset, const Belonging& belonging) {
   if (!belonging.is_of_images && !belonging.is_deidentified) put(dataset, DCM_TimezoneOffsetFromUTC, "+0000");
 }
 
-// Series, general equipment (C.7.5.1).
-Object begun(const Belonging& belonging, const ObjectKind& kind, const char* sop_class) {
-  Object object{
-      .file_name = {}, .belonging = belonging, .kind = kind, .dataset = std::make_unique<DcmDataset>()};
-  DcmDataset& dataset = *object.dataset;
-  put(dataset, DCM_SOPClassUID, sop_class);
-  add_patient_and_study(dataset, belonging);
-  put(dataset, DCM_Modality, kind.modality);
-  put(dataset, DCM_SeriesNumber, std::to_string(kind.series_number));
-  put(dataset, DCM_SeriesDescription, kind.series_description);
-  put(dataset, DCM_Manufacturer, "Arthronaut");
-  put(dataset, DCM_ManufacturerModelName, "Arthronaut");
-  put(dataset, DCM_SoftwareVersions, kProgramVersion);
-  return object;
-}
-
 void put_content_moment(DcmDataset& dataset, const Belonging& belonging, const ObjectSetting& setting) {
   const DicomMoment moment = belonging.is_deidentified ? DicomMoment{} : setting.moment;
   put(dataset, DCM_ContentDate, moment.date);
@@ -94,12 +50,11 @@ void add_document(DcmDataset& dataset, const ObjectSetting& setting, const std::
   put(dataset, DCM_AcquisitionDateTime, "");
   put(dataset, DCM_ImageLaterality, setting.side == bones::Side::Left ? "L" : "R");
   put(dataset, DCM_DocumentTitle, title);
-  check(dataset.insertEmptyElement(DCM_ConceptNameCodeSequence), DCM_ConceptNameCodeSequence);
+  put_empty_sequence(dataset, DCM_ConceptNameCodeSequence);
   put(dataset, DCM_MIMETypeOfEncapsulatedDocument, mime_type);
   // DCMTK adds a zero to an odd length; the true one stands beside it.
   put_bytes(dataset, DCM_EncapsulatedDocument, bytes.data(), bytes.size());
-  check(dataset.putAndInsertUint32(DCM_EncapsulatedDocumentLength, static_cast<Uint32>(bytes.size())),
-        DCM_EncapsulatedDocumentLength);
+  put_long_number(dataset, DCM_EncapsulatedDocumentLength, static_cast<Uint32>(bytes.size()));
 }
 
 // The images that a model was made from: in the document (C.24.2) and by their series (C.12.2).
@@ -121,6 +76,26 @@ void add_sources(DcmDataset& dataset, const images::DicomOrigin& study) {
 }
 
 }  // namespace
+
+Object begun(const Belonging& belonging, const ObjectKind& kind, const char* sop_class) {
+  Object object{
+      .file_name = {}, .belonging = belonging, .kind = kind, .dataset = std::make_unique<DcmDataset>()};
+  DcmDataset& dataset = *object.dataset;
+  put(dataset, DCM_SOPClassUID, sop_class);
+  add_patient_and_study(dataset, belonging);
+  put(dataset, DCM_Modality, kind.modality);
+  put(dataset, DCM_SeriesNumber, std::to_string(kind.series_number));
+  put(dataset, DCM_SeriesDescription, kind.series_description);
+  put(dataset, DCM_Manufacturer, "Arthronaut");
+  put(dataset, DCM_ManufacturerModelName, "Arthronaut");
+  put(dataset, DCM_SoftwareVersions, kProgramVersion);
+  return object;
+}
+
+void put_knee(DcmDataset& dataset, const ObjectSetting& setting) {
+  put(dataset, DCM_Laterality, setting.side == bones::Side::Left ? "L" : "R");
+  put(dataset, DCM_BodyPartExamined, "KNEE");
+}
 
 Object model_object(const Belonging& belonging, const ObjectSetting& setting, const std::string& title,
                     const std::string& stl, bool is_modified) {
@@ -158,8 +133,7 @@ Object picture_object(const Belonging& belonging, const ObjectSetting& setting, 
   Object object = begun(belonging, kPictures, UID_SecondaryCaptureImageStorage);
   DcmDataset& dataset = *object.dataset;
   put(dataset, DCM_ConversionType, "WSD");
-  put(dataset, DCM_Laterality, setting.side == bones::Side::Left ? "L" : "R");
-  put(dataset, DCM_BodyPartExamined, "KNEE");
+  put_knee(dataset, setting);
   put_content_moment(dataset, belonging, setting);
   put(dataset, DCM_PatientOrientation, "");
   put_if_known(dataset, DCM_ImageComments, picture.title);
@@ -173,7 +147,7 @@ Object picture_object(const Belonging& belonging, const ObjectSetting& setting, 
   put_number(dataset, DCM_BitsStored, 8);
   put_number(dataset, DCM_HighBit, 7);
   put_number(dataset, DCM_PixelRepresentation, 0);
-  put_bytes(dataset, DCM_PixelData, reinterpret_cast<const char*>(picture.rgb.data()), picture.rgb.size());
+  put_bytes(dataset, DCM_PixelData, picture.rgb.data(), picture.rgb.size());
   return object;
 }
 

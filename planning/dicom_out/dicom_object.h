@@ -4,10 +4,13 @@
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dctk.h>
 
+#include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "planning/dicom_out/belonging.h"
+#include "planning/tunnels/tunnel.h"
 
 namespace arthronaut::dicom_out {
 
@@ -21,6 +24,7 @@ struct ObjectKind {
 inline constexpr ObjectKind kModels{"M3D", "Arthronaut: bones", 9001};
 inline constexpr ObjectKind kDocument{"DOC", "Arthronaut: report", 9002};
 inline constexpr ObjectKind kPictures{"OT", "Arthronaut: pictures", 9003};
+inline constexpr ObjectKind kPlan{"FID", "Arthronaut: plan", 9004};
 
 struct Object {
   std::string file_name;
@@ -45,6 +49,21 @@ struct ObjectSetting {
 // Secondary Capture (A.8.1).
 [[nodiscard]] Object picture_object(const Belonging& belonging, const ObjectSetting& setting,
                                     const KeyPicture& picture);
+
+struct PlannedTunnel {
+  tunnels::Tunnel tunnel;
+  Eigen::Vector3d exit_mm;
+  std::string frame_of_reference_uid;  // of both
+};
+// Spatial Fiducials (A.40): entry and exit of each tunnel as points, its axis as a line.
+[[nodiscard]] Object plan_object(const Belonging& belonging, const ObjectSetting& setting,
+                                 const std::vector<PlannedTunnel>& tunnels);
+
+// What all begin with: patient (C.7.1.1), study (C.7.2.1), series and general equipment (C.7.5.1).
+[[nodiscard]] Object begun(const Belonging& belonging, const ObjectKind& kind, const char* sop_class);
+
+// Which knee, where the series says so (general series, C.7.3.1); documents say it of themselves.
+void put_knee(DcmDataset& dataset, const ObjectSetting& setting);
 
 // Gives the object its place in a series, and an identifier that follows from all that is in it.
 void number(Object& object, const std::string& series_uid, int instance_number);

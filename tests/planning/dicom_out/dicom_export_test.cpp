@@ -86,8 +86,8 @@ class DicomExport : public testing::Test {
   ExportSummary write(const std::string& name = "out") { return export_dicom(contents_, folder_ / name); }
   [[nodiscard]] Dicom read(const std::string& name) const { return Dicom(folder_ / ("out/" + name)); }
   [[nodiscard]] static std::vector<std::string> all_names() {
-    return {"femur.dcm",         "tibia.dcm",  "femur_drilled.dcm",
-            "tibia_drilled.dcm", "report.dcm", "image_001.dcm"};
+    return {"femur.dcm", "tibia.dcm",  "femur_drilled.dcm", "tibia_drilled.dcm",
+            "plan.dcm",  "report.dcm", "image_001.dcm"};
   }
 
   ExportContents contents_;
@@ -100,7 +100,7 @@ TEST_F(DicomExport, WritesEveryObjectAndNothingElse) {
   for (const fs::path& file : summary.files) names.push_back(file.filename().string());
   EXPECT_EQ(names, all_names());
   EXPECT_THAT(summary.doubts, IsEmpty());
-  EXPECT_EQ(contents_of(folder_ / "out").size(), 6U);
+  EXPECT_EQ(contents_of(folder_ / "out").size(), 7U);
   EXPECT_THAT(folder_.names(), ElementsAre("out"));
   EXPECT_EQ(fs::status(folder_ / "out").permissions() & fs::perms::mask, fs::perms{0700});
   EXPECT_EQ(fs::status(folder_ / "out/femur.dcm").permissions() & fs::perms::mask, fs::perms{0600});
@@ -181,6 +181,41 @@ TEST_F(DicomExport, ModelsAreTheBonesInMillimetres) {
   }
 }
 
+// Entry, exit and axis of both tunnels, to the 0.0001 mm that a decimal string holds.
+TEST_F(DicomExport, ThePlanIsThereAsFiducials) {
+  be_of_images();
+  contents_.studies.at(BoneKind::Tibia).frame_of_reference_uid = "1.2.3";
+  write();
+  Dicom plan = read("plan.dcm");
+  EXPECT_EQ(plan[DCM_SOPClassUID], UID_SpatialFiducialsStorage);
+  EXPECT_EQ(plan[DCM_Modality], "FID");
+  EXPECT_EQ(plan[DCM_ContentLabel], "TUNNEL_PLAN");
+  EXPECT_EQ(plan[DCM_Laterality], "R");
+  for (const auto& [kind, tunnel] : contents_.knee.plan.tunnels) {
+    DcmItem* set = nullptr;
+    const long number = kind == BoneKind::Femur ? 0 : 1;
+    ASSERT_TRUE(
+        plan.format.getDataset()->findAndGetSequenceItem(DCM_FiducialSetSequence, set, number).good());
+    EXPECT_EQ(text(*set, DCM_FrameOfReferenceUID), contents_.studies.at(kind).frame_of_reference_uid);
+    DcmItem *entry = nullptr, *exit = nullptr, *axis = nullptr;
+    ASSERT_TRUE(set->findAndGetSequenceItem(DCM_FiducialSequence, entry, 0).good());
+    ASSERT_TRUE(set->findAndGetSequenceItem(DCM_FiducialSequence, exit, 1).good());
+    ASSERT_TRUE(set->findAndGetSequenceItem(DCM_FiducialSequence, axis, 2).good());
+    EXPECT_EQ(text(*entry, DCM_FiducialIdentifier), kind == BoneKind::Femur ? "FEMUR_ENTRY" : "TIBIA_ENTRY");
+    EXPECT_EQ(text(*entry, DCM_ShapeType), "POINT");
+    EXPECT_EQ(text(*axis, DCM_ShapeType), "LINE");
+    EXPECT_EQ(text(*axis, DCM_ContourData),
+              text(*entry, DCM_ContourData) + "\\" + text(*exit, DCM_ContourData));
+    Eigen::Vector3d point;
+    for (unsigned long i = 0; i < 3; ++i)
+      EXPECT_TRUE(entry->findAndGetFloat64(DCM_ContourData, point[static_cast<int>(i)], i).good());
+    EXPECT_LT((point - tunnel.entry_mm).norm(), 1e-4);
+    for (unsigned long i = 0; i < 3; ++i)
+      EXPECT_TRUE(exit->findAndGetFloat64(DCM_ContourData, point[static_cast<int>(i)], i).good());
+    EXPECT_LT((point - tunnel.entry_mm).normalized().cross(tunnel.direction.normalized()).norm(), 1e-4);
+  }
+}
+
 TEST_F(DicomExport, TheReportIsThereByteByByte) {
   be_of_images();
   write();
@@ -256,7 +291,7 @@ TEST_F(DicomExport, InstancesAreToldApart) {
   write();
   std::set<std::string> instances;
   for (const std::string& name : all_names()) instances.insert(read(name)[DCM_SOPInstanceUID]);
-  EXPECT_EQ(instances.size(), 6U);
+  EXPECT_EQ(instances.size(), 7U);
 }
 
 // Byte by byte: neither the patient nor anything that leads back to the study.
@@ -267,7 +302,7 @@ TEST_F(DicomExport, Hazard19DeidentifiedHoldsNoIdentity) {
   const ExportSummary summary = write();
   EXPECT_THAT(summary.notes, testing::Contains(HasSubstr("Pictures are left out")));
   const auto written = contents_of(folder_ / "out");
-  EXPECT_EQ(written.size(), 5U);
+  EXPECT_EQ(written.size(), 6U);
   for (const auto& [name, bytes] : written) {
     for (const std::string& word :
          {std::string("Muster"), std::string("4711"), std::string("19900131"), std::string("20260131"),
@@ -308,7 +343,7 @@ TEST_F(DicomExport, ATakenFolderStaysAsItIs) {
   EXPECT_THAT(test::message_of<InvalidInput>([&] { (void)write("out/letter.txt"); }), HasSubstr("is a file"));
   // An empty one, as made for it, is taken.
   fs::create_directory(folder_ / "empty");
-  EXPECT_EQ(write("empty/").files.size(), 6U);
+  EXPECT_EQ(write("empty/").files.size(), 7U);
   EXPECT_THAT(folder_.names(), ElementsAre("empty", "out"));
 }
 
