@@ -136,8 +136,8 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
     outcome.cost = cartilage.cost;  // not of fewer points where the region was left out
   }
   outcome.summary = summarise(
-      bone, pool, {curves, points, strokes::smoothed_length_mm(curves), white_noise_mm, std::move(offsets_mm)},
-      options);
+      bone, pool,
+      {curves, points, strokes::smoothed_length_mm(curves), white_noise_mm, std::move(offsets_mm)}, options);
   if (setting.cartilage && outcome.summary.has_pose) {
     const Eigen::Vector3d centroid_mm = pool.best().bone_from_marker * points.centroid_mm;
     cartilage.add_to(outcome.summary, options.target_in_bone_mm.value_or(centroid_mm));
