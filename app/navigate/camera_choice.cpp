@@ -73,7 +73,9 @@ std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widg
   const bool is_entered = ImGui::InputText("##stream", &text_, ImGuiInputTextFlags_EnterReturnsTrue);
   ui.log.note("navigate.stream_field", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   is_typing_ = ImGui::IsItemActive();
-  const bool was_left = !wants_focus_ && ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGuiKey_Escape);
+  // Esc; a click elsewhere leaves the field, and what is typed stays.
+  const bool was_left =
+      !wants_focus_ && ImGui::IsItemDeactivated() && !ImGui::IsMouseDown(ImGuiMouseButton_Left);
   wants_focus_ = false;
   widgets::text_centered(ui, box, ui.theme.body, widgets::kQuietText,
                          "K: the next one    Space: open it    Esc: none");

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <thread>
 #include <utility>
 
 #include "planning/files/format.h"
@@ -55,6 +56,24 @@ int spawned(const std::filesystem::path& program, int child_end, int shared) {
   if (error != 0)
     throw IoError(program, std::string("cannot be started for the import: ") + std::strerror(error));
   return process;
+}
+
+// The status of a child that was killed or has closed its end: it is gone in a moment, unless it waits for a
+// disc that does not answer. Then nobody else waits: a thread takes leave of it.
+int status_of_ended(int process_id) {
+  constexpr std::chrono::milliseconds kMoment{1000}, kAgain{1};
+  const auto until = Clock::now() + kMoment;
+  int status = 0;
+  while (Clock::now() < until) {
+    const pid_t gone = ::waitpid(process_id, &status, WNOHANG);
+    if (gone == process_id || (gone < 0 && errno != EINTR)) return status;
+    std::this_thread::sleep_for(kAgain);
+  }
+  std::thread([process_id] {
+    while (::waitpid(process_id, nullptr, 0) < 0 && errno == EINTR) {
+    }
+  }).detach();
+  return SIGKILL;
 }
 
 }  // namespace
@@ -170,8 +189,7 @@ int ChildProcess::ended_child() {
   if (process_id_ > 0) {
     // Without effect on one that is ending by itself: its own status is kept.
     ::kill(process_id_, SIGKILL);
-    while (::waitpid(process_id_, &status, 0) < 0 && errno == EINTR) {
-    }
+    status = status_of_ended(process_id_);
   }
   process_id_ = -1;
   if (socket_ >= 0) ::close(socket_);

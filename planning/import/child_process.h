@@ -44,7 +44,8 @@ class ChildProcess {
 
   // Starts at once, with the request's message. Throws IoError when no process can be started.
   ChildProcess(ChildProcessOptions options, const std::string& request);
-  // Cancels what still runs; the child is gone when this returns.
+  // Cancels what still runs. The child is gone when this returns, but for one that a disc holds: it does
+  // nothing any more, and goes when the disc lets it.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;

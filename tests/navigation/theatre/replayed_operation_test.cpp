@@ -57,6 +57,7 @@ class ReplayedOperation : public ::testing::Test {
             operation::ChooseRegistration{0},
             operation::ReadDepthStop{21.5},
             operation::ConfirmTimeOut{},
+            operation::CheckGuide{},
             operation::TunnelDrilled{},
             operation::ForgetTouches{},
             operation::ClearStrokes{},
@@ -95,6 +96,26 @@ TEST_F(ReplayedOperation, EveryCommandOverTwoSourcesGivesTheSameStates) {
   EXPECT_EQ(recording::RecordedSession(folder_ / "session2").header().continues, "session1");
   expect_replays("session1", 60);
   expect_replays("session2", 50);
+}
+
+// Whether a nominal guide may guide is a part of the states, too: due, refused, trusted.
+TEST_F(ReplayedOperation, HowANominalGuideStandsIsReplayed) {
+  {
+    OperationRun run(setup_, test::at_once(setup_), folders());
+    TheatreSource source = test::plain_source(30, false, sources::SourceKind::Live);
+    source.setup.pipeline.tools.tools.back().provenance.origin = provenance::Origin::Nominal;
+    run.start(source);
+    for (int i = 0; i < 30;) {
+      if (run.step().picture == nullptr) continue;  // a live source may be slow
+      if (i == 5) run.apply(operation::ConfirmTimeOut{});
+      if (i == 10) run.apply(operation::CheckGuide{});
+      if (i == 20) run.apply(operation::TrustGuide{});
+      ++i;
+    }
+    EXPECT_EQ(run.state()->guide_check.standing, operation::GuideStanding::Trusted);
+    run.end_source();
+  }
+  expect_replays("session1", 30);
 }
 
 // What was given before any source ran is a part of the operation, too: a registration that stands from the

@@ -1,0 +1,96 @@
+// A whole source with nobody at the pedal: what is in the record at its end.
+#include "navigation/theatre/navigate_source.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "navigation/recording/session.h"
+#include "tests/navigation/theatre/theatre_sources.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::theatre {
+namespace {
+
+class NavigateSource : public ::testing::Test {
+ protected:
+  [[nodiscard]] static NavigateOptions options(sources::SourceKind kind) {
+    NavigateOptions options;
+    options.operation = test::phantom_setup();
+    options.source = test::scripted_source(kind);
+    return options;
+  }
+  [[nodiscard]] RecordOptions record() const {
+    RecordOptions record;
+    record.folder = folder_.path();
+    return record;
+  }
+  [[nodiscard]] static auto pictures(std::int64_t count, bool fails = false) {
+    return std::make_shared<test::PlainSource>(count, fails);
+  }
+  [[nodiscard]] std::vector<std::string> events(std::string_view kind) const {
+    std::vector<std::string> texts;
+    const recording::RecordedSession session(folder_.path());
+    for (const recording::SessionEvent& event : session.events())
+      if (event.kind == kind) texts.push_back(event.text);
+    return texts;
+  }
+  const test::TemporaryFolder folder_;
+};
+
+// From the command line nobody can hold a guide against anything: the record says so, once, and says nothing
+// where there was nothing to be checked.
+TEST_F(NavigateSource, Hazard6TheRecordSaysThatNobodyCheckedANominalGuide) {
+  NavigateOptions live = options(sources::SourceKind::Live);
+  live.source.pipeline.tools.tools.back().provenance.origin = provenance::Origin::Nominal;
+  live.is_confirmed = true;
+  const NavigationSummary summary = navigate_source(pictures(5), live, record());
+  EXPECT_EQ(summary.statistics.frame_count, 5);
+  EXPECT_EQ(events(recording::kGuideCheckedEvent),
+            std::vector<std::string>{"nominal, and nobody checked it"});
+  EXPECT_EQ(events(recording::kTimeOutConfirmedEvent).size(), 1U);
+}
+
+TEST_F(NavigateSource, AMeasuredGuideAndARecordingAskForNothing) {
+  NavigateOptions live = options(sources::SourceKind::Live);
+  live.is_confirmed = true;
+  (void)navigate_source(pictures(5), live, record());
+  EXPECT_TRUE(events(recording::kGuideCheckedEvent).empty());
+}
+
+// A later frame than was asked for is the end, before it was worked in.
+TEST_F(NavigateSource, EndsBeforeTheFirstFrameThatIsLater) {
+  NavigateOptions some = options(sources::SourceKind::Recording);
+  some.duration_s = 6.5 / 60;
+  EXPECT_EQ(navigate_source(pictures(20), some, record()).statistics.frame_count, 7);
+  EXPECT_EQ(recording::RecordedSession(folder_.path()).frames().size(), 7U);
+}
+
+// A live source that fails has ended, and what was made stays; a recording that fails is an error.
+TEST_F(NavigateSource, ALiveSourceThatFailsHasEnded) {
+  class LivePictures : public test::PlainSource {
+   public:
+    LivePictures() : PlainSource(5, true) {
+      info_ = PlainSource::info(), info_.kind = sources::SourceKind::Live;
+    }
+    [[nodiscard]] const sources::SourceInfo& info() const override { return info_; }
+
+   private:
+    sources::SourceInfo info_;
+  };
+  const NavigationSummary summary =
+      navigate_source(std::make_shared<LivePictures>(), options(sources::SourceKind::Live), record());
+  EXPECT_EQ(summary.ending, "the camera was unplugged");
+  EXPECT_TRUE(recording::RecordedSession(folder_.path()).was_finished());
+  EXPECT_THROW((void)navigate_source(pictures(5, true), options(sources::SourceKind::Recording)),
+               DeviceError);
+}
+
+TEST_F(NavigateSource, ARecordThatCannotBeginIsAnError) {
+  RecordOptions nowhere;
+  nowhere.folder = folder_ / "absent";
+  EXPECT_THROW((void)navigate_source(pictures(5), options(sources::SourceKind::Recording), nowhere), IoError);
+}
+
+}  // namespace
+}  // namespace arthronaut::theatre
