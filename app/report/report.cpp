@@ -6,6 +6,7 @@
 
 #include "app/report/pdf_document.h"
 #include "app/report/plan_sheet.h"
+#include "app/report/session_rows.h"
 #include "app/report/versions.h"
 #include "app/scene/plan_picture.h"
 #include "navigation/camera/camera_file.h"
@@ -36,51 +37,6 @@ std::string number(double value, const char* unit, int decimals = 1) {
 
 std::string point(const Eigen::Vector3d& p, int decimals = 1) {
   return number(p.x(), ", ", decimals) + number(p.y(), ", ", decimals) + number(p.z(), "", decimals);
-}
-
-// The name of a recording's file is often the patient's; that of a camera or a simulation says what it is.
-std::string neutral_source(const std::string& source) {
-  const std::string extension = std::filesystem::path(source).extension().string();
-  return extension.empty() ? source : "recording (" + extension.substr(1) + ")";
-}
-
-std::string kind_in_words(const recording::SessionHeader& header) {
-  const auto kind = sources::source_kind_from_text(header.source_kind);
-  if (!kind) return "not recorded";
-  return *kind == sources::SourceKind::Live        ? "live: a camera, as it came"
-         : *kind == sources::SourceKind::Recording ? "recording: a video that was made before"
-                                                   : "simulation: nobody's knee";
-}
-
-// What was asked before the guide was followed, and what spoke against it, as the session's events say it.
-std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session) {
-  bool is_verified = false, was_verified = false, was_skipped = false, is_confirmed = false;
-  std::string alarms, guide;
-  for (const recording::SessionEvent& event : session.events()) {
-    const bool is_another =
-        event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent;
-    is_verified = event.kind == recording::kVerifiedEvent || (is_verified && !is_another);
-    was_verified = was_verified || is_verified;
-    was_skipped = was_skipped || event.kind == recording::kVerificationSkippedEvent;
-    is_confirmed = is_confirmed || event.kind == recording::kTimeOutConfirmedEvent;
-    if (event.kind == recording::kGuideCheckedEvent) guide = event.text;
-    if (event.kind == recording::kAlarmEvent || event.kind == recording::kVoidEvent)
-      alarms += (alarms.empty() ? "" : "; ") + (event.text.empty() ? "over" : event.text);
-  }
-  const std::string verified =
-      is_verified    ? "verified by touches"
-      : was_verified ? "verified by touches earlier; of the last registration nothing is recorded"
-      : was_skipped  ? "SKIPPED"
-                     : "not verified";
-  const std::string& kind = session.header().source_kind;
-  const bool is_live = kind == sources::to_text(sources::SourceKind::Live);
-  return {{"Verification", verified + (was_skipped ? "; guidance began without it" : "")},
-          {"Time-out", is_confirmed   ? "confirmed"
-                       : is_live      ? "not confirmed in this session"
-                       : kind.empty() ? "not recorded"
-                                      : "not asked: no live source"},
-          {"Check of a nominal guide", guide.empty() ? "none in this session" : guide},
-          {"Alarms, void registrations", alarms.empty() ? "none" : alarms}};
 }
 
 // What the report tells of: the case and, where there is one, the session that matters.

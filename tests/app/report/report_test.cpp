@@ -164,6 +164,9 @@ TEST_F(Report, Hazard2NamesTheKindOfSource) {
   expect_contains(live, "live: a camera, as it came");
   expect_contains(live, "not confirmed in this session");
   expect_contains(live, "not verified");
+  expect_contains(live, "none in this session");  // of a nominal guide
+  expect_contains(text_of_session("live", {{recording::kGuideCheckedEvent, "its tip lies 0.4 mm off"}}),
+                  "its tip lies 0.4 mm off");
 }
 
 // What was asked before the guide was followed, and what spoke against it, is in the report.
