@@ -1,10 +1,6 @@
 #include "planning/dicom_out/dicom_export.h"
 
-#include <stdlib.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <system_error>
 #include <tuple>
 
@@ -14,6 +10,7 @@
 #include "planning/dicom_out/uid.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
+#include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
 #include "planning/plan_export/drilled_bone.h"
@@ -136,33 +133,14 @@ void say_of_which_study(const ExportContents& contents, const Belongings& belong
   if (!contents.identity) summary.notes.push_back("The case knows no patient: none is named.");
 }
 
-// Beside the folder, under a name of its own, then renamed.
 void write_all(const fs::path& folder, std::vector<Object>& objects, ExportSummary& summary) {
-  const fs::path named = folder.has_filename() ? folder : folder.parent_path();
-  const fs::path parent = named.has_parent_path() ? named.parent_path() : ".";
-  std::error_code error;
-  fs::create_directories(parent, error);
-  std::string unfinished = (parent / ("." + named.filename().string() + "-XXXXXX")).string();
-  if (error || !::mkdtemp(unfinished.data()))
-    throw IoError(folder,
-                  std::string("cannot be created: ") + (error ? error.message() : std::strerror(errno)));
-  try {
+  files::make_whole_folder(folder, [&](const fs::path& unfinished) {
     for (Object& object : objects) {
       DcmFileFormat file(object.dataset.release(), OFFalse);  // which deletes it
-      files::write_atomically(fs::path(unfinished) / object.file_name, bytes_of(file));
-      summary.files.push_back(named / object.file_name);
+      files::write_atomically(unfinished / object.file_name, bytes_of(file));
+      summary.files.push_back(folder / object.file_name);
     }
-    fs::rename(unfinished, named, error);
-    if (error) throw IoError(folder, "cannot be created: " + error.message());
-  } catch (const IoError& failure) {
-    std::error_code ignored;
-    fs::remove_all(unfinished, ignored);
-    // Of the folder that was asked for, not of the name it had meanwhile.
-    std::string reason = failure.what();
-    if (const auto at = reason.find(unfinished); at != std::string::npos)
-      reason.replace(at, unfinished.size(), named.string());
-    throw IoError(reason);
-  }
+  });
 }
 
 }  // namespace

@@ -1,15 +1,12 @@
 #include "planning/import/case_import.h"
 
-#include <stdlib.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 
 #include "planning/cases/identity.h"
 #include "planning/cases/study.h"
 #include "planning/files/utc_clock.h"
+#include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::importing {
@@ -17,11 +14,6 @@ namespace arthronaut::importing {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Without the slash of "folder/".
-fs::path without_slash(const fs::path& folder) {
-  return folder.has_filename() ? folder : folder.parent_path();
-}
 
 [[noreturn]] void refuse_unknown_side(const fs::path& source) {
   throw InvalidInput(source, "", "its name does not say which knee it is: add --side left or --side right");
@@ -120,32 +112,13 @@ void refuse_another_patient(const fs::path& folder, const cases::Identity& of_im
                          ") than what was to be added (" + of_import.in_words() + "); nothing was written");
 }
 
-// Beside the target, under a name of its own, then renamed.
 void save_new(const fs::path& folder, cases::Case& contents, const BoneImport& import) {
-  const fs::path named = without_slash(folder);
-  const fs::path parent = named.has_parent_path() ? named.parent_path() : ".";
-  std::error_code error;
-  fs::create_directories(parent, error);
-  std::string unfinished = (parent / ("." + named.filename().string() + "-XXXXXX")).string();
-  if (error || !::mkdtemp(unfinished.data()))
-    throw IoError(folder,
-                  std::string("cannot be created: ") + (error ? error.message() : std::strerror(errno)));
-  try {
+  files::make_whole_folder(folder, [&](const fs::path& unfinished) {
     add_image(unfinished, contents, import);
     cases::save_case(unfinished, contents);
     if (!import.identity.is_empty()) cases::save_identity(unfinished, import.identity);
     save_studies_of(unfinished, import);
-    fs::rename(unfinished, named, error);
-    if (error) throw IoError(folder, "cannot be created: " + error.message());
-  } catch (const IoError& failure) {
-    std::error_code ignored;
-    fs::remove_all(unfinished, ignored);
-    // Of the case that was asked for, not of the name it had meanwhile.
-    std::string reason = failure.what();
-    if (const auto at = reason.find(unfinished); at != std::string::npos)
-      reason.replace(at, unfinished.size(), named.string());
-    throw IoError(reason);
-  }
+  });
 }
 
 }  // namespace

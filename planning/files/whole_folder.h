@@ -1,0 +1,16 @@
+// Folders that appear whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+namespace arthronaut::files {
+
+// Makes a folder of a name of its own beside `folder`, its owner's alone (0700), lets `fill` write into it,
+// and renames it to `folder`, which must be absent or empty. When anything throws, nothing is left, and what
+// was thrown passes; an IoError then names the folder that was asked for. Throws IoError when it cannot be
+// made or renamed.
+void make_whole_folder(const std::filesystem::path& folder,
+                       const std::function<void(const std::filesystem::path& unfinished)>& fill);
+
+}  // namespace arthronaut::files

@@ -1,0 +1,58 @@
+#include "planning/files/whole_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <stdexcept>
+
+#include "planning/files/private_folder.h"
+#include "planning/geometry/error.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::files {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_alone(const fs::path& parent) { return fs::is_empty(parent); }
+
+TEST(WholeFolder, AppearsWithAllThatIsInItAndIsItsOwnersAlone) {
+  const test::TemporaryFolder parent;
+  fs::path meanwhile;
+  make_whole_folder(parent / "deep/wanted/", [&](const fs::path& unfinished) {
+    meanwhile = unfinished;
+    EXPECT_FALSE(fs::exists(parent / "deep/wanted"));
+    std::ofstream(unfinished / "a") << "x";
+  });
+  EXPECT_TRUE(fs::exists(parent / "deep/wanted/a"));
+  EXPECT_TRUE(is_private(parent / "deep/wanted"));
+  EXPECT_FALSE(fs::exists(meanwhile));
+}
+
+// Whatever is thrown, nothing is left; what the disk says is said of the folder that was asked for.
+TEST(WholeFolder, LeavesNothingWhenItCannotBeFilled) {
+  const test::TemporaryFolder parent;
+  const fs::path wanted = parent / "wanted";
+  EXPECT_EQ(test::message_of<IoError>([&] {
+              make_whole_folder(
+                  wanted, [](const fs::path& unfinished) { throw IoError(unfinished / "a", "is full"); });
+            }),
+            (wanted / "a").string() + ": is full");
+  EXPECT_TRUE(is_alone(parent.path()));
+  EXPECT_THROW(make_whole_folder(wanted, [](const fs::path&) { throw std::logic_error("other"); }),
+               std::logic_error);
+  EXPECT_TRUE(is_alone(parent.path()));
+}
+
+TEST(WholeFolder, NeverTakesThePlaceOfOneThatHoldsSomething) {
+  const test::TemporaryFolder parent;
+  fs::create_directory(parent / "taken");
+  std::ofstream(parent / "taken/mine") << "x";
+  EXPECT_THROW(make_whole_folder(parent / "taken", [](const fs::path&) {}), IoError);
+  EXPECT_TRUE(fs::exists(parent / "taken/mine"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(parent.path()), {}), 1);
+}
+
+}  // namespace
+}  // namespace arthronaut::files
