@@ -310,7 +310,9 @@ void NavigateView::read_live() {
     live_ = TheatreBones::nothing();
   }
   // An address that gave no picture is not worth keeping.
-  if (stream_is_new_ && live_->phase == Phase::Running && live_->picture != nullptr) {
+  const bool gives_pictures = live_->phase == Phase::Running && live_->picture != nullptr;
+  // That a source runs may still be news of the one before.
+  if (stream_is_new_ && gives_pictures && live_->operation->source->title == used_before_->name) {
     stream_is_new_ = false;
     note_stream(known_streams_file(), used_before_->address);
   }
