@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <stdexcept>
 
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
@@ -41,18 +42,28 @@ void prepare_dcmtk() {
   static_cast<void>(is_ready);
 }
 
-void check(const OFCondition& condition, const std::filesystem::path& file, DcmInputStream& stream) {
-  if (condition.good()) return;
-  throw InvalidInput(file, "byte " + std::to_string(stream.tell()),
-                     std::string("broken or cut off: ") + condition.text());
+// DCMTK tells what it stumbles over by its conditions, but its checks of broken texts may throw what the
+// standard library throws there (3.6.7, DcmByteString::verify).
+void read_object(DcmObject& object, const std::filesystem::path& file, DcmInputStream& stream,
+                 E_TransferSyntax syntax) {
+  const auto fail = [&](const char* what) {
+    throw InvalidInput(file, "byte " + std::to_string(stream.tell()),
+                       std::string("broken or cut off: ") + what);
+  };
+  object.transferInit();
+  try {
+    const OFCondition condition = object.read(stream, syntax, EGL_noChange, kLongestValueAtOnce_bytes);
+    if (condition.bad()) fail(condition.text());
+  } catch (const std::logic_error&) {
+    fail("a text that cannot be taken apart");
+  }
+  object.transferEnd();
 }
 
 std::shared_ptr<DcmDataset> read_dataset(const std::filesystem::path& file, DcmInputStream& stream,
                                          E_TransferSyntax syntax) {
   auto dataset = std::make_shared<DcmDataset>();
-  dataset->transferInit();
-  check(dataset->read(stream, syntax, EGL_noChange, kLongestValueAtOnce_bytes), file, stream);
-  dataset->transferEnd();
+  read_object(*dataset, file, stream, syntax);
   return dataset;
 }
 
@@ -70,9 +81,7 @@ std::shared_ptr<DcmDataset> open_dicom(const std::filesystem::path& file, std::s
   DcmInputFileStream stream{OFFilename(file.c_str())};
   if (stream.status().bad()) throw IoError(file, stream.status().text());
   DcmMetaInfo meta;
-  meta.transferInit();
-  check(meta.read(stream, EXS_Unknown, EGL_noChange, kLongestValueAtOnce_bytes), file, stream);
-  meta.transferEnd();
+  read_object(meta, file, stream, EXS_Unknown);
   const std::string uid = text_of(meta, DCM_TransferSyntaxUID);
   if (uid.empty()) throw InvalidInput(file, "", "names no transfer syntax");
   const DcmXfer syntax(uid.c_str());

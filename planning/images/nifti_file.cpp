@@ -18,7 +18,7 @@ constexpr Layout kNifti2{540, 16, 8, 12, 104, 168, 176, 184, 500, 344, 348, 352,
 
 class Header {
  public:
-  Header(const std::filesystem::path& file, std::string_view text) : file_(file), text_(text) {
+  Header(const std::filesystem::path& file, std::string_view text) : text_(text) {
     for (const Layout& layout : {kNifti1, kNifti2}) {
       for (const std::endian order : {std::endian::little, std::endian::big}) {
         if (text.size() >= 4 &&
@@ -59,7 +59,6 @@ class Header {
  private:
   [[nodiscard]] bool is_2() const { return layout_.header_bytes == kNifti2.header_bytes; }
 
-  const std::filesystem::path& file_;
   std::string_view text_;
   Layout layout_{};
   std::endian order_ = std::endian::little;

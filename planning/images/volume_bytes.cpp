@@ -223,13 +223,19 @@ std::vector<double> numbers_of(const std::filesystem::path& file, const std::str
 
 std::string read_data_file(const std::filesystem::path& header_file, std::string_view name,
                            std::size_t most_bytes) {
+  // A name with a NUL or a line feed in it would cut off, or break, whatever is said of it.
+  if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
+    throw InvalidInput(header_file, "", "names a data file with control characters in its name");
   const std::filesystem::path data(name);
   if (data.empty() || data.has_parent_path() || data == "." || data == "..") {
     throw InvalidInput(header_file, "",
                        "names the data file \"" + std::string(name.substr(0, 40)) +
                            "\": only a file in the same folder is read");
   }
-  return read_bounded(header_file.parent_path() / data, most_bytes);
+  const std::filesystem::path file = header_file.parent_path() / data;
+  if (std::error_code ignored; !std::filesystem::exists(file, ignored))
+    throw InvalidInput(header_file, "", "names the data file \"" + data.string() + "\", which is not there");
+  return read_bounded(file, most_bytes);
 }
 
 std::string read_bounded(const std::filesystem::path& file, std::size_t most_bytes) {

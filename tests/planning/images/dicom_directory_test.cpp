@@ -76,6 +76,19 @@ TEST_F(DicomDirectory, NamesThatBecameSmallAreFound) {
   EXPECT_EQ(read_volume(disc_.path(), {"1.2.3.4"}).values, test::oblique_volume().values);
 }
 
+// A record's type that reaches over what follows it: DCMTK throws what is no error of its own there.
+TEST_F(DicomDirectory, ATypeThatReachesTooFarIsRefusedWithItsPlace) {
+  std::string text = files::read_text(disc_ / "DICOMDIR");
+  const std::string tag = test::bytes_of(std::uint16_t{4}, std::endian::little) +
+                          test::bytes_of(std::uint16_t{0x1430}, std::endian::little) + "CS";
+  const std::size_t last = text.rfind(tag);
+  ASSERT_NE(last, std::string::npos);
+  text.replace(last + 6, 2, test::bytes_of(std::uint16_t{0x86}, std::endian::little));
+  test::write_bytes(disc_ / "DICOMDIR", text);
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(disc_.path(), {"1.2.3.4"}); }),
+              AllOf(HasSubstr("DICOMDIR"), HasSubstr("broken or cut off")));
+}
+
 TEST_F(DicomDirectory, AFileThatIsNotThereIsNamed) {
   std::filesystem::remove(disc_ / "A2");
   EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(disc_.path(), {"1.2.3.4"}); }),

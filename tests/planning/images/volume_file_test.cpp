@@ -89,6 +89,13 @@ TEST(VolumeFile, DetachedDataOnlyFromTheSameFolder) {
   write_bytes(folder / "a.mhd", whole.substr(0, split) + "a.raw\n");
   write_bytes(folder / "a.raw", whole.substr(split + 6));
   expect_same(read_volume(folder / "a.mhd"), test::oblique_volume());
+  write_bytes(folder / "d.mhd", whole.substr(0, split) + "absent.raw\n");
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder / "d.mhd"); }),
+              AllOf(HasSubstr("d.mhd"), HasSubstr("absent.raw"), HasSubstr("not there")));
+  // What cuts off a name would cut off the message about it, too.
+  write_bytes(folder / "c.mhd", whole.substr(0, split) + std::string("\0LOCAL\n", 7));
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder / "c.mhd"); }),
+              AllOf(HasSubstr("c.mhd"), HasSubstr("control characters")));
   write_bytes(folder / "b.mhd", whole.substr(0, split) + "../../etc/passwd\n");
   EXPECT_THAT(message_of<InvalidInput>([&] { (void)read_volume(folder / "b.mhd"); }),
               HasSubstr("same folder"));
