@@ -123,7 +123,7 @@ void import(Context& context, const ImportArguments& arguments) {
   }
   context.say("Wrote " + folder.string() + ": a " + std::string(bones::to_text(target.side)) + " knee" +
               (import.side_was_guessed ? " (by the name of the source)" : "") +
-              (import.side_was_seen ? " (by its fibula)" : "") + ".");
+              (import.side_was_seen ? " (by its anatomy)" : "") + ".");
   if (!doubts.empty()) context.say_unreliable(folder.string(), doubts);
 }
 

@@ -7,6 +7,7 @@
 #include "planning/geometry/error.h"
 #include "planning/images/bone_surface.h"
 #include "planning/images/volume_file.h"
+#include "planning/import/shape_check.h"
 #include "planning/segmentation/anatomy_check.h"
 #include "planning/segmentation/ct_bones.h"
 
@@ -155,7 +156,8 @@ void import_labels(const Volume& volume, const std::map<BoneKind, int>& labels,
   if (result.bones.empty()) throw InvalidInput("--label does not name the bone of --bone");
 }
 
-void import_ct(const Volume& volume, const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
+// Returns whether a fibula told the side.
+bool import_ct(const Volume& volume, const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
   segmentation::CtBonesOptions ct;
   ct.threshold = options.threshold;
   ct.only = options.kind;
@@ -187,9 +189,11 @@ void import_ct(const Volume& volume, const BoneImportOptions& options, BoneImpor
     result.lines.push_back("the fibula says that it is a " + std::string(bones::to_text(*result.side)) +
                            " knee");
   }
+  return found.side_by_fibula.has_value();
 }
 
-void import_volume(const std::filesystem::path& source, const BoneImportOptions& options, BoneImport& result,
+// Returns whether a fibula told the side.
+bool import_volume(const std::filesystem::path& source, const BoneImportOptions& options, BoneImport& result,
                    const Tell& tell) {
   if (options.space || options.unit) {
     throw InvalidInput(
@@ -210,6 +214,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
   const auto labels = labels_of(volume);
   result.identity = {volume.patient.name, volume.patient.id, volume.patient.birth_date};
   const bool is_label_map = labels.size() > 1 && labels.front().first >= 0 && volume.modality.empty();
+  bool fibula_was_seen = false;
   try {
     if (!options.labels.empty()) {
       import_labels(volume, options.labels, options, result, tell);
@@ -223,7 +228,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
       import_labels(volume, named, options, result, tell);
     } else {
       refuse_without_threshold(volume, options);
-      import_ct(volume, options, result, tell);
+      fibula_was_seen = import_ct(volume, options, result, tell);
     }
   } catch (const InvalidInput& error) {
     // Those of the surface speak of "the volume": the file's name goes before it, once.
@@ -238,6 +243,7 @@ void import_volume(const std::filesystem::path& source, const BoneImportOptions&
                                          .size = volume.size,
                                          .spacing_mm = spacing},
                                .volume = encoded(volume)};
+  return fibula_was_seen;
 }
 
 }  // namespace
@@ -251,16 +257,19 @@ BoneImport import_bones(const std::filesystem::path& source, const BoneImportOpt
   BoneImport result;
   result.side = options.side ? options.side : side_in_name(source);
   result.side_was_guessed = !options.side && result.side;
+  bool fibula_was_seen = false;
   if (bones::is_mesh_file(source) && !std::filesystem::is_directory(source)) {
     import_mesh(source, options, result, tell);
   } else if (is_volume_source(source)) {
-    import_volume(source, options, result, tell);
+    fibula_was_seen = import_volume(source, options, result, tell);
   } else {
     throw InvalidInput(
         source, "",
         "is nothing that is imported: a mesh (STL, PLY, OBJ, VTK, VTP), DICOM, or a volume (NIfTI, NRRD, "
         "MetaImage)");
   }
+  tell("Looking at the bones", kUnknown);
+  check_shapes(result, fibula_was_seen);
   return result;
 }
 

@@ -23,7 +23,8 @@ namespace arthronaut::importing {
 struct BoneImportOptions {
   // Meshes: else guessed from the name of the source. Volumes: this bone alone; else femur and tibia.
   std::optional<bones::BoneKind> kind;
-  std::optional<bones::Side> side;        // else guessed from the name of the source, or seen by the fibula
+  std::optional<bones::Side> side;        // else guessed from the name of the source, or
+                                          // seen by the fibula or the shape of both bones
   std::optional<bones::Space> space;      // meshes: overrides what the file says
   std::optional<bones::LengthUnit> unit;  // meshes: of the file
   std::map<bones::BoneKind, int> labels;  // label maps: which label is which bone; else by
@@ -36,7 +37,8 @@ struct BoneImportOptions {
 };
 
 struct ImportProgress {
-  std::string stage;     // "Reading", "Finding the bones", "Making the surface", "Mending the mesh"
+  std::string stage;     // "Reading", "Finding the bones", "Making the surface", "Mending the mesh",
+                         // "Looking at the bones"
   double fraction = -1;  // of this stage, 0 to 1; below 0: not known
 };
 

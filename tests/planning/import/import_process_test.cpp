@@ -118,7 +118,7 @@ TEST_F(ImportProcessTest, TellsHowFarItIs) {
   while (process.wait_for(60) == State::Running) stages.insert(process.progress().stage);
   EXPECT_EQ(process.state(), State::Done) << process.message();
   // Quick stages may pass between two looks; the last one that was told stays.
-  EXPECT_EQ(process.progress().stage, "Mending the mesh");
+  EXPECT_EQ(process.progress().stage, "Looking at the bones");
 }
 
 TEST_F(ImportProcessTest, ARefusalComesBackWithFilePlaceAndReason) {

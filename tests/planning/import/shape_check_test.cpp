@@ -1,0 +1,111 @@
+#include "planning/import/shape_check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "planning/phantom/phantom_knee.h"
+
+namespace arthronaut::importing {
+namespace {
+
+using bones::Side;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// The built-in right knee as an import, or its mirror image, which is a left one.
+BoneImport knee(Side side, std::optional<Side> said) {
+  static const auto phantom = phantom::make_phantom_knee({.edge_length_mm = 1.5});
+  BoneImport import;
+  import.side = said;
+  for (const bones::Bone& bone : {phantom.femur, phantom.tibia}) {
+    import.bones.emplace_back().bone = bone;
+    if (side == Side::Right) continue;
+    for (auto& p : import.bones.back().bone.mesh.vertices_mm) p.x() = -p.x();
+    for (auto& t : import.bones.back().bone.mesh.triangles) std::swap(t[0], t[1]);
+  }
+  return import;
+}
+
+std::vector<std::string> doubts_of(const BoneImport& import) {
+  std::vector<std::string> all;
+  for (const auto& bone : import.bones) all.insert(all.end(), bone.doubts.begin(), bone.doubts.end());
+  return all;
+}
+
+TEST(ShapeCheck, SaysNothingOfAKneeThatIsWhatItIsSaidToBe) {
+  for (const Side side : {Side::Left, Side::Right}) {
+    BoneImport import = knee(side, side);
+    check_shapes(import, false);
+    EXPECT_THAT(doubts_of(import), IsEmpty());
+    EXPECT_FALSE(import.side_was_seen);
+  }
+}
+
+// Half a turn about the long axis is all that RAS read as LPS does: no mirror, no other side.
+TEST(ShapeCheck, FrontsThatLookBackwardsRaiseADoubtOfEachBone) {
+  BoneImport import = knee(Side::Right, Side::Right);
+  for (auto& bone : import.bones)
+    for (auto& p : bone.bone.mesh.vertices_mm) p.head<2>() = -p.head<2>();
+  check_shapes(import, false);
+  for (const auto& bone : import.bones) EXPECT_THAT(bone.doubts, Contains(HasSubstr("--space")));
+}
+
+// The bones of one file are turned together: of one alone it is the shape that misleads.
+TEST(ShapeCheck, OneFrontOfTwoThatLooksBackwardsRaisesNone) {
+  BoneImport import = knee(Side::Right, Side::Right);
+  for (auto& p : import.bones.back().bone.mesh.vertices_mm) p.head<2>() = -p.head<2>();
+  check_shapes(import, true);
+  EXPECT_THAT(doubts_of(import), IsEmpty());
+}
+
+// A foot that falls outwards as far as it can is no other convention.
+TEST(ShapeCheck, AKneeThatIsTurnedInTheScannerRaisesNone) {
+  BoneImport import = knee(Side::Right, Side::Right);
+  const Eigen::Matrix3d turned = Eigen::AngleAxisd(0.9, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  for (auto& bone : import.bones)
+    for (auto& p : bone.bone.mesh.vertices_mm) p = turned * p;
+  check_shapes(import, false);
+  EXPECT_THAT(doubts_of(import), IsEmpty());
+}
+
+TEST(ShapeCheck, ASideThatBothBonesContradictRaisesADoubt) {
+  BoneImport import = knee(Side::Left, Side::Right);
+  check_shapes(import, false);
+  EXPECT_EQ(import.side, Side::Right);  // what a person said stands
+  EXPECT_THAT(doubts_of(import), ElementsAre(::testing::AllOf(HasSubstr("left knee"), HasSubstr("--side"))));
+}
+
+// What a fibula told was looked at before.
+TEST(ShapeCheck, IsSilentOfTheSideWhereAFibulaTellsIt) {
+  BoneImport import = knee(Side::Left, Side::Right);
+  check_shapes(import, true);
+  EXPECT_THAT(doubts_of(import), IsEmpty());
+}
+
+TEST(ShapeCheck, BothBonesTogetherTellTheSideButOneAloneDoesNot) {
+  for (const Side side : {Side::Left, Side::Right}) {
+    BoneImport import = knee(side, std::nullopt);
+    check_shapes(import, false);
+    EXPECT_EQ(import.side, side);
+    EXPECT_TRUE(import.side_was_seen);
+    EXPECT_THAT(doubts_of(import), ElementsAre(HasSubstr("alone: check --side")));
+    BoneImport alone = knee(side, std::nullopt);
+    alone.bones.pop_back();
+    check_shapes(alone, false);
+    EXPECT_FALSE(alone.side.has_value());
+  }
+}
+
+// What is doubted as a bone already is not looked at.
+TEST(ShapeCheck, LeavesWhatIsNoBoneAlone) {
+  BoneImport import = knee(Side::Left, std::nullopt);
+  for (auto& bone : import.bones) bone.doubts = {"no femur"};
+  check_shapes(import, false);
+  EXPECT_FALSE(import.side.has_value());
+  for (const auto& bone : import.bones) EXPECT_THAT(bone.doubts, ElementsAre("no femur"));
+}
+
+}  // namespace
+}  // namespace arthronaut::importing
