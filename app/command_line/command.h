@@ -60,6 +60,7 @@ void add_pivot_command(CLI::App& app, Context& context);
 void add_digitise_command(CLI::App& app, Context& context);
 void add_register_command(CLI::App& app, Context& context);
 void add_import_command(CLI::App& app, Context& context);
+void add_cases_command(CLI::App& app, Context& context);
 void add_series_command(CLI::App& app, Context& context);
 void add_landmarks_command(CLI::App& app, Context& context);
 void add_segment_command(CLI::App& app, Context& context);

@@ -108,6 +108,7 @@ int run_command_line(int argc, char** argv,
   Context context;
   add_log_options(app, context);
   add_import_command(app, context);
+  add_cases_command(app, context);
   add_series_command(app, context);
   add_landmarks_command(app, context);
   add_segment_command(app, context);

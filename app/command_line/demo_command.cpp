@@ -2,6 +2,7 @@
 
 #include "app/command_line/command.h"
 #include "app/command_line/demo_operation.h"
+#include "app/library/workstation_library.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
@@ -44,9 +45,11 @@ void add_demo_command(CLI::App& app, Context& context) {
   command->add_option("--seed", arguments->seed, "Another knee and another hand for each seed")
       ->capture_default_str();
   command->callback([&context, arguments] {
-    run_demo(context, {.case_folder = folder_of(*arguments),
-                       .seed = arguments->seed,
-                       .side = bones::side_from_text(arguments->side)});
+    const std::filesystem::path folder = folder_of(*arguments);
+    run_demo(
+        context,
+        {.case_folder = folder, .seed = arguments->seed, .side = bones::side_from_text(arguments->side)});
+    workstation_library::note_case(folder);
   });
 }
 

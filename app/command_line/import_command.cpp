@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "app/command_line/command.h"
+#include "app/library/workstation_library.h"
 #include "planning/cases/case_lock.h"
 #include "planning/geometry/error.h"
 #include "planning/import/case_import.h"
@@ -121,6 +122,7 @@ void import(Context& context, const ImportArguments& arguments) {
     for (const auto& line : imported.lines) context.say(bone + ": " + line);
     for (const auto& doubt : imported.doubts) doubts.push_back(bone + ": " + doubt);
   }
+  workstation_library::note_case(folder);
   context.say("Wrote " + folder.string() + ": a " + std::string(bones::to_text(target.side)) + " knee" +
               (import.side_was_guessed ? " (by the name of the source)" : "") +
               (import.side_was_seen ? " (by its anatomy)" : "") + ".");

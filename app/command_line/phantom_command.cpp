@@ -1,4 +1,5 @@
 #include "app/command_line/command.h"
+#include "app/library/workstation_library.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
@@ -27,6 +28,7 @@ void add_phantom_command(CLI::App& app, Context& context) {
     const auto knee =
         phantom::make_phantom_knee({.side = bones::side_from_text(arguments->side), .seed = arguments->seed});
     cases::save_case(folder, phantom::case_of(knee, folder.stem().string()));
+    workstation_library::note_case(folder);
     context.say("Wrote " + folder.string() + ": a " + arguments->side + " knee with its plan.");
   });
 }

@@ -3,8 +3,8 @@
 #include <array>
 #include <cstring>
 
+#include "app/start/start_drawing.h"
 #include "app/start/start_view.h"
-#include "planning/files/utc_clock.h"
 
 namespace arthronaut::start {
 
@@ -12,26 +12,6 @@ namespace {
 
 using State = ImportWork::State;
 using widgets::Severity;
-
-void text(ImDrawList& draw, ImFont* font, float x, float y, ImU32 color, const std::string& words,
-          float wrap = 0) {
-  draw.AddText(font, font->FontSize, {x, y}, color, words.c_str(), nullptr, wrap);
-}
-
-// Cut off with an ellipsis where it is too long.
-std::string fitting(ImFont* font, const std::string& words, float width) {
-  const auto wide = [&](const std::string& t) {
-    return font->CalcTextSizeA(font->FontSize, 1e9F, 0, t.c_str()).x;
-  };
-  if (wide(words) <= width) return words;
-  std::string cut = words;
-  while (!cut.empty() && wide(cut + "\u2026") > width) {
-    do cut.pop_back();
-    while (!cut.empty() && (static_cast<unsigned char>(cut.back()) & 0xC0U) == 0x80U);
-    if (!cut.empty() && (static_cast<unsigned char>(cut.back()) & 0xC0U) == 0xC0U) cut.pop_back();
-  }
-  return cut + "\u2026";
-}
 
 const char* word_of(FolderEntry::Kind kind) {
   switch (kind) {
@@ -47,20 +27,12 @@ const char* word_of(FolderEntry::Kind kind) {
   return "";
 }
 
-void buttons(const widgets::Ui& ui, widgets::Rect bar, std::initializer_list<const char*> ids) {
-  ImGui::SetCursorScreenPos(bar.min());
-  for (const char* id : ids) {
-    widgets::action_button(ui, id, 0, bar.height);
-    ImGui::SameLine();
-  }
-}
-
 }  // namespace
 
 void StartView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   switch (state_.page) {
     case Page::Cases:
-      draw_cases(ui, area);
+      cases_.draw(ui, area);
       break;
     case Page::Browse:
       draw_browser(ui, area);
@@ -82,83 +54,25 @@ void StartView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
                                     : std::to_string(state_.selected));
 }
 
-bool StartView::draw_row(const widgets::Ui& ui, const std::string& name, std::size_t row, float height) {
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float width = ImGui::GetContentRegionAvail().x;
-  ImGui::PushID(static_cast<int>(row));
-  if (ImGui::InvisibleButton("row", {width, height})) state_.selected = row;
-  const bool twice = ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
-  const bool hovered = ImGui::IsItemHovered();
-  if (state_.scrolls_to_selected && row == state_.selected) ImGui::SetScrollHereY(0.5F);
-  ImGui::PopID();
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const ImVec2 to(at.x + width, at.y + height);
-  if (row == state_.selected) {
-    draw.AddRectFilled(at, to, IM_COL32(28, 74, 104, 255), ui.theme.px(6));
-    draw.AddRect(at, to, widgets::kAccent, ui.theme.px(6), 0, ui.theme.px(2));
-  } else if (hovered) {
-    draw.AddRectFilled(at, to, IM_COL32(38, 47, 57, 255), ui.theme.px(6));
-  }
-  std::string word = name;  // the list of widgets is one of words
-  std::replace(word.begin(), word.end(), ' ', '_');
-  if (ImGui::IsRectVisible(at, to)) ui.log.note(word, at, to);
-  ImGui::SetCursorScreenPos(at);
-  ImGui::Dummy({width, height});
-  if (twice) state_.selected = row;
-  return twice;
-}
-
-void StartView::draw_cases(const widgets::Ui& ui, const widgets::Rect& area) {
-  widgets::Rect rest = area;
-  const float side = std::max((area.width - ui.theme.px(1240)) / 2, 0.F);
-  rest.cut_left(side);
-  rest.cut_right(side);
-  const widgets::Rect head = rest.cut_top(ui.theme.px(96));
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  text(draw, ui.theme.title, head.x, head.y + ui.theme.px(8), widgets::kText, "Which knee?");
-  text(draw, ui.theme.body, head.x, head.y + ui.theme.px(52), widgets::kQuietText,
-       "Drop the hospital's folder or a case on this window, or choose here.");
-  buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-          {"start.browse", "start.built_in", "start.accept", "start.back"});
-  widgets::begin_panel(ui, "start.cases", rest);
-  const std::string now = files::utc_now();
-  const float height = ui.theme.px(70);
-  bool opens = false;
-  for (std::size_t i = 0; i <= state_.recent.size(); ++i) {
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float width = ImGui::GetContentRegionAvail().x;
-    opens = draw_row(ui, "start.case." + std::to_string(i), i, height) || opens;
-    const bool is_built_in = i == state_.recent.size();
-    std::error_code error;
-    const bool is_there = is_built_in || is_case_folder(state_.recent[i].folder);
-    const std::string name = is_built_in ? "The built-in knee" : state_.recent[i].name;
-    const std::string what = is_built_in ? "a right knee to learn on, planned and simulated"
-                                         : state_.recent[i].side + " knee  \u2013  " +
-                                               state_.recent[i].folder.string() +
-                                               (is_there ? "" : "  \u2013  is not there now");
-    const float x = at.x + ui.theme.px(16), when_width = ui.theme.px(170);
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    text(list, ui.theme.strong, x, at.y + ui.theme.px(8), is_there ? widgets::kText : widgets::kQuietText,
-         name);
-    text(list, ui.theme.body, x, at.y + ui.theme.px(36), is_there ? widgets::kQuietText : widgets::kCaution,
-         fitting(ui.theme.body, what, width - when_width - ui.theme.px(30)));
-    if (!is_built_in)
-      text(list, ui.theme.body, at.x + width - when_width, at.y + ui.theme.px(8), widgets::kQuietText,
-           when_in_words(state_.recent[i].opened_utc, now));
-  }
-  widgets::end_panel();
-  if (opens) accept();
+bool StartView::draw_page_row(const widgets::Ui& ui, const std::string& name, std::size_t row, float height) {
+  const RowPress press = draw_row(ui, {.name = name,
+                                       .number = row,
+                                       .height = height,
+                                       .is_selected = row == state_.selected,
+                                       .scrolls_here = state_.scrolls_to_selected});
+  if (press != RowPress::None) state_.selected = row;
+  return press == RowPress::Twice;
 }
 
 void StartView::draw_browser(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::Rect rest = area;
   const widgets::Rect head = rest.cut_top(ui.theme.px(88));
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  text(draw, ui.theme.title, head.x, head.y, widgets::kText, "Open a case, or import images or meshes");
-  text(draw, ui.theme.body, head.x, head.y + ui.theme.px(46), widgets::kAccent,
-       fitting(ui.theme.body, state_.listing.folder.string(), head.width));
-  buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-          {"start.accept", "start.up", "start.home", "start.import_folder", "start.back"});
+  draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText, "Open a case, or import images or meshes");
+  draw_text(draw, ui.theme.body, head.x, head.y + ui.theme.px(46), widgets::kAccent,
+            fitting(ui.theme.body, state_.listing.folder.string(), head.width));
+  draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+               {"start.accept", "start.up", "start.home", "start.import_folder", "start.back"});
   widgets::begin_panel(ui, "start.folder", rest);
   bool opens = false;
   const float height = ui.theme.px(44);
@@ -166,15 +80,15 @@ void StartView::draw_browser(const widgets::Ui& ui, const widgets::Rect& area) {
     const FolderEntry& entry = state_.listing.entries[i];
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
-    opens = draw_row(ui, "start.entry." + entry.name, i, height) || opens;
+    opens = draw_page_row(ui, "start.entry." + entry.name, i, height) || opens;
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const float y = at.y + (height - ui.theme.body->FontSize) / 2;
     const bool is_case = entry.kind == FolderEntry::Kind::Case;
-    text(list, ui.theme.body, at.x + ui.theme.px(16), y, is_case ? widgets::kAccent : widgets::kQuietText,
-         word_of(entry.kind));
-    text(list, is_case ? ui.theme.strong : ui.theme.body, at.x + ui.theme.px(120), y, widgets::kText,
-         fitting(ui.theme.body, entry.name, width - ui.theme.px(320)));
-    text(list, ui.theme.body, at.x + width - ui.theme.px(170), y, widgets::kQuietText, entry.detail);
+    draw_text(list, ui.theme.body, at.x + ui.theme.px(16), y,
+              is_case ? widgets::kAccent : widgets::kQuietText, word_of(entry.kind));
+    draw_text(list, is_case ? ui.theme.strong : ui.theme.body, at.x + ui.theme.px(120), y, widgets::kText,
+              fitting(ui.theme.body, entry.name, width - ui.theme.px(320)));
+    draw_text(list, ui.theme.body, at.x + width - ui.theme.px(170), y, widgets::kQuietText, entry.detail);
   }
   if (!state_.listing.failure.empty())
     widgets::status_row(ui, Severity::Bad, "This folder cannot be looked into", state_.listing.failure);
@@ -208,7 +122,7 @@ void StartView::draw_import(const widgets::Ui& ui, const widgets::Rect& area) {
       draw.AddRectFilled(at, {at.x + width, at.y + height}, widgets::kPanelEdge, ui.theme.px(6));
       const auto done = static_cast<float>(std::clamp(progress.fraction, 0.0, 1.0));
       draw.AddRectFilled(at, {at.x + width * done, at.y + height}, widgets::kAccent, ui.theme.px(6));
-      buttons(ui, {at.x, at.y + ui.theme.px(60), width, ui.theme.px(56)}, {"start.back"});
+      draw_buttons(ui, {at.x, at.y + ui.theme.px(60), width, ui.theme.px(56)}, {"start.back"});
       return;
     }
     case State::Asking:
@@ -223,13 +137,14 @@ void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
   const widgets::Rect head = rest.cut_top(ui.theme.px(88));
   const ImportSources& found = work_.sources();
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  text(draw, ui.theme.title, head.x, head.y, widgets::kText,
-       found.sources.empty() ? "Nothing to import was found"
-                             : "What was found. Take one, then make the bones");
-  text(draw, ui.theme.body, head.x, head.y + ui.theme.px(46), widgets::kAccent,
-       fitting(ui.theme.body, found.root.string(), head.width));
-  buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-          {"start.import", "start.tick", "start.right", "start.left", "start.side_unknown", "start.back"});
+  draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText,
+            found.sources.empty() ? "Nothing to import was found"
+                                  : "What was found. Take one, then make the bones");
+  draw_text(draw, ui.theme.body, head.x, head.y + ui.theme.px(46), widgets::kAccent,
+            fitting(ui.theme.body, found.root.string(), head.width));
+  draw_buttons(
+      ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+      {"start.import", "start.tick", "start.right", "start.left", "start.side_unknown", "start.back"});
   widgets::begin_panel(ui, "start.sources", rest);
   if (!work_.failure().empty()) widgets::status_row(ui, Severity::Bad, "Refused", work_.failure());
   const float height = ui.theme.px(132), picture = ui.theme.px(116);
@@ -237,7 +152,7 @@ void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
     const ImportSource& source = found.sources[i];
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
-    if (draw_row(ui, "start.source." + std::to_string(i), i, height)) ui.actions.run("start.tick");
+    if (draw_page_row(ui, "start.source." + std::to_string(i), i, height)) ui.actions.run("start.tick");
     ImDrawList& list = *ImGui::GetWindowDrawList();
     if (const images::Thumbnail* made = work_.thumbnail(i); made != nullptr && made->width > 0) {
       auto& texture = thumbnails_[i];
@@ -258,16 +173,16 @@ void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
                           : is_ticked                ? Severity::Good
                                                      : Severity::Quiet;
     widgets::draw_sign(list, {x + ui.theme.px(10), at.y + ui.theme.px(24)}, ui.theme.px(9), sign);
-    text(list, ui.theme.strong, x + ui.theme.px(30), at.y + ui.theme.px(10), widgets::kText,
-         fitting(ui.theme.strong, source.title + (is_ticked ? "  \u2013  taken" : ""), wrap));
-    text(list, ui.theme.body, x + ui.theme.px(30), at.y + ui.theme.px(38), widgets::kQuietText,
-         source.detail);
+    draw_text(list, ui.theme.strong, x + ui.theme.px(30), at.y + ui.theme.px(10), widgets::kText,
+              fitting(ui.theme.strong, source.title + (is_ticked ? "  \u2013  taken" : ""), wrap));
+    draw_text(list, ui.theme.body, x + ui.theme.px(30), at.y + ui.theme.px(38), widgets::kQuietText,
+              source.detail);
     const std::string wrong = !source.can_be_imported() ? "Cannot be imported: " + source.refusal
                               : source.warnings.empty() ? std::string()
                                                         : source.warnings.front();
     if (!wrong.empty())
-      text(list, ui.theme.body, x + ui.theme.px(30), at.y + ui.theme.px(66),
-           source.can_be_imported() ? widgets::kCaution : widgets::kBad, wrong, wrap);
+      draw_text(list, ui.theme.body, x + ui.theme.px(30), at.y + ui.theme.px(66),
+                source.can_be_imported() ? widgets::kCaution : widgets::kBad, wrong, wrap);
   }
   for (const std::string& left : found.left_out) widgets::status_row(ui, Severity::Quiet, "Left out", left);
   widgets::end_panel();
@@ -277,12 +192,12 @@ void StartView::draw_result(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::Rect rest = area;
   const widgets::Rect head = rest.cut_top(ui.theme.px(64));
   const std::vector<std::string> doubts = work_.doubts();
-  text(*ImGui::GetWindowDrawList(), ui.theme.title, head.x, head.y, widgets::kText,
-       !state_.side     ? "Which knee is it? Nothing says so"
-       : doubts.empty() ? "The bones are made"
-                        : "The bones are made, but look before you rely on them");
-  buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-          {"start.save", "start.right", "start.left", "start.back"});
+  draw_text(*ImGui::GetWindowDrawList(), ui.theme.title, head.x, head.y, widgets::kText,
+            !state_.side     ? "Which knee is it? Nothing says so"
+            : doubts.empty() ? "The bones are made"
+                             : "The bones are made, but look before you rely on them");
+  draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+               {"start.save", "start.right", "start.left", "start.back"});
   widgets::begin_panel(ui, "start.result", rest);
   widgets::text_in(ui.theme.strong, widgets::kQuietText,
                    "Name of the case (no patient's name: it stands in exports)");

@@ -23,19 +23,24 @@ fs::path home_folder() {
 }  // namespace
 
 StartView::StartView(std::function<void(const fs::path&)> open, std::function<void()> wake)
-    : open_(std::move(open)), work_(std::move(wake)) {
-  state_.recent = load_recent_cases(recent_cases_file());
-}
+    : open_([this, open = std::move(open)](const fs::path& folder) {
+        leave();
+        open(folder);
+      }),
+      work_(wake),
+      cases_(open_, wake) {}
 
 void StartView::enter(bool can_close) {
   wants_to_close_ = false;
   state_.can_close = can_close;
-  state_.recent = load_recent_cases(recent_cases_file());
+  cases_.enter();
   if (!work_.is_busy() && work_.state() != State::Asking) {
     state_.page = Page::Cases;
     state_.selected = 0;
   }
 }
+
+void StartView::leave() { cases_.leave(); }
 
 void StartView::take(const fs::path& path) {
   std::error_code error;
@@ -54,6 +59,7 @@ bool StartView::has_running_work() const {
 }
 
 void StartView::tick() {
+  if (state_.page == Page::Cases) cases_.tick();
   const State before = work_.state();
   work_.poll();
   const State now = work_.state();
@@ -86,7 +92,7 @@ void StartView::tick() {
 std::size_t StartView::row_count() const {
   switch (state_.page) {
     case Page::Cases:
-      return state_.recent.size() + 1;  // and the built-in knee
+      return 1;  // the built-in knee at least
     case Page::Browse:
       return state_.listing.entries.size();
     case Page::Import:
@@ -96,6 +102,7 @@ std::size_t StartView::row_count() const {
 }
 
 void StartView::move_selection(int by) {
+  if (state_.page == Page::Cases) return cases_.move_selection(by);
   const auto count = static_cast<long>(row_count());
   if (count == 0) return;
   state_.selected =
@@ -117,7 +124,7 @@ void StartView::browse(const fs::path& folder) {
 void StartView::go_back() {
   switch (state_.page) {
     case Page::Cases:
-      wants_to_close_ = state_.can_close;
+      if (!cases_.go_back()) wants_to_close_ = state_.can_close;
       return;
     case Page::Browse:
       state_.page = Page::Cases;
@@ -146,8 +153,7 @@ void StartView::accept_entry() {
 void StartView::accept() {
   switch (state_.page) {
     case Page::Cases:
-      return open_(state_.selected < state_.recent.size() ? state_.recent[state_.selected].folder
-                                                          : fs::path());
+      return cases_.accept();
     case Page::Browse:
       return accept_entry();
     case Page::Import:
@@ -170,6 +176,7 @@ void StartView::save_import() {
 void StartView::add_actions(widgets::Actions& actions) {
   add_page_actions(actions);
   add_import_actions(actions);
+  cases_.add_actions(actions, [this] { return state_.page == Page::Cases; });
 }
 
 void StartView::add_page_actions(widgets::Actions& actions) {
@@ -245,17 +252,19 @@ void StartView::add_page_actions(widgets::Actions& actions) {
                [this] { return state_.page != Page::Import && row_count() > 0; },
                {},
                [this] { accept(); }});
-  actions.add(
-      {"start.back",
-       "Back",
-       "Goes back; an import that runs is stopped, and nothing of it stays",
-       GLFW_KEY_ESCAPE,
-       0,
-       false,
-       [this] { return (state_.page != Page::Cases || state_.can_close) && work_.state() != State::Saving; },
-       {},
-       [this] { go_back(); },
-       {"stop the import", [this] { return has_running_work(); }}});
+  actions.add({"start.back",
+               "Back",
+               "Goes back; an import that runs is stopped, and nothing of it stays",
+               GLFW_KEY_ESCAPE,
+               0,
+               false,
+               [this] {
+                 return (state_.page != Page::Cases || state_.can_close || cases_.shows_trends()) &&
+                        work_.state() != State::Saving;
+               },
+               {},
+               [this] { go_back(); },
+               {"stop the import", [this] { return has_running_work(); }}});
 }
 
 void StartView::add_import_actions(widgets::Actions& actions) {

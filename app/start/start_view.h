@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "app/start/case_list.h"
 #include "app/start/folder_listing.h"
 #include "app/start/import_work.h"
-#include "app/start/recent_cases.h"
 #include "app/widgets/controls.h"
 #include "app/widgets/grey_texture.h"
 
@@ -26,15 +26,20 @@ class StartView {
   void add_actions(widgets::Actions& actions);  // all start with "start."
   // Comes to the front, on the list of cases. can_close: a case is open that one can go back to.
   void enter(bool can_close);
+  void leave();  // something else comes to the front
   // A folder or file from outside: a case is opened, anything else is looked into for the import.
   void take(const std::filesystem::path& path);
   void tick();
   void draw(const widgets::Ui& ui, const widgets::Rect& area);
 
   // Something will change without anybody's doing.
-  [[nodiscard]] bool is_busy() const { return work_.is_busy() || work_.makes_pictures(); }
+  [[nodiscard]] bool is_busy() const {
+    return work_.is_busy() || work_.makes_pictures() || (state_.page == Page::Cases && cases_.is_busy());
+  }
   // An import runs that the end of the program would cut off.
   [[nodiscard]] bool has_running_work() const;
+  // What is typed next is meant for a text field.
+  [[nodiscard]] bool awaits_text() const { return state_.page == Page::Cases && cases_.awaits_text(); }
   [[nodiscard]] bool wants_to_close() const { return wants_to_close_; }
 
  private:
@@ -50,13 +55,12 @@ class StartView {
   void save_import();
   [[nodiscard]] std::size_t row_count() const;
 
-  void draw_cases(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_browser(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_import(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_sources(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_result(const widgets::Ui& ui, const widgets::Rect& area);
-  // A row of a list; true when it was chosen by a click twice.
-  bool draw_row(const widgets::Ui& ui, const std::string& name, std::size_t row, float height);
+  // A row of this page's list; true when it was chosen by a click twice.
+  bool draw_page_row(const widgets::Ui& ui, const std::string& name, std::size_t row, float height);
 
   struct ViewState {
     Page page = Page::Cases;
@@ -64,7 +68,6 @@ class StartView {
     bool scrolls_to_selected = false;
     bool can_close = false;
     FolderListing listing;
-    std::vector<RecentCase> recent;
     std::vector<std::size_t> ticked;  // of the sources
     std::optional<bones::Side> side;
     std::string name;  // of the new case
@@ -72,6 +75,7 @@ class StartView {
 
   std::function<void(const std::filesystem::path&)> open_;
   ImportWork work_;
+  CaseList cases_;
   ViewState state_;
   std::map<std::size_t, std::unique_ptr<widgets::GreyTexture>> thumbnails_;  // by source
   bool wants_to_close_ = false;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/library/workstation_library.h"
 #include "app/navigate/navigate_view.h"
 #include "app/plan/plan_view.h"
 #include "app/review/review_view.h"
@@ -176,6 +177,7 @@ void WorkstationWindow::take_opened_case() {
   start::note_recent_case(
       start::recent_cases_file(),
       {case_->folder(), knee.name, std::string(bones::to_text(knee.side)), files::utc_now()});
+  workstation_library::note_case(case_->folder());
   shows_start_ = false;
   shown().enter();
 }
@@ -203,7 +205,7 @@ void WorkstationWindow::dispatch_keys() {
     }
     actions_.press(press, action_prefixes());
     // What is typed after the key that opens a text field is meant for the field.
-    if (!shows_start() && shown().awaits_text()) window_.await_text_field();
+    if (shows_start() ? start_.awaits_text() : shown().awaits_text()) window_.await_text_field();
   }
   if (ImGui::GetIO().WantTextInput) actions_.let_go();
 }
@@ -220,6 +222,7 @@ std::vector<std::string_view> WorkstationWindow::action_prefixes() const {
 
 void WorkstationWindow::show(std::size_t mode) {
   actions_.let_go();
+  start_.leave();
   shows_start_ = false;
   if (mode != shown_) shown().leave();
   shown_ = mode;
@@ -228,6 +231,7 @@ void WorkstationWindow::show(std::size_t mode) {
 
 void WorkstationWindow::close_start() {
   if (!std::exchange(shows_start_, false)) return;
+  start_.leave();
   shown().enter();
 }
 

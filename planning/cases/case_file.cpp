@@ -3,7 +3,9 @@
 
 #include "planning/bones/mesh_file.h"
 #include "planning/cases/case.h"
+#include "planning/cases/case_outline.h"
 #include "planning/cases/plan_file.h"
+#include "planning/files/atomic_file.h"
 #include "planning/files/json_document.h"
 #include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
@@ -82,28 +84,52 @@ bool holds_mesh(const fs::path& file, const geometry::TriangleMesh& mesh) {
   }
 }
 
-}  // namespace
-
-Case load_case(const fs::path& folder) {
+files::JsonObject read_case_json(const fs::path& folder) {
   if (!fs::is_directory(folder)) throw IoError(folder, "is not a case folder");
   const fs::path file = folder / "case.json";
   if (!fs::exists(file)) throw InvalidInput(folder, "", "is not a case: it holds no case.json");
-  const auto root = files::read_json(file, kFormat, kVersion);
-  Case result;
-  result.name = root.text("name");
+  return files::read_json(file, kFormat, kVersion);
+}
+
+bones::Side side_of(const files::JsonObject& root) {
   try {
-    result.side = bones::side_from_text(root.text("side"));
+    return bones::side_from_text(root.text("side"));
   } catch (const InvalidInput&) {
     root.fail("side", "must be left or right");
   }
+}
+
+bones::BoneKind kind_of(const files::JsonObject& bone) {
+  try {
+    return bones::bone_kind_from_text(bone.text("kind"));
+  } catch (const InvalidInput&) {
+    bone.fail("kind", "must be femur or tibia");
+  }
+}
+
+}  // namespace
+
+CaseOutline read_case_outline(const fs::path& case_folder) {
+  const auto root = read_case_json(case_folder);
+  CaseOutline outline{root.text("name"), side_of(root), "", {}, {}};
+  if (root.has("created_utc")) outline.created_utc = root.text("created_utc");
+  for (const auto& node : root.objects("bones")) outline.bones.insert(kind_of(node));
+  const fs::path plan = case_folder / "plan.json";
+  if (!fs::exists(plan)) return outline;
+  for (const auto& [kind, tunnel] : plan_from(files::read_text(plan), plan).tunnels)
+    outline.planned.insert(kind);
+  return outline;
+}
+
+Case load_case(const fs::path& folder) {
+  const auto root = read_case_json(folder);
+  Case result;
+  result.name = root.text("name");
+  result.side = side_of(root);
   if (root.has("created_utc")) result.created_utc = root.text("created_utc");
   for (const auto& node : root.objects("bones")) {
     bones::Bone bone;
-    try {
-      bone.kind = bones::bone_kind_from_text(node.text("kind"));
-    } catch (const InvalidInput&) {
-      node.fail("kind", "must be femur or tibia");
-    }
+    bone.kind = kind_of(node);
     if (node.has("source")) bone.source = node.text("source");
     bone.mesh = bones::read_mesh(mesh_file(folder, bone.kind),
                                  {.space = bones::Space::LPS, .unit = bones::LengthUnit::Millimetre});

@@ -10,10 +10,12 @@
 #include "navigation/registration/registration_file.h"
 #include "navigation/tools/tool_set.h"
 #include "planning/cases/case.h"
+#include "planning/cases/case_note.h"
 #include "planning/cases/identity.h"
 #include "planning/cases/measurements.h"
 #include "planning/cases/study.h"
 #include "planning/geometry/error.h"
+#include "planning/library/cohort.h"
 #include "planning/phantom/phantom_case.h"
 #include "planning/postop/achieved_file.h"
 #include "tests/resources/json_schema.h"
@@ -140,6 +142,43 @@ TEST_F(Schemas, DescribeTheMeasurements) {
   cases::save_measurements(folder_.path(), {{{{1, 2, 3}, {4, 5, 6}}}, {{{1, 0, 0}, {0, 0, 0}, {0, 1, 0}}}});
   expect_described(cases::measurements_file(folder_.path()), "measurements",
                    [&] { (void)cases::load_measurements(folder_.path()); });
+}
+
+TEST_F(Schemas, DescribeTheNote) {
+  std::ofstream(folder_ / "case.json") << "{}";
+  cases::save_note_over(folder_.path(), "look again #study", "");
+  expect_described(cases::note_file(folder_.path()), "note", [&] { (void)cases::load_note(folder_.path()); });
+}
+
+// What `cases --json` writes: a case with everything, one that is gone, one that cannot be read.
+TEST_F(Schemas, DescribeTheListOfCases) {
+  const fs::path file = folder_ / "cases.json";
+  std::vector<library::CaseRecord> records(3);
+  for (library::CaseRecord& record : records) {
+    record.folder = "/cases/A.arthro";
+    record.name = "A";
+  }
+  records[0].side = "left";
+  records[0].bones = records[0].planned = {bones::BoneKind::Femur, bones::BoneKind::Tibia};
+  library::SessionFacts session;
+  session.id = "0001-20260131-120000";
+  session.registration_is_reliable = true;
+  session.registration_rms_mm = session.predicted_error_mm = session.entry_offset_mm = session.angle_deg = 1;
+  session.depth_mm = session.registering_min = session.verifying_min = session.drilling_min = 2;
+  session.problem = "poses.csv: cut off";
+  records[0].sessions = {session, library::SessionFacts{}};
+  records[0].postoperative = {{.bone = "femur", .entry_offset_mm = 1, .angle_deg = 2, .diameter_mm = 9},
+                              {.bone = "tibia"}};
+  records[1].is_there = false;
+  records[2].problem = "case.json: broken";
+  const library::Identities named{{records[0].folder, {"Muster^Anna", "4711", "19900131"}}};
+  for (const library::Identities* identities : {static_cast<const library::Identities*>(nullptr), &named}) {
+    library::write_cases_json(file, records, identities);
+    EXPECT_EQ(violations_of(read(file), "cases"), "");
+  }
+  json broken = read(file);
+  broken["cases"][0]["state"] = "lost";
+  EXPECT_NE(violations_of(broken, "cases"), "");
 }
 
 // A registration that stands, and one that found nothing.

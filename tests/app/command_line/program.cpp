@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
@@ -24,7 +25,8 @@ std::string contents_of(const fs::path& file) {
 }
 
 [[noreturn]] void become_program(const std::vector<std::string>& arguments, const ProgramLimits& limits,
-                                 int output, int errors) {
+                                 const fs::path& data_home, int output, int errors) {
+  ::setenv("XDG_DATA_HOME", data_home.c_str(), 1);
   ::dup2(output, STDOUT_FILENO);
   ::dup2(errors, STDERR_FILENO);
   if (limits.file_size_bytes > 0) {
@@ -51,7 +53,9 @@ ProgramResult run_program(const std::vector<std::string>& arguments, const Progr
   const int output = ::open((folder / "out").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   const int errors = ::open((folder / "err").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   const pid_t child = ::fork();
-  if (child == 0) become_program(arguments, limits, output, errors);
+  if (child == 0)
+    become_program(arguments, limits, limits.data_home.empty() ? folder / "data" : limits.data_home, output,
+                   errors);
   int status = 0;
   ::waitpid(child, &status, 0);
   ::close(output);

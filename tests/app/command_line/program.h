@@ -17,6 +17,8 @@ struct ProgramResult {
 struct ProgramLimits {
   long file_size_bytes = 0;  // above 0: writing more fails like a full disk
   bool as_nobody = false;    // gives up root, which no folder is read-only for
+  // What the program takes for the user's data (XDG_DATA_HOME); empty: a folder of this run's own.
+  std::filesystem::path data_home = {};
 };
 
 ProgramResult run_program(const std::vector<std::string>& arguments, const ProgramLimits& limits = {});

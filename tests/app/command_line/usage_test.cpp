@@ -33,7 +33,7 @@ TEST_P(Subcommand, RefusesAnUnknownOption) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Subcommand,
-                         ::testing::Values("calibrate", "check-fluid", "compare", "track", "pivot",
+                         ::testing::Values("calibrate", "cases", "check-fluid", "compare", "track", "pivot",
                                            "digitise", "register", "import", "landmarks", "plan", "phantom",
                                            "navigate", "replay", "report", "dicom", "resume", "segment",
                                            "series", "markers", "demo"),

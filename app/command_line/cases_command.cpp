@@ -1,0 +1,138 @@
+#include <iostream>
+
+#include "app/command_line/command.h"
+#include "app/library/workstation_library.h"
+#include "planning/cases/case_note.h"
+#include "planning/files/atomic_file.h"
+#include "planning/geometry/error.h"
+#include "planning/library/case_query.h"
+#include "planning/library/cohort.h"
+#include "planning/library/folder_search.h"
+
+namespace arthronaut::command_line {
+
+namespace {
+
+namespace fs = std::filesystem;
+using library::CaseRecord;
+
+struct Arguments {
+  std::string add, forget, note;
+  std::string note_text;
+  std::string side, state, order = "newest";
+  std::string search;
+  bool as_json = false, as_csv = false, with_identity = false;
+};
+
+void add_folder(const Context& context, library::Library& known, const std::string& folder) {
+  Progress progress("Looking through folders", 0);
+  const auto found = library::find_case_folders(folder, [&](long looked) { progress.advance_to(looked); });
+  if (found.empty()) throw InvalidInput(folder, "", "holds no case");
+  const std::size_t fresh = known.add(found);
+  context.say(std::to_string(found.size()) + (found.size() == 1 ? " case found, " : " cases found, ") +
+              std::to_string(fresh) + " of them new.");
+}
+
+std::vector<CaseRecord> looked_at(library::Library& known) {
+  std::unique_ptr<Progress> progress;
+  std::size_t all = 0;
+  return known.look([&](std::size_t done, std::size_t count) {
+    if (progress == nullptr || count != all)
+      progress = std::make_unique<Progress>("Reading cases", static_cast<long>(all = count));
+    progress->advance_to(static_cast<long>(done));
+    return true;
+  });
+}
+
+void print(const Context& context, const std::vector<CaseRecord>& records) {
+  for (const CaseRecord& record : records) {
+    context.say(record.name + (record.side.empty() ? "" : ", " + record.side + " knee") + ": " +
+                std::string(to_text(record.state())));
+    context.say("    " + record.folder.string());
+    const std::string outcome = record.last_outcome();
+    if (record.is_there && record.problem.empty()) {
+      const std::size_t count = record.sessions.size();
+      std::string line = "    changed " + record.changed_utc.substr(0, 10) + "; " + record.plan_in_words();
+      if (count > 0)
+        line +=
+            "; " + std::to_string(count) + (count == 1 ? " session" : " sessions") + ", the last: " + outcome;
+      context.say(line);
+    } else {
+      context.say("  ! " + outcome);
+    }
+    if (!record.note.empty()) {
+      std::string note = record.note;
+      for (std::size_t at = 0; (at = note.find('\n', at)) != std::string::npos; at += 5)
+        note.replace(at, 1, "\n    ");
+      context.say("    \"" + note + "\"");
+    }
+  }
+  if (records.empty()) context.say("No case. \"arthronaut cases --add FOLDER\" looks for cases in a folder.");
+}
+
+void list_cases(const Context& context, const Arguments& arguments) {
+  library::CaseQuery query{.words = arguments.search, .side = arguments.side};
+  if (!arguments.state.empty()) query.state = library::case_state_from_text(arguments.state);
+  query.order = library::case_order_from_text(arguments.order);
+  const auto opened = workstation_library::open_library();
+  library::Library& known = *opened;
+  for (const std::string& notice : known.notices()) std::cerr << "arthronaut: " << notice << '\n';
+  if (!arguments.add.empty()) add_folder(context, known, arguments.add);
+  if (!arguments.forget.empty()) {
+    known.forget(arguments.forget);
+    context.say("Forgot " + arguments.forget + "; the folder stays as it is.");
+  }
+  if (!arguments.note.empty()) {
+    const std::string before = cases::load_note(arguments.note).text;
+    cases::save_note_over(arguments.note, arguments.note_text, before);
+    (void)known.add(std::vector<fs::path>{arguments.note});
+    context.say((arguments.note_text.empty() ? "Took the note off " : "Noted with ") + arguments.note + ".");
+  }
+  const bool only_changes = !arguments.forget.empty() || !arguments.note.empty();
+  if (only_changes && !arguments.as_json && !arguments.as_csv) return;
+  const std::vector<CaseRecord> all = looked_at(known);
+  std::vector<CaseRecord> records;
+  for (const std::size_t i : library::find_cases(all, query)) records.push_back(all[i]);
+  library::Identities identities;
+  if (arguments.with_identity) identities = library::read_identities(records);
+  const library::Identities* named = arguments.with_identity ? &identities : nullptr;
+  if (arguments.as_json)
+    library::write_cases_json("-", records, named);
+  else if (arguments.as_csv)
+    files::write_atomically("-", library::cohort_csv(records, named));
+  else
+    print(context, records);
+}
+
+}  // namespace
+
+void add_cases_command(CLI::App& app, Context& context) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* sub = add_subcommand(app, context, "cases",
+                                 "List the cases of this workstation: what is planned, done and reached",
+                                 "arthronaut cases --add /data/knees\n"
+                                 "  arthronaut cases --search \"left 2026-01\" --state drilled\n"
+                                 "  arthronaut cases --csv > cohort.csv");
+  sub->add_option("--add", arguments->add, "Look through this folder for cases (*.arthro), and know them");
+  sub->add_option("--forget", arguments->forget, "Take this case off the list; its folder stays as it is");
+  CLI::Option* note = sub->add_option("--note", arguments->note, "Case folder to note --text with");
+  CLI::Option* text =
+      sub->add_option("--text", arguments->note_text, "The note, in place of the one there is; may be empty");
+  note->needs(text);
+  text->needs(note);
+  sub->add_option("--search", arguments->search,
+                  "Words that must all stand in name, note, side, dates, state or outcome");
+  sub->add_option("--side", arguments->side, "Only this side")->check(CLI::IsMember({"left", "right"}));
+  sub->add_option("--state", arguments->state, "Only cases in this state")
+      ->check(CLI::IsMember({"missing", "unreadable", "not planned", "planned", "navigated", "drilled"}));
+  sub->add_option("--sort", arguments->order, "The order")
+      ->check(CLI::IsMember({"newest", "name", "created", "state", "offset"}))
+      ->capture_default_str();
+  CLI::Option* json = sub->add_flag("--json", arguments->as_json, "The list as JSON");
+  sub->add_flag("--csv", arguments->as_csv, "The cohort as CSV, a row for each session")->excludes(json);
+  sub->add_flag("--with-identity", arguments->with_identity,
+                "Name the patients (identity.json of the cases) in JSON and CSV; without it nobody is named");
+  sub->callback([&context, arguments] { list_cases(context, *arguments); });
+}
+
+}  // namespace arthronaut::command_line

@@ -1,0 +1,81 @@
+#include "app/start/case_library.h"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include "app/library/workstation_library.h"
+#include "planning/cases/case_note.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::start {
+
+namespace fs = std::filesystem;
+
+CaseLibrary::CaseLibrary(fs::path data_folder, std::function<void()> wake)
+    : data_folder_(std::move(data_folder)), wake_(std::move(wake)) {}
+
+CaseLibrary::~CaseLibrary() {
+  stops_ = true;
+  if (looking_.valid()) looking_.wait();
+}
+
+void CaseLibrary::refresh(const std::vector<fs::path>& recent) {
+  if (is_looking()) return;
+  looking_ = std::async(std::launch::async, [this, recent] {
+    const struct AtEnd {
+      const std::function<void()>& call;
+      ~AtEnd() { call(); }
+    } at_end{wake_};
+    const auto known = workstation_library::open_library(data_folder_);
+    known->add_those_there(recent);
+    Found found{known->look([this](std::size_t, std::size_t) { return !stops_; }), {}};
+    if (!known->notices().empty()) found.what = known->notices().back();
+    return found;
+  });
+}
+
+bool CaseLibrary::poll() {
+  if (!looking_.valid() || looking_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return false;
+  try {  // the top of the looking thread: a list that cannot be had is said on the screen
+    Found found = looking_.get();
+    records_ = std::move(found.records);
+    what_ = std::move(found.what);
+  } catch (const std::exception& error) {
+    what_ = error.what();
+  }
+  return true;
+}
+
+bool CaseLibrary::save_note(const fs::path& case_folder, const std::string& text, const std::string& before) {
+  what_.clear();
+  try {
+    cases::save_note_over(case_folder, text, before);
+  } catch (const InvalidInput& error) {
+    what_ = error.what();
+  } catch (const IoError& error) {
+    what_ = error.what();
+  }
+  if (!what_.empty()) return false;
+  for (library::CaseRecord& record : records_)
+    if (record.folder == case_folder) record.note = text;
+  return true;
+}
+
+bool CaseLibrary::forget(const fs::path& case_folder) {
+  what_.clear();
+  try {
+    workstation_library::open_library(data_folder_)->forget(case_folder);
+  } catch (const InvalidInput& error) {
+    what_ = error.what();
+  } catch (const IoError& error) {
+    what_ = error.what();
+  }
+  if (!what_.empty()) return false;
+  std::erase_if(records_, [&](const library::CaseRecord& record) { return record.folder == case_folder; });
+  return true;
+}
+
+}  // namespace arthronaut::start

@@ -1,0 +1,52 @@
+// The library as the start shows it: what is known at once, and a look at the folders beside the screen.
+//
+// One thread; poll() once a frame. A thread of its own looks at the folders; `wake` is called from it.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <string>
+#include <vector>
+
+#include "planning/library/case_record.h"
+
+namespace arthronaut::start {
+
+class CaseLibrary {
+ public:
+  CaseLibrary(std::filesystem::path data_folder, std::function<void()> wake);
+  ~CaseLibrary();  // stops the look, and waits for the case that is being read
+  CaseLibrary(const CaseLibrary&) = delete;
+  CaseLibrary& operator=(const CaseLibrary&) = delete;
+
+  // Shows what the index says, and looks at the folders and at these (recent cases). Nothing while it looks.
+  void refresh(const std::vector<std::filesystem::path>& recent);
+  // Takes over what the thread has found; true once when it has.
+  bool poll();
+  [[nodiscard]] bool is_looking() const { return looking_.valid(); }
+
+  // In no order. Another list after each refresh() and poll().
+  [[nodiscard]] const std::vector<library::CaseRecord>& records() const { return records_; }
+  // Each changes the list on disk and here. false: what() says why not.
+  bool save_note(const std::filesystem::path& case_folder, const std::string& text,
+                 const std::string& before);
+  bool forget(const std::filesystem::path& case_folder);
+  // What went wrong last, or what the user should know of the list; empty else.
+  [[nodiscard]] const std::string& what() const { return what_; }
+
+ private:
+  struct Found {
+    std::vector<library::CaseRecord> records;
+    std::string what;
+  };
+  std::filesystem::path data_folder_;
+  std::function<void()> wake_;
+  std::atomic<bool> stops_ = false;
+  std::future<Found> looking_;
+  std::vector<library::CaseRecord> records_;
+  std::string what_;
+};
+
+}  // namespace arthronaut::start

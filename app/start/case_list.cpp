@@ -1,0 +1,168 @@
+#include "app/start/case_list.h"
+
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "app/library/workstation_library.h"
+
+namespace arthronaut::start {
+
+namespace fs = std::filesystem;
+using library::CaseRecord;
+using library::CaseState;
+
+CaseList::CaseList(std::function<void(const fs::path&)> open, std::function<void()> wake)
+    : open_(std::move(open)), library_(workstation_library::data_folder(), wake), pictures_(wake) {}
+
+void CaseList::enter() {
+  recent_ = load_recent_cases(recent_cases_file());
+  std::vector<fs::path> folders;
+  for (const RecentCase& recent : recent_) folders.push_back(recent.folder);
+  library_.refresh(folders);
+  pictures_.forget_all();
+  view_.shows_trends = false;
+  view_.has_chosen = false;
+  filter();
+}
+
+void CaseList::leave() { pictures_.finish(); }
+
+void CaseList::tick() {
+  if (library_.poll()) filter();
+  pictures_.poll();
+}
+
+// What was opened last is first, also where it was only looked at.
+void CaseList::filter() {
+  found_ = library::find_cases(library_.records(), view_.query);
+  if (view_.query.order == library::CaseOrder::Newest) {
+    const auto used = [&](std::size_t i) {
+      const CaseRecord& record = library_.records()[i];
+      const auto recent = std::find_if(recent_.begin(), recent_.end(),
+                                       [&](const RecentCase& one) { return one.folder == record.folder; });
+      return recent == recent_.end() ? record.changed_utc : std::max(recent->opened_utc, record.changed_utc);
+    };
+    std::stable_sort(found_.begin(), found_.end(),
+                     [&](std::size_t a, std::size_t b) { return used(a) > used(b); });
+  }
+  const bool is_listed = view_.selected.empty() || selected_row() < found_.size();
+  if (!view_.has_chosen || !is_listed)
+    view_.selected = found_.empty() ? fs::path() : library_.records()[found_.front()].folder;
+}
+
+const CaseRecord* CaseList::selected() const {
+  const std::size_t row = selected_row();
+  return row < found_.size() ? &library_.records()[found_[row]] : nullptr;
+}
+
+std::size_t CaseList::selected_row() const {
+  return static_cast<std::size_t>(
+      std::find_if(found_.begin(), found_.end(),
+                   [&](std::size_t i) { return library_.records()[i].folder == view_.selected; }) -
+      found_.begin());
+}
+
+void CaseList::move_selection(int by) {
+  if (view_.shows_trends) {
+    const int next = std::clamp(static_cast<int>(view_.trend) + by, 0, library::kTrendCount - 1);
+    view_.trend = static_cast<library::Trend>(next);
+    return;
+  }
+  if (is_first_look()) return;
+  const long row = std::clamp(static_cast<long>(selected_row()) + by, 0L, static_cast<long>(found_.size()));
+  view_.selected = row < static_cast<long>(found_.size())
+                       ? library_.records()[found_[static_cast<std::size_t>(row)]].folder
+                       : fs::path();
+  view_.has_chosen = view_.scrolls_to_selected = true;
+}
+
+void CaseList::accept() {
+  if (view_.shows_trends || is_first_look()) return;
+  open_(view_.selected);
+}
+
+bool CaseList::go_back() { return std::exchange(view_.shows_trends, false); }
+
+void CaseList::add_actions(widgets::Actions& actions, const std::function<bool()>& is_shown) {
+  const auto lists = [this, is_shown] { return is_shown() && !view_.shows_trends; };
+  actions.add(
+      {"start.search",
+       "Search",
+       "Words that must all stand in name, note, side, date, state or outcome; Esc gives the keys back",
+       GLFW_KEY_F,
+       0,
+       false,
+       lists,
+       {},
+       [this] { view_.focus = Focus::Search; }});
+  actions.add({"start.note",
+               "Note",
+               "Writes a note on the selected case; it is kept in the case's folder",
+               GLFW_KEY_N,
+               0,
+               false,
+               [this, lists] { return lists() && selected() != nullptr && selected()->is_there; },
+               {},
+               [this] { view_.focus = Focus::Note; }});
+  actions.add(
+      {"start.trends", "Trends",
+       "Offsets, angles, confidence and minutes a step of the listed cases over time, with control limits",
+       GLFW_KEY_T, 0, false, is_shown, [this] { return view_.shows_trends; },
+       [this] { view_.shows_trends = !view_.shows_trends; }});
+  actions.add({"start.simulated", "Simulated too", "Counts simulated sessions among the trends",
+               GLFW_KEY_SPACE, 0, false, [this, is_shown] { return is_shown() && view_.shows_trends; },
+               [this] { return view_.with_simulated; },
+               [this] { view_.with_simulated = !view_.with_simulated; }});
+  actions.add({"start.forget",
+               "Take off the list",
+               "The missing case is not listed any more; nothing is deleted",
+               GLFW_KEY_DELETE,
+               0,
+               false,
+               [this, lists] { return lists() && selected() != nullptr && !selected()->is_there; },
+               {},
+               [this] {
+                 (void)library_.forget(fs::path(view_.selected));
+                 filter();
+               }});
+  add_filter_actions(actions, lists);
+}
+
+void CaseList::add_filter_actions(widgets::Actions& actions, const std::function<bool()>& lists) {
+  actions.add({"start.side", "Side", "Both sides, left knees, right knees", GLFW_KEY_S, 0, false, lists,
+               [this] { return !view_.query.side.empty(); },
+               [this] {
+                 std::string& side = view_.query.side;
+                 side = side.empty() ? "left" : side == "left" ? "right" : "";
+                 filter();
+               }});
+  actions.add({"start.state", "State", "Cases in any state, then those in one", GLFW_KEY_A, 0, false, lists,
+               [this] { return view_.query.state.has_value(); },
+               [this] {
+                 constexpr std::array<CaseState, 6> kInTurn{CaseState::NotPlanned, CaseState::Planned,
+                                                            CaseState::Navigated,  CaseState::Drilled,
+                                                            CaseState::Missing,    CaseState::Unreadable};
+                 auto& state = view_.query.state;
+                 if (!state)
+                   state = kInTurn.front();
+                 else if (state == kInTurn.back())
+                   state.reset();
+                 else
+                   state = *(std::find(kInTurn.begin(), kInTurn.end(), *state) + 1);
+                 filter();
+               }});
+  actions.add({"start.order", "Order", "Newest first, by name, by date, by state, by the offset of the entry",
+               GLFW_KEY_D, 0, false, lists,
+               [this] { return view_.query.order != library::CaseOrder::Newest; },
+               [this] {
+                 constexpr int kCount = 5;
+                 view_.query.order =
+                     static_cast<library::CaseOrder>((static_cast<int>(view_.query.order) + 1) % kCount);
+                 filter();
+               }});
+}
+
+}  // namespace arthronaut::start

@@ -1,0 +1,74 @@
+// The start's list of cases: all that the library knows, searched and filtered, the selected one in words
+// with its picture and its note, and the trends over those that are listed.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/start/case_library.h"
+#include "app/start/case_pictures.h"
+#include "app/start/recent_cases.h"
+#include "app/widgets/controls.h"
+#include "planning/library/case_query.h"
+#include "planning/library/trends.h"
+
+namespace arthronaut::start {
+
+class CaseList {
+ public:
+  // open: opens a case; an empty path is the built-in knee, which is the list's last row.
+  CaseList(std::function<void(const std::filesystem::path&)> open, std::function<void()> wake);
+
+  // All start with "start."; is_shown: whether this page is in front.
+  void add_actions(widgets::Actions& actions, const std::function<bool()>& is_shown);
+  void enter();  // comes to the front: the folders are looked at again
+  void leave();  // nothing is drawn off-screen any more
+  void tick();
+  void draw(const widgets::Ui& ui, const widgets::Rect& area);
+
+  void move_selection(int by);
+  void accept();                 // opens what is selected
+  [[nodiscard]] bool go_back();  // out of the trends; false when they are not shown
+  [[nodiscard]] bool shows_trends() const { return view_.shows_trends; }
+  [[nodiscard]] bool is_busy() const { return library_.is_looking() || pictures_.is_busy(); }
+  // A text field is to take the next letters.
+  [[nodiscard]] bool awaits_text() const { return view_.focus != Focus::None; }
+
+ private:
+  enum class Focus { None, Search, Note };
+  struct View {
+    library::CaseQuery query;
+    std::filesystem::path selected;  // its folder; empty: the built-in knee
+    bool scrolls_to_selected = false, has_chosen = false;
+    Focus focus = Focus::None;  // which field takes the keyboard with the next frame
+    // The note that is shown or edited, the one it was made from, and whose it is.
+    std::string note, note_before;
+    std::filesystem::path note_of;
+    bool shows_trends = false;
+    library::Trend trend = library::Trend::EntryOffset;
+    bool with_simulated = false;
+  };
+  void filter();
+  void add_filter_actions(widgets::Actions& actions, const std::function<bool()>& is_shown);
+  [[nodiscard]] const library::CaseRecord* selected() const;
+  [[nodiscard]] std::size_t selected_row() const;  // found_.size(): the built-in knee
+  [[nodiscard]] bool is_first_look() const { return library_.is_looking() && library_.records().empty(); }
+
+  void draw_head(const widgets::Ui& ui, widgets::Rect head);
+  void draw_list(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_case(const widgets::Ui& ui, const ImVec2& at, float width, const library::CaseRecord& record);
+  void draw_details(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_note(const widgets::Ui& ui, const library::CaseRecord& record);
+  void draw_trends(const widgets::Ui& ui, const widgets::Rect& area);
+
+  std::function<void(const std::filesystem::path&)> open_;
+  CaseLibrary library_;
+  CasePictures pictures_;
+  std::vector<RecentCase> recent_;
+  std::vector<std::size_t> found_;  // of the library's records
+  View view_;
+};
+
+}  // namespace arthronaut::start

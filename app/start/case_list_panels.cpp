@@ -1,0 +1,282 @@
+// How the list of cases looks.
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "app/start/case_list.h"
+#include "app/start/start_drawing.h"
+#include "planning/files/format.h"
+#include "planning/files/utc_clock.h"
+
+namespace arthronaut::start {
+
+namespace {
+
+using library::CaseRecord;
+using library::CaseState;
+using widgets::Severity;
+
+Severity severity_of(const CaseRecord& record) {
+  switch (record.state()) {
+    case CaseState::Missing:
+      return Severity::Caution;
+    case CaseState::Unreadable:
+      return Severity::Bad;
+    case CaseState::NotPlanned:
+      return Severity::Quiet;
+    case CaseState::Planned:
+    case CaseState::Navigated:
+    case CaseState::Drilled:
+      break;
+  }
+  return Severity::Good;
+}
+
+std::string capital(std::string words) {
+  if (!words.empty() && words[0] >= 'a' && words[0] <= 'z') words[0] = static_cast<char>(words[0] - 32);
+  return words;
+}
+
+void draw_picture(ImDrawList& draw, const widgets::VideoTexture* picture, const widgets::Rect& place) {
+  draw.AddRectFilled(place.min(), place.max(), IM_COL32(14, 17, 21, 255));
+  if (picture == nullptr || picture->texture() == 0) return;
+  const widgets::Rect into =
+      widgets::fitted(place, static_cast<float>(picture->width()) / static_cast<float>(picture->height()));
+  draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture->texture())), into.min(),
+                into.max());
+}
+
+}  // namespace
+
+void CaseList::draw(const widgets::Ui& ui, const widgets::Rect& area) {
+  ui.log.note_state("library", library_.is_looking() ? "looking" : "ready");
+  ui.log.note_state("cases_listed", std::to_string(found_.size()));
+  ui.log.note_state("library_says", library_.what());
+  ui.log.note_state("page", view_.shows_trends ? "trends" : "list");
+  ui.log.note_state("case_selected", selected() != nullptr ? selected()->name : "built-in");
+  ui.log.note_state("case_state", selected() != nullptr ? to_text(selected()->state()) : "built-in");
+  ui.log.note_state("note", selected() != nullptr ? selected()->note : "");
+  if (view_.shows_trends) return draw_trends(ui, area);
+  widgets::Rect rest = area;
+  draw_head(ui, rest.cut_top(ui.theme.px(108)));
+  draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+               {"start.accept", "start.browse", "start.built_in", "start.note", "start.trends",
+                "start.forget", "start.back"});
+  const widgets::Rect side = rest.cut_right(ui.theme.px(560), ui.theme.px(12));
+  draw_list(ui, rest);
+  draw_details(ui, side);
+  view_.scrolls_to_selected = false;
+}
+
+void CaseList::draw_head(const widgets::Ui& ui, widgets::Rect head) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText, "Which knee?");
+  const std::size_t all = library_.records().size();
+  const std::string count = library_.is_looking() ? "Looking through the cases\u2026"
+                            : found_.size() == all
+                                ? std::to_string(all) + (all == 1 ? " case" : " cases")
+                                : std::to_string(found_.size()) + " of " + std::to_string(all) + " cases";
+  const std::string hint =
+      library_.what().empty()
+          ? count + ".  Drop the hospital's folder or a case on this window, or choose here."
+          : library_.what();
+  draw_text(draw, ui.theme.body, head.x + ui.theme.px(230), head.y + ui.theme.px(8),
+            library_.what().empty() ? widgets::kQuietText : widgets::kCaution,
+            fitting(ui.theme.body, hint, head.width - ui.theme.px(230)));
+  const float y = head.y + ui.theme.px(52), height = ui.theme.px(48);
+  const float field = ui.theme.px(560);
+  ImGui::SetCursorScreenPos({head.x, y});
+  ImGui::SetNextItemWidth(field);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {ui.theme.px(14), (height - ui.theme.body->FontSize) / 2});
+  if (view_.focus == Focus::Search) {
+    ImGui::SetKeyboardFocusHere();
+    view_.focus = Focus::None;
+  }
+  if (ImGui::InputTextWithHint("##search", "Search (F): name, note, side, 2026-01, drilled\u2026",
+                               &view_.query.words)) {
+    view_.has_chosen = false;
+    filter();
+  }
+  ui.log.note("start.search_field", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+  ImGui::PopStyleVar();
+  const float width = ui.theme.px(150);
+  float x = head.x + field + ui.theme.px(16);
+  const auto filter_button = [&](const char* id, const std::string& now) {
+    ImGui::SetCursorScreenPos({x, y});
+    widgets::action_button(ui, id, width, height);
+    x += width + ui.theme.px(10);
+    draw_text(draw, ui.theme.body, x, y + (height - ui.theme.body->FontSize) / 2, widgets::kText, now);
+    x += ui.theme.px(140);
+  };
+  filter_button("start.side", view_.query.side.empty() ? "both" : view_.query.side);
+  filter_button("start.state", view_.query.state ? std::string(to_text(*view_.query.state)) : "any");
+  filter_button("start.order", std::string(to_text(view_.query.order)));
+}
+
+void CaseList::draw_list(const widgets::Ui& ui, const widgets::Rect& area) {
+  widgets::begin_panel(ui, "start.cases", area);
+  if (is_first_look()) {
+    widgets::text_in(ui.theme.body, widgets::kQuietText, "Looking through the cases\u2026");
+    widgets::end_panel();
+    return;
+  }
+  if (found_.empty() && !library_.records().empty())
+    widgets::text_in(ui.theme.strong, widgets::kCaution,
+                     "No case is like that. Clear the search, or S and A.");
+  const float height = ui.theme.px(96);
+  const std::size_t row = selected_row();
+  bool opens = false;
+  // Of a thousand rows those in view are drawn.
+  ImGuiListClipper clipper;
+  const float step = height + ImGui::GetStyle().ItemSpacing.y;
+  clipper.Begin(static_cast<int>(found_.size()) + 1, step);
+  if (view_.scrolls_to_selected)
+    ImGui::SetScrollFromPosY(
+        clipper.StartPosY - ImGui::GetWindowPos().y + step * (static_cast<float>(row) + 0.5F), 0.5F);
+  while (clipper.Step()) {
+    for (auto i = static_cast<std::size_t>(clipper.DisplayStart);
+         i < static_cast<std::size_t>(clipper.DisplayEnd); ++i) {
+      const bool is_built_in = i == found_.size();
+      const ImVec2 at = ImGui::GetCursorScreenPos();
+      const float width = ImGui::GetContentRegionAvail().x;
+      const RowPress press = draw_row(ui, {.name = "start.case." + std::to_string(i),
+                                           .number = i,
+                                           .height = height,
+                                           .is_selected = i == row,
+                                           .scrolls_here = false});
+      if (press != RowPress::None) {
+        view_.selected = is_built_in ? std::filesystem::path() : library_.records()[found_[i]].folder;
+        view_.has_chosen = true;
+      }
+      opens = opens || press == RowPress::Twice;
+      if (!is_built_in) {
+        draw_case(ui, at, width, library_.records()[found_[i]]);
+        continue;
+      }
+      ImDrawList& draw = *ImGui::GetWindowDrawList();
+      draw_text(draw, ui.theme.strong, at.x + ui.theme.px(132), at.y + ui.theme.px(18), widgets::kText,
+                "The built-in knee");
+      draw_text(draw, ui.theme.body, at.x + ui.theme.px(132), at.y + ui.theme.px(48), widgets::kQuietText,
+                fitting(ui.theme.body, "a right knee to learn on, planned and simulated",
+                        width - ui.theme.px(150)));
+    }
+  }
+  widgets::end_panel();
+  if (opens) accept();
+}
+
+void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, const CaseRecord& record) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const float picture = ui.theme.px(105), x = at.x + picture + ui.theme.px(27);
+  const widgets::Rect place{at.x + ui.theme.px(6), at.y + ui.theme.px(6), picture, ui.theme.px(84)};
+  draw_picture(draw, record.is_there && record.problem.empty() ? pictures_.of(record.folder) : nullptr,
+               place);
+  const float right = ui.theme.px(170), wide = at.x + width - x - right;
+  draw_text(
+      draw, ui.theme.strong, x, at.y + ui.theme.px(6), record.is_there ? widgets::kText : widgets::kQuietText,
+      fitting(ui.theme.strong, record.name + (record.side.empty() ? "" : "  \u2013  " + record.side), wide));
+  draw_text(draw, ui.theme.body, at.x + width - right, at.y + ui.theme.px(6), widgets::kQuietText,
+            when_in_words(record.changed_utc, files::utc_now()));
+  const Severity severity = severity_of(record);
+  widgets::draw_sign(draw, {x + ui.theme.px(10), at.y + ui.theme.px(48)}, ui.theme.px(9), severity);
+  const std::size_t count = record.sessions.size();
+  std::string what = capital(std::string(to_text(record.state())));
+  if (severity == Severity::Caution || severity == Severity::Bad)
+    what += ": " + record.last_outcome();
+  else if (count > 0)
+    what += ", " + std::to_string(count) + (count == 1 ? " session" : " sessions, the last") +
+            (record.last_session()->is_simulated() ? " simulated: " : ": ") + record.last_outcome();
+  draw_text(draw, ui.theme.body, x + ui.theme.px(28), at.y + ui.theme.px(35),
+            severity == Severity::Good || severity == Severity::Quiet ? widgets::kText
+                                                                      : widgets::color_of(severity),
+            fitting(ui.theme.body, what, wide + right - ui.theme.px(40)));
+  const std::string third = record.note.empty()
+                                ? record.folder.string()
+                                : "\u201C" + record.note.substr(0, record.note.find('\n')) + "\u201D";
+  draw_text(draw, ui.theme.body, x, at.y + ui.theme.px(64), widgets::kQuietText,
+            fitting(ui.theme.body, third, wide + right - ui.theme.px(12)));
+}
+
+void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
+  const CaseRecord* record = is_first_look() ? nullptr : selected();
+  widgets::begin_panel(ui, "start.details", area,
+                       record != nullptr ? record->name
+                       : is_first_look() ? ""
+                                         : "The built-in knee");
+  if (record == nullptr) {
+    if (!is_first_look())
+      widgets::text_in(
+          ui.theme.body, widgets::kQuietText,
+          "A right knee to learn on. What is changed in it stays; the simulated operation in F2 drills "
+          "what was planned.");
+    widgets::end_panel();
+    return;
+  }
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x;
+  const widgets::Rect place{at.x, at.y, width, ui.theme.px(200)};
+  draw_picture(*ImGui::GetWindowDrawList(),
+               record->is_there && record->problem.empty() ? pictures_.of(record->folder) : nullptr, place);
+  ImGui::Dummy({width, place.height});
+  const Severity severity = severity_of(*record);
+  if (severity == Severity::Caution || severity == Severity::Bad)
+    widgets::status_row(ui, severity, capital(std::string(to_text(record->state()))), record->last_outcome());
+  if (!record->side.empty()) widgets::status_row(ui, Severity::Quiet, "Side", record->side + " knee");
+  if (record->problem.empty())
+    widgets::status_row(ui, record->planned.empty() ? Severity::Quiet : Severity::Good, "Plan",
+                        record->plan_in_words());
+  if (const library::SessionFacts* last = record->last_session()) {
+    const bool is_bad = !last->problem.empty();
+    widgets::status_row(ui, is_bad ? Severity::Bad : Severity::Quiet,
+                        std::string("Last session") + (last->is_simulated() ? " (simulated)" : ""),
+                        last->started_utc.substr(0, 10) + ", " + last->bone + ": " + last->outcome());
+    if (last->predicted_error_mm)
+      widgets::status_row(ui,
+                          last->registration_is_reliable.value_or(false) ? Severity::Good : Severity::Caution,
+                          "Registration",
+                          files::format("predicted error %.2f mm, ", *last->predicted_error_mm) +
+                              (!last->registration_is_reliable.value_or(false) ? "not reliable"
+                               : last->was_verified                            ? "verified"
+                                                                               : "not verified"));
+  }
+  for (const library::PostoperativeFacts& found : record->postoperative)
+    widgets::status_row(ui, found.is_reliable ? Severity::Good : Severity::Caution, "After the operation",
+                        found.entry_offset_mm
+                            ? files::format("%s %.1f mm, %.1f\u00B0 from the plan", found.bone.c_str(),
+                                            *found.entry_offset_mm, found.angle_deg.value_or(0))
+                            : found.bone + ": no tunnel found");
+  const std::string made =
+      record->created_utc.empty() ? "" : "made " + record->created_utc.substr(0, 10) + ", ";
+  if (!record->changed_utc.empty())
+    widgets::status_row(ui, Severity::Quiet, "Dates", made + "changed " + record->changed_utc.substr(0, 10));
+  widgets::status_row(ui, Severity::Quiet, "Folder", record->folder.string());
+  if (record->is_there) draw_note(ui, *record);
+  widgets::end_panel();
+}
+
+void CaseList::draw_note(const widgets::Ui& ui, const CaseRecord& record) {
+  if (view_.note_of != record.folder) {
+    view_.note_of = record.folder;
+    view_.note = view_.note_before = record.note;
+  }
+  ImGui::Dummy({0, ui.theme.px(4)});
+  const bool is_same = view_.note == view_.note_before;
+  widgets::text_in(ui.theme.strong, is_same ? widgets::kQuietText : widgets::kAccent,
+                   is_same ? "Note (N); no patient's name" : "Note: Ctrl+Enter keeps it, Esc does not");
+  if (view_.focus == Focus::Note) {
+    ImGui::SetKeyboardFocusHere();
+    view_.focus = Focus::None;
+  }
+  ImGui::InputTextMultiline("##note", &view_.note, {-1, ui.theme.px(150)});
+  ui.log.note("start.note_field", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+  const bool was_left = ImGui::IsItemDeactivated();
+  // Not edited: what somebody else has written meanwhile is shown.
+  if (!ImGui::IsItemActive() && !was_left && is_same && record.note != view_.note_before)
+    view_.note = view_.note_before = record.note;
+  if (!was_left || view_.note == view_.note_before) return;
+  if (library_.save_note(std::filesystem::path(view_.note_of), view_.note, view_.note_before)) {
+    view_.note_before = view_.note;
+    filter();
+  }
+}
+
+}  // namespace arthronaut::start

@@ -1,0 +1,69 @@
+#include "app/start/case_pictures.h"
+
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include "app/library/case_thumbnail.h"
+#include "navigation/sources/frame_source.h"
+
+namespace arthronaut::start {
+
+namespace fs = std::filesystem;
+
+const widgets::VideoTexture* CasePictures::of(const fs::path& case_folder) {
+  if (const auto shown = shown_.find(case_folder); shown != shown_.end()) return shown->second.get();
+  if (without_.contains(case_folder) || case_folder == made_) return nullptr;
+  if (!workstation_library::has_thumbnail(case_folder)) {
+    if (wanted_.empty()) wanted_ = case_folder;
+    return nullptr;
+  }
+  try {  // a picture is an ornament: a list without it is whole
+    const auto frame = std::make_shared<const camera::Frame>(
+        sources::read_picture(workstation_library::thumbnail_file(case_folder)));
+    auto texture = std::make_unique<widgets::VideoTexture>();
+    texture->upload(frame);
+    return (shown_[case_folder] = std::move(texture)).get();
+  } catch (const std::exception&) {
+    without_.insert(case_folder);
+  }
+  return nullptr;
+}
+
+void CasePictures::poll() {
+  if (making_.valid()) {
+    if (making_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    const fs::path next = wanted_;
+    finish();
+    wanted_ = next;
+  }
+  if (wanted_.empty()) return;
+  made_ = std::exchange(wanted_, {});
+  making_ = std::async(std::launch::async, [folder = made_, wake = wake_] {
+    const struct AtEnd {
+      const std::function<void()>& call;
+      ~AtEnd() { call(); }
+    } at_end{wake};
+    workstation_library::make_thumbnail(folder);
+  });
+}
+
+void CasePictures::finish() {
+  wanted_.clear();
+  if (!making_.valid()) return;
+  try {
+    making_.get();
+    if (!workstation_library::has_thumbnail(made_)) without_.insert(made_);
+  } catch (const std::exception&) {  // as in of()
+    without_.insert(made_);
+  }
+  made_.clear();
+}
+
+void CasePictures::forget_all() {
+  shown_.clear();
+  without_.clear();
+  wanted_.clear();
+}
+
+}  // namespace arthronaut::start

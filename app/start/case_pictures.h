@@ -1,0 +1,43 @@
+// The thumbnails of the cases in the list: those that are there are shown, those that are missing or older
+// than the plan are made one after the other beside the screen.
+//
+// One thread, which owns the window's OpenGL context. Of the drawing off-screen one thread at a time is
+// allowed: finish() before anything else draws.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "app/widgets/video_texture.h"
+
+namespace arthronaut::start {
+
+class CasePictures {
+ public:
+  explicit CasePictures(std::function<void()> wake) : wake_(std::move(wake)) {}
+  ~CasePictures() { finish(); }
+  CasePictures(const CasePictures&) = delete;
+  CasePictures& operator=(const CasePictures&) = delete;
+
+  // Of a case that is in view. Null while it has none; it is then the next to be made. A case that cannot be
+  // drawn stays without.
+  [[nodiscard]] const widgets::VideoTexture* of(const std::filesystem::path& case_folder);
+  void poll();
+  // Waits for the one that is being made; none is begun before another is asked for.
+  void finish();
+  void forget_all();  // what is on disk is looked at again
+  [[nodiscard]] bool is_busy() const { return making_.valid(); }
+
+ private:
+  std::function<void()> wake_;
+  std::map<std::filesystem::path, std::unique_ptr<widgets::VideoTexture>> shown_;
+  std::set<std::filesystem::path> without_;  // have none, and will have none until forget_all()
+  std::filesystem::path wanted_, made_;      // next to be made; being made
+  std::future<void> making_;
+};
+
+}  // namespace arthronaut::start

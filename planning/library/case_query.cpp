@@ -1,0 +1,110 @@
+#include "planning/library/case_query.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <sstream>
+#include <tuple>
+#include <utility>
+
+#include "planning/geometry/error.h"
+
+namespace arthronaut::library {
+
+namespace {
+
+constexpr std::array<std::pair<CaseOrder, std::string_view>, 5> kOrders{{
+    {CaseOrder::Newest, "newest"},
+    {CaseOrder::Name, "name"},
+    {CaseOrder::Created, "created"},
+    {CaseOrder::State, "state"},
+    {CaseOrder::EntryOffset, "offset"},
+}};
+
+// Small letters of ASCII and of Latin-1 (which is where umlauts and accents are), as UTF-8.
+std::string lowered(std::string text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if (byte >= 'A' && byte <= 'Z') text[i] = static_cast<char>(byte + 32);
+    const bool follows_c3 = i > 0 && static_cast<unsigned char>(text[i - 1]) == 0xC3;
+    if (follows_c3 && byte >= 0x80 && byte <= 0x9E && byte != 0x97) text[i] = static_cast<char>(byte + 32);
+  }
+  return text;
+}
+
+std::string searched(const CaseRecord& record) {
+  std::string text = record.name + "\n" + record.note + "\n" + record.side + "\n" + record.created_utc +
+                     "\n" + record.changed_utc + "\n" + std::string(to_text(record.state())) + "\n" +
+                     record.plan_in_words() + "\n" + record.folder.string() + "\n" + record.problem;
+  for (const SessionFacts& session : record.sessions)
+    text += "\n" + session.started_utc + "\n" + session.bone + "\n" + session.source_kind + "\n" +
+            session.outcome();
+  return lowered(std::move(text));
+}
+
+double last_offset_mm(const CaseRecord& record) {
+  for (auto session = record.sessions.rbegin(); session != record.sessions.rend(); ++session)
+    if (session->entry_offset_mm) return *session->entry_offset_mm;
+  return -std::numeric_limits<double>::infinity();
+}
+
+// Negative, zero, positive as of strings.
+int compare(const CaseRecord& a, const CaseRecord& b, CaseOrder order) {
+  switch (order) {
+    case CaseOrder::Newest:
+      return b.changed_utc.compare(a.changed_utc);
+    case CaseOrder::Created:
+      return b.created_utc.compare(a.created_utc);
+    case CaseOrder::State:
+      return static_cast<int>(a.state()) - static_cast<int>(b.state());
+    case CaseOrder::EntryOffset: {
+      const double of_a = last_offset_mm(a), of_b = last_offset_mm(b);
+      return of_a > of_b ? -1 : of_a < of_b ? 1 : 0;
+    }
+    case CaseOrder::Name:
+      break;
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::string_view to_text(CaseOrder order) {
+  return std::find_if(kOrders.begin(), kOrders.end(), [&](const auto& one) { return one.first == order; })
+      ->second;
+}
+
+CaseOrder case_order_from_text(std::string_view text) {
+  for (const auto& [order, word] : kOrders)
+    if (word == text) return order;
+  throw InvalidInput("\"" + std::string(text) + "\" is no order of cases");
+}
+
+std::vector<std::size_t> find_cases(std::span<const CaseRecord> records, const CaseQuery& query) {
+  std::vector<std::string> words;
+  std::istringstream stream(lowered(query.words));
+  for (std::string word; stream >> word;) words.push_back(std::move(word));
+  std::vector<std::size_t> found;
+  std::vector<std::string> names(records.size());
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const CaseRecord& record = records[i];
+    if (!query.side.empty() && record.side != query.side) continue;
+    if (query.state && record.state() != *query.state) continue;
+    if (!words.empty()) {
+      const std::string text = searched(record);
+      if (!std::all_of(words.begin(), words.end(),
+                       [&](const std::string& word) { return text.find(word) != std::string::npos; }))
+        continue;
+    }
+    names[i] = lowered(record.name);
+    found.push_back(i);
+  }
+  std::sort(found.begin(), found.end(), [&](std::size_t a, std::size_t b) {
+    const int by_order = compare(records[a], records[b], query.order);
+    if (by_order != 0) return by_order < 0;
+    return std::tie(names[a], records[a].folder) < std::tie(names[b], records[b].folder);
+  });
+  return found;
+}
+
+}  // namespace arthronaut::library

@@ -1,0 +1,210 @@
+#include "planning/library/case_record.h"
+
+#include <dirent.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "planning/cases/case.h"
+#include "planning/cases/case_note.h"
+#include "planning/cases/case_outline.h"
+#include "planning/files/format.h"
+#include "planning/files/json_document.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::library {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::pair<CaseState, std::string_view>, 6> kStates{{
+    {CaseState::Missing, "missing"},
+    {CaseState::Unreadable, "unreadable"},
+    {CaseState::NotPlanned, "not planned"},
+    {CaseState::Planned, "planned"},
+    {CaseState::Navigated, "navigated"},
+    {CaseState::Drilled, "drilled"},
+}};
+constexpr std::array<const char*, 4> kFiles{"case.json", "plan.json", "note.json", "achieved.json"};
+
+// FNV-1a over what a file's status says; files are looked at by the thousand, so by stat() itself.
+class Fingerprint {
+ public:
+  // Whether the file is there.
+  bool add(const std::string& file) {
+    struct stat status {};
+    if (::stat(file.c_str(), &status) != 0) {
+      add_number(0);
+      return false;
+    }
+    const std::int64_t written = status.st_mtim.tv_sec * std::int64_t{1'000'000'000} + status.st_mtim.tv_nsec;
+    newest_s_ = std::max<std::int64_t>(newest_s_, status.st_mtim.tv_sec);
+    add_number(static_cast<std::uint64_t>(written));
+    add_number(S_ISDIR(status.st_mode) ? 0 : static_cast<std::uint64_t>(status.st_size));
+    return true;
+  }
+  void add_name(std::string_view name) {
+    for (const char c : name) add_number(static_cast<unsigned char>(c));
+  }
+  // Never 0, which is no case's.
+  [[nodiscard]] std::int64_t value() const {
+    return static_cast<std::int64_t>(hash_ == 0 ? std::uint64_t{1} : hash_);
+  }
+  [[nodiscard]] std::int64_t newest_s() const { return newest_s_; }
+
+ private:
+  void add_number(std::uint64_t number) {
+    for (int shift = 0; shift < 64; shift += 8) {
+      hash_ ^= (number >> shift) & 0xFFU;
+      hash_ *= 1099511628211U;
+    }
+  }
+  std::uint64_t hash_ = 14695981039346656037U;
+  std::int64_t newest_s_ = 0;
+};
+
+std::vector<std::string> names_in(const std::string& folder) {
+  std::vector<std::string> names;
+  DIR* directory = ::opendir(folder.c_str());
+  if (directory == nullptr) return names;
+  while (const dirent* entry = ::readdir(directory))
+    if (entry->d_name[0] != '.') names.emplace_back(entry->d_name);
+  ::closedir(directory);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// Nothing where there is no case.
+std::optional<Fingerprint> look_at(const fs::path& case_folder) {
+  Fingerprint fingerprint;
+  const std::string folder = case_folder.string() + "/";
+  for (const char* file : kFiles)
+    if (!fingerprint.add(folder + file) && file == kFiles.front()) return std::nullopt;
+  const std::string sessions = folder + "sessions/";
+  for (const std::string& name : names_in(sessions)) {
+    // What is replaced in a session changes its folder; the record grows without.
+    fingerprint.add_name(name);
+    fingerprint.add(sessions + name);
+    fingerprint.add(sessions + name + "/session.sqlite");
+    fingerprint.add(sessions + name + "/session.sqlite-wal");
+  }
+  return fingerprint;
+}
+
+std::string utc_of(std::int64_t seconds) {
+  const std::time_t time = seconds;
+  std::tm parts{};
+  ::gmtime_r(&time, &parts);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text.data();
+}
+
+std::optional<double> optional_number(const files::JsonObject& node, std::string_view key) {
+  return node.has(key) ? std::optional(node.number(key)) : std::nullopt;
+}
+
+std::vector<PostoperativeFacts> read_postoperative(const fs::path& case_folder) {
+  std::vector<PostoperativeFacts> facts;
+  const fs::path file = case_folder / "achieved.json";
+  if (!fs::exists(file)) return facts;
+  for (const auto& node : files::read_json(file, "arthronaut.achieved", 1).objects("tunnels"))
+    facts.push_back({.bone = node.text("bone"),
+                     .entry_offset_mm = optional_number(node, "offset_mm"),
+                     .angle_deg = optional_number(node, "angle_deg"),
+                     .diameter_mm = optional_number(node, "diameter_mm"),
+                     .is_reliable = node.boolean("reliable")});
+  return facts;
+}
+
+}  // namespace
+
+std::string_view to_text(CaseState state) {
+  return std::find_if(kStates.begin(), kStates.end(), [&](const auto& one) { return one.first == state; })
+      ->second;
+}
+
+CaseState case_state_from_text(std::string_view text) {
+  for (const auto& [state, word] : kStates)
+    if (word == text) return state;
+  throw InvalidInput("\"" + std::string(text) + "\" is no state of a case");
+}
+
+std::string SessionFacts::outcome() const {
+  if (is_drilled())
+    return files::format("drilled, %.1f mm and %.1f\u00B0 from the plan", *entry_offset_mm,
+                         angle_deg.value_or(0));
+  if (!problem.empty()) return "cannot be read: " + problem;
+  const std::string end = was_finished ? "" : ", cut off";
+  if (!registration_is_reliable) return "not registered" + end;
+  return (*registration_is_reliable ? "registered, not drilled" : "registration not reliable") + end;
+}
+
+CaseState CaseRecord::state() const {
+  if (!is_there) return CaseState::Missing;
+  if (!problem.empty()) return CaseState::Unreadable;
+  const bool was_found = std::any_of(postoperative.begin(), postoperative.end(),
+                                     [](const auto& found) { return found.entry_offset_mm.has_value(); });
+  if (was_found ||
+      std::any_of(sessions.begin(), sessions.end(), [](const auto& s) { return s.is_drilled(); }))
+    return CaseState::Drilled;
+  if (!sessions.empty()) return CaseState::Navigated;
+  return planned.empty() ? CaseState::NotPlanned : CaseState::Planned;
+}
+
+std::string CaseRecord::plan_in_words() const {
+  if (planned.empty()) return "no tunnel planned";
+  std::string words;
+  for (const bones::BoneKind kind : planned)
+    words += (words.empty() ? "" : " and ") + std::string(bones::to_text(kind));
+  return words + " planned";
+}
+
+std::string CaseRecord::last_outcome() const {
+  if (!is_there) return "its folder is not there now";
+  if (!problem.empty()) return "cannot be read: " + problem;
+  return last_session() != nullptr ? last_session()->outcome() : std::string();
+}
+
+CaseRecord read_case_record(const fs::path& case_folder, const SessionReader& read_session) {
+  CaseRecord record;
+  record.folder = case_folder;
+  const auto looked = look_at(case_folder);
+  record.is_there = looked.has_value();
+  if (!looked) return record;
+  record.changed_utc = utc_of(looked->newest_s());
+  const auto note_problem = [&](const std::exception& error) { record.problem = error.what(); };
+  // Another user's or a broken case is one line of the list, not the end of it.
+  try {
+    const cases::CaseOutline outline = cases::read_case_outline(case_folder);
+    record.name = outline.name;
+    record.side = bones::to_text(outline.side);
+    record.created_utc = outline.created_utc;
+    record.bones = outline.bones;
+    record.planned = outline.planned;
+    record.note = cases::load_note(case_folder).text;
+    record.postoperative = read_postoperative(case_folder);
+    for (const fs::path& session : cases::session_folders(case_folder))
+      record.sessions.push_back(read_session(session));
+  } catch (const InvalidInput& error) {
+    note_problem(error);
+  } catch (const IoError& error) {
+    note_problem(error);
+  } catch (const fs::filesystem_error& error) {
+    note_problem(error);
+  }
+  if (record.name.empty()) record.name = case_folder.stem().string();
+  return record;
+}
+
+std::int64_t fingerprint_of(const fs::path& case_folder) {
+  const auto looked = look_at(case_folder);
+  return looked ? looked->value() : 0;
+}
+
+}  // namespace arthronaut::library

@@ -1,0 +1,98 @@
+#include "planning/library/trends.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace arthronaut::library {
+
+namespace {
+
+constexpr double kSigmas = 3, kRangeOfTwo = 1.128;
+
+std::optional<double> value_of(const SessionFacts& session, Trend trend) {
+  switch (trend) {
+    case Trend::EntryOffset:
+      return session.entry_offset_mm;
+    case Trend::Angle:
+      return session.angle_deg;
+    case Trend::PredictedError:
+      // Of registrations that were found there: one that was brought along is the session's before.
+      return session.registering_min ? session.predicted_error_mm : std::nullopt;
+    case Trend::Registering:
+      return session.registering_min;
+    case Trend::Verifying:
+      return session.verifying_min;
+    case Trend::Drilling:
+      return session.drilling_min;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view to_text(Trend trend) {
+  switch (trend) {
+    case Trend::EntryOffset:
+      return "Entry from the planned one";
+    case Trend::Angle:
+      return "Angle to the planned axis";
+    case Trend::PredictedError:
+      return "Predicted error of the registration";
+    case Trend::Registering:
+      return "Registering";
+    case Trend::Verifying:
+      return "Verifying";
+    case Trend::Drilling:
+      return "Drilling";
+  }
+  return "";
+}
+
+std::string_view unit_of(Trend trend) {
+  switch (trend) {
+    case Trend::EntryOffset:
+    case Trend::PredictedError:
+      return "mm";
+    case Trend::Angle:
+      return "deg";
+    case Trend::Registering:
+    case Trend::Verifying:
+    case Trend::Drilling:
+      return "min";
+  }
+  return "";
+}
+
+std::vector<TrendPoint> trend_of(std::span<const CaseRecord> records, Trend trend,
+                                 const TrendOptions& options) {
+  std::vector<TrendPoint> points;
+  for (const CaseRecord& record : records) {
+    for (const SessionFacts& session : record.sessions) {
+      if (session.is_simulated() && !options.with_simulated) continue;
+      if (!options.bone.empty() && session.bone != options.bone) continue;
+      const auto value = value_of(session, trend);
+      if (value) points.push_back({session.started_utc, *value, record.name, session.id, record.folder});
+    }
+  }
+  std::sort(points.begin(), points.end(), [](const TrendPoint& a, const TrendPoint& b) {
+    return std::tie(a.when_utc, a.session, a.case_folder) < std::tie(b.when_utc, b.session, b.case_folder);
+  });
+  return points;
+}
+
+ControlLimits control_limits(std::span<const double> values) {
+  ControlLimits limits;
+  if (values.size() < kLeastForLimits) return limits;
+  double ranges = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) ranges += std::abs(values[i] - values[i - 1]);
+  const double half = kSigmas * ranges / static_cast<double>(values.size() - 1) / kRangeOfTwo;
+  limits.is_known = true;
+  limits.center = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  limits.lower = std::max(limits.center - half, 0.0);
+  limits.upper = limits.center + half;
+  return limits;
+}
+
+}  // namespace arthronaut::library

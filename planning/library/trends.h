@@ -1,0 +1,55 @@
+// How one number of the sessions goes over time, with control limits: what is within them is this theatre's
+// usual spread, what is outside has a cause to look for.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "planning/library/case_record.h"
+
+namespace arthronaut::library {
+
+enum class Trend {
+  EntryOffset,     // mm, of the drilled tunnel from the planned one
+  Angle,           // degrees, likewise
+  PredictedError,  // mm, of a registration that was found in the session: its confidence
+  Registering,     // minutes a step, see SessionFacts
+  Verifying,
+  Drilling,
+};
+inline constexpr int kTrendCount = 6;
+[[nodiscard]] std::string_view to_text(Trend trend);  // "Entry offset", ...
+[[nodiscard]] std::string_view unit_of(Trend trend);  // "mm", "deg", "min"
+
+struct TrendPoint {
+  std::string when_utc;
+  double value = 0;
+  std::string case_name, session;
+  std::filesystem::path case_folder;
+};
+
+struct TrendOptions {
+  bool with_simulated = false;  // a simulation is no operation: it would make the spread look small
+  std::string bone = {};        // "femur", "tibia"; empty: either
+};
+// In the order of time. Sessions that do not say the number are left out.
+[[nodiscard]] std::vector<TrendPoint> trend_of(std::span<const CaseRecord> records, Trend trend,
+                                               const TrendOptions& options = {});
+
+// Fewer values say nothing of their spread.
+inline constexpr std::size_t kLeastForLimits = 8;
+
+struct ControlLimits {
+  bool is_known = false;  // false: fewer than kLeastForLimits values; the rest is then 0
+  double center = 0, lower = 0, upper = 0;
+};
+// Of an individuals chart: center = mean, limits = center -+ 3 MR / 1.128, where MR is the mean of the moving
+// ranges |x(i) - x(i-1)| and 1.128 = d2 of two values (D. C. Montgomery, Introduction to Statistical Quality
+// Control, 7th ed., eq. 6.33). What is charted here is never below 0, and neither is the lower limit. In the
+// order of time, since the moving range is of neighbours.
+[[nodiscard]] ControlLimits control_limits(std::span<const double> values);
+
+}  // namespace arthronaut::library

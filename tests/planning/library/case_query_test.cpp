@@ -1,0 +1,80 @@
+#include "planning/library/case_query.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "planning/geometry/error.h"
+
+namespace arthronaut::library {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+class CaseQueryTest : public ::testing::Test {
+ protected:
+  CaseQueryTest() {
+    records_.resize(4);
+    set(0, "Bauer", "left", "2026-01-05", "2026-01-09");
+    set(1, "adler", "right", "2026-01-07", "2026-01-08");
+    set(2, "Ärmel", "right", "2026-01-01", "2026-01-10");
+    set(3, "Cramer", "left", "2026-01-03", "2026-01-07");
+    records_[0].planned = {bones::BoneKind::Femur};
+    records_[1].note = "Revision, #study\nsecond line";
+    records_[2].is_there = false;
+    SessionFacts drilled;
+    drilled.started_utc = "2025-12-24T10:00:00Z";
+    drilled.source_kind = "live";
+    drilled.entry_offset_mm = 2;
+    records_[3].sessions = {drilled, SessionFacts{}};
+    drilled.entry_offset_mm = 3;
+    records_[1].sessions = {drilled};
+  }
+  void set(std::size_t i, const char* name, const char* side, const char* created, const char* changed) {
+    records_[i].name = name;
+    records_[i].side = side;
+    records_[i].created_utc = std::string(created) + "T12:00:00Z";
+    records_[i].changed_utc = std::string(changed) + "T12:00:00Z";
+    records_[i].folder = std::string("/cases/") + std::to_string(i);
+  }
+  [[nodiscard]] std::vector<std::size_t> found(const CaseQuery& query) const {
+    return find_cases(records_, query);
+  }
+  std::vector<CaseRecord> records_;
+};
+
+TEST_F(CaseQueryTest, OrdersAsAsked) {
+  EXPECT_THAT(found({}), ElementsAre(2, 0, 1, 3));
+  EXPECT_THAT(found({.order = CaseOrder::Name}), ElementsAre(1, 0, 3, 2)) << "capital or not; umlauts last";
+  EXPECT_THAT(found({.order = CaseOrder::Created}), ElementsAre(1, 0, 3, 2));
+  EXPECT_THAT(found({.order = CaseOrder::EntryOffset}), ElementsAre(1, 3, 0, 2));
+  EXPECT_THAT(found({.order = CaseOrder::State}), ElementsAre(2, 0, 1, 3)) << "missing, planned, drilled";
+}
+
+TEST_F(CaseQueryTest, EveryWordMustStandSomewhere) {
+  EXPECT_THAT(found({.words = "revision"}), ElementsAre(1));
+  EXPECT_THAT(found({.words = "#STUDY right"}), ElementsAre(1));
+  EXPECT_THAT(found({.words = "#study left"}), IsEmpty());
+  EXPECT_THAT(found({.words = "ärmel"}), ElementsAre(2));
+  EXPECT_THAT(found({.words = "2025-12"}), ElementsAre(1, 3)) << "dates of sessions";
+  EXPECT_THAT(found({.words = "live drilled left"}), ElementsAre(3));
+  EXPECT_THAT(found({.words = "  "}).size(), 4);
+}
+
+TEST_F(CaseQueryTest, FiltersBySideAndState) {
+  EXPECT_THAT(found({.side = "left"}), ElementsAre(0, 3));
+  EXPECT_THAT(found({.state = CaseState::Missing}), ElementsAre(2));
+  EXPECT_THAT(found({.side = "left", .state = CaseState::Drilled}), ElementsAre(3));
+}
+
+TEST_F(CaseQueryTest, WordsOfStatesAndOrdersComeBack) {
+  for (int i = 0; i < 6; ++i)
+    EXPECT_EQ(case_state_from_text(to_text(static_cast<CaseState>(i))), static_cast<CaseState>(i));
+  for (int i = 0; i < 5; ++i)
+    EXPECT_EQ(case_order_from_text(to_text(static_cast<CaseOrder>(i))), static_cast<CaseOrder>(i));
+  EXPECT_THROW((void)case_state_from_text("lost"), InvalidInput);
+  EXPECT_THROW((void)case_order_from_text("size"), InvalidInput);
+}
+
+}  // namespace
+}  // namespace arthronaut::library

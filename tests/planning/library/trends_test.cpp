@@ -1,0 +1,58 @@
+#include "planning/library/trends.h"
+
+#include <gtest/gtest.h>
+
+namespace arthronaut::library {
+namespace {
+
+SessionFacts session(const std::string& when, double offset_mm, const std::string& kind = "live") {
+  SessionFacts facts;
+  facts.id = when;
+  facts.started_utc = when;
+  facts.source_kind = kind;
+  facts.bone = "femur";
+  facts.entry_offset_mm = offset_mm;
+  return facts;
+}
+
+// Across cases, in the order of time; simulated sessions and the other bone only when they are asked for.
+TEST(TrendTest, GoesThroughTheSessionsInTime) {
+  std::vector<CaseRecord> records(2);
+  records[0].name = "A";
+  records[0].sessions = {session("2026-01-01", 1), session("2026-01-03", 3)};
+  records[1].name = "B";
+  records[1].sessions = {session("2026-01-02", 2), session("2026-01-04", 4, "simulation"), SessionFacts{}};
+  records[1].sessions[0].bone = "tibia";
+  const auto values = [&](const TrendOptions& options) {
+    std::vector<double> all;
+    for (const TrendPoint& point : trend_of(records, Trend::EntryOffset, options)) all.push_back(point.value);
+    return all;
+  };
+  EXPECT_EQ(values({}), (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(values({.with_simulated = true}), (std::vector<double>{1, 2, 3, 4}));
+  EXPECT_EQ(values({.bone = "tibia"}), (std::vector<double>{2}));
+  EXPECT_EQ(trend_of(records, Trend::EntryOffset)[1].case_name, "B");
+  EXPECT_TRUE(trend_of(records, Trend::Drilling).empty());
+}
+
+// By hand: moving ranges 1, 2, 1, 0, 2, 1, 0 have the mean 1, so the limits are 3 / 1.128 = 2.6596 about 4.5.
+TEST(ControlLimitsTest, AreThoseOfAnIndividualsChart) {
+  const std::vector<double> values{4, 5, 3, 4, 4, 6, 5, 5};
+  const ControlLimits limits = control_limits(values);
+  ASSERT_TRUE(limits.is_known);
+  EXPECT_DOUBLE_EQ(limits.center, 4.5);
+  EXPECT_NEAR(limits.upper, 4.5 + 2.659574, 1e-6);
+  EXPECT_NEAR(limits.lower, 4.5 - 2.659574, 1e-6);
+}
+
+TEST(ControlLimitsTest, AreUnknownOfFewAndNeverBelowNought) {
+  EXPECT_FALSE(control_limits(std::vector<double>{1, 2, 3, 4, 5, 6, 7}).is_known);
+  EXPECT_FALSE(control_limits({}).is_known);
+  EXPECT_EQ(control_limits(std::vector<double>{0, 2, 0, 2, 0, 2, 0, 2}).lower, 0);
+  const ControlLimits same = control_limits(std::vector<double>(8, 1.5));
+  EXPECT_EQ(same.lower, 1.5);
+  EXPECT_EQ(same.upper, 1.5);
+}
+
+}  // namespace
+}  // namespace arthronaut::library
