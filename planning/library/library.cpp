@@ -1,7 +1,6 @@
 #include "planning/library/library.h"
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "planning/files/private_folder.h"
@@ -24,12 +23,19 @@ fs::path known_as(const fs::path& folder) {
   return name.has_filename() ? name : name.parent_path();  // "Knee.arthro/" is "Knee.arthro"
 }
 
+// Of a folder that may hold a thousand: its own name is resolved once.
 std::vector<fs::path> cases_in(const fs::path& folder) {
   std::vector<fs::path> found;
   std::error_code error;
-  for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator();
-       entry.increment(error))
-    if (is_case_folder(entry->path())) found.push_back(known_as(entry->path()));
+  const fs::path name = known_as(folder);
+  for (fs::directory_iterator entry(name, error); !error && entry != fs::directory_iterator();
+       entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->is_symlink(ignored))
+      found.push_back(known_as(entry->path()));
+    else if (entry->is_directory(ignored))
+      found.push_back(entry->path());
+  }
   return found;
 }
 
@@ -90,13 +96,20 @@ struct Library::State {
     return work(*index);
   }
 
-  std::size_t add(const std::vector<fs::path>& folders) {
-    std::vector<IndexedCase> known = on_index([](const LibraryIndex& i) { return i.cases(); });
-    std::set<fs::path> there;
-    for (const IndexedCase& one : known) there.insert(one.record.folder);
+  // Those of them that are cases and not known yet.
+  void add_fresh_of(const std::vector<fs::path>& folders) {
+    const auto there = on_index([](const LibraryIndex& i) { return i.folders(); });
     std::vector<fs::path> fresh;
     for (const fs::path& folder : folders)
-      if (there.insert(folder).second) fresh.push_back(folder);
+      if (!there.contains(folder.string()) && is_case_folder(folder)) fresh.push_back(folder);
+    if (!fresh.empty()) (void)add(fresh);
+  }
+
+  std::size_t add(const std::vector<fs::path>& folders) {
+    auto there = on_index([](const LibraryIndex& i) { return i.folders(); });
+    std::vector<fs::path> fresh;
+    for (const fs::path& folder : folders)
+      if (there.insert(folder.string()).second) fresh.push_back(folder);
     if (fresh.empty()) return 0;
     {
       const LibraryTurn turn(data_folder);
@@ -125,7 +138,7 @@ std::vector<CaseRecord> Library::known() const {
 }
 
 std::vector<CaseRecord> Library::look(const std::function<bool(std::size_t, std::size_t)>& on_case) {
-  (void)state_->add(cases_in(state_->data_folder / "cases"));
+  state_->add_fresh_of(cases_in(state_->data_folder / "cases"));
   std::vector<IndexedCase> all = state_->on_index([](const LibraryIndex& i) { return i.cases(); });
   std::vector<IndexedCase> changed;
   std::vector<CaseRecord> records;
@@ -172,9 +185,8 @@ void Library::add_those_there(std::span<const fs::path> case_folders) {
 
 void Library::forget(const fs::path& case_folder) {
   const std::vector<fs::path> folders{known_as(case_folder)};
-  const auto all = state_->on_index([](const LibraryIndex& i) { return i.cases(); });
-  if (std::none_of(all.begin(), all.end(),
-                   [&](const IndexedCase& one) { return one.record.folder == folders.front(); }))
+  const auto there = state_->on_index([](const LibraryIndex& i) { return i.folders(); });
+  if (!there.contains(folders.front().string()))
     throw InvalidInput(case_folder, "", "is not in the list of cases");
   {
     const LibraryTurn turn(state_->data_folder);

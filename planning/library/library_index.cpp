@@ -130,6 +130,16 @@ LibraryIndex::LibraryIndex(const fs::path& file) : state_(std::make_unique<State
 
 LibraryIndex::~LibraryIndex() = default;
 
+std::unordered_set<std::string> LibraryIndex::folders() const {
+  const auto check = [this](int result) { state_->check(result); };
+  const Statement rows(state_->database, "SELECT folder FROM cases", check);
+  std::unordered_set<std::string> folders;
+  int result = SQLITE_DONE;
+  while ((result = rows.step()) == SQLITE_ROW) folders.emplace(rows.bytes(0));
+  check(result);
+  return folders;
+}
+
 std::vector<IndexedCase> LibraryIndex::cases() const {
   const auto check = [this](int result) { state_->check(result); };
   const Statement rows(state_->database, "SELECT folder, fingerprint, record FROM cases", check);

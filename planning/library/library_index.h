@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "planning/library/case_record.h"
@@ -42,7 +43,8 @@ class LibraryIndex {
   LibraryIndex(const LibraryIndex&) = delete;
   LibraryIndex& operator=(const LibraryIndex&) = delete;
 
-  // In no order.
+  // Both in no order.
+  [[nodiscard]] std::unordered_set<std::string> folders() const;
   [[nodiscard]] std::vector<IndexedCase> cases() const;
   // All or nothing. Replaces what is known of the same folder.
   void put(std::span<const IndexedCase> cases);

@@ -168,7 +168,8 @@ TEST_F(Schemas, DescribeTheListOfCases) {
   session.problem = "poses.csv: cut off";
   records[0].sessions = {session, library::SessionFacts{}};
   records[0].postoperative = {{.bone = "femur", .entry_offset_mm = 1, .angle_deg = 2, .diameter_mm = 9},
-                              {.bone = "tibia"}};
+                              library::PostoperativeFacts()};
+  records[0].postoperative[1].bone = "tibia";
   records[1].is_there = false;
   records[2].problem = "case.json: broken";
   const library::Identities named{{records[0].folder, {"Muster^Anna", "4711", "19900131"}}};
