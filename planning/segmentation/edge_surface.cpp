@@ -8,6 +8,7 @@
 
 #include "planning/images/contour.h"
 #include "planning/segmentation/box_blur.h"
+#include "planning/segmentation/cortex_profile.h"
 
 namespace arthronaut::segmentation {
 
@@ -17,7 +18,6 @@ using images::Field;
 using images::Volume;
 using images::VoxelMask;
 
-constexpr double kProfileStep_mm = 0.2;
 // A profile that falls by this much is past its peak, one that rises by it past the dark beside the bone:
 // more than the noise of a CT.
 constexpr float kTurn_hu = 75;
@@ -43,6 +43,8 @@ struct Work {
   std::vector<std::uint8_t> solid;   // of the field
   std::vector<std::uint8_t> is_cut;  // of the field: no voxel of the volume
 };
+
+bool is_of_thick_slices(const Volume& volume) { return volume.spacing_mm().maxCoeff() > kThickSlice_mm; }
 
 template <typename Visit>
 void for_each_inner_voxel(const Field& field, const Visit& visit) {
@@ -115,38 +117,48 @@ class Sampler {
   std::array<std::size_t, 3> steps_;
 };
 
-// Half-way between the dark outside and the cortex, along a line from inside out; nullopt without an edge.
-std::optional<float> half_way(const Sampler& grey, const Eigen::Vector3d& start,
-                              const Eigen::Vector3d& outward_step, int reach, float least_step) {
-  std::vector<float> profile;
-  for (int s = -reach; s <= reach; ++s) {
+// The dark outside and the peak of the cortex along a line from inside out; nullopt without an edge.
+std::optional<CortexProfile> profile_along(const Sampler& grey, const Eigen::Vector3d& start,
+                                           const Eigen::Vector3d& outward_step, int reach, float least_step) {
+  // From outside in.
+  CortexProfile found;
+  std::vector<float>& values = found.values;
+  values.reserve(static_cast<std::size_t>(2 * reach + 1));
+  for (int s = reach; s >= -reach; --s) {
     const auto value = grey.at(start + s * outward_step);
     if (!value) return std::nullopt;
-    profile.push_back(*value);
+    values.push_back(*value);
   }
-  const auto mean_at = [&](int s) {
-    const int low = std::max(0, s - 1), high = std::min(2 * reach, s + 1);
+  const auto middle = static_cast<std::size_t>(reach);
+  const auto mean_at = [&](std::size_t s) {
+    const std::size_t low = s > 0 ? s - 1 : 0, high = std::min(values.size() - 1, s + 1);
     float sum = 0;
-    for (int i = low; i <= high; ++i) sum += profile[static_cast<std::size_t>(i)];
+    for (std::size_t i = low; i <= high; ++i) sum += values[i];
     return sum / static_cast<float>(high - low + 1);
   };
-  int top = reach, bottom = reach;
-  for (int s = reach; s >= 0; --s) {
-    const float v = profile[static_cast<std::size_t>(s)];
-    if (v > profile[static_cast<std::size_t>(top)]) top = s;
-    if (v < profile[static_cast<std::size_t>(top)] - kTurn_hu) break;
+  std::size_t top = middle, bottom = middle;
+  for (std::size_t s = middle; s < values.size(); ++s) {
+    if (values[s] > values[top]) top = s;
+    if (values[s] < values[top] - kTurn_hu) break;
   }
-  for (int s = reach; s <= 2 * reach; ++s) {
-    const float v = profile[static_cast<std::size_t>(s)];
-    if (v < profile[static_cast<std::size_t>(bottom)]) bottom = s;
-    if (v > profile[static_cast<std::size_t>(bottom)] + kTurn_hu) break;
+  for (std::size_t s = middle + 1; s-- > 0;) {
+    if (values[s] < values[bottom]) bottom = s;
+    if (values[s] > values[bottom] + kTurn_hu) break;
   }
-  const float high = mean_at(top), low = mean_at(bottom);
-  if (high - low < least_step) return std::nullopt;
-  return 0.5F * (high + low);
+  found.high = mean_at(top);
+  found.low = mean_at(bottom);
+  if (found.high - found.low < least_step) return std::nullopt;
+  const float half = 0.5F * (found.high + found.low);
+  std::size_t edge = top;
+  while (edge > bottom && values[edge] >= half) --edge;
+  if (values[edge] >= half || values[edge + 1] < half) return std::nullopt;
+  const float beyond = (half - values[edge]) / std::max(values[edge + 1] - values[edge], 1e-3F);
+  found.edge_mm =
+      static_cast<float>((static_cast<double>(edge) + static_cast<double>(beyond)) * kProfileStep_mm);
+  return found;
 }
 
-// The local half-way value near the surface, the threshold elsewhere.
+// The value at the edge near the surface, the threshold elsewhere.
 std::vector<float> local_levels(const Work& work) {
   const Field& grey = work.grey;
   const auto steps = steps_of(grey);
@@ -159,6 +171,7 @@ std::vector<float> local_levels(const Work& work) {
   const Sampler sampler(grey);
   const Eigen::Matrix3d index_from_mm = work.volume.lps_from_index.linear().inverse();
   const int reach = static_cast<int>(std::lround(work.options.reach_mm / kProfileStep_mm));
+  std::vector<CortexProfile> profiles;
   for_each_inner_voxel(grey, [&](const Eigen::Vector3i& at, std::size_t v) {
     if (!work.solid[v]) return;
     bool is_at_surface = false;
@@ -175,12 +188,21 @@ std::vector<float> local_levels(const Work& work) {
     const double length = outward.norm();
     if (!(length > 1e-6)) return;
     const Eigen::Vector3d step = index_from_mm * (outward * (kProfileStep_mm / length));
-    const auto level =
-        half_way(sampler, at.cast<double>(), step, reach, static_cast<float>(work.options.least_step));
-    if (!level) return;
-    sum.values[v] = *level;
-    weight.values[v] = 1;
+    auto profile =
+        profile_along(sampler, at.cast<double>(), step, reach, static_cast<float>(work.options.least_step));
+    if (!profile) return;
+    sum.values[v] = profile->low;
+    weight.values[v] = profile->high - profile->low;
+    profiles.push_back(std::move(*profile));
   });
+  // Of thick slices the blur is another one in every direction.
+  const EdgeShare share = is_of_thick_slices(work.volume) ? EdgeShare() : EdgeShare::of(std::move(profiles));
+  for (std::size_t v = 0; v < sum.values.size(); ++v) {
+    const float rise = weight.values[v];
+    if (!(rise > 0)) continue;
+    sum.values[v] += share.at(rise) * rise;
+    weight.values[v] = 1;
+  }
   for (int pass = 0; pass < 2; ++pass) {
     blur_with_box(sum, work.spacing_mm, kLevelRadius_mm);
     blur_with_box(weight, work.spacing_mm, kLevelRadius_mm);
@@ -242,8 +264,8 @@ geometry::TriangleMesh edge_surface(const Volume& volume, const Box& box, const 
       field.values[v] = above < 0 ? above : -0.5F * kSurelyInside;
     }
   }
-  const bool is_thick = volume.spacing_mm().maxCoeff() > kThickSlice_mm;
-  return images::contour(field, 0, volume.lps_from_index, is_thick ? kOfThickSlices : kNoSmoothing);
+  return images::contour(field, 0, volume.lps_from_index,
+                         is_of_thick_slices(volume) ? kOfThickSlices : kNoSmoothing);
 }
 
 }  // namespace arthronaut::segmentation

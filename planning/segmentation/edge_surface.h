@@ -1,11 +1,11 @@
-// The surface of a bone in a CT, where its edge is: half-way, in grey values, between what lies outside and
-// the cortex just there.
+// The surface of a bone in a CT, where its edge is.
 //
 // One threshold for all of a bone finds a thick cortex too large and a thin one too small, as a scanner blurs
-// both. Here the half-way value is taken anew all over the surface, from profiles across it (the full width
-// at half maximum of e.g. Prevrhal et al. 1999), and the surface runs where the volume takes that value:
-// between the voxels, not along them. What is inside is inside whatever its grey: the surface is closed by
-// construction and has no holes where the cortex is thin or the marrow dark.
+// both. Here the value of the edge is taken anew all over the surface, from profiles across it: half-way from
+// outside to the peak (the full width at half maximum of e.g. Prevrhal et al. 1999), and further up where the
+// cortex is too thin for the blur (cortex_profile.h; not in slices that are thick). The surface runs where
+// the volume takes that value: between the voxels, not along them. What is inside is inside whatever its
+// grey: the surface is closed by construction and has no holes where the cortex is thin or the marrow dark.
 #pragma once
 
 #include "planning/geometry/triangle_mesh.h"

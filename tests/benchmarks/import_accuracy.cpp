@@ -19,10 +19,7 @@ double processor_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-void print_row(const std::vector<geometry::TriangleMesh>& truth, double cortex_mm, double blur_mm) {
-  test::KnownCtOptions options;
-  options.cortex_mm = cortex_mm;
-  options.blur_mm = blur_mm;
+void print_row(const std::vector<geometry::TriangleMesh>& truth, const test::KnownCtOptions& options) {
   const images::Volume volume = test::known_ct(truth, options);
   const double start = processor_seconds();
   const auto found = segmentation::bones_of_ct(volume);
@@ -31,9 +28,10 @@ void print_row(const std::vector<geometry::TriangleMesh>& truth, double cortex_m
     const auto mended = bones::mend_mesh(bone.mesh);
     const auto& exact = truth[bone.kind == bones::BoneKind::Femur ? 0 : 1];
     const auto out = test::distances_to(exact, mended.mesh, 0);
-    std::printf("| %s | %.1f | %.2f | %.3f | %.3f | %s | %.1f |\n",
-                std::string(bones::to_text(bone.kind)).c_str(), cortex_mm, blur_mm, out[out.size() / 2],
-                out[out.size() * 95 / 100], mended.report.is_closed ? "yes" : "no", took);
+    std::printf("| %s | %.1f | %.0f | %.0f | %.2f | %.3f | %.3f | %s | %.1f |\n",
+                std::string(bones::to_text(bone.kind)).c_str(), options.cortex_mm, options.cortex_hu,
+                options.marrow_hu, options.blur_mm, out[out.size() / 2], out[out.size() * 95 / 100],
+                mended.report.is_closed ? "yes" : "no", took);
   }
 }
 
@@ -46,11 +44,21 @@ int run(int argc, char** argv) {
     truth = {knee.femur.mesh, knee.tibia.mesh};
   }
   std::printf(
-      "| bone | cortex mm | blur mm | median mm | 95 %% mm | closed | s for both "
-      "|\n|---|---|---|---|---|---|---|\n");
-  for (const auto& [cortex_mm, blur_mm] : {std::pair{1.5, 0.0}, std::pair{1.0, 0.0}, std::pair{1.5, 0.35},
-                                           std::pair{1.5, 0.5}, std::pair{1.0, 0.5}})
-    print_row(truth, cortex_mm, blur_mm);
+      "| bone | cortex mm | cortex HU | marrow HU | blur mm | median mm | 95 %% mm | closed | s for both |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
+  struct Row {
+    double cortex_mm, cortex_hu, marrow_hu, blur_mm;
+  };
+  for (const Row& row : {Row{1.5, 1200, 150, 0}, Row{1.0, 1200, 150, 0}, Row{1.5, 1200, 150, 0.35},
+                         Row{1.5, 1200, 150, 0.5}, Row{1.0, 1200, 150, 0.5}, Row{1.5, 1200, 150, 0.7},
+                         Row{1.5, 800, 300, 0.5}, Row{1.0, 1600, 0, 0.5}, Row{3.0, 1200, 150, 0.5}}) {
+    test::KnownCtOptions options;
+    options.cortex_mm = row.cortex_mm;
+    options.cortex_hu = row.cortex_hu;
+    options.marrow_hu = row.marrow_hu;
+    options.blur_mm = row.blur_mm;
+    print_row(truth, options);
+  }
   return 0;
 }
 
