@@ -21,6 +21,9 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kSamples = 20000;
 constexpr double kShaftFrom_mm = 42, kShaftLength_mm = 160;
+constexpr double kDrawnOut_mm = 25;
+// Real tibiae score 1.7 and more.
+constexpr double kSureForward = 0.8;
 constexpr double kRim_mm = -6;  // over the plateau's plane: still the plateau
 constexpr double kBeside_mm = 4;
 constexpr double kMiddle_mm = 12;  // to either side: eminences
@@ -32,6 +35,7 @@ struct Shape {
   Plateau plateau;
   std::vector<SurfaceSample> samples;
   std::optional<LongAxis> shaft;
+  double forward = 0;                    // forward_score, of the rough frame as it was found
   Matrix3d axes = Matrix3d::Identity();  // anatomical: x right, y anterior, z along the long axis
 };
 
@@ -40,9 +44,20 @@ Vector3d over_plateau(const Shape& shape, const Vector3d& p) {
   return shape.plateau.bone_from_frame.transpose() * (p - shape.plateau.origin_mm);
 }
 
+// How far forward of the plateau's middle the shaft's axis, drawn out to it, passes: about 10 mm, as the
+// plateau overhangs the shaft behind. Nothing for a shaft too short to be drawn out so far.
+double shaft_forward_mm(const Plateau& plateau, const std::optional<LongAxis>& shaft) {
+  if (!shaft || shaft->length_mm() < kDrawnOut_mm) return 0;
+  const Matrix3d frame_from_bone = plateau.bone_from_frame.transpose();
+  const Vector3d end = frame_from_bone * (shaft->joint_end_mm - plateau.origin_mm),
+                 away = frame_from_bone * shaft->away();
+  return end.y() - end.z() / away.z() * away.y();
+}
+
 // Positive when y of the plateau's frame is anterior: the eminences stand behind the middle, the rim is bent
-// in behind, and below the front edge the bone comes forward to the tuberosity, which one sees from above.
-double forward_score(const Relief& relief) {
+// in behind, below the front edge the bone comes forward to the tuberosity, which one sees from above, and
+// the shaft stands in front of the middle.
+double forward_score(const Relief& relief, double shaft_forward_mm) {
   double eminence_y = 0, eminence = 0, seen_below = 0, front_bend = 0, back_bend = 0;
   double front_middle = -1e9, front_sides = -1e9, back_middle = -1e9, back_sides = -1e9;
   for (int row = -Relief::kHalf; row <= Relief::kHalf; ++row) {
@@ -60,7 +75,8 @@ double forward_score(const Relief& relief) {
   front_bend = front_middle - front_sides;
   back_bend = back_middle - back_sides;
   const double stands_behind = eminence > 0 ? -eminence_y / eminence : 0;
-  return stands_behind / 3 + (front_bend - back_bend) / 4 + std::clamp(seen_below / 30, -1.5, 1.5);
+  return stands_behind / 3 + (front_bend - back_bend) / 4 + std::clamp(seen_below / 30, -1.5, 1.5) +
+         std::clamp(shaft_forward_mm / 4, -2.5, 2.5);
 }
 
 // Positive when x of the plateau's frame is lateral: the medial half is the larger, the rim's foremost part
@@ -117,7 +133,12 @@ std::optional<Shape> find_shape(const geometry::TriangleMesh& mesh, const geomet
   Shape shape;
   shape.rough = rough;
   auto plateau = find_plateau(surface, rough);
-  if (plateau && forward_score(plateau->relief) < 0) {
+  if (plateau) {
+    const auto shaft = find_long_axis(mesh, rough, plateau->origin_mm, -plateau->bone_from_frame.col(2),
+                                      kShaftFrom_mm, kShaftFrom_mm + kShaftLength_mm);
+    shape.forward = forward_score(plateau->relief, shaft_forward_mm(*plateau, shaft));
+  }
+  if (plateau && shape.forward < 0) {
     shape.rough.bone_from_frame.col(0) *= -1;
     shape.rough.bone_from_frame.col(1) *= -1;
     plateau = find_plateau(surface, shape.rough);
@@ -216,6 +237,9 @@ Proposal propose_tibia(const geometry::TriangleMesh& mesh, const ProposalOptions
     return proposal;
   }
   proposal.outcome = Proposal::Outcome::Proposed;
+  if (std::abs(shape->forward) < kSureForward)
+    proposal.doubts.push_back(
+        "front and back of the plateau look almost alike: they may be taken for each other");
   proposal.axes = {AnatomicalAxes::Origin::FromLandmarks, axes.col(1), axes.col(2), lateral * axes.col(0)};
   put("lateral_eminence", eminence(*shape, lateral));
   put("medial_eminence", eminence(*shape, -lateral));
