@@ -25,6 +25,7 @@ void PlanView::add_actions(widgets::Actions& actions) {
   add_slice_actions(actions);
   add_measuring_actions(actions);
   add_history_actions(actions);
+  add_tour_actions(actions);
   actions.add({"plan.bone",
                "Other bone",
                "Plan the tunnel of the other bone",

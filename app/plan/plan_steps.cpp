@@ -11,8 +11,9 @@ using Verdict = tunnels::PlanCheck::Verdict;
 
 std::string adjective(BoneKind bone) { return bone == BoneKind::Femur ? "femoral" : "tibial"; }
 
-// Whether the percentages follow from points that nobody has looked at.
-bool grid_is_proposed(const open_case::PlanModel& model, BoneKind bone) {
+}  // namespace
+
+bool has_unconfirmed_grid(const open_case::PlanModel& model, BoneKind bone) {
   const auto& states = model.landmark_states(bone);
   return std::any_of(states.begin(), states.end(), [](const auto& one) {
     return (one.first.starts_with("blumensaat_") || one.first.starts_with("plateau_")) &&
@@ -20,7 +21,11 @@ bool grid_is_proposed(const open_case::PlanModel& model, BoneKind bone) {
   });
 }
 
-}  // namespace
+bool has_wrong_check(const open_case::PlanModel& model, BoneKind bone) {
+  const auto& checks = model.checks(bone);
+  return std::any_of(checks.begin(), checks.end(),
+                     [](const tunnels::PlanCheck& check) { return check.verdict == Verdict::Wrong; });
+}
 
 NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
   const std::string bone(bones::to_text(state.bone));
@@ -39,15 +44,13 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
     return check.verdict == Verdict::Wrong;
   });
   if (wrong != checks.end()) return {"Mend the " + adjective(state.bone) + " tunnel: " + wrong->name, ""};
-  if (grid_is_proposed(model, state.bone))
+  if (has_unconfirmed_grid(model, state.bone))
     return {"Look at the " + bone + "'s landmarks, which nobody has confirmed: press L",
             "plan.landmarks_page"};
   if (model.has_bone(other) && !model.tunnel(other))
     return {"Plan the " + adjective(other) + " tunnel: press Tab", "plan.bone"};
   if (model.has_bone(other)) {
-    const auto& others = model.checks(other);
-    if (std::any_of(others.begin(), others.end(),
-                    [](const tunnels::PlanCheck& check) { return check.verdict == Verdict::Wrong; }))
+    if (has_wrong_check(model, other))
       return {"Mend the " + adjective(other) + " tunnel: press Tab", "plan.bone"};
   }
   return {"The plan can be taken to theatre: set up the arthroscope", "mode.setup"};

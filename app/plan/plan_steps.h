@@ -22,4 +22,9 @@ struct StepState {
 // bone's; else to theatre.
 [[nodiscard]] NextStep next_step(const open_case::PlanModel& model, const StepState& state);
 
+// Whether the bone's grid follows from points that nobody has looked at; whether a check of its tunnel says
+// that it is wrong. Precondition: has_bone(bone).
+[[nodiscard]] bool has_unconfirmed_grid(const open_case::PlanModel& model, bones::BoneKind bone);
+[[nodiscard]] bool has_wrong_check(const open_case::PlanModel& model, bones::BoneKind bone);
+
 }  // namespace arthronaut::plan

@@ -2,6 +2,7 @@
 
 #include <GLFW/glfw3.h>
 
+#include "app/case/case_opening.h"
 #include "app/plan/tunnel_moves.h"
 #include "app/scene/grid_lines.h"
 #include "app/scene/solid_mesh.h"
@@ -47,6 +48,9 @@ void PlanView::case_opened(const mode::OpenCase& opened) {
   model_ = opened.model;
   history_.open(opened.model, opened.folder, opened.read_only);
   case_folder_ = opened.folder;
+  std::error_code error;
+  tour_.case_opened(opened.read_only.empty() &&
+                    std::filesystem::equivalent(opened.folder, open_case::built_in_case_folder(), error));
   load_versions();
   state_ = {};
   tunnel_meshes_.clear();
@@ -118,6 +122,10 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   row({"plan.grid", "plan.map", "plan.aims", "plan.xray", "plan.slices"});
   if (state_.shows_slices)
     row({"plan.window", "plan.fit", "plan.cross_to_entry", "plan.distance", "plan.angle", "plan.unmeasure"});
+  follow_tour();
+  const std::optional<TourCard> card = tour_.card();
+  if (card) draw_tour(ui, rest.cut_top(ui.theme.px(96), ui.theme.px(10)), *card);
+  ui.log.note_state("tour", card ? std::to_string(card->number) + " " + card->title : "");
   if (history_.is_in_conflict()) draw_conflict(ui, rest.cut_top(ui.theme.px(64), ui.theme.px(10)));
   if (state_.shows_slices) {
     const float gap = ui.theme.px(6);

@@ -17,6 +17,7 @@
 #include "app/plan/lateral_view.h"
 #include "app/plan/plan_steps.h"
 #include "app/plan/slice_panes.h"
+#include "app/plan/tour.h"
 #include "app/plan/tunnel_survey.h"
 #include "planning/cases/plan_versions.h"
 
@@ -34,7 +35,10 @@ class PlanView : public mode::Mode {
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const override { return {"plan."}; }
   void add_actions(widgets::Actions& actions) override;
   void case_opened(const mode::OpenCase& opened) override;
-  void leave() override { history_.settle_now(); }
+  void leave() override {
+    history_.settle_now();
+    tour_.plan_mode_left();
+  }
   void tick(double now_s) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
   [[nodiscard]] bool is_busy() const override { return history_.is_moving() || slices_.is_loading(); }
@@ -62,6 +66,12 @@ class PlanView : public mode::Mode {
   [[nodiscard]] std::shared_ptr<const Survey> wanted_survey();
   void add_map_marks(std::vector<PaneMark>& marks) const;
   void draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& area) const;
+
+  // The first case: tour_view.cpp.
+  void add_tour_actions(widgets::Actions& actions);
+  void make_tour_defaults();
+  void follow_tour();
+  void draw_tour(const widgets::Ui& ui, const widgets::Rect& area, const TourCard& card) const;
 
   void load_versions();
   void keep_version();
@@ -91,6 +101,9 @@ class PlanView : public mode::Mode {
     PanelPage page = PanelPage::Checks;
     std::string hint = {};  // why a click did nothing; until the next one
     std::uint64_t shown_revision = 0;
+    // As the tour compares the plan with it, and the landmarks that it follows from.
+    std::map<bones::BoneKind, tunnels::Tunnel> defaults = {};
+    std::map<bones::BoneKind, landmarks::Landmarks> defaults_of = {};
   };
 
   struct TunnelMesh {
@@ -104,6 +117,7 @@ class PlanView : public mode::Mode {
   SlicePanes slices_;
   LateralView lateral_;
   TunnelSurvey survey_;
+  Tour tour_{tour_file()};
   std::filesystem::path case_folder_;
   std::vector<cases::PlanVersion> versions_;  // that were kept, the oldest first
   std::map<bones::BoneKind, TunnelMesh> tunnel_meshes_;
