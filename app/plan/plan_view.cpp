@@ -124,7 +124,7 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
     row({"plan.window", "plan.fit", "plan.cross_to_entry", "plan.distance", "plan.angle", "plan.unmeasure"});
   follow_tour();
   const std::optional<TourCard> card = tour_.card();
-  if (card) draw_tour(ui, rest.cut_top(ui.theme.px(96), ui.theme.px(10)), *card);
+  if (card) draw_tour(ui, rest.cut_top(ui.theme.px(88), ui.theme.px(10)), *card);
   ui.log.note_state("tour", card ? std::to_string(card->number) + " " + card->title : "");
   if (history_.is_in_conflict()) draw_conflict(ui, rest.cut_top(ui.theme.px(64), ui.theme.px(10)));
   if (state_.shows_slices) {

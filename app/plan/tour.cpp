@@ -105,13 +105,18 @@ void Tour::go_to(TourStep step) {
   checks_seen_.clear();
 }
 
-void Tour::follow(const TourFacts& facts) {
-  if (!is_running()) return;
+void Tour::see(const TourFacts& facts) {
   if (!at_begin_) at_begin_ = facts;
   if (facts.landmarks_shown) landmarks_seen_.insert(*facts.landmarks_shown);
   if (facts.checks_shown) checks_seen_.insert(*facts.checks_shown);
+}
+
+void Tour::follow(const TourFacts& facts) {
+  if (!is_running()) return;
+  see(facts);
   if (step_ == TourStep::Theatre || !is_done(facts)) return;
   go_to(static_cast<TourStep>(static_cast<int>(step_) + 1));
+  see(facts);  // what is on the screen now may be gone with the next frame
   save();
 }
 

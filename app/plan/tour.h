@@ -66,6 +66,7 @@ class Tour {
  private:
   enum class State { Offered, Running, Left, Done };
   void go_to(TourStep step);
+  void see(const TourFacts& facts);
   [[nodiscard]] bool is_done(const TourFacts& facts) const;
   void load();
   void save() const noexcept;

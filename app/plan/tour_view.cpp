@@ -70,7 +70,7 @@ void PlanView::draw_tour(const widgets::Ui& ui, const widgets::Rect& area, const
   draw.AddRectFilled(area.min(), {area.x + ui.theme.px(5), area.y + area.height}, widgets::kAccent,
                      ui.theme.px(3));
   const float edge = ui.theme.px(16), height = ui.theme.px(48), gap = ui.theme.px(8);
-  const float button = ui.theme.px(170);
+  const float button = ui.theme.px(card.number == 0 ? 236 : 170);
   const float buttons = (card.number == 0 ? 2 : 1) * (button + gap);
   const std::string title = card.number == 0 ? card.title
                                              : std::to_string(card.number) + " of " +

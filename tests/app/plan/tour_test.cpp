@@ -96,6 +96,20 @@ TEST_F(TourTest, GoesOnWhenThingsAreSo) {
   EXPECT_FALSE(open().card().has_value()) << "done stays done";
 }
 
+// What was on the screen when a step began counts although it is gone with the next frame.
+TEST_F(TourTest, ChecksThatWereOnTheScreenAreSeen) {
+  std::filesystem::create_directories(file_.parent_path());
+  std::ofstream(file_) << R"({"format": "arthronaut.tour", "version": 1, "state": "running", "step": "move"})";
+  Tour tour = open();
+  tour.follow(facts_);
+  facts_.tunnels[BoneKind::Femur] = tunnel_at(4);
+  tour.follow(facts_);
+  EXPECT_EQ(tour.step(), TourStep::Checks);
+  facts_.checks_shown = BoneKind::Tibia;
+  tour.follow(facts_);
+  EXPECT_EQ(tour.step(), TourStep::TakeBack);
+}
+
 TEST_F(TourTest, IsLeftAndTakenUpWhereItWas) {
   {
     Tour tour = open();
