@@ -51,6 +51,9 @@ void CaseList::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("library", library_.is_looking() ? "looking" : "ready");
   ui.log.note_state("cases_listed", std::to_string(found_.size()));
   ui.log.note_state("library_says", library_.what());
+  ui.log.note_state("order", to_text(view_.query.order));
+  // Keys are letters while this is so.
+  ui.log.note_state("typing", ImGui::GetIO().WantTextInput ? "yes" : "no");
   ui.log.note_state("page", view_.shows_trends ? "trends" : "list");
   ui.log.note_state("case_selected", selected() != nullptr ? selected()->name : "built-in");
   ui.log.note_state("case_state", selected() != nullptr ? to_text(selected()->state()) : "built-in");

@@ -99,7 +99,8 @@ TEST_F(TourTest, GoesOnWhenThingsAreSo) {
 // What was on the screen when a step began counts although it is gone with the next frame.
 TEST_F(TourTest, ChecksThatWereOnTheScreenAreSeen) {
   std::filesystem::create_directories(file_.parent_path());
-  std::ofstream(file_) << R"({"format": "arthronaut.tour", "version": 1, "state": "running", "step": "move"})";
+  std::ofstream(file_)
+      << R"({"format": "arthronaut.tour", "version": 1, "state": "running", "step": "move"})";
   Tour tour = open();
   tour.follow(facts_);
   facts_.tunnels[BoneKind::Femur] = tunnel_at(4);

@@ -42,10 +42,12 @@ TEST_F(CasesWindow, IsSearchedNotedAndOpenedByKeys) {
   ASSERT_TRUE(app.wait_for_state("case_selected", "Berta"));
   EXPECT_EQ(app.state("case"), "none") << "B and O were letters";
   app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("typing", "no"));
   app.press("n");
   app.type("second look");
   app.press("ctrl+Return");
   ASSERT_TRUE(app.wait_for_state("note", "second look"));
+  ASSERT_TRUE(app.wait_for_state("typing", "no"));
   EXPECT_EQ(cases::load_note(case_folder("Berta")).text, "second look");
   app.press("t");
   ASSERT_TRUE(app.wait_for_state("page", "trends"));
@@ -62,12 +64,15 @@ TEST_F(CasesWindow, IsWorkedByMouseAndMakesThumbnails) {
   RunningWorkstation app(display, folder_.path(), {"--frames", "0"});
   ASSERT_TRUE(app.wait_for_state("library", "ready"));
   ASSERT_TRUE(app.wait_for_widget("start.case.3"));  // the built-in knee is the last
-  app.click("start.order");                          // by name
+  app.click("start.order");
+  ASSERT_TRUE(app.wait_for_state("order", "name"));
   app.click("start.case.2");
   ASSERT_TRUE(app.wait_for_state("case_selected", "Caesar"));
   app.click("start.note_field");
+  ASSERT_TRUE(app.wait_for_state("typing", "yes"));
   app.type("not kept");
   app.press("Escape");
+  ASSERT_TRUE(app.wait_for_state("typing", "no"));
   app.click("start.side");  // left: none
   ASSERT_TRUE(app.wait_for_state("cases_listed", "0"));
   app.click("start.side");  // right
@@ -94,6 +99,7 @@ TEST_F(CasesWindow, SaysThatACaseIsMissing) {
   app.type("missing");
   ASSERT_TRUE(app.wait_for_state("case_selected", "Anton"));
   app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("typing", "no"));
   app.press("Return");
   ASSERT_TRUE(app.wait_for_state("case", "failed"));
   EXPECT_EQ(app.state("screen"), "start");

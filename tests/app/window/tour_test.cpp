@@ -58,7 +58,7 @@ TEST_F(TourWindow, LeadsFromTheFirstLookToAKeptPlan) {
   ASSERT_TRUE(app.wait_for_state("tour", "8 That is planning"));
   EXPECT_EQ(cases::load_plan_versions(folder_ / "arthronaut" / "Phantom.arthro").size(), 1U);
   app.press("F4");
-  ASSERT_TRUE(app.wait_for_state("mode", "setup"));
+  ASSERT_TRUE(app.wait_for_state("mode", "set up"));
   app.press("F1");
   ASSERT_TRUE(app.wait_for_state("mode", "plan"));
   ASSERT_TRUE(app.wait_for_state("tour", ""));
