@@ -86,7 +86,6 @@ void PlanView::draw_tour(const widgets::Ui& ui, const widgets::Rect& area, const
     ImGui::SameLine(0, gap);
     widgets::action_button(ui, "plan.no_tour", button, height);
   }
-  ui.log.note("plan.tour_card", area.min(), area.max());
 }
 
 }  // namespace arthronaut::plan
