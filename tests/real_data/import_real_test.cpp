@@ -24,6 +24,7 @@ using bones::BoneKind;
 using bones::Side;
 using test::message_of;
 using testing::HasSubstr;
+using testing::Not;
 
 // What every imported bone must be, whatever it came from.
 void expect_sound(const ImportedBone& imported) {
