@@ -72,6 +72,7 @@ void add_resume_command(CLI::App& app, Context& context);
 void add_compare_command(CLI::App& app, Context& context);
 void add_report_command(CLI::App& app, Context& context);
 void add_dicom_command(CLI::App& app, Context& context);
+void add_pacs_command(CLI::App& app, Context& context);
 void add_markers_command(CLI::App& app, Context& context);
 void add_demo_command(CLI::App& app, Context& context);
 void add_experiment_command(CLI::App& app, Context& context);

@@ -125,6 +125,7 @@ int run_command_line(int argc, char** argv,
   add_compare_command(app, context);
   add_report_command(app, context);
   add_dicom_command(app, context);
+  add_pacs_command(app, context);
   add_markers_command(app, context);
   add_phantom_command(app, context);
   add_demo_command(app, context);

@@ -36,7 +36,7 @@ INSTANTIATE_TEST_SUITE_P(All, Subcommand,
                          ::testing::Values("calibrate", "cases", "check-fluid", "compare", "track", "pivot",
                                            "digitise", "register", "import", "landmarks", "plan", "phantom",
                                            "navigate", "replay", "report", "dicom", "resume", "segment",
-                                           "series", "markers", "demo"),
+                                           "series", "pacs", "markers", "demo"),
                          [](const auto& test) {
                            std::string name = test.param;
                            std::replace(name.begin(), name.end(), '-',

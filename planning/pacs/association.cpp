@@ -1,0 +1,213 @@
+#include "planning/pacs/association.h"
+
+#include <dcmtk/dcmdata/dctk.h>
+#include <dcmtk/dcmnet/dcmtrans.h>
+#include <dcmtk/dcmnet/diutil.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <mutex>
+
+#include "planning/files/format.h"
+#include "planning/geometry/error.h"
+#include "planning/images/dicom_file.h"
+
+namespace arthronaut::pacs {
+
+namespace {
+
+// Larger ones are not had with every peer; DCMTK takes no larger.
+constexpr long kLargestPdu_bytes = ASC_MAXIMUMPDUSIZE;
+
+int whole_seconds(double seconds) { return static_cast<int>(std::ceil(seconds)); }
+
+void prepare_network(const ConnectionOptions& options) {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    OFStandard::initializeNetwork();
+    OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+    // A name is looked up once, to connect; never that of who connects to us.
+    dcmDisableGethostbyaddr.set(OFTrue);
+  });
+  // DCMTK has one of each for the whole program.
+  dcmConnectionTimeout.set(whole_seconds(options.connect_timeout_s));
+  dcmSocketSendTimeout.set(whole_seconds(options.answer_timeout_s));
+  dcmSocketReceiveTimeout.set(whole_seconds(options.answer_timeout_s));
+}
+
+struct Refusal {
+  std::string reason;
+  bool is_for_good = false;
+};
+
+Refusal refusal_of(const T_ASC_RejectParameters& reject, const Peer& peer, const ConnectionOptions& options) {
+  Refusal refusal{.reason = "refused the association", .is_for_good = true};
+  switch (reject.reason) {
+    case ASC_REASON_SU_CALLEDAETITLENOTRECOGNIZED:
+      refusal.reason += ": it does not answer to the AE title " + peer.ae_title;
+      break;
+    case ASC_REASON_SU_CALLINGAETITLENOTRECOGNIZED:
+      refusal.reason += ": it does not know us as " + options.our_ae_title + " (called from here)";
+      break;
+    case ASC_REASON_SP_PRES_TEMPORARYCONGESTION:
+    case ASC_REASON_SP_PRES_LOCALLIMITEXCEEDED:
+      refusal.reason += ": it has too many connections now";
+      break;
+    case ASC_REASON_SU_APPCONTEXTNAMENOTSUPPORTED:
+    case ASC_REASON_SP_ACSE_PROTOCOLVERSIONNOTSUPPORTED:
+      refusal.reason += ": it speaks another version of DICOM";
+      break;
+    default:
+      refusal.reason += " and gave no reason";
+      break;
+  }
+  refusal.is_for_good = reject.result != ASC_RESULT_REJECTEDTRANSIENT;
+  return refusal;
+}
+
+}  // namespace
+
+const std::vector<std::string>& uncompressed_syntaxes() {
+  static const std::vector<std::string> syntaxes{UID_LittleEndianExplicitTransferSyntax,
+                                                 UID_LittleEndianImplicitTransferSyntax};
+  return syntaxes;
+}
+
+std::string reason_of(const OFCondition& condition) {
+  if (condition == DUL_PEERABORTEDASSOCIATION || condition == DUL_NETWORKCLOSED ||
+      condition == DUL_PEERREQUESTEDRELEASE)
+    return "the peer ended the connection";
+  if (condition == DIMSE_NODATAAVAILABLE || condition == DUL_READTIMEOUT) return "the peer does not answer";
+  std::string text = condition.text();
+  // "TCP Initialization Error: Connection refused" and the like.
+  if (const auto at = text.rfind("Error: "); at != std::string::npos) text = text.substr(at + 7);
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::string take_comment(DcmDataset*& status_detail) {
+  if (status_detail == nullptr) return "";
+  OFString comment;
+  (void)status_detail->findAndGetOFString(DCM_ErrorComment, comment);
+  delete status_detail;
+  status_detail = nullptr;
+  return comment.c_str();
+}
+
+std::string status_text(unsigned status, const std::string& comment) {
+  const char* meaning = "";
+  if (status == 0x0122) meaning = " (not supported)";
+  if (status == 0x0124) meaning = " (not authorised)";
+  if (status == 0x0110) meaning = " (it failed in processing)";
+  if (status == 0x0111) meaning = " (it has that already)";
+  if (status == 0x0112) meaning = " (no such object)";
+  if (status == 0x0211) meaning = " (unrecognised operation)";
+  if (status == 0xA801) meaning = " (it does not know where to send)";
+  if ((status & 0xFF00U) == 0xA700) meaning = " (it is out of resources)";
+  if ((status & 0xFF00U) == 0xA900) meaning = " (the data are not of the class that they name)";
+  if ((status & 0xF000U) == 0xC000) meaning = " (it cannot understand or process that)";
+  return files::format("status 0x%04X", status) + meaning + (comment.empty() ? "" : ": " + comment);
+}
+
+void pause_before_retry(const ConnectionOptions& options, int attempt, const std::stop_token& stop) {
+  const std::chrono::duration<double> pause(options.first_pause_s * std::pow(2.0, std::min(attempt, 10)));
+  std::mutex mutex;
+  std::condition_variable_any never;
+  std::unique_lock lock(mutex);
+  (void)never.wait_for(lock, stop, pause, [] { return false; });
+}
+
+std::unique_ptr<Association> Association::connect(const Peer& peer, const ConnectionOptions& options,
+                                                  const std::vector<Proposal>& proposals,
+                                                  const std::stop_token& stop) {
+  check(options);
+  prepare_network(options);
+  for (int attempt = 0; !stop.stop_requested(); ++attempt) {
+    // NOLINTNEXTLINE: the constructor is private
+    std::unique_ptr<Association> association(new Association());
+    CuttableSocket* socket = &association->socket_;
+    association->cut_when_stopped_.emplace(stop, [socket] { socket->cut(); });
+    const OFCondition outcome = association->request(peer, options, proposals);
+    if (outcome.good()) return association;
+    if (stop.stop_requested()) break;
+    Refusal refusal{.reason = "cannot be reached: " + reason_of(outcome), .is_for_good = false};
+    if (outcome == DUL_PEERABORTEDASSOCIATION || outcome == DUL_NETWORKCLOSED)
+      refusal.reason =
+          options.tls ? "ended the connection while it began; it may not speak TLS there, or not trust us"
+                      : "ended the connection while it began; it may speak TLS alone there";
+    if (outcome == DUL_ASSOCIATIONREJECTED) {
+      T_ASC_RejectParameters reject{};
+      ASC_getRejectParameters(association->association_->params, &reject);
+      refusal = refusal_of(reject, peer, options);
+    }
+    if (association->secure_ && !association->secure_->refusal().empty())
+      refusal = {.reason = association->secure_->refusal(), .is_for_good = true};
+    if (refusal.is_for_good || attempt >= options.retries)
+      throw DeviceError(to_text(peer) + ": " + refusal.reason +
+                        (attempt == 0 ? "" : " (tried " + std::to_string(attempt + 1) + " times)"));
+    pause_before_retry(options, attempt, stop);
+  }
+  return nullptr;
+}
+
+OFCondition Association::request(const Peer& peer, const ConnectionOptions& options,
+                                 const std::vector<Proposal>& proposals) {
+  answer_timeout_s_ = whole_seconds(options.answer_timeout_s);
+  OFCondition outcome =
+      ASC_initializeNetwork(NET_REQUESTOR, 0, whole_seconds(options.connect_timeout_s), &network_);
+  if (outcome.bad()) return outcome;
+  if (options.tls) {
+    secure_ = std::make_unique<SecureLayer>(*options.tls, NET_REQUESTOR, peer.host, &socket_);
+  } else {
+    plain_ = std::make_unique<CuttableLayer<DcmTransportLayer>>(&socket_);
+  }
+  outcome = ASC_setTransportLayer(network_, secure_ ? &secure_->layer() : plain_.get(), 0);
+  if (outcome.bad()) return outcome;
+  T_ASC_Parameters* parameters = nullptr;
+  outcome = ASC_createAssociationParameters(&parameters, kLargestPdu_bytes);
+  if (outcome.bad()) return outcome;
+  ASC_setAPTitles(parameters, options.our_ae_title.c_str(), peer.ae_title.c_str(), nullptr);
+  ASC_setTransportLayerType(parameters, options.tls ? OFTrue : OFFalse);
+  ASC_setPresentationAddresses(parameters, OFStandard::getHostName().c_str(),
+                               (peer.host + ":" + std::to_string(peer.port)).c_str());
+  int id = 1;
+  for (const Proposal& proposal : proposals) {
+    std::vector<const char*> syntaxes;
+    for (const std::string& syntax : proposal.transfer_syntaxes) syntaxes.push_back(syntax.c_str());
+    outcome = ASC_addPresentationContext(
+        parameters, static_cast<T_ASC_PresentationContextID>(id), proposal.sop_class.c_str(), syntaxes.data(),
+        static_cast<int>(syntaxes.size()), proposal.we_are_provider ? ASC_SC_ROLE_SCP : ASC_SC_ROLE_DEFAULT);
+    if (outcome.bad()) {
+      ASC_destroyAssociationParameters(&parameters);
+      return outcome;
+    }
+    id += 2;
+  }
+  outcome = ASC_requestAssociation(network_, parameters, &association_);
+  is_established_ = outcome.good();
+  return outcome;
+}
+
+Association::~Association() {
+  cut_when_stopped_.reset();  // waits for one that runs
+  if (is_established_) ASC_abortAssociation(association_);
+  if (association_ != nullptr) ASC_destroyAssociation(&association_);
+  if (network_ != nullptr) ASC_dropNetwork(&network_);
+}
+
+void Association::release() {
+  if (is_established_ && ASC_releaseAssociation(association_).good()) is_established_ = false;
+}
+
+T_ASC_PresentationContextID Association::accepted(const std::string& sop_class) const {
+  return ASC_findAcceptedPresentationContextID(association_, sop_class.c_str());
+}
+
+T_ASC_PresentationContextID Association::accepted(const std::string& sop_class,
+                                                  const std::string& transfer_syntax) const {
+  return ASC_findAcceptedPresentationContextID(association_, sop_class.c_str(), transfer_syntax.c_str());
+}
+
+}  // namespace arthronaut::pacs

@@ -1,0 +1,80 @@
+// One association with a peer, asked for again while it does not come about. Inner header of pacs.
+#pragma once
+
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmnet/assoc.h>
+#include <dcmtk/dcmnet/dimse.h>
+
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "planning/pacs/connection.h"
+#include "planning/pacs/tls.h"
+
+namespace arthronaut::pacs {
+
+// One presentation context: the peer picks one of the transfer syntaxes.
+struct Proposal {
+  std::string sop_class;
+  std::vector<std::string> transfer_syntaxes;
+  bool we_are_provider = false;  // the peer may store with us (C-GET)
+};
+
+// An association has no more contexts than this (their ids are odd and one byte).
+inline constexpr std::size_t kMostProposals = 128;
+
+[[nodiscard]] const std::vector<std::string>& uncompressed_syntaxes();
+
+// Owns the connection: aborts it unless it was released. Used by one thread. A stop that is requested while
+// it lives cuts the connection, so that whatever waits for the peer ends with an error.
+class Association {
+ public:
+  // Throws InvalidInput for what the options hold, and DeviceError that names the peer and the reason: not
+  // reachable after all retries, not trusted, refused. nullptr when stopped.
+  [[nodiscard]] static std::unique_ptr<Association> connect(const Peer& peer,
+                                                            const ConnectionOptions& options,
+                                                            const std::vector<Proposal>& proposals,
+                                                            const std::stop_token& stop);
+  ~Association();
+  Association(const Association&) = delete;
+  Association& operator=(const Association&) = delete;
+
+  void release();
+  [[nodiscard]] T_ASC_Association& get() { return *association_; }
+  // 0: the peer takes no such context. The second asks for that very transfer syntax.
+  [[nodiscard]] T_ASC_PresentationContextID accepted(const std::string& sop_class) const;
+  [[nodiscard]] T_ASC_PresentationContextID accepted(const std::string& sop_class,
+                                                     const std::string& transfer_syntax) const;
+  [[nodiscard]] DIC_US next_message_id() { return ++last_message_id_; }
+  [[nodiscard]] int answer_timeout_s() const { return answer_timeout_s_; }
+
+ private:
+  Association() = default;
+  [[nodiscard]] OFCondition request(const Peer& peer, const ConnectionOptions& options,
+                                    const std::vector<Proposal>& proposals);
+
+  CuttableSocket socket_;
+  std::unique_ptr<SecureLayer> secure_;
+  std::unique_ptr<DcmTransportLayer> plain_;
+  T_ASC_Network* network_ = nullptr;
+  T_ASC_Association* association_ = nullptr;
+  bool is_established_ = false;
+  DIC_US last_message_id_ = 0;
+  int answer_timeout_s_ = 0;
+  std::optional<std::stop_callback<std::function<void()>>> cut_when_stopped_;
+};
+
+// Waits, or less when stopped: the pause before try number `attempt`, from 0.
+void pause_before_retry(const ConnectionOptions& options, int attempt, const std::stop_token& stop);
+
+// What the peer said of why, beside a status: its error comment; empty when it said nothing. Frees it.
+[[nodiscard]] std::string take_comment(DcmDataset*& status_detail);
+// "0xA701 (out of resources): comment".
+[[nodiscard]] std::string status_text(unsigned status, const std::string& comment);
+// Readable reason of what DCMTK's network layer returns.
+[[nodiscard]] std::string reason_of(const OFCondition& condition);
+
+}  // namespace arthronaut::pacs

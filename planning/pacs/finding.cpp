@@ -1,0 +1,82 @@
+#include "planning/pacs/finding.h"
+
+#include <algorithm>
+
+#include "planning/geometry/error.h"
+
+namespace arthronaut::pacs {
+
+namespace {
+
+struct Reception {
+  Association* association;
+  T_ASC_PresentationContextID context;
+  int most;
+  bool is_cut = false;
+  const std::function<void(DcmDataset&)>* take;
+};
+
+void take_answer(void* data, T_DIMSE_C_FindRQ* request, int count, T_DIMSE_C_FindRSP* /*response*/,
+                 DcmDataset* answer) {
+  auto& reception = *static_cast<Reception*>(data);
+  if (count > reception.most) {
+    // The peer may send what is on its way already.
+    if (!reception.is_cut)
+      (void)DIMSE_sendCancelRequest(&reception.association->get(), reception.context, request->MessageID);
+    reception.is_cut = true;
+    return;
+  }
+  if (answer != nullptr) (*reception.take)(*answer);
+}
+
+}  // namespace
+
+void propose_find(std::vector<Proposal>& proposals) {
+  proposals.push_back({.sop_class = UID_FINDStudyRootQueryRetrieveInformationModel,
+                       .transfer_syntaxes = uncompressed_syntaxes()});
+  proposals.push_back({.sop_class = UID_FINDPatientRootQueryRetrieveInformationModel,
+                       .transfer_syntaxes = uncompressed_syntaxes()});
+}
+
+void put_key(DcmDataset& query, const DcmTagKey& key, const std::string& value) {
+  const bool is_ascii = std::all_of(value.begin(), value.end(), [](char c) { return (c & 0x80) == 0; });
+  if (!is_ascii) query.putAndInsertString(DCM_SpecificCharacterSet, "ISO_IR 192");
+  const OFCondition outcome =
+      value.empty() ? query.insertEmptyElement(key, OFFalse) : query.putAndInsertString(key, value.c_str());
+  if (outcome.bad())
+    throw InvalidInput(std::string("the search for ") + DcmTag(key).getTagName() + " \"" + value +
+                       "\" cannot be asked: " + outcome.text());
+}
+
+FindOutcome send_find(Association& association, DcmDataset& query, int most,
+                      const std::function<void(DcmDataset&)>& take) {
+  const char* model = UID_FINDStudyRootQueryRetrieveInformationModel;
+  T_ASC_PresentationContextID context = association.accepted(model);
+  if (context == 0) {
+    model = UID_FINDPatientRootQueryRetrieveInformationModel;
+    context = association.accepted(model);
+  }
+  if (context == 0) return {.is_broken = false, .is_cut = false, .refusal = "does not offer C-FIND to us"};
+  T_DIMSE_C_FindRQ request{};
+  request.MessageID = association.next_message_id();
+  OFStandard::strlcpy(request.AffectedSOPClassUID, model, DIC_UI_LEN + 1);
+  request.Priority = DIMSE_PRIORITY_MEDIUM;
+  request.DataSetType = DIMSE_DATASET_PRESENT;
+  T_DIMSE_C_FindRSP response{};
+  DcmDataset* detail = nullptr;
+  int count = 0;
+  Reception reception{.association = &association, .context = context, .most = most, .take = &take};
+  const OFCondition outcome =
+      DIMSE_findUser(&association.get(), context, &request, &query, count, take_answer, &reception,
+                     DIMSE_NONBLOCKING, association.answer_timeout_s(), &response, &detail);
+  const std::string comment = take_comment(detail);
+  if (outcome.bad()) return {.is_broken = true, .is_cut = false, .refusal = reason_of(outcome)};
+  if (reception.is_cut) return {.is_broken = false, .is_cut = true, .refusal = {}};
+  if (response.DimseStatus != STATUS_Success)
+    return {.is_broken = false,
+            .is_cut = false,
+            .refusal = "refused C-FIND with " + status_text(response.DimseStatus, comment)};
+  return {};
+}
+
+}  // namespace arthronaut::pacs

@@ -1,0 +1,177 @@
+#include "planning/pacs/incoming_series.h"
+
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dctk.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+#include "planning/files/private_folder.h"
+#include "planning/files/sha256.h"
+#include "planning/geometry/error.h"
+#include "planning/images/dicom_file.h"
+#include "planning/pacs/connection.h"
+
+namespace arthronaut::pacs {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kTemporaryExtension = ".part";
+
+struct Identity {
+  std::string sop_uid, series_uid;
+};
+
+// nullopt: not a DICOM file, or not to its end where that is asked for.
+std::optional<Identity> identity_of(const fs::path& file, bool to_its_end) {
+  DcmFileFormat format;
+  const OFFilename name(file.c_str());
+  const OFCondition outcome =
+      to_its_end ? format.loadFile(name, EXS_Unknown, EGL_noChange, DCM_MaxReadLength, ERM_fileOnly)
+                 : format.loadFileUntilTag(name, EXS_Unknown, EGL_noChange, DCM_MaxReadLength, ERM_fileOnly,
+                                           DCM_PixelData);
+  // Long values are left on the disk when a file is read: asked for, they show whether they are there.
+  if (outcome.bad() || (to_its_end && format.loadAllDataIntoMemory().bad())) return std::nullopt;
+  DcmDataset& dataset = *format.getDataset();
+  Identity identity{.sop_uid = images::text_of(dataset, DCM_SOPInstanceUID),
+                    .series_uid = images::text_of(dataset, DCM_SeriesInstanceUID)};
+  if (!is_uid(identity.sop_uid)) return std::nullopt;
+  return identity;
+}
+
+fs::path without_trailing_slash(const fs::path& folder) {
+  return folder.has_filename() ? folder : folder.parent_path();
+}
+
+fs::path waiting_room_of(const fs::path& folder, const std::string& series_uid) {
+  constexpr std::size_t kHashLength = 12;
+  return folder.parent_path() / ("." + folder.filename().string() + "-" +
+                                 files::sha256_of(series_uid).substr(0, kHashLength) + ".incoming");
+}
+
+void sync_file_system_of(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) throw IoError(folder, std::string("cannot open: ") + std::strerror(errno));
+  const int outcome = ::syncfs(descriptor);
+  const int error = errno;
+  ::close(descriptor);
+  if (outcome != 0) throw IoError(folder, std::string("cannot write: ") + std::strerror(error));
+}
+
+}  // namespace
+
+IncomingSeries::IncomingSeries(fs::path folder, std::string series_uid)
+    : folder_(without_trailing_slash(folder)), series_uid_(std::move(series_uid)) {
+  waiting_room_ = waiting_room_of(folder_, series_uid_);
+  if (fs::exists(folder_)) take_stock(folder_, false);
+  files::create_private_folder(waiting_room_);
+  take_stock(waiting_room_, true);
+  // Now, not after the transfer: a folder that nothing can be written into.
+  const fs::path probe = begin("0");
+  const int descriptor = ::open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  const bool may_write_there =
+      ::access((folder_.has_parent_path() ? folder_.parent_path() : ".").c_str(), W_OK) == 0;
+  const int error = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  std::error_code ignored;
+  fs::remove(probe, ignored);
+  if (descriptor < 0 || !may_write_there) {
+    leave();
+    throw IoError(folder_, std::string("cannot be written to: ") + std::strerror(error));
+  }
+}
+
+void IncomingSeries::take_stock(const fs::path& folder, bool is_ours) {
+  if (!fs::is_directory(folder)) throw InvalidInput(folder, "", "is not a folder");
+  std::vector<fs::path> broken;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const auto identity = entry.is_regular_file() && entry.path().extension() != kTemporaryExtension
+                              ? identity_of(entry.path(), true)
+                              : std::nullopt;
+    if (identity && identity->series_uid == series_uid_) {
+      files_.emplace(identity->sop_uid, entry.path());
+      continue;
+    }
+    // An image of ours that was cut off since: it is fetched anew, and stays until then.
+    const bool is_cut_off = !identity && entry.is_regular_file() && entry.path().extension() == ".dcm" &&
+                            is_uid(entry.path().stem().string());
+    if (!is_ours && is_cut_off) cut_off_.push_back(entry.path());
+    if (!is_ours && !is_cut_off)
+      throw InvalidInput(
+          folder, "",
+          "holds " + entry.path().filename().string() +
+              ", which is no image of this series; name a folder that is not there yet, or empty");
+    if (is_ours) broken.push_back(entry.path());
+  }
+  for (const fs::path& file : broken) fs::remove_all(file);
+}
+
+bool IncomingSeries::has(const std::string& sop_uid) const {
+  const std::scoped_lock lock(mutex_);
+  return files_.contains(sop_uid);
+}
+
+int IncomingSeries::count() const {
+  const std::scoped_lock lock(mutex_);
+  return static_cast<int>(files_.size());
+}
+
+std::int64_t IncomingSeries::received_bytes() const {
+  const std::scoped_lock lock(mutex_);
+  return received_bytes_;
+}
+
+fs::path IncomingSeries::begin(const std::string& sop_uid) {
+  const std::scoped_lock lock(mutex_);
+  return waiting_room_ / (sop_uid + "-" + std::to_string(begun_++) + kTemporaryExtension);
+}
+
+bool IncomingSeries::keep(const fs::path& temporary, const std::string& sop_uid) {
+  const auto identity = identity_of(temporary, false);
+  if (!identity || identity->sop_uid != sop_uid || identity->series_uid != series_uid_) {
+    fs::remove(temporary);
+    return false;
+  }
+  const fs::path kept = waiting_room_ / (sop_uid + ".dcm");
+  const auto size = static_cast<std::int64_t>(fs::file_size(temporary));
+  std::error_code error;
+  fs::rename(temporary, kept, error);
+  if (error) throw IoError(kept, "cannot be written: " + error.message());
+  const std::scoped_lock lock(mutex_);
+  files_[sop_uid] = kept;
+  received_bytes_ += size;
+  return true;
+}
+
+void IncomingSeries::finish() {
+  sync_file_system_of(waiting_room_);
+  std::error_code error;
+  if (!fs::exists(folder_) || fs::is_empty(folder_)) {
+    fs::rename(waiting_room_, folder_, error);
+    if (error) throw IoError(folder_, "cannot be created: " + error.message());
+  } else {
+    for (auto& [uid, file] : files_) {
+      if (file.parent_path() != waiting_room_) continue;
+      fs::rename(file, folder_ / file.filename(), error);
+      if (error) throw IoError(folder_ / file.filename(), "cannot be written: " + error.message());
+      file = folder_ / file.filename();
+    }
+    for (const fs::path& file : cut_off_)
+      if (!files_.contains(file.stem().string())) fs::remove(file, error);
+    fs::remove_all(waiting_room_, error);
+  }
+  sync_file_system_of(folder_.has_parent_path() ? folder_.parent_path() : ".");
+}
+
+void IncomingSeries::leave() noexcept {
+  std::error_code ignored;
+  if (fs::is_empty(waiting_room_, ignored) && !ignored) fs::remove(waiting_room_, ignored);
+}
+
+}  // namespace arthronaut::pacs

@@ -1,0 +1,57 @@
+// The images of one series while they come, and the folder that they end in. Inner header of pacs.
+//
+// They gather in a hidden folder beside the one that was asked for ("scan" -> ".scan-0f3a….incoming", its
+// owner's alone), each under a temporary name until it is whole. What is whole there outlives a broken
+// connection, a crash and a power cut, and is not fetched again. The folder that was asked for appears when
+// all is there, by one renaming. Where it was there already, with images of this series, what was missing is
+// moved into it.
+//
+// keep() and the questions may be asked by several threads; the rest by one.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace arthronaut::pacs {
+
+class IncomingSeries {
+ public:
+  // Reads what is whole already, in both folders, to its last byte; removes what is not. Throws InvalidInput
+  // when the folder holds something that is not of this series; IoError when one cannot be read or made.
+  IncomingSeries(std::filesystem::path folder, std::string series_uid);
+
+  [[nodiscard]] bool has(const std::string& sop_uid) const;
+  [[nodiscard]] int count() const;
+  [[nodiscard]] std::int64_t received_bytes() const;
+  [[nodiscard]] const std::filesystem::path& waiting_room() const { return waiting_room_; }
+
+  // Where the next image may be written; gone when the process ends without keep().
+  [[nodiscard]] std::filesystem::path begin(const std::string& sop_uid);
+  // The temporary file is whole: it becomes the image of that UID. False, and the file is gone, when it is of
+  // another series or of another UID, or cannot be read. Throws IoError.
+  bool keep(const std::filesystem::path& temporary, const std::string& sop_uid);
+
+  // Everything is there: on the disk for good, then under its name. Throws IoError; the waiting room then
+  // stays.
+  void finish();
+  // Removes the waiting room when it holds nothing, so that a refused request leaves none.
+  void leave() noexcept;
+
+ private:
+  void take_stock(const std::filesystem::path& folder, bool is_ours);
+
+  const std::filesystem::path folder_;
+  const std::string series_uid_;
+  std::filesystem::path waiting_room_;
+  mutable std::mutex mutex_;
+  std::map<std::string, std::filesystem::path> files_;  // by SOP instance UID
+  std::vector<std::filesystem::path> cut_off_;          // in the folder that was there
+  std::int64_t received_bytes_ = 0;
+  unsigned begun_ = 0;
+};
+
+}  // namespace arthronaut::pacs

@@ -1,0 +1,55 @@
+// Files to a PACS (C-STORE), and its word that it keeps them (storage commitment).
+#pragma once
+
+#include <filesystem>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "planning/pacs/connection.h"
+
+namespace arthronaut::pacs {
+
+enum class Commitment {
+  NotAsked,
+  NotSupported,  // the peer offers no storage commitment to us, or refused the request
+  Awaited,       // asked for, and taken on; no report came within the time
+  Confirmed,     // the peer keeps all that it was sent
+  Failed         // it does not keep some
+};
+[[nodiscard]] const char* to_text(Commitment commitment);  // "confirmed", "not supported", …
+
+struct SendOptions {
+  bool asks_commitment = true;
+  // How long its report is waited for: on the same connection, and on the listening port where there is one.
+  double commitment_wait_s = 5;
+};
+
+struct SentFile {
+  std::filesystem::path file;
+  std::string sop_class_uid, sop_instance_uid;
+  bool is_stored = false, is_committed = false;
+  std::string note;  // why not; or what the peer remarked on
+};
+
+struct SendSummary {
+  enum class Outcome { NotRun, Stored, Stopped, SomeRefused } outcome = Outcome::NotRun;
+  std::vector<SentFile> files;  // in the order that they were given in, each instance once
+  Commitment commitment = Commitment::NotAsked;
+  std::string commitment_note;  // in words; the peer's reason where it gave one
+  [[nodiscard]] bool is_usable() const { return outcome == Outcome::Stored; }
+};
+
+// All DICOM files among `paths`, those of folders by name; looked at before anything is sent. Throws
+// InvalidInput for a file that is none, a folder without any, or two files that say they are the same
+// instance; IoError.
+[[nodiscard]] std::vector<SentFile> files_to_send(const std::vector<std::filesystem::path>& paths);
+
+// Sends each as it is encoded; one that is not compressed may be sent in another order of bytes, which is
+// without loss. What the peer has confirmed is not sent again when the connection breaks and is begun anew.
+// A file that the peer refuses is told in the summary. Throws InvalidInput and DeviceError, as find().
+[[nodiscard]] SendSummary send_files(const Peer& peer, const ConnectionOptions& connection,
+                                     const std::vector<SentFile>& files, const SendOptions& options = {},
+                                     const OnProgress& on_progress = {}, const std::stop_token& stop = {});
+
+}  // namespace arthronaut::pacs

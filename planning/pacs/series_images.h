@@ -1,0 +1,24 @@
+// What a peer says that a series holds. Inner header of pacs.
+#pragma once
+
+#include <map>
+#include <stop_token>
+#include <string>
+
+#include "planning/pacs/connection.h"
+
+namespace arthronaut::pacs {
+
+struct SeriesImages {
+  bool was_stopped = false;
+  bool is_known = false;  // the peer has the series
+  std::string study_uid, patient_id;
+  std::map<std::string, std::string> class_by_uid;  // SOP class by SOP instance; class empty where not said
+};
+
+// Throws DeviceError.
+[[nodiscard]] SeriesImages ask_series_images(const Peer& peer, const ConnectionOptions& connection,
+                                             const std::string& series_uid, const std::string& study_uid,
+                                             const std::stop_token& stop);
+
+}  // namespace arthronaut::pacs

@@ -1,0 +1,148 @@
+#include "planning/pacs/storing.h"
+
+#include <dcmtk/dcmdata/dcostrma.h>
+#include <dcmtk/dcmdata/dcostrmb.h>
+#include <dcmtk/dcmdata/dctk.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <vector>
+
+#include "planning/geometry/error.h"
+#include "planning/pacs/connection.h"
+
+namespace arthronaut::pacs {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr unsigned kOutOfResources = 0xA700, kDoesNotMatch = 0xA900, kCannotUnderstand = 0xC000;
+
+// What DCMTK writes a data set into: a file, whose errors are kept.
+class FileConsumer : public DcmConsumer {
+ public:
+  explicit FileConsumer(const fs::path& file)
+      : descriptor_(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600)) {
+    if (descriptor_ < 0) error_ = errno;
+  }
+  ~FileConsumer() override { (void)close(); }
+  FileConsumer(const FileConsumer&) = delete;
+  FileConsumer& operator=(const FileConsumer&) = delete;
+
+  [[nodiscard]] OFBool good() const override { return error_ == 0; }
+  [[nodiscard]] OFCondition status() const override {
+    return error_ == 0 ? EC_Normal : OFCondition(EC_InvalidStream);
+  }
+  [[nodiscard]] OFBool isFlushed() const override { return OFTrue; }
+  [[nodiscard]] offile_off_t avail() const override { return offile_off_t{1} << 30; }
+  offile_off_t write(const void* bytes, offile_off_t count) override {
+    offile_off_t done = 0;
+    while (done < count && error_ == 0) {
+      const ssize_t written = ::write(descriptor_, static_cast<const char*>(bytes) + done,
+                                      static_cast<std::size_t>(count - done));
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) {
+        error_ = errno;
+      } else {
+        done += written;
+      }
+    }
+    return done;
+  }
+  void flush() override {}
+  // The error of opening, writing or closing; 0: none.
+  [[nodiscard]] int close() {
+    if (descriptor_ >= 0 && ::close(descriptor_) != 0 && error_ == 0) error_ = errno;
+    descriptor_ = -1;
+    return error_;
+  }
+
+ private:
+  int descriptor_;
+  int error_ = 0;
+};
+
+class FileStream : public DcmOutputStream {
+ public:
+  explicit FileStream(FileConsumer& consumer) : DcmOutputStream(&consumer) {}
+};
+
+// 128 bytes, "DICM", and who sent what, which a file has and a message has not.
+std::string file_head(const T_DIMSE_C_StoreRQ& request, const char* transfer_syntax) {
+  DcmFileFormat format;
+  DcmDataset& dataset = *format.getDataset();
+  dataset.putAndInsertString(DCM_SOPClassUID, request.AffectedSOPClassUID);
+  dataset.putAndInsertString(DCM_SOPInstanceUID, request.AffectedSOPInstanceUID);
+  const DcmXfer syntax(transfer_syntax);
+  if (format.validateMetaInfo(syntax.getXfer(), EWM_createNewMeta).bad()) return "";
+  DcmMetaInfo& meta = *format.getMetaInfo();
+  std::vector<char> buffer(4096);
+  DcmOutputBufferStream stream(buffer.data(), static_cast<offile_off_t>(buffer.size()));
+  meta.transferInit();
+  const OFCondition outcome =
+      meta.write(stream, META_HEADER_DEFAULT_TRANSFERSYNTAX, EET_ExplicitLength, nullptr);
+  meta.transferEnd();
+  void* filled = nullptr;
+  offile_off_t length = 0;
+  stream.flushBuffer(filled, length);
+  return outcome.good() ? std::string(static_cast<const char*>(filled), static_cast<std::size_t>(length))
+                        : "";
+}
+
+OFCondition answer(T_ASC_Association& association, T_ASC_PresentationContextID context,
+                   const T_DIMSE_C_StoreRQ& request, unsigned status) {
+  T_DIMSE_C_StoreRSP response{};
+  response.MessageIDBeingRespondedTo = request.MessageID;
+  response.DimseStatus = static_cast<DIC_US>(status);
+  response.DataSetType = DIMSE_DATASET_NULL;
+  OFStandard::strlcpy(response.AffectedSOPClassUID, request.AffectedSOPClassUID, DIC_UI_LEN + 1);
+  OFStandard::strlcpy(response.AffectedSOPInstanceUID, request.AffectedSOPInstanceUID, DIC_UI_LEN + 1);
+  response.opts = O_STORE_AFFECTEDSOPCLASSUID | O_STORE_AFFECTEDSOPINSTANCEUID;
+  return DIMSE_sendStoreResponse(&association, context, &request, &response, nullptr);
+}
+
+OFCondition read_and_refuse(T_ASC_Association& association, T_ASC_PresentationContextID context,
+                            const T_DIMSE_C_StoreRQ& request, int timeout_s, unsigned status) {
+  DIC_UL bytes = 0, parts = 0;
+  const OFCondition outcome = DIMSE_ignoreDataSet(&association, DIMSE_NONBLOCKING, timeout_s, &bytes, &parts);
+  return outcome.bad() ? outcome : answer(association, context, request, status);
+}
+
+}  // namespace
+
+OFCondition receive_image(T_ASC_Association& association, T_ASC_PresentationContextID context,
+                          const T_DIMSE_C_StoreRQ& request, int timeout_s, IncomingSeries& series) {
+  const std::string uid = request.AffectedSOPInstanceUID;
+  T_ASC_PresentationContext negotiated{};
+  if (ASC_findAcceptedPresentationContext(association.params, context, &negotiated).bad() || !is_uid(uid))
+    return read_and_refuse(association, context, request, timeout_s, kCannotUnderstand);
+  const std::string head = file_head(request, negotiated.acceptedTransferSyntax);
+  if (head.empty()) return read_and_refuse(association, context, request, timeout_s, kCannotUnderstand);
+
+  const fs::path temporary = series.begin(uid);
+  FileConsumer consumer(temporary);
+  FileStream stream(consumer);
+  consumer.write(head.data(), static_cast<offile_off_t>(head.size()));
+  T_ASC_PresentationContextID data_context = context;
+  OFCondition outcome = consumer.status();
+  if (outcome.good())
+    outcome = DIMSE_receiveDataSetInFile(&association, DIMSE_NONBLOCKING, timeout_s, &data_context, &stream,
+                                         nullptr, nullptr);
+  if (const int error = consumer.close(); error != 0) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    (void)answer(association, context, request, kOutOfResources);
+    throw IoError(series.waiting_room(), std::string("cannot be written to: ") + std::strerror(error));
+  }
+  if (outcome.bad()) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    return outcome;
+  }
+  return answer(association, context, request, series.keep(temporary, uid) ? 0 : kDoesNotMatch);
+}
+
+}  // namespace arthronaut::pacs
