@@ -12,7 +12,7 @@
 
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
-#include "planning/images/dicom_file.h"
+#include "planning/pacs/dcmtk_log.h"
 
 namespace arthronaut::pacs {
 
@@ -27,7 +27,7 @@ void prepare_network(const ConnectionOptions& options) {
   static std::once_flag once;
   std::call_once(once, [] {
     OFStandard::initializeNetwork();
-    OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+    silence_dcmtk();
     // A name is looked up once, to connect; never that of who connects to us.
     dcmDisableGethostbyaddr.set(OFTrue);
   });
@@ -49,7 +49,7 @@ Refusal refusal_of(const T_ASC_RejectParameters& reject, const Peer& peer, const
       refusal.reason += ": it does not answer to the AE title " + peer.ae_title;
       break;
     case ASC_REASON_SU_CALLINGAETITLENOTRECOGNIZED:
-      refusal.reason += ": it does not know us as " + options.our_ae_title + " (called from here)";
+      refusal.reason += ": it does not know us as " + options.our_ae_title;
       break;
     case ASC_REASON_SP_PRES_TEMPORARYCONGESTION:
     case ASC_REASON_SP_PRES_LOCALLIMITEXCEEDED:

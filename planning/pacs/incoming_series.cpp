@@ -15,6 +15,7 @@
 #include "planning/geometry/error.h"
 #include "planning/images/dicom_file.h"
 #include "planning/pacs/connection.h"
+#include "planning/pacs/dcmtk_log.h"
 
 namespace arthronaut::pacs {
 
@@ -68,6 +69,7 @@ void sync_file_system_of(const fs::path& folder) {
 
 IncomingSeries::IncomingSeries(fs::path folder, std::string series_uid)
     : folder_(without_trailing_slash(folder)), series_uid_(std::move(series_uid)) {
+  silence_dcmtk();
   waiting_room_ = waiting_room_of(folder_, series_uid_);
   if (fs::exists(folder_)) take_stock(folder_, false);
   files::create_private_folder(waiting_room_);

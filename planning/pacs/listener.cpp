@@ -87,7 +87,8 @@ Listener::Listener(const ConnectionOptions& options, Handlers handlers)
       ASC_initializeNetwork(NET_ACCEPTOR, options.listening_port,
                             static_cast<int>(std::ceil(options.connect_timeout_s)), &network_);
   if (outcome.bad()) fail(outcome);
-  if (secure_) outcome = ASC_setTransportLayer(network_, &secure_->layer(), 0);
+  if (!secure_) plain_ = std::make_unique<CuttableLayer<DcmTransportLayer>>(nullptr);
+  outcome = ASC_setTransportLayer(network_, secure_ ? &secure_->layer() : plain_.get(), 0);
   if (outcome.bad()) fail(outcome);
   acceptor_ = std::jthread([this](const std::stop_token& stop) { accept(stop); });
 }

@@ -47,6 +47,7 @@ class Listener {
   const ConnectionOptions options_;
   const Handlers handlers_;
   std::unique_ptr<SecureLayer> secure_;
+  std::unique_ptr<DcmTransportLayer> plain_;
   T_ASC_Network* network_ = nullptr;
   mutable std::mutex mutex_;
   std::string failure_;

@@ -20,9 +20,9 @@ enum class FindLevel { Patient, Study, Series };
 // At least one but the modality must be given. "*" and "?" stand for anything in the first three (PS3.4
 // C.2.2.2.4); dates are "20260131" or a range "20260101-20260131".
 struct FindKeys {
-  std::string patient_id, patient_name, accession_number;  // UTF-8
-  std::string study_date, study_uid;
-  std::string modality;  // narrows the answer further
+  std::string patient_id = {}, patient_name = {}, accession_number = {};  // UTF-8
+  std::string study_date = {}, study_uid = {};
+  std::string modality = {};  // narrows the answer further
 };
 
 struct FindOptions {

@@ -12,6 +12,7 @@
 #include "planning/images/dicom_file.h"
 #include "planning/pacs/association.h"
 #include "planning/pacs/commitment.h"
+#include "planning/pacs/dcmtk_log.h"
 
 namespace arthronaut::pacs {
 
@@ -201,6 +202,7 @@ const char* to_text(Commitment commitment) {
 
 std::vector<SentFile> files_to_send(const std::vector<fs::path>& paths) {
   if (paths.empty()) throw InvalidInput("nothing to send");
+  silence_dcmtk();
   std::vector<SentFile> files;
   std::map<std::string, fs::path> known;
   const auto add = [&](const fs::path& path) {
