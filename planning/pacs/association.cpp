@@ -21,6 +21,8 @@ namespace {
 // Larger ones are not had with every peer; DCMTK takes no larger.
 constexpr long kLargestPdu_bytes = ASC_MAXIMUMPDUSIZE;
 
+constexpr double kLongestPause_s = 15;
+
 int whole_seconds(double seconds) { return static_cast<int>(std::ceil(seconds)); }
 
 void prepare_network(const ConnectionOptions& options) {
@@ -112,7 +114,8 @@ std::string status_text(unsigned status, const std::string& comment) {
 }
 
 void pause_before_retry(const ConnectionOptions& options, int attempt, const std::stop_token& stop) {
-  const std::chrono::duration<double> pause(options.first_pause_s * std::pow(2.0, std::min(attempt, 10)));
+  const std::chrono::duration<double> pause(
+      std::min(options.first_pause_s * std::pow(2.0, std::min(attempt, 10)), kLongestPause_s));
   std::mutex mutex;
   std::condition_variable_any never;
   std::unique_lock lock(mutex);

@@ -41,7 +41,7 @@ struct ConnectionOptions {
   double connect_timeout_s = 10;  // for TCP, and again for the negotiation
   double answer_timeout_s = 60;   // without a byte from the peer
   // How often a connection that did not come about, or broke, is tried again; the pause before the first is
-  // this long, and doubles. What the peer refuses for good is not tried again.
+  // this long, and doubles up to 15 s. What the peer refuses for good is not tried again.
   int retries = 3;
   double first_pause_s = 0.5;
   // Where we listen while a peer sends on a connection of its own (C-MOVE, reports of storage commitment); 0:

@@ -121,10 +121,17 @@ class Retrieval {
       if (attempt.end == End::Refused)
         throw DeviceError(to_text(peer_) + ": " + attempt.reason + refusal_hint(by_move));
       fruitless = series_.count() > before ? 0 : fruitless + 1;
+      // Orthanc, for one, refuses C-GET by ending the connection. Where that was no refusal, C-MOVE does as
+      // well.
+      if (attempt.end == End::Broken && fruitless > 0 && !by_move && connection_.listening_port > 0) {
+        by_move = true;
+        continue;
+      }
       // A peer that answered, and brought nothing new, would do so again.
       const bool is_hopeless = attempt.end == End::Answered && fruitless > 0;
       if (is_hopeless || fruitless > connection_.retries) {
-        summary.message = to_text(peer_) + ": " + attempt.reason + "; " + waiting_words();
+        summary.message = to_text(peer_) + ": " + attempt.reason + "; " + waiting_words() +
+                          (series_.count() == 0 ? refusal_hint(by_move) : "");
         return Outcome::Incomplete;
       }
       if (attempt.end == End::Broken) pause_before_retry(connection_, fruitless, stop_);

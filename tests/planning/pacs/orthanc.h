@@ -34,7 +34,7 @@ class Orthanc {
   [[nodiscard]] pacs::Peer peer() const { return {"ORTHANC", "127.0.0.1", port_}; }
   // At once, as by a power cut; what it had stored stays.
   void kill();
-  // Again, on the same port.
+  // Again, on the same port. It ends with the thread that calls this.
   void start();
 
  private:

@@ -3,7 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <thread>
+#include <algorithm>
+#include <utility>
 
 #include "planning/files/atomic_file.h"
 #include "planning/files/private_folder.h"
@@ -140,23 +141,16 @@ TEST_F(PacsRetrieve, GoesOnWhereItWasStopped) {
   expect_whole();
 }
 
-// As by a power cut, and up again while we try: the caller sees nothing of it.
+// As by a power cut, and up again when we try: the caller sees nothing of it.
 TEST_F(PacsRetrieve, OutlivesAPeerThatIsKilledAndComesBack) {
   test::Orthanc orthanc;
   test::write_and_send(orthanc, made_ / "ct");
-  ConnectionOptions patient = quick_connection();
-  patient.retries = 20;
-  std::jthread reviver;
   bool was_killed = false;
-  const auto summary =
-      retrieve_series(orthanc.peer(), patient, request(), [&](const TransferProgress& progress) {
-        if (progress.done != 10 || std::exchange(was_killed, true)) return;
-        orthanc.kill();
-        reviver = std::jthread([&] {
-          std::this_thread::sleep_for(std::chrono::milliseconds(300));
-          orthanc.start();
-        });
-      });
+  const auto summary = retrieve(orthanc, [&](const TransferProgress& progress) {
+    if (progress.done != 10 || std::exchange(was_killed, true)) return;
+    orthanc.kill();
+    orthanc.start();
+  });
   EXPECT_TRUE(was_killed);
   EXPECT_EQ(summary.outcome, Outcome::Whole);
   expect_whole();
@@ -182,8 +176,10 @@ TEST_F(PacsRetrieve, IsSentTheSeriesWhereItMayNotGetIt) {
   const int our_port = test::free_port();
   const test::Orthanc orthanc({.allows_get = false, .our_port = our_port});
   test::write_and_send(orthanc, made_ / "ct");
-  EXPECT_THAT(failure_of(orthanc.peer(), quick_connection(), request()),
-              testing::AllOf(HasSubstr("does not offer C-GET"), HasSubstr("a port to listen at")));
+  const auto refused = retrieve(orthanc);
+  EXPECT_EQ(refused.outcome, Outcome::Incomplete);
+  EXPECT_THAT(refused.message,
+              testing::AllOf(HasSubstr("ended the connection"), HasSubstr("a port to listen at")));
   EXPECT_THAT(got_.names(), ElementsAre());
   ConnectionOptions listening = quick_connection();
   listening.listening_port = our_port;
