@@ -9,6 +9,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <mutex>
+#include <thread>
 
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -22,6 +23,7 @@ namespace {
 constexpr long kLargestPdu_bytes = ASC_MAXIMUMPDUSIZE;
 
 constexpr double kLongestPause_s = 15;
+constexpr std::chrono::milliseconds kLongestFarewell{500};
 
 int whole_seconds(double seconds) { return static_cast<int>(std::ceil(seconds)); }
 
@@ -195,9 +197,22 @@ OFCondition Association::request(const Peer& peer, const ConnectionOptions& opti
 
 Association::~Association() {
   cut_when_stopped_.reset();  // waits for one that runs
-  if (is_established_) ASC_abortAssociation(association_);
+  if (is_established_) abort();
   if (association_ != nullptr) ASC_destroyAssociation(&association_);
   if (network_ != nullptr) ASC_dropNetwork(&network_);
+}
+
+void Association::abort() {
+  // DCMTK waits until the peer closes the connection, which one that is sending does late: not longer than
+  // so.
+  std::jthread cutter([this](const std::stop_token& is_closed) {
+    std::mutex mutex;
+    std::condition_variable_any closed;
+    std::unique_lock lock(mutex);
+    (void)closed.wait_for(lock, is_closed, kLongestFarewell, [] { return false; });
+    if (!is_closed.stop_requested()) socket_.cut();
+  });
+  ASC_abortAssociation(association_);
 }
 
 void Association::release() {

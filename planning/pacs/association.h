@@ -53,6 +53,7 @@ class Association {
 
  private:
   Association() = default;
+  void abort();
   [[nodiscard]] OFCondition request(const Peer& peer, const ConnectionOptions& options,
                                     const std::vector<Proposal>& proposals);
 

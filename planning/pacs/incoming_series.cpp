@@ -72,7 +72,7 @@ IncomingSeries::IncomingSeries(fs::path folder, std::string series_uid)
   silence_dcmtk();
   waiting_room_ = waiting_room_of(folder_, series_uid_);
   if (fs::exists(folder_)) take_stock(folder_, false);
-  files::create_private_folder(waiting_room_);
+  create_waiting_room();
   take_stock(waiting_room_, true);
   // Now, not after the transfer: a folder that nothing can be written into.
   const fs::path probe = begin("0");
@@ -86,6 +86,18 @@ IncomingSeries::IncomingSeries(fs::path folder, std::string series_uid)
   if (descriptor < 0 || !may_write_there) {
     leave();
     throw IoError(folder_, std::string("cannot be written to: ") + std::strerror(error));
+  }
+}
+
+// The user knows the folder's name, not that of the one beside it.
+void IncomingSeries::create_waiting_room() const {
+  try {
+    files::create_private_folder(waiting_room_);
+  } catch (const IoError& error) {
+    std::string reason = error.what();
+    if (const auto at = reason.find(waiting_room_.string()); at != std::string::npos)
+      reason.replace(at, waiting_room_.string().size(), folder_.string());
+    throw IoError(reason);
   }
 }
 

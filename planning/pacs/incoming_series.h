@@ -42,6 +42,7 @@ class IncomingSeries {
   void leave() noexcept;
 
  private:
+  void create_waiting_room() const;
   void take_stock(const std::filesystem::path& folder, bool is_ours);
 
   const std::filesystem::path folder_;

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr unsigned kOutOfResources = 0xA700, kDoesNotMatch = 0xA900, kCannotUnderstand = 0xC000;
+constexpr unsigned kDoesNotMatch = 0xA900, kCannotUnderstand = 0xC000;
 
 // What DCMTK writes a data set into: a file, whose errors are kept.
 class FileConsumer : public DcmConsumer {
@@ -134,7 +134,6 @@ OFCondition receive_image(T_ASC_Association& association, T_ASC_PresentationCont
   if (const int error = consumer.close(); error != 0) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
-    (void)answer(association, context, request, kOutOfResources);
     throw IoError(series.waiting_room(), std::string("cannot be written to: ") + std::strerror(error));
   }
   if (outcome.bad()) {
