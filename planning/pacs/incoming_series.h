@@ -27,7 +27,7 @@ class IncomingSeries {
   [[nodiscard]] bool has(const std::string& sop_uid) const;
   [[nodiscard]] int count() const;
   [[nodiscard]] std::int64_t received_bytes() const;
-  [[nodiscard]] const std::filesystem::path& waiting_room() const { return waiting_room_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }  // that was asked for
 
   // Where the next image may be written; gone when the process ends without keep().
   [[nodiscard]] std::filesystem::path begin(const std::string& sop_uid);

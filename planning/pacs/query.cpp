@@ -148,6 +148,16 @@ void add_study(Patients& patients, DcmDataset& answer) {
   patient.studies.push_back(study_of(answer));
 }
 
+// What a peer without these optional keys leaves open, as far as its series tell it.
+void complete(FoundStudy& study) {
+  if (study.series_count < 0) study.series_count = static_cast<int>(study.series.size());
+  if (!study.modalities.empty()) return;
+  for (const FoundSeries& series : study.series)
+    if (std::find(study.modalities.begin(), study.modalities.end(), series.modality) ==
+        study.modalities.end())
+      study.modalities.push_back(series.modality);
+}
+
 // False when stopped.
 bool add_series(Asker& asker, const FindKeys& keys, const FoundPatient& patient, FoundStudy& study) {
   DcmDataset query;
@@ -167,6 +177,7 @@ bool add_series(Asker& asker, const FindKeys& keys, const FoundPatient& patient,
   std::sort(study.series.begin(), study.series.end(), [](const FoundSeries& a, const FoundSeries& b) {
     return std::pair(a.number.size(), a.number + a.uid) < std::pair(b.number.size(), b.number + b.uid);
   });
+  if (is_done && keys.modality.empty()) complete(study);
   return is_done;
 }
 

@@ -134,7 +134,7 @@ OFCondition receive_image(T_ASC_Association& association, T_ASC_PresentationCont
   if (const int error = consumer.close(); error != 0) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
-    throw IoError(series.waiting_room(), std::string("cannot be written to: ") + std::strerror(error));
+    throw IoError(series.folder(), std::string("cannot be written to: ") + std::strerror(error));
   }
   if (outcome.bad()) {
     std::error_code ignored;

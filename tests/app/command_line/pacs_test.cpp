@@ -113,7 +113,8 @@ TEST_F(PacsCommand, SaysWhatIsWrong) {
 TEST_F(PacsCommand, AFullDiskLeavesNothingHalf) {
   const auto full = get({.file_size_bytes = 2000, .as_nobody = false});
   EXPECT_EQ(full.exit_code, 3);
-  EXPECT_THAT(full.errors, AllOf(HasSubstr("cannot be written to"), HasSubstr("too large")));
+  EXPECT_THAT(full.errors,
+              AllOf(HasSubstr((got_ / "scan").string() + ": cannot be written to"), HasSubstr("too large")));
   EXPECT_THAT(got_.names(), ElementsAre());
   EXPECT_EQ(get().exit_code, 0);
 }
