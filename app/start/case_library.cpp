@@ -23,6 +23,8 @@ CaseLibrary::~CaseLibrary() {
 
 void CaseLibrary::refresh(const std::vector<fs::path>& recent) {
   if (is_looking()) return;
+  what_.clear();
+  if (records_.empty()) show_known();
   looking_ = std::async(std::launch::async, [this, recent] {
     const struct AtEnd {
       const std::function<void()>& call;
@@ -36,13 +38,24 @@ void CaseLibrary::refresh(const std::vector<fs::path>& recent) {
   });
 }
 
+// Some 30 ms of a thousand cases, so at once.
+void CaseLibrary::show_known() {
+  try {  // as in poll()
+    const auto known = workstation_library::open_library(data_folder_);
+    records_ = known->known();
+    if (!known->notices().empty()) what_ = known->notices().back();
+  } catch (const std::exception& error) {
+    what_ = error.what();
+  }
+}
+
 bool CaseLibrary::poll() {
   if (!looking_.valid() || looking_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
     return false;
   try {  // the top of the looking thread: a list that cannot be had is said on the screen
     Found found = looking_.get();
     records_ = std::move(found.records);
-    what_ = std::move(found.what);
+    if (!found.what.empty()) what_ = std::move(found.what);
   } catch (const std::exception& error) {
     what_ = error.what();
   }

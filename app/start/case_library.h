@@ -21,7 +21,8 @@ class CaseLibrary {
   CaseLibrary(const CaseLibrary&) = delete;
   CaseLibrary& operator=(const CaseLibrary&) = delete;
 
-  // Shows what the index says, and looks at the folders and at these (recent cases). Nothing while it looks.
+  // Where nothing is shown yet shows what the index says; looks at the folders and at these (recent cases).
+  // Nothing while it looks.
   void refresh(const std::vector<std::filesystem::path>& recent);
   // Takes over what the thread has found; true once when it has.
   bool poll();
@@ -37,6 +38,8 @@ class CaseLibrary {
   [[nodiscard]] const std::string& what() const { return what_; }
 
  private:
+  void show_known();
+
   struct Found {
     std::vector<library::CaseRecord> records;
     std::string what;
