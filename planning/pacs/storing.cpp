@@ -19,9 +19,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr unsigned kDoesNotMatch = 0xA900, kCannotUnderstand = 0xC000;
+constexpr unsigned kOutOfResources = 0xA700, kDoesNotMatch = 0xA900, kCannotUnderstand = 0xC000;
 
-// What DCMTK writes a data set into: a file, whose errors are kept.
+// What DCMTK writes a data set into: a file, whose errors are kept for close(). To DCMTK it never fails:
+// where it does, DCMTK goes on to wait for more after the last part of the data set.
 class FileConsumer : public DcmConsumer {
  public:
   explicit FileConsumer(const fs::path& file)
@@ -32,10 +33,8 @@ class FileConsumer : public DcmConsumer {
   FileConsumer(const FileConsumer&) = delete;
   FileConsumer& operator=(const FileConsumer&) = delete;
 
-  [[nodiscard]] OFBool good() const override { return error_ == 0; }
-  [[nodiscard]] OFCondition status() const override {
-    return error_ == 0 ? EC_Normal : OFCondition(EC_InvalidStream);
-  }
+  [[nodiscard]] OFBool good() const override { return OFTrue; }
+  [[nodiscard]] OFCondition status() const override { return EC_Normal; }
   [[nodiscard]] OFBool isFlushed() const override { return OFTrue; }
   [[nodiscard]] offile_off_t avail() const override { return offile_off_t{1} << 30; }
   offile_off_t write(const void* bytes, offile_off_t count) override {
@@ -50,7 +49,7 @@ class FileConsumer : public DcmConsumer {
         done += written;
       }
     }
-    return done;
+    return count;
   }
   void flush() override {}
   // The error of opening, writing or closing; 0: none.
@@ -127,13 +126,12 @@ OFCondition receive_image(T_ASC_Association& association, T_ASC_PresentationCont
   FileStream stream(consumer);
   consumer.write(head.data(), static_cast<offile_off_t>(head.size()));
   T_ASC_PresentationContextID data_context = context;
-  OFCondition outcome = consumer.status();
-  if (outcome.good())
-    outcome = DIMSE_receiveDataSetInFile(&association, DIMSE_NONBLOCKING, timeout_s, &data_context, &stream,
-                                         nullptr, nullptr);
+  const OFCondition outcome = DIMSE_receiveDataSetInFile(&association, DIMSE_NONBLOCKING, timeout_s,
+                                                         &data_context, &stream, nullptr, nullptr);
   if (const int error = consumer.close(); error != 0) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
+    if (outcome.good()) (void)answer(association, context, request, kOutOfResources);
     throw IoError(series.folder(), std::string("cannot be written to: ") + std::strerror(error));
   }
   if (outcome.bad()) {
