@@ -10,7 +10,7 @@ namespace arthronaut::open_case {
 
 // A change that the surgeon made; the history carries it out, keeps it for undo and saves it.
 struct PlanEdit {
-  bones::BoneKind bone = bones::BoneKind::Femur;
+  tunnels::TunnelKey key = bones::BoneKind::Femur;
   std::optional<tunnels::Tunnel> tunnel;  // empty: remove it
   std::string what;                       // "Aim the femoral tunnel"
   bool continues = false;                 // belongs to the edit before it: one drag is one step back

@@ -66,9 +66,9 @@ void PlanHistory::moved(double now_s) {
 }
 
 void PlanHistory::apply(const PlanEdit& edit, double now_s) {
-  if (model_ == nullptr || is_read_only_ || is_same(model_->tunnel(edit.bone), edit.tunnel)) return;
+  if (model_ == nullptr || is_read_only_ || is_same(model_->tunnel(edit.key), edit.tunnel)) return;
   begin(edit.what, edit.continues);
-  model_->set_tunnel(edit.bone, edit.tunnel);
+  model_->set_tunnel(edit.key, edit.tunnel);
   moved(now_s);
 }
 
@@ -82,7 +82,7 @@ void PlanHistory::apply_landmarks(bones::BoneKind bone, const landmarks::Landmar
   moved(now_s);
 }
 
-void PlanHistory::apply_tunnels(const std::map<bones::BoneKind, tunnels::Tunnel>& tunnels,
+void PlanHistory::apply_tunnels(const std::map<tunnels::TunnelKey, tunnels::Tunnel>& tunnels,
                                 const std::string& what) {
   if (model_ == nullptr || is_read_only_) return;
   if (std::all_of(tunnels.begin(), tunnels.end(),
@@ -90,7 +90,7 @@ void PlanHistory::apply_tunnels(const std::map<bones::BoneKind, tunnels::Tunnel>
     return;
   settle_now();
   begin(what, false);
-  for (const auto& [bone, tunnel] : tunnels) model_->set_tunnel(bone, tunnel);
+  for (const auto& [key, tunnel] : tunnels) model_->set_tunnel(key, tunnel);
   moved(moved_at_s_);
   settle_now();
 }

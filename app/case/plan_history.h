@@ -30,7 +30,7 @@ class PlanHistory {
   // An edit that changes nothing is no step.
   void apply(const PlanEdit& edit, double now_s);
   // Several tunnels at once, as one step: a default plan.
-  void apply_tunnels(const std::map<bones::BoneKind, tunnels::Tunnel>& tunnels, const std::string& what);
+  void apply_tunnels(const std::map<tunnels::TunnelKey, tunnels::Tunnel>& tunnels, const std::string& what);
   // Another plan as a whole, with the meshes that it names, as one step: a version that was kept.
   void apply_plan(const cases::Plan& plan, const std::string& what);
   // A bone's landmarks become these. continues: belongs to the step before it, as a drag does.

@@ -40,9 +40,10 @@ PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
       landmarks::take_proposal(*made.proposal, knee_.landmarks[kind], states);
     }
     use_landmarks(kind);
-    if (knee_.plan.tunnels.contains(kind)) knee_.plan.mesh_sha256.try_emplace(kind, made.mesh_sha256);
-    measure(kind);
+    for (const tunnels::TunnelKey& key : knee_.plan.of(kind))
+      knee_.plan.mesh_sha256.try_emplace(key, made.mesh_sha256);
   }
+  measure();
   if (bones_.empty()) throw InvalidInput("the case \"" + knee_.name + "\" has no bone to show");
 }
 
@@ -72,44 +73,40 @@ void PlanModel::set_landmarks(bones::BoneKind kind, landmarks::Landmarks landmar
   ++revision_;
 }
 
-default_plan::DefaultTunnel PlanModel::default_tunnel(bones::BoneKind kind) const {
+default_plan::DefaultTunnel PlanModel::default_tunnel(const tunnels::TunnelKey& key) const {
+  const bones::BoneKind kind = key.bone;
   const BoneModel& bone = bones_.at(kind);
-  return default_plan::plan_bone({.bone = &knee_.bones.at(kind),
-                                  .surface = bone.review.surface.get(),
-                                  .landmarks = landmarks(kind),
-                                  .states = landmark_states(kind),
-                                  .proposal = bone.proposal ? &*bone.proposal : nullptr},
-                                 knee_.side);
+  return default_plan::plan_bone(
+      {.bone = &knee_.bones.at(kind),
+       .surface = bone.review.surface.get(),
+       .landmarks = landmarks(kind),
+       .states = landmark_states(kind),
+       .proposal = bone.proposal ? &*bone.proposal : nullptr},
+      knee_.side, {.bundle = key.bundle, .diameter_mm = default_plan::usual_diameter_mm(key.bundle)});
 }
 
-std::optional<tunnels::Tunnel> PlanModel::tunnel(bones::BoneKind kind) const {
-  const auto found = knee_.plan.tunnels.find(kind);
+std::optional<tunnels::Tunnel> PlanModel::tunnel(const tunnels::TunnelKey& key) const {
+  const auto found = knee_.plan.tunnels.find(key);
   if (found == knee_.plan.tunnels.end()) return std::nullopt;
   return found->second;
 }
 
-const tunnels::TunnelGeometry& PlanModel::measured(bones::BoneKind kind) const {
-  return bones_.at(kind).measured;
+const tunnels::TunnelGeometry& PlanModel::measured(const tunnels::TunnelKey& key) const {
+  static const tunnels::TunnelGeometry none;
+  const auto found = measured_.find(key);
+  return found == measured_.end() ? none : found->second.geometry;
 }
 
-const std::vector<tunnels::PlanCheck>& PlanModel::checks(bones::BoneKind kind) const {
-  Checked& checked = checked_[kind];
-  if (checked.revision != revision_) checked = {revision_, check(kind)};
+const std::vector<tunnels::PlanCheck>& PlanModel::checks(const tunnels::TunnelKey& key) const {
+  Checked& checked = checked_[key];
+  if (checked.revision != revision_) checked = {revision_, check(key)};
   return checked.checks;
 }
 
-std::vector<tunnels::PlanCheck> PlanModel::check(bones::BoneKind kind) const {
-  if (!knee_.plan.tunnels.contains(kind) || !has_bone(kind)) return {};
-  const auto measured_tunnel = [&](bones::BoneKind of) {
-    const auto planned = knee_.plan.tunnels.find(of);
-    return planned == knee_.plan.tunnels.end() || !has_bone(of)
-               ? plan_review::MeasuredTunnel{}
-               : plan_review::MeasuredTunnel{&planned->second, &measured(of)};
-  };
-  auto checks =
-      plan_review::checks_of(kind, measured_tunnel(bones::BoneKind::Femur),
-                             measured_tunnel(bones::BoneKind::Tibia), surroundings(kind), knee_surroundings_);
-  if (const cases::PlanFit fit = plan_fit(kind); !fit.is_valid()) {
+std::vector<tunnels::PlanCheck> PlanModel::check(const tunnels::TunnelKey& key) const {
+  if (!measured_.contains(key)) return {};
+  auto checks = plan_review::checks_of(key, measured_, surroundings(key.bone), knee_surroundings_);
+  if (const cases::PlanFit fit = plan_fit(key); !fit.is_valid()) {
     checks.insert(checks.begin(), {.verdict = tunnels::PlanCheck::Verdict::Wrong,
                                    .name = "Bone",
                                    .text = fit.reason + ": place the entry anew",
@@ -118,14 +115,14 @@ std::vector<tunnels::PlanCheck> PlanModel::check(bones::BoneKind kind) const {
   return checks;
 }
 
-cases::PlanFit PlanModel::plan_fit(bones::BoneKind kind) const {
-  const auto bone = bones_.find(kind);
-  return cases::plan_fit(knee_.plan, kind, bone == bones_.end() ? "" : bone->second.mesh_sha256);
+cases::PlanFit PlanModel::plan_fit(const tunnels::TunnelKey& key) const {
+  const auto bone = bones_.find(key.bone);
+  return cases::plan_fit(knee_.plan, key, bone == bones_.end() ? "" : bone->second.mesh_sha256);
 }
 
-double PlanModel::drawn_length_mm(bones::BoneKind kind) const {
+double PlanModel::drawn_length_mm(const tunnels::TunnelKey& key) const {
   constexpr double kLengthOfOneThatMisses_mm = 30;
-  const tunnels::TunnelGeometry& geometry = measured(kind);
+  const tunnels::TunnelGeometry& geometry = measured(key);
   return geometry.enters_bone ? geometry.length_mm : kLengthOfOneThatMisses_mm;
 }
 
@@ -150,22 +147,24 @@ std::optional<scene::CutPlane> PlanModel::notch_cut() const {
                           landmarks(bones::BoneKind::Femur));
 }
 
-void PlanModel::set_tunnel(bones::BoneKind kind, const std::optional<tunnels::Tunnel>& tunnel) {
+void PlanModel::set_tunnel(const tunnels::TunnelKey& key, const std::optional<tunnels::Tunnel>& tunnel) {
   cases::Plan plan = knee_.plan;
-  const auto before = this->tunnel(kind);
+  const auto before = this->tunnel(key);
   if (tunnel) {
-    plan.tunnels.insert_or_assign(kind, *tunnel);
-    if (!before || before->entry_mm != tunnel->entry_mm) plan.mesh_sha256[kind] = bones_.at(kind).mesh_sha256;
+    tunnels::Tunnel named = *tunnel;
+    named.bone = key.bone;
+    named.bundle = key.bundle;
+    const bool is_placed = !before || before->entry_mm != tunnel->entry_mm;
+    plan.put(named, is_placed ? bones_.at(key.bone).mesh_sha256 : plan.mesh_sha256[key]);
   } else {
-    plan.tunnels.erase(kind);
-    plan.mesh_sha256.erase(kind);
+    plan.remove(key);
   }
   set_plan(plan);
 }
 
 void PlanModel::set_plan(const cases::Plan& plan) {
   knee_.plan = plan;
-  for (const auto& [kind, bone] : bones_) measure(kind);  // about a millisecond each
+  measure();  // about a millisecond each
   ++revision_;
 }
 
@@ -174,10 +173,12 @@ void PlanModel::set_measurements(std::vector<cases::Measurement> measurements) {
   ++revision_;
 }
 
-void PlanModel::measure(bones::BoneKind kind) {
-  BoneModel& bone = bones_.at(kind);
-  const auto planned = tunnel(kind);
-  bone.measured = planned ? tunnels::measure(*planned, *bone.review.surface) : tunnels::TunnelGeometry{};
+void PlanModel::measure() {
+  measured_.clear();
+  for (const auto& [key, tunnel] : knee_.plan.tunnels) {
+    if (!has_bone(key.bone)) continue;
+    measured_.emplace(key, plan_review::MeasuredTunnel{tunnel, tunnels::measure(tunnel, surface(key.bone))});
+  }
 }
 
 }  // namespace arthronaut::open_case

@@ -43,9 +43,11 @@ class PlanModel {
     return bones_.at(kind).drawn;
   }
 
-  [[nodiscard]] std::optional<tunnels::Tunnel> tunnel(bones::BoneKind kind) const;
-  [[nodiscard]] const tunnels::TunnelGeometry& measured(
-      bones::BoneKind kind) const;  // meaningful with a tunnel
+  [[nodiscard]] std::optional<tunnels::Tunnel> tunnel(const tunnels::TunnelKey& key) const;
+  // As planned and measured, all on bones of the case.
+  [[nodiscard]] const plan_review::MeasuredPlan& tunnels() const { return measured_; }
+  // Meaningful with a tunnel.
+  [[nodiscard]] const tunnels::TunnelGeometry& measured(const tunnels::TunnelKey& key) const;
   // Which way is anterior, proximal and lateral, and what else the checks know of the bone. Precondition:
   // has_bone(kind).
   [[nodiscard]] const tunnels::PlanSurroundings& surroundings(bones::BoneKind kind) const {
@@ -53,14 +55,14 @@ class PlanModel {
   }
   // What the checks know of the knee beside its tunnels.
   [[nodiscard]] const tunnels::KneeSurroundings& knee_surroundings() const { return knee_surroundings_; }
-  // Those of the bone and those of the whole knee that concern it. Empty without a tunnel. That it was
-  // planned on another mesh is the first check, and a wrong one. Made when first asked after a change; the
-  // reference holds until the next change.
-  [[nodiscard]] const std::vector<tunnels::PlanCheck>& checks(bones::BoneKind kind) const;
-  // Whether the bone's tunnel is of the bone's mesh: what is not valid must not be guided by.
-  [[nodiscard]] cases::PlanFit plan_fit(bones::BoneKind kind) const;
+  // Those of the tunnel, of the two of its bone, and of the whole knee that concern it. Empty without a
+  // tunnel. That it was planned on another mesh is the first check, and a wrong one. Made when first asked
+  // after a change; the reference holds until the next change.
+  [[nodiscard]] const std::vector<tunnels::PlanCheck>& checks(const tunnels::TunnelKey& key) const;
+  // Whether the tunnel is of the bone's mesh: what is not valid must not be guided by.
+  [[nodiscard]] cases::PlanFit plan_fit(const tunnels::TunnelKey& key) const;
   // How far a tunnel is drawn: through the bone, or 30 mm where it misses.
-  [[nodiscard]] double drawn_length_mm(bones::BoneKind kind) const;
+  [[nodiscard]] double drawn_length_mm(const tunnels::TunnelKey& key) const;
   [[nodiscard]] geometry::Bounds bounds(std::optional<bones::BoneKind> only) const;
   // What a surgeon looks at of them: within 80 mm of the joint, along the bone, of a bone that may be whole.
   [[nodiscard]] geometry::Bounds joint_bounds(std::optional<bones::BoneKind> only) const;
@@ -81,14 +83,16 @@ class PlanModel {
     return bones_.at(kind).review.footprint;
   }
   // A tunnel by norms and landmarks; read the outcome. Takes a moment.
-  [[nodiscard]] default_plan::DefaultTunnel default_tunnel(bones::BoneKind kind) const;
+  [[nodiscard]] default_plan::DefaultTunnel default_tunnel(const tunnels::TunnelKey& key) const;
   void set_landmarks(bones::BoneKind kind, landmarks::Landmarks landmarks, landmarks::LandmarkStates states);
   // Where the femur is cut open to see the lateral wall of its notch; nullopt without a femur.
   [[nodiscard]] std::optional<scene::CutPlane> notch_cut() const;
 
-  // nullopt removes the tunnel. One with another entry is planned on this case's mesh, where its entry was
-  // put; one that was only turned or widened stays of the mesh that it was of. Precondition: has_bone(kind).
-  void set_tunnel(bones::BoneKind kind, const std::optional<tunnels::Tunnel>& tunnel);
+  // nullopt removes the tunnel. A single one takes the place of both bundles', one of a bundle that of a
+  // single one (cases::Plan::put); its key is `key`, whatever it says. One with another entry is planned on
+  // this case's mesh, where its entry was put; one that was only turned or widened stays of the mesh that it
+  // was of. Precondition: has_bone(kind).
+  void set_tunnel(const tunnels::TunnelKey& key, const std::optional<tunnels::Tunnel>& tunnel);
   // As it is, with the meshes that it names: for undo.
   void set_plan(const cases::Plan& plan);
   // Distances and angles that were measured in this case.
@@ -104,23 +108,23 @@ class PlanModel {
     landmarks::AnatomicalAxes axes;
     std::optional<landmarks::Proposal> proposal;
     std::string mesh_sha256;
-    tunnels::TunnelGeometry measured;
   };
   struct Checked {
     std::uint64_t revision = 0;
     std::vector<tunnels::PlanCheck> checks;
   };
-  [[nodiscard]] std::vector<tunnels::PlanCheck> check(bones::BoneKind kind) const;
-  void measure(bones::BoneKind kind);
+  [[nodiscard]] std::vector<tunnels::PlanCheck> check(const tunnels::TunnelKey& key) const;
+  void measure();
   void use_landmarks(bones::BoneKind kind);  // what follows from them
 
   cases::Case knee_;
   std::map<bones::BoneKind, BoneModel> bones_;
   std::vector<cases::Measurement> measurements_;
+  plan_review::MeasuredPlan measured_;
   tunnels::KneeSurroundings knee_surroundings_;
   std::uint64_t revision_ = 1;
   // Every frame asks, and every change costs a dozen milliseconds.
-  mutable std::map<bones::BoneKind, Checked> checked_;
+  mutable std::map<tunnels::TunnelKey, Checked> checked_;
 };
 
 }  // namespace arthronaut::open_case

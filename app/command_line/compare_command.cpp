@@ -14,8 +14,6 @@ namespace arthronaut::command_line {
 
 namespace {
 
-using bones::BoneKind;
-
 struct CompareArguments {
   std::string case_folder, source, output, bone, series;
   std::vector<int> labels;
@@ -25,9 +23,9 @@ struct CompareArguments {
 // another bone than the case holds.
 std::vector<tunnels::Tunnel> planned(const cases::Case& knee, const CompareArguments& arguments) {
   std::vector<tunnels::Tunnel> wanted;
-  for (const auto& [kind, tunnel] : knee.plan.tunnels) {
-    if (!arguments.bone.empty() && bones::bone_kind_from_text(arguments.bone) != kind) continue;
-    if (const cases::PlanFit fit = cases::plan_fit(knee, kind); !fit.is_valid())
+  for (const auto& [key, tunnel] : knee.plan.tunnels) {
+    if (!arguments.bone.empty() && bones::bone_kind_from_text(arguments.bone) != key.bone) continue;
+    if (const cases::PlanFit fit = cases::plan_fit(knee, key); !fit.is_valid())
       throw InvalidInput(arguments.case_folder, "plan.json", fit.reason);
     wanted.push_back(tunnel);
   }
@@ -54,16 +52,20 @@ bool is_another_patient(const images::Volume& volume, const std::string& case_fo
   return of_case && !images.is_empty() && *of_case != images;
 }
 
-std::map<BoneKind, postop::Comparison> compared(const cases::Case& knee, const images::Volume& volume,
-                                                const std::vector<tunnels::Tunnel>& plan,
-                                                const std::string& source) {
+using Comparisons = std::map<tunnels::TunnelKey, postop::Comparison>;
+
+Comparisons compared(const cases::Case& knee, const images::Volume& volume,
+                     const std::vector<tunnels::Tunnel>& plan, const std::string& source) {
   Progress progress("Comparing", static_cast<long>(plan.size()));
   progress.advance_to(0);
-  std::map<BoneKind, postop::Comparison> comparisons;
+  Comparisons comparisons;
   try {
     const postop::PostopImages images(volume);
     for (const tunnels::Tunnel& tunnel : plan) {
-      comparisons[tunnel.bone] = images.compare(knee.bones.at(tunnel.bone).mesh, tunnel);
+      std::vector<tunnels::Tunnel> others;
+      for (const tunnels::Tunnel& other : plan)
+        if (other.bone == tunnel.bone && other.bundle != tunnel.bundle) others.push_back(other);
+      comparisons[tunnel.key()] = images.compare(knee.bones.at(tunnel.bone).mesh, tunnel, others);
       progress.advance_to(static_cast<long>(comparisons.size()));
     }
   } catch (const InvalidInput& error) {
@@ -78,8 +80,8 @@ void doubt(postop::Comparison& comparison, const std::string& reason) {
   comparison.tunnel.reasons.push_back(reason);
 }
 
-std::string line_of(BoneKind kind, const postop::AchievedTunnel& tunnel) {
-  std::string line = std::string(bones::to_text(kind)) + ": ";
+std::string line_of(const tunnels::TunnelKey& key, const postop::AchievedTunnel& tunnel) {
+  std::string line = tunnels::name_of(key) + ": ";
   if (!tunnel.is_found) return line + "no tunnel found";
   line += files::format("entry %.1f mm off the plan, axis %.1f deg; diameter %.1f mm, length %.1f mm",
                         tunnel.offset_mm, geometry::deg_from_rad(tunnel.angle_rad), tunnel.tunnel.diameter_mm,
@@ -100,22 +102,22 @@ void compare(Context& context, const CompareArguments& arguments) {
   const images::Volume volume = read(arguments);
   auto comparisons = compared(knee, volume, plan, arguments.source);
   if (is_another_patient(volume, arguments.case_folder)) {
-    for (auto& [kind, comparison] : comparisons)
+    for (auto& [key, comparison] : comparisons)
       doubt(comparison, "the images say that they are of another patient than the case");
   }
   postop::write_achieved_file(arguments.output, comparisons);
   std::vector<std::string> reasons;
-  for (const auto& [kind, comparison] : comparisons) {
-    const std::string bone(bones::to_text(kind));
+  for (const auto& [key, comparison] : comparisons) {
+    const std::string name = tunnels::name_of(key);
     if (arguments.output != "-") {
       if (comparison.bone.is_found)
-        context.say(files::format("%s: found in the images, %.2f mm (rms) off their edges", bone.c_str(),
+        context.say(files::format("%s: found in the images, %.2f mm (rms) off their edges", name.c_str(),
                                   comparison.bone.rms_mm));
-      context.say(line_of(kind, comparison.tunnel));
+      context.say(line_of(key, comparison.tunnel));
     }
-    for (const std::string& reason : comparison.bone.reasons) reasons.push_back(bone + ": " + reason);
+    for (const std::string& reason : comparison.bone.reasons) reasons.push_back(name + ": " + reason);
     for (const std::string& reason : comparison.tunnel.reasons)
-      reasons.push_back(bone + ", tunnel: " + reason);
+      reasons.push_back(name + ", tunnel: " + reason);
   }
   if (arguments.output != "-") context.say("Wrote " + arguments.output + ".");
   if (!reasons.empty()) context.say_unreliable("The comparison", reasons);
@@ -136,7 +138,7 @@ void add_compare_command(CLI::App& app, Context& context) {
       ->required();
   sub->add_option("-o,--output", arguments->output, "achieved.json to write; - is standard output")
       ->required();
-  sub->add_option("--bone", arguments->bone, "femur or tibia; default: every bone with a planned tunnel")
+  sub->add_option("--bone", arguments->bone, "femur or tibia; default: every bone with planned tunnels")
       ->check(CLI::IsMember({"femur", "tibia"}));
   sub->add_option("--series", arguments->series, "Series number or UID, for DICOM with several");
   sub->add_option("--label", arguments->labels, "Label maps: the labels that are bone; default: all but 0")

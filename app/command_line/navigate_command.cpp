@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 struct NavigateArguments {
   std::string case_folder, video, camera, tools, registration, probe = "probe", guide;
-  std::string bone = "femur";
+  std::string bone = "femur", tunnel;
   std::optional<double> medium_index;
   double duration_s = 0;  // 0: to the end
   int igtl_port = -1;     // -1: nothing is served
@@ -123,9 +123,31 @@ std::optional<operation::GiveRegistration> known_registration(const Context& con
   return operation::GiveRegistration{known->registration, known->of.value_or(now)};
 }
 
+// Which of the bone's planned tunnels is guided to; nullopt where none is planned. Throws InvalidInput where
+// two are planned and none is named, or one is named that is not planned: which one is drilled is never
+// guessed.
+std::optional<tunnels::TunnelKey> guided_tunnel(const NavigateArguments& arguments, const cases::Case& knee,
+                                                bones::BoneKind bone) {
+  const auto keys = knee.plan.of(bone);
+  if (!arguments.tunnel.empty()) {
+    const tunnels::TunnelKey key{bone, norms::bundle_from_text(arguments.tunnel)};
+    if (!knee.plan.tunnels.contains(key))
+      throw InvalidInput(arguments.case_folder, "plan.json", "holds no tunnel " + tunnels::name_of(key));
+    return key;
+  }
+  if (keys.empty()) return std::nullopt;
+  if (keys.size() > 1)
+    throw InvalidInput(
+        arguments.case_folder, "plan.json",
+        "plans two tunnels in the " + arguments.bone + ": say by --tunnel which one is drilled, am or pl");
+  return keys.front();
+}
+
 // Plan and registration of the case for this bone.
 theatre::NavigateOptions navigate_options(const Context& context, const NavigateArguments& arguments,
                                           const cases::Case& knee) {
+  // Before anything is opened: which tunnel is drilled has to be known first.
+  const auto guided = guided_tunnel(arguments, knee, bones::bone_kind_from_text(arguments.bone));
   theatre::NavigateOptions options;
   options.source.kind = sources::kind_of_source(arguments.video);
   if (arguments.duration_s > 0) options.duration_s = arguments.duration_s;
@@ -139,10 +161,16 @@ theatre::NavigateOptions navigate_options(const Context& context, const Navigate
   options.operation.bone = bone;
   options.operation.mesh_sha256 = bones::mesh_sha256(found->second.mesh);
   options.operation.surface = surface;
-  const cases::PlanFit fit = cases::plan_fit(knee.plan, bone, options.operation.mesh_sha256);
-  if (fit.outcome == cases::PlanFit::Outcome::OtherMesh) context.say("plan: not used: " + fit.reason);
-  if (const auto plan = knee.plan.tunnels.find(bone); plan != knee.plan.tunnels.end() && fit.is_valid())
-    options.operation.plan = {plan->second, tunnels::measure(plan->second, *surface).length_mm};
+  if (guided) {
+    const tunnels::Tunnel& tunnel = knee.plan.tunnels.at(*guided);
+    const cases::PlanFit fit = cases::plan_fit(knee.plan, *guided, options.operation.mesh_sha256);
+    if (fit.outcome == cases::PlanFit::Outcome::OtherMesh) context.say("plan: not used: " + fit.reason);
+    if (fit.is_valid()) {
+      options.operation.plan = {tunnel, tunnels::measure(tunnel, *surface).length_mm};
+      if (guided->bundle != norms::Bundle::Whole)
+        context.say("plan: the tunnel " + tunnels::name_of(*guided));
+    }
+  }
   const auto landmarks = knee.landmarks.find(bone);
   options.source.pipeline.axes = landmarks::anatomical_axes(
       bone, knee.side, landmarks != knee.landmarks.end() ? landmarks->second : landmarks::Landmarks(),
@@ -277,6 +305,11 @@ void add_navigate_command(CLI::App& app, Context& context) {
   command->add_option("--bone", arguments->bone, "femur or tibia")
       ->check(CLI::IsMember({"femur", "tibia"}))
       ->capture_default_str();
+  command
+      ->add_option(
+          "--tunnel", arguments->tunnel,
+          "Which of the bone's planned tunnels is drilled: single, am or pl; needed where two are planned")
+      ->check(CLI::IsMember({"single", "am", "pl"}));
   command->add_option(
       "--registration", arguments->registration,
       "registration.json to guide by. Default: the newest reliable one of the case for this world "

@@ -28,17 +28,31 @@ struct PlanArguments {
   Eigen::Vector3d entry_mm = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
   double diameter_mm = 9.0;
   std::string type = "single", export_folder, markups;
-  bool at_footprint = false, by_default = false, list = false, as_json = false;
+  bool at_footprint = false, by_default = false, list = false, as_json = false, removes = false;
+  bool names_type = false, names_diameter = false;  // whether the user said so
   bool keeps = false, lists_versions = false;
   int version = 0;  // that is to be taken; 0: none
 };
 
-tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case& knee, bones::BoneKind kind,
+// The tunnel that is placed or removed.
+tunnels::TunnelKey key_of(const PlanArguments& arguments) {
+  return {bones::bone_kind_from_text(arguments.bone), norms::bundle_from_text(arguments.type)};
+}
+
+double diameter_mm_of(const PlanArguments& arguments) {
+  return arguments.names_diameter ? arguments.diameter_mm
+                                  : default_plan::usual_diameter_mm(norms::bundle_from_text(arguments.type));
+}
+
+tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case& knee,
                                const geometry::Surface& surface, bool has_entry) {
+  const tunnels::TunnelKey key = key_of(arguments);
+  const bones::BoneKind kind = key.bone;
   tunnels::Tunnel tunnel{.bone = kind,
                          .entry_mm = arguments.entry_mm,
                          .direction = arguments.direction.normalized(),
-                         .diameter_mm = arguments.diameter_mm};
+                         .diameter_mm = diameter_mm_of(arguments),
+                         .bundle = key.bundle};
   if (arguments.at_footprint) {
     const auto marks = knee.landmarks.find(kind);
     if (marks == knee.landmarks.end() || !marks->second.contains("native_footprint")) {
@@ -74,7 +88,7 @@ tunnels::Tunnel default_tunnel(const PlanArguments& arguments, const cases::Case
     input.states = states->second;
   const auto planned = default_plan::plan_bone(
       input, knee.side,
-      {.bundle = norms::bundle_from_text(arguments.type), .diameter_mm = arguments.diameter_mm});
+      {.bundle = norms::bundle_from_text(arguments.type), .diameter_mm = diameter_mm_of(arguments)});
   if (!planned.is_usable())
     throw InvalidInput(arguments.case_folder, "", "has no default plan: " + planned.message);
   verdict = {planned.doubts.empty(), planned.doubts, planned.source};
@@ -85,41 +99,68 @@ tunnels::Tunnel default_tunnel(const PlanArguments& arguments, const cases::Case
 void take_markups(const PlanArguments& arguments, cases::Case& knee) {
   const auto markups = plan_export::read_markups(arguments.markups);
   bool took = false;
-  for (const auto& [kind, tunnel] : markups.tunnels) {
-    const auto bone = knee.bones.find(kind);
+  for (const auto& [key, tunnel] : markups.tunnels) {
+    const auto bone = knee.bones.find(key.bone);
     if (bone == knee.bones.end()) continue;
     if (!tunnels::measure(tunnel, geometry::Surface(bone->second.mesh)).enters_bone) {
-      throw InvalidInput(arguments.markups, std::string(bones::to_text(kind)) + " tunnel",
+      throw InvalidInput(arguments.markups, tunnels::name_of(key) + " tunnel",
                          "does not enter the case's bone: markups of another knee?");
     }
-    knee.plan.tunnels[kind] = tunnel;
-    knee.plan.mesh_sha256[kind] = bones::mesh_sha256(bone->second.mesh);
+    knee.plan.put(tunnel, bones::mesh_sha256(bone->second.mesh));
     took = true;
   }
   if (!took)
-    throw InvalidInput(arguments.markups, "markups", "hold no line \"femur tunnel\" or \"tibia tunnel\"");
+    throw InvalidInput(
+        arguments.markups, "markups",
+        "hold no line \"femur tunnel\" or \"tibia tunnel\", nor of bundles, as \"femur AM tunnel\"");
 }
 
 void show(const PlanArguments& arguments, const Context& context, const cases::Case& knee,
           const PlanVerdict& verdict) {
   const plan_review::CaseReview review(knee);
   auto tunnels_json = nlohmann::ordered_json::array();
-  for (const auto& [kind, tunnel] : knee.plan.tunnels) {
-    if (!arguments.bone.empty() && arguments.bone != bones::to_text(kind)) continue;
-    if (!review.has_bone(kind))
+  for (const auto& [key, tunnel] : knee.plan.tunnels) {
+    if (!arguments.bone.empty() && arguments.bone != bones::to_text(key.bone)) continue;
+    if (arguments.names_type && arguments.type != norms::to_text(key.bundle)) continue;
+    if (!review.has_bone(key.bone))
       throw InvalidInput(arguments.case_folder, "plan.json", "plans a bone that the case lacks");
     if (arguments.as_json) {
-      tunnels_json.push_back(tunnel_to_json(knee, review, kind, verdict));
+      tunnels_json.push_back(tunnel_to_json(knee, review, key, verdict));
     } else {
-      describe_tunnel(context, knee, review, kind);
+      describe_tunnel(context, knee, review, key);
     }
   }
   if (!arguments.as_json && knee.plan.tunnels.empty()) context.say("No tunnel is planned.");
   if (!arguments.as_json) return;
-  if (!arguments.bone.empty()) {
+  // Of one bone the tunnel itself; of a bone with two it is never one of them unasked.
+  if (!arguments.bone.empty() && tunnels_json.size() < 2) {
     std::cout << (tunnels_json.empty() ? nlohmann::ordered_json() : tunnels_json[0]).dump(2) << '\n';
   } else {
     std::cout << nlohmann::ordered_json({{"tunnels", tunnels_json}}).dump(2) << '\n';
+  }
+}
+
+// Throws InvalidInput where there is no such tunnel, or two of which none is named.
+void remove_tunnel(const PlanArguments& arguments, cases::Case& knee) {
+  const auto keys = knee.plan.of(bones::bone_kind_from_text(arguments.bone));
+  if (keys.size() == 1 && !arguments.names_type) return knee.plan.remove(keys.front());
+  if (keys.size() > 1 && !arguments.names_type)
+    throw InvalidInput("plan: the " + arguments.bone + " has two tunnels: say by --type which, am or pl");
+  const tunnels::TunnelKey key = key_of(arguments);
+  if (!knee.plan.tunnels.contains(key))
+    throw InvalidInput(arguments.case_folder, "plan.json", "holds no tunnel " + tunnels::name_of(key));
+  knee.plan.remove(key);
+}
+
+// What the new tunnel takes the place of beside the one of its own name is said.
+void put(const tunnels::Tunnel& tunnel, const std::string& mesh_sha256, const PlanArguments& arguments,
+         const Context& context, cases::Case& knee) {
+  const auto before = knee.plan.of(tunnel.bone);
+  knee.plan.put(tunnel, mesh_sha256);
+  for (const tunnels::TunnelKey& key : before) {
+    if (!arguments.as_json && !knee.plan.tunnels.contains(key))
+      context.say("The tunnel " + tunnels::name_of(key) +
+                  " is no longer planned: a bone has a single tunnel, or those of bundles.");
   }
 }
 
@@ -172,9 +213,9 @@ void add_plan_command(CLI::App& app, Context& context) {
       sub->add_flag("--at-footprint", arguments->at_footprint, "Enter at the native footprint's centre")
           ->needs(bone)
           ->excludes(entry);
-  sub->add_option("--diameter-mm", arguments->diameter_mm, "Diameter")
-      ->check(CLI::Range(3.0, 15.0))
-      ->capture_default_str();
+  auto* diameter =
+      sub->add_option("--diameter-mm", arguments->diameter_mm, "Diameter; by default 9, of AM 7, of PL 6")
+          ->check(CLI::Range(3.0, 15.0));
   auto* by_default =
       sub->add_flag(
              "--default", arguments->by_default,
@@ -183,14 +224,22 @@ void add_plan_command(CLI::App& app, Context& context) {
           ->excludes(entry)
           ->excludes(direction)
           ->excludes(footprint);
-  sub->add_option("--type", arguments->type, "With --default: single, am or pl")
-      ->check(CLI::IsMember({"single", "am", "pl"}))
-      ->needs(by_default)
-      ->capture_default_str();
+  auto* type =
+      sub->add_option("--type", arguments->type,
+                      "Which tunnel of the bone: single, or am and pl of two bundles; one of two takes "
+                      "the place of a single one, a single one that of both")
+          ->check(CLI::IsMember({"single", "am", "pl"}))
+          ->needs(bone)
+          ->capture_default_str();
+  auto* remove = sub->add_flag("--remove", arguments->removes, "Remove the bone's tunnel")
+                     ->needs(bone)
+                     ->excludes(by_default)
+                     ->excludes(direction);
   auto* markups =
       sub->add_option("--from-markups", arguments->markups, "Take the tunnels from a .mrk.json of 3D Slicer")
           ->excludes(by_default)
-          ->excludes(direction);
+          ->excludes(direction)
+          ->excludes(remove);
   sub->add_option("--export", arguments->export_folder,
                   "Folder for plan.json, plan.csv, plan.mrk.json and the drilled bones");
   sub->add_flag("--json", arguments->as_json, "Print the tunnel as JSON, without --bone every tunnel");
@@ -202,7 +251,8 @@ void add_plan_command(CLI::App& app, Context& context) {
                    ->check(CLI::PositiveNumber)
                    ->excludes(by_default)
                    ->excludes(markups)
-                   ->excludes(direction);
+                   ->excludes(direction)
+                   ->excludes(remove);
   sub->add_flag("--keep", arguments->keeps, "Keep the plan as a version beside the one that is worked on");
   sub->add_flag("--versions", arguments->lists_versions, "List the kept versions and how each differs")
       ->excludes(by_default)
@@ -211,9 +261,11 @@ void add_plan_command(CLI::App& app, Context& context) {
       ->excludes(take);
   entry->needs(direction);
   footprint->needs(direction);
-  sub->callback([arguments, entry, direction, &context] {
+  sub->callback([arguments, entry, direction, type, diameter, &context] {
+    arguments->names_type = type->count() > 0;
+    arguments->names_diameter = diameter->count() > 0;
     const bool writes = direction->count() > 0 || arguments->by_default || !arguments->markups.empty() ||
-                        arguments->version > 0;
+                        arguments->version > 0 || arguments->removes;
     cases::CaseLock lock;
     if (writes || arguments->keeps) lock = cases::lock_or_refuse(arguments->case_folder);
     if (!lock.notice().empty() && !arguments->as_json) context.say(lock.notice() + ".");
@@ -223,6 +275,8 @@ void add_plan_command(CLI::App& app, Context& context) {
       take_markups(*arguments, knee);
     } else if (arguments->version > 0) {
       take_version(*arguments, knee);
+    } else if (arguments->removes) {
+      remove_tunnel(*arguments, knee);
     } else if (writes) {
       if (!arguments->by_default && arguments->direction.norm() < 1e-9)
         throw InvalidInput("plan: --direction must not be zero");
@@ -232,10 +286,10 @@ void add_plan_command(CLI::App& app, Context& context) {
         throw InvalidInput(arguments->case_folder, "case.json", "holds no " + arguments->bone);
       }
       const geometry::Surface surface(bone_of_case->second.mesh);
-      knee.plan.tunnels[kind] = arguments->by_default
-                                    ? default_tunnel(*arguments, knee, kind, surface, verdict)
-                                    : planned_tunnel(*arguments, knee, kind, surface, entry->count() > 0);
-      knee.plan.mesh_sha256[kind] = bones::mesh_sha256(bone_of_case->second.mesh);
+      put(arguments->by_default ? default_tunnel(*arguments, knee, kind, surface, verdict)
+                                : planned_tunnel(*arguments, knee, surface, entry->count() > 0),
+          bones::mesh_sha256(bone_of_case->second.mesh), *arguments, context, knee);
+      arguments->names_type = true;  // what was placed is shown
     }
     if (writes) {
       cases::name_meshes(knee);

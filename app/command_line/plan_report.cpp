@@ -28,13 +28,11 @@ const char* sign_of(PlanCheck::Verdict verdict) {
 }  // namespace
 
 void describe_tunnel(const Context& context, const cases::Case& knee, const plan_review::CaseReview& review,
-                     bones::BoneKind kind) {
-  const tunnels::Tunnel& tunnel = *review.tunnel(kind).tunnel;
-  const tunnels::TunnelGeometry& measured = *review.tunnel(kind).geometry;
+                     const tunnels::TunnelKey& key) {
+  const auto& [tunnel, measured] = review.tunnels().at(key);
   const auto& e = tunnel.entry_mm;
   const auto& d = tunnel.direction;
-  context.say(files::format("%s tunnel, %.1f mm", std::string(bones::to_text(tunnel.bone)).c_str(),
-                            tunnel.diameter_mm));
+  context.say(files::format("%s tunnel, %.1f mm", tunnels::name_of(key).c_str(), tunnel.diameter_mm));
   context.say(files::format("  entry      %.3f, %.3f, %.3f mm", e.x(), e.y(), e.z()));
   context.say(files::format("  direction  %.5f, %.5f, %.5f", d.x(), d.y(), d.z()));
   if (measured.enters_bone) {
@@ -43,9 +41,9 @@ void describe_tunnel(const Context& context, const cases::Case& knee, const plan
     context.say(files::format("  exit       %.3f, %.3f, %.3f mm", x.x(), x.y(), x.z()));
     context.say(files::format("  wall       %.2f mm at the thinnest", measured.wall_mm));
   }
-  if (const auto fit = cases::plan_fit(knee, tunnel.bone); !fit.is_valid())
+  if (const auto fit = cases::plan_fit(knee, key); !fit.is_valid())
     context.say("  ! not valid: " + fit.reason);
-  for (const auto& check : review.checks(kind)) {
+  for (const auto& check : review.checks(key)) {
     const bool is_amiss =
         check.verdict == PlanCheck::Verdict::Look || check.verdict == PlanCheck::Verdict::Wrong;
     const std::string source = is_amiss && !check.source.empty() ? " [" + check.source + "]" : "";
@@ -54,10 +52,10 @@ void describe_tunnel(const Context& context, const cases::Case& knee, const plan
 }
 
 nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const plan_review::CaseReview& review,
-                                      bones::BoneKind kind, const PlanVerdict& verdict) {
-  const tunnels::Tunnel& tunnel = *review.tunnel(kind).tunnel;
-  const tunnels::TunnelGeometry& measured = *review.tunnel(kind).geometry;
-  nlohmann::ordered_json node = {{"bone", bones::to_text(tunnel.bone)},
+                                      const tunnels::TunnelKey& key, const PlanVerdict& verdict) {
+  const auto& [tunnel, measured] = review.tunnels().at(key);
+  nlohmann::ordered_json node = {{"bone", bones::to_text(key.bone)},
+                                 {"bundle", norms::to_text(key.bundle)},
                                  {"entry_mm", files::to_json(tunnel.entry_mm)},
                                  {"direction", files::to_json(tunnel.direction)},
                                  {"diameter_mm", tunnel.diameter_mm},
@@ -68,7 +66,7 @@ nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const plan_review
     node["wall_mm"] = measured.wall_mm;
   }
   auto checks = nlohmann::ordered_json::array();
-  for (const auto& check : review.checks(kind)) {
+  for (const auto& check : review.checks(key)) {
     checks.push_back({{"name", check.name},
                       {"verdict", to_text(check.verdict)},
                       {"text", check.text},
@@ -76,7 +74,7 @@ nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const plan_review
   }
   node["checks"] = std::move(checks);
   auto reasons = verdict.reasons;
-  const auto fit = cases::plan_fit(knee, tunnel.bone);
+  const auto fit = cases::plan_fit(knee, key);
   if (!fit.is_valid()) reasons.push_back(fit.reason);
   if (!verdict.source.empty()) node["source"] = verdict.source;
   node["reliable"] = verdict.is_reliable && fit.is_valid();

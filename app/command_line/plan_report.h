@@ -14,7 +14,7 @@ namespace arthronaut::command_line {
 // Lines for the user: entry, direction, what was measured, every check.
 // Precondition of both: the review, which is of this case, has the tunnel.
 void describe_tunnel(const Context& context, const cases::Case& knee, const plan_review::CaseReview& review,
-                     bones::BoneKind kind);
+                     const tunnels::TunnelKey& key);
 
 // What a default plan says about itself beside the tunnel.
 struct PlanVerdict {
@@ -24,6 +24,7 @@ struct PlanVerdict {
 };
 [[nodiscard]] nlohmann::ordered_json tunnel_to_json(const cases::Case& knee,
                                                     const plan_review::CaseReview& review,
-                                                    bones::BoneKind kind, const PlanVerdict& verdict);
+                                                    const tunnels::TunnelKey& key,
+                                                    const PlanVerdict& verdict);
 
 }  // namespace arthronaut::command_line

@@ -14,7 +14,10 @@ using widgets::Severity;
 
 std::string plan_in_words(const std::optional<operation::PlannedTunnel>& plan) {
   if (!plan) return "none";
-  return files::format("%.1f mm wide, %.1f mm long", plan->tunnel.diameter_mm, plan->length_mm);
+  const std::string which = plan->tunnel.bundle == norms::Bundle::Whole
+                                ? ""
+                                : "tunnel " + tunnels::name_of(plan->tunnel.key()) + ", ";
+  return which + files::format("%.1f mm wide, %.1f mm long", plan->tunnel.diameter_mm, plan->length_mm);
 }
 
 std::string count_of(std::size_t count, const std::string& what) {

@@ -94,6 +94,9 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
   const float font = ui.theme.strong->FontSize;
   const float radius = std::max(std::min(area.width / 2 - font * 3.4F, area.height / 2 - font * 1.6F), 10.F);
   const ImVec2 center = area.center();
+  // Which of two is aimed at stands beside the target, also while there is nothing to aim by.
+  draw.AddText(ui.theme.title, ui.theme.title->FontSize, {area.x + ui.theme.px(16), area.y + ui.theme.px(10)},
+               widgets::kAccent, screen.tunnel.c_str());
   if (!screen.display.guidance_is_valid || !screen.plan) {
     draw.AddCircle(center, radius, widgets::kPanelEdge, 96, ui.theme.px(2));
     widgets::text_centered(ui, area.inset(font), ui.theme.title, widgets::kCaution, screen.display.headline);

@@ -130,6 +130,7 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                {},
                [this] { return choices_.saline; },
                [this] { choices_.saline = !choices_.saline; }});
+  add_tunnel_actions(actions);
   add_registration_actions(actions);
   add_answer_actions(actions);
 }
@@ -273,7 +274,7 @@ void NavigateView::add_registration_actions(widgets::Actions& actions) {
 
 void NavigateView::draw_controls(const widgets::Ui& ui, const widgets::Rect& area) {
   const float gap = ui.theme.px(10), height = (area.height - gap) / 2;
-  const auto row = [&](float y, std::initializer_list<const char*> ids) {
+  const auto row = [&](float y, const std::vector<const char*>& ids) {
     const float width =
         (area.width - gap * static_cast<float>(ids.size() - 1)) / static_cast<float>(ids.size());
     float x = area.x;
@@ -283,8 +284,14 @@ void NavigateView::draw_controls(const widgets::Ui& ui, const widgets::Rect& are
       x += width + gap;
     }
   };
-  row(area.y, {"navigate.next", "navigate.scratch", "navigate.drill", "navigate.video", "navigate.camera",
-               "navigate.medium", "navigate.stop"});
+  std::vector<const char*> first{"navigate.next",   "navigate.scratch", "navigate.drill", "navigate.video",
+                                 "navigate.camera", "navigate.medium",  "navigate.stop"};
+  // Where there are two to choose from, right beside the next step.
+  if (model_ != nullptr)
+    for (const auto& [bundle, id] : {std::pair(norms::Bundle::Posterolateral, "navigate.tunnel_pl"),
+                                     std::pair(norms::Bundle::Anteromedial, "navigate.tunnel_am")})
+      if (model_->knee().plan.tunnels.contains({choices_.bone, bundle})) first.insert(first.begin() + 1, id);
+  row(area.y, first);
   row(area.y + height + gap,
       {"navigate.digitise", "navigate.register", "navigate.panel", "navigate.overlay", "navigate.undistort",
        "navigate.bone", "navigate.depth_stop", "navigate.marker_anew", "navigate.record"});

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "app/navigate/navigate_display.h"
@@ -20,6 +21,7 @@ struct NavigateChoices {
   std::optional<NavigateLayout> layout;  // empty: as things stand
   double guidance_seen_s = -1e9;         // when guidance was valid last
   int stroke = -1;                       // selected
+  std::set<tunnels::TunnelKey> drilled;  // said to be, since the case was opened
 
   [[nodiscard]] bones::BoneKind other_bone() const {
     return bone == bones::BoneKind::Femur ? bones::BoneKind::Tibia : bones::BoneKind::Femur;

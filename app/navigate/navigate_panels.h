@@ -17,6 +17,8 @@ struct NavigateScreen {
   // In force: the one that guides. An edit that was not taken over is not here.
   std::optional<tunnels::Tunnel> plan = std::nullopt;
   double planned_length_mm = 0;
+  // Which of two tunnels it is, and whether it was said to be drilled; empty for a bone's single tunnel.
+  std::string tunnel = "";
   std::shared_ptr<const geometry::Surface> surface = nullptr;          // of the bone; may be null
   std::shared_ptr<const geometry::TriangleMesh> drawn_bone = nullptr;  // with surface
   float overlay_opacity = 1;                                           // 0: off

@@ -5,10 +5,13 @@ namespace arthronaut::navigate {
 
 void NavigateView::draw_questions(const widgets::Ui& ui, const widgets::Rect& video) {
   const operation::OperationState& state = *live_->operation;
-  if (const LeftBehind* const left = left_behind())
-    draw_card(ui, video, resume_card(*left, bones_.plan_of(choices_.bone), std::chrono::system_clock::now()));
-  else if (state.has_source && !is_of_source_before(*live_) && state.time_out == operation::TimeOut::Due &&
-           !cameras_.is_open())
+  if (const LeftBehind* const left = left_behind()) {
+    // With the tunnel that was guided to: resuming it is to choose it.
+    const auto& was = left->found.operation.plan;
+    const auto plan = was ? bones_.planned(was->tunnel.key()) : bones_.plan_of(choices_.bone);
+    draw_card(ui, video, resume_card(*left, plan, std::chrono::system_clock::now()));
+  } else if (state.has_source && !is_of_source_before(*live_) && state.time_out == operation::TimeOut::Due &&
+             !cameras_.is_open())
     draw_card(ui, video, time_out_card(state, patient_));
   if (const auto pictures = cameras_.draw(ui, video)) start_live(*pictures);
   if (const auto depth_mm = depth_.draw(ui, video)) ask(operation::ReadDepthStop{*depth_mm});
@@ -31,6 +34,9 @@ void NavigateView::note_states(const widgets::Ui& ui, const NavigateScreen& scre
                                                                               : "unreliable");
   ui.log.note_state("standing", to_text(standing));
   ui.log.note_state("step", to_text(live_->operation->step));
+  const auto& guiding = live_->operation->plan;
+  ui.log.note_state("tunnel", guiding ? tunnels::name_of(guiding->tunnel.key()) : "none");
+  ui.log.note_state("drilled", std::to_string(choices_.drilled.size()));
   ui.log.note_state("plan", live_->operation->plan_was_edited ? "edited" : "in force");
   ui.log.note_state("registrations", std::to_string(registration().history->size()));
   ui.log.note_state("strokes", std::to_string(words_.strokes.size()));

@@ -12,9 +12,10 @@ bool asks_for_strokes(NavigateLayout layout, const operation::RegistrationState*
          bone->online->registration.has_pose && bone->online->state < registration::OnlineState::Confirmed;
 }
 
-// Which bone it is, and what of it is seen.
+// Which bone it is, of two tunnels which one guides, and what of it is seen.
 std::string caption_of(const NavigateScreen& screen, bool asks) {
-  const std::string bone = screen.bone == bones::BoneKind::Femur ? "Femur" : "Tibia";
+  std::string bone = tunnels::name_of(screen.plan ? screen.plan->key() : screen.bone);
+  bone[0] = screen.bone == bones::BoneKind::Femur ? 'F' : 'T';
   if (screen.display.guidance_is_valid) return bone + ": drill guide and plan";
   if (asks) return bone + ". Green: touched. Orange: draw here";
   if (screen.layout == NavigateLayout::Guide) return bone + ": plan; the guide is not known now";

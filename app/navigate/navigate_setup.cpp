@@ -46,17 +46,19 @@ phantom::PhantomKnee phantom_of(const cases::Case& knee) {
 
 }  // namespace
 
-std::string missing_for_simulation(const open_case::PlanModel& model, bones::BoneKind bone) {
+std::string missing_for_simulation(const open_case::PlanModel& model, const tunnels::TunnelKey& key) {
+  const bones::BoneKind bone = key.bone;
   if (!model.has_bone(bone)) return "the case has no " + std::string(bones::to_text(bone));
   if (!model.has_bone(bones::BoneKind::Femur) || !model.has_bone(bones::BoneKind::Tibia))
     return "the case has only one bone";
-  if (!model.tunnel(bone)) return "there is no planned tunnel to aim at";
+  if (!model.tunnel(key)) return "there is no planned tunnel to aim at";
   const landmarks::Landmarks& known = landmarks_of(model.knee(), bone);
   return known.contains("native_footprint") ? "" : "the landmarks of the bone are not known";
 }
 
-theatre::TheatreSource simulated_setup(const open_case::PlanModel& model, bones::BoneKind bone,
+theatre::TheatreSource simulated_setup(const open_case::PlanModel& model, const tunnels::TunnelKey& key,
                                        const std::filesystem::path& case_folder, SimulatedPart part) {
+  const bones::BoneKind bone = key.bone;
   theatre::TheatreSource source = source_of(model, bone, sources::SourceKind::Simulation);
   operation::SourceSetup& setup = source.setup;
   setup.title = part == SimulatedPart::Scratch ? "Simulated operation: probe" : "Simulated operation: drill";
@@ -71,7 +73,7 @@ theatre::TheatreSource simulated_setup(const open_case::PlanModel& model, bones:
   simulation.tools = tools::standard_tools();
   simulation.rest_count = kPlacesToTouch;
   simulation.bone = bone;
-  simulation.plan = *model.tunnel(bone);
+  simulation.plan = *model.tunnel(key);
   simulation.refractive_index = setup.pipeline.refractive_index;
   // Written where the source is opened, read when a tunnel was drilled, which is later.
   const auto truth = std::make_shared<std::optional<tunnels::Tunnel>>();

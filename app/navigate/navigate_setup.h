@@ -13,12 +13,14 @@ namespace arthronaut::navigate {
 
 enum class SimulatedPart { Scratch, Drill };
 
-// Why the simulated operation can't run on this bone of the case: no plan, no landmarks. Empty when it can.
-[[nodiscard]] std::string missing_for_simulation(const open_case::PlanModel& model, bones::BoneKind bone);
+// Why the simulated operation can't aim at this tunnel of the case: no plan, no landmarks. Empty when it can.
+[[nodiscard]] std::string missing_for_simulation(const open_case::PlanModel& model,
+                                                 const tunnels::TunnelKey& key);
 // Precondition: missing_for_simulation() is empty. The standard scope and the standard tools in saline,
 // tracked with what Set up has adopted of them for this case. Throws IoError or InvalidInput when that is
 // broken.
-[[nodiscard]] theatre::TheatreSource simulated_setup(const open_case::PlanModel& model, bones::BoneKind bone,
+[[nodiscard]] theatre::TheatreSource simulated_setup(const open_case::PlanModel& model,
+                                                     const tunnels::TunnelKey& key,
                                                      const std::filesystem::path& case_folder,
                                                      SimulatedPart part);
 

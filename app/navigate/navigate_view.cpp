@@ -111,19 +111,9 @@ void NavigateView::ask(operation::Command command) {
   bones_.operation(choices_.bone).apply(std::move(command));
 }
 
-void NavigateView::look_along_plan() {
-  const auto tunnel = model_->tunnel(choices_.bone);
-  if (!tunnel)
-    return scene_.look(scene::look_from(scene::ViewDirection::Anterior, model_->knee().side,
-                                        model_->bounds(choices_.bone), 1));
-  const scene::SceneCamera along =
-      scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm, 150, Eigen::Vector3d::UnitZ());
-  scene_.look(scene::orbited(along, {40, -30}, 600));  // a little from the side: depth is seen too
-}
-
 void NavigateView::start_simulation(SimulatedPart part) {
   try {
-    start(simulated_setup(*model_, choices_.bone, case_folder_, part));
+    start(simulated_setup(*model_, *bones_.guided(choices_.bone), case_folder_, part));
     part_ = part;
   } catch (const std::runtime_error& error) {  // as in start_video()
     notice_ = error.what();
@@ -167,7 +157,9 @@ void NavigateView::choose_camera() {
 bool NavigateView::is_running() const { return live_->phase == Phase::Running; }
 
 bool NavigateView::can_simulate() const {
-  return model_ != nullptr && missing_for_simulation(*model_, choices_.bone).empty();
+  if (model_ == nullptr) return false;
+  const auto key = bones_.guided(choices_.bone);
+  return key && missing_for_simulation(*model_, *key).empty();
 }
 
 void NavigateView::start_same_kind() {
@@ -199,6 +191,10 @@ void NavigateView::resume() {
   const LeftBehind* const left = left_behind();
   if (left == nullptr) return;
   kind_ = sources::source_kind_from_text(left->found.header.source_kind);
+  // Who resumes it was told by which tunnel.
+  if (const auto& was = left->found.operation.plan;
+      was && bones_.guided(choices_.bone) != was->tunnel.key() && bones_.planned(was->tunnel.key()))
+    bones_.choose(was->tunnel.key());
   ask(left->found.operation);
   notice_ = left->found.operation.registration
                 ? "Resumed: what guided before guides again after one touch on the bone"
@@ -222,7 +218,11 @@ std::string NavigateView::next_step() {
     return pictures ? "open " + pictures->name : "type the address of a stream, then Enter";
   }
   const NextAction action = live_->operation->next_action;
-  if (!model_->tunnel(choices_.bone)) return words_of(NextAction::PlanTunnel);
+  if (const std::string choice = tunnel_to_choose(); !choice.empty()) return choice;
+  const auto guided = bones_.guided(choices_.bone);
+  if (!guided) return words_of(NextAction::PlanTunnel);
+  if (waits_for_take_over() && guided->bundle != norms::Bundle::Whole)
+    return "take over the tunnel " + tunnels::name_of(*guided);
   if (live_->phase == Phase::Starting)
     return stops_once_open_ ? "wait: it stops once it is open" : "wait for the first picture";
   const bool starts = action == NextAction::StartSource || action == NextAction::PlanTunnel;
@@ -243,7 +243,8 @@ void NavigateView::take_next_step() {
   }
   if (resume_.is_looking()) return;
   if (left_behind() != nullptr) return resume();
-  if (live_->phase == Phase::Starting || !model_->tunnel(choices_.bone)) return;
+  if (live_->phase == Phase::Starting || !bones_.guided(choices_.bone)) return;
+  if (waits_for_take_over()) return ask(operation::TakePlanOver{});
   switch (live_->operation->next_action) {
     case NextAction::StartSource:
     case NextAction::PlanTunnel:  // of an operation that was not told yet of the plan that is there
@@ -309,6 +310,9 @@ void NavigateView::read_live() {
   } else {
     live_ = TheatreBones::nothing();
   }
+  if (const auto& plan = live_->operation->plan;
+      plan && live_->operation->drilled.outcome != operation::DrilledState::Outcome::NotSaid)
+    choices_.drilled.insert(plan->tunnel.key());
   // An address that gave no picture is not worth keeping.
   const bool gives_pictures = live_->phase == Phase::Running && live_->picture != nullptr;
   // That a source runs may still be news of the one before.
@@ -334,6 +338,9 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
     if (const auto& plan = live_->operation->plan) {
       screen.plan = plan->tunnel;
       screen.planned_length_mm = plan->length_mm;
+      const tunnels::TunnelKey key = plan->tunnel.key();
+      if (key.bundle != norms::Bundle::Whole)
+        screen.tunnel = tunnels::name_of(key) + (choices_.drilled.contains(key) ? ", drilled" : "");
     }
     screen.surface = model_->shared_surface(choices_.bone);
     screen.drawn_bone = model_->drawn_mesh(choices_.bone);
@@ -359,6 +366,8 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   const double now = theatre::LiveOperation::now_s();
   NavigateDisplay display = display_of(live_.get(), now);
   if (live_->phase == Phase::NoSource && !notice_.empty()) display.detail = notice_;
+  if (!live_->operation->plan && model_ != nullptr && bones_.must_choose(choices_.bone))
+    display.detail = "Two tunnels are planned in this bone: choose AM (1) or PL (2)";
   if (display.guidance_is_valid) {
     // A guide that comes into view gets the screen, whatever was looked at before.
     if (now - choices_.guidance_seen_s > kGuideAway_s) choices_.layout.reset();

@@ -60,6 +60,13 @@ class NavigateView : public mode::Mode {
   void ask(operation::Command command);
   void take_touch(bool is_control_point);
   void add_registration_actions(widgets::Actions& actions);
+  // Of two tunnels in one bone, which is drilled: tunnel_choice.cpp.
+  void add_tunnel_actions(widgets::Actions& actions);
+  void choose_tunnel(norms::Bundle bundle);
+  // What to choose, in words; empty where nothing is.
+  [[nodiscard]] std::string tunnel_to_choose() const;
+  // Another plan than the one in force is offered to an operation that runs, and nothing stands before it.
+  [[nodiscard]] bool waits_for_take_over() const;
   void add_answer_actions(widgets::Actions& actions);
   void cycle_overlay();
   void look_along_plan();

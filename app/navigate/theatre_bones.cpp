@@ -1,5 +1,7 @@
 #include "app/navigate/theatre_bones.h"
 
+#include <algorithm>
+
 #include "app/navigate/tool_clearance.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
@@ -68,16 +70,43 @@ void TheatreBones::open(const open_case::PlanModel* model, const std::filesystem
     if (bone.operation != nullptr) bone.operation->request_stop();
   // A bone that is just being made ready would be waited for.
   ending_.end(std::exchange(bones_, {}));
+  chosen_.clear();
   model_ = model;
   case_folder_ = case_folder;
   read_only_ = read_only;
 }
 
+std::optional<tunnels::TunnelKey> TheatreBones::guided(bones::BoneKind bone) const {
+  const auto keys = model_->knee().plan.of(bone);
+  if (const auto chosen = chosen_.find(bone);
+      chosen != chosen_.end() && std::ranges::find(keys, chosen->second) != keys.end())
+    return chosen->second;
+  return keys.size() == 1 ? std::optional(keys.front()) : std::nullopt;
+}
+
+bool TheatreBones::must_choose(bones::BoneKind bone) const {
+  return !guided(bone) && !model_->knee().plan.of(bone).empty();
+}
+
+void TheatreBones::keep_guided(bones::BoneKind bone) {
+  if (const auto key = guided(bone)) chosen_.insert_or_assign(bone, *key);
+}
+
+void TheatreBones::choose(const tunnels::TunnelKey& key) {
+  chosen_.insert_or_assign(key.bone, key);
+  if (const auto bone = bones_.find(key.bone); bone != bones_.end()) bone->second.plan_revision = 0;
+}
+
 std::optional<PlannedTunnel> TheatreBones::plan_of(bones::BoneKind bone) const {
-  const auto tunnel = model_->tunnel(bone);
+  const auto key = guided(bone);
+  return key ? planned(*key) : std::nullopt;
+}
+
+std::optional<PlannedTunnel> TheatreBones::planned(const tunnels::TunnelKey& key) const {
+  const auto tunnel = model_->tunnel(key);
   // One that was made on another surface would lie somewhere else in this one: nothing guides to it.
-  if (!tunnel || !model_->plan_fit(bone).is_valid()) return std::nullopt;
-  return PlannedTunnel{*tunnel, model_->drawn_length_mm(bone)};
+  if (!tunnel || !model_->plan_fit(key).is_valid()) return std::nullopt;
+  return PlannedTunnel{*tunnel, model_->drawn_length_mm(key)};
 }
 
 std::unique_ptr<theatre::LiveOperation> TheatreBones::made(bones::BoneKind bone) const {
@@ -130,6 +159,7 @@ theatre::LiveOperation& TheatreBones::operation(bones::BoneKind kind) {
     bone.operation->request_stop();
     ending_.end(std::move(bone.operation));
   }
+  keep_guided(kind);
   bone.operation = made(kind);
   bone.plan_revision = model_->revision();
   return *bone.operation;
@@ -150,6 +180,7 @@ void TheatreBones::offer_plans() {
   for (auto& [kind, bone] : bones_) {
     if (bone.operation == nullptr || bone.plan_revision == model_->revision()) continue;
     bone.plan_revision = model_->revision();
+    keep_guided(kind);
     bone.operation->apply(operation::OfferPlan{plan_of(kind)});
   }
 }

@@ -39,8 +39,18 @@ class TheatreBones {
   [[nodiscard]] theatre::LiveOperation* known(bones::BoneKind bone) const;
   // What is known where no bone was looked at yet.
   [[nodiscard]] static theatre::LiveStatePtr nothing();
-  // The case's plan for the bone, where it is of this mesh: what an operation that begins now guides by.
+  // Which of the bone's planned tunnels is drilled: the one that was chosen, else the only one. nullopt where
+  // none is planned, and where two are and nobody has chosen: it is never guessed.
+  [[nodiscard]] std::optional<tunnels::TunnelKey> guided(bones::BoneKind bone) const;
+  [[nodiscard]] bool must_choose(bones::BoneKind bone) const;
+  // From now on that one: an operation that runs is offered it, and guides by the one in force until the
+  // surgeon takes the other one over. Precondition: it is planned.
+  void choose(const tunnels::TunnelKey& key);
+  // The case's plan for the tunnel that is drilled, where it is of this mesh: what an operation that begins
+  // now guides by.
   [[nodiscard]] std::optional<operation::PlannedTunnel> plan_of(bones::BoneKind bone) const;
+  // The same of any tunnel.
+  [[nodiscard]] std::optional<operation::PlannedTunnel> planned(const tunnels::TunnelKey& key) const;
   // A plan that was edited is offered to the operation of its bone; it guides by the one in force until the
   // surgeon takes the other one over.
   void offer_plans();
@@ -50,6 +60,8 @@ class TheatreBones {
     std::unique_ptr<theatre::LiveOperation> operation;
     std::uint64_t plan_revision = 0;  // of the model, when the plan was handed over last
   };
+  // The only tunnel stays the one that is drilled when a second one is planned.
+  void keep_guided(bones::BoneKind bone);
   [[nodiscard]] std::unique_ptr<theatre::LiveOperation> made(bones::BoneKind bone) const;
   [[nodiscard]] static bool is_worth_keeping(const theatre::LiveState& state);
 
@@ -58,6 +70,7 @@ class TheatreBones {
   std::filesystem::path case_folder_;
   std::string read_only_;
   std::map<bones::BoneKind, Bone> bones_;
+  std::map<bones::BoneKind, tunnels::TunnelKey> chosen_;
   sources::BackgroundEnd ending_;
 };
 

@@ -9,7 +9,7 @@ using bones::BoneKind;
 using landmarks::LandmarkState;
 
 std::string PlanView::landmark() const {
-  const auto rows = landmark_rows(*model_, state_.bone);
+  const auto rows = landmark_rows(*model_, state_.key.bone);
   return rows.empty() ? "" : rows[std::min(state_.landmark, rows.size() - 1)].name;
 }
 
@@ -17,46 +17,53 @@ std::string PlanView::landmark() const {
 void PlanView::select_landmark(std::size_t row) {
   state_.landmark = row;
   state_.hint.clear();
-  const auto& marks = model_->landmarks(state_.bone);
+  const auto& marks = model_->landmarks(state_.key.bone);
   const auto at = marks.find(landmark());
   if (at == marks.end()) return;
-  bones_.look_at(at->second, state_.bone);
+  bones_.look_at(at->second, state_.key.bone);
   state_.shown_revision = 0;
   slices_.set_cross(at->second);
 }
 
 void PlanView::put_landmark(const Eigen::Vector3d& point_mm, const std::string& what, bool continues) {
-  landmarks::Landmarks marks = model_->landmarks(state_.bone);
-  landmarks::LandmarkStates states = model_->landmark_states(state_.bone);
+  landmarks::Landmarks marks = model_->landmarks(state_.key.bone);
+  landmarks::LandmarkStates states = model_->landmark_states(state_.key.bone);
   marks[landmark()] = point_mm;
   states[landmark()] = LandmarkState::Confirmed;
-  history_.apply_landmarks(state_.bone, marks, states, what, continues, widgets::GraphicsWindow::now_s());
+  history_.apply_landmarks(state_.key.bone, marks, states, what, continues, widgets::GraphicsWindow::now_s());
 }
 
 void PlanView::confirm_landmarks(bool all) {
-  landmarks::LandmarkStates states = model_->landmark_states(state_.bone);
-  const auto& marks = model_->landmarks(state_.bone);
+  landmarks::LandmarkStates states = model_->landmark_states(state_.key.bone);
+  const auto& marks = model_->landmarks(state_.key.bone);
   for (const auto& [name, position] : marks)
     if (all || name == landmark()) states[name] = LandmarkState::Confirmed;
-  history_.apply_landmarks(state_.bone, marks, states, all ? "Confirm all landmarks" : "Confirm a landmark",
-                           false, widgets::GraphicsWindow::now_s());
+  history_.apply_landmarks(state_.key.bone, marks, states,
+                           all ? "Confirm all landmarks" : "Confirm a landmark", false,
+                           widgets::GraphicsWindow::now_s());
   history_.settle_now();
-  if (const auto next = next_proposed(landmark_rows(*model_, state_.bone), state_.landmark))
+  if (const auto next = next_proposed(landmark_rows(*model_, state_.key.bone), state_.landmark))
     select_landmark(*next);
 }
 
 void PlanView::make_default_plan() {
-  std::map<BoneKind, tunnels::Tunnel> tunnels;
+  std::map<tunnels::TunnelKey, tunnels::Tunnel> tunnels;
   std::string doubts;
+  std::vector<tunnels::TunnelKey> keys;
   for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia}) {
     if (!model_->has_bone(bone)) continue;
-    const default_plan::DefaultTunnel made = model_->default_tunnel(bone);
+    const tunnels::TunnelKey key = key_in(bone);
+    keys.push_back(key);
+    if (const auto beside = other_bundle(key)) keys.push_back(*beside);
+  }
+  for (const tunnels::TunnelKey& key : keys) {
+    const default_plan::DefaultTunnel made = model_->default_tunnel(key);
     if (made.is_usable()) {
-      tunnels.emplace(bone, made.tunnel);
+      tunnels.emplace(key, made.tunnel);
       if (doubts.empty() && !made.doubts.empty())
         doubts = "A proposal that follows from landmarks: look at them (L) before you rely on it.";
     } else {
-      doubts = "No default for the " + std::string(bones::to_text(bone)) + ": " + made.message;
+      doubts = "No default for the " + tunnels::name_of(key) + ": " + made.message;
     }
   }
   if (!tunnels.empty()) history_.apply_tunnels(tunnels, "Make the default plan");
@@ -66,8 +73,8 @@ void PlanView::make_default_plan() {
 
 void PlanView::add_landmark_marks(std::vector<PaneMark>& marks) const {
   const std::string selected = landmark();
-  const auto& points = model_->landmarks(state_.bone);
-  for (const LandmarkRow& row : landmark_rows(*model_, state_.bone)) {
+  const auto& points = model_->landmarks(state_.key.bone);
+  for (const LandmarkRow& row : landmark_rows(*model_, state_.key.bone)) {
     const auto at = points.find(row.name);
     if (at == points.end()) continue;
     const bool is_selected = row.name == selected, is_confirmed = row.state == LandmarkRow::State::Confirmed;
@@ -80,13 +87,13 @@ void PlanView::add_landmark_marks(std::vector<PaneMark>& marks) const {
 
 void PlanView::add_landmark_actions(widgets::Actions& actions) {
   const auto here = [this] {
-    return model_ != nullptr && state_.page == PanelPage::Landmarks && model_->has_bone(state_.bone);
+    return model_ != nullptr && state_.page == PanelPage::Landmarks && model_->has_bone(state_.key.bone);
   };
   const auto is_there = [this, here] {
-    return here() && model_->landmarks(state_.bone).contains(landmark());
+    return here() && model_->landmarks(state_.key.bone).contains(landmark());
   };
   const auto go = [this](int by) {
-    const auto count = static_cast<int>(landmark_rows(*model_, state_.bone).size());
+    const auto count = static_cast<int>(landmark_rows(*model_, state_.key.bone).size());
     select_landmark(static_cast<std::size_t>((static_cast<int>(state_.landmark) + by + count) % count));
   };
   actions.add({"plan.landmark_next",
@@ -138,16 +145,16 @@ void PlanView::add_landmark_actions(widgets::Actions& actions) {
                0,
                false,
                [this, here] {
-                 return here() && model_->proposal(state_.bone) &&
-                        model_->proposal(state_.bone)->landmarks.contains(landmark());
+                 return here() && model_->proposal(state_.key.bone) &&
+                        model_->proposal(state_.key.bone)->landmarks.contains(landmark());
                },
                {},
                [this] {
-                 landmarks::Landmarks marks = model_->landmarks(state_.bone);
-                 landmarks::LandmarkStates states = model_->landmark_states(state_.bone);
-                 marks[landmark()] = model_->proposal(state_.bone)->landmarks.at(landmark());
+                 landmarks::Landmarks marks = model_->landmarks(state_.key.bone);
+                 landmarks::LandmarkStates states = model_->landmark_states(state_.key.bone);
+                 marks[landmark()] = model_->proposal(state_.key.bone)->landmarks.at(landmark());
                  states[landmark()] = LandmarkState::Proposed;
-                 history_.apply_landmarks(state_.bone, marks, states, "Take the proposed landmark", false,
+                 history_.apply_landmarks(state_.key.bone, marks, states, "Take the proposed landmark", false,
                                           widgets::GraphicsWindow::now_s());
                }});
   actions.add({"plan.default",

@@ -92,18 +92,22 @@ void LateralView::draw_grid(const widgets::Ui& ui, const widgets::Rect& area) co
   } else {
     text += ". No grid: Blumensaat's line is not marked";
   }
-  if (const auto tunnel = model_->tunnel(BoneKind::Femur)) {
+  std::string percents;
+  for (const tunnels::TunnelKey& key : model_->knee().plan.of(BoneKind::Femur)) {
+    const auto tunnel = model_->tunnel(key);
     const ImU32 color = widgets::color_of(scene::kPlanColor);
     const ImVec2 entry = at(tunnel->entry_mm);
-    const double length = model_->drawn_length_mm(BoneKind::Femur);
+    const double length = model_->drawn_length_mm(key);
     draw.AddLine(entry, at(tunnel->entry_mm + length * tunnel->direction), color, ui.theme.px(2));
     const auto radius = static_cast<float>(tunnel->diameter_mm / 2 / plane_.mm_per_px);
     draw.AddCircle(entry, radius, color, 40, ui.theme.px(2.5F));
     draw.AddCircleFilled(entry, ui.theme.px(4), color);
     if (quadrant) {
       const std::string percent = percent_text(quadrant->percent_of(tunnel->entry_mm));
-      text += ". Entry: " + percent;
-      ui.log.note_state("lateral_percent", percent);
+      const bool is_single = key.bundle == norms::Bundle::Whole;
+      text += (is_single ? ". Entry: " : ". Entry of the " + tunnels::name_of(key) + ": ") + percent;
+      percents += (percents.empty() ? "" : "; ") + percent;
+      ui.log.note_state("lateral_percent", percents);
     }
   }
   widgets::caption(ui, area, widgets::kText, text);

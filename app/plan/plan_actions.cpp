@@ -10,17 +10,12 @@ namespace arthronaut::plan {
 
 using bones::BoneKind;
 
-namespace {
-
-std::string tunnel_name(BoneKind bone) { return bone == BoneKind::Femur ? "femoral" : "tibial"; }
-
-}  // namespace
-
 void PlanView::add_actions(widgets::Actions& actions) {
   add_view_actions(actions);
   add_landmark_actions(actions);
   add_placing_actions(actions);
   add_tunnel_actions(actions);
+  add_bundle_actions(actions);
   add_survey_actions(actions);
   add_slice_actions(actions);
   add_measuring_actions(actions);
@@ -33,25 +28,26 @@ void PlanView::add_actions(widgets::Actions& actions) {
                0,
                false,
                [this] {
-                 const BoneKind other = state_.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
+                 const BoneKind other =
+                     state_.key.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
                  return model_ != nullptr && model_->has_bone(other);
                },
                {},
                [this] {
-                 state_.bone = state_.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
+                 const bool places = state_.places_entry;
+                 work_on(key_in(state_.key.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur));
+                 state_.places_entry = places;
                  if (bones_.only()) look_from(scene::ViewDirection::Anterior);
-                 state_.shown_revision = 0;
-                 state_.hint.clear();
                }});
 }
 
 // Each key makes a new tunnel of the one that is there.
 void PlanView::add_tunnel_actions(widgets::Actions& actions) {
-  const auto has_tunnel = [this] { return model_ != nullptr && model_->tunnel(state_.bone).has_value(); };
+  const auto has_tunnel = [this] { return model_ != nullptr && model_->tunnel(state_.key).has_value(); };
   const auto add = [&](const std::string& id, const std::string& label, const char* tooltip, int key,
                        int mods, const char* what, auto moved) {
     actions.add({id, label, tooltip, key, mods, true, has_tunnel, {}, [this, what, moved] {
-                   change(what, true, moved(*model_->tunnel(state_.bone)));
+                   change(what, true, moved(*model_->tunnel(state_.key)));
                  }});
   };
   add("plan.wider", "Wider", "Half a millimetre more", GLFW_KEY_EQUAL, 0, "Change the diameter of the",
@@ -73,7 +69,7 @@ void PlanView::add_tunnel_actions(widgets::Actions& actions) {
     add("plan.slide_" + arrow.word, "Slide entry " + arrow.word,
         "The entry moves over the bone by half a millimetre", arrow.key, GLFW_MOD_SHIFT,
         "Move the entry of the", [this, way = arrow.right_up](const tunnels::Tunnel& t) {
-          return with_entry_slid(t, bones_.camera(), 0.5 * way, model_->surface(state_.bone));
+          return with_entry_slid(t, bones_.camera(), 0.5 * way, model_->surface(state_.key.bone));
         });
   }
   actions.add({"plan.remove",
@@ -86,9 +82,35 @@ void PlanView::add_tunnel_actions(widgets::Actions& actions) {
                {},
                [this] {
                  history_.apply(
-                     {state_.bone, std::nullopt, "Remove the " + tunnel_name(state_.bone) + " tunnel", false},
+                     {state_.key, std::nullopt, "Remove the " + adjective(state_.key) + " tunnel", false},
                      widgets::GraphicsWindow::now_s());
                }});
+}
+
+// What is wrong with the versions says the place that a click's answer has: it stands in nobody's way.
+void PlanView::load_versions() {
+  versions_.clear();
+  try {
+    versions_ = cases::load_plan_versions(case_folder_);
+  } catch (const std::runtime_error& error) {  // a file of the case that was changed by hand
+    state_.hint = error.what();
+  }
+}
+
+void PlanView::keep_version() {
+  history_.settle_now();
+  try {  // a full disk is a state of the screen
+    const cases::PlanVersion kept = cases::keep_plan_version(case_folder_, model_->knee().plan);
+    state_.hint = "Kept as version " + std::to_string(kept.number);
+    load_versions();
+  } catch (const std::runtime_error& error) {
+    state_.hint = error.what();
+  }
+}
+
+void PlanView::take_version(std::size_t version) {
+  history_.apply_plan(versions_.at(version).plan,
+                      "Take version " + std::to_string(versions_[version].number));
 }
 
 void PlanView::add_history_actions(widgets::Actions& actions) {
@@ -239,9 +261,9 @@ void PlanView::add_slice_actions(widgets::Actions& actions) {
                GLFW_KEY_E,
                0,
                false,
-               [this, has_slices] { return has_slices() && model_->tunnel(state_.bone).has_value(); },
+               [this, has_slices] { return has_slices() && model_->tunnel(state_.key).has_value(); },
                {},
-               [this] { slices_.set_cross(model_->tunnel(state_.bone)->entry_mm); }});
+               [this] { slices_.set_cross(model_->tunnel(state_.key)->entry_mm); }});
 }
 
 void PlanView::add_measuring_actions(widgets::Actions& actions) {

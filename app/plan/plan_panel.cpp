@@ -88,22 +88,22 @@ void draw_next(const widgets::Ui& ui, const NextStep& next) {
 }
 
 void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
-  const auto tunnel = panel.model.tunnel(panel.bone);
+  const auto tunnel = panel.model.tunnel(panel.key);
   if (!tunnel) {
     widgets::text_in(ui.theme.body, widgets::kText,
                      "No tunnel yet. Press P and click on the bone where it is to begin.");
     return;
   }
-  const tunnels::TunnelGeometry& geometry = panel.model.measured(panel.bone);
+  const tunnels::TunnelGeometry& geometry = panel.model.measured(panel.key);
   draw_numbers(ui, *tunnel, geometry);
   if (geometry.enters_bone)
-    widgets::text_in(
-        ui.theme.body, widgets::kText,
-        "Leaves the bone " +
-            anatomical_text(geometry.exit_mm - geometry.entry_on_surface_mm, panel.model.axes(panel.bone)) +
-            " of the entry");
+    widgets::text_in(ui.theme.body, widgets::kText,
+                     "Leaves the bone " +
+                         anatomical_text(geometry.exit_mm - geometry.entry_on_surface_mm,
+                                         panel.model.axes(panel.key.bone)) +
+                         " of the entry");
   ImGui::Dummy({0, ui.theme.px(4)});
-  for (const tunnels::PlanCheck& check : panel.model.checks(panel.bone)) {
+  for (const tunnels::PlanCheck& check : panel.model.checks(panel.key)) {
     ImGui::BeginGroup();
     widgets::status_row(ui, severity_of(check.verdict), check.name, check.text);
     ImGui::EndGroup();
@@ -114,21 +114,26 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
 }
 
 // Whose tunnel it is, and beside it the way to the other.
-void draw_title(const widgets::Ui& ui, bones::BoneKind bone) {
+void draw_title(const widgets::Ui& ui, const tunnels::TunnelKey& key) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ui.theme.px(196), height = ui.theme.px(44);
+  // Beside the button there is no room for more.
+  std::string title = adjective(key) + (key.bundle == norms::Bundle::Whole ? " tunnel" : "");
+  title[0] = key.bone == bones::BoneKind::Femur ? 'F' : 'T';
   ImGui::GetWindowDrawList()->AddText(ui.theme.title, ui.theme.title->FontSize,
                                       {at.x, at.y + (height - ui.theme.title->FontSize) / 2}, widgets::kText,
-                                      bone == bones::BoneKind::Femur ? "Femoral tunnel" : "Tibial tunnel");
+                                      title.c_str());
   ImGui::SetCursorScreenPos({at.x + ImGui::GetContentRegionAvail().x - width, at.y});
   widgets::action_button(ui, "plan.bone", width, height);
 }
 
-void draw_tools(const widgets::Ui& ui) {
+void draw_tools(const widgets::Ui& ui, const tunnels::TunnelKey& key) {
   ImGui::Separator();
   button_pair(ui, "plan.default", "plan.place");
   button_pair(ui, "plan.narrower", "plan.wider");
-  widgets::action_button(ui, "plan.remove", ImGui::GetContentRegionAvail().x);
+  if (key.bundle == norms::Bundle::Whole) return button_pair(ui, "plan.remove", "plan.bundles");
+  button_pair(ui, "plan.remove", "plan.other_bundle");
+  widgets::action_button(ui, "plan.single", ImGui::GetContentRegionAvail().x);
 }
 
 // One of a list that can be clicked on.
@@ -207,7 +212,7 @@ PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, con
   PanelClick clicked;
   widgets::begin_panel(ui, "plan.panel", area);
   draw_next(ui, panel.next);
-  draw_title(ui, panel.bone);
+  draw_title(ui, panel.key);
   const float page_width = ImGui::GetContentRegionAvail().x - 2 * ui.theme.px(6);
   // The longest word has the most room.
   for (const auto& [id, share] :
@@ -220,14 +225,15 @@ PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, con
   switch (panel.page) {
     case PanelPage::Checks:
       // The checks scroll; what is pressed stays in sight.
-      ImGui::BeginChild("checks", {0, ImGui::GetContentRegionAvail().y - ui.theme.px(262)});
+      ImGui::BeginChild("checks", {0, ImGui::GetContentRegionAvail().y -
+                                          ui.theme.px(panel.key.bundle == norms::Bundle::Whole ? 262 : 314)});
       draw_checks(ui, panel);
       ImGui::EndChild();
-      draw_tools(ui);
+      draw_tools(ui, panel.key);
       ImGui::Separator();
       break;
     case PanelPage::Landmarks:
-      clicked.landmark = draw_landmark_list(ui, panel.model, panel.bone, panel.landmark);
+      clicked.landmark = draw_landmark_list(ui, panel.model, panel.key.bone, panel.landmark);
       button_pair(ui, "plan.landmark_confirm", "plan.landmark_place");
       widgets::action_button(ui, "plan.landmark_reset", ImGui::GetContentRegionAvail().x);
       break;

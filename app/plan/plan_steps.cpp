@@ -9,7 +9,10 @@ namespace {
 using bones::BoneKind;
 using Verdict = tunnels::PlanCheck::Verdict;
 
-std::string adjective(BoneKind bone) { return bone == BoneKind::Femur ? "femoral" : "tibial"; }
+bool is_wrong(const open_case::PlanModel& model, const tunnels::TunnelKey& key) {
+  return std::ranges::any_of(model.checks(key),
+                             [](const tunnels::PlanCheck& check) { return check.verdict == Verdict::Wrong; });
+}
 
 }  // namespace
 
@@ -22,36 +25,61 @@ bool has_unconfirmed_grid(const open_case::PlanModel& model, BoneKind bone) {
 }
 
 bool has_wrong_check(const open_case::PlanModel& model, BoneKind bone) {
-  const auto& checks = model.checks(bone);
-  return std::any_of(checks.begin(), checks.end(),
-                     [](const tunnels::PlanCheck& check) { return check.verdict == Verdict::Wrong; });
+  return std::ranges::any_of(model.knee().plan.of(bone),
+                             [&](const tunnels::TunnelKey& key) { return is_wrong(model, key); });
+}
+
+std::optional<tunnels::TunnelKey> other_bundle(const tunnels::TunnelKey& key) {
+  if (key.bundle == norms::Bundle::Whole) return std::nullopt;
+  return tunnels::TunnelKey{key.bone, key.bundle == norms::Bundle::Anteromedial
+                                          ? norms::Bundle::Posterolateral
+                                          : norms::Bundle::Anteromedial};
+}
+
+std::string adjective(const tunnels::TunnelKey& key) {
+  const std::string bone = key.bone == BoneKind::Femur ? "femoral" : "tibial";
+  return key.bundle == norms::Bundle::Whole          ? bone
+         : key.bundle == norms::Bundle::Anteromedial ? bone + " AM"
+                                                     : bone + " PL";
 }
 
 NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
-  const std::string bone(bones::to_text(state.bone));
-  const BoneKind other = state.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
+  const BoneKind here = state.key.bone;
+  const std::string bone(bones::to_text(here));
+  const BoneKind other = here == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
   if (state.is_read_only) return {"Look only: another program has this case open", ""};
   if (state.is_in_conflict) return {"Take the other program's plan, or keep this one", "plan.take_theirs"};
   if (state.places_entry) return {"Click on the " + bone + " where the tunnel begins", ""};
-  if (!model.has_bone(state.bone)) return {"This case has no " + bone + ": plan the other bone", "plan.bone"};
-  if (!model.tunnel(state.bone) && model.footprint(state.bone))
+  if (!model.has_bone(here)) return {"This case has no " + bone + ": plan the other bone", "plan.bone"};
+  // The default would move what is planned of the other bundle.
+  const auto beside = other_bundle(state.key);
+  if (!model.tunnel(state.key) && model.footprint(here) && !(beside && model.tunnel(*beside)))
     return {"Make the default plan, then move it: press N", "plan.default"};
-  if (!model.tunnel(state.bone))
-    return {"Place the entry of the " + adjective(state.bone) + " tunnel: press P, then click on the bone",
+  if (!model.tunnel(state.key))
+    return {"Place the entry of the " + adjective(state.key) + " tunnel: press P, then click on the bone",
             "plan.place"};
-  const auto& checks = model.checks(state.bone);
+  const auto& checks = model.checks(state.key);
   const auto wrong = std::find_if(checks.begin(), checks.end(), [](const tunnels::PlanCheck& check) {
     return check.verdict == Verdict::Wrong;
   });
-  if (wrong != checks.end()) return {"Mend the " + adjective(state.bone) + " tunnel: " + wrong->name, ""};
-  if (has_unconfirmed_grid(model, state.bone))
+  if (wrong != checks.end()) return {"Mend the " + adjective(state.key) + " tunnel: " + wrong->name, ""};
+  if (beside) {
+    if (!model.tunnel(*beside))
+      return {"Plan the " + adjective(*beside) + " tunnel too: press B", "plan.other_bundle"};
+    if (is_wrong(model, *beside))
+      return {"Mend the " + adjective(*beside) + " tunnel: press B", "plan.other_bundle"};
+  }
+  if (has_unconfirmed_grid(model, here))
     return {"Look at the " + bone + "'s landmarks, which nobody has confirmed: press L",
             "plan.landmarks_page"};
-  if (model.has_bone(other) && !model.tunnel(other))
-    return {"Plan the " + adjective(other) + " tunnel: press Tab", "plan.bone"};
-  if (model.has_bone(other)) {
-    if (has_wrong_check(model, other))
-      return {"Mend the " + adjective(other) + " tunnel: press Tab", "plan.bone"};
+  if (!model.has_bone(other))
+    return {"The plan can be taken to theatre: set up the arthroscope", "mode.setup"};
+  const auto others = model.knee().plan.of(other);
+  if (others.empty()) return {"Plan the " + adjective(other) + " tunnel: press Tab", "plan.bone"};
+  for (const tunnels::TunnelKey& key : others) {
+    if (const auto missing = other_bundle(key); missing && !model.tunnel(*missing))
+      return {"Plan the " + adjective(*missing) + " tunnel too: press Tab", "plan.bone"};
+    if (is_wrong(model, key)) return {"Mend the " + adjective(key) + " tunnel: press Tab", "plan.bone"};
   }
   return {"The plan can be taken to theatre: set up the arthroscope", "mode.setup"};
 }

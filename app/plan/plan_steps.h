@@ -1,6 +1,7 @@
 // What to do next, named: the shortest way from an open case to a plan that can be taken to theatre.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/case/plan_model.h"
@@ -12,18 +13,23 @@ struct NextStep {
   std::string action;  // the id of the action that does it or begins it; empty: none
 };
 
+// Of a tunnel of one bundle that of the other one of its bone; nullopt of a single one.
+[[nodiscard]] std::optional<tunnels::TunnelKey> other_bundle(const tunnels::TunnelKey& key);
+// "femoral", "tibial AM": before "tunnel".
+[[nodiscard]] std::string adjective(const tunnels::TunnelKey& key);
+
 struct StepState {
-  bones::BoneKind bone = bones::BoneKind::Femur;  // that is planned
+  tunnels::TunnelKey key = bones::BoneKind::Femur;  // that is worked on
   bool places_entry = false;
   bool is_read_only = false, is_in_conflict = false;
 };
 
 // The first of what is missing: an answer to a conflict, an entry, a tunnel that can be drilled, the other
-// bone's; else to theatre.
+// bundle's, the other bone's; else to theatre.
 [[nodiscard]] NextStep next_step(const open_case::PlanModel& model, const StepState& state);
 
-// Whether the bone's grid follows from points that nobody has looked at; whether a check of its tunnel says
-// that it is wrong. Precondition: has_bone(bone).
+// Whether the bone's grid follows from points that nobody has looked at; whether a check of one of its
+// tunnels says that it is wrong. Precondition: has_bone(bone).
 [[nodiscard]] bool has_unconfirmed_grid(const open_case::PlanModel& model, bones::BoneKind bone);
 [[nodiscard]] bool has_wrong_check(const open_case::PlanModel& model, bones::BoneKind bone);
 

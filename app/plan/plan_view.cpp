@@ -16,8 +16,14 @@ using bones::BoneKind;
 
 constexpr double kAimHandleBeyond_mm = 12;
 constexpr scene::Color kFootprintColor{0.25F, 0.85F, 0.65F};
+constexpr scene::Color kBesideColor{0.62F, 0.70F, 0.76F};  // the bone's tunnel that is not worked on
 
-std::string tunnel_name(BoneKind bone) { return bone == BoneKind::Femur ? "femoral" : "tibial"; }
+// On its handle: of two tunnels each names its bundle.
+std::string entry_label(const tunnels::TunnelKey& key) {
+  return key.bundle == norms::Bundle::Whole          ? "Entry"
+         : key.bundle == norms::Bundle::Anteromedial ? "Entry AM"
+                                                     : "Entry PL";
+}
 
 const char* name_of(open_case::PlanStatus::Save save) {
   switch (save) {
@@ -54,7 +60,7 @@ void PlanView::case_opened(const mode::OpenCase& opened) {
   load_versions();
   state_ = {};
   tunnel_meshes_.clear();
-  if (!model_->has_bone(BoneKind::Femur)) state_.bone = BoneKind::Tibia;
+  work_on(key_in(model_->has_bone(BoneKind::Femur) ? BoneKind::Femur : BoneKind::Tibia));
   bones_.open(model_);
   slices_.open(model_->knee(), opened.folder, model_->joint_bounds(std::nullopt));
   lateral_.open(model_);
@@ -63,45 +69,20 @@ void PlanView::case_opened(const mode::OpenCase& opened) {
 void PlanView::tick(double now_s) {
   history_.settle(now_s);
   history_.look_at_disk(now_s);
+  follow_plan();
   slices_.tick();
 }
 
 void PlanView::look_from(scene::ViewDirection view) {
   bones_.look_from(view);
   state_.shows_lateral = false;
-  if (bones_.only()) state_.bone = *bones_.only();
+  if (bones_.only() && *bones_.only() != state_.key.bone) state_.key = key_in(*bones_.only());
   state_.shown_revision = 0;
-}
-
-// What is wrong with the versions says the place that a click's answer has: it stands in nobody's way.
-void PlanView::load_versions() {
-  versions_.clear();
-  try {
-    versions_ = cases::load_plan_versions(case_folder_);
-  } catch (const std::runtime_error& error) {  // a file of the case that was changed by hand
-    state_.hint = error.what();
-  }
-}
-
-void PlanView::keep_version() {
-  history_.settle_now();
-  try {  // a full disk is a state of the screen
-    const cases::PlanVersion kept = cases::keep_plan_version(case_folder_, model_->knee().plan);
-    state_.hint = "Kept as version " + std::to_string(kept.number);
-    load_versions();
-  } catch (const std::runtime_error& error) {
-    state_.hint = error.what();
-  }
-}
-
-void PlanView::take_version(std::size_t version) {
-  history_.apply_plan(versions_.at(version).plan,
-                      "Take version " + std::to_string(versions_[version].number));
 }
 
 void PlanView::change(const std::string& what, bool continues, const std::optional<tunnels::Tunnel>& tunnel) {
   if (!tunnel) return;
-  history_.apply({state_.bone, tunnel, what + " " + tunnel_name(state_.bone) + " tunnel", continues},
+  history_.apply({state_.key, tunnel, what + " " + adjective(state_.key) + " tunnel", continues},
                  widgets::GraphicsWindow::now_s());
 }
 
@@ -137,16 +118,16 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   } else {
     draw_bones(ui, rest);
   }
-  const StepState step{state_.bone, state_.places_entry, status.save == open_case::PlanStatus::Save::ReadOnly,
+  const StepState step{state_.key, state_.places_entry, status.save == open_case::PlanStatus::Save::ReadOnly,
                        history_.is_in_conflict()};
   const NextStep next = next_step(*model_, step);
   const PanelClick clicked = draw_plan_panel(
-      ui, panel, {*model_, history_, state_.bone, state_.page, state_.landmark, versions_, next});
+      ui, panel, {*model_, history_, state_.key, state_.page, state_.landmark, versions_, next});
   if (clicked.step) history_.go_to(*clicked.step);
   if (clicked.landmark) select_landmark(*clicked.landmark);
   if (clicked.version) take_version(*clicked.version);
   ui.log.note_state("landmark", state_.page == PanelPage::Landmarks ? landmark() : "");
-  ui.log.note_state("landmarks", confirmed_in_words(landmark_rows(*model_, state_.bone)));
+  ui.log.note_state("landmarks", confirmed_in_words(landmark_rows(*model_, state_.key.bone)));
   ui.log.note_state("plan_next", next.text);
   ui.log.note_state("plan", name_of(status.save));
   ui.log.note_state("undo", status.undo_what);
@@ -157,7 +138,8 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("hint", state_.hint);
   ui.log.note_state("view_direction",
                     bones_.looked_from() ? scene::to_text(*bones_.looked_from()) : "a landmark");
-  const auto tunnel = model_->tunnel(state_.bone);
+  ui.log.note_state("tunnel", tunnels::name_of(state_.key));
+  const auto tunnel = model_->tunnel(state_.key);
   ui.log.note_state("diameter_mm", tunnel ? widgets::fixed(tunnel->diameter_mm, 2) : "");
 }
 
@@ -180,10 +162,11 @@ void PlanView::draw_slices(const widgets::Ui& ui, const std::array<widgets::Rect
     if (!model_->has_bone(kind)) continue;
     content.meshes.push_back(
         {&model_->knee().bones.at(kind).mesh, widgets::color_of(scene::kBoneColor), 1.5F});
-    const auto tunnel = model_->tunnel(kind);
-    if (!tunnel) continue;
-    content.meshes.push_back({&tunnel_mesh(kind), widgets::color_of(scene::kPlanColor), 2.5F});
-    content.marks.push_back({"Entry", tunnel->entry_mm, widgets::color_of(scene::kPlanColor)});
+    for (const tunnels::TunnelKey& key : model_->knee().plan.of(kind)) {
+      content.meshes.push_back({&tunnel_mesh(key), widgets::color_of(scene::kPlanColor), 2.5F});
+      content.marks.push_back(
+          {entry_label(key), model_->tunnel(key)->entry_mm, widgets::color_of(scene::kPlanColor)});
+    }
   }
   for (const cases::Measurement& measurement : model_->measurements())
     content.lines.push_back({measurement.points_mm, measurement.in_words()});
@@ -196,13 +179,13 @@ void PlanView::draw_slices(const widgets::Ui& ui, const std::array<widgets::Rect
 }
 
 // The drill's cylinder, made anew when the plan has changed.
-const geometry::TriangleMesh& PlanView::tunnel_mesh(BoneKind kind) {
-  TunnelMesh& kept = tunnel_meshes_[kind];
+const geometry::TriangleMesh& PlanView::tunnel_mesh(const tunnels::TunnelKey& key) {
+  TunnelMesh& kept = tunnel_meshes_[key];
   if (kept.revision == model_->revision()) return kept.mesh;
-  const tunnels::Tunnel tunnel = *model_->tunnel(kind);
+  const tunnels::Tunnel tunnel = *model_->tunnel(key);
   scene::SolidMesh solid;
   solid.add(scene::RodItem{tunnel.entry_mm - tunnel.direction,
-                           tunnel.entry_mm + (model_->drawn_length_mm(kind) + 1) * tunnel.direction,
+                           tunnel.entry_mm + (model_->drawn_length_mm(key) + 1) * tunnel.direction,
                            tunnel.diameter_mm, tunnel.diameter_mm, scene::kPlanColor, false});
   kept.mesh = {};
   for (const Eigen::Vector3f& point : solid.points_mm) kept.mesh.vertices_mm.push_back(point.cast<double>());
@@ -231,10 +214,13 @@ void PlanView::show_content() {
   scene::SceneContent content;
   for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
     if (!model_->has_bone(kind) || !bones_.shows(kind)) continue;
-    if (const auto tunnel = model_->tunnel(kind)) {
-      scene::add_planned_tunnel(content, *tunnel, model_->drawn_length_mm(kind));
-      if (kind == state_.bone && state_.shows_aims && state_.survey != nullptr)
-        add_aims(content, *state_.survey, *tunnel, model_->drawn_length_mm(kind));
+    for (const tunnels::TunnelKey& key : model_->knee().plan.of(kind)) {
+      const tunnels::Tunnel tunnel = *model_->tunnel(key);
+      const bool is_beside = kind == state_.key.bone && key != state_.key;
+      scene::add_planned_tunnel(content, tunnel, model_->drawn_length_mm(key),
+                                is_beside ? kBesideColor : scene::kPlanColor);
+      if (key == state_.key && state_.shows_aims && state_.survey != nullptr)
+        add_aims(content, *state_.survey, tunnel, model_->drawn_length_mm(key));
     }
     if (!state_.shows_grid) continue;
     if (const auto& footprint = model_->footprint(kind)) {
@@ -264,7 +250,7 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
   if (state_.shown_revision != model_->revision()) show_content();
   follow(bones_.draw(ui, area, marks()));
   draw_survey_legend(ui, area);
-  const std::string bone(bones::to_text(state_.bone));
+  const std::string bone(bones::to_text(state_.key.bone));
   std::string text = state_.hint;
   if (text.empty() && state_.places_entry)
     text = "Click on the " + bone + ": the tunnel begins there. Esc leaves it.";
@@ -279,27 +265,27 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
 }
 
 std::optional<Eigen::Vector3d> PlanView::aim_handle() const {
-  const auto tunnel = model_->tunnel(state_.bone);
+  const auto tunnel = model_->tunnel(state_.key);
   if (!tunnel) return std::nullopt;
-  return tunnel->entry_mm + (model_->drawn_length_mm(state_.bone) + kAimHandleBeyond_mm) * tunnel->direction;
+  return tunnel->entry_mm + (model_->drawn_length_mm(state_.key) + kAimHandleBeyond_mm) * tunnel->direction;
 }
 
 std::vector<PaneMark> PlanView::marks() const {
   std::vector<PaneMark> marks;
-  if (!bones_.shows(state_.bone) || !model_->has_bone(state_.bone)) return marks;
+  if (!bones_.shows(state_.key.bone) || !model_->has_bone(state_.key.bone)) return marks;
   if (state_.page == PanelPage::Landmarks) {
     add_landmark_marks(marks);
     return marks;
   }
-  if (const auto& footprint = model_->footprint(state_.bone); footprint && state_.shows_grid)
+  if (const auto& footprint = model_->footprint(state_.key.bone); footprint && state_.shows_grid)
     marks.push_back({PaneMark::Shape::Cross, "footprint", "", footprint->center_mm,
                      widgets::color_of(kFootprintColor), false,
                      "The expected footprint, and where its centre lies in two knees of three: " +
                          std::string(footprint->norm.source)});
   add_map_marks(marks);
-  const auto tunnel = model_->tunnel(state_.bone);
+  const auto tunnel = model_->tunnel(state_.key);
   if (!tunnel) return marks;
-  const tunnels::TunnelGeometry& measured = model_->measured(state_.bone);
+  const tunnels::TunnelGeometry& measured = model_->measured(state_.key);
   if (measured.enters_bone) {
     const tunnels::PlanNorms norms;
     const ImU32 color = measured.wall_mm < norms.breaking_wall_mm ? widgets::kBad
@@ -310,8 +296,12 @@ std::vector<PaneMark> PlanView::marks() const {
     marks.push_back({PaneMark::Shape::Pin, "exit", "Exit", measured.exit_mm, widgets::kText, false,
                      "Here the drill leaves the bone"});
   }
-  marks.push_back({PaneMark::Shape::Ring, "entry", "Entry", tunnel->entry_mm, widgets::kText, true,
-                   "The entry: drag it over the bone"});
+  if (const auto key = other_bundle(state_.key))
+    if (const auto beside = model_->tunnel(*key))
+      marks.push_back({PaneMark::Shape::Ring, "other_entry", entry_label(*key), beside->entry_mm,
+                       widgets::kQuietText, false, "The other bundle's entry: press B to work on it"});
+  marks.push_back({PaneMark::Shape::Ring, "entry", entry_label(state_.key), tunnel->entry_mm, widgets::kText,
+                   true, "The entry: drag it over the bone"});
   marks.push_back({PaneMark::Shape::Diamond, "aim", "Aim", *aim_handle(),
                    widgets::color_of(scene::kPlanColor), true,
                    "The aim: drag it to turn the tunnel about its entry"});
@@ -319,11 +309,11 @@ std::vector<PaneMark> PlanView::marks() const {
 }
 
 void PlanView::follow(const PaneEvent& event) {
-  if (!model_->has_bone(state_.bone)) return;
+  if (!model_->has_bone(state_.key.bone)) return;
   if (!event.pressed.empty()) state_.has_dragged = false;
-  const auto tunnel = model_->tunnel(state_.bone);
+  const auto tunnel = model_->tunnel(state_.key);
   if (tunnel && event.dragged == "entry") {
-    const auto to = dragged_over(bones_.visible(), state_.bone, tunnel->entry_mm, event.drag_ray,
+    const auto to = dragged_over(bones_.visible(), state_.key.bone, tunnel->entry_mm, event.drag_ray,
                                  bones_.is_see_through());
     if (to) change("Drag the entry of the", state_.has_dragged, with_entry_at(*tunnel, *to));
     state_.has_dragged = state_.has_dragged || to.has_value();
@@ -334,30 +324,31 @@ void PlanView::follow(const PaneEvent& event) {
     state_.has_dragged = true;
   }
   if (state_.page == PanelPage::Landmarks && !event.dragged.empty()) {
-    const auto& marks = model_->landmarks(state_.bone);
+    const auto& marks = model_->landmarks(state_.key.bone);
     if (const auto at = marks.find(landmark()); at != marks.end() && event.dragged == at->first) {
-      const auto to =
-          dragged_over(bones_.visible(), state_.bone, at->second, event.drag_ray, bones_.is_see_through());
+      const auto to = dragged_over(bones_.visible(), state_.key.bone, at->second, event.drag_ray,
+                                   bones_.is_see_through());
       if (to)
-        put_landmark(*to, "Drag a landmark of the " + std::string(bones::to_text(state_.bone)),
+        put_landmark(*to, "Drag a landmark of the " + std::string(bones::to_text(state_.key.bone)),
                      state_.has_dragged);
       state_.has_dragged = state_.has_dragged || to.has_value();
     }
   }
   if (state_.page == PanelPage::Landmarks && !event.pressed.empty()) {
-    const auto rows = landmark_rows(*model_, state_.bone);
+    const auto rows = landmark_rows(*model_, state_.key.bone);
     for (std::size_t i = 0; i < rows.size(); ++i)
       if (rows[i].name == event.pressed) state_.landmark = i;
   }
   if (!event.click) return;
   if (state_.places_landmark) {
     const auto met = first_visible(bones_.visible(), *event.click);
-    if (!met || met->is_section || met->bone != state_.bone) {
-      state_.hint = "That is not the surface of the " + std::string(bones::to_text(state_.bone)) +
+    if (!met || met->is_section || met->bone != state_.key.bone) {
+      state_.hint = "That is not the surface of the " + std::string(bones::to_text(state_.key.bone)) +
                     ". Click on it, or press Esc.";
       return;
     }
-    put_landmark(met->point_mm, "Place a landmark of the " + std::string(bones::to_text(state_.bone)), false);
+    put_landmark(met->point_mm, "Place a landmark of the " + std::string(bones::to_text(state_.key.bone)),
+                 false);
     state_.places_landmark = false;
     state_.hint.clear();
   } else if (state_.places_entry)
@@ -369,7 +360,7 @@ void PlanView::follow(const PaneEvent& event) {
 // Where the eye sees the bone that is planned; anything else is said and changes nothing.
 void PlanView::place_entry(const scene::SceneRay& ray) {
   const auto met = first_visible(bones_.visible(), ray);
-  const std::string planned(bones::to_text(state_.bone));
+  const std::string planned(bones::to_text(state_.key.bone));
   if (!met) {
     state_.hint = "That is beside the bone. Click on the " + planned + ", or press Esc.";
     return;
@@ -378,16 +369,16 @@ void PlanView::place_entry(const scene::SceneRay& ray) {
     state_.hint = "There the bone is cut open. Click on its surface, or press Esc.";
     return;
   }
-  if (met->bone != state_.bone) {
+  if (met->bone != state_.key.bone) {
     state_.hint = "That is the " + std::string(bones::to_text(met->bone)) + ". Click on the " + planned +
                   ", or press Tab to plan the other bone.";
     return;
   }
-  const auto tunnel = model_->tunnel(state_.bone);
+  const auto tunnel = model_->tunnel(state_.key);
   change("Place the entry of the", false,
          tunnel ? with_entry_at(*tunnel, met->point_mm)
-                : tunnels::first_tunnel(state_.bone, met->point_mm, model_->axes(state_.bone),
-                                        model_->surface(state_.bone)));
+                : tunnels::first_tunnel(state_.key.bone, met->point_mm, model_->axes(state_.key.bone),
+                                        model_->surface(state_.key.bone)));
   state_.places_entry = false;
   state_.hint.clear();
 }

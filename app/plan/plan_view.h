@@ -51,6 +51,9 @@ class PlanView : public mode::Mode {
   void add_placing_actions(widgets::Actions& actions);
   void add_slice_actions(widgets::Actions& actions);
   void add_measuring_actions(widgets::Actions& actions);
+  void load_versions();
+  void keep_version();
+  void take_version(std::size_t version);
 
   // landmark_actions.cpp
   void add_landmark_actions(widgets::Actions& actions);
@@ -73,11 +76,17 @@ class PlanView : public mode::Mode {
   void follow_tour();
   void draw_tour(const widgets::Ui& ui, const widgets::Rect& area, const TourCard& card) const;
 
-  void load_versions();
-  void keep_version();
-  void take_version(std::size_t version);
+  // One tunnel a bone or two of bundles, and which of them is worked on: bundle_actions.cpp.
+  void add_bundle_actions(widgets::Actions& actions);
+  void plan_bundles();
+  void plan_single();
+  // The bone's tunnel to go on with: of the bundle that was worked on where it has one.
+  [[nodiscard]] tunnels::TunnelKey key_in(bones::BoneKind bone) const;
+  void work_on(const tunnels::TunnelKey& key);
+  // Undo, a version or another program may have made two tunnels of one, or one of two.
+  void follow_plan();
 
-  // The tunnel of the bone that is planned becomes this one; nothing where there is none.
+  // The tunnel that is worked on becomes this one; nothing where there is none.
   void change(const std::string& what, bool continues, const std::optional<tunnels::Tunnel>& tunnel);
   void look_from(scene::ViewDirection view);
   void draw_bones(const widgets::Ui& ui, const widgets::Rect& area);
@@ -88,10 +97,10 @@ class PlanView : public mode::Mode {
   void follow(const PaneEvent& event);
   void place_entry(const scene::SceneRay& ray);
   [[nodiscard]] std::optional<Eigen::Vector3d> aim_handle() const;
-  [[nodiscard]] const geometry::TriangleMesh& tunnel_mesh(bones::BoneKind kind);
+  [[nodiscard]] const geometry::TriangleMesh& tunnel_mesh(const tunnels::TunnelKey& key);
 
   struct ViewState {
-    bones::BoneKind bone = bones::BoneKind::Femur;
+    tunnels::TunnelKey key = bones::BoneKind::Femur;  // that is worked on; of a bone's two it alone moves
     bool places_entry = false, places_landmark = false;
     std::size_t landmark = 0;  // row of landmark_rows()
     bool has_dragged = false;
@@ -120,7 +129,7 @@ class PlanView : public mode::Mode {
   Tour tour_{tour_file()};
   std::filesystem::path case_folder_;
   std::vector<cases::PlanVersion> versions_;  // that were kept, the oldest first
-  std::map<bones::BoneKind, TunnelMesh> tunnel_meshes_;
+  std::map<tunnels::TunnelKey, TunnelMesh> tunnel_meshes_;
   ViewState state_;
 };
 
@@ -128,7 +137,7 @@ class PlanView : public mode::Mode {
 struct PlanPanel {
   const open_case::PlanModel& model;
   const open_case::PlanHistory& history;
-  bones::BoneKind bone;
+  tunnels::TunnelKey key;  // that is worked on
   PanelPage page;
   std::size_t landmark;  // the row that is selected
   const std::vector<cases::PlanVersion>& versions;

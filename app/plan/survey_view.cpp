@@ -8,7 +8,7 @@
 namespace arthronaut::plan {
 
 void PlanView::add_survey_actions(widgets::Actions& actions) {
-  const auto has_tunnel = [this] { return model_ != nullptr && model_->tunnel(state_.bone).has_value(); };
+  const auto has_tunnel = [this] { return model_ != nullptr && model_->tunnel(state_.key).has_value(); };
   actions.add(
       {"plan.map", "Entry map",
        "Where else the entry could be: about it every check is made of a tunnel of the same direction "
@@ -20,7 +20,7 @@ void PlanView::add_survey_actions(widgets::Actions& actions) {
        "The ways to this entry: through the anteromedial portal at 100 to 130 degrees of flexion, and from "
        "outside in",
        GLFW_KEY_O, 0, false,
-       [this, has_tunnel] { return has_tunnel() && state_.bone == bones::BoneKind::Femur; },
+       [this, has_tunnel] { return has_tunnel() && state_.key.bone == bones::BoneKind::Femur; },
        [this] { return state_.shows_aims; },
        [this] {
          state_.shows_aims = !state_.shows_aims;
@@ -31,7 +31,7 @@ void PlanView::add_survey_actions(widgets::Actions& actions) {
 // While a handle moves, every step would be surveyed for nothing.
 std::shared_ptr<const Survey> PlanView::wanted_survey() {
   if ((!state_.shows_map && !state_.shows_aims) || history_.is_moving()) return nullptr;
-  return survey_.of(*model_, state_.bone);
+  return survey_.of(*model_, state_.key);
 }
 
 void PlanView::add_map_marks(std::vector<PaneMark>& marks) const {
@@ -56,8 +56,7 @@ void PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& ar
   if (!is_shown) return;
   std::vector<std::string> lines;
   if (state_.survey == nullptr) {
-    lines.emplace_back(model_->tunnel(state_.bone) ? "Looking about the entry ..."
-                                                   : "There is no tunnel yet");
+    lines.emplace_back(model_->tunnel(state_.key) ? "Looking about the entry ..." : "There is no tunnel yet");
   } else {
     if (state_.shows_map) {
       const auto count = [&](tunnels::PlanCheck::Verdict verdict) {
@@ -69,10 +68,10 @@ void PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& ar
                       count(Verdict::Fine) + "); ring, to be looked at (" + count(Verdict::Look) +
                       "); cross, wrong (" + count(Verdict::Wrong) + ")");
     }
-    if (state_.shows_aims && state_.bone == bones::BoneKind::Femur) {
+    if (state_.shows_aims && state_.key.bone == bones::BoneKind::Femur) {
       const auto& aims = state_.survey->portal;
       const auto clear = std::ranges::count(aims, true, &tunnels::PortalAim::is_clear);
-      const double off_deg = tunnels::off_portal_deg(model_->tunnel(state_.bone)->direction, aims);
+      const double off_deg = tunnels::off_portal_deg(model_->tunnel(state_.key)->direction, aims);
       lines.push_back(aims.empty() ? "Portal: not known, since the flexion axis is missing"
                       : clear == 0 ? "Portal: no way is clear of the femur"
                                    : "Portal (yellow): " + std::to_string(clear) + " of " +

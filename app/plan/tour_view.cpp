@@ -47,8 +47,8 @@ void PlanView::follow_tour() {
   TourFacts facts;
   const scene::SceneCamera& camera = bones_.camera();
   facts.view_direction = (camera.focus_mm - camera.position_mm).normalized();
-  if (state_.page == PanelPage::Landmarks) facts.landmarks_shown = state_.bone;
-  if (state_.page == PanelPage::Checks) facts.checks_shown = state_.bone;
+  if (state_.page == PanelPage::Landmarks) facts.landmarks_shown = state_.key.bone;
+  if (state_.page == PanelPage::Checks) facts.checks_shown = state_.key.bone;
   for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia}) {
     if (!model_->has_bone(bone)) continue;
     if (has_unconfirmed_grid(*model_, bone)) facts.unconfirmed.insert(bone);

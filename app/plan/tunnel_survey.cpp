@@ -17,40 +17,35 @@ constexpr scene::Color kOutsideInColor{0.80F, 0.47F, 0.65F};
 
 }  // namespace
 
-std::optional<SurveyRequest> survey_request(const open_case::PlanModel& model, BoneKind bone) {
+std::optional<SurveyRequest> survey_request(const open_case::PlanModel& model,
+                                            const tunnels::TunnelKey& key) {
+  const BoneKind bone = key.bone;
   if (!model.has_bone(bone)) return std::nullopt;
-  const auto tunnel = model.tunnel(bone);
+  const auto tunnel = model.tunnel(key);
   if (!tunnel) return std::nullopt;
   SurveyRequest request{.revision = model.revision(),
-                        .bone = bone,
                         .tunnel = *tunnel,
                         .surface = model.shared_surface(bone),
                         .surroundings = model.surroundings(bone),
                         .knee = model.knee_surroundings(),
-                        .other = {},
-                        .other_measured = {}};
-  const BoneKind other = bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
-  if (model.has_bone(other)) {
-    request.other = model.tunnel(other);
-    request.other_measured = model.measured(other);
-  }
+                        .others = model.tunnels()};
+  request.others.erase(key);
   return request;
 }
 
 Survey survey(const SurveyRequest& request, const std::function<bool()>& is_cancelled) {
+  const tunnels::TunnelKey key = request.tunnel.key();
   Survey found{.revision = request.revision,
+               .key = key,
                .surface = request.surface,
                .entries = {},
                .portal = {},
                .outside_in = {}};
   const geometry::Surface& bone = *request.surface;
   const auto knee_checks = [&](const tunnels::Tunnel& tunnel, const tunnels::TunnelGeometry& measured) {
-    const bool is_femur = request.bone == BoneKind::Femur;
-    const tunnels::Tunnel* other = request.other ? &*request.other : nullptr;
-    const tunnels::TunnelGeometry* other_measured = other != nullptr ? &request.other_measured : nullptr;
-    const tunnels::KneePlan plan = is_femur ? tunnels::KneePlan{&tunnel, &measured, other, other_measured}
-                                            : tunnels::KneePlan{other, other_measured, &tunnel, &measured};
-    return tunnels::check_knee(request.bone, plan, request.knee);
+    plan_review::MeasuredPlan plan = request.others;
+    plan.insert_or_assign(key, plan_review::MeasuredTunnel{tunnel, measured});
+    return plan_review::further_checks(key, plan, request.knee);
   };
   found.entries = tunnels::map_entries(
       {.entries_mm = tunnels::entries_around(bone, request.tunnel.entry_mm, kMapRadius_mm, kMapSpacing_mm),
@@ -58,7 +53,7 @@ Survey survey(const SurveyRequest& request, const std::function<bool()>& is_canc
        .aim_at = {},
        .further = knee_checks},
       bone, request.surroundings, {}, is_cancelled);
-  if (request.bone != BoneKind::Femur || !request.surroundings.axes) return found;
+  if (key.bone != BoneKind::Femur || !request.surroundings.axes) return found;
   if (request.knee.axis)
     found.portal =
         tunnels::portal_aims(request.tunnel.entry_mm, kDrill_mm,
@@ -97,16 +92,18 @@ TunnelSurvey::TunnelSurvey(const std::function<void()>& wake)
           },
           wake) {}
 
-std::shared_ptr<const Survey> TunnelSurvey::of(const open_case::PlanModel& model, BoneKind bone) {
-  if (!model.has_bone(bone)) return nullptr;
-  const auto surface = model.shared_surface(bone);
-  if (const auto found = worker_.latest();
-      found != nullptr && found->revision == model.revision() && found->surface == surface)
+std::shared_ptr<const Survey> TunnelSurvey::of(const open_case::PlanModel& model,
+                                               const tunnels::TunnelKey& key) {
+  if (!model.has_bone(key.bone)) return nullptr;
+  const auto surface = model.shared_surface(key.bone);
+  if (const auto found = worker_.latest(); found != nullptr && found->revision == model.revision() &&
+                                           found->key == key && found->surface == surface)
     return found;
-  if (asked_revision_ == model.revision() && asked_surface_ == surface) return nullptr;
-  auto request = survey_request(model, bone);
+  if (asked_revision_ == model.revision() && asked_key_ == key && asked_surface_ == surface) return nullptr;
+  auto request = survey_request(model, key);
   if (!request) return nullptr;
   asked_revision_ = model.revision();
+  asked_key_ = key;
   asked_surface_ = surface;
   worker_.post(std::move(*request));
   return nullptr;

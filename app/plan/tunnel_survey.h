@@ -19,17 +19,16 @@ namespace arthronaut::plan {
 // What is to be surveyed, with all that it rests on: it is read by another thread.
 struct SurveyRequest {
   std::uint64_t revision = 0;  // of the model
-  bones::BoneKind bone = bones::BoneKind::Femur;
   tunnels::Tunnel tunnel;
   std::shared_ptr<const geometry::Surface> surface;
   tunnels::PlanSurroundings surroundings;
   tunnels::KneeSurroundings knee;
-  std::optional<tunnels::Tunnel> other;  // of the other bone, with what was measured of it
-  tunnels::TunnelGeometry other_measured;
+  plan_review::MeasuredPlan others;  // the plan's other tunnels
 };
 
 struct Survey {
   std::uint64_t revision = 0;
+  tunnels::TunnelKey key = bones::BoneKind::Femur;
   std::shared_ptr<const geometry::Surface> surface;
   // Within 10 mm of the entry, 1.25 mm apart, of tunnels of the same direction and diameter.
   std::vector<tunnels::EntrySample> entries;
@@ -38,9 +37,9 @@ struct Survey {
   std::vector<Eigen::Vector3d> outside_in;
 };
 
-// Of the bone's tunnel as it is; nullopt where there is none.
+// Of the tunnel as it is; nullopt where there is none.
 [[nodiscard]] std::optional<SurveyRequest> survey_request(const open_case::PlanModel& model,
-                                                          bones::BoneKind bone);
+                                                          const tunnels::TunnelKey& key);
 // Some 5 ms an entry: run it beside the screen. Ends early, with what is there by then, when is_cancelled
 // says so.
 [[nodiscard]] Survey survey(const SurveyRequest& request, const std::function<bool()>& is_cancelled = {});
@@ -55,10 +54,12 @@ class TunnelSurvey {
   explicit TunnelSurvey(const std::function<void()>& wake);
 
   // Of that very plan, asked for when it is not yet; null until it is there.
-  [[nodiscard]] std::shared_ptr<const Survey> of(const open_case::PlanModel& model, bones::BoneKind bone);
+  [[nodiscard]] std::shared_ptr<const Survey> of(const open_case::PlanModel& model,
+                                                 const tunnels::TunnelKey& key);
 
  private:
   std::uint64_t asked_revision_ = 0;
+  tunnels::TunnelKey asked_key_ = bones::BoneKind::Femur;
   std::shared_ptr<const geometry::Surface> asked_surface_;
   worker::Worker<SurveyRequest, Survey> worker_;
 };

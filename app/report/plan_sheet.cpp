@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "app/scene/grid_lines.h"
@@ -46,8 +47,9 @@ struct PlanePicture {
 
 class Sheet {
  public:
-  Sheet(PdfDocument& pdf, const SheetFrame& frame, const cases::Case& knee, std::filesystem::path folder)
-      : pdf_(pdf), frame_(frame), knee_(knee), folder_(std::move(folder)), review_(knee) {}
+  Sheet(PdfDocument& pdf, const SheetFrame& frame, const cases::Case& knee, std::filesystem::path folder,
+        norms::Bundle graft)
+      : pdf_(pdf), frame_(frame), knee_(knee), folder_(std::move(folder)), graft_(graft), review_(knee) {}
 
   void draw();
 
@@ -61,7 +63,10 @@ class Sheet {
   // Where both ends lie in the picture.
   void line(const PlanePicture& picture, const Vector3d& from, const Vector3d& to, double width_mm,
             const Ink& ink);
-  void tunnel_outline(const PlanePicture& picture, BoneKind kind);
+  // Every tunnel of the bone.
+  void tunnel_outlines(const PlanePicture& picture, BoneKind kind);
+  // The bone's tunnel of the graft that the sheet is of; null without one.
+  [[nodiscard]] const plan_review::MeasuredTunnel* planned(BoneKind kind) const;
   [[nodiscard]] std::optional<images::Volume> volume() const;
   [[nodiscard]] landmarks::AnatomicalAxes axes(BoneKind kind) const;
 
@@ -69,8 +74,15 @@ class Sheet {
   SheetFrame frame_;
   const cases::Case& knee_;
   std::filesystem::path folder_;
+  norms::Bundle graft_;
   plan_review::CaseReview review_;
 };
+
+const plan_review::MeasuredTunnel* Sheet::planned(BoneKind kind) const {
+  auto found = review_.tunnels().find({kind, graft_});
+  if (found == review_.tunnels().end()) found = review_.tunnels().find(kind);
+  return found == review_.tunnels().end() ? nullptr : &found->second;
+}
 
 landmarks::AnatomicalAxes Sheet::axes(BoneKind kind) const {
   const auto marks = knee_.landmarks.find(kind);
@@ -120,10 +132,10 @@ double Sheet::lateral(double x_mm, double y_mm, double width_mm) {
   } else {
     caption += "; no grid, since Blumensaat's line is not marked";
   }
-  if (const auto planned = review_.tunnel(BoneKind::Femur); planned.tunnel != nullptr) {
-    tunnel_outline(picture, BoneKind::Femur);
+  tunnel_outlines(picture, BoneKind::Femur);
+  if (const auto* femoral = planned(BoneKind::Femur); femoral != nullptr) {
     if (quadrant) {
-      const auto percent = quadrant->percent_of(planned.tunnel->entry_mm);
+      const auto percent = quadrant->percent_of(femoral->tunnel.entry_mm);
       caption += files::format(
           ". Entry at %.1f %% deep to shallow, %.1f %% high to low; yellow: mean and one "
           "standard deviation of 13 studies (Arthroscopy 2016)",
@@ -146,28 +158,31 @@ void Sheet::plateau(double x_mm, double y_mm, double width_mm) {
   const auto picture = scene::render_plan_picture(request);
   const double height = pdf_.image(x_mm, y_mm, width_mm, picture.rgb, picture.width, picture.height);
   std::string caption = "The tibial plateau from above";
-  const auto planned = review_.tunnel(BoneKind::Tibia);
-  if (const auto& grid = review_.bone(BoneKind::Tibia).surroundings.plateau;
-      grid && planned.tunnel != nullptr) {
-    const auto percent = grid->percent_of(planned.tunnel->entry_mm);
+  const auto* tibial = planned(BoneKind::Tibia);
+  if (const auto& grid = review_.bone(BoneKind::Tibia).surroundings.plateau; grid && tibial != nullptr) {
+    const auto percent = grid->percent_of(tibial->tunnel.entry_mm);
     caption += files::format(". Entry at %.1f %% from anterior, %.1f %% from medial",
                              percent.anterior_posterior, percent.medial_lateral);
   }
   pdf_.paragraph(x_mm, y_mm + height + 3.5, width_mm, caption, kCaption);
 }
 
-// The tunnel's two sides, its mouth and its end, as they lie in the picture's plane.
-void Sheet::tunnel_outline(const PlanePicture& picture, BoneKind kind) {
-  const auto planned = review_.tunnel(kind);
-  const tunnels::Tunnel& tunnel = *planned.tunnel;
-  const Vector3d side = tunnel.diameter_mm / 2 * tunnel.direction.cross(picture.plane.normal()).normalized();
-  const double length_mm = planned.geometry->enters_bone ? planned.geometry->length_mm : 30;
-  const Vector3d from = tunnel.entry_mm, to = from + length_mm * tunnel.direction;
-  constexpr double kWidth = 0.4;
-  line(picture, from + side, to + side, kWidth, kPlan);
-  line(picture, from - side, to - side, kWidth, kPlan);
-  line(picture, from + side, from - side, kWidth, kPlan);
-  line(picture, to + side, to - side, kWidth, kPlan);
+// A tunnel's two sides, its mouth and its end, as they lie in the picture's plane; thin what is not the
+// sheet's.
+void Sheet::tunnel_outlines(const PlanePicture& picture, BoneKind kind) {
+  for (const auto& [key, planned_tunnel] : review_.tunnels()) {
+    if (key.bone != kind) continue;
+    const auto& [tunnel, geometry] = planned_tunnel;
+    const Vector3d side =
+        tunnel.diameter_mm / 2 * tunnel.direction.cross(picture.plane.normal()).normalized();
+    const double length_mm = geometry.enters_bone ? geometry.length_mm : 30;
+    const Vector3d from = tunnel.entry_mm, to = from + length_mm * tunnel.direction;
+    const double width = &planned_tunnel == planned(kind) ? 0.4 : 0.15;
+    line(picture, from + side, to + side, width, kPlan);
+    line(picture, from - side, to - side, width, kPlan);
+    line(picture, from + side, from - side, width, kPlan);
+    line(picture, to + side, to - side, width, kPlan);
+  }
 }
 
 void Sheet::slice(const PlanePicture& picture, BoneKind kind, const std::optional<images::Volume>& volume) {
@@ -182,7 +197,7 @@ void Sheet::slice(const PlanePicture& picture, BoneKind kind, const std::optiona
   for (const auto& [from, to] :
        scene::outline_of(knee_.bones.at(kind).mesh, picture.plane.center_mm, picture.plane.normal()))
     line(picture, from, to, 0.2, volume ? kBone : kBlack);
-  tunnel_outline(picture, kind);
+  tunnel_outlines(picture, kind);
 }
 
 // Two planes through each axis: one as upright as it can stand, one across.
@@ -193,10 +208,10 @@ void Sheet::slices(double y_mm) {
   const auto volume = this->volume();
   double x_mm = frame_.left_mm;
   for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
-    const auto planned = review_.tunnel(kind);
+    const auto* of_graft = planned(kind);
     for (const bool is_upright : {true, false}) {
-      if (planned.tunnel != nullptr) {
-        const Vector3d direction = planned.tunnel->direction.normalized();
+      if (of_graft != nullptr) {
+        const Vector3d direction = of_graft->tunnel.direction.normalized();
         PlanePicture picture{x_mm, y_mm, width_mm, width_mm, {}, {320, 320}};
         const Vector3d up = axes(kind).proximal;
         Vector3d across = direction.cross(up);
@@ -206,12 +221,12 @@ void Sheet::slices(double y_mm) {
         const Vector3d normal = direction.cross(in_plane);
         Vector3d page_up = up - up.dot(normal) * normal;
         page_up = page_up.norm() > 0.1 ? page_up.normalized() : direction;
-        picture.plane = {planned.tunnel->entry_mm + 0.3 * kShown_mm * direction,
+        picture.plane = {of_graft->tunnel.entry_mm + 0.3 * kShown_mm * direction,
                          (-page_up).cross(normal).normalized(), -page_up, kShown_mm / picture.size_px.x()};
         slice(picture, kind, volume);
         pdf_.text(x_mm, y_mm + width_mm + 3.5,
-                  std::string(bones::to_text(kind)) +
-                      (is_upright ? ", upright along the axis, 70 mm" : ", across it, 70 mm"),
+                  tunnels::name_of(of_graft->tunnel.key()) +
+                      (is_upright ? ", along it, 70 mm" : ", across it, 70 mm"),
                   kCaption);
       }
       x_mm += width_mm + kGap_mm;
@@ -221,14 +236,18 @@ void Sheet::slices(double y_mm) {
 
 void Sheet::checks(BoneKind kind, double x_mm, double y_mm, double width_mm) {
   constexpr double kWord_mm = 17, kStep_mm = 3.6;
-  pdf_.text(x_mm, y_mm, "Checks of the " + std::string(bones::to_text(kind)), {.size_pt = 9, .bold = true});
+  const auto* of_graft = planned(kind);
+  pdf_.text(x_mm, y_mm,
+            "Checks of the " + (of_graft != nullptr ? tunnels::name_of(of_graft->tunnel.key())
+                                                    : std::string(bones::to_text(kind))),
+            {.size_pt = 9, .bold = true});
   y_mm += 4;
-  if (!review_.has_bone(kind) || review_.tunnel(kind).tunnel == nullptr) {
+  if (of_graft == nullptr) {
     pdf_.text(x_mm, y_mm, review_.has_bone(kind) ? "No tunnel is planned." : "The case has no such bone.",
               kCaption);
     return;
   }
-  for (const PlanCheck& check : review_.checks(kind)) {
+  for (const PlanCheck& check : review_.checks(of_graft->tunnel.key())) {
     const bool is_amiss =
         check.verdict == PlanCheck::Verdict::Look || check.verdict == PlanCheck::Verdict::Wrong;
     pdf_.text(x_mm, y_mm, to_text(check.verdict),
@@ -253,9 +272,17 @@ void Sheet::draw() {
 
 }  // namespace
 
+std::vector<norms::Bundle> planned_grafts(const cases::Plan& plan) {
+  std::set<norms::Bundle> grafts;
+  for (const auto& [key, tunnel] : plan.tunnels) grafts.insert(key.bundle);
+  // A single tunnel beside bundles of the other bone stands on their sheets.
+  if (grafts.size() > 1) grafts.erase(norms::Bundle::Whole);
+  return {grafts.begin(), grafts.end()};
+}
+
 void draw_plan_sheet(PdfDocument& pdf, const SheetFrame& frame, const cases::Case& knee,
-                     const std::filesystem::path& case_folder) {
-  Sheet(pdf, frame, knee, case_folder).draw();
+                     const std::filesystem::path& case_folder, norms::Bundle graft) {
+  Sheet(pdf, frame, knee, case_folder, graft).draw();
 }
 
 }  // namespace arthronaut::report

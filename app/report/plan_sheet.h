@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "app/report/pdf_document.h"
 #include "planning/cases/case.h"
@@ -13,11 +14,16 @@ struct SheetFrame {
   double left_mm = 20, top_mm = 28, width_mm = 170;
 };
 
+// Of which grafts a plan needs a sheet: of the single one, or of each bundle that a tunnel is planned for.
+// Empty without a tunnel.
+[[nodiscard]] std::vector<norms::Bundle> planned_grafts(const cases::Plan& plan);
+
+// The tunnels of one graft: of each bone that of the bundle, else its single one; the others are thin lines.
 // Draws on the last page, which is to be empty below frame.top_mm. Slices show the case's images where it
 // keeps some, else the outlines of the bones alone. Without a tunnel it says so. Throws IoError and
 // InvalidInput when an image of the case can't be read, DeviceError when no picture of the plateau can be
 // made.
 void draw_plan_sheet(PdfDocument& pdf, const SheetFrame& frame, const cases::Case& knee,
-                     const std::filesystem::path& case_folder);
+                     const std::filesystem::path& case_folder, norms::Bundle graft);
 
 }  // namespace arthronaut::report

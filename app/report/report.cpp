@@ -44,7 +44,7 @@ struct Content {
   std::filesystem::path folder;
   cases::Case knee;
   std::unique_ptr<recording::RecordedSession> session;
-  std::optional<operation::AchievedTunnel> achieved;
+  std::vector<operation::AchievedTunnel> achieved;
   std::optional<cases::Identity> identity;  // where it is to be named
 };
 
@@ -52,23 +52,23 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
   Content content{.folder = folder,
                   .knee = cases::load_case(folder),
                   .session = nullptr,
-                  .achieved = std::nullopt,
+                  .achieved = {},
                   .identity = std::nullopt};
   if (options.with_identity) content.identity = cases::load_identity(folder);
   const auto sessions = cases::session_folders(folder);
   for (auto it = sessions.rbegin(); it != sessions.rend(); ++it) {
-    const auto achieved_file = *it / "achieved.json";
-    const bool has_achieved = std::filesystem::exists(achieved_file);
+    const auto achieved_files = operation::achieved_files(*it);
+    const bool has_achieved = !achieved_files.empty();
     if (!has_achieved && !std::filesystem::exists(*it / "session.json")) continue;
     auto session = std::make_unique<recording::RecordedSession>(*it);
     if (!has_achieved && !session->registration()) continue;
     content.session = std::move(session);
-    if (has_achieved) content.achieved = operation::read_achieved_file(achieved_file);
+    for (const auto& file : achieved_files) content.achieved.push_back(operation::read_achieved_file(file));
     // The newest session with a drilled tunnel; failing that, the newest with a registration.
     if (has_achieved) break;
     bool older_has_achieved = false;
     for (auto older = it; older != sessions.rend(); ++older) {
-      older_has_achieved |= std::filesystem::exists(*older / "achieved.json");
+      older_has_achieved |= !operation::achieved_files(*older).empty();
     }
     if (!older_has_achieved) break;
   }
@@ -85,10 +85,12 @@ class Report {
   // Whole.
   PdfDocument& drawn() {
     plan_page();
-    if (!content_.knee.plan.tunnels.empty()) {
-      begin_page("The plan on one sheet");
+    for (const norms::Bundle graft : planned_grafts(content_.knee.plan)) {
+      begin_page(graft == norms::Bundle::Whole          ? "The plan on one sheet"
+                 : graft == norms::Bundle::Anteromedial ? "The plan on one sheet: AM graft"
+                                                        : "The plan on one sheet: PL graft");
       draw_plan_sheet(pdf_, {.left_mm = kLeftMm, .top_mm = y_, .width_mm = kWidthMm}, content_.knee,
-                      content_.folder);
+                      content_.folder, graft);
     }
     navigate_page();
     settings();
@@ -130,9 +132,9 @@ class Report {
       request.width = 1000;
       request.height = 800;
       request.light_background = true;
-      if (with_result && content_.achieved) {
-        request.achieved = content_.achieved->truth ? *content_.achieved->truth : content_.achieved->measured;
-      }
+      if (with_result)
+        for (const operation::AchievedTunnel& achieved : content_.achieved)
+          request.achieved.push_back(achieved.truth ? *achieved.truth : achieved.measured);
       if (with_result) request.curve_points_in_bone = touched_points();
       const auto picture = scene::render_plan_picture(request);
       height = pdf_.image(x, y_ + 3, width, picture.rgb, picture.width, picture.height);
@@ -159,7 +161,7 @@ class Report {
   }
 
   void plan_page();
-  void say_plan_fit(bones::BoneKind kind);
+  void say_plan_fit(const tunnels::TunnelKey& key);
   void navigate_page();
   void registration_section(const registration::RegistrationSummary& registration);
   void result_section(const operation::AchievedTunnel& achieved);
@@ -186,30 +188,30 @@ void Report::plan_page() {
   if (content_.knee.plan.tunnels.empty()) {
     sentence("No tunnel is planned.");
   } else {
-    std::vector<std::vector<std::string>> rows = {{"Bone", "Entry, mm (LPS)", "Direction", "Diameter",
+    std::vector<std::vector<std::string>> rows = {{"Tunnel", "Entry, mm (LPS)", "Direction", "Diameter",
                                                    "Length in bone", "Least wall", "Exit, mm (LPS)"}};
-    for (const auto& [kind, tunnel] : content_.knee.plan.tunnels) {
-      const auto bone = content_.knee.bones.find(kind);
+    for (const auto& [key, tunnel] : content_.knee.plan.tunnels) {
+      const auto bone = content_.knee.bones.find(key.bone);
       tunnels::TunnelGeometry geometry;
       if (bone != content_.knee.bones.end()) {
         geometry = tunnels::measure(tunnel, geometry::Surface(bone->second.mesh));
       }
       const bool in_bone = geometry.enters_bone;
       rows.push_back(
-          {std::string(bones::to_text(kind)), point(tunnel.entry_mm), point(tunnel.direction, 2),
+          {tunnels::name_of(key), point(tunnel.entry_mm), point(tunnel.direction, 2),
            number(tunnel.diameter_mm, " mm"), in_bone ? number(geometry.length_mm, " mm") : "misses the bone",
            in_bone ? number(geometry.wall_mm, " mm") : "–", in_bone ? point(geometry.exit_mm) : "–"});
     }
     table({16, 34, 32, 18, 20, 18, 32}, rows);
-    for (const auto& [kind, tunnel] : content_.knee.plan.tunnels) say_plan_fit(kind);
+    for (const auto& [key, tunnel] : content_.knee.plan.tunnels) say_plan_fit(key);
   }
   pictures(scene::ViewDirection::Anterior, scene::ViewDirection::Lateral, false);
 }
 
 // A plan is of the mesh that it was made on, and of no other.
-void Report::say_plan_fit(bones::BoneKind kind) {
-  const std::string name(bones::to_text(kind));
-  const cases::PlanFit fit = cases::plan_fit(content_.knee, kind);
+void Report::say_plan_fit(const tunnels::TunnelKey& key) {
+  const std::string name = tunnels::name_of(key);
+  const cases::PlanFit fit = cases::plan_fit(content_.knee, key);
   if (!fit.is_valid()) {
     sentence("NOT VALID: " + fit.reason + ".", {.bold = true, .ink = kWarning});
   } else if (fit.outcome == cases::PlanFit::Outcome::Unknown) {
@@ -237,7 +239,9 @@ void Report::registration_section(const registration::RegistrationSummary& regis
 }
 
 void Report::result_section(const operation::AchievedTunnel& achieved) {
-  heading("Planned against achieved");
+  heading(achieved.planned.bundle == norms::Bundle::Whole
+              ? "Planned against achieved"
+              : "Planned against achieved: " + tunnels::name_of(achieved.planned.key()));
   const auto planned_measured = operation::compare(achieved.planned, achieved.measured);
   std::vector<std::vector<std::string>> rows = {
       {"Comparison", "Entry to entry", "Entry to axis", "Angle"},
@@ -289,13 +293,15 @@ void Report::navigate_page() {
        std::to_string(session.frames().size()) + (session.was_finished() ? "" : " (cut off by a crash)")},
       {"World marker tracked", number(100 * with_world / frames, " % of the frames")},
       {"Lens mark found", number(100 * with_mark / frames, " % of the frames")}};
+  if (const std::string guided = guided_bundles(session); !guided.empty())
+    rows.push_back({"Guided to the tunnel", guided});
   for (auto& row : safety_rows(session)) rows.push_back(std::move(row));
   table({70, 100}, rows);
   if (session.registration()) registration_section(*session.registration());
-  if (content_.achieved) result_section(*content_.achieved);
+  for (const operation::AchievedTunnel& achieved : content_.achieved) result_section(achieved);
   if (y_ > 195) begin_page("Pictures of the result");
   pictures(joint_view(), scene::ViewDirection::Lateral, true);
-  if (content_.achieved) {
+  if (!content_.achieved.empty()) {
     sentence("Planned tunnel, and beside it the tunnel as drilled; dots: where the probe touched the bone.",
              {.size_pt = 8, .ink = kGray});
   }

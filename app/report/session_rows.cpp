@@ -20,6 +20,19 @@ std::string kind_in_words(const recording::SessionHeader& header) {
                                                    : "simulation: nobody's knee";
 }
 
+std::string guided_bundles(const recording::RecordedSession& session) {
+  std::string names, last;
+  for (const recording::SessionEvent& event : session.events()) {
+    if (event.kind != recording::kPlanEvent) continue;
+    const auto plan = session.plan_of(event).plan;
+    if (!plan || plan->bundle == norms::Bundle::Whole) continue;
+    const std::string name = tunnels::name_of(plan->key());
+    if (name != last) names += (names.empty() ? "" : ", ") + name;
+    last = name;
+  }
+  return names;
+}
+
 std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session) {
   bool is_verified = false, was_verified = false, was_skipped = false, is_confirmed = false;
   std::string alarms, guide;

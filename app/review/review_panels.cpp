@@ -76,16 +76,20 @@ void draw_achieved(const widgets::Ui& ui, const SessionReview& review) {
   widgets::text_in(ui.theme.title, widgets::kText, "Planned and achieved");
   if (!review.achieved_problem.empty())
     return widgets::status_row(ui, widgets::Severity::Bad, "Not readable", review.achieved_problem);
-  if (!review.achieved)
+  if (review.achieved.empty())
     return widgets::text_in(ui.theme.body, widgets::kQuietText, "No tunnel was recorded as drilled.");
-  const operation::AchievedTunnel& achieved = *review.achieved;
-  draw_difference(ui, "As navigation measured it", operation::compare(achieved.planned, achieved.measured));
-  if (achieved.truth)
-    draw_difference(ui, "As it truly is (simulated)", operation::compare(achieved.planned, *achieved.truth));
-  widgets::text_in(ui.theme.body, widgets::kQuietText,
-                   achieved.depth_mm.value_or(0) > 1
-                       ? "Depth " + widgets::fixed(*achieved.depth_mm, 1) + " mm"
-                       : "Depth not known");
+  for (const operation::AchievedTunnel& achieved : review.achieved) {
+    if (achieved.planned.bundle != norms::Bundle::Whole)
+      widgets::text_in(ui.theme.strong, widgets::kText, tunnels::name_of(achieved.planned.key()) + " tunnel");
+    draw_difference(ui, "As navigation measured it", operation::compare(achieved.planned, achieved.measured));
+    if (achieved.truth)
+      draw_difference(ui, "As it truly is (simulated)",
+                      operation::compare(achieved.planned, *achieved.truth));
+    widgets::text_in(ui.theme.body, widgets::kQuietText,
+                     achieved.depth_mm.value_or(0) > 1
+                         ? "Depth " + widgets::fixed(*achieved.depth_mm, 1) + " mm"
+                         : "Depth not known");
+  }
 }
 
 }  // namespace

@@ -269,9 +269,14 @@ void ReviewView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area) {
   }
   pane_.draw(ui, "review.view", area);
   const bool is_femur = review_->session->header().bone == bones::BoneKind::Femur;
+  const auto& plan = review_->plan.plan;
+  const std::string planned = !plan ? ""
+                              : plan->bundle == norms::Bundle::Whole
+                                  ? ". Blue: planned"
+                                  : ". Blue: planned " + tunnels::name_of(plan->key());
   widgets::caption(ui, area, widgets::kText,
-                   std::string(is_femur ? "Femur" : "Tibia") + (review_->plan.plan ? ". Blue: planned" : "") +
-                       (review_->achieved ? ". Banded: achieved" : ""));
+                   std::string(is_femur ? "Femur" : "Tibia") + planned +
+                       (!review_->achieved.empty() ? ". Banded: achieved" : ""));
 }
 
 void ReviewView::show_scene() {
@@ -282,11 +287,10 @@ void ReviewView::show_scene() {
   content.bones.push_back({model_->drawn_mesh(bone), scene::kBoneColor, 1.0});
   const recording::RecordedSession::PlanChange& plan = review_->plan;
   if (plan.plan) scene::add_planned_tunnel(content, *plan.plan, plan.planned_length_mm);
-  if (review_->achieved) {
+  for (const operation::AchievedTunnel& achieved : review_->achieved) {
     // Of a depth that nobody knows, in older records nought, the tunnel is drawn as long as planned.
-    const double depth_mm = review_->achieved->depth_mm.value_or(0);
-    scene::add_achieved_tunnel(content, review_->achieved->measured,
-                               depth_mm > 1 ? depth_mm : plan.planned_length_mm);
+    const double depth_mm = achieved.depth_mm.value_or(0);
+    scene::add_achieved_tunnel(content, achieved.measured, depth_mm > 1 ? depth_mm : plan.planned_length_mm);
   }
   if (session.registration() && session.registration()->has_pose) {
     const geometry::RigidTransform bone_from_marker = session.registration()->marker_from_bone.inverse();

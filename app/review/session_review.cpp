@@ -53,10 +53,9 @@ SessionReview read_review(const std::filesystem::path& session_folder) {
       track_of(session, "Guidance", [](const recording::RecordedFrame& f) { return f.guidance.is_valid(); }));
   for (const recording::SessionEvent& event : session.events())
     if (event.kind == recording::kPlanEvent) review.plan = session.plan_of(event);
-  const std::filesystem::path achieved = session_folder / "achieved.json";
-  if (!std::filesystem::exists(achieved)) return review;
-  try {  // a broken achieved.json must not hide the session: its reason is shown in its place
-    review.achieved = operation::read_achieved_file(achieved);
+  try {  // a broken file must not hide the session: its reason is shown in its place
+    for (const std::filesystem::path& file : operation::achieved_files(session_folder))
+      review.achieved.push_back(operation::read_achieved_file(file));
   } catch (const std::runtime_error& error) {
     review.achieved_problem = error.what();
   }

@@ -29,8 +29,9 @@ struct SessionReview {
   std::vector<TimeTrack> tracks;
   // That guided, the last one; no tunnel when there was none. Not what the case plans by now.
   recording::RecordedSession::PlanChange plan;
-  std::optional<operation::AchievedTunnel> achieved;
-  std::string achieved_problem;  // why achieved.json could not be read; empty when it was or is not there
+  std::vector<operation::AchievedTunnel> achieved;  // none, one, or those of two bundles
+  std::string
+      achieved_problem;  // why one of their files could not be read; empty when it was or is not there
 };
 
 // Throws IoError or InvalidInput.

@@ -66,11 +66,12 @@ Image render_plan_picture(const PictureRequest& request) {
     content.bones.push_back({simplified(bone.mesh, kPictureTriangles), kBoneColor, 1.0});
     if (request.view == ViewDirection::Notch) content.bones.back().cut = notch_cut(bone.mesh, *axes, named);
     all.vertices_mm.insert(all.vertices_mm.end(), bone.mesh.vertices_mm.begin(), bone.mesh.vertices_mm.end());
-    const auto planned = request.knee->plan.tunnels.find(kind);
-    if (planned != request.knee->plan.tunnels.end())
-      add_planned_tunnel(content, planned->second, drawn_length_mm(planned->second, bone.mesh));
-    if (request.achieved && request.achieved->bone == kind)
-      add_achieved_tunnel(content, *request.achieved, drawn_length_mm(*request.achieved, bone.mesh));
+    for (const tunnels::TunnelKey& key : request.knee->plan.of(kind)) {
+      const tunnels::Tunnel& planned = request.knee->plan.tunnels.at(key);
+      add_planned_tunnel(content, planned, drawn_length_mm(planned, bone.mesh));
+    }
+    for (const tunnels::Tunnel& achieved : request.achieved)
+      if (achieved.bone == kind) add_achieved_tunnel(content, achieved, drawn_length_mm(achieved, bone.mesh));
   }
   if (content.bones.empty()) throw InvalidInput("the case has none of the bones that the picture is to show");
   add_curve_points(content, request.curve_points_in_bone);

@@ -29,8 +29,8 @@ enum class ViewDirection {
 struct PictureRequest {
   const cases::Case* knee = nullptr;  // not null
   std::optional<bones::BoneKind>
-      only_bone;                            // empty: both; Distal and Notch show the femur, Plateau the tibia
-  std::optional<tunnels::Tunnel> achieved;  // as drilled, drawn in another colour and pattern
+      only_bone;  // empty: both; Distal and Notch show the femur, Plateau the tibia
+  std::vector<tunnels::Tunnel> achieved = {};         // as drilled, drawn in another colour and pattern
   std::vector<Eigen::Vector3d> curve_points_in_bone;  // mm, LPS
   ViewDirection view = ViewDirection::Anterior;
   int width = 800, height = 600;

@@ -18,9 +18,10 @@ nlohmann::ordered_json to_json(const tunnels::Tunnel& tunnel) {
           {"diameter_mm", tunnel.diameter_mm}};
 }
 
-tunnels::Tunnel tunnel_from(const files::JsonObject& node, bones::BoneKind bone) {
+tunnels::Tunnel tunnel_from(const files::JsonObject& node, const tunnels::TunnelKey& key) {
   tunnels::Tunnel tunnel;
-  tunnel.bone = bone;
+  tunnel.bone = key.bone;
+  tunnel.bundle = key.bundle;
   tunnel.entry_mm = node.vector3("entry_mm");
   tunnel.direction = node.vector3("direction");
   if (tunnel.direction.norm() < 1e-6) node.fail("direction", "must not be zero");
@@ -39,18 +40,34 @@ TunnelDifference compare(const tunnels::Tunnel& reference, const tunnels::Tunnel
       .angle_deg = geometry::deg_from_rad(geometry::angle_between_rad(reference.direction, other.direction))};
 }
 
+std::string achieved_file_name(const tunnels::TunnelKey& key) {
+  if (key.bundle == norms::Bundle::Whole) return "achieved.json";
+  return "achieved_" + std::string(norms::to_text(key.bundle)) + ".json";
+}
+
+std::vector<std::filesystem::path> achieved_files(const std::filesystem::path& session_folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto bundle :
+       {norms::Bundle::Whole, norms::Bundle::Anteromedial, norms::Bundle::Posterolateral}) {
+    files.push_back(session_folder / achieved_file_name({bones::BoneKind::Femur, bundle}));
+    if (!std::filesystem::exists(files.back())) files.pop_back();
+  }
+  return files;
+}
+
 AchievedTunnel read_achieved_file(const std::filesystem::path& file) {
   const auto root = files::read_json(file, kFormat, kVersion);
-  const auto bone = bones::bone_kind_from_text(root.text("bone"));
+  tunnels::TunnelKey key = bones::bone_kind_from_text(root.text("bone"));
+  if (root.has("bundle")) key.bundle = norms::bundle_from_text(root.text("bundle"));
   AchievedTunnel achieved;
-  achieved.planned = tunnel_from(root.object("planned"), bone);
-  achieved.measured = tunnel_from(root.object("measured"), bone);
+  achieved.planned = tunnel_from(root.object("planned"), key);
+  achieved.measured = tunnel_from(root.object("measured"), key);
   if (root.has("depth_mm")) achieved.depth_mm = root.number("depth_mm");
   achieved.timestamp_ns = root.integer("timestamp_ns");
   achieved.pose_count = static_cast<int>(root.integer("pose_count"));
   achieved.sigma_offset_mm = root.number("sigma_offset_mm");
   achieved.sigma_angle_deg = root.number("sigma_angle_deg");
-  if (root.has("truth")) achieved.truth = tunnel_from(root.object("truth"), bone);
+  if (root.has("truth")) achieved.truth = tunnel_from(root.object("truth"), key);
   return achieved;
 }
 
@@ -66,6 +83,8 @@ void write_achieved_file(const std::filesystem::path& file, const AchievedTunnel
       {"sigma_offset_mm", achieved.sigma_offset_mm},
       {"sigma_angle_deg", achieved.sigma_angle_deg},
   };
+  if (achieved.planned.bundle != norms::Bundle::Whole)
+    json["bundle"] = norms::to_text(achieved.planned.bundle);
   if (achieved.depth_mm) json["depth_mm"] = *achieved.depth_mm;
   if (achieved.truth) json["truth"] = to_json(*achieved.truth);
   files::write_json(file, json);

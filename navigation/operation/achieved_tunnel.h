@@ -1,10 +1,13 @@
-// The tunnel as drilled, in a session's achieved.json (format "arthronaut.achieved", version 1): as
-// navigation measured it, what was planned, and, from the simulator alone, what was true.
+// The tunnel as drilled, in a session's achieved.json (format "arthronaut.achieved", version 1), of a tunnel
+// of one bundle in achieved_am.json or achieved_pl.json, so that a session holds both: as navigation measured
+// it, what was planned, and, from the simulator alone, what was true.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "planning/tunnels/tunnel.h"
 
@@ -30,6 +33,10 @@ struct TunnelDifference {
   double angle_deg = 0;         // between the axes
 };
 [[nodiscard]] TunnelDifference compare(const tunnels::Tunnel& reference, const tunnels::Tunnel& other);
+
+[[nodiscard]] std::string achieved_file_name(const tunnels::TunnelKey& key);
+// Those that the session holds: of its single tunnel, of AM, of PL.
+[[nodiscard]] std::vector<std::filesystem::path> achieved_files(const std::filesystem::path& session_folder);
 
 // Throws IoError or InvalidInput (file, place, reason).
 [[nodiscard]] AchievedTunnel read_achieved_file(const std::filesystem::path& file);

@@ -50,6 +50,7 @@ void add(Json& json, const std::optional<PlannedTunnel>& plan) {
   if (!plan) return;
   const tunnels::Tunnel& tunnel = plan->tunnel;
   json["bone"] = bones::to_text(tunnel.bone);
+  if (tunnel.bundle != norms::Bundle::Whole) json["bundle"] = norms::to_text(tunnel.bundle);
   json["entry_mm"] = files::to_json(tunnel.entry_mm);
   json["direction"] = files::to_json(tunnel.direction);
   json["diameter_mm"] = tunnel.diameter_mm;
@@ -95,6 +96,7 @@ std::optional<PlannedTunnel> plan_from(const files::JsonObject& json) {
   if (!json.has("bone")) return std::nullopt;
   PlannedTunnel plan;
   plan.tunnel.bone = bones::bone_kind_from_text(json.text("bone"));
+  if (json.has("bundle")) plan.tunnel.bundle = norms::bundle_from_text(json.text("bundle"));
   plan.tunnel.entry_mm = json.vector3("entry_mm");
   plan.tunnel.direction = json.vector3("direction");
   plan.tunnel.diameter_mm = json.positive_number("diameter_mm");
@@ -159,7 +161,7 @@ Command plain(std::size_t index) {
 }  // namespace
 
 bool PlannedTunnel::operator==(const PlannedTunnel& other) const {
-  return tunnel.bone == other.tunnel.bone && tunnel.entry_mm == other.tunnel.entry_mm &&
+  return tunnel.key() == other.tunnel.key() && tunnel.entry_mm == other.tunnel.entry_mm &&
          tunnel.direction == other.tunnel.direction && tunnel.diameter_mm == other.tunnel.diameter_mm &&
          length_mm == other.length_mm;
 }

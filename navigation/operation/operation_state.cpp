@@ -39,6 +39,8 @@ class Digest {
     add_matrix(tunnel.entry_mm);
     add_matrix(tunnel.direction);
     add(tunnel.diameter_mm);
+    // Of the tunnel of the whole ligament nothing: records of before there were others stay as they were.
+    if (tunnel.bundle != norms::Bundle::Whole) add(tunnel.bundle);
   }
   [[nodiscard]] std::uint64_t value() const { return hash_; }
 

@@ -78,7 +78,8 @@ std::string_view kind_of(JournalKind kind) {
 std::optional<SessionEvent> event_of(const JournalEntry& entry) {
   if (entry.kind == JournalKind::RegistrationInForce || entry.kind == JournalKind::Plan) return std::nullopt;
   SessionEvent event{entry.timestamp_ns, std::string(kind_of(entry.kind)), entry.text, entry.after_frame};
-  if (entry.kind == JournalKind::Drilled) event.text = "achieved.json";
+  if (entry.kind == JournalKind::Drilled)
+    event.text = operation::achieved_file_name(entry.achieved->planned.key());
   return event;
 }
 
@@ -107,7 +108,8 @@ void append_entries(const std::filesystem::path& session_folder, const std::vect
       event = *event_of(entry);
     }
     if (entry.kind == JournalKind::Drilled)
-      operation::write_achieved_file(session_folder / "achieved.json", *entry.achieved);
+      operation::write_achieved_file(
+          session_folder / operation::achieved_file_name(entry.achieved->planned.key()), *entry.achieved);
     append_event(session_folder, event);
   }
 }
@@ -134,7 +136,8 @@ void OperationRecord::add(const std::vector<JournalEntry>& entries) {
       recorder_->set_plan(entry.plan ? std::optional(entry.plan->tunnel) : std::nullopt,
                           entry.plan ? entry.plan->length_mm : 0);
     if (entry.kind == JournalKind::Drilled)
-      operation::write_achieved_file(folder_ / "achieved.json", *entry.achieved);
+      operation::write_achieved_file(folder_ / operation::achieved_file_name(entry.achieved->planned.key()),
+                                     *entry.achieved);
     if (const auto event = event_of(entry)) recorder_->add_event(*event);
   }
 }

@@ -68,13 +68,15 @@ void read_registration(const fs::path& folder, SessionFacts& facts) {
 }
 
 void read_achieved(const fs::path& folder, SessionFacts& facts) {
-  const fs::path file = folder / "achieved.json";
-  if (!fs::exists(file)) return;
-  const operation::AchievedTunnel achieved = operation::read_achieved_file(file);
-  const auto difference = operation::compare(achieved.planned, achieved.measured);
-  facts.entry_offset_mm = difference.entry_mm;
-  facts.angle_deg = difference.angle_deg;
-  facts.depth_mm = achieved.depth_mm;
+  // Of two tunnels the one that is farther from its plan.
+  for (const fs::path& file : operation::achieved_files(folder)) {
+    const operation::AchievedTunnel achieved = operation::read_achieved_file(file);
+    const auto difference = operation::compare(achieved.planned, achieved.measured);
+    if (facts.entry_offset_mm && *facts.entry_offset_mm >= difference.entry_mm) continue;
+    facts.entry_offset_mm = difference.entry_mm;
+    facts.angle_deg = difference.angle_deg;
+    facts.depth_mm = achieved.depth_mm;
+  }
 }
 
 void read_record(const fs::path& folder, SessionFacts& facts) {

@@ -131,6 +131,7 @@ std::string plan_to_text(const std::optional<tunnels::Tunnel>& plan, double plan
   json["format"] = kPlanFormat;
   json["version"] = kVersion;
   json["bone"] = bones::to_text(plan->bone);
+  if (plan->bundle != norms::Bundle::Whole) json["bundle"] = norms::to_text(plan->bundle);
   json["entry_mm"] = files::to_json(plan->entry_mm);
   json["direction"] = files::to_json(plan->direction);
   json["diameter_mm"] = plan->diameter_mm;
@@ -144,6 +145,7 @@ RecordedSession::PlanChange plan_from_text(const std::string& text, const std::f
   const files::JsonObject json = files::parse_json(text, name, kPlanFormat, kVersion);
   tunnels::Tunnel tunnel;
   tunnel.bone = bones::bone_kind_from_text(json.text("bone"));
+  if (json.has("bundle")) tunnel.bundle = norms::bundle_from_text(json.text("bundle"));
   tunnel.entry_mm = json.vector3("entry_mm");
   tunnel.direction = json.vector3("direction");
   tunnel.diameter_mm = json.positive_number("diameter_mm");

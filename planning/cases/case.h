@@ -30,9 +30,17 @@
 namespace arthronaut::cases {
 
 struct Plan {
-  std::map<bones::BoneKind, tunnels::Tunnel> tunnels;  // at most one a bone
+  // Of a bone its single tunnel, or one or two of bundles, never both kinds: put() keeps it so.
+  std::map<tunnels::TunnelKey, tunnels::Tunnel> tunnels;
   // bones::mesh_sha256 of the mesh that the tunnel was planned on. A tunnel of an older file names none.
-  std::map<bones::BoneKind, std::string> mesh_sha256 = {};
+  std::map<tunnels::TunnelKey, std::string> mesh_sha256 = {};
+
+  // The bone's tunnels; none, one or two.
+  [[nodiscard]] std::vector<tunnels::TunnelKey> of(bones::BoneKind bone) const;
+  // In place of the one with its key. A single one takes the place of both bundles', one of a bundle that of
+  // a single one. An empty hash: nobody knows on which mesh it was planned.
+  void put(const tunnels::Tunnel& tunnel, const std::string& planned_on_mesh_sha256);
+  void remove(const tunnels::TunnelKey& key);
 };
 
 struct Case {
@@ -64,7 +72,7 @@ void save_plan(const std::filesystem::path& folder, const Plan& plan);
 [[nodiscard]] std::string save_plan_over(const std::filesystem::path& folder, const Plan& plan,
                                          const std::string& version);
 
-// Whether the tunnel of a bone was planned on the mesh that the case holds.
+// Whether a tunnel was planned on the mesh that the case holds.
 struct PlanFit {
   enum class Outcome {
     NoPlan,
@@ -77,11 +85,12 @@ struct PlanFit {
   [[nodiscard]] bool is_valid() const { return outcome == Outcome::Fits || outcome == Outcome::Unknown; }
 };
 // mesh_sha256: of the case's mesh of that bone, empty when it has none. For those who keep it at hand.
-[[nodiscard]] PlanFit plan_fit(const Plan& plan, bones::BoneKind bone, const std::string& mesh_sha256);
+[[nodiscard]] PlanFit plan_fit(const Plan& plan, const tunnels::TunnelKey& key,
+                               const std::string& mesh_sha256);
 // Computes the hash of the mesh: milliseconds.
-[[nodiscard]] PlanFit plan_fit(const Case& contents, bones::BoneKind bone);
+[[nodiscard]] PlanFit plan_fit(const Case& contents, const tunnels::TunnelKey& key);
 // Whether plan_fit() is valid: what is guided by must be.
-[[nodiscard]] bool plan_fits(const Case& contents, bones::BoneKind bone);
+[[nodiscard]] bool plan_fits(const Case& contents, const tunnels::TunnelKey& key);
 // Gives the tunnels that name no mesh the name of the case's.
 void name_meshes(Case& contents);
 

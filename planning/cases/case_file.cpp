@@ -116,8 +116,8 @@ CaseOutline read_case_outline(const fs::path& case_folder) {
   for (const auto& node : root.objects("bones")) outline.bones.insert(kind_of(node));
   const fs::path plan = case_folder / "plan.json";
   if (!fs::exists(plan)) return outline;
-  for (const auto& [kind, tunnel] : plan_from(files::read_text(plan), plan).tunnels)
-    outline.planned.insert(kind);
+  for (const auto& [key, tunnel] : plan_from(files::read_text(plan), plan).tunnels)
+    outline.planned.insert(key.bone);
   return outline;
 }
 

@@ -18,6 +18,31 @@ fs::path plan_file(const fs::path& case_folder) { return case_folder / "plan.jso
 
 }  // namespace
 
+std::vector<tunnels::TunnelKey> Plan::of(bones::BoneKind bone) const {
+  std::vector<tunnels::TunnelKey> keys;
+  for (const auto& [key, tunnel] : tunnels)
+    if (key.bone == bone) keys.push_back(key);
+  return keys;
+}
+
+void Plan::put(const tunnels::Tunnel& tunnel, const std::string& planned_on_mesh_sha256) {
+  const tunnels::TunnelKey key = tunnel.key();
+  const std::string mesh = planned_on_mesh_sha256;  // which may be that of a tunnel that goes
+  for (const tunnels::TunnelKey& other : of(key.bone)) {
+    if ((other.bundle == norms::Bundle::Whole) != (key.bundle == norms::Bundle::Whole)) remove(other);
+  }
+  tunnels.insert_or_assign(key, tunnel);
+  if (mesh.empty())
+    mesh_sha256.erase(key);
+  else
+    mesh_sha256.insert_or_assign(key, mesh);
+}
+
+void Plan::remove(const tunnels::TunnelKey& key) {
+  tunnels.erase(key);
+  mesh_sha256.erase(key);
+}
+
 Plan plan_from(const std::string& text, const fs::path& file) {
   const auto root = files::parse_json(text, file, kPlanFormat, kPlanFormatVersion);
   Plan plan;
@@ -33,8 +58,23 @@ Plan plan_from(const std::string& text, const fs::path& file) {
     if (tunnel.direction.norm() < 1e-6) node.fail("direction", "must not be zero");
     tunnel.direction.normalize();
     tunnel.diameter_mm = node.positive_number("diameter_mm");
-    if (!plan.tunnels.emplace(tunnel.bone, tunnel).second) node.fail("bone", "has two tunnels");
-    if (node.has("mesh_sha256")) plan.mesh_sha256[tunnel.bone] = node.text("mesh_sha256");
+    if (node.has("bundle")) {
+      try {
+        tunnel.bundle = norms::bundle_from_text(node.text("bundle"));
+      } catch (const InvalidInput&) {
+        node.fail("bundle", "must be single, am or pl");
+      }
+    }
+    const auto others = plan.of(tunnel.bone);
+    if (plan.tunnels.contains(tunnel.key())) {
+      node.fail("bone", tunnel.bundle == norms::Bundle::Whole ? "has two tunnels"
+                                                              : "has two tunnels of the same bundle");
+    }
+    if (!others.empty() &&
+        (tunnel.bundle == norms::Bundle::Whole || others.front().bundle == norms::Bundle::Whole))
+      node.fail("bundle", "stands beside a single tunnel of the same bone");
+    plan.tunnels.emplace(tunnel.key(), tunnel);
+    if (node.has("mesh_sha256")) plan.mesh_sha256[tunnel.key()] = node.text("mesh_sha256");
   }
   return plan;
 }
@@ -49,10 +89,10 @@ void read_plan(const fs::path& case_folder, Case& contents) {
 
 Plan with_named_meshes(const Case& contents) {
   Plan plan = contents.plan;
-  for (const auto& [kind, tunnel] : plan.tunnels) {
-    const auto bone = contents.bones.find(kind);
-    if (bone == contents.bones.end() || plan.mesh_sha256.contains(kind)) continue;
-    plan.mesh_sha256[kind] = bones::mesh_sha256(bone->second.mesh);
+  for (const auto& [key, tunnel] : plan.tunnels) {
+    const auto bone = contents.bones.find(key.bone);
+    if (bone == contents.bones.end() || plan.mesh_sha256.contains(key)) continue;
+    plan.mesh_sha256[key] = bones::mesh_sha256(bone->second.mesh);
   }
   return plan;
 }
@@ -61,17 +101,22 @@ void name_meshes(Case& contents) { contents.plan = with_named_meshes(contents); 
 
 nlohmann::ordered_json to_json(const Plan& plan) {
   auto tunnels = nlohmann::ordered_json::array();
-  for (const auto& [kind, tunnel] : plan.tunnels) {
-    nlohmann::ordered_json node = {{"bone", bones::to_text(kind)},
+  int version = 1;
+  for (const auto& [key, tunnel] : plan.tunnels) {
+    nlohmann::ordered_json node = {{"bone", bones::to_text(key.bone)},
                                    {"entry_mm", files::to_json(tunnel.entry_mm)},
                                    {"direction", files::to_json(tunnel.direction)},
                                    {"diameter_mm", tunnel.diameter_mm}};
-    if (const auto hash = plan.mesh_sha256.find(kind); hash != plan.mesh_sha256.end()) {
+    if (key.bundle != norms::Bundle::Whole) {
+      node["bundle"] = norms::to_text(key.bundle);
+      version = kPlanFormatVersion;
+    }
+    if (const auto hash = plan.mesh_sha256.find(key); hash != plan.mesh_sha256.end()) {
       node["mesh_sha256"] = hash->second;
     }
     tunnels.push_back(std::move(node));
   }
-  return {{"format", kPlanFormat}, {"version", kPlanFormatVersion}, {"tunnels", std::move(tunnels)}};
+  return {{"format", kPlanFormat}, {"version", version}, {"tunnels", std::move(tunnels)}};
 }
 
 void save_plan(const fs::path& folder, const Plan& plan) {
@@ -92,25 +137,29 @@ std::string save_plan_over(const fs::path& folder, const Plan& plan, const std::
   return plan_version(folder);
 }
 
-PlanFit plan_fit(const Plan& plan, bones::BoneKind bone, const std::string& mesh_sha256) {
-  if (!plan.tunnels.contains(bone)) return {};
-  const std::string name(bones::to_text(bone));
+PlanFit plan_fit(const Plan& plan, const tunnels::TunnelKey& key, const std::string& mesh_sha256) {
+  if (!plan.tunnels.contains(key)) return {};
+  const std::string name(bones::to_text(key.bone));
+  const std::string which =
+      key.bundle == norms::Bundle::Whole ? "the tunnel" : "the tunnel " + tunnels::name_of(key);
   if (mesh_sha256.empty()) {
-    return {PlanFit::Outcome::NoBone, "the tunnel is planned on a " + name + " that the case lacks"};
+    return {PlanFit::Outcome::NoBone, which + " is planned on a " + name + " that the case lacks"};
   }
-  const auto planned_on = plan.mesh_sha256.find(bone);
+  const auto planned_on = plan.mesh_sha256.find(key);
   if (planned_on == plan.mesh_sha256.end()) return {PlanFit::Outcome::Unknown, ""};
   if (planned_on->second == mesh_sha256) return {PlanFit::Outcome::Fits, ""};
   return {PlanFit::Outcome::OtherMesh,
-          "the tunnel was planned on another surface of the " + name + " than the case holds now"};
+          which + " was planned on another surface of the " + name + " than the case holds now"};
 }
 
-PlanFit plan_fit(const Case& contents, bones::BoneKind bone) {
-  const auto found = contents.bones.find(bone);
-  return plan_fit(contents.plan, bone,
+PlanFit plan_fit(const Case& contents, const tunnels::TunnelKey& key) {
+  const auto found = contents.bones.find(key.bone);
+  return plan_fit(contents.plan, key,
                   found == contents.bones.end() ? "" : bones::mesh_sha256(found->second.mesh));
 }
 
-bool plan_fits(const Case& contents, bones::BoneKind bone) { return plan_fit(contents, bone).is_valid(); }
+bool plan_fits(const Case& contents, const tunnels::TunnelKey& key) {
+  return plan_fit(contents, key).is_valid();
+}
 
 }  // namespace arthronaut::cases

@@ -11,7 +11,8 @@
 namespace arthronaut::cases {
 
 inline constexpr std::string_view kPlanFormat = "arthronaut.plan";
-inline constexpr int kPlanFormatVersion = 1;
+// 2: some tunnel is of one bundle. A plan of single tunnels is still written as version 1.
+inline constexpr int kPlanFormatVersion = 2;
 
 // file: for what is wrong with the text. Throws InvalidInput (file, place, reason).
 [[nodiscard]] Plan plan_from(const std::string& text, const std::filesystem::path& file);

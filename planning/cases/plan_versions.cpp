@@ -65,7 +65,7 @@ PlanVersion keep_plan_version(const fs::path& case_folder, const Plan& plan) {
 }
 
 std::string TunnelDifference::in_words() const {
-  const std::string name(bones::to_text(bone));
+  const std::string name = tunnels::name_of(key);
   switch (kind) {
     case Kind::Same:
       return name + ": the same";
@@ -82,13 +82,13 @@ std::string TunnelDifference::in_words() const {
 
 std::vector<TunnelDifference> compare_plans(const Plan& here, const Plan& there) {
   using Kind = TunnelDifference::Kind;
-  std::set<bones::BoneKind> planned;
+  std::set<tunnels::TunnelKey> planned;
   for (const Plan* plan : {&here, &there})
-    for (const auto& [bone, tunnel] : plan->tunnels) planned.insert(bone);
+    for (const auto& [key, tunnel] : plan->tunnels) planned.insert(key);
   std::vector<TunnelDifference> differences;
-  for (const bones::BoneKind bone : planned) {
-    const auto a = here.tunnels.find(bone), b = there.tunnels.find(bone);
-    TunnelDifference difference{.bone = bone};
+  for (const tunnels::TunnelKey& key : planned) {
+    const auto a = here.tunnels.find(key), b = there.tunnels.find(key);
+    TunnelDifference difference{.key = key};
     if (a == here.tunnels.end() || b == there.tunnels.end()) {
       difference.kind = a == here.tunnels.end() ? Kind::OnlyThere : Kind::OnlyHere;
     } else {

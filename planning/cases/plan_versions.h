@@ -22,15 +22,15 @@ struct PlanVersion {
 // Keeps the plan under the next number. Atomic. Throws IoError; InvalidInput for a plan without a tunnel.
 PlanVersion keep_plan_version(const std::filesystem::path& case_folder, const Plan& plan);
 
-// How one bone's tunnel differs between two plans.
+// How one tunnel differs between two plans.
 struct TunnelDifference {
-  bones::BoneKind bone = bones::BoneKind::Femur;
+  tunnels::TunnelKey key = bones::BoneKind::Femur;
   enum class Kind { Same, Moved, OnlyHere, OnlyThere } kind = Kind::Same;
   // Of Same and Moved; there less here.
   double entry_mm = 0, angle_deg = 0, diameter_mm = 0;
   [[nodiscard]] std::string in_words() const;  // "femur: entry 2.1 mm, 3.4 deg, +0.5 mm wide"
 };
-// Of the bones that either plans. Same: not further apart than is seen, 0.05 mm and 0.05 deg.
+// Of the tunnels that either plans. Same: not further apart than is seen, 0.05 mm and 0.05 deg.
 [[nodiscard]] std::vector<TunnelDifference> compare_plans(const Plan& here, const Plan& there);
 
 }  // namespace arthronaut::cases

@@ -52,6 +52,18 @@ std::optional<Joint> joint_of(const BoneInput& input, const Landmarks& marks, bo
 
 }  // namespace
 
+double usual_diameter_mm(norms::Bundle bundle) {
+  switch (bundle) {
+    case norms::Bundle::Whole:
+      break;
+    case norms::Bundle::Anteromedial:
+      return 7.0;
+    case norms::Bundle::Posterolateral:
+      return 6.0;
+  }
+  return 9.0;
+}
+
 void Options::check() const {
   check_range("diameter_mm", diameter_mm, 3, 15);
   check_range("flexion_deg", flexion_deg, 90, 140);
@@ -94,7 +106,11 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
                      (proposal != nullptr && !proposal->is_usable() ? ": " + proposal->reason : "");
     return result;
   }
-  tunnels::Tunnel at_entry{.bone = kind, .entry_mm = {}, .direction = {}, .diameter_mm = options.diameter_mm};
+  tunnels::Tunnel at_entry{.bone = kind,
+                           .entry_mm = {},
+                           .direction = {},
+                           .diameter_mm = options.diameter_mm,
+                           .bundle = options.bundle};
   if (options.bundle == norms::Bundle::Whole && is_confirmed("native_footprint")) {
     const auto on = input.surface->closest_point(input.landmarks.at("native_footprint"));
     at_entry.entry_mm = on.point_mm;

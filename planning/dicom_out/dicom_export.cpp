@@ -42,20 +42,29 @@ void add_bones(const ExportContents& contents, const ObjectSetting& setting, con
 // A tunnel of another surface would lie somewhere else in this one: such a bone is not drilled.
 void add_drilled_bones(const ExportContents& contents, const ObjectSetting& setting,
                        const Belongings& belongings, std::vector<Object>& objects, ExportSummary& summary) {
-  for (const auto& [kind, tunnel] : contents.knee.plan.tunnels) {
+  for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
     const std::string name(bones::to_text(kind));
-    if (const auto fit = cases::plan_fit(contents.knee, kind); !fit.is_valid()) {
-      summary.doubts.push_back("the " + name + " is not there drilled: " + fit.reason);
-      continue;
+    std::vector<tunnels::Tunnel> tunnels;
+    std::string widths, reason;
+    for (const tunnels::TunnelKey& key : contents.knee.plan.of(kind)) {
+      const tunnels::Tunnel& tunnel = contents.knee.plan.tunnels.at(key);
+      widths += files::format(tunnels.empty() ? "%.1f" : " and %.1f", tunnel.diameter_mm);
+      tunnels.push_back(tunnel);
+      if (const auto fit = cases::plan_fit(contents.knee, key); !fit.is_valid()) reason = fit.reason;
     }
-    const auto drilled = plan_export::drill(contents.knee.bones.at(kind).mesh, tunnel);
+    if (tunnels.empty()) continue;
+    plan_export::DrilledBone drilled;
+    if (reason.empty()) {
+      drilled = plan_export::drill(contents.knee.bones.at(kind).mesh, tunnels);
+      reason = drilled.reason;
+    }
     if (!drilled.is_usable()) {
-      summary.doubts.push_back("the " + name + " is not there drilled: " + drilled.reason);
+      summary.doubts.push_back("the " + name + " is not there drilled: " + reason);
       continue;
     }
     const std::string title = files::format(
-        "%s of a %s knee, with its planned tunnel of %.1f mm drilled out", capitalised(name).c_str(),
-        std::string(bones::to_text(setting.side)).c_str(), tunnel.diameter_mm);
+        "%s of a %s knee, with its planned tunnel%s of %s mm drilled out", capitalised(name).c_str(),
+        std::string(bones::to_text(setting.side)).c_str(), tunnels.size() == 1 ? "" : "s", widths.c_str());
     objects.push_back(model_object(belongings.at(kind), setting, title,
                                    bones::mesh_as_stl(name + ", drilled", drilled.mesh), true));
     objects.back().file_name = name + "_drilled.dcm";
@@ -66,11 +75,11 @@ void add_drilled_bones(const ExportContents& contents, const ObjectSetting& sett
 void add_plan(const ExportContents& contents, const ObjectSetting& setting, const Belongings& belongings,
               std::vector<Object>& objects) {
   std::vector<PlannedTunnel> planned;
-  for (const auto& [kind, tunnel] : contents.knee.plan.tunnels) {
-    if (!cases::plan_fits(contents.knee, kind)) continue;
-    const auto measured = tunnels::measure(tunnel, geometry::Surface(contents.knee.bones.at(kind).mesh));
+  for (const auto& [key, tunnel] : contents.knee.plan.tunnels) {
+    if (!cases::plan_fits(contents.knee, key)) continue;
+    const auto measured = tunnels::measure(tunnel, geometry::Surface(contents.knee.bones.at(key.bone).mesh));
     if (measured.enters_bone)
-      planned.push_back({tunnel, measured.exit_mm, belongings.at(kind).study.frame_of_reference_uid});
+      planned.push_back({tunnel, measured.exit_mm, belongings.at(key.bone).study.frame_of_reference_uid});
   }
   if (planned.empty()) return;
   objects.push_back(plan_object(belongings.begin()->second, setting, planned));

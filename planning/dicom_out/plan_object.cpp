@@ -43,10 +43,15 @@ Object plan_object(const Belonging& belonging, const ObjectSetting& setting,
   put(dataset, DCM_ContentCreatorName, "");
   long set_number = 0;
   for (const PlannedTunnel& planned : tunnels) {
-    const std::string bone(bones::to_text(planned.tunnel.bone));
-    const std::string capitals = bone == "femur" ? "FEMUR" : "TIBIA";
-    const std::string of_tunnel =
-        files::format("the %s's tunnel of %.1f mm", bone.c_str(), planned.tunnel.diameter_mm);
+    const bool is_femur = planned.tunnel.bone == bones::BoneKind::Femur;
+    std::string capitals = is_femur ? "FEMUR" : "TIBIA", bundle;
+    if (planned.tunnel.bundle != norms::Bundle::Whole) {
+      bundle = planned.tunnel.bundle == norms::Bundle::Anteromedial ? "AM" : "PL";
+      capitals += "_" + bundle;
+      bundle += " ";
+    }
+    const std::string of_tunnel = files::format("the %s's %stunnel of %.1f mm", is_femur ? "femur" : "tibia",
+                                                bundle.c_str(), planned.tunnel.diameter_mm);
     DcmItem& set = item_of(dataset, DCM_FiducialSetSequence, set_number++);
     put(set, DCM_FrameOfReferenceUID, planned.frame_of_reference_uid);
     add_fiducial(

@@ -64,7 +64,7 @@ bool holds_same(const fs::path& file, const images::EncodedVolume& volume) {
 void add_bones(const fs::path& folder, cases::Case& target, const BoneImport& import) {
   for (const ImportedBone& imported : import.bones) {
     const bones::BoneKind kind = imported.bone.kind;
-    if (target.bones.contains(kind) && target.plan.tunnels.contains(kind)) {
+    if (target.bones.contains(kind) && !target.plan.of(kind).empty()) {
       throw InvalidInput(folder, "",
                          "holds a plan on its " + std::string(bones::to_text(kind)) +
                              ", which another bone would make wrong: import into another case");

@@ -135,12 +135,15 @@ std::vector<PostoperativeFacts> read_postoperative(const fs::path& case_folder) 
   std::vector<PostoperativeFacts> facts;
   const fs::path file = case_folder / "achieved.json";
   if (!fs::exists(file)) return facts;
-  for (const auto& node : files::read_json(file, "arthronaut.achieved", 1).objects("tunnels"))
-    facts.push_back({.bone = node.text("bone"),
+  for (const auto& node : files::read_json(file, "arthronaut.achieved", 1).objects("tunnels")) {
+    // "femur", or of one of two "femur am".
+    const std::string bundle = node.has("bundle") ? " " + node.text("bundle") : "";
+    facts.push_back({.bone = node.text("bone") + bundle,
                      .entry_offset_mm = optional_number(node, "offset_mm"),
                      .angle_deg = optional_number(node, "angle_deg"),
                      .diameter_mm = optional_number(node, "diameter_mm"),
                      .is_reliable = node.boolean("reliable")});
+  }
   return facts;
 }
 

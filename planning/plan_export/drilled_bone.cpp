@@ -81,30 +81,41 @@ double room(const geometry::Surface& surface, const Vector3d& from, const Vector
 }  // namespace
 
 DrilledBone drill(const geometry::TriangleMesh& bone, const tunnels::Tunnel& tunnel) {
+  return drill(bone, std::span(&tunnel, 1));
+}
+
+DrilledBone drill(const geometry::TriangleMesh& bone, std::span<const tunnels::Tunnel> tunnels) {
   DrilledBone result;
   const geometry::Surface surface(bone);
-  const auto measured = tunnels::measure(tunnel, surface);
-  if (!measured.enters_bone) {
-    result.outcome = DrilledBone::Outcome::MissesTheBone;
-    result.reason = "the tunnel misses the bone";
-    return result;
+  std::vector<Mesh> drills;
+  for (const tunnels::Tunnel& tunnel : tunnels) {
+    const auto measured = tunnels::measure(tunnel, surface);
+    if (!measured.enters_bone) {
+      result.outcome = DrilledBone::Outcome::MissesTheBone;
+      result.reason = tunnels.size() == 1 ? "the tunnel misses the bone"
+                                          : "the tunnel " + name_of(tunnel.key()) + " misses the bone";
+      return result;
+    }
+    const Vector3d& d = tunnel.direction;
+    // A polygon of the circle's area.
+    const double sector = 2 * geometry::kPi / kSides;
+    const double radius = 0.5 * tunnel.diameter_mm * std::sqrt(sector / std::sin(sector));
+    drills.push_back(
+        cgal_from(cylinder(measured.entry_on_surface_mm - room(surface, measured.entry_on_surface_mm, -d) * d,
+                           measured.exit_mm + room(surface, measured.exit_mm, d) * d, radius)));
   }
   result.outcome = DrilledBone::Outcome::BrokenSurface;
   result.reason = "the bone's surface is not closed or crosses itself";
-  const Vector3d& d = tunnel.direction;
-  // A polygon of the circle's area.
-  const double sector = 2 * geometry::kPi / kSides;
-  const double radius = 0.5 * tunnel.diameter_mm * std::sqrt(sector / std::sin(sector));
-  Mesh of_bone = cgal_from(bone);
-  Mesh of_drill =
-      cgal_from(cylinder(measured.entry_on_surface_mm - room(surface, measured.entry_on_surface_mm, -d) * d,
-                         measured.exit_mm + room(surface, measured.exit_mm, d) * d, radius));
-  if (!CGAL::is_closed(of_bone) || of_bone.number_of_faces() != bone.triangles.size()) return result;
-  Mesh drilled;
+  Mesh drilled = cgal_from(bone);
+  if (!CGAL::is_closed(drilled) || drilled.number_of_faces() != bone.triangles.size()) return result;
   try {
-    if (!pmp::corefine_and_compute_difference(of_bone, of_drill, drilled,
-                                              CGAL::parameters::throw_on_self_intersection(true)))
-      return result;
+    for (Mesh& drill : drills) {
+      Mesh less;
+      if (!pmp::corefine_and_compute_difference(drilled, drill, less,
+                                                CGAL::parameters::throw_on_self_intersection(true)))
+        return result;
+      drilled = std::move(less);
+    }
   } catch (const std::exception&) {  // CGAL's way to say that the surface crosses itself
     return result;
   }

@@ -1,7 +1,8 @@
-// The bone with its tunnel drilled out, as a closed surface: for printing, for finite elements, for other
+// The bone with its tunnels drilled out, as a closed surface: for printing, for finite elements, for other
 // programs.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "planning/geometry/triangle_mesh.h"
@@ -13,7 +14,7 @@ struct DrilledBone {
   enum class Outcome {
     NotRun,
     Drilled,
-    MissesTheBone,  // the tunnel's axis does not enter it
+    MissesTheBone,  // a tunnel's axis does not enter it
     BrokenSurface,  // not closed, or it crosses itself: no inside to take away from
   } outcome = Outcome::NotRun;
   std::string reason = "drill was not called";  // empty when drilled
@@ -25,5 +26,8 @@ struct DrilledBone {
 // 96 sides and the tunnel's cross-section area; it runs through both mouths and ends in the open, half way to
 // whatever comes next.
 [[nodiscard]] DrilledBone drill(const geometry::TriangleMesh& bone, const tunnels::Tunnel& tunnel);
+// All of them, which may run into each other: each as it is planned in the bone before any was drilled.
+// Precondition: at least one.
+[[nodiscard]] DrilledBone drill(const geometry::TriangleMesh& bone, std::span<const tunnels::Tunnel> tunnels);
 
 }  // namespace arthronaut::plan_export

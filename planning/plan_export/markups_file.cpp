@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "planning/files/atomic_file.h"
@@ -24,7 +25,7 @@ constexpr const char* kSchema =
     "markups-schema-v1.0.3.json#";
 constexpr double kUsualDiameter_mm = 9, kLeastDiameter_mm = 1, kGreatestDiameter_mm = 30;
 
-std::string tunnel_name(bones::BoneKind bone) { return std::string(bones::to_text(bone)) + " tunnel"; }
+std::string tunnel_name(const tunnels::TunnelKey& key) { return tunnels::name_of(key) + " tunnel"; }
 std::string landmarks_name(bones::BoneKind bone) { return std::string(bones::to_text(bone)) + " landmarks"; }
 
 ordered_json control_point(int id, const std::string& label, const Vector3d& position,
@@ -87,11 +88,31 @@ double diameter_of(const json& node, const Place& place) {
   return diameter;
 }
 
+void take_tunnel(const tunnels::TunnelKey& key, const std::vector<Vector3d>& positions, double diameter_mm,
+                 const Place& place, MarkupsPlan& plan) {
+  if (positions.size() != 2) place.fail("must have two control points, entry and exit");
+  const Vector3d along = positions[1] - positions[0];
+  if (along.norm() < 1) place.fail("is shorter than 1 mm");
+  for (const auto& [other, tunnel] : plan.tunnels) {
+    if (other == key) place.fail("is there twice");
+    if (other.bone == key.bone &&
+        (other.bundle == norms::Bundle::Whole || key.bundle == norms::Bundle::Whole))
+      place.fail("stands beside \"" + tunnel_name(other) +
+                 "\": a bone has a single tunnel or those of bundles");
+  }
+  plan.tunnels.emplace(key,
+                       tunnels::Tunnel{key.bone, positions[0], along.normalized(), diameter_mm, key.bundle});
+}
+
 void read_markup(const json& node, const Place& place, MarkupsPlan& plan) {
   if (!node.is_object()) place.fail("is no markup");
   const std::string name = text_of(node, "name", "");
   for (const auto bone : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
-    const bool is_tunnel = name == tunnel_name(bone);
+    std::optional<tunnels::TunnelKey> key;
+    for (const auto bundle :
+         {norms::Bundle::Whole, norms::Bundle::Anteromedial, norms::Bundle::Posterolateral})
+      if (name == tunnel_name({bone, bundle})) key = {bone, bundle};
+    const bool is_tunnel = key.has_value();
     if (!is_tunnel && name != landmarks_name(bone)) continue;
     const std::string system = text_of(node, "coordinateSystem", "LPS");
     if (system != "LPS" && system != "RAS" && system != "0" && system != "1")
@@ -109,14 +130,7 @@ void read_markup(const json& node, const Place& place, MarkupsPlan& plan) {
       if (!is_tunnel)
         plan.landmarks[bone][text_of((*points)[i], "label", std::to_string(i))] = positions.back();
     }
-    if (!is_tunnel) continue;
-    if (positions.size() != 2) place.fail("must have two control points, entry and exit");
-    const Vector3d along = positions[1] - positions[0];
-    if (along.norm() < 1) place.fail("is shorter than 1 mm");
-    if (!plan.tunnels
-             .emplace(bone, tunnels::Tunnel{bone, positions[0], along.normalized(), diameter_of(node, place)})
-             .second)
-      place.fail("is there twice");
+    if (is_tunnel) take_tunnel(*key, positions, diameter_of(node, place), place, plan);
   }
 }
 
@@ -124,13 +138,13 @@ void read_markup(const json& node, const Place& place, MarkupsPlan& plan) {
 
 std::string markups_of(const cases::Case& knee) {
   auto markups = ordered_json::array();
-  for (const auto& [kind, tunnel] : knee.plan.tunnels) {
-    const auto bone = knee.bones.find(kind);
+  for (const auto& [key, tunnel] : knee.plan.tunnels) {
+    const auto bone = knee.bones.find(key.bone);
     if (bone == knee.bones.end()) continue;
     const auto measured = tunnels::measure(tunnel, geometry::Surface(bone->second.mesh));
     const Vector3d exit =
         measured.enters_bone ? measured.exit_mm : Vector3d(tunnel.entry_mm + 30 * tunnel.direction);
-    markups.push_back(markup("Line", tunnel_name(kind), files::format("diameter_mm=%.3f", tunnel.diameter_mm),
+    markups.push_back(markup("Line", tunnel_name(key), files::format("diameter_mm=%.3f", tunnel.diameter_mm),
                              {control_point(1, "entry", tunnel.entry_mm, "on the joint side"),
                               control_point(2, "exit", exit, "where the axis leaves the bone")}));
   }

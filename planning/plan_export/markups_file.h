@@ -1,9 +1,9 @@
 // 3D Slicer's markups (`.mrk.json`, schema 1.0.3): the plan in the form in which other programs draw and move
 // it.
 //
-// A tunnel is a line of two control points, "femur tunnel" from "entry" to "exit"; its diameter stands in the
-// description. Landmarks are a point list, "femur landmarks". Written in LPS and mm; read in LPS or RAS, as
-// the file says.
+// A tunnel is a line of two control points, "femur tunnel", "femur AM tunnel" or "femur PL tunnel", from
+// "entry" to "exit"; its diameter stands in the description. Landmarks are a point list, "femur landmarks".
+// Written in LPS and mm; read in LPS or RAS, as the file says.
 #pragma once
 
 #include <filesystem>
@@ -20,13 +20,13 @@ namespace arthronaut::plan_export {
 [[nodiscard]] std::string markups_of(const cases::Case& knee);
 
 struct MarkupsPlan {
-  std::map<bones::BoneKind, tunnels::Tunnel> tunnels;
+  std::map<tunnels::TunnelKey, tunnels::Tunnel> tunnels;
   std::map<bones::BoneKind, landmarks::Landmarks> landmarks;
 };
 // Reads what markups_of wrote, also after 3D Slicer moved it: lines and point lists by their names, others
 // are passed over. A diameter that is not said is 9 mm. Throws IoError or InvalidInput (file, place, reason):
 // no markups, a unit other than mm, a line without two points or without length, a position that is not
-// finite.
+// finite, a tunnel that is there twice, a bone's single tunnel beside one of a bundle.
 [[nodiscard]] MarkupsPlan read_markups(const std::filesystem::path& file);
 
 }  // namespace arthronaut::plan_export

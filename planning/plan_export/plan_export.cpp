@@ -20,23 +20,25 @@ namespace fs = std::filesystem;
 std::string plan_csv(const cases::Case& knee) {
   std::string text =
       "bone,entry_x_mm,entry_y_mm,entry_z_mm,direction_x,direction_y,direction_z,diameter_mm,"
-      "exit_x_mm,exit_y_mm,exit_z_mm,length_mm,wall_mm\n";
-  for (const auto& [kind, tunnel] : knee.plan.tunnels) {
+      "exit_x_mm,exit_y_mm,exit_z_mm,length_mm,wall_mm,bundle\n";
+  for (const auto& [key, tunnel] : knee.plan.tunnels) {
     const auto& e = tunnel.entry_mm;
     const auto& d = tunnel.direction;
-    text += files::format("%s,%.4f,%.4f,%.4f,%.7f,%.7f,%.7f,%.3f", std::string(bones::to_text(kind)).c_str(),
-                          e.x(), e.y(), e.z(), d.x(), d.y(), d.z(), tunnel.diameter_mm);
-    const auto bone = knee.bones.find(kind);
+    text +=
+        files::format("%s,%.4f,%.4f,%.4f,%.7f,%.7f,%.7f,%.3f", std::string(bones::to_text(key.bone)).c_str(),
+                      e.x(), e.y(), e.z(), d.x(), d.y(), d.z(), tunnel.diameter_mm);
+    const auto bone = knee.bones.find(key.bone);
     const auto measured = bone == knee.bones.end()
                               ? tunnels::TunnelGeometry{}
                               : tunnels::measure(tunnel, geometry::Surface(bone->second.mesh));
     if (measured.enters_bone) {
       const auto& x = measured.exit_mm;
-      text += files::format(",%.4f,%.4f,%.4f,%.3f,%.3f\n", x.x(), x.y(), x.z(), measured.length_mm,
+      text += files::format(",%.4f,%.4f,%.4f,%.3f,%.3f", x.x(), x.y(), x.z(), measured.length_mm,
                             measured.wall_mm);
     } else {
-      text += ",,,,,\n";
+      text += ",,,,,";
     }
+    text += "," + std::string(norms::to_text(key.bundle)) + "\n";
   }
   return text;
 }
@@ -46,15 +48,21 @@ ExportSummary export_plan(const cases::Case& knee, const fs::path& folder) {
     throw InvalidInput("plan: nothing is planned, so there is nothing to export");
   ExportSummary summary;
   std::map<bones::BoneKind, geometry::TriangleMesh> drilled;
-  for (const auto& [kind, tunnel] : knee.plan.tunnels) {
+  for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
+    const auto keys = knee.plan.of(kind);
+    if (keys.empty()) continue;
     const std::string name(bones::to_text(kind));
     const auto bone = knee.bones.find(kind);
     if (bone == knee.bones.end()) {
       summary.doubts.push_back("the case lacks the " + name + " that is planned on");
       continue;
     }
-    if (const auto fit = cases::plan_fit(knee, kind); !fit.is_valid()) summary.doubts.push_back(fit.reason);
-    auto result = drill(bone->second.mesh, tunnel);
+    std::vector<tunnels::Tunnel> tunnels;
+    for (const tunnels::TunnelKey& key : keys) {
+      tunnels.push_back(knee.plan.tunnels.at(key));
+      if (const auto fit = cases::plan_fit(knee, key); !fit.is_valid()) summary.doubts.push_back(fit.reason);
+    }
+    auto result = drill(bone->second.mesh, tunnels);
     if (result.is_usable()) {
       drilled[kind] = std::move(result.mesh);
     } else {

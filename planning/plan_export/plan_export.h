@@ -21,8 +21,8 @@ struct ExportSummary {
 // all; the folder is made where needed. Throws InvalidInput when nothing is planned, IoError.
 [[nodiscard]] ExportSummary export_plan(const cases::Case& knee, const std::filesystem::path& folder);
 
-// One row a tunnel, header first: bone, entry, direction, exit, length, wall, diameter; empty where the
-// tunnel misses.
+// One row a tunnel, header first: bone, entry, direction, diameter, exit, length, wall (empty where the
+// tunnel misses), bundle (single, am, pl).
 [[nodiscard]] std::string plan_csv(const cases::Case& knee);
 
 }  // namespace arthronaut::plan_export

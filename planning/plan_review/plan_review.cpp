@@ -13,23 +13,58 @@ ReviewedBone review_bone(const geometry::TriangleMesh& mesh, BoneKind kind, bone
                          std::shared_ptr<const geometry::Surface> surface) {
   ReviewedBone reviewed;
   reviewed.surroundings = tunnels::surroundings_of(mesh, kind, landmarks, side, surface);
-  reviewed.footprint = norms::expected_footprint(mesh, *surface, kind, side, landmarks,
-                                                 norms::default_norm(kind, norms::Bundle::Whole));
-  if (reviewed.footprint) reviewed.surroundings.footprint_outline_mm = reviewed.footprint->outline_mm;
+  for (const auto bundle :
+       {norms::Bundle::Whole, norms::Bundle::Anteromedial, norms::Bundle::Posterolateral}) {
+    auto footprint =
+        norms::expected_footprint(mesh, *surface, kind, side, landmarks, norms::default_norm(kind, bundle));
+    if (!footprint) continue;
+    reviewed.surroundings.footprint_outlines_mm[bundle] = footprint->outline_mm;
+    if (bundle == norms::Bundle::Whole) reviewed.footprint = std::move(footprint);
+  }
   reviewed.surface = std::move(surface);
   return reviewed;
 }
 
-std::vector<tunnels::PlanCheck> checks_of(BoneKind kind, const MeasuredTunnel& femoral,
-                                          const MeasuredTunnel& tibial,
+const MeasuredTunnel* other_end(const tunnels::TunnelKey& key, const MeasuredPlan& plan) {
+  const BoneKind other = key.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur;
+  auto found = plan.find({other, key.bundle});
+  if (found == plan.end()) found = plan.find(other);
+  return found == plan.end() ? nullptr : &found->second;
+}
+
+std::vector<tunnels::PlanCheck> further_checks(const tunnels::TunnelKey& key, const MeasuredPlan& plan,
+                                               const tunnels::KneeSurroundings& knee) {
+  const MeasuredTunnel& own = plan.at(key);
+  std::vector<tunnels::PlanCheck> checks;
+  for (const auto& [other_key, other] : plan) {
+    if (other_key.bone == key.bone && other_key != key && other.geometry.enters_bone)
+      checks.push_back(tunnels::check_pair(own.tunnel, own.geometry, other.tunnel, other.geometry));
+  }
+  const MeasuredTunnel* end = other_end(key, plan);
+  const bool is_femur = key.bone == BoneKind::Femur;
+  const MeasuredTunnel *femoral = is_femur ? &own : end, *tibial = is_femur ? end : &own;
+  tunnels::KneePlan graft{.graft = key.bundle};
+  if (femoral != nullptr) {
+    graft.femoral = &femoral->tunnel;
+    graft.femoral_measured = &femoral->geometry;
+  }
+  if (tibial != nullptr) {
+    graft.tibial = &tibial->tunnel;
+    graft.tibial_measured = &tibial->geometry;
+  }
+  for (tunnels::PlanCheck& check : tunnels::check_knee(key.bone, graft, knee))
+    checks.push_back(std::move(check));
+  return checks;
+}
+
+std::vector<tunnels::PlanCheck> checks_of(const tunnels::TunnelKey& key, const MeasuredPlan& plan,
                                           const tunnels::PlanSurroundings& surroundings,
                                           const tunnels::KneeSurroundings& knee) {
-  const MeasuredTunnel& own = kind == BoneKind::Femur ? femoral : tibial;
-  if (own.tunnel == nullptr || own.geometry == nullptr) return {};
-  auto checks = tunnels::check_plan(*own.tunnel, *own.geometry, surroundings);
-  if (!own.geometry->enters_bone) return checks;
-  const tunnels::KneePlan plan{femoral.tunnel, femoral.geometry, tibial.tunnel, tibial.geometry};
-  for (tunnels::PlanCheck& check : tunnels::check_knee(kind, plan, knee)) checks.push_back(std::move(check));
+  const auto own = plan.find(key);
+  if (own == plan.end()) return {};
+  auto checks = tunnels::check_plan(own->second.tunnel, own->second.geometry, surroundings);
+  if (!own->second.geometry.enters_bone) return checks;
+  for (tunnels::PlanCheck& check : further_checks(key, plan, knee)) checks.push_back(std::move(check));
   return checks;
 }
 
@@ -44,20 +79,16 @@ CaseReview::CaseReview(const cases::Case& knee) {
                                        std::make_shared<const geometry::Surface>(bone.mesh)))
             .first->second;
     if (kind == BoneKind::Femur) knee_ = tunnels::knee_surroundings_of(bone.mesh, reviewed.surroundings);
-    if (const auto planned = knee.plan.tunnels.find(kind); planned != knee.plan.tunnels.end())
-      planned_.emplace(kind, Planned{planned->second, tunnels::measure(planned->second, *reviewed.surface)});
+    for (const tunnels::TunnelKey& key : knee.plan.of(kind)) {
+      const tunnels::Tunnel& tunnel = knee.plan.tunnels.at(key);
+      planned_.emplace(key, MeasuredTunnel{tunnel, tunnels::measure(tunnel, *reviewed.surface)});
+    }
   }
 }
 
-MeasuredTunnel CaseReview::tunnel(BoneKind kind) const {
-  const auto found = planned_.find(kind);
-  if (found == planned_.end()) return {};
-  return {&found->second.tunnel, &found->second.geometry};
-}
-
-std::vector<tunnels::PlanCheck> CaseReview::checks(BoneKind kind) const {
-  if (!has_bone(kind)) return {};
-  return checks_of(kind, tunnel(BoneKind::Femur), tunnel(BoneKind::Tibia), bone(kind).surroundings, knee_);
+std::vector<tunnels::PlanCheck> CaseReview::checks(const tunnels::TunnelKey& key) const {
+  if (!has_bone(key.bone)) return {};
+  return checks_of(key, planned_, bone(key.bone).surroundings, knee_);
 }
 
 }  // namespace arthronaut::plan_review

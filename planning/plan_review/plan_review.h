@@ -19,7 +19,7 @@ namespace arthronaut::plan_review {
 struct ReviewedBone {
   std::shared_ptr<const geometry::Surface> surface;  // never null
   tunnels::PlanSurroundings surroundings;
-  // By the default norm; nullopt where the landmarks give no grid.
+  // Of the whole ligament, by the default norm; nullopt where the landmarks give no grid.
   std::optional<norms::ExpectedFootprint> footprint;
 };
 // surface: of that mesh, not null.
@@ -27,14 +27,27 @@ struct ReviewedBone {
                                        bones::Side side, const landmarks::Landmarks& landmarks,
                                        std::shared_ptr<const geometry::Surface> surface);
 
-// As planned and as measured; null where there is no tunnel, or no bone to measure it in.
+// As planned and as measured in its bone.
 struct MeasuredTunnel {
-  const tunnels::Tunnel* tunnel = nullptr;
-  const tunnels::TunnelGeometry* geometry = nullptr;
+  tunnels::Tunnel tunnel;
+  tunnels::TunnelGeometry geometry;
 };
-// The checks of a bone's tunnel, then those of the whole knee that concern it. Empty without that tunnel.
-[[nodiscard]] std::vector<tunnels::PlanCheck> checks_of(bones::BoneKind kind, const MeasuredTunnel& femoral,
-                                                        const MeasuredTunnel& tibial,
+// The tunnels of a plan whose bones are there.
+using MeasuredPlan = std::map<tunnels::TunnelKey, MeasuredTunnel>;
+
+// The other end of the tunnel's graft: in the other bone the tunnel of the same bundle, else its single one.
+// Null where there is none; of a single tunnel against two of bundles too: which of them it goes to nobody
+// has said.
+[[nodiscard]] const MeasuredTunnel* other_end(const tunnels::TunnelKey& key, const MeasuredPlan& plan);
+
+// What is asked of a tunnel that enters its bone and of the others: how much bone is between it and the other
+// one of its bone, then what concerns the whole knee. Precondition: the plan has it.
+[[nodiscard]] std::vector<tunnels::PlanCheck> further_checks(const tunnels::TunnelKey& key,
+                                                             const MeasuredPlan& plan,
+                                                             const tunnels::KneeSurroundings& knee);
+// The checks of a tunnel, then the further ones. Empty without that tunnel. surroundings: of its bone.
+[[nodiscard]] std::vector<tunnels::PlanCheck> checks_of(const tunnels::TunnelKey& key,
+                                                        const MeasuredPlan& plan,
                                                         const tunnels::PlanSurroundings& surroundings,
                                                         const tunnels::KneeSurroundings& knee);
 
@@ -47,17 +60,14 @@ class CaseReview {
   [[nodiscard]] bool has_bone(bones::BoneKind kind) const { return bones_.contains(kind); }
   // Precondition: has_bone(kind).
   [[nodiscard]] const ReviewedBone& bone(bones::BoneKind kind) const { return bones_.at(kind); }
-  // Null members where the plan has no such tunnel or the case no such bone.
-  [[nodiscard]] MeasuredTunnel tunnel(bones::BoneKind kind) const;
-  [[nodiscard]] std::vector<tunnels::PlanCheck> checks(bones::BoneKind kind) const;
+  // Those of the plan on a bone of the case.
+  [[nodiscard]] const MeasuredPlan& tunnels() const { return planned_; }
+  // Empty without that tunnel.
+  [[nodiscard]] std::vector<tunnels::PlanCheck> checks(const tunnels::TunnelKey& key) const;
 
  private:
-  struct Planned {
-    tunnels::Tunnel tunnel;
-    tunnels::TunnelGeometry geometry;
-  };
   std::map<bones::BoneKind, ReviewedBone> bones_;
-  std::map<bones::BoneKind, Planned> planned_;
+  MeasuredPlan planned_;
   tunnels::KneeSurroundings knee_;
 };
 

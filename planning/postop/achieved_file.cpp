@@ -1,6 +1,7 @@
 #include "planning/postop/achieved_file.h"
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "planning/files/json_document.h"
 
@@ -12,10 +13,11 @@ using nlohmann::ordered_json;
 
 ordered_json number(bool is_known, double value) { return is_known ? ordered_json(value) : ordered_json(); }
 
-ordered_json tunnel_json(bones::BoneKind bone, const AchievedTunnel& achieved) {
+ordered_json tunnel_json(const tunnels::TunnelKey& key, const AchievedTunnel& achieved) {
   const bool found = achieved.is_found;
   ordered_json json;
-  json["bone"] = bones::to_text(bone);
+  json["bone"] = bones::to_text(key.bone);
+  if (key.bundle != norms::Bundle::Whole) json["bundle"] = norms::to_text(key.bundle);
   json["entry_mm"] = found ? files::to_json(achieved.tunnel.entry_mm) : ordered_json();
   json["direction"] = found ? files::to_json(achieved.tunnel.direction) : ordered_json();
   json["diameter_mm"] = number(found, achieved.tunnel.diameter_mm);
@@ -49,15 +51,16 @@ ordered_json bone_json(bones::BoneKind kind, const AchievedBone& bone) {
 }  // namespace
 
 void write_achieved_file(const std::filesystem::path& file,
-                         const std::map<bones::BoneKind, Comparison>& comparisons) {
+                         const std::map<tunnels::TunnelKey, Comparison>& comparisons) {
   ordered_json document;
   document["format"] = "arthronaut.achieved";
   document["version"] = 1;
   document["tunnels"] = ordered_json::array();
   document["bones"] = ordered_json::array();
-  for (const auto& [kind, comparison] : comparisons) {
-    document["tunnels"].push_back(tunnel_json(kind, comparison.tunnel));
-    document["bones"].push_back(bone_json(kind, comparison.bone));
+  std::set<bones::BoneKind> told;
+  for (const auto& [key, comparison] : comparisons) {
+    document["tunnels"].push_back(tunnel_json(key, comparison.tunnel));
+    if (told.insert(key.bone).second) document["bones"].push_back(bone_json(key.bone, comparison.bone));
   }
   files::write_json(file, document);
 }

@@ -3,6 +3,7 @@
 // Numbers of a tunnel or a bone that was not found are null; its "reliable" is false and its "reasons" say
 // why. Beside what was asked for: "comes_out", one sigma of entry and direction, "widths" along the tunnel
 // and the share of metal in it; of a bone how much of its surface was seen and lies on an edge.
+// A tunnel of one bundle has "bundle", am or pl; a bone with two stands there once, as the first found it.
 #pragma once
 
 #include <filesystem>
@@ -14,6 +15,6 @@ namespace arthronaut::postop {
 
 // Atomic; "-" is standard output. Throws IoError; nothing is written then.
 void write_achieved_file(const std::filesystem::path& file,
-                         const std::map<bones::BoneKind, Comparison>& comparisons);
+                         const std::map<tunnels::TunnelKey, Comparison>& comparisons);
 
 }  // namespace arthronaut::postop

@@ -68,7 +68,8 @@ PostopImages::~PostopImages() = default;
 PostopImages::PostopImages(PostopImages&&) noexcept = default;
 PostopImages& PostopImages::operator=(PostopImages&&) noexcept = default;
 
-Comparison PostopImages::compare(const geometry::TriangleMesh& bone, const tunnels::Tunnel& plan) const {
+Comparison PostopImages::compare(const geometry::TriangleMesh& bone, const tunnels::Tunnel& plan,
+                                 std::span<const tunnels::Tunnel> others) const {
   Comparison comparison;
   const FoundBone found = find_bone(prepared_->sampler, prepared_->field, bone, plan.entry_mm);
   comparison.bone = told(found);
@@ -78,7 +79,7 @@ Comparison PostopImages::compare(const geometry::TriangleMesh& bone, const tunne
     return comparison;
   }
   const DrilledTunnel drilled =
-      find_drilled(prepared_->volume, found.pose.postop_from_plan, geometry::Surface(bone), plan);
+      find_drilled(prepared_->volume, found.pose.postop_from_plan, geometry::Surface(bone), plan, others);
   comparison.tunnel = told(drilled, found, plan);
   return comparison;
 }

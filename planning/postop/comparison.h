@@ -12,14 +12,16 @@
 //      it. It ends where it comes out in the same way, or where the grey of its middle steps up.
 //
 // Use it for CT. What it does not tell: a tunnel whose graft is as dense as the marrow and that has no denser
-// rim, or that lies in marrow of fat (not found); which of two tunnels is the planned one (the nearer,
-// unreliable); a bore that is bent, or one of two diameters beyond the first of them. A loose screw alone in
-// a tunnel says nothing of the tunnel. Slices of 2 mm and more may be refused: they make a bone look longer.
+// rim, or that lies in marrow of fat (not found); which of two tunnels is the planned one where one is
+// planned (the nearer, unreliable); a bore that is bent, or one of two diameters beyond the first of them. A
+// loose screw alone in a tunnel says nothing of the tunnel. Slices of 2 mm and more may be refused: they make
+// a bone look longer.
 //
 // Frames: everything is in the plan's LPS, mm, unless its name says otherwise. Angles in rad.
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -83,7 +85,9 @@ class PostopImages {
 
   // `bone`: closed, outward, as it was planned on. Never throws on poor images: read the reasons. The same
   // input gives the same result. 3 to 10 s.
-  [[nodiscard]] Comparison compare(const geometry::TriangleMesh& bone, const tunnels::Tunnel& plan) const;
+  // `others`: the bone's other planned tunnel, where there are two. What lies nearer to it is taken for it.
+  [[nodiscard]] Comparison compare(const geometry::TriangleMesh& bone, const tunnels::Tunnel& plan,
+                                   std::span<const tunnels::Tunnel> others = {}) const;
 
  private:
   struct Prepared;

@@ -226,7 +226,8 @@ DrilledTunnel told(const Candidate& candidate, const tunnels::Tunnel& plan) {
   drilled.tunnel = {.bone = plan.bone,
                     .entry_mm = candidate.passage.entry_mm,
                     .direction = candidate.fit.direction,
-                    .diameter_mm = 2 * candidate.fit.radius_mm};
+                    .diameter_mm = 2 * candidate.fit.radius_mm,
+                    .bundle = plan.bundle};
   drilled.length_mm = candidate.length_mm;
   drilled.comes_out = candidate.comes_out;
   drilled.entry_sigma_mm = candidate.fit.entry_sigma_mm;
@@ -241,7 +242,8 @@ DrilledTunnel told(const Candidate& candidate, const tunnels::Tunnel& plan) {
 }  // namespace
 
 DrilledTunnel find_drilled(const images::Volume& postop, const geometry::RigidTransform& postop_from_plan,
-                           const geometry::Surface& bone, const tunnels::Tunnel& plan) {
+                           const geometry::Surface& bone, const tunnels::Tunnel& plan,
+                           std::span<const tunnels::Tunnel> others) {
   const Finder finder(postop, postop_from_plan, bone, plan);
   std::vector<Candidate> candidates;
   for (const Bore& bore : search_bores(finder.grid(), plan)) {
@@ -260,6 +262,11 @@ DrilledTunnel find_drilled(const images::Volume& postop, const geometry::RigidTr
   // Of several that stand, the one nearest to the plan; that there are others is told.
   const Candidate* chosen = &candidates.front();
   const auto off_plan = [&](const Candidate& c) { return (c.passage.entry_mm - plan.entry_mm).norm(); };
+  const auto planned_nearer = [&](const Candidate& c) -> const tunnels::Tunnel* {
+    for (const tunnels::Tunnel& other : others)
+      if ((c.passage.entry_mm - other.entry_mm).norm() < off_plan(c)) return &other;
+    return nullptr;
+  };
   for (const Candidate& candidate : candidates) {
     if (!candidate.mouth.is_open() || !candidate.doubts.empty()) continue;
     if (is_same(candidate, *chosen) && chosen->doubts.empty()) continue;
@@ -268,11 +275,15 @@ DrilledTunnel find_drilled(const images::Volume& postop, const geometry::RigidTr
   DrilledTunnel drilled = told(*chosen, plan);
   for (const Candidate& other : candidates) {
     if (!other.mouth.is_open() || other.seen_share < kLeastSeen || is_same(other, *chosen)) continue;
+    if (planned_nearer(other) != nullptr) continue;  // that one was to be expected
     drilled.reasons.push_back(files::format(
         "another tunnel opens %.1f mm beside it: this one is the nearer to the plan, or the better seen",
         (other.passage.entry_mm - chosen->passage.entry_mm).norm()));
     break;
   }
+  if (const tunnels::Tunnel* nearer = planned_nearer(*chosen); nearer != nullptr)
+    drilled.reasons.push_back("it lies nearer to the planned tunnel " + tunnels::name_of(nearer->key()) +
+                              " than to this one: which of the two it is cannot be told");
   drilled.reliable = drilled.reasons.empty();
   return drilled;
 }

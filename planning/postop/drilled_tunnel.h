@@ -1,6 +1,7 @@
 // The tunnel that was drilled in a bone, found in a post-operative CT and measured. Inner header of postop.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,11 @@ struct DrilledTunnel {
   std::vector<std::string> reasons = {"no tunnel was looked for"};
 };
 
-// `bone`: the plan's, before the operation.
+// `bone`: the plan's, before the operation. `others`: what else was planned in it; a tunnel that lies nearer
+// to one of those is taken for it.
 [[nodiscard]] DrilledTunnel find_drilled(const images::Volume& postop,
                                          const geometry::RigidTransform& postop_from_plan,
-                                         const geometry::Surface& bone, const tunnels::Tunnel& plan);
+                                         const geometry::Surface& bone, const tunnels::Tunnel& plan,
+                                         std::span<const tunnels::Tunnel> others = {});
 
 }  // namespace arthronaut::postop

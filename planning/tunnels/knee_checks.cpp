@@ -17,8 +17,11 @@ std::string missing_tunnel(const KneePlan& plan) {
   const auto is_there = [](const Tunnel* tunnel, const TunnelGeometry* measured) {
     return tunnel && measured && measured->enters_bone;
   };
-  if (!is_there(plan.femoral, plan.femoral_measured)) return "the femoral tunnel";
-  return is_there(plan.tibial, plan.tibial_measured) ? "" : "the tibial tunnel";
+  const std::string graft = plan.graft == norms::Bundle::Whole          ? ""
+                            : plan.graft == norms::Bundle::Anteromedial ? " of the AM graft"
+                                                                        : " of the PL graft";
+  if (!is_there(plan.femoral, plan.femoral_measured)) return "the femoral tunnel" + graft;
+  return is_there(plan.tibial, plan.tibial_measured) ? "" : "the tibial tunnel" + graft;
 }
 
 graft::GraftEnd end_of(const Tunnel& tunnel, const TunnelGeometry& measured) {

@@ -20,12 +20,13 @@ struct KneeSurroundings {
 [[nodiscard]] KneeSurroundings knee_surroundings_of(const geometry::TriangleMesh& femur,
                                                     const PlanSurroundings& of_femur);
 
-// As measured; null where there is none.
+// One graft and its two tunnels, as measured; null where there is none.
 struct KneePlan {
   const Tunnel* femoral = nullptr;
   const TunnelGeometry* femoral_measured = nullptr;
   const Tunnel* tibial = nullptr;
   const TunnelGeometry* tibial_measured = nullptr;
+  norms::Bundle graft = norms::Bundle::Whole;
 };
 
 // Femur: length of the graft in the joint and in all, its change over flexion, its bend at the femur. Tibia:

@@ -195,10 +195,12 @@ PlanCheck check_mouth(const TunnelGeometry& geometry, const PlanNorms& norms) {
   return check;
 }
 
-std::vector<PlanCheck> check_footprint(const TunnelGeometry& geometry, const PlanSurroundings& surroundings) {
+std::vector<PlanCheck> check_footprint(const Tunnel& tunnel, const TunnelGeometry& geometry,
+                                       const PlanSurroundings& surroundings) {
   std::vector<PlanCheck> checks;
-  if (surroundings.footprint_outline_mm.size() >= 3) {
-    const FootprintShare share = footprint_share(geometry.entry, surroundings.footprint_outline_mm);
+  const auto outline = surroundings.footprint_outlines_mm.find(tunnel.bundle);
+  if (outline != surroundings.footprint_outlines_mm.end() && outline->second.size() >= 3) {
+    const FootprintShare share = footprint_share(geometry.entry, outline->second);
     checks.push_back(
         {.verdict = Verdict::Note,
          .name = "Footprint opened",
@@ -211,7 +213,8 @@ std::vector<PlanCheck> check_footprint(const TunnelGeometry& geometry, const Pla
   } else {
     checks.push_back(not_checked("Footprint opened", "the expected footprint"));
   }
-  if (surroundings.native_footprint_mm) {
+  // The landmark is the middle of the whole ligament.
+  if (surroundings.native_footprint_mm && tunnel.bundle == norms::Bundle::Whole) {
     const double off_mm = (geometry.entry_on_surface_mm - *surroundings.native_footprint_mm).norm();
     checks.push_back({.verdict = Verdict::Note,
                       .name = "Footprint",

@@ -19,7 +19,7 @@ namespace arthronaut::tunnels {
                                                            const PlanSurroundings& surroundings,
                                                            const PlanNorms& norms);
 [[nodiscard]] PlanCheck check_mouth(const TunnelGeometry& geometry, const PlanNorms& norms);
-[[nodiscard]] std::vector<PlanCheck> check_footprint(const TunnelGeometry& geometry,
+[[nodiscard]] std::vector<PlanCheck> check_footprint(const Tunnel& tunnel, const TunnelGeometry& geometry,
                                                      const PlanSurroundings& surroundings);
 
 }  // namespace arthronaut::tunnels

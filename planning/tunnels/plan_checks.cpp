@@ -85,6 +85,13 @@ PlanCheck check_wall(const Tunnel& tunnel, const TunnelGeometry& geometry, const
 }
 
 PlanCheck check_diameter(const Tunnel& tunnel, const PlanNorms& norms) {
+  if (tunnel.bundle != norms::Bundle::Whole)
+    return {.verdict = Verdict::Note,
+            .name = "Diameter",
+            .text = number_text(tunnel.diameter_mm, "mm"),
+            .source = "of one of two bundles: no published limit",
+            .value = tunnel.diameter_mm,
+            .unit = "mm"};
   PlanCheck check{
       .verdict = Verdict::Fine,
       .name = "Diameter",
@@ -104,11 +111,11 @@ PlanCheck check_diameter(const Tunnel& tunnel, const PlanNorms& norms) {
 }
 
 PlanCheck check_share(const char* name, double percent, const NormRange& norm, const char* below,
-                      const char* above, const char* source) {
+                      const char* above, std::string source) {
   PlanCheck check{.verdict = Verdict::Fine,
                   .name = name,
                   .text = number_text(percent, "%"),
-                  .source = source,
+                  .source = std::move(source),
                   .value = percent,
                   .unit = "%",
                   .least = norm.center - norm.radius,
@@ -186,6 +193,20 @@ PlanSurroundings surroundings_of(const geometry::TriangleMesh& bone, bones::Bone
 
 namespace {
 
+struct ShareNorm {
+  NormRange range;
+  std::string source;
+};
+// Of the whole ligament what PlanNorms says; of a bundle the mean of its own study and one sigma.
+ShareNorm share_norm(const Tunnel& tunnel, const NormRange& whole, const char* whole_source,
+                     norms::PercentNorm norms::InsertionNorm::*share) {
+  if (tunnel.bundle == norms::Bundle::Whole) return {whole, whole_source};
+  const norms::InsertionNorm& norm = norms::default_norm(tunnel.bone, tunnel.bundle);
+  return {{(norm.*share).mean, (norm.*share).sd},
+          std::string(tunnel.bundle == norms::Bundle::Anteromedial ? "AM: " : "PL: ") +
+              std::string(norm.source) + (norm.is_recalled ? ", customary" : "")};
+}
+
 void add_grid_checks(const Tunnel& tunnel, const Eigen::Vector3d& entry, const PlanSurroundings& surroundings,
                      const PlanNorms& norms, std::vector<PlanCheck>& checks) {
   if (tunnel.bone == bones::BoneKind::Femur) {
@@ -196,13 +217,19 @@ void add_grid_checks(const Tunnel& tunnel, const Eigen::Vector3d& entry, const P
       return;
     }
     const auto percent = surroundings.quadrant->percent_of(entry);
-    checks.push_back(check_share(
-        "Deep to shallow", percent.deep_shallow, norms.femur_deep_shallow_percent, "deeper", "shallower",
-        "Bernard-Hertel 28.4 +- 5.1 %, review of 13 studies (Arthroscopy 2016); of 16 grafts "
-        "that failed 15 were shallower than 35 % (de Mees 2022)"));
-    checks.push_back(check_share("High to low", percent.high_low, norms.femur_high_low_percent, "higher",
-                                 "lower",
-                                 "Bernard-Hertel 35.7 +- 6.9 %, review of 13 studies (Arthroscopy 2016)"));
+    const ShareNorm along =
+        share_norm(tunnel, norms.femur_deep_shallow_percent,
+                   "Bernard-Hertel 28.4 +- 5.1 %, review of 13 studies (Arthroscopy 2016); of 16 grafts "
+                   "that failed 15 were shallower than 35 % (de Mees 2022)",
+                   &norms::InsertionNorm::along);
+    const ShareNorm across =
+        share_norm(tunnel, norms.femur_high_low_percent,
+                   "Bernard-Hertel 35.7 +- 6.9 %, review of 13 studies (Arthroscopy 2016)",
+                   &norms::InsertionNorm::across);
+    checks.push_back(check_share("Deep to shallow", percent.deep_shallow, along.range, "deeper", "shallower",
+                                 along.source));
+    checks.push_back(
+        check_share("High to low", percent.high_low, across.range, "higher", "lower", across.source));
     return;
   }
   if (!surroundings.plateau) {
@@ -211,12 +238,16 @@ void add_grid_checks(const Tunnel& tunnel, const Eigen::Vector3d& entry, const P
     return;
   }
   const auto percent = surroundings.plateau->percent_of(entry);
-  checks.push_back(check_share("Anterior to posterior", percent.anterior_posterior,
-                               norms.tibia_anterior_posterior_percent, "more anterior", "more posterior",
-                               "Amis-Jakob 40.9 %, 38.0 to 45.0 (Cho 2017, PMC5686853)"));
-  checks.push_back(check_share("Medial to lateral", percent.medial_lateral,
-                               norms.tibia_medial_lateral_percent, "more medial", "more lateral",
-                               "46.7 +- 2.0 % (10.1177/23259671231208678)"));
+  const ShareNorm along =
+      share_norm(tunnel, norms.tibia_anterior_posterior_percent,
+                 "Amis-Jakob 40.9 %, 38.0 to 45.0 (Cho 2017, PMC5686853)", &norms::InsertionNorm::along);
+  const ShareNorm across =
+      share_norm(tunnel, norms.tibia_medial_lateral_percent, "46.7 +- 2.0 % (10.1177/23259671231208678)",
+                 &norms::InsertionNorm::across);
+  checks.push_back(check_share("Anterior to posterior", percent.anterior_posterior, along.range,
+                               "more anterior", "more posterior", along.source));
+  checks.push_back(check_share("Medial to lateral", percent.medial_lateral, across.range, "more medial",
+                               "more lateral", across.source));
 }
 
 }  // namespace
@@ -240,7 +271,7 @@ std::vector<PlanCheck> check_plan(const Tunnel& tunnel, const TunnelGeometry& ge
   for (PlanCheck& check : check_exit_neighbours(tunnel, geometry, surroundings, norms))
     checks.push_back(std::move(check));
   checks.push_back(check_mouth(geometry, norms));
-  for (PlanCheck& check : check_footprint(geometry, surroundings)) checks.push_back(std::move(check));
+  for (PlanCheck& check : check_footprint(tunnel, geometry, surroundings)) checks.push_back(std::move(check));
   return checks;
 }
 

@@ -3,6 +3,7 @@
 // knee_checks.h.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,10 +45,11 @@ struct PlanSurroundings {
   landmarks::Landmarks landmarks = {};
   // The bone's, for what is asked of its shape.
   std::shared_ptr<const geometry::Surface> surface = {};
-  // The expected footprint on the bone, a closed line; empty: unknown.
-  std::vector<Eigen::Vector3d> footprint_outline_mm = {};
+  // The expected footprints of the ligament and of its bundles on the bone, closed lines; a missing one is
+  // unknown.
+  std::map<norms::Bundle, std::vector<Eigen::Vector3d>> footprint_outlines_mm = {};
 };
-// Without footprint_outline_mm, which comes from norms. surface: of that mesh; without it the entry is not
+// Without footprint_outlines_mm, which come from norms. surface: of that mesh; without it the entry is not
 // checked.
 [[nodiscard]] PlanSurroundings surroundings_of(const geometry::TriangleMesh& bone, bones::BoneKind kind,
                                                const landmarks::Landmarks& landmarks, bones::Side side,
@@ -58,8 +60,8 @@ struct PlanSurroundings {
 [[nodiscard]] double coronal_angle_deg(const Eigen::Vector3d& direction,
                                        const landmarks::AnatomicalAxes& axes);
 
-// In a fixed order, length first. A tunnel that misses the bone gives one check, which says so. About a
-// millisecond.
+// In a fixed order, length first. A tunnel of one bundle is held against that bundle's norms. A tunnel that
+// misses the bone gives one check, which says so. About a millisecond.
 [[nodiscard]] std::vector<PlanCheck> check_plan(const Tunnel& tunnel, const TunnelGeometry& geometry,
                                                 const PlanSurroundings& surroundings,
                                                 const PlanNorms& norms = {});

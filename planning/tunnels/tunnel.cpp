@@ -8,6 +8,19 @@
 
 namespace arthronaut::tunnels {
 
+std::string name_of(const TunnelKey& key) {
+  const std::string bone(bones::to_text(key.bone));
+  switch (key.bundle) {
+    case norms::Bundle::Whole:
+      break;
+    case norms::Bundle::Anteromedial:
+      return bone + " AM";
+    case norms::Bundle::Posterolateral:
+      return bone + " PL";
+  }
+  return bone;
+}
+
 namespace {
 
 constexpr double kEntrySearchMm = 5.0;

@@ -2,19 +2,36 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <compare>
 #include <optional>
+#include <string>
 
 #include "planning/bones/bone.h"
 #include "planning/geometry/surface.h"
+#include "planning/norms/insertion_norms.h"
 #include "planning/tunnels/tunnel_mouth.h"
 
 namespace arthronaut::tunnels {
+
+// Which tunnel of a knee: a bone has one for the whole ligament, or one for each of its two bundles. The bone
+// alone names the tunnel of the whole ligament and never one of a bundle: who asks for "the femur's" of two
+// gets none.
+struct TunnelKey {
+  bones::BoneKind bone = bones::BoneKind::Femur;
+  norms::Bundle bundle = norms::Bundle::Whole;
+  TunnelKey(bones::BoneKind of_bone, norms::Bundle of_bundle = norms::Bundle::Whole)
+      : bone(of_bone), bundle(of_bundle) {}
+  [[nodiscard]] auto operator<=>(const TunnelKey&) const = default;
+};
+[[nodiscard]] std::string name_of(const TunnelKey& key);  // "femur", "femur AM", "tibia PL"
 
 struct Tunnel {
   bones::BoneKind bone = bones::BoneKind::Femur;
   Eigen::Vector3d entry_mm = Eigen::Vector3d::Zero();    // on the joint side, in the bone's frame (LPS)
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  // unit, the direction of drilling, into the bone
   double diameter_mm = 9.0;
+  norms::Bundle bundle = norms::Bundle::Whole;
+  [[nodiscard]] TunnelKey key() const { return {bone, bundle}; }
 };
 
 struct TunnelGeometry {

@@ -120,6 +120,18 @@ TEST_F(Schemas, DescribeTheCaseAndItsPlan) {
                      [&] { (void)cases::load_case(folder_.path()); });
 }
 
+// Two bundles in one bone, and a single tunnel in the other.
+TEST_F(Schemas, DescribeAPlanOfTwoBundles) {
+  cases::Case knee = phantom::case_of(phantom::make_phantom_knee(), "phantom");
+  tunnels::Tunnel tunnel = knee.plan.tunnels.at(bones::BoneKind::Femur);
+  for (const auto bundle : {norms::Bundle::Anteromedial, norms::Bundle::Posterolateral}) {
+    tunnel.bundle = bundle;
+    knee.plan.put(tunnel, "");
+  }
+  cases::save_case(folder_.path(), knee);
+  expect_described(folder_ / "plan.json", "plan", [&] { (void)cases::load_case(folder_.path()); });
+}
+
 // Whose knee it is.
 TEST_F(Schemas, DescribeTheIdentity) {
   cases::save_identity(folder_.path(), {"Muster^Anna", "4711", "19900131"});

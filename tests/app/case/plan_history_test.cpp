@@ -207,7 +207,7 @@ TEST_F(PlanHistoryTest, LandmarksAreUndoneAndSaved) {
 // A default plan is one step, of however many tunnels.
 TEST_F(PlanHistoryTest, SeveralTunnelsAreOneStep) {
   const cases::Plan before = model_.knee().plan;
-  std::map<BoneKind, tunnels::Tunnel> tunnels = before.tunnels;
+  std::map<tunnels::TunnelKey, tunnels::Tunnel> tunnels = before.tunnels;
   for (auto& [bone, tunnel] : tunnels) tunnel.diameter_mm = 7;
   history_.apply_tunnels(tunnels, "Make the default plan");
   history_.apply_tunnels(tunnels, "Make the default plan");
@@ -216,6 +216,30 @@ TEST_F(PlanHistoryTest, SeveralTunnelsAreOneStep) {
   history_.undo();
   EXPECT_EQ(saved_diameter_mm(), start_mm_);
   EXPECT_EQ(model_.tunnel(BoneKind::Tibia)->diameter_mm, before.tunnels.at(BoneKind::Tibia).diameter_mm);
+}
+
+// Two bundles in place of a single tunnel: one step, and undo brings the single one back as it was.
+TEST_F(PlanHistoryTest, TwoBundlesAreOneStep) {
+  const cases::Plan before = model_.knee().plan;
+  tunnels::Tunnel am = before.tunnels.at(BoneKind::Femur), pl = am;
+  pl.entry_mm += 9 * pl.direction.unitOrthogonal();
+  const tunnels::TunnelKey of_am{BoneKind::Femur, norms::Bundle::Anteromedial},
+      of_pl{BoneKind::Femur, norms::Bundle::Posterolateral};
+  history_.apply_tunnels({{of_am, am}, {of_pl, pl}}, "Plan two bundles in the femur");
+  EXPECT_EQ(model_.knee().plan.of(BoneKind::Femur).size(), 2U);
+  EXPECT_EQ(cases::load_case(folder_).plan.of(BoneKind::Femur).size(), 2U);
+  EXPECT_EQ(model_.tunnel(of_pl)->bundle, norms::Bundle::Posterolateral);
+  EXPECT_TRUE(model_.plan_fit(of_pl).is_valid());
+  EXPECT_FALSE(model_.tunnel(BoneKind::Femur)) << "the bone alone is none of the two";
+  // One of them moves, the other stays.
+  am.diameter_mm = 6;
+  history_.apply({of_am, am, "Change the diameter", false}, 1.0);
+  EXPECT_EQ(model_.tunnel(of_am)->diameter_mm, 6);
+  EXPECT_EQ(model_.tunnel(of_pl)->diameter_mm, pl.diameter_mm);
+  history_.undo();
+  history_.undo();
+  EXPECT_EQ(model_.knee().plan.mesh_sha256, before.mesh_sha256);
+  EXPECT_EQ(model_.tunnel(BoneKind::Femur)->entry_mm, before.tunnels.at(BoneKind::Femur).entry_mm);
 }
 
 class PlanConflict : public PlanHistoryTest {

@@ -105,6 +105,49 @@ TEST_F(PlanCommand, VersionsAreKeptComparedAndTaken) {
   EXPECT_LT((taken.entry_mm - knee_.plan.tunnels.at(bones::BoneKind::Tibia).entry_mm).norm(), 1e-6);
 }
 
+// One bundle after the other gives two tunnels; none of them is ever shown or changed for the other.
+TEST_F(PlanCommand, TwoBundlesArePlannedShownExportedAndRemoved) {
+  const auto am = run({"plan", "--bone", "femur", "--default", "--type", "am", "--json"});
+  ASSERT_EQ(am.exit_code, 0) << am.output << am.errors;
+  const auto first = nlohmann::json::parse(am.output);
+  EXPECT_EQ(first.at("bundle"), "am");
+  EXPECT_EQ(first.at("diameter_mm"), 7.0);
+  const auto pl = run({"plan", "--bone", "femur", "--default", "--type", "pl", "--json"});
+  ASSERT_EQ(pl.exit_code, 0) << pl.output << pl.errors;
+  EXPECT_EQ(nlohmann::json::parse(pl.output).at("bundle"), "pl");
+  const auto both = nlohmann::json::parse(run({"plan", "--bone", "femur", "--json"}).output);
+  ASSERT_EQ(both.at("tunnels").size(), 2U);
+  EXPECT_EQ(both.at("tunnels").at(0).at("entry_mm"), first.at("entry_mm")) << "PL moved AM";
+  const auto shown = run({"plan", "--bone", "femur", "--type", "pl"});
+  EXPECT_THAT(shown.output, HasSubstr("femur PL tunnel, 6.0 mm"));
+  EXPECT_THAT(shown.output, HasSubstr("Between the tunnels: "));
+  EXPECT_THAT(shown.output, Not(HasSubstr("femur AM tunnel")));
+  EXPECT_EQ(run({"plan", "--export", folder_ / "out"}).exit_code, 0);
+  EXPECT_EQ(run({"plan", "--from-markups", folder_ / "out" / "plan.mrk.json"}).exit_code, 0);
+  EXPECT_EQ(cases::load_case(folder_ / "knee.arthro").plan.of(bones::BoneKind::Femur).size(), 2U);
+  const auto unnamed = run({"plan", "--bone", "femur", "--remove"});
+  EXPECT_EQ(unnamed.exit_code, 3);
+  EXPECT_THAT(unnamed.errors, HasSubstr("say by --type which"));
+  EXPECT_EQ(run({"plan", "--bone", "femur", "--remove", "--type", "am"}).exit_code, 0);
+  EXPECT_EQ(cases::load_case(folder_ / "knee.arthro").plan.of(bones::BoneKind::Femur).size(), 1U);
+  const auto single = run({"plan", "--bone", "femur", "--default", "--type", "single"});
+  EXPECT_THAT(single.output, HasSubstr("The tunnel femur PL is no longer planned"));
+  const auto plan = cases::load_case(folder_ / "knee.arthro").plan;
+  EXPECT_EQ(plan.of(bones::BoneKind::Femur), std::vector<tunnels::TunnelKey>{bones::BoneKind::Femur});
+}
+
+// Which of two is drilled is never guessed: refused before any work.
+TEST_F(PlanCommand, Hazard38NavigateAsksWhichOfTwoTunnelsIsDrilled) {
+  for (const char* bundle : {"am", "pl"})
+    ASSERT_EQ(run({"plan", "--bone", "femur", "--default", "--type", bundle}).exit_code, 0);
+  const auto unnamed = run({"navigate", "--video", "none.mkv"});
+  EXPECT_EQ(unnamed.exit_code, 3);
+  EXPECT_THAT(unnamed.errors, HasSubstr("say by --tunnel which one is drilled"));
+  const auto single = run({"navigate", "--video", "none.mkv", "--tunnel", "single"});
+  EXPECT_EQ(single.exit_code, 3);
+  EXPECT_THAT(single.errors, HasSubstr("holds no tunnel femur"));
+}
+
 TEST_F(PlanCommand, LandmarksAreProposedSetAndKept) {
   knee_.landmarks.clear();
   save(knee_);

@@ -24,7 +24,7 @@ TEST(NextStep, LeadsFromAnEmptyCaseToTheatre) {
   state.places_entry = false;
   model.set_tunnel(BoneKind::Femur, planned.plan.tunnels.at(BoneKind::Femur));
   EXPECT_EQ(next_step(model, state).action, "plan.bone");
-  state.bone = BoneKind::Tibia;
+  state.key = BoneKind::Tibia;
   EXPECT_EQ(next_step(model, state).action, "plan.default");
   model.set_tunnel(BoneKind::Tibia, planned.plan.tunnels.at(BoneKind::Tibia));
   EXPECT_EQ(next_step(model, state).action, "mode.setup") << next_step(model, state).text;
@@ -37,7 +37,7 @@ TEST(NextStep, ATunnelThatCannotBeDrilledComesFirst) {
   beside.entry_mm += Eigen::Vector3d(0, -300, 0);
   model.set_tunnel(BoneKind::Femur, beside);
   EXPECT_NE(next_step(model, {}).text.find("Mend the femoral tunnel"), std::string::npos);
-  EXPECT_EQ(next_step(model, {.bone = BoneKind::Tibia}).text, "Mend the femoral tunnel: press Tab");
+  EXPECT_EQ(next_step(model, {.key = BoneKind::Tibia}).text, "Mend the femoral tunnel: press Tab");
 }
 
 // A grid that follows from points that nobody has looked at is not the end; one of confirmed points is.
@@ -57,6 +57,20 @@ TEST(NextStep, ReadOnlyAndConflictAreNamedFirst) {
   const open_case::PlanModel model(knee());
   EXPECT_NE(next_step(model, {.is_read_only = true}).text.find("Look only"), std::string::npos);
   EXPECT_EQ(next_step(model, {.is_in_conflict = true}).action, "plan.take_theirs");
+}
+
+// One bundle alone is half a plan; a pair that runs into each other is to be mended.
+TEST(NextStep, OfTwoBundlesBothAreWanted) {
+  open_case::PlanModel model(knee());
+  const tunnels::TunnelKey am{BoneKind::Femur, norms::Bundle::Anteromedial},
+      pl{BoneKind::Femur, norms::Bundle::Posterolateral};
+  const tunnels::Tunnel single = *model.tunnel(BoneKind::Femur);
+  model.set_tunnel(am, single);
+  EXPECT_EQ(next_step(model, {.key = am}).text, "Plan the femoral PL tunnel too: press B");
+  EXPECT_EQ(next_step(model, {.key = BoneKind::Tibia}).text, "Plan the femoral PL tunnel too: press Tab");
+  EXPECT_EQ(next_step(model, {.key = pl}).action, "plan.place") << "the default would move the other";
+  model.set_tunnel(pl, single);
+  EXPECT_EQ(next_step(model, {.key = am}).text, "Mend the femoral AM tunnel: Between the tunnels");
 }
 
 }  // namespace

@@ -71,8 +71,8 @@ TEST_F(PlanPicture, IsDeterministic) {
 TEST_F(PlanPicture, AchievedTunnelIsSeen) {
   PictureRequest request = request_of(ViewDirection::Anterior);
   const double before = share_of(render_plan_picture(request), is_achieved);
-  request.achieved = knee().plan.tunnels.at(bones::BoneKind::Femur);
-  request.achieved->entry_mm += Eigen::Vector3d(0, -4, 4);
+  request.achieved = {knee().plan.tunnels.at(bones::BoneKind::Femur)};
+  request.achieved.front().entry_mm += Eigen::Vector3d(0, -4, 4);
   EXPECT_GT(share_of(render_plan_picture(request), is_achieved), before + 0.001);
 }
 

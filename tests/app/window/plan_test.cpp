@@ -247,5 +247,36 @@ TEST_F(PlanWindow, TheMapOfEntriesFollowsThePlan) {
   EXPECT_TRUE(app.wait_for_state("survey", "none"));
 }
 
+// B: two tunnels by the norms in place of one, each worked on by its own, and undo brings the single one
+// back.
+TEST_F(PlanWindow, TwoBundlesByOneKeyAndEachMovesAlone) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  const tunnels::Tunnel before = saved_tunnel();
+  EXPECT_EQ(app.state("tunnel"), "femur");
+  app.press("b");
+  ASSERT_TRUE(app.wait_for_state("tunnel", "femur AM"));
+  ASSERT_TRUE(app.wait_for_state("undo", "Plan two bundles in the femur"));
+  ASSERT_TRUE(app.wait_for_state("plan", "saved"));
+  const cases::Plan both = cases::load_case(case_folder()).plan;
+  ASSERT_EQ(both.of(bones::BoneKind::Femur).size(), 2U);
+  app.press("b");
+  ASSERT_TRUE(app.wait_for_state("tunnel", "femur PL"));
+  app.press("plus");
+  ASSERT_TRUE(app.wait_for_state("undo", "Change the diameter of the femoral PL tunnel"));
+  ASSERT_TRUE(app.wait_for_state("plan", "saved"));
+  const cases::Plan wider = cases::load_case(case_folder()).plan;
+  const tunnels::TunnelKey am{bones::BoneKind::Femur, norms::Bundle::Anteromedial},
+      pl{bones::BoneKind::Femur, norms::Bundle::Posterolateral};
+  EXPECT_EQ(wider.tunnels.at(am).diameter_mm, both.tunnels.at(am).diameter_mm);
+  EXPECT_EQ(wider.tunnels.at(pl).diameter_mm, both.tunnels.at(pl).diameter_mm + 0.5);
+  app.press("ctrl+z");
+  app.press("ctrl+z");
+  ASSERT_TRUE(app.wait_for_state("tunnel", "femur"));
+  ASSERT_TRUE(app.wait_for_state("plan", "saved"));
+  EXPECT_EQ(saved_tunnel().entry_mm, before.entry_mm);
+}
+
 }  // namespace
 }  // namespace arthronaut::test

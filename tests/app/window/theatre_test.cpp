@@ -158,6 +158,34 @@ TEST_F(Theatre, Hazard5AnEditedPlanWaitsUntilItIsTakenOver) {
   EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
 }
 
+// Two tunnels in the bone: nothing starts by the pedal before one is chosen; the other one is offered while a
+// source runs, and guides once it is taken over.
+TEST_F(Theatre, Hazard38OfTwoTunnelsOneIsChosenAndNamed) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("b");
+  ASSERT_TRUE(app.wait_for_state("undo", "Plan two bundles in the femur"));
+  app.press("F2");
+  ASSERT_TRUE(app.wait_for_state("mode", "navigate"));
+  ASSERT_TRUE(app.wait_for_state("next", "choose the tunnel of the femur that is drilled: AM (1) or PL (2)"));
+  app.press("space");
+  EXPECT_EQ(app.state("tunnel"), "none");
+  EXPECT_EQ(app.state("picture"), "none");
+  app.press("1");
+  ASSERT_TRUE(app.wait_for_state("tunnel", "femur AM"));
+  ASSERT_TRUE(app.wait_for_state("next", "start the simulated operation"));
+  app.press("space");
+  ASSERT_TRUE(app.wait_for_state("picture", "live", 120));
+  app.press("2");
+  ASSERT_TRUE(app.wait_for_state("plan", "edited"));
+  EXPECT_EQ(app.state("tunnel"), "femur AM");
+  ASSERT_TRUE(app.wait_for_state("next", "take over the tunnel femur PL"));
+  app.press("space");
+  EXPECT_TRUE(app.wait_for_state("tunnel", "femur PL"));
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
 // A session of the window, with strokes, an excluded one and touches, runs again to the same states.
 TEST_F(Theatre, Hazard12ASessionOfTheWindowReplaysToTheLastBit) {
   std::string session;

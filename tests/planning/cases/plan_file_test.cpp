@@ -106,5 +106,83 @@ TEST_F(PlanFile, SavesOverItsOwnVersions) {
   EXPECT_NO_THROW((void)save_plan_over(folder_, plan_with_diameter(8), ""));
 }
 
+tunnels::Tunnel tunnel_of(norms::Bundle bundle, double x_mm) {
+  return {.bone = BoneKind::Femur, .entry_mm = {x_mm, 0, 0}, .diameter_mm = 6, .bundle = bundle};
+}
+
+// What cases of one tunnel a bone are, they stay: to the byte, for the programs of before.
+TEST_F(PlanFile, ASingleTunnelIsWrittenAsItAlwaysWas) {
+  save_plan(folder_, plan_with_diameter(9.5));
+  EXPECT_EQ(files::read_text(folder_ / "plan.json"), R"({
+  "format": "arthronaut.plan",
+  "version": 1,
+  "tunnels": [
+    {
+      "bone": "femur",
+      "entry_mm": [
+        40.0,
+        0.0,
+        0.0
+      ],
+      "direction": [
+        0.0,
+        0.0,
+        1.0
+      ],
+      "diameter_mm": 9.5
+    }
+  ]
+}
+)");
+}
+
+TEST_F(PlanFile, TwoBundlesComeBackAndOlderProgramsRefuseThem) {
+  Plan plan;
+  plan.put(tunnel_of(norms::Bundle::Posterolateral, 30), std::string(64, 'b'));
+  plan.put(tunnel_of(norms::Bundle::Anteromedial, 40), std::string(64, 'a'));
+  save_plan(folder_, plan);
+  EXPECT_THAT(files::read_text(folder_ / "plan.json"), HasSubstr("\"version\": 2"));
+  const Plan back = load_case(folder_).plan;
+  ASSERT_EQ(back.of(BoneKind::Femur).size(), 2U);
+  EXPECT_EQ(back.tunnels.at({BoneKind::Femur, norms::Bundle::Anteromedial}).entry_mm.x(), 40);
+  EXPECT_EQ(back.tunnels.at({BoneKind::Femur, norms::Bundle::Posterolateral}).bundle,
+            norms::Bundle::Posterolateral);
+  EXPECT_EQ(back.mesh_sha256, plan.mesh_sha256);
+  EXPECT_FALSE(back.tunnels.contains(BoneKind::Femur)) << "the bone alone is never one of two";
+  EXPECT_EQ(plan_fit(load_case(folder_), BoneKind::Femur).outcome, Outcome::NoPlan);
+}
+
+// A single tunnel and those of bundles take each other's place, and the bundles stand beside each other.
+TEST_F(PlanFile, ABoneHasASingleTunnelOrThoseOfBundles) {
+  Plan plan = plan_with_diameter(9);
+  plan.put(tunnel_of(norms::Bundle::Anteromedial, 40), "a");
+  EXPECT_EQ(plan.of(BoneKind::Femur),
+            (std::vector<tunnels::TunnelKey>{{BoneKind::Femur, norms::Bundle::Anteromedial}}));
+  plan.put(tunnel_of(norms::Bundle::Posterolateral, 30), "b");
+  EXPECT_EQ(plan.of(BoneKind::Femur).size(), 2U);
+  plan.put(tunnel_of(norms::Bundle::Whole, 35), "c");
+  EXPECT_EQ(plan.of(BoneKind::Femur), std::vector<tunnels::TunnelKey>{BoneKind::Femur});
+  EXPECT_EQ(plan.mesh_sha256.size(), 1U);
+}
+
+TEST_F(PlanFile, RefusesBundlesThatContradictEachOther) {
+  const auto with = [&](const std::string& first, const std::string& second) {
+    const auto tunnel = [](const std::string& bundle) {
+      return R"({"bone":"femur","entry_mm":[1,2,3],"direction":[0,0,1],"diameter_mm":6)" +
+             (bundle.empty() ? "" : ",\"bundle\":\"" + bundle + "\"") + "}";
+    };
+    return test::message_of<InvalidInput>([&] {
+      (void)plan_from(R"({"format":"arthronaut.plan","version":2,"tunnels":[)" + tunnel(first) + "," +
+                          tunnel(second) + "]}",
+                      "plan.json");
+    });
+  };
+  EXPECT_THAT(with("", ""), HasSubstr("has two tunnels"));
+  EXPECT_THAT(with("am", "am"), HasSubstr("has two tunnels of the same bundle"));
+  EXPECT_THAT(with("am", ""), HasSubstr("beside a single tunnel"));
+  EXPECT_THAT(with("", "pl"), HasSubstr("beside a single tunnel"));
+  EXPECT_THAT(with("am", "posterior"), HasSubstr("must be single, am or pl"));
+}
+
 }  // namespace
 }  // namespace arthronaut::cases

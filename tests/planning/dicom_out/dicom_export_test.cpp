@@ -191,7 +191,8 @@ TEST_F(DicomExport, ThePlanIsThereAsFiducials) {
   EXPECT_EQ(plan[DCM_Modality], "FID");
   EXPECT_EQ(plan[DCM_ContentLabel], "TUNNEL_PLAN");
   EXPECT_EQ(plan[DCM_Laterality], "R");
-  for (const auto& [kind, tunnel] : contents_.knee.plan.tunnels) {
+  for (const auto& [key, tunnel] : contents_.knee.plan.tunnels) {
+    const BoneKind kind = key.bone;
     DcmItem* set = nullptr;
     const long number = kind == BoneKind::Femur ? 0 : 1;
     ASSERT_TRUE(
@@ -214,6 +215,33 @@ TEST_F(DicomExport, ThePlanIsThereAsFiducials) {
       EXPECT_TRUE(exit->findAndGetFloat64(DCM_ContourData, point[static_cast<int>(i)], i).good());
     EXPECT_LT((point - tunnel.entry_mm).normalized().cross(tunnel.direction.normalized()).norm(), 1e-4);
   }
+}
+
+// Two tunnels of a bone have fiducials with names of their own, and both are drilled out of the bone.
+TEST_F(DicomExport, TwoBundlesAreNamedAndDrilled) {
+  be_of_images();
+  cases::Plan& plan = contents_.knee.plan;
+  tunnels::Tunnel tunnel = plan.tunnels.at(BoneKind::Femur);
+  const std::string mesh =
+      plan.mesh_sha256.contains(BoneKind::Femur) ? plan.mesh_sha256.at(BoneKind::Femur) : "";
+  tunnel.diameter_mm = 6;
+  tunnel.bundle = norms::Bundle::Anteromedial;
+  plan.put(tunnel, mesh);
+  tunnel.bundle = norms::Bundle::Posterolateral;
+  tunnel.entry_mm += 8 * tunnel.direction.unitOrthogonal();
+  plan.put(tunnel, mesh);
+  write();
+  Dicom fiducials = read("plan.dcm");
+  for (const auto& [number, name] : {std::pair(0L, "FEMUR_AM_ENTRY"), std::pair(1L, "FEMUR_PL_ENTRY")}) {
+    DcmItem *set = nullptr, *entry = nullptr;
+    ASSERT_TRUE(
+        fiducials.format.getDataset()->findAndGetSequenceItem(DCM_FiducialSetSequence, set, number).good());
+    ASSERT_TRUE(set->findAndGetSequenceItem(DCM_FiducialSequence, entry, 0).good());
+    EXPECT_EQ(text(*entry, DCM_FiducialIdentifier), name);
+  }
+  Dicom drilled = read("femur_drilled.dcm");
+  EXPECT_NE(std::string(drilled[DCM_DocumentTitle]).find("tunnels of 6.0 and 6.0 mm"), std::string::npos)
+      << drilled[DCM_DocumentTitle];
 }
 
 TEST_F(DicomExport, TheReportIsThereByteByByte) {

@@ -62,7 +62,8 @@ TEST(PlanExport, WritesWhatIsReadBackTheSame) {
   const auto table = files::CsvTable::read(summary.files[1], {"bone", "entry_x_mm", "length_mm", "wall_mm"});
   EXPECT_EQ(table.row_count(), 2u);
   const auto markups = read_markups(summary.files[2]);
-  for (const auto& [kind, tunnel] : knee.plan.tunnels) {
+  for (const auto& [key, tunnel] : knee.plan.tunnels) {
+    const BoneKind kind = key.bone;
     EXPECT_LT((markups.tunnels.at(kind).entry_mm - tunnel.entry_mm).norm(), 1e-9);
     EXPECT_LT((markups.tunnels.at(kind).direction - tunnel.direction).norm(), 1e-6);
     EXPECT_NEAR(markups.tunnels.at(kind).diameter_mm, tunnel.diameter_mm, 1e-3);
@@ -85,6 +86,66 @@ TEST(PlanExport, RefusesAnEmptyPlan) {
   knee.plan.tunnels.clear();
   EXPECT_THROW((void)export_plan(knee, folder.path() / "out"), InvalidInput);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+// Two holes of 8 mm, 5 mm apart: together they take away two circles less the lens that they share. As
+// polygons of 96 sides of the circles' area they share it to a share of 1e-3.
+TEST(DrilledBone, TakesTwoTunnelsOutAlsoWhereTheyRunIntoEachOther) {
+  const auto slab = test::box({30, 30, 10});
+  const auto at = [](double x_mm, norms::Bundle bundle) {
+    return tunnels::Tunnel{BoneKind::Femur, {x_mm, -0.2, 10}, -Vector3d::UnitZ(), 8, bundle};
+  };
+  const auto removed = [&](double apart_mm) {
+    const std::array both{at(0.3, norms::Bundle::Anteromedial),
+                          at(0.3 + apart_mm, norms::Bundle::Posterolateral)};
+    const auto drilled = drill(slab, both);
+    EXPECT_TRUE(drilled.is_usable()) << drilled.reason;
+    EXPECT_TRUE(bones::mend_mesh(drilled.mesh).report.is_closed);
+    return geometry::signed_volume_mm3(slab) - geometry::signed_volume_mm3(drilled.mesh);
+  };
+  const double circle = geometry::kPi * 16;
+  EXPECT_NEAR(removed(12), 2 * circle * 20, 0.02);
+  const double lens = 2 * 16 * std::acos(5.0 / 8) - 2.5 * std::sqrt(4 * 16 - 25.0);
+  EXPECT_NEAR(removed(5), (2 * circle - lens) * 20, 1e-3 * lens * 20);
+  std::array missing{at(0.3, norms::Bundle::Anteromedial), at(300, norms::Bundle::Posterolateral)};
+  EXPECT_EQ(drill(slab, missing).reason, "the tunnel femur PL misses the bone");
+}
+
+// Two bundles: both holes, two rows, two lines with names of their own, read back the same.
+TEST(PlanExport, TwoBundlesAreWrittenAndReadBack) {
+  const test::TemporaryFolder folder;
+  auto knee = knee_case();
+  tunnels::Tunnel tunnel = knee.plan.tunnels.at(BoneKind::Femur);
+  tunnel.diameter_mm = 6;
+  tunnel.bundle = norms::Bundle::Anteromedial;
+  knee.plan.put(tunnel, knee.plan.mesh_sha256.at(BoneKind::Femur));
+  tunnel.bundle = norms::Bundle::Posterolateral;
+  tunnel.entry_mm += 8 * tunnel.direction.unitOrthogonal();
+  knee.plan.put(tunnel, knee.plan.mesh_sha256.begin()->second);
+  const auto summary = export_plan(knee, folder.path() / "out");
+  EXPECT_TRUE(summary.doubts.empty()) << summary.doubts[0];
+  const auto markups = read_markups(folder.path() / "out" / "plan.mrk.json");
+  ASSERT_EQ(markups.tunnels.size(), 3U);
+  for (const auto& [key, planned] : knee.plan.tunnels) {
+    EXPECT_LT((markups.tunnels.at(key).entry_mm - planned.entry_mm).norm(), 1e-9);
+    EXPECT_EQ(markups.tunnels.at(key).bundle, key.bundle);
+  }
+  const std::string csv = files::read_text(folder.path() / "out" / "plan.csv");
+  for (const char* end : {",am\n", ",pl\n", ",single\n", ",bundle\n"})
+    EXPECT_NE(csv.find(end), std::string::npos) << csv;
+  const auto femur = bones::read_mesh(folder.path() / "out" / "femur_drilled.stl");
+  const double removed =
+      geometry::signed_volume_mm3(knee.bones.at(BoneKind::Femur).mesh) - geometry::signed_volume_mm3(femur);
+  double expected = 0;
+  const geometry::Surface surface(knee.bones.at(BoneKind::Femur).mesh);
+  for (const auto& key : knee.plan.of(BoneKind::Femur))
+    expected += geometry::kPi * 9 * tunnels::measure(knee.plan.tunnels.at(key), surface).length_mm;
+  EXPECT_NEAR(removed / expected, 1, 0.15);  // mouths slant
+  // A single line beside one of a bundle contradicts it.
+  std::string text = files::read_text(folder.path() / "out" / "plan.mrk.json");
+  text.replace(text.find("femur PL tunnel"), 15, "femur tunnel");
+  files::write_atomically(folder.path() / "wrong.mrk.json", text);
+  EXPECT_THROW((void)read_markups(folder.path() / "wrong.mrk.json"), InvalidInput);
 }
 
 // 3D Slicer may hand back RAS; anything else is refused with the place.

@@ -57,9 +57,64 @@ TEST_F(PlanReview, OfABoneThatTheCaseLacksThereIsNothing) {
   knee_.bones.erase(BoneKind::Tibia);
   const CaseReview review(knee_);
   EXPECT_FALSE(review.has_bone(BoneKind::Tibia));
-  EXPECT_EQ(review.tunnel(BoneKind::Tibia).tunnel, nullptr);
+  EXPECT_FALSE(review.tunnels().contains(BoneKind::Tibia));
   EXPECT_TRUE(review.checks(BoneKind::Tibia).empty());
   EXPECT_FALSE(review.checks(BoneKind::Femur).empty());
+}
+
+using norms::Bundle;
+
+const tunnels::PlanCheck& named(const std::vector<tunnels::PlanCheck>& checks, const char* name) {
+  return *std::ranges::find(checks, name, &tunnels::PlanCheck::name);
+}
+
+// Two tunnels of one direction, so far apart beside each other that 3 mm are between them: each says so.
+TEST_F(PlanReview, TwoTunnelsOfABoneSayWhatIsBetweenThem) {
+  tunnels::Tunnel am = knee_.plan.tunnels.at(BoneKind::Femur), pl = am;
+  am.bundle = Bundle::Anteromedial;
+  pl.bundle = Bundle::Posterolateral;
+  am.diameter_mm = 7;
+  pl.diameter_mm = 6;
+  pl.entry_mm += 9.5 * am.direction.unitOrthogonal();
+  knee_.plan.put(am, "");
+  knee_.plan.put(pl, "");
+  const CaseReview review(knee_);
+  for (const tunnels::TunnelKey& key : {am.key(), pl.key()}) {
+    const auto checks = review.checks(key);
+    ASSERT_TRUE(has(checks, "Between the tunnels")) << tunnels::name_of(key);
+    const auto& between = named(checks, "Between the tunnels");
+    EXPECT_EQ(between.verdict, Verdict::Fine);
+    ASSERT_TRUE(between.value && between.least);
+    EXPECT_NEAR(*between.value, 3.0, 0.01);
+    EXPECT_FALSE(between.source.empty());
+    // Both go to the one tunnel of the tibia.
+    EXPECT_NE(named(checks, "Graft length").verdict, Verdict::NotChecked);
+  }
+  EXPECT_TRUE(review.checks(BoneKind::Femur).empty()) << "the bone alone is none of the two";
+  // Which of two the tibia's single one goes to nobody has said.
+  const auto tibial = review.checks(BoneKind::Tibia);
+  EXPECT_EQ(named(tibial, "Roof").verdict, Verdict::NotChecked);
+  knee_.plan.tunnels.at(pl.key()).entry_mm = am.entry_mm + 4 * am.direction.unitOrthogonal();
+  EXPECT_EQ(named(CaseReview(knee_).checks(am.key()), "Between the tunnels").verdict, Verdict::Wrong);
+}
+
+// A graft's ends are of one bundle.
+TEST_F(PlanReview, AGraftGoesFromBundleToBundle) {
+  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
+    tunnels::Tunnel tunnel = knee_.plan.tunnels.at(kind);
+    for (const Bundle bundle : {Bundle::Anteromedial, Bundle::Posterolateral}) {
+      tunnel.bundle = bundle;
+      tunnel.entry_mm.z() += bundle == Bundle::Posterolateral ? 1 : 0;
+      knee_.plan.put(tunnel, "");
+    }
+  }
+  const CaseReview review(knee_);
+  for (const Bundle bundle : {Bundle::Anteromedial, Bundle::Posterolateral}) {
+    const auto* end = other_end({BoneKind::Femur, bundle}, review.tunnels());
+    ASSERT_NE(end, nullptr);
+    EXPECT_EQ(end->tunnel.key(), tunnels::TunnelKey(BoneKind::Tibia, bundle));
+  }
+  EXPECT_EQ(other_end(BoneKind::Femur, review.tunnels()), nullptr);
 }
 
 }  // namespace

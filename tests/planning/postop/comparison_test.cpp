@@ -155,6 +155,34 @@ TEST_F(Achieved, ASecondTunnelIsTold) {
   EXPECT_THAT(found.reasons, Contains(HasSubstr("another tunnel opens")));
 }
 
+// Two planned, two drilled: each is found for its own plan, and the other one is no doubt. One drilled: it is
+// not told for both.
+TEST_F(Achieved, OfTwoPlannedTunnelsEachIsFoundForItsOwn) {
+  Tunnel am = plan(BoneKind::Femur), pl = moved(BoneKind::Femur, {8, -8}, {4, 0});
+  am.bundle = norms::Bundle::Anteromedial;
+  pl.bundle = norms::Bundle::Posterolateral;
+  am.diameter_mm = pl.diameter_mm = 7;
+  const auto drilled_from = [&](const Tunnel& planned) {
+    Tunnel drilled =
+        test::moved_tunnel(planned, geometry::Surface(mesh(BoneKind::Femur)), {0.8, 0.6}, {2, 1});
+    drilled.diameter_mm = planned.diameter_mm;
+    return drilled;
+  };
+  const Tunnel truth_am = drilled_from(am), truth_pl = drilled_from(pl);
+  const auto volume = ct(BoneKind::Femur, {{.tunnel = truth_am}, {.tunnel = truth_pl}});
+  const PostopImages images(volume);
+  for (const auto& [planned, other, truth] : {std::tuple(am, pl, truth_am), std::tuple(pl, am, truth_pl)}) {
+    const auto found = images.compare(mesh(BoneKind::Femur), planned, std::span(&other, 1)).tunnel;
+    expect_near(found, truth);
+    EXPECT_TRUE(found.reliable) << testing::PrintToString(found.reasons);
+    EXPECT_EQ(found.tunnel.bundle, planned.bundle);
+  }
+  const auto one = ct(BoneKind::Femur, {{.tunnel = truth_am}});
+  const auto missing = PostopImages(one).compare(mesh(BoneKind::Femur), pl, std::span(&am, 1)).tunnel;
+  EXPECT_FALSE(missing.reliable);
+  EXPECT_THAT(missing.reasons, Contains(HasSubstr("nearer to the planned tunnel femur AM")));
+}
+
 // A tunnel found in a bone that is another's: told, and not relied on.
 TEST_F(Achieved, ATunnelInAnotherPatientsBoneIsNotReliable) {
   const auto other = phantom::make_phantom_knee({.seed = 2});

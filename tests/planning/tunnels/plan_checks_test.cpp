@@ -121,5 +121,30 @@ TEST(PlanChecks, SayOnlyThatItMisses) {
   EXPECT_EQ(checks[0].verdict, Verdict::Wrong);
 }
 
+// A tunnel of one bundle is held against what studies found of that bundle: the middle of AM is no place for
+// PL.
+TEST(PlanChecks, ABundleIsHeldAgainstItsOwnNorm) {
+  auto geometry = inside(35, 5);
+  geometry.entry_on_surface_mm = {3, -2.42, -4.32};  // 24.2 and 21.6 %
+  const Tunnel am{.bone = BoneKind::Femur, .diameter_mm = 6, .bundle = norms::Bundle::Anteromedial};
+  const Tunnel pl{.bone = BoneKind::Femur, .diameter_mm = 6, .bundle = norms::Bundle::Posterolateral};
+  const Tunnel whole{.bone = BoneKind::Femur, .diameter_mm = 6};
+  const auto of_am = check_plan(am, geometry, with_quadrant());
+  EXPECT_EQ(named(of_am, "High to low").verdict, Verdict::Fine);
+  EXPECT_THAT(named(of_am, "High to low").source, ::testing::HasSubstr("AM: "));
+  EXPECT_EQ(named(check_plan(pl, geometry, with_quadrant()), "High to low").verdict, Verdict::Look);
+  EXPECT_EQ(named(check_plan(whole, geometry, with_quadrant()), "High to low").verdict, Verdict::Look);
+  // 6 mm is small for the whole ligament; of a bundle nobody has said.
+  EXPECT_EQ(named(of_am, "Diameter").verdict, Verdict::Note);
+  EXPECT_EQ(named(check_plan(whole, geometry, {}), "Diameter").verdict, Verdict::Look);
+}
+
+TEST(TunnelKey, NamesTheTunnelAndNeverOneOfTwo) {
+  EXPECT_EQ(name_of(BoneKind::Tibia), "tibia");
+  EXPECT_EQ(name_of({BoneKind::Femur, norms::Bundle::Anteromedial}), "femur AM");
+  EXPECT_EQ(name_of({BoneKind::Tibia, norms::Bundle::Posterolateral}), "tibia PL");
+  EXPECT_NE(TunnelKey(BoneKind::Femur), TunnelKey(BoneKind::Femur, norms::Bundle::Anteromedial));
+}
+
 }  // namespace
 }  // namespace arthronaut::tunnels

@@ -1,0 +1,110 @@
+// One tunnel in a bone, or one for each bundle of the ligament.
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+
+#include "app/plan/plan_view.h"
+
+namespace arthronaut::plan {
+
+using norms::Bundle;
+
+tunnels::TunnelKey PlanView::key_in(bones::BoneKind bone) const {
+  const auto keys = model_->knee().plan.of(bone);
+  const tunnels::TunnelKey alike{bone, state_.key.bundle};
+  return keys.empty() || std::ranges::find(keys, alike) != keys.end() ? alike : keys.front();
+}
+
+void PlanView::work_on(const tunnels::TunnelKey& key) {
+  state_.key = key;
+  state_.shown_revision = 0;
+  state_.survey = nullptr;
+  state_.places_entry = false;
+  state_.hint.clear();
+}
+
+void PlanView::follow_plan() {
+  if (model_ == nullptr) return;
+  const auto keys = model_->knee().plan.of(state_.key.bone);
+  if (!keys.empty() && (keys.front().bundle == Bundle::Whole) != (state_.key.bundle == Bundle::Whole))
+    work_on(keys.front());
+}
+
+// Both by the norms. Where there are none to go by, the tunnel that is there becomes AM, and PL is placed by
+// hand.
+void PlanView::plan_bundles() {
+  const bones::BoneKind bone = state_.key.bone;
+  const tunnels::TunnelKey am{bone, Bundle::Anteromedial}, pl{bone, Bundle::Posterolateral};
+  const std::string what = "Plan two bundles in the " + std::string(bones::to_text(bone));
+  std::map<tunnels::TunnelKey, tunnels::Tunnel> both;
+  std::string missing;
+  for (const tunnels::TunnelKey& key : {am, pl}) {
+    const default_plan::DefaultTunnel made = model_->default_tunnel(key);
+    if (made.is_usable())
+      both.emplace(key, made.tunnel);
+    else
+      missing = made.message;
+  }
+  if (both.size() == 2) {
+    history_.apply_tunnels(both, what);
+    work_on(am);
+    return;
+  }
+  // One of another surface would pass for one of this.
+  const auto single = model_->plan_fit(bone).is_valid() ? model_->tunnel(bone) : std::nullopt;
+  if (single) history_.apply_tunnels({{am, *single}}, what);
+  work_on(single ? pl : am);
+  state_.hint = "No default for two bundles: " + missing + ". Press P and place the entry.";
+}
+
+void PlanView::plan_single() {
+  const bones::BoneKind bone = state_.key.bone;
+  const default_plan::DefaultTunnel made = model_->default_tunnel(bone);
+  const auto here = model_->plan_fit(state_.key).is_valid() ? model_->tunnel(state_.key) : std::nullopt;
+  if (!made.is_usable() && !here) return;
+  history_.apply_tunnels({{bone, made.is_usable() ? made.tunnel : *here}},
+                         "Plan one tunnel in the " + std::string(bones::to_text(bone)));
+  work_on(bone);
+}
+
+void PlanView::add_bundle_actions(widgets::Actions& actions) {
+  const auto is_of_bundle = [this] {
+    return model_ != nullptr && model_->has_bone(state_.key.bone) && state_.key.bundle != Bundle::Whole;
+  };
+  actions.add(
+      {"plan.bundles",
+       "Two bundles",
+       "A tunnel for each bundle of the ligament, AM and PL, in place of this one; undo takes it back",
+       GLFW_KEY_B,
+       0,
+       false,
+       [this] {
+         return model_ != nullptr && model_->has_bone(state_.key.bone) &&
+                state_.key.bundle == Bundle::Whole &&
+                history_.status().save != open_case::PlanStatus::Save::ReadOnly;
+       },
+       {},
+       [this] { plan_bundles(); }});
+  actions.add({"plan.other_bundle",
+               "Other bundle",
+               "Work on the other tunnel of this bone: AM or PL",
+               GLFW_KEY_B,
+               0,
+               false,
+               is_of_bundle,
+               {},
+               [this] { work_on(*other_bundle(state_.key)); }});
+  actions.add({"plan.single",
+               "One tunnel",
+               "A single tunnel in place of both bundles' in this bone; undo brings them back",
+               GLFW_KEY_B,
+               GLFW_MOD_SHIFT,
+               false,
+               [this, is_of_bundle] {
+                 return is_of_bundle() && history_.status().save != open_case::PlanStatus::Save::ReadOnly;
+               },
+               {},
+               [this] { plan_single(); }});
+}
+
+}  // namespace arthronaut::plan

@@ -1,0 +1,65 @@
+// What a session keeps of the tunnels that were drilled in it, and by which name each goes.
+#include "navigation/operation/achieved_tunnel.h"
+
+#include <gtest/gtest.h>
+
+#include "navigation/operation/command.h"
+#include "navigation/operation/operation_state.h"
+#include "planning/files/atomic_file.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::operation {
+namespace {
+
+using norms::Bundle;
+
+tunnels::Tunnel tunnel_of(Bundle bundle) {
+  return {.entry_mm = {1, 2, 3}, .direction = {0, 0, 1}, .diameter_mm = 7, .bundle = bundle};
+}
+AchievedTunnel drilled(Bundle bundle, double depth_mm) {
+  return {.planned = tunnel_of(bundle), .measured = tunnel_of(bundle), .depth_mm = depth_mm, .truth = {}};
+}
+
+// Both bundles drilled in one session: neither takes the other's place, and each says which it is.
+TEST(AchievedTunnel, ASessionHoldsBothBundles) {
+  const test::TemporaryFolder folder;
+  for (const auto& [bundle, depth_mm] :
+       {std::pair(Bundle::Posterolateral, 30.0), {Bundle::Anteromedial, 20.0}})
+    write_achieved_file(folder.path() / achieved_file_name({bones::BoneKind::Femur, bundle}),
+                        drilled(bundle, depth_mm));
+  const auto files = achieved_files(folder.path());
+  ASSERT_EQ(files.size(), 2U);
+  EXPECT_EQ(read_achieved_file(files[0]).measured.bundle, Bundle::Anteromedial);
+  EXPECT_EQ(read_achieved_file(files[0]).depth_mm, 20.0);
+  EXPECT_EQ(read_achieved_file(files[1]).planned.bundle, Bundle::Posterolateral);
+}
+
+// Of a single tunnel the file is as it always was.
+TEST(AchievedTunnel, OfASingleTunnelNothingIsNew) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(achieved_file_name(bones::BoneKind::Tibia), "achieved.json");
+  const auto file = folder.path() / "achieved.json";
+  write_achieved_file(file, drilled(Bundle::Whole, 20));
+  EXPECT_EQ(files::read_text(file).find("bundle"), std::string::npos);
+  EXPECT_EQ(achieved_files(folder.path()), std::vector<std::filesystem::path>{file});
+}
+
+// Which of two tunnels guides is in the journal and in the digests; of a single one both are as before.
+TEST(OperationCommands, NameTheBundleThatGuides) {
+  const OfferPlan single{PlannedTunnel{tunnel_of(Bundle::Whole), 30}},
+      am{PlannedTunnel{tunnel_of(Bundle::Anteromedial), 30}};
+  EXPECT_EQ(to_text(single).find("bundle"), std::string::npos);
+  const auto back = std::get<OfferPlan>(command_from_text(to_text(am), "journal"));
+  EXPECT_EQ(back.plan->tunnel.bundle, Bundle::Anteromedial);
+  EXPECT_TRUE(back.plan == am.plan);
+  EXPECT_FALSE(single.plan == am.plan) << "the same place for another graft is another plan";
+  const auto digest_with = [](const std::optional<PlannedTunnel>& plan) {
+    OperationState state;
+    state.plan = plan;
+    return digest_of_decisions(state);
+  };
+  EXPECT_NE(digest_with(am.plan), digest_with(single.plan));
+}
+
+}  // namespace
+}  // namespace arthronaut::operation
