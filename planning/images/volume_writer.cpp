@@ -1,10 +1,13 @@
 #include "planning/images/volume_writer.h"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <new>
 #include <vector>
 
 #include "planning/files/atomic_file.h"
@@ -51,7 +54,59 @@ std::string one_line(std::string text) {
   return text;
 }
 
+std::string header_of(const Volume& volume, const char* type, const char* encoding,
+                      const std::string& modality, const std::vector<Segment>& segments) {
+  const Eigen::Matrix3d axes = volume.lps_from_index.linear();
+  std::string header =
+      std::string("NRRD0004\ntype: ") + type + "\ndimension: 3\nspace: left-posterior-superior\nsizes: " +
+      files::format("%d %d %d", volume.size.x(), volume.size.y(), volume.size.z()) +
+      "\nspace directions: " + vector_text(axes.col(0)) + " " + vector_text(axes.col(1)) + " " +
+      vector_text(axes.col(2)) + "\nkinds: domain domain domain\nendian: " +
+      (std::endian::native == std::endian::little ? "little" : "big") + "\nencoding: " + encoding +
+      "\nspace origin: " + vector_text(volume.lps_from_index.translation()) + "\n";
+  if (!modality.empty()) header += "modality:=" + one_line(modality) + "\n";
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const std::string start = "Segment" + std::to_string(i) + "_";
+    header += start + "Name:=" + one_line(segments[i].name) + "\n" + start +
+              "LabelValue:=" + std::to_string(segments[i].label) + "\n";
+  }
+  return header + "\n";
+}
+
+// The fastest level: nearly all of a label map is one value.
+std::shared_ptr<std::string> packed(std::span<const std::uint8_t> bytes) {
+  constexpr int kLevel = 1, kWindowWithGzipHeader = 15 + 16, kMemory = 8;
+  constexpr std::size_t kStep = std::size_t{1} << 30;  // zlib counts in 32 bits
+  z_stream stream{};
+  if (deflateInit2(&stream, kLevel, Z_DEFLATED, kWindowWithGzipHeader, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
+    throw std::bad_alloc();
+  auto result = std::make_shared<std::string>();
+  std::vector<Bytef> chunk(std::size_t{1} << 18);
+  do {
+    const std::size_t step = std::min(bytes.size(), kStep);
+    stream.next_in = const_cast<Bytef*>(bytes.data());
+    stream.avail_in = static_cast<uInt>(step);
+    bytes = bytes.subspan(step);
+    do {
+      stream.next_out = chunk.data();
+      stream.avail_out = static_cast<uInt>(chunk.size());
+      deflate(&stream, bytes.empty() ? Z_FINISH : Z_NO_FLUSH);
+      result->append(reinterpret_cast<const char*>(chunk.data()), chunk.size() - stream.avail_out);
+    } while (stream.avail_out == 0);
+  } while (!bytes.empty());
+  deflateEnd(&stream);
+  return result;
+}
+
 }  // namespace
+
+EncodedVolume encoded_labels(const Volume& grid, std::span<const std::uint8_t> labels,
+                             const std::vector<Segment>& segments) {
+  if (labels.size() != static_cast<std::size_t>(grid.size.cast<std::int64_t>().prod()))
+    throw InvalidInput("the labels are not of the volume's size");
+  const auto voxels = packed(labels);
+  return {header_of(grid, "uint8", "gzip", "", segments), *voxels, voxels};
+}
 
 EncodedVolume encoded(const Volume& volume) {
   EncodedVolume encoded;
@@ -66,21 +121,7 @@ EncodedVolume encoded(const Volume& volume) {
   } else {
     fill<float>(encoded, volume.values);
   }
-  const Eigen::Matrix3d axes = volume.lps_from_index.linear();
-  encoded.header =
-      std::string("NRRD0004\ntype: ") + type + "\ndimension: 3\nspace: left-posterior-superior\nsizes: " +
-      files::format("%d %d %d", volume.size.x(), volume.size.y(), volume.size.z()) +
-      "\nspace directions: " + vector_text(axes.col(0)) + " " + vector_text(axes.col(1)) + " " +
-      vector_text(axes.col(2)) + "\nkinds: domain domain domain\nendian: " +
-      (std::endian::native == std::endian::little ? "little" : "big") +
-      "\nencoding: raw\nspace origin: " + vector_text(volume.lps_from_index.translation()) + "\n";
-  if (!volume.modality.empty()) encoded.header += "modality:=" + one_line(volume.modality) + "\n";
-  for (std::size_t i = 0; i < volume.segments.size(); ++i) {
-    const std::string start = "Segment" + std::to_string(i) + "_";
-    encoded.header += start + "Name:=" + one_line(volume.segments[i].name) + "\n" + start +
-                      "LabelValue:=" + std::to_string(volume.segments[i].label) + "\n";
-  }
-  encoded.header += "\n";
+  encoded.header = header_of(volume, type, "raw", volume.modality, volume.segments);
   return encoded;
 }
 

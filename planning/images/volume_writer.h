@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,6 +21,11 @@ struct EncodedVolume {
   std::shared_ptr<const void> owner;  // of the voxels' memory
 };
 [[nodiscard]] EncodedVolume encoded(const Volume& volume);
+// A label map in the volume's grid, packed (gzip): labels are alike, and pack a hundred times smaller in less
+// time than they are written. Of the volume size and axes alone count. Throws InvalidInput when the labels are
+// not of its size.
+[[nodiscard]] EncodedVolume encoded_labels(const Volume& grid, std::span<const std::uint8_t> labels,
+                                           const std::vector<Segment>& segments);
 
 // Atomic. Throw IoError; the file is then as before. read_volume() gives the same values, axes, modality and
 // segments back.

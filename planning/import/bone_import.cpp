@@ -10,6 +10,7 @@
 #include "planning/import/shape_check.h"
 #include "planning/segmentation/anatomy_check.h"
 #include "planning/segmentation/ct_bones.h"
+#include "planning/segmentation/label_surface.h"
 
 namespace arthronaut::importing {
 
@@ -142,12 +143,31 @@ std::map<BoneKind, int> labels_by_name(const Volume& volume, std::vector<std::st
   return labels;
 }
 
+// nullopt where the surfaces are the labels' own.
+std::optional<Volume> ct_of(const Volume& labels, const BoneImportOptions& options, const Tell& tell) {
+  if (options.edges_in.empty()) return std::nullopt;
+  VolumeFileOptions reading{.series = {}, .most_bytes = options.most_bytes};
+  reading.on_progress = [&](double fraction) { tell("Reading the images", fraction); };
+  Volume grey = read_volume(options.edges_in, reading);
+  if (grey.modality != "CT") return std::nullopt;
+  if (grey.size != labels.size || !grey.lps_from_index.isApprox(labels.lps_from_index, 1e-5))
+    throw InvalidInput(options.edges_in, "", "is not the image that the labels were painted in");
+  return grey;
+}
+
 void import_labels(const Volume& volume, const std::map<BoneKind, int>& labels,
                    const BoneImportOptions& options, BoneImport& result, const Tell& tell) {
+  const std::optional<Volume> ct = ct_of(volume, options, tell);
   for (const auto& [kind, label] : labels) {
     if (options.kind && *options.kind != kind) continue;
     tell("Making the surface", kUnknown);
-    const BoneSurface surface = surface_of_label(volume, label);
+    BoneSurface surface;
+    if (ct) {
+      surface.mesh = segmentation::label_surface_at_edges(*ct, volume, label);
+      surface.notes.emplace_back("the surface lies at the edge that the CT shows");
+    } else {
+      surface = surface_of_label(volume, label);
+    }
     result.bones.push_back(
         finished(kind, "label " + std::to_string(label) + " of " + volume.format, surface.mesh, tell));
     auto& lines = result.bones.back().lines;
@@ -216,7 +236,9 @@ bool import_volume(const std::filesystem::path& source, const BoneImportOptions&
   const bool is_label_map = labels.size() > 1 && labels.front().first >= 0 && volume.modality.empty();
   bool fibula_was_seen = false;
   try {
-    if (!options.labels.empty()) {
+    if (options.images_only) {
+      if (is_label_map) throw InvalidInput("is a label map: there is no image to paint in");
+    } else if (!options.labels.empty()) {
       import_labels(volume, options.labels, options, result, tell);
     } else if (is_label_map && !options.threshold) {
       const auto named = labels_by_name(volume, result.lines);

@@ -100,6 +100,10 @@ void save_studies_of(const fs::path& folder, const BoneImport& import) {
     studies.erase(imported.bone.kind);
     if (!import.origin.is_empty()) studies[imported.bone.kind] = import.origin;
   }
+  // Images alone: the bones that will be painted in them.
+  if (import.bones.empty() && !import.origin.is_empty())
+    for (const bones::BoneKind kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia})
+      studies.try_emplace(kind, import.origin);
   cases::save_studies(folder, studies);
 }
 

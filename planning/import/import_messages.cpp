@@ -144,6 +144,8 @@ void describe(Archive& archive, BoneImportOptions& options) {
   describe(archive, options.labels);
   describe(archive, options.threshold);
   describe(archive, options.series);
+  describe(archive, options.images_only);
+  describe(archive, options.edges_in);
   describe(archive, options.most_bytes);
 }
 
