@@ -21,6 +21,21 @@ std::filesystem::path built_in_case_folder() {
   return base / "arthronaut" / "Phantom.arthro";
 }
 
+namespace {
+
+void load(OpenedCase& opened) {
+  cases::Case knee = cases::load_case(opened.folder);
+  if (knee.bones.empty() && !knee.images.empty()) {
+    opened.unpainted = std::move(knee);
+  } else {
+    opened.model = std::make_unique<PlanModel>(std::move(knee));
+    opened.model->set_measurements(cases::load_measurements(opened.folder));
+  }
+  opened.identity = cases::load_identity(opened.folder);
+}
+
+}  // namespace
+
 OpenedCase open_folder(const std::filesystem::path& folder) {
   OpenedCase opened;
   opened.folder = folder.empty() ? built_in_case_folder() : folder;
@@ -29,9 +44,7 @@ OpenedCase open_folder(const std::filesystem::path& folder) {
     opened.lock = cases::CaseLock(opened.folder);
   if (folder.empty() && opened.lock.is_held() && !std::filesystem::exists(opened.folder / "case.json"))
     cases::save_case(opened.folder, phantom::case_of(phantom::make_phantom_knee(), "Phantom knee"));
-  opened.model = std::make_unique<PlanModel>(cases::load_case(opened.folder));
-  opened.model->set_measurements(cases::load_measurements(opened.folder));
-  opened.identity = cases::load_identity(opened.folder);
+  load(opened);
   return opened;
 }
 
@@ -44,6 +57,20 @@ CaseOpening::CaseOpening(const std::filesystem::path& folder, std::function<void
         return open_folder(folder);
       })) {}
 
+CaseOpening::CaseOpening(CaseOpening& before, std::function<void()> on_end) {
+  open_.lock = std::move(before.open_.lock);
+  opening_ = std::async(std::launch::async, [folder = before.folder(), on_end = std::move(on_end)] {
+    const struct AtEnd {
+      const std::function<void()>& call;
+      ~AtEnd() { call(); }
+    } at_end{on_end};
+    OpenedCase opened;
+    opened.folder = folder;
+    load(opened);
+    return opened;
+  });
+}
+
 CaseOpening::~CaseOpening() {
   if (opening_.valid()) opening_.wait();  // what it calls at its end must still be there
 }
@@ -52,7 +79,9 @@ bool CaseOpening::take() {
   if (!opening_.valid() || opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
     return false;
   try {  // the top of the opening thread: a case that cannot be read is said on the screen
-    open_ = opening_.get();
+    OpenedCase opened = opening_.get();
+    if (open_.lock.is_held()) opened.lock = std::move(open_.lock);
+    open_ = std::move(opened);
   } catch (const std::exception& error) {
     failure_ = error.what();
     return false;

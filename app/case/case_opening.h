@@ -18,6 +18,8 @@ struct OpenedCase {
   std::filesystem::path folder;
   cases::CaseLock lock;  // not held: the case is read-only, for the reason that the lock says
   std::unique_ptr<PlanModel> model;
+  // Instead of a model: a case of images alone, whose bones are still to be painted.
+  std::optional<cases::Case> unpainted;
   std::optional<cases::Identity> identity;
 };
 
@@ -36,13 +38,19 @@ class CaseOpening {
  public:
   // Opens the folder, see open_case(). on_end is called from the other thread when that is done, well or not.
   CaseOpening(const std::filesystem::path& folder, std::function<void()> on_end);
+  // The same case once more, since its bones are others now: what `before` holds it goes over, and back again
+  // by keep_lock() when it cannot be opened.
+  CaseOpening(CaseOpening& before, std::function<void()> on_end);
+  void keep_lock(CaseOpening& from) { open_.lock = std::move(from.open_.lock); }
   ~CaseOpening();  // waits for the end
 
   // Takes over what the thread has made, without waiting; true once, when the case has become open just now.
   bool take();
   [[nodiscard]] bool is_busy() const { return opening_.valid(); }
-  // Null until it is open.
+  // Null until it is open, and in a case whose bones are still to be painted.
   [[nodiscard]] PlanModel* model() const { return open_.model.get(); }
+  // That case; null where there are bones.
+  [[nodiscard]] const cases::Case* unpainted() const { return open_.unpainted ? &*open_.unpainted : nullptr; }
   [[nodiscard]] const std::filesystem::path& folder() const { return open_.folder; }  // empty until then
   [[nodiscard]] const std::string& failure() const { return failure_; }  // why it can't be opened; empty else
 

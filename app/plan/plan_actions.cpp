@@ -1,6 +1,7 @@
 // What can be done in plan mode: buttons, keys and the list of keys are these.
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <array>
 
 #include "app/plan/plan_view.h"
@@ -235,6 +236,19 @@ void PlanView::add_slice_actions(widgets::Actions& actions) {
                  state_.shows_slices = !state_.shows_slices;
                  slices_.use(MeasuringTool::None);
                }});
+  actions.add({"plan.paint",
+               "Paint bones",
+               "Corrects the bones in the images, or grows them from painted strokes",
+               GLFW_KEY_B,
+               0,
+               false,
+               [this] {
+                 return model_ != nullptr &&
+                        std::ranges::any_of(model_->knee().images,
+                                            [](const auto& image) { return !image.is_label_map; });
+               },
+               {},
+               [this] { paint_(); }});
   actions.add({"plan.window",
                "Window",
                "Bone, soft tissue, as the values are; or drag with the right button",

@@ -43,8 +43,9 @@ const char* name_of(open_case::PlanStatus::Save save) {
 
 }  // namespace
 
-PlanView::PlanView(std::function<void()> make_current, const std::function<void()>& wake)
-    : bones_(std::move(make_current)), slices_(wake), survey_(wake) {}
+PlanView::PlanView(std::function<void()> make_current, const std::function<void()>& wake,
+                   std::function<void()> paint)
+    : paint_(std::move(paint)), bones_(std::move(make_current)), slices_(wake), survey_(wake) {}
 
 mode::ModeTitle PlanView::title() const {
   return {"plan", "mode.plan", "Plan", "Place the tunnels", GLFW_KEY_F1};
@@ -100,7 +101,7 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   row({"plan.anterior", "plan.posterior", "plan.medial", "plan.lateral", "plan.distal", "plan.notch",
        "plan.plateau", "plan.see_through"});
   ImGui::SetCursorScreenPos(rest.cut_top(ui.theme.px(44), ui.theme.px(10)).min());
-  row({"plan.grid", "plan.map", "plan.aims", "plan.xray", "plan.slices"});
+  row({"plan.grid", "plan.map", "plan.aims", "plan.xray", "plan.slices", "plan.paint"});
   if (state_.shows_slices)
     row({"plan.window", "plan.fit", "plan.cross_to_entry", "plan.distance", "plan.angle", "plan.unmeasure"});
   follow_tour();

@@ -29,7 +29,9 @@ enum class PanelPage { Checks, Landmarks, Steps };
 class PlanView : public mode::Mode {
  public:
   // wake: ends the window's wait, from any thread.
-  PlanView(std::function<void()> make_current, const std::function<void()>& wake);
+  // paint: shows the painting of the case's bones.
+  PlanView(std::function<void()> make_current, const std::function<void()>& wake,
+           std::function<void()> paint);
 
   [[nodiscard]] mode::ModeTitle title() const override;
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const override { return {"plan."}; }
@@ -120,6 +122,7 @@ class PlanView : public mode::Mode {
     std::uint64_t revision = 0;  // of the model that it was made for
   };
 
+  std::function<void()> paint_;
   open_case::PlanModel* model_ = nullptr;  // null until a case is open
   open_case::PlanHistory history_;
   BonePane bones_;

@@ -79,8 +79,12 @@ SliceEvent SlicePane::draw(const widgets::Ui& ui, const char* name, const widget
                              ImGuiButtonFlags_MouseButtonMiddle);
   const SliceEvent event = follow_mouse(rect, content);
   ImGui::PopID();
-  const Shown wanted{plane_through(content.cross_mm), size_of(rect), content.window, content.volume,
-                     content.revision};
+  const Shown wanted{plane_through(content.cross_mm),
+                     size_of(rect),
+                     content.window,
+                     content.volume,
+                     content.revision,
+                     content.labels != nullptr ? content.labels->revision : 0};
   const bool is_moved = !(wanted.plane == shown_.plane) || wanted.volume != shown_.volume;
   if (is_moved || wanted.size_px != shown_.size_px || !(wanted.window == shown_.window)) {
     scene::reslice(*content.volume, wanted.plane, wanted.size_px, wanted.window, grey_);
@@ -91,12 +95,24 @@ SliceEvent SlicePane::draw(const widgets::Ui& ui, const char* name, const widget
     for (const OutlinedMesh& mesh : content.meshes)
       outlines_.push_back(scene::outline_of(*mesh.mesh, wanted.plane.center_mm, wanted.plane.normal()));
   }
+  if (content.labels != nullptr &&
+      (is_moved || wanted.size_px != shown_.size_px || wanted.labels_revision != shown_.labels_revision)) {
+    std::vector<std::uint32_t> rgba;
+    scene::draw_labels(*content.volume, content.labels->layers, wanted.plane, wanted.size_px, rgba);
+    labels_.upload(wanted.size_px.x(), wanted.size_px.y(), rgba);
+  }
   shown_ = wanted;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.PushClipRect(rect.min(), rect.max(), true);
   draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_.texture())), rect.min(),
                 rect.max());
+  if (content.labels != nullptr)
+    draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(labels_.texture())), rect.min(),
+                  rect.max());
   draw_overlay(ui, rect, content);
+  if (content.brush_mm && event.is_hovered)
+    draw.AddCircle(ImGui::GetIO().MousePos, static_cast<float>(*content.brush_mm / mm_per_px_),
+                   widgets::kText, 0, ui.theme.px(1.5F));
   draw_frame(ui, rect, content);
   draw.PopClipRect();
   ui.log.note(name, rect.min(), rect.max());
@@ -116,6 +132,9 @@ SliceEvent SlicePane::follow_mouse(const widgets::Rect& rect, const SliceContent
     press_travel_px_ = 0;
     pressed_mm_ = under_mouse;
     press_measures_ = content.measures && ImGui::IsMouseDown(ImGuiMouseButton_Left);
+    press_paints_ =
+        content.brush_mm && ImGui::IsMouseDown(ImGuiMouseButton_Left) && !io.KeyShift && !io.KeyCtrl;
+    if (press_paints_) event.painted = {under_mouse, under_mouse, true};
   }
   if (ImGui::IsItemActive()) {
     press_travel_px_ += std::hypot(io.MouseDelta.x, io.MouseDelta.y);
@@ -128,13 +147,18 @@ SliceEvent SlicePane::follow_mouse(const widgets::Rect& rect, const SliceContent
       event.window = window;
     } else if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || (left && io.KeyShift)) {
       center_mm_ -= mm_per_px_ * (io.MouseDelta.x * right_ + io.MouseDelta.y * down_);
+    } else if (press_paints_) {
+      if (!event.painted && under_mouse != pressed_mm_) event.painted = {pressed_mm_, under_mouse, false};
+      pressed_mm_ = under_mouse;
     } else if (left && !press_measures_) {
       event.cross_mm = under_mouse;
     }
   }
   if (ImGui::IsItemDeactivated() && press_measures_ && press_travel_px_ < 5) event.measured_mm = pressed_mm_;
   if (event.is_hovered && io.MouseWheel != 0) {
-    if (io.KeyCtrl) {  // what is under the mouse stays there
+    if (content.brush_mm && io.KeyShift) {
+      event.brush_steps = io.MouseWheel;
+    } else if (io.KeyCtrl) {  // what is under the mouse stays there
       const double zoom = std::clamp(mm_per_px_ * std::pow(0.88, io.MouseWheel), 0.01, 5.0);
       const Eigen::Vector2d from_center = mouse - 0.5 * (size.cast<double>() - Eigen::Vector2d::Ones());
       center_mm_ += (mm_per_px_ - zoom) * (from_center.x() * right_ + from_center.y() * down_);

@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/scene/label_slice.h"
 #include "app/scene/reslice.h"
+#include "app/widgets/color_texture.h"
 #include "app/widgets/controls.h"
 #include "app/widgets/grey_texture.h"
 
@@ -34,6 +36,12 @@ struct SliceLine {
   std::string word;
 };
 
+// What is painted, over the grey picture.
+struct SliceLabels {
+  std::vector<scene::LabelLayer> layers;
+  std::uint64_t revision = 0;  // another one draws them anew
+};
+
 struct SliceContent {
   const images::Volume* volume = nullptr;  // not null
   std::uint64_t revision = 0;              // of the outlined meshes: another one draws their outlines anew
@@ -43,12 +51,22 @@ struct SliceContent {
   Eigen::Vector3d cross_mm = Eigen::Vector3d::Zero();
   scene::GreyWindow window;
   bool measures = false;  // a click sets a point instead of the cross-hair
+  const SliceLabels* labels = nullptr;
+  std::optional<double> brush_mm =
+      {};  // radius; the left button then paints instead of moving the cross-hair
 };
 
 struct SliceEvent {
   std::optional<Eigen::Vector3d> cross_mm;     // where the cross-hair is wanted
   std::optional<scene::GreyWindow> window;     // while it is dragged
   std::optional<Eigen::Vector3d> measured_mm;  // a point that was clicked
+  // How far the brush was drawn over the slice, and whether the button was pressed just now.
+  struct Painted {
+    Eigen::Vector3d from_mm = Eigen::Vector3d::Zero(), to_mm = Eigen::Vector3d::Zero();
+    bool begins = false;
+  };
+  std::optional<Painted> painted;
+  float brush_steps = 0;  // of the wheel with Shift: larger or smaller
   bool is_hovered = false;
   std::optional<double> value;  // of the volume under the mouse
 };
@@ -62,7 +80,8 @@ class SlicePane {
   void fit(const images::Volume& volume);
   void show(const Eigen::Vector3d& center_mm, double extent_mm);
   // Left: cross-hair. Wheel: through the slices, with Ctrl zoom. Right drag: level up and down, width right
-  // and left. Middle drag, or left with Shift: shift.
+  // and left. Middle drag, or left with Shift: shift. With a brush: left paints
+  // and moves the cross-hair with Ctrl, the wheel with Shift changes the brush's size.
   SliceEvent draw(const widgets::Ui& ui, const char* name, const widgets::Rect& rect,
                   const SliceContent& content);
   // How far one step of the wheel goes.
@@ -80,7 +99,7 @@ class SlicePane {
   Eigen::Vector3d center_mm_ =
       Eigen::Vector3d::Zero();             // what stands in the middle of the pane, in the plane
   double mm_per_px_ = 0.5, fit_mm_ = 150;  // fit_mm: of the shorter side, until it is zoomed
-  bool is_fitted_ = false, press_measures_ = false;
+  bool is_fitted_ = false, press_measures_ = false, press_paints_ = false;
   float press_travel_px_ = 0;
   Eigen::Vector3d pressed_mm_ = Eigen::Vector3d::Zero();  // a slow frame sees the mouse let go somewhere else
   widgets::GreyTexture texture_;
@@ -90,9 +109,10 @@ class SlicePane {
     Eigen::Vector2i size_px{0, 0};
     scene::GreyWindow window;
     const images::Volume* volume = nullptr;
-    std::uint64_t revision = 0;
+    std::uint64_t revision = 0, labels_revision = 0;
     bool operator==(const Shown&) const = default;
   } shown_;
+  widgets::ColorTexture labels_;
   std::vector<std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>>> outlines_;  // of each mesh
 };
 

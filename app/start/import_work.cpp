@@ -113,6 +113,7 @@ void ImportWork::start_next() {
   options.threshold = wishes_.threshold;
   if (source.series) options.series = source.series->uid;
   options.kind = source.bone;
+  options.images_only = wishes_.images_only;
   progress_ = {};
   try {
     process_ = std::make_unique<importing::ImportProcess>(

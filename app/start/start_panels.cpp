@@ -142,9 +142,9 @@ void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
                                   : "What was found. Take one, then make the bones");
   draw_text(draw, ui.theme.body, head.x, head.y + ui.theme.px(46), widgets::kAccent,
             fitting(ui.theme.body, found.root.string(), head.width));
-  draw_buttons(
-      ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-      {"start.import", "start.tick", "start.right", "start.left", "start.side_unknown", "start.back"});
+  draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+               {"start.import", "start.paint", "start.tick", "start.right", "start.left",
+                "start.side_unknown", "start.back"});
   widgets::begin_panel(ui, "start.sources", rest);
   if (!work_.failure().empty()) widgets::status_row(ui, Severity::Bad, "Refused", work_.failure());
   const float height = ui.theme.px(132), picture = ui.theme.px(116);
@@ -193,9 +193,10 @@ void StartView::draw_result(const widgets::Ui& ui, const widgets::Rect& area) {
   const widgets::Rect head = rest.cut_top(ui.theme.px(64));
   const std::vector<std::string> doubts = work_.doubts();
   draw_text(*ImGui::GetWindowDrawList(), ui.theme.title, head.x, head.y, widgets::kText,
-            !state_.side     ? "Which knee is it? Nothing says so"
-            : doubts.empty() ? "The bones are made"
-                             : "The bones are made, but look before you rely on them");
+            !state_.side                   ? "Which knee is it? Nothing says so"
+            : work_.result().bones.empty() ? "The images are read. Make the case, then paint its bones"
+            : doubts.empty()               ? "The bones are made"
+                                           : "The bones are made, but look before you rely on them");
   draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
                {"start.save", "start.right", "start.left", "start.back"});
   widgets::begin_panel(ui, "start.result", rest);

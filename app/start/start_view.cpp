@@ -162,9 +162,9 @@ void StartView::accept() {
   }
 }
 
-void StartView::start_import() {
+void StartView::start_import(bool images_only) {
   if (state_.ticked.empty()) return;
-  work_.start({.sources = state_.ticked, .side = state_.side});
+  work_.start({.sources = state_.ticked, .side = state_.side, .images_only = images_only});
 }
 
 void StartView::save_import() {
@@ -304,6 +304,20 @@ void StartView::add_import_actions(widgets::Actions& actions) {
                [this, chooses] { return chooses() && !state_.ticked.empty(); },
                {},
                [this] { start_import(); }});
+  actions.add(
+      {"start.paint",
+       "Paint the bones",
+       "Takes the images alone, then you paint strokes that the bones are grown from: for an MR, and for "
+       "a CT whose bones are not found",
+       GLFW_KEY_P,
+       0,
+       false,
+       [this, chooses] {
+         return chooses() && state_.ticked.size() == 1 &&
+                work_.sources().sources[state_.ticked.front()].series.has_value();
+       },
+       {},
+       [this] { start_import(true); }});
   actions.add({"start.save",
                "Make the case",
                "Writes the case and opens it",

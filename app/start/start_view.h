@@ -51,7 +51,7 @@ class StartView {
   void go_back();
   void accept();  // Enter
   void accept_entry();
-  void start_import();
+  void start_import(bool images_only = false);
   void save_import();
   [[nodiscard]] std::size_t row_count() const;
 

@@ -24,7 +24,7 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
   // The same place in all modes: where the pictures come from, or else whose screen this is.
   const widgets::Rect name{heart.x + heart.width + ui.theme.px(10), middle - ui.theme.px(29),
                            ui.theme.px(330), ui.theme.px(58)};
-  if (const auto kind = shows_start() ? std::nullopt : shown().source_kind())
+  if (const auto kind = shows_start() || shows_paint() ? std::nullopt : shown().source_kind())
     widgets::draw_source_word(ui, name, *kind);
   else
     draw.AddText(title, title->FontSize, {name.x, middle - title->FontSize / 2}, widgets::kText,
@@ -35,8 +35,8 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
     widgets::action_button(ui, mode->title().action, width, height);
     x += width + ui.theme.px(8);
   }
-  if (model() != nullptr) {
-    const cases::Case& knee = model()->knee();
+  if (case_ != nullptr) {
+    const cases::Case& knee = is_unpainted() ? *case_->unpainted() : model()->knee();
     const std::string text = knee.name + "  \u2013  " + std::string(bones::to_text(knee.side)) + " knee";
     // Whose knee it is stands over the name of the case.
     const std::string patient = case_->identity() ? case_->identity()->in_words() : "";
@@ -66,17 +66,17 @@ void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Re
   const float y = area.y + (area.height - font->FontSize) / 2;
   draw.AddText(font, font->FontSize, {area.x + ui.theme.px(20), y}, widgets::kQuietText, kNotice);
   const std::string standstill = heartbeat_.words();
-  const std::string notice = !failure_.empty()     ? failure_
-                             : !standstill.empty() ? standstill
-                             : shows_start()       ? std::string()
-                                                   : shown().notice();
-  const std::string access = model() == nullptr      ? std::string()
+  const std::string notice = !failure_.empty()                ? failure_
+                             : !standstill.empty()            ? standstill
+                             : shows_start() || shows_paint() ? std::string()
+                                                              : shown().notice();
+  const std::string access = case_ == nullptr        ? std::string()
                              : case_->is_read_only() ? "READ-ONLY: the case " + case_->read_only_reason()
                                                      : case_->notice();
-  const std::string text = !notice.empty()      ? notice
-                           : !access.empty()    ? access
-                           : model() != nullptr ? case_->folder().string()
-                                                : std::string();
+  const std::string text = !notice.empty()    ? notice
+                           : !access.empty()  ? access
+                           : case_ != nullptr ? case_->folder().string()
+                                              : std::string();
   const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
   draw.AddText(font, font->FontSize, {area.x + area.width - wide - ui.theme.px(20), y},
                notice.empty() && access.empty() ? widgets::kQuietText : widgets::kCaution, text.c_str());

@@ -33,7 +33,11 @@ WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
       window_("Arthronaut"),
       log_(options.list_widgets),
       watch_([](const std::string& what) { spdlog::warn(what); }, std::chrono::milliseconds(500)),
-      start_([this](const std::filesystem::path& folder) { open(folder); }, [] { GraphicsWindow::wake(); }) {
+      start_([this](const std::filesystem::path& folder) { open(folder); }, [] { GraphicsWindow::wake(); }),
+      paint_({.make_current = [this] { window_.make_current(); },
+              .wake = [] { GraphicsWindow::wake(); },
+              .leave = [this] { close_paint(); },
+              .bones_made = [this] { reopens_ = true; }}) {
   make_modes();
   add_actions();
   start_.enter(false);
@@ -47,12 +51,18 @@ void WorkstationWindow::open(const std::filesystem::path& folder) {
   if (opening_ != nullptr || has_running_work()) return;
   const std::filesystem::path wanted = folder.empty() ? open_case::built_in_case_folder() : folder;
   std::error_code error;
-  if (model() != nullptr && std::filesystem::equivalent(wanted, case_->folder(), error)) {
+  if (case_ != nullptr && std::filesystem::equivalent(wanted, case_->folder(), error)) {
     close_start();  // it is open
     return;
   }
   failure_.clear();
-  opening_ = std::make_unique<open_case::CaseOpening>(folder, [] { GraphicsWindow::wake(); });
+  is_reopening_ = false;
+  const auto wake = [] { GraphicsWindow::wake(); };
+  // One that the modes still know is this program's already.
+  opening_ =
+      known_to_modes_ != nullptr && std::filesystem::equivalent(wanted, known_to_modes_->folder(), error)
+          ? std::make_unique<open_case::CaseOpening>(*known_to_modes_, wake)
+          : std::make_unique<open_case::CaseOpening>(folder, wake);
 }
 
 void WorkstationWindow::make_modes() {
@@ -60,7 +70,7 @@ void WorkstationWindow::make_modes() {
   const auto wake = [] { GraphicsWindow::wake(); };
   const sources::DeviceTurns camera_turns;  // Set up and Navigate open one camera after the other
   constexpr std::size_t kNavigate = 2;
-  modes_.push_back(std::make_unique<plan::PlanView>(make_current, wake));
+  modes_.push_back(std::make_unique<plan::PlanView>(make_current, wake, [this] { show_paint(); }));
   modes_.push_back(std::make_unique<setup::SetupView>(
       wake, [this] { show(kNavigate); }, camera_turns));
   modes_.push_back(std::make_unique<navigate::NavigateView>(make_current, wake, camera_turns));
@@ -74,16 +84,16 @@ void WorkstationWindow::add_actions() {
     actions_.add(
         {std::string(title.action), std::string(title.label), std::string(title.tooltip), title.key, 0, false,
          [this, is_open, i] { return is_open() && (!case_->is_read_only() || modes_[i]->works_read_only()); },
-         [this, i] { return shown_ == i && !shows_start(); }, [this, i] { show(i); }});
+         [this, i] { return shown_ == i && !shows_start() && !shows_paint(); }, [this, i] { show(i); }});
   }
   actions_.add({"app.cases", "Cases",
                 "Open another case, or import one; drop a folder on the window for the same", GLFW_KEY_F5, 0,
-                false, [this, is_open] { return is_open() && !has_running_work() && opening_ == nullptr; },
+                false, [this] { return case_ != nullptr && !has_running_work() && opening_ == nullptr; },
                 [this] { return shows_start(); },
                 [this] {
                   if (shows_start_) return close_start();
+                  leave_shown();
                   shows_start_ = true;
-                  shown().leave();
                   start_.enter(true);
                 }});
   actions_.add({"app.keys",
@@ -106,6 +116,7 @@ void WorkstationWindow::add_actions() {
                 [this] { quits_ = true; },
                 {"quit", [this] { return has_running_work(); }}});
   start_.add_actions(actions_);
+  paint_.add_actions(actions_);
   for (const auto& mode : modes_) mode->add_actions(actions_);
 }
 
@@ -113,16 +124,18 @@ void WorkstationWindow::run() {
   int settle = 30;  // frames to draw without waiting
   for (long count = 0; !quits_ && !should_end() && (options_.frames == 0 || count < options_.frames);
        ++count) {
-    const double timeout = settle > 0                                                    ? 0
-                           : actions_.is_held()                                          ? kHeldWait_s
-                           : modes_are_busy() || start_.is_busy() || opening_ != nullptr ? kBusyWait_s
-                                                                                         : kIdleWait_s;
+    const double timeout = settle > 0           ? 0
+                           : actions_.is_held() ? kHeldWait_s
+                           : modes_are_busy() || start_.is_busy() || paint_.is_busy() || opening_ != nullptr
+                               ? kBusyWait_s
+                               : kIdleWait_s;
     const double started = GraphicsWindow::now_s();
     frame(timeout);
     const bool woken = timeout > 0 && GraphicsWindow::now_s() - started < timeout;
     settle = woken && !modes_are_busy() ? kFramesAfterInput : std::max(settle - 1, 0);
   }
   shown().leave();
+  paint_.leave();
 }
 
 bool WorkstationWindow::should_end() {
@@ -138,7 +151,7 @@ bool WorkstationWindow::modes_are_busy() const {
 }
 
 bool WorkstationWindow::has_running_work() const {
-  return start_.has_running_work() ||
+  return start_.has_running_work() || paint_.has_running_work() ||
          std::any_of(modes_.begin(), modes_.end(), [](const auto& mode) { return mode->has_running_work(); });
 }
 
@@ -151,6 +164,8 @@ void WorkstationWindow::frame(double timeout_s) {
   dispatch_keys();
   if (shows_start_ && start_.wants_to_close()) close_start();
   for (const auto& mode : modes_) mode->tick(GraphicsWindow::now_s());
+  paint_.tick(GraphicsWindow::now_s());
+  if (std::exchange(reopens_, false)) reopen();
   const widgets::Ui ui{window_.theme(), actions_, log_, GraphicsWindow::now_s()};
   heartbeat_.beat(ui.now_s, has_running_work());
   watch_.frame_drawn(has_running_work());
@@ -166,20 +181,56 @@ void WorkstationWindow::take_opened_case() {
   if (!is_open && opening_->is_busy()) return;
   if (!is_open) {
     failure_ = opening_->failure();
+    if (is_reopening_) case_->keep_lock(*opening_);
     opening_.reset();
     return;
   }
-  if (!shows_start()) shown().leave();
-  for (const auto& mode : modes_)
-    mode->case_opened({opening_->model(), opening_->folder(), opening_->read_only_reason()});
+  leave_shown();
+  if (opening_->model() != nullptr) {
+    for (const auto& mode : modes_)
+      mode->case_opened({opening_->model(), opening_->folder(), opening_->read_only_reason()});
+    known_to_modes_.reset();
+  } else if (model() != nullptr) {
+    known_to_modes_ = std::move(case_);
+  }
   case_ = std::move(opening_);  // the one before is let go when no mode knows it any more
-  const cases::Case& knee = model()->knee();
+  const cases::Case& knee = is_unpainted() ? *case_->unpainted() : model()->knee();
+  if (is_unpainted()) paint_.open(knee, case_->folder(), case_->is_read_only());
   start::note_recent_case(
       start::recent_cases_file(),
       {case_->folder(), knee.name, std::string(bones::to_text(knee.side)), files::utc_now()});
   workstation_library::note_case(case_->folder());
-  shows_start_ = false;
-  shown().enter();
+  shows_start_ = shows_paint_ = false;
+  if (!is_unpainted()) shown().enter();
+}
+
+void WorkstationWindow::leave_shown() {
+  if (shows_start()) return;
+  if (shows_paint())
+    paint_.leave();
+  else
+    shown().leave();
+}
+
+void WorkstationWindow::show_paint() {
+  if (model() == nullptr) return;
+  shown().leave();
+  shows_paint_ = true;
+  paint_.open(model()->knee(), case_->folder(), case_->is_read_only());
+}
+
+void WorkstationWindow::close_paint() {
+  paint_.leave();
+  shows_paint_ = false;
+  if (model() != nullptr) return shown().enter();
+  shows_start_ = true;  // nothing else can be done with a case without bones
+  start_.enter(true);
+}
+
+void WorkstationWindow::reopen() {
+  if (opening_ != nullptr) return;
+  is_reopening_ = true;
+  opening_ = std::make_unique<open_case::CaseOpening>(*case_, [] { GraphicsWindow::wake(); });
 }
 
 void WorkstationWindow::take_dropped() {
@@ -190,9 +241,9 @@ void WorkstationWindow::take_dropped() {
     return;
   }
   failure_.clear();
-  if (!shows_start()) shown().leave();
+  leave_shown();
   shows_start_ = true;
-  start_.enter(model() != nullptr);
+  start_.enter(case_ != nullptr);
   start_.take(dropped.front());
 }
 
@@ -205,7 +256,10 @@ void WorkstationWindow::dispatch_keys() {
     }
     actions_.press(press, action_prefixes());
     // What is typed after the key that opens a text field is meant for the field.
-    if (shows_start() ? start_.awaits_text() : shown().awaits_text()) window_.await_text_field();
+    const bool awaits_text = shows_start()   ? start_.awaits_text()
+                             : shows_paint() ? false
+                                             : shown().awaits_text();
+    if (awaits_text) window_.await_text_field();
   }
   if (ImGui::GetIO().WantTextInput) actions_.let_go();
 }
@@ -216,6 +270,10 @@ std::vector<std::string_view> WorkstationWindow::action_prefixes() const {
     if (opening_ == nullptr) prefixes.push_back("start.");
     return prefixes;
   }
+  if (shows_paint()) {
+    if (opening_ == nullptr) prefixes.push_back("paint.");
+    return prefixes;
+  }
   for (const std::string_view prefix : shown().action_prefixes()) prefixes.push_back(prefix);
   return prefixes;
 }
@@ -224,6 +282,7 @@ void WorkstationWindow::show(std::size_t mode) {
   actions_.let_go();
   start_.leave();
   shows_start_ = false;
+  if (std::exchange(shows_paint_, false)) paint_.leave();
   if (mode != shown_) shown().leave();
   shown_ = mode;
   shown().enter();
@@ -232,7 +291,7 @@ void WorkstationWindow::show(std::size_t mode) {
 void WorkstationWindow::close_start() {
   if (!std::exchange(shows_start_, false)) return;
   start_.leave();
-  shown().enter();
+  if (!shows_paint()) shown().enter();
 }
 
 void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
@@ -259,10 +318,12 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
     widgets::text_centered(ui, inner, ui.theme.title, widgets::kText, "Opening the case");
   else if (shows_start())
     start_.draw(ui, inner);
+  else if (shows_paint())
+    paint_.draw(ui, inner);
   else
     shown().draw(ui, inner);
   if (shows_keys_) draw_key_list(ui, action_prefixes());
-  const auto kind = shows_start() ? std::nullopt : shown().source_kind();
+  const auto kind = shows_start() || shows_paint() ? std::nullopt : shown().source_kind();
   if (kind) widgets::draw_source_frame(ui, {0, 0, size.x, size.y}, *kind);
   widgets::draw_hold_hint(ui, {0, 0, size.x, size.y});
   ImGui::PopFont();
@@ -270,13 +331,13 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   if (!kind) log_.note_state("source_kind", "none");
   log_.note_state("standstill", heartbeat_.words());
   log_.note_state("mode", shown().title().name);
-  log_.note_state("access", model() != nullptr && case_->is_read_only() ? "read-only" : "own");
-  log_.note_state("folder", model() != nullptr ? case_->folder().string() : "");
-  log_.note_state("screen", shows_start() ? "start" : "mode");
-  log_.note_state("case", opening_ != nullptr  ? "opening"
-                          : !failure_.empty()  ? "failed"
-                          : model() != nullptr ? "open"
-                                               : "none");
+  log_.note_state("access", case_ != nullptr && case_->is_read_only() ? "read-only" : "own");
+  log_.note_state("folder", case_ != nullptr ? case_->folder().string() : "");
+  log_.note_state("screen", shows_start() ? "start" : shows_paint() ? "paint" : "mode");
+  log_.note_state("case", opening_ != nullptr ? "opening"
+                          : !failure_.empty() ? "failed"
+                          : case_ != nullptr  ? "open"
+                                              : "none");
 }
 
 }  // namespace arthronaut::window

@@ -7,6 +7,7 @@
 
 #include "app/case/case_opening.h"
 #include "app/mode/mode.h"
+#include "app/paint/paint_view.h"
 #include "app/start/start_view.h"
 #include "app/widgets/graphics_window.h"
 #include "app/widgets/heartbeat.h"
@@ -30,6 +31,11 @@ class WorkstationWindow {
   void take_opened_case();
   void take_dropped();
   void close_start();
+  void leave_shown();  // whatever is in front
+  // The painting of the open case's bones.
+  void show_paint();
+  void close_paint();
+  void reopen();  // the open case, whose bones are others now
   void dispatch_keys();
   // What the ids of the actions that work now start with.
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const;
@@ -38,7 +44,10 @@ class WorkstationWindow {
   void draw_top_bar(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_status_bar(const widgets::Ui& ui, const widgets::Rect& area);
   [[nodiscard]] open_case::PlanModel* model() const { return case_ != nullptr ? case_->model() : nullptr; }
-  [[nodiscard]] bool shows_start() const { return shows_start_ || model() == nullptr; }
+  // A case of images alone is painted in, and no mode is of use there.
+  [[nodiscard]] bool is_unpainted() const { return case_ != nullptr && case_->unpainted() != nullptr; }
+  [[nodiscard]] bool shows_start() const { return shows_start_ || (model() == nullptr && !is_unpainted()); }
+  [[nodiscard]] bool shows_paint() const { return !shows_start() && (shows_paint_ || is_unpainted()); }
   [[nodiscard]] bool should_end();  // the window was closed, and nothing runs that it would cut off
   [[nodiscard]] mode::Mode& shown() const { return *modes_[shown_]; }
   [[nodiscard]] bool modes_are_busy() const;    // in front or behind
@@ -48,6 +57,8 @@ class WorkstationWindow {
   widgets::GraphicsWindow window_;
   // The open case, and the one that is being opened in its place; null where there is none.
   std::unique_ptr<open_case::CaseOpening> case_, opening_;
+  // The last case with bones, which the modes know until the next one with bones; null while that is case_.
+  std::unique_ptr<open_case::CaseOpening> known_to_modes_;
   std::string failure_;  // why the last one could not be opened; empty when it could
   widgets::Actions actions_;
   widgets::WidgetLog log_;
@@ -56,7 +67,9 @@ class WorkstationWindow {
   widgets::Heartbeat heartbeat_;
   DrawWatch watch_;
   start::StartView start_;
-  bool shows_keys_ = false, shows_start_ = false, quits_ = false;
+  paint::PaintView paint_;
+  bool shows_keys_ = false, shows_start_ = false, shows_paint_ = false, reopens_ = false,
+       is_reopening_ = false, quits_ = false;
 };
 
 }  // namespace arthronaut::window

@@ -1,8 +1,8 @@
 // Writes volumes, as NRRD: without loss, the patient's axes in the header, nothing of whose picture it is.
 #pragma once
 
-#include <filesystem>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -22,8 +22,8 @@ struct EncodedVolume {
 };
 [[nodiscard]] EncodedVolume encoded(const Volume& volume);
 // A label map in the volume's grid, packed (gzip): labels are alike, and pack a hundred times smaller in less
-// time than they are written. Of the volume size and axes alone count. Throws InvalidInput when the labels are
-// not of its size.
+// time than they are written. Of the volume size and axes alone count. Throws InvalidInput when the labels
+// are not of its size.
 [[nodiscard]] EncodedVolume encoded_labels(const Volume& grid, std::span<const std::uint8_t> labels,
                                            const std::vector<Segment>& segments);
 

@@ -32,11 +32,11 @@ struct BoneImportOptions {
   std::optional<double>
       threshold;       // grey volumes; for a CT there is a default, other modalities are refused without
   std::string series;  // DICOM: series number or UID
-  // Grey volumes: no bone is looked for. The import then holds the images alone, for a case in which the bones
-  // are painted.
+  // Grey volumes: no bone is looked for. The import then holds the images alone, for a case in which the
+  // bones are painted.
   bool images_only = false;
-  // Label maps: the CT that they were painted in, in the same grid. The surfaces then lie at its edges, between
-  // the voxels. Of any other modality it is not used.
+  // Label maps: the CT that they were painted in, in the same grid. The surfaces then lie at its edges,
+  // between the voxels. Of any other modality it is not used.
   std::filesystem::path edges_in = {};
   // Volumes: what reading may take, as images::VolumeFileOptions has it.
   std::size_t most_bytes = std::size_t{2} << 30;

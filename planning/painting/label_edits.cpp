@@ -19,6 +19,8 @@ using images::VoxelMask;
 
 // Depths closer to each other than this are one level of the watershed.
 constexpr double kDepthStep_mm = 0.1;
+// Gaps of a cortex up to twice this are taken as closed while bones are parted.
+constexpr double kGapOfShell_mm = 2;
 
 // A part of the grid.
 struct Part {
@@ -188,11 +190,13 @@ void fill_holes(Labels& labels, const Volume& grid, std::uint8_t label, double c
 void part_by_strokes(Labels& labels, const Volume& grid, std::span<const std::uint8_t> strokes) {
   refuse_other_size(strokes, grid);
   const auto is_bone = [](std::uint8_t l) { return l == kFemur || l == kTibia; };
-  const auto part = part_of(labels, grid, 1, is_bone);
+  const auto part = part_of(labels, grid, kGapOfShell_mm, is_bone);
   if (!part) throw InvalidInput("there is no bone yet that could be parted");
   Labels cut = part->cut_out(labels, grid);
   Labels owner = part->cut_out({strokes.begin(), strokes.end()}, grid);
-  const VoxelMask mask = mask_of(cut, part->size, is_bone);
+  VoxelMask mask = mask_of(cut, part->size, is_bone);
+  images::close_gaps(mask, grid.spacing_mm(), kGapOfShell_mm);
+  images::fill_enclosed(mask, axis_along(grid, Eigen::Vector3d::UnitZ()));
   std::array<bool, 256> is_painted{};
   for (std::size_t v = 0; v < owner.size(); ++v) {
     if (!mask.inside[v]) owner[v] = kNothing;
@@ -204,7 +208,7 @@ void part_by_strokes(Labels& labels, const Volume& grid, std::span<const std::ui
   climb(mask, depth_mm, owner);
   flood(mask, depth_mm, owner);
   for (std::size_t v = 0; v < cut.size(); ++v) {
-    if (mask.inside[v] && owner[v] != kNothing) cut[v] = owner[v] == kSurroundings ? kNothing : owner[v];
+    if (is_bone(cut[v]) && owner[v] != kNothing) cut[v] = owner[v] == kSurroundings ? kNothing : owner[v];
   }
   part->put_back(cut, labels, grid);
 }

@@ -21,8 +21,10 @@ void fill_holes(Labels& labels, const images::Volume& grid, std::uint8_t label, 
 
 // Bones that touch: every voxel of femur or tibia goes to the bone from whose strokes it is reached without
 // passing a narrower neck than from the other's (watershed over the distance to the border, Meyer 1994).
-// Strokes of surroundings take away in the same way. A piece that no stroke lies in stays as it is. Throws
-// InvalidInput when fewer than two labels have strokes within the bones; the labels are then as before.
+// Shells with dark marrow count as filled for that, so that strokes may lie in the marrow; nothing is filled
+// by it. Strokes of surroundings take away in the same way. A piece that no stroke lies in stays as it is.
+// Throws InvalidInput when fewer than two labels have strokes within the bones; the labels are then as
+// before.
 void part_by_strokes(Labels& labels, const images::Volume& grid, std::span<const std::uint8_t> strokes);
 
 // As segmentation::fill_between_slices, and smooth_label, in the part of the grid that the label takes.

@@ -17,15 +17,15 @@ Labels read_labels(const fs::path& file, const images::Volume& grid) {
   if (!fs::exists(file)) return Labels(grid.values.size(), kNothing);
   const images::Volume read = images::read_volume(file);
   // What is written is read back exactly; another program may round.
-  const double off_mm =
-      (read.lps_from_index.matrix() - grid.lps_from_index.matrix()).cwiseAbs().maxCoeff();
+  const double off_mm = (read.lps_from_index.matrix() - grid.lps_from_index.matrix()).cwiseAbs().maxCoeff();
   if (read.size != grid.size || off_mm > 1e-3)
     throw InvalidInput(file, "", "was painted in the grid of another image than the case's");
   Labels labels(read.values.size());
   for (std::size_t v = 0; v < labels.size(); ++v) {
     const float value = read.values[v];
     if (!(value >= 0 && value <= kSurroundings) || value != std::floor(value))
-      throw InvalidInput(file, "", "holds labels that stand for nothing: 1 is femur, 2 tibia, 3 surroundings");
+      throw InvalidInput(file, "",
+                         "holds labels that stand for nothing: 1 is femur, 2 tibia, 3 surroundings");
     labels[v] = static_cast<std::uint8_t>(value);
   }
   return labels;

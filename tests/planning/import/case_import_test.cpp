@@ -5,6 +5,7 @@
 
 #include "planning/cases/study.h"
 #include "planning/geometry/error.h"
+#include "planning/images/volume_writer.h"
 #include "tests/message_of.h"
 #include "tests/planning/bones/mesh_text_forms.h"
 #include "tests/planning/geometry/shapes.h"
@@ -95,6 +96,59 @@ TEST(CaseImport, KeepsOfWhichStudyABoneIs) {
 }
 
 // A bone that is planned on is not exchanged under its tunnel.
+// Images alone make a case without bones, in which they are painted; the study is that of both.
+TEST(CaseImport, ImagesAloneMakeACaseToPaintIn) {
+  const TemporaryFolder folder;
+  images::Volume volume;
+  volume.size = {4, 3, 2};
+  volume.modality = "MR";
+  for (int v = 0; v < 24; ++v) volume.values.push_back(static_cast<float>(30 * v));
+  images::write_volume(folder / "mr.nrrd", volume);
+  BoneImportOptions options;
+  options.side = Side::Left;
+  options.images_only = true;
+  BoneImport import = import_bones(folder / "mr.nrrd", options);
+  EXPECT_TRUE(import.bones.empty());
+  import.origin.study_uid = "1.2.3";
+  add_to_case(folder / "a", import, "", folder / "mr.nrrd");
+  const cases::Case made = cases::load_case(folder / "a");
+  EXPECT_EQ(made.side, Side::Left);
+  EXPECT_TRUE(made.bones.empty());
+  ASSERT_EQ(made.images.size(), 1U);
+  EXPECT_EQ(cases::load_image(folder / "a", made.images[0]).values, volume.values);
+  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia})
+    EXPECT_EQ(cases::load_studies(folder / "a").at(kind).study_uid, "1.2.3");
+  // Nothing can be painted in a label map.
+  volume.modality.clear();
+  for (float& v : volume.values) v = v > 100 ? 1.0F : 0.0F;
+  images::write_volume(folder / "labels.nrrd", volume);
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)import_bones(folder / "labels.nrrd", options); }),
+              HasSubstr("is a label map"));
+}
+
+// Labels that were painted in a CT are not taken with another one's edges.
+TEST(CaseImport, EdgesOfAnotherImageAreRefused) {
+  const TemporaryFolder folder;
+  images::Volume labels;
+  labels.size = {8, 8, 8};
+  labels.values.assign(512, 0.0F);
+  for (int k = 2; k < 6; ++k)
+    for (int j = 2; j < 6; ++j)
+      for (int i = 2; i < 6; ++i) labels.values[labels.index(i, j, k)] = 1;
+  images::write_volume(folder / "labels.nrrd", labels);
+  images::Volume ct = labels;
+  ct.modality = "CT";
+  for (float& v : ct.values) v = v * 800 - 0.5F;
+  ct.lps_from_index.translation().x() = 2;
+  images::write_volume(folder / "ct.nrrd", ct);
+  BoneImportOptions options;
+  options.side = Side::Left;
+  options.labels = {{BoneKind::Femur, 1}};
+  options.edges_in = folder / "ct.nrrd";
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)import_bones(folder / "labels.nrrd", options); }),
+              HasSubstr("is not the image that the labels were painted in"));
+}
+
 TEST(CaseImport, ABoneThatIsPlannedOnStays) {
   const TemporaryFolder folder;
   cases::Case planned = add_to_case(folder / "a", imported(BoneKind::Femur), "", "bone.stl");

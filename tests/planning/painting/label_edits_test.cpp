@@ -105,6 +105,27 @@ TEST_F(LabelEdits, TouchingBonesArePartedAtTheirNeck) {
   EXPECT_EQ(labels_[volume_.index(72, 12, 8)], kFemur);
 }
 
+// Shells with strokes in their marrow: parted where they touch, and still shells.
+TEST_F(LabelEdits, ShellsArePartedByStrokesInTheirMarrow) {
+  const Vector3d a(20, 24, 25), b(36, 24, 25);
+  test::add_ball(labels_, volume_, a, 10, kFemur);
+  test::add_ball(labels_, volume_, b, 10, kFemur);
+  test::add_ball(labels_, volume_, a, 7, kNothing);
+  test::add_ball(labels_, volume_, b, 7, kNothing);
+  const Labels before = labels_;
+  Labels strokes(labels_.size(), kNothing);
+  test::add_ball(strokes, volume_, a, 2, kFemur);
+  test::add_ball(strokes, volume_, b, 2, kTibia);
+  part_by_strokes(labels_, volume_, strokes);
+  std::size_t wrong = 0;
+  test::for_each_voxel(volume_, [&](std::size_t v, const Vector3d& p) {
+    ASSERT_EQ(labels_[v] == kNothing, before[v] == kNothing) << "nothing is filled by it";
+    wrong += labels_[v] != kNothing && (labels_[v] == kFemur) != (p.x() < 28);
+  });
+  EXPECT_LT(wrong, 200U);  // of the neck's plane, as above
+  EXPECT_GT(count(kTibia), 2000U);
+}
+
 TEST_F(LabelEdits, StrokesOfSurroundingsTakeAwayAndAreAskedForInBoth) {
   const Vector3d a(20, 24, 25), b(36, 24, 25);
   test::add_ball(labels_, volume_, a, 10, kFemur);

@@ -17,8 +17,7 @@ class PaintingTest : public ::testing::Test {
   static BrushMove move(const Vector3d& from, const Vector3d& to) {
     return {from, to, Vector3d::UnitZ(), {3, false}};
   }
-  Painting painting_{
-      std::make_shared<const images::Volume>(test::empty_volume({40, 40, 20}, {1, 1, 1}))};
+  Painting painting_{std::make_shared<const images::Volume>(test::empty_volume({40, 40, 20}, {1, 1, 1}))};
 };
 
 // Moves of one drag are one step; a move that changes nothing none.
@@ -39,8 +38,9 @@ TEST_F(PaintingTest, ADragIsOneStep) {
   EXPECT_FALSE(painting_.holds(Layer::Strokes));
   EXPECT_FALSE(painting_.can_undo());
   painting_.redo();
-  EXPECT_GT(std::count(painting_.labels(Layer::Strokes).begin(), painting_.labels(Layer::Strokes).end(), kFemur),
-            std::count(first.begin(), first.end(), kFemur));
+  EXPECT_GT(
+      std::count(painting_.labels(Layer::Strokes).begin(), painting_.labels(Layer::Strokes).end(), kFemur),
+      std::count(first.begin(), first.end(), kFemur));
   EXPECT_EQ(painting_.step_name(0), "Paint the femur");
 }
 

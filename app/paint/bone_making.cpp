@@ -1,0 +1,142 @@
+#include "app/paint/bone_making.h"
+
+#include <chrono>
+#include <utility>
+
+#include "planning/cases/study.h"
+#include "planning/import/case_import.h"
+#include "planning/painting/label_edits.h"
+#include "planning/painting/painting_file.h"
+
+namespace arthronaut::paint {
+
+namespace {
+
+using bones::BoneKind;
+using painting::Layer;
+
+constexpr std::pair<BoneKind, std::uint8_t> kBones[] = {{BoneKind::Femur, painting::kFemur},
+                                                        {BoneKind::Tibia, painting::kTibia}};
+
+}  // namespace
+
+BoneMaking::BoneMaking(std::function<void()> wake, std::filesystem::path program)
+    : wake_(std::move(wake)), program_(std::move(program)) {}
+
+BoneMaking::~BoneMaking() {
+  if (saving_.valid()) saving_.wait();
+}
+
+std::string BoneMaking::refusal(const cases::Case& knee, const painting::Painting& painting) {
+  if (!painting.holds(Layer::Bones)) return "Nothing is painted as bone yet: grow it, or paint it on Bones";
+  for (const auto& [kind, label] : kBones)
+    if (painting.holds(Layer::Bones, label) && knee.plan.tunnels.contains(kind))
+      return "The " + std::string(bones::to_text(kind)) +
+             " is planned on, and another surface would make its tunnel wrong: in Plan keep a version (K), "
+             "then remove the tunnel (Delete)";
+  return "";
+}
+
+void BoneMaking::start(const cases::Case& knee, const std::filesystem::path& case_folder,
+                       const cases::CaseImage& image, const painting::Painting& painting) {
+  if (state_ == State::Saving) return;
+  failure_.clear();
+  qualities_.clear();
+  progress_ = {};
+  result_ = {};
+  folder_ = case_folder;
+  side_ = knee.side;
+  constexpr double kMemory_gib = 4;  // the labels and a CT of 512 x 512 x 800
+  importing::ImportRequest request;
+  request.source = painting::bones_file(case_folder);
+  request.options.side = knee.side;
+  request.memory_limit_gib = kMemory_gib;
+  request.program = program_;
+  for (const auto& [kind, label] : kBones) {
+    if (!painting.holds(Layer::Bones, label)) continue;
+    request.options.labels[kind] = label;
+    BoneQuality& quality = qualities_.emplace_back();
+    quality.kind = kind;
+    quality.painted_ml = painting::volume_ml(painting.labels(Layer::Bones), painting.volume(), label);
+  }
+  request.options.edges_in = case_folder / image.file;
+  try {
+    process_ = std::make_unique<importing::ImportProcess>(std::move(request));
+    state_ = State::Making;
+  } catch (const std::exception& error) {  // no process could be started: said as any other failure
+    failure_ = error.what();
+    state_ = State::Idle;
+  }
+}
+
+void BoneMaking::cancel() {
+  if (state_ != State::Making && state_ != State::Judging) return;
+  process_.reset();  // ends the child
+  state_ = State::Idle;
+}
+
+void BoneMaking::forget() {
+  if (state_ != State::Done) return;
+  state_ = State::Idle;
+  result_ = {};
+}
+
+void BoneMaking::judge() {
+  for (BoneQuality& quality : qualities_) {
+    for (const importing::ImportedBone& made : result_.bones) {
+      if (made.bone.kind != quality.kind) continue;
+      quality.surface_ml = made.repair.volume_mm3 / 1000;
+      quality.is_closed = made.repair.is_closed;
+      quality.edges_not_manifold = made.repair.edges_not_manifold;
+      quality.triangles = made.repair.triangles_now;
+      quality.doubts = made.doubts;
+    }
+  }
+}
+
+void BoneMaking::save() {
+  if (state_ != State::Judging) return;
+  state_ = State::Saving;
+  failure_.clear();
+  saving_ =
+      std::async(std::launch::async, [this, import = result_, folder = folder_, side = side_]() mutable {
+        const struct AtEnd {
+          const std::function<void()>& call;
+          ~AtEnd() { call(); }
+        } at_end{wake_};
+        import.side = side;
+        import.image.reset();  // the labels stay where they are painted
+        // Bones that are painted in images are of the images' study.
+        for (const auto& [kind, origin] : cases::load_studies(folder)) import.origin = origin;
+        importing::add_to_case(folder, import, "", painting::bones_file(folder));
+      });
+}
+
+void BoneMaking::poll() {
+  using Process = importing::ImportProcess;
+  if (state_ == State::Making) {
+    const Process::State state = process_->poll();
+    progress_ = process_->progress();
+    if (state == Process::State::Running) return;
+    if (state == Process::State::Done) {
+      result_ = process_->take_result();
+      judge();
+      state_ = State::Judging;
+    } else {
+      failure_ = process_->message();
+      state_ = State::Idle;
+    }
+    process_.reset();
+  }
+  if (state_ == State::Saving && saving_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    try {  // the top of the saving thread
+      saving_.get();
+      state_ = State::Done;
+    } catch (const std::exception& error) {
+      failure_ = error.what();
+      state_ = State::Judging;
+    }
+  }
+}
+
+}  // namespace arthronaut::paint

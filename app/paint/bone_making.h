@@ -1,0 +1,75 @@
+// From painted labels to the bones of the case, by the import's own way: the surfaces are made, mended and
+// judged in a process of their own, a person looks at them, and add_to_case() puts them in.
+//
+//   Idle ─► Making ─► Judging ─► Saving ─► Done
+//    ▲ cancel() │  refused │ cancel() │ refused: back to Judging, with the reason
+//    └──────────┴──────────┘
+//
+// One thread; poll() once a frame. A thread of its own writes.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "planning/cases/case.h"
+#include "planning/import/import_process.h"
+#include "planning/painting/painting.h"
+
+namespace arthronaut::paint {
+
+// What a person judges a bone by.
+struct BoneQuality {
+  bones::BoneKind kind = bones::BoneKind::Femur;
+  double painted_ml = 0, surface_ml = 0;
+  bool is_closed = false;
+  std::size_t edges_not_manifold = 0;  // that were found, and mended
+  std::size_t triangles = 0;
+  std::vector<std::string> doubts;  // of the mesh and of the anatomy; empty: nothing speaks against it
+};
+
+class BoneMaking {
+ public:
+  enum class State { Idle, Making, Judging, Saving, Done };
+
+  // program: what answers importing::kImportChildWord.
+  explicit BoneMaking(std::function<void()> wake, std::filesystem::path program = "/proc/self/exe");
+  ~BoneMaking();  // waits for what is being written
+  BoneMaking(const BoneMaking&) = delete;
+  BoneMaking& operator=(const BoneMaking&) = delete;
+
+  // Why the painting cannot become bones of the case; empty when it can: a bone that is planned on stays.
+  [[nodiscard]] static std::string refusal(const cases::Case& knee, const painting::Painting& painting);
+  // From any state but Saving. The painting is on disk. image: that it was painted in.
+  void start(const cases::Case& knee, const std::filesystem::path& case_folder, const cases::CaseImage& image,
+             const painting::Painting& painting);
+  void cancel();  // Making, Judging: back to Idle
+  void save();    // Judging
+  void forget();  // Done: Idle
+  void poll();
+
+  [[nodiscard]] State state() const { return state_; }
+  [[nodiscard]] const importing::ImportProgress& progress() const { return progress_; }
+  [[nodiscard]] const std::vector<BoneQuality>& qualities() const { return qualities_; }  // Judging
+  [[nodiscard]] const importing::BoneImport& result() const { return result_; }           // Judging
+  [[nodiscard]] const std::string& failure() const { return failure_; }
+
+ private:
+  void judge();
+
+  std::function<void()> wake_;
+  std::filesystem::path program_, folder_;
+  State state_ = State::Idle;
+  std::unique_ptr<importing::ImportProcess> process_;
+  importing::ImportProgress progress_;
+  importing::BoneImport result_;
+  std::vector<BoneQuality> qualities_;  // the painted volume is known from the start
+  bones::Side side_ = bones::Side::Right;
+  std::string failure_;
+  std::future<void> saving_;
+};
+
+}  // namespace arthronaut::paint

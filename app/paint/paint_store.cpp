@@ -1,0 +1,124 @@
+#include "app/paint/paint_store.h"
+
+#include <chrono>
+#include <utility>
+
+#include "planning/cases/case_image.h"
+
+namespace arthronaut::paint {
+
+namespace {
+
+struct Stopped {};
+
+// A hand that draws one stroke after the other is not waited for longer than it pauses.
+constexpr double kRest_s = 0.4;
+
+}  // namespace
+
+std::optional<cases::CaseImage> image_to_paint(const cases::Case& knee) {
+  std::optional<cases::CaseImage> image;
+  for (const cases::CaseImage& other : knee.images)
+    if (!other.is_label_map) image = other;
+  return image;
+}
+
+PaintStore::PaintStore(std::function<void()> wake) : wake_(std::move(wake)) {}
+
+PaintStore::~PaintStore() {
+  stops_ = true;
+  if (loading_.valid()) loading_.wait();
+}
+
+void PaintStore::open(const std::filesystem::path& case_folder, const cases::CaseImage& image,
+                      bool read_only) {
+  stops_ = true;
+  if (loading_.valid()) loading_.wait();
+  stops_ = false;
+  if (saver_ != nullptr) saver_->finish();
+  // A worker of its own: what one case's saving failed of says nothing of the next.
+  saver_ = std::make_unique<worker::Worker<Snapshot, Saved>>(
+      worker::Backlog::NewestWins,
+      [](auto& inbox) {
+        while (auto snapshot = inbox.next()) {
+          Saved saved{snapshot->revision, ""};
+          try {  // the top of the saving thread: a full disk is a state of the screen
+            painting::save_painting(snapshot->folder, *snapshot->volume, snapshot->painting);
+          } catch (const std::exception& error) {
+            saved.failure = error.what();
+          }
+          inbox.publish(std::move(saved));
+        }
+      },
+      wake_);
+  folder_ = case_folder;
+  is_read_only_ = read_only;
+  failure_.clear();
+  loaded_ = 0;
+  loading_ = std::async(std::launch::async, [this, folder = case_folder, image] {
+    Loaded loaded;
+    try {  // the top of the loading thread
+      auto volume = std::make_shared<const images::Volume>(cases::load_image(folder, image, [this](double f) {
+        if (stops_) throw Stopped();
+        loaded_ = f;
+      }));
+      painting::Painting painting(volume);
+      try {
+        if (auto saved = painting::load_painting(folder, *volume))
+          painting.restore(std::move(saved->strokes), std::move(saved->bones));
+      } catch (const std::exception& error) {
+        loaded.failure = std::string("What was painted cannot be read, and is left alone: ") + error.what();
+      }
+      loaded.painting = std::move(painting);
+    } catch (const Stopped&) {
+    } catch (const std::exception& error) {
+      loaded.failure = error.what();
+    }
+    wake_();
+    return loaded;
+  });
+}
+
+std::optional<painting::Painting> PaintStore::take_loaded() {
+  if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return std::nullopt;
+  Loaded loaded = loading_.get();
+  failure_ = loaded.failure;
+  if (!failure_.empty()) is_read_only_ = true;
+  if (loaded.painting) seen_ = posted_ = loaded_revision_ = loaded.painting->revision();
+  return std::move(loaded.painting);
+}
+
+void PaintStore::post(const painting::Painting& painting) {
+  posted_ = painting.revision();
+  saver_->post({folder_,
+                painting.shared_volume(),
+                {painting.labels(painting::Layer::Strokes), painting.labels(painting::Layer::Bones)},
+                posted_});
+}
+
+void PaintStore::keep(const painting::Painting& painting, double now_s) {
+  if (is_read_only_ || saver_ == nullptr) return;
+  if (const auto saved = saver_->latest(); saved != nullptr) failure_ = saved->failure;
+  if (painting.revision() != seen_) {
+    seen_ = painting.revision();
+    changed_at_s_ = now_s;
+  }
+  if (seen_ != posted_ && now_s - changed_at_s_ >= kRest_s) post(painting);
+}
+
+void PaintStore::keep_now(const painting::Painting& painting) {
+  if (is_read_only_ || saver_ == nullptr) return;
+  if (painting.revision() != posted_) post(painting);
+  seen_ = posted_;
+  saver_->finish();
+  if (const auto saved = saver_->latest(); saved != nullptr) failure_ = saved->failure;
+}
+
+bool PaintStore::is_saved(const painting::Painting& painting) const {
+  if (painting.revision() == loaded_revision_) return true;
+  const auto saved = saver_ != nullptr ? saver_->latest() : nullptr;
+  return saved != nullptr && saved->revision == painting.revision() && saved->failure.empty();
+}
+
+}  // namespace arthronaut::paint

@@ -1,0 +1,74 @@
+// The images that are painted in and what is painted of them, from the case's folder and back into it.
+// Loading and saving are on threads of their own; the window never waits, but at its end.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "navigation/worker/worker.h"
+#include "planning/cases/case.h"
+#include "planning/painting/painting.h"
+#include "planning/painting/painting_file.h"
+
+namespace arthronaut::paint {
+
+// The image of a case in which bones are painted: the newest grey one. nullopt without any.
+[[nodiscard]] std::optional<cases::CaseImage> image_to_paint(const cases::Case& knee);
+
+class PaintStore {
+ public:
+  explicit PaintStore(std::function<void()> wake);
+  ~PaintStore();
+  PaintStore(const PaintStore&) = delete;
+  PaintStore& operator=(const PaintStore&) = delete;
+
+  // Begins to load; what was open is forgotten. read_only: nothing will be saved.
+  void open(const std::filesystem::path& case_folder, const cases::CaseImage& image, bool read_only);
+  [[nodiscard]] bool is_loading() const { return loading_.valid(); }
+  [[nodiscard]] double loaded_fraction() const { return loaded_; }
+  // The painting, once, when it has been loaded. What was painted before is in it, without steps. A saved
+  // painting that cannot be read is said by failure(), and nothing is saved over it.
+  [[nodiscard]] std::optional<painting::Painting> take_loaded();
+  [[nodiscard]] const std::string& failure() const { return failure_; }  // why nothing is loaded, or saved
+
+  // For every frame: saves what has changed when the hand has rested for a moment.
+  void keep(const painting::Painting& painting, double now_s);
+  // Saves what has changed, and waits for that.
+  void keep_now(const painting::Painting& painting);
+  [[nodiscard]] bool is_saved(const painting::Painting& painting) const;
+
+ private:
+  struct Loaded {
+    std::optional<painting::Painting> painting;
+    std::string failure;
+  };
+  struct Snapshot {
+    std::filesystem::path folder;
+    std::shared_ptr<const images::Volume> volume;
+    painting::SavedPainting painting;
+    std::uint64_t revision = 0;
+  };
+  struct Saved {
+    std::uint64_t revision = 0;
+    std::string failure;
+  };
+  void post(const painting::Painting& painting);
+
+  std::function<void()> wake_;
+  std::filesystem::path folder_;
+  bool is_read_only_ = false;
+  std::future<Loaded> loading_;
+  std::atomic<double> loaded_{0};
+  std::atomic<bool> stops_{false};
+  std::string failure_;
+  std::uint64_t seen_ = 1, posted_ = 1, loaded_revision_ = 1;  // revisions of the painting
+  double changed_at_s_ = 0;
+  std::unique_ptr<worker::Worker<Snapshot, Saved>> saver_;  // last: ends first
+};
+
+}  // namespace arthronaut::paint

@@ -1,0 +1,73 @@
+#include "app/paint/paint_words.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/planning/painting/shapes.h"
+
+namespace arthronaut::paint {
+namespace {
+
+using painting::Layer;
+using testing::HasSubstr;
+using widgets::Severity;
+
+// From nothing to bones the next thing that is missing is named.
+TEST(PaintWords, TheNextStepIsWhatIsMissing) {
+  painting::Painting painting(
+      std::make_shared<const images::Volume>(test::empty_volume({9, 9, 9}, {1, 1, 1})));
+  const auto next = [&](Preview preview = Preview::None, bool works = false) {
+    return next_step(painting, preview, works);
+  };
+  const auto stroke = [&](double x, std::uint8_t label) {
+    painting.paint(Layer::Strokes, {{x, 4, 4}, {x, 4, 4}, Eigen::Vector3d::UnitZ(), {0.5, false}}, label, "",
+                   false);
+  };
+  EXPECT_THAT(next(), HasSubstr("femur (1)"));
+  stroke(1, painting::kFemur);
+  EXPECT_THAT(next(), HasSubstr("tibia too (2)"));
+  stroke(4, painting::kTibia);
+  EXPECT_THAT(next(), HasSubstr("surrounds the bones (3)"));
+  stroke(7, painting::kSurroundings);
+  EXPECT_THAT(next(), HasSubstr("(G)"));
+  EXPECT_THAT(next(Preview::Growth, true), HasSubstr("Growing"));
+  EXPECT_THAT(next(Preview::Growth), HasSubstr("Enter"));
+  EXPECT_THAT(next(Preview::Threshold), HasSubstr("threshold"));
+  painting::Labels bones(729, painting::kNothing);
+  bones[7] = painting::kFemur;
+  painting.put(Layer::Bones, bones, "");
+  EXPECT_THAT(next(), HasSubstr("(A)"));
+  painting.undo();
+  painting.go_to(0);
+  stroke(4, painting::kTibia);
+  EXPECT_THAT(next(), HasSubstr("femur too"));
+}
+
+TEST(PaintWords, AQualityIsGoodOnlyWhereNothingSpeaksAgainstIt) {
+  BoneQuality quality;
+  quality.painted_ml = 100;
+  quality.surface_ml = 99;
+  quality.is_closed = true;
+  quality.triangles = 1234;
+  const auto severities = [&] {
+    std::vector<Severity> all;
+    for (const QualityLine& line : quality_lines(quality)) all.push_back(line.severity);
+    return all;
+  };
+  EXPECT_THAT(severities(), testing::Each(Severity::Good));
+  EXPECT_THAT(quality_lines(quality)[0].text, HasSubstr("99.0 ml, painted 100.0 ml"));
+  quality.surface_ml = 94;  // an island was left out
+  EXPECT_EQ(severities()[0], Severity::Caution);
+  quality.surface_ml = 0;
+  EXPECT_EQ(severities()[0], Severity::Caution);
+  quality.is_closed = false;
+  EXPECT_EQ(severities()[1], Severity::Bad);
+  quality.edges_not_manifold = 2;
+  EXPECT_EQ(severities()[2], Severity::Caution);
+  quality.doubts = {"it has one condyle"};
+  EXPECT_EQ(quality_lines(quality).back().text, "it has one condyle");
+  EXPECT_EQ(severities().back(), Severity::Caution);
+}
+
+}  // namespace
+}  // namespace arthronaut::paint
