@@ -49,6 +49,15 @@ void PaintView::open(const cases::Case& knee, const std::filesystem::path& case_
   if (image) store_.open(case_folder, *image, read_only);
 }
 
+void PaintView::close() {
+  leave();
+  job_.cancel();
+  making_.cancel();
+  case_folder_.clear();
+  painting_.reset();
+  previewing_ = {};
+}
+
 void PaintView::leave() {
   if (is_ready()) store_.keep_now(*painting_);
 }

@@ -36,6 +36,7 @@ class PaintView {
   void add_actions(widgets::Actions& actions);  // all start with "paint."
   // Another case, or the same one again, whose painting is then kept. The case has a grey image.
   void open(const cases::Case& knee, const std::filesystem::path& case_folder, bool read_only);
+  void close();  // another case is open: forgets this one, whose painting is on disk
   // Another mode comes to the front, or the program ends: what is painted is on disk then.
   void leave();
   void tick(double now_s);

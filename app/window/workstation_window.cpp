@@ -193,6 +193,7 @@ void WorkstationWindow::take_opened_case() {
   } else if (model() != nullptr) {
     known_to_modes_ = std::move(case_);
   }
+  if (case_ == nullptr || case_->folder() != opening_->folder()) paint_.close();
   case_ = std::move(opening_);  // the one before is let go when no mode knows it any more
   const cases::Case& knee = is_unpainted() ? *case_->unpainted() : model()->knee();
   if (is_unpainted()) paint_.open(knee, case_->folder(), case_->is_read_only());
