@@ -30,7 +30,7 @@ BoneMaking::~BoneMaking() {
 std::string BoneMaking::refusal(const cases::Case& knee, const painting::Painting& painting) {
   if (!painting.holds(Layer::Bones)) return "Nothing is painted as bone yet: grow it, or paint it on Bones";
   for (const auto& [kind, label] : kBones)
-    if (painting.holds(Layer::Bones, label) && knee.plan.tunnels.contains(kind))
+    if (painting.holds(Layer::Bones, label) && !knee.plan.of(kind).empty())
       return "The " + std::string(bones::to_text(kind)) +
              " is planned on, and another surface would make its tunnel wrong: in Plan keep a version (K), "
              "then remove the tunnel (Delete)";

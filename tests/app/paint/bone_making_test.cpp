@@ -98,9 +98,12 @@ TEST_F(BoneMakingTest, StoppedOrLeftItChangesNothing) {
 TEST_F(BoneMakingTest, ABoneThatIsPlannedOnAndAnEmptyPaintingAreRefusedBeforeTheWork) {
   const painting::Painting empty(painting_.shared_volume());
   EXPECT_THAT(BoneMaking::refusal(knee_, empty), testing::HasSubstr("Nothing is painted"));
-  knee_.plan.tunnels[BoneKind::Tibia] = {};
+  tunnels::Tunnel tunnel;
+  tunnel.bone = BoneKind::Tibia;
+  knee_.plan.put(tunnel, "");
   EXPECT_EQ(BoneMaking::refusal(knee_, painting_), "");
-  knee_.plan.tunnels[BoneKind::Femur] = {};
+  tunnel.bone = BoneKind::Femur;
+  knee_.plan.put(tunnel, "");
   EXPECT_THAT(BoneMaking::refusal(knee_, painting_), testing::HasSubstr("femur is planned on"));
 }
 
