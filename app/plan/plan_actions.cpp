@@ -239,7 +239,7 @@ void PlanView::add_slice_actions(widgets::Actions& actions) {
   actions.add({"plan.paint",
                "Paint bones",
                "Corrects the bones in the images, or grows them from painted strokes",
-               GLFW_KEY_B,
+               GLFW_KEY_I,
                0,
                false,
                [this] {

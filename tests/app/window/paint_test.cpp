@@ -151,7 +151,7 @@ TEST_F(PaintWindow, StrokesBecomeTheBonesOfTheCaseAndACrashLosesNothing) {
     EXPECT_LT(distances[distances.size() / 2], 0.3);
   }
   // Back into the painting, from Plan by its key.
-  app.press("b");
+  app.press("i");
   ASSERT_TRUE(app.wait_for_state("screen", "paint"));
   ASSERT_TRUE(app.wait_for_state("painting", "ready", 60));
   app.press("Escape");
