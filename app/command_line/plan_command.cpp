@@ -96,7 +96,18 @@ tunnels::Tunnel default_tunnel(const PlanArguments& arguments, const cases::Case
 }
 
 // Tunnels as another program moved them; only those of bones that the case holds.
-void take_markups(const PlanArguments& arguments, cases::Case& knee) {
+void put(const tunnels::Tunnel& tunnel, const std::string& mesh_sha256, const PlanArguments& arguments,
+         const Context& context, cases::Case& knee) {
+  const auto before = knee.plan.of(tunnel.bone);
+  knee.plan.put(tunnel, mesh_sha256);
+  for (const tunnels::TunnelKey& key : before) {
+    if (!arguments.as_json && !knee.plan.tunnels.contains(key))
+      context.say("The tunnel " + tunnels::name_of(key) +
+                  " is no longer planned: a bone has a single tunnel, or those of bundles.");
+  }
+}
+
+void take_markups(const PlanArguments& arguments, const Context& context, cases::Case& knee) {
   const auto markups = plan_export::read_markups(arguments.markups);
   bool took = false;
   for (const auto& [key, tunnel] : markups.tunnels) {
@@ -106,7 +117,7 @@ void take_markups(const PlanArguments& arguments, cases::Case& knee) {
       throw InvalidInput(arguments.markups, tunnels::name_of(key) + " tunnel",
                          "does not enter the case's bone: markups of another knee?");
     }
-    knee.plan.put(tunnel, bones::mesh_sha256(bone->second.mesh));
+    put(tunnel, bones::mesh_sha256(bone->second.mesh), arguments, context, knee);
     took = true;
   }
   if (!took)
@@ -153,17 +164,6 @@ void remove_tunnel(const PlanArguments& arguments, cases::Case& knee) {
 }
 
 // What the new tunnel takes the place of beside the one of its own name is said.
-void put(const tunnels::Tunnel& tunnel, const std::string& mesh_sha256, const PlanArguments& arguments,
-         const Context& context, cases::Case& knee) {
-  const auto before = knee.plan.of(tunnel.bone);
-  knee.plan.put(tunnel, mesh_sha256);
-  for (const tunnels::TunnelKey& key : before) {
-    if (!arguments.as_json && !knee.plan.tunnels.contains(key))
-      context.say("The tunnel " + tunnels::name_of(key) +
-                  " is no longer planned: a bone has a single tunnel, or those of bundles.");
-  }
-}
-
 // Of the same bones' meshes as it was kept: plan_fit says where that is no longer the case's.
 void take_version(const PlanArguments& arguments, cases::Case& knee) {
   const auto versions = cases::load_plan_versions(arguments.case_folder);
@@ -272,7 +272,7 @@ void add_plan_command(CLI::App& app, Context& context) {
     auto knee = cases::load_case(arguments->case_folder);
     PlanVerdict verdict;
     if (!arguments->markups.empty()) {
-      take_markups(*arguments, knee);
+      take_markups(*arguments, context, knee);
     } else if (arguments->version > 0) {
       take_version(*arguments, knee);
     } else if (arguments->removes) {

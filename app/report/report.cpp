@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <set>
 
 #include "app/report/pdf_document.h"
 #include "app/report/plan_sheet.h"
@@ -44,15 +45,40 @@ struct Content {
   std::filesystem::path folder;
   cases::Case knee;
   std::unique_ptr<recording::RecordedSession> session;
-  std::vector<operation::AchievedTunnel> achieved;
+  std::vector<operation::AchievedTunnel> achieved;  // in `session`
+  // Tunnels of other bundles of that bone, drilled in sessions before it: after each start of a source there
+  // is another.
+  struct Earlier {
+    operation::AchievedTunnel achieved;
+    std::string session;
+  };
+  std::vector<Earlier> earlier = {};
   std::optional<cases::Identity> identity;  // where it is to be named
 };
+
+// The newest of each bundle that is planned and not among the session's own.
+void add_earlier(const std::vector<std::filesystem::path>& sessions, Content& content) {
+  if (content.achieved.empty()) return;
+  const bones::BoneKind bone = content.achieved.front().planned.bone;
+  std::set<tunnels::TunnelKey> known;
+  for (const auto& achieved : content.achieved) known.insert(achieved.planned.key());
+  if (known.contains(tunnels::TunnelKey(bone))) return;  // a single tunnel: what was before it is not planned
+  for (auto it = sessions.rbegin(); it != sessions.rend(); ++it) {
+    for (const auto& file : operation::achieved_files(*it)) {
+      auto achieved = operation::read_achieved_file(file);
+      const tunnels::TunnelKey key = achieved.planned.key();
+      if (key.bone == bone && content.knee.plan.tunnels.contains(key) && known.insert(key).second)
+        content.earlier.push_back({std::move(achieved), it->filename().string()});
+    }
+  }
+}
 
 Content gather(const std::filesystem::path& folder, const ReportOptions& options) {
   Content content{.folder = folder,
                   .knee = cases::load_case(folder),
                   .session = nullptr,
                   .achieved = {},
+                  .earlier = {},
                   .identity = std::nullopt};
   if (options.with_identity) content.identity = cases::load_identity(folder);
   const auto sessions = cases::session_folders(folder);
@@ -72,6 +98,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
     }
     if (!older_has_achieved) break;
   }
+  add_earlier(sessions, content);
   return content;
 }
 
@@ -135,6 +162,10 @@ class Report {
       if (with_result)
         for (const operation::AchievedTunnel& achieved : content_.achieved)
           request.achieved.push_back(achieved.truth ? *achieved.truth : achieved.measured);
+      if (with_result)
+        for (const Content::Earlier& earlier : content_.earlier)
+          request.achieved.push_back(earlier.achieved.truth ? *earlier.achieved.truth
+                                                            : earlier.achieved.measured);
       if (with_result) request.curve_points_in_bone = touched_points();
       const auto picture = scene::render_plan_picture(request);
       height = pdf_.image(x, y_ + 3, width, picture.rgb, picture.width, picture.height);
@@ -299,6 +330,10 @@ void Report::navigate_page() {
   table({70, 100}, rows);
   if (session.registration()) registration_section(*session.registration());
   for (const operation::AchievedTunnel& achieved : content_.achieved) result_section(achieved);
+  for (const Content::Earlier& earlier : content_.earlier) {
+    result_section(earlier.achieved);
+    sentence("Drilled in the session " + earlier.session + ".", {.size_pt = 8.5, .ink = kGray});
+  }
   if (y_ > 195) begin_page("Pictures of the result");
   pictures(joint_view(), scene::ViewDirection::Lateral, true);
   if (!content_.achieved.empty()) {

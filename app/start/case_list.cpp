@@ -48,8 +48,13 @@ void CaseList::filter() {
     std::stable_sort(found_.begin(), found_.end(),
                      [&](std::size_t a, std::size_t b) { return used(a) > used(b); });
   }
+  // What is being written stays with the case that it is about, whatever a look at the folders brings.
+  if (is_writing() && selected_row() == found_.size()) {
+    for (std::size_t i = 0; i < library_.records().size(); ++i)
+      if (library_.records()[i].folder == view_.selected) found_.push_back(i);
+  }
   const bool is_listed = view_.selected.empty() || selected_row() < found_.size();
-  if (!view_.has_chosen || !is_listed)
+  if (!is_listed || !(view_.has_chosen || is_writing()))
     view_.selected = found_.empty() ? fs::path() : library_.records()[found_.front()].folder;
 }
 
@@ -106,7 +111,10 @@ void CaseList::add_actions(widgets::Actions& actions, const std::function<bool()
                false,
                [this, lists] { return lists() && selected() != nullptr && selected()->is_there; },
                {},
-               [this] { view_.focus = Focus::Note; }});
+               [this] {
+                 view_.has_chosen = true;
+                 view_.focus = Focus::Note;
+               }});
   actions.add(
       {"start.trends", "Trends",
        "Offsets, angles, confidence and minutes a step of the listed cases over time, with control limits",

@@ -53,6 +53,10 @@ class CaseList {
   void filter();
   void add_filter_actions(widgets::Actions& actions, const std::function<bool()>& is_shown);
   [[nodiscard]] const library::CaseRecord* selected() const;
+  // A note that was changed and not yet kept.
+  [[nodiscard]] bool is_writing() const {
+    return view_.note_of == view_.selected && view_.note != view_.note_before;
+  }
   [[nodiscard]] std::size_t selected_row() const;  // found_.size(): the built-in knee
   [[nodiscard]] bool is_first_look() const { return library_.is_looking() && library_.records().empty(); }
 

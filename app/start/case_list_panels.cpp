@@ -241,12 +241,16 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
                                : last->was_verified                            ? "verified"
                                                                                : "not verified"));
   }
-  for (const library::PostoperativeFacts& found : record->postoperative)
+  for (const library::PostoperativeFacts& found : record->postoperative) {
+    const std::string tunnel = found.bone + (found.bundle == "am"   ? " AM"
+                                             : found.bundle == "pl" ? " PL"
+                                                                    : "");
     widgets::status_row(ui, found.is_reliable ? Severity::Good : Severity::Caution, "After the operation",
                         found.entry_offset_mm
-                            ? files::format("%s %.1f mm, %.1f\u00B0 from the plan", found.bone.c_str(),
+                            ? files::format("%s %.1f mm, %.1f\u00B0 from the plan", tunnel.c_str(),
                                             *found.entry_offset_mm, found.angle_deg.value_or(0))
-                            : found.bone + ": no tunnel found");
+                            : tunnel + ": no tunnel found");
+  }
   const std::string made =
       record->created_utc.empty() ? "" : "made " + record->created_utc.substr(0, 10) + ", ";
   if (!record->changed_utc.empty())
@@ -269,9 +273,13 @@ void CaseList::draw_note(const widgets::Ui& ui, const CaseRecord& record) {
     ImGui::SetKeyboardFocusHere();
     view_.focus = Focus::None;
   }
+  // A field of each case's own: one that is being written in takes no other case's text, and gives it none.
+  ImGui::PushID(record.folder.c_str());
   ImGui::InputTextMultiline("##note", &view_.note, {-1, ui.theme.px(150)});
+  ImGui::PopID();
   ui.log.note("start.note_field", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   const bool was_left = ImGui::IsItemDeactivated();
+  if (ImGui::IsItemActive()) view_.has_chosen = true;
   // Not edited: what somebody else has written meanwhile is shown.
   if (!ImGui::IsItemActive() && !was_left && is_same && record.note != view_.note_before)
     view_.note = view_.note_before = record.note;

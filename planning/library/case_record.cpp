@@ -136,9 +136,8 @@ std::vector<PostoperativeFacts> read_postoperative(const fs::path& case_folder) 
   const fs::path file = case_folder / "achieved.json";
   if (!fs::exists(file)) return facts;
   for (const auto& node : files::read_json(file, "arthronaut.achieved", 1).objects("tunnels")) {
-    // "femur", or of one of two "femur am".
-    const std::string bundle = node.has("bundle") ? " " + node.text("bundle") : "";
-    facts.push_back({.bone = node.text("bone") + bundle,
+    facts.push_back({.bone = node.text("bone"),
+                     .bundle = node.has("bundle") ? node.text("bundle") : "",
                      .entry_offset_mm = optional_number(node, "offset_mm"),
                      .angle_deg = optional_number(node, "angle_deg"),
                      .diameter_mm = optional_number(node, "diameter_mm"),

@@ -44,7 +44,8 @@ using SessionReader = std::function<SessionFacts(const std::filesystem::path& se
 
 // What `compare` found in a post-operative CT of this case, where achieved.json was written into its folder.
 struct PostoperativeFacts {
-  std::string bone;
+  std::string bone;         // "femur", "tibia"
+  std::string bundle = {};  // "am", "pl"; empty: of the bone's single tunnel
   std::optional<double> entry_offset_mm, angle_deg, diameter_mm;  // empty: no tunnel was found
   bool is_reliable = false;
 };

@@ -77,6 +77,7 @@ SessionFacts session_from(const json& node) {
 
 ordered_json to_json(const PostoperativeFacts& facts) {
   ordered_json node = {{"bone", facts.bone}, {"reliable", facts.is_reliable}};
+  if (!facts.bundle.empty()) node["bundle"] = facts.bundle;
   put(node, "entry_offset_mm", facts.entry_offset_mm);
   put(node, "angle_deg", facts.angle_deg);
   put(node, "diameter_mm", facts.diameter_mm);
@@ -86,6 +87,7 @@ ordered_json to_json(const PostoperativeFacts& facts) {
 PostoperativeFacts postoperative_from(const json& node) {
   PostoperativeFacts facts;
   facts.bone = node.at("bone");
+  facts.bundle = node.value("bundle", std::string());
   facts.is_reliable = node.at("reliable");
   take(node, "entry_offset_mm", facts.entry_offset_mm);
   take(node, "angle_deg", facts.angle_deg);

@@ -16,7 +16,10 @@ constexpr const char* kColumns =
     "source_kind,outcome,finished,registration_reliable,registration_rms_mm,predicted_tre_mm,verified,alarms,"
     "entry_offset_mm,angle_deg,depth_mm,registering_min,verifying_min,drilling_min,femur_postop_offset_mm,"
     "femur_postop_angle_deg,femur_postop_reliable,tibia_postop_offset_mm,tibia_postop_angle_deg,"
-    "tibia_postop_reliable,note,problem";
+    "tibia_postop_reliable,femur_am_postop_offset_mm,femur_am_postop_angle_deg,femur_am_postop_reliable,"
+    "femur_pl_postop_offset_mm,femur_pl_postop_angle_deg,femur_pl_postop_reliable,tibia_am_postop_offset_mm,"
+    "tibia_am_postop_angle_deg,tibia_am_postop_reliable,tibia_pl_postop_offset_mm,tibia_pl_postop_angle_deg,"
+    "tibia_pl_postop_reliable,note,problem";
 
 std::string cell(std::string text) {
   if (!text.empty() && std::string("=+-@").find(text.front()) != std::string::npos) text.insert(0, "'");
@@ -61,9 +64,9 @@ void add_session(Row& row, const SessionFacts& session) {
 }
 constexpr int kSessionColumns = 17;
 
-void add_postoperative(Row& row, const CaseRecord& record, std::string_view bone) {
+void add_postoperative(Row& row, const CaseRecord& record, std::string_view bone, std::string_view bundle) {
   for (const PostoperativeFacts& facts : record.postoperative) {
-    if (facts.bone != bone) continue;
+    if (facts.bone != bone || facts.bundle != bundle) continue;
     row.add(facts.entry_offset_mm).add(facts.angle_deg).add(facts.is_reliable);
     return;
   }
@@ -80,8 +83,10 @@ std::string row_of(const CaseRecord& record, const SessionFacts* session, const 
     add_session(row, *session);
   else
     row.add_empty(kSessionColumns);
-  add_postoperative(row, record, "femur");
-  add_postoperative(row, record, "tibia");
+  add_postoperative(row, record, "femur", "");
+  add_postoperative(row, record, "tibia", "");
+  for (const char* bone : {"femur", "tibia"})
+    for (const char* bundle : {"am", "pl"}) add_postoperative(row, record, bone, bundle);
   row.add(record.note)
       .add(session != nullptr && !session->problem.empty() ? session->problem : record.problem);
   if (identities != nullptr) {

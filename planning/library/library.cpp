@@ -158,6 +158,11 @@ std::vector<CaseRecord> Library::look(const std::function<bool(std::size_t, std:
       if (goes_on) {
         // Looked at before it is read: what is written meanwhile is read the next time.
         one = {now, read_case_record(one.record.folder, state_->read_session)};
+        // What could not be read may be read the next time, by a newer program or from a disk that is well
+        // again: it is not known by what its files look like.
+        const auto is_broken = [](const SessionFacts& session) { return !session.problem.empty(); };
+        if (!one.record.problem.empty() || std::ranges::any_of(one.record.sessions, is_broken))
+          one.fingerprint = 0;
         changed.push_back(one);
       }
     }

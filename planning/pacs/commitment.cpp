@@ -9,6 +9,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -24,6 +25,7 @@ constexpr int kRequestCommitment = 1;
 constexpr int kPoll_s = 1;
 
 struct Report {
+  std::set<std::string> kept;                 // SOP instances that the peer names as kept
   std::map<std::string, std::string> failed;  // reason by SOP instance
 };
 
@@ -35,6 +37,8 @@ class Reports {
     if (images::text_of(data, DCM_TransactionUID) != transaction_uid_) return;
     Report report;
     DcmItem* item = nullptr;
+    for (long i = 0; data.findAndGetSequenceItem(DCM_ReferencedSOPSequence, item, i).good(); ++i)
+      report.kept.insert(images::text_of(*item, DCM_ReferencedSOPInstanceUID));
     for (long i = 0; data.findAndGetSequenceItem(DCM_FailedSOPSequence, item, i).good(); ++i) {
       const int reason = images::unsigned_short_of(*item, DCM_FailureReason, 0);
       report.failed[images::text_of(*item, DCM_ReferencedSOPInstanceUID)] =
@@ -130,10 +134,12 @@ void take_report(const Report& report, SendSummary& summary) {
   for (SentFile& file : summary.files) {
     if (!file.is_stored) continue;
     const auto found = report.failed.find(file.sop_instance_uid);
-    file.is_committed = found == report.failed.end();
+    // Kept is what the peer says that it keeps: of what it is silent about nobody knows.
+    file.is_committed = found == report.failed.end() && report.kept.contains(file.sop_instance_uid);
     if (file.is_committed) continue;
     ++failed;
-    file.note = "stored, but the peer does not commit itself to keep it: " + found->second;
+    file.note = "stored, but the peer does not commit itself to keep it: " +
+                (found != report.failed.end() ? found->second : "its report does not name it");
   }
   summary.commitment = failed == 0 ? Commitment::Confirmed : Commitment::Failed;
   summary.commitment_note = failed == 0 ? "the peer keeps all that it was sent"

@@ -48,7 +48,10 @@ bool ask_both(Association& association, const Peer& peer, const std::string& ser
   put_key(images, DCM_SOPClassUID, "");
   const auto take_image = [&](DcmDataset& answer) {
     const std::string uid = text_of(answer, DCM_SOPInstanceUID);
-    if (is_uid(uid)) found.class_by_uid[uid] = text_of(answer, DCM_SOPClassUID);
+    if (is_uid(uid))
+      found.class_by_uid[uid] = text_of(answer, DCM_SOPClassUID);
+    else
+      ++found.nameless_count;
   };
   return ask(association, peer, images, take_image);
 }
@@ -68,6 +71,9 @@ SeriesImages ask_series_images(const Peer& peer, const ConnectionOptions& connec
     if (stop.stop_requested()) break;
     if (is_answered) {
       association->release();
+      if (found.nameless_count > 0)
+        throw DeviceError(to_text(peer) + ": lists " + std::to_string(found.nameless_count) +
+                          " images of the series without a valid UID, which cannot be asked for");
       return found;
     }
     if (attempt >= connection.retries)

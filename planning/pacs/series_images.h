@@ -14,9 +14,10 @@ struct SeriesImages {
   bool is_known = false;  // the peer has the series
   std::string study_uid, patient_id;
   std::map<std::string, std::string> class_by_uid;  // SOP class by SOP instance; class empty where not said
+  int nameless_count = 0;                           // images under no UID, which no fetch would bring
 };
 
-// Throws DeviceError.
+// Throws DeviceError, also for a series of which an image has no valid UID: it could not be called whole.
 [[nodiscard]] SeriesImages ask_series_images(const Peer& peer, const ConnectionOptions& connection,
                                              const std::string& series_uid, const std::string& study_uid,
                                              const std::stop_token& stop);

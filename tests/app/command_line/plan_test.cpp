@@ -132,6 +132,10 @@ TEST_F(PlanCommand, TwoBundlesArePlannedShownExportedAndRemoved) {
   EXPECT_EQ(cases::load_case(folder_ / "knee.arthro").plan.of(bones::BoneKind::Femur).size(), 1U);
   const auto single = run({"plan", "--bone", "femur", "--default", "--type", "single"});
   EXPECT_THAT(single.output, HasSubstr("The tunnel femur PL is no longer planned"));
+  // Markups of two bundles in place of it are no silent change either.
+  EXPECT_THAT(run({"plan", "--from-markups", folder_ / "out" / "plan.mrk.json"}).output,
+              HasSubstr("The tunnel femur is no longer planned"));
+  EXPECT_EQ(run({"plan", "--bone", "femur", "--default", "--type", "single"}).exit_code, 0);
   const auto plan = cases::load_case(folder_ / "knee.arthro").plan;
   EXPECT_EQ(plan.of(bones::BoneKind::Femur), std::vector<tunnels::TunnelKey>{bones::BoneKind::Femur});
 }

@@ -156,6 +156,40 @@ TEST_F(Report, ComparesPlannedAndAchieved) {
   expect_contains(text, "water");
 }
 
+// Each start of a source is a session of its own: what was drilled in the one before is not left out.
+TEST_F(Report, NamesTheTunnelOfTheOtherBundleThatWasDrilledInASessionBefore) {
+  tunnels::Tunnel am = knee_.plan.tunnels.at(bones::BoneKind::Femur), pl = am;
+  am.bundle = norms::Bundle::Anteromedial;
+  pl.bundle = norms::Bundle::Posterolateral;
+  pl.entry_mm += 8 * am.direction.unitOrthogonal();
+  knee_.plan.put(am, "");
+  knee_.plan.put(pl, "");
+  cases::save_case(knee_folder(), knee_);
+  std::string first;
+  for (const tunnels::Tunnel& planned : {am, pl}) {
+    const auto folder = cases::create_session_folder(knee_folder());
+    if (first.empty()) first = folder.filename().string();
+    recording::SessionHeader header;
+    header.id = folder.filename().string();
+    pipeline::PipelineOptions options;
+    options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
+    options.tools = tools::standard_tools();
+    recording::SessionRecorder(folder, header, options).finish();
+    auto measured = planned;
+    measured.entry_mm += (planned.bundle == am.bundle ? 1.25 : 0.75) * planned.direction.unitOrthogonal();
+    operation::write_achieved_file(
+        folder / operation::achieved_file_name(planned.key()),
+        {.planned = planned, .measured = measured, .depth_mm = 30, .pose_count = 42, .truth = {}});
+  }
+  write_report(knee_folder(), pdf());
+  const std::string text = pdf_text();
+  expect_contains(text, "Planned against achieved: femur PL");
+  expect_contains(text, "0.75 mm");
+  expect_contains(text, "Planned against achieved: femur AM");
+  expect_contains(text, "1.25 mm");
+  expect_contains(text, "Drilled in the session " + first);
+}
+
 // Hazard 2: nobody takes the figures of a simulation for a patient's.
 TEST_F(Report, Hazard2NamesTheKindOfSource) {
   expect_contains(text_of_session("simulation", {}), "simulation: nobody's knee");

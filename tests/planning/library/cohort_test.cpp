@@ -33,7 +33,13 @@ std::vector<CaseRecord> two_cases() {
   records[0].sessions = {session, session};
   records[0].sessions[1].id = "0002";
   records[0].postoperative = {
-      {.bone = "tibia", .entry_offset_mm = 2, .angle_deg = 1, .diameter_mm = 9, .is_reliable = true}};
+      {.bone = "tibia", .entry_offset_mm = 2, .angle_deg = 1, .diameter_mm = 9, .is_reliable = true},
+      {.bone = "femur",
+       .bundle = "pl",
+       .entry_offset_mm = 3,
+       .angle_deg = 4,
+       .diameter_mm = 6,
+       .is_reliable = false}};
   records[1].name = "B";
   records[1].folder = "/cases/B.arthro";
   records[1].problem = "case.json: broken";
@@ -84,6 +90,9 @@ TEST(CohortTest, IsARowASession) {
   EXPECT_EQ(rows[0]["registration_reliable"], "yes");
   EXPECT_EQ(rows[0]["tibia_postop_offset_mm"], "2.000");
   EXPECT_EQ(rows[0]["femur_postop_offset_mm"], "");
+  EXPECT_EQ(rows[0]["femur_pl_postop_offset_mm"], "3.000");
+  EXPECT_EQ(rows[0]["femur_pl_postop_reliable"], "no");
+  EXPECT_EQ(rows[0]["femur_am_postop_offset_mm"], "");
   EXPECT_EQ(rows[2]["state"], "unreadable");
   EXPECT_EQ(rows[2]["session"], "");
   EXPECT_EQ(rows[2]["problem"], "case.json: broken");

@@ -73,6 +73,26 @@ TEST_F(LibraryTest, KnowsWhatWasAddedAndReadsOnlyWhatHasChanged) {
       std::any_of(records.begin(), records.end(), [](const auto& r) { return r.note == "looked at"; }));
 }
 
+// What cannot be read now may be readable the next time, though no file has changed: by a newer program, or
+// when a disk is well again.
+TEST_F(LibraryTest, WhatCouldNotBeReadIsReadAgain) {
+  const fs::path a = add_case("A");
+  fs::create_directories(a / "sessions" / "0001-20260131-120000");
+  bool is_well = false;
+  Library library(root_ / "data", [&](const fs::path&) {
+    ++sessions_read_;
+    SessionFacts facts;
+    if (!is_well) facts.problem = "the disk does not answer";
+    return facts;
+  });
+  add(library, a);
+  EXPECT_EQ(library.look().at(0).sessions.at(0).problem, "the disk does not answer");
+  is_well = true;
+  EXPECT_EQ(library.look().at(0).sessions.at(0).problem, "");
+  (void)library.look();
+  EXPECT_EQ(sessions_read_, 2) << "read once it is known again";
+}
+
 // What is gone is said to be missing with what was known of it, and is back when its folder is.
 TEST_F(LibraryTest, ACaseThatIsGoneStaysAsMissingUntilItIsForgotten) {
   const fs::path a = add_case("A");
