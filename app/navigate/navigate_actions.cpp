@@ -91,7 +91,7 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                false,
                running,
                [this] { return live_->keeps_video; },
-               [this] { bones_.operation(choices_.bone).keep_video(!live_->keeps_video); },
+               [this] { bones_.used(choices_.bone).keep_video(!live_->keeps_video); },
                {"end the video's record", [this] { return live_->keeps_video; }}});
   actions.add({"navigate.overlay",
                "Plan on video",

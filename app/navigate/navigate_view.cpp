@@ -101,14 +101,14 @@ void NavigateView::start(theatre::TheatreSource source) {
   kind_ = started_[choices_.bone] = source.setup.kind;
   part_.reset();
   resume_.answer(choices_.bone);  // it begins: afresh, unless it was resumed
-  bones_.operation(choices_.bone).start(std::move(source));
+  bones_.used(choices_.bone).start(std::move(source));
   read_live();
   choices_.overlay_shown_at_s = theatre::LiveOperation::now_s();
   look_along_plan();
 }
 
 void NavigateView::ask(operation::Command command) {
-  bones_.operation(choices_.bone).apply(std::move(command));
+  bones_.used(choices_.bone).apply(std::move(command));
 }
 
 void NavigateView::start_simulation(SimulatedPart part) {

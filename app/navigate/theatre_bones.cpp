@@ -81,6 +81,8 @@ std::optional<tunnels::TunnelKey> TheatreBones::guided(bones::BoneKind bone) con
   if (const auto chosen = chosen_.find(bone);
       chosen != chosen_.end() && std::ranges::find(keys, chosen->second) != keys.end())
     return chosen->second;
+  if (const auto kept = in_force_of_source(bone); kept && std::ranges::find(keys, *kept) != keys.end())
+    return kept;
   return keys.size() == 1 ? std::optional(keys.front()) : std::nullopt;
 }
 
@@ -88,13 +90,17 @@ bool TheatreBones::must_choose(bones::BoneKind bone) const {
   return !guided(bone) && !model_->knee().plan.of(bone).empty();
 }
 
-void TheatreBones::keep_guided(bones::BoneKind bone) {
-  if (const auto key = guided(bone)) chosen_.insert_or_assign(bone, *key);
+std::optional<tunnels::TunnelKey> TheatreBones::in_force_of_source(bones::BoneKind bone) const {
+  const theatre::LiveOperation* const operation = known(bone);
+  if (operation == nullptr) return std::nullopt;
+  const theatre::LiveStatePtr state = operation->latest();
+  const auto& plan = state->operation->plan;
+  return state->operation->has_source && plan ? std::optional(plan->tunnel.key()) : std::nullopt;
 }
 
 void TheatreBones::choose(const tunnels::TunnelKey& key) {
   chosen_.insert_or_assign(key.bone, key);
-  if (const auto bone = bones_.find(key.bone); bone != bones_.end()) bone->second.plan_revision = 0;
+  if (const auto bone = bones_.find(key.bone); bone != bones_.end()) offer_plan(key.bone, bone->second);
 }
 
 std::optional<PlannedTunnel> TheatreBones::plan_of(bones::BoneKind bone) const {
@@ -154,15 +160,21 @@ theatre::LiveOperation& TheatreBones::operation(bones::BoneKind kind) {
   if (bone.operation != nullptr) {
     const theatre::LiveStatePtr state = bone.operation->latest();
     const bool is_broken = !state->operation->registration->bone_trouble.empty();
-    if (is_worth_keeping(*state) || (!is_broken && bone.plan_revision == model_->revision()))
+    if (is_worth_keeping(*state) || (!is_broken && (bone.is_used || is_told(kind, bone))))
       return *bone.operation;
     bone.operation->request_stop();
     ending_.end(std::move(bone.operation));
   }
-  keep_guided(kind);
   bone.operation = made(kind);
-  bone.plan_revision = model_->revision();
+  bone.is_used = false;
+  note_told(kind, bone);
   return *bone.operation;
+}
+
+theatre::LiveOperation& TheatreBones::used(bones::BoneKind kind) {
+  theatre::LiveOperation& used = operation(kind);
+  bones_.at(kind).is_used = true;
+  return used;
 }
 
 theatre::LiveOperation* TheatreBones::known(bones::BoneKind kind) const {
@@ -177,12 +189,24 @@ theatre::LiveStatePtr TheatreBones::nothing() {
 }
 
 void TheatreBones::offer_plans() {
-  for (auto& [kind, bone] : bones_) {
-    if (bone.operation == nullptr || bone.plan_revision == model_->revision()) continue;
-    bone.plan_revision = model_->revision();
-    keep_guided(kind);
-    bone.operation->apply(operation::OfferPlan{plan_of(kind)});
-  }
+  for (auto& [kind, bone] : bones_) offer_plan(kind, bone);
+}
+
+void TheatreBones::offer_plan(bones::BoneKind kind, Bone& bone) {
+  if (bone.operation == nullptr || is_told(kind, bone)) return;
+  // Made anew when it is asked for next: its registration is to aim at the plan from the first stroke on.
+  if (!bone.is_used && !is_worth_keeping(*bone.operation->latest())) return;
+  note_told(kind, bone);
+  bone.operation->apply(operation::OfferPlan{plan_of(kind)});
+}
+
+bool TheatreBones::is_told(bones::BoneKind kind, const Bone& bone) const {
+  return bone.plan_revision == model_->revision() && bone.told == guided(kind);
+}
+
+void TheatreBones::note_told(bones::BoneKind kind, Bone& bone) const {
+  bone.plan_revision = model_->revision();
+  bone.told = guided(kind);
 }
 
 }  // namespace arthronaut::navigate

@@ -35,16 +35,20 @@ class TheatreBones {
   // Made when it is first asked for; made anew while nothing hangs on it and its plan has changed, or its
   // bone could not be made ready. Precondition: the model has the bone.
   theatre::LiveOperation& operation(bones::BoneKind bone);
+  // The same, for whoever posts to it: before the operation has heard of that, it is not made anew any more.
+  theatre::LiveOperation& used(bones::BoneKind bone);
   // Null when it was not asked for yet.
   [[nodiscard]] theatre::LiveOperation* known(bones::BoneKind bone) const;
   // What is known where no bone was looked at yet.
   [[nodiscard]] static theatre::LiveStatePtr nothing();
-  // Which of the bone's planned tunnels is drilled: the one that was chosen, else the only one. nullopt where
-  // none is planned, and where two are and nobody has chosen: it is never guessed.
+  // Which of the bone's planned tunnels is drilled: the one that was chosen, else the one that guides while a
+  // source runs, else the only one. nullopt where none is planned, and where two are and nobody has chosen:
+  // it is never guessed.
   [[nodiscard]] std::optional<tunnels::TunnelKey> guided(bones::BoneKind bone) const;
   [[nodiscard]] bool must_choose(bones::BoneKind bone) const;
-  // From now on that one: an operation that runs is offered it, and guides by the one in force until the
-  // surgeon takes the other one over. Precondition: it is planned.
+  // From now on that one: an operation that runs is offered it at once, before anything that is posted to it
+  // later, and guides by the one in force until the surgeon takes the other one over. Precondition: it is
+  // planned.
   void choose(const tunnels::TunnelKey& key);
   // The case's plan for the tunnel that is drilled, where it is of this mesh: what an operation that begins
   // now guides by.
@@ -58,10 +62,16 @@ class TheatreBones {
  private:
   struct Bone {
     std::unique_ptr<theatre::LiveOperation> operation;
-    std::uint64_t plan_revision = 0;  // of the model, when the plan was handed over last
+    bool is_used = false;                    // something was posted to it
+    std::uint64_t plan_revision = 0;         // of the model, when the plan was handed over last
+    std::optional<tunnels::TunnelKey> told;  // which tunnel's that was
   };
-  // The only tunnel stays the one that is drilled when a second one is planned.
-  void keep_guided(bones::BoneKind bone);
+  // By which a source that runs guides. It stays the one that is drilled when a second one is planned, as
+  // long as that source runs; for the next one somebody has to choose.
+  [[nodiscard]] std::optional<tunnels::TunnelKey> in_force_of_source(bones::BoneKind bone) const;
+  void offer_plan(bones::BoneKind kind, Bone& bone);
+  [[nodiscard]] bool is_told(bones::BoneKind kind, const Bone& bone) const;
+  void note_told(bones::BoneKind kind, Bone& bone) const;
   [[nodiscard]] std::unique_ptr<theatre::LiveOperation> made(bones::BoneKind bone) const;
   [[nodiscard]] static bool is_worth_keeping(const theatre::LiveState& state);
 

@@ -205,6 +205,7 @@ LiveStatePtr LiveOperation::latest() const {
   return latest != nullptr ? latest : std::make_shared<const LiveState>(thread_->initial);
 }
 
+const operation::OperationSetup& LiveOperation::setup() const { return thread_->options.operation; }
 std::string LiveOperation::failure() const { return thread_->worker.failure(); }
 void LiveOperation::finish() const { thread_->worker.finish(); }
 double LiveOperation::now_s() { return seconds_of(Clock::now()); }

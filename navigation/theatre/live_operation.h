@@ -67,6 +67,8 @@ class LiveOperation {
 
   // Never null.
   [[nodiscard]] LiveStatePtr latest() const;
+  // What it was made with.
+  [[nodiscard]] const operation::OperationSetup& setup() const;
   // Why the thread has ended; empty while it runs. That is a fault of the program.
   [[nodiscard]] std::string failure() const;
   // Waits until all that was posted is carried out and no source runs; for tests.
