@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
-#include <set>
+#include <utility>
 #include <vector>
 
 #include "app/navigate/navigate_display.h"
+#include "navigation/operation/operation_state.h"
 
 namespace arthronaut::navigate {
 
@@ -21,7 +23,22 @@ struct NavigateChoices {
   std::optional<NavigateLayout> layout;  // empty: as things stand
   double guidance_seen_s = -1e9;         // when guidance was valid last
   int stroke = -1;                       // selected
-  std::set<tunnels::TunnelKey> drilled;  // said to be, since the case was opened
+  // Said to be drilled since the case was opened: by which kind of source, and the very plan that guided. A
+  // rehearsal says nothing of the patient, and a plan of before an edit nothing of the one after it.
+  std::map<std::pair<sources::SourceKind, tunnels::TunnelKey>, operation::PlannedTunnel> drilled;
+
+  void follow(const operation::OperationState& state) {
+    using Outcome = operation::DrilledState::Outcome;
+    if (state.plan && state.source != nullptr && state.drilled.outcome != Outcome::NotSaid)
+      drilled.insert_or_assign({state.source->kind, state.plan->tunnel.key()}, *state.plan);
+  }
+  // By the kind of source that `state` is of.
+  [[nodiscard]] bool is_drilled(const operation::OperationState& state,
+                                const operation::PlannedTunnel& plan) const {
+    if (state.source == nullptr) return false;
+    const auto found = drilled.find({state.source->kind, plan.tunnel.key()});
+    return found != drilled.end() && found->second == plan;
+  }
 
   [[nodiscard]] bones::BoneKind other_bone() const {
     return bone == bones::BoneKind::Femur ? bones::BoneKind::Tibia : bones::BoneKind::Femur;

@@ -107,9 +107,7 @@ void NavigateView::start(theatre::TheatreSource source) {
   look_along_plan();
 }
 
-void NavigateView::ask(operation::Command command) {
-  bones_.used(choices_.bone).apply(std::move(command));
-}
+void NavigateView::ask(operation::Command command) { bones_.used(choices_.bone).apply(std::move(command)); }
 
 void NavigateView::start_simulation(SimulatedPart part) {
   try {
@@ -310,9 +308,7 @@ void NavigateView::read_live() {
   } else {
     live_ = TheatreBones::nothing();
   }
-  if (const auto& plan = live_->operation->plan;
-      plan && live_->operation->drilled.outcome != operation::DrilledState::Outcome::NotSaid)
-    choices_.drilled.insert(plan->tunnel.key());
+  choices_.follow(*live_->operation);
   // An address that gave no picture is not worth keeping.
   const bool gives_pictures = live_->phase == Phase::Running && live_->picture != nullptr;
   // That a source runs may still be news of the one before.
@@ -340,7 +336,8 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
       screen.planned_length_mm = plan->length_mm;
       const tunnels::TunnelKey key = plan->tunnel.key();
       if (key.bundle != norms::Bundle::Whole)
-        screen.tunnel = tunnels::name_of(key) + (choices_.drilled.contains(key) ? ", drilled" : "");
+        screen.tunnel =
+            tunnels::name_of(key) + (choices_.is_drilled(*live_->operation, *plan) ? ", drilled" : "");
     }
     screen.surface = model_->shared_surface(choices_.bone);
     screen.drawn_bone = model_->drawn_mesh(choices_.bone);

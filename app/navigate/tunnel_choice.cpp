@@ -33,7 +33,8 @@ std::string NavigateView::tunnel_to_choose() const {
   const auto& plan = live_->operation->plan;
   if (!plan || live_->operation->next_action != NextAction::Finish) return "";
   for (const tunnels::TunnelKey& key : model_->knee().plan.of(choices_.bone))
-    if (!choices_.drilled.contains(key))
+    if (const auto planned = bones_.planned(key);
+        !planned || !choices_.is_drilled(*live_->operation, *planned))
       return "then the tunnel " + tunnels::name_of(key) +
              (key.bundle == Bundle::Anteromedial ? " (1)" : " (2)") + ", or take the world marker out";
   return "";

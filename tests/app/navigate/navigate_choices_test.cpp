@@ -25,5 +25,39 @@ TEST(NavigateChoices, TheOtherBoneBeginsWithoutWhatWasOfThisOne) {
   EXPECT_EQ(choices.bone, bones::BoneKind::Femur);
 }
 
+// What was said of a rehearsal does not stand beside the bullseye of the patient, nor what was said of a plan
+// beside the one that took its place.
+TEST(NavigateChoices, DrilledIsSaidOfTheVeryPlanAndKindOfSource) {
+  const auto run_by = [](sources::SourceKind kind) {
+    operation::OperationState state;
+    operation::SourceSetup source;
+    source.kind = kind;
+    state.source = std::make_shared<const operation::SourceSetup>(source);
+    state.plan.emplace().tunnel.bundle = norms::Bundle::Anteromedial;
+    return state;
+  };
+  NavigateChoices choices;
+  operation::OperationState rehearsal = run_by(sources::SourceKind::Simulation);
+  choices.follow(rehearsal);
+  EXPECT_FALSE(choices.is_drilled(rehearsal, *rehearsal.plan));
+  rehearsal.drilled.outcome = operation::DrilledState::Outcome::NoEvidence;
+  choices.follow(rehearsal);
+  EXPECT_TRUE(choices.is_drilled(rehearsal, *rehearsal.plan)) << "the surgeon's word is enough";
+
+  operation::OperationState live = run_by(sources::SourceKind::Live);
+  choices.follow(live);
+  EXPECT_FALSE(choices.is_drilled(live, *live.plan));
+  live.drilled.outcome = operation::DrilledState::Outcome::Recorded;
+  choices.follow(live);
+  EXPECT_TRUE(choices.is_drilled(live, *live.plan));
+
+  operation::PlannedTunnel other = *live.plan;
+  other.tunnel.bundle = norms::Bundle::Posterolateral;
+  EXPECT_FALSE(choices.is_drilled(live, other));
+  other = *live.plan;
+  other.tunnel.entry_mm.x() += 1;
+  EXPECT_FALSE(choices.is_drilled(live, other)) << "planned anew";
+}
+
 }  // namespace
 }  // namespace arthronaut::navigate
