@@ -14,6 +14,8 @@ std::string in_words(const SourceSetup& source, const registration::Provenance& 
   std::string text = std::string(bones::to_text(source.pipeline.side)) + " " +
                      std::string(bones::to_text(now.bone)) +
                      (patient_was_shown ? ", patient shown" : ", patient not known");
+  const bool is_named = plan && plan->tunnel.bundle != norms::Bundle::Whole;
+  if (is_named) text += ", tunnel " + tunnels::name_of(plan->tunnel.key());
   text +=
       plan ? files::format(", plan %.1f mm wide and %.1f mm long", plan->tunnel.diameter_mm, plan->length_mm)
            : std::string(", no plan");

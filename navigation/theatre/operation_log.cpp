@@ -68,9 +68,12 @@ std::string line_of(const JournalEntry& entry) {
   if (line.empty()) return line;
   if (entry.after_frame >= 0) line += " after frame " + std::to_string(entry.after_frame);
   if (entry.registration != nullptr) return line + ": " + registration_in_words(entry);
-  if (entry.plan)
+  if (entry.plan) {
+    const tunnels::TunnelKey key = entry.plan->tunnel.key();
+    if (key.bundle != norms::Bundle::Whole) line += ": " + tunnels::name_of(key);
     line +=
         files::format(": %.1f mm wide, %.1f mm long", entry.plan->tunnel.diameter_mm, entry.plan->length_mm);
+  }
   return entry.text.empty() ? line : line + ": " + entry.text;
 }
 

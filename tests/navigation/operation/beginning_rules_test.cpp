@@ -48,6 +48,20 @@ TEST(TimeOut, Hazard20NothingGuidesLiveBeforeItIsConfirmed) {
   EXPECT_EQ(told.find("right femur, patient shown, plan 9.0 mm wide and 30.0 mm long, mesh "), 0U) << told;
 }
 
+// Of two tunnels in a bone the record says which one was confirmed.
+TEST(TimeOut, Hazard38TheRecordNamesTheTunnel) {
+  PhantomOperation run;
+  PlannedTunnel plan = test::phantom_plan();
+  plan.tunnel.bundle = norms::Bundle::Posterolateral;
+  run.apply(OfferPlan{plan});  // taken at once: no source runs
+  run.start_unconfirmed(test::scripted_source(SourceKind::Live));
+  run.apply(ConfirmTimeOut{true});
+  const std::string told = run.last_text(JournalKind::TimeOutConfirmed);
+  EXPECT_EQ(
+      told.find("right femur, patient shown, tunnel femur PL, plan 9.0 mm wide and 30.0 mm long, mesh "), 0U)
+      << told;
+}
+
 // Nobody is drilled in a recording or a simulation: there it is not asked for.
 TEST(TimeOut, IsNotAskedForWhereNobodyIsDrilled) {
   for (const SourceKind kind : {SourceKind::Recording, SourceKind::Simulation}) {

@@ -18,6 +18,16 @@ long count_of(const std::string& text, const std::string& words) {
   return count;
 }
 
+// Of two tunnels in a bone the log says which one guides; a bone's single tunnel goes without a name.
+TEST(OperationLog, Hazard38NamesTheTunnelOfABundle) {
+  operation::JournalEntry entry;
+  entry.kind = operation::JournalKind::Plan;
+  entry.plan = test::phantom_plan();
+  EXPECT_EQ(line_of(entry), "plan in force: 9.0 mm wide, 30.0 mm long");
+  entry.plan->tunnel.bundle = norms::Bundle::Anteromedial;
+  EXPECT_EQ(line_of(entry), "plan in force: femur AM: 9.0 mm wide, 30.0 mm long");
+}
+
 // The log tells each registration that takes effect, what makes it void and what confirms it, sources, the
 // plan and what was skipped: once each, however many frames come.
 TEST(OperationLog, TellsChangesAndNoFrames) {
