@@ -56,7 +56,10 @@ void add(Json& json, const std::optional<PlannedTunnel>& plan) {
   json["diameter_mm"] = tunnel.diameter_mm;
   json["length_mm"] = plan->length_mm;
 }
-void add(Json& json, const OfferPlan& offer) { add(json, offer.plan); }
+void add(Json& json, const OfferPlan& offer) {
+  add(json, offer.plan);
+  if (offer.moves_target) json["moves_target"] = true;
+}
 void add(Json& json, const registration::RegistrationSummary& registration,
          const registration::Provenance& of) {
   json["registration"] = registration::to_json(registration, &of);
@@ -73,6 +76,7 @@ void add(Json& json, const ResumeOperation& resume) {
   json["session"] = resume.session;
   json["of"] = registration::to_json(resume.of);
   if (resume.plan) add(json["plan"], resume.plan);
+  if (resume.moves_target) json["moves_target"] = true;
   if (resume.depth_stop_mm) json["depth_stop_mm"] = *resume.depth_stop_mm;
   if (resume.registration) add(json["in_force"], *resume.registration, resume.registration_of);
   json["stroke_count"] = resume.stroke_count;
@@ -104,6 +108,10 @@ std::optional<PlannedTunnel> plan_from(const files::JsonObject& json) {
   return plan;
 }
 
+bool moves_target_from(const files::JsonObject& json) {
+  return json.has("moves_target") && json.boolean("moves_target");
+}
+
 GiveRegistration registration_from(const files::JsonObject& json) {
   const auto record = registration::registration_record_from(json.object("registration"));
   if (!record.of) json.fail("registration", "does not say what it is of");
@@ -131,6 +139,7 @@ ResumeOperation resume_from(const files::JsonObject& json) {
   };
   resume.of = registration::provenance_from(json.object("of"));
   if (json.has("plan")) resume.plan = plan_from(json.object("plan"));
+  resume.moves_target = moves_target_from(json);
   if (json.has("depth_stop_mm")) resume.depth_stop_mm = json.number("depth_stop_mm");
   if (json.has("in_force"))
     std::tie(resume.registration, resume.registration_of) = given(json.object("in_force"));
@@ -192,7 +201,8 @@ Command command_from_text(const std::string& text, const std::string& name) {
     choose->entry = static_cast<std::size_t>(json.integer("entry"));
   }
   if (auto* stop = std::get_if<ReadDepthStop>(&command)) stop->depth_mm = json.number("depth_mm");
-  if (std::holds_alternative<OfferPlan>(command)) command = OfferPlan{plan_from(json)};
+  if (std::holds_alternative<OfferPlan>(command))
+    command = OfferPlan{plan_from(json), moves_target_from(json)};
   if (auto* time_out = std::get_if<ConfirmTimeOut>(&command))
     time_out->patient_was_shown = json.boolean("patient_was_shown");
   if (std::holds_alternative<ResumeOperation>(command)) command = resume_from(json);

@@ -49,6 +49,9 @@ struct ChooseRegistration {
 // The plan was edited. Guidance keeps the one in force until it is taken over.
 struct OfferPlan {
   std::optional<PlannedTunnel> plan;
+  // Once in force, it is where the registration is judged from its next solution on. Records of before there
+  // was this keep the target of the first plan: they run again as they ran.
+  bool moves_target = true;
 };
 struct TakePlanOver {};
 // The surgeon goes on without a touch that verifies; that is recorded.
@@ -83,6 +86,7 @@ struct ResumeOperation {
   std::string session;                // id of its newest record
   registration::Provenance of;        // what the pictures were of at its end
   std::optional<PlannedTunnel> plan;  // in force then
+  bool moves_target = true;           // as that of OfferPlan
   std::optional<double> depth_stop_mm;
   // Void until one touch confirms it: nobody saw the marker meanwhile. Empty: nothing guided, or what did may
   // not be brought back.

@@ -64,7 +64,7 @@ void Operation::start_source(const SourceSetup& source) {
   p.pipeline->set_plan(p.plan ? std::optional(p.plan->tunnel) : std::nullopt, p.plan ? p.plan->length_mm : 0);
   // What differed from the plan of before the crash was offered by nobody who saw it: it is still asked for.
   if (p.offered && !p.resumed_plan_waits)
-    p.set_plan(*std::exchange(p.offered, std::nullopt));
+    p.take_offered();
   else
     p.note_plan();
   p.ledger.set_now(now);

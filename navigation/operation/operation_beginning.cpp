@@ -90,9 +90,9 @@ void Operation::Parts::apply(const ResumeOperation& resume) {
   ledger.bring_back(resume.of, resume.touches_mm, resume.control_point_mm);
   if (resume.plan && resume.plan != plan) {
     // The one that guided then guides on; the case's, which is another one by now, waits to be taken over.
-    offered = plan;
+    offered = OfferPlan{plan, resume.moves_target};
     resumed_plan_waits = true;
-    set_plan(resume.plan);
+    set_plan(resume.plan, resume.moves_target);
   }
   if (resume.registration) apply(GiveRegistration{*resume.registration, resume.registration_of, true});
   changed = true;

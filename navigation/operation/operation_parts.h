@@ -47,7 +47,11 @@ struct Operation::Parts {
     entry.plan = plan;
     note(std::move(entry));
   }
-  void set_plan(const std::optional<PlannedTunnel>& next);
+  void set_plan(const std::optional<PlannedTunnel>& next, bool moves_target);
+  void take_offered() {
+    const OfferPlan taken = *std::exchange(offered, std::nullopt);
+    set_plan(taken.plan, taken.moves_target);
+  }
   void check_medium();
   void take_look(const MediumLookPtr& look);
   void follow_medium(pipeline::MediumFit before);
@@ -94,7 +98,7 @@ struct Operation::Parts {
   void apply(const OfferPlan& offer);
   void apply(const TakePlanOver&) {
     if (!offered) return;
-    set_plan(*std::exchange(offered, std::nullopt));
+    take_offered();
     resumed_plan_waits = false;
     confirmed_plan = plan;  // that it is the right one was just said
   }
@@ -142,7 +146,7 @@ struct Operation::Parts {
   std::map<int, guidance::BiasSums> bias_of_stroke;
 
   std::optional<PlannedTunnel> plan;
-  std::optional<std::optional<PlannedTunnel>> offered;
+  std::optional<OfferPlan> offered;
   bool resumed_plan_waits = false;  // what is offered is the case's, asked for even when a source starts
   std::optional<std::size_t> skipped_entry;  // of the ledger: it guided without a touch
   struct Asked {                             // the last touch, or check of the guide

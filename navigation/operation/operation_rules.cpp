@@ -78,8 +78,10 @@ void Operation::Parts::follow_ledger() {
   changed = true;
 }
 
-void Operation::Parts::set_plan(const std::optional<PlannedTunnel>& next) {
+void Operation::Parts::set_plan(const std::optional<PlannedTunnel>& next, bool moves_target) {
   plan = next;
+  if (moves_target)
+    ask(plan ? AimAt{plan->tunnel.entry_mm, plan->tunnel.direction} : AimAt{std::nullopt, std::nullopt});
   // What was seen, read and drilled was of another plan; the numbers of the last picture are too.
   drilling.evidence = plan ? std::optional<guidance::DrillEvidence>(plan->tunnel) : std::nullopt;
   drilling.evidence_is_seen = false;
@@ -275,9 +277,9 @@ void Operation::Parts::apply(const OfferPlan& offer) {
   resumed_plan_waits = false;
   if (offer.plan == plan) return;
   if (has_source)
-    offered = offer.plan;
+    offered = offer;
   else
-    set_plan(offer.plan);
+    set_plan(offer.plan, offer.moves_target);
 }
 
 // That a tunnel was drilled is the surgeon's word; where it runs is what was seen meanwhile, or not known.

@@ -16,6 +16,9 @@ void hand_over(registration::OnlineRegistration& online, const StrokesTakenBack&
 void hand_over(registration::OnlineRegistration& online, const StrokesCleared&) { online.clear(); }
 void hand_over(registration::OnlineRegistration& online, const JudgeAll&) { online.judge_all(); }
 void hand_over(registration::OnlineRegistration&, const FitAll&) {}
+void hand_over(registration::OnlineRegistration& online, const AimAt& aim) {
+  online.aim_at(aim.target_in_bone_mm, aim.direction_in_bone);
+}
 
 }  // namespace
 
@@ -39,6 +42,7 @@ bool RegistrationWork::work_in(const RegistrationRequest& request) {
     fit(*wanted);
     return true;
   }
+  if (const auto* aim = std::get_if<AimAt>(&request)) options_.fit.target_in_bone_mm = aim->target_in_bone_mm;
   std::visit([this](const auto& r) { hand_over(*online_, r); }, request);
   const std::uint64_t known = outcome_->online != nullptr ? outcome_->online->revision : 0;
   const registration::OnlineResult& result = online_->update();

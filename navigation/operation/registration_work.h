@@ -33,6 +33,11 @@ struct StrokesTakenBack {
   int count = 0;
 };
 struct StrokesCleared {};
+// From the next solution on, and the next FitAll, the registration is judged at this place; nullopt: at the
+// strokes' centroid.
+struct AimAt {
+  std::optional<Eigen::Vector3d> target_in_bone_mm, direction_in_bone;
+};
 // All that was drawn is judged, however little of it is new.
 struct JudgeAll {};
 // A registration of these strokes from nothing, as a whole.
@@ -41,7 +46,7 @@ struct FitAll {
   std::shared_ptr<const strokes::Curves> curves;
 };
 using RegistrationRequest =
-    std::variant<DrawnPoint, StrokeExclusion, StrokesTakenBack, StrokesCleared, JudgeAll, FitAll>;
+    std::variant<DrawnPoint, StrokeExclusion, StrokesTakenBack, StrokesCleared, JudgeAll, FitAll, AimAt>;
 
 // What is known after so many requests. Immutable; the newest one holds all that those before it hold.
 struct RegistrationOutcome {

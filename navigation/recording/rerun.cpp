@@ -139,7 +139,7 @@ void Rerun::play(const SessionEvent& event) {
     operation_.end_source();
   } else if (!has_journal_ && event.kind == kPlanEvent) {
     const RecordedSession::PlanChange change = session_->plan_of(event);
-    operation::OfferPlan offer;
+    operation::OfferPlan offer{.plan = std::nullopt, .moves_target = false};
     if (change.plan) offer.plan = {*change.plan, change.planned_length_mm};
     operation_.apply(offer);
     operation_.apply(operation::TakePlanOver{});

@@ -49,6 +49,12 @@ struct OnlineRegistration::State {
         pool(bone->data(), prior_of(online_options), setting.start_noise()),
         standing(pool) {
     if (setting.cartilage) fitter.emplace(bone->data(), *setting.cartilage, pool.prior());
+    aim();
+  }
+
+  void aim() {
+    setting.options.target_in_bone_mm = options.target_in_bone_mm;
+    reachable.clear();
     if (options.target_in_bone_mm)
       reachable = find_reachable_samples(bone->data(), *options.target_in_bone_mm);
   }
@@ -241,6 +247,13 @@ OnlineRegistration::~OnlineRegistration() = default;
 
 void OnlineRegistration::add_points(std::span<const strokes::CurvePoint> points, bool is_excluded) {
   state_->strokes.add_points(points, is_excluded);
+}
+
+void OnlineRegistration::aim_at(const std::optional<Eigen::Vector3d>& target_in_bone_mm,
+                                const std::optional<Eigen::Vector3d>& direction_in_bone) {
+  state_->options.target_in_bone_mm = target_in_bone_mm;
+  state_->options.direction_in_bone = direction_in_bone;
+  state_->aim();
 }
 
 void OnlineRegistration::judge_all() { state_->judges_all = true; }

@@ -86,6 +86,10 @@ class OnlineRegistration {
   // The next update solves with all that was drawn, however little of it is new, and asks again which side's
   // bone it is: when nothing more may come.
   void judge_all();
+  // From the next solution on, another target and direction, as in OnlineOptions; what was solved stays as it
+  // is until then.
+  void aim_at(const std::optional<Eigen::Vector3d>& target_in_bone_mm,
+              const std::optional<Eigen::Vector3d>& direction_in_bone);
   // Takes a stroke out of the fit, or back in; false when there is no such stroke.
   bool exclude_stroke(int curve, bool is_excluded = true);
   // Forgets the stroke drawn last; false when there is none.

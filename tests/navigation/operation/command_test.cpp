@@ -129,6 +129,24 @@ TEST(Command, NumbersComeBackToTheLastBit) {
   EXPECT_FALSE(registration::mismatch_of(give.of, expected.of));
 }
 
+// What a plan does to the registration is said in the journal: an older one, which says nothing of it, is run
+// again as it ran.
+TEST(Command, APlanOfAnOlderJournalMovesNoTarget) {
+  for (const Command& command : {Command(OfferPlan{plan()}), Command(resume())}) {
+    std::string text = to_text(command);
+    const std::string word = ",\"moves_target\":true";
+    ASSERT_NE(text.find(word), std::string::npos) << text;
+    const auto moves = [](const Command& read) {
+      const auto* offer = std::get_if<OfferPlan>(&read);
+      return offer != nullptr ? offer->moves_target : std::get<ResumeOperation>(read).moves_target;
+    };
+    EXPECT_TRUE(moves(command_from_text(text, "journal")));
+    text.erase(text.find(word), word.size());
+    EXPECT_FALSE(moves(command_from_text(text, "journal")));
+    EXPECT_EQ(to_text(command_from_text(text, "journal")), text);
+  }
+}
+
 // Whatever a journal holds, it is read as a command or refused as InvalidInput that names it: text that was
 // cut off, and text with bytes changed.
 TEST(Command, BrokenTextIsRefusedAndNothingElse) {

@@ -48,12 +48,48 @@ TEST_F(OperationRules, AnEditedPlanIsOfferedAndNotTakenUnasked) {
   run_.apply(TakePlanOver{});
   EXPECT_FALSE(run_.state()->plan_was_edited);
   EXPECT_EQ(run_.state()->plan->tunnel.entry_mm, edited.tunnel.entry_mm);
-  ASSERT_EQ(run_.journal.back().kind, JournalKind::Plan);
-  EXPECT_EQ(run_.journal.back().plan->tunnel.entry_mm, edited.tunnel.entry_mm);
+  const auto told = std::find_if(run_.journal.rbegin(), run_.journal.rend(),
+                                 [](const auto& entry) { return entry.kind == JournalKind::Plan; });
+  ASSERT_NE(told, run_.journal.rend());
+  EXPECT_EQ(told->plan->tunnel.entry_mm, edited.tunnel.entry_mm);
   run_.apply(OfferPlan{});
   EXPECT_TRUE(run_.state()->plan.has_value());
   run_.apply(OfferPlan{edited});
   EXPECT_FALSE(run_.state()->plan_was_edited) << "the edit was undone";
+}
+
+// A plan that comes into force is where the registration is judged from then on: taken over, or offered while
+// no source runs. A record that knows nothing of that runs again as it ran.
+TEST_F(OperationRules, ThePlanInForceIsWhatTheRegistrationAimsAt) {
+  PlannedTunnel moved = test::phantom_plan();
+  moved.tunnel.entry_mm.x() += 2;
+  Operation& operation = run_.operation();
+  const auto aims = [&] {
+    std::vector<AimAt> found;
+    for (const RegistrationRequest& request : operation.take_requests())
+      if (const auto* aim = std::get_if<AimAt>(&request)) found.push_back(*aim);
+    return found;
+  };
+  (void)aims();
+  operation.apply(OfferPlan{moved});
+  EXPECT_TRUE(aims().empty()) << "it is offered alone";
+  operation.apply(TakePlanOver{});
+  auto asked = aims();
+  ASSERT_EQ(asked.size(), 1U);
+  EXPECT_EQ(asked.front().target_in_bone_mm, moved.tunnel.entry_mm);
+  EXPECT_EQ(asked.front().direction_in_bone, moved.tunnel.direction);
+  operation.end_source();
+  operation.apply(OfferPlan{test::phantom_plan()});
+  asked = aims();
+  ASSERT_EQ(asked.size(), 1U);
+  EXPECT_EQ(asked.front().target_in_bone_mm, test::phantom_plan().tunnel.entry_mm);
+  operation.apply(OfferPlan{});
+  asked = aims();
+  ASSERT_EQ(asked.size(), 1U);
+  EXPECT_FALSE(asked.front().target_in_bone_mm);
+  operation.apply(OfferPlan{moved, false});
+  EXPECT_EQ(run_.state()->plan, moved);
+  EXPECT_TRUE(aims().empty()) << "of before there was this";
 }
 
 // What was seen of the guide was relative to the plan before.

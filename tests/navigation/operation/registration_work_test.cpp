@@ -68,6 +68,36 @@ TEST(RegistrationWork, TheSameOrderGivesTheSameWhateverTheBatches) {
   expect_same(*one_by_one->latest(), *beside->latest());
 }
 
+// Aimed at another place before the first stroke it finds what one finds that was made for that place, and
+// aimed after them the next fit is judged there.
+TEST(RegistrationWork, IsJudgedWhereItIsAimedAt) {
+  const auto bone = [] { return phantom_bone().prepared; };
+  const RegistrationWorkOptions wanted = work_options(test::phantom_setup());
+  RegistrationWorkOptions other = wanted;
+  other.online.target_in_bone_mm = other.fit.target_in_bone_mm =
+      *wanted.fit.target_in_bone_mm + Eigen::Vector3d(25, 0, 0);
+  other.online.direction_in_bone = Eigen::Vector3d::UnitX();
+  const AimAt aim{wanted.online.target_in_bone_mm, wanted.online.direction_in_bone};
+  const auto run = [&](const RegistrationWorkOptions& options, bool aims_first, bool aims_last) {
+    RegistrationWork work(bone, options);
+    if (aims_first) work.work_in(aim);
+    for (const RegistrationRequest& request : requests()) {
+      if (aims_last && std::holds_alternative<JudgeAll>(request)) work.work_in(aim);
+      work.work_in(request);
+    }
+    return work.outcome();
+  };
+  const OutcomePtr made_for_it = run(wanted, false, false), made_for_other = run(other, false, false);
+  const double there_mm = made_for_it->fit->predicted_tre_mm;
+  ASSERT_NE(there_mm, made_for_other->fit->predicted_tre_mm);
+  const OutcomePtr first = run(other, true, false), last = run(other, false, true);
+  expect_same(*first, *made_for_it);
+  EXPECT_EQ(first->online->registration.predicted_tre_mm, made_for_it->online->registration.predicted_tre_mm);
+  EXPECT_EQ(first->online->predicted_angle_deg, made_for_it->online->predicted_angle_deg);
+  EXPECT_EQ(first->fit->predicted_tre_mm, there_mm);
+  EXPECT_EQ(last->fit->predicted_tre_mm, there_mm);
+}
+
 // A bone that cannot be made ready is an outcome like any other, beside the frames too.
 TEST(RegistrationWork, AFailureBesideTheFramesIsTold) {
   const auto beside = theatre::registration_beside(
