@@ -67,8 +67,8 @@ void resume(Context& context, const ResumeArguments& arguments) {
   const auto bone = knee.bones.find(kind);
   if (bone == knee.bones.end())
     throw InvalidInput(arguments.case_folder, "", "the case has no " + arguments.bone);
-  const auto found =
-      recording::find_resumable(arguments.case_folder, kind, bones::mesh_sha256(bone->second.mesh));
+  const auto found = recording::find_resumable(arguments.case_folder, kind,
+                                               bones::mesh_sha256(bone->second.mesh), knee.plan.of(kind));
   if (arguments.json)
     files::write_json("-", found ? json_of(*found) : nlohmann::ordered_json());
   else if (found)

@@ -25,7 +25,7 @@ void ResumeOffer::open(const open_case::PlanModel& model, const std::filesystem:
   answered_.clear();
   is_looking_ = !is_read_only && !case_folder.empty() && !cases::session_folders(case_folder).empty();
   if (!is_looking_) return;
-  Search wanted{number_, case_folder, {}};
+  Search wanted{number_, case_folder, {}, model.knee().plan};
   for (const auto& [kind, bone] : model.knee().bones) wanted.meshes.emplace(kind, bone.mesh);
   worker_.post(std::move(wanted));
 }
@@ -34,7 +34,8 @@ ResumeOffer::Found ResumeOffer::search(const Search& search) {
   Found all{search.number, {}};
   for (const auto& [kind, mesh] : search.meshes) {
     try {  // without it the operation begins afresh: no reason to end anything
-      auto found = recording::find_resumable(search.case_folder, kind, bones::mesh_sha256(mesh));
+      auto found =
+          recording::find_resumable(search.case_folder, kind, bones::mesh_sha256(mesh), search.plan.of(kind));
       if (!found) continue;
       LeftBehind left{std::move(*found)};
       const registration::Provenance& of = left.found.operation.of;

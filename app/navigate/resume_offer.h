@@ -42,6 +42,7 @@ class ResumeOffer {
     int number = 0;
     std::filesystem::path case_folder;
     std::map<bones::BoneKind, geometry::TriangleMesh> meshes;
+    cases::Plan plan;
   };
   struct Found {
     int number = 0;

@@ -1,8 +1,10 @@
 #include "navigation/recording/resumable.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
+#include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/rerun.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/registration/registration_file.h"
@@ -78,9 +80,23 @@ std::chrono::system_clock::time_point last_written(const std::filesystem::path& 
       std::chrono::file_clock::to_sys(newest));
 }
 
-bool has_event(const RecordedSession& session, std::string_view kind) {
-  return std::any_of(session.events().begin(), session.events().end(),
-                     [&](const SessionEvent& event) { return event.kind == kind; });
+void add_drilled(const RecordedSession& session, std::set<std::string>& files) {
+  for (const SessionEvent& event : session.events())
+    if (event.kind == kDrilledEvent) files.insert(event.text);
+}
+
+// Whether it was drilled in its newest session, and nothing is left to be drilled.
+bool has_come_to_its_end(const RecordedSession& newest, const std::vector<tunnels::TunnelKey>& planned) {
+  std::set<std::string> drilled;
+  add_drilled(newest, drilled);
+  if (drilled.empty()) return false;
+  for (const RecordedSession& session : sessions_before(newest, [](const std::string&) {}))
+    add_drilled(session, drilled);
+  // A single tunnel's is the only one, whatever is planned since.
+  return drilled.contains(operation::achieved_file_name(newest.header().bone)) ||
+         std::ranges::none_of(planned, [&](const tunnels::TunnelKey& key) {
+           return key.bundle != norms::Bundle::Whole && !drilled.contains(operation::achieved_file_name(key));
+         });
 }
 
 // What was drawn before and what was drawn since, numbered on; the newest when it is too much for a screen.
@@ -154,7 +170,8 @@ std::optional<Resumable> resumable_from(const RecordedSession& newest) {
 }  // namespace
 
 std::optional<Resumable> find_resumable(const std::filesystem::path& case_folder, bones::BoneKind bone,
-                                        const std::string& mesh_sha256) {
+                                        const std::string& mesh_sha256,
+                                        const std::vector<tunnels::TunnelKey>& planned) {
   std::vector<std::filesystem::path> folders = cases::session_folders(case_folder);
   std::reverse(folders.begin(), folders.end());
   std::vector<std::string> passed_over;
@@ -168,7 +185,7 @@ std::optional<Resumable> find_resumable(const std::filesystem::path& case_folder
       const bool was_somebody_there = !header.source_kind.empty() && header.registers_after_mm <= 0;
       const bool is_same_mesh =
           header.mesh_sha256.empty() || mesh_sha256.empty() || header.mesh_sha256 == mesh_sha256;
-      if (!was_somebody_there || !is_same_mesh || has_event(session, kDrilledEvent)) return std::nullopt;
+      if (!was_somebody_there || !is_same_mesh || has_come_to_its_end(session, planned)) return std::nullopt;
       auto found = resumable_from(session);
       if (found) found->passed_over = std::move(passed_over);
       return found;

@@ -30,10 +30,13 @@ struct Resumable {
 // from. That session decides, as in find_registration(): what was in doubt at its end brings no older
 // registration back, and after an alarm nothing that rests on the world marker. nullopt: there is none; it is
 // of another mesh (mesh_sha256 as bones::mesh_sha256; empty: not known, matches any); nobody was at its
-// pedal; its tunnel was drilled, so it came to its end; or it had come to nothing. Sessions without a frame
-// say nothing. Reads all of it, seconds after an hour of operation: not for the window's thread. Throws what
-// reading the case's folder throws.
+// pedal; its tunnels were drilled, so it came to its end; or it had come to nothing. Sessions without a frame
+// say nothing. planned: the bone's planned tunnels, as the case has them now; after one of two bundles'
+// tunnels was drilled the operation goes on while the other one is planned and not drilled. Reads all of it,
+// seconds after an hour of operation: not for the window's thread. Throws what reading the case's folder
+// throws.
 [[nodiscard]] std::optional<Resumable> find_resumable(const std::filesystem::path& case_folder,
-                                                      bones::BoneKind bone, const std::string& mesh_sha256);
+                                                      bones::BoneKind bone, const std::string& mesh_sha256,
+                                                      const std::vector<tunnels::TunnelKey>& planned);
 
 }  // namespace arthronaut::recording

@@ -190,7 +190,7 @@ TEST(KilledRecord, HoldsEveryCommandButThoseOfTheLastSecond) {
       EXPECT_LE(kept, killed.at_the_end + 1) << "the last one may have been given while the signal came";
 
       const auto left =
-          recording::find_resumable(folders[at]->path(), bones::BoneKind::Femur, "the phantom's");
+          recording::find_resumable(folders[at]->path(), bones::BoneKind::Femur, "the phantom's", {});
       ASSERT_TRUE(left);
       EXPECT_FALSE(left->was_finished);
       const operation::OperationStatePtr expected = state_after(kept);

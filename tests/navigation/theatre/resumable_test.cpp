@@ -51,7 +51,7 @@ class ResumableTest : public ::testing::Test {
     continues_ = left.session;
   }
   [[nodiscard]] std::optional<Resumable> found(const std::string& mesh = "the phantom's") const {
-    return find_resumable(folder_.path(), bones::BoneKind::Femur, mesh);
+    return find_resumable(folder_.path(), bones::BoneKind::Femur, mesh, planned_);
   }
   [[nodiscard]] GiveRegistration given(PhantomOperation& run, const SourceSetup& source) const {
     return test::true_registration(trial_, provenance_of(run.operation().setup(), source));
@@ -75,6 +75,7 @@ class ResumableTest : public ::testing::Test {
   std::unique_ptr<OperationRecord> record_;
   std::vector<JournalEntry> early_;
   std::string continues_;
+  std::vector<tunnels::TunnelKey> planned_{bones::BoneKind::Femur};
 };
 
 // To the last bit: what is brought back is what there was.
@@ -290,7 +291,7 @@ TEST_F(ResumableTest, IsNoneWhereNothingWasLeftInTheMiddle) {
   }
   EXPECT_TRUE(found());
   EXPECT_FALSE(found("another")) << "another mesh";
-  EXPECT_FALSE(find_resumable(folder_.path(), bones::BoneKind::Tibia, "")) << "another bone";
+  EXPECT_FALSE(find_resumable(folder_.path(), bones::BoneKind::Tibia, "", planned_)) << "another bone";
   {
     OperationSetup setup = test::phantom_setup();
     setup.registers_after_mm = 40;
@@ -308,6 +309,42 @@ TEST_F(ResumableTest, IsNoneWhereNothingWasLeftInTheMiddle) {
     end(run);
     EXPECT_FALSE(found()) << "it had come to its end";
   }
+}
+
+// The first of two bundles' tunnels is drilled: the operation is not at its end while the other one is
+// planned.
+TEST_F(ResumableTest, GoesOnWhileTheOtherBundlesTunnelIsNotDrilled) {
+  const tunnels::TunnelKey am{bones::BoneKind::Femur, norms::Bundle::Anteromedial};
+  const tunnels::TunnelKey pl{bones::BoneKind::Femur, norms::Bundle::Posterolateral};
+  planned_ = {am, pl};
+  const SourceSetup source = test::scripted_source(SourceKind::Live);
+  const auto drill = [&](PhantomOperation& run) {
+    for (int i = 0; i < 200; ++i) run.show_guide(0.02 * i - 1);
+    run.apply(TunnelDrilled{});
+    ASSERT_EQ(run.state()->drilled.outcome, DrilledState::Outcome::Recorded);
+  };
+  OperationSetup setup = test::phantom_setup();
+  setup.plan->tunnel.bundle = am.bundle;
+  PhantomOperation run(setup);
+  operate(run, source);
+  drill(run);
+  end(run);
+  const auto left = found();
+  ASSERT_TRUE(left) << "PL is not drilled";
+  EXPECT_TRUE(left->operation.registration);
+  planned_ = {am};
+  EXPECT_FALSE(found()) << "nothing else is planned";
+  planned_ = {am, pl};
+  PlannedTunnel other = *setup.plan;
+  other.tunnel.bundle = pl.bundle;
+  run.on_journal = [this](const auto& entries) {
+    early_.insert(early_.end(), entries.begin(), entries.end());
+  };
+  run.apply(OfferPlan{other});  // in the next record, which goes on from this one
+  begin(run, source);
+  drill(run);
+  end(run);
+  EXPECT_FALSE(found()) << "both are drilled";
 }
 
 // A newer session that cannot be read is passed over, and that is told.
