@@ -166,11 +166,12 @@ TEST_F(Report, NamesTheTunnelOfTheOtherBundleThatWasDrilledInASessionBefore) {
   knee_.plan.put(pl, "");
   cases::save_case(knee_folder(), knee_);
   std::string first;
-  for (const tunnels::Tunnel& planned : {am, pl}) {
+  const auto record = [&](const tunnels::Tunnel& planned, const std::string& source_kind) {
     const auto folder = cases::create_session_folder(knee_folder());
     if (first.empty()) first = folder.filename().string();
     recording::SessionHeader header;
     header.id = folder.filename().string();
+    header.source_kind = source_kind;
     pipeline::PipelineOptions options;
     options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
     options.tools = tools::standard_tools();
@@ -180,7 +181,9 @@ TEST_F(Report, NamesTheTunnelOfTheOtherBundleThatWasDrilledInASessionBefore) {
     operation::write_achieved_file(
         folder / operation::achieved_file_name(planned.key()),
         {.planned = planned, .measured = measured, .depth_mm = 30, .pose_count = 42, .truth = {}});
-  }
+  };
+  record(am, "live");
+  record(pl, "live");
   write_report(knee_folder(), pdf());
   const std::string text = pdf_text();
   expect_contains(text, "Planned against achieved: femur PL");
@@ -188,6 +191,10 @@ TEST_F(Report, NamesTheTunnelOfTheOtherBundleThatWasDrilledInASessionBefore) {
   expect_contains(text, "Planned against achieved: femur AM");
   expect_contains(text, "1.25 mm");
   expect_contains(text, "Drilled in the session " + first);
+  // A rehearsal's is nobody's knee: after it the live ones are not its own.
+  record(pl, "simulation");
+  write_report(knee_folder(), pdf());
+  EXPECT_EQ(pdf_text().find("Planned against achieved: femur AM"), std::string::npos);
 }
 
 // Hazard 2: nobody takes the figures of a simulation for a patient's.
