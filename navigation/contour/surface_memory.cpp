@@ -1,0 +1,144 @@
+#include "navigation/contour/surface_memory.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace arthronaut::contour {
+
+namespace {
+
+constexpr int kField = kPieceSide + 2 * kShifts;  // samples to a side of what is looked through
+constexpr float kBlownOut = 245;
+// Root mean square of a piece about its mean, over the mean plus a floor of noise and blacks: less is no
+// texture.
+constexpr float kLeastContrast = 0.012f, kDark = 10;
+constexpr double kLeast_px_per_mm = 6;
+constexpr double kRim_px = 8;
+// A piece is compared with what is seen from no other side, and neither much nearer nor much further off.
+constexpr float kSameSide = 0.82f, kNearer = 0.6f, kFurther = 1.67f;
+
+using Field = std::array<float, static_cast<std::size_t>(kField) * kField>;
+
+bool is_free(const camera::CameraModel& camera, std::span<const Covered> covered, const Eigen::Vector2d& at) {
+  if (at.x() < 2 || at.y() < 2 || at.x() > camera.image_size_px().x() - 3 ||
+      at.y() > camera.image_size_px().y() - 3)
+    return false;
+  const camera::Boundary& rim = camera.boundary();
+  if (rim.radius_px > 0 && (at - rim.center_px).norm() > rim.radius_px - kRim_px) return false;
+  return !is_covered(covered, at);
+}
+
+// Samples [-half, half] about the place in the plane of its surface; false: not all of it can be seen.
+bool read_field(const SurfacePlace& place, const camera::GrayView& luma, const camera::CameraModel& camera,
+                const geometry::RigidTransform& camera_from_bone, std::span<const Covered> covered, int half,
+                Field& field) {
+  Eigen::Matrix<double, 2, 3> jacobian;
+  const auto at = camera.project(camera_from_bone * place.in_bone_mm, jacobian);
+  if (!at) return false;
+  const Eigen::Vector2d u = jacobian * camera_from_bone.rotate(place.u) * kPieceStep_mm,
+                        v = jacobian * camera_from_bone.rotate(place.v) * kPieceStep_mm;
+  if (std::min(u.norm(), v.norm()) < kLeast_px_per_mm * kPieceStep_mm * 0.4) return false;
+  // The piece itself and a little beside it; what lies further out is only looked through.
+  constexpr int kClear = kPieceHalf + 2;
+  for (const int i : {-kClear, 0, kClear})
+    for (const int j : {-kClear, 0, kClear})
+      if (!is_free(camera, covered, *at + i * u + j * v)) return false;
+  // The mean of four pixels about a sample: what is finer than half a step tells nothing.
+  const int spread = std::max(1, static_cast<int>(0.25 * std::min(u.norm(), v.norm())));
+  std::size_t k = 0;
+  for (int j = -half; j <= half; ++j) {
+    for (int i = -half; i <= half; ++i, ++k) {
+      const Eigen::Vector2d sample = *at + i * u + j * v;
+      const int x = std::clamp(static_cast<int>(sample.x() + 0.5), spread, luma.width - 1 - spread),
+                y = std::clamp(static_cast<int>(sample.y() + 0.5), spread, luma.height - 1 - spread);
+      const std::uint8_t* const above = luma.row(y - spread);
+      const std::uint8_t* const row = luma.row(y);
+      const std::uint8_t* const below = luma.row(y + spread);
+      field[k] = 0.125f * static_cast<float>(above[x - spread] + above[x + spread] + below[x - spread] +
+                                             below[x + spread] + 4 * row[x]);
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+SurfaceMemory::SurfaceMemory(std::size_t place_count) : pieces_(place_count) {}
+
+void SurfaceMemory::forget() {
+  for (Piece& piece : pieces_) piece.is_kept = false;
+  count_ = 0;
+}
+
+bool SurfaceMemory::keep(std::size_t index, const SurfacePlace& place, const camera::GrayView& luma,
+                         const camera::CameraModel& camera, const geometry::RigidTransform& camera_from_bone,
+                         std::span<const Covered> covered) {
+  Piece& piece = pieces_[index];
+  Field field;
+  if (piece.is_kept || !read_field(place, luma, camera, camera_from_bone, covered, kPieceHalf, field))
+    return false;
+  const Eigen::Map<const Eigen::ArrayXf> seen(field.data(), kPieceSide * kPieceSide);
+  if (seen.maxCoeff() > kBlownOut) return false;
+  const float mean = seen.mean();
+  const float deviation = std::sqrt((seen - mean).square().mean());
+  if (deviation < kLeastContrast * (mean + kDark)) return false;
+  Eigen::Map<Eigen::ArrayXf>(piece.samples.data(), kPieceSide * kPieceSide) =
+      (seen - mean) / (deviation * kPieceSide);
+  piece.to_eye = (camera_from_bone.inverse().translation_mm - place.in_bone_mm).cast<float>();
+  piece.is_kept = true;
+  ++count_;
+  return true;
+}
+
+std::optional<ShiftMap> SurfaceMemory::compare(std::size_t index, const SurfacePlace& place,
+                                               const camera::GrayView& luma,
+                                               const camera::CameraModel& camera,
+                                               const geometry::RigidTransform& camera_from_bone,
+                                               std::span<const Covered> covered) const {
+  const Piece& piece = pieces_[index];
+  if (!piece.is_kept) return std::nullopt;
+  const Eigen::Vector3d to_eye = camera_from_bone.inverse().translation_mm - place.in_bone_mm;
+  const float now = static_cast<float>(to_eye.norm()), then = piece.to_eye.norm();
+  if (piece.to_eye.dot(to_eye.cast<float>()) < kSameSide * now * then || now < kNearer * then ||
+      now > kFurther * then)
+    return std::nullopt;
+  Field field;
+  if (!read_field(place, luma, camera, camera_from_bone, covered, kPieceHalf + kShifts, field))
+    return std::nullopt;
+
+  ShiftMap map;
+  float total = 0;
+  for (int dv = 0; dv < kShiftSide; ++dv) {
+    for (int du = 0; du < kShiftSide; ++du) {
+      float sum = 0, squares = 0, product = 0;
+      for (int j = 0; j < kPieceSide; ++j) {
+        const float* const row = field.data() + (dv + j) * kField + du;
+        const float* const kept = piece.samples.data() + j * kPieceSide;
+        for (int i = 0; i < kPieceSide; ++i) {
+          sum += row[i];
+          squares += row[i] * row[i];
+          product += row[i] * kept[i];
+        }
+      }
+      constexpr float kCount = kPieceSide * kPieceSide;
+      const float mean = sum / kCount;
+      const float deviation = std::sqrt(std::max(0.0f, squares / kCount - mean * mean));
+      // Without contrast a likeness is one of noise.
+      const float norm = kPieceSide * std::max(deviation, 0.5f * kLeastContrast * (mean + kDark));
+      const float likeness = std::max(0.0f, product / norm);
+      map.likeness[static_cast<std::size_t>(dv * kShiftSide + du)] = likeness;
+      total += likeness;
+    }
+  }
+  for (float& likeness : map.likeness) likeness -= total / (kShiftSide * kShiftSide);
+  // What lies at p + t is seen where its line of sight meets the plane: p + t - r (n.t) / (n.r).
+  const Eigen::Vector3d ray = to_eye.normalized();
+  const Eigen::Matrix3d onto_plane =
+      Eigen::Matrix3d::Identity() - ray * place.normal.transpose() / std::max(0.2, place.normal.dot(ray));
+  map.shift_per_mm.row(0) = (place.u.transpose() * onto_plane / kPieceStep_mm).cast<float>();
+  map.shift_per_mm.row(1) = (place.v.transpose() * onto_plane / kPieceStep_mm).cast<float>();
+  return map;
+}
+
+}  // namespace arthronaut::contour

@@ -1,0 +1,64 @@
+// The registered bone against the picture: what of it an operation heeds.
+#include "navigation/operation/operation_parts.h"
+#include "planning/files/format.h"
+
+namespace arthronaut::operation {
+
+void Operation::Parts::end_contour() {
+  if (contour.check) contour.check->end();
+  contour.drift_mm.reset();
+}
+
+void Operation::Parts::expect_pictures(const Eigen::Vector2i& size_px) {
+  if (!contour.check) return;
+  contour.check->reserve_for(size_px);
+  contour.luma.reserve(static_cast<std::size_t>(size_px.prod()));
+}
+
+// From the moment on that a registration stands, and anew with every other one. While an alarm holds, what
+// told it stays as it was.
+void Operation::Parts::check_contour(const camera::Frame& picture) {
+  if (!contour.check) return;
+  const RegistrationInForce& in_force = ledger.in_force();
+  if (in_force.standing != Standing::Stands) {
+    const bool told_it = in_force.standing == Standing::Alarm &&
+                         contour.check->verdict().state == contour::ContourState::Drifted;
+    if (!told_it) contour.check->end();
+    return;
+  }
+  if (!contour.check->has_begun() || contour.change != ledger.change_count()) {
+    contour.check->begin(in_force.registration->marker_from_bone);
+    contour.change = ledger.change_count();
+  }
+  std::optional<geometry::RigidTransform> camera_from_world;
+  contour.covered.clear();
+  if (frame.camera_from_world.is_valid) {
+    camera_from_world = frame.camera_from_world.target_from_source;
+    const tools::ToolSet& tools = source->pipeline.tools;
+    const std::size_t worlds = tools.world_markers.size();
+    for (std::size_t i = 0; i < frame.bodies.size(); ++i) {
+      if (!frame.bodies[i].is_tracked()) continue;
+      const geometry::RigidTransform& camera_from_body = frame.bodies[i].camera_from_body;
+      if (i < worlds)
+        contour.covered.add_world_marker(frame.camera, camera_from_body, tools.world_markers[i]);
+      else
+        contour.covered.add_tool(frame.camera, camera_from_body, tools.tools[i - worlds]);
+    }
+  }
+  const contour::ContourVerdict& verdict =
+      contour.check->look(camera::luma_of(picture, contour.luma), frame.camera, camera_from_world,
+                          contour.covered.places(), frame.timestamp_ns);
+  if (verdict.state == contour::ContourState::Drifted && !setup.hears_of_drifts)
+    contour.drift_mm = verdict.drift_mm;
+}
+
+void Operation::Parts::take_drift() {
+  if (!contour.drift_mm) return;
+  const double drift_mm = *std::exchange(contour.drift_mm, std::nullopt);
+  if (ledger.in_force().standing != Standing::Stands) return;
+  note(JournalKind::BoneMoved, files::format("%.17g", drift_mm));
+  ledger.bone_moved_in_picture(drift_mm);
+  follow_ledger();
+}
+
+}  // namespace arthronaut::operation

@@ -1,0 +1,123 @@
+// What an operation makes of a bone that the picture shows elsewhere. What the picture shows is told by word
+// here, as in a run from a record; contour_check_test.cpp has the pictures.
+#include <gtest/gtest.h>
+
+#include "tests/navigation/operation/phantom_operation.h"
+
+namespace arthronaut::operation {
+namespace {
+
+using guidance::GuidanceState;
+using registration::phantom_bone;
+using test::PhantomOperation;
+
+const experiments::Trial& trial() {
+  static const experiments::Trial trial = phantom_bone().trial(experiments::TrialNoise::Dry, 1);
+  return trial;
+}
+
+// Registered and with a control point.
+class BoneMoved : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const SourceSetup source = test::scripted_source();
+    run_.start(source);
+    run_.apply(test::true_registration(trial(), provenance_of(run_.operation().setup(), source)));
+    run_.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+    run_.apply(SkipVerification{});
+  }
+  GuidanceState shown() {
+    run_.show_guide(-5);
+    return run_.state()->frame.guidance.state;
+  }
+  void tell(double drift_mm) {
+    run_.operation().tell_bone_moved(drift_mm);
+    run_.apply(Draw{false});  // any command: the journal is taken
+  }
+  PhantomOperation run_;
+};
+
+// As a control point that has wandered: no number stands in the same frame, the reason is said, and what
+// comes next is to look at the marker.
+TEST_F(BoneMoved, Hazard25APictureThatShowsTheBoneElsewhereEndsGuidance) {
+  ASSERT_EQ(shown(), GuidanceState::Valid);
+  tell(1.1);
+  EXPECT_NE(run_.state()->frame.guidance.state, GuidanceState::Valid);
+  EXPECT_EQ(run_.in_force().standing, Standing::Alarm);
+  EXPECT_EQ(run_.in_force().registration->reasons.front(),
+            "The picture shows the bone 1.1 mm from where it lay under its marker");
+  EXPECT_EQ(run_.state()->next_action, NextAction::CheckWorldMarker);
+  EXPECT_EQ(run_.count(JournalKind::BoneMoved), 1);
+  EXPECT_EQ(std::stod(run_.last_text(JournalKind::BoneMoved)), 1.1) << "to the last bit: replay rests on it";
+  EXPECT_EQ(run_.count(JournalKind::Alarm), 1);
+  EXPECT_NE(shown(), GuidanceState::Valid) << "and in all that follow";
+  tell(1.2);
+  EXPECT_EQ(run_.count(JournalKind::BoneMoved), 1) << "told once";
+}
+
+// Nobody set one, which is normal while guidance runs: one that is set now knows only where the bone lies
+// since it moved, and touched again it is where it was, of course.
+TEST_F(BoneMoved, AControlPointThatWasNotSetBeforeConfirmsNothing) {
+  run_.apply(ForgetTouches{});
+  run_.apply(SkipVerification{});
+  ASSERT_EQ(shown(), GuidanceState::Valid) << "guidance without a control point";
+  ASSERT_FALSE(run_.state()->registration->touches.has_control_point());
+  tell(1.0);
+  for (int press = 0; press < 3; ++press) {
+    run_.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+    EXPECT_EQ(run_.in_force().standing, Standing::Alarm) << press;
+    EXPECT_NE(shown(), GuidanceState::Valid) << press;
+    EXPECT_FALSE(run_.state()->registration->touches.has_control_point());
+  }
+  EXPECT_FALSE(run_.last_text(JournalKind::Note).empty()) << "and why is in the journal";
+  run_.apply(MarkerPlacedAnew{});
+  run_.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+  EXPECT_TRUE(run_.state()->registration->touches.has_control_point()) << "of the marker as it sits now";
+}
+
+// The probe on the control point outranks the picture, as far as it is finer: where it was, it lifts the
+// alarm; half as far off as the picture says, it does not.
+TEST_F(BoneMoved, TheControlPointLiftsItWhereItIsWhereItWas) {
+  tell(1.0);
+  run_.touch(test::on_bone(trial(), 2) + Eigen::Vector3d(0.6, 0, 0), TouchControlPoint{});
+  EXPECT_EQ(run_.in_force().standing, Standing::Alarm);
+  run_.touch(test::on_bone(trial(), 2) + Eigen::Vector3d(0.3, 0, 0), TouchControlPoint{});
+  EXPECT_EQ(run_.in_force().standing, Standing::Stands);
+  EXPECT_EQ(run_.last_text(JournalKind::Alarm), "") << "it is over";
+  EXPECT_EQ(shown(), GuidanceState::Valid);
+}
+
+// A touch anywhere on the bone does not: by 1 mm along its surface it is on the bone all the same.
+TEST_F(BoneMoved, NoOtherTouchLiftsIt) {
+  tell(1.0);
+  for (const double dx_mm : {0.0, 4.0, -4.0}) run_.touch(test::on_bone(trial(), dx_mm));
+  EXPECT_EQ(run_.in_force().standing, Standing::Alarm);
+}
+
+TEST_F(BoneMoved, TheSurgeonsWordLiftsIt) {
+  tell(1.0);
+  run_.apply(ForgetTouches{});
+  EXPECT_EQ(run_.in_force().standing, Standing::Stands);
+}
+
+// Placed anew, nothing found before holds, and the alarm is over for the next registration.
+TEST_F(BoneMoved, AMarkerPlacedAnewBeginsAnew) {
+  tell(1.0);
+  run_.apply(MarkerPlacedAnew{});
+  EXPECT_EQ(run_.in_force().standing, Standing::None);
+  run_.apply(test::true_registration(trial(), run_.operation().now()));
+  EXPECT_EQ(run_.in_force().standing, Standing::Stands);
+}
+
+// It can only raise a doubt: it verifies nothing, and says nothing where nothing stands.
+TEST_F(BoneMoved, SaysNothingWithoutARegistrationThatStands) {
+  run_.apply(MarkerPlacedAnew{});
+  tell(1.0);
+  EXPECT_EQ(run_.in_force().standing, Standing::None);
+  EXPECT_EQ(run_.count(JournalKind::BoneMoved), 0);
+  run_.apply(test::true_registration(trial(), run_.operation().now()));
+  EXPECT_EQ(run_.in_force().standing, Standing::Stands);
+}
+
+}  // namespace
+}  // namespace arthronaut::operation
