@@ -1,0 +1,124 @@
+#include "navigation/sources/recovering_source.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "planning/geometry/error.h"
+#include "planning/log/log.h"
+
+namespace arthronaut::sources {
+
+namespace {
+
+// A server that is there again is found within this; more often would be a load on a network that has
+// trouble.
+constexpr auto kBeforeAgain = std::chrono::milliseconds(100);
+// Another camera is opened to be asked, and closed again.
+constexpr auto kBeforeAsking = std::chrono::seconds(1);
+
+std::string size_text(int width, int height) {
+  return std::to_string(width) + " x " + std::to_string(height);
+}
+
+class RecoveringSource final : public FrameSource {
+ public:
+  explicit RecoveringSource(LiveOpener opener) : opener_(std::move(opener)) {
+    source_ = opener_({stamps_, false, identity_});
+    info_ = source_->info();
+    info_.line = line_;
+  }
+
+  [[nodiscard]] const SourceInfo& info() const override { return info_; }
+
+  [[nodiscard]] camera::FramePtr next() override {
+    while (!line_->ends()) {
+      if (source_ == nullptr && !open_again()) {
+        line_->rest(is_another_ ? kBeforeAsking : kBeforeAgain);
+        continue;
+      }
+      camera::FramePtr frame = take();
+      if (frame == nullptr) {
+        if (has_ended_) return nullptr;
+        continue;
+      }
+      if (frame->width == info_.image_size_px.x() && frame->height == info_.image_size_px.y()) {
+        line_->pictures_come();
+        return frame;
+      }
+      tell(info_.name + ": gives pictures of " + size_text(frame->width, frame->height) +
+           " now, and gave such of " + size_text(info_.image_size_px.x(), info_.image_size_px.y()) +
+           ": another camera, or another format");
+    }
+    return nullptr;
+  }
+
+ private:
+  camera::FramePtr take() {
+    try {
+      camera::FramePtr frame = source_->next();
+      if (frame != nullptr) return frame;
+      has_ended_ = source_->info().ends;
+      if (!has_ended_) tell(info_.name + ": has ended; waiting for it to come back");
+    } catch (const DeviceError& error) {
+      tell(error.what());
+    }
+    source_.reset();
+    return nullptr;
+  }
+
+  bool open_again() {
+    try {
+      std::string identity;
+      std::unique_ptr<FrameSource> source = opener_({stamps_, true, identity});
+      is_another_ = !identity_.empty() && identity != identity_;
+      if (is_another_) {
+        tell(info_.name + ": another camera is there (" +
+             (identity.empty() ? "it does not say which" : identity) +
+             "), and the calibration is of the first one (" + identity_ +
+             "): connect that one, or start anew");
+        return false;
+      }
+      source_ = std::move(source);
+      log::info("source taken up again: " + info_.name);
+      return true;
+    } catch (const DeviceError& error) {
+      is_another_ = false;
+      tell(std::string("connecting again: ") + error.what());
+    } catch (const InvalidInput& error) {  // a plug-in that is gone meanwhile
+      tell(error.what());
+    }
+    return false;
+  }
+
+  void tell(const std::string& trouble) {
+    if (trouble != line_->trouble()) log::warning("source: " + trouble);
+    line_->say(trouble);
+  }
+
+  LiveOpener opener_;
+  LiveStamps stamps_;
+  std::shared_ptr<SourceLine> line_ = std::make_shared<SourceLine>();
+  SourceInfo info_;
+  std::string identity_;                 // as it said first
+  std::unique_ptr<FrameSource> source_;  // null: broken
+  bool has_ended_ = false, is_another_ = false;
+};
+
+}  // namespace
+
+void LiveStamps::put_on(camera::Frame& frame, std::int64_t captured_ns, camera::CaptureClock clock) {
+  if (next_index_ == 0) started_at_ns_ = captured_ns;
+  frame.index = next_index_++;
+  // A clock that changes over (a driver's stamp that is missing once) must not run backwards.
+  last_timestamp_ns_ = std::max(captured_ns - started_at_ns_, last_timestamp_ns_ + 1);
+  frame.timestamp_ns = last_timestamp_ns_;
+  frame.captured_ns = captured_ns;
+  frame.capture_clock = clock;
+}
+
+std::unique_ptr<FrameSource> recovering(LiveOpener opener) {
+  return std::make_unique<RecoveringSource>(std::move(opener));
+}
+
+}  // namespace arthronaut::sources

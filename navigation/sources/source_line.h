@@ -1,0 +1,52 @@
+// What those who wait for the pictures of a live source are told of it, and how they tell it to end: the
+// source may be busy connecting on a thread of its own, and never answers a question itself.
+//
+// Threads: any.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <utility>
+
+namespace arthronaut::sources {
+
+class SourceLine {
+ public:
+  // The source: why no picture comes, in words for the screen; empty: they come.
+  void say(std::string trouble) {
+    const std::lock_guard lock(mutex_);
+    trouble_ = std::move(trouble);
+    has_trouble_ = !trouble_.empty();
+  }
+  void pictures_come() {
+    if (has_trouble_) say("");
+  }
+  // The source: waits, but not when it is to end.
+  void rest(std::chrono::milliseconds time) {
+    std::unique_lock lock(mutex_);
+    ending_.wait_for(lock, time, [this] { return ends_.load(); });
+  }
+  [[nodiscard]] bool ends() const { return ends_; }
+
+  // Whoever waits.
+  [[nodiscard]] std::string trouble() const {
+    const std::lock_guard lock(mutex_);
+    return trouble_;
+  }
+  void end() {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+    ending_.notify_all();
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable ending_;
+  std::string trouble_;
+  std::atomic<bool> has_trouble_ = false, ends_ = false;
+};
+
+}  // namespace arthronaut::sources

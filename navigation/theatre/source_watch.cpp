@@ -1,0 +1,82 @@
+#include "navigation/theatre/source_watch.h"
+
+#include "planning/files/format.h"
+
+namespace arthronaut::theatre {
+
+namespace {
+
+// Three pictures of a slow source (10 a second); half a second is what may pass until it is told.
+constexpr std::int64_t kSilence_ns = 300'000'000;
+// What is over in a moment is on the screen long enough to be read.
+constexpr std::int64_t kReadable_ns = 2'000'000'000;
+// Sources of 30 pictures a second that are sent 60 times repeat half of them, and are none the worse for it.
+constexpr double kTooManyRepeats = 0.6;
+
+}  // namespace
+
+std::string_view to_text(SourceTrouble trouble) {
+  constexpr std::string_view kNames[] = {"",
+                                         "no picture",
+                                         "plain picture",
+                                         "frozen picture",
+                                         "torn picture",
+                                         "repeated pictures",
+                                         "late pictures"};
+  return kNames[static_cast<std::size_t>(trouble)];
+}
+
+bool SourceWatch::set(SourceTrouble trouble, const std::string& words) {
+  const bool is_another = trouble != trouble_;
+  trouble_ = trouble;
+  if (words_ != words) words_ = words;
+  return is_another;
+}
+
+bool SourceWatch::silence(const std::string& why, std::int64_t now_ns) {
+  if (!has_begun_) {  // counted from the first time that somebody waited
+    has_begun_ = true;
+    last_picture_ns_ = now_ns;
+  }
+  if (now_ns - last_picture_ns_ < kSilence_ns && why.empty()) return false;
+  return set(SourceTrouble::NoPicture, why.empty() ? "No picture comes" : "No picture comes: " + why);
+}
+
+bool SourceWatch::picture(const pipeline::PictureObservation& view, double guidance_ms, std::int64_t now_ns) {
+  has_begun_ = true;
+  last_picture_ns_ = now_ns;
+  if (view.is_torn) {
+    was_torn_ = true;
+    torn_ns_ = now_ns;
+  }
+  if (guidance_ms > late_after_ms_) {
+    was_late_ = true;
+    late_ns_ = now_ns;
+    late_ms_ = guidance_ms;
+  }
+  was_torn_ = was_torn_ && now_ns - torn_ns_ < kReadable_ns;
+  was_late_ = was_late_ && now_ns - late_ns_ < kReadable_ns;
+  if (view.is_blank)
+    return set(SourceTrouble::Plain, "The picture is plain: no light, or no signal from the camera");
+  if (view.is_frozen)
+    return set(SourceTrouble::Frozen,
+               "The source sends the same picture again and again: check cable and camera");
+  if (was_late_) {
+    // The words change with the number only when it is said anew.
+    if (trouble_ == SourceTrouble::Late && late_ns_ != now_ns) return false;
+    return set(SourceTrouble::Late,
+               files::format("Pictures are late: %.0f ms from capture to guidance, %.0f ms may pass",
+                             late_ms_, late_after_ms_));
+  }
+  if (was_torn_)
+    return set(SourceTrouble::Torn,
+               "Torn pictures: parts of two moments in one. Check cable and capture card");
+  if (view.repeat_share > kTooManyRepeats) {
+    if (trouble_ == SourceTrouble::Repeated) return false;
+    return set(SourceTrouble::Repeated,
+               files::format("The source repeats %.0f pictures in 100", 100 * view.repeat_share));
+  }
+  return set(SourceTrouble::None, "");
+}
+
+}  // namespace arthronaut::theatre

@@ -1,0 +1,46 @@
+// What is wrong with a live source, in words, while it is wrong: no picture comes, the picture is plain,
+// frozen, torn, repeated, or late. Says it within half a second and takes it back when it is over. Guidance
+// does not wait for it: what a picture does not stand for is gone in that picture, and an old picture guides
+// nobody.
+//
+// Pure: told of pictures and of their absence, with the time; one thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "navigation/pipeline/view_tracker.h"
+
+namespace arthronaut::theatre {
+
+enum class SourceTrouble { None, NoPicture, Plain, Frozen, Torn, Repeated, Late };
+// "no picture", "plain picture", ...; empty for None.
+[[nodiscard]] std::string_view to_text(SourceTrouble trouble);
+
+class SourceWatch {
+ public:
+  SourceWatch() = default;
+  explicit SourceWatch(double late_after_ms) : late_after_ms_(late_after_ms) {}
+
+  // A picture that was worked in; guidance_ms: from its capture until guidance was known, below 0 when nobody
+  // knows. True: what is wrong has changed.
+  bool picture(const pipeline::PictureObservation& view, double guidance_ms, std::int64_t now_ns);
+  // None came since the last call; why, as the source says it.
+  bool silence(const std::string& why, std::int64_t now_ns);
+
+  [[nodiscard]] SourceTrouble trouble() const { return trouble_; }
+  // "No picture comes: rtsp://tower/scope: broke off; connecting again"; empty while all is well.
+  [[nodiscard]] const std::string& words() const { return words_; }
+
+ private:
+  bool set(SourceTrouble trouble, const std::string& words);
+
+  double late_after_ms_ = 100;
+  SourceTrouble trouble_ = SourceTrouble::None;
+  std::string words_;
+  std::int64_t last_picture_ns_ = 0, torn_ns_ = 0, late_ns_ = 0;
+  double late_ms_ = 0;
+  bool has_begun_ = false, was_torn_ = false, was_late_ = false;
+};
+
+}  // namespace arthronaut::theatre

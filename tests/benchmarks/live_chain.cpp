@@ -1,0 +1,176 @@
+// The whole chain on a live stream over the loopback, without a window: 1080p60 H.264 by RTSP, with and
+// without the recording of its pictures. And faults, many of them.
+//   live_chain stream CLIP SECONDS [--record]   CLIP: 1080p60 H.264 without B-frames, sent round and round
+//   live_chain faults COUNT [SEED]              prints a row a kind: how soon gone, told and back
+// Prints what was sent, tracked and recorded, latency by stage, and how the memory grew.
+#include <gst/rtsp-server/rtsp-server.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "navigation/camera/camera_file.h"
+#include "navigation/recording/session.h"
+#include "navigation/sources/frame_source.h"
+#include "navigation/theatre/navigate_source.h"
+#include "planning/geometry/error.h"
+#include "tests/live/fault_drill.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut {
+namespace {
+
+double resident_mb() {
+  std::ifstream statm("/proc/self/statm");
+  long all = 0, resident = 0;
+  statm >> all >> resident;
+  return static_cast<double>(resident) * static_cast<double>(::sysconf(_SC_PAGESIZE)) * 1e-6;
+}
+
+// Sends a file as it is by RTSP, from a process of its own, whose time is not ours.
+class FileSender {
+ public:
+  FileSender(const std::string& file, int port) {
+    process_ = ::fork();
+    if (process_ == 0) run(file, port);
+  }
+  ~FileSender() { ::kill(process_, SIGKILL); }
+  FileSender(const FileSender&) = delete;
+  FileSender& operator=(const FileSender&) = delete;
+
+ private:
+  [[noreturn]] static void run(const std::string& file, int port) {
+    gst_init(nullptr, nullptr);
+    GstRTSPServer* const server = gst_rtsp_server_new();
+    gst_rtsp_server_set_service(server, std::to_string(port).c_str());
+    GstRTSPMediaFactory* const factory = gst_rtsp_media_factory_new();
+    const std::string launch = "( filesrc location=" + file +
+                               " ! matroskademux ! h264parse config-interval=-1 ! rtph264pay name=pay0 )";
+    gst_rtsp_media_factory_set_launch(factory, launch.c_str());
+    GstRTSPMountPoints* const mounts = gst_rtsp_server_get_mount_points(server);
+    gst_rtsp_mount_points_add_factory(mounts, "/scope", factory);
+    gst_rtsp_server_attach(server, nullptr);
+    g_main_loop_run(g_main_loop_new(nullptr, FALSE));
+    std::_Exit(0);
+  }
+  pid_t process_ = -1;
+};
+
+int stream(const std::string& clip, double seconds, bool records) {
+  const int port = 20000 + ::getpid() % 40000;
+  const FileSender sender(clip, port);
+  const test::TemporaryFolder folder;
+  theatre::NavigateOptions options;
+  options.source.kind = sources::SourceKind::Live;
+  options.source.pipeline.tools = tools::standard_tools();
+  options.duration_s = seconds;
+  std::shared_ptr<sources::FrameSource> source;
+  for (int i = 0; source == nullptr; ++i) {
+    try {
+      source = sources::open_stream("rtsp://127.0.0.1:" + std::to_string(port) + "/scope");
+    } catch (const DeviceError& error) {
+      if (i == 20) throw;
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    }
+  }
+  camera::Calibration& camera = options.source.pipeline.calibration;
+  camera.image_size_px = source->info().image_size_px;
+  camera.focal_px = 0.31 * camera.image_size_px.x();
+  camera.principal_point_px = camera.rotation_center_px = camera.image_size_px.cast<double>() / 2;
+  camera.boundary = {camera.principal_point_px, 0.49 * camera.image_size_px.y()};
+  options.source.pipeline.follow_lens = false;
+  theatre::RecordOptions record;
+  if (records) {
+    record.folder = folder.path() / "session";
+    std::filesystem::create_directory(record.folder);
+    record.keep = recording::KeepVideo::Encode;
+  }
+  std::int64_t first = -1, last = -1;
+  long seen = 0;
+  double first_s = 0, last_s = 0, memory_mb = 0;
+  theatre::NavigationObserver observer;
+  observer.on_frame = [&](const camera::FramePtr& picture, const operation::OperationStatePtr&) {
+    // The first seconds fill buffers.
+    if (memory_mb == 0 && picture->timestamp_ns > 5'000'000'000) memory_mb = resident_mb();
+    if (first < 0) {
+      first = picture->index;
+      first_s = static_cast<double>(picture->timestamp_ns) * 1e-9;
+    }
+    last = picture->index;
+    last_s = static_cast<double>(picture->timestamp_ns) * 1e-9;
+    ++seen;
+  };
+  const theatre::NavigationSummary summary = theatre::navigate_source(source, options, record, observer);
+  const double sent = 60 * (last_s - first_s) + 1;
+  std::printf("%.1f s, %s the record\n", last_s - first_s, records ? "with" : "without");
+  std::printf("sent %.0f, decoded %lld, tracked %ld (%.2f %% of what was sent)\n", sent,
+              static_cast<long long>(last - first + 1), seen, 100.0 * static_cast<double>(seen) / sent);
+  if (records) {
+    const recording::RecordedSession session(record.folder);
+    std::printf("recorded: %zu frames, %zu pictures\n", session.frames().size(),
+                session.frame_of_picture().size());
+  }
+  for (std::size_t i = 0; i < theatre::kStageCount; ++i)
+    if (const theatre::StageLatency& stage = summary.latency[i]; stage.count > 0)
+      std::printf("  %-12s median %6.2f ms, 99 %% %6.2f ms, worst %7.2f ms\n",
+                  std::string(theatre::to_text(static_cast<theatre::Stage>(i))).c_str(), stage.median_ms,
+                  stage.p99_ms, stage.worst_ms);
+  std::printf("memory: %.1f MB after 5 s, %+.1f MB since\n", memory_mb, resident_mb() - memory_mb);
+  for (const std::string& trouble : summary.troubles) std::printf("trouble: %s\n", trouble.c_str());
+  if (!summary.ending.empty()) std::printf("ended: %s\n", summary.ending.c_str());
+  return 0;
+}
+
+int faults(int count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<test::Fault> all;
+  for (int i = 0; i < count; ++i) all.push_back(static_cast<test::Fault>(i % test::kFaultCount));
+  std::shuffle(all.begin(), all.end(), random);
+  std::map<test::Fault, std::vector<test::FaultOutcome>> outcomes;
+  test::FaultDrill drill;
+  for (const test::Fault fault : all) outcomes[fault].push_back(drill.run(fault, 0.8, 20));
+  std::printf("%-22s %5s  %-16s %-16s %-16s never\n", "fault", "times", "gone, worst", "told, worst",
+              "back, worst");
+  for (const auto& [fault, of_kind] : outcomes) {
+    std::vector<double> gone, told, back;
+    int never = 0;
+    for (const test::FaultOutcome& one : of_kind) {
+      const bool is_asked = fault != test::Fault::Torn && fault != test::Fault::Repeated;
+      never += (is_asked && one.gone_s < 0) || one.told_s < 0 || one.back_s < 0 ? 1 : 0;
+      if (is_asked) gone.push_back(one.gone_s);
+      told.push_back(one.told_s);
+      back.push_back(one.back_s);
+    }
+    const auto text = [](std::vector<double> s) {
+      if (s.empty()) return std::string("-");
+      std::sort(s.begin(), s.end());
+      char line[40];
+      std::snprintf(line, sizeof line, "%.3f, %.3f s", s[s.size() / 2], s.back());
+      return std::string(line);
+    };
+    std::printf("%-22s %5zu  %-16s %-16s %-16s %d\n", test::to_text(fault).c_str(), of_kind.size(),
+                text(gone).c_str(), text(told).c_str(), text(back).c_str(), never);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace arthronaut
+
+int main(int count, char** arguments) {
+  const auto is = [&](int i, const char* word) { return count > i && std::strcmp(arguments[i], word) == 0; };
+  if (is(1, "stream") && count > 3)
+    return arthronaut::stream(arguments[2], std::atof(arguments[3]), is(4, "--record"));
+  if (is(1, "faults") && count > 2)
+    return arthronaut::faults(std::atoi(arguments[2]),
+                              count > 3 ? static_cast<unsigned>(std::atoi(arguments[3])) : 13);
+  std::puts("live_chain stream CLIP SECONDS [--record] | faults COUNT [SEED]");
+  return 2;
+}

@@ -1,0 +1,152 @@
+#include "navigation/sources/recovering_source.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "planning/geometry/error.h"
+
+namespace arthronaut::sources {
+namespace {
+
+using testing::HasSubstr;
+
+// What a source does with each of its frames: gives one of a width, breaks, or ends.
+enum class Does { Gives, GivesSmall, Breaks, Ends };
+
+class Scripted : public FrameSource {
+ public:
+  Scripted(std::vector<Does> script, LiveStamps& stamps, std::int64_t at_ns)
+      : script_(std::move(script)), stamps_(stamps), at_ns_(at_ns) {
+    info_.name = "scope";
+    info_.image_size_px = {64, 48};
+    info_.kind = SourceKind::Live;
+    info_.ends = false;
+  }
+  const SourceInfo& info() const override { return info_; }
+  camera::FramePtr next() override {
+    const Does does = next_ < script_.size() ? script_[next_++] : Does::Ends;
+    if (does == Does::Breaks) throw DeviceError("scope: unplugged");
+    if (does == Does::Ends) return nullptr;
+    auto frame = std::make_shared<camera::Frame>();
+    frame->width = does == Does::Gives ? 64 : 32;
+    frame->height = 48;
+    stamps_.put_on(*frame, at_ns_ += 1'000'000, camera::CaptureClock::Driver);
+    return frame;
+  }
+
+ private:
+  std::vector<Does> script_;
+  LiveStamps& stamps_;
+  std::int64_t at_ns_;
+  std::size_t next_ = 0;
+  SourceInfo info_;
+};
+
+// Broken twice, once not to be opened, once ended: pictures go on, their numbers and times too.
+TEST(RecoveringSource, GoesOnWhereItWas) {
+  int opened = 0;
+  const auto source = recovering([&](const Opening& opening) -> std::unique_ptr<FrameSource> {
+    EXPECT_EQ(opening.is_again, opened > 0);
+    const std::int64_t at_ns = 1'000'000'000LL * ++opened;
+    if (opened == 2) throw DeviceError("scope: nobody there");
+    if (opened == 1)
+      return std::make_unique<Scripted>(std::vector{Does::Gives, Does::Gives, Does::Breaks}, opening.stamps,
+                                        at_ns);
+    return std::make_unique<Scripted>(std::vector{Does::Gives, Does::Ends}, opening.stamps, at_ns);
+  });
+  std::int64_t before_ns = -1;
+  for (int i = 0; i < 4; ++i) {
+    const camera::FramePtr frame = source->next();
+    ASSERT_NE(frame, nullptr);
+    EXPECT_EQ(frame->index, i);
+    EXPECT_GT(frame->timestamp_ns, before_ns);
+    before_ns = frame->timestamp_ns;
+    EXPECT_EQ(source->info().line->trouble(), "");
+  }
+  EXPECT_EQ(opened, 4);
+}
+
+TEST(RecoveringSource, PassesOverAnotherSizeAndSaysSo) {
+  const auto source = recovering([&](const Opening& opening) {
+    return std::make_unique<Scripted>(
+        std::vector{Does::Gives, Does::GivesSmall, Does::GivesSmall, Does::Breaks}, opening.stamps, 5);
+  });
+  ASSERT_NE(source->next(), nullptr);
+  std::thread ender([line = source->info().line] {
+    for (int i = 0; i < 1000 && line->trouble().empty(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    EXPECT_THAT(line->trouble(), HasSubstr("scope: "));
+    line->end();
+  });
+  // 64 pixels wide or nothing.
+  while (const camera::FramePtr frame = source->next()) EXPECT_EQ(frame->width, 64);
+  ender.join();
+}
+
+// Another camera in the place of the first one gives no picture, whatever its size, nor does one that no
+// longer says who it is; the first one does when it is there again.
+TEST(RecoveringSource, HazardAnotherCameraInItsPlaceIsNotTakenForIt) {
+  for (const std::string& other : {std::string("uvc, card, serial 2"), std::string()}) {
+    int opened = 0;
+    const auto source = recovering([&](const Opening& opening) {
+      ++opened;
+      opening.identity = opened == 2 ? other : "uvc, card, serial 1";
+      return std::make_unique<Scripted>(std::vector{Does::Gives, Does::Breaks}, opening.stamps,
+                                        1'000'000'000LL * opened);
+    });
+    ASSERT_NE(source->next(), nullptr);
+    std::string told;
+    std::thread looker([&, line = source->info().line] {
+      for (int i = 0; i < 5000 && told.find("another camera") == std::string::npos; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        told = line->trouble();
+      }
+    });
+    const camera::FramePtr frame = source->next();
+    looker.join();
+    ASSERT_NE(frame, nullptr);
+    EXPECT_EQ(frame->captured_ns, 3'001'000'000LL) << "nothing of the second one";
+    EXPECT_THAT(told, testing::AllOf(HasSubstr("another camera is there"), HasSubstr("serial 1")));
+    EXPECT_EQ(source->info().line->trouble(), "");
+  }
+}
+
+// Of a source that never said who it is nobody can tell.
+TEST(RecoveringSource, IsKnownByItsSizeAloneWhereItSaysNothing) {
+  int opened = 0;
+  const auto source = recovering([&](const Opening& opening) {
+    if (++opened == 2) opening.identity = "now it does";
+    return std::make_unique<Scripted>(std::vector{Does::Gives, Does::Breaks}, opening.stamps, opened);
+  });
+  EXPECT_NE(source->next(), nullptr);
+  EXPECT_NE(source->next(), nullptr);
+  EXPECT_EQ(opened, 2);
+}
+
+// Who names a source that is not there wants to know at once.
+TEST(RecoveringSource, CannotBeginBroken) {
+  EXPECT_THROW((void)recovering([](const Opening&) -> std::unique_ptr<FrameSource> {
+                 throw DeviceError("scope: nobody there");
+               }),
+               DeviceError);
+}
+
+// Told to end while it waits for a source that never comes back.
+TEST(RecoveringSource, EndsWhenItIsTold) {
+  bool is_first = true;
+  const auto source = recovering([&](const Opening& opening) -> std::unique_ptr<FrameSource> {
+    if (!std::exchange(is_first, false)) throw DeviceError("scope: nobody there");
+    return std::make_unique<Scripted>(std::vector{Does::Breaks}, opening.stamps, 5);
+  });
+  std::thread ender([line = source->info().line] {
+    while (line->trouble().empty()) std::this_thread::yield();
+    line->end();
+  });
+  EXPECT_EQ(source->next(), nullptr);
+  ender.join();
+}
+
+}  // namespace
+}  // namespace arthronaut::sources
