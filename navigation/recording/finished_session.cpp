@@ -1,0 +1,40 @@
+#include "navigation/recording/finished_session.h"
+
+#include "navigation/recording/operation_record.h"
+#include "navigation/recording/session_database.h"
+#include "navigation/recording/session_files.h"
+
+namespace arthronaut::recording {
+
+FinishedSession::FinishedSession(const std::filesystem::path& session_folder)
+    : folder_(session_folder), hashes_(SessionHashes::of_finished(session_folder)) {}
+
+void FinishedSession::append_event(const SessionEvent& event) {
+  if (hashes_) hashes_->announce_events();
+  SessionDatabase database = SessionDatabase::open(database_file(folder_));
+  Statement last = database.prepare("SELECT MAX(frame) FROM frames");
+  const std::int64_t after = last.step() && !last.is_null(0) ? last.integer(0) : -1;
+  Statement insert =
+      database.prepare("INSERT INTO events(after_frame, timestamp_ns, kind, text) VALUES(?,?,?,?)");
+  insert.bind(1, after).bind(2, event.timestamp_ns).bind(3, event.kind).bind(4, event.text).run();
+  if (!hashes_) return;
+  hashes_->cover_rows(database, kEventRows, rows_end(database, kEventRows));
+  hashes_->sync();
+}
+
+void FinishedSession::rewrite_file(const std::string& name, const std::function<void()>& write) {
+  if (!hashes_) return write();
+  hashes_->write_file(name, write);
+  hashes_->sync();
+}
+
+void append_event(const std::filesystem::path& session_folder, const SessionEvent& event) {
+  FinishedSession(session_folder).append_event(event);
+}
+
+void rewrite_file(const std::filesystem::path& session_folder, const std::string& name,
+                  const std::function<void()>& write) {
+  FinishedSession(session_folder).rewrite_file(name, write);
+}
+
+}  // namespace arthronaut::recording

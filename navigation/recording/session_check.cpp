@@ -1,0 +1,235 @@
+#include "navigation/recording/session_check.h"
+
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "navigation/recording/session_files.h"
+#include "navigation/recording/session_hashes.h"
+#include "planning/files/format.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::recording {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kChanged = "not what was recorded";
+constexpr const char* kMissing = "missing";
+constexpr const char* kCutOff = "cut off: the lines that were written when the session was finished are gone";
+constexpr const char* kAdded = "not in the chain: added later, or the chain's end is gone";
+
+// What the chain says at last: a later record takes the place of an earlier one.
+std::vector<const ChainRecord*> in_force(const std::vector<ChainRecord>& records) {
+  std::map<std::pair<std::string, std::int64_t>, const ChainRecord*> last;
+  for (const ChainRecord& record : records) last[{record.of, record.from}] = &record;
+  std::vector<const ChainRecord*> force;
+  for (const auto& [place, record] : last) force.push_back(record);
+  return force;
+}
+
+class Checker {
+ public:
+  Checker(const fs::path& folder, SessionCheck& check) : folder_(folder), check_(check) {
+    try {
+      database_.emplace(SessionDatabase::open(database_file(folder)));
+      check_.was_finished = database_->prepare("SELECT finished FROM ending").step();
+    } catch (const std::runtime_error& error) {
+      lose_database(error);
+    }
+    try {
+      says_it_has_a_chain_ = says_it_has_a_chain(folder);
+    } catch (const std::runtime_error&) {
+      // Such a session has none, or a broken one; with a chain, that the file was changed is a finding.
+    }
+  }
+
+  // Of a session without chain.csv.
+  void look_for_a_reason_without_chain() {
+    if (says_it_has_a_chain_.value_or(false)) {
+      add("chain.csv", 0, 0, kMissing);
+    } else if (!says_it_has_a_chain_) {
+      add("session.json", 0, 0, "not readable: nobody knows whether there were hashes");
+    }
+  }
+
+  void look_at(const ChainRecord& record) {
+    if (record.of == kChainEnd) {
+      has_end_ = true;
+      return;
+    }
+    const bool is_rows = is_of_rows(record.of);
+    std::int64_t& end = ends_[record.of];
+    end = std::max(end, record.to);
+    if (record.is_open()) {
+      check_.notes.push_back(record.of + ": was being written when the record ended: not looked at");
+      open_.insert(record.of);
+    } else if (is_rows) {
+      look_at_rows(record);
+    } else {
+      look_at_bytes(record);
+    }
+  }
+
+  // What a finished session holds beyond what its chain speaks of.
+  void look_beyond() {
+    if (!check_.was_finished) return;
+    for (const auto& [of, end] : ends_) {
+      if (open_.contains(of)) continue;
+      std::int64_t there = end;
+      if (!is_of_rows(of)) {
+        std::error_code error;
+        const std::uintmax_t size = fs::file_size(file_of(folder_, of), error);
+        if (!error) there = static_cast<std::int64_t>(size);
+      }
+      if (there > end) add(of, end, there, kAdded);
+    }
+    for (const char* const rows : {kFrameRows, kEventRows, kPictureRows})
+      if (database_ && !open_.contains(rows)) look_beyond_rows(rows);
+    // Without its last lines the chain says nothing of a video that was copied at the session's end.
+    if (!has_end_ && says_it_has_a_chain_.value_or(false)) add("chain.csv", 0, 0, kCutOff);
+  }
+
+ private:
+  void look_at_rows(const ChainRecord& record) {
+    if (!database_) return;
+    try {
+      if (sha256_of_rows(*database_, record.of, record.from, record.to) != record.sha256)
+        add(record.of, record.from, record.to, kChanged);
+    } catch (const std::runtime_error& error) {
+      add(record.of, record.from, record.to, std::string("not readable: ") + error.what());
+    }
+  }
+
+  void look_at_bytes(const ChainRecord& record) {
+    try {
+      const auto hash = sha256_of_bytes(file_of(folder_, record.of), record.from, record.to);
+      if (!hash)
+        add(record.of, record.from, record.to, kMissing);
+      else if (*hash != record.sha256)
+        add(record.of, record.from, record.to, kChanged);
+      else
+        check_.covered_bytes += record.to - record.from;
+    } catch (const IoError& error) {
+      add(record.of, record.from, record.to, std::string("not readable: ") + error.what());
+    }
+  }
+
+  void look_beyond_rows(const std::string& rows) {
+    try {
+      const std::int64_t there = rows_end(*database_, rows), end = ends_[rows];
+      if (there > end) add(rows, end, there, kAdded);
+    } catch (const std::runtime_error& error) {
+      lose_database(error);
+    }
+  }
+
+  void lose_database(const std::runtime_error& error) {
+    database_.reset();
+    check_.findings.push_back({"session.sqlite", 0, 0, std::string("not readable: ") + error.what()});
+  }
+
+  // Stretches that lie side by side and are wrong alike are one finding.
+  void add(const std::string& of, std::int64_t from, std::int64_t to, const std::string& what) {
+    auto& findings = check_.findings;
+    if (!findings.empty() && findings.back().of == of && findings.back().to == from &&
+        findings.back().what == what)
+      findings.back().to = to;
+    else
+      findings.push_back({of, from, to, what});
+  }
+
+  const fs::path& folder_;
+  SessionCheck& check_;
+  std::optional<SessionDatabase> database_;
+  std::map<std::string, std::int64_t> ends_;
+  std::set<std::string> open_;
+  bool has_end_ = false;
+  std::optional<bool> says_it_has_a_chain_;  // nullopt: session.json cannot be read
+};
+
+void say_what_is_outside(const fs::path& folder, SessionCheck& check) {
+  try {
+    pipeline::PipelineOptions options;
+    const fs::path video = read_session_header(folder, options).video;
+    if (video.is_absolute()) check.notes.push_back(video.string() + ": lies elsewhere: not looked at");
+  } catch (const std::runtime_error&) {
+    // session.json is a file of the chain: that it was changed is a finding.
+  }
+}
+
+}  // namespace
+
+std::string CheckFinding::text() const {
+  const std::size_t colon = of.find(':');
+  std::string words = colon == std::string::npos ? of + ": " : of.substr(0, colon) + ": ";
+  if (from == 0 && to == 0) return words + "is " + what;
+  const std::string unit = colon == std::string::npos ? "bytes" : of.substr(colon + 1);
+  return words + unit + " " + std::to_string(from) + " to " + std::to_string(to - 1) + " are " + what;
+}
+
+SessionCheck check_session(const fs::path& session_folder,
+                           const std::function<void(std::int64_t, std::int64_t)>& progress,
+                           const std::function<bool()>& stops) {
+  if (!fs::is_directory(session_folder)) throw IoError(session_folder, "no such session");
+  SessionCheck check;
+  Checker checker(session_folder, check);
+  if (!fs::exists(chain_file(session_folder))) {
+    check.findings.clear();  // a database alone that cannot be read says nothing of hashes
+    checker.look_for_a_reason_without_chain();
+    check.outcome = check.findings.empty() ? SessionCheck::Outcome::NoChain : SessionCheck::Outcome::Broken;
+    return check;
+  }
+  const ReadChain chain = read_chain(session_folder);
+  check.record_count = static_cast<std::int64_t>(chain.records.size());
+  if (!chain.records.empty()) check.head = chain.records.back().chain;
+  if (!chain.problem.empty())
+    check.findings.push_back({"chain.csv", 0, 0, "broken, and says nothing from there on: " + chain.problem});
+  if (chain.ends_in_half_a_line && check.was_finished)
+    check.findings.push_back({"chain.csv", 0, 0, "cut off in the middle of a record"});
+  const std::vector<const ChainRecord*> records = in_force(chain.records);
+  std::int64_t done = 0;
+  for (const ChainRecord* const record : records) {
+    if (stops && stops()) {
+      check.outcome = SessionCheck::Outcome::Stopped;
+      return check;
+    }
+    checker.look_at(*record);
+    if (progress) progress(++done, static_cast<std::int64_t>(records.size()));
+  }
+  checker.look_beyond();
+  say_what_is_outside(session_folder, check);
+  check.outcome = check.findings.empty() ? SessionCheck::Outcome::Unbroken : SessionCheck::Outcome::Broken;
+  return check;
+}
+
+std::string check_words(const SessionCheck& check) {
+  using Outcome = SessionCheck::Outcome;
+  switch (check.outcome) {
+    case Outcome::NotRun:
+    case Outcome::Stopped:
+      return "not checked";
+    case Outcome::NoChain:
+      return "holds no hashes";
+    case Outcome::Unbroken:
+      return files::format("as recorded: %lld hashes, %.1f MB of files%s",
+                           static_cast<long long>(check.record_count),
+                           static_cast<double>(check.covered_bytes) / 1e6,
+                           check.was_finished ? "" : "; cut off, whole up to its last hash");
+    case Outcome::Broken:
+      return check.findings.front().text() +
+             (check.findings.size() > 1 ? "; and " + std::to_string(check.findings.size() - 1) + " more"
+                                        : "");
+  }
+  return "not checked";
+}
+
+std::string chain_head(const fs::path& session_folder) {
+  if (!fs::exists(chain_file(session_folder))) return "";
+  const ReadChain chain = read_chain(session_folder);
+  return chain.records.empty() || !chain.problem.empty() ? "" : chain.records.back().chain;
+}
+
+}  // namespace arthronaut::recording

@@ -1,0 +1,80 @@
+#include "navigation/recording/session_overview.h"
+
+#include "navigation/camera/camera_file.h"
+#include "navigation/recording/session_database.h"
+#include "navigation/recording/session_files.h"
+#include "navigation/registration/registration_file.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::recording {
+
+namespace {
+
+// What was read before it broke off stays.
+template <typename Read>
+void as_far_as_whole(SessionOverview& overview, const Read& read) {
+  try {
+    read();
+  } catch (const InvalidInput& error) {
+    overview.problems.emplace_back(error.what());
+  } catch (const IoError& error) {
+    overview.problems.emplace_back(error.what());
+  }
+}
+
+void read_record(SessionOverview& overview) {
+  SessionDatabase database = SessionDatabase::open(database_file(overview.folder));
+  as_far_as_whole(overview, [&] {
+    Statement row = database.prepare("SELECT timestamp_ns, kind, text, after_frame FROM events ORDER BY id");
+    while (row.step()) overview.events.push_back({row.integer(0), row.text(1), row.text(2), row.integer(3)});
+  });
+  as_far_as_whole(overview, [&] {
+    Statement row = database.prepare("SELECT frame FROM pictures ORDER BY picture");
+    while (row.step()) overview.frame_of_picture.push_back(row.integer(0));
+  });
+  as_far_as_whole(overview,
+                  [&] { overview.was_finished = database.prepare("SELECT finished FROM ending").step(); });
+}
+
+void look_for_video(SessionOverview& overview) {
+  const std::filesystem::path file = overview.video();
+  const bool is_pattern = file.string().find('%') != std::string::npos;
+  if (!file.empty() && !is_pattern && !std::filesystem::exists(file))
+    overview.problems.push_back(file.string() + ": the video is not there any more");
+}
+
+}  // namespace
+
+std::filesystem::path SessionOverview::video() const {
+  const std::filesystem::path video = header.video;
+  return video.empty() || video.is_absolute() ? video : folder / video;
+}
+
+RecordedSession::PlanChange SessionOverview::plan_of(const SessionEvent& event) const {
+  return plan_from_text(event.text, database_file(folder));
+}
+
+SessionOverview read_overview(const std::filesystem::path& session_folder) {
+  SessionOverview overview;
+  overview.folder = session_folder;
+  if (!std::filesystem::is_directory(session_folder)) throw IoError(session_folder, "no such session");
+  overview.header = read_session_header(session_folder, overview.options);
+  as_far_as_whole(overview, [&] {
+    overview.options.calibration = camera::read_camera_file(session_folder / "camera.json").calibration;
+  });
+  as_far_as_whole(overview,
+                  [&] { overview.options.tools = tools::read_tools_file(session_folder / "tools.json"); });
+  as_far_as_whole(overview, [&] { read_record(overview); });
+  look_for_video(overview);
+  as_far_as_whole(overview, [&] {
+    if (const auto file = session_folder / "curves.csv"; std::filesystem::exists(file))
+      overview.curves = strokes::read_curves_file(file);
+  });
+  as_far_as_whole(overview, [&] {
+    if (const auto file = session_folder / "registration.json"; std::filesystem::exists(file))
+      overview.registration = registration::read_registration_file(file);
+  });
+  return overview;
+}
+
+}  // namespace arthronaut::recording

@@ -1,0 +1,37 @@
+// A session as far as it is whole, for whoever looks at it: everything but its frames, which
+// session_timeline.h has, whatever the session's length. Who computes with a session reads it whole, by
+// RecordedSession, which refuses what is broken.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "navigation/recording/session.h"
+
+namespace arthronaut::recording {
+
+struct SessionOverview {
+  std::filesystem::path folder;
+  SessionHeader header;
+  pipeline::PipelineOptions options;
+  bool was_finished = false;         // false: a crash cut it off
+  std::vector<SessionEvent> events;  // in the order they were added
+  // Which frame each picture of an encoded video shows, rising; empty when the video is the source's own.
+  std::vector<std::int64_t> frame_of_picture;
+  strokes::Curves curves;
+  std::optional<registration::RegistrationSummary> registration;
+  // What is missing or broken, one sentence each with the file's name; empty when all is whole.
+  std::vector<std::string> problems;
+
+  [[nodiscard]] std::filesystem::path video() const;  // empty when none was kept
+  // Of a kPlanEvent. Throws InvalidInput.
+  [[nodiscard]] RecordedSession::PlanChange plan_of(const SessionEvent& event) const;
+};
+
+// Throws IoError or InvalidInput where nothing at all can be told: no folder, no session.json, or a newer
+// one.
+[[nodiscard]] SessionOverview read_overview(const std::filesystem::path& session_folder);
+
+}  // namespace arthronaut::recording

@@ -1,0 +1,269 @@
+#include "navigation/recording/recorded_pictures.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+#include <random>
+
+#include "planning/geometry/error.h"
+#include "tests/navigation/recording/recorded_frames.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::recording {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr int kFrames = 240;
+
+// The number in bright and dark fields, and nothing else: which picture it is can be read off it.
+constexpr int kWidth = 320, kHeight = 96;
+cv::Mat numbered(int number) {
+  cv::Mat picture(kHeight, kWidth, CV_8UC3, cv::Scalar(40, 40, 40));
+  for (int bit = 0; bit < 8; ++bit)
+    if ((number >> bit & 1) != 0)
+      cv::rectangle(picture, cv::Rect(8 + 36 * bit, 16, 32, 64), cv::Scalar(220, 220, 220), cv::FILLED);
+  return picture;
+}
+int number_of(const camera::Frame& frame) {
+  int number = 0;
+  for (int bit = 0; bit < 8; ++bit) {
+    const std::size_t at =
+        3 * (static_cast<std::size_t>(48) * kWidth + static_cast<std::size_t>(24 + 36 * bit));
+    if (frame.bgr[at] > 128) number |= 1 << bit;
+  }
+  return number;
+}
+camera::FramePtr frame_of(int number) {
+  const cv::Mat picture = numbered(number);
+  auto frame = std::make_shared<camera::Frame>();
+  frame->index = number;
+  frame->width = kWidth;
+  frame->height = kHeight;
+  frame->bgr.assign(picture.datastart, picture.dataend);
+  return frame;
+}
+
+// Asks for the frames in a seeded order, forwards, backwards and across.
+std::vector<int> seeded_order(int count, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::vector<int> order;
+  for (int i = 0; i < 80; ++i) order.push_back(std::uniform_int_distribution(0, count - 1)(random));
+  for (int i = 0; i < std::min(count, 10); ++i) order.push_back(i);
+  for (int i = count - 1; i > std::max(count - 10, 0); --i) order.push_back(i);
+  order.push_back(0);
+  return order;
+}
+
+void expect_every_picture(const fs::path& folder, int count) {
+  const SessionOverview session = read_overview(folder);
+  RecordedPictures pictures(session);
+  for (const int i : seeded_order(count, 3)) {
+    const std::int64_t time_ns = test::frame_result(i).timestamp_ns;
+    const camera::FramePtr picture = pictures.picture(i, time_ns);
+    ASSERT_NE(picture, nullptr) << i;
+    EXPECT_EQ(number_of(*picture), i);
+    EXPECT_EQ(picture->index, i);
+    EXPECT_EQ(picture->timestamp_ns, time_ns);
+  }
+}
+
+// The recorder's own video, also with pictures that were left out: each frame gives its own picture, and one
+// without a picture gives none.
+TEST(RecordedPictures, GivesEachFrameItsOwnPicture) {
+  const test::TemporaryFolder folder;
+  {
+    SessionRecorder recorder(folder.path(), test::session_header(), test::scripted_options());
+    for (int i = 0; i < kFrames; ++i) {
+      if (i % 7 != 5) recorder.append_picture(frame_of(i));
+      recorder.append(test::frame_result(i));
+    }
+    recorder.finish();
+  }
+  const SessionOverview session = read_overview(folder.path());
+  RecordedPictures pictures(session);
+  for (const int i : seeded_order(kFrames, 1)) {
+    const camera::FramePtr picture = pictures.picture(i, test::frame_result(i).timestamp_ns);
+    ASSERT_EQ(picture != nullptr, i % 7 != 5) << i;
+    if (picture != nullptr) {
+      EXPECT_EQ(number_of(*picture), i);
+    }
+  }
+  EXPECT_EQ(pictures.picture(kFrames + 100, test::frame_result(kFrames + 100).timestamp_ns), nullptr);
+}
+
+// Copied videos: one with a key frame every 12 pictures, and one whose pictures are all key frames.
+TEST(RecordedPictures, FindsThePicturesOfCopiedVideos) {
+  for (const auto& [name, code] :
+       std::map<std::string, std::string>{{"a.mp4", "mp4v"}, {"b.avi", "MJPG"}, {"c.mkv", "mp4v"}}) {
+    SCOPED_TRACE(name);
+    const test::TemporaryFolder folder;
+    const fs::path file = folder / name;
+    {
+      cv::VideoWriter writer(file.string(), cv::VideoWriter::fourcc(code[0], code[1], code[2], code[3]), 60,
+                             {kWidth, kHeight});
+      ASSERT_TRUE(writer.isOpened());
+      for (int i = 0; i < kFrames; ++i) writer.write(numbered(i));
+    }
+    fs::create_directory(folder / "session");
+    {
+      SessionRecorder recorder(folder / "session", test::session_header(), test::scripted_options());
+      for (int i = 0; i < kFrames; ++i) recorder.append(test::frame_result(i));
+      recorder.copy_video(file);
+      recorder.finish();
+    }
+    expect_every_picture(folder / "session", kFrames);
+  }
+}
+
+// Stills of a pattern that does not begin with nought.
+TEST(RecordedPictures, FindsTheStillsOfAPattern) {
+  const test::TemporaryFolder folder;
+  constexpr int kStills = 30;
+  fs::create_directory(folder / "stills");
+  fs::create_directory(folder / "session");
+  char name[32];
+  for (int i = 0; i < kStills; ++i) {
+    std::snprintf(name, sizeof name, "f_%04d.png", i + 17);
+    cv::imwrite((folder / "stills" / name).string(), numbered(i));
+  }
+  {
+    SessionRecorder recorder(folder / "session", test::session_header(), test::scripted_options());
+    for (int i = 0; i < kStills; ++i) recorder.append(test::frame_result(i));
+    recorder.copy_video(folder / "stills/f_%04d.png");
+    recorder.finish();
+  }
+  expect_every_picture(folder / "session", kStills);
+}
+
+// Killed at 40 seeded moments while it recorded pictures and frames, 60 a second: each record opens, is known
+// to have been cut off, and has every frame and the picture of every frame but those of the last second; any
+// of them is found though the video's index was never written.
+TEST(RecordedPictures, LosesAtMostASecondAtAnyOf40Kills) {
+  constexpr int kAtOnce = 8, kRounds = 5;
+  std::mt19937 random(17);
+  int opened = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    struct Child {
+      std::unique_ptr<test::TemporaryFolder> folder = std::make_unique<test::TemporaryFolder>();
+      pid_t process = -1;
+      int pipe = -1;
+      double lives_s = 0;
+      std::vector<std::pair<std::chrono::steady_clock::time_point, int>> given;
+    };
+    std::vector<Child> children(kAtOnce);
+    for (Child& child : children) {
+      child.lives_s = std::uniform_real_distribution(1.1, 3.5)(random);
+      int ends[2];
+      ASSERT_EQ(::pipe2(ends, O_NONBLOCK), 0);
+      child.process = ::fork();
+      ASSERT_GE(child.process, 0);
+      if (child.process == 0) {
+        SessionRecorder recorder(child.folder->path(), test::session_header(), test::scripted_options());
+        for (int i = 0;; ++i) {
+          recorder.append_picture(frame_of(i % 256));
+          recorder.append(test::frame_result(i));
+          if (::write(ends[1], &i, sizeof i) != static_cast<ssize_t>(sizeof i)) ::_exit(1);
+          ::usleep(16'000);
+        }
+      }
+      ::close(ends[1]);
+      child.pipe = ends[0];
+    }
+    using Clock = std::chrono::steady_clock;
+    std::vector<Clock::time_point> ended(children.size());
+    std::size_t alive = children.size();
+    while (alive > 0) {
+      for (std::size_t n = 0; n < children.size(); ++n) {
+        Child& child = children[n];
+        int i = 0;
+        while (::read(child.pipe, &i, sizeof i) == static_cast<ssize_t>(sizeof i))
+          child.given.emplace_back(Clock::now(), i);
+        if (child.process < 0 || child.given.empty()) continue;
+        const double lived_s =
+            std::chrono::duration<double>(Clock::now() - child.given.front().first).count();
+        if (lived_s < child.lives_s) continue;
+        ::kill(child.process, SIGKILL);
+        ended[n] = Clock::now();
+        ::waitpid(std::exchange(child.process, -1), nullptr, 0);
+        --alive;
+      }
+      ::usleep(2000);
+    }
+    for (std::size_t n = 0; n < children.size(); ++n) {
+      SCOPED_TRACE("round " + std::to_string(round) + ", child " + std::to_string(n));
+      const Child& child = children[n];
+      ::close(child.pipe);
+      // The last frame that was given more than a second before the end.
+      int must_be_there = -1;
+      for (const auto& [when, i] : child.given)
+        if (std::chrono::duration<double>(ended[n] - when).count() > 1) must_be_there = i;
+      ASSERT_GT(must_be_there, 0);
+      const SessionOverview session = read_overview(child.folder->path());
+      ++opened;
+      EXPECT_FALSE(session.was_finished);
+      ASSERT_GT(RecordedSession(child.folder->path()).frames().size(),
+                static_cast<std::size_t>(must_be_there));
+      ASSERT_GT(session.frame_of_picture.size(), static_cast<std::size_t>(must_be_there));
+      RecordedPictures pictures(session);
+      for (const int i : seeded_order(must_be_there + 1, 9)) {
+        const camera::FramePtr picture = pictures.picture(i, test::frame_result(i).timestamp_ns);
+        ASSERT_NE(picture, nullptr) << i << " of " << must_be_there;
+        EXPECT_EQ(number_of(*picture), i % 256);
+      }
+    }
+  }
+  EXPECT_EQ(opened, kAtOnce * kRounds);
+}
+
+// A video that was cut in the middle gives what is whole; what is not there has no picture.
+TEST(RecordedPictures, GivesWhatIsWholeOfACutVideo) {
+  const test::TemporaryFolder folder;
+  {
+    SessionRecorder recorder(folder.path(), test::session_header(), test::scripted_options());
+    for (int i = 0; i < kFrames; ++i) {
+      recorder.append_picture(frame_of(i));
+      recorder.append(test::frame_result(i));
+    }
+    recorder.finish();
+  }
+  fs::resize_file(folder / "video.mkv", fs::file_size(folder / "video.mkv") / 2);
+  const SessionOverview session = read_overview(folder.path());
+  RecordedPictures pictures(session);
+  int whole = 0;
+  for (int i = kFrames - 1; i >= 0; --i) {
+    const camera::FramePtr picture = pictures.picture(i, test::frame_result(i).timestamp_ns);
+    if (picture == nullptr) continue;
+    EXPECT_EQ(number_of(*picture), i);
+    ++whole;
+  }
+  EXPECT_GT(whole, kFrames / 4);
+  EXPECT_LT(whole, kFrames * 3 / 4);
+}
+
+// No video, and one that is gone, are told as such.
+TEST(RecordedPictures, SaysThatThereIsNone) {
+  const test::TemporaryFolder folder;
+  {
+    SessionRecorder recorder(folder.path(), test::session_header(), test::scripted_options());
+    recorder.refer_to_video("/nowhere/scope.mp4");
+    recorder.append(test::frame_result(0));
+    recorder.finish();
+  }
+  const SessionOverview session = read_overview(folder.path());
+  ASSERT_EQ(session.problems.size(), 1U);
+  EXPECT_NE(session.problems.front().find("/nowhere/scope.mp4"), std::string::npos);
+  EXPECT_THROW(RecordedPictures{session}, IoError);
+}
+
+}  // namespace
+}  // namespace arthronaut::recording
