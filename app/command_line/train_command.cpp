@@ -1,0 +1,174 @@
+#include "app/command_line/train_command.h"
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/case/exercise_case.h"
+#include "navigation/training/exercise_run.h"
+#include "navigation/training/score_file.h"
+#include "navigation/training/trainee.h"
+#include "planning/cases/case.h"
+#include "planning/cases/case_lock.h"
+#include "planning/files/format.h"
+#include "planning/files/json_document.h"
+#include "planning/files/utc_clock.h"
+#include "planning/geometry/error.h"
+#include "planning/phantom/phantom_case.h"
+
+namespace arthronaut::command_line {
+
+namespace {
+
+namespace fs = std::filesystem;
+using files::format;
+using training::Exercise;
+using training::Level;
+using training::Score;
+
+struct Arguments {
+  bool list = false, scores = false, keep = false;
+  std::string exercise, level = "easy", hand = "careful", case_folder, output, keep_hand;
+  std::uint64_t seed = 1;
+};
+
+constexpr Level kLevels[] = {Level::Easy, Level::Medium, Level::Hard};
+
+void list_exercises(const Context& context) {
+  const std::vector<Score> kept = training::read_training_file(training::training_file());
+  for (const Exercise& exercise : training::exercises()) {
+    context.say(std::string(exercise.id) + ": " + std::string(exercise.title) + ". " +
+                std::string(exercise.what));
+    for (const Level level : kLevels) {
+      const Score* best = training::best_of(kept, exercise.id, level);
+      context.say(format("    %-6s ", std::string(to_text(level)).c_str()) +
+                  (best != nullptr
+                       ? format("best %3.0f of 100, %s; ", best->points, best->when_utc.substr(0, 10).c_str())
+                       : std::string("not done yet; ")) +
+                  training::words_of_faults(exercise, level));
+    }
+  }
+}
+
+void list_scores(const Context& context, const Arguments& arguments) {
+  const std::vector<Score> kept = training::read_training_file(training::training_file());
+  std::size_t shown = 0;
+  for (const Score& score : kept) {
+    if (!arguments.exercise.empty() && score.exercise != arguments.exercise) continue;
+    ++shown;
+    context.say(format("%s  %-12s %-6s %3.0f  %s, %s", score.when_utc.c_str(), score.exercise.c_str(),
+                       std::string(to_text(score.level)).c_str(), score.points, score.trainee.c_str(),
+                       score.knee.c_str()));
+  }
+  if (shown == 0) context.say("No score is kept. The window keeps those of your own hand; here --keep does.");
+}
+
+simulator::Hand hand_of(const Arguments& arguments, const Exercise& exercise) {
+  if (arguments.hand == "careful") return make_trainee(exercise.goal, training::careful(arguments.seed));
+  if (arguments.hand == "hasty") return make_trainee(exercise.goal, training::hasty(arguments.seed));
+  return training::read_hand_file(arguments.hand);
+}
+
+void say_score(const Context& context, const Exercise& exercise, const Score& score) {
+  context.say(format("%s, %s: %.0f of 100", std::string(exercise.title).c_str(),
+                     std::string(to_text(score.level)).c_str(), score.points));
+  for (const training::ScorePart& part : score.parts)
+    context.say(format("  %5.1f of %2.0f  ", part.points, part.most_points) + part.reason);
+  if (!score.better.empty()) context.say("To do better:");
+  for (const std::string& advice : score.better) context.say("  - " + advice);
+}
+
+void train(Context& context, const Arguments& arguments) {
+  const Exercise* exercise = training::find_exercise(arguments.exercise);
+  if (exercise == nullptr)
+    throw InvalidInput("there is no exercise \"" + arguments.exercise +
+                       "\"; \"arthronaut train --list\" names them");
+  const Level level = training::level_from_text(arguments.level);
+  const simulator::Hand hand = hand_of(arguments, *exercise);
+  training::ExerciseSetup setup{
+      .exercise = *exercise, .level = level, .knee = {}, .plan = {}, .seed = arguments.seed};
+  std::string knee = "built-in knee " + std::to_string(arguments.seed);
+  theatre::RecordOptions record;
+  cases::CaseLock lock;
+  if (arguments.case_folder.empty()) {
+    setup = training::standard_setup(*exercise, level, arguments.seed);
+  } else {
+    const cases::Case opened = cases::load_case(arguments.case_folder);
+    if (!opened.bones.contains(exercise->bone))
+      throw InvalidInput(arguments.case_folder, "", "has no " + std::string(bones::to_text(exercise->bone)));
+    const auto planned = opened.plan.tunnels.find(exercise->bone);
+    if (planned == opened.plan.tunnels.end())
+      throw InvalidInput(arguments.case_folder, "",
+                         "has no planned tunnel in the " + std::string(bones::to_text(exercise->bone)));
+    setup.knee = phantom::knee_of(opened);
+    setup.plan = planned->second;
+    knee = opened.name;
+    lock = cases::lock_or_refuse(arguments.case_folder);
+    if (const std::string refusal = open_case::refusal_to_train(arguments.case_folder); !refusal.empty())
+      throw InvalidInput(arguments.case_folder, "", refusal);
+    record.folder = cases::create_session_folder(arguments.case_folder);
+    record.keep = recording::KeepVideo::Encode;
+  }
+  training::ExerciseOutcome outcome;
+  try {
+    Progress progress("Training", 0);
+    outcome = training::run_exercise(setup, hand, record, [&](long frames) { progress.advance_to(frames); });
+  } catch (...) {  // a command that fails leaves nothing behind
+    std::error_code ignored;
+    if (!record.folder.empty()) fs::remove_all(record.folder, ignored);
+    throw;
+  }
+  Score& score = outcome.score;
+  score.when_utc = files::utc_now();
+  score.knee = knee;
+  score.trainee = arguments.hand == "careful" || arguments.hand == "hasty"
+                      ? "simulated trainee, " + arguments.hand
+                      : "hand of " + fs::path(arguments.hand).filename().string();
+  score.session = record.folder.filename().string();
+  if (!arguments.keep_hand.empty()) training::write_hand_file(arguments.keep_hand, outcome.frames);
+  if (arguments.keep) training::add_to_training_file(training::training_file(), score);
+  if (!arguments.output.empty()) training::write_score_file(arguments.output, score);
+  if (arguments.output != "-") say_score(context, *exercise, score);
+  if (!score.is_done) context.say_unreliable("the score", {"the exercise was not brought to its end"});
+}
+
+}  // namespace
+
+void add_train_command(CLI::App& app, Context& context) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* sub = add_subcommand(
+      app, context, "train",
+      "Exercises on the simulator with a score, by a simulated trainee or a hand from a file",
+      "arthronaut train --list\n"
+      "  arthronaut train --exercise aim --level hard --seed 3 -o score.json\n"
+      "  arthronaut train --exercise drill-femur --case Knee.arthro --hand hasty --keep-hand hand.json");
+  CLI::Option* list =
+      sub->add_flag("--list", arguments->list, "The exercises, their levels and the best scores");
+  CLI::Option* scores =
+      sub->add_flag("--scores", arguments->scores,
+                    "All scores that were kept, oldest first; of --exercise alone where it is given");
+  sub->add_option("--exercise", arguments->exercise, "Which one; --list names them");
+  sub->add_option("--level", arguments->level, "How much goes wrong")
+      ->check(CLI::IsMember({"easy", "medium", "hard"}))
+      ->capture_default_str();
+  sub->add_option("--hand", arguments->hand,
+                  "Who does it: careful, hasty, or a file that --keep-hand has written")
+      ->capture_default_str();
+  sub->add_option("--seed", arguments->seed, "Another knee and other places for each seed")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53U))
+      ->capture_default_str();
+  sub->add_option("--case", arguments->case_folder,
+                  "On this case's bones and plan; what was done becomes a session of the case");
+  sub->add_option("--keep-hand", arguments->keep_hand, "Where to keep what was pushed, to do it again");
+  sub->add_flag("--keep", arguments->keep, "Puts the score on the user's own list");
+  sub->add_option("-o,--output", arguments->output,
+                  "Where to write the score (JSON); \"-\": standard output");
+  list->excludes(scores);
+  sub->callback([&context, arguments] {
+    if (arguments->list) return list_exercises(context);
+    if (arguments->scores) return list_scores(context, *arguments);
+    if (arguments->exercise.empty()) throw CLI::RequiredError("--list, --scores or --exercise");
+    train(context, *arguments);
+  });
+}
+
+}  // namespace arthronaut::command_line

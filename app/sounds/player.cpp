@@ -1,0 +1,98 @@
+#include "app/sounds/player.h"
+
+#include <alsa/asoundlib.h>
+
+#include <algorithm>
+#include <atomic>
+#include <vector>
+
+#include "navigation/worker/worker.h"
+
+namespace arthronaut::sounds {
+
+namespace {
+
+constexpr unsigned kLatency_us = 100'000;
+constexpr std::size_t kPiece = kSampleRate / 50;  // so soon the end of the program is heard of
+
+// ALSA writes what it finds to standard error; it is told on the screen instead.
+void say_nothing(const char*, int, const char*, int, const char*, ...) {}
+
+class Device {
+ public:
+  explicit Device(const std::string& name) {
+    const int opened = snd_pcm_open(&pcm_, name.c_str(), SND_PCM_STREAM_PLAYBACK, SND_PCM_NONBLOCK);
+    if (opened < 0) {
+      fail(opened);
+      return;
+    }
+    snd_pcm_nonblock(pcm_, 0);
+    const int set = snd_pcm_set_params(pcm_, SND_PCM_FORMAT_S16, SND_PCM_ACCESS_RW_INTERLEAVED, 1,
+                                       kSampleRate, 1, kLatency_us);
+    if (set < 0) fail(set);
+  }
+  ~Device() {
+    if (pcm_ != nullptr) snd_pcm_close(pcm_);
+  }
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  [[nodiscard]] const std::string& trouble() const { return trouble_; }
+  template <typename Stops>
+  void play(const std::vector<std::int16_t>& samples, const Stops& stops) {
+    for (std::size_t at = 0; at < samples.size() && trouble_.empty();) {
+      if (stops()) return void(snd_pcm_drop(pcm_));
+      const std::size_t count = std::min(kPiece, samples.size() - at);
+      snd_pcm_sframes_t written = snd_pcm_writei(pcm_, samples.data() + at, count);
+      if (written < 0) written = snd_pcm_recover(pcm_, static_cast<int>(written), 1);
+      if (written < 0) return fail(static_cast<int>(written));
+      at += static_cast<std::size_t>(written);
+    }
+    if (trouble_.empty()) snd_pcm_drain(pcm_);
+  }
+
+ private:
+  void fail(int error) { trouble_ = std::string("no sound device: ") + snd_strerror(error); }
+
+  snd_pcm_t* pcm_ = nullptr;
+  std::string trouble_;
+};
+
+}  // namespace
+
+struct Player::Thread {
+  explicit Thread(const std::string& device)
+      : worker(worker::Backlog::NewestWins, [this, device](auto& inbox) {
+          snd_lib_error_set_handler(say_nothing);
+          inbox.publish(Device(device).trouble());
+          while (const auto sound = inbox.next()) {
+            if (is_muted) continue;
+            Device opened(device);
+            opened.play(samples_of(*sound), [&] { return inbox.stops() || is_muted; });
+            inbox.publish(opened.trouble());
+          }
+          snd_lib_error_set_handler(nullptr);
+          snd_config_update_free_global();
+        }) {}
+  std::atomic<bool> is_muted = false;
+  worker::Worker<Sound, std::string> worker;  // last: its thread uses what is above
+};
+
+Player::Player(const std::string& device) : thread_(std::make_unique<Thread>(device)) {}
+Player::~Player() = default;
+
+void Player::play(Sound sound) {
+  if (!thread_->is_muted) thread_->worker.post(sound);
+}
+void Player::mute(bool on) { thread_->is_muted = on; }
+bool Player::is_muted() const { return thread_->is_muted; }
+
+std::string Player::trouble() const {
+  if (const std::string failure = thread_->worker.failure(); !failure.empty()) return failure;
+  const auto known = thread_->worker.latest();
+  return known != nullptr ? *known : std::string();
+}
+
+void Player::finish() const { thread_->worker.finish(); }
+
+}  // namespace arthronaut::sounds

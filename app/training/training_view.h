@@ -1,0 +1,121 @@
+// Training: exercises on the simulator, driven by mouse, keyboard or gamepad, on the theatre's own screen,
+// and what each was worth. An exercise runs as an operation does, and its record is a session of the open
+// case; but it is a simulation wherever it is seen, nothing later rests on it, and none begins in a case that
+// is somebody's (app/case/exercise_case.h). What else runs in the theatre is neither asked, ended nor wiped
+// from here: an exercise that was replaced there is over, and said to be.
+//
+// Pages: the exercises -> one that runs, on the theatre's screen -> its score -> the exercises.
+#pragma once
+
+#include <functional>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/mode/mode.h"
+#include "app/training/hand_devices.h"
+#include "navigation/theatre/live_operation.h"
+#include "navigation/training/exercise_run.h"
+#include "navigation/training/score_file.h"
+
+namespace arthronaut::training_mode {
+
+// The theatre's screen, which this mode borrows while an exercise runs. The window puts the two together:
+// modes do not know each other.
+struct Theatre {
+  mode::Mode* screen = nullptr;  // not null
+  // Why no exercise on this bone can begin; empty: it can.
+  std::function<std::string(bones::BoneKind bone)> refusal;
+  // Begins with nothing known of what was done there before.
+  std::function<void(const mode::OpenCase& opened)> begin_anew;
+  std::function<void(bones::BoneKind bone, theatre::TheatreSource source)> start;
+  std::function<theatre::LiveStatePtr()> live;              // never null
+  std::function<const operation::OperationSetup*()> setup;  // of the operation that was started; null: none
+  std::function<void(operation::Command command)> ask;
+  std::function<void()> end;
+};
+
+// What the hand pushes now: written by the window, read by the simulator's thread.
+class HandInbox {
+ public:
+  void set(const simulator::HandInput& input);
+  void end();
+  [[nodiscard]] simulator::Hand hand(const std::shared_ptr<HandInbox>& self) const;
+
+ private:
+  mutable std::mutex mutex_;
+  simulator::HandInput input_;
+  bool is_over_ = false;
+};
+
+enum class Page { List, Running, Score };
+
+class TrainingView : public mode::Mode {
+ public:
+  // scores: the file that the user's scores are kept in.
+  TrainingView(Theatre theatre, std::filesystem::path scores);
+
+  [[nodiscard]] mode::ModeTitle title() const override;
+  [[nodiscard]] bool works_read_only() const override { return false; }
+  void add_actions(widgets::Actions& actions) override;
+  [[nodiscard]] std::vector<std::string_view> action_prefixes() const override;
+  void case_opened(const mode::OpenCase& opened) override;
+  void enter() override;  // reads the scores again
+  void leave() override;  // lets go of everything
+  void tick(double now_s) override;
+  void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
+  [[nodiscard]] std::optional<widgets::Rect> header_in(const widgets::Ui& ui,
+                                                       const widgets::Rect& window) const override;
+  [[nodiscard]] bool is_busy() const override { return page_ == Page::Running; }
+  [[nodiscard]] bool has_running_work() const override { return page_ == Page::Running; }
+  [[nodiscard]] std::optional<sources::SourceKind> source_kind() const override;
+  [[nodiscard]] std::string notice() const override { return notice_; }
+
+ private:
+  struct Run {
+    training::ExerciseSetup setup;
+    operation::SourceSetup source;  // what the theatre was given
+    std::shared_ptr<training::ExerciseWatch> watch;
+    std::shared_ptr<HandInbox> inbox;
+    simulator::Held held = simulator::Held::Probe;
+    bool is_prepared = false, is_ended = false;
+    double began_s = 0;
+  };
+  void start();
+  void prepare(const theatre::LiveState& live);
+  void done();
+  void stop(bool is_done);
+  [[nodiscard]] bool is_another(const theatre::LiveState& live) const;  // precondition: run_
+  void drop();
+  [[nodiscard]] std::string refusal() const;  // why nothing can begin; empty: it can
+  void take_score(const theatre::LiveState& live);
+  void push(double now_s);
+  void read_scores();
+  [[nodiscard]] const training::Exercise& chosen() const { return training::exercises()[chosen_]; }
+  [[nodiscard]] widgets::Rect strip_of(const widgets::Ui& ui, widgets::Rect& area) const;
+
+  void draw_list(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_history(const widgets::Ui& ui, const widgets::Rect& area) const;
+  void draw_strip(const widgets::Ui& ui, const widgets::Rect& area) const;
+  void draw_score(const widgets::Ui& ui, const widgets::Rect& area);
+
+  Theatre theatre_;
+  std::filesystem::path scores_file_;
+  std::optional<mode::OpenCase> opened_;
+  std::string case_refusal_;  // by what the case holds
+  Page page_ = Page::List;
+  std::size_t chosen_ = 0;
+  training::Level level_ = training::Level::Easy;
+  std::vector<training::Score> scores_;
+  std::optional<Run> run_;
+  std::optional<training::Score> score_;  // of the exercise that was done last
+  HandDevices devices_;
+  std::string notice_;
+  double last_push_s_ = 0;
+  bool is_shown_ = false;
+};
+
+}  // namespace arthronaut::training_mode

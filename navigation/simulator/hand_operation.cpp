@@ -1,0 +1,302 @@
+#include "navigation/simulator/hand_operation.h"
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "navigation/simulator/holding.h"
+#include "navigation/simulator/instruments.h"
+#include "navigation/simulator/picture_faults.h"
+#include "navigation/simulator/random.h"
+#include "navigation/simulator/renderer.h"
+#include "navigation/simulator/staging.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::simulator {
+
+namespace {
+
+using Eigen::Vector3d;
+using geometry::RigidTransform;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kLifted_mm = 5;     // of the probe's tip off the bone at the beginning
+constexpr double kGuideBack_mm = 7;  // of the guide's point from the planned entry, at the beginning
+constexpr double kGuideAside_mm = 3, kGuideAslant_deg = 11;
+constexpr double kBumpDegPerMm = 1.5;
+
+const geometry::TriangleMesh& mesh_of(const SimulationOptions& options) {
+  return options.bone == bones::BoneKind::Femur ? options.knee.femur.mesh : options.knee.tibia.mesh;
+}
+
+Vector3d handle_of(const ProbePose& pose) {
+  return (pose.bone_from_marker.translation_mm - pose.tip_mm).normalized();
+}
+
+HandScene scene_of(const SimulationOptions& options, const Staging& staging, const geometry::Surface& bone,
+                   const HandOptions& hand) {
+  HandScene scene;
+  scene.plan = options.plan;
+  scene.plan.direction.normalize();
+  scene.plan_length_mm = tunnels::length_along(scene.plan, bone).value_or(0);
+  for (const auto& stroke : staging.strokes) {
+    auto& tips = scene.strokes.emplace_back();
+    auto& handles = scene.handles.emplace_back();
+    for (const ProbePose& pose : stroke) {
+      tips.push_back(pose.tip_mm);
+      handles.push_back(handle_of(pose));
+    }
+  }
+  HandStart& start = scene.start;
+  start.held = hand.held;
+  if (!staging.pivot.empty()) {
+    scene.dimple_mm = staging.pivot.front().tip_mm;
+    scene.dimple_handle.setZero();
+    for (const ProbePose& pose : staging.pivot) scene.dimple_handle += handle_of(pose);
+    scene.dimple_handle.normalize();
+  } else if (hand.starts_at_dimple) {
+    throw InvalidInput("simulator: the probe pivots on the femur, not on the tibia");
+  }
+  start.bone_from_camera_probe =
+      hand.starts_at_dimple ? staging.bone_from_camera_pivot : staging.bone_from_camera_scratch;
+  start.bone_from_camera_guide = staging.bone_from_camera_drill;
+  start.mark_angle_deg = options.camera.reference_mark_angle_deg;
+  const Vector3d place = hand.starts_at_dimple ? scene.dimple_mm : scene.strokes.front().front();
+  const Vector3d to_lens = (start.bone_from_camera_probe.translation_mm - place).normalized();
+  start.probe_tip_mm = place + kLifted_mm * to_lens;
+  start.probe_handle = hand.starts_at_dimple ? scene.dimple_handle : scene.handles.front().front();
+  Random random(options.seed + 53);
+  const Vector3d axis = scene.plan.direction;
+  const Vector3d side = Eigen::AngleAxisd(random.between(0, 2 * geometry::kPi), axis) * axis.unitOrthogonal();
+  start.guide_direction =
+      Eigen::AngleAxisd(geometry::rad_from_deg(kGuideAslant_deg), axis.cross(side)) * axis;
+  start.guide_point_mm = scene.plan.entry_mm - kGuideBack_mm * axis + kGuideAside_mm * side;
+  return scene;
+}
+
+}  // namespace
+
+std::string_view to_text(FaultKind kind) {
+  switch (kind) {
+    case FaultKind::Bleeding:
+      return "bleeding";
+    case FaultKind::Glare:
+      return "glare";
+    case FaultKind::BumpedMarker:
+      return "bumped marker";
+    case FaultKind::LostSource:
+      return "lost source";
+  }
+  return "";
+}
+
+void HandLog::add(const HandTruth& truth) {
+  const std::lock_guard lock(mutex_);
+  frames_.push_back(truth);
+}
+std::optional<HandTruth> HandLog::at(std::int64_t frame) const {
+  const std::lock_guard lock(mutex_);
+  if (frame < 0 || frame >= std::ssize(frames_)) return std::nullopt;
+  return frames_[static_cast<std::size_t>(frame)];
+}
+std::vector<HandTruth> HandLog::all() const {
+  const std::lock_guard lock(mutex_);
+  return frames_;
+}
+std::optional<HandTruth> HandLog::newest() const {
+  const std::lock_guard lock(mutex_);
+  return frames_.empty() ? std::nullopt : std::optional(frames_.back());
+}
+
+camera::Calibration with_fewer_pixels(const camera::Calibration& calibration, double share) {
+  if (!(share >= 0.2 && share <= 1)) throw InvalidInput("simulator: picture_share must lie in [0.2, 1]");
+  camera::Calibration small = calibration;
+  const auto scaled = [share](const Eigen::Vector2d& px) -> Eigen::Vector2d {
+    return share * (px + Eigen::Vector2d(0.5, 0.5)) - Eigen::Vector2d(0.5, 0.5);  // pixels count from centres
+  };
+  small.image_size_px = (share * calibration.image_size_px.cast<double>()).array().round().cast<int>();
+  small.focal_px *= share;
+  small.principal_point_px = scaled(calibration.principal_point_px);
+  small.rotation_center_px = scaled(calibration.rotation_center_px);
+  small.boundary.center_px = scaled(calibration.boundary.center_px);
+  small.boundary.radius_px *= share;
+  small.covariance.reset();
+  return small;
+}
+
+struct HandOperation::State {
+  SimulationOptions options;
+  HandOptions hand;
+  camera::Calibration camera;  // with fewer pixels
+  geometry::Surface bone;
+  Staging staging;
+  HandScene scene;
+  HandControl control;
+  RigidTransform bone_from_world;  // the marker, where it is now
+  BoneView bone_view;
+  Renderer renderer;
+  sources::SourceInfo info;
+  RigidTransform bone_from_probe, bone_from_guide;  // as they could be held last
+  std::vector<std::optional<double>> fault_began_s;
+  std::int64_t next_index = 0;
+  double time_s = 0, slid_mm = 0;
+  Clock::time_point began = Clock::now();
+
+  State(const SimulationOptions& o, HandOptions h)
+      : options(o),
+        hand(std::move(h)),
+        camera(with_fewer_pixels(o.camera, hand.picture_share)),
+        bone(mesh_of(o)),
+        staging(stage_operation(o, bone)),
+        scene(scene_of(o, staging, bone, hand)),
+        control(scene.start, bone, hand.limits),
+        bone_from_world(staging.bone_from_world_marker),
+        bone_view(mesh_of(o), o.seed),
+        renderer(&bone_view, SensorOptions{.blur_sigma_px = std::max(0.5, hand.picture_share)}),
+        bone_from_probe(staging.strokes.front().front().bone_from_marker),
+        fault_began_s(hand.faults.size()) {
+    if (options.frames_per_second < 1) throw InvalidInput("simulator: frames_per_second must be above 0");
+    if (!hand.hand) throw InvalidInput("simulator: there is no hand");
+    bone_from_guide =
+        guide_pose(*guide_of(options).axis, scene.start.guide_point_mm, scene.start.guide_direction,
+                   scene.start.bone_from_camera_guide.translation_mm);
+    info.name = "simulated arthroscope, by hand";
+    info.kind = sources::SourceKind::Simulation;
+    info.image_size_px = camera.image_size_px;
+    info.frames_per_second = options.frames_per_second;
+  }
+
+  bool act(std::size_t i) {
+    const Fault& fault = hand.faults[i];
+    std::optional<double>& began_s = fault_began_s[i];
+    if (!began_s) {
+      const HandState& now = control.state();
+      const bool is_due =
+          fault.trigger == Fault::Trigger::AtTime ? time_s >= fault.after
+          : fault.trigger == Fault::Trigger::ProbeDrawn
+              ? slid_mm >= fault.after
+              : now.held == Held::Guide && (now.guide_point_mm - scene.plan.entry_mm).norm() <= fault.after;
+      if (!is_due) return false;
+      began_s = time_s;
+      if (fault.kind == FaultKind::BumpedMarker) bump(fault.strength);
+    }
+    return fault.kind == FaultKind::BumpedMarker || time_s < *began_s + fault.duration_s;
+  }
+
+  void bump(double shift_mm) {
+    Random random(options.seed + 71);
+    const double where = random.between(0, 2 * geometry::kPi);
+    const Vector3d across(std::cos(where), std::sin(where), 0);  // in the marker's plane
+    bone_from_world =
+        bone_from_world * RigidTransform{Eigen::Quaterniond(Eigen::AngleAxisd(
+                                             geometry::rad_from_deg(kBumpDegPerMm * shift_mm), across)),
+                                         shift_mm * across};
+  }
+
+  // How the tool is held where the hand has it; as before where that cannot be.
+  void hold(const HandState& now) {
+    const Vector3d& eye = now.bone_from_camera.translation_mm;
+    if (const auto pose = hold_probe(*probe_of(options.tools).tip_mm, now.probe_tip_mm,
+                                     now.probe_tip_mm + 20 * now.probe_handle, eye))
+      bone_from_probe = *pose;
+    bone_from_guide = guide_pose(*guide_of(options).axis, now.guide_point_mm, now.guide_direction, eye);
+  }
+
+  float exposure() const {
+    // A white surface at the tool stays below saturation, and the marker on the bone is not in the dark.
+    const HandState& now = control.state();
+    const RigidTransform& tool = now.held == Held::Probe ? bone_from_probe : bone_from_guide;
+    const double away_mm = (now.bone_from_camera.inverse() * tool.translation_mm).norm();
+    const double used_mm = std::clamp(away_mm, 10.0, 40.0);
+    return static_cast<float>(0.85 * used_mm * used_mm);
+  }
+
+  // False: the hand has ended it.
+  bool move() {
+    double dt_s = 1.0 / options.frames_per_second;
+    if (hand.in_real_time) {
+      if (next_index == 0) began = Clock::now();
+      const auto due = began + std::chrono::duration_cast<Clock::duration>(
+                                   std::chrono::duration<double>(time_s + 1.0 / options.frames_per_second));
+      std::this_thread::sleep_until(due);
+      dt_s = std::chrono::duration<double>(Clock::now() - began).count() - time_s;
+    }
+    const auto input = hand.hand(scene, control.state());
+    if (!input) return false;
+    const Vector3d tip_before = control.state().probe_tip_mm;
+    const bool touched_before = control.state().touches_bone;
+    const HandState& now = control.step(*input, dt_s);
+    time_s += dt_s;
+    if (now.held == Held::Probe && now.touches_bone && touched_before)
+      slid_mm += (now.probe_tip_mm - tip_before).norm();
+    hold(now);
+    truth.input = *input;
+    return true;
+  }
+
+  HandTruth truth;
+
+  camera::FramePtr render() {
+    truth.faults = 0;
+    for (std::size_t i = 0; i < hand.faults.size(); ++i)
+      if (act(i)) truth.faults |= 1U << static_cast<unsigned>(hand.faults[i].kind);
+    const HandState& now = control.state();
+    truth.frame = next_index;
+    truth.time_s = time_s;
+    truth.hand = now;
+    truth.marker_from_bone = bone_from_world.inverse();
+    truth.slid_mm = slid_mm;
+    if (hand.log) hand.log->add(truth);
+
+    const RigidTransform camera_from_bone = now.bone_from_camera.inverse();
+    Scene picture;
+    picture.exposure = exposure();
+    picture.has_bone = true;
+    picture.camera_from_bone = camera_from_bone;
+    add_world_marker(world_marker_of(options), camera_from_bone * bone_from_world, picture.solids);
+    const bool is_probe = now.held == Held::Probe;
+    add_tool(is_probe ? probe_of(options.tools) : guide_of(options),
+             camera_from_bone * (is_probe ? bone_from_probe : bone_from_guide), picture.solids);
+    const camera::CameraModel model(camera, camera.lens_angle_rad(now.mark_angle_deg),
+                                    options.refractive_index);
+    const auto frame = std::make_shared<camera::Frame>();
+    const std::uint64_t noise_seed = options.seed * 1'000'003 + static_cast<std::uint64_t>(next_index);
+    renderer.render(picture, model, now.mark_angle_deg, noise_seed, *frame);
+    for (std::size_t i = 0; i < hand.faults.size(); ++i) spoil(hand.faults[i], i, noise_seed, *frame);
+    frame->index = next_index++;
+    frame->timestamp_ns = static_cast<std::int64_t>(std::llround(time_s * 1e9));
+    return frame;
+  }
+
+  void spoil(const Fault& fault, std::size_t i, std::uint64_t noise_seed, camera::Frame& frame) {
+    const auto& began_s = fault_began_s[i];
+    if (!began_s || time_s >= *began_s + fault.duration_s) return;
+    const double since_s = time_s - *began_s;
+    const double grown = std::min({1.0, since_s / 1.5, (*began_s + fault.duration_s - time_s) / 1.5});
+    if (fault.kind == FaultKind::Bleeding)
+      add_bleeding(frame, options.seed, since_s, grown * fault.strength);
+    else if (fault.kind == FaultKind::Glare)
+      add_glare(frame, options.seed, since_s, fault.strength);
+    else if (fault.kind == FaultKind::LostSource)
+      black_out(frame, noise_seed);
+  }
+};
+
+HandOperation::HandOperation(const SimulationOptions& options, HandOptions hand)
+    : state_(std::make_unique<State>(options, std::move(hand))) {}
+HandOperation::~HandOperation() = default;
+
+const sources::SourceInfo& HandOperation::info() const { return state_->info; }
+
+camera::FramePtr HandOperation::next() {
+  if (!state_->move()) return nullptr;
+  return state_->render();
+}
+
+const HandScene& HandOperation::scene() const { return state_->scene; }
+
+geometry::RigidTransform HandOperation::marker_from_bone() const {
+  return state_->staging.bone_from_world_marker.inverse();
+}
+
+}  // namespace arthronaut::simulator

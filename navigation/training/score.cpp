@@ -1,0 +1,193 @@
+#include "navigation/training/score.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "planning/files/format.h"
+
+namespace arthronaut::training {
+
+namespace {
+
+using files::format;
+
+double share_percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
+
+std::optional<double> value_of(Measure measure, const ExerciseFacts& facts) {
+  switch (measure) {
+    case Measure::Time:
+      return facts.time_s;
+    case Measure::EntryOffset:
+      return facts.entry_offset_mm;
+    case Measure::Angle:
+      return facts.angle_deg;
+    case Measure::DepthError:
+      return facts.depth_error_mm ? std::optional(std::abs(*facts.depth_error_mm)) : std::nullopt;
+    case Measure::TunnelError:
+      return facts.tunnel_error_mm;
+    case Measure::TipError:
+      return facts.tip_error_mm;
+    case Measure::Verification:
+      return facts.verifying_touches_missing;
+    case Measure::WastedTouches:
+      return facts.wasted_touches;
+    case Measure::DrawnInAir:
+      // Who draws nothing draws nothing well.
+      return facts.drawn_mm > 0 ? std::optional(share_percent(facts.drawn_in_air_mm, facts.drawn_mm))
+                                : std::nullopt;
+    case Measure::OutOfView:
+      return facts.frames > 0 ? std::optional(share_percent(facts.unseen_s, facts.time_s)) : std::nullopt;
+    case Measure::AlarmsIgnored:
+      return facts.alarms_ignored;
+    case Measure::ActedOnBadData:
+      return facts.bad_data_mm;
+  }
+  return std::nullopt;
+}
+
+std::string number(double value, Measure measure) {
+  const std::string_view unit = unit_of(measure);
+  if (unit.empty()) return format("%.0f", value);
+  const bool is_whole = measure == Measure::Time || unit == "%";
+  return format(is_whole ? "%.0f" : "%.1f", value) + (unit == "deg" ? "\u00B0"
+                                                      : unit == "%" ? " %"
+                                                                    : " " + std::string(unit));
+}
+
+std::string what_was_found(Measure measure, double value, const ExerciseFacts& facts) {
+  const std::string said = number(value, measure);
+  switch (measure) {
+    case Measure::Time:
+      return "It took " + said;
+    case Measure::EntryOffset:
+      return "The axis passes " + said + " beside the planned entry";
+    case Measure::Angle:
+      return "The axis is " + said + " off the plan's";
+    case Measure::DepthError:
+      return "The tunnel is " + said + (facts.depth_error_mm.value_or(0) > 0 ? " too deep" : " too short");
+    case Measure::TunnelError:
+      return "The registration puts the entry " + said + " from where it truly is";
+    case Measure::TipError:
+      return "The tip that was found is " + said + " from the true one";
+    case Measure::Verification:
+      return facts.verification_was_skipped         ? std::string("The verification was skipped")
+             : facts.verifying_touches_missing == 0 ? std::string("Touches have verified the registration")
+                                                    : "Verifying touches missing: " + said;
+    case Measure::WastedTouches:
+      return format("%d touches, %d of them told nothing", facts.touches, facts.wasted_touches);
+    case Measure::DrawnInAir:
+      return said + " of what was drawn was off the bone";
+    case Measure::OutOfView:
+      return "The tool's pose was unknown for " + said + " of the time";
+    case Measure::AlarmsIgnored:
+      return format("%d alarms, %d of them ignored", facts.alarms, facts.alarms_ignored);
+    case Measure::ActedOnBadData:
+      if (value <= 0) return "Nothing was done while the numbers were gone or wrong";
+      return said + " were done while the numbers were gone or wrong" +
+             (facts.worst_bad_error_mm > 0 ? format(" (by up to %.1f mm)", facts.worst_bad_error_mm) : "");
+  }
+  return "";
+}
+
+std::string never_came_to_that(Measure measure, const ExerciseFacts& facts) {
+  switch (measure) {
+    case Measure::EntryOffset:
+    case Measure::Angle:
+    case Measure::DepthError:
+      return "No tunnel was drilled and no guide was held";
+    case Measure::TunnelError:
+      return "No registration was in force at the end";
+    case Measure::TipError:
+      return "No tip was found: " + facts.tip_trouble;
+    case Measure::DrawnInAir:
+      return "Nothing was drawn";
+    default:
+      return "It never came to that";
+  }
+}
+
+std::string advice_for(Measure measure, const ExerciseFacts& facts) {
+  switch (measure) {
+    case Measure::Time:
+      return "Work more fluently: the same steps, with fewer stops between them.";
+    case Measure::EntryOffset:
+      return "Bring the bullseye's dot into its middle before you let the guide stand.";
+    case Measure::Angle:
+      return "Tilt the handle until the ring closes, once the point stands on the bone.";
+    case Measure::DepthError:
+      return facts.depth_error_mm.value_or(0) > 0
+                 ? "Stop earlier: read the depth that is planned before you drill."
+                 : "Drill on to the planned depth before you say that you are done.";
+    case Measure::TunnelError:
+      return facts.marker_was_bumped
+                 ? "The marker was pushed: touch the control point before you drill, and register anew."
+                 : "Draw longer strokes in several directions, also across the notch's edge.";
+    case Measure::TipError:
+      return "Keep the tip where it is and tilt further to all sides.";
+    case Measure::Verification:
+      return "Touch three places that lie apart, and hold still at each, before you take the guide.";
+    case Measure::WastedTouches:
+      return "Touch after the registration stands, at a new place each time, the tip at rest.";
+    case Measure::DrawnInAir:
+      return "Stop drawing before you lift the tip, or keep it on the bone between strokes.";
+    case Measure::OutOfView:
+      return "Hold the tool so that its marker faces the lens, or move the scope along.";
+    case Measure::AlarmsIgnored:
+      return "Stop at an alarm: the marker may have moved. Register anew.";
+    case Measure::ActedOnBadData:
+      return facts.worst_bad_error_mm > 0
+                 ? "The numbers were there and wrong: touch the control point before you drill."
+                 : "Let go of the drill whenever the numbers are gone: nothing guides then.";
+  }
+  return "";
+}
+
+ScorePart part_of(const Mark& mark, const ExerciseFacts& facts) {
+  ScorePart part;
+  part.measure = mark.measure;
+  part.good = mark.good;
+  part.limit = mark.limit;
+  part.most_points = mark.points;
+  part.value = value_of(mark.measure, facts);
+  if (part.value && !std::isfinite(*part.value)) part.value.reset();
+  if (!part.value) {
+    part.reason = never_came_to_that(mark.measure, facts) + ".";
+  } else {
+    const double share = std::clamp((mark.limit - *part.value) / (mark.limit - mark.good), 0.0, 1.0);
+    part.points = mark.points * share;
+    part.reason = what_was_found(mark.measure, *part.value, facts) + "; up to " +
+                  number(mark.good, mark.measure) + " gives all points, from " +
+                  number(mark.limit, mark.measure) + " on none.";
+  }
+  if (part.points < part.most_points) part.advice = advice_for(mark.measure, facts);
+  return part;
+}
+
+}  // namespace
+
+Score score_of(const Exercise& exercise, Level level, const ExerciseFacts& facts) {
+  constexpr std::size_t kMostAdvice = 3;
+  Score score;
+  score.exercise = exercise.id;
+  score.level = level;
+  score.is_done = facts.is_done;
+  for (const Mark& mark : exercise.marks) score.parts.push_back(part_of(mark, facts));
+  double sum = 0;
+  for (const ScorePart& part : score.parts) sum += part.points;
+  // Whoever stops half-way has made no mistakes either.
+  score.points = facts.is_done ? std::round(sum) : 0;
+  std::vector<const ScorePart*> costly;
+  for (const ScorePart& part : score.parts)
+    if (!part.advice.empty()) costly.push_back(&part);
+  std::stable_sort(costly.begin(), costly.end(), [](const ScorePart* a, const ScorePart* b) {
+    return a->most_points - a->points > b->most_points - b->points;
+  });
+  if (!facts.is_done)
+    score.better.emplace_back("Go on to the end and say that you are done: half an exercise counts nothing.");
+  for (const ScorePart* part : costly)
+    if (score.better.size() < kMostAdvice && part->most_points - part->points >= 1)
+      score.better.push_back(part->advice);
+  return score;
+}
+
+}  // namespace arthronaut::training

@@ -1,0 +1,38 @@
+// What an exercise was worth, part by part, each with its value, its limit, its points and one sentence that
+// says why; and what to do better. Pure: the same facts, the same score.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "navigation/training/exercise_facts.h"
+
+namespace arthronaut::training {
+
+struct ScorePart {
+  Measure measure = Measure::Time;
+  std::optional<double> value;  // in unit_of(measure); empty: it never came to that, which is worth nothing
+  double good = 0, limit = 0;   // see Mark
+  double points = 0, most_points = 0;
+  std::string
+      reason;  // "The entry is 1.3 mm off the plan; up to 1.0 mm gives all points, from 4.0 mm on none."
+  std::string advice;  // what to do better; empty where all points were earned
+};
+
+struct Score {
+  std::string exercise;  // id
+  Level level = Level::Easy;
+  double points = 0;  // of 100, rounded to whole ones; 0 as long as the trainee was not done
+  bool is_done = false;
+  std::vector<ScorePart> parts;     // in the exercise's order
+  std::vector<std::string> better;  // what to do better, what costs most first; three at most
+  // Where it comes from; filled in by whoever ran it.
+  std::uint64_t seed = 0;
+  std::string knee, when_utc, session, trainee;
+};
+
+[[nodiscard]] Score score_of(const Exercise& exercise, Level level, const ExerciseFacts& facts);
+
+}  // namespace arthronaut::training

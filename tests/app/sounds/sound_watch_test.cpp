@@ -1,0 +1,96 @@
+#include "app/sounds/sound_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace arthronaut::sounds {
+namespace {
+
+// Follows frames of a thirtieth of a second and keeps what was heard.
+class Listener {
+ public:
+  void see(const Shown& shown, double seconds) {
+    for (int i = 0; i < std::max(1, static_cast<int>(seconds * 30)); ++i) {
+      now_s_ += 1.0 / 30;
+      if (const auto sound = watch_.follow(shown, now_s_)) heard.push_back(*sound);
+    }
+  }
+  std::vector<Sound> heard;
+
+ private:
+  SoundWatch watch_;
+  double now_s_ = 100;
+};
+
+const Shown kNothing{}, kGuides{.guides = true}, kReached{.guides = true, .reached = true},
+    kDoubt{.doubts = true};
+using Heard = std::vector<Sound>;
+
+TEST(SoundWatch, LossIsHeardOnce) {
+  Listener listener;
+  listener.see(kNothing, 3);  // nothing was there to be lost
+  EXPECT_EQ(listener.heard, Heard{});
+  listener.see(kGuides, 2);
+  listener.see(kNothing, 5);
+  EXPECT_EQ(listener.heard, Heard{Sound::Lost});
+  listener.see(kGuides, 2);
+  listener.see(kNothing, 2);
+  EXPECT_EQ(listener.heard, (Heard{Sound::Lost, Sound::Lost}));
+}
+
+// Hazard 3: a source that fails while it guides is a loss like any other; one that somebody ended is none.
+TEST(SoundWatch, Hazard3AnEndNobodyAskedForIsHeard) {
+  const Shown failed{.runs = false}, ended{.runs = false, .end_was_asked = true};
+  Listener listener;
+  listener.see(kGuides, 2);
+  listener.see(failed, 5);
+  EXPECT_EQ(listener.heard, Heard{Sound::Lost});
+  listener.see(kGuides, 2);
+  listener.see(ended, 5);
+  EXPECT_EQ(listener.heard, Heard{Sound::Lost});
+}
+
+// A marker that flickers makes no noise.
+TEST(SoundWatch, FlickerIsNotHeard) {
+  Listener listener;
+  for (int i = 0; i < 30; ++i) {
+    listener.see(kGuides, 0.5);
+    listener.see(kNothing, 0.1);
+  }
+  EXPECT_EQ(listener.heard, Heard{});
+}
+
+// Doubt is said at once, in place of the loss that it brings.
+TEST(SoundWatch, DoubtComesBeforeLoss) {
+  Listener listener;
+  listener.see(kGuides, 2);
+  listener.see(kDoubt, 3);
+  EXPECT_EQ(listener.heard, Heard{Sound::Doubtful});
+}
+
+TEST(SoundWatch, ReachedIsHeardWhenItComes) {
+  Listener listener;
+  listener.see(kGuides, 1);
+  listener.see(kReached, 3);
+  EXPECT_EQ(listener.heard, Heard{Sound::Reached});
+  listener.see(kGuides, 1);
+  listener.see(kReached, 1);
+  EXPECT_EQ(listener.heard, (Heard{Sound::Reached, Sound::Reached}));
+}
+
+// What trembles about its limit is not a machine gun.
+TEST(SoundWatch, TheSameSoundKeepsApart) {
+  Listener listener;
+  listener.see(kGuides, 1);
+  for (int i = 0; i < 15; ++i) {
+    listener.see(kReached, 0.04);
+    listener.see(kGuides, 0.04);
+  }
+  EXPECT_LE(listener.heard.size(), 2u);
+  EXPECT_GE(listener.heard.size(), 1u);
+}
+
+}  // namespace
+}  // namespace arthronaut::sounds

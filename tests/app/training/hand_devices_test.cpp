@@ -1,0 +1,69 @@
+#include "app/training/hand_devices.h"
+
+#include <gtest/gtest.h>
+
+namespace arthronaut::training_mode {
+namespace {
+
+using Eigen::Vector3d;
+using simulator::HandInput;
+using simulator::Held;
+
+constexpr double kFrame_s = 0.05;
+
+TEST(HandDevices, NothingPushedIsNothing) {
+  const HandInput input = hand_input({}, Held::Guide, kFrame_s);
+  EXPECT_EQ(input.held, Held::Guide);
+  EXPECT_TRUE(input.move.isZero());
+  EXPECT_TRUE(input.tilt.isZero());
+  EXPECT_EQ(input.drill, 0);
+  EXPECT_FALSE(input.moves_scope);
+}
+
+// The same way on the table is the same push, however often the devices are read.
+TEST(HandDevices, MouseCountsBySpeed) {
+  DeviceState slow, fast;
+  slow.mouse_moves = fast.mouse_moves = true;
+  slow.mouse_px = {10, -5};
+  fast.mouse_px = {20, -10};
+  EXPECT_EQ(hand_input(slow, Held::Probe, kFrame_s).move, hand_input(fast, Held::Probe, 2 * kFrame_s).move);
+  EXPECT_GT(hand_input(slow, Held::Probe, kFrame_s).move.x(), 0);
+  EXPECT_LT(hand_input(slow, Held::Probe, kFrame_s).move.y(), 0);
+  EXPECT_TRUE(hand_input(slow, Held::Probe, 0).move.isZero());
+}
+
+// Which button is held says what moves; without one the mouse is anybody's.
+TEST(HandDevices, ButtonsChooseWhatMoves) {
+  DeviceState state;
+  state.mouse_px = {10, 0};
+  EXPECT_TRUE(hand_input(state, Held::Probe, kFrame_s).move.isZero());
+  state.mouse_tilts = true;
+  EXPECT_TRUE(hand_input(state, Held::Probe, kFrame_s).move.isZero());
+  EXPECT_GT(hand_input(state, Held::Probe, kFrame_s).tilt.x(), 0);
+  state.mouse_tilts = false;
+  state.mouse_scope = true;
+  EXPECT_TRUE(hand_input(state, Held::Probe, kFrame_s).moves_scope);
+  EXPECT_GT(hand_input(state, Held::Probe, kFrame_s).move.x(), 0);
+}
+
+// A thumb that rests on a stick pushes nothing; a full stick pushes fully; a pad that is not there nothing.
+TEST(HandDevices, SticksHaveARest) {
+  DeviceState state;
+  state.has_pad = true;
+  state.pad_move = {0.1, -0.12, 0};
+  EXPECT_TRUE(hand_input(state, Held::Probe, kFrame_s).move.isZero());
+  state.pad_move = {1, -1, 0.5};
+  const Vector3d move = hand_input(state, Held::Probe, kFrame_s).move;
+  EXPECT_DOUBLE_EQ(move.x(), 1);
+  EXPECT_DOUBLE_EQ(move.y(), -1);
+  EXPECT_GT(move.z(), 0.3);
+  EXPECT_LT(move.z(), 0.5);
+  state.pad_drill = true;
+  EXPECT_EQ(hand_input(state, Held::Guide, kFrame_s).drill, 1);
+  state.has_pad = false;
+  EXPECT_TRUE(hand_input(state, Held::Guide, kFrame_s).move.isZero());
+  EXPECT_EQ(hand_input(state, Held::Guide, kFrame_s).drill, 0);
+}
+
+}  // namespace
+}  // namespace arthronaut::training_mode

@@ -1,0 +1,117 @@
+// An exercise from the list to its score, by the keys of a hand, on the real window.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/window/display.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class WorkstationTraining : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
+  }
+  // The one of that name below the user's data.
+  [[nodiscard]] fs::path found(const std::string& name) const {
+    for (const auto& entry : fs::recursive_directory_iterator(folder_.path()))
+      if (entry.path().filename() == name) return entry.path();
+    return {};
+  }
+  const TemporaryFolder folder_;
+};
+
+// Aim: the list, the exercise on the theatre's screen as a simulation, the guide moved by a key that is held,
+// "done", the score with all its parts; kept for the next time, and recorded as a session of the case.
+TEST_F(WorkstationTraining, AnExerciseIsDoneByHandAndScored) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F6");
+  ASSERT_TRUE(app.wait_for_state("train_page", "list"));
+  EXPECT_TRUE(app.wait_for_state("train_refusal", ""));
+  EXPECT_TRUE(app.wait_for_state("train_runs", "0"));
+  app.press("Down");
+  app.press("Down");  // pivot, register, aim
+  app.press("space");
+  ASSERT_TRUE(app.wait_for_state("train_page", "running"));
+  ASSERT_TRUE(app.wait_for_state("train_hand", "guide", 120));
+  EXPECT_TRUE(app.wait_for_state("source_kind", "SIMULATION"));
+  EXPECT_TRUE(app.wait_for_state("train_moved", "no"));
+  EXPECT_TRUE(app.hold_until("d", "train_moved", "yes"));
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("train_page", "score", 60));
+  EXPECT_EQ(app.state("train_done"), "yes");
+  EXPECT_EQ(app.state("source_kind"), "none");
+
+  const fs::path kept = found("training.json");
+  ASSERT_FALSE(kept.empty());
+  std::ifstream in(kept);
+  const nlohmann::json scores = nlohmann::json::parse(in).at("scores");
+  ASSERT_EQ(scores.size(), 1u);
+  EXPECT_EQ(scores[0].at("exercise"), "aim");
+  EXPECT_EQ(scores[0].at("trainee"), "by hand");
+  EXPECT_EQ(scores[0].at("parts").size(), 5u);
+  EXPECT_FALSE(found(scores[0].at("session").get<std::string>()).empty()) << scores[0].at("session");
+
+  // Back in the list it is one run; Navigate knows nothing of it.
+  app.press("space");
+  ASSERT_TRUE(app.wait_for_state("train_page", "list"));
+  EXPECT_TRUE(app.wait_for_state("train_runs", "1"));
+  app.press("F2");
+  ASSERT_TRUE(app.wait_for_state("mode", "navigate"));
+  EXPECT_TRUE(app.wait_for_state("source_kind", "none"));
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
+// Hazard 40: while an exercise has the theatre, Navigate starts nothing over it; stopped there, it is over.
+TEST_F(WorkstationTraining, Hazard40NavigateStartsNothingWhileItIsLent) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F6");
+  ASSERT_TRUE(app.wait_for_state("train_page", "list"));
+  EXPECT_TRUE(app.wait_for_state("train_refusal", ""));
+  app.press("Down");
+  app.press("Down");
+  app.press("space");
+  ASSERT_TRUE(app.wait_for_state("train_hand", "guide", 120));
+  app.press("F2");
+  ASSERT_TRUE(app.wait_for_state("mode", "navigate"));
+  const std::string refusal = "An exercise runs here: end it in Train (F6) first";
+  ASSERT_TRUE(app.hold_until("k", "notice", refusal));
+  EXPECT_EQ(app.state("cameras"), "none");
+  EXPECT_EQ(app.state("source_kind"), "SIMULATION");
+  ASSERT_TRUE(app.hold_until("Escape", "source_kind", "none", 60));
+  app.press("F6");
+  ASSERT_TRUE(app.wait_for_state("train_page", "score", 60));
+  EXPECT_EQ(app.state("train_done"), "no");
+}
+
+// Esc must be held, and what is not done counts nothing.
+TEST_F(WorkstationTraining, WhatIsStoppedCountsNothing) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F6");
+  ASSERT_TRUE(app.wait_for_state("train_page", "list"));
+  app.press("Down");
+  app.press("Down");
+  app.press("space");
+  ASSERT_TRUE(app.wait_for_state("train_hand", "guide", 120));
+  app.press("Escape");
+  EXPECT_TRUE(app.wait_for_state("hold", "Hold Esc to stop the exercise (let go)"));
+  EXPECT_EQ(app.state("train_page"), "running");
+  ASSERT_TRUE(app.hold_until("Escape", "train_page", "score", 60));
+  EXPECT_EQ(app.state("train_done"), "no");
+  EXPECT_EQ(app.state("train_points"), "0");
+}
+
+}  // namespace
+}  // namespace arthronaut::test

@@ -1,0 +1,151 @@
+#include "navigation/training/score.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace arthronaut::training {
+namespace {
+
+const Exercise& drilling() { return *find_exercise("drill-femur"); }
+
+// Everything within what gives all points.
+ExerciseFacts flawless() {
+  ExerciseFacts facts;
+  facts.is_done = true;
+  facts.time_s = 120;
+  facts.frames = 3600;
+  facts.entry_offset_mm = 0.4;
+  facts.angle_deg = 0.9;
+  facts.depth_error_mm = -0.3;
+  facts.tunnel_error_mm = 0.5;
+  facts.tip_error_mm = 0.05;
+  facts.verifying_touches_missing = 0;
+  facts.touches = 4;
+  facts.drawn_mm = 180;
+  facts.drawn_in_air_mm = 2;
+  facts.unseen_s = 3;
+  return facts;
+}
+
+const ScorePart& part_of(const Score& score, Measure measure) {
+  const auto found = std::find_if(score.parts.begin(), score.parts.end(),
+                                  [&](const ScorePart& part) { return part.measure == measure; });
+  if (found == score.parts.end()) throw std::out_of_range("no such part");
+  return *found;
+}
+
+// Without a fault all points are earned in every exercise, and there is nothing to do better.
+TEST(Score, FlawlessEarnsEverything) {
+  for (const Exercise& exercise : exercises()) {
+    ExerciseFacts facts = flawless();
+    facts.time_s = 20;  // the shortest exercise gives all its points for 30 s
+    facts.unseen_s = 0.5;
+    const Score score = score_of(exercise, Level::Easy, facts);
+    EXPECT_EQ(score.points, 100) << exercise.id;
+    EXPECT_TRUE(score.better.empty()) << exercise.id;
+    for (const ScorePart& part : score.parts) {
+      EXPECT_TRUE(part.advice.empty()) << exercise.id << " " << to_text(part.measure);
+      EXPECT_FALSE(part.reason.empty()) << exercise.id << " " << to_text(part.measure);
+    }
+  }
+}
+
+// Half-way between the two limits half the points, at the second one and beyond it none.
+TEST(Score, PointsFallEvenlyBetweenTheLimits) {
+  const Exercise& exercise = drilling();
+  const auto mark = std::find_if(exercise.marks.begin(), exercise.marks.end(),
+                                 [](const Mark& m) { return m.measure == Measure::EntryOffset; });
+  ExerciseFacts facts = flawless();
+  const auto points_at = [&](double offset_mm) {
+    facts.entry_offset_mm = offset_mm;
+    return part_of(score_of(exercise, Level::Easy, facts), Measure::EntryOffset).points;
+  };
+  EXPECT_DOUBLE_EQ(points_at(mark->good), mark->points);
+  EXPECT_DOUBLE_EQ(points_at((mark->good + mark->limit) / 2), mark->points / 2);
+  EXPECT_DOUBLE_EQ(points_at(mark->limit), 0);
+  EXPECT_DOUBLE_EQ(points_at(10 * mark->limit), 0);
+}
+
+// Each mistake costs where it belongs, and nowhere else.
+TEST(Score, EachMistakeCostsItsOwnPart) {
+  using Change = void (*)(ExerciseFacts&);
+  const std::vector<std::pair<Measure, Change>> mistakes{
+      {Measure::Time, [](ExerciseFacts& f) { f.time_s = 500; }},
+      {Measure::Angle, [](ExerciseFacts& f) { f.angle_deg = 5; }},
+      {Measure::DepthError, [](ExerciseFacts& f) { f.depth_error_mm = 4; }},
+      {Measure::DepthError, [](ExerciseFacts& f) { f.depth_error_mm = -4; }},
+      {Measure::TunnelError, [](ExerciseFacts& f) { f.tunnel_error_mm = 2.9; }},
+      {Measure::Verification, [](ExerciseFacts& f) { f.verifying_touches_missing = 3; }},
+      {Measure::WastedTouches, [](ExerciseFacts& f) { f.wasted_touches = 3; }},
+      {Measure::DrawnInAir, [](ExerciseFacts& f) { f.drawn_in_air_mm = 60; }},
+      {Measure::AlarmsIgnored, [](ExerciseFacts& f) { f.alarms = f.alarms_ignored = 1; }},
+      {Measure::ActedOnBadData, [](ExerciseFacts& f) { f.bad_data_mm = 8; }},
+  };
+  for (const auto& [measure, change] : mistakes) {
+    ExerciseFacts facts = flawless();
+    change(facts);
+    const Score score = score_of(drilling(), Level::Hard, facts);
+    EXPECT_LT(score.points, 100) << to_text(measure);
+    ASSERT_EQ(score.better.size(), 1u) << to_text(measure);
+    EXPECT_EQ(score.better.front(), part_of(score, measure).advice);
+    for (const ScorePart& part : score.parts)
+      EXPECT_EQ(part.points == part.most_points, part.measure != measure) << to_text(part.measure);
+  }
+}
+
+// A tunnel that was never drilled is worth nothing, and the reason says so instead of a number.
+TEST(Score, WhatNeverHappenedIsWorthNothing) {
+  ExerciseFacts facts = flawless();
+  facts.entry_offset_mm.reset();
+  facts.angle_deg.reset();
+  facts.depth_error_mm.reset();
+  const Score score = score_of(drilling(), Level::Easy, facts);
+  for (const Measure measure : {Measure::EntryOffset, Measure::Angle, Measure::DepthError}) {
+    EXPECT_EQ(part_of(score, measure).points, 0);
+    EXPECT_FALSE(part_of(score, measure).value.has_value());
+  }
+  facts.entry_offset_mm = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(part_of(score_of(drilling(), Level::Easy, facts), Measure::EntryOffset).points, 0);
+}
+
+// Half an exercise makes few mistakes: it counts nothing, and that is the first thing to do better.
+TEST(Score, HalfAnExerciseCountsNothing) {
+  ExerciseFacts facts = flawless();
+  facts.is_done = false;
+  const Score score = score_of(drilling(), Level::Easy, facts);
+  EXPECT_EQ(score.points, 0);
+  ASSERT_FALSE(score.better.empty());
+  EXPECT_NE(score.better.front().find("done"), std::string::npos);
+}
+
+// Numbers that were gone and numbers that were wrong are different mistakes: the advice says which.
+TEST(Score, AdviceTellsGoneNumbersFromWrongOnes) {
+  ExerciseFacts gone = flawless(), wrong = flawless();
+  gone.bad_data_mm = wrong.bad_data_mm = 10;
+  wrong.worst_bad_error_mm = 2.8;
+  const std::string for_gone =
+      part_of(score_of(drilling(), Level::Hard, gone), Measure::ActedOnBadData).advice;
+  const std::string for_wrong =
+      part_of(score_of(drilling(), Level::Hard, wrong), Measure::ActedOnBadData).advice;
+  EXPECT_NE(for_gone.find("gone"), std::string::npos);
+  EXPECT_NE(for_wrong.find("control point"), std::string::npos);
+}
+
+// What costs most is said first, three things at most.
+TEST(Score, AdviceComesByWhatItCosts) {
+  ExerciseFacts facts = flawless();
+  facts.entry_offset_mm = 4;  // 20 points
+  facts.angle_deg = 6;        // 15
+  facts.time_s = 600;         // 10
+  facts.wasted_touches = 4;   // 5
+  const Score score = score_of(drilling(), Level::Easy, facts);
+  ASSERT_EQ(score.better.size(), 3u);
+  EXPECT_EQ(score.better[0], part_of(score, Measure::EntryOffset).advice);
+  EXPECT_EQ(score.better[1], part_of(score, Measure::Angle).advice);
+  EXPECT_EQ(score.better[2], part_of(score, Measure::Time).advice);
+}
+
+}  // namespace
+}  // namespace arthronaut::training
