@@ -1,5 +1,6 @@
 #include "navigation/tools/tool_set.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -31,6 +32,69 @@ int read_marker_id(const files::JsonObject& entry, const std::string& owner, Own
   return static_cast<int>(id);
 }
 
+// One sigma that must not be negative.
+std::optional<double> read_sigma(const files::JsonObject& entry, std::string_view key) {
+  if (!entry.has(key)) return std::nullopt;
+  const double sigma = entry.number(key);
+  if (sigma < 0) entry.fail(key, "must not be negative");
+  return sigma;
+}
+
+BodyMarker read_body_marker(const files::JsonObject& entry, const std::string& owner, Owners& owners) {
+  BodyMarker marker;
+  marker.marker_id = read_marker_id(entry, owner, owners);
+  marker.size_mm = entry.positive_number("size_mm");
+  marker.body_from_marker = entry.rigid_transform("tool_from_marker");
+  marker.sigma_mm = read_sigma(entry, "sigma_mm");
+  marker.sigma_deg = read_sigma(entry, "sigma_deg");
+  return marker;
+}
+
+// "markers", where they are several, or else "marker_id" and "size_mm".
+template <typename Body>
+void read_markers(const files::JsonObject& entry, const std::string& owner, Owners& owners, Body& body) {
+  if (!entry.has("markers")) {
+    body.marker_id = read_marker_id(entry, owner, owners);
+    body.size_mm = entry.positive_number("size_mm");
+    return;
+  }
+  for (const char* key : {"marker_id", "size_mm"})
+    if (entry.has(key)) entry.fail(key, "must not stand beside \"markers\", which say it of each");
+  for (const files::JsonObject& marker : entry.objects("markers")) {
+    body.markers.push_back(read_body_marker(marker, owner, owners));
+    for (std::size_t i = 0; i + 1 < body.markers.size(); ++i) {
+      if (lie_on_one_another(body.markers[i], body.markers.back()))
+        marker.fail("tool_from_marker",
+                    "lies on marker " + std::to_string(body.markers[i].marker_id) + " of the same body");
+    }
+  }
+  if (body.markers.empty() || body.markers.size() > kMostMarkersOfBody)
+    entry.fail("markers", "must be 1 to " + std::to_string(kMostMarkersOfBody) + ", are " +
+                              std::to_string(body.markers.size()));
+  body.marker_id = body.markers.front().marker_id;
+  body.size_mm = body.markers.front().size_mm;
+}
+
+template <typename Body>
+void write_markers(const Body& body, nlohmann::ordered_json& entry) {
+  if (body.markers.empty()) {
+    entry["marker_id"] = body.marker_id;
+    entry["size_mm"] = body.size_mm;
+    return;
+  }
+  auto markers = nlohmann::ordered_json::array();
+  for (const BodyMarker& marker : body.markers) {
+    nlohmann::ordered_json one;
+    one["marker_id"] = marker.marker_id;
+    one["size_mm"] = marker.size_mm;
+    one["tool_from_marker"] = files::to_json(marker.body_from_marker);
+    if (marker.sigma_mm) one["sigma_mm"] = *marker.sigma_mm;
+    if (marker.sigma_deg) one["sigma_deg"] = *marker.sigma_deg;
+    markers.push_back(std::move(one));
+  }
+  entry["markers"] = std::move(markers);
+}
+
 ToolAxis read_axis(const files::JsonObject& entry) {
   ToolAxis axis;
   axis.point_mm = entry.vector3("axis_point_mm");
@@ -38,14 +102,6 @@ ToolAxis read_axis(const files::JsonObject& entry) {
   if (direction.norm() < 1e-6) entry.fail("axis_direction", "must not be zero");
   axis.direction = direction.normalized();
   return axis;
-}
-
-// One sigma that must not be negative.
-std::optional<double> read_sigma(const files::JsonObject& entry, std::string_view key) {
-  if (!entry.has(key)) return std::nullopt;
-  const double sigma = entry.number(key);
-  if (sigma < 0) entry.fail(key, "must not be negative");
-  return sigma;
 }
 
 // "tip_covariance_mm2", nine numbers row by row, or "tip_sigma_mm", the same in every direction.
@@ -75,8 +131,7 @@ Tool read_tool(const files::JsonObject& entry, Owners& owners) {
   Tool tool;
   tool.name = entry.text("name");
   if (tool.name.empty()) entry.fail("name", "must not be empty");
-  tool.marker_id = read_marker_id(entry, "tool \"" + tool.name + "\"", owners);
-  tool.size_mm = entry.positive_number("size_mm");
+  read_markers(entry, "tool \"" + tool.name + "\"", owners, tool);
   if (entry.has("tip_mm")) tool.tip_mm = entry.vector3("tip_mm");
   if (entry.has("axis_point_mm") || entry.has("axis_direction")) tool.axis = read_axis(entry);
   if (entry.has("residual_mm")) {
@@ -95,10 +150,32 @@ Tool read_tool(const files::JsonObject& entry, Owners& owners) {
 
 }  // namespace
 
+std::vector<BodyMarker> markers_of(const Tool& tool) {
+  if (!tool.markers.empty()) return tool.markers;
+  return {{tool.marker_id, tool.size_mm, {}}};
+}
+
+std::vector<BodyMarker> markers_of(const WorldMarker& world) {
+  if (!world.markers.empty()) return world.markers;
+  return {{world.marker_id, world.size_mm, {}}};
+}
+
+geometry::RigidTransform first_marker_of(const Tool& tool) {
+  return tool.markers.empty() ? geometry::RigidTransform() : tool.markers.front().body_from_marker;
+}
+
 std::optional<Eigen::Vector3d> shaft_direction(const Tool& tool) {
   constexpr double kMinLength_mm = 1e-6;
-  if (!tool.tip_mm || tool.tip_mm->norm() < kMinLength_mm) return std::nullopt;
-  return -tool.tip_mm->normalized();
+  if (!tool.tip_mm) return std::nullopt;
+  const Eigen::Vector3d to_marker_mm = first_marker_of(tool).translation_mm - *tool.tip_mm;
+  if (to_marker_mm.norm() < kMinLength_mm) return std::nullopt;
+  return to_marker_mm.normalized();
+}
+
+bool ToolSet::has_bodies_of_several() const {
+  const auto has_list = [](const auto& body) { return !body.markers.empty(); };
+  return std::any_of(world_markers.begin(), world_markers.end(), has_list) ||
+         std::any_of(tools.begin(), tools.end(), has_list);
 }
 
 DefaultToolError default_error(const Tool& tool) {
@@ -168,8 +245,7 @@ ToolSet read_tools_file(const std::filesystem::path& file) {
       entry.fail("bone", "must be \"femur\" or \"tibia\", is \"" + bone + "\"");
     }
     if (set.find_world_marker(marker.bone)) entry.fail("bone", "the " + bone + " has a world marker already");
-    marker.marker_id = read_marker_id(entry, "the world marker of the " + bone, owners);
-    marker.size_mm = entry.positive_number("size_mm");
+    read_markers(entry, "the world marker of the " + bone, owners, marker);
     set.world_markers.push_back(marker);
   }
   for (const files::JsonObject& entry : document.objects("tools")) {
@@ -189,8 +265,7 @@ void write_tools_file(const std::filesystem::path& file, const ToolSet& tools) {
   for (const WorldMarker& marker : tools.world_markers) {
     nlohmann::ordered_json entry;
     entry["bone"] = bones::to_text(marker.bone);
-    entry["marker_id"] = marker.marker_id;
-    entry["size_mm"] = marker.size_mm;
+    write_markers(marker, entry);
     document["world_markers"].push_back(std::move(entry));
   }
   document["tools"] = nlohmann::ordered_json::array();
@@ -198,8 +273,7 @@ void write_tools_file(const std::filesystem::path& file, const ToolSet& tools) {
     nlohmann::ordered_json entry;
     entry["name"] = tool.name;
     if (tool.kind == ToolKind::Drill) entry["kind"] = "drill";
-    entry["marker_id"] = tool.marker_id;
-    entry["size_mm"] = tool.size_mm;
+    write_markers(tool, entry);
     if (tool.tip_mm) entry["tip_mm"] = files::to_json(*tool.tip_mm);
     if (tool.axis) {
       entry["axis_point_mm"] = files::to_json(tool.axis->point_mm);

@@ -142,6 +142,65 @@ TEST_F(ToolsFile, NamesThePlaceOfWhatItRefuses) {
   EXPECT_FALSE(refusal().empty());
 }
 
+// Where each marker lies, and how well that is known, survives the file to the last bit.
+TEST_F(ToolsFile, KeepsTheMarkersOfABody) {
+  ToolSet written = standard_tools();
+  const geometry::RigidTransform tilted{
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 3).normalized())), {1.25, 8.5, -0.75}};
+  written.tools[0].markers = {{2, 4.0, {}}, {12, 3.0, tilted, 0.02, 0.15}};
+  written.world_markers[1].markers = {{1, 4.0, tilted}, {11, 5.0, tilted.inverse()}};
+  written.world_markers[1].marker_id = 1;
+  write_tools_file(file_, written);
+  const ToolSet read = read_tools_file(file_);
+  EXPECT_TRUE(are_same(read.tools[0].markers, written.tools[0].markers));
+  EXPECT_TRUE(are_same(read.world_markers[1].markers, written.world_markers[1].markers));
+  EXPECT_EQ(read.tools[0].markers[1].sigma_mm, 0.02);
+  EXPECT_EQ(read.tools[0].markers[1].sigma_deg, 0.15);
+  EXPECT_EQ(read.tools[0].marker_id, 2);
+  EXPECT_EQ(read.world_markers[1].size_mm, 4.0);
+  EXPECT_TRUE(read.tools[1].markers.empty());
+  EXPECT_TRUE(read.has_bodies_of_several());
+  EXPECT_FALSE(standard_tools().has_bodies_of_several());
+}
+
+// A marker's place is said once, is a place, and is no other marker's.
+TEST_F(ToolsFile, NamesWhatIsWrongWithTheMarkersOfABody) {
+  const std::string at = R"("tool_from_marker": {"q_wxyz": [1, 0, 0, 0], "t_mm": [0, 0, 0]})";
+  const std::string first = R"({"marker_id": 2, "size_mm": 4, )" + at + "}";
+  const auto tool = [&](const std::string& second, const std::string& more = "") {
+    write(R"({"bone": "femur", "marker_id": 0, "size_mm": 4})",
+          R"({"name": "probe", "markers": [)" + first + ", " + second + "]" + more + "}");
+    return refusal();
+  };
+  const auto marker = [](const std::string& id, const std::string& q, const std::string& t) {
+    return R"({"marker_id": )" + id + R"(, "size_mm": 4, "tool_from_marker": {"q_wxyz": )" + q +
+           R"(, "t_mm": )" + t + "}}";
+  };
+  EXPECT_NE(
+      tool(marker("0", "[1,0,0,0]", "[0,9,0]")).find("tools[0].markers[1].marker_id: marker 0 is already"),
+      std::string::npos)
+      << refusal();
+  EXPECT_NE(tool(marker("2", "[1,0,0,0]", "[0,9,0]")).find("already declared by tool \"probe\""),
+            std::string::npos);
+  EXPECT_NE(tool(marker("7", "[1,1,0,0]", "[0,9,0]")).find("tool_from_marker.q_wxyz: must have unit norm"),
+            std::string::npos)
+      << refusal();
+  EXPECT_NE(tool(marker("7", "[1,0,0,0]", "[0,1e999,0]")).find("out of range"), std::string::npos)
+      << refusal();
+  EXPECT_NE(tool(marker("7", "[1,0,0,0]", "[0,1,0]")).find("lies on marker 2"), std::string::npos)
+      << refusal();
+  EXPECT_NE(tool(R"({"marker_id": 7, "size_mm": 4})").find("tool_from_marker"), std::string::npos)
+      << refusal();
+  EXPECT_NE(tool(marker("7", "[1,0,0,0]", "[0,9,0]"), R"(, "marker_id": 8)").find("beside \"markers\""),
+            std::string::npos)
+      << refusal();
+  write("", R"({"name": "probe", "markers": []})");
+  EXPECT_NE(refusal().find("tools[0].markers: must be 1 to 16"), std::string::npos) << refusal();
+  // On the plate's other face the same place is another one.
+  write("", R"({"name": "probe", "markers": [)" + first + ", " + marker("7", "[0,0,1,0]", "[0,0,-1]") + "]}");
+  EXPECT_EQ(read_tools_file(file_).tools[0].markers.size(), 2U);
+}
+
 // A direction of any length is a direction.
 TEST_F(ToolsFile, NormalisesTheAxis) {
   write(
