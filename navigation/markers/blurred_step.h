@@ -14,8 +14,10 @@ class BlurredStep {
       : box_(static_cast<float>(box_px)), scale_(static_cast<float>(1 / sigma_px)) {}
 
   struct Value {
-    float level;    // 0 to 1
-    float slope;    // d level / d distance
+    float level;  // 0 to 1
+    float slope;  // d level / d distance
+  };
+  struct Trend {
     float d_sigma;  // d level / d sigma
     float d_box;    // d level / d box
   };
@@ -26,9 +28,14 @@ class BlurredStep {
     Value value;
     value.level = (upper.integral - lower.integral) / (scale_ * box_);
     value.slope = (upper.cumulative - lower.cumulative) / box_;
-    value.d_sigma = (upper.density - lower.density) / box_;
-    value.d_box = (0.5F * (upper.cumulative + lower.cumulative) - value.level) / box_;
     return value;
+  }
+  [[nodiscard]] Trend trend_at(float distance) const {
+    const Entry upper = look_up((distance + 0.5F * box_) * scale_);
+    const Entry lower = look_up((distance - 0.5F * box_) * scale_);
+    const float level = (upper.integral - lower.integral) / (scale_ * box_);
+    return {(upper.density - lower.density) / box_,
+            (0.5F * (upper.cumulative + lower.cumulative) - level) / box_};
   }
 
  private:

@@ -7,11 +7,20 @@
 namespace arthronaut::markers {
 namespace {
 
-constexpr double kSpread = 0.2;  // of the samples within a cell
-constexpr float kSaturatedLight = 255;
+constexpr double kSpread = 0.2;         // of the samples within a cell
+constexpr int kMinSamples = 3;          // of five that are not saturated
 constexpr double kMinRange = 4;         // in light
 constexpr double kMinExplained = 0.75;  // share of the cells' variance
 constexpr int kMaxWrongInside = 1, kMaxWrong = 2;
+// With cells that say nothing.
+constexpr int kMinInside = 10, kMinKnown = 22;
+constexpr float kUnknown = -1, kSaturatedLight = 255;
+// When a pose is supposed: how far a cell may be from its level, as a share of the range; what has to agree.
+constexpr double kAgrees = 0.3;
+constexpr double kMinAgreeing = 0.45;
+constexpr int kMinAgreeingInside = 7, kMaxOppositeInside = 3, kClearLead = 4, kLead = 5;
+constexpr int kMinCoveredScore = 6;
+constexpr int kSeePasses = 4;
 
 using CellLight = std::array<float, kMaxCells * kMaxCells>;
 
@@ -29,10 +38,11 @@ bool sample_cells(const LinearImage& image, const camera::CameraModel& camera,
         const auto pixel = camera.project(homography * place);
         if (!pixel || !image.contains(pixel->x(), pixel->y())) return false;
         const float value = image.sample(static_cast<float>(pixel->x()), static_cast<float>(pixel->y()));
-        sum += value < 0 ? kSaturatedLight : value;
+        if (value < 0) continue;
+        sum += value;
         ++count;
       }
-      light[row * cells + column] = sum / static_cast<float>(count);
+      light[row * cells + column] = count >= kMinSamples ? sum / static_cast<float>(count) : kUnknown;
     }
   }
   return true;
@@ -53,51 +63,223 @@ int turned_cell(int row, int column, int turn, int cells) {
   }
 }
 
+Eigen::Matrix<double, 6, 1> regressors(double x, double y, bool is_bright) {
+  const double c = is_bright ? 1 : 0;
+  Eigen::Matrix<double, 6, 1> r;
+  r << 1, x, y, c, c * x, c * y;
+  return r;
+}
+
+// Cells beside one that is not known.
+std::array<bool, kMaxCells * kMaxCells> beside_unknown(const CellLight& light, int cells) {
+  std::array<bool, kMaxCells * kMaxCells> beside{};
+  for (int i = 0; i < cells * cells; ++i) {
+    if (light[i] != kUnknown) continue;
+    for (int row = std::max(0, i / cells - 1); row <= std::min(cells - 1, i / cells + 1); ++row) {
+      for (int column = std::max(0, i % cells - 1); column <= std::min(cells - 1, i % cells + 1); ++column)
+        beside[row * cells + column] = true;
+    }
+  }
+  return beside;
+}
+
 // Fits light = (1, x, y) bias + code * (1, x, y) gain and counts the cells on the wrong side of the middle.
-bool fits(const CellLight& light, const MarkerCode& code, int turn, int& wrong) {
+bool fits(const CellLight& light, const std::array<bool, kMaxCells * kMaxCells>& is_tainted, bool has_unknown,
+          const MarkerCode& code, int turn, int& wrong) {
   const int cells = code.cells;
   Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
   double sum = 0, squares = 0;
-  const auto regressors = [&](int row, int column) {
-    const double x = (column + 0.5) / cells - 0.5, y = (row + 0.5) / cells - 0.5;
-    const double c = code.is_bright(row, column) ? 1 : 0;
-    Eigen::Matrix<double, 6, 1> r;
-    r << 1, x, y, c, c * x, c * y;
-    return r;
+  int known = 0;
+  // A highlight only adds light: beside it, what should be dark and is not says nothing.
+  const auto is_used = [&](int row, int column) {
+    const int cell = turned_cell(row, column, turn, cells);
+    return light[cell] != kUnknown && !(is_tainted[cell] && !code.is_bright(row, column));
+  };
+  const auto regressors_of = [&](int row, int column) {
+    return regressors((column + 0.5) / cells - 0.5, (row + 0.5) / cells - 0.5, code.is_bright(row, column));
   };
   for (int row = 0; row < cells; ++row) {
     for (int column = 0; column < cells; ++column) {
+      if (!is_used(row, column)) continue;
       const double value = light[turned_cell(row, column, turn, cells)];
-      const auto r = regressors(row, column);
+      const auto r = regressors_of(row, column);
       normal += r * r.transpose();
       right += value * r;
       sum += value;
       squares += value * value;
+      ++known;
     }
   }
+  if (has_unknown && known < kMinKnown * cells * cells / 36) return false;
   normal.diagonal().array() += 1e-6;
   const Eigen::Matrix<double, 6, 1> fit = normal.ldlt().solve(right);
   double residual = 0;
-  int wrong_inside = 0;
+  int wrong_inside = 0, inside = 0;
   wrong = 0;
   for (int row = 0; row < cells; ++row) {
     for (int column = 0; column < cells; ++column) {
-      const double value = light[turned_cell(row, column, turn, cells)];
-      const auto r = regressors(row, column);
-      const double error = value - fit.dot(r);
-      residual += error * error;
+      const int cell = turned_cell(row, column, turn, cells);
+      if (light[cell] == kUnknown) continue;
+      const double value = light[cell];
+      const auto r = regressors_of(row, column);
       const double x = r[1], y = r[2];
       const double gain = fit[3] + fit[4] * x + fit[5] * y, bias = fit[0] + fit[1] * x + fit[2] * y;
       if (gain < kMinRange) return false;
       const bool is_bright = value > bias + 0.5 * gain;
+      if (is_bright && is_tainted[cell] && !code.is_bright(row, column)) continue;
+      const double error = value - fit.dot(r);
+      if (is_used(row, column)) residual += error * error;
+      const bool is_inside = row > 0 && column > 0 && row + 1 < cells && column + 1 < cells;
+      inside += is_inside;
       if (is_bright == code.is_bright(row, column)) continue;
       ++wrong;
-      wrong_inside += row > 0 && column > 0 && row + 1 < cells && column + 1 < cells;
+      wrong_inside += is_inside;
     }
   }
-  const double variance = squares - sum * sum / (cells * cells);
+  if (has_unknown && (wrong_inside > 0 || inside < kMinInside * (cells - 2) * (cells - 2) / 16)) return false;
+  const double variance = squares - sum * sum / std::max(1, known);
   return wrong_inside <= kMaxWrongInside && wrong <= kMaxWrong && residual < (1 - kMinExplained) * variance;
+}
+
+// A cell, or one of the margin, as the picture shows it.
+struct SeenCell {
+  double value = 0, x = 0, y = 0;
+  int row = 0, column = 0;
+  bool is_margin = false, is_inside = false;
+  bool is_beside_white = false;  // a saturated one
+};
+constexpr int kMostCells = (kMaxCells + 2) * (kMaxCells + 2);
+using SeenCells = std::array<SeenCell, kMostCells>;
+
+// `at` takes a place on the marker (in sides, y up) to the camera frame. Saturated cells are left out.
+template <typename Place>
+int see_cells(const LinearImage& image, const camera::CameraModel& camera, int cells, const Place& at,
+              SeenCells& seen) {
+  const int wide = cells + 2;
+  int count = 0;
+  std::array<bool, kMostCells> is_white{};
+  for (int i = 0; i < wide * wide; ++i) {
+    SeenCell& cell = seen[count];
+    cell = SeenCell();
+    cell.row = i / wide - 1;
+    cell.column = i % wide - 1;
+    cell.is_margin = cell.row < 0 || cell.column < 0 || cell.row >= cells || cell.column >= cells;
+    cell.is_inside = cell.row > 0 && cell.column > 0 && cell.row + 1 < cells && cell.column + 1 < cells;
+    // The margin is no wider than a cell: its half next to the square.
+    const auto middle = [cells](int k) { return k < 0 ? -0.4 : k >= cells ? cells + 0.4 : k + 0.5; };
+    cell.x = middle(cell.column) / cells - 0.5;
+    cell.y = middle(cell.row) / cells - 0.5;
+    double sum = 0;
+    int samples = 0;
+    for (int k = 0; k < 5; ++k) {
+      const double spread = (cell.is_margin ? 0.5 : 1) * kSpread / cells;
+      const double dx = k == 0 ? 0 : (k % 2 ? spread : -spread), dy = k == 0 ? 0 : (k < 3 ? spread : -spread);
+      const auto pixel = camera.project(at(cell.x + dx, -(cell.y + dy)));
+      if (!pixel || !camera.is_inside_view(*pixel) || !image.contains(pixel->x(), pixel->y())) continue;
+      const float value = image.sample(static_cast<float>(pixel->x()), static_cast<float>(pixel->y()));
+      if (value < 0) continue;
+      sum += value;
+      ++samples;
+    }
+    is_white[i] = samples < kMinSamples;
+    if (is_white[i]) continue;
+    cell.value = sum / samples;
+    ++count;
+  }
+  for (int i = 0; i < count; ++i) {
+    SeenCell& cell = seen[i];
+    for (int row = std::max(0, cell.row); row <= std::min(wide - 1, cell.row + 2); ++row) {
+      for (int column = std::max(0, cell.column); column <= std::min(wide - 1, cell.column + 2); ++column)
+        cell.is_beside_white |= is_white[row * wide + column];
+    }
+  }
+  return count;
+}
+
+// What the cells say of one code whose top-left is corner `turn` of what they were seen on. What covers is
+// left out step by step, beginning with the light that most of the cells agree on.
+SeenCode judge_cells(std::span<const SeenCell> seen, std::span<const MarkerCode> codes, std::size_t index,
+                     int turn) {
+  const MarkerCode& code = codes[index];
+  const int cells = code.cells;
+  // The marker's cell that is seen here.
+  const auto is_bright_in = [cells](const MarkerCode& of, const SeenCell& cell, int turned) {
+    if (cell.is_margin) return true;
+    const int there = turned_cell(cell.row, cell.column, (4 - turned) % 4, cells);
+    return of.is_bright(there / cells, there % cells);
+  };
+  std::array<double, kMostCells> weights;
+  std::array<bool, kMostCells> expected;
+  const int count = static_cast<int>(seen.size());
+  for (int i = 0; i < count; ++i) {
+    expected[i] = is_bright_in(code, seen[i], turn);
+    weights[i] = 1;
+  }
+  SeenCode result;
+  result.seen = count;
+  std::array<std::int8_t, kMostCells> shades;  // 0 dark, 1 bright, -1 neither
+  // A highlight only adds light: what is bright beside it speaks against no dark cell.
+  const auto contradicts = [&](int i, bool is_bright) {
+    return shades[i] == (is_bright ? 0 : 1) && !(shades[i] == 1 && seen[i].is_beside_white);
+  };
+  Eigen::Matrix<double, 6, 1> fit;
+  for (int pass = 0; pass < kSeePasses; ++pass) {
+    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+    Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
+    for (int i = 0; i < count; ++i) {
+      const auto r = regressors(seen[i].x, seen[i].y, expected[i]);
+      normal += weights[i] * r * r.transpose();
+      right += weights[i] * seen[i].value * r;
+    }
+    // A slope of the light is not expected to be larger than the light.
+    for (const int slope : {1, 2, 4, 5}) normal(slope, slope) += 0.3;
+    normal.diagonal().array() += 1e-6;
+    fit = normal.ldlt().solve(right);
+    if (!(fit[3] > kMinRange)) return result;
+    for (int i = 0; i < count; ++i) {
+      const double error =
+          (seen[i].value - fit.dot(regressors(seen[i].x, seen[i].y, expected[i]))) / (kAgrees * fit[3]);
+      weights[i] = 1 / std::pow(1 + error * error, 2);
+    }
+  }
+  for (int i = 0; i < count; ++i) {
+    const SeenCell& cell = seen[i];
+    const double gain = fit[3] + fit[4] * cell.x + fit[5] * cell.y;
+    const double level = (cell.value - fit[0] - fit[1] * cell.x - fit[2] * cell.y) / std::max(gain, 1e-3);
+    shades[i] = std::abs(level) < kAgrees ? 0 : std::abs(level - 1) < kAgrees ? 1 : -1;
+    result.agreeing += shades[i] == (expected[i] ? 1 : 0);
+    if (!cell.is_inside) continue;
+    ++result.seen_inside;
+    result.agreeing_inside += shades[i] == (expected[i] ? 1 : 0);
+    result.opposite_inside += contradicts(i, expected[i]);
+  }
+  int other_score = -count;
+  for (std::size_t other = 0; other < codes.size(); ++other) {
+    for (int other_turn = 0; other_turn < 4; ++other_turn) {
+      if (other == index && other_turn == turn) continue;
+      int score = 0;
+      for (int i = 0; i < count; ++i) {
+        if (!seen[i].is_inside) continue;
+        const bool is_bright = is_bright_in(codes[other], seen[i], other_turn);
+        score += (shades[i] == (is_bright ? 1 : 0)) - contradicts(i, is_bright);
+      }
+      other_score = std::max(other_score, score);
+    }
+  }
+  result.lead = result.agreeing_inside - result.opposite_inside - other_score;
+  return result;
+}
+
+// How much brighter the margin is than the border, both as far as they are seen.
+double margin_contrast(std::span<const SeenCell> seen) {
+  std::array<double, 2> sum{}, n{};
+  for (const SeenCell& cell : seen) {
+    if (cell.is_inside) continue;
+    sum[cell.is_margin] += cell.value;
+    n[cell.is_margin] += 1;
+  }
+  return n[0] < 8 || n[1] < 10 ? 0 : sum[1] / n[1] - sum[0] / n[0];
 }
 
 }  // namespace
@@ -109,14 +291,71 @@ std::optional<ReadCode> read_code(const LinearImage& image, const camera::Camera
   CellLight light{};
   const int cells = codes.front().cells;
   if (!homography || !sample_cells(image, camera, *homography, cells, light)) return std::nullopt;
-  const auto [lowest, highest] = std::minmax_element(light.begin(), light.begin() + cells * cells);
-  if (*highest - *lowest < kMinRange) return std::nullopt;
+  float lowest = 1e9F, highest = -1e9F;
+  bool has_unknown = false;
+  for (int i = 0; i < cells * cells; ++i) {
+    if (light[i] == kUnknown) {
+      has_unknown = true;
+      continue;
+    }
+    lowest = std::min(lowest, light[i]);
+    highest = std::max(highest, light[i]);
+  }
+  if (has_unknown) highest = kSaturatedLight;
+  if (highest - lowest < kMinRange) return std::nullopt;
+  const auto read = [&](const CellLight& cell_light, const auto& is_tainted, bool are_missing) {
+    std::optional<ReadCode> best;
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+      for (int turn = 0; turn < 4; ++turn) {
+        int wrong = 0;
+        if (!fits(cell_light, is_tainted, are_missing, codes[i], turn, wrong)) continue;
+        if (!best || wrong < best->wrong_cells) best = ReadCode{static_cast<int>(i), turn, wrong};
+      }
+    }
+    return best;
+  };
+  // In a picture that is too bright, the bright cells are saturated, and nothing else is.
+  CellLight as_bright = light;
+  std::replace(as_bright.begin(), as_bright.begin() + cells * cells, kUnknown, kSaturatedLight);
+  const auto best = read(as_bright, std::array<bool, kMaxCells * kMaxCells>{}, false);
+  return best || !has_unknown ? best : read(light, beside_unknown(light, cells), true);
+}
+
+bool SeenCode::is_confirmed() const {
+  return agreeing > kMinAgreeing * seen && agreeing_inside >= kMinAgreeingInside &&
+         opposite_inside <= kMaxOppositeInside && lead >= (opposite_inside == 0 ? kClearLead : kLead);
+}
+
+SeenCode see_code(const LinearImage& image, const camera::CameraModel& camera,
+                  const geometry::RigidTransform& camera_from_marker, double size_mm,
+                  std::span<const MarkerCode> codes, std::size_t index) {
+  SeenCells seen;
+  const int count = see_cells(
+      image, camera, codes[index].cells,
+      [&](double x, double y) { return camera_from_marker * Eigen::Vector3d(x * size_mm, y * size_mm, 0); },
+      seen);
+  return judge_cells(std::span(seen).first(static_cast<std::size_t>(count)), codes, index, 0);
+}
+
+std::optional<ReadCode> read_covered_code(const LinearImage& image, const camera::CameraModel& camera,
+                                          const Corners& square, std::span<const MarkerCode> codes) {
+  const auto homography = square_homography(square, 1.0);
+  if (codes.empty() || !homography) return std::nullopt;
+  SeenCells seen;
+  const int count = see_cells(
+      image, camera, codes.front().cells,
+      [&](double x, double y) -> Eigen::Vector3d { return *homography * Eigen::Vector3d(x, y, 1); }, seen);
+  const auto cells = std::span(seen).first(static_cast<std::size_t>(count));
+  if (margin_contrast(cells) < kMinRange) return std::nullopt;
   std::optional<ReadCode> best;
+  int most = 0;
   for (std::size_t i = 0; i < codes.size(); ++i) {
     for (int turn = 0; turn < 4; ++turn) {
-      int wrong = 0;
-      if (!fits(light, codes[i], turn, wrong)) continue;
-      if (!best || wrong < best->wrong_cells) best = ReadCode{static_cast<int>(i), turn, wrong};
+      const SeenCode code = judge_cells(cells, codes, i, turn);
+      const int score = code.agreeing_inside - 2 * code.opposite_inside;
+      if (!code.is_confirmed() || score < kMinCoveredScore || score <= most) continue;
+      most = score;
+      best = ReadCode{static_cast<int>(i), turn, code.opposite_inside};
     }
   }
   return best;

@@ -32,15 +32,20 @@ std::string_view to_text(MarkerState state) {
       return "seen twice";
     case MarkerState::Doubtful:
       return "doubtful";
+    case MarkerState::Disagreeing:
+      return "its markers disagree: bent?";
   }
   return "unknown";
 }
 
 std::vector<DeclaredMarker> declared_markers(const tools::ToolSet& tools) {
   std::vector<DeclaredMarker> declared;
-  for (const tools::WorldMarker& marker : tools.world_markers)
-    declared.push_back({marker.marker_id, marker.size_mm});
-  for (const tools::Tool& tool : tools.tools) declared.push_back({tool.marker_id, tool.size_mm});
+  const auto add = [&](const auto& body) {
+    for (const tools::BodyMarker& marker : tools::markers_of(body))
+      declared.push_back({marker.marker_id, marker.size_mm});
+  };
+  for (const tools::WorldMarker& world : tools.world_markers) add(world);
+  for (const tools::Tool& tool : tools.tools) add(tool);
   return declared;
 }
 

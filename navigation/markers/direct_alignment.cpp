@@ -147,12 +147,24 @@ struct DirectFit::State {
   float coarse = 0;  // smear on purpose, in cells
   double noise = kMinNoiseGrey;
 
-  [[nodiscard]] ExposedCode::Level level_at(const Pixel& pixel) const {
+  void find_levels(std::span<const Pixel> pixels, std::span<ExposedCode::Level> levels) const {
     const auto wider = [this](float sigma) {
       const float smeared = smear_factor * sigma;
       return coarse > 0 ? std::sqrt(smeared * smeared + coarse * coarse) : smeared;
     };
-    return exposed.at(pixel.ray, wider(pixel.sigma_x), wider(pixel.sigma_y));
+    LookedAt at;
+    for (std::size_t first = 0; first < pixels.size(); first += kPixelsTogether) {
+      const std::size_t count = std::min<std::size_t>(kPixelsTogether, pixels.size() - first);
+      for (std::size_t i = 0; i < kPixelsTogether; ++i) {
+        const Pixel& pixel = pixels[first + std::min(i, count - 1)];
+        at.ray_x[i] = pixel.ray.x();
+        at.ray_y[i] = pixel.ray.y();
+        at.ray_z[i] = pixel.ray.z();
+        at.sigma_x[i] = wider(pixel.sigma_x);
+        at.sigma_y[i] = wider(pixel.sigma_y);
+      }
+      exposed.look(at, static_cast<int>(count), &levels[first]);
+    }
   }
   bool apply(const Vector& step) {
     if (!step.allFinite() || step.head<3>().norm() > 3 || step.segment<3>(3).norm() > 0.5) return false;
@@ -222,9 +234,9 @@ void DirectFit::guess_light(State& state) {
 }
 
 void DirectFit::linearise(const State& state, bool is_first, Linearised& result) {
-  static_assert(kCount <= kRow);
+  static_assert(kCount <= kRow && kRow == kProductSize);
   result = Linearised();
-  ProductSum<kRow> products;
+  ProductSum products;
   for (Row& gradient : edge_gradients_) gradient.setZero();
   sorted_.clear();
   const auto gamma = static_cast<float>(state.gamma);
@@ -253,7 +265,8 @@ void DirectFit::linearise(const State& state, bool is_first, Linearised& result)
     row[kGamma] = -modelled * logarithm / (gamma * gamma);
     row.segment<kBiasTerms>(kLight) = slope * terms.head<kBiasTerms>();
     row.segment<kGainTerms>(kLight + kBiasTerms) = slope * level.level * terms.head<kGainTerms>();
-    products.add(std::sqrt(weight) * row);
+    products.next() = std::sqrt(weight) * row;
+    products.add();
     edge_gradients_[pixel.edge] += weight * residual * row;
   }
   result.scale = 1.4826 * geometry::median_in_place(std::span(sorted_));
@@ -324,7 +337,7 @@ DirectPose DirectFit::refine(const camera::GrayView& frame, const camera::Camera
     state.exposed.move(
         state.pose,
         static_cast<int>(std::ceil(motion_px(state.pose.velocity, size_mm, px_per_mm) / moment_px)));
-    for (std::size_t i = 0; i < pixels_.size(); ++i) levels_[i] = state.level_at(pixels_[i]);
+    state.find_levels(pixels_, levels_);
     if (iteration == 0) guess_light(state);
     linearise(state, iteration == 0, at);
     at.prior = prior;

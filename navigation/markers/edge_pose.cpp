@@ -17,6 +17,7 @@ using geometry::Vector6d;
 constexpr int kIterations = 10;
 constexpr int kMinEdges = 12;
 constexpr int kMaxEdges = 1024;
+constexpr double kMinTellingShare = 0.5;
 constexpr double kTukey = 4.685;
 // Neighbouring profiles share pixels and what is wrong with them: so many of them count as one.
 constexpr double kCorrelatedEdges = 2.2;
@@ -36,17 +37,16 @@ double growth_of(const EdgeSample& sample) { return sample.cells[1] < sample.cel
 struct Row {
   Vector7d jacobian;  // body twist, bloom
   double residual_px = 0;
-  bool is_valid = false;
 };
 
-Row row_of(const camera::CameraModel& camera, double size_mm, const EdgeSample& sample,
-           const EdgeMeasurement& measurement, const RigidTransform& pose, const Eigen::Matrix3d& rotation,
-           double bloom_px) {
-  Row row;
+// False: behind the camera.
+bool find_row(const camera::CameraModel& camera, double size_mm, const EdgeSample& sample,
+              const EdgeMeasurement& measurement, const RigidTransform& pose, const Eigen::Matrix3d& rotation,
+              double bloom_px, Row& row) {
   const Eigen::Vector3d place(sample.x * size_mm, sample.y * size_mm, 0);
   Eigen::Matrix<double, 2, 3> d_pixel;
-  const auto pixel = camera.project(pose * place, d_pixel);
-  if (!pixel) return row;
+  const auto pixel = camera.project(rotation * place + pose.translation_mm, d_pixel);
+  if (!pixel) return false;
   const Eigen::RowVector3d across = measurement.normal.transpose() * d_pixel * rotation;
   row.jacobian.head<3>() = across.transpose();
   // -across * [place]x
@@ -54,20 +54,13 @@ Row row_of(const camera::CameraModel& camera, double size_mm, const EdgeSample& 
   row.jacobian[6] = growth_of(sample);
   row.residual_px = measurement.offset_px - measurement.normal.dot(*pixel - measurement.point_px) -
                     bloom_px * row.jacobian[6];
-  row.is_valid = true;
-  return row;
+  return true;
 }
 
 double tukey_weight(double ratio) {
   if (std::abs(ratio) >= kTukey) return 0;
   const double left = 1 - ratio * ratio / (kTukey * kTukey);
   return left * left;
-}
-
-// Median of |residual / sigma| , on the stack.
-double median_of(const std::array<double, kMaxEdges>& ratios, int count) {
-  std::array<double, kMaxEdges> copy = ratios;
-  return geometry::median_in_place(std::span(copy).first(static_cast<std::size_t>(count)));
 }
 
 }  // namespace
@@ -82,21 +75,25 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
   Matrix7d normal;
   double bloom = bloom_prior.mean_px;
   double scale = 1, squares = 0, weights = 0, px_squares = 0;
+  std::array<Row, kMaxEdges> rows;
+  std::array<int, kMaxEdges> of_row;  // its measurement
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const Eigen::Matrix3d rotation = pose.matrix();
     int count = 0;
-    for (const EdgeMeasurement& measurement : measurements) {
-      if (measurement.state != EdgeState::Found || count == static_cast<int>(ratios.size())) continue;
-      const EdgeSample& sample = samples[measurement.sample];
-      const auto pixel = camera.project(pose * Eigen::Vector3d(sample.x * size_mm, sample.y * size_mm, 0));
-      if (!pixel) return result;
-      ratios[count++] =
-          std::abs(measurement.offset_px - measurement.normal.dot(*pixel - measurement.point_px) -
-                   bloom * growth_of(sample)) /
-          measurement.sigma_px;
+    for (std::size_t i = 0; i < measurements.size(); ++i) {
+      is_inlier[i] = 0;
+      const EdgeMeasurement& measurement = measurements[i];
+      if (measurement.state != EdgeState::Found || count == kMaxEdges) continue;
+      if (!find_row(camera, size_mm, samples[measurement.sample], measurement, pose, rotation, bloom,
+                    rows[count]))
+        return result;
+      of_row[count] = static_cast<int>(i);
+      ratios[count] = std::abs(rows[count].residual_px) / measurement.sigma_px;
+      ++count;
     }
     if (count < kMinEdges) return result;
-    scale = std::max(1.0, 1.4826 * median_of(ratios, count));
+    scale = std::max(
+        1.0, 1.4826 * geometry::median_in_place(std::span(ratios).first(static_cast<std::size_t>(count))));
 
     const double bloom_weight = 1 / (bloom_prior.sigma_px * bloom_prior.sigma_px);
     normal.setZero();
@@ -105,22 +102,19 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
     gradient[6] = bloom_weight * (bloom_prior.mean_px - bloom);
     squares = weights = px_squares = 0;
     result.inliers = 0;
-    for (std::size_t i = 0; i < measurements.size(); ++i) {
-      const EdgeMeasurement& measurement = measurements[i];
-      is_inlier[i] = 0;
-      if (measurement.state != EdgeState::Found) continue;
-      const Row row =
-          row_of(camera, size_mm, samples[measurement.sample], measurement, pose, rotation, bloom);
-      const double ratio = row.residual_px / measurement.sigma_px;
+    for (int r = 0; r < count; ++r) {
+      const Row& row = rows[r];
+      const double sigma_px = measurements[of_row[r]].sigma_px;
+      const double ratio = row.residual_px / sigma_px;
       const double robust = tukey_weight(ratio / scale);
-      if (!row.is_valid || robust <= 0) continue;
-      const double weight = robust / (measurement.sigma_px * measurement.sigma_px);
+      if (robust <= 0) continue;
+      const double weight = robust / (sigma_px * sigma_px);
       normal.noalias() += weight * row.jacobian * row.jacobian.transpose();
       gradient.noalias() += weight * row.residual_px * row.jacobian;
       squares += robust * ratio * ratio;
       weights += robust;
       px_squares += row.residual_px * row.residual_px;
-      is_inlier[i] = 1;
+      is_inlier[of_row[r]] = 1;
       ++result.inliers;
     }
     if (result.inliers < kMinEdges) return result;
@@ -139,15 +133,19 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
   result.bloom_px = bloom;
   result.scale = std::sqrt(squares / std::max(1.0, weights - 6));
   result.rms_px = std::sqrt(px_squares / result.inliers);
-  std::array<int, 2> seen{}, agreeing{};
+  // What is saturated speaks neither for nor against the pose, as long as it is not the most of it.
+  std::array<int, 2> seen{}, saturated{}, agreeing{};
   for (std::size_t i = 0; i < measurements.size(); ++i) {
     if (measurements[i].state == EdgeState::OutOfView) continue;
     const int axis = samples[measurements[i].sample].axis;
     ++seen[axis];
+    saturated[axis] += measurements[i].state == EdgeState::Saturated;
     agreeing[axis] += is_inlier[i];
   }
-  for (int axis = 0; axis < 2; ++axis)
-    result.share[axis] = seen[axis] > 0 ? double(agreeing[axis]) / seen[axis] : 0;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double telling = std::max(double(seen[axis] - saturated[axis]), kMinTellingShare * seen[axis]);
+    result.share[axis] = telling > 0 ? agreeing[axis] / telling : 0;
+  }
 
   const double inflation = kCorrelatedEdges * std::max(0.25, result.scale * result.scale);
   result.covariance = inflation * Matrix7d(normal.ldlt().solve(Matrix7d::Identity())).topLeftCorner<6, 6>();

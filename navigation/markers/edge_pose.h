@@ -23,8 +23,8 @@ struct EdgePose {
   double scale = 0;   // residuals / their predicted sigmas
   double rms_px = 0;  // of the inliers
   int inliers = 0;
-  // Inliers / samples in view, for edges crossed along x and along y: a marker that is off by a cell keeps
-  // one of them.
+  // Inliers / samples in view that are not saturated, for edges crossed along x and along y: a marker that is
+  // off by a cell keeps one of them.
   std::array<double, 2> share{};
 };
 

@@ -40,7 +40,7 @@ bool locate(const camera::CameraModel& camera, const RigidTransform& pose, const
             double size_mm, int cells, const EdgeSample& sample, const Smear& smear, Crossing& crossing) {
   const Eigen::Vector3d place(sample.x * size_mm, sample.y * size_mm, 0);
   Eigen::Matrix<double, 2, 3> d_pixel;
-  const auto point = camera.project(pose * place, d_pixel);
+  const auto point = camera.project(rotation * place + pose.translation_mm, d_pixel);
   if (!point || !camera.is_inside_view(*point)) return false;
   const Eigen::Matrix<double, 2, 3> d_marker = d_pixel * rotation;
   const Eigen::Vector2d across = d_marker.col(sample.axis), along = d_marker.col(1 - sample.axis);
@@ -83,28 +83,45 @@ bool read_profile(const LinearImage& image, const Crossing& crossing, int reach,
 }
 
 struct Model {
-  std::array<float, kMaxProfile> level, slope, d_sigma, d_box;
+  std::array<float, kMaxProfile> level, slope;
+};
+// How it changes with what smears it.
+struct ModelTrend {
+  std::array<float, kMaxProfile> d_sigma, d_box;
 };
 
 // The light of the four cells along the normal, dark 0 and bright 1, with the middle edge at `offset`.
 void model_profile(const EdgeSample& sample, const Crossing& crossing, const BlurredStep& step, float offset,
                    int reach, Model& model) {
-  for (int i = 0; i <= 2 * reach; ++i) {
-    const float at = static_cast<float>(i - reach) - offset;
-    float level = sample.cells[0], slope = 0, d_sigma = 0, d_box = 0;
-    for (int edge = 0; edge < 3; ++edge) {
-      const float rise = sample.cells[edge + 1] - sample.cells[edge];
-      if (rise == 0) continue;
-      const auto value = step.at(at - static_cast<float>(edge - 1) * crossing.cell_px);
-      level += rise * value.level;
-      slope += rise * value.slope;
-      d_sigma += rise * value.d_sigma;
-      d_box += rise * value.d_box;
+  const int count = 2 * reach + 1;
+  std::fill_n(model.level.begin(), count, sample.cells[0]);
+  std::fill_n(model.slope.begin(), count, 0.0F);
+  for (int edge = 0; edge < 3; ++edge) {
+    const float rise = sample.cells[edge + 1] - sample.cells[edge];
+    if (rise == 0) continue;
+    const float first = static_cast<float>(-reach) - offset - static_cast<float>(edge - 1) * crossing.cell_px;
+    for (int i = 0; i < count; ++i) {
+      const auto value = step.at(first + static_cast<float>(i));
+      model.level[i] += rise * value.level;
+      model.slope[i] += rise * value.slope;
     }
-    model.level[i] = level;
-    model.slope[i] = slope;
-    model.d_sigma[i] = d_sigma;
-    model.d_box[i] = d_box;
+  }
+}
+
+void model_trend(const EdgeSample& sample, const Crossing& crossing, const BlurredStep& step, float offset,
+                 int reach, ModelTrend& trend) {
+  const int count = 2 * reach + 1;
+  std::fill_n(trend.d_sigma.begin(), count, 0.0F);
+  std::fill_n(trend.d_box.begin(), count, 0.0F);
+  for (int edge = 0; edge < 3; ++edge) {
+    const float rise = sample.cells[edge + 1] - sample.cells[edge];
+    if (rise == 0) continue;
+    const float first = static_cast<float>(-reach) - offset - static_cast<float>(edge - 1) * crossing.cell_px;
+    for (int i = 0; i < count; ++i) {
+      const auto value = step.trend_at(first + static_cast<float>(i));
+      trend.d_sigma[i] += rise * value.d_sigma;
+      trend.d_box[i] += rise * value.d_box;
+    }
   }
 }
 
@@ -130,6 +147,7 @@ float likeness_at(const Profile& profile, const Model& model, int reach, int shi
 
 struct Match {
   float gain = 0, bias = 0, offset = 0, sigma = 0, likeness = -1;
+  float modelled_offset = 0;  // that of the model
   bool is_good = false;
 };
 
@@ -143,6 +161,7 @@ Match match_finely(const Profile& profile, const EdgeSample& sample, const Cross
   int used = 0;
   for (int iteration = 0; iteration < 3; ++iteration) {
     model_profile(sample, crossing, step, match.offset, reach, model);
+    match.modelled_offset = match.offset;
     Eigen::Matrix3f normal = Eigen::Matrix3f::Zero();
     Eigen::Vector3f right = Eigen::Vector3f::Zero();
     used = 0;
@@ -188,19 +207,22 @@ Match match_finely(const Profile& profile, const EdgeSample& sample, const Cross
   return match;
 }
 
-void add_trend(const Profile& profile, const Crossing& crossing, const Match& match, const Model& model,
-               int reach, SmearTrend& trend) {
+void add_trend(const Profile& profile, const EdgeSample& sample, const Crossing& crossing,
+               const BlurredStep& step, const Match& match, const Model& model, int reach,
+               SmearTrend& trend) {
+  ModelTrend changes;
+  model_trend(sample, crossing, step, match.modelled_offset, reach, changes);
   const float* light = profile.light.data() + profile.reach - reach;
   double box_gain = 0, box_weight = 0;
   for (int i = 0; i <= 2 * reach; ++i) {
     if (light[i] < 0) continue;
     const float residual = (light[i] - match.bias) / match.gain - model.level[i];
     if (crossing.box_px < kSharpBox) {
-      trend.sigma_gain += residual * model.d_sigma[i];
-      trend.sigma_weight += model.d_sigma[i] * model.d_sigma[i];
+      trend.sigma_gain += residual * changes.d_sigma[i];
+      trend.sigma_weight += changes.d_sigma[i] * changes.d_sigma[i];
     }
-    box_gain += residual * model.d_box[i];
-    box_weight += model.d_box[i] * model.d_box[i];
+    box_gain += residual * changes.d_box[i];
+    box_weight += changes.d_box[i] * changes.d_box[i];
   }
   if (crossing.box_px <= kPixelBox) return;
   const Eigen::Vector2d direction =
@@ -255,12 +277,12 @@ void measure_edges(const LinearImage& image, const camera::CameraModel& camera,
       }
     }
     // The fine match looks at the window around the best shift.
-    Profile window = profile;
     if (search > 0) {
-      std::copy_n(profile.light.begin() + search + best_shift, 2 * reach + 1, window.light.begin());
-      window.reach = reach;
+      const auto first = profile.light.begin() + search + best_shift;
+      std::copy(first, first + 2 * reach + 1, profile.light.begin());
+      profile.reach = reach;
     }
-    const Match match = match_finely(window, samples[k], crossing, step, 0, reach, model);
+    const Match match = match_finely(profile, samples[k], crossing, step, 0, reach, model);
     measurement.contrast = match.gain;
     measurement.likeness = match.likeness;
     if (!match.is_good) {
@@ -271,7 +293,8 @@ void measure_edges(const LinearImage& image, const camera::CameraModel& camera,
     measurement.sigma_px = std::hypot(static_cast<double>(match.sigma), kOffsetFloorPx,
                                       kOffsetPerBox * (crossing.box_px - kPixelBox));
     measurement.state = match.likeness >= kMinLikeness ? EdgeState::Found : EdgeState::Different;
-    if (measurement.state == EdgeState::Found) add_trend(window, crossing, match, model, reach, trend);
+    if (measurement.state == EdgeState::Found)
+      add_trend(profile, samples[k], crossing, step, match, model, reach, trend);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "navigation/markers/code_reader.h"
+#include "navigation/markers/code_search.h"
 #include "navigation/markers/declaration.h"
 #include "navigation/markers/linear_image.h"
 #include "navigation/markers/marker_track.h"
@@ -15,6 +16,17 @@ namespace {
 using geometry::RigidTransform;
 
 constexpr std::size_t kLikelyCandidates = 256;  // memory set aside
+// Direct fits in one frame, counted in small ones; three of these make a whole one.
+constexpr int kFitsAFrame = 200;
+// Squares with its code in which a marker is looked for, in one frame.
+constexpr int kMostSquares = 8;
+constexpr std::size_t kSearchesForCovered = 3;
+constexpr std::int64_t kUsualIntervalNs = 33'333'333;
+// How long a marker that was lost is looked for about where it was, and another one's company counts.
+constexpr std::int64_t kMissedNs = 2'000'000'000, kCompanyNs = 1'000'000'000;
+// How far about it, in sides: at once, more with every second, and at most.
+constexpr double kReachAtOnce = 0.45, kReachPerSecond = 6, kMaxReach = 1.6;
+constexpr double kCompanyReach = 0.3, kCompanyReachPerSecond = 2;
 
 class EdgeTracker final : public MarkerTracker {
  public:
@@ -37,11 +49,20 @@ class EdgeTracker final : public MarkerTracker {
                                            std::int64_t timestamp_ns) override {
     check_frame_size(frame, camera);
     const LinearImage image(frame, light_);
-    const TrackedFrame tracked{image, camera, timestamp_ns, smear_,
-                               options_.fit_directly ? &direct_ : nullptr};
+    // Frames that were dropped make an interval longer, not the exposure.
+    const std::int64_t since = timestamp_ns - last_ns_;
+    if (last_ns_ >= 0 && since > 0) interval_ns_ = std::min(since, interval_ns_ + interval_ns_ / 32);
+    last_ns_ = timestamp_ns;
+    int fits_left = kFitsAFrame;
+    const TrackedFrame tracked{image,        camera, timestamp_ns,
+                               interval_ns_, smear_, options_.fit_directly ? &direct_ : nullptr,
+                               fits_left,    codes_};
     candidates_.clear();
     bool missing = false;
-    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    // Whose turn is first changes, so that none takes all of a frame's fits for ever.
+    ++frames_;
+    for (std::size_t k = 0; k < tracks_.size(); ++k) {
+      const std::size_t i = (frames_ + k) % tracks_.size();
       observations_[i] = MarkerObservation();
       observations_[i].id = tracks_[i].marker().id;
       const auto start = tracks_[i].predicted(timestamp_ns);
@@ -56,6 +77,7 @@ class EdgeTracker final : public MarkerTracker {
         observations_[i].state = MarkerState::Duplicate;
       tracks_[i].follow(observations_[i], timestamp_ns);
     }
+    remember_company(timestamp_ns);
     return observations_;
   }
 
@@ -72,13 +94,50 @@ class EdgeTracker final : public MarkerTracker {
     smear_.gamma = options_.gamma;
     smear_.bloom.sigma_px = options_.bloom_sigma_px;
     frames_to_search_ = 0;
+    company_.assign(tracks_.size(), Company());
+    attempts_.assign(tracks_.size(), 0);
+    interval_ns_ = kUsualIntervalNs;
+    last_ns_ = -1;
+    frames_ = searches_ = 0;
   }
 
  private:
+  // Where a marker stood beside another one when both were last seen.
+  struct Company {
+    std::size_t other = 0;
+    geometry::RigidTransform other_from_marker;
+    std::int64_t timestamp_ns = -1;  // below 0: never
+  };
+
   void search(const TrackedFrame& frame) {
+    std::fill(attempts_.begin(), attempts_.end(), 0);
+    ++searches_;
+    search_.look_at(frame.image.view(), frame.camera);
+    // The dearer search takes the place of the other now and then; what was just lost is looked for before.
+    const bool is_for_covered = searches_ % kSearchesForCovered == 0 && is_missing();
+    if (!is_for_covered) take_squares(search_.find(frame.camera), frame);
+    for (std::size_t k = 0; k < tracks_.size(); ++k) {
+      const std::size_t i = (frames_ + k) % tracks_.size();
+      if (!observations_[i].is_tracked()) recover(i, frame);
+    }
+    if (is_for_covered && is_missing()) take_squares(search_.find_covered(frame.camera), frame, true);
+  }
+
+  [[nodiscard]] bool is_missing() const {
+    return std::any_of(observations_.begin(), observations_.end(),
+                       [](const MarkerObservation& seen) { return !seen.is_tracked(); });
+  }
+
+  void take_squares(std::span<const FoundSquare> squares, const TrackedFrame& frame,
+                    bool are_covered = false) {
     for (MarkerTrack& track : tracks_) track.is_duplicate = false;
-    for (const FoundSquare& square : search_.find(frame.image.view(), frame.camera)) {
-      const auto code = read_code(frame.image, frame.camera, square.tangent, codes_);
+    for (const FoundSquare& square : squares) {
+      auto code = read_code(frame.image, frame.camera, square.tangent, codes_);
+      // Nothing that is tracked is doubted for what was read in part.
+      if (!code && are_covered) {
+        code = read_covered_code(frame.image, frame.camera, square.tangent, codes_);
+        if (code && observations_[code->index].is_tracked()) continue;
+      }
       candidates_.push_back({square.corners_px, code ? codes_[code->index].id : MarkerCandidate::kNoCode});
       if (!code) continue;
       MarkerTrack& track = tracks_[code->index];
@@ -87,7 +146,64 @@ class EdgeTracker final : public MarkerTracker {
         track.is_duplicate |= !is_same_place(square, known);
         continue;
       }
-      acquire(track, square, code->turn, frame, known);
+      if (attempts_[code->index]++ < kMostSquares) acquire(track, square, code->turn, frame, known);
+    }
+  }
+
+  // Looks for a marker that was lost: where it went on to by itself, and where another one that is seen took
+  // it.
+  void recover(std::size_t index, const TrackedFrame& frame) {
+    MarkerTrack& track = tracks_[index];
+    const auto& last = track.last_seen();
+    if (!last || frame.timestamp_ns - last->timestamp_ns > kMissedNs) return;
+    const double lost_s = 1e-9 * static_cast<double>(frame.timestamp_ns - last->timestamp_ns);
+    const double side_px = frame.camera.central_focal_px() * track.marker().size_mm /
+                           std::max(1.0, last->camera_from_marker.translation_mm.z());
+    const auto reach_px = [&](double at_once, double per_second, double seconds) {
+      return side_px * std::min(kMaxReach, at_once + per_second * seconds);
+    };
+    const auto look = [&](const RigidTransform& supposed, double reach) {
+      return code_search_.find(search_.small_picture(), frame.camera, supposed, track.marker().size_mm,
+                               codes_[index], reach);
+    };
+    CodePlace place = look(track.predicted(frame.timestamp_ns).value_or(last->camera_from_marker),
+                           reach_px(kReachAtOnce, kReachPerSecond, lost_s));
+    if (const Company& company = company_[index];
+        company.timestamp_ns >= 0 && observations_[company.other].is_tracked()) {
+      const std::int64_t age_ns = frame.timestamp_ns - company.timestamp_ns;
+      if (age_ns < kCompanyNs) {
+        const CodePlace beside =
+            look(observations_[company.other].camera_from_marker * company.other_from_marker,
+                 reach_px(kCompanyReach, kCompanyReachPerSecond, 1e-9 * static_cast<double>(age_ns)));
+        if (beside.score > place.score) place = beside;
+      }
+    }
+    if (place.score < CodeSearch::kMinScore || is_taken(place.camera_from_marker, index)) return;
+    const MarkerObservation before = observations_[index];
+    if (!track.measure_recovered(frame, place.camera_from_marker, observations_[index]))
+      observations_[index].state = before.state;
+  }
+
+  [[nodiscard]] bool is_taken(const RigidTransform& pose, std::size_t index) const {
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+      if (i == index || !observations_[i].is_tracked()) continue;
+      const Eigen::Vector3d apart =
+          observations_[i].camera_from_marker.translation_mm.normalized() - pose.translation_mm.normalized();
+      if (apart.norm() * pose.translation_mm.norm() < 0.5 * tracks_[i].marker().size_mm) return true;
+    }
+    return false;
+  }
+
+  void remember_company(std::int64_t timestamp_ns) {
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+      if (!observations_[i].is_tracked()) continue;
+      for (std::size_t other = 0; other < tracks_.size(); ++other) {
+        if (other == i || !observations_[other].is_tracked()) continue;
+        company_[i] = {
+            other, observations_[other].camera_from_marker.inverse() * observations_[i].camera_from_marker,
+            timestamp_ns};
+        break;
+      }
     }
   }
 
@@ -116,6 +232,11 @@ class EdgeTracker final : public MarkerTracker {
   std::vector<MarkerObservation> observations_;
   std::vector<MarkerCandidate> candidates_;  // of this frame's search
   SquareSearch search_;
+  CodeSearch code_search_;
+  std::vector<Company> company_;
+  std::vector<int> attempts_;  // of this frame's search, by marker
+  std::size_t frames_ = 0, searches_ = 0;
+  std::int64_t interval_ns_ = kUsualIntervalNs, last_ns_ = -1;
   CameraSmear smear_;
   DirectFit direct_;
   int frames_to_search_ = 0;

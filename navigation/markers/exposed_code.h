@@ -4,8 +4,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 
+#include "navigation/markers/exposed_kernel.h"
 #include "navigation/markers/marker_pattern.h"
 #include "planning/geometry/rigid_transform.h"
 
@@ -24,7 +24,7 @@ class ExposedCode {
 
   // Sets the motion for the calls that follow, looked at in so many moments (1 to kMaxMoments).
   void move(const ExposedPose& pose, int moment_count);
-  static constexpr int kMaxMoments = 12;
+  static constexpr int kMaxMoments = ExposedMoments::kMost;
 
   struct Level {
     float level = 0;  // 0 dark, 1 bright; the margin of one cell around the square is bright
@@ -34,26 +34,12 @@ class ExposedCode {
     Eigen::Vector3f by_velocity = Eigen::Vector3f::Zero(), by_change = Eigen::Vector3f::Zero();
     float by_smear = 0;
   };
-  // Along this ray, smeared by sigmas in cells along the marker's x and y. A cell must be at least two and a
-  // half sigma wide.
-  [[nodiscard]] Level at(const Eigen::Vector3f& ray, float sigma_x, float sigma_y) const;
+  // Along eight rays at once, smeared by sigmas in cells along the marker's x and y; gives the first `count`
+  // of them. A cell must be at least two and a half sigma wide.
+  void look(const LookedAt& at, int count, Level* levels) const;
 
  private:
-  struct Moment {
-    Eigen::Matrix3f marker_from_camera;
-    Eigen::Vector3f eye;  // the camera's centre in the marker frame
-    float time;
-  };
-  struct Blurred {
-    float level = 0, by_column = 0, by_row = 0, by_smear = 0;
-  };
-  [[nodiscard]] Blurred blurred(float column, float row, float sigma_x, float sigma_y) const;
-
-  int cells_, width_;
-  float cells_per_mm_;
-  std::array<float, (kMaxCells + 4) * (kMaxCells + 4)> bright_{};
-  std::array<Moment, kMaxMoments> moments_{};
-  int moment_count_ = 0;
+  ExposedMoments code_;
 };
 
 }  // namespace arthronaut::markers

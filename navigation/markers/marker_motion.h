@@ -17,18 +17,22 @@ class MarkerMotion {
   [[nodiscard]] std::optional<geometry::RigidTransform> predicted(std::int64_t timestamp_ns) const;
   // Its last sighting is so recent that it tells of the motion now.
   [[nodiscard]] bool is_known_at(std::int64_t timestamp_ns) const;
-  // Body twist (v mm, w rad) from the last sighting to this pose; zero when not known.
-  [[nodiscard]] geometry::Vector6d twist_to(const geometry::RigidTransform& pose,
-                                            std::int64_t timestamp_ns) const;
+  // Body twist (v mm, w rad) of one frame's time, from the way between the last sighting, however many frames
+  // ago, and this pose; zero when not known.
+  [[nodiscard]] geometry::Vector6d twist_to(const geometry::RigidTransform& pose, std::int64_t timestamp_ns,
+                                            std::int64_t interval_ns) const;
   // How that twist differs from the one before; nullopt when not known.
   [[nodiscard]] std::optional<geometry::Vector6d> change_to(const geometry::RigidTransform& pose,
-                                                            std::int64_t timestamp_ns) const;
-
- private:
+                                                            std::int64_t timestamp_ns,
+                                                            std::int64_t interval_ns) const;
+  // However long ago; nullopt when it was never seen.
   struct Sighting {
     geometry::RigidTransform camera_from_marker;
     std::int64_t timestamp_ns = 0;
   };
+  [[nodiscard]] const std::optional<Sighting>& last() const { return last_; }
+
+ private:
   std::optional<Sighting> last_, before_;
 };
 

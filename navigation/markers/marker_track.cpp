@@ -12,37 +12,13 @@ namespace {
 using geometry::RigidTransform;
 using geometry::Vector6d;
 
-// Motions over the exposure that are tried when none is known.
-constexpr double kTriedLengthsPx[] = {8, 18};
-constexpr int kTriedDirections = 4;
 // A smear up to which edges go on by themselves, with so much less trust, where no direct fit confirms them.
 constexpr double kLittleSmearPx = 8, kUnconfirmed = 10;
 constexpr int kMaxPasses = 4;
 constexpr double kMaxNewMotionPx = 5;
-// How far the edges are looked for, in cells; less than half, or the next edge answers.
-constexpr double kReachPredicted = 0.35, kReachFound = 0.45;
 // Two starts that lead so near to each other lead to the same.
 constexpr double kSameEdgesPx = 0.1, kSameMotionPx = 0.5;
 constexpr double kSoft = 1.4;
-
-// From a start that may be off by a third of a cell, and over a longer way.
-DirectOptions unsure(DirectOptions options) {
-  options.coarse_cells = 0.3;
-  options.max_way_cells = 3;
-  return options;
-}
-
-// Quick: which of many motions is worth a whole fit.
-DirectOptions tried(DirectOptions options) {
-  options = unsure(options);
-  options.max_iterations = 5;
-  options.max_pixels = 300;
-  return options;
-}
-
-double cell_px(const camera::CameraModel& camera, const RigidTransform& pose, double size_mm, int cells) {
-  return camera.central_focal_px() * size_mm / cells / std::max(pose.translation_mm.z(), 1.0);
-}
 
 }  // namespace
 
@@ -50,6 +26,7 @@ MarkerTrack::MarkerTrack(const DeclaredMarker& marker, const MarkerCode& code,
                          const MarkerTrackOptions& options)
     : options_(options), marker_(marker), code_(code), cells_(code.cells), samples_(edge_samples(code)) {
   measurements_.reserve(samples_.size());
+  few_.reserve(samples_.size());
   is_inlier_.reserve(samples_.size());
 }
 
@@ -57,9 +34,13 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
                           MarkerObservation& observation) {
   observation = MarkerObservation();
   observation.id = marker_.id;
-  const double cell = cell_px(frame.camera, start, marker_.size_mm, cells_);
+  const double cell = cell_px(frame, start);
   if (cell < options_.min_cell_px) {
     observation.state = MarkerState::TooSmall;
+    return false;
+  }
+  if (is_found && is_undecided_) {
+    observation.state = MarkerState::Doubtful;
     return false;
   }
   Smear picture;
@@ -85,7 +66,7 @@ bool MarkerTrack::measure(const TrackedFrame& frame, const RigidTransform& start
 bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTransform& start, bool is_found,
                                      const EdgePose& fit, const Smear& picture, const SmearTrend& trend,
                                      MarkerObservation& observation) {
-  const double cell = cell_px(frame.camera, start, marker_.size_mm, cells_);
+  const double cell = cell_px(frame, start);
   const double px_per_mm = cell * cells_ / marker_.size_mm;
   // Without a past nothing is known of the motion, and edges alone may take a smear for another tilt.
   const bool is_motion_known = !is_found && motion_.is_known_at(frame.timestamp_ns);
@@ -93,28 +74,53 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
   if (frame.direct && (!is_motion_known || edges_motion_px > options_.smeared_px) &&
       cell > options_.min_direct_cell_px) {
     const RigidTransform& from = fit.converged ? fit.camera_from_marker : start;
-    DirectPose direct =
-        fit_directly(frame, from, picture.motion, fit.converged ? options_.direct : unsure(options_.direct));
-    if (is_found && fit.converged && !direct.explains_picture())
+    // Without a fit left in this frame nothing is confirmed.
+    DirectPose direct;
+    is_undecided_ |= frame.fits_left <= 0 && !is_motion_known;
+    if (frame.fits_left > 0)
+      direct = fit_directly(frame, from, picture.motion,
+                            fit.converged ? options_.direct : unsure(options_.direct));
+    if (is_found && fit.converged && frame.fits_left > 0 && !direct.explains_picture())
       direct = fit_directly(frame, from, picture.motion, unsure(options_.direct));
     // What moves may also pass for out of focus.
     if (!is_motion_known && (!direct.explains_picture() || direct.sigma_px > kSoft * frame.smear.sigma_px)) {
-      const DirectPose moving = try_motions(frame, from);
-      if (!direct.explains_picture() || (moving.explains_picture() && moving.noise_grey < direct.noise_grey))
+      // Where motions cannot be tried any more in this frame, nothing is known to be right.
+      const bool may_try = frame.fits_left >= kFitsOfATrial;
+      is_undecided_ |= !may_try;
+      const DirectPose moving = may_try ? try_motions(frame, from) : DirectPose();
+      if (!may_try || !direct.explains_picture() ||
+          (moving.explains_picture() && moving.noise_grey < direct.noise_grey))
         direct = moving;
     }
     // With no edge pose to agree with, the corners have to be its own all the more.
     if (direct.is_usable())
       report_direct(frame, direct, fit.converged ? options_.max_direct_rms_px : options_.max_lone_rms_px,
                     observation);
+    if (observation.is_tracked() &&
+        direct.pose.velocity.head<3>().norm() * px_per_mm > options_.max_new_smear_cells * cell &&
+        !goes_on_from_published(frame, direct.pose.camera_from_marker)) {
+      observation.state = MarkerState::Blur;
+      return false;
+    }
+    const bool is_motion_new = is_found || is_motion_guessed_;
+    if (observation.is_tracked() && is_motion_new &&
+        direct.pose.velocity.head<3>().norm() * px_per_mm > options_.smeared_px) {
+      if (const auto pose = refine_square_pose(frame.camera, observation.corners_px, marker_.size_mm,
+                                               observation.camera_from_marker))
+        observation.covariance += square_covariance(*pose, options_.found_corner_sigma_px);
+    }
     if (observation.is_tracked()) {
       frame.smear.gamma += 0.1 * (direct.gamma - frame.smear.gamma);
-      learn_exposure(
-          frame.smear.exposure_share * motion_.twist_to(direct.pose.camera_from_marker, frame.timestamp_ns),
-          direct.pose.velocity, px_per_mm, frame.smear);
+      learn_exposure(frame.smear.exposure_share * motion_.twist_to(direct.pose.camera_from_marker,
+                                                                   frame.timestamp_ns, frame.interval_ns),
+                     direct.pose.velocity, px_per_mm, frame.smear);
     }
     const bool is_sharp =
         direct.explains_picture() && direct.pose.velocity.head<3>().norm() * px_per_mm < options_.smeared_px;
+    if (is_found && is_undecided_) {
+      observation.state = MarkerState::Doubtful;
+      return false;
+    }
     if (observation.is_tracked() && !(is_sharp && fit.converged)) return true;
     if (!is_sharp) {
       if (!fit.converged) {
@@ -141,7 +147,8 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
   if (!observation.is_tracked()) return false;
   learn(trend, fit.bloom_px, frame.smear);
   if (!is_found) {
-    learn_exposure(frame.smear.exposure_share * motion_.twist_to(fit.camera_from_marker, frame.timestamp_ns),
+    learn_exposure(frame.smear.exposure_share *
+                       motion_.twist_to(fit.camera_from_marker, frame.timestamp_ns, frame.interval_ns),
                    picture.motion, px_per_mm, frame.smear);
   }
   return true;
@@ -149,15 +156,15 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
 
 EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform& start, bool is_found,
                                 Smear& picture, SmearTrend& trend) {
-  const double cell = cell_px(frame.camera, start, marker_.size_mm, cells_);
+  const double cell = cell_px(frame, start);
   ProfileOptions coarse;
-  coarse.search_px =
-      std::clamp(static_cast<int>(std::lround((is_found ? kReachFound : kReachPredicted) * cell)), 2, 16);
+  coarse.search_px = edge_search_px(is_found, cell);
   coarse.stride = 2;
   const CameraSmear& smear = frame.smear;
-  picture = {smear.sigma_px,
-             is_found ? likely_motion(frame, start, coarse.search_px)
-                      : Vector6d(smear.exposure_share * motion_.twist_to(start, frame.timestamp_ns))};
+  picture = {smear.sigma_px, is_found
+                                 ? likely_motion(frame, start, coarse.search_px)
+                                 : Vector6d(smear.exposure_share *
+                                            motion_.twist_to(start, frame.timestamp_ns, frame.interval_ns))};
   measure_edges(frame.image, frame.camera, start, marker_.size_mm, cells_, samples_, picture, coarse,
                 measurements_, trend);
   EdgePose fit =
@@ -167,7 +174,8 @@ EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform&
     return fit;
   }
   if (!is_found)
-    picture.motion = smear.exposure_share * motion_.twist_to(fit.camera_from_marker, frame.timestamp_ns);
+    picture.motion = smear.exposure_share *
+                     motion_.twist_to(fit.camera_from_marker, frame.timestamp_ns, frame.interval_ns);
   for (int pass = 0; pass < kMaxPasses; ++pass) {
     const RigidTransform here = fit.camera_from_marker;
     measure_edges(frame.image, frame.camera, here, marker_.size_mm, cells_, samples_, picture, {},
@@ -185,6 +193,7 @@ EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform&
 
 DirectPose MarkerTrack::fit_directly(const TrackedFrame& frame, const RigidTransform& start,
                                      const Vector6d& motion, const DirectOptions& options) {
+  frame.fits_left -= options.max_pixels < options_.direct.max_pixels ? 1 : kWholeFit;
   DirectStart from;
   from.pose = {start, motion, Vector6d::Zero()};
   from.sigma_px = frame.smear.sigma_px;
@@ -193,30 +202,12 @@ DirectPose MarkerTrack::fit_directly(const TrackedFrame& frame, const RigidTrans
   const double motion_px = px_per_mm * motion.head<3>().norm();
   from.change_sigma_px = 2 + 0.35 * motion_px;
   from.velocity_sigma_px = 2 + 0.2 * motion_px;
-  if (const auto change = motion_.change_to(start, frame.timestamp_ns)) {
+  if (const auto change = motion_.change_to(start, frame.timestamp_ns, frame.interval_ns)) {
     from.pose.change = std::pow(frame.smear.exposure_share, 2) * *change;
     from.change_sigma_px = 1.5 + 0.5 * px_per_mm * from.pose.change.head<3>().norm();
   }
   return frame.direct->refine(frame.image.view(), frame.camera, code_, samples_, marker_.size_mm, from,
                               options);
-}
-
-DirectPose MarkerTrack::try_motions(const TrackedFrame& frame, const RigidTransform& start) {
-  DirectPose best;
-  for (const double length : kTriedLengthsPx) {
-    for (int direction = 0; direction < kTriedDirections; ++direction) {
-      const double angle = geometry::kPi * direction / kTriedDirections;
-      const Vector6d motion =
-          twist_of({length * std::cos(angle), length * std::sin(angle)}, frame.camera, start);
-      const DirectPose fit = fit_directly(frame, start, motion, tried(options_.direct));
-      if (!fit.is_usable() || (best.is_usable() && fit.noise_grey >= best.noise_grey)) continue;
-      best = fit;
-    }
-  }
-  if (!best.is_usable()) return best;
-  DirectOptions whole = options_.direct;
-  whole.max_way_cells = 2;
-  return fit_directly(frame, best.pose.camera_from_marker, best.pose.velocity, whole);
 }
 
 void MarkerTrack::report_direct(const TrackedFrame& frame, const DirectPose& fit, double max_rms_px,
@@ -287,16 +278,33 @@ void MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, c
       observation.ambiguity_ratio =
           std::min(kNoOtherPose, other->rms_px / std::max(observation.rms_px, options_.corner_sigma_px));
     }
-    if (is_found) observation.covariance += square_covariance(poses->best, options_.found_corner_sigma_px);
+    // After a guess as little is known of the motion as at first sight; and where the sides of
+    // a marker that moves do not meet in the pose's corners, it moves in a way that is not known.
+    const double moved_px =
+        picture.motion.head<3>().norm() * cell_px(frame, fit.camera_from_marker) * cells_ / marker_.size_mm;
+    const bool tells_by_corners = moved_px > 0.5 * options_.smeared_px &&
+                                  std::min(fit.share[0], fit.share[1]) > options_.nearly_whole_share;
+    const double sigma_px =
+        std::hypot(is_found || is_motion_guessed_ ? options_.found_corner_sigma_px : 0,
+                   tells_by_corners ? 2 * std::max(0.0, corners.rms_px - options_.usual_corner_rms_px) : 0);
+    observation.covariance += square_covariance(poses->best, sigma_px);
+  }
+  if (const auto change = motion_.change_to(fit.camera_from_marker, frame.timestamp_ns, frame.interval_ns)) {
+    const double share = options_.change_share * std::pow(frame.smear.exposure_share, 2);
+    observation.covariance += share * share * *change * change->transpose();
   }
   observation.state = judge(fit, observation, other, is_found);
+  // Seen in part for the first time: what its cells say takes the place of the edges that are missing.
+  if (is_found && observation.state == MarkerState::Covered &&
+      is_confirmed_by_code(frame, fit.camera_from_marker))
+    observation.state = judge(fit, observation, other, false);
   if (observation.is_tracked() && is_contradicted) observation.state = MarkerState::Doubtful;
   if (observation.is_tracked() &&
       may_be_tilted_back(frame.camera, marker_.size_mm, samples_, measurements_, fit, corners.corners_px,
                          frame.smear.bloom, is_inlier_)) {
     observation.state = MarkerState::Ambiguous;
   }
-  const double cell = cell_px(frame.camera, fit.camera_from_marker, marker_.size_mm, cells_);
+  const double cell = cell_px(frame, fit.camera_from_marker);
   if (observation.state == MarkerState::Covered)
     observation.state = reason_of_loss(fit.camera_from_marker, measurements_, cell);
   // A first sight through a strong smear is good enough to go on from, not to stand for.
@@ -305,61 +313,6 @@ void MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, c
     observation.state = MarkerState::Blur;
     go_on_from(fit);
   }
-}
-
-Vector6d MarkerTrack::likely_motion(const TrackedFrame& frame, const RigidTransform& pose, int search_px) {
-  ProfileOptions sparse;
-  sparse.search_px = search_px;
-  sparse.stride = 4;
-  SmearTrend ignored;
-  const auto likeness = [&](const Vector6d& motion) {
-    measure_edges(frame.image, frame.camera, pose, marker_.size_mm, cells_, samples_,
-                  {frame.smear.sigma_px, motion}, sparse, measurements_, ignored);
-    double sum = 0;
-    for (const EdgeMeasurement& measurement : measurements_) sum += std::max(0.0, measurement.likeness - 0.5);
-    return sum;
-  };
-  Vector6d best = Vector6d::Zero();
-  double most = likeness(best);
-  if (most > 0.47 * static_cast<double>(measurements_.size())) return best;  // sharp
-  for (const double length : kTriedLengthsPx) {
-    for (int direction = 0; direction < kTriedDirections; ++direction) {
-      const double angle = geometry::kPi * direction / kTriedDirections;
-      const Vector6d motion =
-          twist_of({length * std::cos(angle), length * std::sin(angle)}, frame.camera, pose);
-      const double sum = likeness(motion);
-      if (sum > most) {
-        most = sum;
-        best = motion;
-      }
-    }
-  }
-  return best;
-}
-
-void MarkerTrack::go_on_from(const EdgePose& fit) {
-  const double misfit = std::max(1.0, fit.scale) / (fit.share[0] + fit.share[1]);
-  if (!guess_ || misfit < guess_->misfit) guess_ = Guess{fit.camera_from_marker, misfit};
-}
-
-void MarkerTrack::follow(const MarkerObservation& observation, std::int64_t timestamp_ns) {
-  const bool is_measured = observation.is_tracked() || observation.state == MarkerState::Ambiguous ||
-                           observation.state == MarkerState::Duplicate;
-  if (is_measured)
-    motion_.follow(observation.camera_from_marker, timestamp_ns);
-  else if (guess_)
-    motion_.follow(guess_->camera_from_marker, timestamp_ns);
-  guess_.reset();
-  refused_.reset();
-  explained_.reset();
-}
-
-void MarkerTrack::forget() {
-  motion_ = MarkerMotion();
-  guess_.reset();
-  refused_.reset();
-  explained_.reset();
-  is_duplicate = false;
 }
 
 }  // namespace arthronaut::markers

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "navigation/camera/camera_model.h"
@@ -21,8 +22,13 @@ struct TrackedFrame {
   const LinearImage& image;
   const camera::CameraModel& camera;
   std::int64_t timestamp_ns = 0;
+  std::int64_t interval_ns = 0;  // from frame to frame
   CameraSmear& smear;
   DirectFit* direct = nullptr;  // none: edge profiles alone
+  // Direct fits that may still be made in this frame, counted in small ones: they take most of the time. What
+  // is not measured in one frame is in the next.
+  int& fits_left;
+  std::span<const MarkerCode> codes;  // of all declared markers
 };
 
 // When a measured pose stands. docs/thresholds.md says where the numbers come from.
@@ -33,14 +39,27 @@ struct MarkerTrackOptions {
   // The corners that single edges make under a direct fit lie no farther from it, or it fits something else;
   // without an edge pose to agree with, they have to be its own all the more.
   double max_direct_rms_px = 1.1, max_lone_rms_px = 0.5;
+  // A motion over the exposure of more cells mixes each with its neighbours, and another tilt may explain the
+  // picture as well: it stands only where a pose stood a short while ago, turned no faster than a hand can.
+  double max_new_smear_cells = 1.25;
+  double max_turn_rad_s = 10, turn_slack_rad = 0.05;
   double corner_sigma_px = 0.05;
+  // Of the way that a marker's motion changes by over the exposure, as the frames before tell it: so much may
+  // a pose by sharp edges be off: the mean of an even change.
+  double change_share = 1.0 / 24;
   // At first sight the motion is a guess: so much more may be wrong with each corner.
   double found_corner_sigma_px = 0.15;
+  // Corners of a marker that moves that lie farther from the pose than this are wrong by twice the rest,
+  // where so much of the edges is seen that their sides meet in them.
+  double usual_corner_rms_px = 0.2, nearly_whole_share = 0.7;
   // The other pose that a square allows is out of the question when it explains the corners this many times
   // worse, or the grey levels this many times.
   double clear_ratio = 10, other_noise = 1.15;
   DirectOptions direct;
 };
+
+// From a start that may be off by a third of a cell, and over a longer way.
+[[nodiscard]] DirectOptions unsure(DirectOptions options);
 
 class MarkerTrack {
  public:
@@ -56,9 +75,16 @@ class MarkerTrack {
   bool measure(const TrackedFrame& frame, const geometry::RigidTransform& start, bool is_found,
                MarkerObservation& observation);
 
+  // The same from where a search for a lost marker put it: stands only when the cells that are seen say so,
+  // too.
+  bool measure_recovered(const TrackedFrame& frame, const geometry::RigidTransform& start,
+                         MarkerObservation& observation);
+
   // The observation of this frame is final: remembers it.
   void follow(const MarkerObservation& observation, std::int64_t timestamp_ns);
   void forget();
+  // Where it was when it was last followed; nullopt: never.
+  [[nodiscard]] const std::optional<MarkerMotion::Sighting>& last_seen() const { return motion_.last(); }
 
   [[nodiscard]] const DeclaredMarker& marker() const { return marker_; }
   bool is_duplicate = false;  // as of the last search of the whole frame
@@ -68,6 +94,16 @@ class MarkerTrack {
   // motion: the motion over the exposure as a body twist.
   [[nodiscard]] geometry::Vector6d likely_motion(const TrackedFrame& frame,
                                                  const geometry::RigidTransform& pose, int search_px);
+  // Of the marker's cells in the picture.
+  [[nodiscard]] double cell_px(const TrackedFrame& frame, const geometry::RigidTransform& pose) const;
+  // How far its edges are looked for.
+  [[nodiscard]] static int edge_search_px(bool is_found, double cell_px);
+  // A whole fit, in small ones, and what trying motions takes of them: those that the edges speak for most
+  // are fitted.
+  static constexpr int kWholeFit = 3, kFittedMotions = 3, kFitsOfATrial = kFittedMotions + kWholeFit;
+  // How much the picture looks like the marker at this pose when it moves like this.
+  [[nodiscard]] double likeness_of(const TrackedFrame& frame, const geometry::RigidTransform& pose,
+                                   const geometry::Vector6d& motion, int search_px);
   // measure(), from the edges on.
   bool measure_from_edges(const TrackedFrame& frame, const geometry::RigidTransform& start, bool is_found,
                           const EdgePose& fit, const Smear& picture, const SmearTrend& trend,
@@ -78,7 +114,8 @@ class MarkerTrack {
   // Direct fit from a pose and a motion.
   [[nodiscard]] DirectPose fit_directly(const TrackedFrame& frame, const geometry::RigidTransform& start,
                                         const geometry::Vector6d& motion, const DirectOptions& options);
-  // The same with motions from a grid, where none is known; the best, usable or not.
+  // The same with those motions of a grid that the edges speak for, where none is known; the best, usable or
+  // not.
   [[nodiscard]] DirectPose try_motions(const TrackedFrame& frame, const geometry::RigidTransform& start);
   // From here on the pose in the observation is judged: what the edges say, and the direct fit where there is
   // one.
@@ -86,6 +123,12 @@ class MarkerTrack {
                     MarkerObservation& observation);
   void report_direct(const TrackedFrame& frame, const DirectPose& fit, double max_rms_px,
                      MarkerObservation& observation);
+  // The cells at the pose, as far as they are seen, are this marker's.
+  [[nodiscard]] bool is_confirmed_by_code(const TrackedFrame& frame,
+                                          const geometry::RigidTransform& pose) const;
+  // A pose stood a short while ago, and a hand may have turned the marker from there to this one.
+  [[nodiscard]] bool goes_on_from_published(const TrackedFrame& frame,
+                                            const geometry::RigidTransform& pose) const;
   // A pose that is good enough to go on from, not to stand for; of several in one frame, the one whose edges
   // agree best.
   void go_on_from(const EdgePose& fit);
@@ -95,14 +138,16 @@ class MarkerTrack {
   MarkerCode code_;
   int cells_;
   std::vector<EdgeSample> samples_;
-  std::vector<EdgeMeasurement> measurements_;
+  std::vector<EdgeMeasurement> measurements_, few_;  // few_: while motions are tried
   std::vector<char> is_inlier_;
   MarkerMotion motion_;
+  std::optional<MarkerMotion::Sighting> published_;  // the last pose that stood
   struct Guess {
     geometry::RigidTransform camera_from_marker;
     double misfit = 0;
   };
-  std::optional<Guess> guess_;  // of this frame, until it is final
+  std::optional<Guess> guess_;      // of this frame, until it is final
+  bool is_motion_guessed_ = false;  // what is known of the motion comes from a pose that did not stand
   // What a search led to in this frame that did not stand: another start that leads there is the same.
   struct Refused {
     EdgePose edges;
@@ -112,6 +157,9 @@ class MarkerTrack {
   std::optional<Refused> refused_;
   // A pose that explained this frame's picture and yet did not stand: another one that does is no better.
   std::optional<geometry::RigidTransform> explained_;
+  // Something that might have been it could not be looked at to the end in this frame: nothing else stands in
+  // its place.
+  bool is_undecided_ = false;
 };
 
 }  // namespace arthronaut::markers

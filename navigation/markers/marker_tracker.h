@@ -27,9 +27,10 @@ enum class MarkerState {
   Covered,
   Glare,
   Blur,
-  Ambiguous,  // two poses explain the corners alike
-  Duplicate,  // its id is seen twice
-  Doubtful,   // found, but the residual is too large to stand for
+  Ambiguous,    // two poses explain the corners alike
+  Duplicate,    // its id is seen twice
+  Doubtful,     // found, but the residual is too large to stand for
+  Disagreeing,  // of a body of several markers alone: they lie where the body does not allow
 };
 [[nodiscard]] std::string_view to_text(MarkerState state);
 
@@ -80,7 +81,7 @@ class MarkerTracker {
 // 0..49 or a size is not above 0.
 [[nodiscard]] std::unique_ptr<MarkerTracker> make_tracker(std::span<const DeclaredMarker> declared);
 
-// Every marker that the tools declare: world markers first.
+// Every marker that the tools declare: world markers first; of a body of several, all of them in its order.
 [[nodiscard]] std::vector<DeclaredMarker> declared_markers(const tools::ToolSet& tools);
 
 }  // namespace arthronaut::markers

@@ -1,48 +1,40 @@
 // The sum of row * row^T over the rows of a least squares: several rows at a time, and only the half below
-// the diagonal, which takes a third of the time that one product after the other takes.
+// the diagonal, which takes a sixth of the time that one product after the other takes.
 #pragma once
 
 #include <Eigen/Core>
 
+#include "navigation/markers/exposed_kernel.h"
+
 namespace arthronaut::markers {
 
-template <int kSize>
 class ProductSum {
  public:
-  using Row = Eigen::Matrix<float, kSize, 1>;
-  using Square = Eigen::Matrix<float, kSize, kSize>;
+  using Row = Eigen::Matrix<float, kProductSize, 1>;
+  using Square = Eigen::Matrix<float, kProductSize, kProductSize>;
 
-  void add(const Row& row) {
-    rows_.col(waiting_) = row;
-    if (++waiting_ == kTogether) multiply();
+  // The next row, to be filled in as a whole; add() takes it.
+  [[nodiscard]] Eigen::Map<Row> next() { return Eigen::Map<Row>(rows_[waiting_]); }
+  void add() {
+    if (++waiting_ == kPixelsTogether) multiply();
   }
   // Of the rows so far; starts anew.
   [[nodiscard]] Square take() {
-    rows_.rightCols(kTogether - waiting_).setZero();
-    multiply();
-    const Square total = sum_.template selfadjointView<Eigen::Lower>();
-    sum_.setZero();
+    for (; waiting_ > 0; add()) next().setZero();
+    // What is a row to the kernel is a column to Eigen.
+    Square total = Eigen::Map<const Square>(&sum_[0][0]).selfadjointView<Eigen::Lower>();
+    Eigen::Map<Square>(&sum_[0][0]).setZero();
     return total;
   }
 
  private:
-  static constexpr int kTogether = 8, kBlock = 8;
-  static_assert(kSize % kBlock == 0);
-
   void multiply() {
     waiting_ = 0;
-    for (int column = 0; column < kSize; ++column) {
-      for (int row = column / kBlock * kBlock; row < kSize; row += kBlock) {
-        Eigen::Matrix<float, kBlock, 1> part = sum_.template block<kBlock, 1>(row, column);
-        for (int k = 0; k < kTogether; ++k)
-          part += rows_(column, k) * rows_.template block<kBlock, 1>(row, k);
-        sum_.template block<kBlock, 1>(row, column) = part;
-      }
-    }
+    processor_has_avx2() ? add_products_avx2(rows_, sum_) : add_products(rows_, sum_);
   }
 
-  Eigen::Matrix<float, kSize, kTogether> rows_;
-  Square sum_ = Square::Zero();
+  alignas(32) float rows_[kPixelsTogether][kProductSize];
+  alignas(32) float sum_[kProductSize][kProductSize] = {};
   int waiting_ = 0;
 };
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+
+#include "navigation/markers/outline_lines.h"
 
 namespace arthronaut::markers {
 namespace {
@@ -15,22 +18,12 @@ constexpr int kRadii[] = {14};
 // A pixel is dark below this share of its neighbourhood's mean (in grey levels, so after the camera's gamma).
 constexpr int kDarkPercent = 84;
 constexpr int kMinMean = 8;
-constexpr double kMinFill = 0.6;  // hull / quadrilateral
+constexpr int kMinWhitePixels = 4;  // fewer are no highlight on a marker
+constexpr double kMinFill = 0.6;    // hull / quadrilateral
 constexpr double kMaxSideRatio = 5;
-constexpr double kMinOpening = 0.25;  // sine of a corner's angle
-constexpr std::size_t kMaxSquares = 64;
 // Of the side's length: what may belong to a side, and what lies on it.
 constexpr double kNearSide = 0.25, kOnLine = 0.02;
 constexpr int kLineTrials = 40, kMaxSidePoints = 512;
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-double area_of(std::span<const Eigen::Vector2d> polygon) {
-  double twice = 0;
-  for (std::size_t i = 0; i < polygon.size(); ++i)
-    twice += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
-  return 0.5 * twice;
-}
 
 // Removes the edge whose neighbours, prolonged until they meet, add the least area; false when no edge can
 // go. So a rounded or covered corner is restored.
@@ -73,21 +66,28 @@ void average_row(const camera::GrayView& frame, int left, int top, int width, st
   }
 }
 
-struct Line {
-  Eigen::Vector2d point, direction;
-  [[nodiscard]] double distance(const Eigen::Vector2d& p) const {
-    return std::abs(cross(direction, p - point));
-  }
-};
-
 }  // namespace
 
-std::span<const FoundSquare> SquareSearch::find(const camera::GrayView& frame,
-                                                const camera::CameraModel& camera) {
+void SquareSearch::look_at(const camera::GrayView& frame, const camera::CameraModel& camera) {
+  shrink(frame, camera);
+}
+
+std::span<const FoundSquare> SquareSearch::find(const camera::CameraModel& camera) {
+  sum_rows(false);
+  find_squares(camera, false);
+  return squares_;
+}
+
+std::span<const FoundSquare> SquareSearch::find_covered(const camera::CameraModel& camera) {
+  sum_rows(white_pixels_ >= kMinWhitePixels);
+  find_squares(camera, true);
+  return squares_;
+}
+
+void SquareSearch::find_squares(const camera::CameraModel& camera, bool are_covered) {
   squares_.clear();
   squares_.reserve(kMaxSquares);
-  shrink(frame, camera);
-  if (width_ < 2 * kMinSide || height_ < 2 * kMinSide) return squares_;
+  if (width_ < 2 * kMinSide || height_ < 2 * kMinSide) return;
   for (const int radius : kRadii) {
     mark_dark_pixels(radius);
     label_regions();
@@ -95,12 +95,17 @@ std::span<const FoundSquare> SquareSearch::find(const camera::GrayView& frame,
       const Region& region = regions_[label];
       const int across = region.right - region.left + 1, down = region.bottom - region.top + 1;
       if (std::min(across, down) < kMinSide / 2 || std::max(across, down) < kMinSide) continue;
-      if (across > width_ * 9 / 10 || down > height_ * 9 / 10 || region.area < across * down / 6) continue;
+      if (across > width_ * 9 / 10 || down > height_ * 9 / 10 ||
+          region.area < across * down / (are_covered ? 10 : 6))
+        continue;
+      if (are_covered) {
+        trace_outline(static_cast<int>(label), region, camera);
+        combine_sides(camera);
+      }
       FoundSquare square;
       if (outline_square(static_cast<int>(label), region, camera, square)) squares_.push_back(square);
     }
   }
-  return squares_;
 }
 
 // The bounding box of the view, four by four pixels to one.
@@ -123,35 +128,54 @@ void SquareSearch::shrink(const camera::GrayView& frame, const camera::CameraMod
   sums_.resize((static_cast<std::size_t>(width_) + 1) * (height_ + 1));
   first_.resize(std::max(width_, height_));
   last_.resize(std::max(width_, height_));
-  std::fill_n(sums_.begin(), width_ + 1, 0U);
+  white_pixels_ = 0;
   for (int y = 0; y < height_; ++y) {
     std::uint8_t* out = &small_[static_cast<std::size_t>(y) * width_];
     shrink_ == kShrink ? average_row<kShrink>(frame, left_, top_ + shrink_ * y, width_, out)
                        : average_row<kShrinkSmall>(frame, left_, top_ + shrink_ * y, width_, out);
+    for (int x = 0; x < width_; ++x) white_pixels_ += out[x] >= kWhite;
+  }
+}
+
+// Without white: what was before it in the row stands in for a white pixel.
+void SquareSearch::sum_rows(bool without_white) {
+  if (width_ <= 0) return;
+  std::fill_n(sums_.begin(), width_ + 1, 0U);
+  for (int y = 0; y < height_; ++y) {
+    const std::uint8_t* in = &small_[static_cast<std::size_t>(y) * width_];
     const std::uint32_t* above = &sums_[static_cast<std::size_t>(y) * (width_ + 1)];
     std::uint32_t* here = &sums_[static_cast<std::size_t>(y + 1) * (width_ + 1)];
-    std::uint32_t row_sum = 0;
+    std::uint32_t row_sum = 0, last = 0;
     here[0] = 0;
     for (int x = 0; x < width_; ++x) {
-      row_sum += out[x];
+      if (!without_white || in[x] < kWhite) last = in[x];
+      row_sum += last;
       here[x + 1] = above[x + 1] + row_sum;
     }
   }
 }
 
 void SquareSearch::mark_dark_pixels(int radius) {
+  const int inner_first = std::min(radius, width_), inner_end = std::max(inner_first, width_ - radius);
   for (int y = 0; y < height_; ++y) {
     const int y0 = std::max(0, y - radius), y1 = std::min(height_, y + radius + 1);
     const std::uint32_t* upper = &sums_[static_cast<std::size_t>(y0) * (width_ + 1)];
     const std::uint32_t* lower = &sums_[static_cast<std::size_t>(y1) * (width_ + 1)];
     const std::uint8_t* in = &small_[static_cast<std::size_t>(y) * width_];
     std::uint8_t* out = &dark_[static_cast<std::size_t>(y) * width_];
-    for (int x = 0; x < width_; ++x) {
-      const int x0 = std::max(0, x - radius), x1 = std::min(width_, x + radius + 1);
+    const auto mark = [&](int x, int x0, int x1, int area) {
       const int sum = static_cast<int>(lower[x1] - lower[x0] - upper[x1] + upper[x0]);
-      const int area = (y1 - y0) * (x1 - x0);
-      out[x] = in[x] * area * 100 < sum * kDarkPercent && sum > kMinMean * area;
-    }
+      out[x] = (in[x] * area * 100 < sum * kDarkPercent) & (sum > kMinMean * area);
+    };
+    const auto mark_near_border = [&](int x) {
+      const int x0 = std::max(0, x - radius), x1 = std::min(width_, x + radius + 1);
+      mark(x, x0, x1, (y1 - y0) * (x1 - x0));
+    };
+    for (int x = 0; x < inner_first; ++x) mark_near_border(x);
+    // One area for all, so that several are done at a time.
+    const int area = (y1 - y0) * (2 * radius + 1);
+    for (int x = inner_first; x < inner_end; ++x) mark(x, x - radius, x + radius + 1, area);
+    for (int x = inner_end; x < width_; ++x) mark_near_border(x);
   }
 }
 
@@ -165,10 +189,15 @@ void SquareSearch::label_regions() {
   };
   for (int y = 0; y < height_; ++y) {
     const std::size_t row = static_cast<std::size_t>(y) * width_;
+    const std::uint8_t* dark = &dark_[row];
+    std::fill_n(labels_.begin() + static_cast<std::ptrdiff_t>(row), width_, -1);
     for (int x = 0; x < width_; ++x) {
+      if (!dark[x]) {
+        const void* next = std::memchr(dark + x, 1, static_cast<std::size_t>(width_ - x));
+        if (!next) break;
+        x = static_cast<int>(static_cast<const std::uint8_t*>(next) - dark);
+      }
       int& label = labels_[row + x];
-      label = -1;
-      if (!dark_[row + x]) continue;
       const int before = x > 0 ? labels_[row + x - 1] : -1, above = y > 0 ? labels_[row - width_ + x] : -1;
       if (before < 0 && above < 0) {
         label = static_cast<int>(parents_.size());
@@ -208,8 +237,7 @@ void SquareSearch::label_regions() {
   }
 }
 
-bool SquareSearch::outline_square(int label, const Region& region, const camera::CameraModel& camera,
-                                  FoundSquare& square) {
+void SquareSearch::trace_outline(int label, const Region& region, const camera::CameraModel& camera) {
   // The outermost pixels of every row and column are all of a convex outline.
   outline_.clear();
   const auto add = [&](double x, double y) {
@@ -237,6 +265,11 @@ bool SquareSearch::outline_square(int label, const Region& region, const camera:
     add(shrink_ * x + middle, shrink_ * first_[x] - 0.5);
     add(shrink_ * x + middle, shrink_ * last_[x] + shrink_ - 0.5);
   }
+}
+
+bool SquareSearch::outline_square(int label, const Region& region, const camera::CameraModel& camera,
+                                  FoundSquare& square) {
+  trace_outline(label, region, camera);
   if (outline_.size() < 16) return false;
   take_hull();
   if (hull_.size() < 4) return false;
@@ -249,10 +282,14 @@ bool SquareSearch::outline_square(int label, const Region& region, const camera:
   std::array<Eigen::Vector2d, 4> quad = {hull_[0], hull_[1], hull_[2], hull_[3]};
   if (!straighten_sides(quad)) return false;
 
+  return measure_sides(camera, quad, square);
+}
+
+bool SquareSearch::measure_sides(const camera::CameraModel& camera,
+                                 const std::array<Eigen::Vector2d, 4>& quad, FoundSquare& square) const {
   double shortest = 1e300, longest = 0;
   for (int i = 0; i < 4; ++i) {
-    const Eigen::Vector2d side = hull_[(i + 1) % 4] - hull_[i],
-                          next = hull_[(i + 2) % 4] - hull_[(i + 1) % 4];
+    const Eigen::Vector2d side = quad[(i + 1) % 4] - quad[i], next = quad[(i + 2) % 4] - quad[(i + 1) % 4];
     if (cross(side, next) < kMinOpening * side.norm() * next.norm()) return false;
     const auto pixel = camera.project(quad[i].homogeneous());
     if (!pixel) return false;
@@ -293,7 +330,7 @@ bool SquareSearch::straighten_sides(std::array<Eigen::Vector2d, 4>& quad) const 
     if (count < 4) return false;
     Line best = guess;
     int most = 0;
-    for (int trial = 0; trial < kLineTrials; ++trial) {
+    for (int trial = 0; trial < kLineTrials && most < count; ++trial) {
       const Eigen::Vector2d &p = points[trial * 7919 % count],
                             &q = points[(trial * 104729 + count / 2) % count];
       if ((q - p).norm() < 0.25 * length) continue;

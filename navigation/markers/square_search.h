@@ -26,17 +26,47 @@ struct FoundSquare {
 class SquareSearch {
  public:
   [[nodiscard]] std::span<const FoundSquare> find(const camera::GrayView& frame,
-                                                  const camera::CameraModel& camera);
+                                                  const camera::CameraModel& camera) {
+    look_at(frame, camera);
+    return find(camera);
+  }
+  // In two steps: makes the frame smaller for what is asked next; and finds the squares in it.
+  void look_at(const camera::GrayView& frame, const camera::CameraModel& camera);
+  [[nodiscard]] std::span<const FoundSquare> find(const camera::CameraModel& camera);
+  // In place of find(), or after it: all that it finds, and squares of which a part is hidden. White pixels
+  // are left out of the means, since highlights raise what is thought bright; and of each dark region the
+  // straight parts of the outline are sought one by one, of which four make a square, whatever lies between
+  // them.
+  [[nodiscard]] std::span<const FoundSquare> find_covered(const camera::CameraModel& camera);
+
+  // The frame that was looked at last, made smaller: pixel (x, y) shows frame pixels from left + times * x
+  // and top + times * y on. Valid until the next call.
+  struct SmallPicture {
+    camera::GrayView view;
+    int left = 0, top = 0, times = 1;
+  };
+  [[nodiscard]] SmallPicture small_picture() const {
+    return {{small_.data(), width_, height_, width_}, left_, top_, shrink_};
+  }
+  // A pixel of it from here on tells nothing: at least half of what it shows is saturated.
+  static constexpr int kWhite = 235;
 
  private:
   struct Region {
     int left, right, top, bottom, area;
   };
   void shrink(const camera::GrayView& frame, const camera::CameraModel& camera);
+  void find_squares(const camera::CameraModel& camera, bool are_covered);
+  void sum_rows(bool without_white);
   void mark_dark_pixels(int radius);
   void label_regions();
   bool outline_square(int label, const Region& region, const camera::CameraModel& camera,
                       FoundSquare& square);
+  void trace_outline(int label, const Region& region, const camera::CameraModel& camera);
+  // One square or two out of the straight parts of the outline.
+  void combine_sides(const camera::CameraModel& camera);
+  bool measure_sides(const camera::CameraModel& camera, const std::array<Eigen::Vector2d, 4>& quad,
+                     FoundSquare& square) const;
   void take_hull();
   bool straighten_sides(std::array<Eigen::Vector2d, 4>& quad) const;
 
@@ -46,10 +76,12 @@ class SquareSearch {
   std::vector<std::uint8_t> small_;
   std::vector<std::uint32_t> sums_;  // integral image of small_, one row and column larger
   std::vector<std::uint8_t> dark_;
+  int white_pixels_ = 0;
   std::vector<int> labels_, parents_;
   std::vector<Region> regions_;
   std::vector<int> first_, last_;  // extremes of a region's rows or columns
   std::vector<Eigen::Vector2d> outline_, hull_;
+  std::vector<char> is_used_;  // of the outline's points
   std::vector<FoundSquare> squares_;
 };
 

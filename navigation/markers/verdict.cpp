@@ -26,6 +26,11 @@ bool are_unlike(const RigidTransform& a, const RigidTransform& b) {
   return geometry::rotation_angle_rad(a.rotation.conjugate() * b.rotation) > kHarmlessTiltRad;
 }
 
+bool is_known_well_enough(const geometry::Matrix6d& covariance) {
+  return std::sqrt(covariance.topLeftCorner<3, 3>().trace()) < kMaxSigmaMm &&
+         std::sqrt(covariance.bottomRightCorner<3, 3>().trace()) < kMaxSigmaRad;
+}
+
 MarkerState judge(const DirectPose& fit, double max_rms_px, const MarkerObservation& observation) {
   if (facing(fit.pose.camera_from_marker) < kMinFacing) return MarkerState::TooOblique;
   const double sigma_mm = std::sqrt(observation.covariance.topLeftCorner<3, 3>().trace());

@@ -17,6 +17,9 @@ inline constexpr double kMaxEdgeRmsPx = 1.2;  // how far an edge, or a corner, m
 // Turned from each other by more than does no harm.
 [[nodiscard]] bool are_unlike(const geometry::RigidTransform& a, const geometry::RigidTransform& b);
 
+// Whether a pose with this covariance of its body twist may stand: one sigma in all directions together.
+[[nodiscard]] bool is_known_well_enough(const geometry::Matrix6d& covariance);
+
 // What the edges say. The observation holds the corners that they make; `other` is the second pose that the
 // corners allow; `is_found`: nothing is known from frames before.
 [[nodiscard]] MarkerState judge(const EdgePose& fit, const MarkerObservation& observation,

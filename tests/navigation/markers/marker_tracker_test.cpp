@@ -8,7 +8,7 @@
 #include "navigation/markers/square_search.h"
 #include "planning/geometry/error.h"
 #include "tests/benchmarks/aruco_tracker.h"
-#include "tests/navigation/markers/counted_allocations.h"
+#include "tests/counted_allocations.h"
 #include "tests/navigation/markers/rendered_marker.h"
 
 namespace arthronaut::markers {
@@ -204,7 +204,7 @@ TEST_F(MarkerTracking, AllocatesNothingAfterWarmUp) {
   for (int frame = 0; frame < 12; ++frame)
     (void)tracker->track((frame % 4 ? both : one).view(), camera_, frame * kFrameNs);
   int smeared_tracked = 0;
-  start_counting_allocations();
+  test::start_counting_allocations();
   for (int frame = 12; frame < 100; ++frame) {
     const bool is_smeared = frame >= 40 && (frame < 44 || frame > 90), is_gone = frame >= 50 && frame < 80;
     const auto& shown = is_smeared ? smeared : is_gone ? none : frame % 4 ? both : one;
@@ -212,7 +212,7 @@ TEST_F(MarkerTracking, AllocatesNothingAfterWarmUp) {
     smeared_tracked += is_smeared && seen[1].is_tracked();
     EXPECT_TRUE(frame != 80 || seen[1].is_tracked());
   }
-  EXPECT_EQ(stop_counting_allocations(), 0);
+  EXPECT_EQ(test::stop_counting_allocations(), 0);
   EXPECT_GT(smeared_tracked, 4);
 }
 

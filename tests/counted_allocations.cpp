@@ -1,4 +1,4 @@
-#include "tests/navigation/markers/counted_allocations.h"
+#include "tests/counted_allocations.h"
 
 #include <atomic>
 #include <cstdlib>
@@ -21,7 +21,7 @@ void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
-namespace arthronaut::markers {
+namespace arthronaut::test {
 
 void start_counting_allocations() {
   allocations = 0;
@@ -33,4 +33,4 @@ long stop_counting_allocations() {
   return allocations;
 }
 
-}  // namespace arthronaut::markers
+}  // namespace arthronaut::test

@@ -2,9 +2,9 @@
 // warnings.
 #pragma once
 
-namespace arthronaut::markers {
+namespace arthronaut::test {
 
 void start_counting_allocations();
 [[nodiscard]] long stop_counting_allocations();
 
-}  // namespace arthronaut::markers
+}  // namespace arthronaut::test

@@ -1,0 +1,23 @@
+#include "navigation/markers/exposed_kernel.h"
+
+#include "navigation/markers/exposed_loops.h"
+
+namespace arthronaut::markers {
+
+bool processor_has_avx2() {
+#if defined(__x86_64__)
+  static const bool has = __builtin_cpu_supports("avx2") != 0;
+  return has;
+#else
+  return false;
+#endif
+}
+
+void look_at_code(const ExposedMoments& code, const LookedAt& at, SeenLevels& seen) { look(code, at, seen); }
+
+void add_products(const float (&rows)[kPixelsTogether][kProductSize],
+                  float (&sum)[kProductSize][kProductSize]) {
+  add_up(rows, sum);
+}
+
+}  // namespace arthronaut::markers

@@ -1,0 +1,172 @@
+// What exposed_kernel.h declares, to be compiled once for each kind of processor: of no use to anyone else.
+// Everything here is in the anonymous namespace and calls nothing that is shared with other files, so that no
+// instruction of one kind gets into the code of the other.
+#pragma once
+
+#include "navigation/markers/exposed_kernel.h"
+
+namespace arthronaut::markers {
+namespace {
+
+using Floats = float __attribute__((vector_size(32)));
+using Ints = int __attribute__((vector_size(32)));
+
+inline void load(const float* from, Floats& to) { __builtin_memcpy(&to, from, sizeof to); }
+inline void store(const Floats& from, float* to) { __builtin_memcpy(to, &from, sizeof from); }
+
+// Of the normal distribution: e^(-z^2 / 2) by a power of two, the integral by Abramowitz and Stegun 7.1.26;
+// both to 1e-6.
+inline void normal_at(const Floats& z, Floats& density, Floats& cumulative) {
+  constexpr float kFar = 6;
+  Floats away = z < 0 ? -z : z;
+  away = away > kFar ? Floats{} + kFar : away;
+  const Floats power = -0.72134752F * away * away;
+  const Ints whole = __builtin_convertvector(power - 0.5F, Ints);
+  const Floats part = power - __builtin_convertvector(whole, Floats);
+  const Floats factor =
+      1.0F + part * (0.69314718F +
+                     part * (0.24022651F + part * (0.05550411F + part * (0.00961813F + part * 0.00133336F))));
+  const Ints exponent = (whole + 127) << 23;
+  Floats scale;
+  __builtin_memcpy(&scale, &exponent, sizeof scale);
+  const Floats bell = factor * scale;
+  density = 0.39894228F * bell;
+  const Floats t = 1.0F / (1.0F + 0.23164190F * away);
+  const Floats tail =
+      0.5F * bell * t *
+      (0.254829592F + t * (-0.284496736F + t * (1.421413741F + t * (-1.453152027F + t * 1.061405429F))));
+  cumulative = z < 0 ? tail : 1.0F - tail;
+}
+
+// What the two lines at the ends of a cell make of the three cells along one axis: each line lets the next
+// cell in by the share of the smear that reaches over it. `place` counts cells from the first line.
+struct Shares {
+  Floats level[2], by_place[2], by_smear[2];
+};
+
+inline void find_shares(const Floats& place, const Floats& scale, Shares& shares) {
+  for (int line = 0; line < 2; ++line) {
+    const Floats z = (place - static_cast<float>(line)) * scale;
+    Floats density;
+    normal_at(z, density, shares.level[line]);
+    shares.by_place[line] = density * scale;
+    shares.by_smear[line] = -z * density;
+  }
+}
+
+inline void brightness(const Ints& neighbours, int bit, Floats& cell) {
+  cell = __builtin_convertvector((neighbours >> bit) & 1, Floats);
+}
+
+inline void look(const ExposedMoments& code, const LookedAt& at, SeenLevels& seen) {
+  Floats ray_x, ray_y, ray_z, sigma_x, sigma_y;
+  load(at.ray_x, ray_x);
+  load(at.ray_y, ray_y);
+  load(at.ray_z, ray_z);
+  load(at.sigma_x, sigma_x);
+  load(at.sigma_y, sigma_y);
+  const Floats scale_x = 1.0F / sigma_x, scale_y = 1.0F / sigma_y;
+  const float middle = 0.5F * static_cast<float>(code.cells);
+  const Floats last = Floats{} + (static_cast<float>(code.cells) + 0.99F);
+  Floats level{}, smear{};
+  // In the plane: along x, along y, about the normal; out of it: along the normal, about x, about y.
+  Floats in_plane[3]{}, out_of_plane[3]{}, by_velocity[3]{}, by_change[3]{};
+  for (int k = 0; k < code.count; ++k) {
+    const ExposedMoments::Moment& moment = code.moments[k];
+    const float* r = moment.marker_from_camera;
+    const Floats along = -moment.eye[2] / (r[6] * ray_x + r[7] * ray_y + r[8] * ray_z);
+    const Floats dx = along * (r[0] * ray_x + r[1] * ray_y + r[2] * ray_z);
+    const Floats dy = along * (r[3] * ray_x + r[4] * ray_y + r[5] * ray_z);
+    const Floats x = moment.eye[0] + dx, y = moment.eye[1] + dy;
+    const Floats column = x * code.cells_per_mm + middle, row = middle - y * code.cells_per_mm;
+    // The cell that is looked at, one to the outside at most.
+    Floats inner_column = column < -1.0F ? Floats{} - 1.0F : column;
+    inner_column = inner_column > last ? last : inner_column;
+    Floats inner_row = row < -1.0F ? Floats{} - 1.0F : row;
+    inner_row = inner_row > last ? last : inner_row;
+    const Ints c = __builtin_convertvector(inner_column + 1.0F, Ints) - 1;
+    const Ints down = __builtin_convertvector(inner_row + 1.0F, Ints) - 1;
+    const Ints place = (down + 2) * code.width + c + 2;
+    Ints neighbours;
+    for (int i = 0; i < kPixelsTogether; ++i) neighbours[i] = code.neighbours[place[i]];
+    Shares across, over;
+    find_shares(column - __builtin_convertvector(c, Floats), scale_x, across);
+    find_shares(row - __builtin_convertvector(down, Floats), scale_y, over);
+    Floats here{}, by_column{}, by_row{}, here_smear{}, above{}, above_by_column{}, above_by_smear{};
+    for (int line = 0; line < 3; ++line) {
+      Floats left, centre, right;
+      brightness(neighbours, 3 * line, left);
+      brightness(neighbours, 3 * line + 1, centre);
+      brightness(neighbours, 3 * line + 2, right);
+      const Floats first = centre - left, second = right - centre;
+      const Floats mixed = left + across.level[0] * first + across.level[1] * second;
+      const Floats mixed_by_column = across.by_place[0] * first + across.by_place[1] * second;
+      const Floats mixed_by_smear = across.by_smear[0] * first + across.by_smear[1] * second;
+      if (line == 0) {
+        here = mixed;
+        by_column = mixed_by_column;
+        here_smear = mixed_by_smear;
+      } else {
+        const Floats rise = mixed - above;
+        here += over.level[line - 1] * rise;
+        by_row += over.by_place[line - 1] * rise;
+        by_column += over.level[line - 1] * (mixed_by_column - above_by_column);
+        here_smear +=
+            over.level[line - 1] * (mixed_by_smear - above_by_smear) + over.by_smear[line - 1] * rise;
+      }
+      above = mixed;
+      above_by_column = mixed_by_column;
+      above_by_smear = mixed_by_smear;
+    }
+    level += here;
+    smear += here_smear;
+    // When the marker moves, the ray wanders over the code the other way; what moves along the normal or
+    // tilts moves along the line of sight.
+    const Floats gx = -by_column * code.cells_per_mm, gy = by_row * code.cells_per_mm;
+    const Floats gz = (gx * dx + gy * dy) / moment.eye[2];
+    const Floats about = gy * x - gx * y;
+    const float time = moment.time, half_square = 0.5F * time * time;
+    in_plane[0] += gx;
+    in_plane[1] += gy;
+    in_plane[2] += about;
+    by_velocity[0] += time * gx;
+    by_velocity[1] += time * gy;
+    by_velocity[2] += time * about;
+    by_change[0] += half_square * gx;
+    by_change[1] += half_square * gy;
+    by_change[2] += half_square * about;
+    out_of_plane[0] += gz;
+    out_of_plane[1] += gz * y;
+    out_of_plane[2] -= gz * x;
+  }
+  const float share = 1 / static_cast<float>(code.count);
+  store(share * level, seen.level);
+  store(share * smear, seen.by_smear);
+  store(share * in_plane[0], seen.by_pose[0]);
+  store(share * in_plane[1], seen.by_pose[1]);
+  store(share * in_plane[2], seen.by_pose[5]);
+  for (int i = 0; i < 3; ++i) {
+    store(share * out_of_plane[i], seen.by_pose[2 + i]);
+    store(share * by_velocity[i], seen.by_velocity[i]);
+    store(share * by_change[i], seen.by_change[i]);
+  }
+}
+
+inline void add_up(const float (&rows)[kPixelsTogether][kProductSize],
+                   float (&sum)[kProductSize][kProductSize]) {
+  constexpr int kWide = 8;
+  for (int column = 0; column < kProductSize; ++column) {
+    for (int first = column / kWide * kWide; first < kProductSize; first += kWide) {
+      Floats part, row;
+      load(&sum[column][first], part);
+      for (int k = 0; k < kPixelsTogether; ++k) {
+        load(&rows[k][first], row);
+        part += rows[k][column] * row;
+      }
+      store(part, &sum[column][first]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace arthronaut::markers

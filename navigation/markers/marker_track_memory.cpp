@@ -1,0 +1,69 @@
+// What a track takes from frame to frame, and how it comes back after a loss.
+#include <algorithm>
+
+#include "navigation/markers/code_reader.h"
+#include "navigation/markers/marker_track.h"
+
+namespace arthronaut::markers {
+
+using geometry::RigidTransform;
+
+bool MarkerTrack::is_confirmed_by_code(const TrackedFrame& frame, const RigidTransform& pose) const {
+  for (std::size_t i = 0; i < frame.codes.size(); ++i) {
+    if (frame.codes[i].id != code_.id) continue;
+    return see_code(frame.image, frame.camera, pose, marker_.size_mm, frame.codes, i).is_confirmed();
+  }
+  return false;
+}
+
+bool MarkerTrack::measure_recovered(const TrackedFrame& frame, const RigidTransform& start,
+                                    MarkerObservation& observation) {
+  const bool is_found = !motion_.is_known_at(frame.timestamp_ns);
+  if (!measure(frame, start, is_found, observation)) return false;
+  if (is_confirmed_by_code(frame, observation.camera_from_marker)) return true;
+  observation.state = MarkerState::Doubtful;
+  return false;
+}
+
+bool MarkerTrack::goes_on_from_published(const TrackedFrame& frame, const RigidTransform& pose) const {
+  constexpr double kShortWhile_s = 0.07;
+  if (!published_) return false;
+  const double passed_s = 1e-9 * static_cast<double>(frame.timestamp_ns - published_->timestamp_ns);
+  const double turned_rad =
+      geometry::rotation_angle_rad(published_->camera_from_marker.rotation.conjugate() * pose.rotation);
+  return passed_s <= kShortWhile_s &&
+         turned_rad <= options_.turn_slack_rad + options_.max_turn_rad_s * passed_s;
+}
+
+void MarkerTrack::go_on_from(const EdgePose& fit) {
+  const double misfit = std::max(1.0, fit.scale) / (fit.share[0] + fit.share[1]);
+  if (!guess_ || misfit < guess_->misfit) guess_ = Guess{fit.camera_from_marker, misfit};
+}
+
+void MarkerTrack::follow(const MarkerObservation& observation, std::int64_t timestamp_ns) {
+  const bool is_measured = observation.is_tracked() || observation.state == MarkerState::Ambiguous ||
+                           observation.state == MarkerState::Duplicate;
+  if (is_measured)
+    motion_.follow(observation.camera_from_marker, timestamp_ns);
+  else if (guess_)
+    motion_.follow(guess_->camera_from_marker, timestamp_ns);
+  if (observation.is_tracked())
+    published_ = MarkerMotion::Sighting{observation.camera_from_marker, timestamp_ns};
+  if (is_measured || guess_) is_motion_guessed_ = !is_measured;
+  guess_.reset();
+  refused_.reset();
+  explained_.reset();
+  is_undecided_ = false;
+}
+
+void MarkerTrack::forget() {
+  motion_ = MarkerMotion();
+  published_.reset();
+  guess_.reset();
+  refused_.reset();
+  explained_.reset();
+  is_undecided_ = is_motion_guessed_ = false;
+  is_duplicate = false;
+}
+
+}  // namespace arthronaut::markers

@@ -1,0 +1,181 @@
+#include "navigation/markers/exposed_code.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "navigation/markers/product_sum.h"
+
+namespace arthronaut::markers {
+namespace {
+
+using geometry::RigidTransform;
+using geometry::Vector6d;
+
+constexpr double kSize_mm = 4;
+
+ExposedPose moving_pose() {
+  ExposedPose pose;
+  pose.camera_from_marker = {
+      Eigen::Quaterniond(Eigen::AngleAxisd(geometry::kPi, Eigen::Vector3d::UnitX())) *
+          Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 0.5).normalized())),
+      {0.7, -0.4, 22}};
+  pose.velocity << 0.06, -0.04, 0.02, 0.002, -0.003, 0.004;
+  pose.change << 0.02, 0.03, 0, 0, 0, -0.005;
+  return pose;
+}
+
+// Rays all over the marker and its margin.
+LookedAt some_rays(const RigidTransform& camera_from_marker, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> place(-0.6 * kSize_mm, 0.6 * kSize_mm), sigma(0.1, 0.22);
+  LookedAt at;
+  for (int i = 0; i < kPixelsTogether; ++i) {
+    const Eigen::Vector3f ray =
+        (camera_from_marker * Eigen::Vector3d(place(random), place(random), 0)).normalized().cast<float>();
+    at.ray_x[i] = ray.x();
+    at.ray_y[i] = ray.y();
+    at.ray_z[i] = ray.z();
+    at.sigma_x[i] = static_cast<float>(sigma(random));
+    at.sigma_y[i] = static_cast<float>(sigma(random));
+  }
+  return at;
+}
+
+// By the definition: where the ray meets the plane at each moment, the code smeared by a Gaussian, which for
+// cells is a sum over them of products of two steps.
+double level_by_definition(const MarkerCode& code, const ExposedPose& pose, int moments, const LookedAt& at,
+                           int i, double smear = 1) {
+  double sum = 0;
+  for (int k = 0; k < moments; ++k) {
+    const double time = (k + 0.5) / moments - 0.5;
+    const RigidTransform marker_from_camera =
+        (pose.camera_from_marker * geometry::exp(time * pose.velocity + 0.5 * time * time * pose.change))
+            .inverse();
+    const Eigen::Vector3d eye = marker_from_camera.translation_mm,
+                          way = marker_from_camera.rotate({at.ray_x[i], at.ray_y[i], at.ray_z[i]});
+    const Eigen::Vector3d place = eye - eye.z() / way.z() * way;
+    const double column = (place.x() / kSize_mm + 0.5) * code.cells,
+                 row = (0.5 - place.y() / kSize_mm) * code.cells;
+    const auto share = [](double from, double to, double of, double sigma) {
+      return 0.5 *
+             (std::erf((to - of) / sigma / std::sqrt(2.0)) - std::erf((from - of) / sigma / std::sqrt(2.0)));
+    };
+    double dark = 0;
+    for (int r = 0; r < code.cells; ++r) {
+      for (int c = 0; c < code.cells; ++c) {
+        if (!code.is_bright(r, c))
+          dark +=
+              share(c, c + 1, column, smear * at.sigma_x[i]) * share(r, r + 1, row, smear * at.sigma_y[i]);
+      }
+    }
+    sum += (1 - dark) / moments;
+  }
+  return sum;
+}
+
+// To what single precision and the differences leave: the largest derivatives are some 5 a mm or a radian.
+// Cells beyond the next one are left out, which tells where the smear is more than a fifth of a cell.
+TEST(ExposedCode, LooksAsItsDefinitionSays) {
+  const MarkerCode code = codes_4x4_50()[3];
+  constexpr int kMoments = 7;
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    const ExposedPose pose = moving_pose();
+    const LookedAt at = some_rays(pose.camera_from_marker, seed);
+    ExposedCode exposed(code, kSize_mm);
+    exposed.move(pose, kMoments);
+    std::array<ExposedCode::Level, kPixelsTogether> levels;
+    exposed.look(at, kPixelsTogether, levels.data());
+    const auto numeric = [&](int i, const auto& changed) {
+      constexpr double kStep = 1e-4;
+      ExposedPose more = pose, less = pose;
+      changed(more, kStep);
+      changed(less, -kStep);
+      return (level_by_definition(code, more, kMoments, at, i) -
+              level_by_definition(code, less, kMoments, at, i)) /
+             (2 * kStep);
+    };
+    for (int i = 0; i < kPixelsTogether; ++i) {
+      EXPECT_NEAR(levels[i].level, level_by_definition(code, pose, kMoments, at, i), 0.001);
+      for (int k = 0; k < 6; ++k) {
+        EXPECT_NEAR(levels[i].by_pose[k],
+                    numeric(i,
+                            [k](ExposedPose& p, double step) {
+                              p.camera_from_marker =
+                                  p.camera_from_marker * geometry::exp(step * Vector6d::Unit(k));
+                            }),
+                    0.03)
+            << k;
+      }
+      for (int k = 0; k < 3; ++k) {
+        const int axis = k < 2 ? k : 5;
+        EXPECT_NEAR(levels[i].by_velocity[k],
+                    numeric(i, [axis](ExposedPose& p, double step) { p.velocity[axis] += step; }), 0.03);
+        EXPECT_NEAR(levels[i].by_change[k],
+                    numeric(i, [axis](ExposedPose& p, double step) { p.change[axis] += step; }), 0.03);
+      }
+      const double by_smear = (level_by_definition(code, pose, kMoments, at, i, 1.001) -
+                               level_by_definition(code, pose, kMoments, at, i, 0.999)) /
+                              0.002;
+      EXPECT_NEAR(levels[i].by_smear, by_smear, 0.03);
+    }
+  }
+}
+
+// A recording gives the same poses on every machine.
+TEST(ExposedKernel, GivesTheSameBitsOnEveryProcessor) {
+  if (!processor_has_avx2()) GTEST_SKIP() << "no AVX2 here";
+  ExposedMoments moments{};
+  moments.cells = 6;
+  moments.width = 10;
+  moments.cells_per_mm = 1.5F;
+  moments.count = 3;
+  std::mt19937 random(5);
+  for (std::uint16_t& bits : moments.neighbours) bits = static_cast<std::uint16_t>(random() & 511U);
+  for (int k = 0; k < moments.count; ++k) {
+    const float turn[9] = {1, 0.02F * static_cast<float>(k), 0, -0.02F * static_cast<float>(k), -1, 0, 0, 0,
+                           -1};
+    std::memcpy(moments.moments[k].marker_from_camera, turn, sizeof turn);
+    moments.moments[k].eye[0] = 0.1F * static_cast<float>(k);
+    moments.moments[k].eye[1] = 0.3F;
+    moments.moments[k].eye[2] = 20;
+    moments.moments[k].time = 0.3F * static_cast<float>(k - 1);
+  }
+  const RigidTransform facing{Eigen::Quaterniond(0, 1, 0, 0), {0, 0, 20}};
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const LookedAt at = some_rays(facing, seed);
+    SeenLevels plain, wide;
+    look_at_code(moments, at, plain);
+    look_at_code_avx2(moments, at, wide);
+    EXPECT_EQ(std::memcmp(&plain, &wide, sizeof plain), 0);
+  }
+  std::normal_distribution<float> normal;
+  float rows[kPixelsTogether][kProductSize], plain[kProductSize][kProductSize] = {},
+                                             wide[kProductSize][kProductSize] = {};
+  for (auto& row : rows)
+    for (float& value : row) value = normal(random);
+  add_products(rows, plain);
+  add_products_avx2(rows, wide);
+  EXPECT_EQ(std::memcmp(plain, wide, sizeof plain), 0);
+}
+
+// 21 rows: two times eight and some. To what single precision leaves of sums of 21.
+TEST(ProductSum, AddsProductsOfRows) {
+  std::mt19937 random(9);
+  std::normal_distribution<float> normal;
+  ProductSum products;
+  ProductSum::Square expected = ProductSum::Square::Zero();
+  for (int i = 0; i < 21; ++i) {
+    const ProductSum::Row row = ProductSum::Row::NullaryExpr([&] { return normal(random); });
+    products.next() = row;
+    products.add();
+    expected += row * row.transpose();
+  }
+  EXPECT_LT((products.take() - expected).cwiseAbs().maxCoeff(), 1e-4F);
+  EXPECT_EQ(products.take().cwiseAbs().maxCoeff(), 0);
+}
+
+}  // namespace
+}  // namespace arthronaut::markers
