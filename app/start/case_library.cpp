@@ -55,10 +55,14 @@ bool CaseLibrary::poll() {
   try {  // the top of the looking thread: a list that cannot be had is said on the screen
     Found found = looking_.get();
     records_ = std::move(found.records);
+    for (library::CaseRecord& record : records_)
+      if (const auto note = notes_meanwhile_.find(record.folder); note != notes_meanwhile_.end())
+        record.note = note->second;
     if (!found.what.empty()) what_ = std::move(found.what);
   } catch (const std::exception& error) {
     what_ = error.what();
   }
+  notes_meanwhile_.clear();
   return true;
 }
 
@@ -72,6 +76,7 @@ bool CaseLibrary::save_note(const fs::path& case_folder, const std::string& text
     what_ = error.what();
   }
   if (!what_.empty()) return false;
+  if (is_looking()) notes_meanwhile_[case_folder] = text;
   for (library::CaseRecord& record : records_)
     if (record.folder == case_folder) record.note = text;
   return true;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <future>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,8 @@ class CaseLibrary {
   std::atomic<bool> stops_ = false;
   std::future<Found> looking_;
   std::vector<library::CaseRecord> records_;
+  // Kept while the thread looks: it may have read the case before.
+  std::map<std::filesystem::path, std::string> notes_meanwhile_;
   std::string what_;
 };
 

@@ -22,6 +22,9 @@ void CaseList::enter() {
   std::vector<fs::path> folders;
   for (const RecentCase& recent : recent_) folders.push_back(recent.folder);
   library_.refresh(folders);
+  accuracy_ = library::read_accuracy_checks(workstation_library::data_folder());
+  devices_ = library::devices_of(accuracy_);
+  view_.chart = std::min(view_.chart, chart_count() - 1);
   pictures_.forget_all();
   view_.shows_trends = false;
   view_.has_chosen = false;
@@ -72,8 +75,9 @@ std::size_t CaseList::selected_row() const {
 
 void CaseList::move_selection(int by) {
   if (view_.shows_trends) {
-    const int next = std::clamp(static_cast<int>(view_.trend) + by, 0, library::kTrendCount - 1);
-    view_.trend = static_cast<library::Trend>(next);
+    const long next =
+        std::clamp(static_cast<long>(view_.chart) + by, 0L, static_cast<long>(chart_count()) - 1);
+    view_.chart = static_cast<std::size_t>(next);
     return;
   }
   if (is_first_look()) return;
@@ -87,6 +91,12 @@ void CaseList::move_selection(int by) {
 void CaseList::accept() {
   if (view_.shows_trends || is_first_look()) return;
   open_(view_.selected);
+}
+
+SendableCase CaseList::sendable() const {
+  const CaseRecord* record = selected();
+  if (record == nullptr || !record->is_there || !record->problem.empty()) return {};
+  return {record->folder, record->name};
 }
 
 bool CaseList::go_back() { return std::exchange(view_.shows_trends, false); }
@@ -115,11 +125,12 @@ void CaseList::add_actions(widgets::Actions& actions, const std::function<bool()
                  view_.has_chosen = true;
                  view_.focus = Focus::Note;
                }});
-  actions.add(
-      {"start.trends", "Trends",
-       "Offsets, angles, confidence and minutes a step of the listed cases over time, with control limits",
-       GLFW_KEY_T, 0, false, is_shown, [this] { return view_.shows_trends; },
-       [this] { view_.shows_trends = !view_.shows_trends; }});
+  actions.add({"start.trends", "Trends",
+               "Offsets, angles, confidence and minutes a step of the listed cases over time, and the daily "
+               "checks of "
+               "accuracy, with control limits",
+               GLFW_KEY_T, 0, false, is_shown, [this] { return view_.shows_trends; },
+               [this] { view_.shows_trends = !view_.shows_trends; }});
   actions.add({"start.simulated", "Simulated too", "Counts simulated sessions among the trends",
                GLFW_KEY_SPACE, 0, false, [this, is_shown] { return is_shown() && view_.shows_trends; },
                [this] { return view_.with_simulated; },

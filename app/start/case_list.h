@@ -9,8 +9,10 @@
 
 #include "app/start/case_library.h"
 #include "app/start/case_pictures.h"
+#include "app/start/pacs_pane.h"
 #include "app/start/recent_cases.h"
 #include "app/widgets/controls.h"
+#include "planning/library/accuracy_checks.h"
 #include "planning/library/case_query.h"
 #include "planning/library/trends.h"
 
@@ -31,6 +33,8 @@ class CaseList {
   void move_selection(int by);
   void accept();                 // opens what is selected
   [[nodiscard]] bool go_back();  // out of the trends; false when they are not shown
+  // The selected case, where it is there and can be read.
+  [[nodiscard]] SendableCase sendable() const;
   [[nodiscard]] bool shows_trends() const { return view_.shows_trends; }
   [[nodiscard]] bool is_busy() const { return library_.is_looking() || pictures_.is_busy(); }
   // A text field is to take the next letters.
@@ -47,7 +51,8 @@ class CaseList {
     std::string note, note_before;
     std::filesystem::path note_of;
     bool shows_trends = false;
-    library::Trend trend = library::Trend::EntryOffset;
+    // Of the sessions' trends, then of the daily checks of each device.
+    std::size_t chart = 0;
     bool with_simulated = false;
   };
   void filter();
@@ -66,12 +71,17 @@ class CaseList {
   void draw_details(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_note(const widgets::Ui& ui, const library::CaseRecord& record);
   void draw_trends(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_chart_list(const widgets::Ui& ui, const widgets::Rect& area);
+  [[nodiscard]] std::size_t chart_count() const;
+  [[nodiscard]] std::string chart_name(std::size_t chart) const;
 
   std::function<void(const std::filesystem::path&)> open_;
   CaseLibrary library_;
   CasePictures pictures_;
   std::vector<RecentCase> recent_;
   std::vector<std::size_t> found_;  // of the library's records
+  library::AccuracyChecks accuracy_;
+  std::vector<library::AccuracyDevice> devices_;  // of these
   View view_;
 };
 

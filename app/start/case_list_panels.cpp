@@ -60,9 +60,9 @@ void CaseList::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("note", selected() != nullptr ? selected()->note : "");
   if (view_.shows_trends) return draw_trends(ui, area);
   widgets::Rect rest = area;
-  draw_head(ui, rest.cut_top(ui.theme.px(108)));
+  draw_head(ui, rest.cut_top(ui.theme.px(devices_.empty() ? 108 : 146)));
   draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-               {"start.accept", "start.browse", "start.built_in", "start.note", "start.trends",
+               {"start.accept", "start.browse", "start.pacs", "start.built_in", "start.note", "start.trends",
                 "start.forget", "start.back"});
   const widgets::Rect side = rest.cut_right(ui.theme.px(560), ui.theme.px(12));
   draw_list(ui, rest);
@@ -113,6 +113,17 @@ void CaseList::draw_head(const widgets::Ui& ui, widgets::Rect head) {
   filter_button("start.side", view_.query.side.empty() ? "both" : view_.query.side);
   filter_button("start.state", view_.query.state ? std::string(to_text(*view_.query.state)) : "any");
   filter_button("start.order", std::string(to_text(view_.query.order)));
+  if (devices_.empty()) return;
+  // Of the arthroscope that stands worst, at this moment: a window may be open over midnight. The others
+  // stand among the trends.
+  const library::AccuracyStanding standing = library::worst_standing(accuracy_, files::utc_now());
+  ui.log.note_state("accuracy", standing.text);
+  const widgets::Severity severity = standing.is_fine() ? widgets::Severity::Good
+                                     : standing.outcome == library::AccuracyStanding::Outcome::MissingToday
+                                         ? widgets::Severity::Caution
+                                         : widgets::Severity::Bad;
+  draw_text(draw, ui.theme.body, head.x, y + height + ui.theme.px(10), widgets::color_of(severity),
+            fitting(ui.theme.body, std::string(standing.is_fine() ? "" : "! ") + standing.text, head.width));
 }
 
 void CaseList::draw_list(const widgets::Ui& ui, const widgets::Rect& area) {

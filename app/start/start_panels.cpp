@@ -3,6 +3,7 @@
 #include <array>
 #include <cstring>
 
+#include "app/start/side_line.h"
 #include "app/start/start_drawing.h"
 #include "app/start/start_view.h"
 
@@ -40,11 +41,14 @@ void StartView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
     case Page::Import:
       draw_import(ui, area);
       break;
+    case Page::Pacs:
+      pacs_.draw(ui, area);
+      break;
   }
   state_.scrolls_to_selected = false;
   constexpr std::array<const char*, 7> kStates{"idle",   "looking", "choosing", "running",
                                                "asking", "saving",  "done"};
-  constexpr std::array<const char*, 3> kPages{"cases", "browse", "import"};
+  constexpr std::array<const char*, 4> kPages{"cases", "browse", "import", "pacs"};
   ui.log.note_state("start", kPages[static_cast<std::size_t>(state_.page)]);
   ui.log.note_state("import", kStates[static_cast<std::size_t>(work_.state())]);
   ui.log.note_state("import_failure", work_.failure());
@@ -209,13 +213,10 @@ void StartView::draw_result(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note("start.name", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   ImGui::Dummy({0, ui.theme.px(6)});
   if (!work_.failure().empty()) widgets::status_row(ui, Severity::Bad, "Not written", work_.failure());
-  if (!state_.side)
-    widgets::status_row(ui, Severity::Caution, "Side", "neither names nor images tell: press R or L");
-  else
-    widgets::status_row(
-        ui, work_.result().side_was_guessed ? Severity::Caution : Severity::Good, "Side",
-        std::string(bones::to_text(*state_.side)) +
-            (work_.result().side_was_guessed ? ", by the name of the source: is that so?" : ""));
+  const SideLine side = side_line(work_.result(), state_.side, state_.side_was_said);
+  widgets::status_row(ui, side.severity, "Side", side.text);
+  ui.log.note_state("import_side",
+                    std::string(side.severity == Severity::Good ? "good: " : "look: ") + side.text);
   for (const std::string& doubt : doubts) widgets::status_row(ui, Severity::Caution, "Look", doubt);
   for (const std::string& line : work_.result().lines) widgets::status_row(ui, Severity::Quiet, "", line);
   for (const importing::ImportedBone& bone : work_.result().bones)

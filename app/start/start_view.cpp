@@ -28,7 +28,8 @@ StartView::StartView(std::function<void(const fs::path&)> open, std::function<vo
         open(folder);
       }),
       work_(wake),
-      cases_(open_, wake) {}
+      cases_(open_, wake),
+      pacs_([this](const fs::path& folder) { take(folder); }, wake) {}
 
 void StartView::enter(bool can_close) {
   wants_to_close_ = false;
@@ -42,6 +43,11 @@ void StartView::enter(bool can_close) {
 
 void StartView::leave() { cases_.leave(); }
 
+void StartView::say_side(bones::Side side) {
+  state_.side = side;
+  state_.side_was_said = true;
+}
+
 void StartView::take(const fs::path& path) {
   std::error_code error;
   if (is_case_folder(path)) return open_(path);
@@ -50,16 +56,20 @@ void StartView::take(const fs::path& path) {
   state_.selected = 0;
   state_.ticked.clear();
   state_.side.reset();
+  state_.side_was_said = false;
   thumbnails_.clear();
   work_.look_into(path);
 }
 
-bool StartView::has_running_work() const {
+bool StartView::has_running_work() const { return imports() || pacs_.has_running_work(); }
+
+bool StartView::imports() const {
   return work_.state() == State::Running || work_.state() == State::Saving || work_.state() == State::Asking;
 }
 
 void StartView::tick() {
   if (state_.page == Page::Cases) cases_.tick();
+  pacs_.tick(state_.page == Page::Pacs);
   const State before = work_.state();
   work_.poll();
   const State now = work_.state();
@@ -97,12 +107,15 @@ std::size_t StartView::row_count() const {
       return state_.listing.entries.size();
     case Page::Import:
       return work_.state() == State::Choosing ? work_.sources().sources.size() : 0;
+    case Page::Pacs:
+      return 1;  // it knows its own
   }
   return 0;
 }
 
 void StartView::move_selection(int by) {
   if (state_.page == Page::Cases) return cases_.move_selection(by);
+  if (state_.page == Page::Pacs) return pacs_.move_selection(by);
   const auto count = static_cast<long>(row_count());
   if (count == 0) return;
   state_.selected =
@@ -127,6 +140,10 @@ void StartView::go_back() {
       if (!cases_.go_back()) wants_to_close_ = state_.can_close;
       return;
     case Page::Browse:
+      state_.page = Page::Cases;
+      break;
+    case Page::Pacs:
+      if (pacs_.go_back()) return;
       state_.page = Page::Cases;
       break;
     case Page::Import:
@@ -159,11 +176,16 @@ void StartView::accept() {
     case Page::Import:
       if (work_.state() == State::Choosing) start_import();
       if (work_.state() == State::Asking) save_import();
+      return;
+    case Page::Pacs:
+      return;  // by keys of its own
   }
 }
 
 void StartView::start_import(bool images_only) {
   if (state_.ticked.empty()) return;
+  // What an import before this one guessed is not given to it as known.
+  if (!state_.side_was_said) state_.side.reset();
   work_.start({.sources = state_.ticked, .side = state_.side, .images_only = images_only});
 }
 
@@ -177,6 +199,7 @@ void StartView::add_actions(widgets::Actions& actions) {
   add_page_actions(actions);
   add_import_actions(actions);
   cases_.add_actions(actions, [this] { return state_.page == Page::Cases; });
+  pacs_.add_actions(actions, [this] { return state_.page == Page::Pacs; });
 }
 
 void StartView::add_page_actions(widgets::Actions& actions) {
@@ -199,6 +222,19 @@ void StartView::add_page_actions(widgets::Actions& actions) {
                here(Page::Cases),
                {},
                [this] { browse(state_.listing.folder.empty() ? home_folder() : state_.listing.folder); }});
+  actions.add({"start.pacs",
+               "PACS...",
+               "Finds and fetches a patient's images in the hospital's archive; sends the results of the "
+               "selected case there",
+               GLFW_KEY_P,
+               0,
+               false,
+               here(Page::Cases),
+               {},
+               [this] {
+                 state_.page = Page::Pacs;
+                 pacs_.enter(cases_.sendable());
+               }});
   actions.add({"start.up",
                "Folder above",
                "Goes to the folder that this one is in",
@@ -249,12 +285,13 @@ void StartView::add_page_actions(widgets::Actions& actions) {
                GLFW_KEY_ENTER,
                0,
                false,
-               [this] { return state_.page != Page::Import && row_count() > 0; },
+               [this] { return state_.page != Page::Import && state_.page != Page::Pacs && row_count() > 0; },
                {},
                [this] { accept(); }});
   actions.add({"start.back",
                "Back",
-               "Goes back; an import that runs is stopped, and nothing of it stays",
+               "Goes back; an import that runs is stopped, and nothing of it stays; of a transfer what came "
+               "whole stays",
                GLFW_KEY_ESCAPE,
                0,
                false,
@@ -264,7 +301,7 @@ void StartView::add_page_actions(widgets::Actions& actions) {
                },
                {},
                [this] { go_back(); },
-               {"stop the import", [this] { return has_running_work(); }}});
+               {"stop the import", [this] { return imports(); }}});
 }
 
 void StartView::add_import_actions(widgets::Actions& actions) {
@@ -330,13 +367,16 @@ void StartView::add_import_actions(widgets::Actions& actions) {
   const auto can_say_side = [chooses, asks] { return chooses() || asks(); };
   actions.add({"start.right", "Right knee", "The images are of a right knee", GLFW_KEY_R, 0, false,
                can_say_side, [this] { return state_.side == bones::Side::Right; },
-               [this] { state_.side = bones::Side::Right; }});
+               [this] { say_side(bones::Side::Right); }});
   actions.add({"start.left", "Left knee", "The images are of a left knee", GLFW_KEY_L, 0, false, can_say_side,
-               [this] { return state_.side == bones::Side::Left; },
-               [this] { state_.side = bones::Side::Left; }});
+               [this] { return state_.side == bones::Side::Left; }, [this] { say_side(bones::Side::Left); }});
   actions.add({"start.side_unknown", "As the images tell",
                "The side is read from names and images, and asked for where they do not tell", GLFW_KEY_U, 0,
-               false, chooses, [this] { return !state_.side; }, [this] { state_.side.reset(); }});
+               false, chooses, [this] { return !state_.side; },
+               [this] {
+                 state_.side.reset();
+                 state_.side_was_said = false;
+               }});
 }
 
 }  // namespace arthronaut::start

@@ -1,6 +1,6 @@
 // Before a case is open, and whenever another is wanted: recent cases, the built-in knee, a browser of
-// folders, and the import from what the hospital gave. Everything by mouse and by key; a folder that is
-// dropped on the window comes here.
+// folders, the hospital's PACS, and the import from what the hospital gave. Everything by mouse and by key; a
+// folder that is dropped on the window comes here.
 #pragma once
 
 #include <filesystem>
@@ -13,6 +13,7 @@
 #include "app/start/case_list.h"
 #include "app/start/folder_listing.h"
 #include "app/start/import_work.h"
+#include "app/start/pacs_pane.h"
 #include "app/widgets/controls.h"
 #include "app/widgets/grey_texture.h"
 
@@ -34,16 +35,20 @@ class StartView {
 
   // Something will change without anybody's doing.
   [[nodiscard]] bool is_busy() const {
-    return work_.is_busy() || work_.makes_pictures() || (state_.page == Page::Cases && cases_.is_busy());
+    return work_.is_busy() || work_.makes_pictures() || (state_.page == Page::Cases && cases_.is_busy()) ||
+           pacs_.is_busy();
   }
-  // An import runs that the end of the program would cut off.
+  // An import or a transfer runs that the end of the program would cut off.
   [[nodiscard]] bool has_running_work() const;
   // What is typed next is meant for a text field.
-  [[nodiscard]] bool awaits_text() const { return state_.page == Page::Cases && cases_.awaits_text(); }
+  [[nodiscard]] bool awaits_text() const {
+    return (state_.page == Page::Cases && cases_.awaits_text()) ||
+           (state_.page == Page::Pacs && pacs_.awaits_text());
+  }
   [[nodiscard]] bool wants_to_close() const { return wants_to_close_; }
 
  private:
-  enum class Page { Cases, Browse, Import };
+  enum class Page { Cases, Browse, Import, Pacs };
   void add_page_actions(widgets::Actions& actions);
   void add_import_actions(widgets::Actions& actions);
   void browse(const std::filesystem::path& folder);
@@ -54,10 +59,12 @@ class StartView {
   void start_import(bool images_only = false);
   void save_import();
   [[nodiscard]] std::size_t row_count() const;
+  [[nodiscard]] bool imports() const;
 
   void draw_browser(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_import(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_sources(const widgets::Ui& ui, const widgets::Rect& area);
+  void say_side(bones::Side side);
   void draw_result(const widgets::Ui& ui, const widgets::Rect& area);
   // A row of this page's list; true when it was chosen by a click twice.
   bool draw_page_row(const widgets::Ui& ui, const std::string& name, std::size_t row, float height);
@@ -70,12 +77,14 @@ class StartView {
     FolderListing listing;
     std::vector<std::size_t> ticked;  // of the sources
     std::optional<bones::Side> side;
-    std::string name;  // of the new case
+    bool side_was_said = false;  // by a person
+    std::string name;            // of the new case
   };
 
   std::function<void(const std::filesystem::path&)> open_;
   ImportWork work_;
   CaseList cases_;
+  PacsPane pacs_;
   ViewState state_;
   std::map<std::size_t, std::unique_ptr<widgets::GreyTexture>> thumbnails_;  // by source
   bool wants_to_close_ = false;

@@ -1,10 +1,13 @@
-// The trends of the listed cases as control charts.
+// The trends of the listed cases, and the daily checks of accuracy, as control charts.
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "app/start/case_list.h"
 #include "app/start/start_drawing.h"
 #include "planning/files/format.h"
+#include "planning/files/utc_clock.h"
 
 namespace arthronaut::start {
 
@@ -14,16 +17,28 @@ using library::ControlLimits;
 using library::Trend;
 using library::TrendPoint;
 
-std::string unit_in_words(Trend trend) {
-  const std::string unit(library::unit_of(trend));
-  return unit == "deg" ? "\u00B0" : " " + unit;
-}
+// What one chart shows, wherever it comes from.
+struct Charted {
+  std::string unit;  // "mm", "deg", "min"
+  int decimals = 2;
+  std::vector<TrendPoint> points;
+  ControlLimits limits;
+  std::optional<double> least, greatest;  // limits that hold whatever is usual
+  bool begins_at_nought = true;
 
-std::string number(double value, Trend trend) { return files::format("%.2f", value) + unit_in_words(trend); }
+  [[nodiscard]] std::string number(double value) const {
+    return files::format("%.*f", decimals, value) + unit_text();
+  }
+  [[nodiscard]] std::string unit_text() const { return unit == "deg" ? "\u00B0" : " " + unit; }
+  [[nodiscard]] bool is_outside(double value) const {
+    return (limits.is_known && (value > limits.upper || value < limits.lower)) ||
+           (greatest && value > *greatest) || (least && value < *least);
+  }
+};
 
-// A round step that cuts [0, top] into four to ten.
-double step_of(double top) {
-  const double rough = top / 5, power = std::pow(10, std::floor(std::log10(rough)));
+// A round step that cuts such a range into four to ten.
+double step_of(double range) {
+  const double rough = range / 5, power = std::pow(10, std::floor(std::log10(rough)));
   for (const double factor : {1.0, 2.0, 5.0})
     if (factor * power >= rough) return factor * power;
   return 10 * power;
@@ -31,11 +46,11 @@ double step_of(double top) {
 
 struct Chart {
   widgets::Rect plot;
-  double top = 1;  // the value at the plot's upper edge; 0 is at the lower
+  double bottom = 0, top = 1;  // the values at the plot's edges
   std::size_t count = 1;
 
   [[nodiscard]] float y_of(double value) const {
-    return plot.y + plot.height * static_cast<float>(1 - value / top);
+    return plot.y + plot.height * static_cast<float>((top - value) / (top - bottom));
   }
   [[nodiscard]] ImVec2 at(std::size_t i, double value) const {
     const float share = count > 1 ? static_cast<float>(i) / static_cast<float>(count - 1) : 0.5F;
@@ -43,21 +58,38 @@ struct Chart {
   }
 };
 
-void draw_axis(const widgets::Ui& ui, const Chart& chart, Trend trend) {
+// As high as everything on it, with some room.
+void fit(Chart& chart, const Charted& charted) {
+  std::vector<double> shown{charted.limits.is_known ? charted.limits.upper : charted.points.front().value,
+                            charted.limits.is_known ? charted.limits.lower : charted.points.front().value};
+  for (const TrendPoint& point : charted.points) shown.push_back(point.value);
+  for (const auto& limit : {charted.least, charted.greatest})
+    if (limit) shown.push_back(*limit);
+  const auto [least, greatest] = std::minmax_element(shown.begin(), shown.end());
+  chart.bottom = charted.begins_at_nought ? 0 : *least - 0.15 * (*greatest - *least);
+  chart.top = *greatest + 0.15 * (*greatest - chart.bottom);
+  if (!(chart.top > chart.bottom)) chart.top = chart.bottom + 1;
+}
+
+void draw_axis(const widgets::Ui& ui, const Chart& chart, const Charted& charted) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const double step = step_of(chart.top);
-  for (double value = 0; value <= chart.top; value += step) {
+  const double step = step_of(chart.top - chart.bottom);
+  for (double value = step * std::ceil(chart.bottom / step); value <= chart.top; value += step) {
     const float y = chart.y_of(value);
     draw.AddLine({chart.plot.x, y}, {chart.plot.x + chart.plot.width, y}, widgets::kPanelEdge);
     draw_text(draw, ui.theme.body, chart.plot.x - ui.theme.px(110), y - ui.theme.body->FontSize / 2,
-              widgets::kQuietText, files::format("%.4g", value) + unit_in_words(trend));
+              widgets::kQuietText, files::format("%.4g", value) + charted.unit_text());
   }
 }
 
-void draw_limits(const widgets::Ui& ui, const Chart& chart, const ControlLimits& limits) {
-  if (!limits.is_known) return;
+void draw_limits(const widgets::Ui& ui, const Chart& chart, const Charted& charted) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const float x0 = chart.plot.x, x1 = chart.plot.x + chart.plot.width, dash = ui.theme.px(14);
+  for (const auto& limit : {charted.least, charted.greatest})
+    if (limit)
+      draw.AddLine({x0, chart.y_of(*limit)}, {x1, chart.y_of(*limit)}, widgets::kBad, ui.theme.px(2));
+  const ControlLimits& limits = charted.limits;
+  if (!limits.is_known) return;
   draw.AddLine({x0, chart.y_of(limits.center)}, {x1, chart.y_of(limits.center)}, widgets::kGood,
                ui.theme.px(2));
   for (const double limit : {limits.lower, limits.upper})
@@ -66,13 +98,9 @@ void draw_limits(const widgets::Ui& ui, const Chart& chart, const ControlLimits&
                    ui.theme.px(2));
 }
 
-bool is_outside(double value, const ControlLimits& limits) {
-  return limits.is_known && (value > limits.upper || value < limits.lower);
-}
-
 // The point under the pointer, if any, is told in words.
-void draw_points(const widgets::Ui& ui, const Chart& chart, const std::vector<TrendPoint>& points,
-                 const ControlLimits& limits, Trend trend) {
+void draw_points(const widgets::Ui& ui, const Chart& chart, const Charted& charted) {
+  const std::vector<TrendPoint>& points = charted.points;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   for (std::size_t i = 1; i < points.size(); ++i)
     draw.AddLine(chart.at(i - 1, points[i - 1].value), chart.at(i, points[i].value), widgets::kQuietText,
@@ -81,7 +109,7 @@ void draw_points(const widgets::Ui& ui, const Chart& chart, const std::vector<Tr
   const float radius = ui.theme.px(6);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const ImVec2 at = chart.at(i, points[i].value);
-    if (is_outside(points[i].value, limits))  // by shape, too: a square
+    if (charted.is_outside(points[i].value))  // by shape, too: a square
       draw.AddRectFilled({at.x - radius, at.y - radius}, {at.x + radius, at.y + radius}, widgets::kBad);
     else
       draw.AddCircleFilled(at, radius, widgets::kAccent);
@@ -89,87 +117,143 @@ void draw_points(const widgets::Ui& ui, const Chart& chart, const std::vector<Tr
   for (std::size_t i = 0; i < points.size(); ++i) {
     const ImVec2 at = chart.at(i, points[i].value);
     if (std::hypot(at.x - mouse.x, at.y - mouse.y) > 2 * radius) continue;
-    const std::string words =
-        points[i].case_name + ", " + points[i].when_utc.substr(0, 10) + ": " + number(points[i].value, trend);
+    const std::string words = points[i].case_name + ", " + points[i].when_utc.substr(0, 10) + ": " +
+                              charted.number(points[i].value);
     ImGui::SetTooltip("%s", words.c_str());
     break;
   }
 }
 
+Charted charted_trend(std::span<const library::CaseRecord> listed, Trend trend, bool with_simulated) {
+  Charted charted;
+  charted.unit = library::unit_of(trend);
+  charted.points = library::trend_of(listed, trend, {.with_simulated = with_simulated});
+  std::vector<double> values;
+  for (const TrendPoint& point : charted.points) values.push_back(point.value);
+  charted.limits = library::control_limits(values);
+  return charted;
+}
+
+Charted charted_accuracy(std::span<const library::AccuracyCheck> checks,
+                         const library::AccuracyDevice& device, const std::string& now_utc) {
+  Charted charted;
+  charted.unit = "mm";
+  charted.decimals = 3;
+  charted.points = library::accuracy_trend(checks, device);
+  charted.limits = library::accuracy_standing(checks, device, now_utc).limits;
+  for (const library::AccuracyCheck& check : checks) {
+    if (library::device_of(check) != device) continue;
+    charted.least = check.true_mm - library::kMostDistanceError_mm;
+    charted.greatest = check.true_mm + library::kMostDistanceError_mm;
+  }
+  charted.begins_at_nought = false;
+  return charted;
+}
+
+std::string limits_in_words(const Charted& charted, const std::string& fewer) {
+  if (!charted.limits.is_known) return ".  Limits from " + fewer + " on";
+  const auto outside =
+      std::count_if(charted.points.begin(), charted.points.end(),
+                    [&](const TrendPoint& point) { return charted.is_outside(point.value); });
+  return ".  Mean " + charted.number(charted.limits.center) + ", limits " +
+         charted.number(charted.limits.lower) + " to " + charted.number(charted.limits.upper) + ", " +
+         std::to_string(outside) + " outside";
+}
+
+void draw_chart(const widgets::Ui& ui, const widgets::Rect& area, const Charted& charted) {
+  Chart chart{area.inset(ui.theme.px(50)), 0, 1, charted.points.size()};
+  chart.plot.cut_left(ui.theme.px(80));
+  fit(chart, charted);
+  draw_axis(ui, chart, charted);
+  draw_limits(ui, chart, charted);
+  draw_points(ui, chart, charted);
+  ImDrawList& plot = *ImGui::GetWindowDrawList();
+  const float y = chart.plot.y + chart.plot.height + ui.theme.px(10);
+  draw_text(plot, ui.theme.body, chart.plot.x, y, widgets::kQuietText,
+            charted.points.front().when_utc.substr(0, 10));
+  if (charted.points.size() > 1)
+    draw_text(plot, ui.theme.body, chart.plot.x + chart.plot.width - ui.theme.px(130), y, widgets::kQuietText,
+              charted.points.back().when_utc.substr(0, 10));
+}
+
 }  // namespace
+
+std::size_t CaseList::chart_count() const {
+  return static_cast<std::size_t>(library::kTrendCount) + devices_.size();
+}
+
+std::string CaseList::chart_name(std::size_t chart) const {
+  if (chart < static_cast<std::size_t>(library::kTrendCount))
+    return std::string(to_text(static_cast<Trend>(chart)));
+  return "Daily accuracy: " +
+         library::shown_name(accuracy_.checks,
+                             devices_[chart - static_cast<std::size_t>(library::kTrendCount)]);
+}
+
+void CaseList::draw_chart_list(const widgets::Ui& ui, const widgets::Rect& area) {
+  widgets::begin_panel(ui, "start.trend_list", area);
+  for (std::size_t i = 0; i < chart_count(); ++i) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float height = ui.theme.px(52);
+    const RowPress press = draw_row(ui, {.name = "start.trend." + std::to_string(i),
+                                         .number = i,
+                                         .height = height,
+                                         .is_selected = i == view_.chart,
+                                         .scrolls_here = false});
+    if (press != RowPress::None) view_.chart = i;
+    draw_text(*ImGui::GetWindowDrawList(), ui.theme.body, at.x + ui.theme.px(14),
+              at.y + (height - ui.theme.body->FontSize) / 2, widgets::kText,
+              fitting(ui.theme.body, chart_name(i), area.width - ui.theme.px(60)));
+  }
+  widgets::end_panel();
+}
 
 void CaseList::draw_trends(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::Rect rest = area;
   const widgets::Rect head = rest.cut_top(ui.theme.px(96));
+  const bool is_accuracy = view_.chart >= static_cast<std::size_t>(library::kTrendCount);
   std::vector<library::CaseRecord> listed;
-  for (const std::size_t i : found_) listed.push_back(library_.records()[i]);
-  const auto points = library::trend_of(listed, view_.trend, {.with_simulated = view_.with_simulated});
-  const std::size_t with_simulated = library::trend_of(listed, view_.trend, {.with_simulated = true}).size();
-  std::vector<double> values;
-  for (const TrendPoint& point : points) values.push_back(point.value);
-  const ControlLimits limits = library::control_limits(values);
-  ui.log.note_state("trend_points", std::to_string(points.size()));
-  ui.log.note_state("trend", std::string(to_text(view_.trend)));
+  if (!is_accuracy)
+    for (const std::size_t i : found_) listed.push_back(library_.records()[i]);
+  std::size_t left_out = 0;
+  Charted charted;
+  std::string words;
+  if (is_accuracy) {
+    const library::AccuracyDevice& device =
+        devices_[view_.chart - static_cast<std::size_t>(library::kTrendCount)];
+    const std::string now_utc = files::utc_now();
+    charted = charted_accuracy(accuracy_.checks, device, now_utc);
+    words = library::accuracy_standing(accuracy_.checks, device, now_utc).text +
+            limits_in_words(charted, std::to_string(library::kLeastForLimits) + " days");
+    if (!accuracy_.problems.empty()) words += ".  " + accuracy_.problems.front();
+  } else {
+    const auto trend = static_cast<Trend>(view_.chart);
+    charted = charted_trend(listed, trend, view_.with_simulated);
+    left_out = library::trend_of(listed, trend, {.with_simulated = true}).size() - charted.points.size();
+    words = std::to_string(charted.points.size()) +
+            (charted.points.size() == 1 ? " session of " : " sessions of ") + std::to_string(found_.size()) +
+            (found_.size() == 1 ? " listed case" : " listed cases");
+    if (left_out > 0) words += "; " + std::to_string(left_out) + " simulated left out";
+    words += limits_in_words(charted, std::to_string(library::kLeastForLimits) + " sessions");
+  }
+  ui.log.note_state("trend_points", std::to_string(charted.points.size()));
+  ui.log.note_state("trend", chart_name(view_.chart));
+  ui.log.note_state("trend_says", words);
 
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText, std::string(to_text(view_.trend)));
-  std::string words = std::to_string(points.size()) +
-                      (points.size() == 1 ? " session of " : " sessions of ") +
-                      std::to_string(found_.size()) + (found_.size() == 1 ? " listed case" : " listed cases");
-  if (!view_.with_simulated && with_simulated > points.size())
-    words += "; " + std::to_string(with_simulated - points.size()) + " simulated left out";
-  const auto outside =
-      std::count_if(values.begin(), values.end(), [&](double value) { return is_outside(value, limits); });
-  if (limits.is_known)
-    words += ".  Mean " + number(limits.center, view_.trend) + ", limits " +
-             number(limits.lower, view_.trend) + " to " + number(limits.upper, view_.trend) + ", " +
-             std::to_string(outside) + " outside";
-  else
-    words += ".  Limits from " + std::to_string(library::kLeastForLimits) + " sessions on";
+  draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText, chart_name(view_.chart));
   draw_text(draw, ui.theme.body, head.x, head.y + ui.theme.px(50), widgets::kQuietText,
             fitting(ui.theme.body, words, head.width));
   draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
                {"start.trends", "start.simulated", "start.back"});
-
-  const widgets::Rect choice = rest.cut_left(ui.theme.px(420), ui.theme.px(12));
-  widgets::begin_panel(ui, "start.trend_list", choice);
-  for (int i = 0; i < library::kTrendCount; ++i) {
-    const auto trend = static_cast<Trend>(i);
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float height = ui.theme.px(52);
-    const RowPress press = draw_row(ui, {.name = "start.trend." + std::to_string(i),
-                                         .number = static_cast<std::size_t>(i),
-                                         .height = height,
-                                         .is_selected = trend == view_.trend,
-                                         .scrolls_here = false});
-    if (press != RowPress::None) view_.trend = trend;
-    draw_text(*ImGui::GetWindowDrawList(), ui.theme.body, at.x + ui.theme.px(14),
-              at.y + (height - ui.theme.body->FontSize) / 2, widgets::kText,
-              fitting(ui.theme.body, std::string(to_text(trend)), choice.width - ui.theme.px(60)));
-  }
-  widgets::end_panel();
-
+  draw_chart_list(ui, rest.cut_left(ui.theme.px(420), ui.theme.px(12)));
   widgets::begin_panel(ui, "start.trend_plot", rest);
-  if (points.empty()) {
+  if (charted.points.empty())
     widgets::text_in(ui.theme.strong, widgets::kQuietText,
-                     with_simulated > 0 ? "Only simulated sessions say this number: Space counts them."
-                                        : "No session of the listed cases says this number.");
-  } else {
-    Chart chart{rest.inset(ui.theme.px(50)), 1, points.size()};
-    chart.plot.cut_left(ui.theme.px(80));
-    chart.top = 1.15 * std::max(*std::max_element(values.begin(), values.end()), limits.upper);
-    if (!(chart.top > 0)) chart.top = 1;
-    draw_axis(ui, chart, view_.trend);
-    draw_limits(ui, chart, limits);
-    draw_points(ui, chart, points, limits, view_.trend);
-    ImDrawList& plot = *ImGui::GetWindowDrawList();
-    const float y = chart.plot.y + chart.plot.height + ui.theme.px(10);
-    draw_text(plot, ui.theme.body, chart.plot.x, y, widgets::kQuietText,
-              points.front().when_utc.substr(0, 10));
-    if (points.size() > 1)
-      draw_text(plot, ui.theme.body, chart.plot.x + chart.plot.width - ui.theme.px(130), y,
-                widgets::kQuietText, points.back().when_utc.substr(0, 10));
-  }
+                     left_out > 0 ? "Only simulated sessions say this number: Space counts them."
+                                  : "No session of the listed cases says this number.");
+  else
+    draw_chart(ui, rest, charted);
   widgets::end_panel();
 }
 

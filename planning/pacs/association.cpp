@@ -24,6 +24,8 @@ constexpr long kLargestPdu_bytes = ASC_MAXIMUMPDUSIZE;
 
 constexpr double kLongestPause_s = 15;
 constexpr std::chrono::milliseconds kLongestFarewell{500};
+// For a host of several addresses, TLS and the negotiation together.
+constexpr double kConnectTimeouts = 3;
 
 int whole_seconds(double seconds) { return static_cast<int>(std::ceil(seconds)); }
 
@@ -131,13 +133,13 @@ std::unique_ptr<Association> Association::connect(const Peer& peer, const Connec
   prepare_network(options);
   for (int attempt = 0; !stop.stop_requested(); ++attempt) {
     // NOLINTNEXTLINE: the constructor is private
-    std::unique_ptr<Association> association(new Association());
-    CuttableSocket* socket = &association->socket_;
-    association->cut_when_stopped_.emplace(stop, [socket] { socket->cut(); });
+    std::unique_ptr<Association> association(new Association(options));
+    CuttableSocket& socket = association->line_.socket;
+    association->cut_when_stopped_.emplace(stop, [&socket] { socket.cut(); });
     const OFCondition outcome = association->request(peer, options, proposals);
     if (outcome.good()) return association;
     if (stop.stop_requested()) break;
-    Refusal refusal{.reason = "cannot be reached: " + reason_of(outcome), .is_for_good = false};
+    Refusal refusal{.reason = "cannot be reached: " + association->why(outcome), .is_for_good = false};
     if (outcome == DUL_PEERABORTEDASSOCIATION || outcome == DUL_NETWORKCLOSED)
       refusal.reason =
           options.tls ? "ended the connection while it began; it may not speak TLS there, or not trust us"
@@ -164,11 +166,15 @@ OFCondition Association::request(const Peer& peer, const ConnectionOptions& opti
       ASC_initializeNetwork(NET_REQUESTOR, 0, whole_seconds(options.connect_timeout_s), &network_);
   if (outcome.bad()) return outcome;
   if (options.tls) {
-    secure_ = std::make_unique<SecureLayer>(*options.tls, NET_REQUESTOR, peer.host, &socket_);
+    secure_ = std::make_unique<SecureLayer>(*options.tls, NET_REQUESTOR, peer.host);
+    secure_->layer().use(line_);
   } else {
-    plain_ = std::make_unique<CuttableLayer<DcmTransportLayer>>(&socket_);
+    plain_ = std::make_unique<LineLayer<DcmTransportLayer>>();
+    plain_->use(line_);
   }
-  outcome = ASC_setTransportLayer(network_, secure_ ? &secure_->layer() : plain_.get(), 0);
+  DcmTransportLayer* layer = plain_.get();
+  if (secure_) layer = &secure_->layer();
+  outcome = ASC_setTransportLayer(network_, layer, 0);
   if (outcome.bad()) return outcome;
   T_ASC_Parameters* parameters = nullptr;
   outcome = ASC_createAssociationParameters(&parameters, kLargestPdu_bytes);
@@ -190,6 +196,9 @@ OFCondition Association::request(const Peer& peer, const ConnectionOptions& opti
     }
     id += 2;
   }
+  line_.allowance.allow(kLargestRemark_bytes, "it answers the first word with more than 16 MB");
+  // TLS shakes hands below what the allowance sees.
+  const CutAfter cut(line_, std::chrono::duration<double>(kConnectTimeouts * options.connect_timeout_s));
   outcome = ASC_requestAssociation(network_, parameters, &association_);
   is_established_ = outcome.good();
   return outcome;
@@ -205,17 +214,17 @@ Association::~Association() {
 void Association::abort() {
   // DCMTK waits until the peer closes the connection, which one that is sending does late: not longer than
   // so.
-  std::jthread cutter([this](const std::stop_token& is_closed) {
-    std::mutex mutex;
-    std::condition_variable_any closed;
-    std::unique_lock lock(mutex);
-    (void)closed.wait_for(lock, is_closed, kLongestFarewell, [] { return false; });
-    if (!is_closed.stop_requested()) socket_.cut();
-  });
+  const CutAfter cut(line_, kLongestFarewell);
   ASC_abortAssociation(association_);
 }
 
+std::string Association::why(const OFCondition& outcome) const {
+  const std::string& complaint = line_.allowance.complaint();
+  return complaint.empty() ? reason_of(outcome) : "was cut off: " + complaint;
+}
+
 void Association::release() {
+  line_.allowance.allow(kLargestRemark_bytes, kTooLargeCommand);
   if (is_established_ && ASC_releaseAssociation(association_).good()) is_established_ = false;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "planning/pacs/connection.h"
+#include "planning/pacs/line.h"
 #include "planning/pacs/tls.h"
 
 namespace arthronaut::pacs {
@@ -25,6 +26,12 @@ struct Proposal {
 
 // An association has no more contexts than this (their ids are odd and one byte).
 inline constexpr std::size_t kMostProposals = 128;
+
+// A command has some 20 short values.
+inline constexpr std::int64_t kLargestCommand_bytes = 64 * 1024;
+inline constexpr const char* kTooLargeCommand = "it sends a command of more than 64 kB";
+// The list of what a peer could not send, and the like: not read, and not without end either.
+inline constexpr std::int64_t kLargestRemark_bytes = 16 * 1024 * 1024;
 
 [[nodiscard]] const std::vector<std::string>& uncompressed_syntaxes();
 
@@ -50,16 +57,22 @@ class Association {
                                                      const std::string& transfer_syntax) const;
   [[nodiscard]] DIC_US next_message_id() { return ++last_message_id_; }
   [[nodiscard]] int answer_timeout_s() const { return answer_timeout_s_; }
+  [[nodiscard]] Line& line() { return line_; }
+  // What the peer may send until the next call of this: a message without data, or with some.
+  void expect_command() { line_.allowance.allow(kLargestCommand_bytes, kTooLargeCommand); }
+  // Why an operation failed: what the line complains of, else what DCMTK says.
+  [[nodiscard]] std::string why(const OFCondition& outcome) const;
+  [[nodiscard]] bool is_given_up_for_good() const { return line_.allowance.is_for_good(); }
 
  private:
-  Association() = default;
+  explicit Association(const ConnectionOptions& options) : line_(options.answer_timeout_s) {}
   void abort();
   [[nodiscard]] OFCondition request(const Peer& peer, const ConnectionOptions& options,
                                     const std::vector<Proposal>& proposals);
 
-  CuttableSocket socket_;
+  Line line_;
   std::unique_ptr<SecureLayer> secure_;
-  std::unique_ptr<DcmTransportLayer> plain_;
+  std::unique_ptr<LineLayer<DcmTransportLayer>> plain_;
   T_ASC_Network* network_ = nullptr;
   T_ASC_Association* association_ = nullptr;
   bool is_established_ = false;

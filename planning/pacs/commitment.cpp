@@ -29,20 +29,30 @@ struct Report {
   std::map<std::string, std::string> failed;  // reason by SOP instance
 };
 
-// What arrives on any connection; of another transaction is none of ours.
+// Twice what a reference and its failure take, and the frame around them.
+constexpr std::int64_t kReportBytesPerFile = 1024, kReportFrame_bytes = 64 * 1024;
+
+// What arrives on any connection; of another transaction is none of ours, nor what we did not send. One
+// report is kept, the last.
 class Reports {
  public:
-  explicit Reports(std::string transaction_uid) : transaction_uid_(std::move(transaction_uid)) {}
+  Reports(std::string transaction_uid, std::set<std::string> sent)
+      : transaction_uid_(std::move(transaction_uid)), sent_(std::move(sent)) {}
+  [[nodiscard]] std::int64_t largest_bytes() const {
+    return kReportFrame_bytes + kReportBytesPerFile * static_cast<std::int64_t>(sent_.size());
+  }
   void take(DcmDataset& data) {
     if (images::text_of(data, DCM_TransactionUID) != transaction_uid_) return;
     Report report;
     DcmItem* item = nullptr;
     for (long i = 0; data.findAndGetSequenceItem(DCM_ReferencedSOPSequence, item, i).good(); ++i)
-      report.kept.insert(images::text_of(*item, DCM_ReferencedSOPInstanceUID));
+      if (const auto uid = images::text_of(*item, DCM_ReferencedSOPInstanceUID); sent_.contains(uid))
+        report.kept.insert(uid);
     for (long i = 0; data.findAndGetSequenceItem(DCM_FailedSOPSequence, item, i).good(); ++i) {
+      const std::string uid = images::text_of(*item, DCM_ReferencedSOPInstanceUID);
+      if (!sent_.contains(uid)) continue;
       const int reason = images::unsigned_short_of(*item, DCM_FailureReason, 0);
-      report.failed[images::text_of(*item, DCM_ReferencedSOPInstanceUID)] =
-          status_text(static_cast<unsigned>(reason), "");
+      report.failed[uid] = status_text(static_cast<unsigned>(reason), "");
     }
     const std::scoped_lock lock(mutex_);
     report_ = std::move(report);
@@ -54,6 +64,7 @@ class Reports {
 
  private:
   const std::string transaction_uid_;
+  const std::set<std::string> sent_;
   mutable std::mutex mutex_;
   std::optional<Report> report_;
 };
@@ -84,26 +95,31 @@ struct ActionAnswer {
 // Reads what comes until the answer to the action, or until a report when `waits_for_report`.
 ActionAnswer read_until(Association& association, Reports& reports, bool waits_for_report,
                         std::chrono::steady_clock::time_point until, const std::stop_token& stop) {
-  while (!stop.stop_requested()) {
+  // The peer may report before it answers; not without end.
+  constexpr int kMostMessages = 1000;
+  for (int i = 0; !stop.stop_requested();) {
     if (waits_for_report && (reports.report() || std::chrono::steady_clock::now() >= until)) return {};
     if (waits_for_report && !ASC_dataWaiting(&association.get(), kPoll_s)) continue;
+    if (++i > kMostMessages) return {.is_broken = true, .status = 0, .note = "it reports without end"};
     T_DIMSE_Message message{};
     T_ASC_PresentationContextID context = 0;
     DcmDataset* detail = nullptr;
+    association.expect_command();
     OFCondition outcome = DIMSE_receiveCommand(&association.get(), DIMSE_NONBLOCKING,
                                                association.answer_timeout_s(), &context, &message, &detail);
     const std::string comment = take_comment(detail);
     if (outcome.good() && message.CommandField == DIMSE_N_EVENT_REPORT_RQ) {
-      outcome = receive_commitment_report(association.get(), context, message.msg.NEventReportRQ,
-                                          association.answer_timeout_s(),
+      outcome = receive_commitment_report(association.get(), association.line(), reports.largest_bytes(),
+                                          context, message.msg.NEventReportRQ, association.answer_timeout_s(),
                                           [&](int, DcmDataset& data) { reports.take(data); });
       if (outcome.good()) continue;
     }
-    if (outcome.bad()) return {.is_broken = true, .status = 0, .note = reason_of(outcome)};
+    if (outcome.bad()) return {.is_broken = true, .status = 0, .note = association.why(outcome)};
     if (message.CommandField != DIMSE_N_ACTION_RSP)
       return {.is_broken = true, .status = 0, .note = "the peer sent what was not asked for"};
     const T_DIMSE_N_ActionRSP& response = message.msg.NActionRSP;
     if (response.DataSetType == DIMSE_DATASET_PRESENT) {
+      association.line().allowance.allow(kLargestRemark_bytes, "it answers with more than 16 MB");
       DIC_UL bytes = 0, parts = 0;
       (void)DIMSE_ignoreDataSet(&association.get(), DIMSE_NONBLOCKING, association.answer_timeout_s(), &bytes,
                                 &parts);
@@ -151,12 +167,16 @@ void take_report(const Report& report, SendSummary& summary) {
 void ask_commitment(const Peer& peer, const ConnectionOptions& connection, const SendOptions& options,
                     SendSummary& summary, const std::stop_token& stop) {
   const std::string transaction_uid = new_uid();
-  Reports reports(transaction_uid);
+  std::set<std::string> sent;
+  for (const SentFile& file : summary.files)
+    if (file.is_stored) sent.insert(file.sop_instance_uid);
+  Reports reports(transaction_uid, std::move(sent));
   std::optional<Listener> listener;
   if (connection.listening_port > 0)
     listener.emplace(connection,
                      Listener::Handlers{.series = nullptr,
                                         .on_image = {},
+                                        .largest_report_bytes = reports.largest_bytes(),
                                         .on_commitment = [&](int, DcmDataset& data) { reports.take(data); }});
   const auto association = Association::connect(
       peer, connection,
@@ -171,17 +191,17 @@ void ask_commitment(const Peer& peer, const ConnectionOptions& connection, const
   put_references(action, transaction_uid, summary);
   const OFCondition outcome = send_action(*association, context, action);
   const auto never = std::chrono::steady_clock::time_point::max();
-  const ActionAnswer answer = outcome.good()
-                                  ? read_until(*association, reports, false, never, stop)
-                                  : ActionAnswer{.is_broken = true, .status = 0, .note = reason_of(outcome)};
+  const ActionAnswer answer =
+      outcome.good() ? read_until(*association, reports, false, never, stop)
+                     : ActionAnswer{.is_broken = true, .status = 0, .note = association->why(outcome)};
   if (answer.is_broken || answer.status != STATUS_Success) {
     summary.commitment_note = "the peer refused to commit itself to storage: " + answer.note;
     return;
   }
   const auto until = std::chrono::steady_clock::now() +
                      std::chrono::milliseconds(static_cast<long>(1000 * options.commitment_wait_s));
-  (void)read_until(*association, reports, true, until, stop);
-  association->release();
+  const ActionAnswer end = read_until(*association, reports, true, until, stop);
+  if (end.note.empty()) association->release();
   // The peer may have ended this connection and be calling on its own.
   while (listener && !reports.report() && !stop.stop_requested() && std::chrono::steady_clock::now() < until)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -189,6 +209,9 @@ void ask_commitment(const Peer& peer, const ConnectionOptions& connection, const
   summary.commitment = Commitment::Awaited;
   summary.commitment_note = files::format(
       "the peer will say whether it keeps the files, and has not within %g s", options.commitment_wait_s);
+  std::string complaint = association->line().allowance.complaint();
+  if (listener && complaint.empty()) complaint = listener->complaint();
+  if (!complaint.empty()) summary.commitment_note += "; a connection was cut off: " + complaint;
   if (!listener) summary.commitment_note += "; it may want to call back: give a port to listen at";
 }
 

@@ -50,6 +50,10 @@ Peer parse_peer(std::string_view text) {
   const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), peer.port);
   if (error != std::errc() || end != port.data() + port.size() || peer.port < 1 || peer.port > 65535)
     refuse_peer(text, "the port is not a number from 1 to 65535");
+  if (peer.host.find(':') != std::string::npos || peer.host.starts_with('['))
+    refuse_peer(text, peer.host +
+                          " is an IPv6 address, which this version's DICOM network (DCMTK 3.6.7) does not "
+                          "speak; give its name or IPv4 address");
   const auto is_of_host = [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.' ||
            c == '-' || c == '_';

@@ -18,10 +18,12 @@ void propose_find(std::vector<Proposal>& proposals);
 struct FindOutcome {
   bool is_broken = false;  // the connection: it may be tried again
   bool is_cut = false;     // stopped after `most` answers
-  std::string refusal;     // of the peer; empty: it answered to the end
+  bool is_over = false;    // the peer would not stop, so the connection was cut: it takes no further question
+  std::string refusal = {};  // of the peer; empty: it answered to the end
 };
 
-// Sends the query and hands every answer to `take`. `query` must hold its level and its keys.
+// Sends the query and hands every answer to `take`, at most `most`. `query` must hold its level and its keys.
+// An answer of more than 1 MB, and a search that goes on for ten times the answer's time-out, are refusals.
 [[nodiscard]] FindOutcome send_find(Association& association, DcmDataset& query, int most,
                                     const std::function<void(DcmDataset&)>& take);
 

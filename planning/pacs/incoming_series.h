@@ -20,9 +20,38 @@ namespace arthronaut::pacs {
 
 class IncomingSeries {
  public:
+  // What is asked for; empty: not known, anything will do.
+  struct Expected {
+    std::string study_uid, patient_id;                     // UTF-8
+    std::map<std::string, std::string> class_by_uid = {};  // by SOP instance
+  };
+  struct Limits {
+    std::int64_t most_bytes;        // of the series, this time
+    std::int64_t least_free_bytes;  // that are left on the disk
+  };
+  // What the next image may take; `complaint`: what is said of one that takes more.
+  struct Room {
+    std::int64_t bytes;
+    bool is_of_disk;
+    std::string complaint;
+  };
+
   // Reads what is whole already, in both folders, to its last byte; removes what is not. Throws InvalidInput
   // when the folder holds something that is not of this series; IoError when one cannot be read or made.
-  IncomingSeries(std::filesystem::path folder, std::string series_uid);
+  // Also when the waiting room is a link or somebody else's, which nothing is read from or written to.
+  IncomingSeries(std::filesystem::path folder, std::string series_uid, const Limits& limits);
+
+  // Before anything is received. What waits already and is of another patient or study is fetched anew.
+  void expect(const Expected& expected);
+
+  // False for an image that was not asked for, and for one that was sent again and again.
+  [[nodiscard]] bool admits(const std::string& sop_uid);
+  // Throws IoError when there is none.
+  [[nodiscard]] Room room() const;
+  // What was refused of what the peer sent, and why ("image UID is of another patient"); empty: nothing.
+  [[nodiscard]] std::string refusal() const;
+  // So much was refused that the peer is not listened to any longer.
+  [[nodiscard]] bool is_fed_up() const;
 
   [[nodiscard]] bool has(const std::string& sop_uid) const;
   [[nodiscard]] int count() const;
@@ -32,7 +61,7 @@ class IncomingSeries {
   // Where the next image may be written; gone when the process ends without keep().
   [[nodiscard]] std::filesystem::path begin(const std::string& sop_uid);
   // The temporary file is whole: it becomes the image of that UID. False, and the file is gone, when it is of
-  // another series or of another UID, or cannot be read. Throws IoError.
+  // another patient, study or series, of another UID, or cannot be read. Throws IoError.
   bool keep(const std::filesystem::path& temporary, const std::string& sop_uid);
 
   // Everything is there: on the disk for good, then under its name. Throws IoError; the waiting room then
@@ -42,17 +71,23 @@ class IncomingSeries {
   void leave() noexcept;
 
  private:
+  void check_waiting_room() const;
   void create_waiting_room() const;
+  void refuse(const std::string& sop_uid, const std::string& reason);
   void take_stock(const std::filesystem::path& folder, bool is_ours);
 
   const std::filesystem::path folder_;
   const std::string series_uid_;
+  const Limits limits_;
   std::filesystem::path waiting_room_;
+  Expected expected_;
   mutable std::mutex mutex_;
   std::map<std::string, std::filesystem::path> files_;  // by SOP instance UID
   std::vector<std::filesystem::path> cut_off_;          // in the folder that was there
   std::int64_t received_bytes_ = 0;
   unsigned begun_ = 0;
+  int refused_count_ = 0, again_count_ = 0;
+  std::string refusal_;
 };
 
 }  // namespace arthronaut::pacs

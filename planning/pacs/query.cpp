@@ -8,6 +8,7 @@
 #include "planning/geometry/error.h"
 #include "planning/images/dicom_file.h"
 #include "planning/pacs/association.h"
+#include "planning/pacs/checks.h"
 #include "planning/pacs/finding.h"
 
 namespace arthronaut::pacs {
@@ -17,24 +18,7 @@ namespace {
 using images::text_of;
 using images::utf8_text_of;
 
-constexpr int kMostSeriesOfAStudy = 10000;
-
-void check_keys(const FindKeys& keys, const FindOptions& options) {
-  if (keys.patient_id.empty() && keys.patient_name.empty() && keys.accession_number.empty() &&
-      keys.study_date.empty() && keys.study_uid.empty())
-    throw InvalidInput("the search names no patient, study, accession number or date");
-  if (!keys.study_uid.empty() && !is_uid(keys.study_uid))
-    throw InvalidInput("\"" + keys.study_uid + "\" is no UID: it has digits and dots, at most 64");
-  for (const std::string* text :
-       {&keys.patient_id, &keys.patient_name, &keys.accession_number, &keys.modality})
-    if (text->find('\\') != std::string::npos)
-      throw InvalidInput("\"" + *text + "\" holds a backslash, which DICOM keeps for lists");
-  const bool is_date = std::all_of(keys.study_date.begin(), keys.study_date.end(),
-                                   [](char c) { return (c >= '0' && c <= '9') || c == '-'; });
-  if (!is_date)
-    throw InvalidInput("\"" + keys.study_date + "\" is no date: it is written 20260131 or 20260101-20260131");
-  if (options.most_studies < 1) throw InvalidInput("most_studies: must be at least 1");
-}
+constexpr int kMostSeriesOfAStudy = 10000, kMostSeries = 100000;
 
 int count_of(DcmItem& item, const DcmTagKey& key) {
   const std::string text = text_of(item, key);
@@ -76,6 +60,7 @@ class Asker {
       const FindOutcome outcome = send_find(*association_, query, most, take);
       if (stop_.stop_requested()) return false;
       if (outcome.refusal.empty()) {
+        if (outcome.is_over) association_.reset();
         is_cut = outcome.is_cut;
         return true;
       }
@@ -159,7 +144,8 @@ void complete(FoundStudy& study) {
 }
 
 // False when stopped.
-bool add_series(Asker& asker, const FindKeys& keys, const FoundPatient& patient, FoundStudy& study) {
+bool add_series(Asker& asker, const FindKeys& keys, const FoundPatient& patient, int most, bool& is_cut,
+                FoundStudy& study) {
   DcmDataset query;
   put_key(query, DCM_QueryRetrieveLevel, "SERIES");
   // The patient root model wants it; the other takes it as one more key.
@@ -170,10 +156,11 @@ bool add_series(Asker& asker, const FindKeys& keys, const FoundPatient& patient,
   for (const DcmTagKey& key : {DCM_SeriesNumber, DCM_SeriesDescription, DCM_BodyPartExamined, DCM_SeriesDate,
                                DCM_NumberOfSeriesRelatedInstances})
     put_key(query, key, "");
-  bool is_cut = false;
+  bool is_study_cut = false;
   const bool is_done = asker.ask(
-      query, kMostSeriesOfAStudy, is_cut, [&] { study.series.clear(); },
+      query, std::min(kMostSeriesOfAStudy, most), is_study_cut, [&] { study.series.clear(); },
       [&](DcmDataset& answer) { study.series.push_back(series_of(answer)); });
+  is_cut |= is_study_cut;
   std::sort(study.series.begin(), study.series.end(), [](const FoundSeries& a, const FoundSeries& b) {
     return std::pair(a.number.size(), a.number + a.uid) < std::pair(b.number.size(), b.number + b.uid);
   });
@@ -183,6 +170,23 @@ bool add_series(Asker& asker, const FindKeys& keys, const FoundPatient& patient,
 
 }  // namespace
 
+void check(const FindKeys& keys, const FindOptions& options) {
+  if (keys.patient_id.empty() && keys.patient_name.empty() && keys.accession_number.empty() &&
+      keys.study_date.empty() && keys.study_uid.empty())
+    throw InvalidInput("the search names no patient, study, accession number or date");
+  if (!keys.study_uid.empty() && !is_uid(keys.study_uid))
+    throw InvalidInput("\"" + keys.study_uid + "\" is no UID: it has digits and dots, at most 64");
+  for (const std::string* text :
+       {&keys.patient_id, &keys.patient_name, &keys.accession_number, &keys.modality})
+    if (text->find('\\') != std::string::npos)
+      throw InvalidInput("\"" + *text + "\" holds a backslash, which DICOM keeps for lists");
+  const bool is_date = std::all_of(keys.study_date.begin(), keys.study_date.end(),
+                                   [](char c) { return (c >= '0' && c <= '9') || c == '-'; });
+  if (!is_date)
+    throw InvalidInput("\"" + keys.study_date + "\" is no date: it is written 20260131 or 20260101-20260131");
+  if (options.most_studies < 1) throw InvalidInput("most_studies: must be at least 1");
+}
+
 double echo(const Peer& peer, const ConnectionOptions& connection, const std::stop_token& stop) {
   const auto association = Association::connect(
       peer, connection,
@@ -191,6 +195,7 @@ double echo(const Peer& peer, const ConnectionOptions& connection, const std::st
   if (association->accepted(UID_VerificationSOPClass) == 0)
     throw DeviceError(to_text(peer) + ": does not offer C-ECHO to us");
   const auto before = std::chrono::steady_clock::now();
+  association->expect_command();
   DIC_US status = 0;
   DcmDataset* detail = nullptr;
   const OFCondition outcome =
@@ -198,7 +203,7 @@ double echo(const Peer& peer, const ConnectionOptions& connection, const std::st
                      association->answer_timeout_s(), &status, &detail);
   const std::string comment = take_comment(detail);
   if (stop.stop_requested()) return -1;
-  if (outcome.bad()) throw DeviceError(to_text(peer) + ": " + reason_of(outcome));
+  if (outcome.bad()) throw DeviceError(to_text(peer) + ": " + association->why(outcome));
   if (status != STATUS_Success)
     throw DeviceError(to_text(peer) + ": refused C-ECHO with " + status_text(status, comment));
   const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - before;
@@ -208,7 +213,7 @@ double echo(const Peer& peer, const ConnectionOptions& connection, const std::st
 
 FindSummary find(const Peer& peer, const ConnectionOptions& connection, const FindKeys& keys,
                  const FindOptions& options, const std::stop_token& stop) {
-  check_keys(keys, options);
+  check(keys, options);
   FindSummary summary;
   Asker asker(peer, connection, stop);
   DcmDataset query;
@@ -217,14 +222,17 @@ FindSummary find(const Peer& peer, const ConnectionOptions& connection, const Fi
   summary.was_stopped = !asker.ask(
       query, options.most_studies, summary.is_cut, [&] { patients.clear(); },
       [&](DcmDataset& answer) { add_study(patients, answer); });
+  int series_left = kMostSeries;
   for (auto& [key, patient] : patients) {
     patient.study_count = static_cast<int>(patient.studies.size());
     std::sort(patient.studies.begin(), patient.studies.end(), [](const FoundStudy& a, const FoundStudy& b) {
       return std::tuple(b.date, b.time, b.uid) < std::tuple(a.date, a.time, a.uid);
     });
     for (FoundStudy& study : patient.studies)
-      if (options.level == FindLevel::Series && !summary.was_stopped)
-        summary.was_stopped = !add_series(asker, keys, patient, study);
+      if (options.level == FindLevel::Series && !summary.was_stopped) {
+        summary.was_stopped = !add_series(asker, keys, patient, series_left, summary.is_cut, study);
+        series_left -= static_cast<int>(study.series.size());
+      }
     // Not every peer narrows studies by modality.
     if (options.level == FindLevel::Series && !keys.modality.empty())
       std::erase_if(patient.studies, [](const FoundStudy& study) { return study.series.empty(); });

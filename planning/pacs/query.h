@@ -49,7 +49,8 @@ struct FoundPatient {
 
 struct FindSummary {
   bool was_stopped = false;
-  bool is_cut = false;                 // there are more than most_studies
+  bool is_cut =
+      false;  // there are more studies than most_studies, or series than 10,000 in one or 100,000 in all
   std::vector<FoundPatient> patients;  // by name
 };
 

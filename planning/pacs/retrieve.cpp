@@ -5,12 +5,15 @@
 #include <dcmtk/dcmnet/diutil.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <optional>
 #include <set>
 
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/pacs/association.h"
+#include "planning/pacs/checks.h"
 #include "planning/pacs/finding.h"
 #include "planning/pacs/incoming_series.h"
 #include "planning/pacs/listener.h"
@@ -23,26 +26,19 @@ namespace {
 
 // A request names at most so many images: some peers bound the length of a list.
 constexpr std::size_t kMostImagesAtOnce = 200;
+// A peer that fetches from tape says that it is at work; after so many time-outs without an image it is not.
+constexpr int kTimeoutsWithoutImage = 10;
 
-enum class End { Answered, Broken, Refused };
+// Hostile: the next attempt would end in the same way.
+enum class End { Answered, Broken, Refused, Hostile };
 
 struct Attempt {
   End end = End::Broken;
   std::string reason;
 };
 
-// As the peer keeps them: it picks the context of what it has, and need not decode.
-const std::vector<std::string>& compressed_syntaxes() {
-  static const std::vector<std::string> syntaxes{
-      UID_JPEGProcess14SV1TransferSyntax,     UID_JPEGProcess14TransferSyntax,
-      UID_JPEGLSLosslessTransferSyntax,       UID_JPEGLSLossyTransferSyntax,
-      UID_JPEG2000LosslessOnlyTransferSyntax, UID_JPEG2000TransferSyntax,
-      UID_RLELosslessTransferSyntax,          UID_JPEGProcess1TransferSyntax,
-      UID_JPEGProcess2_4TransferSyntax};
-  return syntaxes;
-}
-
-// Every class with the uncompressed syntaxes; as many of them as there is room for with each compressed one.
+// As the peer keeps them: it picks the context of what it has, and need not decode. Every class with the
+// uncompressed syntaxes; as many of them as there is room for with each compressed one.
 std::vector<Proposal> get_proposals(const std::set<std::string>& classes) {
   std::vector<Proposal> proposals;
   for (const char* model :
@@ -60,6 +56,32 @@ std::vector<Proposal> get_proposals(const std::set<std::string>& classes) {
   return proposals;
 }
 
+// Ends a C-MOVE whose peer answers on and on and sends nothing.
+class MoveWatch {
+ public:
+  void begin(Association& association) {
+    association_ = &association;
+    note_image();
+  }
+  // On a thread of the listener's.
+  void note_image() { last_image_ = std::chrono::steady_clock::now(); }
+  static void on_answer(void* data, T_DIMSE_C_MoveRQ* /*request*/, int /*count*/,
+                        T_DIMSE_C_MoveRSP* /*response*/) {
+    const auto& watch = *static_cast<MoveWatch*>(data);
+    Line& line = watch.association_->line();
+    line.allowance.allow(kLargestRemark_bytes, "it answers with more than 16 MB");
+    const auto patience =
+        std::chrono::seconds(kTimeoutsWithoutImage * watch.association_->answer_timeout_s());
+    if (std::chrono::steady_clock::now() - watch.last_image_.load() < patience) return;
+    line.allowance.complain("it says that it is at work, and sends nothing", false);
+    line.socket.cut();
+  }
+
+ private:
+  Association* association_ = nullptr;
+  std::atomic<std::chrono::steady_clock::time_point> last_image_ = std::chrono::steady_clock::now();
+};
+
 class Retrieval {
  public:
   Retrieval(const Peer& peer, const ConnectionOptions& connection, const RetrieveRequest& request,
@@ -69,7 +91,8 @@ class Retrieval {
         request_(request),
         on_progress_(on_progress),
         stop_(stop),
-        series_(request.folder, request.series_uid) {}
+        series_(request.folder, request.series_uid,
+                {.most_bytes = request.most_bytes, .least_free_bytes = request.least_free_bytes}) {}
 
   RetrieveSummary run() {
     RetrieveSummary summary;
@@ -106,6 +129,10 @@ class Retrieval {
           (request_.study_uid.empty() ? "; if it should, name its study too" : " in that study");
       return Outcome::UnknownSeries;
     }
+    series_.expect({.study_uid = images_.study_uid,
+                    .patient_id = images_.patient_id,
+                    .class_by_uid = images_.class_by_uid});
+    if (!is_whole()) (void)series_.room();  // throws when there is none
     report_progress();
     bool by_move = false;
     for (int fruitless = 0; !is_whole();) {
@@ -118,6 +145,7 @@ class Retrieval {
         by_move = true;
         continue;
       }
+      if (attempt.end == End::Hostile) throw DeviceError(to_text(peer_) + ": " + attempt.reason);
       if (attempt.end == End::Refused)
         throw DeviceError(to_text(peer_) + ": " + attempt.reason + refusal_hint(by_move));
       fruitless = series_.count() > before ? 0 : fruitless + 1;
@@ -130,8 +158,9 @@ class Retrieval {
       // A peer that answered, and brought nothing new, would do so again.
       const bool is_hopeless = attempt.end == End::Answered && fruitless > 0;
       if (is_hopeless || fruitless > connection_.retries) {
-        summary.message = to_text(peer_) + ": " + attempt.reason + "; " + waiting_words() +
-                          (series_.count() == 0 ? refusal_hint(by_move) : "");
+        const std::string refusal = series_.refusal();
+        summary.message = to_text(peer_) + ": " + attempt.reason + (refusal.empty() ? "" : "; " + refusal) +
+                          "; " + waiting_words() + (series_.count() == 0 ? refusal_hint(by_move) : "");
         return Outcome::Incomplete;
       }
       if (attempt.end == End::Broken) pause_before_retry(connection_, fruitless, stop_);
@@ -196,11 +225,24 @@ class Retrieval {
     return {End::Refused, std::string("refused ") + operation + " with " + status_text(status, comment)};
   }
 
-  Attempt get() {
+  // Empty where the peer leaves one open.
+  [[nodiscard]] std::set<std::string> sop_classes() const {
     std::set<std::string> classes;
-    for (const auto& [uid, sop_class] : images_.class_by_uid)
-      if (is_uid(sop_class)) classes.insert(sop_class);
-    const auto association = Association::connect(peer_, connection_, get_proposals(classes), stop_);
+    for (const auto& [uid, sop_class] : images_.class_by_uid) {
+      if (!is_uid(sop_class)) return {};
+      classes.insert(sop_class);
+    }
+    return classes;
+  }
+
+  // What an attempt ended with, whatever DCMTK calls it.
+  [[nodiscard]] Attempt broken(Association& association, const OFCondition& outcome) const {
+    if (series_.is_fed_up()) return {End::Hostile, series_.refusal()};
+    return {association.is_given_up_for_good() ? End::Hostile : End::Broken, association.why(outcome)};
+  }
+
+  Attempt get() {
+    const auto association = Association::connect(peer_, connection_, get_proposals(sop_classes()), stop_);
     if (!association) return {};
     const char* model = UID_GETStudyRootQueryRetrieveInformationModel;
     if (association->accepted(model) == 0) model = UID_GETPatientRootQueryRetrieveInformationModel;
@@ -217,38 +259,47 @@ class Retrieval {
     put_identifiers(query);
     const OFCondition outcome = DIMSE_sendMessageUsingMemoryData(&association->get(), context, &message,
                                                                  nullptr, &query, nullptr, nullptr);
-    if (outcome.bad()) return {End::Broken, reason_of(outcome)};
+    if (outcome.bad()) return broken(*association, outcome);
     const Attempt attempt = receive(*association);
-    if (attempt.end != End::Broken) association->release();
+    if (attempt.end == End::Answered || attempt.end == End::Refused) association->release();
     return attempt;
   }
 
   // Images and answers, until the last one.
   Attempt receive(Association& association) {
     const int timeout_s = association.answer_timeout_s();
+    const auto patience = std::chrono::seconds(kTimeoutsWithoutImage * timeout_s);
+    auto last_image = std::chrono::steady_clock::now();
     for (;;) {
+      association.expect_command();
       T_DIMSE_Message message{};
       T_ASC_PresentationContextID context = 0;
       DcmDataset* detail = nullptr;
       OFCondition outcome =
           DIMSE_receiveCommand(&association.get(), DIMSE_NONBLOCKING, timeout_s, &context, &message, &detail);
       const std::string comment = take_comment(detail);
-      if (outcome.bad()) return {End::Broken, reason_of(outcome)};
+      if (outcome.bad()) return broken(association, outcome);
       if (message.CommandField == DIMSE_C_STORE_RQ) {
-        outcome = receive_image(association.get(), context, message.msg.CStoreRQ, timeout_s, series_);
-        if (outcome.bad()) return {End::Broken, reason_of(outcome)};
+        outcome = receive_image(association.get(), association.line(), context, message.msg.CStoreRQ,
+                                timeout_s, series_);
+        if (outcome.bad()) return broken(association, outcome);
         report_progress();
+        last_image = std::chrono::steady_clock::now();
         continue;
       }
       if (message.CommandField != DIMSE_C_GET_RSP)
         return {End::Broken, "the peer sent what was not asked for"};
       const T_DIMSE_C_GetRSP& response = message.msg.CGetRSP;
       if (response.DataSetType == DIMSE_DATASET_PRESENT) {
+        association.line().allowance.allow(kLargestRemark_bytes, "it answers with more than 16 MB");
         DIC_UL bytes = 0, parts = 0;  // the list of what failed
         outcome = DIMSE_ignoreDataSet(&association.get(), DIMSE_NONBLOCKING, timeout_s, &bytes, &parts);
-        if (outcome.bad()) return {End::Broken, reason_of(outcome)};
+        if (outcome.bad()) return broken(association, outcome);
       }
-      if (DICOM_PENDING_STATUS(response.DimseStatus)) continue;
+      if (DICOM_PENDING_STATUS(response.DimseStatus)) {
+        if (std::chrono::steady_clock::now() - last_image < patience) continue;
+        return {End::Broken, "says that it is at work, and sends nothing"};
+      }
       const bool tells_failed = (response.opts & O_GET_NUMBEROFFAILEDSUBOPERATIONS) != 0;
       return ended("C-GET", response.DimseStatus, comment,
                    tells_failed ? response.NumberOfFailedSubOperations : 0);
@@ -256,8 +307,16 @@ class Retrieval {
   }
 
   Attempt move() {
-    Listener listener(connection_,
-                      {.series = &series_, .on_image = [this] { report_progress(); }, .on_commitment = {}});
+    MoveWatch watch;
+    Listener listener(connection_, {.series = &series_,
+                                    .sop_classes = sop_classes(),
+                                    .on_image =
+                                        [this, &watch] {
+                                          watch.note_image();
+                                          report_progress();
+                                        },
+                                    .largest_report_bytes = 0,
+                                    .on_commitment = {}});
     std::vector<Proposal> proposals;
     for (const char* model :
          {UID_MOVEStudyRootQueryRetrieveInformationModel, UID_MOVEPatientRootQueryRetrieveInformationModel})
@@ -278,13 +337,18 @@ class Retrieval {
     put_identifiers(query);
     T_DIMSE_C_MoveRSP response{};
     DcmDataset *detail = nullptr, *failed = nullptr;
-    const OFCondition outcome = DIMSE_moveUser(&association->get(), context, &request, &query, nullptr,
-                                               nullptr, DIMSE_NONBLOCKING, association->answer_timeout_s(),
-                                               nullptr, nullptr, nullptr, &response, &detail, &failed);
+    association->line().allowance.allow(kLargestRemark_bytes, "it answers with more than 16 MB");
+    watch.begin(*association);
+    const OFCondition outcome = DIMSE_moveUser(
+        &association->get(), context, &request, &query, &MoveWatch::on_answer, &watch, DIMSE_NONBLOCKING,
+        association->answer_timeout_s(), nullptr, nullptr, nullptr, &response, &detail, &failed);
     const std::string comment = take_comment(detail);
     delete failed;
     if (const std::string failure = listener.failure(); !failure.empty()) throw IoError(failure);
-    if (outcome.bad()) return {End::Broken, reason_of(outcome)};
+    if (series_.is_fed_up()) return {End::Hostile, series_.refusal()};
+    if (const std::string complaint = listener.complaint(); !complaint.empty())
+      return {End::Broken, "was cut off: " + complaint};
+    if (outcome.bad()) return broken(*association, outcome);
     association->release();
     const bool tells_failed = (response.opts & O_MOVE_NUMBEROFFAILEDSUBOPERATIONS) != 0;
     return ended("C-MOVE", response.DimseStatus, comment,
@@ -303,14 +367,20 @@ class Retrieval {
 
 }  // namespace
 
-RetrieveSummary retrieve_series(const Peer& peer, const ConnectionOptions& connection,
-                                const RetrieveRequest& request, const OnProgress& on_progress,
-                                const std::stop_token& stop) {
-  check(connection);
+void check(const RetrieveRequest& request) {
   if (!is_uid(request.series_uid))
     throw InvalidInput("series \"" + request.series_uid + "\": no UID; it has digits and dots, at most 64");
   if (!request.study_uid.empty() && !is_uid(request.study_uid))
     throw InvalidInput("study \"" + request.study_uid + "\": no UID; it has digits and dots, at most 64");
+  if (request.most_bytes < 1) throw InvalidInput("most_bytes: must be at least 1");
+  if (request.least_free_bytes < 0) throw InvalidInput("least_free_bytes: must not be negative");
+}
+
+RetrieveSummary retrieve_series(const Peer& peer, const ConnectionOptions& connection,
+                                const RetrieveRequest& request, const OnProgress& on_progress,
+                                const std::stop_token& stop) {
+  check(connection);
+  check(request);
   return Retrieval(peer, connection, request, on_progress, stop).run();
 }
 

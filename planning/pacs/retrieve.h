@@ -1,6 +1,7 @@
 // One series from a PACS into a folder: C-GET, or C-MOVE where the peer refuses that.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <stop_token>
 #include <string>
@@ -12,8 +13,11 @@ namespace arthronaut::pacs {
 
 struct RetrieveRequest {
   std::string series_uid;
-  std::string study_uid;         // empty: the peer is asked; some answer that only where the study is named
+  std::string study_uid = {};    // empty: the peer is asked; some answer that only where the study is named
   std::filesystem::path folder;  // absent, empty, or with images of this series alone
+  // What is received at most, and what must stay free on the disk; whoever needs more says so.
+  std::int64_t most_bytes = std::int64_t{32} << 30;
+  std::int64_t least_free_bytes = std::int64_t{512} << 20;
 };
 
 struct RetrieveSummary {
@@ -32,6 +36,10 @@ struct RetrieveSummary {
 // there; until then, and after every failure, what came whole waits beside it (".NAME-HASH.incoming") and is
 // not fetched again by the next call with the same folder and series. A connection that breaks is begun
 // anew `retries` times without progress.
+//
+// The peer is not trusted: an image of another patient (as its answers name it), study or series, or one that
+// it does not list, is refused and told; so is more than `most_bytes`, and a list of more than 100,000
+// images.
 //
 // Throws InvalidInput (UID, folder, options), IoError (disk) and DeviceError (peer, with its reason); what
 // came whole then stays, as when stopped.

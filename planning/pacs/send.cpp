@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "planning/geometry/error.h"
 #include "planning/images/dicom_file.h"
@@ -33,7 +34,7 @@ void load(const fs::path& file, bool is_whole, Loaded& loaded) {
   const OFCondition outcome =
       is_whole ? loaded.format.loadFile(name, EXS_Unknown, EGL_noChange, DCM_MaxReadLength, ERM_fileOnly)
                : loaded.format.loadFileUntilTag(name, EXS_Unknown, EGL_noChange, DCM_MaxReadLength,
-                                                ERM_fileOnly, DCM_PatientName);
+                                                ERM_fileOnly, DCM_PatientBirthDate);
   if (outcome.bad()) throw InvalidInput(file, "", std::string("broken or cut off: ") + outcome.text());
   loaded.transfer_syntax = DcmXfer(loaded.format.getDataset()->getOriginalXfer()).getXferID();
 }
@@ -46,6 +47,14 @@ SentFile described(const fs::path& file) {
   described.file = file;
   described.sop_class_uid = images::text_of(*loaded.format.getDataset(), DCM_SOPClassUID);
   described.sop_instance_uid = images::text_of(*loaded.format.getDataset(), DCM_SOPInstanceUID);
+  DcmDataset& dataset = *loaded.format.getDataset();
+  described.patient_name = images::utf8_text_of(dataset, DCM_PatientName);
+  described.patient_id = images::utf8_text_of(dataset, DCM_PatientID);
+  described.title = dcmFindNameOfUID(described.sop_class_uid.c_str(), "object");
+  if (const auto at = described.title.rfind("Storage"); at != std::string::npos && at > 0)
+    described.title.erase(at);
+  if (const auto words = images::utf8_text_of(dataset, DCM_SeriesDescription); !words.empty())
+    described.title += ": " + words;
   if (!is_uid(described.sop_class_uid) || !is_uid(described.sop_instance_uid))
     throw InvalidInput(file, "", "does not say which object of which class it is; a DICOMDIR is not sent");
   return described;
@@ -155,6 +164,7 @@ class Sending {
     OFStandard::strlcpy(request.AffectedSOPInstanceUID, file.sop_instance_uid.c_str(), DIC_UI_LEN + 1);
     request.DataSetType = DIMSE_DATASET_PRESENT;
     request.Priority = DIMSE_PRIORITY_MEDIUM;
+    association.expect_command();
     T_DIMSE_C_StoreRSP response{};
     DcmDataset* detail = nullptr;
     const OFCondition outcome =
@@ -162,7 +172,7 @@ class Sending {
                         nullptr, DIMSE_NONBLOCKING, association.answer_timeout_s(), &response, &detail);
     const std::string comment = take_comment(detail);
     if (outcome.bad()) {
-      reason = reason_of(outcome);
+      reason = association.why(outcome);
       return false;
     }
     const bool is_warning = (response.DimseStatus & kWarningMask) == kWarning;
@@ -222,6 +232,24 @@ std::vector<SentFile> files_to_send(const std::vector<fs::path>& paths) {
   return files;
 }
 
+bool end_broken_off(const DeviceError& error, SendSummary& summary) {
+  const bool is_some = std::any_of(summary.files.begin(), summary.files.end(),
+                                   [](const SentFile& file) { return file.is_stored; });
+  if (!is_some) return false;
+  summary.outcome = SendSummary::Outcome::BrokenOff;
+  summary.failure = error.what();
+  if (summary.commitment == Commitment::NotAsked)
+    summary.commitment_note = "not asked for: sending ended before all was sent";
+  // The first that has no answer was on its way: the peer may have it.
+  bool was_on_its_way = true;
+  for (SentFile& file : summary.files) {
+    if (file.is_stored || !file.note.empty()) continue;
+    file.note =
+        std::exchange(was_on_its_way, false) ? std::string("not confirmed: ") + error.what() : "not sent";
+  }
+  return true;
+}
+
 SendSummary send_files(const Peer& peer, const ConnectionOptions& connection,
                        const std::vector<SentFile>& files, const SendOptions& options,
                        const OnProgress& on_progress, const std::stop_token& stop) {
@@ -230,8 +258,13 @@ SendSummary send_files(const Peer& peer, const ConnectionOptions& connection,
     throw InvalidInput("commitment_wait_s: must be between 0 and 86400 seconds");
   SendSummary summary;
   summary.files = files;
-  if (!Sending(peer, connection, on_progress, stop, summary).run()) {
-    summary.outcome = SendSummary::Outcome::Stopped;
+  try {
+    if (!Sending(peer, connection, on_progress, stop, summary).run()) {
+      summary.outcome = SendSummary::Outcome::Stopped;
+      return summary;
+    }
+  } catch (const DeviceError& error) {
+    if (!end_broken_off(error, summary)) throw;
     return summary;
   }
   const auto is_stored = [](const SentFile& file) { return file.is_stored; };

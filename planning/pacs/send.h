@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "planning/geometry/error.h"
 #include "planning/pacs/connection.h"
 
 namespace arthronaut::pacs {
@@ -28,15 +29,24 @@ struct SendOptions {
 struct SentFile {
   std::filesystem::path file;
   std::string sop_class_uid, sop_instance_uid;
+  // What it says of itself, UTF-8: whom it names, as DICOM has it; "Encapsulated STL: Femur".
+  std::string patient_name = {}, patient_id = {}, title = {};
   bool is_stored = false, is_committed = false;
   std::string note;  // why not; or what the peer remarked on
 };
 
 struct SendSummary {
-  enum class Outcome { NotRun, Stored, Stopped, SomeRefused } outcome = Outcome::NotRun;
+  enum class Outcome {
+    NotRun,
+    Stored,
+    Stopped,
+    SomeRefused,
+    BrokenOff,  // some are stored; then the connection was lost, or the peer refused to go on, see failure
+  } outcome = Outcome::NotRun;
   std::vector<SentFile> files;  // in the order that they were given in, each instance once
   Commitment commitment = Commitment::NotAsked;
   std::string commitment_note;  // in words; the peer's reason where it gave one
+  std::string failure;          // BrokenOff: why
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Stored; }
 };
 
@@ -47,9 +57,15 @@ struct SendSummary {
 
 // Sends each as it is encoded; one that is not compressed may be sent in another order of bytes, which is
 // without loss. What the peer has confirmed is not sent again when the connection breaks and is begun anew.
-// A file that the peer refuses is told in the summary. Throws InvalidInput and DeviceError, as find().
+// A file that the peer refuses is told in the summary, and which are stored when the connection is lost for
+// good in the middle. Throws InvalidInput, and DeviceError where none was stored, as find().
 [[nodiscard]] SendSummary send_files(const Peer& peer, const ConnectionOptions& connection,
                                      const std::vector<SentFile>& files, const SendOptions& options = {},
                                      const OnProgress& on_progress = {}, const std::stop_token& stop = {});
+
+// Inner: what was stored before the error is the account that is kept; the file that was on its way then is
+// "not confirmed", with the error, and those after it are "not sent". False where nothing was stored: then
+// the error alone says all.
+[[nodiscard]] bool end_broken_off(const DeviceError& error, SendSummary& summary);
 
 }  // namespace arthronaut::pacs

@@ -1,7 +1,5 @@
 #include "planning/pacs/series_images.h"
 
-#include <limits>
-
 #include "planning/geometry/error.h"
 #include "planning/images/dicom_file.h"
 #include "planning/pacs/finding.h"
@@ -11,11 +9,18 @@ namespace arthronaut::pacs {
 namespace {
 
 using images::text_of;
+using images::utf8_text_of;
+
+// A frame an image, of the longest that are made.
+constexpr int kMostImages = 100000;
 
 // False when the connection broke; throws when the peer refuses.
 bool ask(Association& association, const Peer& peer, DcmDataset& query,
          const std::function<void(DcmDataset&)>& take) {
-  const FindOutcome outcome = send_find(association, query, std::numeric_limits<int>::max(), take);
+  const FindOutcome outcome = send_find(association, query, kMostImages, take);
+  if (outcome.is_cut)
+    throw DeviceError(to_text(peer) + ": lists more than " + std::to_string(kMostImages) +
+                      " images for one series");
   if (!outcome.refusal.empty() && !outcome.is_broken)
     throw DeviceError(to_text(peer) + ": " + outcome.refusal);
   return !outcome.is_broken;
@@ -31,9 +36,11 @@ bool ask_both(Association& association, const Peer& peer, const std::string& ser
   put_key(series, DCM_SeriesInstanceUID, series_uid);
   const auto take_series = [&](DcmDataset& answer) {
     if (text_of(answer, DCM_SeriesInstanceUID) != series_uid) return;
+    const std::string study = text_of(answer, DCM_StudyInstanceUID);
+    if (!study_uid.empty() && !study.empty() && study != study_uid) return;
     found.is_known = true;
-    found.study_uid = text_of(answer, DCM_StudyInstanceUID);
-    found.patient_id = text_of(answer, DCM_PatientID);
+    found.study_uid = study;
+    found.patient_id = utf8_text_of(answer, DCM_PatientID);
   };
   if (!ask(association, peer, series, take_series)) return false;
   if (!found.is_known) return true;

@@ -11,8 +11,8 @@ namespace arthronaut::pacs {
 
 struct SeriesImages {
   bool was_stopped = false;
-  bool is_known = false;  // the peer has the series
-  std::string study_uid, patient_id;
+  bool is_known = false;                            // the peer has the series
+  std::string study_uid, patient_id;                // UTF-8
   std::map<std::string, std::string> class_by_uid;  // SOP class by SOP instance; class empty where not said
   int nameless_count = 0;                           // images under no UID, which no fetch would bring
 };

@@ -6,11 +6,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <vector>
 
 #include "planning/geometry/error.h"
+#include "planning/pacs/association.h"
 #include "planning/pacs/connection.h"
 
 namespace arthronaut::pacs {
@@ -19,6 +21,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// Read to its end to be refused in good form; a longer one ends the connection.
+constexpr std::int64_t kLargestRefused_bytes = 64 * 1024 * 1024;
+
 constexpr unsigned kOutOfResources = 0xA700, kDoesNotMatch = 0xA900, kCannotUnderstand = 0xC000;
 
 // What DCMTK writes a data set into: a file, whose errors are kept for close(). To DCMTK it never fails:
@@ -26,7 +31,7 @@ constexpr unsigned kOutOfResources = 0xA700, kDoesNotMatch = 0xA900, kCannotUnde
 class FileConsumer : public DcmConsumer {
  public:
   explicit FileConsumer(const fs::path& file)
-      : descriptor_(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600)) {
+      : descriptor_(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600)) {
     if (descriptor_ < 0) error_ = errno;
   }
   ~FileConsumer() override { (void)close(); }
@@ -103,8 +108,9 @@ OFCondition answer(T_ASC_Association& association, T_ASC_PresentationContextID c
   return DIMSE_sendStoreResponse(&association, context, &request, &response, nullptr);
 }
 
-OFCondition read_and_refuse(T_ASC_Association& association, T_ASC_PresentationContextID context,
+OFCondition read_and_refuse(T_ASC_Association& association, Line& line, T_ASC_PresentationContextID context,
                             const T_DIMSE_C_StoreRQ& request, int timeout_s, unsigned status) {
+  line.allowance.allow(kLargestRefused_bytes, "it goes on with an image that was not asked for");
   DIC_UL bytes = 0, parts = 0;
   const OFCondition outcome = DIMSE_ignoreDataSet(&association, DIMSE_NONBLOCKING, timeout_s, &bytes, &parts);
   return outcome.bad() ? outcome : answer(association, context, request, status);
@@ -112,15 +118,41 @@ OFCondition read_and_refuse(T_ASC_Association& association, T_ASC_PresentationCo
 
 }  // namespace
 
-OFCondition receive_image(T_ASC_Association& association, T_ASC_PresentationContextID context,
+bool can_be_stored(const std::string& sop_class) { return dcmIsaStorageSOPClassUID(sop_class.c_str()); }
+
+const std::vector<std::string>& compressed_syntaxes() {
+  static const std::vector<std::string> syntaxes{
+      UID_JPEGProcess14SV1TransferSyntax,     UID_JPEGProcess14TransferSyntax,
+      UID_JPEGLSLosslessTransferSyntax,       UID_JPEGLSLossyTransferSyntax,
+      UID_JPEG2000LosslessOnlyTransferSyntax, UID_JPEG2000TransferSyntax,
+      UID_RLELosslessTransferSyntax,          UID_JPEGProcess1TransferSyntax,
+      UID_JPEGProcess2_4TransferSyntax};
+  return syntaxes;
+}
+
+bool can_be_kept(const std::string& transfer_syntax) {
+  const auto holds = [&](const std::vector<std::string>& syntaxes) {
+    return std::find(syntaxes.begin(), syntaxes.end(), transfer_syntax) != syntaxes.end();
+  };
+  return holds(uncompressed_syntaxes()) || holds(compressed_syntaxes());
+}
+
+OFCondition receive_image(T_ASC_Association& association, Line& line, T_ASC_PresentationContextID context,
                           const T_DIMSE_C_StoreRQ& request, int timeout_s, IncomingSeries& series) {
-  const std::string uid = request.AffectedSOPInstanceUID;
+  if (series.is_fed_up()) return DIMSE_BADMESSAGE;
+  const std::string uid = request.AffectedSOPInstanceUID, sop_class = request.AffectedSOPClassUID;
+  const auto refuse = [&](unsigned status) {
+    return read_and_refuse(association, line, context, request, timeout_s, status);
+  };
   T_ASC_PresentationContext negotiated{};
   if (ASC_findAcceptedPresentationContext(association.params, context, &negotiated).bad() || !is_uid(uid))
-    return read_and_refuse(association, context, request, timeout_s, kCannotUnderstand);
+    return refuse(kCannotUnderstand);
+  if (sop_class != negotiated.abstractSyntax || !series.admits(uid)) return refuse(kDoesNotMatch);
   const std::string head = file_head(request, negotiated.acceptedTransferSyntax);
-  if (head.empty()) return read_and_refuse(association, context, request, timeout_s, kCannotUnderstand);
+  if (head.empty()) return refuse(kCannotUnderstand);
 
+  const IncomingSeries::Room room = series.room();
+  line.allowance.allow(room.bytes, room.complaint);
   const fs::path temporary = series.begin(uid);
   FileConsumer consumer(temporary);
   FileStream stream(consumer);
@@ -137,6 +169,7 @@ OFCondition receive_image(T_ASC_Association& association, T_ASC_PresentationCont
   if (outcome.bad()) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
+    if (room.is_of_disk && line.allowance.is_for_good()) throw IoError(series.folder(), room.complaint);
     return outcome;
   }
   return answer(association, context, request, series.keep(temporary, uid) ? 0 : kDoesNotMatch);

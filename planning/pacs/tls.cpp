@@ -83,13 +83,12 @@ int SecureLayer::Verdict::note(int is_good, X509_STORE_CTX* store) {
   return 0;
 }
 
-SecureLayer::SecureLayer(const TlsOptions& options, T_ASC_NetworkRole role, const std::string& host,
-                         CuttableSocket* socket)
+SecureLayer::SecureLayer(const TlsOptions& options, T_ASC_NetworkRole role, const std::string& host)
     : verdict_(std::make_unique<Verdict>()) {
   static std::once_flag once;
   std::call_once(once, [] { DcmTLSTransportLayer::initializeOpenSSL(); });
-  layer_ = std::make_unique<CuttableLayer<DcmTLSTransportLayer>>(socket, role,
-                                                                 static_cast<const char*>(nullptr), OFFalse);
+  layer_ =
+      std::make_unique<LineLayer<DcmTLSTransportLayer>>(role, static_cast<const char*>(nullptr), OFFalse);
   // Set in any case: without one OpenSSL would ask on the terminal.
   layer_->setPrivateKeyPasswd(password_of(options.key_password_file).c_str());
   ERR_clear_error();

@@ -69,6 +69,21 @@ TEST_F(CaseLibraryTest, NotesAndForgetsAndSaysWhatFails) {
   EXPECT_THAT(library.what(), HasSubstr("not in the list"));
 }
 
+// A note that is kept while the folders are looked at is not taken back by what the look had read before.
+TEST_F(CaseLibraryTest, ANoteThatIsKeptDuringALookStays) {
+  CaseLibrary library(data(), [] {});
+  library.refresh({case_});
+  wait(library);
+  for (int i = 0; i < 20; ++i) {
+    const std::string before = library.records().at(0).note, note = "note " + std::to_string(i);
+    library.refresh({});
+    std::this_thread::sleep_for(std::chrono::microseconds(200 * i));
+    ASSERT_TRUE(library.save_note(case_, note, before));
+    wait(library);
+    ASSERT_EQ(library.records().at(0).note, note) << i;
+  }
+}
+
 // What is wrong with the list is said, and stays said when the look has ended well.
 TEST_F(CaseLibraryTest, SaysThatTheListWasDamagedOrCannotBeHad) {
   workstation_library::note_case(case_, data());

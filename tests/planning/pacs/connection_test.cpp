@@ -32,6 +32,8 @@ TEST(PacsPeer, SaysWhatIsWrongWithIt) {
   EXPECT_THAT(refusal_of("PACS@host"), HasSubstr("has no port"));
   EXPECT_THAT(refusal_of("PACS@:104"), HasSubstr("host"));
   EXPECT_THAT(refusal_of("PACS@ho st:104"), HasSubstr("host"));
+  EXPECT_THAT(refusal_of("PACS@[::1]:104"), HasSubstr("[::1] is an IPv6 address"));
+  EXPECT_THAT(refusal_of("PACS@2001:db8::1:104"), HasSubstr("is an IPv6 address"));
   EXPECT_THAT(refusal_of("@host:104"), HasSubstr("AE title"));
   EXPECT_THAT(refusal_of("SEVENTEENLETTERS!@host:104"), HasSubstr("1 to 16"));
   for (const char* text : {"PACS@host:0", "PACS@host:65536", "PACS@host:", "PACS@host:10x", "PACS@host:-1"})

@@ -51,7 +51,8 @@ int free_port() {
   return ntohs(address.sin_port);
 }
 
-Orthanc::Orthanc(OrthancForm form) : port_(free_port()) {
+Orthanc::Orthanc(OrthancForm form)
+    : port_(free_port()), web_port_(free_port()), offers_web_(form.offers_web) {
   if (!std::filesystem::exists(kProgram)) throw std::runtime_error("package orthanc is needed");
   nlohmann::json settings = {{"StorageDirectory", folder_ / "store"},
                              {"IndexDirectory", folder_ / "store"},
@@ -77,6 +78,15 @@ Orthanc::Orthanc(OrthancForm form) : port_(free_port()) {
     settings["DicomTlsPrivateKey"] = form.key;
     settings["DicomTlsTrustedCertificates"] = form.authority;
   }
+  if (form.offers_web) {
+    settings["Plugins"] = {"/usr/share/orthanc/plugins/libOrthancDicomWeb.so"};
+    settings["HttpServerEnabled"] = true;
+    settings["HttpPort"] = web_port_;
+    settings["RemoteAccessAllowed"] = false;
+    settings["AuthenticationEnabled"] = !form.web_user.empty();
+    if (!form.web_user.empty()) settings["RegisteredUsers"][form.web_user] = form.web_password;
+    settings["DicomWeb"] = {{"Enable", true}, {"Root", "/dicom-web/"}, {"EnableWado", false}, {"Ssl", false}};
+  }
   std::ofstream(folder_ / "orthanc.json") << settings;
   start();
 }
@@ -98,7 +108,7 @@ void Orthanc::start() {
   }
   constexpr int kMostTries = 600;
   for (int i = 0; i < kMostTries; ++i) {
-    if (listens(port_)) return;
+    if (listens(port_) && (!offers_web_ || listens(web_port_))) return;
     if (::waitpid(process_, nullptr, WNOHANG) == process_) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }

@@ -21,6 +21,8 @@ struct OrthancForm {
   int our_port = 0;
   // TLS where there is a certificate; it then asks for ours, too.
   std::filesystem::path certificate = {}, key = {}, authority = {};
+  bool offers_web = false;  // DICOMweb, by HTTP on a port of its own
+  std::string web_user = {}, web_password = {};
 };
 
 class Orthanc {
@@ -32,6 +34,10 @@ class Orthanc {
   Orthanc& operator=(const Orthanc&) = delete;
 
   [[nodiscard]] pacs::Peer peer() const { return {"ORTHANC", "127.0.0.1", port_}; }
+  [[nodiscard]] std::string web_url() const {
+    return "http://127.0.0.1:" + std::to_string(web_port_) + "/dicom-web";
+  }
+  [[nodiscard]] int web_port() const { return web_port_; }
   // At once, as by a power cut; what it had stored stays.
   void kill();
   // Again, on the same port. It ends with the thread that calls this.
@@ -39,7 +45,8 @@ class Orthanc {
 
  private:
   const TemporaryFolder folder_;
-  const int port_;
+  const int port_, web_port_;
+  const bool offers_web_;
   pid_t process_ = -1;
 };
 

@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "planning/files/atomic_file.h"
@@ -119,6 +121,46 @@ TEST_F(PacsRetrieve, AnUnknownSeriesLeavesNothing) {
   RetrieveRequest elsewhere = request();
   elsewhere.study_uid = "1.2.3";
   EXPECT_EQ(retrieve_series(orthanc.peer(), quick_connection(), elsewhere).outcome, Outcome::UnknownSeries);
+}
+
+TEST_F(PacsRetrieve, TakesNoMoreThanItMay) {
+  const test::Orthanc orthanc;
+  test::write_and_send(orthanc, made_ / "ct");
+  RetrieveRequest small = request();
+  small.most_bytes = static_cast<std::int64_t>(3 * fs::file_size(made_ / "ct/slice1000.dcm"));
+  EXPECT_THAT(failure_of(orthanc.peer(), quick_connection(), small), HasSubstr("for the series"));
+  EXPECT_FALSE(fs::exists(got_ / "scan"));
+  RetrieveRequest modest = request();
+  modest.least_free_bytes = std::numeric_limits<std::int64_t>::max();
+  EXPECT_THAT(failure_of(orthanc.peer(), quick_connection(), modest), HasSubstr("are to stay"));
+  // What came whole before stays for who allows more.
+  const auto summary = retrieve(orthanc);
+  EXPECT_GE(summary.kept_count, 1);
+  expect_whole();
+}
+
+TEST_F(PacsRetrieve, WaitsInNobodyElsesFolder) {
+  const test::Orthanc orthanc;
+  test::write_and_send(orthanc, made_ / "ct");
+  std::stop_source stop;
+  const auto stop_soon = [&](const TransferProgress& progress) {
+    if (progress.done == 3) stop.request_stop();
+  };
+  (void)retrieve(orthanc, stop_soon, stop.get_token());
+  ASSERT_EQ(got_.names().size(), 1U);
+  const fs::path waiting_room = got_ / got_.names().front();
+  if (::geteuid() == 0) {
+    constexpr uid_t kSomebody = 12345;
+    ASSERT_EQ(::chown(waiting_room.c_str(), kSomebody, kSomebody), 0);
+    EXPECT_THAT(failure_of(orthanc.peer(), quick_connection(), request()),
+                HasSubstr("belongs to another user"));
+  }
+  fs::remove_all(waiting_room);
+  const test::TemporaryFolder elsewhere;
+  files::write_atomically(elsewhere / "letter.txt", "Dear colleague");
+  fs::create_directory_symlink(elsewhere / ".", waiting_room);
+  EXPECT_THAT(failure_of(orthanc.peer(), quick_connection(), request()), HasSubstr("is no folder"));
+  EXPECT_THAT(elsewhere.names(), ElementsAre("letter.txt"));
 }
 
 TEST_F(PacsRetrieve, GoesOnWhereItWasStopped) {

@@ -94,5 +94,25 @@ TEST(PacsSend, StopsBetweenFiles) {
             5);
 }
 
+// An error is told as what it is: of the file on its way nobody knows, and those after it were never sent.
+TEST(PacsSend, AnErrorInTheMiddleIsToldOfTheFileOnItsWay) {
+  SendSummary summary;
+  summary.files.resize(5);
+  summary.files[0].is_stored = true;
+  summary.files[1].note = "refused with A700";
+  const DeviceError error("https://pacs: answers with HTTP 503");
+  ASSERT_TRUE(end_broken_off(error, summary));
+  EXPECT_EQ(summary.outcome, SendSummary::Outcome::BrokenOff);
+  EXPECT_EQ(summary.files[0].note, "");
+  EXPECT_EQ(summary.files[1].note, "refused with A700");
+  EXPECT_EQ(summary.files[2].note, "not confirmed: https://pacs: answers with HTTP 503");
+  EXPECT_EQ(summary.files[3].note, "not sent");
+  EXPECT_EQ(summary.files[4].note, "not sent");
+  EXPECT_THAT(summary.commitment_note, ::testing::Not(HasSubstr("connection")));
+  SendSummary nothing;
+  nothing.files.resize(2);
+  EXPECT_FALSE(end_broken_off(error, nothing));
+}
+
 }  // namespace
 }  // namespace arthronaut::pacs

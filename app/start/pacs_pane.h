@@ -1,0 +1,104 @@
+// The hospital's PACS in the window: which ones there are and whether they answer, a patient's studies and
+// series, a series fetched and handed to the import, and the results of a case sent. By keys alone where
+// nothing is typed; what it asks for runs beside the screen (pacs_work.h).
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "app/start/pacs_work.h"
+#include "app/widgets/controls.h"
+
+namespace arthronaut::start {
+
+// A case whose results may be sent; empty: none.
+struct SendableCase {
+  std::filesystem::path folder;
+  std::string name;
+};
+
+class PacsPane {
+ public:
+  // look_into: hands a fetched folder to the import.
+  PacsPane(std::function<void(const std::filesystem::path&)> look_into, std::function<void()> wake);
+
+  // All start with "start.pacs."; is_shown: whether this page is in front.
+  void add_actions(widgets::Actions& actions, const std::function<bool()>& is_shown);
+  void enter(const SendableCase& sendable);  // comes to the front; what runs goes on
+  void tick(bool is_shown);
+  void draw(const widgets::Ui& ui, const widgets::Rect& area);
+
+  void move_selection(int by);
+  [[nodiscard]] bool
+  go_back();  // out of a page, or stops what runs; false where there is nothing of the kind
+  [[nodiscard]] bool is_busy() const { return work_.is_busy(); }
+  // A transfer that the end of the program would break off.
+  [[nodiscard]] bool has_running_work() const;
+  [[nodiscard]] bool awaits_text() const { return view_.takes_focus; }
+
+ private:
+  enum class Page { Search, Peer, Send };
+  // One line of what was found; only series can be chosen.
+  struct Row {
+    const pacs::FoundPatient* patient = nullptr;
+    const pacs::FoundStudy* study = nullptr;
+    const pacs::FoundSeries* series = nullptr;
+  };
+  struct Light {
+    widgets::Severity severity = widgets::Severity::Quiet;
+    std::string words = "not asked yet";
+  };
+  struct View {
+    Page page = Page::Search;
+    std::size_t peer = 0, row = 0;
+    bool scrolls_to_row = false, takes_focus = false;
+    std::string patient_id, patient_name, date, modality;
+    PacsPeerForm form;
+    std::string edited;  // the name of the peer that is changed; empty: a new one
+    std::string failure;
+    SendableCase sendable;
+    bool is_deidentified = false;
+    std::vector<pacs::SentFile> outgoing;  // written, and of the choice above
+    std::string outgoing_doubts;
+  };
+
+  void add_peer_actions(widgets::Actions& actions, const std::function<bool()>& searches);
+  void add_send_actions(widgets::Actions& actions, const std::function<bool()>& sends);
+  [[nodiscard]] const PacsPeer* peer() const;
+  void echo();
+  void find();
+  void fetch();
+  void keep_peer();
+  void remove_peer();
+  void forget_outgoing();
+  void write_results();
+  void take(const PacsNews& news, bool is_shown);
+  void list_found();
+
+  void draw_search(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_peers(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_fields(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_found(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_row_of(const widgets::Ui& ui, const Row& row, std::size_t number);
+  void draw_work(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_form(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_send(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_outgoing(const widgets::Ui& ui);
+  void note_states(const widgets::Ui& ui) const;
+  // A text field with its name; true when Enter was pressed in it.
+  bool field(const widgets::Ui& ui, const char* id, const std::string& name, std::string& text, float width);
+
+  const std::filesystem::path data_folder_;
+  std::function<void(const std::filesystem::path&)> look_into_;
+  PacsWork work_;
+  std::vector<PacsPeer> peers_;
+  std::map<std::string, Light> lights_;  // by the peer's name
+  pacs::FindSummary found_;
+  std::vector<Row> rows_;  // of found_
+  View view_;
+};
+
+}  // namespace arthronaut::start

@@ -1,0 +1,397 @@
+// How the PACS looks.
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "app/start/pacs_pane.h"
+#include "app/start/start_drawing.h"
+#include "planning/files/format.h"
+
+namespace arthronaut::start {
+
+namespace {
+
+using Kind = PacsJob::Kind;
+using State = PacsNews::State;
+using widgets::Severity;
+
+// "20260131" as 2026-01-31.
+std::string date_words(const std::string& date) {
+  if (date.size() != 8) return date.empty() ? "undated" : date;
+  return date.substr(0, 4) + "-" + date.substr(4, 2) + "-" + date.substr(6, 2);
+}
+
+// "Muster^Anna" as Muster, Anna.
+std::string name_words(std::string name) {
+  while (!name.empty() && name.back() == '^') name.pop_back();
+  if (const auto at = name.find('^'); at != std::string::npos) name.replace(at, 1, ", ");
+  std::replace(name.begin(), name.end(), '^', ' ');
+  return name.empty() ? "no name" : name;
+}
+
+std::string counted(int count, const char* one, const char* many) {
+  return count < 0 ? "? " + std::string(many) : std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+const char* word_of(Kind kind) {
+  constexpr std::array<const char*, 5> kWords{"Asking whether it answers", "Searching", "Fetching",
+                                              "Writing what goes out", "Sending"};
+  return kWords[static_cast<std::size_t>(kind)];
+}
+
+Severity severity_of(State state) {
+  if (state == State::Done) return Severity::Good;
+  if (state == State::Failed) return Severity::Bad;
+  return state == State::Unreliable || state == State::Stopped ? Severity::Caution : Severity::Quiet;
+}
+
+}  // namespace
+
+void PacsPane::draw(const widgets::Ui& ui, const widgets::Rect& area) {
+  note_states(ui);
+  widgets::Rect rest = area;
+  const widgets::Rect head = rest.cut_top(ui.theme.px(60));
+  const char* title = view_.page == Page::Search ? "Images from the hospital's PACS"
+                      : view_.page == Page::Send ? "Results to the hospital's PACS"
+                      : view_.edited.empty()     ? "Another PACS"
+                                                 : "This PACS";
+  draw_text(*ImGui::GetWindowDrawList(), ui.theme.title, head.x, head.y, widgets::kText, title);
+  if (view_.page == Page::Peer) return draw_form(ui, rest);
+  if (view_.page == Page::Send) return draw_send(ui, rest);
+  draw_search(ui, rest);
+}
+
+void PacsPane::note_states(const widgets::Ui& ui) const {
+  constexpr std::array<const char*, 3> kPages{"search", "peer", "send"};
+  constexpr std::array<const char*, 6> kStates{"idle", "running", "done", "unreliable", "failed", "stopped"};
+  constexpr std::array<const char*, 5> kKinds{"echo", "find", "fetch", "write", "send"};
+  const PacsNews& news = work_.news();
+  ui.log.note_state("pacs", kPages[static_cast<std::size_t>(view_.page)]);
+  ui.log.note_state("pacs_peer", peer() != nullptr ? peer()->name : "none");
+  const auto light = peer() != nullptr ? lights_.find(peer()->name) : lights_.end();
+  constexpr std::array<const char*, 4> kLights{"good", "caution", "bad", "quiet"};
+  ui.log.note_state("pacs_light", light == lights_.end()
+                                      ? "quiet"
+                                      : kLights[static_cast<std::size_t>(light->second.severity)]);
+  ui.log.note_state("pacs_work", news.state == State::Idle
+                                     ? "idle"
+                                     : std::string(kKinds[static_cast<std::size_t>(news.kind)]) + "-" +
+                                           kStates[static_cast<std::size_t>(news.state)]);
+  ui.log.note_state("pacs_says", news.words);
+  ui.log.note_state("pacs_failure", view_.failure);
+  ui.log.note_state("pacs_rows", std::to_string(rows_.size()));
+  ui.log.note_state("pacs_done", std::to_string(news.progress.done));
+  ui.log.note_state("pacs_outgoing", std::to_string(view_.outgoing.size()));
+  ui.log.note_state("pacs_commitment", pacs::to_text(news.sent.commitment));
+  ui.log.note_state("pacs_typing", ImGui::GetIO().WantTextInput ? "yes" : "no");
+}
+
+void PacsPane::draw_search(const widgets::Ui& ui, const widgets::Rect& area) {
+  widgets::Rect rest = area;
+  draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+               {"start.pacs.fetch", "start.pacs.find", "start.pacs.fields", "start.pacs.echo",
+                "start.pacs.results", "start.pacs.add", "start.back"});
+  widgets::Rect left = rest.cut_left(ui.theme.px(520), ui.theme.px(12));
+  const widgets::Rect fields = left.cut_bottom(ui.theme.px(330), ui.theme.px(12));
+  draw_peers(ui, left);
+  draw_fields(ui, fields);
+  const bool has_news = work_.news().state != State::Idle && work_.news().kind != Kind::Echo;
+  if (has_news || !view_.failure.empty()) draw_work(ui, rest.cut_top(ui.theme.px(130), ui.theme.px(12)));
+  draw_found(ui, rest);
+}
+
+void PacsPane::draw_peers(const widgets::Ui& ui, const widgets::Rect& area) {
+  widgets::begin_panel(ui, "start.pacs.peers", area, "Which PACS");
+  if (peers_.empty())
+    widgets::text_in(ui.theme.body, widgets::kQuietText,
+                     "None is known yet. Press A, and write what the hospital's IT tells you: its AE title, "
+                     "host and port, and the title that it knows you by.");
+  const float height = ui.theme.px(76);
+  for (std::size_t i = 0; i < peers_.size(); ++i) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x - ui.theme.px(50);
+    if (draw_row(ui, {.name = "start.pacs.peer." + std::to_string(i),
+                      .number = i,
+                      .height = height,
+                      .is_selected = i == view_.peer}) != RowPress::None &&
+        !work_.is_busy() && i != view_.peer) {
+      view_.peer = i;
+      found_ = {};
+      rows_.clear();
+    }
+    const auto known = lights_.find(peers_[i].name);
+    const bool is_asked = work_.is_busy() && work_.news().kind == Kind::Echo && i == view_.peer;
+    const Light light = is_asked                 ? Light{Severity::Quiet, "asking\u2026"}
+                        : known == lights_.end() ? Light{}
+                                                 : known->second;
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    widgets::draw_sign(draw, {at.x + ui.theme.px(20), at.y + ui.theme.px(22)}, ui.theme.px(9),
+                       light.severity);
+    const float x = at.x + ui.theme.px(42);
+    draw_text(
+        draw, ui.theme.strong, x, at.y + ui.theme.px(8), widgets::kText,
+        fitting(ui.theme.strong, peers_[i].name + (peers_[i].connection.tls ? "  \u2013  TLS" : ""), width));
+    const bool is_bad = light.severity == Severity::Bad;
+    draw_text(draw, ui.theme.body, x, at.y + ui.theme.px(40), is_bad ? widgets::kBad : widgets::kQuietText,
+              fitting(ui.theme.body, is_bad ? light.words : peers_[i].address() + "  \u2013  " + light.words,
+                      width));
+  }
+  const auto known = peer() != nullptr ? lights_.find(peer()->name) : lights_.end();
+  if (known != lights_.end() && known->second.severity == Severity::Bad)
+    widgets::status_row(ui, Severity::Bad, "No answer", known->second.words);
+  if (!peers_.empty()) {
+    for (const char* id : {"start.pacs.next", "start.pacs.change", "start.pacs.remove"}) {
+      widgets::action_button(ui, id, 0, ui.theme.px(44));
+      ImGui::SameLine();
+    }
+    ImGui::NewLine();
+  }
+  widgets::end_panel();
+}
+
+bool PacsPane::field(const widgets::Ui& ui, const char* id, const std::string& name, std::string& text,
+                     float width) {
+  ImGui::SetNextItemWidth(width);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {ui.theme.px(10), ui.theme.px(8)});
+  if (view_.takes_focus) ImGui::SetKeyboardFocusHere();
+  view_.takes_focus = false;
+  const bool is_entered = ImGui::InputTextWithHint(("##" + std::string(id)).c_str(), name.c_str(), &text,
+                                                   ImGuiInputTextFlags_EnterReturnsTrue);
+  ui.log.note(id, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+  if (ImGui::IsItemActive()) ui.log.note_state("pacs_field", id);
+  ImGui::PopStyleVar();
+  return is_entered;
+}
+
+void PacsPane::draw_fields(const widgets::Ui& ui, const widgets::Rect& area) {
+  widgets::begin_panel(ui, "start.pacs.keys", area, "Who is looked for");
+  const float width = ImGui::GetContentRegionAvail().x;
+  // The first takes the keyboard when it is asked for; Tab goes on to the others.
+  bool searches = field(ui, "start.pacs.id", "Patient ID", view_.patient_id, width);
+  searches |= field(ui, "start.pacs.name", "Name: Muster^A*", view_.patient_name, width);
+  searches |= field(ui, "start.pacs.date", "Date: 20260131, or 20260101-20260131", view_.date, width);
+  searches |= field(ui, "start.pacs.modality", "Modality: CT, MR; empty: all", view_.modality, width);
+  widgets::end_panel();
+  if (searches) ui.actions.run("start.pacs.find");
+}
+
+void PacsPane::draw_work(const widgets::Ui& ui, const widgets::Rect& area) {
+  widgets::begin_panel(ui, "start.pacs.work", area);
+  const PacsNews& news = work_.news();
+  if (!view_.failure.empty()) widgets::status_row(ui, Severity::Bad, "Your settings", view_.failure);
+  if (news.state == State::Running) {
+    const auto& progress = news.progress;
+    std::string words = word_of(news.kind);
+    if (progress.total > 0)
+      words += files::format(": %d of %d, %.1f MB", progress.done, progress.total,
+                             static_cast<double>(progress.bytes) / 1e6);
+    widgets::text_in(ui.theme.strong, widgets::kText,
+                     words + (has_running_work() ? ".  Esc stops; what came whole is kept" : "\u2026"));
+    const float width = ImGui::GetContentRegionAvail().x, height = ui.theme.px(20);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const float done =
+        progress.total > 0 ? static_cast<float>(progress.done) / static_cast<float>(progress.total) : 0.0F;
+    draw.AddRectFilled(at, {at.x + width, at.y + height}, widgets::kPanelEdge, ui.theme.px(6));
+    draw.AddRectFilled(at, {at.x + width * std::clamp(done, 0.0F, 1.0F), at.y + height}, widgets::kAccent,
+                       ui.theme.px(6));
+    ImGui::Dummy({width, height});
+  } else if (news.state != State::Idle && news.kind != Kind::Echo) {
+    const char* name = news.state == State::Failed    ? "It did not come about"
+                       : news.state == State::Stopped ? "Stopped"
+                       : news.kind == Kind::Find      ? "Found"
+                                                      : "Done";
+    widgets::status_row(ui, severity_of(news.state), name, news.words);
+    const bool can_resume = news.kind == Kind::Fetch && news.state != State::Done;
+    if (can_resume)
+      widgets::text_in(ui.theme.body, widgets::kQuietText, "Enter on the series goes on where it was.");
+  }
+  widgets::end_panel();
+}
+
+void PacsPane::draw_found(const widgets::Ui& ui, const widgets::Rect& area) {
+  widgets::begin_panel(ui, "start.pacs.found", area);
+  if (rows_.empty() && !work_.is_busy())
+    widgets::text_in(ui.theme.body, widgets::kQuietText,
+                     "Press F and write a patient ID, a name or a date; Enter searches. * and ? stand for "
+                     "anything.");
+  bool fetches = false;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (rows_[i].series == nullptr) {
+      draw_row_of(ui, rows_[i], i);
+      continue;
+    }
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const RowPress press = draw_row(ui, {.name = "start.pacs.series." + std::to_string(i),
+                                         .number = i,
+                                         .height = ui.theme.px(46),
+                                         .is_selected = i == view_.row,
+                                         .scrolls_here = view_.scrolls_to_row});
+    if (press != RowPress::None && !work_.is_busy()) view_.row = i;
+    fetches = fetches || press == RowPress::Twice;
+    const ImVec2 after = ImGui::GetCursorScreenPos();
+    ImGui::SetCursorScreenPos(at);
+    draw_row_of(ui, rows_[i], i);
+    ImGui::SetCursorScreenPos(after);
+  }
+  view_.scrolls_to_row = false;
+  widgets::end_panel();
+  if (fetches) ui.actions.run("start.pacs.fetch");
+}
+
+void PacsPane::draw_row_of(const widgets::Ui& ui, const Row& row, std::size_t /*number*/) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x, right = ui.theme.px(150);
+  if (row.series != nullptr) {
+    const float y = at.y + (ui.theme.px(46) - ui.theme.body->FontSize) / 2;
+    draw_text(draw, ui.theme.strong, at.x + ui.theme.px(40), y, widgets::kText,
+              fitting(ui.theme.strong, row.series->modality, ui.theme.px(70)));
+    draw_text(draw, ui.theme.body, at.x + ui.theme.px(120), y, widgets::kText,
+              fitting(ui.theme.body,
+                      "series " + row.series->number +
+                          (row.series->description.empty() ? "" : "  \u2013  " + row.series->description),
+                      width - ui.theme.px(140) - right));
+    draw_text(draw, ui.theme.body, at.x + width - right, y, widgets::kQuietText,
+              counted(row.series->image_count, "image", "images"));
+    return;
+  }
+  const bool is_patient = row.study == nullptr;
+  std::string words, counts;
+  if (is_patient) {
+    words = name_words(row.patient->name) + "  \u2013  ID " + row.patient->id;
+    if (!row.patient->birth_date.empty()) words += "  \u2013  born " + date_words(row.patient->birth_date);
+    if (!row.patient->sex.empty()) words += "  \u2013  " + row.patient->sex;
+    counts = counted(row.patient->study_count, "study", "studies");
+  } else {
+    words = date_words(row.study->date);
+    for (const std::string& modality : row.study->modalities) words += " " + modality;
+    if (!row.study->description.empty()) words += "  \u2013  " + row.study->description;
+    counts = counted(row.study->series_count, "series", "series");
+  }
+  const float height = ui.theme.px(is_patient ? 48 : 40);
+  const float y = at.y + (height - ui.theme.body->FontSize) / 2;
+  const float x = at.x + ui.theme.px(is_patient ? 8 : 24);
+  draw_text(draw, is_patient ? ui.theme.strong : ui.theme.body, x, y,
+            is_patient ? widgets::kAccent : widgets::kText,
+            fitting(ui.theme.strong, words, width - right - ui.theme.px(40)));
+  draw_text(draw, ui.theme.body, at.x + width - right, y, widgets::kQuietText, counts);
+  ImGui::Dummy({width, height});
+}
+
+void PacsPane::draw_form(const widgets::Ui& ui, const widgets::Rect& area) {
+  widgets::Rect rest = area;
+  draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)), {"start.pacs.keep", "start.back"});
+  widgets::begin_panel(ui, "start.pacs.form", rest);
+  if (!view_.failure.empty()) widgets::status_row(ui, Severity::Bad, "Not kept", view_.failure);
+  const float width = std::min(ImGui::GetContentRegionAvail().x, ui.theme.px(760));
+  PacsPeerForm& form = view_.form;
+  bool keeps = false;
+  const auto ask = [&](const char* id, const char* name, const char* hint, std::string& text) {
+    widgets::text_in(ui.theme.body, widgets::kQuietText, name);
+    keeps |= field(ui, id, hint, text, width);
+  };
+  ask("start.pacs.form.name", "Its name, as you know it", "Clinic's archive", form.name);
+  ask("start.pacs.form.address", "Its AE title, host and port; or the address of its DICOMweb",
+      "PACS@pacs.hospital:104, https://pacs.hospital/dicom-web", form.address);
+  ask("start.pacs.form.title", "Our own AE title, that it knows us by", "ARTHRONAUT", form.our_ae_title);
+  ask("start.pacs.form.port", "Our port, where it calls us; empty: it never does", "11112",
+      form.listening_port);
+  ask("start.pacs.form.ca", "For TLS: certificate of the authority that signs its own; empty: no TLS",
+      "/path/authority.pem", form.authority);
+  ask("start.pacs.form.cert", "For TLS: our certificate", "/path/ours.pem", form.certificate);
+  ask("start.pacs.form.key", "For TLS: our private key", "/path/ours.key", form.key);
+  ask("start.pacs.form.password",
+      "File with the password of the key, or of DICOMweb's user; empty: there is none", "/path/password",
+      form.key_password_file);
+  ask("start.pacs.form.user", "For DICOMweb: the user that it knows us by; empty: none", "theatre3",
+      form.user);
+  widgets::end_panel();
+  if (keeps) keep_peer();
+}
+
+void PacsPane::draw_send(const widgets::Ui& ui, const widgets::Rect& area) {
+  widgets::Rect rest = area;
+  draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+               {view_.outgoing.empty() ? "start.pacs.write" : "start.pacs.send", "start.pacs.deidentified",
+                "start.back"});
+  const PacsNews& news = work_.news();
+  const bool is_of_sending = news.kind == Kind::WriteResults || news.kind == Kind::Send;
+  if (is_of_sending && news.state == State::Running)
+    draw_work(ui, rest.cut_bottom(ui.theme.px(110), ui.theme.px(12)));
+  widgets::begin_panel(ui, "start.pacs.outgoing", rest);
+  widgets::status_row(ui, Severity::Quiet, "Case", view_.sendable.name);
+  if (peer() != nullptr)
+    widgets::status_row(ui, Severity::Quiet, "To",
+                        peer()->name + ", " + peer()->address() +
+                            (peer()->is_encrypted() ? ", by TLS" : ", not encrypted on the way"));
+  if (news.kind == Kind::WriteResults && news.state == State::Failed)
+    widgets::status_row(ui, Severity::Bad, "Not written", news.words);
+  if (news.kind == Kind::Send && news.state != State::Running) {
+    widgets::status_row(ui, severity_of(news.state), news.state == State::Failed ? "Not sent" : "Sent",
+                        news.words);
+    const pacs::Commitment commitment = news.sent.commitment;
+    if (commitment != pacs::Commitment::NotAsked)
+      widgets::status_row(ui,
+                          commitment == pacs::Commitment::Confirmed ? Severity::Good
+                          : commitment == pacs::Commitment::Failed  ? Severity::Bad
+                                                                    : Severity::Caution,
+                          std::string("Storage commitment ") + pacs::to_text(commitment),
+                          news.sent.commitment_note);
+  }
+  draw_outgoing(ui);
+  widgets::end_panel();
+}
+
+void PacsPane::draw_outgoing(const widgets::Ui& ui) {
+  if (view_.outgoing.empty()) {
+    widgets::status_row(ui, view_.is_deidentified ? Severity::Good : Severity::Caution, "Identity",
+                        view_.is_deidentified ? "De-identified: it will name nobody"
+                                              : "It will name the patient and be filed in his study");
+    widgets::text_in(ui.theme.body, widgets::kQuietText,
+                     "Nothing is sent yet. Enter writes what would go out and lists it here; D leaves the "
+                     "patient out.");
+    return;
+  }
+  // By what the objects themselves say.
+  std::set<std::string> named;
+  for (const pacs::SentFile& file : view_.outgoing)
+    if (!file.patient_name.empty() || !file.patient_id.empty())
+      named.insert(name_words(file.patient_name) + ", ID " + file.patient_id);
+  std::string names;
+  for (const std::string& name : named) names += (names.empty() ? "" : "; ") + name;
+  if (view_.is_deidentified)
+    widgets::status_row(ui, Severity::Good, "Identity",
+                        "De-identified: filed as \"" + view_.outgoing.front().patient_name + "\", ID \"" +
+                            view_.outgoing.front().patient_id + "\"");
+  else if (named.empty())
+    widgets::status_row(ui, Severity::Caution, "Identity",
+                        "Names nobody: the case knows no patient, and a PACS may refuse it");
+  else
+    widgets::status_row(ui, named.size() == 1 ? Severity::Caution : Severity::Bad, "Identity",
+                        "Names the patient: " + names);
+  if (!view_.outgoing_doubts.empty())
+    widgets::status_row(ui, Severity::Caution, "Look", view_.outgoing_doubts);
+  const PacsNews& news = work_.news();
+  for (const pacs::SentFile& written : view_.outgoing) {
+    const pacs::SentFile* sent = nullptr;
+    for (const pacs::SentFile& file : news.sent.files)
+      if (file.sop_instance_uid == written.sop_instance_uid) sent = &file;
+    std::error_code error;
+    const auto size = std::filesystem::file_size(written.file, error);
+    std::string words = written.file.filename().string();
+    if (!error) words += files::format(", %.1f MB", static_cast<double>(size) / 1e6);
+    if (sent != nullptr && sent->is_stored) words += sent->is_committed ? ": stored, kept" : ": stored";
+    if (sent != nullptr && !sent->note.empty()) words += ": " + sent->note;
+    const Severity severity = sent == nullptr      ? Severity::Quiet
+                              : !sent->is_stored   ? Severity::Bad
+                              : sent->is_committed ? Severity::Good
+                                                   : Severity::Caution;
+    widgets::status_row(ui, severity, written.title, words);
+  }
+}
+
+}  // namespace arthronaut::start

@@ -1,0 +1,19 @@
+#include "app/start/side_line.h"
+
+namespace arthronaut::start {
+
+using widgets::Severity;
+
+SideLine side_line(const importing::BoneImport& import, std::optional<bones::Side> side, bool was_said) {
+  if (!side) return {Severity::Caution, "neither names nor images tell: press R or L"};
+  const std::string word(bones::to_text(*side));
+  if (was_said) return {Severity::Good, word + ", as you say"};
+  if (import.side_was_guessed)
+    return {Severity::Caution, word + ", by the name of the source: is that so? Press R or L"};
+  if (import.side_is_by_shape)
+    return {Severity::Caution, word + ", by the shape of the bones alone: is that so? Press R or L"};
+  if (import.side_was_seen) return {Severity::Good, word + ", by the fibula"};
+  return {Severity::Good, word};
+}
+
+}  // namespace arthronaut::start

@@ -1,0 +1,45 @@
+#include "app/start/side_line.h"
+
+#include <gtest/gtest.h>
+
+namespace arthronaut::start {
+namespace {
+
+using bones::Side;
+using widgets::Severity;
+
+importing::BoneImport import_of(bool guessed, bool seen, bool by_shape) {
+  importing::BoneImport import;
+  import.side = Side::Left;
+  import.side_was_guessed = guessed;
+  import.side_was_seen = seen;
+  import.side_is_by_shape = by_shape;
+  return import;
+}
+
+// Nothing but the fibula or a person makes the side sure; every doubt is a caution, says what the side is
+// told by, and asks.
+TEST(SideLineTest, WhatIsNotSureIsACautionThatAsks) {
+  for (const auto& [import, by] : {std::pair{import_of(true, false, false), "name"},
+                                   std::pair{import_of(false, true, true), "shape of the bones alone"}}) {
+    const SideLine line = side_line(import, Side::Left, false);
+    EXPECT_EQ(line.severity, Severity::Caution) << line.text;
+    EXPECT_TRUE(line.text.starts_with("left")) << line.text;
+    EXPECT_NE(line.text.find(by), std::string::npos) << line.text;
+    EXPECT_NE(line.text.find("is that so?"), std::string::npos) << line.text;
+  }
+  EXPECT_EQ(side_line(import_of(false, false, false), std::nullopt, false).severity, Severity::Caution);
+}
+
+TEST(SideLineTest, AFibulaAndAPersonAreSure) {
+  const SideLine fibula = side_line(import_of(false, true, false), Side::Left, false);
+  EXPECT_EQ(fibula.severity, Severity::Good);
+  EXPECT_EQ(fibula.text, "left, by the fibula");
+  // Said against the shape: what a person says counts, and is what is shown.
+  const SideLine said = side_line(import_of(false, true, true), Side::Right, true);
+  EXPECT_EQ(said.severity, Severity::Good);
+  EXPECT_EQ(said.text, "right, as you say");
+}
+
+}  // namespace
+}  // namespace arthronaut::start
