@@ -3,7 +3,7 @@
 #include <hpdf.h>
 
 #include <algorithm>
-#include <array>
+#include <utility>
 
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
@@ -35,7 +35,9 @@ struct PdfDocument::Pdf {
   HPDF_Page page = nullptr;
   HPDF_Font regular = nullptr, bold = nullptr;
 
-  explicit Pdf(const std::string& title) {
+  PaperSize paper;
+
+  Pdf(const std::string& title, const PaperSize& of) : paper(of) {
     document = HPDF_New(remember, &failure);
     if (document == nullptr) throw IoError("the PDF writer could not be started");
     HPDF_UseUTFEncodings(document);
@@ -58,6 +60,9 @@ struct PdfDocument::Pdf {
       throw IoError("the PDF writer failed with error " + std::to_string(failure.status));
     }
   }
+  [[nodiscard]] HPDF_REAL from_top(double mm) const {
+    return static_cast<HPDF_REAL>((paper.height_mm - mm) * kPointsPerMm);
+  }
   void use(const TextStyle& style) const {
     HPDF_Page_SetFontAndSize(page, style.bold ? bold : regular, static_cast<HPDF_REAL>(style.size_pt));
     HPDF_Page_SetRGBFill(page, static_cast<HPDF_REAL>(style.ink.red), static_cast<HPDF_REAL>(style.ink.green),
@@ -68,25 +73,42 @@ struct PdfDocument::Pdf {
 namespace {
 
 HPDF_REAL points(double mm) { return static_cast<HPDF_REAL>(mm * kPointsPerMm); }
-HPDF_REAL from_top(double mm) { return static_cast<HPDF_REAL>((PdfDocument::kHeightMm - mm) * kPointsPerMm); }
 
 double line_height_mm(const TextStyle& style) { return 1.35 * style.size_pt / kPointsPerMm; }
 
+// Where the letter after the one at `at` begins, in UTF-8.
+std::size_t next_letter(const std::string& text, std::size_t at) {
+  do ++at;
+  while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U);
+  return at;
+}
+
+constexpr double kCellPadMm = 1.5;
+
+TextStyle cell_style(bool is_heading) {
+  return {.size_pt = 8.8, .bold = is_heading, .ink = is_heading ? kAccent : kBlack};
+}
+
 }  // namespace
 
-PdfDocument::PdfDocument(const std::string& title) : pdf_(std::make_unique<Pdf>(title)) {}
+PdfDocument::PdfDocument(const std::string& title, Paper paper)
+    : pdf_(std::make_unique<Pdf>(title, size_of(paper))) {}
 PdfDocument::~PdfDocument() = default;
+
+double PdfDocument::width_mm() const { return pdf_->paper.width_mm; }
+double PdfDocument::height_mm() const { return pdf_->paper.height_mm; }
 
 void PdfDocument::add_page() {
   pdf_->page = HPDF_AddPage(pdf_->document);
   pdf_->check();
-  HPDF_Page_SetSize(pdf_->page, HPDF_PAGE_SIZE_A4, HPDF_PAGE_PORTRAIT);
+  HPDF_Page_SetWidth(pdf_->page, points(width_mm()));
+  HPDF_Page_SetHeight(pdf_->page, points(height_mm()));
 }
 
 void PdfDocument::text(double x_mm, double y_mm, std::string_view text, const TextStyle& style) {
   pdf_->use(style);
   HPDF_Page_BeginText(pdf_->page);
-  HPDF_Page_TextOut(pdf_->page, points(x_mm), from_top(y_mm), std::string(text).c_str());
+  HPDF_Page_TextOut(pdf_->page, points(x_mm), pdf_->from_top(y_mm), std::string(text).c_str());
   HPDF_Page_EndText(pdf_->page);
   pdf_->check();
 }
@@ -96,28 +118,55 @@ double PdfDocument::text_width_mm(std::string_view text, const TextStyle& style)
   return HPDF_Page_TextWidth(pdf_->page, std::string(text).c_str()) / kPointsPerMm;
 }
 
-double PdfDocument::paragraph(double x_mm, double y_mm, double width_mm, std::string_view text,
-                              const TextStyle& style) {
+std::vector<std::string> PdfDocument::broken(std::string_view text, double width_mm, const TextStyle& style) {
+  std::vector<std::string> lines;
   std::string line;
-  const auto flush = [&] {
-    if (!line.empty()) this->text(x_mm, y_mm, line, style);
-    y_mm += line_height_mm(style);
-    line.clear();
-  };
+  const auto fits = [&](const std::string& words) { return text_width_mm(words, style) <= width_mm; };
   while (!text.empty()) {
     const auto space = text.find(' ');
-    const std::string word(text.substr(0, space));
+    std::string word(text.substr(0, space));
     text.remove_prefix(space == std::string_view::npos ? text.size() : space + 1);
-    const std::string longer = line.empty() ? word : line + " " + word;
-    if (!line.empty() && text_width_mm(longer, style) > width_mm) {
-      flush();
-      line = word;
-    } else {
-      line = longer;
+    std::string longer = line.empty() ? word : line + " " + word;
+    if (fits(longer)) {
+      line = std::move(longer);
+      continue;
     }
+    if (!line.empty()) lines.push_back(std::move(line));
+    while (!fits(word)) {
+      std::size_t end = next_letter(word, 0);
+      while (end < word.size() && fits(word.substr(0, next_letter(word, end)))) end = next_letter(word, end);
+      if (end >= word.size()) break;  // a single letter
+      lines.push_back(word.substr(0, end));
+      word.erase(0, end);
+    }
+    line = std::move(word);
   }
-  flush();
+  lines.push_back(std::move(line));
+  return lines;
+}
+
+double PdfDocument::paragraph(double x_mm, double y_mm, double width_mm, std::string_view text,
+                              const TextStyle& style) {
+  for (const std::string& line : broken(text, width_mm, style)) {
+    if (!line.empty()) this->text(x_mm, y_mm, line, style);
+    y_mm += line_height_mm(style);
+  }
   return y_mm;
+}
+
+double PdfDocument::paragraph_height_mm(double width_mm, std::string_view text, const TextStyle& style) {
+  return static_cast<double>(broken(text, width_mm, style).size()) * line_height_mm(style);
+}
+
+std::string PdfDocument::cut_to(std::string_view text, double width_mm, const TextStyle& style) {
+  std::string whole(text);
+  if (text_width_mm(whole, style) <= width_mm) return whole;
+  std::size_t end = 0;
+  for (std::size_t next = next_letter(whole, 0);
+       next < whole.size() && text_width_mm(whole.substr(0, next) + "\u2026", style) <= width_mm;
+       next = next_letter(whole, next))
+    end = next;
+  return whole.substr(0, end) + "\u2026";
 }
 
 void PdfDocument::line(double x0_mm, double y0_mm, double x1_mm, double y1_mm, double width_mm,
@@ -125,8 +174,8 @@ void PdfDocument::line(double x0_mm, double y0_mm, double x1_mm, double y1_mm, d
   HPDF_Page_SetRGBStroke(pdf_->page, static_cast<HPDF_REAL>(ink.red), static_cast<HPDF_REAL>(ink.green),
                          static_cast<HPDF_REAL>(ink.blue));
   HPDF_Page_SetLineWidth(pdf_->page, points(width_mm));
-  HPDF_Page_MoveTo(pdf_->page, points(x0_mm), from_top(y0_mm));
-  HPDF_Page_LineTo(pdf_->page, points(x1_mm), from_top(y1_mm));
+  HPDF_Page_MoveTo(pdf_->page, points(x0_mm), pdf_->from_top(y0_mm));
+  HPDF_Page_LineTo(pdf_->page, points(x1_mm), pdf_->from_top(y1_mm));
   HPDF_Page_Stroke(pdf_->page);
   pdf_->check();
 }
@@ -135,7 +184,7 @@ void PdfDocument::filled_rectangle(double x_mm, double y_mm, double width_mm, do
                                    const Ink& ink) {
   HPDF_Page_SetRGBFill(pdf_->page, static_cast<HPDF_REAL>(ink.red), static_cast<HPDF_REAL>(ink.green),
                        static_cast<HPDF_REAL>(ink.blue));
-  HPDF_Page_Rectangle(pdf_->page, points(x_mm), from_top(y_mm + height_mm), points(width_mm),
+  HPDF_Page_Rectangle(pdf_->page, points(x_mm), pdf_->from_top(y_mm + height_mm), points(width_mm),
                       points(height_mm));
   HPDF_Page_Fill(pdf_->page);
   pdf_->check();
@@ -147,31 +196,34 @@ double PdfDocument::image(double x_mm, double y_mm, double width_mm, const std::
                                                     static_cast<HPDF_UINT>(height), HPDF_CS_DEVICE_RGB, 8);
   pdf_->check();
   const double height_mm = width_mm * height / width;
-  HPDF_Page_DrawImage(pdf_->page, image, points(x_mm), from_top(y_mm + height_mm), points(width_mm),
+  HPDF_Page_DrawImage(pdf_->page, image, points(x_mm), pdf_->from_top(y_mm + height_mm), points(width_mm),
                       points(height_mm));
   pdf_->check();
   return height_mm;
 }
 
+double PdfDocument::row_height_mm(const std::vector<double>& widths_mm, const std::vector<std::string>& cells,
+                                  bool is_heading) {
+  const TextStyle style = cell_style(is_heading);
+  double height_mm = line_height_mm(style);
+  for (std::size_t c = 0; c < cells.size() && c < widths_mm.size(); ++c)
+    height_mm = std::max(height_mm, paragraph_height_mm(widths_mm[c] - 2 * kCellPadMm, cells[c], style));
+  return height_mm + 0.35 * line_height_mm(style);
+}
+
 double PdfDocument::table(double x_mm, double y_mm, const std::vector<double>& widths_mm,
                           const std::vector<std::vector<std::string>>& rows) {
-  constexpr double kPadMm = 1.5, kBottomMm = 280, kTopMm = 25;
   double total_mm = 0;
   for (const double w : widths_mm) total_mm += w;
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    const TextStyle style{.size_pt = 8.8, .bold = r == 0, .ink = r == 0 ? kAccent : kBlack};
-    if (y_mm > kBottomMm) {
-      add_page();
-      y_mm = kTopMm;
-    }
-    double x = x_mm, bottom = y_mm + line_height_mm(style);
+    const TextStyle style = cell_style(r == 0);
+    double x = x_mm;
     for (std::size_t c = 0; c < rows[r].size() && c < widths_mm.size(); ++c) {
-      const double below =
-          paragraph(x + kPadMm, y_mm + line_height_mm(style), widths_mm[c] - 2 * kPadMm, rows[r][c], style);
-      bottom = std::max(bottom, below);
+      paragraph(x + kCellPadMm, y_mm + line_height_mm(style), widths_mm[c] - 2 * kCellPadMm, rows[r][c],
+                style);
       x += widths_mm[c];
     }
-    y_mm = bottom - 0.4 * line_height_mm(style) + kPadMm / 2;
+    y_mm += row_height_mm(widths_mm, rows[r], r == 0);
     line(x_mm, y_mm, x_mm + total_mm, y_mm, r == 0 ? 0.35 : 0.12, r == 0 ? kAccent : kGray);
   }
   return y_mm + 2;

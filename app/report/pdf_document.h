@@ -1,4 +1,4 @@
-// A thin page of paper over libharu: A4, millimetres from the top-left corner, UTF-8 text in DejaVu Sans.
+// A thin page of paper over libharu: millimetres from the top-left corner, UTF-8 text in DejaVu Sans.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "app/report/paper.h"
 
 namespace arthronaut::report {
 
@@ -26,19 +28,25 @@ struct TextStyle {
 
 class PdfDocument {
  public:
-  static constexpr double kWidthMm = 210, kHeightMm = 297;
-
   // Throws IoError when the font is not installed.
-  explicit PdfDocument(const std::string& title);
+  explicit PdfDocument(const std::string& title, Paper paper = Paper::A4);
   ~PdfDocument();
+
+  [[nodiscard]] double width_mm() const;
+  [[nodiscard]] double height_mm() const;
 
   void add_page();
   // Draws on the last page. y is the text's baseline.
   void text(double x_mm, double y_mm, std::string_view text, const TextStyle& style = {});
-  // Breaks at spaces; returns the baseline below the last line.
+  // Breaks at spaces, and within words that are longer than a line; returns the baseline below the last
+  // line.
   double paragraph(double x_mm, double y_mm, double width_mm, std::string_view text,
                    const TextStyle& style = {});
   [[nodiscard]] double text_width_mm(std::string_view text, const TextStyle& style = {});
+  [[nodiscard]] double paragraph_height_mm(double width_mm, std::string_view text,
+                                           const TextStyle& style = {});
+  // The text, or as much of its beginning as is no wider, and an ellipsis.
+  [[nodiscard]] std::string cut_to(std::string_view text, double width_mm, const TextStyle& style = {});
   void line(double x0_mm, double y0_mm, double x1_mm, double y1_mm, double width_mm = 0.2,
             const Ink& ink = kGray);
   void filled_rectangle(double x_mm, double y_mm, double width_mm, double height_mm, const Ink& ink = kBlack);
@@ -46,9 +54,11 @@ class PdfDocument {
   double image(double x_mm, double y_mm, double width_mm, const std::vector<std::uint8_t>& rgb, int width,
                int height);
   // Rows of cells in columns of the given widths; the first row is the heading. Returns the y below the
-  // table. Cells that are too long are broken into lines. Starts a new page where the page ends.
+  // table. Cells that are too long are broken into lines. Does not look where the page ends.
   double table(double x_mm, double y_mm, const std::vector<double>& widths_mm,
                const std::vector<std::vector<std::string>>& rows);
+  [[nodiscard]] double row_height_mm(const std::vector<double>& widths_mm,
+                                     const std::vector<std::string>& cells, bool is_heading);
 
   // Atomic. Throws IoError.
   void save(const std::filesystem::path& file);
@@ -56,6 +66,9 @@ class PdfDocument {
   [[nodiscard]] std::string bytes();
 
  private:
+  [[nodiscard]] std::vector<std::string> broken(std::string_view text, double width_mm,
+                                                const TextStyle& style);
+
   struct Pdf;
   std::unique_ptr<Pdf> pdf_;
 };

@@ -28,6 +28,7 @@ using tunnels::PlanCheck;
 constexpr Ink kGrid{0.80, 0.47, 0.65}, kNorm{0.85, 0.72, 0.10}, kPlan{0.20, 0.62, 0.90},
     kBone{0.85, 0.55, 0.20};
 constexpr TextStyle kCaption{.size_pt = 7.5, .ink = kGray};
+constexpr double kCheck_pt = 7.5;
 
 // A plane drawn on the page: its picture's place, and what of it lies where.
 struct PlanePicture {
@@ -58,7 +59,8 @@ class Sheet {
   void plateau(double x_mm, double y_mm, double width_mm);
   void slices(double y_mm);
   void slice(const PlanePicture& picture, BoneKind kind, const std::optional<images::Volume>& volume);
-  void checks(BoneKind kind, double x_mm, double y_mm, double width_mm);
+  // Where it ends, whether it is drawn or not.
+  double checks(BoneKind kind, double x_mm, double y_mm, double width_mm, double size_pt, bool is_drawn);
   void put_grey(const PlanePicture& picture, const std::vector<std::uint8_t>& grey);
   // Where both ends lie in the picture.
   void line(const PlanePicture& picture, const Vector3d& from, const Vector3d& to, double width_mm,
@@ -234,29 +236,35 @@ void Sheet::slices(double y_mm) {
   }
 }
 
-void Sheet::checks(BoneKind kind, double x_mm, double y_mm, double width_mm) {
-  constexpr double kWord_mm = 17, kStep_mm = 3.6;
+double Sheet::checks(BoneKind kind, double x_mm, double y_mm, double width_mm, double size_pt,
+                     bool is_drawn) {
+  const double word_mm = 17 * size_pt / kCheck_pt, gap_mm = 1.1 * size_pt / kCheck_pt;
   const auto* of_graft = planned(kind);
-  pdf_.text(x_mm, y_mm,
-            "Checks of the " + (of_graft != nullptr ? tunnels::name_of(of_graft->tunnel.key())
-                                                    : std::string(bones::to_text(kind))),
-            {.size_pt = 9, .bold = true});
+  if (is_drawn)
+    pdf_.text(x_mm, y_mm,
+              "Checks of the " + (of_graft != nullptr ? tunnels::name_of(of_graft->tunnel.key())
+                                                      : std::string(bones::to_text(kind))),
+              {.size_pt = 9, .bold = true});
   y_mm += 4;
   if (of_graft == nullptr) {
-    pdf_.text(x_mm, y_mm, review_.has_bone(kind) ? "No tunnel is planned." : "The case has no such bone.",
-              kCaption);
-    return;
+    if (is_drawn)
+      pdf_.text(x_mm, y_mm, review_.has_bone(kind) ? "No tunnel is planned." : "The case has no such bone.",
+                kCaption);
+    return y_mm;
   }
   for (const PlanCheck& check : review_.checks(of_graft->tunnel.key())) {
     const bool is_amiss =
         check.verdict == PlanCheck::Verdict::Look || check.verdict == PlanCheck::Verdict::Wrong;
-    pdf_.text(x_mm, y_mm, to_text(check.verdict),
-              {.size_pt = 7.5, .bold = is_amiss, .ink = is_amiss ? kWarning : kGray});
     const std::string source = is_amiss && !check.source.empty() ? " [" + check.source + "]" : "";
-    y_mm = pdf_.paragraph(x_mm + kWord_mm, y_mm, width_mm - kWord_mm, check.name + ": " + check.text + source,
-                          {.size_pt = 7.5});
-    y_mm += 0.3 * kStep_mm;
+    const std::string text = check.name + ": " + check.text + source;
+    if (is_drawn) {
+      pdf_.text(x_mm, y_mm, to_text(check.verdict),
+                {.size_pt = size_pt, .bold = is_amiss, .ink = is_amiss ? kWarning : kGray});
+      pdf_.paragraph(x_mm + word_mm, y_mm, width_mm - word_mm, text, {.size_pt = size_pt});
+    }
+    y_mm += pdf_.paragraph_height_mm(width_mm - word_mm, text, {.size_pt = size_pt}) + gap_mm;
   }
+  return y_mm;
 }
 
 void Sheet::draw() {
@@ -266,8 +274,15 @@ void Sheet::draw() {
   y_mm += lateral(frame_.left_mm, y_mm, half_mm) + 3;
   slices(y_mm);
   y_mm += (frame_.width_mm - 9) / 4 + 11;
-  checks(BoneKind::Femur, frame_.left_mm, y_mm, half_mm);
-  checks(BoneKind::Tibia, right_mm, y_mm, half_mm);
+  constexpr double kLeast_pt = 5;
+  double size_pt = kCheck_pt;
+  const auto lowest = [&] {
+    return std::max(checks(BoneKind::Femur, frame_.left_mm, y_mm, half_mm, size_pt, false),
+                    checks(BoneKind::Tibia, right_mm, y_mm, half_mm, size_pt, false));
+  };
+  while (size_pt > kLeast_pt && lowest() > frame_.bottom_mm) size_pt -= 0.25;
+  checks(BoneKind::Femur, frame_.left_mm, y_mm, half_mm, size_pt, true);
+  checks(BoneKind::Tibia, right_mm, y_mm, half_mm, size_pt, true);
 }
 
 }  // namespace

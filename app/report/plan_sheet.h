@@ -11,7 +11,7 @@
 namespace arthronaut::report {
 
 struct SheetFrame {
-  double left_mm = 20, top_mm = 28, width_mm = 170;
+  double left_mm = 20, top_mm = 28, width_mm = 170, bottom_mm = 285;
 };
 
 // Of which grafts a plan needs a sheet: of the single one, or of each bundle that a tunnel is planned for.
@@ -19,7 +19,8 @@ struct SheetFrame {
 [[nodiscard]] std::vector<norms::Bundle> planned_grafts(const cases::Plan& plan);
 
 // The tunnels of one graft: of each bone that of the bundle, else its single one; the others are thin lines.
-// Draws on the last page, which is to be empty below frame.top_mm. Slices show the case's images where it
+// Draws on the last page, which is to be empty below frame.top_mm; where the checks would go below
+// frame.bottom_mm they are set smaller. Slices show the case's images where it
 // keeps some, else the outlines of the bones alone. Without a tunnel it says so. Throws IoError and
 // InvalidInput when an image of the case can't be read, DeviceError when no picture of the plateau can be
 // made.

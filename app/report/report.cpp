@@ -4,10 +4,14 @@
 #include <cstdio>
 #include <optional>
 
+#include "app/report/flowing_pages.h"
 #include "app/report/pdf_document.h"
 #include "app/report/plan_sheet.h"
+#include "app/report/postop_section.h"
 #include "app/report/report_content.h"
+#include "app/report/report_data.h"
 #include "app/report/session_rows.h"
+#include "app/report/stills.h"
 #include "app/report/versions.h"
 #include "app/scene/plan_picture.h"
 #include "navigation/camera/camera_file.h"
@@ -15,6 +19,7 @@
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session.h"
 #include "planning/cases/case.h"
+#include "planning/files/atomic_file.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 #include "planning/tunnels/tunnel.h"
@@ -23,7 +28,7 @@ namespace arthronaut::report {
 
 namespace {
 
-constexpr double kLeftMm = 20, kWidthMm = 170;
+constexpr double kWidthMm = FlowingPages::kWidthMm;
 constexpr const char* kResearchSentence =
     "Made by research software that is not a medical device. The figures are for research and teaching; they "
     "support no "
@@ -39,62 +44,65 @@ std::string point(const Eigen::Vector3d& p, int decimals = 1) {
   return number(p.x(), ", ", decimals) + number(p.y(), ", ", decimals) + number(p.z(), "", decimals);
 }
 
+// A hash is a word too long for a line: "3dd6dcd64e4a9eeb 069e29a556f187e8 ...".
+std::string in_groups(const std::string& hash) {
+  std::string groups;
+  for (std::size_t at = 0; at < hash.size(); at += 16) groups += (at > 0 ? " " : "") + hash.substr(at, 16);
+  return groups;
+}
+
+// Of a body of several markers, all of them.
+template <typename Body>
+std::string ids_of(const Body& body) {
+  std::string ids;
+  for (const tools::BodyMarker& marker : tools::markers_of(body))
+    ids += (ids.empty() ? "" : ", ") + std::to_string(marker.marker_id);
+  return ids;
+}
+
 class Report {
  public:
   Report(const Content& content, const ReportOptions& options)
       : content_(content),
         says_when_made_(options.says_when_made),
-        pdf_("Arthronaut report: " + content.knee.name) {}
+        pdf_("Arthronaut report: " + content.knee.name, options.paper),
+        pages_(pdf_, content.knee.name) {}
 
   // Whole.
   PdfDocument& drawn() {
     plan_page();
     for (const norms::Bundle graft : planned_grafts(content_.knee.plan)) {
-      begin_page(graft == norms::Bundle::Whole          ? "The plan on one sheet"
-                 : graft == norms::Bundle::Anteromedial ? "The plan on one sheet: AM graft"
-                                                        : "The plan on one sheet: PL graft");
-      draw_plan_sheet(pdf_, {.left_mm = kLeftMm, .top_mm = y_, .width_mm = kWidthMm}, content_.knee,
-                      content_.folder, graft);
+      pages_.begin_page(graft == norms::Bundle::Whole          ? "The plan on one sheet"
+                        : graft == norms::Bundle::Anteromedial ? "The plan on one sheet: AM graft"
+                                                               : "The plan on one sheet: PL graft");
+      draw_plan_sheet(pdf_,
+                      {.left_mm = pages_.left_mm(),
+                       .top_mm = pages_.y_mm(),
+                       .width_mm = kWidthMm,
+                       .bottom_mm = pages_.bottom_mm()},
+                      content_.knee, content_.folder, graft);
     }
     navigate_page();
+    result_pictures();
     settings();
     return pdf_;
   }
 
  private:
-  void begin_page(const std::string& title) {
-    pdf_.add_page();
-    ++page_;
-    pdf_.text(kLeftMm, 20, title, {.size_pt = 16, .bold = true, .ink = kAccent});
-    pdf_.line(kLeftMm, 289, kLeftMm + kWidthMm, 289);
-    pdf_.text(kLeftMm, 293,
-              content_.knee.name + " · page " + std::to_string(page_) +
-                  " · research software, not a medical device",
-              {.size_pt = 7.5, .ink = kGray});
-    y_ = 28;
-  }
-  void heading(const std::string& text) {
-    y_ += 5;
-    pdf_.text(kLeftMm, y_, text, {.size_pt = 11.5, .bold = true});
-    y_ += 1;
-  }
-  void sentence(const std::string& text, const TextStyle& style = {}) {
-    y_ = pdf_.paragraph(kLeftMm, y_ + 4, kWidthMm, text, style) - 3;
-  }
-  void table(const std::vector<double>& widths_mm, const std::vector<std::vector<std::string>>& rows) {
-    y_ = pdf_.table(kLeftMm, y_, widths_mm, rows);
-  }
-
   // Two pictures side by side with their names.
   void pictures(scene::ViewDirection left, scene::ViewDirection right, bool with_result) {
-    const double width = (kWidthMm - 6) / 2;
-    double x = kLeftMm, height = 0;
+    constexpr int kPictureWidth = 1000;
+    const int picture_height = with_result ? 580 : 720;
+    const double width = (kWidthMm - 6) / 2, needed = width * picture_height / kPictureWidth;
+    pages_.need(needed + 8);
+    const double y = pages_.y_mm() + 3;
+    double x = pages_.left_mm();
     for (const scene::ViewDirection view : {left, right}) {
       scene::PictureRequest request;
       request.knee = &content_.knee;
       request.view = view;
-      request.width = 1000;
-      request.height = 800;
+      request.width = kPictureWidth;
+      request.height = picture_height;
       request.light_background = true;
       if (with_result)
         for (const operation::AchievedTunnel& achieved : content_.achieved)
@@ -105,11 +113,11 @@ class Report {
                                                             : earlier.achieved.measured);
       if (with_result) request.curve_points_in_bone = touched_points();
       const auto picture = scene::render_plan_picture(request);
-      height = pdf_.image(x, y_ + 3, width, picture.rgb, picture.width, picture.height);
-      pdf_.text(x, y_ + 3 + height + 3.5, std::string(scene::to_text(view)), {.size_pt = 8, .ink = kGray});
+      pdf_.image(x, y, width, picture.rgb, picture.width, picture.height);
+      pdf_.text(x, y + needed + 3.5, std::string(scene::to_text(view)), {.size_pt = 8, .ink = kGray});
       x += width + 6;
     }
-    y_ += height + 10;
+    pages_.skip(needed + 8);
   }
 
   // From the joint, onto the bone that was navigated; a case may hold one bone alone.
@@ -132,29 +140,30 @@ class Report {
   void say_plan_fit(const tunnels::TunnelKey& key);
   void navigate_page();
   void registration_section(const registration::RegistrationSummary& registration);
+  void time_line_section(const recording::RecordedSession& session);
   void result_section(const operation::AchievedTunnel& achieved);
+  void result_pictures();
   void settings();
 
   const Content& content_;
   bool says_when_made_;
   PdfDocument pdf_;
-  double y_ = 0;
-  int page_ = 0;
+  FlowingPages pages_;
 };
 
 void Report::plan_page() {
-  begin_page("ACL reconstruction: the plan");
+  pages_.begin_page("ACL reconstruction: the plan");
   std::vector<std::vector<std::string>> about = {{"Case", ""}};
   if (content_.identity) about.push_back({"Patient", content_.identity->in_words()});
   about.insert(about.end(), {{"Name", content_.knee.name},
                              {"Side", std::string(bones::to_text(content_.knee.side))},
                              {"Created", content_.knee.created_utc}});
   if (says_when_made_) about.push_back({"Report made", files::utc_now_as("%Y-%m-%d %H:%M UTC")});
-  table({45, 125}, about);
-  sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
-  heading("Planned tunnels");
+  pages_.table({45, 125}, about);
+  pages_.sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
+  pages_.heading("Planned tunnels");
   if (content_.knee.plan.tunnels.empty()) {
-    sentence("No tunnel is planned.");
+    pages_.sentence("No tunnel is planned.");
   } else {
     std::vector<std::vector<std::string>> rows = {{"Tunnel", "Entry, mm (LPS)", "Direction", "Diameter",
                                                    "Length in bone", "Least wall", "Exit, mm (LPS)"}};
@@ -170,7 +179,7 @@ void Report::plan_page() {
            number(tunnel.diameter_mm, " mm"), in_bone ? number(geometry.length_mm, " mm") : "misses the bone",
            in_bone ? number(geometry.wall_mm, " mm") : "–", in_bone ? point(geometry.exit_mm) : "–"});
     }
-    table({16, 34, 32, 18, 20, 18, 32}, rows);
+    pages_.table({16, 34, 30, 20, 20, 18, 32}, rows);
     for (const auto& [key, tunnel] : content_.knee.plan.tunnels) say_plan_fit(key);
   }
   pictures(scene::ViewDirection::Anterior, scene::ViewDirection::Lateral, false);
@@ -181,35 +190,56 @@ void Report::say_plan_fit(const tunnels::TunnelKey& key) {
   const std::string name = tunnels::name_of(key);
   const cases::PlanFit fit = cases::plan_fit(content_.knee, key);
   if (!fit.is_valid()) {
-    sentence("NOT VALID: " + fit.reason + ".", {.bold = true, .ink = kWarning});
+    pages_.sentence("NOT VALID: " + fit.reason + ".", {.bold = true, .ink = kWarning});
   } else if (fit.outcome == cases::PlanFit::Outcome::Unknown) {
-    sentence("The plan of the " + name + " does not say on which surface of the bone it was made.",
-             {.size_pt = 8.5, .ink = kGray});
+    pages_.sentence("The plan of the " + name + " does not say on which surface of the bone it was made.",
+                    {.size_pt = 8.5, .ink = kGray});
   }
 }
 
 void Report::registration_section(const registration::RegistrationSummary& registration) {
-  heading("Registration of the bone");
-  table({70, 100},
-        {{"Quantity", "Value"},
-         {"Verdict", registration.reliable ? "reliable" : "NOT RELIABLE"},
-         {"Touched points", std::to_string(registration.point_count)},
-         {"Distance of the points to the bone, RMS", number(registration.rms_mm, " mm", 2)},
-         {"Points that fit", number(100 * registration.inlier_fraction, " %", 0)},
-         {"Predicted error at the target, one sigma", number(registration.predicted_tre_mm, " mm", 2)}});
-  for (const auto& reason : registration.reasons) sentence("– " + reason, {.ink = kWarning});
-  for (const auto& assumption : registration.assumptions) sentence("– assumed: " + assumption);
-  sentence(
+  pages_.heading("Registration of the bone");
+  pages_.table({70, 100}, {{"Quantity", "Value"},
+                           {"Verdict", registration.reliable ? "reliable" : "NOT RELIABLE"},
+                           {"Touched points", std::to_string(registration.point_count)},
+                           {"Distance of the points to the bone, RMS", number(registration.rms_mm, " mm", 2)},
+                           {"Points that fit", number(100 * registration.inlier_fraction, " %", 0)},
+                           {"Predicted error at the target, one sigma",
+                            number(registration.predicted_tre_mm, " mm", 2)}});
+  for (const auto& reason : registration.reasons) pages_.sentence("– " + reason, {.ink = kWarning});
+  for (const auto& assumption : registration.assumptions) pages_.sentence("– assumed: " + assumption);
+  pages_.sentence(
       "A small distance of the points does not prove a small error at the tunnel: the predicted error is the "
       "figure "
       "to go by.",
       {.size_pt = 8, .ink = kGray});
 }
 
+// Steps as the record has them, and what whoever looked at it marked.
+void Report::time_line_section(const recording::RecordedSession& session) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Step& step : steps_of(session)) rows.push_back({clock_text(step.time_s), step.words});
+  if (!rows.empty()) {
+    pages_.heading("Steps");
+    rows.insert(rows.begin(), {"Time", "Step"});
+    pages_.table({24, 146}, rows);
+  }
+  if (content_.marks.empty() && content_.marks_problem.empty()) return;
+  pages_.heading("Marks of who looked at the session");
+  rows = {{"Time", "Note"}};
+  for (const recording::SessionMark& mark : content_.marks)
+    rows.push_back({clock_text(time_s(session, mark.timestamp_ns)),
+                    (mark.note.empty() ? std::string("(no note)") : mark.note) + "  (frame " +
+                        std::to_string(mark.frame) + ")"});
+  if (!content_.marks.empty()) pages_.table({24, 146}, rows);
+  if (!content_.marks_problem.empty())
+    pages_.sentence("NOT READABLE: " + content_.marks_problem, {.ink = kWarning});
+}
+
 void Report::result_section(const operation::AchievedTunnel& achieved) {
-  heading(achieved.planned.bundle == norms::Bundle::Whole
-              ? "Planned against achieved"
-              : "Planned against achieved: " + tunnels::name_of(achieved.planned.key()));
+  pages_.heading(achieved.planned.bundle == norms::Bundle::Whole
+                     ? "Planned against achieved"
+                     : "Planned against achieved: " + tunnels::name_of(achieved.planned.key()));
   const auto planned_measured = operation::compare(achieved.planned, achieved.measured);
   std::vector<std::vector<std::string>> rows = {
       {"Comparison", "Entry to entry", "Entry to axis", "Angle"},
@@ -224,31 +254,25 @@ void Report::result_section(const operation::AchievedTunnel& achieved) {
                     number(measured_true.axis_to_entry_mm, " mm", 2),
                     number(measured_true.angle_deg, "°", 2)});
   }
-  table({86, 28, 28, 28}, rows);
-  sentence("Depth reached " + (achieved.depth_mm ? number(*achieved.depth_mm, " mm") : "not known") +
-               ". Predicted error of these figures, one sigma: " +
-               number(achieved.sigma_offset_mm, " mm", 2) + ", " + number(achieved.sigma_angle_deg, "°", 2) +
-               ". Median of " + std::to_string(achieved.pose_count) + " poses of the guide while drilling.",
-           {.size_pt = 8.5, .ink = kGray});
+  pages_.table({86, 28, 28, 28}, rows);
+  pages_.sentence(
+      "Depth reached " + (achieved.depth_mm ? number(*achieved.depth_mm, " mm") : "not known") +
+          ". Predicted error of these figures, one sigma: " + number(achieved.sigma_offset_mm, " mm", 2) +
+          ", " + number(achieved.sigma_angle_deg, "°", 2) + ". Median of " +
+          std::to_string(achieved.pose_count) + " poses of the guide while drilling.",
+      {.size_pt = 8.5, .ink = kGray});
 }
 
 void Report::navigate_page() {
-  begin_page("In theatre");
+  pages_.begin_page("In theatre");
   if (!content_.session) {
-    sentence("No session with a registration or a drilled tunnel is recorded in this case.");
-    pictures(joint_view(), scene::ViewDirection::Medial, false);
+    pages_.sentence("No session with a registration or a drilled tunnel is recorded in this case.");
+    draw_postop_section(pages_, content_);
     return;
   }
   const auto& session = *content_.session;
   const auto& header = session.header();
-  long with_world = 0, with_mark = 0;
-  const auto options = session.pipeline_options();
-  const auto* world = options.tools.find_world_marker(header.bone);
-  for (const auto& frame : session.frames()) {
-    for (const auto& pose : frame.poses) with_world += world != nullptr && pose.marker_id == world->marker_id;
-    with_mark += frame.lens.mark == lens::MarkState::Found;
-  }
-  const double frames = std::max<double>(1, static_cast<double>(session.frames().size()));
+  const SessionFigures figures = figures_of(session);
   std::vector<std::vector<std::string>> rows{
       {"Session", ""},
       {"Id", header.id},
@@ -259,54 +283,61 @@ void Report::navigate_page() {
       {"Medium", camera::medium_to_text(header.refractive_index)},
       {"Frames",
        std::to_string(session.frames().size()) + (session.was_finished() ? "" : " (cut off by a crash)")},
-      {"World marker tracked", number(100 * with_world / frames, " % of the frames")},
-      {"Lens mark found", number(100 * with_mark / frames, " % of the frames")}};
+      {"World marker tracked", number(figures.world_percent, " % of the frames")},
+      {"Lens mark found", number(figures.mark_percent, " % of the frames")},
+      {"Last hash of the record", content_.last_hash.empty() ? "none" : in_groups(content_.last_hash)}};
   if (const std::string guided = guided_bundles(session); !guided.empty())
     rows.push_back({"Guided to the tunnel", guided});
   for (auto& row : safety_rows(session)) rows.push_back(std::move(row));
-  table({70, 100}, rows);
+  pages_.table({70, 100}, rows);
   if (session.registration()) registration_section(*session.registration());
+  time_line_section(session);
   for (const operation::AchievedTunnel& achieved : content_.achieved) result_section(achieved);
   for (const Content::Earlier& earlier : content_.earlier) {
     result_section(earlier.achieved);
-    sentence("Drilled in the session " + earlier.session + ".", {.size_pt = 8.5, .ink = kGray});
+    pages_.sentence("Drilled in the session " + earlier.session + ".", {.size_pt = 8.5, .ink = kGray});
   }
-  if (y_ > 195) begin_page("Pictures of the result");
+  draw_postop_section(pages_, content_);
+}
+
+void Report::result_pictures() {
+  if (!content_.session) return pictures(joint_view(), scene::ViewDirection::Medial, false);
+  pages_.continue_as("Result, camera, tools and versions");
+  draw_stills_section(pages_, content_);
   pictures(joint_view(), scene::ViewDirection::Lateral, true);
   if (!content_.achieved.empty()) {
-    sentence("Planned tunnel, and beside it the tunnel as drilled; dots: where the probe touched the bone.",
-             {.size_pt = 8, .ink = kGray});
+    pages_.sentence(
+        "Planned tunnel, and beside it the tunnel as drilled; dots: where the probe touched the bone.",
+        {.size_pt = 8, .ink = kGray});
   }
 }
 
 void Report::settings() {
-  begin_page("Camera, tools and versions");
+  pages_.continue_as("Camera, tools and versions");
   const auto camera_file = cases::camera_file(content_.folder);
   if (std::filesystem::exists(camera_file)) {
     const auto record = camera::read_camera_file(camera_file);
     const auto& c = record.calibration;
-    heading("Camera");
-    table({70, 100},
-          {{"Quantity", "Value"},
-           {"Focal length", number(c.focal_px, " px", 2)},
-           {"Distortion xi", number(c.distortion_xi, "", 4)},
-           {"Principal point",
-            number(c.principal_point_px.x(), ", ", 1) + number(c.principal_point_px.y(), " px", 1)},
-           {"Centre of rotation",
-            number(c.rotation_center_px.x(), ", ", 1) + number(c.rotation_center_px.y(), " px", 1)},
-           {"Reprojection error of the calibration",
-            record.rms_px >= 0 ? number(record.rms_px, " px", 2) : "not recorded"},
-           {"Calibrated in", camera::medium_to_text(c.refractive_index)},
-           {"Date", record.date_utc.empty() ? "not recorded" : record.date_utc},
-           {"Scope, head", record.scope_name + (record.head_name.empty() ? "" : ", " + record.head_name)}});
+    pages_.heading("Camera");
+    pages_.table(
+        {38, 44, 36, 52},
+        {{"Quantity", "Value", "Quantity", "Value"},
+         {"Focal length", number(c.focal_px, " px", 2), "Distortion xi", number(c.distortion_xi, "", 4)},
+         {"Principal point",
+          number(c.principal_point_px.x(), ", ", 1) + number(c.principal_point_px.y(), " px", 1),
+          "Centre of rotation",
+          number(c.rotation_center_px.x(), ", ", 1) + number(c.rotation_center_px.y(), " px", 1)},
+         {"Reprojection error", record.rms_px >= 0 ? number(record.rms_px, " px", 2) : "not recorded",
+          "Calibrated in", camera::medium_to_text(c.refractive_index)},
+         {"Date", record.date_utc.empty() ? "not recorded" : record.date_utc, "Scope, head",
+          record.scope_name + (record.head_name.empty() ? "" : ", " + record.head_name)}});
   }
   if (content_.session) {
-    heading("Tools");
-    std::vector<std::vector<std::string>> rows = {
-        {"Tool", "Marker", "Size", "Tip or axis in its marker's frame, mm"}};
+    pages_.heading("Tools");
+    std::vector<std::vector<std::string>> rows = {{"Tool", "Marker", "Size", "Tip or axis in its frame, mm"}};
     const auto options = content_.session->pipeline_options();
     for (const auto& world : options.tools.world_markers) {
-      rows.push_back({std::string(bones::to_text(world.bone)) + " (world)", std::to_string(world.marker_id),
+      rows.push_back({std::string(bones::to_text(world.bone)) + " (world)", ids_of(world),
                       number(world.size_mm, " mm", 2), ""});
     }
     for (const auto& tool : options.tools.tools) {
@@ -314,15 +345,16 @@ void Report::settings() {
       if (tool.tip_mm) where = "tip " + point(*tool.tip_mm, 2);
       if (tool.axis)
         where = "axis through " + point(tool.axis->point_mm, 2) + " along " + point(tool.axis->direction, 3);
-      rows.push_back({tool.name, std::to_string(tool.marker_id), number(tool.size_mm, " mm", 2), where});
+      rows.push_back({tool.name, ids_of(tool), number(tool.size_mm, " mm", 2), where});
     }
-    table({40, 20, 24, 86}, rows);
+    pages_.table({34, 16, 20, 100}, rows);
   }
-  heading("Versions");
-  std::vector<std::vector<std::string>> rows = {{"Part", "Version"}};
-  for (const auto& [name, version] : versions()) rows.push_back({name, version});
-  table({70, 100}, rows);
-  sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
+  pages_.heading("Versions", 6);
+  std::string text;
+  for (const auto& [name, version] : versions())
+    text += (text.empty() ? "" : " \u00B7 ") + name + " " + version;
+  pages_.sentence(text, {.size_pt = 8.5});
+  pages_.sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
 }
 
 Content reportable(const std::filesystem::path& case_folder, const ReportOptions& options) {
@@ -333,10 +365,12 @@ Content reportable(const std::filesystem::path& case_folder, const ReportOptions
 
 }  // namespace
 
-void write_report(const std::filesystem::path& case_folder, const std::filesystem::path& output_pdf,
+void write_report(const std::filesystem::path& case_folder, const std::filesystem::path& output,
                   const ReportOptions& options) {
   const Content content = reportable(case_folder, options);
-  Report(content, options).drawn().save(output_pdf);
+  if (output.extension() == ".json") return files::write_atomically(output, report_json(content, options));
+  if (output.extension() == ".csv") return files::write_atomically(output, report_csv(content, options));
+  Report(content, options).drawn().save(output);
 }
 
 std::string make_report(const std::filesystem::path& case_folder, const ReportOptions& options) {

@@ -1,8 +1,10 @@
-// The surgeon's report of a case: plan, theatre, planned against achieved, versions. Two pages or more of A4.
+// The surgeon's report of a case: plan, theatre, planned against achieved, versions. Three pages or more.
 #pragma once
 
 #include <filesystem>
 #include <string>
+
+#include "app/report/paper.h"
 
 namespace arthronaut::report {
 
@@ -12,12 +14,14 @@ struct ReportOptions {
   bool with_identity = false;
   // Says when it was made; without it the same case gives the same bytes at any time.
   bool says_when_made = true;
+  Paper paper = Paper::A4;  // of a PDF
 };
 
 // The newest session with a registration or an achieved tunnel is reported; the report says so when there is
-// none. Atomic. Throws IoError, InvalidInput (a broken case), DeviceError (no OpenGL at all for the
+// none. By the output's ending: .json and .csv are the same numbers for other programs, anything else is a
+// PDF. Atomic. Throws IoError, InvalidInput (a broken case), DeviceError (no OpenGL at all for the
 // pictures).
-void write_report(const std::filesystem::path& case_folder, const std::filesystem::path& output_pdf,
+void write_report(const std::filesystem::path& case_folder, const std::filesystem::path& output,
                   const ReportOptions& options = {});
 // The bytes of such a file. Throws as write_report.
 [[nodiscard]] std::string make_report(const std::filesystem::path& case_folder,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,8 +11,10 @@
 #include "app/report/report.h"
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session.h"
+#include "navigation/recording/session_marks.h"
 #include "planning/cases/case.h"
 #include "planning/cases/identity.h"
+#include "planning/postop/comparison.h"
 
 namespace arthronaut::report {
 
@@ -28,10 +31,21 @@ struct Content {
     std::string session;
   };
   std::vector<Earlier> earlier = {};
+  recording::SessionMarks marks = {};  // of `session`: what whoever looked at it marked
+  std::string marks_problem = {};      // why they cannot be read; empty when they can
+  std::string last_hash = {};          // of the chain of `session`; empty: it has none, or a broken one
+  // With images after the operation, as the case's achieved.json keeps it.
+  std::map<tunnels::TunnelKey, postop::Comparison> postoperative = {};
+  std::string postoperative_problem = {};   // why it cannot be read; empty when it can
   std::optional<cases::Identity> identity;  // where it is to be named
 };
 
 // Throws IoError or InvalidInput (file, place, reason).
 [[nodiscard]] Content gather(const std::filesystem::path& folder, const ReportOptions& options);
+
+// "reliable", "not reliable", "of an earlier plan", "no tunnel found", "bone not found in the images".
+[[nodiscard]] std::string verdict_of(const Content& content, const tunnels::TunnelKey& key);
+// Why it must not be relied on, each reason once; empty: reliable.
+[[nodiscard]] std::vector<std::string> doubts_of(const Content& content, const tunnels::TunnelKey& key);
 
 }  // namespace arthronaut::report

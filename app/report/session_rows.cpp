@@ -1,8 +1,12 @@
 #include "app/report/session_rows.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 
 #include "navigation/sources/frame_source.h"
+#include "planning/files/format.h"
 
 namespace arthronaut::report {
 
@@ -61,6 +65,69 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
                                       : "not asked: no live source"},
           {"Check of a nominal guide", guide.empty() ? "none in this session" : guide},
           {"Alarms, void registrations", alarms.empty() ? "none" : alarms}};
+}
+
+SessionFigures figures_of(const recording::RecordedSession& session) {
+  long with_world = 0, with_mark = 0;
+  const auto options = session.pipeline_options();
+  const auto* world = options.tools.find_world_marker(session.header().bone);
+  const bool is_of_several = world != nullptr && !world->markers.empty();
+  for (const recording::RecordedFrame& frame : session.frames()) {
+    for (const auto& pose : frame.poses)
+      with_world += world != nullptr && !is_of_several && pose.marker_id == world->marker_id;
+    for (const auto& body : frame.bodies) with_world += is_of_several && body.id == world->marker_id;
+    with_mark += frame.lens.mark == lens::MarkState::Found;
+  }
+  const double frames = std::max<double>(1, static_cast<double>(session.frames().size()));
+  return {session.frames().size(), 100 * static_cast<double>(with_world) / frames,
+          100 * static_cast<double>(with_mark) / frames};
+}
+
+double time_s(const recording::RecordedSession& session, std::int64_t timestamp_ns) {
+  if (session.frames().empty()) return 0;
+  return std::max(0.0, static_cast<double>(timestamp_ns - session.frames().front().timestamp_ns) * 1e-9);
+}
+
+std::string clock_text(double seconds) {
+  const long tenths = std::lround(10 * seconds);
+  return files::format("%ld:%02ld.%ld", tenths / 600, tenths / 10 % 60, tenths % 10);
+}
+
+std::vector<Step> steps_of(const recording::RecordedSession& session) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kSteps{
+      {{recording::kRegistrationEvent, "bone registered"},
+       {recording::kGivenRegistrationEvent, "registration brought along"},
+       {recording::kVerifiedEvent, "registration verified"},
+       {recording::kConfirmedEvent, "registration confirmed"},
+       {recording::kVerificationSkippedEvent, "VERIFICATION SKIPPED"},
+       {recording::kVoidEvent, "registration void"},
+       {recording::kTimeOutConfirmedEvent, "time-out confirmed"},
+       {recording::kDrilledEvent, "tunnel drilled"}}};
+  struct Run {
+    std::string_view words;
+    double first_s = 0, last_s = 0;
+    int more = 0;
+  };
+  std::vector<Run> runs;
+  for (const recording::SessionEvent& event : session.events()) {
+    const auto* const step =
+        std::find_if(kSteps.begin(), kSteps.end(), [&](const auto& one) { return one.first == event.kind; });
+    if (step == kSteps.end()) continue;
+    const double at_s = time_s(session, event.timestamp_ns);
+    if (!runs.empty() && runs.back().words == step->second) {
+      runs.back().last_s = at_s;
+      ++runs.back().more;
+    } else {
+      runs.push_back({step->second, at_s, at_s, 0});
+    }
+  }
+  std::vector<Step> steps;
+  for (const Run& run : runs)
+    steps.push_back({run.first_s, std::string(run.words) +
+                                      (run.more > 0 ? ", and " + std::to_string(run.more) +
+                                                          " times more until " + clock_text(run.last_s)
+                                                    : "")});
+  return steps;
 }
 
 }  // namespace arthronaut::report

@@ -20,4 +20,23 @@ namespace arthronaut::report {
 // name and a text each.
 [[nodiscard]] std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSession& session);
 
+// How much of a session was seen.
+struct SessionFigures {
+  std::size_t frames = 0;
+  double world_percent = 0, mark_percent = 0;  // of the frames: world marker tracked, lens mark found
+};
+[[nodiscard]] SessionFigures figures_of(const recording::RecordedSession& session);
+
+// Seconds from the first frame; 0 for what was before it.
+[[nodiscard]] double time_s(const recording::RecordedSession& session, std::int64_t timestamp_ns);
+// "1:02.3"
+[[nodiscard]] std::string clock_text(double seconds);
+
+// A step of the operation on its time line: registered, verified, confirmed, void, drilled.
+struct Step {
+  double time_s = 0;
+  std::string words;  // of several alike that follow each other the first, and how many more until when
+};
+[[nodiscard]] std::vector<Step> steps_of(const recording::RecordedSession& session);
+
 }  // namespace arthronaut::report

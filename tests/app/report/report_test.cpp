@@ -3,9 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "navigation/operation/achieved_tunnel.h"
+#include "navigation/recording/case_sessions.h"
 #include "navigation/recording/session.h"
+#include "navigation/recording/session_check.h"
+#include "navigation/recording/session_marks.h"
 #include "navigation/tools/tool_set.h"
 #include "planning/cases/case.h"
 #include "planning/cases/identity.h"
@@ -13,6 +18,8 @@
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
 #include "planning/plan_review/plan_review.h"
+#include "planning/postop/achieved_file.h"
+#include "tests/app/report/page_edges.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::report {
@@ -235,6 +242,89 @@ TEST_F(Report, Hazard19NamesThePatientOnlyWhenAsked) {
   expect_contains(pdf_text(), "1990-01-31");
 }
 
+// What happened when, what whoever looked at it marked, and by what the record is known. A broken file of
+// marks is told and takes nothing else away.
+TEST_F(Report, HasStepsMarksAndTheLastHash) {
+  (void)text_of_session("live", {{recording::kVerifiedEvent, ""}, {recording::kVoidEvent, "bumped"}});
+  const std::filesystem::path session = cases::session_folders(knee_folder()).back();
+  recording::write_marks(session, {{3, 65'400'000'000, "marker, in glare"}, {9, 70'000'000'000, ""}});
+  write_report(knee_folder(), pdf());
+  const std::string text = pdf_text();
+  for (const char* const part : {"bone registered", "registration verified", "registration void",
+                                 "Marks of who looked", "marker, in glare", "(frame 3)", "(no note)"})
+    expect_contains(text, part);
+  const std::string hash = recording::chain_head(session);
+  ASSERT_EQ(hash.size(), 64u);
+  for (const std::size_t at : {0, 16, 32, 48}) expect_contains(text, hash.substr(at, 16));
+  files::write_atomically(recording::marks_file(session), "{");
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "NOT READABLE");
+  expect_contains(pdf_text(), "bone registered");
+}
+
+// Hazard 40: the tunnel of an exercise is nobody's, and an older session is not hidden by it.
+TEST_F(Report, Hazard40AnExerciseIsNotReported) {
+  (void)text_of_session("simulation", {});
+  const std::filesystem::path operation = cases::session_folders(knee_folder()).back();
+  (void)text_of_session("simulation", {});
+  const std::filesystem::path exercise = cases::session_folders(knee_folder()).back();
+  ASSERT_NE(operation, exercise);
+  const auto planned = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  operation::write_achieved_file(
+      exercise / "achieved.json",
+      {.planned = planned, .measured = planned, .depth_mm = 30, .pose_count = 42, .truth = {}});
+  auto header = nlohmann::json::parse(files::read_text(exercise / "session.json"));
+  header["source"] = recording::kExerciseSource;
+  files::write_atomically(exercise / "session.json", header.dump());
+  const auto json_file = pdf().parent_path() / "report.json";
+  write_report(knee_folder(), json_file, {.says_when_made = false});
+  const auto json = nlohmann::json::parse(files::read_text(json_file));
+  EXPECT_TRUE(!json.contains("achieved") || json.at("achieved").empty());
+  EXPECT_NE(json.dump().find(operation.filename().string()), std::string::npos);
+  EXPECT_EQ(json.dump().find(exercise.filename().string()), std::string::npos);
+}
+
+// The same numbers for other programs: whatever the table says, the document says.
+TEST_F(Report, GivesTheSameNumbersAsJsonAndAsATable) {
+  cases::save_identity(knee_folder(), {"Muster^Anna", "4711", "19900131"});
+  (void)text_of_session("live", {{recording::kVerifiedEvent, ""}});
+  const std::filesystem::path session = cases::session_folders(knee_folder()).back();
+  recording::write_marks(session, {{3, 0, "a \"quoted\" note, with a comma"}});
+  const auto planned = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  auto measured = planned;
+  measured.entry_mm += 1.25 * planned.direction.unitOrthogonal();
+  operation::write_achieved_file(
+      session / "achieved.json",
+      {.planned = planned, .measured = measured, .depth_mm = 30, .pose_count = 42, .truth = {}});
+  const auto json_file = pdf().parent_path() / "report.json", csv_file = pdf().parent_path() / "report.csv";
+  write_report(knee_folder(), json_file, {.says_when_made = false});
+  write_report(knee_folder(), csv_file, {.says_when_made = false});
+  const auto json = nlohmann::json::parse(files::read_text(json_file));
+  EXPECT_EQ(json.at("format"), "arthronaut.report");
+  EXPECT_EQ(json.at("case").at("name"), "Knee of Ærø");
+  EXPECT_FALSE(json.contains("patient"));
+  EXPECT_NEAR(json.at("achieved").at(0).at("difference").at("entry_mm").get<double>(), 1.25, 1e-9);
+  EXPECT_EQ(json.at("session").at("marks").at(0).at("note"), "a \"quoted\" note, with a comma");
+  EXPECT_EQ(json.at("session").at("steps").size(), 2u);
+  EXPECT_EQ(json.at("session").at("last_hash"), recording::chain_head(session));
+  const plan_review::CaseReview review(cases::load_case(knee_folder()));
+  EXPECT_EQ(json.at("tunnels").at(0).at("checks").size(), review.checks(bones::BoneKind::Femur).size());
+
+  const std::string csv = files::read_text(csv_file);
+  EXPECT_TRUE(csv.starts_with("quantity,value\n"));
+  expect_contains(csv, "session/marks/0/note,\"a \"\"quoted\"\" note, with a comma\"\n");
+  std::size_t numbers = 0;
+  const nlohmann::json flat = json.flatten();
+  for (const auto& [path, value] : flat.items()) {
+    if (!value.is_number()) continue;
+    ++numbers;
+    expect_contains(csv, path.substr(1) + "," + value.dump() + "\n");
+  }
+  EXPECT_GT(numbers, 30u);
+  write_report(knee_folder(), json_file, {.with_identity = true});
+  expect_contains(files::read_text(json_file), "Muster^Anna");
+}
+
 // In memory it is the same document as in a file; without its date it is the same at any time.
 TEST_F(Report, CanBeTheSameBytesEachTime) {
   const std::string report = make_report(knee_folder(), {.says_when_made = false});
@@ -245,6 +335,156 @@ TEST_F(Report, CanBeTheSameBytesEachTime) {
   EXPECT_EQ(pdf_text().find("Report made"), std::string::npos);
   write_report(knee_folder(), pdf());
   expect_contains(pdf_text(), "Report made");
+}
+
+// What a CT after the operation showed, of both bones: a reliable one, and one in doubt with every reason; in
+// the PDF and, the same numbers, for other programs.
+TEST_F(Report, ComparesWithImagesAfterTheOperation) {
+  const auto achieved_file = knee_folder() / "achieved.json";
+  std::map<tunnels::TunnelKey, postop::Comparison> comparisons;
+  for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
+    const tunnels::Tunnel& plan = knee_.plan.tunnels.at(kind);
+    postop::Comparison& comparison = comparisons[plan.key()];
+    comparison.bone = {.is_found = true,
+                       .plan_from_postop = {},
+                       .rms_mm = 0.21,
+                       .on_edge_share = 0.9,
+                       .in_view_share = 1,
+                       .reliable = true,
+                       .reasons = {}};
+    postop::AchievedTunnel& found = comparison.tunnel;
+    found.is_found = found.reliable = true;
+    found.reasons.clear();
+    found.tunnel = plan;
+    found.offset_mm = kind == bones::BoneKind::Femur ? 1.37 : 2.46;
+    found.tunnel.entry_mm += found.offset_mm * plan.direction.unitOrthogonal();
+    found.tunnel.diameter_mm = 8.4;
+    found.length_mm = 27.3;
+    found.entry_sigma_mm = 0.08;
+    found.direction_sigma_rad = geometry::rad_from_deg(0.25);
+    found.widths = {{2, 8.4}, {12, 9.6}};
+  }
+  postop::AchievedTunnel& doubted = comparisons.at(bones::BoneKind::Tibia).tunnel;
+  doubted.reliable = false;
+  doubted.metal_share = 0.37;
+  doubted.reasons = {"metal hides most of the wall"};
+  postop::write_achieved_file(achieved_file, comparisons);
+  write_report(knee_folder(), pdf());
+  std::string text = pdf_text();
+  for (const char* const part :
+       {"CT after the operation", "1.37 mm", "2.46 mm", "0.08", "8.4 mm; planned", "8.4 to 9.6 mm",
+        "27.3 mm, a socket", "0.21 mm", "37 %", "NOT RELIABLE", "tibia: metal hides most of the wall"})
+    expect_contains(text, part);
+  const auto json_file = pdf().parent_path() / "report.json";
+  write_report(knee_folder(), json_file);
+  const auto json = nlohmann::json::parse(files::read_text(json_file)).at("postoperative");
+  ASSERT_EQ(json.size(), 2U);
+  EXPECT_NEAR(json[0].at("offset_mm").get<double>(), 1.37, 1e-9);
+  EXPECT_TRUE(json[0].at("reliable").get<bool>());
+  EXPECT_FALSE(json[1].at("reliable").get<bool>());
+  EXPECT_EQ(json[1].at("reasons").at(0), "metal hides most of the wall");
+  const auto csv_file = pdf().parent_path() / "report.csv";
+  write_report(knee_folder(), csv_file);
+  expect_contains(files::read_text(csv_file), "postoperative/1/achieved/diameter_mm,8.4\n");
+  // The plan goes elsewhere: the differences are not those to it.
+  tunnels::Tunnel moved = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  moved.entry_mm += 3 * moved.direction.unitOrthogonal();
+  knee_.plan.put(moved, "");
+  cases::save_case(knee_folder(), knee_);
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "of an earlier plan");
+  // Nothing was found: no number is shown.
+  comparisons.at(bones::BoneKind::Femur).tunnel = {};
+  postop::write_achieved_file(achieved_file, comparisons);
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "no tunnel found");
+  EXPECT_EQ(pdf_text().find("1.37 mm"), std::string::npos);
+  files::write_atomically(achieved_file, "{");
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "NOT READABLE");
+  std::filesystem::remove(achieved_file);
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "No comparison with images after the operation");
+}
+
+// The pictures that were recorded at the moments that matter, the same bytes each time; without a video the
+// report says so, and the name of a video that is gone is not in it.
+TEST_F(Report, ShowsWhatTheSurgeonSaw) {
+  expect_contains(text_of_session("live", {}), "The session keeps no video");
+  const auto folder = cases::create_session_folder(knee_folder());
+  pipeline::PipelineOptions options;
+  options.calibration = {.image_size_px = {320, 240}, .focal_px = 100, .boundary = {{160, 120}, 110}};
+  options.tools = tools::standard_tools();
+  recording::SessionHeader header;
+  header.id = folder.filename().string();
+  registration::RegistrationSummary registration;
+  registration.has_pose = registration.reliable = true;
+  registration.reasons.clear();
+  {
+    recording::SessionRecorder recorder(folder, header, options);
+    recorder.set_registration(registration);
+    for (int i = 0; i < 5; ++i) {
+      auto frame = std::make_shared<camera::Frame>();
+      frame->index = i;
+      frame->timestamp_ns = i * 100'000'000LL;
+      frame->width = 320;
+      frame->height = 240;
+      frame->bgr.assign(3UL * 320 * 240, static_cast<std::uint8_t>(40 * i));
+      recorder.append_picture(frame);
+      pipeline::FrameResult result;
+      result.frame_index = i;
+      result.timestamp_ns = frame->timestamp_ns;
+      result.guidance.state = guidance::GuidanceState::Valid;
+      result.guidance.axis_to_entry_mm = i == 2 ? 0.7 : 3.0;  // closest in the third
+      result.guidance.angle_deg = 1.2;
+      recorder.append(result);
+    }
+    recorder.add_event({400'000'000, std::string(recording::kDrilledEvent), "", -1});
+    recorder.finish();
+  }
+  write_report(knee_folder(), pdf());
+  const std::string text = pdf_text();
+  expect_contains(text, "Pictures of the session, with the plan");
+  expect_contains(text, "0:00.2: aimed closest, 0.7 mm, 1.2\u00B0");
+  expect_contains(text, "0:00.4: drilled");
+  const std::string bytes = make_report(knee_folder(), {.says_when_made = false});
+  EXPECT_EQ(bytes, make_report(knee_folder(), {.says_when_made = false}));
+  const auto video = recording::RecordedSession(folder).video();
+  ASSERT_TRUE(std::filesystem::exists(video));
+  std::filesystem::remove(video);
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "The session's video is not there, or cannot be read");
+  EXPECT_EQ(pdf_text().find(video.filename().string()), std::string::npos);
+}
+
+// On either paper every page is of that paper, has its foot, and nothing comes near an edge: neither words
+// that have no space to be broken at, nor a table that is longer than a page.
+TEST_F(Report, FitsA4AndLetter) {
+  knee_.name = std::string(160, 'W');
+  cases::save_case(knee_folder(), knee_);
+  (void)text_of_session("live",
+                        {{recording::kVerifiedEvent, ""}, {recording::kVoidEvent, std::string(300, 'x')}});
+  recording::SessionMarks marks;
+  for (std::int64_t i = 0; i < 90; ++i) marks.push_back({i, i * 1'000'000'000, "mark " + std::to_string(i)});
+  recording::write_marks(cases::session_folders(knee_folder()).back(), marks);
+  for (const auto& [paper, width_pt, height_pt] :
+       {std::tuple(Paper::A4, 595.28, 841.89), std::tuple(Paper::Letter, 612.0, 792.0)}) {
+    SCOPED_TRACE(to_text(paper));
+    write_report(knee_folder(), pdf(), {.paper = paper});
+    const auto pages = test::pages_of(pdf());
+    EXPECT_GE(pages.size(), 5U);
+    for (const test::Page& page : pages) {
+      EXPECT_NEAR(page.width_pt, width_pt, 0.1);
+      EXPECT_NEAR(page.height_pt, height_pt, 0.1);
+      EXPECT_GT(page.words, 0);
+      EXPECT_TRUE(page.words_lie_within(10)) << page.outermost;
+      EXPECT_TRUE(page.has_empty_edge);
+    }
+    const std::string text = pdf_text();
+    for (std::size_t page = 1; page <= pages.size(); ++page)
+      expect_contains(text, "page " + std::to_string(page) + " \u00B7 research software");
+    for (int i = 0; i < 90; ++i) expect_contains(text, "mark " + std::to_string(i) + " ");
+  }
 }
 
 // Hazard 21: a plan of another mesh is no valid plan, and the report says so.

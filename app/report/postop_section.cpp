@@ -1,0 +1,102 @@
+#include "app/report/postop_section.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "planning/files/format.h"
+
+namespace arthronaut::report {
+
+namespace {
+
+using files::format;
+
+constexpr TextStyle kSmall{.size_pt = 8.5, .bold = false, .ink = kGray};
+
+// In bone, as the plan of today has it; empty where the plan has no such tunnel, or it misses the bone.
+std::string planned_length(const Content& content, const tunnels::TunnelKey& key) {
+  const auto plan = content.knee.plan.tunnels.find(key);
+  const auto bone = content.knee.bones.find(key.bone);
+  if (plan == content.knee.plan.tunnels.end() || bone == content.knee.bones.end()) return {};
+  const auto geometry = tunnels::measure(plan->second, geometry::Surface(bone->second.mesh));
+  return geometry.enters_bone ? format("; planned %.1f mm", geometry.length_mm) : "";
+}
+
+std::string along_the_wall(const std::vector<postop::Width>& widths) {
+  if (widths.empty()) return "not seen";
+  const auto [least, most] = std::minmax_element(
+      widths.begin(), widths.end(),
+      [](const postop::Width& a, const postop::Width& b) { return a.diameter_mm < b.diameter_mm; });
+  return format("%.1f to %.1f mm, widest %.0f mm from the entry", least->diameter_mm, most->diameter_mm,
+                most->from_entry_mm);
+}
+
+// A cell for each row below, in their order.
+std::vector<std::string> column(const Content& content, const tunnels::TunnelKey& key) {
+  const postop::Comparison& comparison = content.postoperative.at(key);
+  const postop::AchievedTunnel& found = comparison.tunnel;
+  const std::string verdict = verdict_of(content, key);
+  std::vector<std::string> cells = {tunnels::name_of(key),
+                                    verdict == "not reliable" ? "NOT RELIABLE" : verdict};
+  if (found.is_found) {
+    const auto plan = content.knee.plan.tunnels.find(key);
+    cells.push_back(format("%.2f mm \u00B1 %.2f", found.offset_mm, std::max(found.entry_sigma_mm, 0.01)));
+    cells.push_back(format("%.2f\u00B0 \u00B1 %.2f", geometry::deg_from_rad(found.angle_rad),
+                           std::max(geometry::deg_from_rad(found.direction_sigma_rad), 0.01)));
+    cells.push_back(format("%.1f mm", found.tunnel.diameter_mm) +
+                    (plan == content.knee.plan.tunnels.end()
+                         ? ""
+                         : format("; planned %.1f mm", plan->second.diameter_mm)));
+    cells.push_back(along_the_wall(found.widths));
+    cells.push_back(format("%.1f mm%s", found.length_mm, found.comes_out ? "" : ", a socket") +
+                    planned_length(content, key));
+    cells.push_back(format("%.0f %%", 100 * found.metal_share));
+  } else {
+    cells.insert(cells.end(), 6, "\u2013");
+  }
+  cells.push_back(comparison.bone.is_found ? format("%.2f mm", comparison.bone.rms_mm) : "\u2013");
+  return cells;
+}
+
+}  // namespace
+
+void draw_postop_section(FlowingPages& pages, const Content& content) {
+  pages.heading("Planned against achieved: CT after the operation", content.postoperative.empty() ? 6 : 60);
+  if (!content.postoperative_problem.empty()) {
+    pages.sentence("NOT READABLE: " + content.postoperative_problem, {.ink = kWarning});
+    return;
+  }
+  if (content.postoperative.empty()) {
+    pages.sentence("No comparison with images after the operation is kept in this case.", kSmall);
+    return;
+  }
+  std::vector<std::vector<std::string>> rows = {{"Quantity"},
+                                                {"Verdict"},
+                                                {"Entry off the planned one"},
+                                                {"Angle to the planned axis"},
+                                                {"Diameter"},
+                                                {"Diameter along the wall"},
+                                                {"Length in bone"},
+                                                {"Metal in it"},
+                                                {"Bone off the images' edges, RMS"}};
+  constexpr double kName_mm = 54;
+  const auto count = static_cast<double>(content.postoperative.size());
+  std::vector<double> widths_mm{kName_mm};
+  for (const auto& [key, comparison] : content.postoperative) {
+    const auto cells = column(content, key);
+    for (std::size_t row = 0; row < rows.size(); ++row) rows[row].push_back(cells[row]);
+    widths_mm.push_back((FlowingPages::kWidthMm - kName_mm) / count);
+  }
+  pages.table(widths_mm, rows);
+  for (const auto& [key, comparison] : content.postoperative)
+    for (const std::string& doubt : doubts_of(content, key))
+      pages.sentence("\u2013 " + tunnels::name_of(key) + ": " + doubt, {.ink = kWarning});
+  pages.sentence(
+      "\u00B1: one sigma by the scatter of the grey and the bone's pose. In none of these numbers: how far "
+      "the "
+      "plan's bone is from the patient's, the scanners' own scale, what moved since, how the tunnel has "
+      "widened.",
+      {.size_pt = 8, .ink = kGray});
+}
+
+}  // namespace arthronaut::report

@@ -1,0 +1,206 @@
+#include "app/report/report_data.h"
+
+#include <nlohmann/json.hpp>
+
+#include "app/report/session_rows.h"
+#include "app/report/versions.h"
+#include "navigation/camera/medium.h"
+#include "planning/files/json_document.h"
+#include "planning/files/utc_clock.h"
+#include "planning/plan_review/plan_review.h"
+
+namespace arthronaut::report {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json json_of(const tunnels::Tunnel& tunnel) {
+  return {{"entry_mm", files::to_json(tunnel.entry_mm)},
+          {"direction", files::to_json(tunnel.direction)},
+          {"diameter_mm", tunnel.diameter_mm}};
+}
+
+ordered_json json_of(const operation::TunnelDifference& difference) {
+  return {{"entry_mm", difference.entry_mm},
+          {"axis_to_entry_mm", difference.axis_to_entry_mm},
+          {"angle_deg", difference.angle_deg}};
+}
+
+ordered_json tunnels_of(const cases::Case& knee) {
+  const plan_review::CaseReview review(knee);
+  ordered_json all = ordered_json::array();
+  for (const auto& [key, tunnel] : knee.plan.tunnels) {
+    ordered_json node = {{"tunnel", tunnels::name_of(key)}};
+    node.update(json_of(tunnel));
+    const cases::PlanFit fit = cases::plan_fit(knee, key);
+    node["valid"] = fit.is_valid();
+    if (!fit.is_valid()) node["reason"] = fit.reason;
+    const auto measured = review.tunnels().find(key);
+    if (measured != review.tunnels().end() && measured->second.geometry.enters_bone) {
+      const tunnels::TunnelGeometry& geometry = measured->second.geometry;
+      node["exit_mm"] = files::to_json(geometry.exit_mm);
+      node["length_mm"] = geometry.length_mm;
+      node["wall_mm"] = geometry.wall_mm;
+    }
+    node["checks"] = ordered_json::array();
+    for (const tunnels::PlanCheck& check : review.checks(key)) {
+      ordered_json entry = {{"name", check.name}, {"verdict", to_text(check.verdict)}, {"text", check.text}};
+      if (check.value) {
+        entry["value"] = *check.value;
+        entry["unit"] = check.unit;
+      }
+      node["checks"].push_back(std::move(entry));
+    }
+    all.push_back(std::move(node));
+  }
+  return all;
+}
+
+ordered_json json_of(const registration::RegistrationSummary& registration) {
+  return {{"reliable", registration.reliable},
+          {"reasons", registration.reasons},
+          {"points", registration.point_count},
+          {"rms_mm", registration.rms_mm},
+          {"inlier_fraction", registration.inlier_fraction},
+          {"predicted_tre_mm", registration.predicted_tre_mm}};
+}
+
+ordered_json session_of(const Content& content) {
+  if (!content.session) return nullptr;
+  const recording::RecordedSession& session = *content.session;
+  const recording::SessionHeader& header = session.header();
+  const SessionFigures figures = figures_of(session);
+  ordered_json node = {{"id", header.id},
+                       {"started_utc", header.started_utc},
+                       {"bone", bones::to_text(header.bone)},
+                       {"source_kind", header.source_kind},
+                       {"medium", camera::medium_to_text(header.refractive_index)},
+                       {"was_finished", session.was_finished()},
+                       {"frames", figures.frames},
+                       {"world_marker_tracked_percent", figures.world_percent},
+                       {"lens_mark_found_percent", figures.mark_percent},
+                       {"last_hash", content.last_hash}};
+  node["registration"] = nullptr;
+  if (session.registration()) node["registration"] = json_of(*session.registration());
+  node["safety"] = ordered_json::object();
+  for (const auto& row : safety_rows(session)) node["safety"][row[0]] = row[1];
+  node["steps"] = ordered_json::array();
+  for (const Step& step : steps_of(session))
+    node["steps"].push_back({{"time_s", step.time_s}, {"what", step.words}});
+  node["marks"] = ordered_json::array();
+  for (const recording::SessionMark& mark : content.marks)
+    node["marks"].push_back(
+        {{"time_s", time_s(session, mark.timestamp_ns)}, {"frame", mark.frame}, {"note", mark.note}});
+  if (!content.marks_problem.empty()) node["marks_problem"] = content.marks_problem;
+  return node;
+}
+
+ordered_json json_of(const operation::AchievedTunnel& achieved, const std::string& session) {
+  ordered_json node = {{"tunnel", tunnels::name_of(achieved.planned.key())}, {"session", session}};
+  node["planned"] = json_of(achieved.planned);
+  node["measured"] = json_of(achieved.measured);
+  node["difference"] = json_of(operation::compare(achieved.planned, achieved.measured));
+  node["depth_mm"] = nullptr;
+  if (achieved.depth_mm) node["depth_mm"] = *achieved.depth_mm;
+  node["sigma_offset_mm"] = achieved.sigma_offset_mm;
+  node["sigma_angle_deg"] = achieved.sigma_angle_deg;
+  node["poses"] = achieved.pose_count;
+  if (achieved.truth) {
+    node["truth"] = json_of(*achieved.truth);
+    node["difference_of_truth"] = json_of(operation::compare(achieved.planned, *achieved.truth));
+  }
+  return node;
+}
+
+// Numbers of what was not found are null.
+ordered_json postoperative_of(const Content& content) {
+  ordered_json all = ordered_json::array();
+  for (const auto& [key, comparison] : content.postoperative) {
+    const postop::AchievedTunnel& found = comparison.tunnel;
+    const auto number = [&](double value) { return found.is_found ? ordered_json(value) : ordered_json(); };
+    ordered_json node = {{"tunnel", tunnels::name_of(key)}, {"verdict", verdict_of(content, key)}};
+    node["reliable"] = node["verdict"] == "reliable";
+    node["reasons"] = doubts_of(content, key);
+    node["planned"] = nullptr;
+    if (const auto plan = content.knee.plan.tunnels.find(key); plan != content.knee.plan.tunnels.end())
+      node["planned"] = json_of(plan->second);
+    node["achieved"] = nullptr;
+    if (found.is_found) node["achieved"] = json_of(found.tunnel);
+    node["offset_mm"] = number(found.offset_mm);
+    node["angle_deg"] = number(geometry::deg_from_rad(found.angle_rad));
+    node["length_mm"] = number(found.length_mm);
+    node["comes_out"] = found.is_found ? ordered_json(found.comes_out) : ordered_json();
+    node["entry_sigma_mm"] = number(found.entry_sigma_mm);
+    node["direction_sigma_deg"] = number(geometry::deg_from_rad(found.direction_sigma_rad));
+    node["metal_share"] = number(found.metal_share);
+    node["widths"] = ordered_json::array();
+    for (const postop::Width& width : found.widths)
+      node["widths"].push_back({{"from_entry_mm", width.from_entry_mm}, {"diameter_mm", width.diameter_mm}});
+    node["bone_rms_mm"] = comparison.bone.is_found ? ordered_json(comparison.bone.rms_mm) : ordered_json();
+    all.push_back(std::move(node));
+  }
+  return all;
+}
+
+ordered_json document_of(const Content& content, const ReportOptions& options) {
+  ordered_json json;
+  json["format"] = "arthronaut.report";
+  json["version"] = 1;
+  if (options.says_when_made) json["made_utc"] = files::utc_now();
+  json["case"] = {{"name", content.knee.name},
+                  {"side", bones::to_text(content.knee.side)},
+                  {"created_utc", content.knee.created_utc}};
+  if (content.identity)
+    json["patient"] = {{"name", content.identity->patient_name},
+                       {"id", content.identity->patient_id},
+                       {"birth_date", content.identity->birth_date}};
+  json["tunnels"] = tunnels_of(content.knee);
+  json["session"] = session_of(content);
+  json["achieved"] = ordered_json::array();
+  for (const operation::AchievedTunnel& achieved : content.achieved)
+    json["achieved"].push_back(json_of(achieved, content.session->header().id));
+  for (const Content::Earlier& earlier : content.earlier)
+    json["achieved"].push_back(json_of(earlier.achieved, earlier.session));
+  json["postoperative"] = postoperative_of(content);
+  if (!content.postoperative_problem.empty()) json["postoperative_problem"] = content.postoperative_problem;
+  json["versions"] = ordered_json::object();
+  for (const auto& [name, version] : versions()) json["versions"][name] = version;
+  json["note"] = "research software, not a medical device";
+  return json;
+}
+
+std::string cell(std::string text) {
+  if (!text.empty() && std::string("=+-@").find(text.front()) != std::string::npos)
+    text.insert(text.begin(), '\'');
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+void add_rows(const ordered_json& node, const std::string& path, std::string& text) {
+  if (node.is_structured()) {
+    for (const auto& [key, value] : node.items())
+      add_rows(value, path.empty() ? key : path + "/" + key, text);
+    return;
+  }
+  const std::string value = node.is_null()     ? ""
+                            : node.is_string() ? cell(node.get<std::string>())
+                                               : node.dump();
+  text += cell(path) + "," + value + "\n";
+}
+
+}  // namespace
+
+std::string report_json(const Content& content, const ReportOptions& options) {
+  return document_of(content, options).dump(2) + "\n";
+}
+
+std::string report_csv(const Content& content, const ReportOptions& options) {
+  std::string text = "quantity,value\n";
+  add_rows(document_of(content, options), "", text);
+  return text;
+}
+
+}  // namespace arthronaut::report

@@ -1,0 +1,245 @@
+#include "app/report/stills.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "app/report/session_rows.h"
+#include "app/scene/image.h"
+#include "app/scene/plan_overlay.h"
+#include "navigation/recording/recorded_pictures.h"
+#include "planning/bones/mesh_hash.h"
+#include "planning/files/format.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::report {
+
+namespace {
+
+using Colour = std::array<std::uint8_t, 3>;
+constexpr int kStill_px = 560;
+
+struct Moment {
+  std::size_t frame = 0;  // its place in the session
+  std::string caption;
+};
+
+// What guidance was computed from at a frame.
+struct InForce {
+  recording::RecordedSession::PlanChange plan;
+  std::optional<registration::RegistrationSummary> registration;
+};
+
+InForce in_force(const recording::RecordedSession& session, std::int64_t frame_index) {
+  InForce at;
+  for (const recording::SessionEvent& event : session.events()) {
+    if (event.after_frame >= frame_index) break;
+    if (event.kind == recording::kPlanEvent) at.plan = session.plan_of(event);
+    if (event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent)
+      at.registration = session.registration_of(event);
+    if (event.kind == recording::kVoidEvent) at.registration.reset();
+  }
+  return at;
+}
+
+std::optional<geometry::RigidTransform> camera_from_world(const pipeline::PipelineOptions& options,
+                                                          const recording::RecordedFrame& frame) {
+  const auto* world = options.tools.find_world_marker(options.bone);
+  if (world == nullptr || !frame.intrinsics_are_known || frame.is_frozen) return std::nullopt;
+  for (const auto& body : frame.bodies)
+    if (body.id == world->marker_id) return body.camera_from_body;
+  if (!world->markers.empty()) return std::nullopt;
+  for (const auto& pose : frame.poses)
+    if (pose.marker_id == world->marker_id) return pose.camera_from_marker;
+  return std::nullopt;
+}
+
+// Registered: the first frame with a pose after the last registration. Closest: the least distance of the
+// guide's axis from the entry, an angle of one degree counted as half a millimetre (as far as it leads astray
+// over 30 mm of bone). Drilled: the last frame before the event in which the guide was seen.
+std::vector<Moment> key_moments(const recording::RecordedSession& session,
+                                const pipeline::PipelineOptions& options) {
+  const auto& frames = session.frames();
+  std::int64_t registered_after = -2, drilled_after = -1;
+  for (const recording::SessionEvent& event : session.events()) {
+    if (event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent)
+      registered_after = event.after_frame;
+    if (event.kind == recording::kDrilledEvent) drilled_after = event.after_frame;
+  }
+  std::optional<std::size_t> registered, closest, drilled;
+  const auto miss = [&](std::size_t i) {
+    return frames[i].guidance.axis_to_entry_mm + 0.5 * frames[i].guidance.angle_deg;
+  };
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (!registered && registered_after > -2 && frames[i].index > registered_after &&
+        camera_from_world(options, frames[i]))
+      registered = i;
+    if (!frames[i].guidance.is_valid()) continue;
+    if (!closest || miss(i) < miss(*closest)) closest = i;
+    if (frames[i].index <= drilled_after) drilled = i;
+  }
+  const auto clock = [&](std::size_t i) { return clock_text(time_s(session, frames[i].timestamp_ns)); };
+  std::vector<Moment> moments;
+  if (registered) moments.push_back({*registered, clock(*registered) + ": registered"});
+  if (closest)
+    moments.push_back({*closest, clock(*closest) + files::format(": aimed closest, %.1f mm, %.1f\u00B0",
+                                                                 frames[*closest].guidance.axis_to_entry_mm,
+                                                                 frames[*closest].guidance.angle_deg)});
+  if (drilled) moments.push_back({*drilled, clock(*drilled) + ": drilled"});
+  return moments;
+}
+
+// The square about the round view, and how many of the picture's pixels one of the still's is.
+struct Cut {
+  Eigen::Vector2d corner_px;
+  double scale = 1;
+};
+
+Cut cut_of(const recording::RecordedFrame& frame, const camera::Calibration& calibration) {
+  const camera::Boundary& view = frame.lens.circle.radius_px > 1 ? frame.lens.circle : calibration.boundary;
+  const double half_px = view.radius_px > 1 ? view.radius_px : 0.5 * calibration.image_size_px.minCoeff();
+  const Eigen::Vector2d middle =
+      view.radius_px > 1 ? view.center_px : (0.5 * calibration.image_size_px.cast<double>()).eval();
+  return {middle - Eigen::Vector2d::Constant(half_px), 2 * half_px / kStill_px};
+}
+
+// The mean of the pixels below each of the still's; black beyond the picture.
+scene::Image still_of(const camera::Frame& frame, const Cut& cut) {
+  std::vector<std::uint8_t> made;
+  const std::vector<std::uint8_t>& bgr = camera::bgr_of(frame, made);
+  scene::Image still{kStill_px, kStill_px, std::vector<std::uint8_t>(3UL * kStill_px * kStill_px, 0)};
+  const int across = std::max(1, static_cast<int>(std::lround(cut.scale)));
+  for (int y = 0; y < kStill_px; ++y) {
+    for (int x = 0; x < kStill_px; ++x) {
+      const int x0 = static_cast<int>(std::floor(cut.corner_px.x() + x * cut.scale)),
+                y0 = static_cast<int>(std::floor(cut.corner_px.y() + y * cut.scale));
+      std::array<int, 3> sum{};
+      for (int dy = 0; dy < across; ++dy)
+        for (int dx = 0; dx < across; ++dx) {
+          if (x0 + dx < 0 || y0 + dy < 0 || x0 + dx >= frame.width || y0 + dy >= frame.height) continue;
+          const std::size_t from =
+              3 * (static_cast<std::size_t>(y0 + dy) * static_cast<std::size_t>(frame.width) +
+                   static_cast<std::size_t>(x0 + dx));
+          for (std::size_t c = 0; c < 3; ++c) sum.at(c) += bgr[from + 2 - c];
+        }
+      const std::size_t to = 3 * (static_cast<std::size_t>(y) * kStill_px + static_cast<std::size_t>(x));
+      for (std::size_t c = 0; c < 3; ++c)
+        still.rgb[to + c] = static_cast<std::uint8_t>(sum.at(c) / (across * across));
+    }
+  }
+  return still;
+}
+
+// Hidden lines are dotted: form, not colour alone, tells them apart.
+void draw(scene::Image& still, const scene::OverlayLine& line, const Cut& cut) {
+  if (line.kind == scene::OverlayLine::Kind::TunnelFace) return;  // lines alone
+  const Colour colour =
+      line.kind == scene::OverlayLine::Kind::BoneOutline ? Colour{90, 200, 255} : Colour{120, 255, 120};
+  const double step_px = line.is_hidden ? 7 : 1;
+  for (std::size_t i = 1; i < line.points_px.size(); ++i) {
+    const Eigen::Vector2d from = (line.points_px[i - 1] - cut.corner_px) / cut.scale,
+                          to = (line.points_px[i] - cut.corner_px) / cut.scale;
+    const int count = std::max(1, static_cast<int>((to - from).norm() / step_px));
+    for (int k = 0; k <= count; ++k) {
+      const Eigen::Vector2i at = (from + (to - from) * k / count).array().round().cast<int>();
+      for (int y = std::max(0, at.y() - 1); y <= std::min(kStill_px - 1, at.y() + 1); ++y)
+        for (int x = std::max(0, at.x() - 1); x <= std::min(kStill_px - 1, at.x() + 1); ++x)
+          std::copy(colour.begin(), colour.end(),
+                    still.rgb.begin() + 3 * (static_cast<std::ptrdiff_t>(y) * kStill_px + x));
+    }
+  }
+}
+
+class Drawer {
+ public:
+  explicit Drawer(const Content& content)
+      : session_(*content.session), options_(session_.pipeline_options()) {
+    const auto bone = content.knee.bones.find(session_.header().bone);
+    if (bone == content.knee.bones.end()) return;
+    const std::string& seen_on = session_.header().mesh_sha256;
+    if (!seen_on.empty() && bones::mesh_sha256(bone->second.mesh) != seen_on) return;
+    mesh_ = &bone->second.mesh;
+    surface_ = std::make_shared<geometry::Surface>(*mesh_);
+  }
+
+  // Without a picture where the video has none of this frame.
+  std::optional<scene::Image> still(recording::RecordedPictures& pictures, std::size_t place) {
+    const recording::RecordedFrame& frame = session_.frames().at(place);
+    const camera::FramePtr picture = pictures.picture(frame.index, frame.timestamp_ns);
+    if (picture == nullptr) return std::nullopt;
+    const Cut cut = cut_of(frame, options_.calibration);
+    scene::Image still = still_of(*picture, cut);
+    const InForce at = in_force(session_, frame.index);
+    const auto pose = camera_from_world(options_, frame);
+    if (!pose || surface_ == nullptr || !at.registration || !at.registration->has_pose) return still;
+    const scene::OverlayModel overlay(surface_, *mesh_, at.plan.plan, at.plan.planned_length_mm);
+    const auto lines = overlay.project(camera_at(place), *pose * at.registration->marker_from_bone, {});
+    for (const scene::OverlayLine& line : lines) draw(still, line, cut);
+    return still;
+  }
+  [[nodiscard]] bool has_overlay() const { return surface_ != nullptr; }
+
+ private:
+  // As the tracker has it: the lens' angle counts from the first mark on.
+  [[nodiscard]] camera::CameraModel camera_at(std::size_t place) const {
+    const auto& frames = session_.frames();
+    const bool is_known =
+        options_.follow_lens &&
+        std::any_of(frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(place) + 1,
+                    [](const auto& frame) { return frame.lens.mark == lens::MarkState::Found; });
+    const double angle_rad =
+        is_known ? options_.calibration.lens_angle_rad(frames[place].lens.mark_angle_deg) : 0;
+    return {options_.calibration, angle_rad, options_.refractive_index, options_.fluid_model};
+  }
+
+  const recording::RecordedSession& session_;
+  pipeline::PipelineOptions options_;
+  const geometry::TriangleMesh* mesh_ = nullptr;
+  std::shared_ptr<const geometry::Surface> surface_;
+};
+
+}  // namespace
+
+void draw_stills_section(FlowingPages& pages, const Content& content) {
+  constexpr double kGap_mm = 4, kWidth_mm = (FlowingPages::kWidthMm - 2 * kGap_mm) / 3;
+  constexpr TextStyle kCaption{.size_pt = 8, .bold = false, .ink = kGray};
+  constexpr const char* kUnreadable =
+      "The session's video is not there, or cannot be read: there are no pictures of it.";
+  if (!content.session) return;
+  std::vector<std::pair<std::string, scene::Image>> stills;
+  Drawer drawer(content);
+  std::string why_none;
+  try {
+    if (content.session->video().empty()) {
+      why_none = "The session keeps no video: there are no pictures of it.";
+    } else {
+      recording::RecordedPictures pictures(recording::read_overview(content.session->folder()));
+      for (const Moment& moment : key_moments(*content.session, content.session->pipeline_options()))
+        if (auto still = drawer.still(pictures, moment.frame))
+          stills.emplace_back(moment.caption, std::move(*still));
+      if (stills.empty())
+        why_none = "The session's video has no picture of a registered bone or an aimed guide.";
+    }
+  } catch (const InvalidInput&) {  // its words name the video's file, which is often the patient's name
+    why_none = kUnreadable;
+  } catch (const IoError&) {
+    why_none = kUnreadable;
+  }
+  pages.heading("Pictures of the session, with the plan", stills.empty() ? 6 : kWidth_mm + 6);
+  if (stills.empty()) return pages.sentence(why_none, kCaption);
+  double x_mm = pages.left_mm();
+  const double y_mm = pages.y_mm() + 2;
+  for (const auto& [caption, still] : stills) {
+    pages.pdf().image(x_mm, y_mm, kWidth_mm, still.rgb, still.width, still.height);
+    pages.pdf().text(x_mm, y_mm + kWidth_mm + 3.5, caption, kCaption);
+    x_mm += kWidth_mm + kGap_mm;
+  }
+  pages.skip(kWidth_mm + 6);
+  if (!drawer.has_overlay())
+    pages.sentence("No plan is drawn on them: the case's bone is another than the session's.", kCaption);
+}
+
+}  // namespace arthronaut::report

@@ -1,0 +1,39 @@
+#include "planning/import/bone_quality.h"
+
+#include <cmath>
+
+#include "planning/files/format.h"
+
+namespace arthronaut::importing {
+
+BoneQuality quality_of(const ImportedBone& made, double labelled_ml) {
+  return {.kind = made.bone.kind,
+          .labelled_ml = labelled_ml,
+          .surface_ml = made.repair.volume_mm3 / 1000,
+          .is_closed = made.repair.is_closed,
+          .edges_not_manifold = made.repair.edges_not_manifold,
+          .triangles = made.repair.triangles_now,
+          .doubts = made.doubts};
+}
+
+std::vector<QualityLine> quality_lines(const BoneQuality& quality) {
+  using enum QualityVerdict;
+  std::vector<QualityLine> lines;
+  const double off = quality.labelled_ml > 0 ? quality.surface_ml / quality.labelled_ml - 1 : 1;
+  const bool is_off = !(std::abs(off) <= kMostVolumeOff_fraction);
+  lines.push_back({is_off ? Caution : Good, "Volume",
+                   files::format("%.1f ml, painted %.1f ml", quality.surface_ml, quality.labelled_ml) +
+                       (is_off ? ": parts of it were left out, or rounded off" : "")});
+  lines.push_back({quality.is_closed ? Good : Bad, "Closed",
+                   quality.is_closed ? std::to_string(quality.triangles) + " triangles without a hole"
+                                     : "no: it cannot be planned on"});
+  lines.push_back({quality.edges_not_manifold == 0 ? Good : Caution, "Manifold",
+                   quality.edges_not_manifold == 0
+                       ? "every edge belongs to two triangles"
+                       : std::to_string(quality.edges_not_manifold) + " edges did not, and were mended"});
+  if (quality.doubts.empty()) lines.push_back({Good, "Anatomy", "nothing speaks against it"});
+  for (const std::string& doubt : quality.doubts) lines.push_back({Caution, "Look", doubt});
+  return lines;
+}
+
+}  // namespace arthronaut::importing

@@ -1,0 +1,33 @@
+// What a person judges a bone by that was made from labels: what was labelled against what became of it,
+// closed, manifold, plausible. The same lines on the screen, on paper and in the command line.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "planning/import/bone_import.h"
+
+namespace arthronaut::importing {
+
+struct BoneQuality {
+  bones::BoneKind kind = bones::BoneKind::Femur;
+  double labelled_ml = 0, surface_ml = 0;
+  bool is_closed = false;
+  std::size_t edges_not_manifold = 0;  // that were found, and mended
+  std::size_t triangles = 0;
+  std::vector<std::string> doubts;  // of the mesh and of the anatomy; empty: nothing speaks against it
+};
+
+[[nodiscard]] BoneQuality quality_of(const ImportedBone& made, double labelled_ml);
+
+enum class QualityVerdict { Good, Caution, Bad };  // Bad: it cannot be planned on
+struct QualityLine {
+  QualityVerdict verdict = QualityVerdict::Good;
+  std::string name, text;  // "Closed", "81234 triangles without a hole"
+};
+// A surface that holds more than this share less or more than what was labelled is to be looked at.
+inline constexpr double kMostVolumeOff_fraction = 0.05;
+[[nodiscard]] std::vector<QualityLine> quality_lines(const BoneQuality& quality);
+
+}  // namespace arthronaut::importing

@@ -1,0 +1,38 @@
+#include "planning/import/bone_quality.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace arthronaut::importing {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(BoneQuality, IsGoodOnlyWhereNothingSpeaksAgainstIt) {
+  BoneQuality quality;
+  quality.labelled_ml = 100;
+  quality.surface_ml = 99;
+  quality.is_closed = true;
+  quality.triangles = 1234;
+  const auto verdicts = [&] {
+    std::vector<QualityVerdict> all;
+    for (const QualityLine& line : quality_lines(quality)) all.push_back(line.verdict);
+    return all;
+  };
+  EXPECT_THAT(verdicts(), testing::Each(QualityVerdict::Good));
+  EXPECT_THAT(quality_lines(quality)[0].text, HasSubstr("99.0 ml, painted 100.0 ml"));
+  quality.surface_ml = 94;  // an island was left out
+  EXPECT_EQ(verdicts()[0], QualityVerdict::Caution);
+  quality.surface_ml = 0;
+  EXPECT_EQ(verdicts()[0], QualityVerdict::Caution);
+  quality.is_closed = false;
+  EXPECT_EQ(verdicts()[1], QualityVerdict::Bad);
+  quality.edges_not_manifold = 2;
+  EXPECT_EQ(verdicts()[2], QualityVerdict::Caution);
+  quality.doubts = {"it has one condyle"};
+  EXPECT_EQ(quality_lines(quality).back().text, "it has one condyle");
+  EXPECT_EQ(verdicts().back(), QualityVerdict::Caution);
+}
+
+}  // namespace
+}  // namespace arthronaut::importing
