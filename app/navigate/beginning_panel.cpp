@@ -6,40 +6,60 @@
 
 namespace arthronaut::navigate {
 
-void draw_card(const widgets::Ui& ui, const widgets::Rect& area, const Card& card) {
-  const float edge = ui.theme.px(24), row = ui.theme.strong->FontSize + ui.theme.px(14);
-  const float width = std::max(area.width - 2 * edge, 1.F);
-  const float value_x = width * 0.3F;
-  // Text may need more than a line.
-  const auto height_of = [&](const CardLine& line) {
-    const ImVec2 size =
-        ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, width - value_x, line.text.c_str());
-    return std::max(size.y + ui.theme.px(14), row);
+namespace {
+
+// The names in small letters, what they say in letters for afar, under each other.
+struct CardPlan {
+  ImFont *text, *name;
+  float height = 0;
+};
+
+CardPlan plan_of(const widgets::Ui& ui, float width, const Card& card, ImFont* text) {
+  CardPlan plan{text, ui.theme.title};
+  const auto add = [&](ImFont* font, const std::string& words) {
+    if (!words.empty()) plan.height += font->CalcTextSizeA(font->FontSize, 1e9F, width, words.c_str()).y;
   };
-  float height = 2 * edge + 2 * row + ui.theme.title->FontSize;
-  for (const CardLine& line : card.lines) height += height_of(line);
-  widgets::Rect box{area.x, std::max(area.center().y - height / 2, area.y), area.width,
-                    std::min(height, area.height)};
-  ui.log.note(card.name, box.min(), box.max());
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw.AddRectFilled(box.min(), box.max(), IM_COL32(10, 12, 15, 255));
-  draw.PushClipRect(box.min(), box.max(), true);
-  box = box.inset(edge);
-  widgets::text_centered(ui, box.cut_top(ui.theme.title->FontSize + row / 2), ui.theme.title, widgets::kText,
-                         card.title);
+  add(text, card.title);
   for (const CardLine& line : card.lines) {
-    const widgets::Rect place = box.cut_top(height_of(line));
-    const float radius = ui.theme.px(10);
-    const float middle = place.y + ui.theme.strong->FontSize / 2;
-    const bool is_quiet = line.severity == widgets::Severity::Quiet;
-    if (!is_quiet) widgets::draw_sign(draw, {place.x + radius, middle}, radius, line.severity);
-    draw.AddText(ui.theme.strong, ui.theme.strong->FontSize, {place.x + 3 * radius, place.y},
-                 widgets::kQuietText, line.name.c_str());
-    draw.AddText(ui.theme.strong, ui.theme.strong->FontSize, {place.x + value_x, place.y},
-                 is_quiet ? widgets::kText : widgets::color_of(line.severity), line.text.c_str(), nullptr,
-                 width - value_x);
+    plan.height += plan.name->FontSize + ui.theme.px(8);
+    add(text, line.text);
   }
-  widgets::text_centered(ui, box.cut_bottom(row), ui.theme.strong, widgets::kAccent, card.keys);
+  add(text, card.keys);
+  plan.height += ui.theme.px(24);
+  return plan;
+}
+
+}  // namespace
+
+void draw_card(const widgets::Ui& ui, const widgets::Rect& area, const Card& card) {
+  ui.log.note(card.name, area.min(), area.max());
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddRectFilled(area.min(), area.max(), widgets::kPanel, ui.theme.px(6));
+  draw.AddRect(area.min(), area.max(), widgets::kAccent, ui.theme.px(6), 0, ui.theme.px(3));
+  draw.PushClipRect(area.min(), area.max(), true);
+  widgets::Rect box = area.inset(ui.theme.px(16));
+  // In smaller letters where there is too much of it: nothing of what is confirmed may be cut off.
+  CardPlan plan = plan_of(ui, box.width, card, ui.theme.afar);
+  if (plan.height > box.height) plan = plan_of(ui, box.width, card, ui.theme.title);
+  if (plan.height > box.height) plan = plan_of(ui, box.width, card, ui.theme.strong);
+  ui.log.note_state("card_letters", plan.text == ui.theme.afar ? "afar" : "smaller");
+  const auto put = [&](ImFont* font, ImU32 color, const std::string& words, float indent) {
+    if (words.empty()) return;
+    draw.AddText(font, font->FontSize, {box.x + indent, box.y}, color, words.c_str(), nullptr, box.width);
+    (void)box.cut_top(font->CalcTextSizeA(font->FontSize, 1e9F, box.width, words.c_str()).y);
+  };
+  put(plan.text, widgets::kText, card.title, 0);
+  for (const CardLine& line : card.lines) {
+    (void)box.cut_top(ui.theme.px(8));
+    const bool is_quiet = line.severity == widgets::Severity::Quiet;
+    const float radius = plan.name->FontSize * 0.4F;
+    if (!is_quiet)
+      widgets::draw_sign(draw, {box.x + radius, box.y + plan.name->FontSize / 2}, radius, line.severity);
+    put(plan.name, widgets::kQuietText, line.name, is_quiet ? 0 : 3 * radius);
+    put(plan.text, is_quiet ? widgets::kText : widgets::color_of(line.severity), line.text, 0);
+  }
+  (void)box.cut_top(ui.theme.px(10));
+  put(plan.text, widgets::kAccent, card.keys, 0);
   draw.PopClipRect();
 }
 

@@ -83,6 +83,12 @@ Card resume_card(const LeftBehind& left, const std::optional<operation::PlannedT
       {is_same_plan ? Severity::Quiet : Severity::Caution, "Plan",
        plan_in_words(was.plan) +
            (is_same_plan ? "" : "; the case's is another one by now and waits to be taken over")});
+  for (const tunnels::TunnelKey& key : found.drilled) {
+    const bool is_in_force = was.plan && was.plan->tunnel.key() == key;
+    card.lines.push_back(
+        {is_in_force ? Severity::Caution : Severity::Quiet, "Drilled already",
+         tunnels::name_of(key) + (is_in_force ? "; that is the one in force: choose the other one" : "")});
+  }
   card.lines.push_back({left.has_same_camera && left.has_same_tools ? Severity::Quiet : Severity::Caution,
                         "Camera and tools",
                         left.has_same_camera && left.has_same_tools ? "the case's"

@@ -4,6 +4,7 @@
 
 #include "app/guidance_severity/guidance_severity.h"
 #include "app/navigate/navigate_panels.h"
+#include "app/widgets/afar_text.h"
 
 namespace arthronaut::navigate {
 
@@ -30,22 +31,27 @@ void draw_target(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, 
                ui.theme.px(1.5F));
 }
 
+// The words in full stand beside the numbers.
+std::string in_short(std::string_view direction) {
+  return std::string(direction.substr(0, direction == "medial" || direction == "lateral" ? 3 : 4));
+}
+
 void draw_directions(const widgets::Ui& ui, ImDrawList& draw, const widgets::Rect& area, const ImVec2& center,
                      float radius, const BullseyePoint& point) {
-  ImFont* font = ui.theme.strong;
+  ImFont* font = ui.theme.afar;
   const auto put = [&](landmarks::AnatomicalDirection direction, bool is_positive, float x, float y,
                        float align) {
-    const std::string text(landmarks::to_text(direction, is_positive));
+    const std::string text = in_short(landmarks::to_text(direction, is_positive));
     const float width = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
     const float left = std::clamp(x - width * align, area.x + 4, area.x + area.width - width - 4);
     draw.AddText(font, font->FontSize, {left, y}, widgets::kQuietText, text.c_str());
   };
-  put(point.up_is, true, center.x, center.y - radius - font->FontSize * 1.15F, 0.5F);
-  put(point.up_is, false, center.x, center.y + radius + font->FontSize * 0.1F, 0.5F);
-  const float y = center.y - font->FontSize * 1.2F;
-  const float gap = ui.theme.px(6);
-  put(point.side_is, point.side_is_right, center.x + radius + gap, y, 0);
-  put(point.side_is, !point.side_is_right, center.x - radius - gap, y, 1);
+  put(point.up_is, true, center.x, center.y - radius - font->FontSize * 1.02F, 0.5F);
+  put(point.up_is, false, center.x, center.y + radius + font->FontSize * 0.02F, 0.5F);
+  // In the corners between circle and edge, above the line that they belong to.
+  const float y = center.y - font->FontSize * 1.02F;
+  put(point.side_is, point.side_is_right, area.x + area.width, y, 1);
+  put(point.side_is, !point.side_is_right, area.x, y, 0);
 }
 
 // The axis of the guide as a dot with a tail that leans as the guide does: 1 degree as long as 1 mm.
@@ -91,11 +97,12 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddRectFilled(area.min(), area.max(), widgets::kPanel, ui.theme.px(6));
   ui.log.note("navigate.bullseye", area.min(), area.max());
-  const float font = ui.theme.strong->FontSize;
-  const float radius = std::max(std::min(area.width / 2 - font * 3.4F, area.height / 2 - font * 1.6F), 10.F);
+  const float font = ui.theme.afar->FontSize;
+  const float radius =
+      std::max(std::min(area.width / 2 - ui.theme.px(8), area.height / 2 - font * 1.05F), 10.F);
   const ImVec2 center = area.center();
   // Which of two is aimed at stands beside the target, also while there is nothing to aim by.
-  draw.AddText(ui.theme.title, ui.theme.title->FontSize, {area.x + ui.theme.px(16), area.y + ui.theme.px(10)},
+  draw.AddText(ui.theme.title, ui.theme.title->FontSize, {area.x + ui.theme.px(12), area.y + ui.theme.px(6)},
                widgets::kAccent, screen.tunnel.c_str());
   if (!screen.display.guidance_is_valid || !screen.plan) {
     draw.AddCircle(center, radius, widgets::kPanelEdge, 96, ui.theme.px(2));
@@ -104,51 +111,77 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
   }
   const BullseyePoint point = bullseye_point(screen.display.guidance, *screen.plan);
   draw_target(ui, draw, center, radius);
+  // The guide stands on the plan: seen at a glance, by a ring and a tick, in the first second the whole disc.
+  if (screen.reached_for_s) {
+    if (*screen.reached_for_s < 1) draw.AddCircleFilled(center, radius, IM_COL32(40, 120, 92, 255), 96);
+    draw.AddCircle(center, radius - ui.theme.px(6), widgets::kGood, 96, ui.theme.px(12));
+    widgets::draw_sign(draw, {area.x + font * 0.6F, area.y + area.height - font * 0.6F}, font * 0.45F,
+                       widgets::Severity::Good);
+  }
+  ui.log.note_state("reached", screen.reached_for_s ? "yes" : "no");
   draw_directions(ui, draw, area, center, radius, point);
   draw_guide(ui, draw, center, radius, point,
              worse(guidance_severity::severity_of_offset(screen.display.guidance),
                    guidance_severity::severity_of_angle(screen.display.guidance)));
 }
 
+namespace {
+
+// "Offset", under it "1.2" with "mm ± 0.3" beside it, and lines of words; all of it for afar. Returns false,
+// and draws nothing, where there is no room.
+bool draw_number(const widgets::Ui& ui, widgets::Rect& rest, const std::string& name,
+                 const std::string& value, const std::string& unit, widgets::Severity severity) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  ImFont* const font = ui.theme.afar;
+  const float height = font->FontSize + ui.theme.number->FontSize;
+  if (rest.height < height) return false;
+  const widgets::Rect row = rest.cut_top(height);
+  const ImU32 color = severity == widgets::Severity::Quiet ? widgets::kText : widgets::color_of(severity);
+  float x = row.x;
+  if (severity != widgets::Severity::Quiet) {
+    const float radius = font->FontSize * 0.36F;
+    widgets::draw_sign(draw, {x + radius, row.y + font->FontSize / 2}, radius, severity);
+    x += 2.6F * radius;
+  }
+  draw.AddText(font, font->FontSize, {x, row.y}, widgets::kQuietText, name.c_str());
+  const float top = row.y + font->FontSize * 0.95F;
+  const float width = widgets::draw_number(draw, ui.theme.number, {row.x, top}, color, value);
+  const float right = row.x + width + ui.theme.px(10);
+  const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0, unit.c_str());
+  ImFont* const fits = right + size.x <= row.x + row.width ? font : ui.theme.title;
+  draw.AddText(fits, fits->FontSize, {right, top + ui.theme.number->FontSize * 0.9F - fits->FontSize * 0.95F},
+               widgets::kQuietText, unit.c_str());
+  return true;
+}
+
+}  // namespace
+
 void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddRectFilled(area.min(), area.max(), widgets::kPanel, ui.theme.px(6));
   ui.log.note("navigate.numbers", area.min(), area.max());
-  widgets::Rect rest = area.inset(ui.theme.px(18));
-  const bool valid = screen.display.guidance_is_valid;
+  // No number at all where none is valid: an old one would be believed.
+  if (!screen.display.guidance_is_valid) return;
+  widgets::Rect rest = area.inset(ui.theme.px(14));
   const guidance::GuidanceNumbers& g = screen.display.guidance;
-  // `mark` stands with the number ("\u00B0"), `unit` after it.
-  const auto block = [&](const char* name, double value, const char* mark, const std::string& unit,
-                         widgets::Severity severity) {
-    const widgets::Rect row = rest.cut_top(rest.height > 0 ? (area.height - ui.theme.px(36)) / 4 : 0);
-    // No number at all where none is valid: an old one would be believed.
-    widgets::number_block(ui, row, name, valid ? widgets::fixed(value, 1) + mark : "\u2013",
-                          valid ? unit : "", valid ? severity : widgets::Severity::Quiet);
-    return row;
-  };
-  const widgets::Rect offset =
-      block("Offset", guidance_severity::offset_mm(g), "", "mm " + widgets::plus_minus(g.sigma_offset_mm),
-            guidance_severity::severity_of_offset(g));
-  if (valid) {
-    const guidance_severity::OffsetParts parts = guidance_severity::offset_parts(g);
-    const std::string text = parts.side + "\n" + parts.up;
-    ImFont* font = ui.theme.body;
-    const float width = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
-    draw.AddText(font, font->FontSize, {offset.x + offset.width - width, offset.y}, widgets::kText,
-                 text.c_str());
-  }
-  block("Angle", g.angle_deg, "\u00B0", widgets::plus_minus(g.sigma_angle_deg),
-        guidance_severity::severity_of_angle(g));
+  draw_number(ui, rest, "Offset", widgets::fixed(guidance_severity::offset_mm(g), 1),
+              "mm " + widgets::plus_minus(g.sigma_offset_mm), guidance_severity::severity_of_offset(g));
+  const guidance_severity::OffsetParts parts = guidance_severity::offset_parts(g);
+  for (const std::string& part : {parts.side, parts.up})
+    (void)rest.cut_top(widgets::draw_afar(ui, rest, widgets::kText, part));
+  (void)rest.cut_top(ui.theme.px(8));
+  draw_number(ui, rest, "Angle", widgets::fixed(g.angle_deg, 1) + "\u00B0",
+              widgets::plus_minus(g.sigma_angle_deg), guidance_severity::severity_of_angle(g));
+  (void)rest.cut_top(ui.theme.px(8));
   // Said of a drill that is seen alone: a guide does not know how deep the drill is that runs through it.
-  if (valid && g.drill && g.drill->is_at_plan()) {
-    block("Drill depth", g.drill->depth_mm, "", "mm " + widgets::plus_minus(g.drill->sigma_mm),
-          widgets::Severity::Quiet);
-    block("Remaining", g.drill->remaining_mm, "", "mm", guidance_severity::severity_of_drill(*g.drill));
+  if (g.drill && g.drill->is_at_plan()) {
+    draw_number(ui, rest, "Remaining", widgets::fixed(g.drill->remaining_mm, 1), "mm",
+                guidance_severity::severity_of_drill(*g.drill));
+    draw_number(ui, rest, "Depth", widgets::fixed(g.drill->depth_mm, 1),
+                "mm " + widgets::plus_minus(g.drill->sigma_mm), widgets::Severity::Quiet);
   } else if (const auto& stop_mm = screen.live->operation->depth_stop_mm) {
     // The surgeon's reading, not a measurement: nothing is reckoned from it, least of all what remains.
-    const widgets::Rect row = rest.cut_top((area.height - ui.theme.px(36)) / 4);
-    widgets::number_block(ui, row, "Depth stop", widgets::fixed(*stop_mm, 1), "mm, as read",
-                          widgets::Severity::Quiet);
+    draw_number(ui, rest, "Depth stop", widgets::fixed(*stop_mm, 1), "mm, read", widgets::Severity::Quiet);
   }
 }
 

@@ -53,6 +53,12 @@ std::string words_of(NextAction action) {
   return "";
 }
 
+bool must_place_anew(const operation::RegistrationState& registration) {
+  return registration.alarm.seen_drift_mm > 0 && !registration.touches.has_control_point();
+}
+
+std::string place_anew_words() { return "check, then place the marker anew"; }
+
 std::string touch_notice(const operation::OperationState& state) {
   constexpr std::int64_t kReadable_ns = 8'000'000'000;
   if (state.frame.timestamp_ns - state.touch_asked_ns > kReadable_ns) return "";
@@ -91,6 +97,10 @@ Trouble trouble_of(const operation::RegistrationState& registration) {
               why + (in_force.can_be_confirmed ? ". Touch the bone with the probe once (T) to confirm it"
                                                : ". Register anew")};
     case Standing::Alarm:
+      if (must_place_anew(registration))
+        return {
+            "World marker may have moved",
+            why + ". No control point was set before: fix the marker, clear the points (C) and draw anew"};
       return {"World marker may have moved",
               why + ". Touch the control point again; if it stays off, clear the points (C) and draw anew"};
     case Standing::InDoubt:

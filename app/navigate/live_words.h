@@ -9,6 +9,10 @@ namespace arthronaut::navigate {
 
 // What to do next: "touch the bone with the probe".
 [[nodiscard]] std::string words_of(operation::NextAction action);
+// The picture shows the bone elsewhere, and no control point was set before that could deny it: what was
+// found is of a place that nobody knows. To be placed anew; and what is then to be done.
+[[nodiscard]] bool must_place_anew(const operation::RegistrationState& registration);
+[[nodiscard]] std::string place_anew_words();
 // Why a touch was not taken a moment ago; empty when it was, or when that is longer ago than it takes to
 // read.
 [[nodiscard]] std::string touch_notice(const operation::OperationState& state);

@@ -16,6 +16,12 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                [this] { return model_ != nullptr; },
                {},
                [this] { take_next_step(); }});
+  actions.add({"navigate.back", "Step back", "Goes back a step, to do it again with the next step's key",
+               GLFW_KEY_PAGE_UP, 0, false, [this] { return model_ != nullptr; },
+               [this] { return choices_.looked_at.has_value(); }, [this] { take_step_back(); }});
+  actions.add({"navigate.menu", "Menu", "Everything that can be done here, and every state", GLFW_KEY_ENTER,
+               0, false, [this] { return model_ != nullptr; }, [this] { return choices_.shows_menu; },
+               [this] { choices_.shows_menu = !choices_.shows_menu; }});
   actions.add({"navigate.scratch",
                "Simulate: probe",
                "The simulated surgeon touches the bone with the probe",
@@ -102,6 +108,17 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                {},
                [this] { return choices_.overlay_on; },
                [this] { cycle_overlay(); }});
+  actions.add({"navigate.sounds",
+               "Muted",
+               "Lost, doubtful and reached are not heard while on; what is wrong with the sound device is "
+               "said in the "
+               "menu",
+               GLFW_KEY_Y,
+               0,
+               false,
+               {},
+               [this] { return player_.is_muted(); },
+               [this] { player_.mute(!player_.is_muted()); }});
   actions.add({"navigate.undistort",
                "Undistorted",
                "The picture without the lens' distortion: what is straight is straight",
@@ -150,6 +167,16 @@ void NavigateView::add_answer_actions(widgets::Actions& actions) {
                {},
                [this] { ask(operation::MarkerPlacedAnew{}); },
                {"say that the marker was placed anew"}});
+  actions.add({"navigate.drilled",
+               "Tunnel drilled",
+               "The tunnel is drilled, also where nothing of it was seen: then it is recorded as said",
+               GLFW_KEY_J,
+               0,
+               false,
+               [this] { return is_running() && live_->operation->plan.has_value(); },
+               {},
+               [this] { ask(operation::TunnelDrilled{}); },
+               {"say that the tunnel is drilled"}});
 }
 
 void NavigateView::add_registration_actions(widgets::Actions& actions) {
@@ -228,17 +255,19 @@ void NavigateView::add_registration_actions(widgets::Actions& actions) {
        },
        {},
        [this] { ask(operation::CheckGuide{}); }});
-  actions.add(
-      {"navigate.forget_touches",
-       "Forget touches",
-       "Touches and control point were wrong, not the marker: takes an alarm away",
-       GLFW_KEY_T,
-       GLFW_MOD_SHIFT,
-       false,
-       [this] { return registration().touches.count() > 0 || registration().touches.has_control_point(); },
-       {},
-       [this] { ask(operation::ForgetTouches{}); },
-       {"forget the touches"}});
+  actions.add({"navigate.forget_touches",
+               "Forget touches",
+               "Touches, control point or picture were wrong, not the marker: takes an alarm away",
+               GLFW_KEY_T,
+               GLFW_MOD_SHIFT,
+               false,
+               [this] {
+                 const operation::RegistrationState& known = registration();
+                 return known.touches.count() > 0 || known.touches.has_control_point() || known.alarm;
+               },
+               {},
+               [this] { ask(operation::ForgetTouches{}); },
+               {"forget the touches"}});
   actions.add({"navigate.clear",
                "Clear points",
                "Forgets what the probe drew and the touches; after an alarm the registration too",
@@ -270,31 +299,6 @@ void NavigateView::add_registration_actions(widgets::Actions& actions) {
                },
                {},
                [this] { ask(operation::ChooseRegistration{*registration().entry_in_force + 1}); }});
-}
-
-void NavigateView::draw_controls(const widgets::Ui& ui, const widgets::Rect& area) {
-  const float gap = ui.theme.px(10), height = (area.height - gap) / 2;
-  const auto row = [&](float y, const std::vector<const char*>& ids) {
-    const float width =
-        (area.width - gap * static_cast<float>(ids.size() - 1)) / static_cast<float>(ids.size());
-    float x = area.x;
-    for (const char* id : ids) {
-      ImGui::SetCursorScreenPos({x, y});
-      widgets::action_button(ui, id, width, height);
-      x += width + gap;
-    }
-  };
-  std::vector<const char*> first{"navigate.next",   "navigate.scratch", "navigate.drill", "navigate.video",
-                                 "navigate.camera", "navigate.medium",  "navigate.stop"};
-  // Where there are two to choose from, right beside the next step.
-  if (model_ != nullptr)
-    for (const auto& [bundle, id] : {std::pair(norms::Bundle::Posterolateral, "navigate.tunnel_pl"),
-                                     std::pair(norms::Bundle::Anteromedial, "navigate.tunnel_am")})
-      if (model_->knee().plan.tunnels.contains({choices_.bone, bundle})) first.insert(first.begin() + 1, id);
-  row(area.y, first);
-  row(area.y + height + gap,
-      {"navigate.digitise", "navigate.register", "navigate.panel", "navigate.overlay", "navigate.undistort",
-       "navigate.bone", "navigate.depth_stop", "navigate.marker_anew", "navigate.record"});
 }
 
 }  // namespace arthronaut::navigate

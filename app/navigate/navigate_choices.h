@@ -4,10 +4,13 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "app/navigate/navigate_display.h"
+#include "app/navigate/reached_plan.h"
 #include "navigation/operation/operation_state.h"
 
 namespace arthronaut::navigate {
@@ -26,11 +29,43 @@ struct NavigateChoices {
   // Said to be drilled since the case was opened: by which kind of source, and the very plan that guided. A
   // rehearsal says nothing of the patient, and a plan of before an edit nothing of the one after it.
   std::map<std::pair<sources::SourceKind, tunnels::TunnelKey>, operation::PlannedTunnel> drilled;
+  // As it was measured, of the tunnels above.
+  std::map<std::pair<sources::SourceKind, tunnels::TunnelKey>, operation::AchievedTunnel> measured;
+  // Whose world markers were said to be out, likewise.
+  std::set<std::pair<sources::SourceKind, bones::BoneKind>> markers_out;
+  std::optional<operation::Step> looked_at;  // the surgeon went back to it; empty: the one of now
+  std::string next;                          // what is asked of the surgeon now
+  double next_since_s = 0;                   // and since when
+  bool goes_to_other_bone = false;           // once the source has ended
+  bool shows_menu = false;
+  ReachedPlan reached;
+  // Of the case, as it was when this mode was entered.
+  bool has_real_scope = false, has_camera_file = false;
+  std::optional<tools::ToolSet> tools;  // empty: they can't be read
+
+  // A source of that kind begins: of a bone that was finished, the operation begins afresh.
+  void begin(sources::SourceKind kind) {
+    looked_at.reset();
+    shows_menu = false;
+    if (markers_out.erase({kind, bone}) == 0) return;
+    const auto is_of_it = [&](const auto& entry) {
+      return entry.first.first == kind && entry.first.second.bone == bone;
+    };
+    std::erase_if(drilled, is_of_it);
+    std::erase_if(measured, is_of_it);
+  }
+  void note_next(const std::string& words, double now_s) {
+    if (words == next) return;
+    next = words;
+    next_since_s = now_s;
+  }
 
   void follow(const operation::OperationState& state) {
     using Outcome = operation::DrilledState::Outcome;
     if (state.plan && state.source != nullptr && state.drilled.outcome != Outcome::NotSaid)
       drilled.insert_or_assign({state.source->kind, state.plan->tunnel.key()}, *state.plan);
+    if (state.plan && state.source != nullptr && state.drilled.tunnel)
+      measured.insert_or_assign({state.source->kind, state.plan->tunnel.key()}, *state.drilled.tunnel);
   }
   // By the kind of source that `state` is of.
   [[nodiscard]] bool is_drilled(const operation::OperationState& state,
@@ -47,6 +82,7 @@ struct NavigateChoices {
   void take_other_bone() {
     bone = other_bone();
     layout.reset();
+    looked_at.reset();
     guidance_seen_s = -1e9;
     stroke = -1;
   }

@@ -11,9 +11,8 @@ using guidance::GuidanceState;
 using Phase = theatre::LiveState::Phase;
 
 std::string reason_of_marker(const pipeline::FrameResult& result, int marker_id) {
-  for (const markers::MarkerObservation& marker : result.markers)
-    if (marker.id == marker_id && !marker.is_tracked()) return std::string(markers::to_text(marker.state));
-  return "";
+  const markers::MarkerState state = pipeline::body_in(result, marker_id).state;
+  return state == markers::MarkerState::Tracked ? "" : std::string(markers::to_text(state));
 }
 
 void tell(NavigateDisplay& display, const Trouble& trouble) {
@@ -40,9 +39,24 @@ void explain(NavigateDisplay& display, const operation::OperationState& state) {
   const pipeline::FrameResult& result = state.frame;
   const pipeline::PipelineOptions& options = state.source->pipeline;
   const operation::RegistrationState& registration = *state.registration;
+  if (result.is_blank) {
+    display.headline = "No picture";
+    display.detail = "The picture is plain: is the light on, is the camera connected?";
+    return;
+  }
+  if (result.is_torn) {
+    display.headline = "Picture torn";
+    display.detail = "Parts of two moments in one picture: check cable and capture card";
+    return;
+  }
   if (result.is_frozen) {
     display.headline = "Picture frozen";
     display.detail = "The source sends the same picture again and again: check cable and camera";
+    return;
+  }
+  if (result.is_repeating) {
+    display.headline = "Picture does not change";
+    display.detail = "The same picture for a tenth of a second: it may be about to freeze";
     return;
   }
   if (state.medium.fit == pipeline::MediumFit::Contradicts) {
@@ -170,7 +184,7 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
     const bool is_short = display.age_s < 1;
     display.headline = is_short ? "Picture " + widgets::fixed(1000 * display.age_s, 0) + " ms late"
                                 : "No new picture for " + widgets::fixed(display.age_s, 1) + " s";
-    display.detail = "What you see is not live";
+    display.detail = live->trouble_words.empty() ? "What you see is not live" : live->trouble_words;
     return display;
   }
   display.is_live = true;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/navigate/navigate_display.h"
+#include "app/navigate/operation_rail.h"
 #include "app/navigate/registration_words.h"
 #include "app/navigate/theatre_bones.h"
 #include "app/widgets/undistorted_texture.h"
@@ -26,7 +27,13 @@ struct NavigateScreen {
   int selected_stroke = -1;
   bool undistorts = false;     // shows the picture without the lens' distortion
   std::string next_step = "";  // "register what was touched"
-  std::string patient = "";    // in words; empty: not known
+  bool pedal_acts = false;     // it is done by the pedal
+  Rail rail = {};
+  std::optional<operation::Step> looked_at = std::nullopt;  // the surgeon went back to it
+  std::optional<double> reached_for_s = std::nullopt;       // the guide has stood on the plan for so long
+  std::string patient = "";                                 // in words; empty: not known
+  bool is_muted = false;                                    // no sound, by the user's word
+  std::string sound_trouble = "";                           // why none can be heard; empty: it can
 
   // Of the newest picture; preconditions: display.has_picture.
   [[nodiscard]] const pipeline::FrameResult& frame() const { return live->operation->frame; }
@@ -45,14 +52,25 @@ struct VideoTextures {
   widgets::UndistortedTexture undistorted;
 };
 
-// The picture, cut to the round view, with the plan drawn on it.
+// The picture, cut to the round view, with the plan drawn on it. Nothing else is ever put over it: what warns
+// stands beside it, where no marker can be.
 void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen,
                 VideoTextures& textures);
+// The nine steps, each with its state by shape and colour; framed the one that the surgeon went back to.
+void draw_rail(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen);
+// What to do now, and whether the pedal does it.
+void draw_words(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen);
+// Why nothing guides, and what to do about it.
+void draw_reason(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen);
+// Lens, markers, registration and record in one line, each with its sign.
+void draw_states(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen);
 void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen);
 void draw_numbers(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen);
-// While the probe draws: how far the registration is, what to do next, and everything that can be taken back.
-// Needs a status.
+// While the probe draws: how far the registration is, and what is missing. Needs a status.
 void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen);
+// The same in every detail: strokes, touches, earlier ones.
+void draw_registration_details(const widgets::Ui& ui, const widgets::Rect& area,
+                               const NavigateScreen& screen);
 // Markers, lens, registration, probe, record: each with its state and the reason.
 void draw_tracking(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen);
 

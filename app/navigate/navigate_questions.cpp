@@ -3,18 +3,38 @@
 
 namespace arthronaut::navigate {
 
-void NavigateView::draw_questions(const widgets::Ui& ui, const widgets::Rect& video) {
+namespace {
+
+// "DDDDNo...": done, now, open, closed. For tests.
+std::string rail_in_letters(const Rail& rail) {
+  std::string letters;
+  for (const RailStep& step : rail) letters += ".oND"[static_cast<std::size_t>(step.state)];
+  return letters;
+}
+
+}  // namespace
+
+bool NavigateView::draw_questions(const widgets::Ui& ui, const widgets::Rect& area) {
   const operation::OperationState& state = *live_->operation;
-  if (const LeftBehind* const left = left_behind()) {
+  bool asks = true;
+  if (const LeftBehind* const left = left_behind(); left != nullptr && !cameras_.is_open()) {
     // With the tunnel that was guided to: resuming it is to choose it.
     const auto& was = left->found.operation.plan;
     const auto plan = was ? bones_.planned(was->tunnel.key()) : bones_.plan_of(choices_.bone);
-    draw_card(ui, video, resume_card(*left, plan, std::chrono::system_clock::now()));
+    draw_card(ui, area, resume_card(*left, plan, std::chrono::system_clock::now()));
   } else if (state.has_source && !is_of_source_before(*live_) && state.time_out == operation::TimeOut::Due &&
-             !cameras_.is_open())
-    draw_card(ui, video, time_out_card(state, patient_));
-  if (const auto pictures = cameras_.draw(ui, video)) start_live(*pictures);
-  if (const auto depth_mm = depth_.draw(ui, video)) ask(operation::ReadDepthStop{*depth_mm});
+             state.next_action == operation::NextAction::ConfirmTimeOut && !choices_.looked_at &&
+             !finishes() && !waits_for_take_over() && !cameras_.is_open()) {
+    draw_card(ui, area, time_out_card(state, patient_));
+  } else if (finishes() && choices_.looked_at.value_or(operation::Step::Finish) == operation::Step::Finish &&
+             !cameras_.is_open() && !depth_.is_open()) {
+    draw_card(ui, area, {"navigate.finish", "Finish", finish_list(finished_bones()).lines, ""});
+  } else {
+    asks = cameras_.is_open() || depth_.is_open();
+  }
+  if (const auto pictures = cameras_.draw(ui, area)) start_live(*pictures);
+  if (const auto depth_mm = depth_.draw(ui, area)) ask(operation::ReadDepthStop{*depth_mm});
+  return asks;
 }
 
 void NavigateView::note_states(const widgets::Ui& ui, const NavigateScreen& screen) {
@@ -33,7 +53,14 @@ void NavigateView::note_states(const widgets::Ui& ui, const NavigateScreen& scre
                                     : standing == operation::Standing::Stands ? "reliable"
                                                                               : "unreliable");
   ui.log.note_state("standing", to_text(standing));
-  ui.log.note_state("step", to_text(live_->operation->step));
+  ui.log.note_state("step", to_text(step_of_now(screen.rail)));
+  ui.log.note_state("back_at", screen.looked_at ? to_text(*screen.looked_at) : "");
+  ui.log.note_state("bone", bones::to_text(choices_.bone));
+  ui.log.note_state("rail", rail_in_letters(screen.rail));
+  ui.log.note_state("pedal", screen.pedal_acts ? "acts" : "waits");
+  ui.log.note_state("menu", choices_.shows_menu ? "open" : "closed");
+  ui.log.note_state("markers_out", std::to_string(choices_.markers_out.size()));
+  ui.log.note_state("finish", finish_list(finished_bones()).is_done ? "done" : "open");
   const auto& guiding = live_->operation->plan;
   ui.log.note_state("tunnel", guiding ? tunnels::name_of(guiding->tunnel.key()) : "none");
   ui.log.note_state("drilled", std::to_string(choices_.drilled.size()));

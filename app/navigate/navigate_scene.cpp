@@ -82,8 +82,12 @@ void NavigateScene::draw(const widgets::Ui& ui, const widgets::Rect& area, const
   pane_.draw(ui, "navigate.view", area);
   // A guide that is not known is amiss only while it is to be followed.
   const bool is_missed = shown_.layout == NavigateLayout::Guide && !screen.display.guidance_is_valid;
-  widgets::caption(ui, area, is_missed ? widgets::kCaution : widgets::kText,
-                   caption_of(screen, asks_for_strokes(shown_.layout, shown_.registration.get())));
+  // In a pane too narrow for all of it, which bone it is.
+  std::string caption = caption_of(screen, asks_for_strokes(shown_.layout, shown_.registration.get()));
+  ImFont* const font = ui.theme.strong;
+  if (font->CalcTextSizeA(font->FontSize, 1e9F, 0, caption.c_str()).x > area.width - ui.theme.px(28))
+    caption = caption.substr(0, caption.find_first_of(":."));
+  widgets::caption(ui, area, is_missed ? widgets::kCaution : widgets::kText, caption);
 }
 
 }  // namespace arthronaut::navigate

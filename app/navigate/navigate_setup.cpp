@@ -6,6 +6,7 @@
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 #include "planning/landmarks/anatomical_axes.h"
+#include "planning/phantom/phantom_case.h"
 
 namespace arthronaut::navigate {
 
@@ -29,19 +30,6 @@ theatre::TheatreSource source_of(const open_case::PlanModel& model, bones::BoneK
   source.setup.pipeline.axes = landmarks::anatomical_axes(
       bone, model.knee().side, landmarks_of(model.knee(), bone), model.knee().bones.at(bone).mesh);
   return source;
-}
-
-phantom::PhantomKnee phantom_of(const cases::Case& knee) {
-  phantom::PhantomKnee phantom;
-  phantom.side = knee.side;
-  if (knee.bones.contains(bones::BoneKind::Femur)) phantom.femur = knee.bones.at(bones::BoneKind::Femur);
-  if (knee.bones.contains(bones::BoneKind::Tibia)) phantom.tibia = knee.bones.at(bones::BoneKind::Tibia);
-  phantom.femur_landmarks = landmarks_of(knee, bones::BoneKind::Femur);
-  phantom.tibia_landmarks = landmarks_of(knee, bones::BoneKind::Tibia);
-  const auto& tunnels = knee.plan.tunnels;
-  if (tunnels.contains(bones::BoneKind::Femur)) phantom.femoral_tunnel = tunnels.at(bones::BoneKind::Femur);
-  if (tunnels.contains(bones::BoneKind::Tibia)) phantom.tibial_tunnel = tunnels.at(bones::BoneKind::Tibia);
-  return phantom;
 }
 
 }  // namespace
@@ -68,7 +56,7 @@ theatre::TheatreSource simulated_setup(const open_case::PlanModel& model, const 
   setup.pipeline.refractive_index = camera::kSalineIndex;
   setup.draws = part == SimulatedPart::Scratch;
   simulator::SimulationOptions simulation;
-  simulation.knee = phantom_of(model.knee());
+  simulation.knee = phantom::knee_of(model.knee());
   simulation.camera = simulator::standard_camera();
   simulation.tools = tools::standard_tools();
   simulation.rest_count = kPlacesToTouch;

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/case/case_calibration.h"
 #include "app/navigate/known_streams.h"
 #include "app/navigate/overlay_lines.h"
 #include "app/scene/scene_camera.h"
 #include "navigation/camera/medium.h"
 #include "navigation/sources/connected_cameras.h"
 #include "navigation/sources/source_files.h"
+#include "planning/cases/case.h"
 #include "planning/cases/identity.h"
 #include "planning/geometry/error.h"
 #include "planning/log/log.h"
@@ -19,16 +21,20 @@ namespace arthronaut::navigate {
 
 namespace {
 
-using operation::NextAction;
 using Phase = theatre::LiveState::Phase;
 
 constexpr double kGuideAway_s = 2;
+constexpr double kRefusal_s = 6;  // long enough to be read
 
 }  // namespace
 
 NavigateView::NavigateView(std::function<void()> make_current, std::function<void()> wake,
-                           const sources::DeviceTurns& turns)
-    : turns_(turns), scene_(std::move(make_current)), bones_(wake), resume_(wake) {}
+                           const sources::DeviceTurns& turns, std::function<void(Elsewhere)> go_elsewhere)
+    : turns_(turns),
+      go_elsewhere_(std::move(go_elsewhere)),
+      scene_(std::move(make_current)),
+      bones_(wake),
+      resume_(wake) {}
 NavigateView::~NavigateView() = default;
 
 mode::ModeTitle NavigateView::title() const {
@@ -50,7 +56,7 @@ void NavigateView::case_opened(const mode::OpenCase& opened) {
   part_.reset();
   kind_.reset();
   started_.clear();
-  stops_once_open_ = false;
+  stops_once_open_ = is_lent_ = false;
   choices_ = {};
   notice_.clear();
   model_ = opened.model;
@@ -68,9 +74,21 @@ void NavigateView::case_opened(const mode::OpenCase& opened) {
   look_along_plan();
 }
 
-void NavigateView::enter() { choices_.videos = sources::videos_in(case_folder_); }
+void NavigateView::enter() {
+  choices_.videos = sources::videos_in(case_folder_);
+  choices_.has_real_scope = has_real_scope(case_folder_);
+  choices_.has_camera_file =
+      !case_folder_.empty() && std::filesystem::exists(cases::camera_file(case_folder_));
+  choices_.tools.reset();
+  try {
+    choices_.tools = open_case::tools_of(!choices_.has_real_scope, case_folder_);
+  } catch (const std::runtime_error& error) {  // what is wrong with them is a step that is not done
+    notice_ = error.what();
+  }
+}
 
 void NavigateView::end_source() {
+  end_was_asked_ = true;
   choices_.guidance_seen_s = -1e9;
   notice_.clear();
   // Nothing cuts an opening short; it ends right after it, before its first picture.
@@ -79,6 +97,7 @@ void NavigateView::end_source() {
 }
 
 void NavigateView::take_other_bone() {
+  if (refuses_while_lent()) return;
   if (is_under_way(*live_)) {
     notice_ = "Stop the source first, then take the other bone";
     return;
@@ -92,14 +111,25 @@ void NavigateView::take_other_bone() {
   look_along_plan();
 }
 
+bool NavigateView::refuses_while_lent() {
+  if (!is_lent_) return false;
+  notice_ = "An exercise runs here: end it in Train (F6) first";
+  refused_s_ = theatre::LiveOperation::now_s();
+  return true;
+}
+
 void NavigateView::start(theatre::TheatreSource source) {
+  if (refuses_while_lent()) return;
   notice_.clear();
+  heard_ = {};
+  end_was_asked_ = false;
   choices_.layout.reset();
   cameras_.close();
   choices_.guidance_seen_s = -1e9;
   stops_once_open_ = false;
   kind_ = started_[choices_.bone] = source.setup.kind;
   part_.reset();
+  choices_.begin(*kind_);
   resume_.answer(choices_.bone);  // it begins: afresh, unless it was resumed
   bones_.used(choices_.bone).start(std::move(source));
   read_live();
@@ -107,9 +137,33 @@ void NavigateView::start(theatre::TheatreSource source) {
   look_along_plan();
 }
 
+std::string NavigateView::refusal_to_lend(bones::BoneKind bone) {
+  if (model_ == nullptr) return "no case is open";
+  if (is_under_way(*live_)) return "stop what runs in Navigate first";
+  const bool was_real = std::any_of(started_.begin(), started_.end(), [](const auto& one) {
+    return one.second != sources::SourceKind::Simulation;
+  });
+  if (was_real) return "an operation was begun in this case: open the built-in knee (F5) to train";
+  if (resume_.is_looking()) return "wait: the case's last operation is looked for";
+  const auto key = bones_.guided(bone);
+  return key ? missing_for_simulation(*model_, *key) : "there is no one planned tunnel to aim at";
+}
+
+void NavigateView::lend(bones::BoneKind bone, theatre::TheatreSource source) {
+  if (choices_.bone != bone) take_other_bone();
+  start(std::move(source));
+  is_lent_ = true;
+}
+
+const operation::OperationSetup* NavigateView::setup_in_use() const {
+  const theatre::LiveOperation* const operation = bones_.known(choices_.bone);
+  return operation != nullptr ? &operation->setup() : nullptr;
+}
+
 void NavigateView::ask(operation::Command command) { bones_.used(choices_.bone).apply(std::move(command)); }
 
 void NavigateView::start_simulation(SimulatedPart part) {
+  if (refuses_while_lent()) return;
   try {
     start(simulated_setup(*model_, *bones_.guided(choices_.bone), case_folder_, part));
     part_ = part;
@@ -119,7 +173,8 @@ void NavigateView::start_simulation(SimulatedPart part) {
 }
 
 void NavigateView::start_video() {
-  enter();
+  if (refuses_while_lent()) return;
+  choices_.videos = sources::videos_in(case_folder_);
   if (choices_.videos.empty()) {
     notice_ = "There is no video in the folder of the case";
     return;
@@ -135,6 +190,7 @@ void NavigateView::start_video() {
 }
 
 void NavigateView::start_live(const LivePictures& pictures) {
+  if (refuses_while_lent()) return;
   try {
     start(camera_setup(*model_, choices_.bone, case_folder_, pictures, turns_,
                        choices_.saline ? camera::kSalineIndex : camera::kAirIndex));
@@ -147,144 +203,13 @@ void NavigateView::start_live(const LivePictures& pictures) {
 }
 
 void NavigateView::choose_camera() {
+  if (refuses_while_lent()) return;
   if (cameras_.is_open()) return cameras_.choose_next();
   cameras_.open(sources::connected_cameras(), load_known_streams(known_streams_file()), used_before_);
   if (const auto only = cameras_.chosen(); only && only->device && cameras_.count() == 1) start_live(*only);
 }
 
 bool NavigateView::is_running() const { return live_->phase == Phase::Running; }
-
-bool NavigateView::can_simulate() const {
-  if (model_ == nullptr) return false;
-  const auto key = bones_.guided(choices_.bone);
-  return key && missing_for_simulation(*model_, *key).empty();
-}
-
-void NavigateView::start_same_kind() {
-  if (!kind_) {
-    // Nothing was chosen yet. The built-in knee has nothing but its simulation; a real case never starts one.
-    if (can_simulate() && !has_real_scope(case_folder_)) return start_simulation(SimulatedPart::Scratch);
-    if (!choices_.videos.empty()) return start_video();
-    return choose_camera();
-  }
-  switch (*kind_) {
-    case sources::SourceKind::Live:
-      return choose_camera();
-    case sources::SourceKind::Recording:
-      return start_video();
-    case sources::SourceKind::Simulation:
-      return start_simulation(registration().in_force.standing == operation::Standing::Stands
-                                  ? SimulatedPart::Drill
-                                  : SimulatedPart::Scratch);
-  }
-}
-
-const LeftBehind* NavigateView::left_behind() {
-  const bool has_begun = live_->phase != Phase::NoSource || live_->operation->resumed != nullptr;
-  return has_begun ? nullptr : resume_.of(choices_.bone);
-}
-
-// One step. What is brought back guides nothing until a touch; the source is the next step, of the same kind.
-void NavigateView::resume() {
-  const LeftBehind* const left = left_behind();
-  if (left == nullptr) return;
-  kind_ = sources::source_kind_from_text(left->found.header.source_kind);
-  // Who resumes it was told by which tunnel.
-  if (const auto& was = left->found.operation.plan;
-      was && bones_.guided(choices_.bone) != was->tunnel.key() && bones_.planned(was->tunnel.key()))
-    bones_.choose(was->tunnel.key());
-  ask(left->found.operation);
-  notice_ = left->found.operation.registration
-                ? "Resumed: what guided before guides again after one touch on the bone"
-                : "Resumed without a registration: " + left->found.refusal;
-  log::info("resumed: session " + left->found.operation.session);
-  resume_.answer(choices_.bone);
-}
-
-void NavigateView::decline_resume() {
-  if (const LeftBehind* const left = left_behind())
-    log::info("not resumed: session " + left->found.operation.session);
-  resume_.answer(choices_.bone);
-}
-
-std::string NavigateView::next_step() {
-  if (model_ == nullptr) return "open a case";
-  if (resume_.is_looking()) return "wait: the case's last operation is looked for";
-  if (left_behind() != nullptr) return "resume the operation that was left";
-  if (cameras_.is_open()) {
-    const auto pictures = cameras_.chosen();
-    return pictures ? "open " + pictures->name : "type the address of a stream, then Enter";
-  }
-  const NextAction action = live_->operation->next_action;
-  if (const std::string choice = tunnel_to_choose(); !choice.empty()) return choice;
-  const auto guided = bones_.guided(choices_.bone);
-  if (!guided) return words_of(NextAction::PlanTunnel);
-  if (waits_for_take_over() && guided->bundle != norms::Bundle::Whole)
-    return "take over the tunnel " + tunnels::name_of(*guided);
-  if (live_->phase == Phase::Starting)
-    return stops_once_open_ ? "wait: it stops once it is open" : "wait for the first picture";
-  const bool starts = action == NextAction::StartSource || action == NextAction::PlanTunnel;
-  if (!starts) return words_of(action);
-  const bool simulates =
-      kind_ ? *kind_ == sources::SourceKind::Simulation : can_simulate() && !has_real_scope(case_folder_);
-  const bool stands = registration().in_force.standing == operation::Standing::Stands;
-  if (simulates) return stands ? "drill (simulation)" : "start the simulated operation";
-  if (kind_ == sources::SourceKind::Live) return "open the camera again";
-  return kind_ || !choices_.videos.empty() ? "open the next video" : "choose a camera";
-}
-
-// One pedal: carries out what is a command, and starts nothing but the kind of source that was chosen.
-void NavigateView::take_next_step() {
-  if (cameras_.is_open()) {
-    if (const auto pictures = cameras_.chosen()) start_live(*pictures);
-    return;
-  }
-  if (resume_.is_looking()) return;
-  if (left_behind() != nullptr) return resume();
-  if (live_->phase == Phase::Starting || !bones_.guided(choices_.bone)) return;
-  if (waits_for_take_over()) return ask(operation::TakePlanOver{});
-  switch (live_->operation->next_action) {
-    case NextAction::StartSource:
-    case NextAction::PlanTunnel:  // of an operation that was not told yet of the plan that is there
-      return start_same_kind();
-    case NextAction::ConfirmTimeOut:
-      return ask(operation::ConfirmTimeOut{!patient_.empty()});
-    case NextAction::Draw:
-    case NextAction::RegisterAnew:
-      return ask(operation::Draw{true});
-    case NextAction::RegisterStrokes:
-      return ask(operation::RegisterStrokes{});
-    case NextAction::TakePlanOver:
-      return ask(operation::TakePlanOver{});
-    case NextAction::ConfirmByTouch:
-    case NextAction::VerifyByTouch:
-      return take_touch(false);
-    case NextAction::CheckWorldMarker:
-    case NextAction::SetControlPoint:
-    case NextAction::CheckControlPoint:
-      return take_touch(true);
-    case NextAction::CheckGuide:
-      return ask(operation::CheckGuide{});
-    case NextAction::RecordDrilled:
-      return ask(operation::TunnelDrilled{});
-    case NextAction::ShowWorldMarker:
-    case NextAction::GoOnDrawing:
-    case NextAction::WaitForRegistration:
-    case NextAction::BringGuide:
-    case NextAction::FollowBullseye:
-    case NextAction::Finish:
-      return;  // what is to be done is not done by a pedal
-  }
-}
-
-// The probe stops drawing with a touch; the screen stays, so that the distance is read in large.
-void NavigateView::take_touch(bool is_control_point) {
-  choices_.layout = layout(theatre::LiveOperation::now_s());
-  if (is_control_point)
-    ask(operation::TouchControlPoint{});
-  else
-    ask(operation::TakeTouch{});
-}
 
 float NavigateView::overlay_opacity(double now_s) const {
   if (!choices_.overlay_on) return 0;
@@ -298,7 +223,9 @@ void NavigateView::cycle_overlay() {
   choices_.overlay_shown_at_s = now;
 }
 
-bool NavigateView::is_busy() const { return is_under_way(*live_) || registration().is_fitting; }
+bool NavigateView::is_busy() const {
+  return is_under_way(*live_) || registration().is_fitting || heard_.waits_to_say();
+}
 
 void NavigateView::read_live() {
   const theatre::LiveStatePtr seen = live_;
@@ -309,6 +236,11 @@ void NavigateView::read_live() {
     live_ = TheatreBones::nothing();
   }
   choices_.follow(*live_->operation);
+  if (choices_.goes_to_other_bone && !is_under_way(*live_)) {
+    choices_.goes_to_other_bone = false;
+    take_other_bone();
+    return;
+  }
   // An address that gave no picture is not worth keeping.
   const bool gives_pictures = live_->phase == Phase::Running && live_->picture != nullptr;
   // That a source runs may still be news of the one before.
@@ -325,6 +257,15 @@ void NavigateView::read_live() {
 
 NavigateLayout NavigateView::layout(double now_s) const {
   return choices_.layout.value_or(layout_of(*live_, now_s - choices_.guidance_seen_s));
+}
+
+void NavigateView::follow_reached(const NavigateDisplay& display, double now_s) {
+  const bool has_plan =
+      model_ != nullptr && model_->has_bone(choices_.bone) && live_->operation->plan.has_value();
+  if (display.guidance_is_valid && has_plan)
+    choices_.reached.follow(display.guidance, now_s);
+  else
+    choices_.reached = {};
 }
 
 NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double now_s) {
@@ -347,22 +288,53 @@ NavigateScreen NavigateView::screen_of(const NavigateDisplay& display, double no
   screen.selected_stroke = choices_.stroke;
   screen.undistorts = choices_.undistorts;
   screen.next_step = next_step();
+  choices_.note_next(screen.next_step, now_s);
+  screen.pedal_acts = pedal_acts();
+  screen.rail = rail();
+  screen.looked_at = choices_.looked_at;
   screen.patient = patient_;
+  follow_reached(display, now_s);
+  screen.reached_for_s = choices_.reached.since(now_s);
+  screen.is_muted = player_.is_muted();
+  screen.sound_trouble = player_.trouble();
   return screen;
+}
+
+// What may be shown, to be heard: posted, never waited for, whether it is drawn or not.
+void NavigateView::sound(double now_s) {
+  using operation::Standing;
+  const NavigateDisplay display = display_of(live_.get(), now_s);
+  follow_reached(display, now_s);
+  const bool runs = is_running();
+  const Standing standing = registration().in_force.standing;
+  const bool doubts =
+      standing == Standing::Alarm || standing == Standing::InDoubt || standing == Standing::Void;
+  if (const auto due = heard_.follow({.guides = runs && display.guidance_is_valid,
+                                      .doubts = runs && doubts,
+                                      .reached = runs && choices_.reached.since(now_s).has_value(),
+                                      .runs = runs,
+                                      .end_was_asked = end_was_asked_},
+                                     now_s))
+    player_.play(*due);
 }
 
 void NavigateView::tick(double /*now_s*/) {
   if (model_ != nullptr) bones_.offer_plans();
   read_live();
+  sound(theatre::LiveOperation::now_s());
 }
 
 void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   // The bone is made ready for registration as soon as this mode is looked at.
   if (model_ != nullptr && model_->has_bone(choices_.bone)) (void)bones_.operation(choices_.bone);
+  // What was drawn last is on the screen by now.
+  if (auto* const shows = bones_.known(choices_.bone); shows != nullptr && drawn_) shows->shown(*drawn_);
   read_live();
+  drawn_ = live_;
   const double now = theatre::LiveOperation::now_s();
   NavigateDisplay display = display_of(live_.get(), now);
-  if (live_->phase == Phase::NoSource && !notice_.empty()) display.detail = notice_;
+  const bool was_refused = is_lent_ && now - refused_s_ < kRefusal_s;
+  if ((live_->phase == Phase::NoSource || was_refused) && !notice_.empty()) display.detail = notice_;
   if (!live_->operation->plan && model_ != nullptr && bones_.must_choose(choices_.bone))
     display.detail = "Two tunnels are planned in this bone: choose AM (1) or PL (2)";
   if (display.guidance_is_valid) {
@@ -371,26 +343,24 @@ void NavigateView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
     choices_.guidance_seen_s = now;
   }
   const NavigateScreen screen = screen_of(display, now);
-
-  const float gap = ui.theme.px(12);
-  widgets::Rect rest = area;
-  const widgets::Rect controls = rest.cut_bottom(ui.theme.px(100), gap);
-  const widgets::Rect video = rest.cut_left(std::min(rest.height * 1.0F, rest.width * 0.5F), gap);
-  draw_video(ui, video, screen, video_);
-  draw_questions(ui, video);
-  if (screen.layout == NavigateLayout::Register) {
-    draw_registration(ui, rest.cut_right(rest.width * 0.5F, gap), screen);
-    const widgets::Rect tracking = rest.cut_bottom(rest.height * 0.47F, gap);
-    scene_.draw(ui, rest, screen);
-    draw_tracking(ui, tracking, screen);
-  } else {
-    widgets::Rect right = rest.cut_right(rest.width * 0.45F, gap);
-    draw_bullseye(ui, rest.cut_top(rest.height * 0.54F, gap), screen);
-    draw_numbers(ui, right.cut_top(right.height * 0.46F, gap), screen);
-    scene_.draw(ui, rest, screen);
-    draw_tracking(ui, right, screen);
+  const TheatreLayout layout = layout_in(ui, area);
+  draw_video(ui, layout.video, screen, video_);
+  draw_rail(ui, layout.rail, screen);
+  draw_words(ui, layout.words, screen);
+  draw_states(ui, layout.states, screen);
+  const bool is_covered = choices_.shows_menu || draw_questions(ui, layout.block);
+  if (choices_.shows_menu) draw_menu(ui, layout.block, screen);
+  if (!is_covered || !layout.scene_is_in_block) scene_.draw(ui, layout.scene, screen);
+  if (!is_covered) {
+    if (screen.layout == NavigateLayout::Guide) draw_bullseye(ui, layout.target, screen);
+    if (screen.layout == NavigateLayout::Register)
+      draw_registration(ui, layout.main, screen);
+    else if (screen.display.guidance_is_valid)
+      draw_numbers(ui, layout.main, screen);
+    else
+      draw_reason(ui, layout.main, screen);
   }
-  draw_controls(ui, controls);
+  if (!takes_window()) draw_controls(ui, layout.buttons);
   note_states(ui, screen);
 }
 

@@ -11,20 +11,27 @@
 #include "app/mode/mode.h"
 #include "app/navigate/beginning_panel.h"
 #include "app/navigate/camera_choice.h"
+#include "app/navigate/finish_words.h"
 #include "app/navigate/navigate_choices.h"
 #include "app/navigate/navigate_panels.h"
 #include "app/navigate/navigate_scene.h"
 #include "app/navigate/navigate_setup.h"
 #include "app/navigate/theatre_bones.h"
+#include "app/navigate/theatre_layout.h"
+#include "app/sounds/player.h"
+#include "app/sounds/sound_watch.h"
 
 namespace arthronaut::navigate {
+
+// Steps of an operation that have a screen of their own.
+enum class Elsewhere { Plan, SetUp };
 
 class NavigateView : public mode::Mode {
  public:
   // wake: ends the window's wait for input; called from other threads. turns: shared with whatever else opens
-  // cameras.
+  // cameras. go_elsewhere: shows another mode.
   NavigateView(std::function<void()> make_current, std::function<void()> wake,
-               const sources::DeviceTurns& turns);
+               const sources::DeviceTurns& turns, std::function<void(Elsewhere)> go_elsewhere);
   ~NavigateView() override;
 
   [[nodiscard]] mode::ModeTitle title() const override;
@@ -35,11 +42,25 @@ class NavigateView : public mode::Mode {
   void add_actions(widgets::Actions& actions) override;
   void tick(double now_s) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
+  // While pictures come, or have come, nothing but them and what belongs to them is on the screen.
+  [[nodiscard]] std::optional<widgets::Rect> header_in(const widgets::Ui& ui,
+                                                       const widgets::Rect& window) const override;
   [[nodiscard]] bool is_busy() const override;
   [[nodiscard]] bool has_running_work() const override { return is_running(); }
   [[nodiscard]] std::optional<sources::SourceKind> source_kind() const override;
   [[nodiscard]] std::string notice() const override { return notice_; }
   [[nodiscard]] bool awaits_text() const override { return depth_.wants_focus() || cameras_.wants_text(); }
+
+  // For a mode that borrows this screen for a source of its own, an exercise. Why it cannot on this bone:
+  // something runs, a real operation was begun in this case, or nothing can be simulated; empty: it can.
+  [[nodiscard]] std::string refusal_to_lend(bones::BoneKind bone);
+  // Precondition: refusal_to_lend() is empty. From here to the next case_opened() this mode starts nothing of
+  // its own, and says so.
+  void lend(bones::BoneKind bone, theatre::TheatreSource source);
+  [[nodiscard]] const theatre::LiveStatePtr& live() const { return live_; }  // never null
+  [[nodiscard]] const operation::OperationSetup* setup_in_use() const;       // null: no operation yet
+  void ask(operation::Command command);
+  void end_source();
 
  private:
   void start(theatre::TheatreSource source);
@@ -50,14 +71,28 @@ class NavigateView : public mode::Mode {
   void choose_camera();
   // The same kind of source again: nothing but a key of its own ever changes the kind.
   void start_same_kind();
-  void end_source();
   void take_other_bone();
   // What is on offer now; null: nothing is, or something was begun.
   [[nodiscard]] const LeftBehind* left_behind();
   void resume();
   void decline_resume();
+  // One pedal: carries out what is a command, and starts nothing but the kind of source that was chosen.
   void take_next_step();
-  void ask(operation::Command command);
+  [[nodiscard]] bool was_asked();
+  void finish_step(FinishAction action);
+  // Another pedal: one step back, to do it again; after the first step the one of now is shown again.
+  void take_step_back();
+  void repeat_step(operation::Step step);
+  [[nodiscard]] bool pedal_acts();
+  [[nodiscard]] RailContext rail_context() const;
+  [[nodiscard]] Rail rail() const { return rail_of(*live_->operation, rail_context()); }
+  // Every bone with a planned tunnel, the one that is navigated first.
+  [[nodiscard]] std::vector<FinishedBone> finished_bones() const;
+  [[nodiscard]] bool is_drilled(const std::vector<FinishedBone>& bones) const;  // of finished_bones()
+  [[nodiscard]] bool finishes() const;  // all tunnels of this bone are drilled
+  [[nodiscard]] bool takes_guide_in_simulation() const;
+  [[nodiscard]] bool must_set_up() const;  // before pictures can be navigated
+  [[nodiscard]] bool simulates() const;    // the source that is started next is the simulated operation
   void take_touch(bool is_control_point);
   void add_registration_actions(widgets::Actions& actions);
   // Of two tunnels in one bone, which is drilled: tunnel_choice.cpp.
@@ -69,6 +104,9 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] bool waits_for_take_over() const;
   void add_answer_actions(widgets::Actions& actions);
   void cycle_overlay();
+  void sound(double now_s);
+  void follow_reached(const NavigateDisplay& display, double now_s);
+  [[nodiscard]] bool refuses_while_lent();  // and says so
   void look_along_plan();
   [[nodiscard]] std::string next_step();
   [[nodiscard]] bool can_simulate() const;
@@ -81,13 +119,19 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] NavigateScreen screen_of(const NavigateDisplay& display, double now_s);
   void note_states(const widgets::Ui& ui, const NavigateScreen& screen);
   [[nodiscard]] float overlay_opacity(double now_s) const;
+  [[nodiscard]] bool takes_window() const { return live_->phase != theatre::LiveState::Phase::NoSource; }
+  [[nodiscard]] TheatreLayout layout_in(const widgets::Ui& ui, const widgets::Rect& area) const;
+  // Before a source runs, what begins one; everything else stands in the menu.
   void draw_controls(const widgets::Ui& ui, const widgets::Rect& area);
-  // What asks something: an operation that was left, the cameras, the time-out, the depth stop.
-  void draw_questions(const widgets::Ui& ui, const widgets::Rect& video);
+  void draw_menu(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen);
+  // What asks something: an operation that was left, the cameras, the time-out, the depth stop, the check
+  // list at the end. False: nothing does.
+  bool draw_questions(const widgets::Ui& ui, const widgets::Rect& area);
 
   const open_case::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
   sources::DeviceTurns turns_;
+  std::function<void(Elsewhere)> go_elsewhere_;
   NavigateScene scene_;
   VideoTextures video_;
   TheatreBones bones_;
@@ -98,12 +142,18 @@ class NavigateView : public mode::Mode {
   bool stream_is_new_ = false;               // that, and it gave no picture yet
   std::string patient_;                      // in words; empty: not known
   NavigateChoices choices_;
+  theatre::LiveStatePtr drawn_;                           // in the frame before; null before the first
   theatre::LiveStatePtr live_ = TheatreBones::nothing();  // of this frame, of the chosen bone; never null
   RegistrationWords words_;                               // of its registration
   std::optional<SimulatedPart> part_;                     // of the simulation that was started last
   std::optional<sources::SourceKind> kind_;  // of the source that was started last; empty: none yet
   std::map<bones::BoneKind, sources::SourceKind> started_;  // the same, of each bone's
+  sounds::SoundWatch heard_;
+  sounds::Player player_;
   bool stops_once_open_ = false;  // the source that is being opened is not wanted any more
+  bool end_was_asked_ = false;    // of the source that was started last
+  bool is_lent_ = false;          // what was started last is an exercise's
+  double refused_s_ = -1e9;       // when something was refused because of that
   std::string notice_;
 };
 

@@ -1,7 +1,8 @@
 #include <algorithm>
-#include <array>
 
 #include "app/navigate/navigate_panels.h"
+#include "app/navigate/tracking_words.h"
+#include "app/widgets/afar_text.h"
 
 namespace arthronaut::navigate {
 
@@ -102,28 +103,64 @@ void draw_lists(const widgets::Ui& ui, const NavigateScreen& screen) {
 }  // namespace
 
 void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen) {
-  constexpr std::array<std::array<const char*, 2>, 4> kButtons{{{"navigate.take_back", "navigate.exclude"},
-                                                                {"navigate.touch", "navigate.control_point"},
-                                                                {"navigate.forget_touches", "navigate.clear"},
-                                                                {"navigate.earlier", "navigate.later"}}};
-  const float gap = ui.theme.px(8), height = ui.theme.px(40);
-  widgets::Rect rest = area;
-  widgets::Rect buttons = rest.cut_bottom((height + gap) * kButtons.size() - gap, ui.theme.px(12));
-  widgets::begin_panel(ui, "navigate.registration", rest);
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  ui.log.note("navigate.registration", area.min(), area.max());
+  draw.AddRectFilled(area.min(), area.max(), widgets::kPanel, ui.theme.px(6));
+  const RegistrationWords& words = screen.words;
+  widgets::Rect rest = area.inset(ui.theme.px(14));
+  const float line = ui.theme.afar->FontSize;
+  // In the order of what matters: what does not fit any more is left out whole.
+  const auto put = [&](widgets::Severity severity, ImU32 color, const std::string& text) {
+    if (text.empty()) return;
+    const float indent = severity == widgets::Severity::Quiet ? 0 : line;
+    const float height = widgets::afar_height(ui, rest.width - indent, text);
+    if (height > rest.height + 1) return;
+    widgets::Rect row = rest.cut_top(height);
+    if (indent > 0) widgets::draw_sign(draw, {row.x + line * 0.4F, row.y + line / 2}, line * 0.36F, severity);
+    (void)row.cut_left(indent);
+    widgets::draw_afar(ui, row, color, text);
+  };
+  const auto put_row = [&](const SeverityText& row) {
+    const bool is_quiet = row.severity == widgets::Severity::Quiet;
+    put(row.severity, is_quiet ? widgets::kText : widgets::color_of(row.severity), row.name + " " + row.text);
+  };
+  // A picture that is not of now, or a touch that was not taken, comes before everything else.
+  if (!screen.display.is_live || !screen.display.overlay_is_valid) {
+    const bool is_amiss = screen.display.has_picture;  // before there is one nothing is
+    put(is_amiss ? widgets::Severity::Caution : widgets::Severity::Quiet,
+        is_amiss ? widgets::kCaution : widgets::kText, screen.display.headline);
+    put(widgets::Severity::Quiet, widgets::kText, screen.display.detail);
+  }
+  if (const std::string notice = screen.has_source() ? touch_notice(*screen.live->operation) : "";
+      !notice.empty())
+    put(widgets::Severity::Caution, widgets::kCaution, "No touch taken: " + notice);
+  const SeverityText& state = words.state;
+  put(state.severity,
+      state.severity == widgets::Severity::Quiet ? widgets::kText : widgets::color_of(state.severity),
+      state.name);
+  if (rest.height > ui.theme.px(24)) {
+    ImGui::SetCursorScreenPos(rest.cut_top(ui.theme.px(24)).min());
+    ImGui::BeginChild("navigate.progress", {rest.width, ui.theme.px(18)}, false,
+                      ImGuiWindowFlags_NoScrollbar);
+    draw_bar(ui, words.progress, state.severity);
+    ImGui::EndChild();
+  }
+  if (words.touch) put_row(words.touch->number);
+  put(widgets::Severity::Quiet, widgets::kText, words.missing.empty() ? state.text : words.missing);
+  for (const SeverityText& row : words.numbers) put_row(row);
+  if (!screen.has_source()) return;
+  for (const SeverityText& row : contour_rows(*screen.live->operation)) put_row(row);
+}
+
+void draw_registration_details(const widgets::Ui& ui, const widgets::Rect& area,
+                               const NavigateScreen& screen) {
+  widgets::begin_panel(ui, "navigate.details", area);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui.theme.px(8), ui.theme.px(7)});
   draw_state(ui, screen.words);
   draw_touch(ui, screen.words.touch, screen.has_source() ? touch_notice(*screen.live->operation) : "");
   draw_lists(ui, screen);
   ImGui::PopStyleVar();
   widgets::end_panel();
-  const float width = (buttons.width - gap) / 2;
-  for (const auto& row : kButtons) {
-    const widgets::Rect line = buttons.cut_top(height, gap);
-    ImGui::SetCursorScreenPos(line.min());
-    widgets::action_button(ui, row[0], width, height);
-    ImGui::SetCursorScreenPos({line.x + width + gap, line.y});
-    widgets::action_button(ui, row[1], width, height);
-  }
 }
 
 }  // namespace arthronaut::navigate

@@ -16,7 +16,7 @@ constexpr double kMostOfView = 0.16;  // of the view's radius: the width that on
 
 struct Shaft {
   Eigen::Vector3d end_mm,
-      backwards;  // the working end, in the marker frame, and the way to the handle (unit)
+      backwards;  // the working end, in the tool's frame, and the way to the handle (unit)
 };
 
 std::optional<Shaft> shaft_of(const tools::Tool& tool) {
@@ -75,25 +75,23 @@ std::vector<scene::ClearDisc> clear_discs_of(const pipeline::FrameResult& result
   std::vector<scene::ClearDisc> discs;
   const double tip_radius_px = kTipClearance_px * result.camera.image_size_px().y() / 1080.0;
   const double most_px = std::max(kMostOfView * result.camera.boundary().radius_px, tip_radius_px);
-  for (const markers::MarkerObservation& marker : result.markers) {
-    if (result.is_frozen || !result.stands_for(marker)) continue;
-    for (const tools::Tool& tool : tools.tools) {
-      const auto shaft = tool.marker_id == marker.id ? shaft_of(tool) : std::nullopt;
-      if (!shaft) continue;
-      const Eigen::Vector3d end = marker.camera_from_marker * shaft->end_mm;
-      const Eigen::Vector3d backwards = marker.camera_from_marker.rotate(shaft->backwards);
-      if (const auto tip = result.camera.project(end); tip && is_near_view(result.camera, *tip))
-        discs.push_back({*tip, tip_radius_px});
-      std::optional<Width> before;
-      double along = 0;
-      while (along <= kShaftLength_mm) {
-        const Eigen::Vector3d middle = end + along * backwards;
-        // Near the lens a step is wide in the picture.
-        along += kStep_mm * std::clamp(middle.z() / 15, 0.15, 1.0);
-        const auto width = width_of(result.camera, middle, backwards);
-        if (width) add_discs(discs, *width, before, most_px);
-        before = width;
-      }
+  for (const tools::Tool& tool : tools.tools) {
+    const auto camera_from_tool = pipeline::body_in(result, tool.marker_id).camera_from_body;
+    const auto shaft = camera_from_tool ? shaft_of(tool) : std::nullopt;
+    if (!shaft) continue;
+    const Eigen::Vector3d end = *camera_from_tool * shaft->end_mm;
+    const Eigen::Vector3d backwards = camera_from_tool->rotate(shaft->backwards);
+    if (const auto tip = result.camera.project(end); tip && is_near_view(result.camera, *tip))
+      discs.push_back({*tip, tip_radius_px});
+    std::optional<Width> before;
+    double along = 0;
+    while (along <= kShaftLength_mm) {
+      const Eigen::Vector3d middle = end + along * backwards;
+      // Near the lens a step is wide in the picture.
+      along += kStep_mm * std::clamp(middle.z() / 15, 0.15, 1.0);
+      const auto width = width_of(result.camera, middle, backwards);
+      if (width) add_discs(discs, *width, before, most_px);
+      before = width;
     }
   }
   return discs;

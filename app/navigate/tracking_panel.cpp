@@ -19,26 +19,55 @@ bool is_needed(const NavigateScreen& screen, int marker_id) {
   return tool != nullptr && tool->marker_id == marker_id;
 }
 
+// Of a body of several markers also how many of them it is seen by, and which lies where it should not.
+std::string text_of(const markers::BodyObservation& body, std::size_t marker_count) {
+  std::string text(markers::to_text(body.state));
+  if (body.is_tracked() && marker_count > 1)
+    text += ", " + std::to_string(body.used_count()) + " of " + std::to_string(marker_count) + " markers";
+  if (body.odd_marker != markers::BodyObservation::kNone)
+    text += "; marker " + std::to_string(body.odd_marker) + " is out of place";
+  return text;
+}
+
 void draw_markers(const widgets::Ui& ui, const NavigateScreen& screen) {
   const pipeline::FrameResult& result = screen.frame();
-  const auto* world = screen.options().tools.find_world_marker(screen.options().bone);
-  for (const markers::MarkerObservation& marker : result.markers) {
-    const bool is_world = world != nullptr && world->marker_id == marker.id;
+  const tools::ToolSet& tools = screen.options().tools;
+  const auto* world = tools.find_world_marker(screen.options().bone);
+  const auto marker_count = [&](int id) {
+    for (const tools::WorldMarker& one : tools.world_markers)
+      if (one.marker_id == id) return one.markers.size();
+    for (const tools::Tool& one : tools.tools)
+      if (one.marker_id == id) return one.markers.size();
+    return std::size_t{0};
+  };
+  std::vector<markers::BodyObservation> bodies = result.bodies;
+  if (bodies.empty()) {  // made from a record, marker by marker
+    for (const markers::MarkerObservation& marker : result.markers) {
+      bodies.emplace_back();
+      bodies.back().id = marker.id;
+      bodies.back().state = marker.state;
+    }
+  }
+  for (const markers::BodyObservation& body : bodies) {
+    const bool is_world = world != nullptr && world->marker_id == body.id;
     // A tool that nobody needs now is worth a line only while it is seen.
-    const bool is_seen = marker.state != markers::MarkerState::NotSeen;
-    if (!is_world && !is_seen && !is_needed(screen, marker.id)) continue;
-    const bool stands = screen.display.is_live && result.stands_for(marker);
-    std::string text(markers::to_text(marker.state));
+    const bool is_seen = body.state != markers::MarkerState::NotSeen;
+    if (!is_world && !is_seen && !is_needed(screen, body.id)) continue;
+    const bool stands = screen.display.is_live && result.intrinsics_are_known && body.is_tracked();
+    std::string text = text_of(body, marker_count(body.id));
     if (!screen.display.is_live) text = "no live picture";
-    if (screen.display.is_live && marker.is_tracked() && !stands) text = "lens angle unknown";
-    const Severity severity = stands                                            ? Severity::Good
-                              : !screen.display.is_live                         ? Severity::Quiet
-                              : is_world                                        ? Severity::Bad
-                              : is_needed(screen, marker.id)                    ? Severity::Caution
-                              : marker.state == markers::MarkerState::Duplicate ? Severity::Caution
-                                                                                : Severity::Quiet;
-    widgets::status_row(ui, severity, guidance_severity::marker_name(screen.options().tools, marker.id),
-                        text);
+    if (screen.display.is_live && body.is_tracked() && !stands) text = "lens angle unknown";
+    const bool is_odd = body.odd_marker != markers::BodyObservation::kNone ||
+                        body.state == markers::MarkerState::Disagreeing ||
+                        body.state == markers::MarkerState::Duplicate;
+    const Severity severity = stands && !is_odd            ? Severity::Good
+                              : !screen.display.is_live    ? Severity::Quiet
+                              : stands                     ? Severity::Caution
+                              : is_world                   ? Severity::Bad
+                              : is_needed(screen, body.id) ? Severity::Caution
+                              : is_odd                     ? Severity::Caution
+                                                           : Severity::Quiet;
+    widgets::status_row(ui, severity, guidance_severity::marker_name(tools, body.id), text);
   }
 }
 
@@ -132,11 +161,16 @@ void draw_tracking(const widgets::Ui& ui, const widgets::Rect& area, const Navig
       draw_markers(ui, screen);
     }
     draw_registration_row(ui, screen);
+    draw_rows(ui, contour_rows(*screen.live->operation));
+    if (screen.is_muted || !screen.sound_trouble.empty())
+      widgets::status_row(ui, widgets::Severity::Caution, "Sound",
+                          screen.is_muted ? "muted (Y)" : screen.sound_trouble);
     draw_guide_check(ui, screen.live->operation->guide_check);
     draw_touch_row(ui, screen);
     draw_probe(ui, screen);
     const operation::OperationState& state = *screen.live->operation;
     draw_rows(ui, beginning_rows(state, screen.patient));
+    draw_rows(ui, source_rows(*screen.live));
     draw_rows(ui, record_rows(*screen.live, screen.display));
     widgets::status_row(ui, Severity::Quiet, state.source->title, state.source->calibration);
   }

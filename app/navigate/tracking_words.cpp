@@ -18,7 +18,53 @@ SeverityText recording_row(const theatre::LiveState& live, bool pictures_come) {
   return {live.keeps_video ? Severity::Good : Severity::Quiet, "Recording", what};
 }
 
+// Median, and what 99 of 100 pictures keep.
+std::string range_text(const theatre::StageLatency& stage) {
+  return widgets::fixed(stage.median_ms, 0) + " (" + widgets::fixed(stage.p99_ms, 0) + ")";
+}
+
 }  // namespace
+
+std::vector<SeverityText> contour_rows(const operation::OperationState& state) {
+  using contour::ContourState;
+  const contour::ContourVerdict& seen = state.contour;
+  const std::string name = "Bone in picture";
+  switch (seen.state) {
+    case ContourState::Drifted:
+      return {{Severity::Bad, name, widgets::fixed(seen.drift_mm, 1) + " mm from where it lay"}};
+    case ContourState::Holds:
+      return {{Severity::Quiet, name, "no shift of 1 to 1.7 mm seen"}};
+    case ContourState::NotChecked:
+      if (seen.reason == contour::NotCheckedReason::NoRegistration) return {};
+      return {{Severity::Quiet, name, "not checked: " + std::string(contour::to_text(seen.reason))}};
+  }
+  return {};
+}
+
+std::vector<SeverityText> source_rows(const theatre::LiveState& live) {
+  std::vector<SeverityText> rows;
+  if (live.trouble != theatre::SourceTrouble::None) {
+    const bool still_guides =
+        live.trouble == theatre::SourceTrouble::Torn || live.trouble == theatre::SourceTrouble::Repeated;
+    rows.push_back({still_guides ? Severity::Caution : Severity::Bad, "Source", live.trouble_words});
+  }
+  using theatre::Stage;
+  const theatre::StageLatency& guidance = of(live.latency, Stage::ToGuidance);
+  if (guidance.count == 0) return rows;
+  const theatre::StageLatency& screen = of(live.latency, Stage::ToScreen);
+  std::string text = range_text(guidance) + " ms to guidance";
+  if (screen.count > 0) text += ", " + range_text(screen) + " ms to the screen";
+  const Severity severity = live.trouble == theatre::SourceTrouble::Late ? Severity::Bad : Severity::Quiet;
+  rows.push_back({severity, "Latency", text});
+  std::string stages;
+  for (const Stage stage : {Stage::Capture, Stage::Decode, Stage::Queue, Stage::Tracking, Stage::Operation,
+                            Stage::Publish, Stage::Display})
+    if (const theatre::StageLatency& one = of(live.latency, stage); one.count > 0)
+      stages +=
+          (stages.empty() ? "" : ", ") + std::string(to_text(stage)) + " " + widgets::fixed(one.median_ms, 1);
+  rows.push_back({Severity::Quiet, "Stages, ms", stages});
+  return rows;
+}
 
 std::vector<SeverityText> beginning_rows(const operation::OperationState& state, const std::string& patient) {
   using Topic = CardLine::Topic;

@@ -14,6 +14,13 @@ namespace arthronaut::navigate {
 // camera and tools with the source.
 [[nodiscard]] std::vector<SeverityText> beginning_rows(const operation::OperationState& state,
                                                        const std::string& patient);
+// Whether the picture shows the registered bone where it lay, or why that is not checked: never more than
+// quiet, since it makes nothing more sure. Empty while no registration stands or an alarm of another kind
+// holds.
+[[nodiscard]] std::vector<SeverityText> contour_rows(const operation::OperationState& state);
+// What is wrong with a live source, and how long its pictures take: medians, in brackets what 99 of 100 keep.
+// Empty for other sources.
+[[nodiscard]] std::vector<SeverityText> source_rows(const theatre::LiveState& live);
 // Whether something is recorded, and how fast pictures come. The journal is written in any case: what is
 // worth saying is that it is not, and whether video is kept. Nothing of a source that gives no pictures now.
 [[nodiscard]] std::vector<SeverityText> record_rows(const theatre::LiveState& live,

@@ -44,17 +44,6 @@ DrawnPicture draw_picture(const widgets::Rect& area, const NavigateScreen& scree
   return {picture, {picture, part}};
 }
 
-void draw_reason(const widgets::Ui& ui, const widgets::Rect& area, const NavigateDisplay& display) {
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const float height = ui.theme.px(120);
-  const widgets::Rect band{area.x, area.y + area.height - height, area.width, height};
-  draw.AddRectFilled(band.min(), band.max(), IM_COL32(10, 12, 15, 225));
-  const widgets::Rect head{band.x, band.y + ui.theme.px(12), band.width, ui.theme.px(44)};
-  widgets::text_centered(ui, head, ui.theme.title, widgets::kCaution, display.headline);
-  widgets::text_centered(ui, {band.x, head.y + head.height, band.width, ui.theme.px(52)}, ui.theme.strong,
-                         widgets::kText, display.detail);
-}
-
 }  // namespace
 
 const PictureLines& NavigateScreen::lines() const {
@@ -71,16 +60,19 @@ void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const Navigate
   const NavigateDisplay& display = screen.display;
   if (!display.has_picture) {
     const float middle = area.center().y, height = ui.theme.px(60);
-    widgets::text_centered(ui, {area.x, middle - height, area.width, height}, ui.theme.title, widgets::kText,
+    widgets::text_centered(ui, {area.x, middle - height, area.width, height}, ui.theme.afar, widgets::kText,
                            display.headline);
-    widgets::text_centered(ui, {area.x, middle, area.width, 2 * height}, ui.theme.strong, widgets::kQuietText,
+    widgets::text_centered(ui, {area.x, middle, area.width, 3 * height}, ui.theme.title, widgets::kQuietText,
                            display.detail);
     return;
   }
   const DrawnPicture picture = draw_picture(area, screen, textures);
   draw.PushClipRect(picture.area.min(), picture.area.max(), true);
   const auto draw_lines = [&](const scene::PlanOverlay& lines) {
-    draw_overlay_lines(draw, picture.placement, lines, screen.overlay_opacity, ui.theme.scale);
+    // Strokes have done their work once the guide is aimed: the plan is what counts then.
+    const bool aims = screen.layout == NavigateLayout::Guide && display.plan_is_valid;
+    draw_overlay_lines(draw, picture.placement, lines,
+                       {screen.overlay_opacity, ui.theme.scale, aims ? 0.3F : 1.F});
   };
   if (display.plan_is_valid && screen.overlay_opacity > 0) draw_lines(screen.lines().plan);
   if (display.overlay_is_valid && screen.overlay_opacity > 0) draw_lines(screen.lines().touched);
@@ -96,9 +88,13 @@ void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const Navigate
     (void)below.cut_top(ui.theme.px(screen.undistorts ? 44 : 0));
     if (!reason.empty()) widgets::caption(ui, below, widgets::kCaution, reason);
   }
-  // While the bone is registered nothing guides, as it should be: the picture is needed whole.
+  // By its edge alone: nothing lies over the picture, and so over no marker.
   const bool is_expected = screen.layout == NavigateLayout::Register && display.overlay_is_valid;
-  if (!display.guidance_is_valid && !is_expected) draw_reason(ui, area, display);
+  if (!display.guidance_is_valid && !is_expected)
+    draw.AddRect(area.min(), area.max(), widgets::kCaution, ui.theme.px(6), 0, ui.theme.px(5));
+  else if (screen.reached_for_s)
+    draw.AddRect(area.min(), area.max(), widgets::kGood, ui.theme.px(6), 0,
+                 ui.theme.px(*screen.reached_for_s < 1 ? 14 : 7));
 }
 
 }  // namespace arthronaut::navigate

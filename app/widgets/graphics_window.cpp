@@ -6,6 +6,7 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 
+#include <cmath>
 #include <utility>
 
 #include "app/widgets/key_labels.h"
@@ -22,6 +23,7 @@ struct GraphicsWindow::State {
   std::vector<KeyPress> keys;
   std::vector<int> released;
   std::vector<std::filesystem::path> dropped;
+  double diagonal_mm = 0;
   int frames_to_hold = 0;
 
   static State& of(GLFWwindow* window) { return *static_cast<State*>(glfwGetWindowUserPointer(window)); }
@@ -37,6 +39,25 @@ struct GraphicsWindow::State {
   static void on_drop(GLFWwindow* window, int count, const char** paths) {
     for (int i = 0; i < count; ++i) of(window).dropped.emplace_back(paths[i]);
   }
+  // The screen that the window is on, as large as the user says it is or else as it says itself. A size that
+  // no screen in a theatre has is one that nobody measured.
+  [[nodiscard]] Screen screen() const {
+    Screen screen;
+    glfwGetFramebufferSize(window, &screen.width_px, &screen.height_px);
+    screen.diagonal_mm = diagonal_mm;
+    GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+    const GLFWvidmode* const mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
+    if (mode == nullptr) return screen;
+    screen.width_px = mode->width;
+    screen.height_px = mode->height;
+    constexpr double kSmallest_mm = 20 * 25.4, kLargest_mm = 100 * 25.4;
+    int width_mm = 0, height_mm = 0;
+    glfwGetMonitorPhysicalSize(monitor, &width_mm, &height_mm);
+    const double said_mm = std::hypot(width_mm, height_mm);
+    if (diagonal_mm <= 0 && said_mm >= kSmallest_mm && said_mm <= kLargest_mm) screen.diagonal_mm = said_mm;
+    return screen;
+  }
+  void build(float scale) { theme = build_theme(scale, afar_px(screen(), scale)); }
   void deal_keys() {
     keys.clear();
     released.clear();
@@ -70,7 +91,9 @@ struct GraphicsWindow::State {
   }
 };
 
-GraphicsWindow::GraphicsWindow(const std::string& title) : state_(std::make_unique<State>()) {
+GraphicsWindow::GraphicsWindow(const std::string& title, double diagonal_mm)
+    : state_(std::make_unique<State>()) {
+  state_->diagonal_mm = diagonal_mm;
   if (glfwInit() == GLFW_FALSE) {
     const char* reason = nullptr;
     glfwGetError(&reason);
@@ -115,7 +138,7 @@ GraphicsWindow::GraphicsWindow(const std::string& title) : state_(std::make_uniq
   ImGui_ImplOpenGL3_Init("#version 330 core");
   int frame_width = 0, frame_height = 0;
   glfwGetFramebufferSize(state_->window, &frame_width, &frame_height);
-  state_->theme = build_theme(scale_for(frame_width, frame_height));
+  state_->build(scale_for(frame_width, frame_height));
 }
 
 GraphicsWindow::~GraphicsWindow() {
@@ -136,7 +159,7 @@ void GraphicsWindow::begin_frame(double timeout_s) {
   glfwGetFramebufferSize(s.window, &width, &height);
   const float scale = scale_for(width, height);
   if (width > 0 && scale != s.theme.scale) {
-    s.theme = build_theme(scale);
+    s.build(scale);
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
   }
@@ -175,6 +198,7 @@ std::vector<std::filesystem::path> GraphicsWindow::take_dropped() {
 }
 bool GraphicsWindow::should_close() const { return glfwWindowShouldClose(state_->window) == GLFW_TRUE; }
 void GraphicsWindow::make_current() const { glfwMakeContextCurrent(state_->window); }
+Screen GraphicsWindow::screen() const { return state_->screen(); }
 const Theme& GraphicsWindow::theme() const { return state_->theme; }
 double GraphicsWindow::now_s() { return glfwGetTime(); }
 void GraphicsWindow::wake() { glfwPostEmptyEvent(); }

@@ -21,8 +21,9 @@ struct KeyPress {
 
 class GraphicsWindow {
  public:
-  // As large as the screen. Throws DeviceError when there is no display or no OpenGL 3.3.
-  explicit GraphicsWindow(const std::string& title);
+  // As large as the screen. diagonal_mm: of the screen, as the user says; 0: as the screen says. Throws
+  // DeviceError when there is no display or no OpenGL 3.3.
+  explicit GraphicsWindow(const std::string& title, double diagonal_mm = 0);
   ~GraphicsWindow();
   GraphicsWindow(const GraphicsWindow&) = delete;
   GraphicsWindow& operator=(const GraphicsWindow&) = delete;
@@ -42,6 +43,7 @@ class GraphicsWindow {
   [[nodiscard]] bool should_close() const;
   void keep_open();  // takes back that it should close
   void make_current() const;
+  [[nodiscard]] Screen screen() const;
   [[nodiscard]] const Theme& theme() const;
   [[nodiscard]] static double now_s();
   // From any thread: ends the wait in begin_frame().

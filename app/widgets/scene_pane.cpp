@@ -73,9 +73,9 @@ void ScenePane::follow_mouse(const PaneInput& input) {
 void ScenePane::render(const Ui& ui, const Rect& rect) {
   if (!(camera_ == drawn_camera_)) changed_ = true;
   if (changed_) changed_at_s_ = ui.now_s;
-  const bool is_still =
-      ui.now_s - changed_at_s_ > kStillAfter_s && rect.width * rect.height * 4 < kMostPixelsWhenStill;
-  const float factor = is_still ? 2 : 1;
+  const bool is_still = ui.now_s - changed_at_s_ > kStillAfter_s;
+  const float factor = is_still && rect.width * rect.height * 4 < kMostPixelsWhenStill ? 2 : 1;
+  view_.set_still(is_still);
   view_.resize(static_cast<int>(rect.width * factor), static_cast<int>(rect.height * factor));
   view_.look(camera_);
   view_.render_if_dirty();

@@ -34,6 +34,8 @@ ImFont* add_font(const Paths& paths, float size_px, const ImWchar* glyphs = kGly
   return ImGui::GetIO().Fonts->AddFontDefault(&config);
 }
 
+constexpr double kArcminPerRad = 180 * 60 / 3.14159265358979323846;
+
 ImVec4 rgba(ImU32 color) { return ImGui::ColorConvertU32ToFloat4(color); }
 
 void build_style(float scale) {
@@ -79,7 +81,26 @@ float scale_for(int width_px, int height_px) {
   return std::clamp(std::round(fit * 12) / 12, 0.5F, 4.0F);
 }
 
-Theme build_theme(float scale) {
+double arc_minutes_of(float font_px, const Screen& screen) {
+  const double diagonal_px = std::hypot(screen.width_px, screen.height_px);
+  const double diagonal_mm = screen.diagonal_mm > 0 ? screen.diagonal_mm : kUsualDiagonal_mm;
+  const double capitals_mm = static_cast<double>(font_px * kCapitalsOfSize) * diagonal_mm / diagonal_px;
+  return std::atan2(capitals_mm, kAfarDistance_mm) * kArcminPerRad;
+}
+
+float afar_needed_px(const Screen& screen) {
+  const double diagonal_px = std::hypot(screen.width_px, screen.height_px);
+  const double diagonal_mm = screen.diagonal_mm > 0 ? screen.diagonal_mm : kUsualDiagonal_mm;
+  const double capitals_mm = kAfarDistance_mm * std::tan(kAfar_arcmin / kArcminPerRad);
+  return static_cast<float>(capitals_mm * diagonal_px / diagonal_mm) / kCapitalsOfSize;
+}
+
+float afar_px(const Screen& screen, float scale) {
+  const float usual = kAfar_px * scale;
+  return std::ceil(std::clamp(afar_needed_px(screen), 0.8F * usual, 1.2F * usual));
+}
+
+Theme build_theme(float scale, float afar_px) {
   ImGui::GetIO().Fonts->Clear();
   Theme theme;
   theme.scale = scale;
@@ -87,8 +108,9 @@ Theme build_theme(float scale) {
   theme.strong = add_font(kSemiBold, std::round(24 * scale));
   theme.title = add_font(kSemiBold, std::round(34 * scale));
   theme.number = add_font(kSemiBold, std::round(64 * scale));
-  static constexpr std::array<ImWchar, 7> kLetters{0x20, 0x7E, 0x2013, 0x2013, 0x2190, 0x2193, 0};
-  theme.afar = add_font(kSemiBold, std::round(kAfar_px * scale), kLetters.data());
+  static constexpr std::array<ImWchar, 9> kLetters{0x20,   0xFF,   0x2010, 0x2026, 0x2190,
+                                                   0x2193, 0x2212, 0x2212, 0};
+  theme.afar = add_font(kSemiBold, afar_px, kLetters.data());
   build_style(scale);
   return theme;
 }

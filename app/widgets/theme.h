@@ -14,16 +14,31 @@ struct Theme {
   ImFont* strong = nullptr;  // 24 px, semi-bold
   ImFont* title = nullptr;   // 34 px
   ImFont* number = nullptr;  // 64 px
-  ImFont* afar = nullptr;    // kAfar_px, semi-bold, Latin letters and digits alone
+  ImFont* afar = nullptr;    // afar_px(), semi-bold, Western letters alone
   [[nodiscard]] float px(float size_at_1080) const { return size_at_1080 * scale; }
 };
 
-// What must be read from across the room: capitals 16 minutes of arc high at 2 m on a 27-inch screen. That is
-// 2000 mm x tan(16') = 9.3 mm; such a screen has 1080 lines on 336 mm, so 30 px. A font's size counts from
-// its highest to its deepest letter: capitals are 0.60 of it in Inter (0.727 / 1.21 em) and 0.63 in DejaVu
-// Sans.
+// The one rule of size: what guides or warns is read from across the room when its capitals are 16 minutes of
+// arc high at 2 m. A font's size counts from its highest to its deepest letter: capitals are 0.60 of it in
+// Inter (0.727 / 1.21 em) and 0.63 in DejaVu Sans. On a 27-inch screen of 1080 lines (336 mm high) that is 30
+// px of capital, 52 px of font.
+inline constexpr double kAfar_arcmin = 16, kAfarDistance_mm = 2000;
 inline constexpr float kCapitalsOfSize = 0.60F;
-inline constexpr float kAfar_px = 52;
+inline constexpr float kAfar_px = 50;  // at scale 1 on that screen; afar_px() says it for any
+
+// A screen that is looked at. diagonal_mm 0: not known, or not believable; then it counts as 27 inches.
+struct Screen {
+  int width_px = 1920, height_px = 1080;  // of the whole screen
+  double diagonal_mm = 0;
+};
+inline constexpr double kUsualDiagonal_mm = 27 * 25.4;
+// The font size that the rule asks for on this screen.
+[[nodiscard]] float afar_needed_px(const Screen& screen);
+// The font size that is used at this scale: the one that is needed, as far as a layout of this scale can hold
+// it, from 0.8 to 1.2 times its usual size.
+[[nodiscard]] float afar_px(const Screen& screen, float scale);
+// What such a font falls short of, in minutes of arc at 2 m: 16 or more where the rule is kept.
+[[nodiscard]] double arc_minutes_of(float font_px, const Screen& screen);
 
 inline constexpr ImU32 kBackground = IM_COL32(12, 15, 19, 255);
 inline constexpr ImU32 kPanel = IM_COL32(22, 27, 33, 255);
@@ -42,6 +57,6 @@ inline constexpr ImU32 kBad = IM_COL32(255, 112, 92, 255);
 [[nodiscard]] float scale_for(int width_px, int height_px);
 // (Re)builds fonts and style for a scale. Inter where it is installed, DejaVu Sans else, ImGui's own as the
 // last resort. Between frames only; the caller refreshes the font texture.
-[[nodiscard]] Theme build_theme(float scale);
+[[nodiscard]] Theme build_theme(float scale, float afar_px);
 
 }  // namespace arthronaut::widgets

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "navigation/camera/frame.h"
 
@@ -24,6 +25,7 @@ class VideoTexture {
   std::uint32_t texture_ = 0;
   int width_ = 0, height_ = 0;
   camera::FramePtr uploaded_;
+  std::vector<std::uint8_t> made_;  // its colours, of frames that keep none
 };
 
 }  // namespace arthronaut::widgets

@@ -18,7 +18,7 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
   draw.AddLine({area.x, area.y + area.height}, area.max(), widgets::kPanelEdge);
   const float middle = area.y + area.height / 2;
   const ImFont* title = ui.theme.title;
-  const float width = ui.theme.px(162), height = ui.theme.px(50);
+  const float width = ui.theme.px(152), height = ui.theme.px(50);
   const widgets::Rect heart{area.x + ui.theme.px(14), middle - height / 2, height, height};
   widgets::draw_heartbeat(ui, heart, heartbeat_);
   // The same place in all modes: where the pictures come from, or else whose screen this is.
@@ -38,17 +38,25 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
   if (case_ != nullptr) {
     const cases::Case& knee = is_unpainted() ? *case_->unpainted() : model()->knee();
     const std::string text = knee.name + "  \u2013  " + std::string(bones::to_text(knee.side)) + " knee";
-    // Whose knee it is stands over the name of the case.
     const std::string patient = case_->identity() ? case_->identity()->in_words() : "";
     const float right = area.x + area.width - ui.theme.px(482);
     const auto line = [&](const ImFont* font, float y, ImU32 color, const std::string& words) {
       const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, words.c_str()).x;
       draw.AddText(font, font->FontSize, {right - wide, y}, color, words.c_str());
     };
-    const float row = ui.theme.strong->FontSize;
-    if (!patient.empty()) line(ui.theme.strong, middle - row, widgets::kText, patient);
-    line(ui.theme.strong, patient.empty() ? middle - row / 2 : middle,
-         patient.empty() ? widgets::kText : widgets::kQuietText, text);
+    const ImFont* const strong = ui.theme.strong;
+    const float row = strong->FontSize;
+    const bool is_too_long = strong->CalcTextSizeA(row, 1e9F, 0, text.c_str()).x > right - x - ui.theme.px(8);
+    // Whose knee it is stands over the name of the case; a long name over the side.
+    if (!patient.empty()) {
+      line(strong, middle - row, widgets::kText, patient);
+      line(strong, middle, widgets::kQuietText, text);
+    } else if (is_too_long) {
+      line(strong, middle - row, widgets::kText, knee.name);
+      line(strong, middle, widgets::kText, std::string(bones::to_text(knee.side)) + " knee");
+    } else {
+      line(strong, middle - row / 2, widgets::kText, text);
+    }
   }
   x = area.x + area.width - ui.theme.px(12);
   for (const auto& [id, size] : {std::pair{"app.quit", 156.F}, {"app.keys", 140.F}, {"app.cases", 140.F}}) {
@@ -59,27 +67,59 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
   }
 }
 
+std::pair<std::string, bool> WorkstationWindow::status_words() const {
+  const std::string standstill = heartbeat_.words();
+  const std::string notice = !failure_.empty()                ? failure_
+                             : !standstill.empty()            ? standstill
+                             : shows_start() || shows_paint() ? std::string()
+                                                              : shown().notice();
+  if (!notice.empty()) return {notice, true};
+  const std::string access = case_ == nullptr        ? std::string()
+                             : case_->is_read_only() ? "READ-ONLY: the case " + case_->read_only_reason()
+                                                     : case_->notice();
+  if (!access.empty()) return {access, true};
+  if (const std::string trouble = room_.trouble(); !trouble.empty()) return {trouble, true};
+  return {case_ != nullptr ? case_->folder().string() : std::string(), false};
+}
+
+void WorkstationWindow::draw_header(const widgets::Ui& ui, const widgets::Rect& area) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  widgets::Rect rest = area;
+  const widgets::Rect foot = rest.cut_bottom(ui.theme.body->FontSize + ui.theme.px(4));
+  const float side = std::min(rest.height, ui.theme.px(50));
+  widgets::draw_heartbeat(ui, {rest.x, rest.center().y - side / 2, side, side}, heartbeat_);
+  (void)rest.cut_left(side, ui.theme.px(10));
+  if (const auto kind = shown().source_kind())
+    (void)rest.cut_left(widgets::draw_source_word(ui, rest, *kind), ui.theme.px(14));
+  // Whose knee it is: the patient as far as known, the case and the side.
+  const cases::Case& knee = model()->knee();
+  const std::string side_words = std::string(bones::to_text(knee.side)) + " knee";
+  const std::string patient = case_->identity() ? case_->identity()->in_words() : knee.name;
+  const auto line = [&](ImFont* font, float y, ImU32 color, const std::string& words) {
+    const ImVec4 clip{rest.x, area.y, rest.x + rest.width, area.y + area.height};
+    draw.AddText(font, font->FontSize, {rest.x, y}, color, words.c_str(), nullptr, 0, &clip);
+  };
+  line(ui.theme.title, rest.y, widgets::kText, side_words);
+  line(ui.theme.strong, rest.y + ui.theme.title->FontSize, widgets::kQuietText, patient);
+  const ImFont* const font = ui.theme.body;
+  const float notice = font->CalcTextSizeA(font->FontSize, 1e9F, 0, kNotice).x;
+  draw.AddText(font, font->FontSize, foot.min(), widgets::kQuietText, kNotice);
+  const auto [text, warns] = status_words();
+  if (!warns) return;
+  const ImVec4 clip{foot.x + notice + ui.theme.px(20), foot.y, foot.x + foot.width, foot.y + foot.height};
+  draw.AddText(font, font->FontSize, {clip.x, foot.y}, widgets::kCaution, text.c_str(), nullptr, 0, &clip);
+}
+
 void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Rect& area) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddRectFilled(area.min(), area.max(), widgets::kPanel);
   const ImFont* font = ui.theme.body;
   const float y = area.y + (area.height - font->FontSize) / 2;
   draw.AddText(font, font->FontSize, {area.x + ui.theme.px(20), y}, widgets::kQuietText, kNotice);
-  const std::string standstill = heartbeat_.words();
-  const std::string notice = !failure_.empty()                ? failure_
-                             : !standstill.empty()            ? standstill
-                             : shows_start() || shows_paint() ? std::string()
-                                                              : shown().notice();
-  const std::string access = case_ == nullptr        ? std::string()
-                             : case_->is_read_only() ? "READ-ONLY: the case " + case_->read_only_reason()
-                                                     : case_->notice();
-  const std::string text = !notice.empty()    ? notice
-                           : !access.empty()  ? access
-                           : case_ != nullptr ? case_->folder().string()
-                                              : std::string();
+  const auto [text, warns] = status_words();
   const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
   draw.AddText(font, font->FontSize, {area.x + area.width - wide - ui.theme.px(20), y},
-               notice.empty() && access.empty() ? widgets::kQuietText : widgets::kCaution, text.c_str());
+               warns ? widgets::kCaution : widgets::kQuietText, text.c_str());
 }
 
 }  // namespace arthronaut::window

@@ -7,11 +7,14 @@
 #include <utility>
 
 #include "app/library/workstation_library.h"
+#include "app/navigate/known_streams.h"
 #include "app/navigate/navigate_view.h"
 #include "app/plan/plan_view.h"
 #include "app/review/review_view.h"
 #include "app/setup/setup_view.h"
+#include "app/training/training_view.h"
 #include "app/widgets/hold_hint.h"
+#include "app/widgets/key_clashes.h"
 #include "app/widgets/source_banner.h"
 #include "app/window/key_list.h"
 #include "planning/files/utc_clock.h"
@@ -30,7 +33,7 @@ constexpr int kFramesAfterInput = 4;
 
 WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
     : options_(options),
-      window_("Arthronaut"),
+      window_("Arthronaut", room_.screen_diagonal_mm()),
       log_(options.list_widgets),
       watch_([](const std::string& what) { spdlog::warn(what); }, std::chrono::milliseconds(500)),
       start_([this](const std::filesystem::path& folder) { open(folder); }, [] { GraphicsWindow::wake(); }),
@@ -40,6 +43,7 @@ WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
               .bones_made = [this] { reopens_ = true; }}) {
   make_modes();
   add_actions();
+  room_.listen([] { GraphicsWindow::wake(); });
   start_.enter(false);
   if (options.built_in)
     open({});
@@ -72,9 +76,33 @@ void WorkstationWindow::make_modes() {
   constexpr std::size_t kNavigate = 2;
   modes_.push_back(std::make_unique<plan::PlanView>(make_current, wake, [this] { show_paint(); }));
   modes_.push_back(std::make_unique<setup::SetupView>(
-      wake, [this] { show(kNavigate); }, camera_turns));
-  modes_.push_back(std::make_unique<navigate::NavigateView>(make_current, wake, camera_turns));
-  modes_.push_back(std::make_unique<review::ReviewView>(make_current, wake));
+      wake, [this] { show(kNavigate); }, camera_turns,
+      setup::SetupView::Streams{[] { return navigate::load_known_streams(navigate::known_streams_file()); },
+                                [](const std::string& address) {
+                                  navigate::note_stream(navigate::known_streams_file(), address);
+                                }}));
+  auto theatre = std::make_unique<navigate::NavigateView>(
+      make_current, wake, camera_turns, [this](navigate::Elsewhere where) {
+        const bool is_plan = where == navigate::Elsewhere::Plan;
+        actions_.run(is_plan ? "mode.plan" : "mode.setup");
+      });
+  navigate::NavigateView* const screen = theatre.get();
+  modes_.push_back(std::move(theatre));
+  auto review = std::make_unique<review::ReviewView>(make_current, wake);
+  review_ = review.get();
+  modes_.push_back(std::move(review));
+  modes_.push_back(std::make_unique<training_mode::TrainingView>(
+      training_mode::Theatre{
+          .screen = screen,
+          .refusal = [screen](bones::BoneKind bone) { return screen->refusal_to_lend(bone); },
+          .begin_anew = [screen](const mode::OpenCase& opened) { screen->case_opened(opened); },
+          .start = [screen](bones::BoneKind bone,
+                            theatre::TheatreSource source) { screen->lend(bone, std::move(source)); },
+          .live = [screen] { return screen->live(); },
+          .setup = [screen] { return screen->setup_in_use(); },
+          .ask = [screen](operation::Command command) { screen->ask(std::move(command)); },
+          .end = [screen] { screen->end_source(); }},
+      training::training_file()));
 }
 
 void WorkstationWindow::add_actions() {
@@ -242,6 +270,10 @@ void WorkstationWindow::take_dropped() {
     return;
   }
   failure_.clear();
+  // In Review what is dropped is what the case looks like now, unless it is another case.
+  const bool is_in_review = !shows_start() && !shows_paint() && &shown() == review_;
+  if (is_in_review && !std::filesystem::exists(dropped.front() / "case.json"))
+    return review_->take_dropped(dropped.front());
   leave_shown();
   shows_start_ = true;
   start_.enter(case_ != nullptr);
@@ -249,8 +281,17 @@ void WorkstationWindow::take_dropped() {
 }
 
 void WorkstationWindow::dispatch_keys() {
-  for (const int key : window_.released_keys()) actions_.release(key);
-  for (const widgets::KeyPress& press : window_.keys()) {
+  for (const int key : window_.released_keys()) {
+    actions_.release(key);
+    actions_.release(room_.meaning_of(key));
+  }
+  // Elsewhere than in theatre and in Set up a key means what it is called.
+  const auto prefixes = action_prefixes();
+  const bool has_pedals = std::find(prefixes.begin(), prefixes.end(), "navigate.") != prefixes.end() ||
+                          std::find(prefixes.begin(), prefixes.end(), "setup.next") != prefixes.end();
+  room_.press_pedals(actions_, action_prefixes(), ImGui::GetIO().WantTextInput);
+  for (widgets::KeyPress press : window_.keys()) {
+    if (has_pedals && press.mods == 0) press.key = room_.meaning_of(press.key);
     if (shows_keys_ && press.key == GLFW_KEY_ESCAPE) {
       shows_keys_ = false;
       continue;
@@ -307,8 +348,13 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   ImGui::PopStyleVar(2);
   ImGui::PushFont(ui.theme.body);
   widgets::Rect area{0, 0, size.x, size.y};
-  draw_top_bar(ui, area.cut_top(ui.theme.px(72)));
-  draw_status_bar(ui, area.cut_bottom(ui.theme.px(40)));
+  const bool shows_mode = opening_ == nullptr && !shows_start() && !shows_paint();
+  const widgets::Rect whole = area.inset(ui.theme.px(12));
+  const auto header = shows_mode ? shown().header_in(ui, whole) : std::nullopt;
+  if (!header) {
+    draw_top_bar(ui, area.cut_top(ui.theme.px(72)));
+    draw_status_bar(ui, area.cut_bottom(ui.theme.px(40)));
+  }
   widgets::Rect inner = area.inset(ui.theme.px(12));
   if (!failure_.empty() && shows_start()) {
     const widgets::Rect line = inner.cut_top(ui.theme.px(44));
@@ -321,8 +367,10 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
     start_.draw(ui, inner);
   else if (shows_paint())
     paint_.draw(ui, inner);
-  else
+  else {
     shown().draw(ui, inner);
+    if (header) draw_header(ui, *header);
+  }
   if (shows_keys_) draw_key_list(ui, action_prefixes());
   const auto kind = shows_start() || shows_paint() ? std::nullopt : shown().source_kind();
   if (kind) widgets::draw_source_frame(ui, {0, 0, size.x, size.y}, *kind);
@@ -330,8 +378,13 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   ImGui::PopFont();
   ImGui::End();
   if (!kind) log_.note_state("source_kind", "none");
+  log_.note_state("room", room_.trouble());
+  log_.note_state("foot_switch", room_.devices());
   log_.note_state("standstill", heartbeat_.words());
   log_.note_state("mode", shown().title().name);
+  if (options_.list_widgets)
+    for (const std::string& clash : widgets::key_clashes(actions_, action_prefixes()))
+      log_.note_state("key_clash", clash);
   log_.note_state("access", case_ != nullptr && case_->is_read_only() ? "read-only" : "own");
   log_.note_state("folder", case_ != nullptr ? case_->folder().string() : "");
   log_.note_state("screen", shows_start() ? "start" : shows_paint() ? "paint" : "mode");

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "app/case/case_opening.h"
@@ -12,7 +14,12 @@
 #include "app/widgets/graphics_window.h"
 #include "app/widgets/heartbeat.h"
 #include "app/window/draw_watch.h"
+#include "app/window/room.h"
 #include "app/window/workstation.h"
+
+namespace arthronaut::review {
+class ReviewView;
+}
 
 namespace arthronaut::window {
 
@@ -42,6 +49,8 @@ class WorkstationWindow {
   void show(std::size_t mode);
   void draw_screen(const widgets::Ui& ui);
   void draw_top_bar(const widgets::Ui& ui, const widgets::Rect& area);
+  // The same in one place, of a mode that has the whole window.
+  void draw_header(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_status_bar(const widgets::Ui& ui, const widgets::Rect& area);
   [[nodiscard]] open_case::PlanModel* model() const { return case_ != nullptr ? case_->model() : nullptr; }
   // A case of images alone is painted in, and no mode is of use there.
@@ -49,11 +58,14 @@ class WorkstationWindow {
   [[nodiscard]] bool shows_start() const { return shows_start_ || (model() == nullptr && !is_unpainted()); }
   [[nodiscard]] bool shows_paint() const { return !shows_start() && (shows_paint_ || is_unpainted()); }
   [[nodiscard]] bool should_end();  // the window was closed, and nothing runs that it would cut off
+  // What the lower bar says of the case, and whether that is a warning.
+  [[nodiscard]] std::pair<std::string, bool> status_words() const;
   [[nodiscard]] mode::Mode& shown() const { return *modes_[shown_]; }
   [[nodiscard]] bool modes_are_busy() const;    // in front or behind
   [[nodiscard]] bool has_running_work() const;  // likewise
 
   WorkstationOptions options_;
+  Room room_;
   widgets::GraphicsWindow window_;
   // The open case, and the one that is being opened in its place; null where there is none.
   std::unique_ptr<open_case::CaseOpening> case_, opening_;
@@ -63,6 +75,7 @@ class WorkstationWindow {
   widgets::Actions actions_;
   widgets::WidgetLog log_;
   std::vector<std::unique_ptr<mode::Mode>> modes_;  // in the order of their buttons
+  review::ReviewView* review_ = nullptr;            // one of them
   std::size_t shown_ = 0;
   widgets::Heartbeat heartbeat_;
   DrawWatch watch_;

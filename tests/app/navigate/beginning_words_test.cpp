@@ -68,6 +68,18 @@ Card card_of(const LeftBehind& left, std::chrono::seconds later = std::chrono::s
   return resume_card(left, plan(), left.found.last_written + later);
 }
 
+// Which of two bundles' tunnels is there already: said, and in doubt where it is the one that would guide
+// again.
+TEST(ResumeCard, SaysWhichTunnelIsDrilled) {
+  LeftBehind left = left_behind();
+  left.found.drilled = {{bones::BoneKind::Femur, norms::Bundle::Anteromedial}};
+  EXPECT_EQ(line_of(card_of(left), "Drilled already").text, "femur AM");
+  EXPECT_EQ(line_of(card_of(left), "Drilled already").severity, Severity::Quiet);
+  left.found.operation.plan->tunnel.bone = bones::BoneKind::Femur;
+  left.found.operation.plan->tunnel.bundle = norms::Bundle::Anteromedial;
+  EXPECT_EQ(line_of(card_of(left), "Drilled already").severity, Severity::Caution);
+}
+
 // What would be brought back, before it is: bone, time, source, registration, strokes, touches, plan, camera.
 TEST(ResumeCard, Hazard12SaysAllThatWouldBeBroughtBack) {
   const Card card = card_of(left_behind());

@@ -45,7 +45,7 @@ void fill(Opacity& picture, const ImDrawVert& a, const ImDrawVert& b, const ImDr
 }
 
 // The overlay one to one on the raw picture.
-Opacity drawn(const scene::PlanOverlay& overlay, float opacity) {
+Opacity drawn(const scene::PlanOverlay& overlay, float opacity, float stroke_opacity = 1) {
   ImGui::CreateContext();
   ImDrawListSharedData* const shared = ImGui::GetDrawListSharedData();
   Opacity picture;
@@ -55,7 +55,7 @@ Opacity drawn(const scene::PlanOverlay& overlay, float opacity) {
     draw.PushClipRectFullScreen();
     draw.Flags = ImDrawListFlags_AntiAliasedLines;  // without the texture of ready-made lines
     const widgets::Rect all{0, 0, kWidth_px, kHeight_px};
-    draw_overlay_lines(draw, widgets::PicturePlacement(all, all), overlay, opacity, 1);
+    draw_overlay_lines(draw, widgets::PicturePlacement(all, all), overlay, {opacity, 1, stroke_opacity});
     for (int i = 0; i + 2 < draw.IdxBuffer.Size; i += 3)
       fill(picture, draw.VtxBuffer[draw.IdxBuffer[i]], draw.VtxBuffer[draw.IdxBuffer[i + 1]],
            draw.VtxBuffer[draw.IdxBuffer[i + 2]]);
@@ -172,6 +172,40 @@ TEST(OverlayHazard24, FadesToAHintAndNoFurther) {
   EXPECT_NEAR(overlay_opacity(9), 0.625, 1e-6);
   EXPECT_EQ(overlay_opacity(10), 0.25F);
   EXPECT_EQ(overlay_opacity(1e6), 0.25F);
+}
+
+// A line that the bone hides is dashed: between its ends there is as good as nothing half of the way, and
+// what is seen is drawn through.
+TEST(OverlayLines, WhatIsHiddenIsDashed) {
+  using Kind = scene::OverlayLine::Kind;
+  for (const bool is_hidden : {false, true}) {
+    Opacity picture = drawn({{Kind::TunnelWall, is_hidden, {{100, 500}, {300, 500}, {700, 500}}}}, 1);
+    int covered = 0, changes = 0;
+    bool was = true;
+    for (int x = 101; x < 700; ++x) {
+      const bool is = picture.at(x, 500) > 0.2F;
+      covered += is ? 1 : 0;
+      changes += is != was ? 1 : 0;
+      was = is;
+    }
+    // Dashes of 9 px and gaps of 7 px; anti-aliasing takes a pixel or two of either.
+    if (is_hidden) {
+      EXPECT_NEAR(covered / 599.0, 9.0 / 16, 0.1);
+      EXPECT_GT(changes, 60);
+    } else {
+      EXPECT_EQ(covered, 599);
+    }
+  }
+}
+
+// While the guide is aimed the strokes that were drawn before step back behind the plan.
+TEST(OverlayLines, StrokesStepBackWhileAiming) {
+  using Kind = scene::OverlayLine::Kind;
+  const scene::PlanOverlay both{{Kind::Curve, false, {{100, 400}, {700, 400}}},
+                                {Kind::EntryRing, false, {{100, 600}, {700, 600}}}};
+  Opacity full = drawn(both, 1), aiming = drawn(both, 1, 0.3F);
+  EXPECT_LT(aiming.at(400, 400), 0.4F * full.at(400, 400));
+  EXPECT_EQ(aiming.at(400, 600), full.at(400, 600));
 }
 
 // No line of the plan to be seen has a reason, in words.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "app/navigate/live_words.h"
+
 namespace arthronaut::navigate {
 namespace {
 
@@ -43,6 +45,78 @@ TEST(RecordRows, SayWhatIsKeptAndHowFastPicturesCome) {
   rows = recorded.rows();
   EXPECT_EQ(rows[0].text, "video and journal");
   EXPECT_EQ(rows[0].severity, Severity::Good);
+}
+
+// The bone is seen elsewhere and no control point was set before: none is asked for, which could only say
+// yes.
+TEST(PlaceAnew, IsWhatLeadsOnWhereNoControlPointWasSet) {
+  operation::RegistrationState state;
+  EXPECT_FALSE(must_place_anew(state));
+  state.alarm.kind = operation::TouchAlarm::Kind::SeenInPicture;
+  state.alarm.seen_drift_mm = 1.2;
+  state.in_force.standing = operation::Standing::Alarm;
+  EXPECT_TRUE(must_place_anew(state));
+  EXPECT_NE(trouble_of(state).advice.find("draw anew"), std::string::npos);
+  EXPECT_EQ(trouble_of(state).advice.find("again"), std::string::npos);
+  state.touches.touch_control_point(Eigen::Vector3d::Zero(), {});
+  EXPECT_FALSE(must_place_anew(state));
+  EXPECT_NE(trouble_of(state).advice.find("Touch the control point again"), std::string::npos);
+}
+
+// Never a good sign, since it makes nothing more sure; not checked is said with its reason, a drift in bad.
+TEST(ContourRows, SayWhetherTheBoneLiesWhereItLayOrWhyThatIsNotChecked) {
+  operation::OperationState state;
+  EXPECT_TRUE(contour_rows(state).empty()) << "no registration stands";
+  state.contour.reason = contour::NotCheckedReason::TooLittleInView;
+  ASSERT_EQ(contour_rows(state).size(), 1U);
+  EXPECT_EQ(contour_rows(state)[0].text, "not checked: too little in view that looks as it did");
+  EXPECT_EQ(contour_rows(state)[0].severity, Severity::Quiet);
+  state.contour.state = contour::ContourState::Holds;
+  EXPECT_EQ(contour_rows(state)[0].text, "no shift of 1 to 1.7 mm seen");
+  EXPECT_EQ(contour_rows(state)[0].severity, Severity::Quiet);
+  state.contour.state = contour::ContourState::Drifted;
+  state.contour.drift_mm = 1.14;
+  EXPECT_EQ(contour_rows(state)[0].text, "1.1 mm from where it lay");
+  EXPECT_EQ(contour_rows(state)[0].severity, Severity::Bad);
+}
+
+// What is wrong with the source comes first; then medians with what 99 of 100 keep, and each stage.
+TEST(SourceRows, SayWhatIsWrongAndHowLongPicturesTake) {
+  Recorded recorded;
+  EXPECT_TRUE(source_rows(recorded.live).empty()) << "nothing was counted yet";
+  const auto set = [&](theatre::Stage stage, double median_ms, double p99_ms) {
+    recorded.live.latency[static_cast<std::size_t>(stage)] = {100, median_ms, p99_ms, p99_ms + 3};
+  };
+  set(theatre::Stage::ToGuidance, 7.2, 13.8);
+  set(theatre::Stage::ToScreen, 34.1, 51.6);
+  set(theatre::Stage::Decode, 2.04, 4);
+  set(theatre::Stage::Tracking, 4.46, 8);
+  auto rows = source_rows(recorded.live);
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].text, "7 (14) ms to guidance, 34 (52) ms to the screen");
+  EXPECT_EQ(rows[0].severity, Severity::Quiet);
+  EXPECT_EQ(rows[1].text, "decode 2.0, tracking 4.5");
+  recorded.live.trouble = theatre::SourceTrouble::Late;
+  recorded.live.trouble_words = "Pictures are late: 132 ms";
+  rows = source_rows(recorded.live);
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0].text, "Pictures are late: 132 ms");
+  EXPECT_EQ(rows[0].severity, Severity::Bad);
+  EXPECT_EQ(rows[1].severity, Severity::Bad);
+  recorded.live.trouble = theatre::SourceTrouble::Torn;
+  EXPECT_EQ(source_rows(recorded.live)[0].severity, Severity::Caution) << "what is not torn guides on";
+}
+
+// Why the pictures do not come stands beside how old the last one is.
+TEST(SourceRows, Hazard33WhyNoPictureComesIsOnTheScreen) {
+  Recorded recorded;
+  recorded.now_s += 0.6;
+  EXPECT_EQ(display_of(&recorded.live, recorded.now_s).detail, "What you see is not live");
+  recorded.live.trouble = theatre::SourceTrouble::NoPicture;
+  recorded.live.trouble_words = "No picture comes: tower: broke off; connecting again";
+  const NavigateDisplay display = display_of(&recorded.live, recorded.now_s);
+  EXPECT_FALSE(display.guidance_is_valid);
+  EXPECT_EQ(display.detail, recorded.live.trouble_words);
 }
 
 // A source that has ended or failed has no rate and no age, and nothing of it is recorded any more.

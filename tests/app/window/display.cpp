@@ -1,6 +1,7 @@
 #include "tests/app/window/display.h"
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -121,6 +122,7 @@ void RunningWorkstation::read_output(int pipe) {
       words >> name >> std::ws;
       std::getline(words, value);
       states_[name] = value;
+      if (name == "key_clash") ADD_FAILURE() << "two actions share a key: " << value;
     } else if (kind == "WIDGET") {
       Area area;
       words >> name >> area.x >> area.y >> area.width >> area.height;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "planning/cases/case.h"
 #include "planning/images/volume_writer.h"
@@ -241,6 +242,45 @@ TEST_F(PaintWindow, BonesAreCorrectedByBrushAndEraser) {
   ASSERT_TRUE(saved);
   EXPECT_GT(std::count(saved->bones.begin(), saved->bones.end(), painting::kFemur), 0);
   EXPECT_EQ(std::count(saved->strokes.begin(), saved->strokes.end(), 0), std::ssize(saved->strokes));
+}
+
+// From Plan: at the joint, with the case's own bones as what is painted; there and back again writes nothing,
+// not even when the surfaces are asked for.
+TEST_F(PaintWindow, BeginsFromPlanWithTheBonesOfTheCaseAndLeavesThemAlone) {
+  cases::Case knee = cases::load_case(case_folder());
+  for (const auto* bone : {&known_.knee.femur, &known_.knee.tibia}) knee.bones[bone->kind] = *bone;
+  cases::save_case(case_folder(), knee);
+  const auto files = [&] {
+    std::map<std::string, std::filesystem::file_time_type> found;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(case_folder()))
+      if (entry.is_regular_file() &&
+          (entry.path().extension() == ".ply" || entry.path().extension() == ".nrrd" ||
+           entry.path().filename() == "plan.json"))
+        found[entry.path().string()] = entry.last_write_time();
+    return found;
+  };
+  const VirtualDisplay display(1600, 900);
+  RunningWorkstation app(display, folder_.path(), {case_folder().string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  ASSERT_TRUE(app.wait_for_widget("plan.view"));
+  const auto before = files();
+  app.press("i");
+  ASSERT_TRUE(app.wait_for_state("painting", "ready", 120));
+  EXPECT_TRUE(app.state("paint_next").starts_with("These are the bones of the case"))
+      << app.state("paint_next");
+  // Between femur and tibia, not in the middle of the images.
+  std::string cross = app.state("paint_cross");
+  cross = cross.substr(cross.rfind(' ') + 1);
+  const std::string minus = "\u2212";
+  const double height = cross.starts_with(minus) ? -std::stod(cross.substr(minus.size())) : std::stod(cross);
+  EXPECT_NEAR(height, geometry::bounds_of(known_.knee.femur.mesh).min_mm.z(), 12);
+  app.press("a");
+  ASSERT_TRUE(app.wait_for_state("paint_hint", "These are the bones of the case: correct them first"));
+  app.press("Escape");
+  ASSERT_TRUE(app.wait_for_state("screen", "mode"));
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(30), 0);
+  EXPECT_EQ(files(), before);
 }
 
 }  // namespace

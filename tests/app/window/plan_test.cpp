@@ -8,6 +8,7 @@
 
 #include "planning/cases/case.h"
 #include "planning/cases/measurements.h"
+#include "planning/painting/bone_labels.h"
 #include "planning/phantom/phantom_case.h"
 #include "planning/phantom/phantom_knee.h"
 #include "tests/app/window/display.h"
@@ -176,6 +177,53 @@ TEST_F(PlanWindow, SlicesAreScrolledWindowedAndMeasuredIn) {
   app.press("ctrl+z");
   ASSERT_TRUE(app.wait_for_state("measured", ""));
   EXPECT_TRUE(cases::load_measurements(folder).empty());
+}
+
+// One key puts the images in the bones' place, another moves the threshold; the next presses show the soft
+// tissue, and the bones again. Without images it says that there are none.
+TEST_F(PlanWindow, ImagesTakeTheBonesPlaceByAKey) {
+  const auto folder = folder_ / "Imaged.arthro";
+  cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "imaged");
+  images::Volume volume;
+  volume.size = {110, 110, 140};
+  volume.modality = "CT";
+  volume.lps_from_index.linear() *= 1.5;
+  volume.lps_from_index.translation() = -0.75 * volume.size.cast<double>();
+  painting::Labels labels(static_cast<std::size_t>(volume.size.prod()), painting::kNothing);
+  for (const auto& [kind, bone] : knee.bones) painting::add_bone(labels, volume, bone.mesh, painting::kFemur);
+  for (const std::uint8_t label : labels) volume.values.push_back(label == painting::kNothing ? 40.F : 900.F);
+  cases::save_case(folder, knee);
+  knee.images.push_back({.file = "",
+                         .modality = volume.modality,
+                         .source = "NRRD",
+                         .size = volume.size,
+                         .spacing_mm = volume.spacing_mm()});
+  cases::store_image(folder, 1, images::encoded(volume), knee.images.back());
+  cases::save_case(folder, knee);
+  const VirtualDisplay display(1280, 720);
+  {
+    RunningWorkstation app(display, folder_.path(), {folder.string()});
+    ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+    ASSERT_TRUE(app.wait_for_widget("plan.view"));
+    EXPECT_EQ(app.state("volume"), "");
+    app.press("v");
+    ASSERT_TRUE(app.wait_for_state("volume", "Images: bone above 250 HU (, less, . more)", 120));
+    app.press("period");
+    ASSERT_TRUE(app.wait_for_state("volume", "Images: bone above 275 HU (, less, . more)"));
+    const auto [x, y] = middle(app, "plan.view");
+    app.drag(x, y, x + 40, y);
+    app.press("v");
+    ASSERT_TRUE(app.wait_for_state("volume", "Images: bone and soft tissue above 275 HU (, less, . more)"));
+    app.press("v");
+    ASSERT_TRUE(app.wait_for_state("volume", ""));
+    app.press("ctrl+q");
+    EXPECT_EQ(app.wait_for_exit(30), 0);
+  }
+  RunningWorkstation without(display, folder_.path());
+  open(without);
+  without.press("v");
+  EXPECT_TRUE(without.wait_for_state(
+      "volume", "This case has no images: it was made of meshes, or by an older version."));
 }
 
 // One key makes both tunnels, one undo takes them back; landmarks are gone through by keys, and confirming

@@ -1,0 +1,309 @@
+// What the pedals do in theatre: one for the next step, one for the way back. What is said to come next and
+// what a press does stand together here, so that they stay the same.
+#include <utility>
+
+#include "app/navigate/navigate_view.h"
+#include "planning/log/log.h"
+
+namespace arthronaut::navigate {
+
+using operation::NextAction;
+using Phase = theatre::LiveState::Phase;
+
+namespace {
+constexpr double kReadable_s = 1.5;  // of what is asked, where a press too soon would cost much
+}
+
+bool NavigateView::can_simulate() const {
+  if (model_ == nullptr) return false;
+  const auto key = bones_.guided(choices_.bone);
+  return key && missing_for_simulation(*model_, *key).empty();
+}
+
+void NavigateView::start_same_kind() {
+  if (!kind_) {
+    // Nothing was chosen yet. The built-in knee has nothing but its simulation; a real case never starts one.
+    if (simulates()) return start_simulation(SimulatedPart::Scratch);
+    if (!choices_.videos.empty()) return start_video();
+    return choose_camera();
+  }
+  switch (*kind_) {
+    case sources::SourceKind::Live:
+      return choose_camera();
+    case sources::SourceKind::Recording:
+      return start_video();
+    case sources::SourceKind::Simulation:
+      return start_simulation(registration().in_force.standing == operation::Standing::Stands
+                                  ? SimulatedPart::Drill
+                                  : SimulatedPart::Scratch);
+  }
+}
+
+const LeftBehind* NavigateView::left_behind() {
+  const bool has_begun = live_->phase != Phase::NoSource || live_->operation->resumed != nullptr;
+  return has_begun ? nullptr : resume_.of(choices_.bone);
+}
+
+// One step. What is brought back guides nothing until a touch; the source is the next step, of the same kind.
+void NavigateView::resume() {
+  const LeftBehind* const left = left_behind();
+  if (left == nullptr) return;
+  kind_ = sources::source_kind_from_text(left->found.header.source_kind);
+  // Who resumes it was told by which tunnel.
+  if (const auto& was = left->found.operation.plan;
+      was && bones_.guided(choices_.bone) != was->tunnel.key() && bones_.planned(was->tunnel.key()))
+    bones_.choose(was->tunnel.key());
+  ask(left->found.operation);
+  notice_ = left->found.operation.registration
+                ? "Resumed: what guided before guides again after one touch on the bone"
+                : "Resumed without a registration: " + left->found.refusal;
+  log::info("resumed: session " + left->found.operation.session);
+  resume_.answer(choices_.bone);
+}
+
+void NavigateView::decline_resume() {
+  if (const LeftBehind* const left = left_behind())
+    log::info("not resumed: session " + left->found.operation.session);
+  resume_.answer(choices_.bone);
+}
+
+std::string NavigateView::next_step() {
+  if (model_ == nullptr) return "open a case";
+  if (resume_.is_looking()) return "wait: the case's last operation is looked for";
+  if (cameras_.is_open()) {
+    const auto pictures = cameras_.chosen();
+    return pictures ? "open " + pictures->name : "type the address of a stream, then Enter";
+  }
+  if (left_behind() != nullptr) return "resume the operation that was left";
+  if (choices_.looked_at)
+    return words_of(repeat_of(*choices_.looked_at, *live_->operation), *choices_.looked_at);
+  const NextAction action = live_->operation->next_action;
+  if (const std::string choice = tunnel_to_choose(); !choice.empty()) return choice;
+  if (choices_.goes_to_other_bone) return "wait: the pictures end";
+  if (finishes())
+    return words_of(finish_action(finished_bones(), choices_.bone, is_under_way(*live_)), choices_.bone);
+  const auto guided = bones_.guided(choices_.bone);
+  if (!guided) return words_of(NextAction::PlanTunnel);
+  if (waits_for_take_over() && guided->bundle != norms::Bundle::Whole)
+    return "take over the tunnel " + tunnels::name_of(*guided);
+  if (live_->phase == Phase::Starting)
+    return stops_once_open_ ? "wait: it stops once it is open" : "wait for the first picture";
+  if (takes_guide_in_simulation()) return "take the guide (simulation)";
+  if (action == NextAction::CheckWorldMarker && must_place_anew(registration())) return place_anew_words();
+  const bool starts = action == NextAction::StartSource || action == NextAction::PlanTunnel;
+  if (!starts) return words_of(action);
+  if (must_set_up()) return "calibrate camera and tools in Set up";
+  const bool stands = registration().in_force.standing == operation::Standing::Stands;
+  if (simulates()) return stands ? "drill (simulation)" : "start the simulated operation";
+  if (kind_ == sources::SourceKind::Live) return "open the camera again";
+  return kind_ || !choices_.videos.empty() ? "open the next video" : "choose a camera";
+}
+
+// What is confirmed or recorded is what was asked on the screen: a press that was meant for what stood there
+// before the last picture came confirms nothing.
+bool NavigateView::was_asked() { return next_step() == choices_.next; }
+
+void NavigateView::take_next_step() {
+  if (cameras_.is_open()) {
+    if (const auto pictures = cameras_.chosen()) start_live(*pictures);
+    return;
+  }
+  if (resume_.is_looking()) return;
+  if (left_behind() != nullptr) return resume();
+  if (const auto step = std::exchange(choices_.looked_at, std::nullopt)) return repeat_step(*step);
+  if (choices_.goes_to_other_bone) return;
+  if (tunnel_to_choose().empty() && finishes())
+    return finish_step(finish_action(finished_bones(), choices_.bone, is_under_way(*live_)));
+  if (live_->phase == Phase::Starting) return;
+  if (!bones_.guided(choices_.bone)) {
+    if (!bones_.must_choose(choices_.bone)) go_elsewhere_(Elsewhere::Plan);
+    return;
+  }
+  if (waits_for_take_over()) return ask(operation::TakePlanOver{});
+  switch (live_->operation->next_action) {
+    case NextAction::StartSource:
+    case NextAction::PlanTunnel:  // of an operation that was not told yet of the plan that is there
+      return must_set_up() ? go_elsewhere_(Elsewhere::SetUp) : start_same_kind();
+    case NextAction::ConfirmTimeOut:
+      if (was_asked()) ask(operation::ConfirmTimeOut{!patient_.empty()});
+      return;
+    case NextAction::Draw:
+    case NextAction::RegisterAnew:
+      return ask(operation::Draw{true});
+    case NextAction::RegisterStrokes:
+      return ask(operation::RegisterStrokes{});
+    case NextAction::TakePlanOver:
+      return ask(operation::TakePlanOver{});
+    case NextAction::ConfirmByTouch:
+    case NextAction::VerifyByTouch:
+      return take_touch(false);
+    case NextAction::CheckWorldMarker:
+      if (!must_place_anew(registration())) return take_touch(true);
+      if (was_asked() && theatre::LiveOperation::now_s() - choices_.next_since_s >= kReadable_s)
+        ask(operation::MarkerPlacedAnew{});
+      return;
+    case NextAction::SetControlPoint:
+    case NextAction::CheckControlPoint:
+      return take_touch(true);
+    case NextAction::CheckGuide:
+      return ask(operation::CheckGuide{});
+    case NextAction::RecordDrilled:
+      if (was_asked()) ask(operation::TunnelDrilled{});
+      return;
+    case NextAction::BringGuide:
+      if (takes_guide_in_simulation()) start_simulation(SimulatedPart::Drill);
+      return;
+    case NextAction::ShowWorldMarker:
+    case NextAction::GoOnDrawing:
+    case NextAction::WaitForRegistration:
+    case NextAction::FollowBullseye:
+    case NextAction::Finish:
+      return;  // what is to be done is not done by a pedal
+  }
+}
+
+bool NavigateView::pedal_acts() {
+  if (model_ == nullptr || resume_.is_looking() || choices_.goes_to_other_bone) return false;
+  if (cameras_.is_open()) return cameras_.chosen().has_value();
+  if (left_behind() != nullptr) return true;
+  if (choices_.looked_at) return repeat_of(*choices_.looked_at, *live_->operation) != Repeat::NothingNow;
+  if (!tunnel_to_choose().empty()) return false;
+  if (finishes())
+    return finish_action(finished_bones(), choices_.bone, is_under_way(*live_)) != FinishAction::Nothing;
+  if (live_->phase == Phase::Starting) return false;
+  switch (live_->operation->next_action) {
+    case NextAction::BringGuide:
+      return takes_guide_in_simulation();
+    case NextAction::ShowWorldMarker:
+    case NextAction::GoOnDrawing:
+    case NextAction::WaitForRegistration:
+    case NextAction::FollowBullseye:
+    case NextAction::Finish:
+      return false;
+    default:
+      return true;
+  }
+}
+
+// A second press of a foot that slipped must not say that a marker is out: what is asked has to have stood
+// there long enough to be read.
+void NavigateView::finish_step(FinishAction action) {
+  if (theatre::LiveOperation::now_s() - choices_.next_since_s < kReadable_s) return;
+  switch (action) {
+    case FinishAction::TakeMarkerOut:
+      log::info("world marker said to be out: " + std::string(bones::to_text(choices_.bone)));
+      choices_.markers_out.insert({live_->operation->source->kind, choices_.bone});
+      // From now on nothing may guide by where it sat.
+      return ask(operation::MarkerPlacedAnew{});
+    case FinishAction::OtherBone:
+      choices_.goes_to_other_bone = true;
+      if (is_under_way(*live_)) end_source();
+      return;
+    case FinishAction::EndSource:
+      return end_source();
+    case FinishAction::Nothing:
+      return;
+  }
+}
+
+void NavigateView::take_step_back() {
+  if (choices_.shows_menu) {
+    choices_.shows_menu = false;
+    return;
+  }
+  if (cameras_.is_open()) return cameras_.close();
+  if (resume_.is_looking() || left_behind() != nullptr || choices_.goes_to_other_bone) return;
+  choices_.looked_at = step_before(choices_.looked_at.value_or(step_of_now(rail())));
+}
+
+void NavigateView::repeat_step(operation::Step step) {
+  switch (repeat_of(step, *live_->operation)) {
+    case Repeat::ShowPlan:
+      return go_elsewhere_(Elsewhere::Plan);
+    case Repeat::ShowSetUp:
+      return go_elsewhere_(Elsewhere::SetUp);
+    case Repeat::TouchControl:
+      return take_touch(true);
+    case Repeat::Draw:
+      return ask(operation::Draw{true});
+    case Repeat::RegisterAnew:
+      return ask(operation::RegisterStrokes{});
+    case Repeat::Touch:
+      return take_touch(false);
+    case Repeat::ShowGuide:
+      choices_.layout = NavigateLayout::Guide;
+      return;
+    case Repeat::ShowFinish:
+    case Repeat::NothingNow:
+      return;
+  }
+}
+
+bool NavigateView::simulates() const {
+  return kind_ ? *kind_ == sources::SourceKind::Simulation : can_simulate() && !choices_.has_real_scope;
+}
+
+// The scripted surgeon holds the probe: the guide is taken by starting the other part of the script.
+bool NavigateView::takes_guide_in_simulation() const {
+  return live_->operation->next_action == NextAction::BringGuide && part_ == SimulatedPart::Scratch &&
+         live_->phase == Phase::Running && can_simulate();
+}
+
+bool NavigateView::must_set_up() const {
+  if (simulates() || live_->operation->source != nullptr) return false;
+  return !choices_.has_camera_file || !choices_.tools;
+}
+
+RailContext NavigateView::rail_context() const {
+  RailContext context;
+  if (model_ == nullptr) return context;
+  context.is_planned = bones_.plan_of(choices_.bone).has_value();
+  context.must_choose = bones_.must_choose(choices_.bone);
+  context.has_camera = simulates() || choices_.has_camera_file;
+  context.tools = choices_.tools ? &*choices_.tools : nullptr;
+  const auto finished = finished_bones();
+  context.is_drilled = is_drilled(finished);
+  context.was_measured = context.is_drilled && finished.front().measured.has_value();
+  context.marker_is_out = kind_ && choices_.markers_out.contains({*kind_, choices_.bone});
+  return context;
+}
+
+bool NavigateView::is_drilled(const std::vector<FinishedBone>& bones) const {
+  return !bones.empty() && bones.front().bone == choices_.bone && bones.front().is_drilled;
+}
+
+bool NavigateView::finishes() const { return is_drilled(finished_bones()); }
+
+std::vector<FinishedBone> NavigateView::finished_bones() const {
+  std::vector<FinishedBone> bones;
+  if (model_ == nullptr) return bones;
+  const sources::SourceKind kind = kind_.value_or(sources::SourceKind::Live);
+  for (const bones::BoneKind kind_of_bone : {choices_.bone, choices_.other_bone()}) {
+    if (!model_->has_bone(kind_of_bone)) continue;
+    const auto keys = model_->knee().plan.of(kind_of_bone);
+    if (keys.empty()) continue;
+    FinishedBone bone{kind_of_bone, true, choices_.markers_out.contains({kind, kind_of_bone}), {}};
+    for (const tunnels::TunnelKey& key : keys) {
+      const auto said = choices_.drilled.find({kind, key});
+      const auto planned = bones_.planned(key);
+      bone.is_drilled = bone.is_drilled && said != choices_.drilled.end() && planned == said->second;
+      if (const auto measured = choices_.measured.find({kind, key});
+          measured != choices_.measured.end() && planned &&
+          operation::PlannedTunnel{measured->second.planned, planned->length_mm} == *planned)
+        bone.measured = measured->second;
+    }
+    bones.push_back(std::move(bone));
+  }
+  return bones;
+}
+
+// The probe stops drawing with a touch; the screen stays, so that the distance is read in large.
+void NavigateView::take_touch(bool is_control_point) {
+  choices_.layout = layout(theatre::LiveOperation::now_s());
+  if (is_control_point)
+    ask(operation::TouchControlPoint{});
+  else
+    ask(operation::TakeTouch{});
+}
+
+}  // namespace arthronaut::navigate

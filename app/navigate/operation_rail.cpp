@@ -1,0 +1,302 @@
+#include "app/navigate/operation_rail.h"
+
+#include <algorithm>
+
+namespace arthronaut::navigate {
+
+namespace {
+
+using operation::NextAction;
+using operation::OperationState;
+using operation::Standing;
+using operation::Step;
+
+// What stands, once, for all steps.
+struct Known {
+  const OperationState& state;
+  const RailContext& context;
+
+  [[nodiscard]] const tools::ToolSet* tools() const {
+    return state.source != nullptr ? &state.source->pipeline.tools : context.tools;
+  }
+  [[nodiscard]] bool stands() const {
+    return state.registration->in_force.standing == Standing::Stands && !context.marker_is_out;
+  }
+  [[nodiscard]] bool is_drilled() const {
+    return context.is_drilled || state.drilled.outcome != operation::DrilledState::Outcome::NotSaid;
+  }
+  // A tunnel that was measured was guided to, by a registration. One that was only said to be drilled tells
+  // nothing of the steps before it.
+  [[nodiscard]] bool was_guided_to() const {
+    using Outcome = operation::DrilledState::Outcome;
+    if (state.drilled.outcome == Outcome::NotSaid) return context.is_drilled && context.was_measured;
+    return state.drilled.outcome != Outcome::NoEvidence;
+  }
+  [[nodiscard]] bool probe_is_known() const {
+    const tools::ToolSet* const known = tools();
+    if (known == nullptr) return false;
+    const tools::Tool* const probe =
+        known->find_tool(state.source != nullptr ? state.source->pipeline.probe_name : "probe");
+    return probe != nullptr && probe->tip_mm.has_value();
+  }
+  [[nodiscard]] bool guide_is_known() const {
+    const tools::ToolSet* const known = tools();
+    if (known == nullptr) return false;
+    const tools::Tool* const guide = known->find_tool(
+        state.source != nullptr ? state.source->pipeline.guide_name : tools::standard_guide_name(state.bone));
+    return guide != nullptr && guide->axis.has_value();
+  }
+};
+
+Missing missing_of_plan(const Known& known) {
+  if (known.context.must_choose && !known.state.plan) return Missing::TunnelChoice;
+  if (!known.context.is_planned && !known.state.plan) return Missing::Plan;
+  return known.state.plan_was_edited ? Missing::PlanTakenOver : Missing::Nothing;
+}
+
+Missing missing_of_camera(const Known& known) {
+  if (known.state.source == nullptr) return known.context.has_camera ? Missing::Nothing : Missing::Camera;
+  const bool changed = known.state.frame_count > 0 && known.state.frame.lens.zoom_or_slip;
+  return changed ? Missing::LensUnchanged : Missing::Nothing;
+}
+
+Missing missing_of_marker(const Known& known) {
+  const operation::RegistrationState& registration = *known.state.registration;
+  if (registration.alarm || known.context.marker_is_out) return Missing::MarkerInPlace;
+  // Seen once it is known; that it is lost for a moment is told by what is done then.
+  if (registration.point_count > 0 || registration.in_force.registration != nullptr) return Missing::Nothing;
+  if (!known.state.has_source) return Missing::Source;
+  const bool is_seen = known.state.frame_count > 0 && known.state.frame.camera_from_world.is_valid;
+  return is_seen ? Missing::Nothing : Missing::MarkerInView;
+}
+
+Missing missing_of_tools(const Known& known) {
+  if (!known.probe_is_known()) return Missing::ProbeTip;
+  return known.guide_is_known() ? Missing::Nothing : Missing::GuideAxis;
+}
+
+Missing first_of(std::initializer_list<Missing> wanted) {
+  const auto found =
+      std::find_if(wanted.begin(), wanted.end(), [](Missing m) { return m != Missing::Nothing; });
+  return found == wanted.end() ? Missing::Nothing : *found;
+}
+
+// What a step needs before it can be done at all.
+Missing condition_of(Step step, const Known& known) {
+  const OperationState& state = known.state;
+  switch (step) {
+    case Step::Plan:
+    case Step::Calibrate:
+    case Step::Tools:
+      return Missing::Nothing;
+    case Step::WorldMarker:
+      return missing_of_camera(known);
+    case Step::Digitise: {
+      const Missing probe = known.probe_is_known() ? Missing::Nothing : Missing::ProbeTip;
+      return first_of({missing_of_camera(known), missing_of_marker(known), probe});
+    }
+    case Step::Register:
+      return state.registration->point_count > 0 || known.stands() ? Missing::Nothing : Missing::Strokes;
+    case Step::Verify:
+      return known.stands() ? Missing::Nothing : Missing::Registration;
+    case Step::Guide: {
+      const Missing time_out =
+          state.time_out == operation::TimeOut::Due ? Missing::TimeOut : Missing::Nothing;
+      const Missing guide = known.guide_is_known() ? Missing::Nothing : Missing::GuideAxis;
+      const Missing registration = known.stands() ? Missing::Nothing : Missing::Registration;
+      const Missing check = state.guide_check.may_guide() ? Missing::Nothing : Missing::GuideCheck;
+      return first_of({missing_of_plan(known), time_out, guide, registration, check});
+    }
+    case Step::Finish:
+      return known.is_drilled() ? Missing::Nothing : Missing::Tunnel;
+  }
+  return Missing::Nothing;
+}
+
+// What is not there of the step itself; Nothing: it is done.
+Missing rest_of(Step step, const Known& known) {
+  const OperationState& state = known.state;
+  switch (step) {
+    case Step::Plan:
+      return missing_of_plan(known);
+    case Step::Calibrate:
+      return missing_of_camera(known);
+    case Step::WorldMarker:
+      return missing_of_marker(known);
+    case Step::Tools:
+      return missing_of_tools(known);
+    case Step::Digitise:
+      return known.stands() || known.was_guided_to() ? Missing::Nothing : Missing::Strokes;
+    case Step::Register:
+      return known.stands() || known.was_guided_to() ? Missing::Nothing : Missing::Registration;
+    case Step::Verify: {
+      if (known.was_guided_to()) return Missing::Nothing;
+      if (state.verification == operation::Verification::NotYet) return Missing::Touches;
+      if (state.control_point_due != operation::ControlPointDue::None) return Missing::ControlPoint;
+      return state.guide_check.may_guide() ? Missing::Nothing : Missing::GuideCheck;
+    }
+    case Step::Guide:
+      return known.is_drilled() ? Missing::Nothing : Missing::Tunnel;
+    case Step::Finish:
+      return known.context.marker_is_out ? Missing::Nothing : Missing::MarkerOut;
+  }
+  return Missing::Nothing;
+}
+
+Step now_of(const Known& known) {
+  const OperationState& state = known.state;
+  if (known.is_drilled() && (known.context.marker_is_out || !state.plan_was_edited)) return Step::Finish;
+  if (missing_of_plan(known) != Missing::Nothing) return Step::Plan;
+  if (missing_of_camera(known) != Missing::Nothing) return Step::Calibrate;
+  if (state.source == nullptr && missing_of_tools(known) != Missing::Nothing) return Step::Tools;
+  // An operation that was not told yet of the plan that is there starts with its pictures.
+  const Step now = operation::step_of(state.next_action);
+  return now == Step::Plan ? Step::WorldMarker : now;
+}
+
+}  // namespace
+
+Rail rail_of(const OperationState& state, const RailContext& context) {
+  const Known known{state, context};
+  const Step now = now_of(known);
+  Rail rail;
+  for (std::size_t i = 0; i < kStepCount; ++i) {
+    const Step step = static_cast<Step>(i);
+    const Missing condition = condition_of(step, known), rest = rest_of(step, known);
+    RailStep& shown = rail[i];
+    shown.step = step;
+    if (step == now) {
+      // A tunnel that stays to be drilled is no fault to be told while it is aimed at.
+      shown.state = step == Step::Finish && rest == Missing::Nothing ? StepState::Done : StepState::Now;
+      shown.missing = condition != Missing::Nothing ? condition : rest;
+    } else if (rest == Missing::Nothing && (condition == Missing::Nothing || known.is_drilled())) {
+      shown.state = StepState::Done;
+    } else if (condition != Missing::Nothing) {
+      shown.missing = condition;
+    } else {
+      // These three have no condition: what is missing is missing of themselves.
+      const bool is_own = step == Step::Plan || step == Step::Calibrate || step == Step::Tools;
+      shown.state = is_own ? StepState::Closed : StepState::Open;
+      shown.missing = rest;
+    }
+  }
+  return rail;
+}
+
+Step step_of_now(const Rail& rail) {
+  const auto now =
+      std::find_if(rail.begin(), rail.end(), [](const RailStep& s) { return s.state == StepState::Now; });
+  return now == rail.end() ? Step::Finish : now->step;
+}
+
+std::optional<Step> step_before(Step step) {
+  if (step == Step::Plan) return std::nullopt;
+  return static_cast<Step>(static_cast<int>(step) - 1);
+}
+
+std::string name_of(Step step) {
+  constexpr std::array<const char*, kStepCount> kNames{
+      "Plan", "Calibrate", "World marker", "Tools", "Digitise", "Register", "Verify", "Guide", "Finish"};
+  return kNames[static_cast<std::size_t>(step)];
+}
+
+std::string short_name_of(Step step) {
+  constexpr std::array<const char*, kStepCount> kNames{"Plan",     "Camera", "Marker", "Tools", "Digitise",
+                                                       "Register", "Verify", "Guide",  "Finish"};
+  return kNames[static_cast<std::size_t>(step)];
+}
+
+std::string words_of(Missing missing) {
+  switch (missing) {
+    case Missing::Nothing:
+      return "";
+    case Missing::Plan:
+      return "no tunnel is planned in this bone";
+    case Missing::TunnelChoice:
+      return "which of two tunnels is drilled was not chosen";
+    case Missing::PlanTakenOver:
+      return "the plan was edited and not taken over";
+    case Missing::Camera:
+      return "no calibrated camera";
+    case Missing::LensUnchanged:
+      return "zoom or coupler is not as it was calibrated";
+    case Missing::Source:
+      return "no pictures";
+    case Missing::MarkerInView:
+      return "the world marker is not seen";
+    case Missing::MarkerInPlace:
+      return "the world marker does not sit where it sat";
+    case Missing::ProbeTip:
+      return "the probe's tip is not known";
+    case Missing::GuideAxis:
+      return "the guide's axis is not known";
+    case Missing::Strokes:
+      return "strokes on the bone";
+    case Missing::Registration:
+      return "no registration stands";
+    case Missing::TimeOut:
+      return "the time-out is not confirmed";
+    case Missing::Touches:
+      return "touches that verify";
+    case Missing::ControlPoint:
+      return "the control point";
+    case Missing::GuideCheck:
+      return "the nominal guide is not checked";
+    case Missing::Tunnel:
+      return "the tunnel is not drilled";
+    case Missing::MarkerOut:
+      return "the world marker is in the bone";
+  }
+  return "";
+}
+
+Repeat repeat_of(Step step, const OperationState& state) {
+  switch (step) {
+    case Step::Plan:
+      return Repeat::ShowPlan;
+    case Step::Calibrate:
+    case Step::Tools:
+      return Repeat::ShowSetUp;
+    case Step::WorldMarker:
+      return state.has_source && state.registration->touches.has_control_point() ? Repeat::TouchControl
+                                                                                 : Repeat::NothingNow;
+    case Step::Digitise:
+      return state.has_source && !state.draws ? Repeat::Draw : Repeat::NothingNow;
+    case Step::Register:
+      return state.registration->point_count > 0 && !state.registration->is_fitting ? Repeat::RegisterAnew
+                                                                                    : Repeat::NothingNow;
+    case Step::Verify:
+      return state.has_source ? Repeat::Touch : Repeat::NothingNow;
+    case Step::Guide:
+      return Repeat::ShowGuide;
+    case Step::Finish:
+      return Repeat::ShowFinish;
+  }
+  return Repeat::NothingNow;
+}
+
+std::string words_of(Repeat repeat, Step step) {
+  switch (repeat) {
+    case Repeat::ShowPlan:
+      return "go back to the plan";
+    case Repeat::ShowSetUp:
+      return step == Step::Calibrate ? "calibrate the camera again" : "measure the tools again";
+    case Repeat::TouchControl:
+      return "touch the control point: does the marker sit where it sat?";
+    case Repeat::Draw:
+      return "draw more strokes with the probe";
+    case Repeat::RegisterAnew:
+      return "register all strokes again";
+    case Repeat::Touch:
+      return "touch one more place that you know";
+    case Repeat::ShowGuide:
+      return "show the way to the plan";
+    case Repeat::ShowFinish:
+      return "show the check list";
+    case Repeat::NothingNow:
+      return "nothing to do again here now";
+  }
+  return "";
+}
+
+}  // namespace arthronaut::navigate

@@ -1,0 +1,45 @@
+#include "app/navigate/theatre_layout.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace arthronaut::navigate {
+
+TheatreLayout theatre_layout(const widgets::Rect& area, const TheatreLayoutOptions& options) {
+  const float gap = std::round(12 * options.scale), afar = options.afar_px;
+  TheatreLayout layout;
+  widgets::Rect rest = area;
+  if (options.has_buttons) layout.buttons = rest.cut_bottom(50 * options.scale, gap);
+  // A letter is about half as wide as its line is high.
+  const float least_column = kColumnLetters * 0.53F * afar;
+  const float side =
+      std::floor(std::min(rest.height, std::max(rest.width - gap - least_column, rest.width * 0.4F)));
+  widgets::Rect left = rest.cut_left(side, gap);
+  const float below = left.height - side;
+  const bool is_tall = below > 5 * afar;  // as a screen of 4:3 is
+  layout.video = {left.x, is_tall ? left.y : left.y + below / 2, side, side};
+
+  if (options.is_whole_window) layout.header = rest.cut_top(1.2F * afar + 30 * options.scale, gap);
+  layout.rail = rest.cut_top(1.25F * afar + 32 * options.scale, gap);
+  layout.words = rest.cut_top(34 * options.scale + 3.1F * afar, gap);
+  layout.states = rest.cut_bottom(44 * options.scale, gap);
+  layout.block = rest;
+  layout.scene_is_in_block = !is_tall;
+  // Where the window is taller than the picture, the 3D view stands under it, else in the column.
+  if (is_tall) {
+    layout.scene = {left.x, left.y + side + gap, side, below - gap};
+    if (options.guides) layout.target = rest.cut_top(std::min(rest.width, rest.height * 0.42F), gap);
+    layout.main = rest;
+  } else if (options.guides) {
+    widgets::Rect column = rest.cut_left(std::min(rest.width * 0.49F, rest.height * 0.62F), gap);
+    layout.target = column.cut_top(std::min(column.width, column.height * 0.6F), gap);
+    layout.scene = column;
+    layout.main = rest;
+  } else {
+    layout.scene = rest.cut_top(rest.height * 0.4F, gap);
+    layout.main = rest;
+  }
+  return layout;
+}
+
+}  // namespace arthronaut::navigate

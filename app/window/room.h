@@ -1,0 +1,35 @@
+// What belongs to the room that the workstation stands in: its settings, and its pedals as keys.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/pedals/foot_switch.h"
+#include "app/widgets/actions.h"
+
+namespace arthronaut::window {
+
+class Room {
+ public:
+  // Reads the settings. A file that is wrong is told by trouble(), and the usual settings hold.
+  Room();
+  // The foot switches are read from now on. wake: called from another thread.
+  void listen(std::function<void()> wake);
+
+  [[nodiscard]] double screen_diagonal_mm() const;  // 0: nobody said
+  // The key whose meaning this key has: its own, unless the settings say otherwise.
+  [[nodiscard]] int meaning_of(int key) const;
+  // Pedals that were pressed or let go, as keys; while `is_typing`, presses are nobody's.
+  void press_pedals(widgets::Actions& actions, const std::vector<std::string_view>& prefixes, bool is_typing);
+
+  [[nodiscard]] std::string trouble() const;  // of the settings or of a foot switch; empty: none
+  [[nodiscard]] std::string devices() const;  // that are read, by name; "none"
+
+ private:
+  pedals::TheatreSettings settings_;
+  std::string settings_trouble_;
+  std::unique_ptr<pedals::FootSwitch> foot_switch_;
+};
+
+}  // namespace arthronaut::window

@@ -1,0 +1,230 @@
+#include "app/navigate/operation_rail.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "app/navigate/live_words.h"
+
+namespace arthronaut::navigate {
+namespace {
+
+using operation::NextAction;
+using operation::Standing;
+using operation::Step;
+
+// An operation to be brought from step to step: the next action follows by the operation's own rule.
+struct Course {
+  operation::OperationState state;
+  operation::SourceSetup source;
+  operation::RegistrationState registration;
+  tools::ToolSet tools = tools::standard_tools();
+  RailContext context;
+
+  Course() {
+    source.kind = sources::SourceKind::Live;
+    source.pipeline.tools = tools;
+    source.pipeline.guide_name = tools::standard_guide_name(bones::BoneKind::Femur);
+    context.is_planned = context.has_camera = true;
+    context.tools = &tools;
+  }
+  void plan() { state.plan = operation::PlannedTunnel{{}, 30}; }
+  void start() {
+    plan();
+    state.has_source = true;
+    state.frame_count = 1;
+    state.source = std::make_shared<const operation::SourceSetup>(source);
+  }
+  void see_marker() {
+    start();
+    state.frame.camera_from_world.is_valid = true;
+    state.frame.intrinsics_are_known = true;
+  }
+  void stand() {
+    see_marker();
+    registration.point_count = 400;
+    registration.in_force.standing = Standing::Stands;
+    registration.in_force.registration = std::make_shared<const registration::RegistrationSummary>();
+  }
+  void verify() {
+    stand();
+    state.verification = operation::Verification::ByTouches;
+  }
+  [[nodiscard]] Rail rail() {
+    state.registration = std::make_shared<const operation::RegistrationState>(registration);
+    state.next_action = operation::next_action_of(state);
+    return rail_of(state, context);
+  }
+};
+
+StepState state_of(const Rail& rail, Step step) { return rail[static_cast<std::size_t>(step)].state; }
+Missing missing_of(const Rail& rail, Step step) { return rail[static_cast<std::size_t>(step)].missing; }
+
+// One step is now until all is done; the steps stand in their order.
+void expect_whole(const Rail& rail) {
+  int now = 0;
+  for (std::size_t i = 0; i < rail.size(); ++i) {
+    EXPECT_EQ(rail[i].step, static_cast<Step>(i));
+    now += rail[i].state == StepState::Now ? 1 : 0;
+    const bool misses = rail[i].missing != Missing::Nothing;
+    EXPECT_FALSE(rail[i].state == StepState::Done && misses) << i;
+    EXPECT_FALSE(rail[i].state == StepState::Closed && !misses) << i;
+  }
+  EXPECT_LE(now, 1);
+  EXPECT_TRUE(now == 1 || state_of(rail, Step::Finish) == StepState::Done);
+}
+
+TEST(OperationRail, LeadsThroughTheNineSteps) {
+  Course course;
+  Rail rail = course.rail();
+  expect_whole(rail);
+  EXPECT_EQ(step_of_now(rail), Step::WorldMarker) << "plan, camera and tools are there: pictures are next";
+  EXPECT_EQ(state_of(rail, Step::Plan), StepState::Done);
+  EXPECT_EQ(state_of(rail, Step::Digitise), StepState::Closed);
+  EXPECT_EQ(missing_of(rail, Step::Verify), Missing::Registration);
+
+  course.start();
+  rail = course.rail();
+  EXPECT_EQ(step_of_now(rail), Step::WorldMarker);
+  EXPECT_EQ(missing_of(rail, Step::WorldMarker), Missing::MarkerInView);
+
+  course.see_marker();
+  rail = course.rail();
+  expect_whole(rail);
+  EXPECT_EQ(step_of_now(rail), Step::Digitise);
+  EXPECT_EQ(state_of(rail, Step::WorldMarker), StepState::Done);
+  EXPECT_EQ(missing_of(rail, Step::Register), Missing::Strokes);
+
+  course.registration.point_count = 400;
+  course.state.draws = false;
+  rail = course.rail();
+  EXPECT_EQ(step_of_now(rail), Step::Register);
+
+  course.stand();
+  rail = course.rail();
+  expect_whole(rail);
+  EXPECT_EQ(step_of_now(rail), Step::Verify);
+  EXPECT_EQ(missing_of(rail, Step::Verify), Missing::Touches);
+  EXPECT_EQ(state_of(rail, Step::Guide), StepState::Open) << "a look at the way to the plan is free";
+
+  course.verify();
+  rail = course.rail();
+  EXPECT_EQ(step_of_now(rail), Step::Guide);
+  EXPECT_EQ(state_of(rail, Step::Verify), StepState::Done);
+
+  course.state.drilled.outcome = operation::DrilledState::Outcome::Recorded;
+  rail = course.rail();
+  expect_whole(rail);
+  EXPECT_EQ(step_of_now(rail), Step::Finish);
+  EXPECT_EQ(missing_of(rail, Step::Finish), Missing::MarkerOut);
+  EXPECT_EQ(state_of(rail, Step::Guide), StepState::Done);
+
+  // The marker is out: what was drilled is the case's to remember, and the operation is at its end.
+  course.state.drilled = {};
+  course.registration = operation::RegistrationState();
+  course.context.is_drilled = course.context.was_measured = course.context.marker_is_out = true;
+  rail = course.rail();
+  expect_whole(rail);
+  EXPECT_EQ(state_of(rail, Step::Finish), StepState::Done);
+  EXPECT_EQ(state_of(rail, Step::Register), StepState::Done) << "it was, and is not asked for again";
+}
+
+// A tunnel that was only said to be drilled brings the finish, and no tick to a step that nobody took.
+TEST(OperationRail, ATunnelByWordAloneTicksNoStepBeforeIt) {
+  Course course;
+  course.see_marker();
+  course.state.drilled.outcome = operation::DrilledState::Outcome::NoEvidence;
+  course.context.is_drilled = true;
+  Rail rail = course.rail();
+  expect_whole(rail);
+  EXPECT_EQ(step_of_now(rail), Step::Finish);
+  for (const Step step : {Step::Digitise, Step::Register, Step::Verify})
+    EXPECT_NE(state_of(rail, step), StepState::Done) << name_of(step);
+
+  // Nor once the marker is out, when the operation itself has forgotten how it was said.
+  course.state.drilled = {};
+  course.context.marker_is_out = true;
+  rail = course.rail();
+  for (const Step step : {Step::Digitise, Step::Register, Step::Verify})
+    EXPECT_NE(state_of(rail, step), StepState::Done) << name_of(step);
+}
+
+// What is missing is named on the step that misses it.
+TEST(OperationRail, NamesWhatIsMissing) {
+  Course course;
+  course.context.is_planned = false;
+  EXPECT_EQ(missing_of(course.rail(), Step::Plan), Missing::Plan);
+  EXPECT_EQ(step_of_now(course.rail()), Step::Plan);
+  course.context.must_choose = true;
+  EXPECT_EQ(missing_of(course.rail(), Step::Plan), Missing::TunnelChoice);
+
+  Course no_camera;
+  no_camera.context.has_camera = false;
+  EXPECT_EQ(step_of_now(no_camera.rail()), Step::Calibrate);
+  EXPECT_EQ(missing_of(no_camera.rail(), Step::Calibrate), Missing::Camera);
+  EXPECT_EQ(missing_of(no_camera.rail(), Step::WorldMarker), Missing::Camera);
+
+  Course no_axis;
+  for (tools::Tool& tool : no_axis.tools.tools) tool.axis.reset();
+  no_axis.context.tools = &no_axis.tools;
+  EXPECT_EQ(step_of_now(no_axis.rail()), Step::Tools);
+  EXPECT_EQ(missing_of(no_axis.rail(), Step::Tools), Missing::GuideAxis);
+  for (tools::Tool& tool : no_axis.tools.tools) tool.tip_mm.reset();
+  EXPECT_EQ(missing_of(no_axis.rail(), Step::Tools), Missing::ProbeTip);
+
+  Course slipped;
+  slipped.verify();
+  slipped.state.frame.lens.zoom_or_slip = true;
+  EXPECT_EQ(missing_of(slipped.rail(), Step::Calibrate), Missing::LensUnchanged);
+  EXPECT_EQ(step_of_now(slipped.rail()), Step::Calibrate);
+
+  Course due;
+  due.verify();
+  due.state.time_out = operation::TimeOut::Due;
+  EXPECT_EQ(missing_of(due.rail(), Step::Guide), Missing::TimeOut);
+
+  Course bumped;
+  bumped.verify();
+  bumped.registration.alarm.kind = operation::TouchAlarm::Kind::ControlPointMoved;
+  bumped.registration.in_force.standing = Standing::Alarm;
+  EXPECT_EQ(missing_of(bumped.rail(), Step::WorldMarker), Missing::MarkerInPlace);
+  EXPECT_NE(state_of(bumped.rail(), Step::Guide), StepState::Done);
+
+  Course nominal;
+  nominal.verify();
+  nominal.state.guide_check.standing = operation::GuideStanding::Due;
+  EXPECT_EQ(missing_of(nominal.rail(), Step::Verify), Missing::GuideCheck);
+  EXPECT_EQ(missing_of(nominal.rail(), Step::Guide), Missing::GuideCheck);
+}
+
+// Everything that is missing has its own words, and so has every way to do a step again.
+TEST(OperationRail, HasWordsForEverything) {
+  std::set<std::string> missing, repeats;
+  for (int i = 1; i <= static_cast<int>(Missing::MarkerOut); ++i)
+    missing.insert(words_of(static_cast<Missing>(i)));
+  EXPECT_EQ(missing.size(), static_cast<std::size_t>(Missing::MarkerOut));
+  EXPECT_FALSE(missing.contains(""));
+  for (int i = 0; i <= static_cast<int>(Repeat::NothingNow); ++i)
+    repeats.insert(words_of(static_cast<Repeat>(i), Step::Tools));
+  EXPECT_EQ(repeats.size(), static_cast<std::size_t>(Repeat::NothingNow) + 1);
+}
+
+// From wherever an operation is, the way back leads through every step before, to the first.
+TEST(OperationRail, NothingBlocksTheWayBack) {
+  std::optional<Step> step = Step::Finish;
+  int count = 0;
+  for (; step; step = step_before(*step)) ++count;
+  EXPECT_EQ(count, 9);
+  Course course;
+  course.verify();
+  course.state.registration = std::make_shared<const operation::RegistrationState>(course.registration);
+  EXPECT_EQ(repeat_of(Step::Digitise, course.state), Repeat::Draw);
+  EXPECT_EQ(repeat_of(Step::Register, course.state), Repeat::RegisterAnew);
+  EXPECT_EQ(repeat_of(Step::Verify, course.state), Repeat::Touch);
+  EXPECT_EQ(repeat_of(Step::Plan, course.state), Repeat::ShowPlan);
+  EXPECT_EQ(repeat_of(Step::Tools, course.state), Repeat::ShowSetUp);
+  EXPECT_EQ(repeat_of(Step::WorldMarker, course.state), Repeat::NothingNow) << "there is no control point";
+}
+
+}  // namespace
+}  // namespace arthronaut::navigate

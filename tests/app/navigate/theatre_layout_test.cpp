@@ -1,0 +1,134 @@
+#include "app/navigate/theatre_layout.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+
+#include "app/navigate/finish_words.h"
+#include "app/navigate/live_words.h"
+#include "app/navigate/operation_rail.h"
+#include "app/widgets/afar_text.h"
+
+namespace arthronaut::navigate {
+namespace {
+
+using widgets::Rect;
+
+struct Shape {
+  const char* name;
+  int width, height;
+  double diagonal_mm = 0;  // 0: as a 27-inch one
+};
+constexpr std::array<Shape, 7> kShapes{Shape{"16:9", 1920, 1080},
+                                       {"16:9 of 24 inches", 1920, 1080, 610},
+                                       {"16:9 small", 1280, 720},
+                                       {"16:10", 1920, 1200},
+                                       {"4:3", 1600, 1200},
+                                       {"4K", 3840, 2160},
+                                       {"4K of 55 inches", 3840, 2160, 1397}};
+
+// The theme as a window of this shape has it.
+struct Screen {
+  explicit Screen(const Shape& shape) {
+    ImGui::CreateContext();
+    const widgets::Screen screen{shape.width, shape.height, shape.diagonal_mm};
+    const float scale = widgets::scale_for(shape.width, shape.height);
+    theme = widgets::build_theme(scale, widgets::afar_px(screen, scale));
+    ImGui::GetIO().Fonts->Build();
+    const float margin = 12 * scale;
+    area = Rect{0, 0, static_cast<float>(shape.width), static_cast<float>(shape.height)}.inset(margin);
+  }
+  ~Screen() { ImGui::DestroyContext(); }
+  [[nodiscard]] TheatreLayout layout(bool guides, bool is_whole = true) const {
+    return theatre_layout(area, {theme.scale, theme.afar->FontSize, guides, is_whole, !is_whole});
+  }
+  widgets::Theme theme;
+  Rect area;
+};
+
+bool overlap(const Rect& a, const Rect& b) {
+  constexpr float kRounding_px = 0.5F;
+  return a.width > 0 && b.width > 0 && a.height > 0 && b.height > 0 && a.x + a.width > b.x + kRounding_px &&
+         b.x + b.width > a.x + kRounding_px && a.y + a.height > b.y + kRounding_px &&
+         b.y + b.height > a.y + kRounding_px;
+}
+
+// Everything that can be asked of the surgeon.
+std::vector<std::string> all_words() {
+  std::vector<std::string> words{"choose the tunnel of the femur that is drilled: AM (1) or PL (2)",
+                                 "resume the operation that was left",
+                                 "start the simulated operation",
+                                 "take the guide (simulation)",
+                                 "calibrate camera and tools in Set up",
+                                 "wait: the case's last operation is looked for",
+                                 place_anew_words()};
+  for (int i = 0; i <= static_cast<int>(operation::NextAction::Finish); ++i)
+    words.push_back(words_of(static_cast<operation::NextAction>(i)));
+  for (int i = 0; i <= static_cast<int>(Repeat::NothingNow); ++i)
+    words.push_back(words_of(static_cast<Repeat>(i), operation::Step::Calibrate));
+  for (int i = 0; i <= static_cast<int>(FinishAction::Nothing); ++i)
+    words.push_back(words_of(static_cast<FinishAction>(i), bones::BoneKind::Femur));
+  return words;
+}
+
+TEST(TheatreLayout, NothingOverlapsOrLeavesTheWindow) {
+  for (const Shape& shape : kShapes)
+    for (const bool guides : {false, true})
+      for (const bool is_whole : {false, true}) {
+        SCOPED_TRACE(std::string(shape.name) + (guides ? ", guides" : ", registers"));
+        const Screen screen(shape);
+        const TheatreLayout l = screen.layout(guides, is_whole);
+        const std::array parts{l.video,  l.header, l.rail,   l.words,  l.main,
+                               l.target, l.scene,  l.states, l.buttons};
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+          if (parts[i].width <= 0) continue;
+          EXPECT_GE(parts[i].x, screen.area.x - 0.5F) << i;
+          EXPECT_GE(parts[i].y, screen.area.y - 0.5F) << i;
+          EXPECT_LE(parts[i].x + parts[i].width, screen.area.x + screen.area.width + 0.5F) << i;
+          EXPECT_LE(parts[i].y + parts[i].height, screen.area.y + screen.area.height + 0.5F) << i;
+          for (std::size_t k = i + 1; k < parts.size(); ++k)
+            EXPECT_FALSE(overlap(parts[i], parts[k])) << i << " and " << k;
+        }
+        EXPECT_FALSE(overlap(l.block, l.video)) << "what asks or warns never lies over the picture";
+      }
+}
+
+// The picture is what the surgeon works by: on a wide screen it is as high as the screen, nowhere less than
+// nine tenths of the largest square beside a column that can be read.
+TEST(TheatreLayout, ThePictureIsAsLargeAsItCanBe) {
+  for (const Shape& shape : kShapes) {
+    SCOPED_TRACE(shape.name);
+    const Screen screen(shape);
+    const Rect video = screen.layout(true).video;
+    EXPECT_FLOAT_EQ(video.width, video.height);
+    const float column = kColumnLetters * 0.53F * screen.theme.afar->FontSize;
+    EXPECT_GE(video.width, 0.9F * std::min(screen.area.height, screen.area.width - column));
+    const bool is_wide = std::string(shape.name) == "16:9";
+    EXPECT_GT(video.width, is_wide ? 0.95F * screen.area.height : 0);
+  }
+}
+
+// Every instruction stands in letters for afar, whole, on every screen; so do the numbers.
+TEST(TheatreLayout, WhatGuidesIsReadFromAfar) {
+  for (const Shape& shape : kShapes) {
+    SCOPED_TRACE(shape.name);
+    const Screen screen(shape);
+    const widgets::Theme& theme = screen.theme;
+    const TheatreLayout l = screen.layout(true);
+    // As draw_words() leaves it.
+    const float width = l.words.width - theme.px(20), height = l.words.height - theme.title->FontSize;
+    for (const std::string& words : all_words())
+      EXPECT_EQ(widgets::font_that_fits(theme, width, height, words), theme.afar) << words;
+    // Offset with two directions, angle, what remains and the depth of a drill: three numbers and two lines.
+    const float number = theme.afar->FontSize + theme.number->FontSize;
+    EXPECT_GE(l.main.height, 2 * number + 2 * theme.afar->FontSize + theme.px(44));
+    for (const char* word : {"12.3 posterior", "Remaining", "Registration"}) {
+      const ImVec2 size = theme.afar->CalcTextSizeA(theme.afar->FontSize, 1e9F, 0, word);
+      EXPECT_LE(size.x, l.main.width - theme.px(28)) << word;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace arthronaut::navigate

@@ -1,0 +1,124 @@
+// Review as a user works it: a recorded session on its time line, marks, and a comparison that cannot be
+// made.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "navigation/recording/session_marks.h"
+#include "planning/cases/case.h"
+#include "planning/phantom/phantom_case.h"
+#include "tests/app/window/display.h"
+#include "tests/navigation/recording/recorded_frames.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut {
+namespace {
+
+using test::RunningWorkstation;
+using test::VirtualDisplay;
+
+constexpr int kFrames = 180;
+
+class ReviewWindow : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string missing = test::missing_for_window_tests(); !missing.empty())
+      GTEST_SKIP() << missing;
+    cases::save_case(case_folder_, phantom::case_of(phantom::make_phantom_knee(), "Phantom"));
+    session_ = cases::create_session_folder(case_folder_);
+    recording::SessionRecorder recorder(session_, test::session_header(), test::scripted_options());
+    for (int i = 0; i < kFrames; ++i) {
+      recorder.append_picture(std::make_shared<camera::Frame>(test::plain_frame(i, 80)));
+      recorder.append(test::frame_result(i));
+      if (i == 60) recorder.add_event({test::frame_result(i).timestamp_ns, "alarm", "the marker has moved"});
+    }
+    recorder.finish();
+  }
+  const test::TemporaryFolder folder_;
+  const std::filesystem::path case_folder_ = folder_ / "knee.arthro";
+  std::filesystem::path session_;
+};
+
+// A session of which a table was changed is shown, and said not to be what was recorded.
+TEST_F(ReviewWindow, SaysThatARecordWasChanged) {
+  std::ofstream(session_ / "poses.csv", std::ios::app) << "180,3,0,1,0,0,0,1,2,3,0.1,\n";
+  const VirtualDisplay display(1920, 1080);
+  RunningWorkstation app(display, folder_.path(), {case_folder_.string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F3");
+  ASSERT_TRUE(app.wait_for_state("review_picture", "shown"));
+  EXPECT_TRUE(app.wait_for_state("record", "broken"));
+}
+
+// Opened at the last moment with guidance; by keys to the beginning, to the alarm, a frame on; a mark with a
+// note is on disk, undone and made again; a click on the time line shows the frame that lies there.
+TEST_F(ReviewWindow, LeadsThroughASession) {
+  const VirtualDisplay display(1920, 1080);
+  RunningWorkstation app(display, folder_.path(), {case_folder_.string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F3");
+  ASSERT_TRUE(app.wait_for_state("session", session_.filename().string()));
+  ASSERT_TRUE(app.wait_for_state("review_picture", "shown"));
+  EXPECT_EQ(app.state("frame"), "177");
+  ASSERT_TRUE(app.wait_for_state("record", "unbroken"));
+  app.press("Home");
+  ASSERT_TRUE(app.wait_for_state("frame", "0"));
+  app.press("n");
+  ASSERT_TRUE(app.wait_for_state("frame", "60"));
+  app.press("Right");
+  ASSERT_TRUE(app.wait_for_state("frame", "61"));
+  ASSERT_TRUE(app.wait_for_state("review_picture", "shown"));
+
+  app.press("m");
+  ASSERT_TRUE(app.wait_for_state("note_field", "open"));
+  app.type("loose here");
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("marks", "1"));
+  EXPECT_EQ(recording::read_marks(session_),
+            (recording::SessionMarks{{61, test::frame_result(61).timestamp_ns, "loose here"}}));
+  app.press("ctrl+z");
+  ASSERT_TRUE(app.wait_for_state("marks", "0"));
+  EXPECT_TRUE(recording::read_marks(session_).empty());
+  app.press("ctrl+y");
+  ASSERT_TRUE(app.wait_for_state("marks", "1"));
+
+  app.press("period");
+  ASSERT_TRUE(app.wait_for_state("speed", "2 x"));
+  app.press("l");
+  ASSERT_TRUE(app.wait_for_state("loop", "begun"));
+  app.press("End");
+  ASSERT_TRUE(app.wait_for_state("frame", std::to_string(kFrames - 1)));
+  app.press("l");
+  ASSERT_TRUE(app.wait_for_state("loop", "on"));
+
+  ASSERT_TRUE(app.wait_for_widget("review.time_line"));
+  const test::Area line = app.widgets().at("review.time_line");
+  app.click_at(line.x + 1, line.y + line.height / 2);
+  ASSERT_TRUE(app.wait_for_state("frame", "0"));
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(30), 0);
+}
+
+// Images that are not there: the reason stands on the screen, the case keeps nothing, and the session is one
+// key away.
+TEST_F(ReviewWindow, SaysWhyNothingWasCompared) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {case_folder_.string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F3");
+  ASSERT_TRUE(app.wait_for_state("session", session_.filename().string()));
+  app.press("c");
+  ASSERT_TRUE(app.wait_for_state("review_page", "achieved"));
+  ASSERT_TRUE(app.wait_for_widget("review.postop_path"));
+  app.type("/nowhere/ct");
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("postop", "failed"));
+  EXPECT_FALSE(std::filesystem::exists(case_folder_ / "achieved.json"));
+  app.press("p");
+  ASSERT_TRUE(app.wait_for_state("review_page", "session"));
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(30), 0);
+}
+
+}  // namespace
+}  // namespace arthronaut
