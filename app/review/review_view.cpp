@@ -28,7 +28,7 @@ std::string date_text(const std::string& name) {
 }  // namespace
 
 ReviewView::ReviewView(std::function<void()> make_current, std::function<void()> wake)
-    : wake_(std::move(wake)), pane_(std::move(make_current)) {}
+    : wake_(std::move(wake)), pane_(make_current), postop_(make_current, wake_) {}
 
 mode::ModeTitle ReviewView::title() const {
   return {"review", "mode.review", "Review", "What happened", GLFW_KEY_F3};
@@ -41,11 +41,15 @@ std::optional<sources::SourceKind> ReviewView::source_kind() const {
 void ReviewView::case_opened(const mode::OpenCase& opened) {
   model_ = opened.model;
   case_folder_ = opened.folder;
+  read_only_ = opened.read_only;
   sessions_.clear();
   chosen_.reset();
-  review_.reset();
-  pictures_.reset();
+  open_.reset();
+  opens_for_another_case_ = opening_.valid();
+  note_ = {};
   notice_.clear();
+  shows_postop_ = false;
+  postop_.open(model_, case_folder_, read_only_);
 }
 
 void ReviewView::enter() {
@@ -54,7 +58,7 @@ void ReviewView::enter() {
   if (sessions_.empty()) return;
   // What was chosen keeps its place in the list as new sessions come.
   const auto same =
-      review_ ? std::find(sessions_.begin(), sessions_.end(), review_->folder) : sessions_.end();
+      open_ ? std::find(sessions_.begin(), sessions_.end(), open_->review.folder) : sessions_.end();
   if (same != sessions_.end())
     chosen_ = static_cast<std::size_t>(same - sessions_.begin());
   else
@@ -64,10 +68,9 @@ void ReviewView::enter() {
 void ReviewView::choose(std::size_t session) {
   if (session >= sessions_.size() || opening_.valid()) return;
   chosen_ = session;
-  review_.reset();
-  pictures_.reset();
+  open_.reset();
+  note_ = {};
   notice_.clear();
-  cursor_ = {};
   opening_ = std::async(std::launch::async, [folder = sessions_[session], wake = wake_] {
     const struct Waker {
       const std::function<void()>& wake;
@@ -79,144 +82,177 @@ void ReviewView::choose(std::size_t session) {
 
 void ReviewView::take_opened() {
   if (!opening_.valid() || opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  if (std::exchange(opens_for_another_case_, false)) {
+    opening_ = {};  // a session of the case before says nothing here
+    return choose(0);
+  }
   try {  // the top of the job
-    review_ = opening_.get();
+    open_.emplace().review = opening_.get();
   } catch (const std::exception& error) {
+    open_.reset();
     notice_ = error.what();
     return;
   }
-  shown_frame_.reset();
+  OpenSession& open = *open_;
+  open.marks = MarkBook(open.review.folder, read_only_);
+  open.check = std::make_unique<CheckRun>(open.review.folder, wake_);
   if (!has_frames()) return;
   // Where the user most wants to look first: the last moment with guidance.
-  const auto& frames = review_->session->frames();
-  cursor_.frame = frames.size() - 1;
+  const auto& frames = open.timeline().frames();
+  open.playback.frame = frames.size() - 1;
   for (std::size_t i = frames.size(); i-- > 0;)
-    if (frames[i].guidance.is_valid()) {
-      cursor_.frame = i;
+    if (frames[i].is_guided()) {
+      open.playback.frame = i;
       break;
     }
-  if (!review_->session->video().empty())
-    pictures_ = std::make_unique<PictureFetcher>(review_->folder, wake_);
-  const bones::BoneKind bone = review_->session->header().bone;
-  if (model_->has_bone(bone)) {
-    const std::optional<tunnels::Tunnel>& tunnel = review_->plan.plan;
-    const geometry::Bounds bounds = model_->bounds(bone);
-    pane_.look(tunnel ? scene::orbited(scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm,
-                                                         190, {0, 0, 1}),
-                                       {40, -30}, 600)
-                      : scene::look_from(scene::ViewDirection::Anterior, model_->knee().side, bounds, 1));
-  }
+  if (!open.review.session->video().empty())
+    open.pictures = std::make_unique<PictureFetcher>(open.review.folder, wake_);
+  look_at_tunnel();
 }
 
-bool ReviewView::has_frames() const { return review_ && !review_->session->frames().empty(); }
-
-bool ReviewView::is_busy() const { return opening_.valid() || cursor_.plays; }
-
-void ReviewView::play(double now_s) {
-  if (!cursor_.plays || !has_frames()) return;
-  const double at = cursor_.play_from_s + now_s - cursor_.play_started_s;
-  cursor_.frame = frame_at(*review_->session, at);
-  if (cursor_.frame + 1 >= review_->session->frames().size()) cursor_.plays = false;
+void ReviewView::look_at_tunnel() {
+  const bones::BoneKind bone = open_->review.session->header.bone;
+  if (!model_->has_bone(bone)) return;
+  const std::optional<tunnels::Tunnel>& tunnel = open_->review.plan.plan;
+  const geometry::Bounds bounds = model_->bounds(bone);
+  pane_.look(tunnel ? scene::orbited(
+                          scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm, 190, {0, 0, 1}),
+                          {40, -30}, 600)
+                    : scene::look_from(scene::ViewDirection::Anterior, model_->knee().side, bounds, 1));
 }
 
-void ReviewView::step(long frames) {
-  if (!has_frames()) return;
-  cursor_.plays = false;
-  const long last = static_cast<long>(review_->session->frames().size()) - 1;
-  cursor_.frame = static_cast<std::size_t>(std::clamp(static_cast<long>(cursor_.frame) + frames, 0L, last));
+bool ReviewView::has_frames() const { return open_ && !open_->timeline().frames().empty(); }
+
+bool ReviewView::runs_today() const { return open_ && open_->today && !open_->today->has_ended(); }
+
+bool ReviewView::is_busy() const {
+  return opening_.valid() || runs_today() || postop_.is_running() || (open_ && open_->playback.plays);
 }
 
-void ReviewView::add_actions(widgets::Actions& actions) {
-  const auto has = [this] { return has_frames(); };
-  actions.add({"review.play", "Play", "From here at the pace it happened", GLFW_KEY_SPACE, 0, false, has,
-               [this] { return cursor_.plays; },
-               [this] {
-                 cursor_.plays = !cursor_.plays;
-                 if (cursor_.frame + 1 >= review_->session->frames().size()) cursor_.frame = 0;
-                 cursor_.play_from_s = time_s(*review_->session, cursor_.frame);
-                 cursor_.play_started_s = widgets::GraphicsWindow::now_s();
-               }});
-  const auto jump = [&](const char* id, const char* label, int key, int mods, long frames) {
-    actions.add(
-        {id, label, std::string(label) + " on the time line", key, mods, true, has, {}, [this, frames] {
-           step(frames);
-         }});
-  };
-  jump("review.back", "1 back", GLFW_KEY_LEFT, 0, -1);
-  jump("review.forward", "1 forward", GLFW_KEY_RIGHT, 0, 1);
-  jump("review.back_far", "60 back", GLFW_KEY_LEFT, GLFW_MOD_SHIFT, -60);
-  jump("review.forward_far", "60 forward", GLFW_KEY_RIGHT, GLFW_MOD_SHIFT, 60);
-  jump("review.first", "First", GLFW_KEY_HOME, 0, -1'000'000'000);
-  jump("review.last", "Last", GLFW_KEY_END, 0, 1'000'000'000);
-  actions.add({"review.newer",
-               "Newer session",
-               "The session after this one",
-               GLFW_KEY_UP,
-               0,
-               false,
-               [this] { return chosen_ && *chosen_ > 0; },
-               {},
-               [this] { choose(*chosen_ - 1); }});
-  actions.add({"review.older",
-               "Older session",
-               "The session before this one",
-               GLFW_KEY_DOWN,
-               0,
-               false,
-               [this] { return chosen_ && *chosen_ + 1 < sessions_.size(); },
-               {},
-               [this] { choose(*chosen_ + 1); }});
+ReviewScreen ReviewView::screen() const {
+  return {open_->review, open_->marks.marks(), open_->playback,
+          open_->today ? open_->today->progress().result.get() : nullptr};
 }
 
 void ReviewView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   take_opened();
-  play(ui.now_s);
+  if (has_frames()) advance(open_->playback, open_->timeline(), ui.now_s);
   const float gap = ui.theme.px(12);
   widgets::Rect rest = area;
-  draw_sessions(ui, rest.cut_left(ui.theme.px(380), gap));
-  ui.log.note_state("session", review_            ? review_->folder.filename().string()
+  draw_side(ui, rest.cut_left(ui.theme.px(380), gap));
+  ui.log.note_state("session", open_              ? open_->review.folder.filename().string()
                                : opening_.valid() ? "opening"
                                                   : "none");
+  ui.log.note_state("review_page", shows_postop_ ? "achieved" : "session");
+  if (shows_postop_) return postop_.draw(ui, rest);
   if (!has_frames()) {
     const char* text = sessions_.empty()  ? "No session yet. Record one in Navigate."
                        : opening_.valid() ? "Opening the session"
                        : !notice_.empty() ? "This session cannot be read. The reason stands below."
-                       : review_          ? "This session has no pictures."
+                       : open_            ? "This session has no pictures."
                                           : "Choose a session.";
     widgets::text_centered(ui, rest, ui.theme.title, widgets::kQuietText, text);
     return;
   }
   draw_origin(ui, rest.cut_top(ui.theme.px(58), gap));
-  const widgets::Rect line = rest.cut_bottom(ui.theme.px(300), gap);
-  const widgets::Rect moment = rest.cut_right(ui.theme.px(430), gap);
+  const widgets::Rect line = rest.cut_bottom(ui.theme.px(330), gap);
+  const widgets::Rect numbers = rest.cut_right(ui.theme.px(430), gap);
   const widgets::Rect picture = rest.cut_left((rest.width - gap) / 2, gap);
   draw_picture(ui, picture);
   draw_scene(ui, rest);
-  draw_moment(ui, moment, *review_, cursor_.frame);
-  if (const auto wanted = draw_time_line(ui, line, *review_, cursor_)) {
-    cursor_.plays = false;
-    cursor_.frame = *wanted;
-  }
-  ui.log.note_state("frame", std::to_string(cursor_.frame));
+  draw_numbers(ui, numbers);
+  if (const auto wanted = draw_time_line(ui, line, screen(), open_->zoom))
+    go_to(open_->playback, open_->timeline(), *wanted);
+  ui.log.note_state("frame", std::to_string(open_->playback.frame));
+  ui.log.note_state("speed", speed_text(open_->playback));
+  ui.log.note_state("loop", open_->playback.loops() ? "on" : open_->playback.from ? "begun" : "off");
+  ui.log.note_state("marks", std::to_string(open_->marks.marks().size()));
 }
 
-void ReviewView::draw_sessions(const widgets::Ui& ui, const widgets::Rect& area) {
+void ReviewView::draw_numbers(const widgets::Ui& ui, widgets::Rect area) {
+  const bones::BoneKind bone = open_->review.session->header.bone;
+  if (model_->has_bone(bone)) {
+    const widgets::Rect target = area.cut_top(ui.theme.px(210), ui.theme.px(8));
+    draw_bullseye(ui, target, screen(), model_->axes(bone));
+  }
+  draw_moment(ui, area, screen());
+}
+
+void ReviewView::draw_side(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::begin_panel(ui, "review.sessions", area, "Sessions of this case");
+  draw_sessions(ui);
+  ImGui::Separator();
+  draw_buttons(ui);
+  if (open_ && !open_->review.session->was_finished)
+    widgets::status_row(ui, widgets::Severity::Caution, "Cut off",
+                        "the program ended before the session did");
+  if (open_) draw_check(ui);
+  if (has_frames()) {
+    draw_note_field(ui);
+    ImGui::Separator();
+    if (const auto wanted = draw_moments(ui, screen())) go_to(open_->playback, open_->timeline(), *wanted);
+  }
+  widgets::end_panel();
+}
+
+void ReviewView::draw_check(const widgets::Ui& ui) const {
+  using Outcome = recording::SessionCheck::Outcome;
+  const std::string error = open_->check->error();
+  const CheckProgress progress = open_->check->progress();
+  if (!error.empty()) {
+    ui.log.note_state("record", "failed");
+    return widgets::status_row(ui, widgets::Severity::Bad, "Hashes", error);
+  }
+  if (!progress.result) {
+    ui.log.note_state("record", "checking");
+    return widgets::status_row(ui, widgets::Severity::Quiet, "Hashes",
+                               "checked to " + std::to_string(progress.percent) + " %");
+  }
+  const recording::SessionCheck& check = *progress.result;
+  const bool is_broken = check.outcome == Outcome::Broken;
+  ui.log.note_state("record", is_broken ? "broken" : check.is_unbroken() ? "unbroken" : "unknown");
+  widgets::status_row(ui,
+                      is_broken             ? widgets::Severity::Bad
+                      : check.is_unbroken() ? widgets::Severity::Good
+                                            : widgets::Severity::Quiet,
+                      is_broken ? "Not as recorded" : "Hashes", recording::check_words(check));
+}
+
+void ReviewView::draw_sessions(const widgets::Ui& ui) {
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  const float shown = static_cast<float>(std::clamp<std::size_t>(sessions_.size(), 1, 5)) + 0.3F;
+  ImGui::BeginChild("review.list", {0, shown * line});
   for (std::size_t i = 0; i < sessions_.size(); ++i) {
     const std::string name = sessions_[i].filename().string();
     if (ImGui::Selectable(date_text(name).c_str(), chosen_ && *chosen_ == i)) choose(i);
     ui.log.note("review.session." + name, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   }
   if (sessions_.empty()) widgets::text_in(ui.theme.body, widgets::kQuietText, "None yet");
-  ImGui::Separator();
-  const float width = ImGui::GetContentRegionAvail().x;
-  widgets::action_button(ui, "review.newer", width);
-  widgets::action_button(ui, "review.older", width);
-  widgets::action_button(ui, "review.play", width);
-  if (review_ && !review_->session->was_finished())
-    widgets::status_row(ui, widgets::Severity::Caution, "Cut off",
-                        "the program ended before the session did");
-  widgets::end_panel();
+  ImGui::EndChild();
+}
+
+void ReviewView::draw_buttons(const widgets::Ui& ui) {
+  const float width = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
+  const auto pair = [&](const char* left, const char* right) {
+    widgets::action_button(ui, left, width);
+    ImGui::SameLine();
+    widgets::action_button(ui, right, width);
+  };
+  pair("review.newer", "review.older");
+  pair("review.play", "review.loop");
+  pair("review.slower", "review.faster");
+  pair("review.event_before", "review.event_after");
+  pair("review.mark", "review.unmark");
+  pair("review.today", "review.achieved");
+  if (!open_ || !open_->today) return ui.log.note_state("today", "none");
+  const TodayProgress progress = open_->today->progress();
+  const std::string error = open_->today->error();
+  ui.log.note_state("today", !error.empty() ? "failed" : progress.result ? "done" : "running");
+  if (!error.empty()) return widgets::status_row(ui, widgets::Severity::Bad, "Not run again", error);
+  if (progress.result) return;
+  ImGui::ProgressBar(
+      progress.total > 0 ? static_cast<float>(progress.done) / static_cast<float>(progress.total) : 0,
+      {-1, 0}, progress.total > 0 ? nullptr : "Making the bone ready");
 }
 
 // As large as the word in the bar above, and in its colour: what a recording is of changes nothing of what it
@@ -224,7 +260,7 @@ void ReviewView::draw_sessions(const widgets::Ui& ui, const widgets::Rect& area)
 void ReviewView::draw_origin(const widgets::Ui& ui, const widgets::Rect& area) const {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   ImFont* const font = ui.theme.afar;
-  const std::string words = origin_in_words(review_->session->header());
+  const std::string words = origin_in_words(open_->review.session->header);
   const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0, words.c_str());
   const float margin = ui.theme.px(14);
   const widgets::Rect plate{area.x, area.y, size.x + 2 * margin, area.height};
@@ -240,14 +276,19 @@ void ReviewView::draw_picture(const widgets::Ui& ui, const widgets::Rect& area) 
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddRectFilled(area.min(), area.max(), IM_COL32(0, 0, 0, 255), ui.theme.px(6));
   ui.log.note("review.picture", area.min(), area.max());
-  if (pictures_ == nullptr)
+  if (open_->pictures == nullptr)
     return widgets::text_centered(ui, area, ui.theme.strong, widgets::kQuietText,
                                   "No video was kept with this session");
-  if (const std::string error = pictures_->error(); !error.empty())
+  if (const std::string error = open_->pictures->error(); !error.empty())
     return widgets::text_centered(ui, area, ui.theme.strong, widgets::kBad, error);
-  const camera::FramePtr picture = pictures_->picture(review_->session->frames()[cursor_.frame].index);
+  const recording::FrameGlance& glance = open_->glance();
+  const auto fetched = open_->pictures->picture({glance.index, glance.timestamp_ns});
+  const camera::FramePtr picture = fetched ? fetched->picture : nullptr;
   video_.upload(picture);
-  ui.log.note_state("review_picture", picture != nullptr ? "shown" : "reading");
+  ui.log.note_state("review_picture", !fetched ? "reading" : picture ? "shown" : "none");
+  if (fetched && picture == nullptr)
+    return widgets::text_centered(ui, area, ui.theme.strong, widgets::kQuietText,
+                                  "No picture of this frame was kept");
   if (video_.texture() == 0)
     return widgets::text_centered(ui, area, ui.theme.strong, widgets::kQuietText, "Reading the video");
   const float w = static_cast<float>(video_.width()), h = static_cast<float>(video_.height());
@@ -257,45 +298,47 @@ void ReviewView::draw_picture(const widgets::Ui& ui, const widgets::Rect& area) 
   const ImVec2 from{(w - side) / 2 / w, (h - side) / 2 / h}, to{(w + side) / 2 / w, (h + side) / 2 / h};
   draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(video_.texture())), at.min(),
                 at.max(), from, to, picture != nullptr ? IM_COL32_WHITE : IM_COL32(90, 90, 90, 255));
-  if (picture == nullptr && !cursor_.plays)
+  if (picture == nullptr && !open_->playback.plays)
     widgets::text_centered(ui, area, ui.theme.strong, widgets::kText, "Reading the video");
 }
 
 void ReviewView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area) {
-  if (!model_->has_bone(review_->session->header().bone)) return;
-  if (shown_frame_ != cursor_.frame) {
+  const SessionReview& review = open_->review;
+  if (!model_->has_bone(review.session->header.bone)) return;
+  if (open_->shown_frame != open_->playback.frame) {
     show_scene();
-    shown_frame_ = cursor_.frame;
+    open_->shown_frame = open_->playback.frame;
   }
   pane_.draw(ui, "review.view", area);
-  const bool is_femur = review_->session->header().bone == bones::BoneKind::Femur;
-  const auto& plan = review_->plan.plan;
+  const bool is_femur = review.session->header.bone == bones::BoneKind::Femur;
+  const auto& plan = review.plan.plan;
   const std::string planned = !plan ? ""
                               : plan->bundle == norms::Bundle::Whole
                                   ? ". Blue: planned"
                                   : ". Blue: planned " + tunnels::name_of(plan->key());
   widgets::caption(ui, area, widgets::kText,
                    std::string(is_femur ? "Femur" : "Tibia") + planned +
-                       (!review_->achieved.empty() ? ". Banded: achieved" : ""));
+                       (!review.achieved.empty() ? ". Banded: achieved" : ""));
 }
 
 void ReviewView::show_scene() {
-  const recording::RecordedSession& session = *review_->session;
-  const recording::RecordedFrame& frame = session.frames()[cursor_.frame];
-  const bones::BoneKind bone = session.header().bone;
+  const SessionReview& review = open_->review;
+  const recording::SessionOverview& session = *review.session;
+  const recording::RecordedFrame& frame = open_->timeline().frame(open_->playback.frame);
+  const bones::BoneKind bone = session.header.bone;
   scene::SceneContent content;
   content.bones.push_back({model_->drawn_mesh(bone), scene::kBoneColor, 1.0});
-  const recording::RecordedSession::PlanChange& plan = review_->plan;
+  const recording::RecordedSession::PlanChange& plan = review.plan;
   if (plan.plan) scene::add_planned_tunnel(content, *plan.plan, plan.planned_length_mm);
-  for (const operation::AchievedTunnel& achieved : review_->achieved) {
+  for (const operation::AchievedTunnel& achieved : review.achieved) {
     // Of a depth that nobody knows, in older records nought, the tunnel is drawn as long as planned.
     const double depth_mm = achieved.depth_mm.value_or(0);
     scene::add_achieved_tunnel(content, achieved.measured, depth_mm > 1 ? depth_mm : plan.planned_length_mm);
   }
-  if (session.registration() && session.registration()->has_pose) {
-    const geometry::RigidTransform bone_from_marker = session.registration()->marker_from_bone.inverse();
+  if (session.registration && session.registration->has_pose) {
+    const geometry::RigidTransform bone_from_marker = session.registration->marker_from_bone.inverse();
     std::vector<Eigen::Vector3d> touched;
-    for (const strokes::CurvePoint& point : session.curves())
+    for (const strokes::CurvePoint& point : session.curves)
       touched.push_back(bone_from_marker * point.position_mm);
     scene::add_curve_points(content, touched);
     if (frame.tip_is_valid)

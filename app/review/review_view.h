@@ -1,5 +1,5 @@
-// Review mode: the sessions of the case, their time line, and picture, 3D view and numbers at any moment of
-// it.
+// Review mode: the sessions of the case, their time line, and picture, 3D view, bullseye and numbers at any
+// moment of it; what happened, marks with notes, and what today's program makes of the same pictures.
 #pragma once
 
 #include <filesystem>
@@ -12,19 +12,28 @@
 
 #include "app/case/plan_model.h"
 #include "app/mode/mode.h"
+#include "app/review/check_run.h"
 #include "app/review/picture_fetcher.h"
-#include "app/review/session_review.h"
-#include "app/widgets/controls.h"
+#include "app/review/postop_page.h"
+#include "app/review/review_panels.h"
 #include "app/widgets/scene_pane.h"
 #include "app/widgets/video_texture.h"
 
 namespace arthronaut::review {
 
-// Where on the time line the user is, and whether it plays.
-struct ReviewCursor {
-  std::size_t frame = 0;
-  bool plays = false;
-  double play_started_s = 0, play_from_s = 0;
+// The session that is looked at, and everything that belongs to looking at it.
+struct OpenSession {
+  SessionReview review;
+  std::unique_ptr<PictureFetcher> pictures;  // null: no video was kept
+  MarkBook marks;
+  Playback playback;
+  TimeLineZoom zoom;
+  std::unique_ptr<TodayRun> today;         // null: was not asked for
+  std::unique_ptr<CheckRun> check;         // whether it is as it was recorded; never null once it is open
+  std::optional<std::size_t> shown_frame;  // of the 3D view
+
+  [[nodiscard]] const recording::SessionTimeline& timeline() const { return *review.timeline; }
+  [[nodiscard]] const recording::FrameGlance& glance() const { return timeline().frames()[playback.frame]; }
 };
 
 class ReviewView : public mode::Mode {
@@ -38,43 +47,63 @@ class ReviewView : public mode::Mode {
   void add_actions(widgets::Actions& actions) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
   [[nodiscard]] bool is_busy() const override;
+  [[nodiscard]] bool awaits_text() const override { return note_.takes_focus || postop_.awaits_text(); }
+  // A comparison that another case or the end of the program would cut off.
+  [[nodiscard]] bool has_running_work() const override { return postop_.is_running(); }
+  // Images after the operation, dropped on the window: compared with the plan.
+  void take_dropped(const std::filesystem::path& images);
   // Whatever a session was made of, what is shown of it is a recording; draw_origin() says what of.
   [[nodiscard]] std::optional<sources::SourceKind> source_kind() const override;
   [[nodiscard]] std::string notice() const override { return notice_; }
 
  private:
+  // The field in which the note of a mark is written.
+  struct NoteField {
+    bool is_open = false, takes_focus = false;
+    std::string text;
+  };
   void choose(std::size_t session);
   void take_opened();
-  void play(double now_s);
+  void look_at_tunnel();
   void step(long frames);
+  void jump(bool forward);
+  void add_playing_actions(widgets::Actions& actions);
+  void add_mark_actions(widgets::Actions& actions);
+  void add_postop_actions(widgets::Actions& actions);
+  void begin_mark();
+  void keep_mark();
+  // A change that the disk refuses is told, and the marks stay as they were.
+  void change_marks(const std::function<void(MarkBook&)>& change);
+  void toggle_today();
   [[nodiscard]] bool has_frames() const;
-  void draw_sessions(const widgets::Ui& ui, const widgets::Rect& area);
+  [[nodiscard]] bool runs_today() const;
+  [[nodiscard]] ReviewScreen screen() const;
+  void draw_side(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_sessions(const widgets::Ui& ui);
+  void draw_buttons(const widgets::Ui& ui);
+  void draw_check(const widgets::Ui& ui) const;
+  void draw_note_field(const widgets::Ui& ui);
   void draw_origin(const widgets::Ui& ui, const widgets::Rect& area) const;
   void draw_picture(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_scene(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_numbers(const widgets::Ui& ui, widgets::Rect area);
   void show_scene();
 
   const open_case::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
+  std::string read_only_;
   std::function<void()> wake_;
   widgets::ScenePane pane_;
   widgets::VideoTexture video_;
   std::vector<std::filesystem::path> sessions_;
   std::optional<std::size_t> chosen_;
   std::future<SessionReview> opening_;
-  std::optional<SessionReview> review_;
-  std::unique_ptr<PictureFetcher> pictures_;
-  ReviewCursor cursor_;
-  std::optional<std::size_t> shown_frame_;  // of the 3D view
+  bool opens_for_another_case_ = false;  // what opening_ reads is of the case that was open before
+  std::optional<OpenSession> open_;
+  NoteField note_;
+  PostopPage postop_;
+  bool shows_postop_ = false;  // in the place of the session
   std::string notice_;
 };
-
-// Tracks, events and the cursor; returns the frame that the mouse asks for.
-[[nodiscard]] std::optional<std::size_t> draw_time_line(const widgets::Ui& ui, const widgets::Rect& area,
-                                                        const SessionReview& review,
-                                                        const ReviewCursor& cursor);
-// The numbers of this moment, the registration, and planned against achieved.
-void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const SessionReview& review,
-                 std::size_t frame);
 
 }  // namespace arthronaut::review

@@ -10,11 +10,19 @@ namespace arthronaut::review {
 namespace {
 
 template <typename Holds>
-TimeTrack track_of(const recording::RecordedSession& session, const std::string& name, const Holds& holds) {
+TimeTrack track_of(const recording::SessionTimeline& timeline, const std::string& name, const Holds& holds) {
   std::vector<bool> flags;
-  flags.reserve(session.frames().size());
-  for (const recording::RecordedFrame& frame : session.frames()) flags.push_back(holds(frame));
+  flags.reserve(timeline.frames().size());
+  for (const recording::FrameGlance& frame : timeline.frames()) flags.push_back(holds(frame));
   return {name, stretches_of(flags, 2)};
+}
+
+TimeTrack marker_track(const recording::SessionTimeline& timeline, const tools::ToolSet& tools, int id) {
+  const auto& ids = timeline.marker_ids();
+  const auto at = std::find(ids.begin(), ids.end(), id);
+  const std::uint32_t bit = at == ids.end() ? 0 : std::uint32_t{1} << static_cast<unsigned>(at - ids.begin());
+  return track_of(timeline, guidance_severity::marker_name(tools, id),
+                  [bit](const recording::FrameGlance& frame) { return (frame.posed & bit) != 0; });
 }
 
 }  // namespace
@@ -34,24 +42,26 @@ std::vector<Stretch> stretches_of(const std::vector<bool>& holds, std::size_t br
 SessionReview read_review(const std::filesystem::path& session_folder) {
   SessionReview review;
   review.folder = session_folder;
-  review.session = std::make_shared<const recording::RecordedSession>(session_folder);
-  const recording::RecordedSession& session = *review.session;
-  const tools::ToolSet tools = session.pipeline_options().tools;
-  const auto marker_track = [&](int id) {
-    review.tracks.push_back(track_of(
-        session, guidance_severity::marker_name(tools, id), [id](const recording::RecordedFrame& frame) {
-          return std::any_of(frame.poses.begin(), frame.poses.end(),
-                             [id](const strokes::PoseRow& row) { return row.marker_id == id; });
-        }));
-  };
-  if (const auto* world = tools.find_world_marker(session.header().bone)) marker_track(world->marker_id);
-  if (const auto* probe = tools.find_tool(session.header().probe_name)) marker_track(probe->marker_id);
-  if (const auto* guide = tools.find_tool(session.header().guide_name)) marker_track(guide->marker_id);
-  review.tracks.push_back(track_of(session, "Lens angle",
-                                   [](const recording::RecordedFrame& f) { return f.intrinsics_are_known; }));
+  review.session =
+      std::make_shared<const recording::SessionOverview>(recording::read_overview(session_folder));
+  review.timeline = std::make_shared<const recording::SessionTimeline>(session_folder);
+  const recording::SessionOverview& session = *review.session;
+  const recording::SessionTimeline& timeline = *review.timeline;
+  review.problems = session.problems;
+  for (const std::string& problem : timeline.problems())
+    if (std::find(review.problems.begin(), review.problems.end(), problem) == review.problems.end())
+      review.problems.push_back(problem);
+  const tools::ToolSet tools = session.options.tools;
+  const auto add_marker = [&](int id) { review.tracks.push_back(marker_track(timeline, tools, id)); };
+  if (const auto* world = tools.find_world_marker(session.header.bone)) add_marker(world->marker_id);
+  if (const auto* probe = tools.find_tool(session.header.probe_name)) add_marker(probe->marker_id);
+  if (const auto* guide = tools.find_tool(session.header.guide_name)) add_marker(guide->marker_id);
+  review.tracks.push_back(track_of(timeline, "Lens angle",
+                                   [](const recording::FrameGlance& f) { return f.intrinsics_are_known; }));
   review.tracks.push_back(
-      track_of(session, "Guidance", [](const recording::RecordedFrame& f) { return f.guidance.is_valid(); }));
-  for (const recording::SessionEvent& event : session.events())
+      track_of(timeline, "Guidance", [](const recording::FrameGlance& f) { return f.is_guided(); }));
+  if (!timeline.frames().empty()) review.moments = moments_of(session.events, timeline);
+  for (const recording::SessionEvent& event : session.events)
     if (event.kind == recording::kPlanEvent) review.plan = session.plan_of(event);
   try {  // a broken file must not hide the session: its reason is shown in its place
     for (const std::filesystem::path& file : operation::achieved_files(session_folder))
@@ -74,20 +84,6 @@ std::string origin_in_words(const recording::SessionHeader& header) {
       return "RECORDING of a simulation";
   }
   return "RECORDING";
-}
-
-double time_s(const recording::RecordedSession& session, std::size_t frame) {
-  return static_cast<double>(session.frames()[frame].timestamp_ns - session.frames().front().timestamp_ns) *
-         1e-9;
-}
-
-std::size_t frame_at(const recording::RecordedSession& session, double seconds) {
-  const auto& frames = session.frames();
-  const std::int64_t wanted = frames.front().timestamp_ns + static_cast<std::int64_t>(seconds * 1e9);
-  const auto after =
-      std::upper_bound(frames.begin(), frames.end(), wanted,
-                       [](std::int64_t t, const recording::RecordedFrame& f) { return t < f.timestamp_ns; });
-  return after == frames.begin() ? 0 : static_cast<std::size_t>(after - frames.begin()) - 1;
 }
 
 }  // namespace arthronaut::review

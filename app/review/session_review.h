@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "app/review/moments.h"
 #include "navigation/operation/achieved_tunnel.h"
-#include "navigation/recording/session.h"
+#include "navigation/recording/session_overview.h"
+#include "navigation/recording/session_timeline.h"
 
 namespace arthronaut::review {
 
@@ -25,26 +27,26 @@ struct TimeTrack {
 
 struct SessionReview {
   std::filesystem::path folder;
-  std::shared_ptr<const recording::RecordedSession> session;
+  std::shared_ptr<const recording::SessionOverview> session;   // never null
+  std::shared_ptr<const recording::SessionTimeline> timeline;  // its frames; never null
+  std::vector<Moment> moments;
   std::vector<TimeTrack> tracks;
   // That guided, the last one; no tunnel when there was none. Not what the case plans by now.
   recording::RecordedSession::PlanChange plan;
   std::vector<operation::AchievedTunnel> achieved;  // none, one, or those of two bundles
   std::string
       achieved_problem;  // why one of their files could not be read; empty when it was or is not there
+  // What is missing or broken of the session: the rest is shown. Empty where nothing is.
+  std::vector<std::string> problems;
 };
 
-// Throws IoError or InvalidInput.
+// As far as the session is whole. Throws IoError or InvalidInput where nothing can be shown of it: no header,
+// or no record of its frames.
 [[nodiscard]] SessionReview read_review(const std::filesystem::path& session_folder);
 
 // What the pictures of a session are, in words to be read from across the room: "RECORDING of a simulation";
 // of older records, which do not say it, "RECORDING".
 [[nodiscard]] std::string origin_in_words(const recording::SessionHeader& header);
-
-// Seconds from the first frame. Preconditions: the session has frames; frame is one of them.
-[[nodiscard]] double time_s(const recording::RecordedSession& session, std::size_t frame);
-// The frame that was shown at that time: the last one not after it.
-[[nodiscard]] std::size_t frame_at(const recording::RecordedSession& session, double seconds);
 
 // Stretches of consecutive frames for which `holds`; gaps of up to `bridge` frames are closed.
 [[nodiscard]] std::vector<Stretch> stretches_of(const std::vector<bool>& holds, std::size_t bridge);

@@ -1,0 +1,97 @@
+#include "app/case/postop_comparison.h"
+
+#include "planning/cases/identity.h"
+#include "planning/geometry/error.h"
+#include "planning/postop/postop_source.h"
+
+namespace arthronaut::open_case {
+
+namespace {
+
+// The planned tunnels that are asked for.
+std::vector<tunnels::Tunnel> planned(const cases::Case& knee, const PostopQuestion& question) {
+  std::vector<tunnels::Tunnel> wanted;
+  for (const auto& [key, tunnel] : knee.plan.tunnels) {
+    if (!question.bone.empty() && bones::bone_kind_from_text(question.bone) != key.bone) continue;
+    if (const cases::PlanFit fit = cases::plan_fit(knee, key); !fit.is_valid())
+      throw InvalidInput(question.case_folder, "plan.json", fit.reason);
+    wanted.push_back(tunnel);
+  }
+  if (wanted.empty())
+    throw InvalidInput(question.case_folder, "plan.json",
+                       "holds no tunnel" + (question.bone.empty() ? "" : " in the " + question.bone) +
+                           ": there is nothing to compare with");
+  return wanted;
+}
+
+// Where both say whose knee it is.
+bool is_another_patient(const images::Volume& volume, const std::filesystem::path& case_folder) {
+  const cases::Identity images{volume.patient.name, volume.patient.id, volume.patient.birth_date};
+  const auto of_case = cases::load_identity(case_folder);
+  return of_case && !images.is_empty() && *of_case != images;
+}
+
+void doubt(postop::Comparison& comparison, const std::string& reason) {
+  comparison.bone.reliable = comparison.tunnel.reliable = false;
+  comparison.bone.reasons.push_back(reason);
+  comparison.tunnel.reasons.push_back(reason);
+}
+
+void compare_all(const cases::Case& knee, const std::vector<tunnels::Tunnel>& plan,
+                 const PostopQuestion& question, PostopAnswer& answer) {
+  const auto tell = [&](const std::string& what, std::size_t done) {
+    if (question.on_progress)
+      question.on_progress(what, static_cast<double>(done) / static_cast<double>(plan.size()));
+  };
+  const auto stops = [&] { return answer.was_stopped = question.stops && question.stops(); };
+  tell("Finding the bones in the images", 0);
+  const postop::PostopImages images(answer.images);
+  for (const tunnels::Tunnel& tunnel : plan) {
+    if (stops()) return;
+    tell("Comparing the " + tunnels::name_of(tunnel.key()), answer.comparisons.size());
+    std::vector<tunnels::Tunnel> others;
+    for (const tunnels::Tunnel& other : plan)
+      if (other.bone == tunnel.bone && other.bundle != tunnel.bundle) others.push_back(other);
+    answer.comparisons[tunnel.key()] = images.compare(knee.bones.at(tunnel.bone).mesh, tunnel, others);
+  }
+  tell("Compared", plan.size());
+}
+
+}  // namespace
+
+std::vector<std::string> PostopAnswer::doubts() const {
+  std::vector<std::string> reasons;
+  for (const auto& [key, comparison] : comparisons) {
+    const std::string name = tunnels::name_of(key);
+    for (const std::string& reason : comparison.bone.reasons) reasons.push_back(name + ": " + reason);
+    for (const std::string& reason : comparison.tunnel.reasons)
+      reasons.push_back(name + ", tunnel: " + reason);
+  }
+  return reasons;
+}
+
+PostopAnswer compare_with_postop(const PostopQuestion& question) {
+  const cases::Case knee = cases::load_case(question.case_folder);
+  const auto plan = planned(knee, question);
+  PostopAnswer answer;
+  postop::PostopSourceOptions options;
+  options.series = question.series;
+  options.labels = question.labels;
+  options.on_progress = [&](double share) {
+    if (question.on_progress) question.on_progress("Reading the images", share);
+  };
+  answer.images = postop::read_postop(question.source, options);
+  if ((answer.was_stopped = question.stops && question.stops())) return answer;
+  try {
+    compare_all(knee, plan, question, answer);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(question.source, "", error.what());
+  }
+  if (is_another_patient(answer.images, question.case_folder)) {
+    for (auto& [key, comparison] : answer.comparisons)
+      doubt(comparison, "the images say that they are of another patient than the case");
+  }
+  return answer;
+}
+
+}  // namespace arthronaut::open_case

@@ -1,0 +1,44 @@
+// Planned against achieved, of a case and the images after its operation: what `arthronaut compare` and
+// Review both do. No window, no thread.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "planning/cases/case.h"
+#include "planning/images/volume.h"
+#include "planning/postop/comparison.h"
+
+namespace arthronaut::open_case {
+
+struct PostopQuestion {
+  std::filesystem::path case_folder;
+  std::filesystem::path source;  // as postop::read_postop() takes it
+  std::string bone = {};         // "femur" or "tibia"; empty: every bone with planned tunnels
+  std::string series = {};       // DICOM: number or UID, where there are several
+  std::set<int> labels = {};     // label maps: those that are bone; empty: all but 0
+  // What goes on, and how much of it is done, 0 to 1. May be empty.
+  std::function<void(const std::string& what, double share)> on_progress = {};
+  // Asked between two steps, of 3 to 10 s each; true ends it. May be empty.
+  std::function<bool()> stops = {};
+};
+
+struct PostopAnswer {
+  std::map<tunnels::TunnelKey, postop::Comparison>
+      comparisons;           // one for each planned tunnel that was asked for
+  images::Volume images;     // as they were read
+  bool was_stopped = false;  // then there may be fewer comparisons
+  // Why it must not be relied on, each sentence beginning with the tunnel: "femur: ..."; empty: reliable.
+  [[nodiscard]] std::vector<std::string> doubts() const;
+};
+
+// A tunnel of images that say they are of another patient than the case is in doubt for that reason. Throws
+// IoError or InvalidInput: nothing planned, a plan of another bone, images that cannot be read or show no
+// bone.
+[[nodiscard]] PostopAnswer compare_with_postop(const PostopQuestion& question);
+
+}  // namespace arthronaut::open_case

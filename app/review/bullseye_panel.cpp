@@ -1,0 +1,77 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "app/guidance_severity/guidance_severity.h"
+#include "app/review/review_panels.h"
+
+namespace arthronaut::review {
+
+namespace {
+
+constexpr double kShown_mm = 6;  // radius of the whole bullseye, as in Navigate
+constexpr std::array<double, 3> kRings_mm{1, 2, 5};
+
+// Where the guide's axis crosses the plane through the entry across the plan, looking along the plan.
+struct Crossing {
+  double right_mm = 0, up_mm = 0;
+};
+
+Crossing crossing_of(const guidance::GuidanceNumbers& numbers, const tunnels::Tunnel& plan,
+                     const landmarks::PlaneAxes& across) {
+  const Eigen::Vector3d ahead = plan.direction.normalized();
+  const double advance = numbers.guide_direction.dot(ahead);
+  if (std::abs(advance) < 1e-6) return {kShown_mm * 10, 0};
+  const double along = (plan.entry_mm - numbers.guide_point_mm).dot(ahead) / advance;
+  const Eigen::Vector3d off = numbers.guide_point_mm + along * numbers.guide_direction - plan.entry_mm;
+  const double to_the_right = ahead.cross(across.up).dot(across.side) > 0 ? 1 : -1;
+  return {to_the_right * off.dot(across.side), off.dot(across.up)};
+}
+
+}  // namespace
+
+void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const ReviewScreen& screen,
+                   const landmarks::AnatomicalAxes& axes) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  ui.log.note("review.bullseye", area.min(), area.max());
+  ImFont* const font = ui.theme.body;
+  const float radius =
+      std::max(std::min(area.width / 2 - ui.theme.px(70), area.height / 2 - font->FontSize * 1.3F), 10.F);
+  const ImVec2 center = area.center();
+  const guidance::GuidanceNumbers& numbers = screen.frame().guidance;
+  const auto& plan = screen.review.plan.plan;
+  if (!numbers.is_valid() || !plan) {
+    draw.AddCircle(center, radius, widgets::kPanelEdge, 96, ui.theme.px(2));
+    return widgets::text_centered(ui, area.inset(font->FontSize), ui.theme.strong, widgets::kQuietText,
+                                  std::string(guidance::to_text(numbers.state)));
+  }
+  const float per_mm = radius / static_cast<float>(kShown_mm);
+  draw.AddCircleFilled(center, radius, IM_COL32(15, 19, 24, 255), 96);
+  for (const double ring : kRings_mm)
+    draw.AddCircle(center, static_cast<float>(ring) * per_mm,
+                   ring == 1 ? widgets::kGood : IM_COL32(90, 104, 118, 255), 96, ui.theme.px(2));
+  const landmarks::PlaneAxes across = landmarks::axes_across(axes, plan->direction.normalized());
+  const std::string up(landmarks::to_text(across.up_is, true));
+  draw.AddText(font, font->FontSize,
+               {center.x - font->CalcTextSizeA(font->FontSize, 1e9F, 0, up.c_str()).x / 2,
+                center.y - radius - font->FontSize * 1.15F},
+               widgets::kQuietText, up.c_str());
+  const bool side_is_right = plan->direction.cross(across.up).dot(across.side) > 0;
+  const std::string right(landmarks::to_text(across.side_is, side_is_right));
+  draw.AddText(font, font->FontSize, {center.x + radius + ui.theme.px(6), center.y - font->FontSize / 2},
+               widgets::kQuietText, right.c_str());
+
+  Crossing at = crossing_of(numbers, *plan, across);
+  const double far = std::hypot(at.right_mm, at.up_mm);
+  const widgets::Severity severity = guidance_severity::severity_of_offset(numbers);
+  if (far > kShown_mm) {  // on the rim: farther that way
+    at.right_mm *= kShown_mm / far;
+    at.up_mm *= kShown_mm / far;
+  }
+  const ImVec2 dot{center.x + static_cast<float>(at.right_mm) * per_mm,
+                   center.y - static_cast<float>(at.up_mm) * per_mm};
+  draw.AddLine(center, dot, IM_COL32(90, 104, 118, 255), ui.theme.px(1.5F));
+  widgets::draw_sign(draw, dot, ui.theme.px(10), severity);
+}
+
+}  // namespace arthronaut::review

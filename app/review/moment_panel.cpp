@@ -1,0 +1,109 @@
+#include <algorithm>
+
+#include "app/guidance_severity/guidance_severity.h"
+#include "app/review/review_panels.h"
+
+namespace arthronaut::review {
+
+namespace {
+
+void draw_difference(const widgets::Ui& ui, const char* name, const operation::TunnelDifference& d) {
+  widgets::text_in(ui.theme.strong, widgets::kText, name);
+  widgets::text_in(ui.theme.body, widgets::kText,
+                   "entry " + widgets::fixed(d.entry_mm, 1) + " mm, axis " +
+                       widgets::fixed(d.axis_to_entry_mm, 1) + " mm, angle " +
+                       widgets::fixed(d.angle_deg, 1) + "\u00B0");
+}
+
+void draw_achieved(const widgets::Ui& ui, const SessionReview& review) {
+  widgets::text_in(ui.theme.title, widgets::kText, "Planned and achieved");
+  if (!review.achieved_problem.empty())
+    return widgets::status_row(ui, widgets::Severity::Bad, "Not readable", review.achieved_problem);
+  if (review.achieved.empty())
+    return widgets::text_in(ui.theme.body, widgets::kQuietText, "No tunnel was recorded as drilled.");
+  for (const operation::AchievedTunnel& achieved : review.achieved) {
+    if (achieved.planned.bundle != norms::Bundle::Whole)
+      widgets::text_in(ui.theme.strong, widgets::kText, tunnels::name_of(achieved.planned.key()) + " tunnel");
+    draw_difference(ui, "As navigation measured it", operation::compare(achieved.planned, achieved.measured));
+    if (achieved.truth)
+      draw_difference(ui, "As it truly is (simulated)",
+                      operation::compare(achieved.planned, *achieved.truth));
+    widgets::text_in(ui.theme.body, widgets::kQuietText,
+                     achieved.depth_mm.value_or(0) > 1
+                         ? "Depth " + widgets::fixed(*achieved.depth_mm, 1) + " mm"
+                         : "Depth not known");
+  }
+}
+
+// What the surgeon saw, and what today's program says of the same picture.
+void draw_today(const widgets::Ui& ui, const ReviewScreen& screen) {
+  ImGui::Separator();
+  widgets::text_in(ui.theme.strong, widgets::kText, "Today's program on the same picture");
+  const recording::RecordedFrame& then = screen.frame();
+  const TodayFrame* const now = screen.today->find(then.index);
+  if (now == nullptr) {
+    widgets::text_in(ui.theme.body, widgets::kQuietText, "This frame was not tracked again.");
+  } else if (now->state != guidance::GuidanceState::Valid) {
+    widgets::text_in(ui.theme.body, widgets::kText, std::string(guidance::to_text(now->state)));
+  } else {
+    std::string text = "offset " + widgets::fixed(static_cast<double>(now->offset_mm), 2) + " mm, angle " +
+                       widgets::fixed(static_cast<double>(now->angle_deg), 2) + "\u00B0";
+    if (then.guidance.is_valid())
+      text += "; then " + widgets::fixed(guidance_severity::offset_mm(then.guidance), 2) + " mm, " +
+              widgets::fixed(then.guidance.angle_deg, 2) + "\u00B0";
+    widgets::text_in(ui.theme.body, widgets::kText, text);
+  }
+  const auto& differing = screen.today->differing_frames;
+  if (std::binary_search(differing.begin(), differing.end(), then.index))
+    widgets::status_row(ui, widgets::Severity::Caution, "Differs", "beyond the tolerance in this frame");
+  widgets::text_in(ui.theme.body, widgets::kQuietText, today_words(*screen.today));
+}
+
+}  // namespace
+
+void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewScreen& screen) {
+  const SessionReview& review = screen.review;
+  const recording::RecordedFrame& at = screen.frame();
+  widgets::begin_panel(ui, "review.moment", area, "At this moment");
+  if (at.guidance.is_valid()) {
+    const ImVec2 cursor = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x, height = ui.theme.px(104);
+    widgets::Rect row{cursor.x, cursor.y, width, height};
+    const widgets::Rect left = row.cut_left(width / 2);
+    widgets::number_block(ui, left, "Offset", widgets::fixed(guidance_severity::offset_mm(at.guidance), 1),
+                          "mm", guidance_severity::severity_of_offset(at.guidance));
+    widgets::number_block(ui, row, "Angle", widgets::fixed(at.guidance.angle_deg, 1) + "\u00B0", "",
+                          guidance_severity::severity_of_angle(at.guidance));
+    // Of a drill with a marker of its own; nobody saw how deep another one was.
+    const auto& drill = at.guidance.drill;
+    if (drill) {
+      widgets::Rect below{cursor.x, cursor.y + height, width, height};
+      const widgets::Rect below_left = below.cut_left(width / 2);
+      widgets::number_block(ui, below_left, "Drill depth", widgets::fixed(drill->depth_mm, 1), "mm",
+                            widgets::Severity::Quiet);
+      widgets::number_block(ui, below, "Remaining", widgets::fixed(drill->remaining_mm, 1), "mm",
+                            widgets::Severity::Quiet);
+    }
+    ImGui::Dummy({width, (drill ? 2 : 1) * height});
+  } else {
+    widgets::status_row(ui, widgets::Severity::Quiet, "No guidance",
+                        std::string(guidance::to_text(at.guidance.state)));
+  }
+  const auto& registration = review.session->registration;
+  if (!registration)
+    widgets::status_row(ui, widgets::Severity::Quiet, "Registration", "none");
+  else if (registration->reliable)
+    widgets::status_row(ui, widgets::Severity::Good, "Registration",
+                        "target " + widgets::plus_minus(registration->predicted_tre_mm) + " mm");
+  else
+    widgets::status_row(ui, widgets::Severity::Bad, "Registration",
+                        registration->reasons.empty() ? "not reliable" : registration->reasons.front());
+  if (screen.today != nullptr) draw_today(ui, screen);
+  ImGui::Separator();
+  draw_achieved(ui, review);
+  for (const std::string& problem : review.problems)
+    widgets::status_row(ui, widgets::Severity::Caution, "Not whole", problem);
+  widgets::end_panel();
+}
+
+}  // namespace arthronaut::review

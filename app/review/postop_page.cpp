@@ -1,0 +1,254 @@
+#include "app/review/postop_page.h"
+
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "planning/files/format.h"
+#include "planning/geometry/error.h"
+#include "planning/postop/achieved_file.h"
+
+namespace arthronaut::review {
+
+namespace {
+
+constexpr int kSlice_px = 420;
+
+}  // namespace
+
+PostopPage::PostopPage(std::function<void()> make_current, std::function<void()> wake)
+    : wake_(std::move(wake)), pane_(std::move(make_current)) {}
+
+void PostopPage::open(const open_case::PlanModel* model, const std::filesystem::path& case_folder,
+                      const std::string& read_only) {
+  model_ = model;
+  case_folder_ = case_folder;
+  read_only_ = read_only;
+  run_.reset();
+  answer_.reset();
+  comparisons_.clear();
+  problem_.clear();
+  field_ = {};
+  scene_is_stale_ = true;
+  try {  // a broken file must not hide the case: its reason is shown
+    if (std::filesystem::exists(achieved_file(case_folder_)))
+      comparisons_ = postop::read_achieved_file(achieved_file(case_folder_));
+  } catch (const InvalidInput& error) {
+    problem_ = error.what();
+  } catch (const IoError& error) {
+    problem_ = error.what();
+  }
+  if (!comparisons_.empty()) chosen_ = comparisons_.begin()->first;
+}
+
+void PostopPage::compare_with(const std::filesystem::path& source) {
+  if (is_running() || model_ == nullptr) return;
+  problem_.clear();
+  run_ = std::make_unique<PostopRun>(case_folder_, source, read_only_.empty(), wake_);
+}
+
+void PostopPage::stop() {
+  if (is_running()) run_->stop();
+}
+
+void PostopPage::choose_next() {
+  if (comparisons_.empty()) return;
+  const auto next = comparisons_.upper_bound(chosen_);
+  chosen_ = next == comparisons_.end() ? comparisons_.begin()->first : next->first;
+  scene_is_stale_ = true;
+}
+
+void PostopPage::ask_for_path() { field_ = {true, true, field_.text}; }
+
+const postop::Comparison* PostopPage::chosen() const {
+  const auto found = comparisons_.find(chosen_);
+  return found == comparisons_.end() ? nullptr : &found->second;
+}
+
+std::map<tunnels::TunnelKey, tunnels::Tunnel> PostopPage::planned() const {
+  std::map<tunnels::TunnelKey, tunnels::Tunnel> planned;
+  for (const auto& [key, comparison] : comparisons_)
+    if (const auto tunnel = model_->tunnel(key)) planned.emplace(key, *tunnel);
+  return planned;
+}
+
+void PostopPage::take_answer() {
+  if (run_ == nullptr) return;
+  if (const std::string error = run_->error(); !error.empty()) {
+    problem_ = error;
+    run_.reset();
+    return;
+  }
+  auto answer = run_->progress().answer;
+  if (!run_->has_ended()) return;
+  run_.reset();
+  if (answer == nullptr) return;  // stopped: what was there stays
+  answer_ = std::move(answer);
+  comparisons_ = answer_->comparisons;
+  if (!comparisons_.empty() && !comparisons_.contains(chosen_)) chosen_ = comparisons_.begin()->first;
+  scene_is_stale_ = true;
+}
+
+void PostopPage::show_scene() {
+  const bones::BoneKind bone = chosen_.bone;
+  scene::SceneContent content;
+  content.bones.push_back({model_->drawn_mesh(bone), scene::kBoneColor, 1.0});
+  for (const auto& [key, comparison] : comparisons_) {
+    if (key.bone != bone) continue;
+    if (const auto tunnel = model_->tunnel(key))
+      scene::add_planned_tunnel(content, *tunnel, model_->drawn_length_mm(key));
+    if (comparison.tunnel.is_found)
+      scene::add_achieved_tunnel(content, comparison.tunnel.tunnel, comparison.tunnel.length_mm);
+  }
+  pane_.show(content);
+  if (const auto tunnel = model_->tunnel(chosen_))
+    pane_.look(scene::orbited(
+        scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm, 190, {0, 0, 1}), {60, -40}, 600));
+}
+
+void PostopPage::draw(const widgets::Ui& ui, widgets::Rect area) {
+  take_answer();
+  ui.log.note_state("postop", is_running()           ? "running"
+                              : !problem_.empty()    ? "failed"
+                              : answer_ != nullptr   ? "compared"
+                              : comparisons_.empty() ? "none"
+                                                     : "kept");
+  const float gap = ui.theme.px(12);
+  draw_head(ui, area.cut_top(ui.theme.px(176), gap));
+  if (comparisons_.empty() || !model_->has_bone(chosen_.bone)) {
+    widgets::text_centered(ui, area, ui.theme.title, widgets::kQuietText,
+                           is_running()
+                               ? run_->progress().what
+                               : "Drop the folder of the CT after the operation here, or press C and "
+                                 "write its path.");
+    return;
+  }
+  if (std::exchange(scene_is_stale_, false)) show_scene();
+  draw_table(ui, area.cut_right(ui.theme.px(520), gap));
+  const widgets::Rect scene = area.cut_left((area.width - gap) / 2, gap);
+  pane_.draw(ui, "review.postop_view", scene);
+  widgets::caption(ui, scene, widgets::kText,
+                   tunnels::name_of(chosen_) + ". Blue: planned. Banded: achieved");
+  draw_slice(ui, area.cut_top((area.height - gap) / 2, gap), 0);
+  draw_slice(ui, area, 1);
+}
+
+void PostopPage::draw_head(const widgets::Ui& ui, widgets::Rect area) {
+  widgets::begin_panel(ui, "review.postop_head", area, "Planned against achieved");
+  for (const char* action :
+       {"review.postop", "review.postop_stop", "review.postop_next", "review.achieved"}) {
+    widgets::action_button(ui, action);
+    ImGui::SameLine();
+  }
+  ImGui::NewLine();
+  if (field_.is_open) {
+    if (field_.takes_focus) ImGui::SetKeyboardFocusHere();
+    field_.takes_focus = false;
+    ImGui::SetNextItemWidth(-1);
+    const bool is_entered =
+        ImGui::InputTextWithHint("##postop", "Folder or file of the CT; Enter compares, Esc does not",
+                                 &field_.text, ImGuiInputTextFlags_EnterReturnsTrue);
+    ui.log.note("review.postop_path", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+    if (is_entered) {
+      field_.is_open = false;
+      compare_with(field_.text);
+    } else if (ImGui::IsItemDeactivated()) {
+      field_.is_open = false;
+    }
+  } else if (is_running()) {
+    const PostopProgress progress = run_->progress();
+    ImGui::ProgressBar(static_cast<float>(progress.share), {-1, 0}, progress.what.c_str());
+  } else if (!problem_.empty()) {
+    widgets::status_row(ui, widgets::Severity::Bad, "Not compared", problem_);
+  } else if (answer_ == nullptr && !comparisons_.empty()) {
+    widgets::text_in(ui.theme.body, widgets::kQuietText,
+                     "As kept in the case (achieved.json). Its images are read again by a comparison (C).");
+  } else if (!read_only_.empty() && answer_ != nullptr) {
+    widgets::status_row(ui, widgets::Severity::Caution, "Not kept", read_only_);
+  }
+  widgets::end_panel();
+}
+
+void PostopPage::draw_table(const widgets::Ui& ui, const widgets::Rect& area) {
+  widgets::begin_panel(ui, "review.postop_table", area, "");
+  std::map<tunnels::TunnelKey, double> lengths;
+  for (const auto& [key, tunnel] : planned()) lengths[key] = model_->measured(key).length_mm;
+  for (const AchievedRow& row : achieved_rows(comparisons_, planned(), lengths)) {
+    widgets::status_row(ui, row.severity, row.tunnel, row.verdict);
+    for (const auto& [name, value] : {std::pair("Entry", &row.offset), std::pair("Angle", &row.angle),
+                                      std::pair("Diameter", &row.diameter), std::pair("Length", &row.length)})
+      widgets::text_in(ui.theme.body, widgets::kText, std::string(name) + ": " + *value);
+    for (const std::string& reason : row.reasons)
+      widgets::text_in(ui.theme.body, widgets::kCaution, "- " + reason);
+    ui.log.note_state("postop_" + row.tunnel, row.verdict + "; " + row.offset);
+    ImGui::Separator();
+  }
+  if (const postop::Comparison* comparison = chosen()) {
+    widgets::text_in(ui.theme.strong, widgets::kText, "How far it may be off");
+    const Eigen::Vector3d voxel_mm =
+        answer_ != nullptr ? answer_->images.spacing_mm() : Eigen::Vector3d::Zero().eval();
+    for (const std::string& line : error_budget(*comparison, voxel_mm))
+      widgets::text_in(ui.theme.body, widgets::kQuietText, line);
+  }
+  widgets::end_panel();
+}
+
+void PostopPage::draw_slice(const widgets::Ui& ui, const widgets::Rect& area, int quarter_turns) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddRectFilled(area.min(), area.max(), IM_COL32(0, 0, 0, 255), ui.theme.px(6));
+  const auto plan = model_->tunnel(chosen_);
+  const postop::Comparison* const comparison = chosen();
+  if (!plan || comparison == nullptr) return;
+  const widgets::Rect at = widgets::fitted(area, 1);
+  const double length_mm = model_->drawn_length_mm(chosen_);
+  const Eigen::Vector2i size{kSlice_px, kSlice_px};
+  const scene::SlicePlane plane = plane_along(*plan, length_mm, quarter_turns, (length_mm + 24) / kSlice_px);
+  Slice& slice = slices_.at(static_cast<std::size_t>(quarter_turns));
+  if (answer_ != nullptr && comparison->bone.is_found) {
+    const geometry::RigidTransform postop_from_plan = comparison->bone.plan_from_postop.inverse();
+    scene::SlicePlane in_images = plane;
+    in_images.center_mm = postop_from_plan * plane.center_mm;
+    in_images.right = postop_from_plan.rotation * plane.right;
+    in_images.down = postop_from_plan.rotation * plane.down;
+    if (slice.texture.texture() == 0 || slice.plane != in_images) {
+      scene::reslice(answer_->images, in_images, size, scene::kBoneWindow, slice.grey);
+      slice.texture.upload(kSlice_px, kSlice_px, slice.grey);
+      slice.plane = in_images;
+    }
+    draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(slice.texture.texture())),
+                  at.min(), at.max());
+  }
+  const float scale = at.width / kSlice_px;
+  const auto on_screen = [&](const Eigen::Vector3d& point) {
+    const Eigen::Vector2d pixel = plane.pixel_of(point, size);
+    return ImVec2{at.x + (static_cast<float>(pixel.x()) + 0.5F) * scale,
+                  at.y + (static_cast<float>(pixel.y()) + 0.5F) * scale};
+  };
+  draw.PushClipRect(at.min(), at.max(), true);
+  for (const auto& [a, b] :
+       scene::outline_of(*model_->drawn_mesh(chosen_.bone), plane.center_mm, plane.normal()))
+    draw.AddLine(on_screen(a), on_screen(b), IM_COL32(222, 209, 186, 200), ui.theme.px(1.5F));
+  // The wall of a tunnel as the plane sees it: its axis laid into the plane, a radius to either side.
+  const auto draw_tunnel = [&](const tunnels::Tunnel& tunnel, double of_length_mm, ImU32 color) {
+    const Eigen::Vector3d ahead = tunnel.direction.normalized();
+    const Eigen::Vector3d across = plane.normal().cross(ahead).normalized() * tunnel.diameter_mm / 2;
+    const Eigen::Vector3d exit = tunnel.entry_mm + of_length_mm * ahead;
+    for (const double side : {-1.0, 1.0})
+      draw.AddLine(on_screen(tunnel.entry_mm + side * across), on_screen(exit + side * across), color,
+                   ui.theme.px(2.5F));
+    draw.AddLine(on_screen(tunnel.entry_mm - across), on_screen(tunnel.entry_mm + across), color,
+                 ui.theme.px(2.5F));
+    draw.AddLine(on_screen(tunnel.entry_mm), on_screen(exit), color, ui.theme.px(1));
+  };
+  draw_tunnel(*plan, length_mm, IM_COL32(86, 180, 233, 255));
+  if (comparison->tunnel.is_found)
+    draw_tunnel(comparison->tunnel.tunnel, comparison->tunnel.length_mm, IM_COL32(230, 159, 0, 255));
+  draw.PopClipRect();
+  widgets::caption(ui, area, widgets::kText,
+                   quarter_turns == 0 ? "Along the planned axis" : "The same, turned by 90\u00B0");
+  ui.log.note("review.postop_slice_" + std::to_string(quarter_turns), area.min(), area.max());
+}
+
+}  // namespace arthronaut::review

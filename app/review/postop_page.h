@@ -1,0 +1,92 @@
+// Planned against achieved, from the images after the operation: both tunnels in one scene and on slices
+// along the tunnel, the differences with how sure they are, and what is not known. A page of Review.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/case/plan_model.h"
+#include "app/review/postop_run.h"
+#include "app/scene/reslice.h"
+#include "app/widgets/controls.h"
+#include "app/widgets/grey_texture.h"
+#include "app/widgets/scene_pane.h"
+
+namespace arthronaut::review {
+
+using Comparisons = std::map<tunnels::TunnelKey, postop::Comparison>;
+
+// One row of the table: what was planned, what was found, how far off and how sure.
+struct AchievedRow {
+  std::string tunnel;                                     // "femur", "femur AM"
+  std::string offset, angle, diameter, length;            // "1.2 mm ± 0.2", "–" where nothing was found
+  widgets::Severity severity = widgets::Severity::Quiet;  // Good: reliable; Caution: not; Bad: not found
+  std::string verdict;                                    // "reliable", "not reliable", "not found"
+  std::vector<std::string> reasons;                       // why not
+};
+// planned_length_mm: inside the bone, along the plan; by the same keys.
+[[nodiscard]] std::vector<AchievedRow> achieved_rows(
+    const Comparisons& comparisons, const std::map<tunnels::TunnelKey, tunnels::Tunnel>& planned,
+    const std::map<tunnels::TunnelKey, double>& planned_length_mm);
+// What the differences may be off by, and what nobody knows: sentences for the panel.
+[[nodiscard]] std::vector<std::string> error_budget(const postop::Comparison& comparison,
+                                                    const Eigen::Vector3d& voxel_mm);
+// The plane through the tunnel's axis with the tunnel running down, `quarter_turns` times 90 degrees about
+// the axis, its middle in the middle; in the frame of the tunnel.
+[[nodiscard]] scene::SlicePlane plane_along(const tunnels::Tunnel& tunnel, double length_mm,
+                                            int quarter_turns, double mm_per_px);
+
+class PostopPage {
+ public:
+  PostopPage(std::function<void()> make_current, std::function<void()> wake);
+
+  // Another case: what runs is ended, what the case keeps is read.
+  void open(const open_case::PlanModel* model, const std::filesystem::path& case_folder,
+            const std::string& read_only);
+  void compare_with(const std::filesystem::path& source);
+  void stop();
+  [[nodiscard]] bool is_running() const { return run_ != nullptr && !run_->has_ended(); }
+  [[nodiscard]] bool has_any() const { return !comparisons_.empty(); }
+  void choose_next();  // of the tunnels
+  void ask_for_path();
+  [[nodiscard]] bool awaits_text() const { return field_.takes_focus; }
+  void draw(const widgets::Ui& ui, widgets::Rect area);
+
+ private:
+  struct PathField {
+    bool is_open = false, takes_focus = false;
+    std::string text;
+  };
+  struct Slice {
+    widgets::GreyTexture texture;
+    std::vector<std::uint8_t> grey;
+    scene::SlicePlane plane;  // in the images' frame; what the texture shows
+  };
+  void take_answer();
+  void show_scene();
+  void draw_head(const widgets::Ui& ui, widgets::Rect area);
+  void draw_table(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_slice(const widgets::Ui& ui, const widgets::Rect& area, int quarter_turns);
+  [[nodiscard]] const postop::Comparison* chosen() const;
+  [[nodiscard]] std::map<tunnels::TunnelKey, tunnels::Tunnel> planned() const;
+
+  const open_case::PlanModel* model_ = nullptr;
+  std::filesystem::path case_folder_;
+  std::string read_only_, problem_;
+  std::function<void()> wake_;
+  widgets::ScenePane pane_;
+  std::unique_ptr<PostopRun> run_;
+  std::shared_ptr<const open_case::PostopAnswer> answer_;  // with the images; null: only what the case keeps
+  Comparisons comparisons_;
+  tunnels::TunnelKey chosen_{bones::BoneKind::Femur};
+  bool scene_is_stale_ = true;
+  PathField field_;
+  std::array<Slice, 2> slices_;
+};
+
+}  // namespace arthronaut::review

@@ -1,0 +1,37 @@
+#include "app/review/postop_run.h"
+
+#include "planning/postop/achieved_file.h"
+
+namespace arthronaut::review {
+
+std::filesystem::path achieved_file(const std::filesystem::path& case_folder) {
+  return case_folder / "achieved.json";
+}
+
+PostopRun::PostopRun(const std::filesystem::path& case_folder, const std::filesystem::path& source,
+                     bool writes, std::function<void()> on_news)
+    : worker_(
+          worker::Backlog::Lossless,
+          [case_folder, source, writes](auto& inbox) {
+            PostopProgress progress;
+            open_case::PostopQuestion question{.case_folder = case_folder, .source = source};
+            question.on_progress = [&](const std::string& what, double share) {
+              progress.what = what;
+              progress.share = share;
+              inbox.publish(progress);
+            };
+            question.stops = [&] { return inbox.stops(); };
+            auto answer = open_case::compare_with_postop(question);
+            if (answer.was_stopped || inbox.stops()) return;
+            if (writes) postop::write_achieved_file(achieved_file(case_folder), answer.comparisons);
+            progress.answer = std::make_shared<const open_case::PostopAnswer>(std::move(answer));
+            inbox.publish(progress);
+          },
+          std::move(on_news)) {}
+
+PostopProgress PostopRun::progress() const {
+  const auto latest = worker_.latest();
+  return latest != nullptr ? *latest : PostopProgress{};
+}
+
+}  // namespace arthronaut::review

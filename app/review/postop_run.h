@@ -1,0 +1,42 @@
+// The comparison with a post-operative CT, beside the screen: the same that `arthronaut compare` computes,
+// kept in the case as achieved.json when it has come to its end.
+//
+// Threads: made and asked on the window's thread; one worker computes. It ends within one step of the
+// comparison (3 to 10 s) after stop().
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "app/case/postop_comparison.h"
+#include "navigation/worker/worker.h"
+
+namespace arthronaut::review {
+
+struct PostopProgress {
+  std::string what = "Beginning";
+  double share = 0;                                       // of that, 0 to 1
+  std::shared_ptr<const open_case::PostopAnswer> answer;  // null: not yet, or it failed
+};
+
+class PostopRun {
+ public:
+  // writes: whether achieved.json is kept; false in a case that is read-only.
+  PostopRun(const std::filesystem::path& case_folder, const std::filesystem::path& source, bool writes,
+            std::function<void()> on_news);
+  [[nodiscard]] PostopProgress progress() const;
+  [[nodiscard]] bool has_ended() const { return worker_.has_ended(); }
+  [[nodiscard]] std::string error() const { return worker_.failure(); }  // empty: none
+  // Nothing is kept then.
+  void stop() { worker_.request_stop(); }
+
+ private:
+  worker::Worker<int, PostopProgress> worker_;
+};
+
+// Of a case, where a comparison writes what it found.
+[[nodiscard]] std::filesystem::path achieved_file(const std::filesystem::path& case_folder);
+
+}  // namespace arthronaut::review

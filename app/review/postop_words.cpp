@@ -1,0 +1,112 @@
+#include <algorithm>
+#include <cmath>
+
+#include "app/review/postop_page.h"
+#include "planning/files/format.h"
+
+namespace arthronaut::review {
+
+namespace {
+
+using files::format;
+
+// What was found and is not reliable is shown, with that word: a number alone would be believed.
+void fill_found(const postop::AchievedTunnel& found, AchievedRow& row) {
+  row.offset = format("%.1f mm \u00B1 %.1f from the planned one", found.offset_mm,
+                      std::max(found.entry_sigma_mm, 0.1));
+  row.angle = format("%.1f\u00B0 \u00B1 %.1f to the planned axis", geometry::deg_from_rad(found.angle_rad),
+                     std::max(geometry::deg_from_rad(found.direction_sigma_rad), 0.1));
+  row.diameter = format("%.1f mm", found.tunnel.diameter_mm);
+  row.length = format("%.1f mm%s", found.length_mm, found.comes_out ? "" : ", a socket");
+  if (found.widths.empty()) return;
+  const auto by_width = [](const postop::Width& a, const postop::Width& b) {
+    return a.diameter_mm < b.diameter_mm;
+  };
+  const auto [least, most] = std::minmax_element(found.widths.begin(), found.widths.end(), by_width);
+  row.diameter += format("; along the wall %.1f to %.1f mm, widest %.0f mm from the entry",
+                         least->diameter_mm, most->diameter_mm, most->from_entry_mm);
+}
+
+// Whether the differences are those to this plan: the entry's is kept to what files round.
+bool is_of(const postop::AchievedTunnel& found, const tunnels::Tunnel& plan) {
+  constexpr double kRounded_mm = 0.01, kRounded_rad = 1e-3;
+  return std::abs((found.tunnel.entry_mm - plan.entry_mm).norm() - found.offset_mm) < kRounded_mm &&
+         std::abs(geometry::angle_between_rad(found.tunnel.direction, plan.direction) - found.angle_rad) <
+             kRounded_rad;
+}
+
+}  // namespace
+
+std::vector<AchievedRow> achieved_rows(const Comparisons& comparisons,
+                                       const std::map<tunnels::TunnelKey, tunnels::Tunnel>& planned,
+                                       const std::map<tunnels::TunnelKey, double>& planned_length_mm) {
+  std::vector<AchievedRow> rows;
+  for (const auto& [key, comparison] : comparisons) {
+    const postop::AchievedTunnel& tunnel = comparison.tunnel;
+    AchievedRow row;
+    row.tunnel = tunnels::name_of(key);
+    row.offset = row.angle = row.diameter = row.length = "\u2013";
+    if (tunnel.is_found) fill_found(tunnel, row);
+    if (const auto now = planned.find(key); now != planned.end() && tunnel.is_found)
+      row.diameter += format("; planned %.1f mm", now->second.diameter_mm);
+    if (const auto length = planned_length_mm.find(key); length != planned_length_mm.end() && tunnel.is_found)
+      row.length += format("; planned %.1f mm", length->second);
+    row.severity = !tunnel.is_found  ? widgets::Severity::Bad
+                   : tunnel.reliable ? widgets::Severity::Good
+                                     : widgets::Severity::Caution;
+    row.verdict = !comparison.bone.is_found ? "bone not found in the images"
+                  : !tunnel.is_found        ? "no tunnel found"
+                  : tunnel.reliable         ? "reliable"
+                                            : "not reliable";
+    row.reasons = comparison.bone.reasons;
+    const auto plan = planned.find(key);
+    if (tunnel.is_found && (plan == planned.end() || !is_of(tunnel, plan->second))) {
+      row.severity = widgets::Severity::Caution;
+      row.verdict = "of an earlier plan";
+      row.reasons.insert(row.reasons.begin(), "the plan was changed since: compare again");
+    }
+    for (const std::string& reason : tunnel.reasons)
+      if (std::find(row.reasons.begin(), row.reasons.end(), reason) == row.reasons.end())
+        row.reasons.push_back(reason);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::vector<std::string> error_budget(const postop::Comparison& comparison, const Eigen::Vector3d& voxel_mm) {
+  std::vector<std::string> lines;
+  if (comparison.bone.is_found)
+    lines.push_back(format(
+        "Bone in the images: %.2f mm (rms) off their edges; %.0f %% of the surface near the "
+        "entry was seen, %.0f %% of it lies on an edge.",
+        comparison.bone.rms_mm, 100 * comparison.bone.in_view_share, 100 * comparison.bone.on_edge_share));
+  if (comparison.tunnel.is_found)
+    lines.push_back(format(
+        "Tunnel, one sigma by the scatter of the grey and the bone's pose: entry %.2f mm, "
+        "direction %.2f\u00B0.",
+        comparison.tunnel.entry_sigma_mm, geometry::deg_from_rad(comparison.tunnel.direction_sigma_rad)));
+  if (comparison.tunnel.is_found && comparison.tunnel.metal_share > 0)
+    lines.push_back(format("Metal fills %.0f %% of it; the wall beside it was passed over.",
+                           100 * comparison.tunnel.metal_share));
+  if (!voxel_mm.isZero())
+    lines.push_back(
+        format("Voxels of the images: %.2f x %.2f x %.2f mm.", voxel_mm.x(), voxel_mm.y(), voxel_mm.z()));
+  lines.emplace_back(
+      "Not known, and in none of these numbers: how far the plan's bone is from the patient's (its "
+      "segmentation), the scanners' own scale, what moved between drilling and scan, and how the tunnel has "
+      "widened since.");
+  return lines;
+}
+
+scene::SlicePlane plane_along(const tunnels::Tunnel& tunnel, double length_mm, int quarter_turns,
+                              double mm_per_px) {
+  scene::SlicePlane plane;
+  plane.down = tunnel.direction.normalized();
+  const Eigen::Vector3d side = plane.down.unitOrthogonal();
+  plane.right = quarter_turns % 2 == 0 ? side : plane.down.cross(side).eval();
+  plane.center_mm = tunnel.entry_mm + 0.5 * length_mm * plane.down;
+  plane.mm_per_px = mm_per_px;
+  return plane;
+}
+
+}  // namespace arthronaut::review

@@ -1,0 +1,224 @@
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+
+#include "app/review/review_view.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::review {
+
+void ReviewView::step(long frames) {
+  if (!has_frames()) return;
+  const long last = static_cast<long>(open_->timeline().frames().size()) - 1;
+  go_to(open_->playback, open_->timeline(),
+        static_cast<std::size_t>(std::clamp(static_cast<long>(open_->playback.frame) + frames, 0L, last)));
+}
+
+void ReviewView::jump(bool forward) {
+  const auto frames = frames_to_jump_to(open_->review.moments, open_->marks.marks(), open_->timeline());
+  const std::size_t now = open_->playback.frame;
+  if (const auto to = forward ? moment_after(frames, now) : moment_before(frames, now))
+    go_to(open_->playback, open_->timeline(), *to);
+}
+
+void ReviewView::change_marks(const std::function<void(MarkBook&)>& change) {
+  try {  // the disk may refuse: that must not end the looking
+    change(open_->marks);
+    notice_.clear();
+  } catch (const IoError& error) {
+    notice_ = error.what();
+  }
+}
+
+void ReviewView::begin_mark() {
+  open_->playback.plays = false;
+  const recording::SessionMark* const there = open_->marks.find(open_->glance().index);
+  note_ = {true, true, there != nullptr ? there->note : ""};
+}
+
+void ReviewView::keep_mark() {
+  const recording::SessionMark mark{open_->glance().index, open_->glance().timestamp_ns, note_.text};
+  change_marks([&](MarkBook& marks) { marks.put(mark); });
+  if (notice_.empty()) note_ = {};  // what could not be kept stays to be tried again
+}
+
+void ReviewView::draw_note_field(const widgets::Ui& ui) {
+  ui.log.note_state("note_field", note_.is_open ? "open" : "closed");
+  if (!open_->marks.problem().empty())
+    widgets::status_row(ui, widgets::Severity::Caution, "No marks", open_->marks.problem());
+  if (!note_.is_open) return;
+  widgets::text_in(ui.theme.strong, widgets::kAccent,
+                   "Note: Enter keeps it, Esc does not; no patient's name");
+  if (note_.takes_focus) ImGui::SetKeyboardFocusHere();
+  note_.takes_focus = false;
+  ImGui::SetNextItemWidth(-1);
+  const bool is_entered = ImGui::InputText("##mark", &note_.text, ImGuiInputTextFlags_EnterReturnsTrue);
+  ui.log.note("review.note", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+  if (is_entered) return keep_mark();
+  if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGuiKey_Escape)) note_ = {};
+}
+
+void ReviewView::toggle_today() {
+  if (runs_today())
+    open_->today->stop();
+  else
+    open_->today = std::make_unique<TodayRun>(case_folder_, open_->review.folder, wake_);
+}
+
+void ReviewView::add_playing_actions(widgets::Actions& actions) {
+  const auto has = [this] { return has_frames(); };
+  const auto now = [] { return widgets::GraphicsWindow::now_s(); };
+  actions.add({"review.play", "Play", "From here at the pace that is set; a loop goes round", GLFW_KEY_SPACE,
+               0, false, has, [this] { return open_ && open_->playback.plays; },
+               [this, now] { toggle_play(open_->playback, open_->timeline(), now()); }});
+  actions.add({"review.loop", "Loop", "Sets where the loop begins, then where it ends, then none", GLFW_KEY_L,
+               0, false, has, [this] { return open_ && open_->playback.from.has_value(); },
+               [this] { set_loop(open_->playback); }});
+  const auto speed = [&](const char* id, const char* label, int key, int by) {
+    actions.add(
+        {id, label, "From an eighth of the pace to eight times it", key, 0, true, has, {}, [this, now, by] {
+           change_speed(open_->playback, open_->timeline(), by, now());
+         }});
+  };
+  speed("review.slower", "Slower", GLFW_KEY_COMMA, -1);
+  speed("review.faster", "Faster", GLFW_KEY_PERIOD, 1);
+  const auto move = [&](const char* id, const char* label, int key, int mods, long frames) {
+    actions.add(
+        {id, label, std::string(label) + " on the time line", key, mods, true, has, {}, [this, frames] {
+           step(frames);
+         }});
+  };
+  move("review.back", "1 back", GLFW_KEY_LEFT, 0, -1);
+  move("review.forward", "1 forward", GLFW_KEY_RIGHT, 0, 1);
+  move("review.back_far", "60 back", GLFW_KEY_LEFT, GLFW_MOD_SHIFT, -60);
+  move("review.forward_far", "60 forward", GLFW_KEY_RIGHT, GLFW_MOD_SHIFT, 60);
+  move("review.first", "First", GLFW_KEY_HOME, 0, -1'000'000'000);
+  move("review.last", "Last", GLFW_KEY_END, 0, 1'000'000'000);
+  actions.add({"review.event_before",
+               "Before",
+               "To the command, step, alarm or mark before this",
+               GLFW_KEY_B,
+               0,
+               true,
+               has,
+               {},
+               [this] { jump(false); }});
+  actions.add({"review.event_after",
+               "Next",
+               "To the next command, step, alarm or mark",
+               GLFW_KEY_N,
+               0,
+               true,
+               has,
+               {},
+               [this] { jump(true); }});
+}
+
+void ReviewView::add_mark_actions(widgets::Actions& actions) {
+  const auto may_mark = [this] { return has_frames() && open_->marks.problem().empty(); };
+  actions.add(
+      {"review.mark", "Mark", "Marks this moment, with a note", GLFW_KEY_M, 0, false, may_mark, {}, [this] {
+         begin_mark();
+       }});
+  actions.add({"review.unmark",
+               "Unmark",
+               "Takes the mark of this moment away",
+               GLFW_KEY_DELETE,
+               0,
+               false,
+               [this, may_mark] { return may_mark() && open_->marks.find(open_->glance().index) != nullptr; },
+               {},
+               [this] { change_marks([this](MarkBook& marks) { marks.remove(open_->glance().index); }); }});
+  actions.add({"review.undo",
+               "Undo",
+               "Takes the last change of the marks back",
+               GLFW_KEY_Z,
+               GLFW_MOD_CONTROL,
+               true,
+               [this] { return open_ && open_->marks.can_undo(); },
+               {},
+               [this] { change_marks([](MarkBook& marks) { marks.undo(); }); }});
+  actions.add({"review.redo",
+               "Redo",
+               "Makes the change of the marks again",
+               GLFW_KEY_Y,
+               GLFW_MOD_CONTROL,
+               true,
+               [this] { return open_ && open_->marks.can_redo(); },
+               {},
+               [this] { change_marks([](MarkBook& marks) { marks.redo(); }); }});
+}
+
+void ReviewView::take_dropped(const std::filesystem::path& images) {
+  shows_postop_ = true;
+  postop_.compare_with(images);
+}
+
+void ReviewView::add_postop_actions(widgets::Actions& actions) {
+  actions.add({"review.achieved", "CT after", "Planned against achieved, from the images after the operation",
+               GLFW_KEY_P, 0, false, [this] { return model_ != nullptr; }, [this] { return shows_postop_; },
+               [this] { shows_postop_ = !shows_postop_; }});
+  actions.add({"review.postop",
+               "Compare with a CT",
+               "The folder or file of the images after the operation; or drop it on the window",
+               GLFW_KEY_C,
+               0,
+               false,
+               [this] { return model_ != nullptr && !postop_.is_running(); },
+               {},
+               [this] {
+                 shows_postop_ = true;
+                 postop_.ask_for_path();
+               }});
+  actions.add({"review.postop_stop",
+               "Stop",
+               "Ends the comparison; what the case keeps stays",
+               GLFW_KEY_ESCAPE,
+               0,
+               false,
+               [this] { return postop_.is_running(); },
+               {},
+               [this] { postop_.stop(); }});
+  actions.add({"review.postop_next",
+               "Next tunnel",
+               "Shows another of the planned tunnels",
+               GLFW_KEY_TAB,
+               0,
+               false,
+               [this] { return shows_postop_ && postop_.has_any(); },
+               {},
+               [this] { postop_.choose_next(); }});
+}
+
+void ReviewView::add_actions(widgets::Actions& actions) {
+  add_playing_actions(actions);
+  add_mark_actions(actions);
+  add_postop_actions(actions);
+  actions.add(
+      {"review.today", "Today",
+       "What today's program makes of the same pictures and commands, beside the screen; again to stop",
+       GLFW_KEY_T, 0, false, [this] { return has_frames() && open_->pictures != nullptr; },
+       [this] { return runs_today(); }, [this] { toggle_today(); }});
+  actions.add({"review.newer",
+               "Newer",
+               "The session after this one",
+               GLFW_KEY_UP,
+               0,
+               false,
+               [this] { return chosen_ && *chosen_ > 0; },
+               {},
+               [this] { choose(*chosen_ - 1); }});
+  actions.add({"review.older",
+               "Older",
+               "The session before this one",
+               GLFW_KEY_DOWN,
+               0,
+               false,
+               [this] { return chosen_ && *chosen_ + 1 < sessions_.size(); },
+               {},
+               [this] { choose(*chosen_ + 1); }});
+}
+
+}  // namespace arthronaut::review

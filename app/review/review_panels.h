@@ -1,0 +1,50 @@
+// The panels of Review. Each reads and draws; what the mouse asks for is given back.
+#pragma once
+
+#include <optional>
+
+#include "app/review/playback.h"
+#include "app/review/review_marks.h"
+#include "app/review/session_review.h"
+#include "app/review/today_run.h"
+#include "app/widgets/controls.h"
+
+namespace arthronaut::review {
+
+// What the panels read. Preconditions: the session has frames.
+struct ReviewScreen {
+  const SessionReview& review;
+  const recording::SessionMarks& marks;
+  const Playback& playback;
+  const TodayResult* today = nullptr;  // null: today's program was not run on it
+
+  [[nodiscard]] const recording::SessionTimeline& timeline() const { return *review.timeline; }
+  [[nodiscard]] const recording::RecordedFrame& frame() const {
+    return review.timeline->frame(playback.frame);
+  }
+};
+
+// Which part of the session the time line shows, as shares of its frames.
+struct TimeLineZoom {
+  double from = 0, to = 1;
+};
+// Nearer or farther about a place of the time line (0 left, 1 right): factor < 1 shows less. At least
+// `least` of the session, all of it at most.
+[[nodiscard]] TimeLineZoom zoomed(const TimeLineZoom& zoom, double about, double factor, double least);
+
+// Tracks, offset, what happened, marks, differences and the cursor; the frame that the mouse asks for. The
+// wheel zooms.
+[[nodiscard]] std::optional<std::size_t> draw_time_line(const widgets::Ui& ui, const widgets::Rect& area,
+                                                        const ReviewScreen& screen, TimeLineZoom& zoom);
+// Everything that happened, and every mark, as a list; the frame of the one that was clicked on.
+[[nodiscard]] std::optional<std::size_t> draw_moments(const widgets::Ui& ui, const ReviewScreen& screen);
+// The guide against the plan as the surgeon saw it; nothing where it was not shown. axes: of the bone.
+void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const ReviewScreen& screen,
+                   const landmarks::AnatomicalAxes& axes);
+// The numbers of this moment, the registration, today's numbers beside them, and planned against achieved.
+void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewScreen& screen);
+
+// "1:02.3"
+[[nodiscard]] std::string clock_text(double seconds);
+
+}  // namespace arthronaut::review

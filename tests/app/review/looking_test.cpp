@@ -1,0 +1,138 @@
+// What moves on the time line: playing, speeds, loops, jumps, marks and their undo; without a window.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "app/review/playback.h"
+#include "app/review/review_marks.h"
+#include "app/review/review_panels.h"
+#include "tests/navigation/recording/recorded_frames.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::review {
+namespace {
+
+constexpr int kFrames = 121;  // two seconds and the one after it
+
+class Looking : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    recording::SessionRecorder recorder(folder_.path(), test::session_header(), test::scripted_options());
+    for (int i = 0; i < kFrames; ++i) {
+      recorder.append(test::frame_result(i));
+      if (i == 30) recorder.add_event({test::frame_result(i).timestamp_ns, "command", R"({"command":"?"})"});
+      if (i == 60) recorder.add_event({test::frame_result(i).timestamp_ns, "alarm", "the marker has moved"});
+      if (i == 60) recorder.add_event({test::frame_result(i).timestamp_ns, "outcome", "1"});
+      if (i == 90) recorder.add_event({test::frame_result(i).timestamp_ns, "alarm", ""});
+    }
+    recorder.finish();
+    timeline_ = std::make_unique<recording::SessionTimeline>(folder_.path());
+  }
+  const test::TemporaryFolder folder_;
+  std::unique_ptr<recording::SessionTimeline> timeline_;
+};
+
+// At the pace it happened: after half a second frame 30 of 60 a second is on the screen; twice as fast, a
+// quarter of a second later, frame 60; at the end it stops, and starts from the beginning the next time.
+TEST_F(Looking, PlaysAtThePaceThatIsSet) {
+  Playback playback;
+  toggle_play(playback, *timeline_, 100);
+  advance(playback, *timeline_, 100.5 + 1e-6);
+  EXPECT_EQ(playback.frame, 30U);
+  change_speed(playback, *timeline_, 1, 100.5 + 1e-6);
+  EXPECT_EQ(speed_text(playback), "2 x");
+  advance(playback, *timeline_, 100.75 + 2e-6);
+  EXPECT_EQ(playback.frame, 60U);
+  advance(playback, *timeline_, 300);
+  EXPECT_EQ(playback.frame, static_cast<std::size_t>(kFrames - 1));
+  EXPECT_FALSE(playback.plays);
+  toggle_play(playback, *timeline_, 300);
+  EXPECT_EQ(playback.frame, 0U);
+  for (int i = 0; i < 20; ++i) change_speed(playback, *timeline_, -1, 300);
+  EXPECT_EQ(speed_text(playback), "1/8 x");
+}
+
+TEST_F(Looking, GoesRoundInALoopWhicheverEndWasSetFirst) {
+  Playback playback;
+  playback.frame = 90;
+  set_loop(playback);
+  EXPECT_FALSE(playback.loops());
+  playback.frame = 60;
+  set_loop(playback);
+  ASSERT_TRUE(playback.loops());
+  EXPECT_EQ(*playback.from, 60U);
+  EXPECT_EQ(*playback.to, 90U);
+  toggle_play(playback, *timeline_, 0);
+  advance(playback, *timeline_, 0.25 + 1e-6);
+  EXPECT_EQ(playback.frame, 75U);
+  advance(playback, *timeline_, 0.51);
+  EXPECT_EQ(playback.frame, 60U);
+  EXPECT_TRUE(playback.plays);
+  set_loop(playback);
+  EXPECT_FALSE(playback.from);
+}
+
+// Alarms and commands stand where they came, in words; what the record keeps for itself is not told.
+TEST_F(Looking, TellsWhatHappenedAndJumpsToIt) {
+  const recording::SessionOverview session = recording::read_overview(folder_.path());
+  const auto moments = moments_of(session.events, *timeline_);
+  ASSERT_EQ(moments.size(), 3U);
+  EXPECT_EQ(moments[0].frame, 30U);
+  EXPECT_EQ(moments[0].kind, MomentKind::Command);
+  EXPECT_EQ(moments[0].words, "Command that this version does not know");
+  EXPECT_EQ(moments[1].words, "Alarm: the marker has moved");
+  EXPECT_EQ(moments[1].kind, MomentKind::Alarm);
+  EXPECT_EQ(moments[2].words, "Alarm is over");
+  const auto frames = frames_to_jump_to(moments, {{45, 0, "here"}}, *timeline_);
+  EXPECT_EQ(frames, (std::vector<std::size_t>{30, 45, 60, 90}));
+  EXPECT_EQ(moment_after(frames, 30), 45U);
+  EXPECT_EQ(moment_before(frames, 60), 45U);
+  EXPECT_FALSE(moment_after(frames, 90) || moment_before(frames, 30));
+}
+
+// Every change is on disk at once; undo and redo write, too; another change after an undo ends the redo.
+TEST_F(Looking, KeepsMarksWithUndo) {
+  MarkBook book(folder_.path(), "");
+  book.put({30, 1, "first touch"});
+  book.put({10, 2, ""});
+  book.put({30, 1, "first touch, too lateral"});
+  EXPECT_EQ(recording::read_marks(folder_.path()), book.marks());
+  ASSERT_EQ(book.marks().size(), 2U);
+  EXPECT_EQ(book.marks().front().frame, 10);
+  book.remove(10);
+  book.remove(10);  // no step
+  book.undo();
+  book.undo();
+  EXPECT_EQ(recording::read_marks(folder_.path()).back().note, "first touch");
+  book.redo();
+  EXPECT_EQ(recording::read_marks(folder_.path()).back().note, "first touch, too lateral");
+  book.put({50, 3, "x"});
+  EXPECT_FALSE(book.can_redo());
+  EXPECT_EQ(MarkBook(folder_.path(), "").marks(), book.marks());
+}
+
+// What cannot be read is said, and never written over; a case that is read-only takes no mark.
+TEST_F(Looking, WritesNoMarkOverWhatItCannotRead) {
+  std::ofstream(recording::marks_file(folder_.path()))
+      << "{\"format\": \"arthronaut.marks\", \"version\": 9}";
+  MarkBook broken(folder_.path(), "");
+  EXPECT_NE(broken.problem().find("marks.json"), std::string::npos);
+  broken.put({1, 1, "lost?"});
+  EXPECT_TRUE(broken.marks().empty());
+  EXPECT_FALSE(MarkBook(folder_.path(), "is open elsewhere").problem().empty());
+}
+
+// The place under the mouse stays under it; never less than asked for, never more than all.
+TEST(TimeLine, ZoomsAboutTheMouse) {
+  TimeLineZoom zoom = zoomed({}, 0.25, 0.5, 0.01);
+  EXPECT_NEAR(zoom.from + 0.25 * (zoom.to - zoom.from), 0.25, 1e-12);
+  EXPECT_NEAR(zoom.to - zoom.from, 0.5, 1e-12);
+  for (int i = 0; i < 30; ++i) zoom = zoomed(zoom, 1, 0.5, 0.01);
+  EXPECT_NEAR(zoom.to - zoom.from, 0.01, 1e-12);
+  for (int i = 0; i < 30; ++i) zoom = zoomed(zoom, 0, 2, 0.01);
+  EXPECT_EQ(zoom.from, 0);
+  EXPECT_EQ(zoom.to, 1);
+}
+
+}  // namespace
+}  // namespace arthronaut::review

@@ -1,0 +1,127 @@
+#include <gmock/gmock.h>
+
+#include "app/review/postop_page.h"
+#include "planning/files/atomic_file.h"
+#include "planning/geometry/error.h"
+#include "planning/postop/achieved_file.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::review {
+namespace {
+
+using ::testing::HasSubstr;
+
+Comparisons some() {
+  postop::Comparison femur;
+  femur.bone.is_found = femur.bone.reliable = true;
+  femur.bone.reasons.clear();
+  femur.bone.plan_from_postop = {
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 3).normalized())), {10, -20, 30}};
+  femur.bone.rms_mm = 0.12;
+  femur.bone.in_view_share = 0.9;
+  femur.bone.on_edge_share = 0.8;
+  postop::AchievedTunnel& tunnel = femur.tunnel;
+  tunnel.is_found = tunnel.reliable = tunnel.comes_out = true;
+  tunnel.reasons.clear();
+  tunnel.tunnel.entry_mm = {1, 2, 3};
+  tunnel.tunnel.direction = Eigen::Vector3d(0, 0.6, 0.8);
+  tunnel.tunnel.diameter_mm = 9.04;
+  tunnel.length_mm = 36.5;
+  tunnel.offset_mm = 1.23;
+  tunnel.angle_rad = geometry::rad_from_deg(2.5);
+  tunnel.entry_sigma_mm = 0.21;
+  tunnel.direction_sigma_rad = geometry::rad_from_deg(0.3);
+  tunnel.metal_share = 0.25;
+  tunnel.widths = {{2, 9.0}, {10, 9.9}, {20, 9.2}};
+  postop::Comparison tibia;
+  tibia.bone.reasons = {"the bone was not found in the images"};
+  tibia.tunnel.reasons = {"the bone was not found in the images", "nothing to look in"};
+  return {{bones::BoneKind::Femur, femur}, {bones::BoneKind::Tibia, tibia}};
+}
+
+// The numbers with how sure they are, each beside what was planned; what was not found has no number and says
+// why, once.
+TEST(PostopWords, SayWhatWasFoundAndHowSure) {
+  tunnels::Tunnel plan;
+  plan.diameter_mm = 9;
+  plan.entry_mm = Eigen::Vector3d(1, 2, 3) + 1.23 * Eigen::Vector3d::UnitX();
+  plan.direction =
+      Eigen::AngleAxisd(geometry::rad_from_deg(2.5), Eigen::Vector3d::UnitX()) * Eigen::Vector3d(0, 0.6, 0.8);
+  auto rows = achieved_rows(some(), {{bones::BoneKind::Femur, plan}}, {{bones::BoneKind::Femur, 35}});
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].tunnel, "femur");
+  EXPECT_EQ(rows[0].verdict, "reliable");
+  EXPECT_EQ(rows[0].severity, widgets::Severity::Good);
+  EXPECT_THAT(rows[0].offset, HasSubstr("1.2 mm \u00B1 0.2"));
+  EXPECT_THAT(rows[0].angle, HasSubstr("2.5\u00B0 \u00B1 0.3"));
+  EXPECT_THAT(rows[0].diameter, HasSubstr("9.0 to 9.9 mm, widest 10 mm from the entry; planned 9.0 mm"));
+  EXPECT_THAT(rows[0].length, HasSubstr("36.5 mm; planned 35.0 mm"));
+  EXPECT_EQ(rows[1].verdict, "bone not found in the images");
+  EXPECT_EQ(rows[1].severity, widgets::Severity::Bad);
+  EXPECT_EQ(rows[1].offset, "\u2013");
+  EXPECT_EQ(rows[1].reasons.size(), 2U);
+
+  // The numbers are of the plan that was compared. Another one, half a millimetre away, has none yet.
+  plan.entry_mm.x() += 0.5;
+  rows = achieved_rows(some(), {{bones::BoneKind::Femur, plan}}, {{bones::BoneKind::Femur, 35}});
+  EXPECT_EQ(rows[0].verdict, "of an earlier plan");
+  EXPECT_EQ(rows[0].severity, widgets::Severity::Caution);
+}
+
+// What is in the numbers, and what is in none of them.
+TEST(PostopWords, SayWhatIsNotKnown) {
+  const Comparisons comparisons = some();
+  const auto lines = error_budget(comparisons.at(bones::BoneKind::Femur), {0.4, 0.4, 0.6});
+  std::string all;
+  for (const std::string& line : lines) all += line + "\n";
+  for (const char* part : {"0.12 mm (rms)", "entry 0.21 mm", "0.30\u00B0", "25 %", "0.40 x 0.40 x 0.60",
+                           "Not known, and in none of these numbers"})
+    EXPECT_THAT(all, HasSubstr(part));
+  EXPECT_EQ(error_budget(comparisons.at(bones::BoneKind::Tibia), {0, 0, 0}).size(), 1U);
+}
+
+// The tunnel runs down the middle of both slices, which stand at right angles.
+TEST(PostopWords, LaySlicesAlongTheTunnel) {
+  tunnels::Tunnel tunnel;
+  tunnel.entry_mm = {5, -3, 12};
+  tunnel.direction = Eigen::Vector3d(1, -2, 0.5).normalized();
+  const Eigen::Vector2i size{401, 401};
+  const auto first = plane_along(tunnel, 30, 0, 0.2), second = plane_along(tunnel, 30, 1, 0.2);
+  for (const scene::SlicePlane& plane : {first, second}) {
+    EXPECT_NEAR(plane.normal().dot(tunnel.direction), 0, 1e-12);
+    EXPECT_NEAR((plane.pixel_of(tunnel.entry_mm, size) - Eigen::Vector2d(200, 200 - 75)).norm(), 0, 1e-9);
+    const Eigen::Vector3d exit = tunnel.entry_mm + 30 * tunnel.direction;
+    EXPECT_NEAR((plane.pixel_of(exit, size) - Eigen::Vector2d(200, 200 + 75)).norm(), 0, 1e-9);
+  }
+  EXPECT_NEAR(first.normal().dot(second.normal()), 0, 1e-12);
+}
+
+// What a comparison kept in the case is shown again with every number and every reason.
+TEST(AchievedFile, IsReadBack) {
+  const test::TemporaryFolder folder;
+  const Comparisons written = some();
+  postop::write_achieved_file(folder / "achieved.json", written);
+  const Comparisons read = postop::read_achieved_file(folder / "achieved.json");
+  ASSERT_EQ(read.size(), 2U);
+  const postop::Comparison& a = written.at(bones::BoneKind::Femur);
+  const postop::Comparison& b = read.at(bones::BoneKind::Femur);
+  EXPECT_TRUE(b.bone.is_found && b.bone.reliable && b.tunnel.is_found && b.tunnel.reliable);
+  EXPECT_NEAR((b.tunnel.tunnel.entry_mm - a.tunnel.tunnel.entry_mm).norm(), 0, 1e-12);
+  EXPECT_NEAR((b.tunnel.tunnel.direction - a.tunnel.tunnel.direction).norm(), 0, 1e-12);
+  EXPECT_NEAR(b.tunnel.angle_rad, a.tunnel.angle_rad, 1e-12);
+  EXPECT_NEAR(b.tunnel.entry_sigma_mm, a.tunnel.entry_sigma_mm, 1e-12);
+  EXPECT_NEAR(b.tunnel.direction_sigma_rad, a.tunnel.direction_sigma_rad, 1e-12);
+  EXPECT_EQ(b.tunnel.comes_out, a.tunnel.comes_out);
+  ASSERT_EQ(b.tunnel.widths.size(), a.tunnel.widths.size());
+  EXPECT_NEAR(b.tunnel.widths[1].diameter_mm, 9.9, 1e-12);
+  EXPECT_NEAR((b.bone.plan_from_postop.translation_mm - a.bone.plan_from_postop.translation_mm).norm(), 0,
+              1e-9);
+  const postop::Comparison& tibia = read.at(bones::BoneKind::Tibia);
+  EXPECT_FALSE(tibia.bone.is_found || tibia.tunnel.is_found || tibia.tunnel.reliable);
+  EXPECT_EQ(tibia.tunnel.reasons, written.at(bones::BoneKind::Tibia).tunnel.reasons);
+  files::write_atomically(folder / "achieved.json", R"({"format": "arthronaut.achieved", "version": 2})");
+  EXPECT_THROW((void)postop::read_achieved_file(folder / "achieved.json"), InvalidInput);
+}
+
+}  // namespace
+}  // namespace arthronaut::review
