@@ -13,6 +13,7 @@ namespace {
 using bones::BoneKind;
 
 constexpr double kReach_px = 22;
+constexpr double kSeeThroughOpacity = 0.3;  // of 10 mm of bone in the images
 constexpr ImU32 kHidden = IM_COL32(232, 237, 242, 110);
 
 std::optional<BoneKind> only_bone_of(scene::ViewDirection view) {
@@ -28,6 +29,7 @@ BonePane::BonePane(std::function<void()> make_current) : pane_(std::move(make_cu
 void BonePane::open(const open_case::PlanModel* model) {
   model_ = model;
   beside_ = {};
+  volume_.reset();
   is_see_through_ = false;
   held_.clear();
   look_from(scene::ViewDirection::Anterior);
@@ -83,8 +85,36 @@ VisibleBones BonePane::visible() const {
   return seen;
 }
 
+void BonePane::show_volume(const std::shared_ptr<const scene::VolumeItem>& item) {
+  if (item == volume_) return;
+  volume_ = item;
+  is_stale_ = true;
+}
+
+// Images show both bones; where one alone is looked at they end half way to the other.
+std::optional<scene::CutPlane> BonePane::cut_of_other_bone() const {
+  if (!only_ || !model_->has_bone(BoneKind::Femur) || !model_->has_bone(BoneKind::Tibia)) return std::nullopt;
+  const Eigen::Vector3d& proximal = model_->axes(*only_).proximal;
+  const auto height = [&](const Eigen::Vector3d& at) { return at.dot(proximal); };
+  const auto& femur = model_->knee().bones.at(BoneKind::Femur).mesh.vertices_mm;
+  const auto& tibia = model_->knee().bones.at(BoneKind::Tibia).mesh.vertices_mm;
+  const Eigen::Vector3d& lowest = *std::ranges::min_element(femur, {}, height);
+  const Eigen::Vector3d& highest = *std::ranges::max_element(tibia, {}, height);
+  return scene::CutPlane{(lowest + highest) / 2, *only_ == BoneKind::Femur ? -proximal : proximal};
+}
+
 void BonePane::show() {
   scene::SceneContent content = beside_;
+  if (volume_ != nullptr) {
+    scene::VolumeItem item = *volume_;
+    if (is_see_through_) item.opacity = kSeeThroughOpacity;
+    for (const auto& cut : {cut_, cut_of_other_bone()})
+      if (cut) item.cuts.push_back(*cut);
+    content.volume = std::make_shared<const scene::VolumeItem>(std::move(item));
+    pane_.show(content);
+    is_stale_ = false;
+    return;
+  }
   for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
     if (!model_->has_bone(kind) || !shows(kind)) continue;
     content.bones.push_back(

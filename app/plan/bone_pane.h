@@ -9,6 +9,7 @@
 
 #include "app/case/plan_model.h"
 #include "app/plan/visible_bones.h"
+#include "app/scene/drawn_volume.h"
 #include "app/widgets/scene_pane.h"
 
 namespace arthronaut::plan {
@@ -58,6 +59,10 @@ class BonePane {
   [[nodiscard]] const scene::SceneCamera& camera() const { return pane_.camera(); }
   void see_through(bool on);
   [[nodiscard]] bool is_see_through() const { return is_see_through_; }
+  // The images in the bones' place, cut as these are; nullptr: the bones. What is seen and taken hold of
+  // stays the bones' surface, which lies where the images' does.
+  void show_volume(const std::shared_ptr<const scene::VolumeItem>& item);
+  [[nodiscard]] bool shows_volume() const { return volume_ != nullptr; }
   // What is drawn beside the bones, and the tunnels' lines; kept until it is set again.
   void set_content(scene::SceneContent beside_the_bones);
 
@@ -67,6 +72,7 @@ class BonePane {
 
  private:
   void show();
+  [[nodiscard]] std::optional<scene::CutPlane> cut_of_other_bone() const;
   [[nodiscard]] bool is_out_of_sight(const PaneMark& mark) const;
   void draw_marks(const widgets::Ui& ui, const widgets::Rect& area, const std::vector<PaneMark>& marks,
                   bool is_hovered) const;
@@ -74,6 +80,7 @@ class BonePane {
   const open_case::PlanModel* model_ = nullptr;
   widgets::ScenePane pane_;
   scene::SceneContent beside_;
+  std::shared_ptr<const scene::VolumeItem> volume_;
   std::optional<scene::ViewDirection> looked_from_;
   std::optional<bones::BoneKind> only_;
   std::optional<scene::CutPlane> cut_;

@@ -54,6 +54,7 @@ void PlanView::plan_bundles() {
   const auto single = model_->plan_fit(bone).is_valid() ? model_->tunnel(bone) : std::nullopt;
   if (single) history_.apply_tunnels({{am, *single}}, what);
   work_on(single ? pl : am);
+  state_.page = PanelPage::Checks;  // where P places the entry
   state_.hint = "No default for two bundles: " + missing + ". Press P and place the entry.";
 }
 

@@ -136,12 +136,13 @@ void PlanView::add_landmark_actions(widgets::Actions& actions) {
                [this] { return state_.places_landmark; },
                [this] {
                  state_.places_landmark = !state_.places_landmark;
+                 state_.places_entry = false;
                  state_.hint.clear();
                }});
   actions.add({"plan.landmark_reset",
                "As proposed",
                "Back to where the bone's shape puts it",
-               GLFW_KEY_BACKSPACE,
+               GLFW_KEY_R,
                0,
                false,
                [this, here] {

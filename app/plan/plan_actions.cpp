@@ -20,6 +20,7 @@ void PlanView::add_actions(widgets::Actions& actions) {
   add_survey_actions(actions);
   add_slice_actions(actions);
   add_measuring_actions(actions);
+  add_volume_actions(actions);
   add_history_actions(actions);
   add_tour_actions(actions);
   actions.add({"plan.bone",
@@ -167,9 +168,16 @@ void PlanView::add_history_actions(widgets::Actions& actions) {
                {"write over the other program's plan"}});
 }
 
+bool PlanView::can_stop_placing() const {
+  return state_.places_entry || state_.places_landmark || !state_.hint.empty();
+}
+
 void PlanView::add_placing_actions(widgets::Actions& actions) {
   actions.add({"plan.place", "Place entry", "Then click where the tunnel is to begin on the bone", GLFW_KEY_P,
-               0, false, [this] { return model_ != nullptr; }, [this] { return state_.places_entry; },
+               0, false,
+               // On the page of the landmarks P places these.
+               [this] { return model_ != nullptr && state_.page != PanelPage::Landmarks; },
+               [this] { return state_.places_entry; },
                [this] {
                  state_.places_entry = !state_.places_entry;
                  state_.hint.clear();
@@ -180,7 +188,7 @@ void PlanView::add_placing_actions(widgets::Actions& actions) {
                GLFW_KEY_ESCAPE,
                0,
                false,
-               [this] { return state_.places_entry || state_.places_landmark || !state_.hint.empty(); },
+               [this] { return can_stop_placing(); },
                {},
                [this] {
                  state_.places_entry = state_.places_landmark = false;
@@ -280,6 +288,28 @@ void PlanView::add_slice_actions(widgets::Actions& actions) {
                [this] { slices_.set_cross(model_->tunnel(state_.key)->entry_mm); }});
 }
 
+void PlanView::add_volume_actions(widgets::Actions& actions) {
+  actions.add({"plan.volume", "Images in 3D",
+               "The images in the bones' place: bone, bone and soft tissue, the bones' surfaces again",
+               GLFW_KEY_V, 0, false, [this] { return model_ != nullptr; }, [this] { return volume_.is_on(); },
+               [this] { volume_.next(); }});
+  const auto threshold = [&](const char* id, const char* label, const char* tooltip, int key, int steps) {
+    actions.add({id,
+                 label,
+                 tooltip,
+                 key,
+                 0,
+                 true,
+                 [this] { return volume_.item() != nullptr; },
+                 {},
+                 [this, steps] { volume_.move_threshold(steps); }});
+  };
+  threshold("plan.volume_less", "Less dense",
+            "Shows what is less dense, too: 25 HU, or a 40th of an MR's range", GLFW_KEY_COMMA, -1);
+  threshold("plan.volume_more", "Denser", "Shows what is denser alone: 25 HU, or a 40th of an MR's range",
+            GLFW_KEY_PERIOD, 1);
+}
+
 void PlanView::add_measuring_actions(widgets::Actions& actions) {
   const auto has_slices = [this] { return state_.shows_slices && slices_.volume() != nullptr; };
   const auto switch_to = [this](MeasuringTool tool) {
@@ -310,7 +340,7 @@ void PlanView::add_measuring_actions(widgets::Actions& actions) {
                GLFW_KEY_ESCAPE,
                0,
                false,
-               [this] { return slices_.tool() != MeasuringTool::None; },
+               [this] { return slices_.tool() != MeasuringTool::None && !can_stop_placing(); },
                {},
                [this] { slices_.use(MeasuringTool::None); }});
   const auto page = [&](const char* id, const char* label, const char* tooltip, int key, PanelPage shown) {

@@ -55,6 +55,9 @@ NextStep next_step(const open_case::PlanModel& model, const StepState& state) {
   const auto beside = other_bundle(state.key);
   if (!model.tunnel(state.key) && model.footprint(here) && !(beside && model.tunnel(*beside)))
     return {"Make the default plan, then move it: press N", "plan.default"};
+  if (!model.tunnel(state.key) && state.shows_landmarks)
+    return {"Place the entry of the " + adjective(state.key) + " tunnel: press C, then P",
+            "plan.checks_page"};
   if (!model.tunnel(state.key))
     return {"Place the entry of the " + adjective(state.key) + " tunnel: press P, then click on the bone",
             "plan.place"};

@@ -21,6 +21,7 @@ struct NextStep {
 struct StepState {
   tunnels::TunnelKey key = bones::BoneKind::Femur;  // that is worked on
   bool places_entry = false;
+  bool shows_landmarks = false;  // whose keys P and Enter are then
   bool is_read_only = false, is_in_conflict = false;
 };
 

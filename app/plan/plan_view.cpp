@@ -45,7 +45,11 @@ const char* name_of(open_case::PlanStatus::Save save) {
 
 PlanView::PlanView(std::function<void()> make_current, const std::function<void()>& wake,
                    std::function<void()> paint)
-    : paint_(std::move(paint)), bones_(std::move(make_current)), slices_(wake), survey_(wake) {}
+    : paint_(std::move(paint)),
+      bones_(std::move(make_current)),
+      slices_(wake),
+      volume_(wake),
+      survey_(wake) {}
 
 mode::ModeTitle PlanView::title() const {
   return {"plan", "mode.plan", "Plan", "Place the tunnels", GLFW_KEY_F1};
@@ -64,6 +68,7 @@ void PlanView::case_opened(const mode::OpenCase& opened) {
   work_on(key_in(model_->has_bone(BoneKind::Femur) ? BoneKind::Femur : BoneKind::Tibia));
   bones_.open(model_);
   slices_.open(model_->knee(), opened.folder, model_->joint_bounds(std::nullopt));
+  volume_.open(model_->joint_bounds(std::nullopt));
   lateral_.open(model_);
 }
 
@@ -71,7 +76,10 @@ void PlanView::tick(double now_s) {
   history_.settle(now_s);
   history_.look_at_disk(now_s);
   follow_plan();
+  if (volume_.is_on()) slices_.want();
   slices_.tick();
+  volume_.follow(slices_.shared_volume());
+  bones_.show_volume(volume_.item());
 }
 
 void PlanView::look_from(scene::ViewDirection view) {
@@ -101,9 +109,11 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   row({"plan.anterior", "plan.posterior", "plan.medial", "plan.lateral", "plan.distal", "plan.notch",
        "plan.plateau", "plan.see_through"});
   ImGui::SetCursorScreenPos(rest.cut_top(ui.theme.px(44), ui.theme.px(10)).min());
-  row({"plan.grid", "plan.map", "plan.aims", "plan.xray", "plan.slices", "plan.paint"});
+  row({"plan.grid", "plan.map", "plan.aims", "plan.xray", "plan.volume", "plan.slices", "plan.paint"});
   if (state_.shows_slices)
     row({"plan.window", "plan.fit", "plan.cross_to_entry", "plan.distance", "plan.angle", "plan.unmeasure"});
+  else if (volume_.is_on())
+    row({"plan.volume_less", "plan.volume_more"});
   follow_tour();
   const std::optional<TourCard> card = tour_.card();
   if (card) draw_tour(ui, rest.cut_top(ui.theme.px(88), ui.theme.px(10)), *card);
@@ -119,8 +129,8 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   } else {
     draw_bones(ui, rest);
   }
-  const StepState step{state_.key, state_.places_entry, status.save == open_case::PlanStatus::Save::ReadOnly,
-                       history_.is_in_conflict()};
+  const StepState step{state_.key, state_.places_entry, state_.page == PanelPage::Landmarks,
+                       status.save == open_case::PlanStatus::Save::ReadOnly, history_.is_in_conflict()};
   const NextStep next = next_step(*model_, step);
   const PanelClick clicked = draw_plan_panel(
       ui, panel, {*model_, history_, state_.key, state_.page, state_.landmark, versions_, next});
@@ -137,6 +147,7 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
                                : state_.places_landmark ? "landmark"
                                                         : "nothing");
   ui.log.note_state("hint", state_.hint);
+  ui.log.note_state("volume", volume_.in_words(slices_.reason()));
   ui.log.note_state("view_direction",
                     bones_.looked_from() ? scene::to_text(*bones_.looked_from()) : "a landmark");
   ui.log.note_state("tunnel", tunnels::name_of(state_.key));

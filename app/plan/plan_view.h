@@ -19,6 +19,7 @@
 #include "app/plan/slice_panes.h"
 #include "app/plan/tour.h"
 #include "app/plan/tunnel_survey.h"
+#include "app/plan/volume_drawing.h"
 #include "planning/cases/plan_versions.h"
 
 namespace arthronaut::plan {
@@ -43,7 +44,9 @@ class PlanView : public mode::Mode {
   }
   void tick(double now_s) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
-  [[nodiscard]] bool is_busy() const override { return history_.is_moving() || slices_.is_loading(); }
+  [[nodiscard]] bool is_busy() const override {
+    return history_.is_moving() || slices_.is_loading() || volume_.is_preparing();
+  }
 
  private:
   // plan_actions.cpp
@@ -51,8 +54,10 @@ class PlanView : public mode::Mode {
   void add_history_actions(widgets::Actions& actions);
   void add_tunnel_actions(widgets::Actions& actions);
   void add_placing_actions(widgets::Actions& actions);
+  [[nodiscard]] bool can_stop_placing() const;
   void add_slice_actions(widgets::Actions& actions);
   void add_measuring_actions(widgets::Actions& actions);
+  void add_volume_actions(widgets::Actions& actions);
   void load_versions();
   void keep_version();
   void take_version(std::size_t version);
@@ -127,6 +132,7 @@ class PlanView : public mode::Mode {
   open_case::PlanHistory history_;
   BonePane bones_;
   SlicePanes slices_;
+  VolumeDrawing volume_;
   LateralView lateral_;
   TunnelSurvey survey_;
   Tour tour_{tour_file()};

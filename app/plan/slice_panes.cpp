@@ -54,7 +54,7 @@ void SlicePanes::want() {
     Loaded loaded;
     try {  // the top of the loading thread
       loaded.volume =
-          std::make_unique<images::Volume>(cases::load_image(folder, image, [this](double fraction) {
+          std::make_shared<const images::Volume>(cases::load_image(folder, image, [this](double fraction) {
             if (stops_) throw Stopped();
             loaded_ = fraction;
           }));

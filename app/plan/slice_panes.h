@@ -36,6 +36,7 @@ class SlicePanes {
   void tick();  // takes over what was loaded
   [[nodiscard]] bool is_loading() const { return loading_.valid(); }
   [[nodiscard]] const images::Volume* volume() const { return volume_.get(); }
+  [[nodiscard]] const std::shared_ptr<const images::Volume>& shared_volume() const { return volume_; }
   // Why there is nothing to show; empty when there is.
   [[nodiscard]] std::string reason() const;
 
@@ -57,7 +58,7 @@ class SlicePanes {
 
  private:
   struct Loaded {
-    std::unique_ptr<images::Volume> volume;
+    std::shared_ptr<const images::Volume> volume;
     scene::GreyWindow automatic;
     std::string failure;
   };
@@ -69,7 +70,7 @@ class SlicePanes {
   std::future<Loaded> loading_;
   std::atomic<double> loaded_{0};
   std::atomic<bool> stops_{false};
-  std::unique_ptr<images::Volume> volume_;
+  std::shared_ptr<const images::Volume> volume_;
   std::string failure_;
   scene::GreyWindow window_, automatic_;
   geometry::Bounds joint_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};

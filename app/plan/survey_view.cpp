@@ -53,9 +53,11 @@ void PlanView::add_map_marks(std::vector<PaneMark>& marks) const {
 void PlanView::draw_survey_legend(const widgets::Ui& ui, const widgets::Rect& area) const {
   const bool is_shown = state_.shows_map || state_.shows_aims;
   ui.log.note_state("survey", !is_shown ? "none" : state_.survey == nullptr ? "working" : "shown");
-  if (!is_shown) return;
   std::vector<std::string> lines;
-  if (state_.survey == nullptr) {
+  if (volume_.is_on()) lines.push_back(volume_.in_words(slices_.reason()));
+  if (!is_shown) {
+    // What is drawn of the images alone.
+  } else if (state_.survey == nullptr) {
     lines.emplace_back(model_->tunnel(state_.key) ? "Looking about the entry ..." : "There is no tunnel yet");
   } else {
     if (state_.shows_map) {

@@ -19,9 +19,19 @@
 namespace arthronaut::scene {
 
 struct OverlayLine {
-  enum class Kind { BoneOutline, EntryRing, TunnelWall, TunnelAxis, Curve } kind = Kind::BoneOutline;
+  // TunnelWall: where the tunnel's wall is seen edge on, and its far end. TunnelFace: a piece of the wall
+  // that faces the eye, as a filled polygon.
+  enum class Kind {
+    BoneOutline,
+    EntryRing,
+    TunnelWall,
+    TunnelAxis,
+    TunnelFace,
+    Curve
+  } kind = Kind::BoneOutline;
   bool is_hidden = false;                  // behind the bone's surface
-  std::vector<Eigen::Vector2d> points_px;  // raw pixels of the frame, two or more
+  std::vector<Eigen::Vector2d> points_px;  // raw pixels of the frame, two or more; of a face four
+  float shade = 1;  // of a face: 1 faces the eye, 0 is seen edge on; seen along the axis
 };
 using PlanOverlay = std::vector<OverlayLine>;
 
@@ -53,6 +63,8 @@ class OverlayModel {
     std::vector<Eigen::Vector3d> points_mm;
   };
   void add_plan(const tunnels::Tunnel& plan, double length_mm);
+  void add_body(PlanOverlay& overlay, const camera::CameraModel& camera,
+                const geometry::RigidTransform& camera_from_bone, std::span<const ClearDisc> clear) const;
   [[nodiscard]] bool is_hidden(const Eigen::Vector3d& eye_mm, const Eigen::Vector3d& point_mm) const;
   void add_outline(PlanOverlay& overlay, const camera::CameraModel& camera,
                    const geometry::RigidTransform& camera_from_bone, std::span<const ClearDisc> clear) const;
@@ -61,7 +73,15 @@ class OverlayModel {
   std::vector<Eigen::Vector3d> vertices_mm_, triangle_normals_;
   std::vector<std::array<std::int32_t, 3>> triangles_;
   std::vector<Edge> edges_;
+  // The tunnel's wall, generator by generator: where it leaves the bone's surface at the mouth, and which way
+  // is out of the tunnel there.
+  struct Wall {
+    std::vector<Eigen::Vector3d> mouth_mm, outward;
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ(), entry_mm = Eigen::Vector3d::Zero();
+    double length_mm = 0, radius_mm = 0;
+  };
   std::vector<Path> paths_;
+  std::optional<Wall> wall_;
 };
 
 // Points of curves, given in the camera frame, as lines that break where two points are more than max_hop_mm

@@ -64,8 +64,11 @@ struct BallItem {
   bool seen_through_bone = false;
 };
 
+struct VolumeItem;  // drawn_volume.h
+
 struct SceneContent {
   std::vector<BoneItem> bones;
+  std::shared_ptr<const VolumeItem> volume = nullptr;  // nullptr: none
   std::vector<RodItem> rods;
   std::vector<LineItem> lines;
   std::vector<BallItem> balls;

@@ -16,9 +16,13 @@
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "app/scene/vtk_from_mesh.h"
+#include "app/scene/vtk_volume.h"
 
 namespace arthronaut::scene {
 
@@ -85,6 +89,26 @@ void add_lights(vtkRenderer& renderer) {
   add(0.8, -0.4, 0.6, 0.28);
 }
 
+// How coarsely a volume is to be drawn, learnt from what it took before.
+class VolumeCost {
+ public:
+  // One ray for a square of this many pixels.
+  [[nodiscard]] double pixels_per_ray(double pixels, bool is_still) const {
+    const double allowed_s = is_still ? 0.25 : 0.035;
+    return std::clamp(std::sqrt(pixels * ray_s_ / allowed_s), 1.0, 12.0);
+  }
+  // The first picture of a volume makes its gradients, too: it is not counted.
+  void begin() { is_first_ = true; }
+  void took(double seconds, double pixels, double pixels_per_ray) {
+    if (!std::exchange(is_first_, false))
+      ray_s_ += 0.5 * (seconds * pixels_per_ray * pixels_per_ray / pixels - ray_s_);
+  }
+
+ private:
+  double ray_s_ = 2e-6;
+  bool is_first_ = true;
+};
+
 }  // namespace
 
 struct SceneView::State {
@@ -95,6 +119,10 @@ struct SceneView::State {
   vtkNew<vtkCamera> camera;
   std::vector<BoneActor> bones;
   vtkSmartPointer<vtkActor> solids, ghost_solids;
+  vtkSmartPointer<vtkVolume> volume;
+  std::shared_ptr<const VolumeItem> volume_item;
+  VolumeCost volume_cost;
+  bool is_still = true;
   SceneCamera looked_from;
   int width = 0, height = 0;
   bool dirty = true, rendered = false;
@@ -171,6 +199,18 @@ void SceneView::show(const SceneContent& content) {
     if (old.actor != nullptr) s.scene->RemoveActor(old.actor);
   s.bones = std::move(kept);
 
+  const bool had_same = s.volume_item != nullptr && content.volume != nullptr &&
+                        s.volume_item->volume == content.volume->volume;
+  if (!had_same) {
+    if (s.volume != nullptr) s.scene->RemoveVolume(s.volume);
+    s.volume = content.volume != nullptr ? vtk_from_volume(*content.volume->volume) : nullptr;
+    if (s.volume != nullptr) s.scene->AddVolume(s.volume);
+    s.volume_cost.begin();
+  }
+  if (s.volume != nullptr && !(had_same && *s.volume_item == *content.volume))
+    dress(*s.volume, *content.volume);
+  s.volume_item = content.volume;
+
   SolidMesh solid, ghost;
   const auto add = [&](const auto& items) {
     for (const auto& item : items) {
@@ -210,19 +250,36 @@ void SceneView::set_background(const Color& bottom, const Color& top) {
   state_->dirty = true;
 }
 
+void SceneView::set_still(bool is_still) {
+  if (state_->is_still == is_still) return;
+  state_->is_still = is_still;
+  if (state_->volume != nullptr) state_->dirty = true;
+}
+
 bool SceneView::render_if_dirty() {
   State& s = *state_;
   if (!s.dirty) return false;
+  const double pixels = static_cast<double>(s.width) * s.height;
+  draw(s.volume_cost.pixels_per_ray(pixels, s.is_still));
+  return true;
+}
+
+void SceneView::draw(double pixels_per_ray) {
+  State& s = *state_;
   const SceneCamera& c = s.looked_from;
   s.camera->SetPosition(c.position_mm.data());
   s.camera->SetFocalPoint(c.focus_mm.data());
   s.camera->SetViewUp(c.up.data());
   s.camera->SetViewAngle(c.view_angle_deg);
   s.scene->ResetCameraClippingRange();
+  if (s.volume != nullptr) set_detail(*s.volume, pixels_per_ray);
+  const auto begin = std::chrono::steady_clock::now();
   s.window->Render();
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  if (s.volume != nullptr)
+    s.volume_cost.took(took.count(), static_cast<double>(s.width) * s.height, pixels_per_ray);
   s.dirty = false;
   s.rendered = true;
-  return true;
 }
 
 std::uint32_t SceneView::texture() const {
@@ -232,8 +289,7 @@ std::uint32_t SceneView::texture() const {
 
 Image SceneView::read_image() {
   State& s = *state_;
-  s.dirty = true;
-  render_if_dirty();
+  draw(1);
   vtkNew<vtkUnsignedCharArray> pixels;
   s.window->GetPixelData(0, 0, s.width - 1, s.height - 1, 0, pixels.Get(), 0);
   Image image{s.width, s.height, {}};

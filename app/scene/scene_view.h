@@ -24,6 +24,9 @@ class SceneView {
   void show(const SceneContent& content);
   void look(const SceneCamera& camera);
   void set_background(const Color& bottom, const Color& top);
+  // While something moves a volume is drawn as coarsely as a frame's time asks for; at rest as finely as a
+  // quarter of a second allows. True at first. Everything else is drawn alike.
+  void set_still(bool is_still);
 
   // Draws when something changed since the last time; returns whether it did. Leaves the OpenGL state to be
   // reset by the caller: bind framebuffer 0, set the viewport, disable the scissor test.
@@ -31,9 +34,11 @@ class SceneView {
 
   // The picture: an OpenGL texture, bottom row first; 0 before the first render_if_dirty().
   [[nodiscard]] std::uint32_t texture() const;
-  [[nodiscard]] Image read_image();  // renders first when dirty
+  [[nodiscard]] Image read_image();  // renders first, a volume as finely as can be
 
  private:
+  void draw(double pixels_per_ray);
+
   struct State;
   std::unique_ptr<State> state_;
 };

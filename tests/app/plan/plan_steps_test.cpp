@@ -69,6 +69,9 @@ TEST(NextStep, OfTwoBundlesBothAreWanted) {
   EXPECT_EQ(next_step(model, {.key = am}).text, "Plan the femoral PL tunnel too: press B");
   EXPECT_EQ(next_step(model, {.key = BoneKind::Tibia}).text, "Plan the femoral PL tunnel too: press Tab");
   EXPECT_EQ(next_step(model, {.key = pl}).action, "plan.place") << "the default would move the other";
+  const NextStep on_landmarks = next_step(model, {.key = pl, .shows_landmarks = true});
+  EXPECT_EQ(on_landmarks.action, "plan.checks_page") << "P is the landmarks' there";
+  EXPECT_TRUE(on_landmarks.text.ends_with("press C, then P")) << on_landmarks.text;
   model.set_tunnel(pl, single);
   EXPECT_EQ(next_step(model, {.key = am}).text, "Mend the femoral AM tunnel: Between the tunnels");
 }

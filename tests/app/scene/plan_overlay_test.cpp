@@ -62,6 +62,51 @@ TEST(PlanOverlay, EntryRingLiesWhereTheCameraModelSaysItDoes) {
   }
 }
 
+// The outline of the tunnel is where rays of the eye just touch the drill's cylinder, and the wall that is
+// shaded lies between: no ray of either passes farther from the axis than the radius.
+TEST(PlanOverlay, TheTunnelReadsAsABody) {
+  const Scene scene;
+  const PlanOverlay overlay = scene.model.project(scene.camera, scene.camera_from_bone, {});
+  const geometry::RigidTransform bone_from_camera = scene.camera_from_bone.inverse();
+  const auto ray_to_axis_mm = [&](const Eigen::Vector2d& pixel) {
+    const Eigen::Vector3d along = bone_from_camera.rotate(*scene.camera.ray(pixel));
+    const Eigen::Vector3d normal = along.cross(scene.plan.direction).normalized();
+    return std::abs((bone_from_camera.translation_mm - scene.plan.entry_mm).dot(normal));
+  };
+  // The ring that walls begin at is of 64 points: between two of them they are nearer to the axis by 0.005
+  // mm.
+  constexpr double kChord_mm = 0.02;
+  int edges = 0, faces = 0;
+  for (const OverlayLine& line : overlay) {
+    if (line.kind == Kind::TunnelFace) {
+      ++faces;
+      EXPECT_EQ(line.points_px.size(), 4U);
+      EXPECT_GE(line.shade, 0);
+      EXPECT_LE(line.shade, 1);
+      for (const Eigen::Vector2d& pixel : line.points_px) EXPECT_LE(ray_to_axis_mm(pixel), 4 + kChord_mm);
+    }
+    if (line.kind != Kind::TunnelWall) continue;
+    const bool touches = std::all_of(
+        line.points_px.begin(), line.points_px.end(),
+        [&](const Eigen::Vector2d& pixel) { return std::abs(ray_to_axis_mm(pixel) - 4) < kChord_mm; });
+    edges += touches && line.points_px.size() > 20 ? 1 : 0;
+  }
+  EXPECT_EQ(edges, 2);
+  EXPECT_GT(faces, 40);
+}
+
+// No piece of the wall is drawn where a tool lies.
+TEST(PlanOverlay, TheShadedWallKeepsOffTools) {
+  const Scene scene;
+  const auto middle =
+      scene.camera.project(scene.camera_from_bone * (scene.plan.entry_mm + 5 * scene.plan.direction));
+  ASSERT_TRUE(middle);
+  const std::vector<ClearDisc> clear{{*middle, 60}};
+  for (const OverlayLine& line : scene.model.project(scene.camera, scene.camera_from_bone, clear))
+    for (const Eigen::Vector2d& pixel : line.points_px)
+      EXPECT_GE((pixel - *middle).norm(), line.kind == Kind::TunnelFace ? 60 : 0);
+}
+
 // What is inside the bone is marked as hidden, what is in front of it is not.
 TEST(PlanOverlay, TunnelInsideTheBoneIsHidden) {
   const Scene scene;
