@@ -9,12 +9,13 @@ find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc calib3d videoio imgcode
 find_package(VTK 9.1 REQUIRED COMPONENTS
   CommonCore CommonDataModel CommonExecutionModel FiltersCore
   IOImage IOXML
-  RenderingCore RenderingOpenGL2)
+  RenderingCore RenderingOpenGL2 RenderingVolume RenderingVolumeOpenGL2)
 find_package(DCMTK 3.6 REQUIRED CONFIG)
 find_package(GDCM REQUIRED)
 find_package(OpenIGTLink REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto SSL)
+find_package(CURL 7.85 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(spdlog 1.10 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)

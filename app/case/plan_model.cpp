@@ -81,7 +81,8 @@ default_plan::DefaultTunnel PlanModel::default_tunnel(const tunnels::TunnelKey& 
        .surface = bone.review.surface.get(),
        .landmarks = landmarks(kind),
        .states = landmark_states(kind),
-       .proposal = bone.proposal ? &*bone.proposal : nullptr},
+       .proposal = bone.proposal ? &*bone.proposal : nullptr,
+       .beside = default_plan::beside(key, knee_.plan.tunnels)},
       knee_.side, {.bundle = key.bundle, .diameter_mm = default_plan::usual_diameter_mm(key.bundle)});
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/command_line/command.h"
+#include "app/command_line/train_command.h"
 #include "planning/geometry/error.h"
 #include "planning/log/log.h"
 
@@ -115,13 +116,16 @@ int run_command_line(int argc, char** argv,
   add_plan_command(app, context);
   add_calibrate_command(app, context);
   add_check_fluid_command(app, context);
+  add_accuracy_command(app, context);
   add_track_command(app, context);
   add_pivot_command(app, context);
   add_digitise_command(app, context);
   add_register_command(app, context);
   add_navigate_command(app, context);
   add_replay_command(app, context);
+  add_verify_command(app, context);
   add_resume_command(app, context);
+  add_rig_command(app, context);
   add_compare_command(app, context);
   add_report_command(app, context);
   add_dicom_command(app, context);
@@ -129,6 +133,7 @@ int run_command_line(int argc, char** argv,
   add_markers_command(app, context);
   add_phantom_command(app, context);
   add_demo_command(app, context);
+  add_train_command(app, context);
   add_experiment_command(app, context);
 
   const std::vector<std::string> arguments = joined_negative_values(argc, argv);

@@ -12,7 +12,9 @@
 #include "app/report/report.h"
 #include "navigation/calibration/calibration.h"
 #include "navigation/operation/achieved_tunnel.h"
+#include "navigation/recording/operation_record.h"
 #include "navigation/simulator/simulated_operation.h"
+#include "navigation/strokes/body_rows.h"
 #include "navigation/theatre/navigate_source.h"
 #include "navigation/tools/pivot_calibration.h"
 #include "planning/bones/mesh_hash.h"
@@ -155,11 +157,12 @@ class Demo {
         std::find_if(tools.tools.begin(), tools.tools.end(), [](const auto& t) { return t.name == "probe"; });
     const int world_id = tools.find_world_marker(simulation_.bone)->marker_id;
     std::map<std::int64_t, geometry::RigidTransform> camera_from_world;
-    for (const strokes::PoseRow& row : tracked.rows) {
+    const std::vector<strokes::PoseRow> rows = strokes::body_rows(tracked.rows, tools);
+    for (const strokes::PoseRow& row : rows) {
       if (row.marker_id == world_id) camera_from_world[row.frame] = row.camera_from_marker;
     }
     std::vector<geometry::RigidTransform> world_from_probe;
-    for (const strokes::PoseRow& row : tracked.rows) {
+    for (const strokes::PoseRow& row : rows) {
       const auto world = camera_from_world.find(row.frame);
       if (row.marker_id != probe->marker_id || world == camera_from_world.end()) continue;
       world_from_probe.push_back(world->second.inverse() * row.camera_from_marker);
@@ -222,7 +225,9 @@ class Demo {
     achieved_ = *summary.drilled.tunnel;
     context_.say(format("          the tunnel measured in %d poses of the guide", achieved_.pose_count));
     achieved_.truth = true_tunnel_;
-    operation::write_achieved_file(last_session_ / "achieved.json", achieved_);
+    recording::rewrite_file(last_session_, "achieved.json", [&] {
+      operation::write_achieved_file(last_session_ / "achieved.json", achieved_);
+    });
     return true;
   }
 

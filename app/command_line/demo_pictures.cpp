@@ -13,7 +13,8 @@ namespace {
 using Colour = std::array<std::uint8_t, 3>;
 
 scene::Image image_of(const camera::Frame& frame) {
-  scene::Image image{frame.width, frame.height, frame.bgr};
+  std::vector<std::uint8_t> made;
+  scene::Image image{frame.width, frame.height, camera::bgr_of(frame, made)};
   for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) std::swap(image.rgb[i], image.rgb[i + 2]);
   return image;
 }
@@ -31,6 +32,7 @@ void dot(scene::Image& image, const Eigen::Vector2d& at, const Colour& colour) {
 
 // Hidden lines are dotted: form, not colour alone, tells them apart.
 void draw(scene::Image& image, const scene::OverlayLine& line) {
+  if (line.kind == scene::OverlayLine::Kind::TunnelFace) return;  // lines alone
   const Colour colour =
       line.kind == scene::OverlayLine::Kind::BoneOutline ? Colour{90, 200, 255} : Colour{120, 255, 120};
   const double step_px = line.is_hidden ? 8 : 1;

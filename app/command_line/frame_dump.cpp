@@ -20,7 +20,8 @@ using Colour = std::array<std::uint8_t, 3>;
 constexpr Colour kTracked{40, 230, 70}, kWithCode{60, 140, 255}, kWithoutCode{255, 210, 0};
 
 scene::Image image_of(const camera::Frame& frame) {
-  scene::Image image{frame.width, frame.height, frame.bgr};
+  std::vector<std::uint8_t> made;
+  scene::Image image{frame.width, frame.height, camera::bgr_of(frame, made)};
   for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) std::swap(image.rgb[i], image.rgb[i + 2]);
   return image;
 }

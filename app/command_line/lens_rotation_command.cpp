@@ -30,8 +30,12 @@ void check_tools(const std::string& file, const calibration::Ruler& ruler) {
   const tools::ToolSet set = tools::read_tools_file(file);
   for (const int id : {ruler.first_id, ruler.second_id}) {
     double size_mm = 0;
-    for (const auto& marker : set.world_markers) size_mm = marker.marker_id == id ? marker.size_mm : size_mm;
-    for (const auto& tool : set.tools) size_mm = tool.marker_id == id ? tool.size_mm : size_mm;
+    const auto look = [&](const auto& body) {
+      for (const tools::BodyMarker& marker : tools::markers_of(body))
+        if (marker.marker_id == id) size_mm = marker.size_mm;
+    };
+    for (const auto& world : set.world_markers) look(world);
+    for (const auto& tool : set.tools) look(tool);
     if (std::abs(size_mm - ruler.size_mm) > 1e-6) {
       throw InvalidInput(file, "marker " + std::to_string(id),
                          "is not declared with the size of the ruler's truth");

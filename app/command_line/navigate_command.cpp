@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <memory>
 
@@ -191,6 +192,12 @@ void say_registration(const Context& context, const theatre::NavigationSummary& 
   for (const std::string& assumption : r.assumptions) context.say("  " + assumption);
 }
 
+void say_contour(const Context& context, const theatre::NavigationSummary& summary) {
+  if (summary.frames_registered == 0) return;
+  context.say(format("bone in the picture: where it lay in %ld of %ld frames, not checked in the others",
+                     summary.frames_bone_seen, summary.frames_registered));
+}
+
 void say_guidance(const Context& context, const theatre::NavigationSummary& summary) {
   const guidance::GuidanceNumbers& g = summary.last_guidance;
   if (!g.is_valid())
@@ -212,10 +219,33 @@ void say_guidance(const Context& context, const theatre::NavigationSummary& summ
                        g.drill->depth_mm, g.drill->remaining_mm, g.drill->to_exit_mm, g.drill->sigma_mm));
 }
 
+// Of a live source: what was wrong with it, and how old guidance was.
+void say_source(const Context& context, const theatre::NavigationSummary& summary) {
+  constexpr std::size_t kMostTold = 5;
+  for (std::size_t i = 0; i < std::min(kMostTold, summary.troubles.size()); ++i)
+    context.say("source: " + summary.troubles[i]);
+  if (summary.troubles.size() > kMostTold)
+    context.say(format("source: and %zu times more", summary.troubles.size() - kMostTold));
+  const theatre::StageLatency& all = theatre::of(summary.latency, theatre::Stage::ToGuidance);
+  if (all.count == 0) return;
+  context.say(format(
+      "latency: %.1f ms from capture to guidance in the median, 99 %% within %.1f ms, at worst %.1f ms",
+      all.median_ms, all.p99_ms, all.worst_ms));
+  for (std::size_t i = 0; context.verbose && i < theatre::kStageCount; ++i)
+    if (const theatre::StageLatency& stage = summary.latency[i]; stage.count > 0)
+      context.say(format("  %s: %.1f ms, 99 %% within %.1f ms, at worst %.1f ms",
+                         std::string(theatre::to_text(static_cast<theatre::Stage>(i))).c_str(),
+                         stage.median_ms, stage.p99_ms, stage.worst_ms));
+}
+
+double utc_now_s() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
 // A recording is shown as if it were now.
 double captured_utc_s(const camera::Frame& picture) {
   using std::chrono::duration;
-  const double now_s = duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  const double now_s = utc_now_s();
   if (picture.captured_ns == 0) return now_s;
   const double steady_s = duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   return now_s - (steady_s - static_cast<double>(picture.captured_ns) * 1e-9);
@@ -251,7 +281,11 @@ void navigate(Context& context, const NavigateArguments& arguments) {
     theatre::NavigationObserver observer;
     observer.on_frame = [&](const camera::FramePtr& picture, const operation::OperationStatePtr& state) {
       progress.advance_to(++done);
-      if (igtl) igtl->publish(state, captured_utc_s(*picture));
+      if (igtl) igtl->publish(state, captured_utc_s(*picture), picture);
+    };
+    observer.on_silence = [&](const theatre::SourceWatch& watch, const operation::OperationStatePtr&) {
+      const bool is_told = watch.trouble() != theatre::SourceTrouble::None;
+      if (igtl) igtl->tell({false, is_told ? watch.words() : "no new picture"}, utc_now_s());
     };
     theatre::RecordOptions record;
     record.folder = session.folder();
@@ -269,9 +303,11 @@ void navigate(Context& context, const NavigateArguments& arguments) {
   session.keep();
 
   if (!summary.ending.empty()) context.say("the source ended: " + summary.ending);
+  say_source(context, summary);
   say_statistics(context, summary.statistics);
   context.say(format("strokes: %.0f mm in %zu points", summary.stroke_length_mm, summary.curves.size()));
   say_registration(context, summary);
+  say_contour(context, summary);
   say_guidance(context, summary);
   context.say("session: " + session.folder().string());
   auto reasons = summary.reasons;

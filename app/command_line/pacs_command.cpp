@@ -10,6 +10,7 @@
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
+#include "planning/pacs/web.h"
 
 namespace arthronaut::command_line {
 
@@ -21,8 +22,26 @@ struct Connection {
   bool with_tls = false;
   pacs::TlsOptions tls;
   pacs::ConnectionOptions options;
+  // DICOMweb instead.
+  pacs::WebServer web;
+  std::filesystem::path web_password_file;
+
+  [[nodiscard]] bool is_web() const { return !web.url.empty(); }
+  [[nodiscard]] pacs::WebServer server() const {
+    pacs::WebServer all = web;
+    while (all.url.ends_with('/')) all.url.pop_back();
+    all.authority = tls.authority;
+    if (!all.user.empty()) all.password = pacs::web_password(web_password_file);
+    pacs::check(all);
+    return all;
+  }
+  // As messages and JSON name it.
+  [[nodiscard]] std::string where() const {
+    return is_web() ? server().url : pacs::to_text(pacs::parse_peer(peer));
+  }
 
   [[nodiscard]] pacs::ConnectionOptions chosen() const {
+    if (!with_tls && !is_web() && !tls.authority.empty()) throw InvalidInput("--ca is of --tls, or of --web");
     pacs::ConnectionOptions all = options;
     if (with_tls) all.tls = tls;
     pacs::check(all);
@@ -30,8 +49,23 @@ struct Connection {
   }
 };
 
+// The PACS is one or the other.
+CLI::Option* add_web_options(CLI::App& sub, Connection& connection) {
+  CLI::Option_group* either = sub.add_option_group("Which PACS");
+  either->add_option("--peer", connection.peer, "AET@HOST:PORT of the PACS");
+  CLI::Option* web = either->add_option("--web", connection.web.url,
+                                        "DICOMweb instead: https://HOST/dicom-web; --ca holds its authority, "
+                                        "where that is not one of the system's");
+  either->require_option(1);
+  sub.add_option("--user", connection.web.user, "User of the DICOMweb server")->needs(web);
+  sub.add_option("--password-file", connection.web_password_file,
+                 "File whose first line is the user's password; default: $ARTHRONAUT_DICOMWEB_PASSWORD")
+      ->needs(web);
+  return web;
+}
+
 void add_connection_options(CLI::App& sub, Connection& connection, bool peer_may_call_us) {
-  sub.add_option("--peer", connection.peer, "AET@HOST:PORT of the PACS")->required();
+  CLI::Option* web = add_web_options(sub, connection);
   sub.add_option("--aet", connection.options.our_ae_title, "Our own AE title; default: ARTHRONAUT");
   CLI::Option* tls =
       sub.add_flag("--tls", connection.with_tls, "Speak TLS; the peer's certificate is checked");
@@ -39,10 +73,10 @@ void add_connection_options(CLI::App& sub, Connection& connection, bool peer_may
                           sub.add_option("--key", connection.tls.key, "Our private key (PEM)"),
                           sub.add_option("--ca", connection.tls.authority,
                                          "Certificate of the authority that signs the peer's (PEM)")};
-  for (CLI::Option* file : files) {
-    file->needs(tls);
-    tls->needs(file);
-  }
+  for (CLI::Option* file : files) tls->needs(file);
+  files[0]->needs(tls);
+  files[1]->needs(tls);
+  tls->excludes(web);
   sub.add_option("--key-password-file", connection.tls.key_password_file,
                  "File whose first line is the password of an encrypted key")
       ->needs(tls);
@@ -92,11 +126,14 @@ void add_echo(CLI::App& pacs_app, Context& context) {
                                  "arthronaut pacs echo --peer PACS@pacs.hospital:104 --aet THEATRE3");
   add_connection_options(*sub, *connection, false);
   sub->callback([&context, connection] {
-    const pacs::Peer peer = pacs::parse_peer(connection->peer);
+    const std::string where = connection->where();
+    const pacs::ConnectionOptions chosen = connection->chosen();
     const StopOnInterruption stop;
-    const double taken_ms = pacs::echo(peer, connection->chosen(), stop.token());
+    const double taken_ms = connection->is_web()
+                                ? pacs::echo(connection->server(), chosen, stop.token())
+                                : pacs::echo(pacs::parse_peer(connection->peer), chosen, stop.token());
     stop.end_if_caught();
-    context.say(files::format("%s answers, in %.1f ms", pacs::to_text(peer).c_str(), taken_ms));
+    context.say(files::format("%s answers, in %.1f ms", where.c_str(), taken_ms));
   });
 }
 
@@ -107,18 +144,21 @@ struct FindArguments : Connection {
 };
 
 void find(const Context& context, const FindArguments& arguments) {
-  const pacs::Peer peer = pacs::parse_peer(arguments.peer);
+  const std::string where = arguments.where();
+  const pacs::ConnectionOptions chosen = arguments.chosen();
   const StopOnInterruption stop;
-  const auto found = pacs::find(peer, arguments.chosen(), arguments.keys, arguments.find, stop.token());
+  const auto found = arguments.is_web() ? pacs::find(arguments.server(), chosen, arguments.keys,
+                                                     arguments.find, stop.token())
+                                        : pacs::find(pacs::parse_peer(arguments.peer), chosen, arguments.keys,
+                                                     arguments.find, stop.token());
   stop.end_if_caught();
   if (arguments.as_json) {
-    files::write_json("-", json_of(peer, found));
+    files::write_json("-", json_of(where, found));
   } else {
     for (const std::string& line : lines_of(found)) context.say(line);
   }
   // Beside the answer, which is a whole one.
-  if (found.patients.empty())
-    std::cerr << "arthronaut: " << pacs::to_text(peer) << " has nothing of the kind\n";
+  if (found.patients.empty()) std::cerr << "arthronaut: " << where << " has nothing of the kind\n";
   if (found.is_cut)
     std::cerr << "arthronaut: there are more than " << arguments.find.most_studies
               << " studies; ask more closely, or with --most\n";
@@ -154,26 +194,27 @@ struct GetArguments : Connection {
 
 void get(const Context& context, const GetArguments& arguments) {
   using Outcome = pacs::RetrieveSummary::Outcome;
-  const pacs::Peer peer = pacs::parse_peer(arguments.peer);
+  const std::string where = arguments.where();
   const pacs::ConnectionOptions connection = arguments.chosen();
   pacs::RetrieveSummary summary;
   const StopOnInterruption stop;
   {
     std::unique_ptr<Progress> line;
-    summary = pacs::retrieve_series(
-        peer, connection, arguments.request,
-        [&](const pacs::TransferProgress& progress) {
-          if (!line) line = std::make_unique<Progress>("Fetching", progress.total);
-          line->advance_to(progress.done);
-        },
-        stop.token());
+    const auto on_progress = [&](const pacs::TransferProgress& progress) {
+      if (!line) line = std::make_unique<Progress>("Fetching", progress.total);
+      line->advance_to(progress.done);
+    };
+    summary = arguments.is_web() ? pacs::retrieve_series(arguments.server(), connection, arguments.request,
+                                                         on_progress, stop.token())
+                                 : pacs::retrieve_series(pacs::parse_peer(arguments.peer), connection,
+                                                         arguments.request, on_progress, stop.token());
   }
   if (summary.outcome == Outcome::Stopped) std::cerr << "arthronaut: " << summary.message << '\n';
   stop.end_if_caught();
   if (summary.outcome == Outcome::UnknownSeries) throw InvalidInput(summary.message);
   if (!summary.is_usable()) throw DeviceError(summary.message);
   if (arguments.as_json) {
-    files::write_json("-", json_of(peer, arguments.request.series_uid, arguments.request.folder, summary));
+    files::write_json("-", json_of(where, arguments.request.series_uid, arguments.request.folder, summary));
     return;
   }
   const int fetched = summary.image_count - summary.kept_count;
@@ -194,6 +235,13 @@ void add_get(CLI::App& pacs_app, Context& context) {
   sub->add_option("-o,--output", arguments->request.folder,
                   "Folder to write: absent, empty, or with images of this series")
       ->required();
+  sub->add_option_function<double>(
+         "--most-gb",
+         [arguments](double gigabytes) {
+           arguments->request.most_bytes = static_cast<std::int64_t>(gigabytes * 1e9);
+         },
+         "Most gigabytes to take from the PACS; default: 34")
+      ->check(CLI::Range(0.001, 100000.0));
   sub->add_flag("--json", arguments->as_json, "What was fetched, as JSON");
   sub->callback([&context, arguments] { get(context, *arguments); });
 }
@@ -206,7 +254,7 @@ struct SendArguments : Connection {
 
 void send(Context& context, const SendArguments& arguments) {
   using Outcome = pacs::SendSummary::Outcome;
-  const pacs::Peer peer = pacs::parse_peer(arguments.peer);
+  const std::string where = arguments.where();
   const pacs::ConnectionOptions connection = arguments.chosen();
   const auto files = pacs::files_to_send(arguments.paths);
   pacs::SendOptions options = arguments.send;
@@ -215,12 +263,14 @@ void send(Context& context, const SendArguments& arguments) {
   const StopOnInterruption stop;
   {
     Progress line("Sending", static_cast<long>(files.size()));
-    summary = pacs::send_files(
-        peer, connection, files, options,
-        [&](const pacs::TransferProgress& progress) { line.advance_to(progress.done); }, stop.token());
+    const auto on_progress = [&](const pacs::TransferProgress& progress) { line.advance_to(progress.done); };
+    summary = arguments.is_web()
+                  ? pacs::send_files(arguments.server(), connection, files, on_progress, stop.token())
+                  : pacs::send_files(pacs::parse_peer(arguments.peer), connection, files, options,
+                                     on_progress, stop.token());
   }
   stop.end_if_caught();
-  if (arguments.as_json) files::write_json("-", json_of(peer, summary));
+  if (arguments.as_json) files::write_json("-", json_of(where, summary));
   std::vector<std::string> doubts;
   int stored = 0;
   for (const pacs::SentFile& file : summary.files) {
@@ -230,19 +280,19 @@ void send(Context& context, const SendArguments& arguments) {
     if (!file.is_stored || summary.commitment == pacs::Commitment::Failed) doubts.push_back(line);
     if (file.is_stored && !arguments.as_json) context.say(line);
   }
-  if (stored == 0) throw DeviceError(pacs::to_text(peer) + ": took none of the files; " + doubts.front());
+  if (stored == 0) throw DeviceError(where + ": took none of the files; " + doubts.front());
   if (!arguments.as_json) {
-    context.say(files::format("Sent %d of %zu files to %s", stored, summary.files.size(),
-                              pacs::to_text(peer).c_str()));
+    context.say(files::format("Sent %d of %zu files to %s", stored, summary.files.size(), where.c_str()));
     if (options.asks_commitment)
       context.say(std::string("Storage commitment: ") + pacs::to_text(summary.commitment) + ": " +
                   summary.commitment_note);
   }
+  if (summary.outcome == Outcome::BrokenOff) doubts.insert(doubts.begin(), summary.failure);
   if (arguments.must_be_committed && summary.commitment != pacs::Commitment::Confirmed)
     doubts.push_back("storage commitment is " + std::string(pacs::to_text(summary.commitment)) + ": " +
                      summary.commitment_note);
   if (summary.outcome == Outcome::SomeRefused || !doubts.empty())
-    context.say_unreliable("what " + pacs::to_text(peer) + " holds", doubts);
+    context.say_unreliable("what " + where + " holds", doubts);
 }
 
 void add_send(CLI::App& pacs_app, Context& context) {

@@ -8,8 +8,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json document(const char* format, const pacs::Peer& peer) {
-  return {{"format", format}, {"version", 1}, {"peer", pacs::to_text(peer)}};
+Json document(const char* format, const std::string& where) {
+  return {{"format", format}, {"version", 1}, {"peer", where}};
 }
 
 // What the peer did not say is null.
@@ -62,8 +62,8 @@ std::string quoted(const std::string& text) { return text.empty() ? "" : " \"" +
 
 }  // namespace
 
-Json json_of(const pacs::Peer& peer, const pacs::FindSummary& found) {
-  Json all = document("arthronaut.pacs_find", peer);
+Json json_of(const std::string& where, const pacs::FindSummary& found) {
+  Json all = document("arthronaut.pacs_find", where);
   all["complete"] = !found.is_cut && !found.was_stopped;
   all["patients"] = Json::array();
   for (const auto& patient : found.patients) {
@@ -103,9 +103,9 @@ std::vector<std::string> lines_of(const pacs::FindSummary& found) {
   return lines;
 }
 
-Json json_of(const pacs::Peer& peer, const std::string& series_uid, const std::string& folder,
+Json json_of(const std::string& where, const std::string& series_uid, const std::string& folder,
              const pacs::RetrieveSummary& summary) {
-  Json all = document("arthronaut.pacs_get", peer);
+  Json all = document("arthronaut.pacs_get", where);
   all["series_uid"] = series_uid;
   all["study_uid"] = summary.study_uid;
   all["folder"] = folder;
@@ -116,11 +116,12 @@ Json json_of(const pacs::Peer& peer, const std::string& series_uid, const std::s
   return all;
 }
 
-Json json_of(const pacs::Peer& peer, const pacs::SendSummary& summary) {
-  Json all = document("arthronaut.pacs_send", peer);
+Json json_of(const std::string& where, const pacs::SendSummary& summary) {
+  Json all = document("arthronaut.pacs_send", where);
   all["stored"] = summary.is_usable();
   all["commitment"] = pacs::to_text(summary.commitment);
   all["commitment_note"] = text(summary.commitment_note);
+  if (!summary.failure.empty()) all["failure"] = text(summary.failure);
   all["files"] = Json::array();
   for (const auto& file : summary.files)
     all["files"].push_back({{"file", file.file.string()},

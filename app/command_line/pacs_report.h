@@ -11,10 +11,10 @@
 
 namespace arthronaut::command_line {
 
-[[nodiscard]] nlohmann::ordered_json json_of(const pacs::Peer& peer, const pacs::FindSummary& found);
+[[nodiscard]] nlohmann::ordered_json json_of(const std::string& where, const pacs::FindSummary& found);
 [[nodiscard]] std::vector<std::string> lines_of(const pacs::FindSummary& found);
-[[nodiscard]] nlohmann::ordered_json json_of(const pacs::Peer& peer, const std::string& series_uid,
+[[nodiscard]] nlohmann::ordered_json json_of(const std::string& where, const std::string& series_uid,
                                              const std::string& folder, const pacs::RetrieveSummary& summary);
-[[nodiscard]] nlohmann::ordered_json json_of(const pacs::Peer& peer, const pacs::SendSummary& summary);
+[[nodiscard]] nlohmann::ordered_json json_of(const std::string& where, const pacs::SendSummary& summary);
 
 }  // namespace arthronaut::command_line

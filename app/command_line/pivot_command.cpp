@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "app/command_line/command.h"
+#include "navigation/strokes/body_rows.h"
 #include "navigation/strokes/poses_file.h"
 #include "navigation/tools/pivot_calibration.h"
 #include "navigation/tools/spin_calibration.h"
@@ -17,7 +18,7 @@ namespace {
 
 struct PivotArguments {
   int marker_id = -1;
-  std::string poses, output;
+  std::string poses, tools, output;
   std::optional<int> world_id;
   bool camera_fixed = false, spin = false;
 };
@@ -53,7 +54,8 @@ std::optional<int> likely_world(const std::vector<strokes::PoseRow>& rows, const
 std::vector<geometry::RigidTransform> fixed_from_tool(const Context& context,
                                                       const PivotArguments& arguments) {
   const bool to_standard_output = arguments.output == "-";
-  const auto rows = strokes::read_poses_file(arguments.poses);
+  auto rows = strokes::read_poses_file(arguments.poses);
+  if (!arguments.tools.empty()) rows = strokes::body_rows(rows, tools::read_tools_file(arguments.tools));
   const PosesByFrame tool = poses_of(rows, arguments.marker_id);
   if (tool.empty()) {
     throw InvalidInput(arguments.poses, "marker_id",
@@ -160,7 +162,16 @@ void add_pivot_command(CLI::App& app, Context& context) {
       ->excludes(world);
   subcommand->add_flag("--spin", arguments->spin, "The tool was turned about its own axis: find that axis");
   subcommand->add_option("-o,--output", arguments->output, "tip.json, or - for standard output")->required();
+  subcommand->add_option(
+      "--tools", arguments->tools,
+      "tools.json: the poses of bodies of several markers, and the tip in the tool's frame");
   subcommand->callback([arguments, &context] {
+    // Any marker of a body stands for it.
+    if (!arguments->tools.empty()) {
+      const tools::ToolSet tools = tools::read_tools_file(arguments->tools);
+      arguments->marker_id = strokes::body_id_of(arguments->marker_id, tools);
+      if (arguments->world_id) arguments->world_id = strokes::body_id_of(*arguments->world_id, tools);
+    }
     arguments->spin ? calibrate_axis(context, *arguments) : calibrate_tip(context, *arguments);
   });
 }

@@ -86,9 +86,10 @@ tunnels::Tunnel default_tunnel(const PlanArguments& arguments, const cases::Case
     input.landmarks = marks->second;
   if (const auto states = knee.landmark_states.find(kind); states != knee.landmark_states.end())
     input.states = states->second;
-  const auto planned = default_plan::plan_bone(
-      input, knee.side,
-      {.bundle = norms::bundle_from_text(arguments.type), .diameter_mm = diameter_mm_of(arguments)});
+  const norms::Bundle bundle = norms::bundle_from_text(arguments.type);
+  input.beside = default_plan::beside({kind, bundle}, knee.plan.tunnels);
+  const auto planned =
+      default_plan::plan_bone(input, knee.side, {.bundle = bundle, .diameter_mm = diameter_mm_of(arguments)});
   if (!planned.is_usable())
     throw InvalidInput(arguments.case_folder, "", "has no default plan: " + planned.message);
   verdict = {planned.doubts.empty(), planned.doubts, planned.source};

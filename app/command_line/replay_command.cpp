@@ -6,7 +6,6 @@
 #include "planning/cases/case.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
-#include "planning/geometry/surface.h"
 
 namespace arthronaut::command_line {
 
@@ -42,17 +41,8 @@ std::string table_of(const std::vector<recording::Difference>& differences) {
 }
 
 void replay(Context& context, const ReplayArguments& arguments) {
-  const cases::Case knee = cases::load_case(arguments.case_folder);
   const recording::RecordedSession session(session_folder(arguments));
-  recording::ReplayOptions options;
-  if (const auto found = knee.bones.find(session.header().bone); found != knee.bones.end()) {
-    options.bone = std::make_shared<const registration::SurfaceIndex>(
-        found->second.mesh, cases::surface_index_file(arguments.case_folder, found->first));
-    options.surface = std::make_shared<const geometry::Surface>(found->second.mesh);
-    if (const auto cartilage = cases::load_cartilage(arguments.case_folder, found->first)) {
-      options.cartilage.emplace().points_mm = cartilage->vertices_mm;
-    }
-  }
+  const recording::ReplayOptions options = recording::replay_options_of(arguments.case_folder, session);
   recording::ReplaySummary summary;
   {
     Progress progress("replaying", static_cast<long>(session.frames().size()));

@@ -5,7 +5,7 @@ namespace arthronaut::command_line {
 
 void add_report_command(CLI::App& app, Context& context) {
   struct Arguments {
-    std::string case_folder, output;
+    std::string case_folder, output, paper = "a4";
     report::ReportOptions options;
   };
   const auto arguments = std::make_shared<Arguments>();
@@ -13,10 +13,15 @@ void add_report_command(CLI::App& app, Context& context) {
       add_subcommand(app, context, "report", "Write the report: plan, theatre, planned against achieved",
                      "arthronaut report Knee.arthro -o report.pdf");
   sub->add_option("case", arguments->case_folder, "Case folder")->required();
-  sub->add_option("-o,--output", arguments->output, "PDF to write")->required();
+  sub->add_option("-o,--output", arguments->output,
+                  "PDF to write; .json or .csv: the same numbers for other programs")
+      ->required();
   sub->add_flag("--with-identity", arguments->options.with_identity,
                 "Name the patient (identity.json of the case); without it the report names nobody");
+  sub->add_option("--paper", arguments->paper, "a4 or letter; default: a4")
+      ->check(CLI::IsMember({"a4", "letter"}));
   sub->callback([arguments, &context] {
+    arguments->options.paper = report::paper_from_text(arguments->paper);
     report::write_report(arguments->case_folder, arguments->output, arguments->options);
     context.say("Wrote " + arguments->output + ".");
   });

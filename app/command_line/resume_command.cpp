@@ -37,6 +37,10 @@ nlohmann::ordered_json json_of(const recording::Resumable& found) {
   json["touches"] = was.touches_mm.size();
   json["control_point"] = was.control_point_mm.has_value();
   json["has_plan"] = was.plan.has_value();
+  json["tunnel"] = nullptr;
+  if (was.plan) json["tunnel"] = tunnels::name_of(was.plan->tunnel.key());
+  json["drilled"] = nlohmann::ordered_json::array();
+  for (const tunnels::TunnelKey& key : found.drilled) json["drilled"].push_back(tunnels::name_of(key));
   json["depth_stop_mm"] = nullptr;
   if (was.depth_stop_mm) json["depth_stop_mm"] = *was.depth_stop_mm;
   json["passed_over"] = found.passed_over;
@@ -54,9 +58,12 @@ void say(const Context& context, const recording::Resumable& found) {
   context.say(files::format("history: %d strokes (%.0f mm), %zu touches%s", was.stroke_count,
                             found.stroke_length_mm, was.touches_mm.size(),
                             was.control_point_mm ? ", the control point" : ""));
-  context.say(was.plan ? files::format("plan in force: %.1f mm wide, %.1f mm long",
+  context.say(was.plan ? files::format("plan in force: %s tunnel, %.1f mm wide, %.1f mm long",
+                                       tunnels::name_of(was.plan->tunnel.key()).c_str(),
                                        was.plan->tunnel.diameter_mm, was.plan->length_mm)
                        : std::string("plan in force: none"));
+  for (const tunnels::TunnelKey& key : found.drilled)
+    context.say("drilled already: " + tunnels::name_of(key) + " tunnel");
   if (was.depth_stop_mm) context.say(files::format("depth stop: %.1f mm, as read", *was.depth_stop_mm));
   for (const std::string& broken : found.passed_over) context.say("passed over: " + broken);
 }

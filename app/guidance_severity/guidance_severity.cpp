@@ -1,5 +1,6 @@
 #include "app/guidance_severity/guidance_severity.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace arthronaut::guidance_severity {
@@ -45,6 +46,17 @@ std::string marker_name(const tools::ToolSet& tools, int marker_id) {
   for (const tools::WorldMarker& marker : tools.world_markers)
     if (marker.marker_id == marker_id)
       return marker.bone == bones::BoneKind::Femur ? "Femur marker" : "Tibia marker";
+  // One of a body's further markers: as the body, and which.
+  const auto is_further = [&](const auto& body) {
+    return std::any_of(body.markers.begin(), body.markers.end(), [&](const tools::BodyMarker& marker) {
+      return marker.marker_id == marker_id && marker_id != body.marker_id;
+    });
+  };
+  const std::string which = " (" + std::to_string(marker_id) + ")";
+  for (const tools::WorldMarker& world : tools.world_markers)
+    if (is_further(world)) return marker_name(tools, world.marker_id) + which;
+  for (const tools::Tool& tool : tools.tools)
+    if (is_further(tool)) return marker_name(tools, tool.marker_id) + which;
   for (const tools::Tool& tool : tools.tools) {
     if (tool.marker_id != marker_id || tool.name.empty()) continue;
     std::string name = tool.name;

@@ -53,6 +53,14 @@ class Mode {
   virtual void tick(double /*now_s*/) {}  // once a frame, shown or not, before anything is drawn
   virtual void draw(const widgets::Ui& ui, const widgets::Rect& area) = 0;
 
+  // Where in the window this mode wants what every screen must say (where the pictures come from, whose knee
+  // it is): it takes the whole window then, and there are no bars. nullopt: it is content with what the bars
+  // leave.
+  [[nodiscard]] virtual std::optional<widgets::Rect> header_in(const widgets::Ui& /*ui*/,
+                                                               const widgets::Rect& /*window*/) const {
+    return std::nullopt;
+  }
+
   // While true the screen must be drawn again soon: pictures or a result are to come, or something moves.
   [[nodiscard]] virtual bool is_busy() const { return false; }
   // Something runs that the end of the program would cut off: ending it is then guarded.

@@ -1,5 +1,6 @@
 #include "app/paint/bone_making.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -27,10 +28,16 @@ BoneMaking::~BoneMaking() {
   if (saving_.valid()) saving_.wait();
 }
 
-std::string BoneMaking::refusal(const cases::Case& knee, const painting::Painting& painting) {
+std::string BoneMaking::refusal(const cases::Case& knee, const painting::Painting& painting,
+                                const std::vector<BoneKind>& unchanged) {
   if (!painting.holds(Layer::Bones)) return "Nothing is painted as bone yet: grow it, or paint it on Bones";
+  const auto is_made = [&](BoneKind kind, std::uint8_t label) {
+    return painting.holds(Layer::Bones, label) && std::ranges::find(unchanged, kind) == unchanged.end();
+  };
+  if (std::ranges::none_of(kBones, [&](const auto& bone) { return is_made(bone.first, bone.second); }))
+    return "These are the bones of the case: correct them first";
   for (const auto& [kind, label] : kBones)
-    if (painting.holds(Layer::Bones, label) && !knee.plan.of(kind).empty())
+    if (is_made(kind, label) && !knee.plan.of(kind).empty())
       return "The " + std::string(bones::to_text(kind)) +
              " is planned on, and another surface would make its tunnel wrong: in Plan keep a version (K), "
              "then remove the tunnel (Delete)";
@@ -38,7 +45,8 @@ std::string BoneMaking::refusal(const cases::Case& knee, const painting::Paintin
 }
 
 void BoneMaking::start(const cases::Case& knee, const std::filesystem::path& case_folder,
-                       const cases::CaseImage& image, const painting::Painting& painting) {
+                       const cases::CaseImage& image, const painting::Painting& painting,
+                       const std::vector<BoneKind>& unchanged) {
   if (state_ == State::Saving) return;
   failure_.clear();
   qualities_.clear();
@@ -53,11 +61,12 @@ void BoneMaking::start(const cases::Case& knee, const std::filesystem::path& cas
   request.memory_limit_gib = kMemory_gib;
   request.program = program_;
   for (const auto& [kind, label] : kBones) {
-    if (!painting.holds(Layer::Bones, label)) continue;
+    if (!painting.holds(Layer::Bones, label) || std::ranges::find(unchanged, kind) != unchanged.end())
+      continue;
     request.options.labels[kind] = label;
-    BoneQuality& quality = qualities_.emplace_back();
+    importing::BoneQuality& quality = qualities_.emplace_back();
     quality.kind = kind;
-    quality.painted_ml = painting::volume_ml(painting.labels(Layer::Bones), painting.volume(), label);
+    quality.labelled_ml = painting::volume_ml(painting.labels(Layer::Bones), painting.volume(), label);
   }
   request.options.edges_in = case_folder / image.file;
   try {
@@ -82,16 +91,9 @@ void BoneMaking::forget() {
 }
 
 void BoneMaking::judge() {
-  for (BoneQuality& quality : qualities_) {
-    for (const importing::ImportedBone& made : result_.bones) {
-      if (made.bone.kind != quality.kind) continue;
-      quality.surface_ml = made.repair.volume_mm3 / 1000;
-      quality.is_closed = made.repair.is_closed;
-      quality.edges_not_manifold = made.repair.edges_not_manifold;
-      quality.triangles = made.repair.triangles_now;
-      quality.doubts = made.doubts;
-    }
-  }
+  for (importing::BoneQuality& quality : qualities_)
+    for (const importing::ImportedBone& made : result_.bones)
+      if (made.bone.kind == quality.kind) quality = importing::quality_of(made, quality.labelled_ml);
 }
 
 void BoneMaking::save() {

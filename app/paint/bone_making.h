@@ -16,20 +16,11 @@
 #include <vector>
 
 #include "planning/cases/case.h"
+#include "planning/import/bone_quality.h"
 #include "planning/import/import_process.h"
 #include "planning/painting/painting.h"
 
 namespace arthronaut::paint {
-
-// What a person judges a bone by.
-struct BoneQuality {
-  bones::BoneKind kind = bones::BoneKind::Femur;
-  double painted_ml = 0, surface_ml = 0;
-  bool is_closed = false;
-  std::size_t edges_not_manifold = 0;  // that were found, and mended
-  std::size_t triangles = 0;
-  std::vector<std::string> doubts;  // of the mesh and of the anatomy; empty: nothing speaks against it
-};
 
 class BoneMaking {
  public:
@@ -42,10 +33,12 @@ class BoneMaking {
   BoneMaking& operator=(const BoneMaking&) = delete;
 
   // Why the painting cannot become bones of the case; empty when it can: a bone that is planned on stays.
-  [[nodiscard]] static std::string refusal(const cases::Case& knee, const painting::Painting& painting);
+  // unchanged: bones that are painted as the case has them; these are not made anew, and do not count.
+  [[nodiscard]] static std::string refusal(const cases::Case& knee, const painting::Painting& painting,
+                                           const std::vector<bones::BoneKind>& unchanged = {});
   // From any state but Saving. The painting is on disk. image: that it was painted in.
   void start(const cases::Case& knee, const std::filesystem::path& case_folder, const cases::CaseImage& image,
-             const painting::Painting& painting);
+             const painting::Painting& painting, const std::vector<bones::BoneKind>& unchanged = {});
   void cancel();  // Making, Judging: back to Idle
   void save();    // Judging
   void forget();  // Done: Idle
@@ -53,8 +46,10 @@ class BoneMaking {
 
   [[nodiscard]] State state() const { return state_; }
   [[nodiscard]] const importing::ImportProgress& progress() const { return progress_; }
-  [[nodiscard]] const std::vector<BoneQuality>& qualities() const { return qualities_; }  // Judging
-  [[nodiscard]] const importing::BoneImport& result() const { return result_; }           // Judging
+  [[nodiscard]] const std::vector<importing::BoneQuality>& qualities() const {
+    return qualities_;
+  }                                                                              // Judging
+  [[nodiscard]] const importing::BoneImport& result() const { return result_; }  // Judging
   [[nodiscard]] const std::string& failure() const { return failure_; }
 
  private:
@@ -66,7 +61,7 @@ class BoneMaking {
   std::unique_ptr<importing::ImportProcess> process_;
   importing::ImportProgress progress_;
   importing::BoneImport result_;
-  std::vector<BoneQuality> qualities_;  // the painted volume is known from the start
+  std::vector<importing::BoneQuality> qualities_;  // the painted volume is known from the start
   bones::Side side_ = bones::Side::Right;
   std::string failure_;
   std::future<void> saving_;

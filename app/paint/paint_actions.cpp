@@ -168,10 +168,7 @@ void PaintView::add_preview_actions(widgets::Actions& actions) {
                GLFW_KEY_ESCAPE,
                0,
                false,
-               [this] {
-                 return job_.is_running() || previewing_.kind != Preview::None ||
-                        making_.state() == BoneMaking::State::Making || is_judging() || !hint_.empty();
-               },
+               [this] { return can_stop(); },
                {},
                [this] {
                  hint_.clear();
@@ -266,25 +263,30 @@ void PaintView::add_making_actions(widgets::Actions& actions) {
                },
                {},
                [this] { make_bones(); }});
-  actions.add(
-      {"paint.accept",
-       "Take as the bones",
-       "These surfaces become the bones of the case; landmarks of bones that were there go",
-       GLFW_KEY_ENTER,
-       0,
-       false,
-       [this] { return is_judging() && std::ranges::all_of(making_.qualities(), &BoneQuality::is_closed); },
-       {},
-       [this] { making_.save(); }});
+  actions.add({"paint.accept",
+               "Take as the bones",
+               "These surfaces become the bones of the case; landmarks of bones that were there go",
+               GLFW_KEY_ENTER,
+               0,
+               false,
+               [this] {
+                 return is_judging() &&
+                        std::ranges::all_of(making_.qualities(), &importing::BoneQuality::is_closed);
+               },
+               {},
+               [this] { making_.save(); }});
   actions.add({"paint.leave",
                "Back",
                "Back to what was shown before; what is painted is kept in the case",
                GLFW_KEY_ESCAPE,
                0,
                false,
-               [this] { return making_.state() != BoneMaking::State::Saving; },
+               [this] { return making_.state() != BoneMaking::State::Saving && !can_stop(); },
                {},
-               [this] { callbacks_.leave(); }});
+               [this] {
+                 hint_.clear();
+                 callbacks_.leave();
+               }});
 }
 
 void PaintView::add_history_actions(widgets::Actions& actions) {

@@ -152,15 +152,16 @@ void PaintView::draw_work(const widgets::Ui& ui) {
 
 void PaintView::draw_quality(const widgets::Ui& ui) {
   bool is_doubted = false;
-  for (const BoneQuality& quality : making_.qualities()) is_doubted = is_doubted || !quality.doubts.empty();
+  for (const importing::BoneQuality& quality : making_.qualities())
+    is_doubted = is_doubted || !quality.doubts.empty();
   widgets::text_in(ui.theme.strong, is_doubted ? widgets::kCaution : widgets::kText,
                    is_doubted ? "Look before you rely on these surfaces"
                               : "The white outlines are the surfaces: do they follow the bones?");
-  for (const BoneQuality& quality : making_.qualities()) {
+  for (const importing::BoneQuality& quality : making_.qualities()) {
     const bool is_femur = quality.kind == bones::BoneKind::Femur;
     widgets::text_in(ui.theme.strong, widgets::kAccent, is_femur ? "Femur" : "Tibia");
-    for (const QualityLine& line : quality_lines(quality))
-      widgets::status_row(ui, line.severity, line.name, line.text);
+    for (const importing::QualityLine& line : importing::quality_lines(quality))
+      widgets::status_row(ui, severity_of(line.verdict), line.name, line.text);
   }
   const float width = ImGui::GetContentRegionAvail().x;
   widgets::action_button(ui, "paint.accept", width, ui.theme.px(52));
@@ -195,7 +196,7 @@ void PaintView::draw_panel(const widgets::Ui& ui, const widgets::Rect& area) {
     return;
   }
   widgets::text_in(ui.theme.strong, widgets::kAccent,
-                   next_step(*painting_, previewing_.kind, job_.is_running()));
+                   next_step(*painting_, previewing_.kind, job_.is_running(), store_.is_of_case(*painting_)));
   ImGui::Dummy({0, ui.theme.px(6)});
   draw_work(ui);
   if (previewing_.kind != Preview::None) {
@@ -252,7 +253,8 @@ void PaintView::note_states(const widgets::Ui& ui) const {
   ui.log.note_state("paint_work", job_.is_running() ? job_.what() : "");
   ui.log.note_state("paint_hint", !hint_.empty() ? hint_ : making_.failure());
   ui.log.note_state("paint_saved", store_.is_saved(*painting_) ? "yes" : "no");
-  ui.log.note_state("paint_next", next_step(*painting_, previewing_.kind, job_.is_running()));
+  ui.log.note_state("paint_next", next_step(*painting_, previewing_.kind, job_.is_running(),
+                                            store_.is_of_case(*painting_)));
   ui.log.note_state("paint_cross", widgets::fixed(look_.cross_mm.x(), 1) + " " +
                                        widgets::fixed(look_.cross_mm.y(), 1) + " " +
                                        widgets::fixed(look_.cross_mm.z(), 1));

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "planning/cases/case_image.h"
+#include "planning/painting/bone_labels.h"
 
 namespace arthronaut::paint {
 
@@ -30,8 +31,8 @@ PaintStore::~PaintStore() {
   if (loading_.valid()) loading_.wait();
 }
 
-void PaintStore::open(const std::filesystem::path& case_folder, const cases::CaseImage& image,
-                      bool read_only) {
+void PaintStore::open(const std::filesystem::path& case_folder, const cases::CaseImage& image, bool read_only,
+                      std::vector<CaseBone> case_bones) {
   stops_ = true;
   if (loading_.valid()) loading_.wait();
   stops_ = false;
@@ -55,7 +56,8 @@ void PaintStore::open(const std::filesystem::path& case_folder, const cases::Cas
   is_read_only_ = read_only;
   failure_.clear();
   loaded_ = 0;
-  loading_ = std::async(std::launch::async, [this, folder = case_folder, image] {
+  loading_ = std::async(std::launch::async, [this, folder = case_folder, image,
+                                             bones = std::move(case_bones)] {
     Loaded loaded;
     try {  // the top of the loading thread
       auto volume = std::make_shared<const images::Volume>(cases::load_image(folder, image, [this](double f) {
@@ -63,9 +65,19 @@ void PaintStore::open(const std::filesystem::path& case_folder, const cases::Cas
         loaded_ = f;
       }));
       painting::Painting painting(volume);
+      painting::Labels of_case(volume->values.size(), painting::kNothing);
+      for (const CaseBone& bone : bones)
+        painting::add_bone(of_case, *volume, *bone.mesh, label_of(bone.kind));
+      for (const CaseBone& bone : bones)
+        loaded.digests[bone.kind] = painting::digest_of(of_case, label_of(bone.kind));
       try {
-        if (auto saved = painting::load_painting(folder, *volume))
+        if (auto saved = painting::load_painting(folder, *volume)) {
           painting.restore(std::move(saved->strokes), std::move(saved->bones));
+        } else if (!bones.empty()) {
+          painting::Labels strokes(of_case.size(), painting::kNothing);  // before the labels are moved away
+          painting.restore(std::move(strokes), std::move(of_case));
+          loaded.is_of_case = true;
+        }
       } catch (const std::exception& error) {
         loaded.failure = std::string("What was painted cannot be read, and is left alone: ") + error.what();
       }
@@ -84,9 +96,25 @@ std::optional<painting::Painting> PaintStore::take_loaded() {
     return std::nullopt;
   Loaded loaded = loading_.get();
   failure_ = loaded.failure;
+  is_of_case_ = loaded.is_of_case;
+  digests_ = std::move(loaded.digests);
   if (!failure_.empty()) is_read_only_ = true;
   if (loaded.painting) seen_ = posted_ = loaded_revision_ = loaded.painting->revision();
   return std::move(loaded.painting);
+}
+
+std::vector<bones::BoneKind> PaintStore::unchanged(const painting::Painting& painting) const {
+  std::vector<bones::BoneKind> kinds;
+  for (const auto& [kind, digest] : digests_)
+    if (painting::digest_of(painting.labels(painting::Layer::Bones), label_of(kind)) == digest)
+      kinds.push_back(kind);
+  return kinds;
+}
+
+void PaintStore::note_made(const painting::Painting& painting) {
+  for (const bones::BoneKind kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia})
+    if (painting.holds(painting::Layer::Bones, label_of(kind)))
+      digests_[kind] = painting::digest_of(painting.labels(painting::Layer::Bones), label_of(kind));
 }
 
 void PaintStore::post(const painting::Painting& painting) {

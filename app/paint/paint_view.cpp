@@ -4,7 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "app/scene/lateral_plane.h"
 #include "app/scene/scene_camera.h"
+#include "planning/landmarks/anatomical_axes.h"
 #include "planning/painting/label_edits.h"
 #include "planning/segmentation/ct_bones.h"
 
@@ -33,7 +35,7 @@ PaintView::PaintView(PaintCallbacks callbacks)
 void PaintView::open(const cases::Case& knee, const std::filesystem::path& case_folder, bool read_only) {
   const bool is_same = case_folder == case_folder_ && (is_ready() || store_.is_loading());
   knee_ = knee;
-  knee_.bones.clear();  // the meshes are not needed
+  knee_.bones.clear();  // the meshes go to the store
   is_read_only_ = read_only;
   if (making_.state() == BoneMaking::State::Done) making_.forget();
   if (is_same) return;
@@ -46,7 +48,20 @@ void PaintView::open(const cases::Case& knee, const std::filesystem::path& case_
   job_.cancel();
   making_.cancel();
   const auto image = image_to_paint(knee);
-  if (image) store_.open(case_folder, *image, read_only);
+  std::vector<CaseBone> bones;
+  joint_.reset();
+  for (const auto& [kind, bone] : knee.bones) {
+    if (bone.mesh.empty()) continue;
+    bones.push_back({kind, std::make_shared<const geometry::TriangleMesh>(bone.mesh)});
+    const auto marks = knee.landmarks.find(kind);
+    const auto axes = landmarks::anatomical_axes(
+        kind, knee.side, marks != knee.landmarks.end() ? marks->second : landmarks::Landmarks{}, bone.mesh);
+    const geometry::Bounds of_bone = scene::joint_bounds(bone.mesh, kind, axes);
+    joint_ = joint_ ? geometry::Bounds{joint_->min_mm.cwiseMin(of_bone.min_mm),
+                                       joint_->max_mm.cwiseMax(of_bone.max_mm)}
+                    : of_bone;
+  }
+  if (image) store_.open(case_folder, *image, read_only, std::move(bones));
 }
 
 void PaintView::close() {
@@ -75,6 +90,11 @@ bool PaintView::can_edit() const {
          (making == BoneMaking::State::Idle || making == BoneMaking::State::Done);
 }
 
+bool PaintView::can_stop() const {
+  return job_.is_running() || previewing_.kind != Preview::None ||
+         making_.state() == BoneMaking::State::Making || is_judging();
+}
+
 void PaintView::tick(double now_s) {
   if (auto loaded = store_.take_loaded()) {
     painting_ = std::move(loaded);
@@ -84,6 +104,11 @@ void PaintView::tick(double now_s) {
     look_.cross_mm =
         volume.lps_from_index * Eigen::Vector3d(0.5 * (volume.size - Eigen::Vector3i::Ones()).cast<double>());
     for (plan::SlicePane& pane : panes_) pane.fit(volume);
+    if (joint_) {  // where the bones are, rather than somewhere in a scan of both legs
+      constexpr double kAround = 1.15;
+      look_.cross_mm = joint_->center_mm();
+      for (plan::SlicePane& pane : panes_) pane.show(look_.cross_mm, kAround * joint_->size_mm().maxCoeff());
+    }
     if (!painting_->holds(Layer::Strokes) && painting_->holds(Layer::Bones)) brushing_.layer = Layer::Bones;
     previewing_.threshold = segmentation::CtBonesOptions{}.threshold_for(volume);
   }
@@ -104,8 +129,10 @@ void PaintView::tick(double now_s) {
     model_.show(content);
     if (bounds) model_.look(scene::look_from(scene::ViewDirection::Anterior, knee_.side, *bounds, kAspect));
   }
-  if (before == BoneMaking::State::Saving && making_.state() == BoneMaking::State::Done)
+  if (before == BoneMaking::State::Saving && making_.state() == BoneMaking::State::Done) {
+    if (is_ready()) store_.note_made(*painting_);
     callbacks_.bones_made();
+  }
   if (!is_ready()) return;
   if (painting_->revision() != previewing_.seen_revision) {
     previewing_.seen_revision = painting_->revision();
@@ -198,12 +225,13 @@ void PaintView::take_job() {
 }
 
 void PaintView::make_bones() {
-  hint_ = BoneMaking::refusal(knee_, *painting_);
+  const std::vector<bones::BoneKind> unchanged = store_.unchanged(*painting_);
+  hint_ = BoneMaking::refusal(knee_, *painting_, unchanged);
   if (!hint_.empty()) return;
   drop_preview();
   store_.keep_now(*painting_);
   if (!store_.failure().empty()) return;
-  making_.start(knee_, case_folder_, *image_to_paint(knee_), *painting_);
+  making_.start(knee_, case_folder_, *image_to_paint(knee_), *painting_, unchanged);
 }
 
 void PaintView::follow(std::size_t pane, const plan::SliceEvent& event) {

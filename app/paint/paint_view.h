@@ -56,6 +56,7 @@ class PaintView {
 
   [[nodiscard]] bool is_ready() const { return painting_.has_value(); }
   [[nodiscard]] bool can_edit() const;
+  [[nodiscard]] bool can_stop() const;  // something runs, or is shown before it is taken
   [[nodiscard]] bool is_judging() const { return making_.state() == BoneMaking::State::Judging; }
   void begin_growth();
   void grow();
@@ -105,7 +106,8 @@ class PaintView {
   cases::Case knee_;
   std::filesystem::path case_folder_;
   bool is_read_only_ = false;
-  std::string hint_;  // why the last thing did not go; empty else
+  std::optional<geometry::Bounds> joint_;  // of the case's bones
+  std::string hint_;                       // why the last thing did not go; empty else
   PaintStore store_;
   std::optional<painting::Painting> painting_;
   LabelJob job_;

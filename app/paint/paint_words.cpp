@@ -1,17 +1,18 @@
 #include "app/paint/paint_words.h"
 
-#include <cmath>
-
 namespace arthronaut::paint {
 
 using painting::Layer;
 
-std::string next_step(const painting::Painting& painting, Preview preview, bool is_working) {
+std::string next_step(const painting::Painting& painting, Preview preview, bool is_working, bool is_of_case) {
   if (preview == Preview::Threshold)
     return "Up and Down move the threshold; Enter takes what is coloured, Esc leaves it";
   if (preview == Preview::Growth)
     return is_working ? "Growing ... go on painting where it will be wrong"
                       : "Paint where it is wrong, and it grows again; Enter takes it, Esc leaves it";
+  if (is_of_case)
+    return "These are the bones of the case: correct them with brush (B) and eraser (E), then make the bones "
+           "(A)";
   const bool has_femur = painting.holds(Layer::Strokes, painting::kFemur),
              has_tibia = painting.holds(Layer::Strokes, painting::kTibia),
              has_around = painting.holds(Layer::Strokes, painting::kSurroundings);
@@ -34,25 +35,16 @@ std::string next_step(const painting::Painting& painting, Preview preview, bool 
   return "Grow the bones from the strokes (G)";
 }
 
-std::vector<QualityLine> quality_lines(const BoneQuality& quality) {
-  using widgets::Severity;
-  std::vector<QualityLine> lines;
-  const double off = quality.painted_ml > 0 ? quality.surface_ml / quality.painted_ml - 1 : 1;
-  const bool is_off = !(std::abs(off) <= kMostVolumeOff_fraction);
-  lines.push_back({is_off ? Severity::Caution : Severity::Good, "Volume",
-                   widgets::fixed(quality.surface_ml, 1) + " ml, painted " +
-                       widgets::fixed(quality.painted_ml, 1) + " ml" +
-                       (is_off ? ": parts of it were left out, or rounded off" : "")});
-  lines.push_back({quality.is_closed ? Severity::Good : Severity::Bad, "Closed",
-                   quality.is_closed ? std::to_string(quality.triangles) + " triangles without a hole"
-                                     : "no: it cannot be planned on"});
-  lines.push_back({quality.edges_not_manifold == 0 ? Severity::Good : Severity::Caution, "Manifold",
-                   quality.edges_not_manifold == 0
-                       ? "every edge belongs to two triangles"
-                       : std::to_string(quality.edges_not_manifold) + " edges did not, and were mended"});
-  if (quality.doubts.empty()) lines.push_back({Severity::Good, "Anatomy", "nothing speaks against it"});
-  for (const std::string& doubt : quality.doubts) lines.push_back({Severity::Caution, "Look", doubt});
-  return lines;
+widgets::Severity severity_of(importing::QualityVerdict verdict) {
+  switch (verdict) {
+    case importing::QualityVerdict::Good:
+      return widgets::Severity::Good;
+    case importing::QualityVerdict::Caution:
+      return widgets::Severity::Caution;
+    case importing::QualityVerdict::Bad:
+      return widgets::Severity::Bad;
+  }
+  return widgets::Severity::Bad;
 }
 
 std::string label_name(std::uint8_t label) {

@@ -2,10 +2,9 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "app/paint/bone_making.h"
 #include "app/widgets/controls.h"
+#include "planning/import/bone_quality.h"
 #include "planning/painting/painting.h"
 
 namespace arthronaut::paint {
@@ -14,15 +13,11 @@ namespace arthronaut::paint {
 enum class Preview { None, Growth, Threshold };
 
 // What to do next, as one sentence.
-[[nodiscard]] std::string next_step(const painting::Painting& painting, Preview preview, bool is_working);
+// is_of_case: nothing was painted yet over the bones that the case has.
+[[nodiscard]] std::string next_step(const painting::Painting& painting, Preview preview, bool is_working,
+                                    bool is_of_case = false);
 
-struct QualityLine {
-  widgets::Severity severity = widgets::Severity::Quiet;
-  std::string name, text;
-};
-// A surface that holds more than this share less or more than what was painted is to be looked at.
-inline constexpr double kMostVolumeOff_fraction = 0.05;
-[[nodiscard]] std::vector<QualityLine> quality_lines(const BoneQuality& quality);
+[[nodiscard]] widgets::Severity severity_of(importing::QualityVerdict verdict);
 
 [[nodiscard]] std::string label_name(std::uint8_t label);  // "femur"; "eraser" for nothing
 

@@ -112,7 +112,7 @@ Band band_of(const CalibrateRunStatus& status, const CalibrateDisplay& display) 
             "Only " + std::to_string(job.taken.size()) + " could be taken; choose another source"};
   }
   if (status.awaits_still) return {Severity::Quiet, "The next picture comes", ""};
-  if (!display.is_live) return {Severity::Bad, "No new picture", "The source has stopped giving pictures"};
+  if (!display.is_live) return {Severity::Bad, "No new picture", reason_of(status)};
   if (!job.note.empty() && !advice.is_good()) return {Severity::Caution, advice.wanted, job.note};
   std::string detail;  // what the headline does not say yet
   for (const std::string& reason : advice.rejections)

@@ -52,7 +52,7 @@ Band band_of(const FluidRunStatus& status, const FluidDisplay& display) {
   if (job.is_checking) return {Severity::Quiet, "Checking", count};
   if (job.summary != nullptr) return {Severity::Quiet, "Done", count};
   if (status.phase == FeedPhase::Ended) return {Severity::Caution, "The pictures have ended", count};
-  if (!display.is_live) return {Severity::Bad, "No new picture", "The source has stopped giving pictures"};
+  if (!display.is_live) return {Severity::Bad, "No new picture", reason_of(status)};
   if (!job.look.is_taken)
     return {Severity::Caution, "Hold the ruler before the lens", "Not counted: " + job.look.reason};
   return {Severity::Good, "Hold the ruler before the lens and move it",

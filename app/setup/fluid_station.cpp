@@ -3,6 +3,8 @@
 #include <GLFW/glfw3.h>
 
 #include "app/case/case_calibration.h"
+#include "app/library/daily_check.h"
+#include "app/library/workstation_library.h"
 #include "navigation/camera/medium.h"
 #include "planning/cases/case.h"
 #include "planning/files/utc_clock.h"
@@ -46,9 +48,18 @@ void FluidStation::keep_verdict() {
         source.name, files::utc_now());
     read_standing();
     if (!why_not.empty()) checked_ = {widgets::Severity::Caution, "Fluid", "not kept: " + why_not};
+  } catch (const InvalidInput& error) {
+    checked_ = {widgets::Severity::Caution, "Fluid", std::string("not kept: ") + error.what()};
   } catch (const IoError& error) {
     checked_ = {widgets::Severity::Bad, "Fluid", std::string("not saved: ") + error.what()};
   }
+  if (source.is_simulated) return;
+  // The same look is the day's check of accuracy, whatever became of the verdict.
+  const workstation_library::DailyKeeping daily = workstation_library::keep_daily_check(
+      workstation_library::data_folder(), *summary, status_.job.refractive_index,
+      cases::camera_file(case_folder_), source.name, source.is_live);
+  daily_check_ = {daily.is_kept ? widgets::Severity::Good : widgets::Severity::Caution, "Daily check",
+                  daily.text};
 }
 
 void FluidStation::start(const FeedSource& source) {
@@ -71,6 +82,7 @@ void FluidStation::stop() {
   if (run_ != nullptr) ending_.end(std::move(run_));
   status_ = {};
   display_ = {};
+  daily_check_ = {};
 }
 
 void FluidStation::release_source() {
@@ -140,9 +152,12 @@ void FluidStation::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   std::vector<Row> rows = display_.numbers;
   for (const std::string& reason : display_.reasons)
     rows.push_back({widgets::Severity::Bad, "Reason", reason});
+  if (display_.verdict.headline.empty()) daily_check_ = {};
+  if (!daily_check_.name.empty()) rows.push_back(daily_check_);
   draw_rows(ui, "setup.numbers", rest, display_.reasons.empty() ? "Numbers" : "Why not", rows);
   ui.log.note_state("setup_band", run_ != nullptr ? display_.band.headline : "no source");
   ui.log.note_state("setup_verdict", display_.verdict.headline);
+  ui.log.note_state("setup_daily_check", daily_check_.text);
 }
 
 void FluidStation::draw_picture_with_ruler(const widgets::Ui& ui, const widgets::Rect& area) {

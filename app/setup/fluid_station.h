@@ -33,7 +33,7 @@ class FluidStation : public Station {
  private:
   using Run = LiveRun<FluidJob>;
 
-  void keep_verdict();   // of this frame's status, once
+  void keep_verdict();
   void read_standing();  // what the case's last verdict says of the medium
   void draw_picture_with_ruler(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_models(const widgets::Ui& ui, const widgets::Rect& area);
@@ -47,6 +47,7 @@ class FluidStation : public Station {
   FluidDisplay display_;   // of this frame
   std::string standing_;   // the same in a sentence
   Row checked_;            // what the case's last verdict says of this medium
+  Row daily_check_;        // what became of the day's check of accuracy; no name: nothing yet
   std::shared_ptr<const calibration::FluidCheckSummary> kept_;  // that was looked at last
   widgets::VideoTexture picture_;
 };

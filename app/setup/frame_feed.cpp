@@ -20,10 +20,22 @@ FrameFeed::FrameFeed(FeedSource source)
     : source_(std::move(source)),
       reader_(worker::Backlog::Lossless, [this](Reader::Inbox& inbox) { read(source_, inbox); }) {}
 
+// A live source may wait for its camera to be plugged in again, for hours.
+FrameFeed::~FrameFeed() {
+  reader_.request_stop();
+  if (const auto newest = reader_.latest(); newest != nullptr && newest->line != nullptr) newest->line->end();
+}
+
+std::string FrameFeed::trouble() const {
+  const auto newest = reader_.latest();
+  return newest != nullptr && newest->line != nullptr ? newest->line->trouble() : "";
+}
+
 void FrameFeed::read(const FeedSource& source, Reader::Inbox& inbox) {
   using Clock = Reader::Clock;
   const std::unique_ptr<sources::FrameSource> opened = source.open();
-  inbox.publish(Picture());
+  const std::shared_ptr<sources::SourceLine> line = opened->info().line;
+  inbox.publish(Picture{nullptr, 0, line});
   const bool is_paced = !opened->info().is_live() && !source.is_stills;
   const bool waits = source.is_stills || !source.newest_wins;
   Clock::time_point start;
@@ -36,7 +48,7 @@ void FrameFeed::read(const FeedSource& source, Reader::Inbox& inbox) {
       start = Clock::now();
     }
     if (is_paced) inbox.sleep_until(start + std::chrono::nanoseconds(frame->timestamp_ns - first_ns));
-    inbox.publish(Picture{std::move(frame), number});
+    inbox.publish(Picture{std::move(frame), number, line});
     if (!waits) continue;
     auto done = inbox.next();
     while (done && *done != number) done = inbox.next();

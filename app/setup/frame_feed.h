@@ -30,6 +30,7 @@ struct FeedSource {
 class FrameFeed {
  public:
   explicit FrameFeed(FeedSource source);
+  ~FrameFeed();
   FrameFeed(const FrameFeed&) = delete;
   FrameFeed& operator=(const FrameFeed&) = delete;
 
@@ -37,13 +38,15 @@ class FrameFeed {
   [[nodiscard]] camera::FramePtr next();
   void advance();  // of stills: the next one, please; otherwise nothing
   [[nodiscard]] bool has_started() const;
-  [[nodiscard]] bool awaits_still() const;  // the one before is done with, the next is not there yet
-  [[nodiscard]] bool has_ended() const;     // no picture will come any more
+  [[nodiscard]] std::string trouble() const;  // why a live source gives no picture now; empty else
+  [[nodiscard]] bool awaits_still() const;    // the one before is done with, the next is not there yet
+  [[nodiscard]] bool has_ended() const;       // no picture will come any more
 
  private:
   struct Picture {  // number 0 without a frame: the source is open
     camera::FramePtr frame;
-    long number = 0;  // counted from 1
+    long number = 0;                                      // counted from 1
+    std::shared_ptr<sources::SourceLine> line = nullptr;  // of a live source
   };
   // Messages: the number of the picture that is done with, where the reader waits for that.
   using Reader = worker::Worker<long, Picture>;

@@ -27,16 +27,22 @@ enum class FeedPhase { Starting, Running, Ended, Failed };
 template <typename Status>
 struct RunStatus {
   FeedPhase phase = FeedPhase::Starting;
-  std::string message;  // why the source failed
+  std::string message;  // why the source failed, or why a live one gives no picture for now
   Status job;
   double looked_s = 0;        // when the newest picture was looked at, on the clock of steady_now_s()
   bool is_stills = false;     // single pictures: each stands as long as it takes
   bool awaits_still = false;  // ... and the next one is on its way
   // A look takes 50 to 200 ms; a picture that is much older is no longer what the camera sees.
   [[nodiscard]] bool is_of_now(double now_s) const {
-    return phase == FeedPhase::Running && now_s - looked_s < 2.0;
+    return phase == FeedPhase::Running && message.empty() && now_s - looked_s < 2.0;
   }
 };
+
+// Why there is no picture of now, while the source runs.
+template <typename Status>
+[[nodiscard]] std::string reason_of(const RunStatus<Status>& status) {
+  return status.message.empty() ? "The source has stopped giving pictures" : status.message;
+}
 
 [[nodiscard]] inline double steady_now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -134,8 +140,10 @@ class LiveRun {
                               : feed->has_started() ? FeedPhase::Running
                                                     : FeedPhase::Starting;
       const bool awaits_still = feed->awaits_still();
-      if (phase == status.phase && awaits_still == status.awaits_still) return;
+      std::string trouble = feed->trouble();
+      if (phase == status.phase && awaits_still == status.awaits_still && trouble == status.message) return;
       status.phase = phase;
+      status.message = std::move(trouble);
       status.awaits_still = awaits_still;
       publish();
     }

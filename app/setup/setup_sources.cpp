@@ -6,6 +6,7 @@
 #include "navigation/simulator/simulated_operation.h"
 #include "navigation/simulator/simulated_ruler.h"
 #include "navigation/sources/connected_cameras.h"
+#include "navigation/sources/frame_source.h"
 #include "navigation/sources/source_files.h"
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_knee.h"
@@ -81,6 +82,16 @@ FeedSource stills(const fs::path& folder) {
   return source;
 }
 
+// Shown without its password.
+FeedSource stream(const std::string& address) {
+  FeedSource source;
+  source.name = sources::shown_address(address);
+  source.path = address;
+  source.open = [address] { return sources::open_stream(address); };
+  source.is_live = true;
+  return source;
+}
+
 FeedSource video(const fs::path& file, Purpose purpose) {
   FeedSource source;
   source.name = file.filename().string();
@@ -113,6 +124,8 @@ std::vector<FeedSource> sources_for(Purpose purpose, const fs::path& case_folder
       source.is_live = true;
       offered.push_back(std::move(source));
     }
+    for (const fs::path& path : named)
+      if (sources::is_stream_address(path.string())) offered.push_back(stream(path.string()));
   };
   const auto offer_stills = [&](const fs::path& folder) {
     if (purpose == Purpose::Camera && !sources::pictures_in(folder).empty())

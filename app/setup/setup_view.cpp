@@ -13,8 +13,8 @@
 namespace arthronaut::setup {
 
 SetupView::SetupView(const std::function<void()>& wake, std::function<void()> go_on,
-                     const sources::DeviceTurns& turns)
-    : go_on_(std::move(go_on)), turns_(turns) {
+                     const sources::DeviceTurns& turns, Streams streams)
+    : go_on_(std::move(go_on)), turns_(turns), streams_(std::move(streams)) {
   steps_.push_back({Purpose::Camera, "setup.show_camera", "setup.camera.",
                     std::make_unique<CalibrateStation>(wake, ending_)});
   steps_.push_back(
@@ -75,7 +75,10 @@ void SetupView::show(std::size_t index) {
 }
 
 void SetupView::find_sources() {
-  step().source.offer(sources_for(step().purpose, case_folder_, turns_, typed_.paths));
+  std::vector<std::filesystem::path> named = typed_.paths;
+  for (const std::string& address : streams_.known())
+    if (std::find(named.begin(), named.end(), address) == named.end()) named.emplace_back(address);
+  step().source.offer(sources_for(step().purpose, case_folder_, turns_, named));
 }
 
 void SetupView::choose_source() {
@@ -90,6 +93,7 @@ void SetupView::start() {
   step().started_kind = source->is_simulated ? sources::SourceKind::Simulation
                         : source->is_live    ? sources::SourceKind::Live
                                              : sources::SourceKind::Recording;
+  if (sources::is_stream_address(source->path.string())) streams_.note(source->path.string());
   step().station->start(*source);
 }
 
@@ -113,7 +117,8 @@ std::string SetupView::next_step() const {
 void SetupView::take_typed_path() {
   typed_.is_open = false;
   std::filesystem::path path = typed_.text;
-  if (!path.has_filename()) path = path.parent_path();  // "pictures/"
+  const bool is_stream = sources::is_stream_address(typed_.text);
+  if (!is_stream && !path.has_filename()) path = path.parent_path();  // "pictures/"
   typed_.paths.push_back(path);
   step().station->stop();
   find_sources();
@@ -145,8 +150,9 @@ void SetupView::add_actions(widgets::Actions& actions) {
   add("setup.source", "Other source",
       "Cameras, pictures, videos in turn; the simulator where there is no real scope", GLFW_KEY_O,
       [this] { choose_source(); }, {"take another source", has_run});
-  add("setup.path", "Type a source", "The path of a video or of a folder of pictures, or: simulator",
-      GLFW_KEY_P, [this] { typed_.is_open = typed_.wants_focus = true; });
+  add("setup.path", "Type a source",
+      "The path of a video or of a folder of pictures, the address of a stream, or: simulator", GLFW_KEY_P,
+      [this] { typed_.is_open = typed_.wants_focus = true; });
   add("setup.again", "Start again", "From the first picture; what was adopted stays", GLFW_KEY_R,
       [this] { start(); }, {"start again", has_run});
   actions.add({"setup.stop",
@@ -220,7 +226,7 @@ void SetupView::draw_path_field(const widgets::Ui& ui, const widgets::Rect& area
   ImGui::SetNextItemWidth(area.width);
   if (typed_.wants_focus) ImGui::SetKeyboardFocusHere();
   const bool is_entered = ImGui::InputTextWithHint(
-      "##path", "path of a video or of a folder of pictures, then Enter", &typed_.text,
+      "##path", "path of a video or of a folder, or rtsp://HOST/PATH, udp://@:PORT; then Enter", &typed_.text,
       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   ui.log.note("setup.path_field", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   if (is_entered) return take_typed_path();

@@ -21,8 +21,13 @@ class SetupView : public mode::Mode {
   // wake: ends the window's wait for input; called from other threads.
   // go_on: called when the last part of setting up is done and the next step is wished.
   // turns: shared with whatever else opens cameras.
-  SetupView(const std::function<void()>& wake, std::function<void()> go_on,
-            const sources::DeviceTurns& turns);
+  // streams: the addresses of streams that were used in this room, and where a new one is noted.
+  struct Streams {
+    std::function<std::vector<std::string>()> known = [] { return std::vector<std::string>(); };
+    std::function<void(const std::string& address)> note = [](const std::string&) {};
+  };
+  SetupView(const std::function<void()>& wake, std::function<void()> go_on, const sources::DeviceTurns& turns,
+            Streams streams);
   ~SetupView() override;
 
   [[nodiscard]] mode::ModeTitle title() const override;
@@ -49,7 +54,7 @@ class SetupView : public mode::Mode {
     sources::SourceKind started_kind = sources::SourceKind::Recording;  // of what runs
   };
 
-  struct Typed {  // sources that the user names by their path
+  struct Typed {  // sources that the user names by their path or address
     std::vector<std::filesystem::path> paths;
     std::string text;
     bool is_open = false, wants_focus = false;
@@ -70,6 +75,7 @@ class SetupView : public mode::Mode {
 
   std::function<void()> go_on_;
   sources::DeviceTurns turns_;
+  Streams streams_;
   sources::BackgroundEnd ending_;  // what the stations have stopped
   std::filesystem::path case_folder_;
   bool is_read_ = false;   // the stations know the case

@@ -81,7 +81,7 @@ Band band_of(const ToolRunStatus& status, const ToolChoice& choice, const ToolDi
   if (status.phase == FeedPhase::Ended)
     return {display.can_adopt ? Severity::Good : Severity::Caution, "The pictures have ended",
             std::to_string(job.pose_count) + " poses were taken"};
-  if (!display.is_live) return {Severity::Bad, "No new picture", "The source has stopped giving pictures"};
+  if (!display.is_live) return {Severity::Bad, "No new picture", reason_of(status)};
   if (!job.reason.empty()) return {Severity::Caution, motion_of(choice), "Not counted: " + job.reason};
   return {Severity::Good, motion_of(choice), std::to_string(job.pose_count) + " poses taken"};
 }

@@ -1,7 +1,9 @@
 #include "app/setup/tool_job.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "planning/geometry/error.h"
@@ -17,12 +19,6 @@ const tools::Tool& tool_of(const tools::ToolSet& tools, const std::string& name)
   const tools::Tool* tool = tools.find_tool(name);
   if (tool == nullptr) throw InvalidInput("tools.json declares no tool named \"" + name + "\"");
   return *tool;
-}
-
-const markers::MarkerObservation* seen_as(const pipeline::PictureObservation& view, int id) {
-  const auto found = std::find_if(view.markers.begin(), view.markers.end(),
-                                  [&](const markers::MarkerObservation& marker) { return marker.id == id; });
-  return found == view.markers.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -63,6 +59,7 @@ ToolJob::ToolJob(const pipeline::ViewTrackerOptions& view, const tools::ToolSet&
                  const ToolChoice& choice)
     : choice_(choice),
       tools_(tools),
+      declared_bodies_(markers::declared_bodies(tools)),
       tracker_(view, markers::make_tracker(markers::declared_markers(tools))) {
   (void)tool_of(tools_, choice_.tool_name);
   if (tools_.world_markers.empty()) throw InvalidInput("tools.json declares no world marker");
@@ -71,6 +68,10 @@ ToolJob::ToolJob(const pipeline::ViewTrackerOptions& view, const tools::ToolSet&
 void ToolJob::look(const camera::FramePtr& frame) {
   status_.picture = frame;
   tracker_.observe(*frame, view_);
+  bodies_.clear();
+  for (const markers::Body& body : declared_bodies_)
+    bodies_.push_back(markers::observe_body(
+        body, std::span(view_.markers).subspan(body.first, body.markers.size()), view_.camera));
   status_.view = view_.camera.boundary();
   judge_markers();
   if (!status_.reason.empty() || !status_.is_collecting) return;
@@ -78,22 +79,36 @@ void ToolJob::look(const camera::FramePtr& frame) {
     status_.reason = "enough poses were taken";
     return;
   }
-  const markers::MarkerObservation* world = seen_as(view_, *world_id_);
-  const markers::MarkerObservation* tool = seen_as(view_, tool_of(tools_, choice_.tool_name).marker_id);
-  fixed_from_tool_.push_back(world->camera_from_marker.inverse() * tool->camera_from_marker);
+  const markers::BodyObservation& world = body_of(*world_id_);
+  const markers::BodyObservation& tool = body_of(tool_of(tools_, choice_.tool_name).marker_id);
+  fixed_from_tool_.push_back(world.camera_from_body.inverse() * tool.camera_from_body);
   status_.pose_count = fixed_from_tool_.size();
+}
+
+const markers::BodyObservation& ToolJob::body_of(int id) const {
+  return *std::find_if(bodies_.begin(), bodies_.end(), [&](const auto& body) { return body.id == id; });
+}
+
+// Of several, the first that is part of the pose.
+const markers::MarkerObservation& ToolJob::outlined_marker(const markers::BodyObservation& body) const {
+  const auto declared = std::find_if(declared_bodies_.begin(), declared_bodies_.end(),
+                                     [&](const markers::Body& one) { return one.id == body.id; });
+  return view_.markers[declared->first + static_cast<std::size_t>(std::countr_zero(body.used))];
 }
 
 void ToolJob::judge_markers() {
   const auto judge = [&](const std::string& name, int id) {
-    const markers::MarkerObservation* marker = seen_as(view_, id);
+    const markers::BodyObservation& body = body_of(id);
     ToolStatus::Seen seen{name};
-    seen.stands = marker != nullptr && view_.stands_for(*marker) && !view_.is_frozen;
-    seen.text = marker == nullptr ? "not declared" : std::string(markers::to_text(marker->state));
-    if (marker != nullptr && marker->is_tracked()) {
-      seen.corners_px = marker->corners_px;
+    seen.stands = view_.intrinsics_are_known && body.is_tracked() && !view_.is_frozen && !view_.is_repeating;
+    seen.text = std::string(markers::to_text(body.state));
+    if (body.is_tracked()) {
+      seen.corners_px = outlined_marker(body).corners_px;
+      if (body.odd_marker != markers::BodyObservation::kNone)
+        seen.text += "; marker " + std::to_string(body.odd_marker) + " is out of place";
       if (!view_.intrinsics_are_known) seen.text = "lens angle unknown";
       if (view_.is_frozen) seen.text = "the picture is frozen";
+      if (view_.is_repeating) seen.text = "the picture repeats itself";
     }
     status_.markers.push_back(seen);
     return seen.stands;

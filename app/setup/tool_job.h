@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "navigation/markers/body_pose.h"
 #include "navigation/pipeline/view_tracker.h"
 #include "navigation/tools/pivot_calibration.h"
 #include "navigation/tools/spin_calibration.h"
@@ -74,11 +75,16 @@ class ToolJob {
 
  private:
   void judge_markers();
+  // Of the picture in view_. Precondition: it is declared.
+  [[nodiscard]] const markers::BodyObservation& body_of(int id) const;
+  [[nodiscard]] const markers::MarkerObservation& outlined_marker(const markers::BodyObservation& body) const;
 
   ToolChoice choice_;
   tools::ToolSet tools_;
+  std::vector<markers::Body> declared_bodies_;
   pipeline::ViewTracker tracker_;
   pipeline::PictureObservation view_;
+  std::vector<markers::BodyObservation> bodies_;  // of view_
   std::vector<geometry::RigidTransform> fixed_from_tool_;
   std::optional<int> world_id_;  // whose frame the poses are in
   std::size_t calibrated_count_ = 0;

@@ -20,7 +20,7 @@ std::array<Eigen::Vector3d, 4> marker_corners_mm(double size_mm) {
 }
 
 struct FrameErrors {
-  std::vector<double> square_px, mm, deg;
+  std::vector<double> square_px, mm, deg, distance_mm;
 };
 
 // One frame under one camera: both markers by themselves, then the ruler as one body.
@@ -32,6 +32,8 @@ void add_errors(const RulerSighting& seen, const Ruler& ruler, const camera::Cam
   if (!first || !second) return;
   const RigidTransform off =
       ruler.first_from_second.inverse() * (first->camera_from_plane.inverse() * second->camera_from_plane);
+  errors.distance_mm.push_back(
+      (first->camera_from_plane.translation_mm - second->camera_from_plane.translation_mm).norm());
   errors.mm.push_back(off.translation_mm.norm());
   errors.deg.push_back(geometry::deg_from_rad(geometry::rotation_angle_rad(off.rotation)));
 
@@ -194,8 +196,13 @@ FluidCheckSummary check_fluid(std::span<const RulerSighting> sightings, const Ru
     return errors_under(sightings, ruler, calibration, index, fluid);
   };
   using camera::FluidModel;
+  const FrameErrors stated = under(options.refractive_index, FluidModel::FlatPort);
+  summary.distance_mm = geometry::quantile(stated.distance_mm, 0.5, -1);
+  if (!stated.distance_mm.empty())
+    summary.distance_spread_mm =
+        0.5 * (geometry::quantile(stated.distance_mm, 0.84) - geometry::quantile(stated.distance_mm, 0.16));
   summary.rows = {
-      row_of(FluidHypothesis::FlatPort, under(options.refractive_index, FluidModel::FlatPort)),
+      row_of(FluidHypothesis::FlatPort, stated),
       row_of(FluidHypothesis::FocalRule, under(options.refractive_index, FluidModel::FocalRule)),
       row_of(FluidHypothesis::NoRefraction, under(calibration.refractive_index, FluidModel::FlatPort))};
   std::stable_sort(summary.rows.begin(), summary.rows.end(), [](const auto& a, const auto& b) {

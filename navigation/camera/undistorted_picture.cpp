@@ -47,7 +47,8 @@ const std::vector<std::uint8_t>& UndistortedPicture::draw(const Frame& frame, co
   if (is_new || principal_point_px_ != camera.principal_point_px() ||
       circle_px_ != camera.boundary().center_px)
     turn(camera);
-  const cv::Mat raw(frame.height, frame.width, CV_8UC3, const_cast<std::uint8_t*>(frame.bgr.data()));
+  const cv::Mat raw(frame.height, frame.width, CV_8UC3,
+                    const_cast<std::uint8_t*>(bgr_of(frame, colours_).data()));
   const cv::Mat map(size_px, size_px, CV_32FC2, map_px_.data());
   cv::Mat picture(size_px, size_px, CV_8UC3, bgr_.data());
   cv::remap(raw, picture, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar());

@@ -28,7 +28,7 @@ class UndistortedPicture {
   std::vector<float> arms_px_;  // pairs (x, y): the view's table for every pixel of the picture
   std::vector<float> map_px_;   // the same from the raw picture's corner, at the lens angle drawn last
   Eigen::Vector2d principal_point_px_ = Eigen::Vector2d::Zero(), circle_px_ = Eigen::Vector2d::Zero();
-  std::vector<std::uint8_t> bgr_;
+  std::vector<std::uint8_t> bgr_, colours_;
 };
 
 }  // namespace arthronaut::camera

@@ -1,6 +1,7 @@
 #include "navigation/guidance/camera_error.h"
 
 #include <Eigen/Cholesky>
+#include <array>
 #include <cmath>
 
 namespace arthronaut::guidance {
@@ -24,6 +25,17 @@ Eigen::Matrix2d turn_of(const camera::CameraModel& camera, const camera::Calibra
 TwistPerCameraError twist_per_camera_error(const geometry::RigidTransform& camera_from_marker, double size_mm,
                                            const camera::CameraModel& camera,
                                            const camera::Calibration& calibration) {
+  const double half_mm = size_mm / 2;
+  const std::array<Eigen::Vector3d, 4> corners_mm{
+      Eigen::Vector3d(-half_mm, -half_mm, 0), Eigen::Vector3d(-half_mm, half_mm, 0),
+      Eigen::Vector3d(half_mm, -half_mm, 0), Eigen::Vector3d(half_mm, half_mm, 0)};
+  return twist_per_camera_error(camera_from_marker, corners_mm, camera, calibration);
+}
+
+TwistPerCameraError twist_per_camera_error(const geometry::RigidTransform& camera_from_body,
+                                           std::span<const Eigen::Vector3d> corners_mm,
+                                           const camera::CameraModel& camera,
+                                           const camera::Calibration& calibration) {
   // The principal point follows c = q + R (c0 - q).
   Eigen::Matrix<double, 4, 6> lens = Eigen::Matrix<double, 4, 6>::Zero();
   const Eigen::Matrix2d turn = turn_of(camera, calibration);
@@ -31,23 +43,20 @@ TwistPerCameraError twist_per_camera_error(const geometry::RigidTransform& camer
   lens.block<2, 2>(2, 2) = turn;
   lens.block<2, 2>(2, 4) = Eigen::Matrix2d::Identity() - turn;
 
-  const Eigen::Matrix3d rotation = camera_from_marker.matrix();
+  const Eigen::Matrix3d rotation = camera_from_body.matrix();
   geometry::Matrix6d normal = geometry::Matrix6d::Zero();
   TwistPerCameraError right = TwistPerCameraError::Zero();
-  for (const double x : {-size_mm / 2, size_mm / 2}) {
-    for (const double y : {-size_mm / 2, size_mm / 2}) {
-      const Eigen::Vector3d corner(x, y, 0);
-      const Eigen::Vector3d in_camera = camera_from_marker * corner;
-      Eigen::Matrix<double, 2, 3> d_pixel_d_point;
-      const auto pixel = camera.project(in_camera, d_pixel_d_point);
-      const auto d_pixel_d_lens = camera.d_pixel_d_lens(in_camera);
-      if (!pixel || !d_pixel_d_lens) return TwistPerCameraError::Zero();
-      Eigen::Matrix<double, 3, 6> d_point_d_twist;
-      d_point_d_twist << rotation, -rotation * geometry::cross_matrix(corner);
-      const Eigen::Matrix<double, 2, 6> d_pixel_d_twist = d_pixel_d_point * d_point_d_twist;
-      normal += d_pixel_d_twist.transpose() * d_pixel_d_twist;
-      right += d_pixel_d_twist.transpose() * (*d_pixel_d_lens * lens);
-    }
+  for (const Eigen::Vector3d& corner : corners_mm) {
+    const Eigen::Vector3d in_camera = camera_from_body * corner;
+    Eigen::Matrix<double, 2, 3> d_pixel_d_point;
+    const auto pixel = camera.project(in_camera, d_pixel_d_point);
+    const auto d_pixel_d_lens = camera.d_pixel_d_lens(in_camera);
+    if (!pixel || !d_pixel_d_lens) return TwistPerCameraError::Zero();
+    Eigen::Matrix<double, 3, 6> d_point_d_twist;
+    d_point_d_twist << rotation, -rotation * geometry::cross_matrix(corner);
+    const Eigen::Matrix<double, 2, 6> d_pixel_d_twist = d_pixel_d_point * d_point_d_twist;
+    normal += d_pixel_d_twist.transpose() * d_pixel_d_twist;
+    right += d_pixel_d_twist.transpose() * (*d_pixel_d_lens * lens);
   }
   // The corners stay where they were seen: what the camera moves, the pose takes back.
   const Eigen::LDLT<geometry::Matrix6d> solver(normal);

@@ -3,6 +3,8 @@
 // either.
 #pragma once
 
+#include <span>
+
 #include "navigation/camera/camera_model.h"
 #include "planning/geometry/rigid_transform.h"
 
@@ -14,6 +16,12 @@ using TwistPerCameraError = Eigen::Matrix<double, 6, 6>;
 // First order, by the corners: the pose found through a camera that is off by d is T * exp(result * d), where
 // T is the pose that it would find without. Zero where a corner has no image. `camera` is that of the frame,
 // of `calibration` with its lens turned. Allocates nothing.
+// For a body of several markers: its corners, all alike in weight, in its frame.
+[[nodiscard]] TwistPerCameraError twist_per_camera_error(const geometry::RigidTransform& camera_from_body,
+                                                         std::span<const Eigen::Vector3d> corners_mm,
+                                                         const camera::CameraModel& camera,
+                                                         const camera::Calibration& calibration);
+// For one marker.
 [[nodiscard]] TwistPerCameraError twist_per_camera_error(const geometry::RigidTransform& camera_from_marker,
                                                          double size_mm, const camera::CameraModel& camera,
                                                          const camera::Calibration& calibration);

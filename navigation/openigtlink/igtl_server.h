@@ -1,12 +1,17 @@
-// Serves poses and states of an operation by OpenIGTLink (protocol version 1 messages, which every client
-// reads): one TRANSFORM for each named transform and a STATUS "Arthronaut" for each state that is published.
+// Serves an operation by OpenIGTLink (protocol version 1 messages, which every client reads). For each state
+// that is published: one TRANSFORM for each named transform and a STATUS "Arthronaut" with the reason why
+// nothing guides; POINT "Plan" to each client when it comes and whenever the plan is another one; IMAGE
+// "Arthroscope" to those who ask for it (GET_IMAGE: one; STT_IMAGE until STP_IMAGE: as they come).
 //
 // Each client has a queue and a thread of its own, so that one that reads slowly delays nobody. A client that
-// takes nothing for 2 s is let go; it may come again.
+// takes nothing for 2 s, or is ten seconds behind, is let go; it may come again. Of pictures at most one
+// waits for a client.
 #pragma once
 
 #include <memory>
 
+#include "navigation/camera/frame.h"
+#include "navigation/openigtlink/named_transforms.h"
 #include "navigation/operation/operation_state.h"
 
 namespace arthronaut::openigtlink {
@@ -22,8 +27,12 @@ class IgtlServer {
   [[nodiscard]] int port() const;
   [[nodiscard]] std::size_t client_count() const;
   // To all clients. Never waits for one; from any thread. captured_utc_s: when the picture was taken, seconds
-  // since 1970, as the messages carry it.
-  void publish(const operation::OperationStatePtr& state, double captured_utc_s);
+  // since 1970, as the messages carry it. picture: of that state, null when there is none.
+  void publish(const operation::OperationStatePtr& state, double captured_utc_s,
+               const camera::FramePtr& picture = nullptr);
+  // A STATUS alone, while there is no picture that could be published: without it clients would hold what
+  // came last for what is.
+  void tell(const Status& status, double utc_s);
 
  private:
   struct State;

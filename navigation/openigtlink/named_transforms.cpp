@@ -48,6 +48,15 @@ std::vector<NamedTransform> named_transforms(const operation::OperationState& st
   return named;
 }
 
+std::vector<NamedPoint> plan_points(const operation::OperationState& state) {
+  if (!state.plan) return {};
+  const tunnels::Tunnel& tunnel = state.plan->tunnel;
+  const Eigen::Vector3d ras_from_lps(-1, -1, 1);
+  const Eigen::Vector3d end_mm = tunnel.entry_mm + state.plan->length_mm * tunnel.direction.normalized();
+  return {{"entry", tunnel.entry_mm.cwiseProduct(ras_from_lps), tunnel.diameter_mm / 2},
+          {"end", end_mm.cwiseProduct(ras_from_lps), tunnel.diameter_mm / 2}};
+}
+
 Status status_of(const operation::OperationState& state) {
   if (!state.has_source) return {false, "no source"};
   if (state.frame_count == 0) return {false, "no picture yet"};

@@ -6,6 +6,8 @@
 //   their
 //                            axes and tips lie in it)
 //   Bone_World               the registration: the bone's frame in the world, while it may guide
+//   Plan                     POINT: entry and end of the planned tunnel in the bone's frame
+//   Arthroscope              IMAGE, to who asks for it
 //
 // The world is the frame of the bone's world marker. 3D Slicer and OpenIGTLink keep everything in RAS; this
 // program in LPS. So each frame is taken with x and y turned about, the world's and the tools' too: with F =
@@ -31,6 +33,15 @@ struct NamedTransform {
 
 // What is valid in the newest frame, and nothing else: a transform has no place for its validity.
 [[nodiscard]] std::vector<NamedTransform> named_transforms(const operation::OperationState& state);
+
+// The plan in force, in the bone's frame (RAS): "entry" and "end", where the tunnel ends. Empty without a
+// plan. Shown under Bone_World it lies on the bone.
+struct NamedPoint {
+  std::string name;
+  Eigen::Vector3d position_mm;
+  double radius_mm = 0;  // of the tunnel
+};
+[[nodiscard]] std::vector<NamedPoint> plan_points(const operation::OperationState& state);
 
 // Why there is no guidance; "OK" while there is.
 struct Status {

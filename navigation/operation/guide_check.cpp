@@ -8,12 +8,11 @@ TouchRefusal refusal_of(SteadyTip::Reason reason) {
 
 bool GuideCheck::is_same(const Subject& a, const Subject& b) {
   const bool is_same_guide = a.guide.marker_id == b.guide.marker_id && a.guide.size_mm == b.guide.size_mm &&
+                             tools::are_same(a.guide.markers, b.guide.markers) &&
                              a.guide.axis->point_mm == b.guide.axis->point_mm &&
                              a.guide.axis->direction == b.guide.axis->direction;
   // A marker that was placed anew changes nothing of the guide.
-  registration::Provenance placed = a.of;
-  placed.placement = b.of.placement;
-  return is_same_guide && !registration::mismatch_of(placed, b.of);
+  return is_same_guide && !registration::mismatch_but_placement(a.of, b.of);
 }
 
 void GuideCheck::begin(const pipeline::PipelineOptions& options, const registration::Provenance& now,

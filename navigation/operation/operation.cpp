@@ -51,6 +51,8 @@ void Operation::start_source(const SourceSetup& source) {
   ++p.medium.source_number;
   p.medium.request.reset();
   p.medium.awaited.reset();
+  p.end_contour();
+  p.expect_pictures(source.pipeline.calibration.image_size_px);
   p.frame = {};
   p.frame_count = 0;
   p.note(JournalKind::SourceStarted);
@@ -91,7 +93,9 @@ void Operation::start_source(const SourceSetup& source) {
 void Operation::end_source() {
   Parts& p = *parts_;
   if (!p.has_source) return;
+  p.take_drift();
   p.note(JournalKind::SourceEnded);
+  p.end_contour();
   p.has_source = p.draws = false;
   p.tip.clear();
   p.guide_check.end_source();
@@ -101,9 +105,11 @@ void Operation::end_source() {
 }
 
 void Operation::process(const camera::Frame& frame) {
+  parts_->take_drift();
   parts_->pipeline->process(frame, parts_->frame);
   parts_->check_medium();
   parts_->take_frame();
+  parts_->check_contour(frame);
 }
 
 void Operation::process_recorded(const pipeline::FrameResult& result) {
@@ -113,6 +119,7 @@ void Operation::process_recorded(const pipeline::FrameResult& result) {
 
 void Operation::apply(const Command& command) {
   Parts& p = *parts_;
+  p.take_drift();  // what the last picture showed comes before what is done about it
   p.note(JournalKind::CommandGiven, to_text(command));
   std::visit([&](const auto& c) { p.apply(c); }, command);
   if (!p.ledger.touches().has_control_point()) p.guide_check.forget_point();
@@ -149,6 +156,11 @@ void Operation::take_outcome(const OutcomePtr& outcome) {
   p.follow_ledger();
 }
 
+void Operation::tell_bone_moved(double drift_mm) {
+  if (!parts_->contour.drift_mm) parts_->contour.drift_mm = drift_mm;
+  parts_->take_drift();
+}
+
 void Operation::take_look(const MediumLookPtr& look) { parts_->take_look(look); }
 std::optional<MediumLookRequest> Operation::take_look_request() {
   return std::exchange(parts_->medium.request, std::nullopt);
@@ -159,7 +171,7 @@ std::vector<JournalEntry> Operation::take_journal() { return std::exchange(parts
 
 OperationStatePtr Operation::state() {
   Parts& p = *parts_;
-  auto state = std::make_shared<OperationState>();
+  auto state = p.states.take();  // every field is written
   state->revision = ++p.revision;
   state->bone = p.setup.bone;
   state->has_source = p.has_source;
@@ -183,7 +195,8 @@ OperationStatePtr Operation::state() {
   state->depth_stop_mm = p.drilling.depth_stop_mm;
   state->drilled = p.drilling.drilled;
   state->drilled.has_evidence = p.drilling.evidence_is_seen;
-  if (p.medium.check) state->medium = p.medium.check->verdict();
+  state->medium = p.medium.check ? p.medium.check->verdict() : pipeline::MediumVerdict();
+  state->contour = p.contour.check ? p.contour.check->verdict() : contour::ContourVerdict();
   state->next_action = next_action_of(*state);
   state->step = step_of(state->next_action);
   return state;

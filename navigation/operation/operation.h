@@ -40,6 +40,8 @@ struct OperationSetup {
   // Nobody is at the pedal: while the guide is seen and no registration of all strokes stands, one is asked
   // for whenever the probe has drawn this much more.
   std::optional<double> registers_after_mm;
+  // A run from a record: that the bone has moved is told by tell_bone_moved() alone, whatever pictures show.
+  bool hears_of_drifts = false;
 };
 // What a registration found with this source is of.
 [[nodiscard]] registration::Provenance provenance_of(const OperationSetup& setup, const SourceSetup& source,
@@ -75,6 +77,10 @@ class Operation {
 
   // What was seen of the picture that take_look_request() asked for; anything else, and null, is ignored.
   void take_look(const MediumLookPtr& look);
+
+  // That the picture showed the bone so far from where it lay, as the journal of another run says: for frames
+  // of a record. Nothing without a registration that stands, or where a picture has just told it.
+  void tell_bone_moved(double drift_mm);
 
   // The picture of the newest frame is to be seen in the other medium; once for each.
   [[nodiscard]] std::optional<MediumLookRequest> take_look_request();

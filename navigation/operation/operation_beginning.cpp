@@ -29,9 +29,7 @@ TimeOut Operation::Parts::time_out() const {
   if (source == nullptr || source->kind != sources::SourceKind::Live) return TimeOut::NotAsked;
   if (!confirmed || confirmed_plan != plan) return TimeOut::Due;
   // A marker that is placed anew changes nothing of what was confirmed.
-  registration::Provenance now = ledger.now();
-  now.placement = confirmed->placement;
-  return registration::mismatch_of(*confirmed, now) ? TimeOut::Due : TimeOut::Confirmed;
+  return registration::mismatch_but_placement(*confirmed, ledger.now()) ? TimeOut::Due : TimeOut::Confirmed;
 }
 
 void Operation::Parts::apply(const ConfirmTimeOut& time_out_of) {

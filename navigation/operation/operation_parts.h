@@ -9,17 +9,22 @@
 #include <utility>
 #include <vector>
 
+#include "navigation/contour/contour_check.h"
+#include "navigation/contour/covered.h"
 #include "navigation/guidance/drill_evidence.h"
 #include "navigation/guidance/registration_bias.h"
 #include "navigation/operation/guide_check.h"
 #include "navigation/operation/operation.h"
 #include "navigation/pipeline/medium_check.h"
+#include "navigation/worker/recycler.h"
 
 namespace arthronaut::operation {
 
 struct Operation::Parts {
   explicit Parts(OperationSetup with)
-      : setup(std::move(with)), ledger(setup.surface, setup.cartilage, setup.limits), plan(setup.plan) {}
+      : setup(std::move(with)), ledger(setup.surface, setup.cartilage, setup.limits), plan(setup.plan) {
+    if (setup.surface != nullptr) contour.check.emplace(setup.surface->mesh());
+  }
 
   void note(JournalEntry entry) {
     entry.after_frame = frame_count > 0 ? frame.frame_index : -1;
@@ -56,6 +61,10 @@ struct Operation::Parts {
   void take_look(const MediumLookPtr& look);
   void follow_medium(pipeline::MediumFit before);
   void take_frame();
+  void check_contour(const camera::Frame& picture);
+  void take_drift();
+  void end_contour();
+  void expect_pictures(const Eigen::Vector2i& size_px);
   void draw_tip();
   void watch_marker();
   void watch_guidance();
@@ -166,6 +175,15 @@ struct Operation::Parts {
     std::optional<MediumLookRequest> request;
     std::optional<std::int64_t> awaited;  // the frame whose picture is being seen again
   } medium;
+  struct Contour {
+    std::optional<contour::ContourCheck> check;  // empty: there is no surface to look for
+    std::uint64_t change = 0;                    // of the ledger, when it was begun
+    contour::CoveredPlaces covered;
+    std::vector<std::uint8_t> luma;  // of pictures that have none of their own
+    // Told by the newest picture: in force with the next one, between the two, as everything that a run from
+    // the record alone has to hear of.
+    std::optional<double> drift_mm;
+  } contour;
   struct Drilling {
     std::optional<guidance::DrillEvidence> evidence;  // of the plan in force
     bool evidence_is_seen = false;
@@ -192,6 +210,12 @@ struct Operation::Parts {
   bool changed = true;  // something but the frame, since the last snapshot
   RegistrationStatePtr published_registration;
   std::uint64_t revision = 0;
+  // One a frame: whoever holds one holds it alone, and what all have let go is written over.
+  worker::Recycler<OperationState> states{[](OperationState& state) {
+    state.source = nullptr;
+    state.registration = nullptr;
+    state.resumed = nullptr;
+  }};
 };
 
 }  // namespace arthronaut::operation

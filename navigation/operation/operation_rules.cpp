@@ -267,6 +267,8 @@ void Operation::Parts::take_touch(bool is_control_point) {
     return;
   }
   if (!is_control_point) return ledger.add_touch(*tip_mm);
+  if (ledger.alarm().seen_drift_mm > 0 && !ledger.touches().has_control_point())
+    return note(JournalKind::Note, "control point not set: the picture shows that the bone has moved");
   in_view.control_touched_ns = frame.timestamp_ns;
   in_view.was_lost_for_long = false;
   ledger.touch_control_point(*tip_mm);

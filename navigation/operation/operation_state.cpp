@@ -209,6 +209,8 @@ Step step_of(NextAction action) {
 std::uint64_t digest_of_frame(const OperationState& state) {
   Digest digest;
   if (state.frame_count > 0) add_frame(digest, state.frame);
+  // Not what the picture says of the bone: that rests on all pictures since the registration, and a record
+  // need not keep them. What followed from it is in the decisions.
   return digest.value();
 }
 

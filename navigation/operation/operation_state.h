@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "navigation/contour/contour_verdict.h"
 #include "navigation/guidance/drill_evidence.h"
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/operation/command.h"
@@ -122,6 +123,8 @@ struct OperationState {
   std::optional<double> depth_stop_mm;             // as the surgeon read it last
   std::shared_ptr<const ResumeOperation> resumed;  // what it went on from; null: it began afresh
   pipeline::MediumVerdict medium;                  // whether the pictures fit the medium in force
+  // Whether the newest picture shows the registered bone where it lay; of a record without pictures: unknown.
+  contour::ContourVerdict contour;
   DrilledState drilled;
   Step step = Step::Plan;
   NextAction next_action = NextAction::PlanTunnel;
@@ -132,9 +135,9 @@ using OperationStatePtr = std::shared_ptr<const OperationState>;
 [[nodiscard]] NextAction next_action_of(const OperationState& state);
 [[nodiscard]] Step step_of(NextAction action);
 
-// Numbers over everything in the state that a screen may show or a record keeps: two runs with the same
-// numbers did the same. The first to the last bit of every pose and covariance of the frame; the second of
-// everything else: registration, touches, alarms, plan, steps. 64-bit FNV-1a over the binary values.
+// Numbers over everything in the state but `contour` (what follows from that is in them): two runs with the
+// same numbers did the same. The first to the last bit of every pose and covariance of the frame; the second
+// of everything else: registration, touches, alarms, plan, steps. 64-bit FNV-1a over the binary values.
 [[nodiscard]] std::uint64_t digest_of_frame(const OperationState& state);
 [[nodiscard]] std::uint64_t digest_of_decisions(const OperationState& state);
 

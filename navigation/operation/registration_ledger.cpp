@@ -66,7 +66,10 @@ void RegistrationLedger::set_now(const registration::Provenance& now) {
                                                           (now_.source == sources::SourceKind::Simulation);
   now_ = now;
   // A control point of a simulated bone says nothing about a real one.
-  if (!is_same_world) touches_.clear();
+  if (!is_same_world) {
+    touches_.clear();
+    seen_drift_mm_.reset();
+  }
   judge();
 }
 
@@ -142,12 +145,37 @@ void RegistrationLedger::add_touch(const Eigen::Vector3d& tip_in_marker_mm) {
 }
 
 void RegistrationLedger::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
+  // Set only now, it would learn where the bone lies since it moved, and lift the alarm at the second touch.
+  if (seen_drift_mm_ && !touches_.has_control_point()) return;
   touches_.touch_control_point(tip_in_marker_mm, now_);
   judge();
+  // A touch outranks what was seen, as far as it is finer than that.
+  constexpr double kContradicts = 0.5;
+  const Touches::Last last = touches_.last();
+  if (!seen_drift_mm_ || last.kind != Touches::Last::Kind::ControlAgain || !last.distance_mm ||
+      *last.distance_mm > kContradicts * *seen_drift_mm_)
+    return;
+  seen_drift_mm_.reset();
+  judge();
+}
+
+void RegistrationLedger::bone_moved_in_picture(double drift_mm) {
+  if (in_force_.standing != Standing::Stands) return;
+  seen_drift_mm_ = drift_mm;
+  judge();
+}
+
+TouchAlarm RegistrationLedger::alarm() const {
+  TouchAlarm alarm = touches_.alarm();
+  alarm.seen_drift_mm = seen_drift_mm_.value_or(0);
+  if (alarm || !seen_drift_mm_) return alarm;
+  alarm.kind = TouchAlarm::Kind::SeenInPicture;
+  return alarm;
 }
 
 void RegistrationLedger::forget_touches() {
   touches_.clear();
+  seen_drift_mm_.reset();
   judge();
 }
 
@@ -164,6 +192,7 @@ void RegistrationLedger::marker_placed_anew() {
   doubt_.reset();
   ++now_.placement;
   touches_.clear();
+  seen_drift_mm_.reset();
   forget_strokes();
 }
 
@@ -199,9 +228,9 @@ RegistrationInForce RegistrationLedger::judged() const {
     judged.standing = Standing::NotReliable;
     return judged;
   }
-  if (const TouchAlarm alarm = touches_.alarm()) {
+  if (const TouchAlarm told = alarm()) {
     judged.standing = Standing::Alarm;
-    judged.registration = doubted(*entry.registration, {in_words(alarm)});
+    judged.registration = doubted(*entry.registration, {in_words(told)});
     return judged;
   }
   if (doubt_) {

@@ -5,8 +5,9 @@
 // better (its predicted error a tenth smaller), unless the surgeon went back to an earlier one: a choice
 // stands until the newest is chosen again. What may not guide, whoever chose it:
 //   void      it is of another mesh, bone, marker, placement, camera, probe, medium or kind of source
-//   alarm     touches lie off the bone, or the control point has wandered
-//   doubt     strokes drawn since miss the surface, or fit its mirror image as well; until confirmed anew
+//   alarm     touches lie off the bone, the control point has wandered, or the picture shows the bone
+//   elsewhere doubt     strokes drawn since miss the surface, or fit its mirror image as well; until
+//   confirmed anew
 // Thread-free, deterministic.
 #pragma once
 
@@ -77,6 +78,12 @@ class RegistrationLedger {
   // A touch verifies, tells an alarm, or confirms what is void.
   void add_touch(const Eigen::Vector3d& tip_in_marker_mm);
   void touch_control_point(const Eigen::Vector3d& tip_in_marker_mm);
+  // The picture shows the bone so far from where it lay (contour/contour_check.h). As a control point that
+  // has wandered, it means that the marker sits elsewhere on the bone: an alarm until the marker is placed
+  // anew, the surgeon says that it did not move, or the control point, set before (it can't be set now) and
+  // touched again, lies nearer to where it was than half of what the picture says. The first alarm stays;
+  // nothing without a registration that stands.
+  void bone_moved_in_picture(double drift_mm);
   // The touches were wrong and not the marker: takes an alarm away.
   void forget_touches();
   // What was drawn is gone: the next registration has to earn its place anew. Touches stay.
@@ -92,7 +99,7 @@ class RegistrationLedger {
   [[nodiscard]] std::optional<std::size_t> entry_in_force() const { return entry_in_force_; }
   [[nodiscard]] bool is_chosen() const { return is_chosen_; }  // by the surgeon: newer ones wait
   [[nodiscard]] const Touches& touches() const { return touches_; }
-  [[nodiscard]] TouchAlarm alarm() const { return touches_.alarm(); }
+  [[nodiscard]] TouchAlarm alarm() const;
 
  private:
   void add(RegistrationEntry entry);
@@ -110,6 +117,7 @@ class RegistrationLedger {
   bool is_chosen_ = false;
   // Doubt told by strokes drawn after the newest fit of all strokes; its reasons.
   std::optional<std::vector<std::string>> doubt_;
+  std::optional<double> seen_drift_mm_;                           // in the picture; empty: none
   std::uint64_t fitted_after_ = 0;                                // requests, at the newest fit
   double best_tre_mm_ = std::numeric_limits<double>::infinity();  // of those that took effect by themselves
   RegistrationInForce in_force_;

@@ -18,7 +18,7 @@ constexpr std::size_t kLeastSamples = 3;
 void SteadyTip::add(double time_s, const std::optional<Eigen::Vector3d>& tip_in_marker_mm) {
   if (!samples_.empty() && time_s < samples_.back().time_s) samples_.clear();
   if (tip_in_marker_mm) samples_.push_back({time_s, *tip_in_marker_mm});
-  while (!samples_.empty() && samples_.front().time_s < time_s - kRest_s) samples_.pop_front();
+  std::erase_if(samples_, [&](const Sample& sample) { return sample.time_s < time_s - kRest_s; });
 }
 
 std::optional<Eigen::Vector3d> SteadyTip::position_mm() const {
@@ -50,6 +50,9 @@ std::string in_words(const TouchAlarm& alarm) {
     case TouchAlarm::Kind::Both:
       return files::format("The control point has moved by %.1f mm and a touch lies off the bone",
                            alarm.control_shift_mm);
+    case TouchAlarm::Kind::SeenInPicture:
+      return files::format("The picture shows the bone %.1f mm from where it lay under its marker",
+                           alarm.seen_drift_mm);
   }
   return "";
 }

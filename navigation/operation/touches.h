@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,14 +45,15 @@ class SteadyTip {
     double time_s;
     Eigen::Vector3d tip_in_marker_mm;
   };
-  std::deque<Sample> samples_;
+  std::vector<Sample> samples_;  // a quarter of a second: no more than its memory, once it has it
 };
 
 // Why nothing is to be trusted.
 struct TouchAlarm {
-  enum class Kind { None, ControlPointMoved, TouchesOff, Both } kind = Kind::None;
+  enum class Kind { None, ControlPointMoved, TouchesOff, Both, SeenInPicture } kind = Kind::None;
   double control_shift_mm = 0;
   int touches_off = 0;
+  double seen_drift_mm = 0;  // of the bone in the picture, without a touch
   [[nodiscard]] explicit operator bool() const { return kind != Kind::None; }
 };
 [[nodiscard]] std::string in_words(const TouchAlarm& alarm);

@@ -1,6 +1,7 @@
 #include "navigation/pipeline/frozen_picture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 namespace arthronaut::pipeline {
@@ -16,6 +17,12 @@ constexpr double kShareOfNoise = 0.3;
 constexpr float kMostDrift = 8;
 // A source of 15 pictures a second that is sent 60 times a second repeats three frames in four.
 constexpr double kShareOfRepeats = 0.8;
+// A dark or plain picture with the noise of a sensor without light; a lit scope has a rim and highlights.
+constexpr int kMostSpreadOfBlank = 24;
+constexpr double kShareOfSpecks = 0.001;
+// Five on end: a source that repeats three frames in four never does that.
+constexpr int kRepeatsOnEnd = 5;
+constexpr std::int64_t kRepeatingFor_ns = 80'000'000;
 constexpr int kSampledRowsPerTile = 8;
 // Half of the tiles show nothing but noise also while the scope moves: the mask, the dark, the out-of-focus.
 constexpr double kNoiseQuantile = 0.6;
@@ -35,6 +42,9 @@ void FrozenPicture::sample(const camera::GrayView& picture) {
       samples->assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(width_), 0);
     step_count_ = 0;
     noise_ = -1;
+    torn_.reset();
+    seam_.reset();
+    standing_.reset();
   }
   for (int i = 0; i < rows; ++i) {
     const std::uint8_t* const row = picture.row((2 * i + 1) * picture.height / (2 * rows));
@@ -69,7 +79,7 @@ void FrozenPicture::learn_noise(Tiles step) {
   noise_ = noise_ < 0 ? *quantile : noise_ + kLearning * (*quantile - noise_);
 }
 
-bool FrozenPicture::mostly_repeats(std::int64_t since_ns) const {
+double FrozenPicture::share_of_repeats(std::int64_t since_ns) const {
   int count = 0, repeats = 0;
   for (std::size_t i = 0; i < std::min<std::size_t>(step_count_, kMostFrames); ++i) {
     const Step& step = steps_[(step_count_ - 1 - i) % kMostFrames];
@@ -77,15 +87,50 @@ bool FrozenPicture::mostly_repeats(std::int64_t since_ns) const {
     ++count;
     repeats += step.repeats ? 1 : 0;
   }
-  return count > 0 && repeats >= kShareOfRepeats * count;
+  return count > 0 ? static_cast<double>(repeats) / count : 0;
+}
+
+bool FrozenPicture::is_blank() const {
+  std::array<int, 256> count{};
+  for (const std::uint8_t luma : now_) ++count[luma];
+  const auto leave_out = static_cast<int>(kShareOfSpecks * static_cast<double>(now_.size()));
+  int low = 0, high = 255;
+  for (int left_out = count[0]; left_out <= leave_out && low < 255;)
+    left_out += count[static_cast<std::size_t>(++low)];
+  for (int left_out = count[255]; left_out <= leave_out && high > 0;)
+    left_out += count[static_cast<std::size_t>(--high)];
+  return high - low < kMostSpreadOfBlank;
+}
+
+bool FrozenPicture::stands_still(std::span<const Eigen::Vector2d> corners_px) const {
+  if (corners_px.empty() || row_count_ == 0) return false;
+  Eigen::Vector2d least = corners_px[0], most = corners_px[0];
+  for (const Eigen::Vector2d& corner : corners_px) {
+    least = least.cwiseMin(corner);
+    most = most.cwiseMax(corner);
+  }
+  least = least.cwiseMax(0);
+  most = most.cwiseMin(Eigen::Vector2d(width_, height_));
+  if (!(least.x() < most.x() && least.y() < most.y())) return false;
+  // Sampled row i lies at (i + 1/2) height / rows.
+  const double rows_per_px = static_cast<double>(row_count_) / height_;
+  return standing_.stand(static_cast<int>(std::ceil(least.y() * rows_per_px - 0.5)),
+                         static_cast<int>(std::floor(most.y() * rows_per_px - 0.5)) + 1,
+                         static_cast<int>(least.x()), static_cast<int>(most.x()));
 }
 
 bool FrozenPicture::observe(const camera::GrayView& picture, std::int64_t timestamp_ns) {
   std::swap(now_, before_);
   sample(picture);
   const bool is_first = step_count_ == 0 || timestamp_ns < last_ns_;
+  if (is_first) seam_.reset();
+  if (is_first) standing_.reset();
+  const PictureSeam::Signs seam = seam_.observe(picture);
   last_ns_ = timestamp_ns;
+  signs_ = {};
+  signs_.is_blank = is_blank();
   if (is_first) {
+    row_ = {0, timestamp_ns};
     step_count_ = 1;
     steps_[0] = {timestamp_ns, false};
     anchor_ = now_;
@@ -97,7 +142,14 @@ bool FrozenPicture::observe(const camera::GrayView& picture, std::int64_t timest
   const double most_repeat = std::clamp(kShareOfNoise * noise, kLeastRepeat, kMostRepeat);
   const bool repeats = *std::max_element(step.begin(), step.end()) < most_repeat;
   if (!repeats) learn_noise(step);
+  if (!repeats) standing_.observe(now_, before_, width_, most_repeat);
+  if (!repeats) row_ = {0, timestamp_ns};
+  row_.count += repeats ? 1 : 0;
   steps_[step_count_++ % kMostFrames] = {timestamp_ns, repeats};
+
+  signs_.is_repeating = row_.count >= kRepeatsOnEnd && timestamp_ns - row_.since_ns >= kRepeatingFor_ns;
+  signs_.is_torn = torn_.observe(step, seam, height_, timestamp_ns);
+  signs_.repeat_share = share_of_repeats(timestamp_ns - 1'000'000'000);
 
   const Tiles drift = difference(anchor_);
   if (*std::max_element(drift.begin(), drift.end()) > kMostDrift) {
@@ -106,7 +158,8 @@ bool FrozenPicture::observe(const camera::GrayView& picture, std::int64_t timest
     return false;
   }
   const auto window_ns = static_cast<std::int64_t>(1e9 * frozen_after_s_);
-  return timestamp_ns - anchor_ns_ >= window_ns && mostly_repeats(timestamp_ns - window_ns);
+  return timestamp_ns - anchor_ns_ >= window_ns &&
+         share_of_repeats(timestamp_ns - window_ns) >= kShareOfRepeats;
 }
 
 }  // namespace arthronaut::pipeline

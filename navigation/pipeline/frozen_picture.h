@@ -14,11 +14,16 @@
 // That is the safe side, and a hand never holds so still.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "navigation/camera/frame.h"
+#include "navigation/pipeline/picture_seam.h"
+#include "navigation/pipeline/standing_parts.h"
+#include "navigation/pipeline/torn_picture.h"
 
 namespace arthronaut::pipeline {
 
@@ -33,11 +38,22 @@ class FrozenPicture {
   // frozen_after_s.
   bool observe(const camera::GrayView& picture, std::int64_t timestamp_ns);
 
+  // Of the newest frame; false for the first.
+  struct Signs {
+    bool is_blank = false;      // one grey all over: no light, or no signal
+    bool is_torn = false;       // see torn_picture.h
+    bool is_repeating = false;  // the same content five times on end for 80 ms: perhaps about to be frozen
+    double repeat_share = 0;    // of the frames of the last second
+  };
+  [[nodiscard]] const Signs& signs() const { return signs_; }
+  // Whether what lies within these corners stands still while the picture as a whole goes on: it is not of
+  // the newest frame's moment (see standing_parts.h).
+  [[nodiscard]] bool stands_still(std::span<const Eigen::Vector2d> corners_px) const;
   // The noise of the source in grey values, mean difference of two frames; -1 before it is known.
   [[nodiscard]] double noise() const { return noise_; }
 
  private:
-  static constexpr int kColumns = 16, kRows = 8, kMostFrames = 128;
+  static constexpr int kColumns = TornPicture::kColumns, kRows = TornPicture::kRows, kMostFrames = 128;
   using Tiles = std::array<float, static_cast<std::size_t>(kColumns) * kRows>;
   struct Step {
     std::int64_t timestamp_ns = 0;
@@ -47,7 +63,8 @@ class FrozenPicture {
   void sample(const camera::GrayView& picture);
   [[nodiscard]] Tiles difference(const std::vector<std::uint8_t>& other) const;
   void learn_noise(Tiles step);
-  [[nodiscard]] bool mostly_repeats(std::int64_t since_ns) const;
+  [[nodiscard]] double share_of_repeats(std::int64_t since_ns) const;
+  [[nodiscard]] bool is_blank() const;
 
   double frozen_after_s_;
   int width_ = 0, height_ = 0, row_count_ = 0;
@@ -56,6 +73,14 @@ class FrozenPicture {
   std::array<Step, kMostFrames> steps_{};            // a ring of the newest
   std::size_t step_count_ = 0;
   double noise_ = -1;
+  PictureSeam seam_;
+  StandingParts standing_;
+  TornPicture torn_;
+  struct Row {  // of repeats
+    int count = 0;
+    std::int64_t since_ns = 0;
+  } row_;
+  Signs signs_;
 };
 
 }  // namespace arthronaut::pipeline

@@ -149,10 +149,8 @@ SecondLook::SecondLook(std::span<const markers::DeclaredMarker> declared, double
 
 std::span<const markers::MarkerObservation> SecondLook::look(const camera::Frame& frame,
                                                              const camera::CameraModel& camera) {
-  camera::gray_from(frame, gray_);
   tracker_->reset();
-  return tracker_->track({gray_.data(), frame.width, frame.height, frame.width},
-                         camera.in_medium(index_ratio_), frame.timestamp_ns);
+  return tracker_->track(camera::luma_of(frame, gray_), camera.in_medium(index_ratio_), frame.timestamp_ns);
 }
 
 }  // namespace arthronaut::pipeline

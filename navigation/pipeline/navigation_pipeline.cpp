@@ -1,6 +1,8 @@
 #include "navigation/pipeline/navigation_pipeline.h"
 
+#include <array>
 #include <chrono>
+#include <span>
 
 #include "planning/geometry/error.h"
 
@@ -8,14 +10,31 @@ namespace arthronaut::pipeline {
 
 namespace {
 
-geometry::TrackedPose tracked_pose(const PictureObservation& view, std::size_t marker) {
+// Whether any pose of this picture stands, whatever the markers say of themselves.
+bool poses_stand(const FrameResult& result) {
+  return result.intrinsics_are_known && !result.is_frozen && !result.is_repeating;
+}
+
+geometry::TrackedPose tracked_pose(const FrameResult& result, std::size_t body) {
   geometry::TrackedPose pose;
-  pose.timestamp_ns = view.timestamp_ns;
-  pose.is_valid = !view.is_frozen && view.stands_for(view.markers[marker]);
+  pose.timestamp_ns = result.timestamp_ns;
+  pose.is_valid = poses_stand(result) && result.bodies[body].is_tracked();
   if (!pose.is_valid) return pose;
-  pose.target_from_source = view.markers[marker].camera_from_marker;
-  pose.covariance = view.markers[marker].covariance;
+  pose.target_from_source = result.bodies[body].camera_from_body;
+  pose.covariance = result.bodies[body].covariance;
   return pose;
+}
+
+// The corners of all of a body's markers, in its frame, four a marker.
+std::vector<Eigen::Vector3d> corners_of(const markers::Body& body) {
+  std::vector<Eigen::Vector3d> corners_mm;
+  for (const tools::BodyMarker& marker : body.markers) {
+    const double half_mm = marker.size_mm / 2;
+    for (const double x : {-half_mm, half_mm})
+      for (const double y : {-half_mm, half_mm})
+        corners_mm.push_back(marker.body_from_marker * Eigen::Vector3d(x, y, 0));
+  }
+  return corners_mm;
 }
 
 // The drill that has a marker of its own, if there is one.
@@ -61,16 +80,46 @@ struct NavigationPipeline::State {
         probe(index_of(with.tools.tools, with.probe_name)),
         guide(index_of(with.tools.tools, with.guide_name)),
         drill(drill_index(with.tools.tools)),
+        bodies(markers::declared_bodies(with.tools)),
         axes(with.axes.value_or(landmarks::scanner_axes(with.side))) {
+    for (const markers::Body& body : bodies) corners_mm.push_back(corners_of(body));
     known_errors.camera = camera::covariance_of(with.calibration);
     if (probe) known_errors.probe_tip_mm2 = tools::tip_error_mm2(with.tools.tools[*probe]);
     known_errors.registration = guidance::BiasSums().bias();
     if (guide) guide_error = tools::axis_error(with.tools.tools[*guide]);
   }
 
-  // Markers stand in the order of declared_markers(): world markers, then tools.
-  [[nodiscard]] std::size_t marker_of_tool(std::size_t tool) const {
+  // Bodies stand in the order of declared_bodies(): world markers', then tools.
+  [[nodiscard]] std::size_t body_of_tool(std::size_t tool) const {
     return options.tools.world_markers.size() + tool;
+  }
+
+  void observe_bodies(FrameResult& result) {
+    result.bodies.resize(bodies.size());
+    distrusted.resize(bodies.size(), 0);
+    const std::span<const markers::MarkerObservation> all(result.markers);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      result.bodies[i] = markers::observe_body(
+          bodies[i], all.subspan(bodies[i].first, bodies[i].markers.size()), result.camera);
+      distrust(bodies[i], all, result.bodies[i], distrusted[i]);
+    }
+  }
+
+  // A marker that did not lie where the others of its body had it is not believed alone, once the others are
+  // out of sight, nor is either of two that contradicted each other; not until it agrees with another again.
+  static void distrust(const markers::Body& body, std::span<const markers::MarkerObservation> all,
+                       markers::BodyObservation& observation, std::uint32_t& out_of_place) {
+    const bool contradict = observation.state == markers::MarkerState::Disagreeing;
+    for (std::size_t i = 0; i < body.markers.size(); ++i) {
+      const std::uint32_t bit = std::uint32_t{1} << i;
+      const bool is_odd = observation.odd_marker == body.markers[i].marker_id;
+      if (is_odd || (contradict && all[body.first + i].is_tracked())) out_of_place |= bit;
+    }
+    if (!observation.is_tracked()) return;
+    if (observation.used_count() >= 2)
+      out_of_place &= ~observation.used;
+    else if ((observation.used & out_of_place) != 0)
+      observation.state = markers::MarkerState::Disagreeing;
   }
 
   void place_tools(FrameResult& result) const {
@@ -79,25 +128,31 @@ struct NavigationPipeline::State {
     for (std::size_t i = 0; i < result.tools.size(); ++i) {
       result.tools[i].marker_id = options.tools.tools[i].marker_id;
       result.tools[i].world_from_tool =
-          geometry::compose(world_from_camera, tracked_pose(result, marker_of_tool(i)));
+          geometry::compose(world_from_camera, tracked_pose(result, body_of_tool(i)));
     }
   }
 
-  // What the camera's error does to the pose of a tool in this frame.
+  // What the camera's error does to the pose of a body in this frame, by the corners that the pose is from.
+  [[nodiscard]] guidance::TwistPerCameraError camera_error_of_body(const FrameResult& result,
+                                                                   std::size_t body) const {
+    const markers::BodyObservation& seen = result.bodies[body];
+    if (!result.intrinsics_are_known || !seen.is_tracked()) return guidance::TwistPerCameraError::Zero();
+    std::array<Eigen::Vector3d, 4 * tools::kMostMarkersOfBody> used_mm;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < corners_mm[body].size(); ++i)
+      if (seen.used & (1U << (i / 4))) used_mm[count++] = corners_mm[body][i];
+    return guidance::twist_per_camera_error(seen.camera_from_body,
+                                            std::span<const Eigen::Vector3d>(used_mm.data(), count),
+                                            result.camera, options.calibration);
+  }
+
   [[nodiscard]] guidance::TwistPerCameraError camera_error(const FrameResult& result,
                                                            std::size_t tool) const {
-    const std::size_t marker = marker_of_tool(tool);
-    if (!result.stands_for(result.markers[marker])) return guidance::TwistPerCameraError::Zero();
-    return guidance::twist_per_camera_error(result.markers[marker].camera_from_marker,
-                                            options.tools.tools[tool].size_mm, result.camera,
-                                            options.calibration);
+    return camera_error_of_body(result, body_of_tool(tool));
   }
 
   [[nodiscard]] guidance::TwistPerCameraError camera_error_of_world(const FrameResult& result) const {
-    if (!result.camera_from_world.is_valid) return guidance::TwistPerCameraError::Zero();
-    const double size_mm = options.tools.find_world_marker(options.bone)->size_mm;
-    return guidance::twist_per_camera_error(result.camera_from_world.target_from_source, size_mm,
-                                            result.camera, options.calibration);
+    return camera_error_of_body(result, world);
   }
 
   void place_tip(FrameResult& result) const {
@@ -136,13 +191,13 @@ struct NavigationPipeline::State {
     input.registration = registration ? &*registration : nullptr;
     input.camera_from_world_marker = result.camera_from_world;
     if (guide) {
-      input.camera_from_guide = tracked_pose(result, marker_of_tool(*guide));
+      input.camera_from_guide = tracked_pose(result, body_of_tool(*guide));
       input.axis = options.tools.tools[*guide].axis ? &*options.tools.tools[*guide].axis : nullptr;
       input.axis_error = guide_error;
       input.guide_per_camera_error = camera_error(result, *guide);
     }
     if (drill) {
-      input.camera_from_drill = tracked_pose(result, marker_of_tool(*drill));
+      input.camera_from_drill = tracked_pose(result, body_of_tool(*drill));
       input.drill = &options.tools.tools[*drill];
       input.drill_per_camera_error = camera_error(result, *drill);
     }
@@ -161,8 +216,11 @@ struct NavigationPipeline::State {
 
   PipelineOptions options;
   ViewTracker view_tracker;
-  std::size_t world;                               // index of the bone's world marker among the markers
+  std::size_t world;                               // index of the bone's world marker among the bodies
   std::optional<std::size_t> probe, guide, drill;  // indices into the tools
+  std::vector<markers::Body> bodies;
+  std::vector<std::uint32_t> distrusted;  // of each body: bit i, its marker i did not lie where others had it
+  std::vector<std::vector<Eigen::Vector3d>> corners_mm;  // of each body
   landmarks::AnatomicalAxes axes;
   guidance::KnownErrors known_errors;
   tools::AxisError guide_error;
@@ -170,6 +228,20 @@ struct NavigationPipeline::State {
   double planned_length_mm = 0;
   std::optional<registration::RegistrationSummary> registration;
 };
+
+BodyView body_in(const FrameResult& result, int id) {
+  BodyView view;
+  const auto take = [&](const auto& seen, const geometry::RigidTransform& pose) {
+    view.state = seen.state;
+    if (seen.is_tracked() && poses_stand(result)) view.camera_from_body = pose;
+  };
+  for (const markers::BodyObservation& body : result.bodies)
+    if (body.id == id) take(body, body.camera_from_body);
+  if (!result.bodies.empty()) return view;
+  for (const markers::MarkerObservation& marker : result.markers)
+    if (marker.id == id) take(marker, marker.camera_from_marker);
+  return view;
+}
 
 NavigationPipeline::NavigationPipeline(const PipelineOptions& options)
     : NavigationPipeline(options, markers::make_tracker(markers::declared_markers(options.tools))) {}
@@ -183,6 +255,7 @@ NavigationPipeline::~NavigationPipeline() = default;
 void NavigationPipeline::process(const camera::Frame& frame, FrameResult& result) {
   const auto begin = std::chrono::steady_clock::now();
   state_->view_tracker.observe(frame, result);
+  state_->observe_bodies(result);
   result.camera_from_world = tracked_pose(result, state_->world);
   state_->place_tools(result);
   state_->place_tip(result);

@@ -11,6 +11,7 @@
 #include "navigation/camera/frame.h"
 #include "navigation/guidance/guidance.h"
 #include "navigation/lens/lens_tracker.h"
+#include "navigation/markers/body_pose.h"
 #include "navigation/markers/marker_tracker.h"
 #include "navigation/pipeline/view_tracker.h"
 #include "navigation/registration/registration.h"
@@ -36,13 +37,16 @@ struct PipelineOptions {
 };
 
 struct ToolPose {
-  int marker_id = 0;
+  int marker_id = 0;  // the tool's; of several, the first
   geometry::TrackedPose world_from_tool;
 };
 
 // What one frame says. Immutable once published. Everything of the base is about the picture alone; what
 // follows is about the knee and is valid only in a live picture whose intrinsics are known.
-struct FrameResult : PictureObservation {   // markers: world markers first, then the tools'
+struct FrameResult : PictureObservation {  // markers: world markers first, then the tools'
+  // What is fixed to them, from all of its markers: the world markers' bodies, then the tools. Empty in what
+  // is made from a record.
+  std::vector<markers::BodyObservation> bodies;
   geometry::TrackedPose camera_from_world;  // the world marker of the bone
   std::vector<ToolPose> tools;              // world_from_tool of each tool, in the order of the tool set
   bool tip_is_valid = false;
@@ -55,6 +59,14 @@ struct FrameResult : PictureObservation {   // markers: world markers first, the
   guidance::GuidanceNumbers guidance;
   double processing_ms = 0;  // of process(): not part of what replay compares
 };
+
+// What the frame says of the body of this id: its pose where it stands for one, and why not where it does
+// not. Of a frame without bodies, that of the marker.
+struct BodyView {
+  std::optional<geometry::RigidTransform> camera_from_body;
+  markers::MarkerState state = markers::MarkerState::NotSeen;
+};
+[[nodiscard]] BodyView body_in(const FrameResult& result, int id);
 
 class NavigationPipeline {
  public:

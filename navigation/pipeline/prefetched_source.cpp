@@ -1,9 +1,9 @@
 #include "navigation/pipeline/prefetched_source.h"
 
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
-#include <deque>
 #include <exception>
 #include <mutex>
 #include <optional>
@@ -48,6 +48,8 @@ struct PrefetchedSource::State {
         info = source->info();
         delivery = delivery_of(info);
         is_open = true;
+        // Nobody waits for it any longer: a source that takes itself up again must not go on for ever.
+        if (stops && info.line) info.line->end();
         changed.notify_all();
       }
       while (camera::FramePtr frame = source->next()) {
@@ -90,8 +92,7 @@ struct PrefetchedSource::State {
     (void)wait(lock, seconds, [&] { return has_ended || !waiting.empty(); });
     NextFrame next;
     if (!waiting.empty()) {
-      next.frame = std::move(waiting.front());
-      waiting.pop_front();
+      next.frame = waiting.pop_front();
       changed.notify_all();
     } else if (has_ended) {
       if (error) std::rethrow_exception(error);
@@ -108,7 +109,23 @@ struct PrefetchedSource::State {
   sources::SourceInfo info;                     // fixed once open
   Delivery delivery = Delivery::Lossless;       // the same
   std::optional<double> patience_s;             // of a source that was opened here
-  std::deque<camera::FramePtr> waiting;
+  // A ring: nothing is asked of the heap while frames go through.
+  struct Waiting {
+    std::array<camera::FramePtr, kFramesAhead> frames;
+    std::size_t first = 0, count = 0;
+    [[nodiscard]] bool empty() const { return count == 0; }
+    [[nodiscard]] std::size_t size() const { return count; }
+    void push_back(camera::FramePtr frame) { frames[(first + count++) % kFramesAhead] = std::move(frame); }
+    [[nodiscard]] camera::FramePtr pop_front() {
+      camera::FramePtr frame = std::move(frames[first]);
+      first = (first + 1) % kFramesAhead;
+      --count;
+      return frame;
+    }
+    void clear() {
+      while (!empty()) (void)pop_front();
+    }
+  } waiting;
   std::exception_ptr error;
   bool is_open = false, has_ended = false, stops = false;
   std::thread thread;  // its owner's
@@ -146,6 +163,7 @@ PrefetchedSource::~PrefetchedSource() {
     state_->stops = true;
     state_->changed.notify_all();
   }
+  if (state_->info.line != nullptr) state_->info.line->end();
   if (state_->patience_s)
     state_->thread.detach();
   else
@@ -163,5 +181,9 @@ camera::FramePtr PrefetchedSource::next() {
 }
 
 NextFrame PrefetchedSource::next_within(double seconds) { return state_->take(seconds); }
+
+std::string PrefetchedSource::trouble() const {
+  return state_->info.line != nullptr ? state_->info.line->trouble() : "";
+}
 
 }  // namespace arthronaut::pipeline

@@ -47,6 +47,8 @@ class PrefetchedSource : public sources::FrameSource {
   [[nodiscard]] camera::FramePtr next() override;
   // Waits so long and no longer.
   [[nodiscard]] NextFrame next_within(double seconds);
+  // Why a live source gives nothing now; empty: it does, or does not know.
+  [[nodiscard]] std::string trouble() const;
 
  private:
   struct State;

@@ -44,10 +44,15 @@ std::vector<std::string> reasons_of(const TrackedVideo& video) {
 }  // namespace
 
 ViewStatistics::ViewStatistics(const tools::ToolSet& tools) {
-  for (const tools::WorldMarker& world : tools.world_markers) {
-    add_marker(markers, world.marker_id, std::string(bones::to_text(world.bone)));
-  }
-  for (const tools::Tool& tool : tools.tools) add_marker(markers, tool.marker_id, tool.name);
+  const auto add = [&](const auto& body, const std::string& name) {
+    const std::vector<tools::BodyMarker> of_body = tools::markers_of(body);
+    for (const tools::BodyMarker& marker : of_body)
+      add_marker(markers, marker.marker_id,
+                 of_body.size() == 1 ? name : name + " (" + std::to_string(marker.marker_id) + ")");
+  };
+  for (const tools::WorldMarker& world : tools.world_markers)
+    add(world, std::string(bones::to_text(world.bone)));
+  for (const tools::Tool& tool : tools.tools) add(tool, tool.name);
 }
 
 void ViewStatistics::add(const PictureObservation& view, double processing_ms) {

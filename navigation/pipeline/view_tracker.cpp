@@ -48,6 +48,13 @@ struct ViewTracker::State {
     return chord_px <= options.max_principal_point_error_px;
   }
 
+  // Whether a marker that was found lies in a part of the picture that was not renewed.
+  [[nodiscard]] bool has_standing_marker(const std::vector<markers::MarkerObservation>& seen) const {
+    return std::any_of(seen.begin(), seen.end(), [&](const markers::MarkerObservation& marker) {
+      return marker.is_tracked() && frozen.stands_still(marker.corners_px);
+    });
+  }
+
   ViewTrackerOptions options;
   lens::LensTracker lens_tracker;
   std::unique_ptr<markers::MarkerTracker> markers;
@@ -70,16 +77,23 @@ void ViewTracker::observe(const camera::Frame& frame, PictureObservation& view) 
                        size_text(frame.width, frame.height) + " pixels, but the camera was calibrated at " +
                        size_text(size.x(), size.y()));
   }
-  camera::gray_from(frame, s.gray);
-  const camera::GrayView picture{s.gray.data(), frame.width, frame.height, frame.width};
+  const camera::GrayView picture = camera::luma_of(frame, s.gray);
 
   view.frame_index = frame.index;
   view.timestamp_ns = frame.timestamp_ns;
   view.is_frozen = s.frozen.observe(picture, frame.timestamp_ns);
+  const FrozenPicture::Signs& signs = s.frozen.signs();
+  view.is_repeating = signs.is_repeating;
+  view.is_torn = signs.is_torn;
+  view.is_blank = signs.is_blank;
+  view.repeat_share = signs.repeat_share;
   view.lens = s.lens_tracker.observe(picture, frame.timestamp_ns);
   s.follow_lens(view);
   const auto markers = s.markers->track(picture, view.camera, frame.timestamp_ns);
   view.markers.assign(markers.begin(), markers.end());
+  view.is_torn = s.has_standing_marker(view.markers) || view.is_torn;
+  // Its parts are of two moments: no pose of it is to be trusted, nor one part set against the other.
+  if (view.is_torn) view.intrinsics_are_known = false;
   const auto candidates = s.markers->candidates();
   view.candidates.assign(candidates.begin(), candidates.end());
 }

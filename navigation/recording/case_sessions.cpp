@@ -13,7 +13,8 @@ namespace arthronaut::recording {
 namespace {
 
 bool is_same_marker(const tools::WorldMarker* a, const tools::WorldMarker* b) {
-  return a && b && a->marker_id == b->marker_id && a->size_mm == b->size_mm;
+  return a && b && a->marker_id == b->marker_id && a->size_mm == b->size_mm &&
+         tools::are_same(a->markers, b->markers);
 }
 
 // The alarm that came after the session's last registration; empty when none did.
@@ -47,6 +48,37 @@ std::optional<KnownRegistration> registration_of(const std::filesystem::path& fo
 
 }  // namespace
 
+bool is_exercise(const SessionHeader& header) {
+  return header.source_kind == "simulation" && header.source == kExerciseSource;
+}
+
+bool is_exercise(const std::filesystem::path& session_folder) {
+  try {
+    pipeline::PipelineOptions options;
+    return is_exercise(read_session_header(session_folder, options));
+  } catch (const InvalidInput&) {  // then nothing says that it is one
+  } catch (const IoError&) {
+  }
+  return false;
+}
+
+std::string real_session(const std::filesystem::path& case_folder) {
+  if (case_folder.empty()) return "";
+  for (const std::filesystem::path& folder : cases::session_folders(case_folder)) {
+    const std::string name = folder.filename().string();
+    try {
+      pipeline::PipelineOptions options;
+      const std::string kind = read_session_header(folder, options).source_kind;
+      if (kind == "simulation") continue;
+      return "its session " + name + (kind.empty() ? " may be of a patient" : " is no simulation: " + kind);
+    } catch (const InvalidInput&) {
+    } catch (const IoError&) {
+    }
+    return "its session " + name + " cannot be read, and may be of a patient";
+  }
+  return "";
+}
+
 std::optional<KnownRegistration> find_registration(const std::filesystem::path& case_folder,
                                                    bones::BoneKind bone, const tools::ToolSet& tools) {
   std::vector<std::filesystem::path> folders = cases::session_folders(case_folder);
@@ -55,6 +87,7 @@ std::optional<KnownRegistration> find_registration(const std::filesystem::path& 
   for (const std::filesystem::path& folder : folders) {
     // One broken session must not hide the others for good; that it was passed over is told.
     try {
+      if (is_exercise(folder)) continue;
       if (auto known = registration_of(folder, bone, tools)) {
         known->passed_over = std::move(passed_over);
         return known;

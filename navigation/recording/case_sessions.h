@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "navigation/registration/provenance.h"
@@ -12,6 +13,19 @@
 #include "planning/bones/bone.h"
 
 namespace arthronaut::recording {
+
+struct SessionHeader;
+
+// The name of the frame source that exercises alone have; it stands in the session's header.
+inline constexpr std::string_view kExerciseSource = "simulated arthroscope, by hand";
+// The session is an exercise's: a simulation of that source. It is no operation: it is never resumed, and
+// neither its registration nor its tunnel stands for anything.
+[[nodiscard]] bool is_exercise(const SessionHeader& header);
+// The same of a session's folder. False where its header cannot be read. Does not throw for that.
+[[nodiscard]] bool is_exercise(const std::filesystem::path& session_folder);
+// Why nothing may be practised in this case: the first of its sessions that is not of a simulation, as a
+// sentence for the user. One whose kind is not known or cannot be read counts as real. Empty: there is none.
+[[nodiscard]] std::string real_session(const std::filesystem::path& case_folder);
 
 // What the newest session that says anything about a bone says.
 struct KnownRegistration {
@@ -29,8 +43,8 @@ struct KnownRegistration {
 // The registration of the newest session (by its number, see cases::session_folders) that has one for this
 // bone with this very world marker (id and size). That session decides: when its registration is not to be
 // guided by, an older one is not taken in its place, since what made the newer one bad (a marker that was
-// bumped, say) made the older one bad as well. nullopt when no session has one. Nobody can tell from files
-// whether the marker has been moved since.
+// bumped, say) made the older one bad as well. Exercises are passed over. nullopt when no session has one.
+// Nobody can tell from files whether the marker has been moved since.
 [[nodiscard]] std::optional<KnownRegistration> find_registration(const std::filesystem::path& case_folder,
                                                                  bones::BoneKind bone,
                                                                  const tools::ToolSet& tools);

@@ -95,10 +95,17 @@ void for_each_row(Statement& rows, std::vector<RecordedFrame>& frames, const Vis
 
 }  // namespace
 
-FrameInserter::FrameInserter(SessionDatabase& database)
+FrameInserter::FrameInserter(SessionDatabase& database, const tools::ToolSet& tools)
     : frame_(database.prepare("INSERT INTO frames VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")),
       marker_(database.prepare("INSERT INTO markers VALUES(?,?,?,?,?,?,?,?,?,?,?,?)")),
-      guidance_(database.prepare("INSERT INTO guidance VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")) {}
+      body_(database.prepare("INSERT INTO bodies VALUES(?,?,?,?,?,?,?,?,?)")),
+      guidance_(database.prepare("INSERT INTO guidance VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")) {
+  const auto add = [&](const auto& body) {
+    if (!body.markers.empty()) bodies_of_several_.push_back(body.marker_id);
+  };
+  for (const tools::WorldMarker& world : tools.world_markers) add(world);
+  for (const tools::Tool& tool : tools.tools) add(tool);
+}
 
 void FrameInserter::insert(const pipeline::FrameResult& result) {
   const lens::LensObservation& lens = result.lens;
@@ -107,7 +114,8 @@ void FrameInserter::insert(const pipeline::FrameResult& result) {
   frame_.bind(7, lens.circle_coverage_deg).bind(8, static_cast<int>(lens.mark));
   frame_.bind(9, static_cast<int>(lens.polarity)).bind(10, lens.mark_angle_deg).bind(11, lens.mark_sigma_deg);
   frame_.bind(12, lens.is_stale).bind(13, lens.zoom_or_slip).bind(14, result.intrinsics_are_known);
-  frame_.bind(15, result.is_frozen).bind(16, result.tip_is_valid);
+  // Of either no pose stood: run again without its picture, none must stand.
+  frame_.bind(15, result.is_frozen || result.is_repeating).bind(16, result.tip_is_valid);
   bind_vector(frame_, 17, result.tip_in_world_mm);
   frame_.bind(20, result.processing_ms).run();
 
@@ -123,6 +131,17 @@ void FrameInserter::insert(const pipeline::FrameResult& result) {
       marker_.bind(12, marker.rms_px);
     }
     marker_.run();
+  }
+
+  for (const markers::BodyObservation& body : result.bodies) {
+    const bool is_of_several =
+        std::find(bodies_of_several_.begin(), bodies_of_several_.end(), body.id) != bodies_of_several_.end();
+    if (!is_of_several || !body.is_tracked() || !result.intrinsics_are_known) continue;
+    const Eigen::Quaterniond& q = body.camera_from_body.rotation;
+    body_.bind(1, result.frame_index).bind(2, body.id);
+    body_.bind(3, q.w()).bind(4, q.x()).bind(5, q.y()).bind(6, q.z());
+    bind_vector(body_, 7, body.camera_from_body.translation_mm);
+    body_.run();
   }
 
   const guidance::GuidanceNumbers& g = result.guidance;
@@ -143,28 +162,47 @@ void FrameInserter::insert(const pipeline::FrameResult& result) {
   guidance_.run();
 }
 
-std::vector<RecordedFrame> read_frames(SessionDatabase& database) {
+std::vector<RecordedFrame> read_frames(SessionDatabase& database, std::int64_t first, std::int64_t last) {
+  const auto among = [&](const std::string& select, const std::string& order) {
+    return select + " WHERE frame BETWEEN " + std::to_string(first) + " AND " + std::to_string(last) +
+           " ORDER BY " + order;
+  };
   std::vector<RecordedFrame> frames;
   Statement rows = database.prepare(
-      "SELECT frame, timestamp_ns, circle_found, circle_x_px, circle_y_px, circle_radius_px, "
-      "circle_coverage_deg,"
-      " mark_state, mark_polarity, mark_angle_deg, mark_sigma_deg, lens_is_stale, zoom_or_slip, "
-      "intrinsics_are_known,"
-      " is_frozen, tip_is_valid, tip_x_mm, tip_y_mm, tip_z_mm FROM frames ORDER BY frame");
+      among("SELECT frame, timestamp_ns, circle_found, circle_x_px, circle_y_px, circle_radius_px, "
+            "circle_coverage_deg,"
+            " mark_state, mark_polarity, mark_angle_deg, mark_sigma_deg, lens_is_stale, zoom_or_slip, "
+            "intrinsics_are_known,"
+            " is_frozen, tip_is_valid, tip_x_mm, tip_y_mm, tip_z_mm FROM frames",
+            "frame"));
   while (rows.step()) frames.push_back(frame_at(rows));
 
-  Statement markers = database.prepare("SELECT * FROM markers ORDER BY frame, marker_id");
+  Statement markers = database.prepare(among("SELECT * FROM markers", "frame, marker_id"));
   for_each_row(markers, frames, [](const Statement& row, RecordedFrame& frame) {
     frame.markers.push_back(
         {static_cast<int>(row.integer(1)), static_cast<markers::MarkerState>(row.integer(2))});
     if (row.boolean(3)) frame.poses.push_back(pose_at(row, frame));
   });
-  Statement guidance = database.prepare("SELECT * FROM guidance ORDER BY frame");
+  Statement guidance = database.prepare(among("SELECT * FROM guidance", "frame"));
   for_each_row(guidance, frames,
                [](const Statement& row, RecordedFrame& frame) { frame.guidance = guidance_at(row, frame); });
-  // Records that are older than the digests have no such table.
-  if (!database.prepare("SELECT 1 FROM sqlite_master WHERE name = 'digests'").step()) return frames;
-  Statement digests = database.prepare("SELECT * FROM digests ORDER BY frame");
+  // Records that are older than a table lack it.
+  const auto has_table = [&](const char* name) {
+    return database.prepare("SELECT 1 FROM sqlite_master WHERE name = ?")
+        .bind(1, std::string_view(name))
+        .step();
+  };
+  if (has_table("bodies")) {
+    Statement bodies = database.prepare(among("SELECT * FROM bodies", "frame, body_id"));
+    for_each_row(bodies, frames, [](const Statement& row, RecordedFrame& frame) {
+      RecordedBody body{static_cast<int>(row.integer(1)), {}};
+      body.camera_from_body.rotation = {row.number(2), row.number(3), row.number(4), row.number(5)};
+      body.camera_from_body.translation_mm = vector_at(row, 6);
+      frame.bodies.push_back(body);
+    });
+  }
+  if (!has_table("digests")) return frames;
+  Statement digests = database.prepare(among("SELECT * FROM digests", "frame"));
   for_each_row(digests, frames, [](const Statement& row, RecordedFrame& frame) {
     frame.digests = {static_cast<std::uint64_t>(row.integer(1)), static_cast<std::uint64_t>(row.integer(2))};
   });

@@ -1,6 +1,8 @@
 // One frame's rows in session.sqlite: written by the recorder's thread, read back by RecordedSession.
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "navigation/recording/session.h"
@@ -11,14 +13,19 @@ namespace arthronaut::recording {
 // Statements prepared once for many frames.
 class FrameInserter {
  public:
-  explicit FrameInserter(SessionDatabase& database);
+  // The bodies of several markers among these tools are recorded by their own poses, too.
+  FrameInserter(SessionDatabase& database, const tools::ToolSet& tools);
   void insert(const pipeline::FrameResult& result);
 
  private:
-  Statement frame_, marker_, guidance_;
+  Statement frame_, marker_, body_, guidance_;
+  std::vector<int> bodies_of_several_;  // their ids
 };
 
-// All frames in the order of their indices.
-[[nodiscard]] std::vector<RecordedFrame> read_frames(SessionDatabase& database);
+// Frames from first to last, both included, in the order of their indices; all of them where nothing else is
+// said. One frame takes a tenth of a millisecond.
+[[nodiscard]] std::vector<RecordedFrame> read_frames(
+    SessionDatabase& database, std::int64_t first = std::numeric_limits<std::int64_t>::min(),
+    std::int64_t last = std::numeric_limits<std::int64_t>::max());
 
 }  // namespace arthronaut::recording

@@ -2,6 +2,7 @@
 
 #include <arthronaut/version.h>
 
+#include "navigation/recording/finished_session.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/registration/registration_file.h"
 #include "planning/cases/case.h"
@@ -44,6 +45,8 @@ std::string_view kind_of(JournalKind kind) {
       return kOutcomeEvent;
     case JournalKind::LookTaken:
       return kLookEvent;
+    case JournalKind::BoneMoved:
+      return kBoneMovedEvent;
     case JournalKind::SourceStarted:
       return kSourceStartedEvent;
     case JournalKind::SourceEnded:
@@ -93,13 +96,16 @@ std::string next_registration_name(const std::filesystem::path& session_folder) 
 }  // namespace
 
 void append_entries(const std::filesystem::path& session_folder, const std::vector<JournalEntry>& entries) {
+  FinishedSession session(session_folder);
   for (const JournalEntry& entry : entries) {
     SessionEvent event{entry.timestamp_ns, "", "", entry.after_frame};
     if (entry.kind == JournalKind::RegistrationInForce) {
       event.kind = entry.registration_was_given ? kGivenRegistrationEvent : kRegistrationEvent;
       event.text = next_registration_name(session_folder);
       for (const std::string& name : {event.text, std::string("registration.json")})
-        registration::write_registration_file(session_folder / name, *entry.registration, &entry.of);
+        session.rewrite_file(name, [&] {
+          registration::write_registration_file(session_folder / name, *entry.registration, &entry.of);
+        });
     } else if (entry.kind == JournalKind::Plan) {
       event.kind = kPlanEvent;
       event.text = entry.plan ? plan_to_text(entry.plan->tunnel, entry.plan->length_mm)
@@ -107,10 +113,12 @@ void append_entries(const std::filesystem::path& session_folder, const std::vect
     } else {
       event = *event_of(entry);
     }
-    if (entry.kind == JournalKind::Drilled)
-      operation::write_achieved_file(
-          session_folder / operation::achieved_file_name(entry.achieved->planned.key()), *entry.achieved);
-    append_event(session_folder, event);
+    if (entry.kind == JournalKind::Drilled) {
+      const std::string name = operation::achieved_file_name(entry.achieved->planned.key());
+      session.rewrite_file(name,
+                           [&] { operation::write_achieved_file(session_folder / name, *entry.achieved); });
+    }
+    session.append_event(event);
   }
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,6 +36,11 @@ class OperationRecord {
   // What the operation has done since the last call; then the frame, its picture and what came of it.
   void add(const std::vector<operation::JournalEntry>& entries);
   void add_frame(const camera::FramePtr& picture, const operation::OperationState& state, bool is_live);
+  // How long that frame had taken; and what is no decision of the operation's, but belongs into its record.
+  void add_latency(const SessionRecorder::Latency& latency) { recorder_->append_latency(latency); }
+  void add_event(std::string_view kind, const std::string& text, std::int64_t timestamp_ns) {
+    recorder_->add_event({timestamp_ns, std::string(kind), text});
+  }
   // Throws IoError. The strokes are those that count.
   void finish(const strokes::Curves& strokes);
 
@@ -51,5 +57,9 @@ class OperationRecord {
 // too. Throws IoError or InvalidInput; what came before is written then.
 void append_entries(const std::filesystem::path& session_folder,
                     const std::vector<operation::JournalEntry>& entries);
+// Writes a file of such a session anew by `write`, and what its record says of it. Throws IoError, and what
+// `write` throws.
+void rewrite_file(const std::filesystem::path& session_folder, const std::string& name,
+                  const std::function<void()>& write);
 
 }  // namespace arthronaut::recording

@@ -5,6 +5,8 @@
 
 #include "navigation/pipeline/prefetched_source.h"
 #include "navigation/recording/rerun.h"
+#include "planning/cases/case.h"
+#include "planning/geometry/surface.h"
 
 namespace arthronaut::recording {
 
@@ -167,6 +169,19 @@ class StateComparison {
 
 }  // namespace
 
+ReplayOptions replay_options_of(const std::filesystem::path& case_folder, const RecordedSession& session) {
+  const cases::Case knee = cases::load_case(case_folder);
+  ReplayOptions options;
+  const auto found = knee.bones.find(session.header().bone);
+  if (found == knee.bones.end()) return options;
+  options.bone = std::make_shared<const registration::SurfaceIndex>(
+      found->second.mesh, cases::surface_index_file(case_folder, found->first));
+  options.surface = std::make_shared<const geometry::Surface>(found->second.mesh);
+  if (const auto cartilage = cases::load_cartilage(case_folder, found->first))
+    options.cartilage.emplace().points_mm = cartilage->vertices_mm;
+  return options;
+}
+
 ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions& options,
                              const std::function<void(long)>& progress) {
   ReplaySummary summary;
@@ -196,11 +211,17 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   rerun.start(session);
   pipeline::FrameResult cold_result;
   for (const RecordedFrame& recorded : session.frames()) {
+    if (options.stops && options.stops()) {
+      summary.was_stopped = true;
+      states.add_to(summary);
+      return summary;
+    }
     const camera::FramePtr picture = pictures.of(recorded.index);
     rerun.play_before(recorded.index);
     const bool feeds = is_fed && picture != nullptr;
     const operation::OperationStatePtr state = feeds ? rerun.process(*picture) : rerun.process(recorded);
     if (feeds) comparison.compare(recorded, state->frame);
+    if (feeds && options.on_frame) options.on_frame(recorded, state->frame);
     if (cold && picture != nullptr) {
       cold->process(*picture, cold_result);
       cold_comparison.compare_poses(recorded, cold_result);

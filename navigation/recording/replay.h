@@ -28,7 +28,17 @@ struct ReplayOptions {
   double reencoded_tolerance_mm = 0.1, reencoded_tolerance_deg = 0.4;
   // A registration found again may differ by this much, or by its own predicted error where that is larger.
   double registration_tolerance_mm = 0.1;
+  // What the record says of a frame and what the program says of it now: of every frame whose picture was
+  // kept, in order. May be empty.
+  std::function<void(const RecordedFrame& then, const pipeline::FrameResult& now)> on_frame = {};
+  // Asked before every frame; true ends the replay there. May be empty.
+  std::function<bool()> stops = {};
 };
+
+// The bone of the session and what belongs to it, from the case: seconds. Of a case without that bone nothing
+// is registered again. Throws what reading the case throws.
+[[nodiscard]] ReplayOptions replay_options_of(const std::filesystem::path& case_folder,
+                                              const RecordedSession& session);
 
 struct Difference {
   std::int64_t frame = -1;  // -1: of the session as a whole
@@ -44,6 +54,7 @@ struct ReplaySummary {
   std::vector<Difference> differences;            // above tolerance, in the order of frames
   long states_compared = 0, states_equal = 0;     // by their digests
   bool is_same_build = false;                     // states must be equal to the last bit
+  bool was_stopped = false;                       // by ReplayOptions::stops: the rest was not compared
   // The largest of all, also below tolerance.
   double worst_pose_mm = 0, worst_pose_deg = 0, worst_tip_mm = 0, worst_offset_mm = 0, worst_angle_deg = 0;
   std::optional<double> registration_mm;  // at the target; empty when it was not compared

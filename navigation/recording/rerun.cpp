@@ -16,7 +16,7 @@ pipeline::FrameResult result_of(const RecordedFrame& recorded, const pipeline::P
   result.lens = recorded.lens;
   result.intrinsics_are_known = recorded.intrinsics_are_known;
   result.is_frozen = recorded.is_frozen;
-  const auto pose_of = [&](int marker_id) {
+  const auto pose_of = [&](int marker_id, bool is_of_several) {
     geometry::TrackedPose pose;
     pose.timestamp_ns = recorded.timestamp_ns;
     for (const strokes::PoseRow& row : recorded.poses) {
@@ -24,13 +24,23 @@ pipeline::FrameResult result_of(const RecordedFrame& recorded, const pipeline::P
       pose.is_valid = !recorded.is_frozen;
       pose.target_from_source = row.camera_from_marker;
     }
+    // A body of several markers has a pose of its own: that of its first marker is not it.
+    if (!is_of_several) return pose;
+    pose.is_valid = false;
+    for (const RecordedBody& body : recorded.bodies) {
+      if (body.id != marker_id) continue;
+      pose.is_valid = !recorded.is_frozen;
+      pose.target_from_source = body.camera_from_body;
+    }
     return pose;
   };
   if (const auto* world = options.tools.find_world_marker(options.bone))
-    result.camera_from_world = pose_of(world->marker_id);
+    result.camera_from_world = pose_of(world->marker_id, !world->markers.empty());
   const geometry::TrackedPose world_from_camera = geometry::inverse(result.camera_from_world);
   for (const tools::Tool& tool : options.tools.tools)
-    result.tools.push_back({tool.marker_id, geometry::compose(world_from_camera, pose_of(tool.marker_id))});
+    result.tools.push_back(
+        {tool.marker_id,
+         geometry::compose(world_from_camera, pose_of(tool.marker_id, !tool.markers.empty()))});
   result.tip_is_valid = recorded.tip_is_valid;
   result.tip_in_world_mm = recorded.tip_in_world_mm;
   for (std::size_t i = 0; i < result.tools.size(); ++i) {
@@ -47,6 +57,12 @@ operation::Command command_of(const RecordedSession& session, const SessionEvent
   return operation::command_from_text(event.text, database_file(session.folder()).string());
 }
 
+// What the pictures showed of the bone is the record's, too: pictures that it did not keep count in it.
+operation::OperationSetup hearing_of_drifts(operation::OperationSetup setup) {
+  setup.hears_of_drifts = true;
+  return setup;
+}
+
 bool is_registration(const SessionEvent& event) {
   return event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent;
 }
@@ -55,7 +71,7 @@ bool is_registration(const SessionEvent& event) {
 
 Rerun::Rerun(const operation::OperationSetup& setup, Registrations registrations,
              const operation::SurfaceIndexPtr& bone)
-    : registrations_(registrations), operation_(setup) {
+    : registrations_(registrations), operation_(hearing_of_drifts(setup)) {
   if (registrations != Registrations::FoundAgain) return;
   work_.emplace([&] { return bone; }, operation::work_options(setup));
   outcomes_[0] = work_->outcome();
@@ -135,6 +151,8 @@ void Rerun::play(const SessionEvent& event) {
   } else if (event.kind == kLookEvent) {
     const auto look = looks_.find(std::stoll(event.text));
     if (look != looks_.end()) operation_.take_look(look->second);
+  } else if (event.kind == kBoneMovedEvent) {
+    operation_.tell_bone_moved(std::stod(event.text));
   } else if (event.kind == kSourceEndedEvent) {
     operation_.end_source();
   } else if (!has_journal_ && event.kind == kPlanEvent) {

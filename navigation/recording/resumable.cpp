@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "navigation/operation/achieved_tunnel.h"
+#include "navigation/recording/case_sessions.h"
 #include "navigation/recording/rerun.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/registration/registration_file.h"
@@ -99,6 +100,20 @@ bool has_come_to_its_end(const RecordedSession& newest, const std::vector<tunnel
          });
 }
 
+// Of the bundles' tunnels of the operation, those that are drilled.
+std::vector<tunnels::TunnelKey> drilled_bundles(const RecordedSession& newest,
+                                                const std::vector<RecordedSession>& before) {
+  std::set<std::string> files;
+  add_drilled(newest, files);
+  for (const RecordedSession& session : before) add_drilled(session, files);
+  std::vector<tunnels::TunnelKey> keys;
+  for (const norms::Bundle bundle : {norms::Bundle::Anteromedial, norms::Bundle::Posterolateral}) {
+    const tunnels::TunnelKey key(newest.header().bone, bundle);
+    if (files.contains(operation::achieved_file_name(key))) keys.push_back(key);
+  }
+  return keys;
+}
+
 // What was drawn before and what was drawn since, numbered on; the newest when it is too much for a screen.
 strokes::Curves joined(const operation::ResumeOperation* before, const strokes::Curves& since) {
   strokes::Curves all = before != nullptr ? before->drawn : strokes::Curves();
@@ -140,6 +155,7 @@ std::optional<Resumable> resumable_from(const RecordedSession& newest) {
   resume.of.placement = 0;  // of that operation; nobody counts it in this one
   resume.plan = state->plan;
   resume.depth_stop_mm = state->depth_stop_mm;
+  found.drilled = drilled_bundles(newest, before);
   found.refusal = last.refusal();
   if (found.refusal.empty()) {
     resume.registration = last.registration();
@@ -181,6 +197,7 @@ std::optional<Resumable> find_resumable(const std::filesystem::path& case_folder
       if (read_session_header(folder, options).bone != bone) continue;
       const RecordedSession session(folder);
       const SessionHeader& header = session.header();
+      if (is_exercise(header)) continue;
       if (session.frames().empty() && header.continues.empty()) continue;
       const bool was_somebody_there = !header.source_kind.empty() && header.registers_after_mm <= 0;
       const bool is_same_mesh =

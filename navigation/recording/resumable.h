@@ -20,7 +20,9 @@ struct Resumable {
   std::string refusal;
   bool was_verified = false;    // the registration, by touches; one touch has to confirm it all the same
   double stroke_length_mm = 0;  // of the strokes that were drawn
-  SessionHeader header;         // of the newest session of it
+  // Of two bundles' tunnels those that the surgeon said he had drilled, AM before PL.
+  std::vector<tunnels::TunnelKey> drilled;
+  SessionHeader header;                                // of the newest session of it
   std::chrono::system_clock::time_point last_written;  // when that was
   bool was_finished = false;                           // false: it was cut off, as by a crash
   std::vector<std::string> passed_over;  // newer sessions that cannot be read, with the reason each

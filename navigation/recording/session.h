@@ -77,11 +77,14 @@ inline constexpr std::string_view kVerifiedEvent = "registration verified";
 inline constexpr std::string_view kConfirmedEvent = "registration confirmed";          // text: by what
 inline constexpr std::string_view kVerificationSkippedEvent = "verification skipped";  // text: how
 inline constexpr std::string_view kTimeOutConfirmedEvent =
-    "time-out confirmed";                                                // text: what was on the screen
+    "time-out confirmed";  // text: what was on the screen
+inline constexpr std::string_view kBoneMovedEvent = "bone moved in the picture";  // text: by how many mm
 inline constexpr std::string_view kGuideCheckedEvent = "guide checked";  // text: how far its tip was off
 inline constexpr std::string_view kDrilledEvent = "tunnel drilled";
 inline constexpr std::string_view kSourceStartedEvent = "source started";  // what is before it came earlier
 inline constexpr std::string_view kSourceEndedEvent = "source ended";
+inline constexpr std::string_view kSourceTroubleEvent = "source trouble";  // text: what; empty: it is over
+inline constexpr std::string_view kLatencyEvent = "latency";  // text: capture to guidance, of all frames
 inline constexpr std::string_view kDroppedPicturesEvent = "pictures dropped";    // text: how many
 inline constexpr std::string_view kVideoStoppedEvent = "video stopped";          // text: why
 inline constexpr std::string_view kRecordingStoppedEvent = "recording stopped";  // text: why
@@ -135,6 +138,12 @@ class SessionRecorder {
     std::uint64_t frame = 0, decisions = 0;
   };
   void append_digests(const StateDigests& digests);
+  // How long the frame that was appended last had taken to each of these, ms; below 0: not known.
+  struct Latency {
+    double capture_ms = -1, decode_ms = -1, queue_ms = -1, tracking_ms = -1, operation_ms = -1,
+           guidance_ms = -1;
+  };
+  void append_latency(const Latency& latency);
   void add_event(const SessionEvent& event);
   // What guidance is computed from, from the next frame on.
   void set_plan(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm);
@@ -158,11 +167,18 @@ struct RecordedMarker {
   markers::MarkerState state = markers::MarkerState::NotSeen;
 };
 
+struct RecordedBody {
+  int id = 0;
+  geometry::RigidTransform camera_from_body;
+};
+
 struct RecordedFrame {
   std::int64_t index = 0, timestamp_ns = 0;
   lens::LensObservation lens;
   bool intrinsics_are_known = false, is_frozen = false;
   std::vector<strokes::PoseRow> poses;
+  // Of bodies of several markers, named by their first, where they had a pose. The others' are in `poses`.
+  std::vector<RecordedBody> bodies;
   std::vector<RecordedMarker> markers;  // every declared marker: why one has no pose
   bool tip_is_valid = false;
   Eigen::Vector3d tip_in_world_mm = Eigen::Vector3d::Zero();

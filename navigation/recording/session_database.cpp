@@ -1,5 +1,6 @@
 #include "navigation/recording/session_database.h"
 
+#include <bit>
 #include <utility>
 
 #include "planning/files/private_folder.h"
@@ -23,6 +24,9 @@ CREATE TABLE markers(
   frame INTEGER, marker_id INTEGER, state INTEGER, has_pose INTEGER,
   qw REAL, qx REAL, qy REAL, qz REAL, tx_mm REAL, ty_mm REAL, tz_mm REAL, rms_px REAL,
   PRIMARY KEY(frame, marker_id)) WITHOUT ROWID;
+CREATE TABLE bodies(
+  frame INTEGER, body_id INTEGER, qw REAL, qx REAL, qy REAL, qz REAL, tx_mm REAL, ty_mm REAL, tz_mm REAL,
+  PRIMARY KEY(frame, body_id)) WITHOUT ROWID;
 CREATE TABLE guidance(
   frame INTEGER PRIMARY KEY, state INTEGER,
   point_x_mm REAL, point_y_mm REAL, point_z_mm REAL, direction_x REAL, direction_y REAL, direction_z REAL,
@@ -32,6 +36,9 @@ CREATE TABLE guidance(
 CREATE TABLE events(id INTEGER PRIMARY KEY, after_frame INTEGER, timestamp_ns INTEGER, kind TEXT, text TEXT);
 CREATE TABLE pictures(picture INTEGER PRIMARY KEY, frame INTEGER NOT NULL);
 CREATE TABLE digests(frame INTEGER PRIMARY KEY, state INTEGER NOT NULL, decisions INTEGER NOT NULL);
+CREATE TABLE latency(
+  frame INTEGER PRIMARY KEY, capture_ms REAL, decode_ms REAL, queue_ms REAL, tracking_ms REAL, operation_ms REAL,
+  guidance_ms REAL);
 CREATE TABLE ending(finished INTEGER);
 )";
 
@@ -92,6 +99,20 @@ bool Statement::is_null(int column) const { return sqlite3_column_type(statement
 std::string Statement::text(int column) const {
   const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
   return text ? std::string(text, static_cast<std::size_t>(sqlite3_column_bytes(statement_, column))) : "";
+}
+
+void Statement::append_value(int column, std::string& bytes) const {
+  const int type = sqlite3_column_type(statement_, column);
+  bytes += static_cast<char>('0' + type);
+  if (type == SQLITE_NULL) return;
+  if (type == SQLITE_INTEGER || type == SQLITE_FLOAT) {
+    const auto bits = type == SQLITE_INTEGER ? static_cast<std::uint64_t>(integer(column))
+                                             : std::bit_cast<std::uint64_t>(number(column));
+    for (unsigned shift = 0; shift < 64; shift += 8) bytes += static_cast<char>(bits >> shift & 0xFFU);
+    return;
+  }
+  const std::string value = text(column);
+  bytes += std::to_string(value.size()) + ":" + value;
 }
 
 SessionDatabase::SessionDatabase(const std::filesystem::path& file, int flags) : file_(file) {

@@ -36,6 +36,8 @@ class Statement {
   [[nodiscard]] std::string text(int column) const;
   [[nodiscard]] bool is_null(int column) const;
   [[nodiscard]] int column_count() const;
+  // The value with its type, to the last bit: what two rows differ in, these bytes differ in.
+  void append_value(int column, std::string& bytes) const;
 
  private:
   void check(int result) const;

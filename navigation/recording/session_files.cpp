@@ -65,6 +65,7 @@ void write_session_header(const std::filesystem::path& folder, const SessionHead
   json["flat_port"] = options.fluid_model == camera::FluidModel::FlatPort;
   json["program_version"] = header.program_version;
   if (!header.build.empty()) json["build"] = header.build;
+  json["hash_chain"] = true;
   files::write_json(header_file(folder), json);
 }
 
@@ -98,6 +99,11 @@ SessionHeader read_session_header(const std::filesystem::path& folder, pipeline:
   options.fluid_model =
       json.boolean("flat_port") ? camera::FluidModel::FlatPort : camera::FluidModel::FocalRule;
   return header;
+}
+
+bool says_it_has_a_chain(const std::filesystem::path& folder) {
+  const files::JsonObject json = files::read_json(header_file(folder), kSessionFormat, kVersion);
+  return json.has("hash_chain") && json.boolean("hash_chain");
 }
 
 void append_guidance_line(std::int64_t frame, std::int64_t timestamp_ns, const guidance::GuidanceNumbers& g,

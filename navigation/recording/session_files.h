@@ -18,6 +18,9 @@ void write_session_header(const std::filesystem::path& folder, const SessionHead
                           const pipeline::PipelineOptions& options);
 [[nodiscard]] SessionHeader read_session_header(const std::filesystem::path& folder,
                                                 pipeline::PipelineOptions& options);
+// Whether session.json says that a chain of hashes is written beside it; older versions wrote none, and the
+// first that did closed none and do not say so. Throws IoError or InvalidInput.
+[[nodiscard]] bool says_it_has_a_chain(const std::filesystem::path& session_folder);
 
 // guidance.csv: one row a frame; numbers are empty where there is no guidance, and `state` says why.
 inline constexpr std::string_view kGuidanceHeader =

@@ -14,6 +14,7 @@
 #include "navigation/recording/picture_writer.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_files.h"
+#include "navigation/recording/session_hashes.h"
 #include "navigation/recording/video_files.h"
 #include "navigation/registration/registration_file.h"
 #include "planning/geometry/error.h"
@@ -27,6 +28,8 @@ constexpr auto kCommitEvery =
     std::chrono::milliseconds(400);  // below the half second that the header promises
 constexpr const char* kEncodedVideo = "video.mkv";
 constexpr double kEncodedFramesPerSecond = 60;
+// Whatever the encoder writes again when the video ends (its size, its length) lies in its first bytes.
+constexpr std::int64_t kVideoHead = 65536;
 
 struct EncodedPicture {
   std::int64_t picture = 0, frame = 0;
@@ -37,12 +40,19 @@ struct RegistrationFile {
   registration::RegistrationSummary registration;
   std::optional<registration::Provenance> of;
 };
+struct HeaderFile {
+  SessionHeader header;
+};
+struct FrameLatency {
+  std::int64_t frame = 0;
+  SessionRecorder::Latency latency;
+};
 struct FrameDigests {
   std::int64_t frame = 0;
   SessionRecorder::StateDigests digests;
 };
 using Message = std::variant<pipeline::FrameResult, SessionEvent, EncodedPicture, RegistrationFile,
-                             strokes::Curves, FrameDigests>;
+                             strokes::Curves, FrameDigests, FrameLatency, HeaderFile>;
 
 std::string gib_text(std::uintmax_t bytes) {
   char text[32];
@@ -53,14 +63,18 @@ std::string gib_text(std::uintmax_t bytes) {
 // Carries out messages in the writer thread.
 class DatabaseWriter {
  public:
-  DatabaseWriter(SessionDatabase& database, OpenFormats& formats, std::filesystem::path folder)
+  DatabaseWriter(SessionDatabase& database, OpenFormats& formats, SessionHashes& hashes,
+                 std::filesystem::path folder, const pipeline::PipelineOptions& options)
       : database_(database),
         formats_(formats),
+        hashes_(hashes),
         folder_(std::move(folder)),
-        frames_(database),
+        options_(options),
+        frames_(database, options.tools),
         event_(database.prepare("INSERT INTO events(after_frame, timestamp_ns, kind, text) VALUES(?,?,?,?)")),
         picture_(database.prepare("INSERT INTO pictures VALUES(?,?)")),
-        digests_(database.prepare("INSERT INTO digests VALUES(?,?,?)")) {}
+        digests_(database.prepare("INSERT INTO digests VALUES(?,?,?)")),
+        latency_(database.prepare("INSERT INTO latency VALUES(?,?,?,?,?,?,?)")) {}
 
   void write(const Message& message) {
     if (!in_transaction_) database_.execute("BEGIN");
@@ -72,6 +86,13 @@ class DatabaseWriter {
     if (in_transaction_) database_.execute("COMMIT");
     in_transaction_ = false;
     formats_.flush();
+    // More may still come to be known of the last frame: it waits for the next one.
+    hashes_.cover_rows(database_, kFrameRows, last_frame_);
+    for (const char* const rows : {kEventRows, kPictureRows})
+      hashes_.cover_rows(database_, rows, rows_end(database_, rows));
+    for (const char* const table : {"poses.csv", "guidance.csv"}) hashes_.cover_growth(table);
+    if (has_pictures_) hashes_.cover_growth(kEncodedVideo, kVideoHead);
+    hashes_.sync();
   }
 
   // An event of the writer's own, after the last frame that was written.
@@ -92,12 +113,20 @@ class DatabaseWriter {
         .bind(3, event.kind)
         .bind(4, event.text)
         .run();
+    if (event.kind == kDrilledEvent) hashes_.cover_file(event.text);
   }
-  void put(const EncodedPicture& picture) { picture_.bind(1, picture.picture).bind(2, picture.frame).run(); }
+  void put(const EncodedPicture& picture) {
+    picture_.bind(1, picture.picture).bind(2, picture.frame).run();
+    has_pictures_ = true;
+  }
   void put(const RegistrationFile& file) {
     const registration::Provenance* of = file.of ? &*file.of : nullptr;
-    registration::write_registration_file(folder_ / file.name, file.registration, of);
-    registration::write_registration_file(folder_ / "registration.json", file.registration, of);
+    for (const std::string& name : {file.name, std::string("registration.json")})
+      hashes_.write_file(
+          name, [&] { registration::write_registration_file(folder_ / name, file.registration, of); });
+  }
+  void put(const HeaderFile& file) {
+    hashes_.write_file("session.json", [&] { write_session_header(folder_, file.header, options_); });
   }
   void put(const FrameDigests& frame) {
     digests_.bind(1, frame.frame)
@@ -105,15 +134,30 @@ class DatabaseWriter {
         .bind(3, static_cast<std::int64_t>(frame.digests.decisions))
         .run();
   }
-  void put(const strokes::Curves& curves) { strokes::write_curves_file(folder_ / "curves.csv", curves); }
+  void put(const FrameLatency& frame) {
+    latency_.bind(1, frame.frame);
+    int position = 2;
+    const SessionRecorder::Latency& l = frame.latency;
+    for (const double ms :
+         {l.capture_ms, l.decode_ms, l.queue_ms, l.tracking_ms, l.operation_ms, l.guidance_ms}) {
+      ms >= 0 ? latency_.bind(position, ms) : latency_.bind_null(position);
+      ++position;
+    }
+    latency_.run();
+  }
+  void put(const strokes::Curves& curves) {
+    hashes_.write_file("curves.csv", [&] { strokes::write_curves_file(folder_ / "curves.csv", curves); });
+  }
 
   SessionDatabase& database_;
   OpenFormats& formats_;
+  SessionHashes& hashes_;
   std::filesystem::path folder_;
+  const pipeline::PipelineOptions& options_;
   FrameInserter frames_;
-  Statement event_, picture_, digests_;
+  Statement event_, picture_, digests_, latency_;
   std::int64_t last_frame_ = -1, last_timestamp_ns_ = 0;
-  bool in_transaction_ = false;
+  bool in_transaction_ = false, has_pictures_ = false;
 };
 
 }  // namespace
@@ -127,11 +171,12 @@ struct SessionRecorder::State {
         limits(with_limits),
         database(SessionDatabase::create(database_file(to))),
         formats(to),
+        hashes(to),
         queue(kWaitingMessages) {}
 
   void run() {
     try {
-      DatabaseWriter writer(database, formats, folder);
+      DatabaseWriter writer(database, formats, hashes, folder, options);
       auto next_commit = std::chrono::steady_clock::now() + kCommitEvery;
       while (!queue.is_drained()) {
         if (const auto message = queue.pop_until(next_commit)) writer.write(*message);
@@ -182,7 +227,17 @@ struct SessionRecorder::State {
     send(SessionEvent{last_timestamp_ns, std::string(kind), std::move(text), last_frame});
   }
 
-  void rewrite_header() { write_session_header(folder, header, options); }
+  void rewrite_header() { send(HeaderFile{header}); }
+
+  // After the writer's thread has ended: what had to wait until now, and the video as it came.
+  void cover_to_end() {
+    for (const char* const rows : {kFrameRows, kEventRows, kPictureRows})
+      hashes.cover_rows(database, rows, rows_end(database, rows));
+    for (const char* const table : {"poses.csv", "guidance.csv"}) hashes.cover_to_end(table);
+    if (pictures) hashes.cover_to_end(kEncodedVideo, kVideoHead);
+    for (const std::string& file : copied) hashes.cover_to_end(file);
+    hashes.close();
+  }
 
   PictureWriter& picture_writer() {
     if (!pictures) {
@@ -200,12 +255,14 @@ struct SessionRecorder::State {
   DiskLimits limits;
   SessionDatabase database;  // the writer thread's until it has ended
   OpenFormats formats;       // the same
+  SessionHashes hashes;      // the same
   pipeline::BoundedQueue<Message> queue;
   std::thread worker;
   std::exception_ptr error;
   std::atomic<bool> video_stopped = false;
   bool out_of_space = false;  // why there is an error: all was kept; the writer thread's until it has ended
   std::optional<PictureWriter> pictures;
+  std::vector<std::string> copied;  // files of a video that was copied
   std::int64_t picture_count = 0, dropped_count = 0;
   std::int64_t last_frame = -1, last_timestamp_ns = 0;
   int registration_count = 0;
@@ -222,11 +279,13 @@ std::uintmax_t free_bytes_at(const std::filesystem::path& folder) {
 SessionRecorder::SessionRecorder(const std::filesystem::path& folder, const SessionHeader& header,
                                  const pipeline::PipelineOptions& options, const DiskLimits& limits)
     : state_(std::make_unique<State>(folder, header, options, limits)) {
-  state_->rewrite_header();
+  SessionHashes& hashes = state_->hashes;
+  hashes.write_file("session.json", [&] { write_session_header(folder, header, options); });
   camera::CalibrationRecord camera;
   camera.calibration = options.calibration;
   camera::write_camera_file(folder / "camera.json", camera);
   tools::write_tools_file(folder / "tools.json", options.tools);
+  for (const char* const file : {"camera.json", "tools.json"}) hashes.cover_file(file);
   state_->worker = std::thread([state = state_.get()] { state->run(); });
 }
 
@@ -240,6 +299,7 @@ SessionRecorder::~SessionRecorder() {
 
 void SessionRecorder::copy_video(const std::filesystem::path& video_or_pattern) {
   state_->header.video = copy_video_into(state_->folder, video_or_pattern);
+  state_->copied = video_files(state_->folder, state_->header.video);
   state_->rewrite_header();
 }
 
@@ -272,6 +332,10 @@ void SessionRecorder::append(const pipeline::FrameResult& result) {
 
 void SessionRecorder::append_digests(const StateDigests& digests) {
   state_->send(FrameDigests{state_->last_frame, digests});
+}
+
+void SessionRecorder::append_latency(const Latency& latency) {
+  state_->send(FrameLatency{state_->last_frame, latency});
 }
 
 void SessionRecorder::add_event(const SessionEvent& event) {
@@ -313,17 +377,9 @@ void SessionRecorder::finish() {
                   "was moved or deleted while it was being recorded; the end of the record is missing");
   s.formats.finish();
   if (s.pictures) s.pictures->finish();
+  s.cover_to_end();
   s.database.execute("INSERT INTO ending VALUES(1)");
   s.database.seal();
-}
-
-void append_event(const std::filesystem::path& session_folder, const SessionEvent& event) {
-  SessionDatabase database = SessionDatabase::open(database_file(session_folder));
-  Statement last = database.prepare("SELECT MAX(frame) FROM frames");
-  const std::int64_t after = last.step() && !last.is_null(0) ? last.integer(0) : -1;
-  Statement insert =
-      database.prepare("INSERT INTO events(after_frame, timestamp_ns, kind, text) VALUES(?,?,?,?)");
-  insert.bind(1, after).bind(2, event.timestamp_ns).bind(3, event.kind).bind(4, event.text).run();
 }
 
 std::filesystem::path SessionRecorder::folder() const { return state_->folder; }

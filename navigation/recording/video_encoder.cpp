@@ -120,6 +120,7 @@ struct VideoEncoder::State {
 
   // Means of two by two pixels, or each pixel where the size is odd.
   void fill_colour(const camera::Frame& frame) {
+    const std::vector<std::uint8_t>& bgr = camera::bgr_of(frame, colours);
     const std::ptrdiff_t width = frame.width;
     const int step = picture->format == AV_PIX_FMT_YUV420P ? 2 : 1;
     const std::ptrdiff_t right = step - 1, below = (step - 1) * width;
@@ -131,8 +132,8 @@ struct VideoEncoder::State {
         int blue = 0, red = 0;
         for (const std::ptrdiff_t pixel : {at, at + right, at + below, at + below + right}) {
           const int luma = gray[static_cast<std::size_t>(pixel)];
-          blue += frame.bgr[static_cast<std::size_t>(3 * pixel)] - luma;
-          red += frame.bgr[static_cast<std::size_t>(3 * pixel + 2)] - luma;
+          blue += bgr[static_cast<std::size_t>(3 * pixel)] - luma;
+          red += bgr[static_cast<std::size_t>(3 * pixel + 2)] - luma;
         }
         blue_row[x / step] = coarse(blue, kBlue);
         red_row[x / step] = coarse(red, kRed);
@@ -163,7 +164,7 @@ struct VideoEncoder::State {
   LibavPtr<AVCodecContext> encoder;
   LibavPtr<AVPacket> packet;
   LibavPtr<AVFrame> picture;
-  std::vector<std::uint8_t> gray;
+  std::vector<std::uint8_t> gray, colours;
   AVStream* stream = nullptr;
   std::int64_t count = 0;
 };

@@ -1,5 +1,6 @@
 #include "navigation/recording/video_files.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "planning/files/private_folder.h"
@@ -50,6 +51,15 @@ std::string copy_video_into(const fs::path& session_folder, const fs::path& vide
     }
   }
   return "pictures/" + pattern;
+}
+
+std::vector<std::string> video_files(const fs::path& session_folder, const std::string& video) {
+  if (fs::exists(session_folder / video)) return {video};
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(session_folder / "pictures"))
+    names.push_back("pictures/" + entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 }  // namespace arthronaut::recording

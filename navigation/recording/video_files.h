@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace arthronaut::recording {
 
@@ -10,5 +11,9 @@ namespace arthronaut::recording {
 // pattern relative to the folder. Throws IoError.
 [[nodiscard]] std::string copy_video_into(const std::filesystem::path& session_folder,
                                           const std::filesystem::path& video_or_pattern);
+
+// The files of what copy_video_into() gave, relative to the folder, in the order of their names.
+[[nodiscard]] std::vector<std::string> video_files(const std::filesystem::path& session_folder,
+                                                   const std::string& video);
 
 }  // namespace arthronaut::recording

@@ -40,8 +40,13 @@ struct SearchOutcome {
 [[nodiscard]] SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::Curves& curves,
                                                  int max_rounds);
 
-// found: on the bone itself.
-[[nodiscard]] SideVerdict judge_side(const SearchSetting& setting, const strokes::Curves& curves,
-                                     const SearchOutcome& found);
+struct SideJudgement {
+  SideVerdict verdict = SideVerdict::Own;
+  double lead = 0;  // of the own side, in independent measurements' log likelihood
+};
+// found: on the bone itself. While more may be drawn the own side has to lead by more: it is asked again and
+// again, and waiting costs little.
+[[nodiscard]] SideJudgement judge_side(const SearchSetting& setting, const strokes::Curves& curves,
+                                       const SearchOutcome& found, bool more_may_come = false);
 
 }  // namespace arthronaut::registration

@@ -47,6 +47,16 @@ void add_vector(std::string& text, const Eigen::Ref<const Eigen::VectorXd>& valu
   for (Eigen::Index i = 0; i < values.size(); ++i) add_number(text, values[i]);
 }
 
+// Nothing for one marker: that of a tool that has never had more stays what it was.
+void add_markers(std::string& text, const std::vector<tools::BodyMarker>& markers) {
+  for (const tools::BodyMarker& marker : markers) {
+    text += "marker " + std::to_string(marker.marker_id) + " ";
+    add_number(text, marker.size_mm);
+    add_vector(text, marker.body_from_marker.translation_mm);
+    add_vector(text, marker.body_from_marker.rotation.coeffs());
+  }
+}
+
 }  // namespace
 
 std::string_view to_text(Mismatch mismatch) {
@@ -105,6 +115,13 @@ std::optional<Mismatch> mismatch_of(const Provenance& of, const Provenance& now)
   return found == kAll.end() ? std::nullopt : std::optional(*found);
 }
 
+std::optional<Mismatch> mismatch_but_placement(const Provenance& of, const Provenance& now) {
+  const auto found = std::find_if(kAll.begin(), kAll.end(), [&](Mismatch what) {
+    return what != Mismatch::Placement && is_mismatch(what, of, now);
+  });
+  return found == kAll.end() ? std::nullopt : std::optional(*found);
+}
+
 bool can_be_confirmed(const Provenance& of, const Provenance& now) {
   const bool is_simulated = of.source == sources::SourceKind::Simulation;
   return !is_mismatch(Mismatch::Bone, of, now) && !is_mismatch(Mismatch::Mesh, of, now) &&
@@ -132,11 +149,13 @@ std::string tools_identity(const tools::ToolSet& tools, bones::BoneKind bone, st
   if (const tools::WorldMarker* marker = tools.find_world_marker(bone)) {
     text += "world " + std::to_string(marker->marker_id) + " ";
     add_number(text, marker->size_mm);
+    add_markers(text, marker->markers);
   }
   if (const tools::Tool* probe = tools.find_tool(std::string(probe_name))) {
     text += "probe " + std::to_string(probe->marker_id) + " ";
     add_number(text, probe->size_mm);
     if (probe->tip_mm) add_vector(text, *probe->tip_mm);
+    add_markers(text, probe->markers);
   }
   return files::sha256_of(text);
 }

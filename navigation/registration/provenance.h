@@ -35,6 +35,8 @@ enum class Mismatch { Bone, Mesh, SourceKind, WorldMarker, Placement, Camera, To
 
 // The first thing that differs; nullopt: it holds.
 [[nodiscard]] std::optional<Mismatch> mismatch_of(const Provenance& of, const Provenance& now);
+// The same, wherever the world marker sits: for what does not depend on it. Allocates nothing.
+[[nodiscard]] std::optional<Mismatch> mismatch_but_placement(const Provenance& of, const Provenance& now);
 // Whether a touch on bone that is known can show that it holds all the same. Never for another mesh, bone or
 // marker, and never between a simulation and anything real: there a touch that fits is chance.
 [[nodiscard]] bool can_be_confirmed(const Provenance& of, const Provenance& now);

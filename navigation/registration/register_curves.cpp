@@ -27,6 +27,17 @@ double lead_of_best(const PosePool& pool, const WeightedPoints& points) {
   return lead_of(pool.best().cost, pool.runner_up()->cost, points);
 }
 
+// Found beyond doubt: no need to search on. Either nothing else comes near, or the searches, each with other
+// pairs, come to the same pose again and again: a better one would have been found as easily.
+bool is_found(const PosePool& pool, const WeightedPoints& points, int round) {
+  constexpr double kClearLead = 17, kClearLeadLater = 8, kClearLeadOfTwice = 4, kLeadOfOften = 1;
+  constexpr int kOften = 3;
+  const double lead = lead_of_best(pool, points);
+  const int count = pool.best_find_count();
+  return lead > (round == 0 ? kClearLead : kClearLeadLater) || (count > 1 && lead > kClearLeadOfTwice) ||
+         (count >= kOften && lead > kLeadOfOften);
+}
+
 // Starts around a pose, some millimetres and degrees away: a rival that lies near it is easily missed by the
 // search, and is the one that a small residual hides best.
 std::vector<Hypothesis> neighbours_of(const geometry::RigidTransform& bone_from_marker,
@@ -94,31 +105,34 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
   const RegistrationOptions& options = setting.options;
   constexpr std::size_t kPointCount = 800;
   constexpr int kPairsEachRound = 8, kIterationsEachRound = 5, kFinalIterations = 12;
-  constexpr std::size_t kHypothesesEachRound = 24;
-  // Found beyond doubt: no need to search on.
-  constexpr double kClearLead = 25, kClearLeadLater = 12;
-
-  WeightedPoints points = choose_points(curves, kPointCount);
+  // Without the marker many more poses are possible, and the right one's rough score may be far from the
+  // best.
+  const std::size_t hypotheses_each_round = options.use_marker_prior ? 72 : 120;
   const std::vector<strokes::OrientedPoint> oriented = strokes::oriented_points(curves);
+  // The search goes by smoothed points, which hold less noise, so that the right pose stands out sooner. What
+  // is found is fitted to the samples: those lifted for a moment are smoothed into soft tissue otherwise.
+  const WeightedPoints smooth = choose_points(curves, kPointCount, oriented);
   MarkerPrior prior;
   prior.use = options.use_marker_prior;
   PosePool pool(bone, prior, setting.start_noise());
   for (int round = 0; round < max_rounds; ++round) {
     const std::uint64_t seed = options.seed * kMaxRounds + static_cast<std::uint64_t>(round);
     const bool is_near_plan = round == 0 && !setting.reachable.empty();
-    pool.add(search_globally(bone, oriented, points,
+    pool.add(search_globally(bone, oriented, smooth,
                              {.seed = seed,
                               .use_marker_prior = options.use_marker_prior,
                               .curve_pair_count = kPairsEachRound,
-                              .keep_count = kHypothesesEachRound,
+                              .keep_count = hypotheses_each_round,
                               .reachable = is_near_plan ? &setting.reachable : nullptr}),
-             points, seed);
-    pool.refine_all(points, kIterationsEachRound);
-    if (lead_of_best(pool, points) > (round == 0 ? kClearLead : kClearLeadLater)) break;
+             smooth, seed);
+    pool.refine_all(smooth, kIterationsEachRound);
+    if (is_found(pool, smooth, round)) break;
   }
+  WeightedPoints points = choose_points(curves, kPointCount);
   if (!pool.empty()) {
     const std::uint64_t seed = options.seed * kMaxRounds;
-    pool.add(neighbours_of(pool.best().bone_from_marker, points.centroid_mm, seed), points, seed);
+    pool.add(neighbours_of(pool.best().bone_from_marker, smooth.centroid_mm, seed), smooth, seed);
+    pool.refine_all(smooth, kIterationsEachRound);
     pool.refine_all(points, kFinalIterations);
     pool.polish(points);
   }
@@ -170,11 +184,12 @@ std::string_view reason_against(SideVerdict verdict) {
          "the notch too";
 }
 
-SideVerdict judge_side(const SearchSetting& setting, const strokes::Curves& curves,
-                       const SearchOutcome& found) {
+SideJudgement judge_side(const SearchSetting& setting, const strokes::Curves& curves,
+                         const SearchOutcome& found, bool more_may_come) {
   // A few strokes can't give a clear lead: there, less of one is telling enough. The own side has to lead by
   // more, since a bone that is much like its mirror image fits the wrong way round by chance.
-  constexpr double kOtherLead = 3, kOtherLeadOfEach = 0.05, kOwnLead = 8, kOwnLeadOfEach = 0.1;
+  constexpr double kOtherLead = 3, kOtherLeadOfEach = 0.05;
+  constexpr double kOwnLead = 8, kOwnLeadOfEach = 0.055, kOwnLeadOfEachWhileDrawing = 0.1;
   // To name the right reason is worth a little more, above all where the search has no marker to go by or a
   // thickness is free.
   constexpr int kRounds = 3, kRoundsToName = 4;
@@ -183,9 +198,10 @@ SideVerdict judge_side(const SearchSetting& setting, const strokes::Curves& curv
   const SearchOutcome image = search_and_summarise(setting, mirrored(curves), rounds);
   const double image_lead = (found.cost - image.cost) * image.measurements;
   const double other_lead = std::min(kOtherLead, kOtherLeadOfEach * image.measurements);
-  if (image.fits && image_lead > other_lead) return SideVerdict::Other;
-  const double own_lead = std::min(kOwnLead, kOwnLeadOfEach * image.measurements);
-  return image_lead > -own_lead ? SideVerdict::Unclear : SideVerdict::Own;
+  if (image.fits && image_lead > other_lead) return {SideVerdict::Other, -image_lead};
+  const double of_each = more_may_come ? kOwnLeadOfEachWhileDrawing : kOwnLeadOfEach;
+  const double own_lead = std::min(kOwnLead, of_each * image.measurements);
+  return {image_lead > -own_lead ? SideVerdict::Unclear : SideVerdict::Own, -image_lead};
 }
 
 RegistrationSummary register_curves(const SurfaceIndex& prepared, const strokes::Curves& curves,
@@ -199,7 +215,8 @@ RegistrationSummary register_curves(const SurfaceIndex& prepared, const strokes:
   const SearchSetting setting(bone, options);
   SearchOutcome found = search_and_summarise(setting, curves, kMaxRounds);
   if (!found.summary.has_pose || found.fits_amply) return found.summary;
-  const SideVerdict side = judge_side(setting, curves, found);
+  const auto [side, side_lead] = judge_side(setting, curves, found);
+  found.summary.evidence.side_lead = side_lead;
   if (side == SideVerdict::Own) return found.summary;
   found.summary.reliable = false;
   // What misses its own surface may be anybody's bone, whatever its mirror image does.

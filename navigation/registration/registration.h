@@ -68,6 +68,8 @@ struct VerdictEvidence {
   double excess_misfit_mm = 0, bearable_excess_mm = 0;
   // Over the next pose, in independent measurements' log likelihood; and what this pose needs.
   double lead = 0, lead_needed = 0;
+  // Over the strokes' best pose on the mirror image of the bone, likewise; empty where that was not tried.
+  std::optional<double> side_lead = std::nullopt;
 };
 
 struct RegistrationSummary {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "navigation/simulator/light.h"
+#include "navigation/simulator/parallel_rows.h"
 #include "navigation/simulator/random.h"
 
 namespace arthronaut::simulator {
@@ -60,19 +61,25 @@ BoneView::BoneView(const geometry::TriangleMesh& mesh, std::uint64_t seed)
   pixels_.resize(vertices_.size());
 }
 
-void BoneView::look(const geometry::RigidTransform& camera_from_bone, const camera::CameraModel& camera) {
+void BoneView::look(const geometry::RigidTransform& camera_from_bone, const RayTable& rays,
+                    const PixelArea& area) {
+  area_ = area;
   const Eigen::Matrix3f rotation = camera_from_bone.matrix().cast<float>();
-  for (std::size_t i = 0; i < vertices_.size(); ++i) {
-    const Eigen::Vector3d in_camera = camera_from_bone * vertices_[i].cast<double>();
-    camera_vertices_[i] = in_camera.cast<float>();
-    camera_normals_[i] = rotation * normals_[i];
-    const auto pixel = in_camera.z() > 0.5 ? camera.project(in_camera) : std::nullopt;
-    pixels_[i] = pixel ? Eigen::Vector2f(pixel->cast<float>())
+  parallel_rows(static_cast<int>(vertices_.size()), [&](int first, int end) {
+    for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(end); ++i) {
+      const Eigen::Vector3d in_camera = camera_from_bone * vertices_[i].cast<double>();
+      camera_vertices_[i] = in_camera.cast<float>();
+      camera_normals_[i] = rotation * normals_[i];
+      // Beyond the field stop a place is as good as any other further out: nothing of it is drawn.
+      const bool is_before = in_camera.z() > 0.5;
+      const Eigen::Vector2d tangent = in_camera.head<2>() / in_camera.z();
+      pixels_[i] = is_before && tangent.norm() < 1.5 * rays.widest_tangent()
+                       ? Eigen::Vector2f(rays.pixel(tangent).cast<float>())
                        : Eigen::Vector2f::Constant(std::numeric_limits<float>::quiet_NaN());
-  }
-}
-
-void BoneView::draw(const PixelArea& area, int first_row, int end_row, std::vector<BonePixel>& pixels) const {
+    }
+  });
+  bands_.resize(static_cast<std::size_t>((area.height + kBandRows - 1) / kBandRows));
+  for (auto& band : bands_) band.clear();
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const auto& [ia, ib, ic] = triangles_[t];
     const Eigen::Vector2f a = pixels_[static_cast<std::size_t>(ia)],
@@ -81,31 +88,52 @@ void BoneView::draw(const PixelArea& area, int first_row, int end_row, std::vect
     const Eigen::Vector2f ab = b - a, ac = c - a;
     // Outward triangles turn clockwise on a picture whose y points down, so this is negative for those that
     // face us.
-    const float twice_area = ab.x() * ac.y() - ab.y() * ac.x();
-    if (!(twice_area < -1e-6f)) continue;
-    const float top = std::min({a.y(), b.y(), c.y()}), bottom = std::max({a.y(), b.y(), c.y()});
-    const int y0 = std::max(first_row, static_cast<int>(std::ceil(top)) - area.top);
-    const int y1 = std::min(end_row - 1, static_cast<int>(std::floor(bottom)) - area.top);
-    if (y0 > y1) continue;
-    const int x0 = std::max(0, static_cast<int>(std::ceil(std::min({a.x(), b.x(), c.x()}))) - area.left);
-    const int x1 =
-        std::min(area.width - 1, static_cast<int>(std::floor(std::max({a.x(), b.x(), c.x()}))) - area.left);
-    if (x0 > x1) continue;
-    const float za = camera_vertices_[static_cast<std::size_t>(ia)].z();
-    const float zb = camera_vertices_[static_cast<std::size_t>(ib)].z() - za;
-    const float zc = camera_vertices_[static_cast<std::size_t>(ic)].z() - za;
-    const float inverse = 1 / twice_area;
-    for (int y = y0; y <= y1; ++y) {
-      const float py = static_cast<float>(y + area.top) - a.y();
-      BonePixel* row = pixels.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(area.width);
-      for (int x = x0; x <= x1; ++x) {
-        const float px = static_cast<float>(x + area.left) - a.x();
-        const float share_b = (px * ac.y() - py * ac.x()) * inverse;
-        const float share_c = (ab.x() * py - ab.y() * px) * inverse;
-        if (share_b < 0 || share_c < 0 || share_b + share_c > 1) continue;
-        const float depth = za + share_b * zb + share_c * zc;
-        if (depth < row[x].depth_mm) row[x] = {static_cast<std::int32_t>(t), depth, share_b, share_c};
-      }
+    if (!(ab.x() * ac.y() - ab.y() * ac.x() < -1e-6f)) continue;
+    const int first = std::max(0, static_cast<int>(std::ceil(std::min({a.y(), b.y(), c.y()}))) - area.top);
+    const int last =
+        std::min(area.height - 1, static_cast<int>(std::floor(std::max({a.y(), b.y(), c.y()}))) - area.top);
+    for (int band = first / kBandRows; first <= last && band <= last / kBandRows; ++band) {
+      bands_[static_cast<std::size_t>(band)].push_back({static_cast<std::int32_t>(t), first, last});
+    }
+  }
+}
+
+void BoneView::draw(int first_row, int end_row, std::vector<BonePixel>& pixels) const {
+  for (int band = first_row / kBandRows; band * kBandRows < end_row; ++band) {
+    const int first = std::max(first_row, band * kBandRows), end = std::min(end_row, (band + 1) * kBandRows);
+    for (const Facing& facing : bands_[static_cast<std::size_t>(band)]) {
+      draw_triangle(facing, first, end, pixels);
+    }
+  }
+}
+
+void BoneView::draw_triangle(const Facing& facing, int first_row, int end_row,
+                             std::vector<BonePixel>& pixels) const {
+  const auto& [ia, ib, ic] = triangles_[static_cast<std::size_t>(facing.triangle)];
+  const Eigen::Vector2f a = pixels_[static_cast<std::size_t>(ia)], b = pixels_[static_cast<std::size_t>(ib)],
+                        c = pixels_[static_cast<std::size_t>(ic)];
+  const Eigen::Vector2f ab = b - a, ac = c - a;
+  const int x0 = std::max(0, static_cast<int>(std::ceil(std::min({a.x(), b.x(), c.x()}))) - area_.left);
+  const int x1 =
+      std::min(area_.width - 1, static_cast<int>(std::floor(std::max({a.x(), b.x(), c.x()}))) - area_.left);
+  const float za = camera_vertices_[static_cast<std::size_t>(ia)].z();
+  const float zb = camera_vertices_[static_cast<std::size_t>(ib)].z() - za;
+  const float zc = camera_vertices_[static_cast<std::size_t>(ic)].z() - za;
+  const float inverse = 1 / (ab.x() * ac.y() - ab.y() * ac.x());
+  for (int y = std::max(first_row, facing.first_row); y <= std::min(end_row - 1, facing.last_row); ++y) {
+    const float py = static_cast<float>(y + area_.top) - a.y();
+    BonePixel* row = pixels.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(area_.width);
+    // Shares of the corners along the row: both are linear in the column.
+    const float b_step = ac.y() * inverse, c_step = -ab.y() * inverse;
+    const float px0 = static_cast<float>(area_.left) - a.x();
+    const float b_at0 = (px0 * ac.y() - py * ac.x()) * inverse,
+                c_at0 = (ab.x() * py - ab.y() * px0) * inverse;
+    for (int x = x0; x <= x1; ++x) {
+      const float share_b = b_at0 + static_cast<float>(x) * b_step;
+      const float share_c = c_at0 + static_cast<float>(x) * c_step;
+      if (share_b < 0 || share_c < 0 || share_b + share_c > 1) continue;
+      const float depth = za + share_b * zb + share_c * zc;
+      if (depth < row[x].depth_mm) row[x] = {facing.triangle, depth, share_b, share_c};
     }
   }
 }

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "navigation/camera/camera_model.h"
+#include "navigation/simulator/ray_table.h"
 #include "planning/geometry/rigid_transform.h"
 #include "planning/geometry/triangle_mesh.h"
 
@@ -28,16 +28,24 @@ class BoneView {
   // The seed varies where the tissue is red.
   BoneView(const geometry::TriangleMesh& mesh, std::uint64_t seed);
 
-  // Sets the pose for the calls that follow. Vertices are projected by the camera model, edges are straight
-  // in the picture between them: with edges of 1 mm the error stays below a tenth of a pixel.
-  void look(const geometry::RigidTransform& camera_from_bone, const camera::CameraModel& camera);
+  // Sets the pose and the part of the picture for the calls that follow. Vertices are projected by the camera
+  // model, edges are straight in the picture between them: with edges of 1 mm the error stays below a tenth
+  // of a pixel.
+  void look(const geometry::RigidTransform& camera_from_bone, const RayTable& rays, const PixelArea& area);
 
-  // Draws into rows [first_row, end_row) of an area's pixels (row-major, counted from the area's top). Rows
+  // Draws into rows [first_row, end_row) of the area's pixels (row-major, counted from the area's top). Rows
   // can be drawn by several threads.
-  void draw(const PixelArea& area, int first_row, int end_row, std::vector<BonePixel>& pixels) const;
+  void draw(int first_row, int end_row, std::vector<BonePixel>& pixels) const;
   [[nodiscard]] Eigen::Vector3f shade(const BonePixel& pixel, float exposure) const;
 
  private:
+  // A triangle that faces the lens, and the area's rows that it may cover.
+  struct Facing {
+    std::int32_t triangle = 0;
+    int first_row = 0, last_row = 0;
+  };
+  void draw_triangle(const Facing& facing, int first_row, int end_row, std::vector<BonePixel>& pixels) const;
+
   // Smooth random values in four channels, periodic.
   class Noise {
    public:
@@ -54,6 +62,8 @@ class BoneView {
   std::vector<float> redness_;                       // by vertex
   std::vector<Eigen::Vector3f> camera_vertices_, camera_normals_;
   std::vector<Eigen::Vector2f> pixels_;  // NaN where the lens does not see
+  PixelArea area_;
+  std::vector<std::vector<Facing>> bands_;  // what begins in each band of kBandRows rows, or goes on there
 };
 
 }  // namespace arthronaut::simulator

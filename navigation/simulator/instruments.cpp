@@ -56,12 +56,36 @@ void add_world_marker(const tools::WorldMarker& marker, const geometry::RigidTra
   solids.push_back(make_plate(camera_from_marker, head));
   // The head's lower edge may stand in the bone; its face never does.
   solids.back()->yields_mm = 0;
+  for (std::size_t i = 1; i < marker.markers.size(); ++i)
+    add_plate(marker.markers[i].marker_id, marker.markers[i].size_mm,
+              camera_from_marker * marker.markers[i].body_from_marker, solids);
 }
 
 void add_tool(const tools::Tool& tool, const geometry::RigidTransform& camera_from_marker, Solids& solids) {
-  add_plate(tool.marker_id, tool.size_mm, camera_from_marker, solids);
+  for (const tools::BodyMarker& marker : tools::markers_of(tool))
+    add_plate(marker.marker_id, marker.size_mm, camera_from_marker * marker.body_from_marker, solids);
   if (tool.tip_mm) add_probe(*tool.tip_mm, camera_from_marker, solids);
   if (tool.axis) add_guide(*tool.axis, camera_from_marker, solids);
+}
+
+tools::ToolSet with_several_markers(tools::ToolSet tools) {
+  // Up the handle, turned a little to one side: seen when the first one is seen obliquely. The third is
+  // smaller and on the other side.
+  const auto turned = [](double about_y_deg) {
+    return Eigen::Quaterniond(
+        Eigen::AngleAxisd(geometry::rad_from_deg(about_y_deg), Eigen::Vector3d::UnitY()));
+  };
+  for (tools::Tool& tool : tools.tools) {
+    const int id = tool.marker_id;
+    tool.markers = {{id, tool.size_mm, {}},
+                    {id + 10, tool.size_mm, {turned(25), {5.6, 2.0, -1.4}}},
+                    {id + 20, 0.75 * tool.size_mm, {turned(-25), {-5.2, 1.0, -1.2}}}};
+  }
+  for (tools::WorldMarker& world : tools.world_markers)
+    world.markers = {
+        {world.marker_id, world.size_mm, {}},
+        {world.marker_id + 10, 0.75 * world.size_mm, {turned(0), {0, 1.9 * world.size_mm, 0.8}}}};
+  return tools;
 }
 
 }  // namespace arthronaut::simulator

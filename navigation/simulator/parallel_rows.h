@@ -1,16 +1,31 @@
-// Splits rows between two threads. Each row's result must not depend on any other, so that the picture is the
-// same however it is split.
+// Splits rows between the processor's cores. Each row's result must not depend on any other, so that the
+// picture is the same however it is split.
 #pragma once
 
+#include <algorithm>
+#include <atomic>
 #include <thread>
+#include <vector>
 
 namespace arthronaut::simulator {
 
-// work(first_row, end_row). Returns when both halves are done. The work must not throw.
+// work(first_row, end_row), in bands of kBandRows that the threads take one after the other: what is drawn is
+// seldom spread evenly over the picture. Returns when all is done. The work must not throw.
+inline constexpr int kBandRows = 32;
 template <class Work>
 void parallel_rows(int rows, Work work) {
-  std::jthread upper([&] { work(0, rows / 2); });
-  work(rows / 2, rows);
+  constexpr int kMostThreads = 4;  // more would take from what tracks the picture beside this
+  const int bands = (rows + kBandRows - 1) / kBandRows;
+  std::atomic<int> next_band{0};
+  const auto take_bands = [&] {
+    for (int band = next_band++; band < bands; band = next_band++) {
+      work(band * kBandRows, std::min(rows, (band + 1) * kBandRows));
+    }
+  };
+  const int threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMostThreads);
+  std::vector<std::jthread> helpers;
+  for (int i = 1; i < std::min(threads, bands); ++i) helpers.emplace_back(take_bands);
+  take_bands();
 }
 
 }  // namespace arthronaut::simulator

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "navigation/simulator/ground.h"
 #include "navigation/simulator/light.h"
 #include "navigation/simulator/parallel_rows.h"
 #include "navigation/simulator/ray_table.h"
@@ -15,6 +16,8 @@ namespace {
 // direction of an edge they lie evenly, so that an edge is placed to 1/64 px, which a square grid of as many
 // samples does not do for edges along its rows; in pairs, so that their mean is the centre.
 constexpr int kSamplePairs = 18;
+// Where no print is in the pixel, which is what poses are found by, a third will do.
+constexpr int kPlainSamplePairs = 6;
 constexpr double kR2X = 0.7548776662466927, kR2Y = 0.5698402909980532;
 
 constexpr int kBlockRows = 16;  // rows that are searched for solids as one
@@ -30,10 +33,10 @@ struct Candidate {
 
 class SolidLayer {
  public:
-  SolidLayer(const Scene& scene, const camera::CameraModel& camera, const PixelArea& area,
-             const RayTable& rays, const std::vector<BonePixel>& bone_pixels)
+  SolidLayer(const Scene& scene, const PixelArea& area, const RayTable& rays,
+             const std::vector<BonePixel>& bone_pixels)
       : area_(area), rays_(rays), bone_pixels_(bone_pixels), exposure_(scene.exposure) {
-    for (const auto& solid : scene.solids) candidates_.push_back(spans_of(*solid, camera));
+    for (const auto& solid : scene.solids) candidates_.push_back(spans_of(*solid));
   }
 
   // Draws over `light`, whose pixels hold the background.
@@ -42,42 +45,60 @@ class SolidLayer {
   }
 
  private:
-  Candidate spans_of(const Solid& solid, const camera::CameraModel& camera) const {
+  Candidate spans_of(const Solid& solid) const {
     constexpr std::array<int, 2> kNone{1 << 20, -1};
     const std::array<int, 2> whole_row{0, area_.width - 1};
     Candidate candidate{&solid, {static_cast<std::size_t>(area_.height), kNone}};
     const std::vector<Ball> balls = solid.cover();
     if (balls.empty()) candidate.spans.assign(candidate.spans.size(), whole_row);
     for (const Ball& ball : balls) {
-      if (is_out_of_sight(ball)) continue;
-      Eigen::Matrix<double, 2, 3> d_pixel_d_point;
-      const auto pixel = camera.project(ball.center_mm, d_pixel_d_point);
-      if (!pixel || ball.center_mm.z() < 3 * ball.radius_mm) {
+      const double distance = ball.center_mm.norm();
+      if (distance <= ball.radius_mm) {  // the lens is in it
         candidate.spans.assign(candidate.spans.size(), whole_row);
         break;
       }
-      // To first order the ball reaches this far; the lens bends the rest by less than a third of it.
-      const double reach = 1.35 * d_pixel_d_point.norm() * ball.radius_mm + 3;
-      const Eigen::Vector2d at = *pixel - Eigen::Vector2d(area_.left, area_.top);
-      const int top = std::max(0, static_cast<int>(at.y() - reach));
-      const int bottom = std::min(area_.height - 1, static_cast<int>(at.y() + reach));
-      for (int y = top; y <= bottom; ++y) {
-        auto& span = candidate.spans[static_cast<std::size_t>(y)];
-        span = {std::min(span[0], std::max(0, static_cast<int>(at.x() - reach))),
-                std::max(span[1], std::min(area_.width - 1, static_cast<int>(at.x() + reach)))};
-      }
+      widen(ball.center_mm / distance, std::asin(ball.radius_mm / distance), candidate);
     }
     return candidate;
   }
 
-  // Behind the lens, or further off its axis than any scope sees.
-  static bool is_out_of_sight(const Ball& ball) {
-    constexpr double kWidestDeg = 62;
-    const double distance = ball.center_mm.norm();
-    if (distance <= ball.radius_mm) return false;
-    const double half_angle = std::asin(ball.radius_mm / distance);
-    return std::atan2(ball.center_mm.head<2>().norm(), ball.center_mm.z()) - half_angle >
-           geometry::rad_from_deg(kWidestDeg);
+  // By what a ball covers: all directions within half_angle of `direction`.
+  void widen(const Eigen::Vector3d& direction, double half_angle, Candidate& candidate) const {
+    constexpr int kCorners = 16;  // of a pyramid that holds the cone
+    const double off_axis = std::atan2(direction.head<2>().norm(), direction.z());
+    if (off_axis - half_angle > std::atan(rays_.widest_tangent())) return;  // out of sight
+    const Eigen::Vector3d side = direction.unitOrthogonal(), up = direction.cross(side);
+    const double slant = std::tan(half_angle) / std::cos(geometry::kPi / kCorners);
+    double left = 1e9, top = 1e9, right = -1e9, bottom = -1e9;
+    for (int i = 0; i < kCorners; ++i) {
+      const double turn = 2 * geometry::kPi * i / kCorners;
+      const Eigen::Vector3d corner = direction + slant * (std::cos(turn) * side + std::sin(turn) * up);
+      // What stands beside the lens or behind it is seen at the rim.
+      const Eigen::Vector2d tangent = corner.head<2>() / std::max(corner.z(), 1e-3);
+      const Eigen::Vector2d at = rays_.pixel(tangent) - Eigen::Vector2d(area_.left, area_.top);
+      left = std::min(left, at.x());
+      right = std::max(right, at.x());
+      top = std::min(top, at.y());
+      bottom = std::max(bottom, at.y());
+    }
+    // The lens bends the pyramid's edges by a pixel at most; an ellipse in the box about the corners would
+    // not hold a cone that is cut off by the rim, so only the rounding of the box's own corners is left out
+    // there.
+    const double center_y = 0.5 * (top + bottom), half_height = 0.5 * (bottom - top) + 2;
+    const double center_x = 0.5 * (left + right), half_width = 0.5 * (right - left) + 2;
+    const bool is_whole = off_axis + half_angle < std::atan(rays_.widest_tangent());
+    const int first = std::max(0, static_cast<int>(center_y - half_height));
+    const int last = std::min(area_.height - 1, static_cast<int>(center_y + half_height) + 1);
+    for (int y = first; y <= last; ++y) {
+      double half = half_width;
+      if (is_whole) {
+        const double share = std::min(1.0, std::max(0.0, std::abs(y - center_y) - 1) / half_height);
+        half = half_width * std::sqrt(1 - share * share) + 2;
+      }
+      auto& span = candidate.spans[static_cast<std::size_t>(y)];
+      span = {std::min(span[0], std::max(0, static_cast<int>(center_x - half))),
+              std::max(span[1], std::min(area_.width - 1, static_cast<int>(center_x + half) + 1))};
+    }
   }
 
   // Nearest solid along the ray that the bone does not hide.
@@ -107,6 +128,13 @@ class SolidLayer {
     return lit(point.cast<float>(), hit.normal.cast<float>(), *hit.skin, exposure_);
   }
 
+  // What a ray through a pixel's upper left corner meets, and where.
+  struct Corner {
+    Signature signature = 0;
+    SolidHit hit;
+  };
+  static bool is_print(const Corner& corner) { return corner.signature != 0 && corner.hit.is_print; }
+
   float bone_depth(int x, int y) const {
     return bone_pixels_[static_cast<std::size_t>(y - area_.top) * static_cast<std::size_t>(area_.width) +
                         static_cast<std::size_t>(x - area_.left)]
@@ -128,19 +156,19 @@ class SolidLayer {
     return {std::max(0, all[0] - 1), std::min(area_.width - 1, all[1] + 1)};
   }
 
-  // Signatures at the upper left corners of a row's pixels, in the span and one beyond it.
-  void trace_corners(int row, const std::array<int, 2>& span, std::vector<Signature>& corners) const {
-    SolidHit ignored;
+  // The upper left corners of a row's pixels, in the span and one beyond it.
+  void trace_corners(int row, const std::array<int, 2>& span, std::vector<Corner>& corners) const {
     const int bone_row = std::min(row, area_.height - 1);
     for (int column = span[0]; column <= span[1] + 1; ++column) {
       const int x = area_.left + column;
       const float depth = bone_depth(area_.left + std::min(column, area_.width - 1), area_.top + bone_row);
-      corners[static_cast<std::size_t>(column)] = trace(x - 0.5, area_.top + row - 0.5, depth, ignored);
+      Corner& corner = corners[static_cast<std::size_t>(column)];
+      corner.signature = trace(x - 0.5, area_.top + row - 0.5, depth, corner.hit);
     }
   }
 
   void draw_rows(int first, int end, cv::Mat& light) const {
-    std::vector<Signature> above(static_cast<std::size_t>(area_.width) + 1), below(above.size());
+    std::vector<Corner> above(static_cast<std::size_t>(area_.width) + 1), below(above.size());
     std::array<int, 2> span{0, -1};
     for (int row = first; row < end; ++row) {
       if (row == first || row % kBlockRows == 0) {
@@ -156,22 +184,33 @@ class SolidLayer {
       for (int column = span[0]; column <= span[1]; ++column) {
         const auto i = static_cast<std::size_t>(column);
         const int x = area_.left + column;
-        const Signature corner = above[i];
-        if (corner != above[i + 1] || corner != below[i] || corner != below[i + 1]) {
-          out[i] = supersample(x, y, out[i]);
+        const Signature corner = above[i].signature;
+        if (corner != above[i + 1].signature || corner != below[i].signature ||
+            corner != below[i + 1].signature) {
+          const bool has_print =
+              is_print(above[i]) || is_print(above[i + 1]) || is_print(below[i]) || is_print(below[i + 1]);
+          out[i] = supersample(x, y, out[i], has_print ? kSamplePairs : kPlainSamplePairs);
         } else if (corner != 0) {
-          SolidHit hit;
-          if (trace(x, y, bone_depth(x, y), hit) != 0) out[i] = shade(x, y, hit);
+          // Inside a face light changes slowly: that of the corner will do.
+          out[i] = shade(x - 0.5, y - 0.5, above[i].hit);
         }
       }
     }
   }
 
-  // Mean light over the pixel's area; linear, so that an edge lies where its blurred profile says.
-  Eigen::Vector3f supersample(int x, int y, const Eigen::Vector3f& background) const {
+  // Mean light over the pixel's area; linear, so that an edge lies where its blurred profile says. A part of
+  // the pixel that is all one is shaded once.
+  Eigen::Vector3f supersample(int x, int y, const Eigen::Vector3f& background, int pairs) const {
+    struct Part {
+      Signature signature = 0;
+      Eigen::Vector3f light;
+    };
+    std::array<Part, 6> parts;
+    parts[0] = {0, background};
+    std::size_t part_count = 1;
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     double u = 0.5, v = 0.5;
-    for (int i = 0; i < kSamplePairs; ++i) {
+    for (int i = 0; i < pairs; ++i) {
       u += kR2X;
       v += kR2Y;
       u -= std::floor(u);
@@ -179,10 +218,20 @@ class SolidLayer {
       for (const double sign : {-1.0, 1.0}) {
         SolidHit hit;
         const double sx = x + sign * (u - 0.5), sy = y + sign * (v - 0.5);
-        sum += trace(sx, sy, bone_depth(x, y), hit) != 0 ? shade(sx, sy, hit) : background;
+        const Signature signature = trace(sx, sy, bone_depth(x, y), hit);
+        std::size_t part = 0;
+        while (part < part_count && parts[part].signature != signature) ++part;
+        if (part == part_count) {
+          if (part_count == parts.size()) {
+            sum += shade(sx, sy, hit);
+            continue;
+          }
+          parts[part_count++] = {signature, shade(sx, sy, hit)};
+        }
+        sum += parts[part].light;
       }
     }
-    return sum / (2 * kSamplePairs);
+    return sum / static_cast<float>(2 * pairs);
   }
 
   const PixelArea& area_;
@@ -206,17 +255,10 @@ PixelArea visible_area(const camera::CameraModel& camera) {
           high(b.center_px.y(), camera.image_size_px().y()) - top};
 }
 
-// The capsule behind the bone: red, far and without detail. Without it the rim would stand on black.
-Eigen::Vector3f backdrop(const Eigen::Vector2d& tangent, float exposure) {
-  constexpr float kFarMm = 36;
-  static const Skin kTissue{{0.10f, 0.12f, 0.34f}, 0, 1};
-  const Eigen::Vector3f direction = tangent.homogeneous().cast<float>();
-  return lit(kFarMm * direction, -direction.normalized(), kTissue, exposure);
-}
-
 }  // namespace
 
-Renderer::Renderer(BoneView* bone, const SensorOptions& sensor) : bone_(bone), sensor_(sensor) {}
+Renderer::Renderer(BoneView* bone, const SensorOptions& sensor)
+    : bone_(bone), vignette_share_(sensor.vignette_share), sensor_(sensor) {}
 
 void Renderer::render(const Scene& scene, const camera::CameraModel& camera, double mark_angle_deg,
                       std::uint64_t noise_seed, camera::Frame& frame) {
@@ -226,39 +268,27 @@ void Renderer::render(const Scene& scene, const camera::CameraModel& camera, dou
   const double reach =
       camera.boundary().radius_px + 40 + (camera.principal_point_px() - camera.boundary().center_px).norm();
   const RayTable rays(camera, reach);
-  const FieldStop stop(camera.boundary(), mark_angle_deg, sensor_.vignette_share);
+  const FieldStop stop(camera.boundary(), mark_angle_deg, vignette_share_);
 
-  const double visible_radius2 = std::pow(camera.boundary().radius_px + 4, 2);
   bone_pixels_.assign(static_cast<std::size_t>(area.width) * static_cast<std::size_t>(area.height),
                       BonePixel{});
   light_.create(area.height, area.width, CV_32FC3);
-  light_ = cv::Scalar::all(0);
   // 1. The bone. 2. The solids over it. 3. The field stop over both. 4. The sensor.
-  const bool draws_bone = scene.has_bone && bone_;
-  if (draws_bone) bone_->look(scene.camera_from_bone, camera);
-  parallel_rows(area.height, [&](int first, int end) {
-    if (draws_bone) bone_->draw(area, first, end, bone_pixels_);
-    for (int y = first; y < end; ++y) {
-      auto* out = light_.ptr<Eigen::Vector3f>(y);
-      const BonePixel* row = bone_pixels_.data() + static_cast<std::ptrdiff_t>(y) * area.width;
-      for (int x = 0; x < area.width; ++x) {
-        // Light that the field stop will not pass need not be computed.
-        const double dx = x + area.left - camera.boundary().center_px.x();
-        const double dy = y + area.top - camera.boundary().center_px.y();
-        if (dx * dx + dy * dy > visible_radius2) continue;
-        out[x] = row[x].triangle >= 0 ? bone_->shade(row[x], scene.exposure)
-                                      : backdrop(rays.tangent(x + area.left, y + area.top), scene.exposure);
-      }
-    }
-  });
-  SolidLayer(scene, camera, area, rays, bone_pixels_).draw(light_);
+  BoneView* bone = scene.has_bone ? bone_ : nullptr;
+  if (bone) {
+    bone->look(scene.camera_from_bone, rays, area);
+    parallel_rows(area.height, [&](int first, int end) { bone->draw(first, end, bone_pixels_); });
+  }
+  const Ground ground(bone, bone_pixels_, area, camera.boundary(), rays, scene.exposure);
+  parallel_rows(area.height,
+                [&](int first, int end) { ground.draw_rows(first, end, light_.ptr<Eigen::Vector3f>(0)); });
+  SolidLayer(scene, area, rays, bone_pixels_).draw(light_);
   parallel_rows(area.height, [&](int first, int end) {
     for (int y = first; y < end; ++y) {
-      auto* out = light_.ptr<Eigen::Vector3f>(y);
-      for (int x = 0; x < area.width; ++x) out[x] *= stop.share_passed(x + area.left, y + area.top);
+      stop.stop(area.left, y + area.top, area.width, light_.ptr<Eigen::Vector3f>(y));
     }
   });
-  expose(light_, area, sensor_, noise_seed, frame);
+  sensor_.expose(light_, area, noise_seed, frame);
 }
 
 }  // namespace arthronaut::simulator

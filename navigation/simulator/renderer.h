@@ -32,7 +32,8 @@ class Renderer {
 
  private:
   BoneView* bone_;
-  SensorOptions sensor_;
+  double vignette_share_;
+  Sensor sensor_;
   // Kept from frame to frame for their memory.
   std::vector<BonePixel> bone_pixels_;
   cv::Mat light_;

@@ -7,7 +7,7 @@ namespace arthronaut::simulator {
 
 Script pivot_script(const SimulationOptions& options, const Staging& staging) {
   constexpr int kFramesBetweenStops = 3;
-  if (staging.pivot.empty()) throw InvalidInput("simulator: there is no pivot to play");
+  if (staging.pivot.empty()) throw InvalidInput("simulator: the probe pivots on the femur, not on the tibia");
   const Eigen::Vector3d tip_in_probe = *probe_of(options.tools).tip_mm;
   Script script;
   for (std::size_t i = 0; i + 1 < staging.pivot.size(); ++i) {

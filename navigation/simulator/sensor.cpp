@@ -35,25 +35,23 @@ const std::array<float, kQuantiles>& normal_quantiles() {
   return table;
 }
 
-struct Tone {
-  float level = 0, noise_sigma = 0;  // grey levels
-};
-
 std::uint8_t to_byte(float level) {
-  return static_cast<std::uint8_t>(static_cast<int>(std::clamp(level + 0.5f, 0.0f, 255.0f)));
+  return static_cast<std::uint8_t>(std::clamp(static_cast<int>(level + 0.5f), 0, 255));
 }
 
-// By the square root of the light, so that the dark end, where gamma is steep, is finely divided.
-std::array<Tone, kTones + 1> make_tones(const SensorOptions& options) {
-  std::array<Tone, kTones + 1> tones{};
-  for (int i = 0; i <= kTones; ++i) {
-    const double root = static_cast<double>(i) / kTones;
-    const double level = 255 * std::pow(root * root, 1 / kGamma);
-    const double variance =
-        options.read_noise_levels * options.read_noise_levels + options.shot_noise_share * level;
-    tones[static_cast<std::size_t>(i)] = {static_cast<float>(level), static_cast<float>(std::sqrt(variance))};
-  }
-  return tones;
+// Normal deviates in no order. A row takes its noise from a place drawn for it, which is as good as noise of
+// its own and costs no random number a pixel.
+const std::vector<float>& deviates() {
+  static const auto drawn = [] {
+    constexpr std::size_t kDeviates = 1 << 18;
+    static_assert(kDeviates > 4 * 3 * Sensor::kWidestPx);
+    const auto& quantiles = normal_quantiles();
+    std::vector<float> deviates(kDeviates);
+    Random random(977);
+    for (float& deviate : deviates) deviate = quantiles[random.bits() >> 54];
+    return deviates;
+  }();
+  return drawn;
 }
 
 }  // namespace
@@ -96,38 +94,74 @@ float FieldStop::share_passed(double x_px, double y_px) const {
   return static_cast<float>(vignette * open / 64.0);
 }
 
-void expose(cv::Mat& light, const PixelArea& area, const SensorOptions& options, std::uint64_t noise_seed,
-            camera::Frame& frame) {
-  if (options.blur_sigma_px > 0) {
-    cv::GaussianBlur(light, light, {7, 7}, options.blur_sigma_px, options.blur_sigma_px,
-                     cv::BORDER_REPLICATE);
+void FieldStop::stop(double left_px, double y_px, int width, Eigen::Vector3f* light) const {
+  // Inside the circle that the tooth does not reach, which is nearly all of it, there is the vignette alone.
+  const double dy = y_px - boundary_.center_px.y(), limit2 = boundary_.radius_px * boundary_.radius_px;
+  const double plain_radius = boundary_.radius_px * (1 - kToothDepthShare) - 2;
+  const double reach = std::sqrt(std::max(0.0, plain_radius * plain_radius - dy * dy));
+  const double center = boundary_.center_px.x() - left_px;
+  const int plain_from = std::clamp(static_cast<int>(std::ceil(center - reach)), 0, width);
+  const int plain_end = std::clamp(static_cast<int>(std::floor(center + reach)), plain_from, width);
+  for (int x = 0; x < plain_from; ++x) light[x] *= share_passed(left_px + x, y_px);
+  const auto scale = static_cast<float>(vignette_share_ / limit2);
+  const auto along = static_cast<float>(center), across2 = static_cast<float>(dy * dy);
+  for (int x = plain_from; x < plain_end; ++x) {
+    const float dx = static_cast<float>(x) - along;
+    light[x] *= 1 - scale * (dx * dx + across2);
   }
-  static const std::array<float, kQuantiles>& quantiles = normal_quantiles();
-  const auto tones = make_tones(options);
-  const auto tone_of = [&](float value) -> const Tone& {
-    const float root = std::sqrt(std::clamp(value, 0.0f, 1.0f)) * kTones;
-    return tones[static_cast<std::size_t>(static_cast<int>(root + 0.5f))];
+  for (int x = plain_end; x < width; ++x) light[x] *= share_passed(left_px + x, y_px);
+}
+
+Sensor::Sensor(const SensorOptions& options) : blur_sigma_px_(options.blur_sigma_px), tones_(kTones + 1) {
+  // Divided by the square root of the light, so that the dark end, where gamma is steep, is finely divided.
+  for (int i = 0; i <= kTones; ++i) {
+    const double root = static_cast<double>(i) / kTones;
+    const double level = 255 * std::pow(root * root, 1 / kGamma);
+    const double variance =
+        options.read_noise_levels * options.read_noise_levels + options.shot_noise_share * level;
+    tones_[static_cast<std::size_t>(i)] = {static_cast<float>(level),
+                                           static_cast<float>(std::sqrt(variance))};
+  }
+  dark_.reserve(deviates().size());
+  for (const float deviate : deviates()) {
+    dark_.push_back(to_byte(tones_[0].level + tones_[0].noise_sigma * deviate));
+  }
+}
+
+void Sensor::expose_row(float* light, const PixelArea& area, std::size_t noise_from, int width,
+                        std::uint8_t* out) const {
+  const auto copy_dark = [&](int first, int end) {
+    std::copy_n(dark_.data() + noise_from + 3 * static_cast<std::size_t>(first), 3 * (end - first),
+                out + 3 * first);
   };
+  if (!light) return copy_dark(0, width);
+  copy_dark(0, area.left);
+  copy_dark(area.left + area.width, width);
+  const int count = 3 * area.width;
+  cv::Mat row(1, count, CV_32F, light);
+  cv::sqrt(row, row);
+  const float* deviate = deviates().data() + noise_from + 3 * static_cast<std::size_t>(area.left);
+  std::uint8_t* lit = out + 3 * area.left;
+  for (int i = 0; i < count; ++i) {
+    const int at = std::min(static_cast<int>(light[i] * kTones + 0.5f), kTones);
+    const Tone& tone = tones_[static_cast<std::size_t>(at)];
+    lit[i] = to_byte(tone.level + tone.noise_sigma * deviate[i]);
+  }
+}
+
+void Sensor::expose(cv::Mat& light, const PixelArea& area, std::uint64_t noise_seed,
+                    camera::Frame& frame) const {
+  if (blur_sigma_px_ > 0) {
+    cv::GaussianBlur(light, light, {7, 7}, blur_sigma_px_, blur_sigma_px_, cv::BORDER_REPLICATE);
+  }
   frame.bgr.resize(static_cast<std::size_t>(3) * static_cast<std::size_t>(frame.width * frame.height));
+  const std::size_t places = deviates().size() - 3 * static_cast<std::size_t>(frame.width);
   parallel_rows(frame.height, [&](int first, int end) {
     for (int y = first; y < end; ++y) {
-      std::uint64_t state = Random(noise_seed * 0x100000001B3ULL + static_cast<std::uint64_t>(y)).bits() | 1;
+      const std::uint64_t draw = Random(noise_seed * 0x100000001B3ULL + static_cast<std::uint64_t>(y)).bits();
       const bool in_rows = y >= area.top && y < area.top + area.height;
-      const float* lit_row = in_rows ? light.ptr<float>(y - area.top) : nullptr;
-      std::uint8_t* out =
-          frame.bgr.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(3 * frame.width);
-      for (int x = 0; x < frame.width; ++x, out += 3) {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        const bool is_lit = lit_row && x >= area.left && x < area.left + area.width;
-        for (int channel = 0; channel < 3; ++channel) {
-          const float deviate = quantiles[(state >> (8 + 18 * channel)) & (kQuantiles - 1)];
-          // Half of the picture is dark: its level is that of no light.
-          const Tone& tone = is_lit ? tone_of(lit_row[3 * (x - area.left) + channel]) : tones[0];
-          out[channel] = to_byte(tone.level + tone.noise_sigma * deviate);
-        }
-      }
+      expose_row(in_rows ? light.ptr<float>(y - area.top) : nullptr, area, draw % places, frame.width,
+                 frame.bgr.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(3 * frame.width));
     }
   });
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "navigation/camera/camera_model.h"
 #include "navigation/camera/frame.h"
@@ -24,6 +25,8 @@ class FieldStop {
  public:
   FieldStop(const camera::Boundary& boundary, double mark_angle_deg, double vignette_share);
   [[nodiscard]] float share_passed(double x_px, double y_px) const;
+  // The same for `width` pixels of a row from left_px on, taken from their light.
+  void stop(double left_px, double y_px, int width, Eigen::Vector3f* light) const;
 
  private:
   [[nodiscard]] bool is_open(double dx, double dy) const;
@@ -32,9 +35,25 @@ class FieldStop {
   double vignette_share_;
 };
 
-// `light` is the area's linear light (CV_32FC3) behind the field stop; it is blurred in place. The noise is a
-// function of noise_seed and the pixel alone.
-void expose(cv::Mat& light, const PixelArea& area, const SensorOptions& options, std::uint64_t noise_seed,
-            camera::Frame& frame);
+class Sensor {
+ public:
+  explicit Sensor(const SensorOptions& options);
+
+  // `light` is the area's linear light (CV_32FC3) behind the field stop; it is used up. The noise is a
+  // function of noise_seed and the pixel alone. At most kWidestPx pixels a row.
+  void expose(cv::Mat& light, const PixelArea& area, std::uint64_t noise_seed, camera::Frame& frame) const;
+  static constexpr int kWidestPx = 16384;
+
+ private:
+  struct Tone {
+    float level = 0, noise_sigma = 0;  // grey levels
+  };
+  void expose_row(float* light, const PixelArea& area, std::size_t noise_from, int width,
+                  std::uint8_t* out) const;
+
+  double blur_sigma_px_;
+  std::vector<Tone> tones_;         // by the square root of the light
+  std::vector<std::uint8_t> dark_;  // what the sensor makes of no light, one value for each of the noise's
+};
 
 }  // namespace arthronaut::simulator

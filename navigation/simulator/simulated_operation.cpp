@@ -118,6 +118,12 @@ struct SimulatedOperation::State {
     return script[static_cast<std::size_t>(std::lround(share * static_cast<double>(last)))];
   }
 
+  template <typename Body>
+  void add_truth(const Body& body, const geometry::RigidTransform& camera_from_body) {
+    for (const tools::BodyMarker& marker : tools::markers_of(body))
+      truth.markers.push_back({marker.marker_id, camera_from_body * marker.body_from_marker});
+  }
+
   camera::FramePtr render(std::int64_t index) {
     const Moment& moment = moment_of(index);
     truth = {.frame_index = index,
@@ -134,11 +140,14 @@ struct SimulatedOperation::State {
       scene.has_bone = true;
       scene.camera_from_bone = truth.camera_from_bone;
       const auto& world = world_marker_of(options);
-      truth.markers.push_back({world.marker_id, truth.camera_from_bone * staging.bone_from_world_marker});
-      add_world_marker(world, truth.markers.back().camera_from_marker, scene.solids);
+      const geometry::RigidTransform camera_from_world =
+          truth.camera_from_bone * staging.bone_from_world_marker;
+      add_truth(world, camera_from_world);
+      add_world_marker(world, camera_from_world, scene.solids);
       const auto& tool_pose = moment.bone_from_probe ? moment.bone_from_probe : moment.bone_from_guide;
-      truth.markers.push_back({tool().marker_id, truth.camera_from_bone * *tool_pose});
-      add_tool(tool(), truth.markers.back().camera_from_marker, scene.solids);
+      const geometry::RigidTransform camera_from_tool = truth.camera_from_bone * *tool_pose;
+      add_truth(tool(), camera_from_tool);
+      add_tool(tool(), camera_from_tool, scene.solids);
     }
     const camera::CameraModel model(options.camera, options.camera.lens_angle_rad(truth.mark_angle_deg),
                                     phase == Phase::Calibrate ? 1.0 : options.refractive_index);

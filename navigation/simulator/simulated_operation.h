@@ -17,7 +17,7 @@ namespace arthronaut::simulator {
 
 enum class Phase {
   Calibrate,  // stills of a checkerboard in air, the lens turned in between
-  Pivot,      // the probe pivots in a dimple, in saline, world marker in view
+  Pivot,      // the probe pivots in a dimple of the femur, in saline, world marker in view
   Scratch,    // the probe walks over the notch wall
   Drill,      // the guide approaches the plan and drills
 };

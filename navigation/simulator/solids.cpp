@@ -61,6 +61,7 @@ class Plate : public Solid {
     hit.normal = rotation_.col(2);
     hit.region = is_ink(at) ? kInk : kPaper;
     hit.skin = hit.region == kInk ? &kInkSkin : &kPaperSkin;
+    hit.is_print = true;
     return true;
   }
 
@@ -155,6 +156,7 @@ class Checkerboard : public Solid {
     hit.region =
         (static_cast<long>(std::floor(at.x())) + static_cast<long>(std::floor(at.y()))) & 1 ? kPaper : kInk;
     hit.skin = hit.region == kInk ? &kInkSkin : &kPaperSkin;
+    hit.is_print = true;
     return true;
   }
 

@@ -22,7 +22,8 @@ struct SolidHit {
   double depth_mm = 0;  // along the camera's z axis
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   const Skin* skin = nullptr;
-  int region = 0;  // differs between parts of a solid that look different
+  int region = 0;         // differs between parts of a solid that look different
+  bool is_print = false;  // of a printed face, whose edges are measured
 };
 
 struct Ball {

@@ -40,7 +40,7 @@ class Stage {
     for (int attempt = 0; attempt < 1500; ++attempt) {
       Staging staging;
       searches_widely_ = attempt % 3 == 2;
-      if (place_world_marker(staging) && stage_drill(staging) && stage_pivot(staging) &&
+      if (place_world_marker(staging) && stage_drill(staging) && (!pivots() || stage_pivot(staging)) &&
           stage_scratch(staging)) {
         return staging;
       }
@@ -50,6 +50,10 @@ class Stage {
   }
 
  private:
+  // Above the flat plateau the world marker lies as deep as any tip, and what is near enough to see it is too
+  // near for the swing of a probe.
+  bool pivots() const { return options_.bone == bones::BoneKind::Femur; }
+
   Vector3d anatomical(double lateral, double anterior, double superior) const {
     // The tibia is looked at from above, the femur from below.
     const double up = options_.bone == bones::BoneKind::Femur ? superior : -superior;
@@ -335,7 +339,12 @@ class Stage {
 }  // namespace
 
 Staging stage_operation(const SimulationOptions& options, const geometry::Surface& bone) {
-  return Stage(options, bone).find();
+  // The places are looked for with the first marker of each body, as with one marker alone: the further ones
+  // are seen where they happen to be, and so the same operation is staged with them and without.
+  SimulationOptions of_one = options;
+  for (tools::Tool& tool : of_one.tools.tools) tool.markers.clear();
+  for (tools::WorldMarker& world : of_one.tools.world_markers) world.markers.clear();
+  return Stage(of_one, bone).find();
 }
 
 const tools::Tool& probe_of(const tools::ToolSet& tools) {

@@ -20,7 +20,7 @@ struct ProbePose {
 struct Staging {
   geometry::RigidTransform bone_from_world_marker;
   geometry::RigidTransform bone_from_camera_pivot, bone_from_camera_scratch, bone_from_camera_drill;
-  std::vector<ProbePose> pivot;                 // a closed swing about one tip
+  std::vector<ProbePose> pivot;                 // a closed swing about one tip; on the femur alone
   double pivot_cone_deg = 0;                    // half-angle
   std::vector<std::vector<ProbePose>> strokes;  // tip on the surface, steps of 0.5 mm
 };

@@ -9,6 +9,7 @@
 
 #include "navigation/camera/frame.h"
 #include "navigation/sources/source_kind.h"
+#include "navigation/sources/source_line.h"
 
 namespace arthronaut::sources {
 
@@ -21,6 +22,9 @@ struct SourceInfo {
   [[nodiscard]] bool is_live() const { return kind == SourceKind::Live; }
   std::filesystem::path
       encoded_file;  // the video as it came, to be copied instead of encoded again; empty when there is none
+  // Of a live source that comes back by itself: why no picture comes, and how it is told to end. Null else.
+  std::shared_ptr<SourceLine> line = nullptr;
+  bool ends = true;  // false: an end is a fault, and the source is to be taken up again
 };
 
 class FrameSource {
@@ -43,8 +47,8 @@ class FrameSource {
 // Frame::luma. Full range, as recording::VideoEncoder writes it.
 [[nodiscard]] std::unique_ptr<FrameSource> open_video_with_exact_luma(const std::filesystem::path& video);
 // Frames carry the time of their capture: the driver's (V4L2 stamps on the monotonic clock, which OpenCV
-// passes on) where it is one that can be true, else the moment the driver handed the picture over. Throws
-// DeviceError.
+// passes on) where it is one that can be true, else the moment the driver handed the picture over. One that
+// is pulled out is opened again when it is back, as with open_stream(). Throws DeviceError.
 [[nodiscard]] std::unique_ptr<FrameSource> open_device(int device_index);
 
 // A stream over the network, as it comes: "rtsp://...", "rtsps://...", "udp://HOST:PORT" (MPEG-TS; the host
@@ -56,10 +60,10 @@ class FrameSource {
 // What an encoder holds back counts: with B-frames a picture is some frames old before it is sent, too old to
 // guide. Encoders of live pictures go without them.
 //
-// A stream that breaks off is taken up again by itself, and pictures that came damaged are left out;
-// meanwhile nothing is given. After 15 s without a picture, and when pictures come in another size, next()
-// throws DeviceError. A pipeline that comes to its end gives null. Throws DeviceError when no picture comes
-// within 10 s, and InvalidInput for a pipeline that is none.
+// A stream that breaks off, falls silent for a second or gives pictures of another size is taken up again by
+// itself, for as long as it takes, and pictures that came damaged are left out; meanwhile nothing is given,
+// and info().line says why. Only a pipeline that is not live comes to an end, and gives null then. Opening
+// throws DeviceError when no picture comes within 10 s, and InvalidInput for a pipeline that is none.
 [[nodiscard]] std::unique_ptr<FrameSource> open_stream(const std::string& address);
 // Whether text names a stream, by its form alone.
 [[nodiscard]] bool is_stream_address(std::string_view text);

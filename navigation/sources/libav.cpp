@@ -1,6 +1,51 @@
 #include "navigation/sources/libav.h"
 
+#include "navigation/sources/luma_planes.h"
+
+extern "C" {
+#include <libavutil/pixdesc.h>
+}
+
 namespace arthronaut::sources {
+
+namespace {
+
+// What libswscale takes for full range by its format alone; the colours are then made alike.
+bool is_full_range(AVPixelFormat format) {
+  switch (format) {
+    case AV_PIX_FMT_YUVJ420P:
+    case AV_PIX_FMT_YUVJ422P:
+    case AV_PIX_FMT_YUVJ444P:
+    case AV_PIX_FMT_YUVJ440P:
+    case AV_PIX_FMT_YUVJ411P:
+    case AV_PIX_FMT_GRAY8:
+      return true;
+    default:
+      return false;
+  }
+}
+
+// Where the luma of a picture lies; no data where it has none of its own (RGB, palettes).
+LumaPlane luma_plane(const AVFrame& picture) {
+  const auto format = static_cast<AVPixelFormat>(picture.format);
+  const AVPixFmtDescriptor* const described = av_pix_fmt_desc_get(format);
+  constexpr std::uint64_t kOther = AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_BITSTREAM |
+                                   AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_FLOAT | AV_PIX_FMT_FLAG_BE;
+  if (described == nullptr || (described->flags & kOther) != 0 || described->nb_components == 0) return {};
+  const AVComponentDescriptor& luma = described->comp[0];
+  LumaPlane plane;
+  plane.data = picture.data[luma.plane] + luma.offset;
+  plane.stride = picture.linesize[luma.plane];
+  plane.step = luma.step;
+  plane.bits = luma.depth;
+  plane.shift = luma.shift;
+  plane.is_full_range = is_full_range(format);
+  plane.width = picture.width;
+  plane.height = picture.height;
+  return plane;
+}
+
+}  // namespace
 
 std::string libav_message(int error) {
   char text[AV_ERROR_MAX_STRING_SIZE] = {};
@@ -8,24 +53,68 @@ std::string libav_message(int error) {
   return text;
 }
 
-bool BgrConverter::convert(const AVFrame& picture, camera::Frame& frame) {
-  frame.width = picture.width;
-  frame.height = picture.height;
-  converter_.reset(sws_getCachedContext(converter_.release(), frame.width, frame.height,
-                                        static_cast<AVPixelFormat>(picture.format), frame.width, frame.height,
-                                        AV_PIX_FMT_BGR24, SWS_BICUBIC, nullptr, nullptr, nullptr));
+bool BgrConverter::convert(const AVFrame& picture, std::vector<std::uint8_t>& bgr) {
+  converter_.reset(sws_getCachedContext(
+      converter_.release(), picture.width, picture.height, static_cast<AVPixelFormat>(picture.format),
+      picture.width, picture.height, AV_PIX_FMT_BGR24, SWS_BICUBIC, nullptr, nullptr, nullptr));
   if (!converter_) return false;
   if (is_full_range_) {
     const int* const bt601 = sws_getCoefficients(SWS_CS_ITU601);
     constexpr int kFullRange = 1, kUnity = 1 << 16;
     sws_setColorspaceDetails(converter_.get(), bt601, kFullRange, bt601, kFullRange, 0, kUnity, kUnity);
   }
-  frame.bgr.resize(static_cast<std::size_t>(3) * static_cast<std::size_t>(frame.width) *
-                   static_cast<std::size_t>(frame.height));
-  std::uint8_t* const planes[] = {frame.bgr.data()};
-  const int strides[] = {3 * frame.width};
-  sws_scale(converter_.get(), picture.data, picture.linesize, 0, frame.height, planes, strides);
+  bgr.resize(static_cast<std::size_t>(3) * static_cast<std::size_t>(picture.width) *
+             static_cast<std::size_t>(picture.height));
+  std::uint8_t* const planes[] = {bgr.data()};
+  const int strides[] = {3 * picture.width};
+  sws_scale(converter_.get(), picture.data, picture.linesize, 0, picture.height, planes, strides);
   return true;
+}
+
+class DecodedFrames::Memory final : public camera::PictureMemory {
+ public:
+  void hold(const AVFrame& picture) {
+    av_frame_unref(picture_.get());
+    if (av_frame_ref(picture_.get(), &picture) < 0) throw std::bad_alloc();
+  }
+  void let_go() { av_frame_unref(picture_.get()); }
+
+  [[nodiscard]] camera::GrayView luma() const override { return luma_plane(*picture_).in_place(); }
+  void bgr_into(std::vector<std::uint8_t>& bgr) const override {
+    // A converter keeps tables that cost as much as a picture; whoever shows does so on one thread.
+    thread_local BgrConverter converter;
+    (void)converter.convert(*picture_, bgr);
+  }
+
+ private:
+  LibavPtr<AVFrame> picture_{av_frame_alloc()};
+};
+
+DecodedFrames::DecodedFrames()
+    : memories_([](Memory& memory) { memory.let_go(); }),
+      frames_([](camera::Frame& frame) { frame.memory.reset(); }) {}
+
+std::shared_ptr<camera::Frame> DecodedFrames::make(const AVFrame& picture) {
+  if (picture.format != known_format_) {
+    BgrConverter converter;
+    if (!converter.convert(picture, bgr_)) return nullptr;
+    known_format_ = picture.format;
+    bgr_ = {};
+  }
+  auto frame = frames_.take();
+  frame->width = picture.width;
+  frame->height = picture.height;
+  frame->bgr.clear();
+  const LumaPlane plane = luma_plane(picture);
+  auto memory = memories_.take();
+  memory->hold(picture);
+  const bool is_there = plane.data == nullptr || plane.in_place().data != nullptr;
+  is_there ? frame->luma.clear() : plane.write(frame->luma);
+  if (plane.data == nullptr)
+    memory->bgr_into(frame->bgr);
+  else
+    frame->memory = std::move(memory);
+  return frame;
 }
 
 }  // namespace arthronaut::sources

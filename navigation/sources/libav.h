@@ -3,8 +3,10 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "navigation/camera/frame.h"
+#include "navigation/worker/recycler.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -35,12 +37,30 @@ class BgrConverter {
  public:
   // The picture's luma and colours use all 256 steps.
   void expect_full_range() { is_full_range_ = true; }
-  // Fills width, height and bgr. False: no way from this pixel format.
-  [[nodiscard]] bool convert(const AVFrame& picture, camera::Frame& frame);
+  // Packed. False: no way from this pixel format.
+  [[nodiscard]] bool convert(const AVFrame& picture, std::vector<std::uint8_t>& bgr);
 
  private:
   LibavPtr<SwsContext> converter_;
   bool is_full_range_ = false;
+};
+
+// Makes frames of decoded pictures without converting colours: the luma is the one that was sent. Where it
+// uses all 256 steps it is looked at where the decoder put it; where it is stretched from 16..235, or has
+// more than 8 bits, it is written once. Colours are made by whoever shows them. One thread; frames may
+// outlive it.
+class DecodedFrames {
+ public:
+  DecodedFrames();
+  // With width, height and luma; null: no way from this pixel format. The picture is kept, not copied.
+  [[nodiscard]] std::shared_ptr<camera::Frame> make(const AVFrame& picture);
+
+ private:
+  class Memory;
+  worker::Recycler<Memory> memories_;
+  worker::Recycler<camera::Frame> frames_;
+  std::vector<std::uint8_t> bgr_;  // while it is found out that there is a way
+  int known_format_ = -1;
 };
 
 }  // namespace arthronaut::sources

@@ -7,7 +7,8 @@
 namespace arthronaut::sources {
 namespace {
 
-constexpr std::uint64_t kEbmlId = 0x1A45DFA3, kSegmentId = 0x18538067, kClusterId = 0x1F43B675;
+constexpr std::uint64_t kEbmlId = 0x1A45DFA3, kSegmentId = 0x18538067, kClusterId = 0x1F43B675,
+                        kTimeId = 0xE7;
 
 // Walks element headers. EBML numbers carry their own length in the leading zero bits of the first byte.
 class ElementReader {
@@ -24,6 +25,16 @@ class ElementReader {
 
   // False when the file ends inside the number.
   bool read_id(std::uint64_t& id) { return read_number(id, false); }
+  // As many bytes, the first one highest.
+  bool read_bytes(std::uint64_t& value, std::uint64_t count) {
+    value = 0;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const int next = stream_.get();
+      if (next < 0) return false;
+      value = (value << 8) | static_cast<std::uint64_t>(next);
+    }
+    return true;
+  }
   // all_ones: the size is not known (a live recording).
   bool read_size(std::uint64_t& size, bool& all_ones) {
     if (!read_number(size, true)) return false;
@@ -69,6 +80,50 @@ bool matroska_breaks_off(const std::filesystem::path& file) {
     reader.seek(enter ? body : body + size);
   }
   return false;
+}
+
+bool matroska_is_unfinished(const std::filesystem::path& file) {
+  ElementReader reader(file);
+  std::uint64_t id = 0, size = 0;
+  bool unknown_size = false;
+  if (!reader.read_id(id) || id != kEbmlId || !reader.read_size(size, unknown_size)) return false;
+  reader.seek(reader.position() + size);
+  if (!reader.read_id(id) || id != kSegmentId || !reader.read_size(size, unknown_size)) return false;
+  return unknown_size || size > reader.size() - reader.position();
+}
+
+std::vector<MatroskaCluster> matroska_clusters(const std::filesystem::path& file) {
+  std::vector<MatroskaCluster> clusters;
+  ElementReader reader(file);
+  std::uint64_t id = 0, size = 0;
+  bool unknown_size = false;
+  if (!reader.read_id(id) || id != kEbmlId) return clusters;
+  reader.seek(0);
+  std::uint64_t start = 0, skip_to = 0;  // of the cluster that is in hand
+  bool awaits_time = false;
+  while (reader.position() < reader.size()) {
+    const std::uint64_t at = reader.position();
+    if (!reader.read_id(id) || !reader.read_size(size, unknown_size)) break;
+    const std::uint64_t body = reader.position();
+    if (id == kSegmentId) continue;
+    if (id == kClusterId) {
+      start = at;
+      awaits_time = true;
+      skip_to = unknown_size ? 0 : body + size;
+      continue;
+    }
+    if (awaits_time && id == kTimeId && size <= 8) {
+      std::uint64_t time = 0;
+      if (!reader.read_bytes(time, size)) break;
+      clusters.push_back({static_cast<std::int64_t>(start), static_cast<std::int64_t>(time)});
+      awaits_time = false;
+      if (skip_to > 0) reader.seek(skip_to);  // its blocks are not looked at
+      continue;
+    }
+    if (unknown_size || size > reader.size() - body) break;
+    reader.seek(body + size);
+  }
+  return clusters;
 }
 
 }  // namespace arthronaut::sources

@@ -1,13 +1,12 @@
 #include "navigation/sources/network_stream.h"
 
-#include <chrono>
-#include <thread>
+#include <string_view>
 #include <utility>
 
 #include "navigation/sources/capture_time.h"
 #include "navigation/sources/libav.h"
+#include "navigation/sources/recovering_source.h"
 #include "planning/geometry/error.h"
-#include "planning/log/log.h"
 
 extern "C" {
 #include <libavutil/log.h>
@@ -18,9 +17,11 @@ namespace arthronaut::sources {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::int64_t kOpensWithin_ns = 10 * kSecond_ns, kGivesUpAfter_ns = 15 * kSecond_ns;
+constexpr std::int64_t kOpensWithin_ns = 10 * kSecond_ns;
+// A cable that is plugged in again is not noticed by a connection that was begun without it: TCP asks again
+// after 1, 3, 7 s.
+constexpr std::int64_t kOpensAgainWithin_ns = 2 * kSecond_ns;
 constexpr std::int64_t kSilence_ns = kSecond_ns;  // after so much the connection is made anew
-constexpr auto kBeforeAgain = std::chrono::milliseconds(200);
 
 struct FreeDictionary {
   AVDictionary* entries = nullptr;
@@ -31,7 +32,7 @@ struct FreeDictionary {
 class Connection {
  public:
   // Throws DeviceError.
-  Connection(const std::string& address, std::int64_t deadline_ns)
+  Connection(const std::string& address, std::int64_t deadline_ns, bool is_again)
       : packet_(av_packet_alloc()), picture_(av_frame_alloc()), deadline_ns_(deadline_ns) {
     AVFormatContext* opening = avformat_alloc_context();
     opening->interrupt_callback = {[](void* self) { return static_cast<Connection*>(self)->is_late(); },
@@ -42,15 +43,21 @@ class Connection {
     av_dict_set(&options.entries, "rtsp_flags", "prefer_tcp", 0);
     av_dict_set(&options.entries, "max_delay", "100000", 0);
     av_dict_set(&options.entries, "analyzeduration", "500000", 0);
+    // How many pictures a second come is known from before.
+    if (is_again) av_dict_set(&options.entries, "fpsprobesize", "0", 0);
     av_dict_set(&options.entries, "fifo_size", "200000", 0);
     av_dict_set(&options.entries, "overrun_nonfatal", "1", 0);
     av_dict_set(&options.entries, "buffer_size", "8388608", 0);
     const int error = avformat_open_input(&opening, address.c_str(), nullptr, &options.entries);
     container_.reset(opening);
     if (error < 0) fail(address, libav_message(is_late() ? AVERROR(ETIMEDOUT) : error));
-    if (avformat_find_stream_info(container_.get(), nullptr) < 0)
-      fail(address, "no video was found in it in time");
-    stream_index_ = av_find_best_stream(container_.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+    // A server that has said what it sends (RTSP) is believed: looking into it costs half a second.
+    stream_index_ = is_again ? video_in_container() : -1;
+    if (stream_index_ < 0) {
+      if (avformat_find_stream_info(container_.get(), nullptr) < 0)
+        fail(address, "no video was found in it in time");
+      stream_index_ = video_in_container();
+    }
     if (stream_index_ < 0) fail(address, "holds no video");
     open_decoder(address);
   }
@@ -66,16 +73,27 @@ class Connection {
         const bool is_whole =
             picture_->decode_error_flags == 0 && (picture_->flags & AV_FRAME_FLAG_CORRUPT) == 0;
         if (is_whole) return picture_.get();
+        ++damaged_count_;
         continue;
       }
       if (received != AVERROR(EAGAIN) || !feed()) return nullptr;
     }
   }
+  // Since the connection was made: pictures that came, and were left out.
+  [[nodiscard]] long damaged_count() const { return damaged_count_; }
+  [[nodiscard]] std::int64_t received_ns() const { return received_ns_; }  // the newest of its data
 
   // A bare stream of pictures has no stamps: then it is now.
   std::int64_t captured_ns() const {
     const std::int64_t ticks = picture_->best_effort_timestamp;
     return ticks == AV_NOPTS_VALUE ? steady_now_ns() : clock_.captured_ns(stamp_ns(ticks));
+  }
+  // The session's name as an RTSP server gives it, before any picture. (What MPEG-TS says of its programs
+  // comes now and then, and may not have come yet.)
+  [[nodiscard]] std::string identity() const {
+    if (std::string_view(container_->iformat->name) != "rtsp") return "";
+    const AVDictionaryEntry* const title = av_dict_get(container_->metadata, "title", nullptr, 0);
+    return title != nullptr ? title->value : "";
   }
   double frames_per_second() const {
     const AVRational rate = stream().avg_frame_rate.num > 0 ? stream().avg_frame_rate : stream().r_frame_rate;
@@ -83,6 +101,12 @@ class Connection {
   }
 
  private:
+  // Below 0: none that is known.
+  [[nodiscard]] int video_in_container() const {
+    const int index = av_find_best_stream(container_.get(), AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+    const bool is_known = index >= 0 && container_->streams[index]->codecpar->codec_id != AV_CODEC_ID_NONE;
+    return is_known ? index : -1;
+  }
   AVStream& stream() const { return *container_->streams[stream_index_]; }
   int is_late() const { return steady_now_ns() > deadline_ns_ ? 1 : 0; }
   std::int64_t stamp_ns(std::int64_t ticks) const {
@@ -110,7 +134,8 @@ class Connection {
   bool feed() {
     if (av_read_frame(container_.get(), packet_.get()) < 0) return false;
     const bool is_video = packet_->stream_index == stream_index_;
-    if (is_video && packet_->pts != AV_NOPTS_VALUE) clock_.arrived(stamp_ns(packet_->pts), steady_now_ns());
+    if (is_video) received_ns_ = steady_now_ns();
+    if (is_video && packet_->pts != AV_NOPTS_VALUE) clock_.arrived(stamp_ns(packet_->pts), received_ns_);
     // What a damaged packet makes of a picture is seen when it is decoded.
     if (is_video) (void)avcodec_send_packet(decoder_.get(), packet_.get());
     av_packet_unref(packet_.get());
@@ -122,24 +147,28 @@ class Connection {
   LibavPtr<AVPacket> packet_;
   LibavPtr<AVFrame> picture_;
   StreamClock clock_;
-  std::int64_t deadline_ns_;
+  std::int64_t deadline_ns_, received_ns_ = 0;
+  long damaged_count_ = 0;
   int stream_index_ = -1;
 };
 
+// One connection as a source; whoever opened it opens another one when it breaks.
 class NetworkStream final : public FrameSource {
  public:
-  explicit NetworkStream(const std::string& address) : address_(address) {
-    info_.name = shown_address(address_);
+  NetworkStream(const std::string& address, const Opening& opening) : stamps_(opening.stamps) {
+    info_.name = shown_address(address);
+    info_.kind = SourceKind::Live;
+    info_.ends = false;
     av_log_set_level(AV_LOG_QUIET);
     avformat_network_init();
-    const std::int64_t deadline_ns = steady_now_ns() + kOpensWithin_ns;
-    connection_ = std::make_unique<Connection>(address_, deadline_ns);
+    const std::int64_t deadline_ns =
+        steady_now_ns() + (opening.is_again ? kOpensAgainWithin_ns : kOpensWithin_ns);
+    connection_ = std::make_unique<Connection>(address, deadline_ns, opening.is_again);
     const AVFrame* const picture = connection_->next(deadline_ns);
     if (picture == nullptr) throw DeviceError(info_.name + ": gives no picture");
     info_.image_size_px = {picture->width, picture->height};
     info_.frames_per_second = connection_->frames_per_second();
-    info_.kind = SourceKind::Live;
-    started_at_ns_ = connection_->captured_ns();
+    opening.identity = connection_->identity();
     first_ = frame_of(*picture);
   }
 
@@ -147,59 +176,36 @@ class NetworkStream final : public FrameSource {
 
   camera::FramePtr next() override {
     if (first_) return std::exchange(first_, nullptr);
-    const std::int64_t give_up_ns = steady_now_ns() + kGivesUpAfter_ns;
-    while (steady_now_ns() < give_up_ns) {
-      if (!connection_ && !connect_again(give_up_ns)) continue;
-      if (const AVFrame* const picture = connection_->next(steady_now_ns() + kSilence_ns))
-        return frame_of(*picture);
-      log::warning("stream broke off: " + info_.name);
-      connection_.reset();
-    }
-    throw DeviceError(info_.name + ": has given no picture for 15 s");
+    const long damaged_before = connection_->damaged_count();
+    if (const AVFrame* const picture = connection_->next(steady_now_ns() + kSilence_ns))
+      return frame_of(*picture);
+    if (connection_->damaged_count() > damaged_before)
+      throw DeviceError(info_.name + ": every picture comes damaged: check cable and network");
+    throw DeviceError(info_.name + ": broke off; connecting again");
   }
 
  private:
-  bool connect_again(std::int64_t give_up_ns) {
-    try {
-      connection_ = std::make_unique<Connection>(address_, give_up_ns);
-      log::info("stream taken up again: " + info_.name);
-      return true;
-    } catch (const DeviceError&) {  // told when it lasts
-      std::this_thread::sleep_for(kBeforeAgain);
-      return false;
-    }
-  }
-
   camera::FramePtr frame_of(const AVFrame& picture) {
-    if (picture.width != info_.image_size_px.x() || picture.height != info_.image_size_px.y()) {
-      throw DeviceError(info_.name + ": gives pictures of " + std::to_string(picture.width) + " x " +
-                        std::to_string(picture.height) + " now, and gave such of " +
-                        std::to_string(info_.image_size_px.x()) + " x " +
-                        std::to_string(info_.image_size_px.y()));
-    }
-    auto frame = std::make_shared<camera::Frame>();
-    if (!converter_.convert(picture, *frame))
-      throw DeviceError(info_.name + ": has a pixel format that can't be converted");
-    frame->index = next_index_++;
-    frame->captured_ns = connection_->captured_ns();
-    last_timestamp_ns_ = std::max(frame->captured_ns - started_at_ns_, last_timestamp_ns_ + 1);
-    frame->timestamp_ns = last_timestamp_ns_;
-    frame->capture_clock = camera::CaptureClock::Network;
+    const std::shared_ptr<camera::Frame> frame = frames_.make(picture);
+    if (frame == nullptr) throw DeviceError(info_.name + ": has a pixel format that can't be converted");
+    stamps_.put_on(*frame, connection_->captured_ns(), camera::CaptureClock::Network);
+    frame->received_ns = connection_->received_ns();
+    frame->decoded_ns = steady_now_ns();
     return frame;
   }
 
-  std::string address_;
+  LiveStamps& stamps_;
   std::unique_ptr<Connection> connection_;
-  BgrConverter converter_;
+  DecodedFrames frames_;
   SourceInfo info_;
   camera::FramePtr first_;
-  std::int64_t started_at_ns_ = 0, last_timestamp_ns_ = -1, next_index_ = 0;
 };
 
 }  // namespace
 
 std::unique_ptr<FrameSource> open_network_stream(const std::string& address) {
-  return std::make_unique<NetworkStream>(address);
+  return recovering(
+      [address](const Opening& opening) { return std::make_unique<NetworkStream>(address, opening); });
 }
 
 }  // namespace arthronaut::sources

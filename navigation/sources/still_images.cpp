@@ -1,6 +1,7 @@
 #include "navigation/sources/still_images.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <regex>
 #include <string>
@@ -72,7 +73,7 @@ std::vector<std::filesystem::path> list_pictures(const std::filesystem::path& pa
   return pictures;
 }
 
-class StillImages : public FrameSource {
+class StillImages : public FrameSource, public SeekableVideo {
  public:
   explicit StillImages(const std::filesystem::path& pattern) : pictures_(list_pictures(pattern)) {
     first_ = read_picture(pictures_.front());
@@ -88,7 +89,7 @@ class StillImages : public FrameSource {
     const auto position = static_cast<std::size_t>(next_index_);
     if (position == pictures_.size()) return nullptr;
     auto frame = std::make_shared<camera::Frame>();
-    if (position == 0) {
+    if (position == 0 && !first_.bgr.empty()) {
       *frame = std::move(first_);
     } else {
       read_picture_into(pictures_[position], *frame);
@@ -103,6 +104,12 @@ class StillImages : public FrameSource {
     return frame;
   }
 
+  camera::FramePtr picture_at(std::int64_t time_ns) override {
+    next_index_ = std::llround(static_cast<double>(time_ns) * 1e-9 * kFramesPerSecond);
+    if (next_index_ < 0 || next_index_ >= info_.frame_count) return nullptr;
+    return next();
+  }
+
  private:
   std::vector<std::filesystem::path> pictures_;
   SourceInfo info_;
@@ -115,6 +122,10 @@ class StillImages : public FrameSource {
 bool is_printf_pattern(const std::filesystem::path& path) { return parse_pattern(path).has_value(); }
 
 std::unique_ptr<FrameSource> open_still_images(const std::filesystem::path& pattern) {
+  return std::make_unique<StillImages>(pattern);
+}
+
+std::unique_ptr<SeekableVideo> open_seekable_stills(const std::filesystem::path& pattern) {
   return std::make_unique<StillImages>(pattern);
 }
 

@@ -1,7 +1,9 @@
 #include "navigation/sources/video_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "navigation/sources/libav.h"
 #include "navigation/sources/matroska_end.h"
@@ -15,8 +17,10 @@ namespace arthronaut::sources {
 namespace {
 
 constexpr double kFallbackFramesPerSecond = 60;
+// How much earlier it is tried again where a file's index leads to a key frame behind the wish.
+constexpr std::array<double, 4> kSeekBack_s{0, 1, 10, 60};
 
-class VideoFile : public FrameSource {
+class VideoFile : public FrameSource, public SeekableVideo {
  public:
   VideoFile(const std::filesystem::path& file, LumaOf luma)
       : file_(file), luma_(luma), packet_(av_packet_alloc()), picture_(av_frame_alloc()) {
@@ -37,16 +41,106 @@ class VideoFile : public FrameSource {
 
   camera::FramePtr next() override {
     if (!decode()) return nullptr;
+    auto frame = frame_of_picture();
+    ++next_index_;
+    return frame;
+  }
+
+  // To be called once, before any picture_at() and in the place of next().
+  void prepare_seeking() {
+    is_tolerant_ = true;
+    add_missing_index();
+    if (decode()) first_time_s_ = picture_s();
+    is_at_end_ = true;  // the first wish seeks
+  }
+
+  camera::FramePtr picture_at(std::int64_t time_ns) override {
+    const double wanted_s = static_cast<double>(time_ns) * 1e-9;
+    if (wanted_s < -grace_s()) return nullptr;
+    if (shown_ && std::abs(shown_s_ - wanted_s) <= grace_s()) return shown_;
+    shown_ = nullptr;
+    if (is_reached_by_reading_on(wanted_s) && read_on_to(wanted_s)) return shown_;
+    for (const double back_s : kSeekBack_s) {
+      if (!seek(std::max(wanted_s - back_s, 0.0))) return nullptr;
+      if (read_on_to(wanted_s)) return shown_;
+      if (is_at_end_) return nullptr;
+    }
+    return nullptr;
+  }
+
+ private:
+  camera::FramePtr frame_of_picture() {
     auto frame = std::make_shared<camera::Frame>();
     frame->index = next_index_;
     frame->timestamp_ns = timestamp_ns();
     convert(*frame);
     if (luma_ == LumaOf::File) copy_luma(*frame);
-    ++next_index_;
     return frame;
   }
 
- private:
+  [[nodiscard]] double rate() const {
+    return info_.frames_per_second > 0 ? info_.frames_per_second : kFallbackFramesPerSecond;
+  }
+  [[nodiscard]] double grace_s() const { return 0.5 / rate(); }
+  [[nodiscard]] double picture_s() const {
+    if (picture_->best_effort_timestamp == AV_NOPTS_VALUE) return static_cast<double>(next_index_) / rate();
+    return static_cast<double>(picture_->best_effort_timestamp) * av_q2d(stream().time_base);
+  }
+  [[nodiscard]] std::int64_t ticks_of(double time_s) const {
+    return std::llround((time_s + first_time_s_) / av_q2d(stream().time_base));
+  }
+
+  // A killed recording has no index: libavformat would read all before a picture to come to it. Where every
+  // picture is a key frame, each cluster is a place to begin at.
+  void add_missing_index() {
+    const AVCodecDescriptor* const codec = avcodec_descriptor_get(stream().codecpar->codec_id);
+    if (codec == nullptr || (codec->props & AV_CODEC_PROP_INTRA_ONLY) == 0) return;
+    if (!matroska_is_unfinished(file_)) return;
+    for (const MatroskaCluster& cluster : matroska_clusters(file_))
+      av_add_index_entry(&stream(), cluster.position, cluster.time, 0, 0, AVINDEX_KEYFRAME);
+  }
+
+  // Whether no key frame lies between the picture in hand and the wanted one.
+  [[nodiscard]] bool is_reached_by_reading_on(double wanted_s) const {
+    if (is_at_end_ || wanted_s < shown_s_) return false;
+    const AVIndexEntry* const key =
+        avformat_index_get_entry_from_timestamp(&stream(), ticks_of(wanted_s), AVSEEK_FLAG_BACKWARD);
+    if (key == nullptr) return wanted_s - shown_s_ < 1;
+    return static_cast<double>(key->timestamp) * av_q2d(stream().time_base) - first_time_s_ <=
+           shown_s_ + 2 * grace_s();
+  }
+
+  bool seek(double time_s) {
+    is_at_end_ = breaks_off_ = false;
+    shown_s_ = -1;
+    if (av_seek_frame(container_.get(), stream_index_, ticks_of(time_s), AVSEEK_FLAG_BACKWARD) < 0) {
+      is_at_end_ = true;
+      return false;
+    }
+    avcodec_flush_buffers(decoder_.get());
+    return true;
+  }
+
+  // Decodes up to the picture of that time and shows it. False when there is none or it lies behind.
+  bool read_on_to(double wanted_s) {
+    while (decode()) {
+      const double at_s = picture_s() - first_time_s_;
+      shown_s_ = at_s;
+      if (at_s < wanted_s - grace_s()) continue;
+      if (at_s > wanted_s + grace_s() || is_damaged()) return false;
+      next_index_ = std::llround(at_s * rate());
+      last_timestamp_ns_ = -1;
+      shown_ = frame_of_picture();
+      return true;
+    }
+    is_at_end_ = true;
+    return false;
+  }
+
+  [[nodiscard]] bool is_damaged() const {
+    return picture_->decode_error_flags != 0 || (picture_->flags & AV_FRAME_FLAG_CORRUPT) != 0;
+  }
+
   AVStream& stream() const { return *container_->streams[stream_index_]; }
 
   [[noreturn]] void fail(const std::string& reason) const {
@@ -90,14 +184,14 @@ class VideoFile : public FrameSource {
     while (true) {
       const int received = avcodec_receive_frame(decoder_.get(), picture_.get());
       if (received == 0) {
-        if (picture_->decode_error_flags || (picture_->flags & AV_FRAME_FLAG_CORRUPT)) fail("is damaged");
+        if (!is_tolerant_ && is_damaged()) fail("is damaged");
         return true;
       }
       if (received == AVERROR_EOF) {
-        check_end();
+        if (!is_tolerant_) check_end();
         return false;
       }
-      if (received != AVERROR(EAGAIN)) fail("can't be decoded: " + libav_message(received));
+      if (received != AVERROR(EAGAIN) && !is_tolerant_) fail("can't be decoded: " + libav_message(received));
       feed_decoder();
     }
   }
@@ -119,7 +213,7 @@ class VideoFile : public FrameSource {
       }
     }
     av_packet_unref(packet_.get());
-    if (sent < 0) fail("can't be decoded: " + libav_message(sent));
+    if (sent < 0 && !is_tolerant_) fail("can't be decoded: " + libav_message(sent));
   }
 
   void check_end() const {
@@ -133,13 +227,12 @@ class VideoFile : public FrameSource {
   }
 
   std::int64_t timestamp_ns() {
-    const double fps = info_.frames_per_second > 0 ? info_.frames_per_second : kFallbackFramesPerSecond;
-    const double by_rate_s = static_cast<double>(next_index_) / fps;
+    const double by_rate_s = static_cast<double>(next_index_) / rate();
     double time_s = by_rate_s;
     if (picture_->best_effort_timestamp != AV_NOPTS_VALUE) {
       const double tick_s = av_q2d(stream().time_base);
       const double file_s = static_cast<double>(picture_->best_effort_timestamp) * tick_s;
-      if (next_index_ == 0) first_time_s_ = file_s;
+      if (next_index_ == 0 && !is_tolerant_) first_time_s_ = file_s;
       time_s = file_s - first_time_s_;
       if (std::abs(time_s - by_rate_s) <= tick_s) time_s = by_rate_s;
     }
@@ -152,7 +245,9 @@ class VideoFile : public FrameSource {
     if (picture_->width != info_.image_size_px.x() || picture_->height != info_.image_size_px.y()) {
       fail("has another size than the frames before it");
     }
-    if (!converter_.convert(*picture_, frame)) fail("has a pixel format that can't be converted");
+    frame.width = picture_->width;
+    frame.height = picture_->height;
+    if (!converter_.convert(*picture_, frame.bgr)) fail("has a pixel format that can't be converted");
   }
 
   void copy_luma(camera::Frame& frame) const {
@@ -180,9 +275,19 @@ class VideoFile : public FrameSource {
   std::int64_t last_timestamp_ns_ = -1;
   double first_time_s_ = 0;
   bool breaks_off_ = false;  // the demuxer met a cut-off packet or a read error
+  // Of picture_at(): what is broken is passed over; the picture in hand and its time.
+  bool is_tolerant_ = false, is_at_end_ = false;
+  camera::FramePtr shown_;
+  double shown_s_ = -1;
 };
 
 }  // namespace
+
+std::unique_ptr<SeekableVideo> open_seekable_video(const std::filesystem::path& file, LumaOf luma) {
+  auto video = std::make_unique<VideoFile>(file, luma);
+  video->prepare_seeking();
+  return video;
+}
 
 std::unique_ptr<FrameSource> open_video_file(const std::filesystem::path& file, LumaOf luma) {
   return std::make_unique<VideoFile>(file, luma);

@@ -14,6 +14,26 @@ enum class LumaOf {
   File,     // the file's own plane, which must be 8-bit 4:2:0 or 4:4:4 in full range
 };
 
+// Any picture of a file, by its time. From the key frame before it on everything is decoded: a file of which
+// every picture is a key frame gives each at once, one with a key frame in every n pictures decodes up to n.
+//
+// Threads: one at a time.
+class SeekableVideo {
+ public:
+  virtual ~SeekableVideo() = default;
+  [[nodiscard]] virtual const SourceInfo& info() const = 0;
+  // The picture that is shown time_ns after the first one, with half a picture's time of grace for files
+  // whose clock is coarse. Null before the first, beyond the last and where the file is broken: what is whole
+  // before and after is given all the same. Its index counts by the frame rate.
+  [[nodiscard]] virtual camera::FramePtr picture_at(std::int64_t time_ns) = 0;
+};
+
+// The file's own index of key frames is used. A Matroska file that a crash left without one, all of whose
+// pictures are key frames, is walked through from cluster to cluster, without reading the pictures. Luma as
+// in open_video_file(). Throws IoError or InvalidInput.
+[[nodiscard]] std::unique_ptr<SeekableVideo> open_seekable_video(const std::filesystem::path& file,
+                                                                 LumaOf luma);
+
 // See open_video() and open_video_with_exact_luma().
 [[nodiscard]] std::unique_ptr<FrameSource> open_video_file(const std::filesystem::path& file, LumaOf luma);
 

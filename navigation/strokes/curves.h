@@ -45,9 +45,10 @@ struct StrokeOptions {
 // Whether a stroke is long enough to say anything, measured from point to point.
 [[nodiscard]] bool counts(std::span<const CurvePoint> stroke, const StrokeOptions& options);
 
-// Tip positions wherever world marker and tool are seen in the same frame. An empty result is not an error.
+// Tip positions wherever world marker and tool are seen in the same frame, by the poses of their bodies where
+// these carry several markers (body_rows.h). An empty result is not an error.
 // Throws InvalidInput when the tools declare no such world marker or tool, or the tool has no tip.
-[[nodiscard]] Curves digitise(const std::vector<PoseRow>& poses, const tools::ToolSet& tools,
+[[nodiscard]] Curves digitise(const std::vector<PoseRow>& marker_poses, const tools::ToolSet& tools,
                               bones::BoneKind bone, std::string_view tool_name,
                               const StrokeOptions& options = {});
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "navigation/strokes/body_rows.h"
 #include "navigation/strokes/curves.h"
 #include "planning/geometry/error.h"
 
@@ -39,7 +40,7 @@ bool counts(std::span<const CurvePoint> stroke, const StrokeOptions& options) {
   return length_mm >= options.min_length_mm;
 }
 
-Curves digitise(const std::vector<PoseRow>& poses, const tools::ToolSet& tools, bones::BoneKind bone,
+Curves digitise(const std::vector<PoseRow>& marker_poses, const tools::ToolSet& tools, bones::BoneKind bone,
                 std::string_view tool_name, const StrokeOptions& options) {
   const tools::WorldMarker* world = tools.find_world_marker(bone);
   if (world == nullptr) {
@@ -50,6 +51,7 @@ Curves digitise(const std::vector<PoseRow>& poses, const tools::ToolSet& tools, 
     throw InvalidInput("the tools declare no tool named \"" + std::string(tool_name) + "\"");
   if (!tool->tip_mm) throw InvalidInput("the tool \"" + std::string(tool_name) + "\" has no tip_mm");
 
+  const std::vector<PoseRow> poses = body_rows(marker_poses, tools);
   const std::optional<Eigen::Vector3d> shaft_in_tool = tools::shaft_direction(*tool);
   Curves points;
   for (std::size_t first = 0; first < poses.size();) {

@@ -1,8 +1,10 @@
 #include "navigation/theatre/live_operation.h"
 
 #include <chrono>
+#include <mutex>
 #include <variant>
 
+#include "navigation/worker/recycler.h"
 #include "navigation/worker/worker.h"
 
 namespace arthronaut::theatre {
@@ -56,6 +58,33 @@ class Rate {
   Clock::time_point from_ = Clock::now();
 };
 
+// What of the latency the screen alone knows.
+class DisplayLatency {
+ public:
+  void shown(const LiveState& live, double now_s) {
+    const std::lock_guard lock(mutex_);
+    if (live.published_s <= last_published_s_) return;
+    last_published_s_ = live.published_s;
+    meter_.add(Stage::Display, 1000 * (now_s - live.published_s));
+    meter_.add(Stage::ToScreen, 1000 * (now_s - live.captured_s));
+  }
+  void add_to(LatencyReport& report) const {
+    const std::lock_guard lock(mutex_);
+    const LatencyReport own = meter_.report();
+    for (const Stage stage : {Stage::Display, Stage::ToScreen})
+      report[static_cast<std::size_t>(stage)] = of(own, stage);
+  }
+  void clear() {
+    const std::lock_guard lock(mutex_);
+    meter_.clear();
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  LatencyMeter meter_;
+  double last_published_s_ = 0;
+};
+
 struct EndSource {};
 struct KeepVideo {
   bool on;
@@ -67,9 +96,10 @@ using LiveWorker = worker::Worker<Request, LiveState>;
 // What the thread does.
 class Loop {
  public:
-  Loop(LiveWorker::Inbox& inbox, const LiveOptions& options)
+  Loop(LiveWorker::Inbox& inbox, const LiveOptions& options, DisplayLatency& display)
       : inbox_(inbox),
         options_(options),
+        display_(display),
         run_(options.operation,
              registration_beside(options.bone, operation::work_options(options.operation),
                                  [&inbox] { inbox.post(FollowRegistration{}); }),
@@ -96,6 +126,7 @@ class Loop {
     live_.phase = LiveState::Phase::Starting;
     pace_ = {};
     rate_ = {};
+    display_.clear();
     publish();
     try {  // a source that cannot be opened is a state of the screen
       run_.start(source);
@@ -143,7 +174,11 @@ class Loop {
       return end(LiveState::Phase::Failed, error.what());
     }
     if (step.has_ended) return end(LiveState::Phase::Ended);
-    if (step.picture == nullptr) return;  // the screen sees for itself how old the last one is
+    live_.trouble = run_.watch().trouble();
+    live_.trouble_words = run_.watch().words();
+    // How old the last one is the screen sees for itself; why none comes is news.
+    if (step.picture == nullptr) return live_.trouble != SourceTrouble::None ? publish() : void();
+    const Clock::time_point ready = Clock::now();
     const operation::OperationStatePtr state = run_.state_of_frame();
     if (options_.decorate) live_.decoration = options_.decorate(*state);
     const bool is_live = kind_ == sources::SourceKind::Live;
@@ -154,7 +189,20 @@ class Loop {
         is_dated ? static_cast<double>(step.picture->captured_ns) * 1e-9 : seconds_of(Clock::now());
     live_.stale_after_s = is_live ? options_.live_stale_after_s : options_.other_stale_after_s;
     live_.frames_per_second = rate_.count();
+    live_.published_s = seconds_of(Clock::now());
+    if (is_live) refresh_latency();
     publish(state);
+    if (is_live)
+      run_.latency().add(Stage::Publish,
+                         std::chrono::duration<double, std::milli>(Clock::now() - ready).count());
+  }
+
+  // Once a second is as often as anybody reads it.
+  void refresh_latency() {
+    if (live_.published_s - latency_at_s_ < 1) return;
+    latency_at_s_ = live_.published_s;
+    live_.latency = run_.latency().report();
+    display_.add_to(live_.latency);
   }
 
   void publish() { publish(run_.state()); }
@@ -163,15 +211,24 @@ class Loop {
     live_.session_folder = run_.session_folder();
     live_.keeps_video = run_.keeps_video();
     live_.record_trouble = run_.record_trouble();
-    inbox_.publish(live_);
+    const auto published = published_.take();
+    *published = live_;
+    inbox_.publish(std::shared_ptr<const LiveState>(published));
   }
 
   LiveWorker::Inbox& inbox_;
   const LiveOptions& options_;
+  DisplayLatency& display_;
   OperationRun run_;
   LiveState live_;
+  worker::Recycler<LiveState> published_{[](LiveState& live) {
+    live.operation = nullptr;
+    live.picture = nullptr;
+    live.decoration = nullptr;
+  }};
   Pace pace_;
   Rate rate_;
+  double latency_at_s_ = 0;
   sources::SourceKind kind_ = sources::SourceKind::Simulation;
 };
 
@@ -181,11 +238,12 @@ struct LiveOperation::Thread {
   Thread(LiveOptions with, std::function<void()> on_news)
       : options(std::move(with)),
         worker(
-            worker::Backlog::Lossless, [this](LiveWorker::Inbox& inbox) { Loop(inbox, options).run(); },
-            std::move(on_news)) {
+            worker::Backlog::Lossless,
+            [this](LiveWorker::Inbox& inbox) { Loop(inbox, options, display).run(); }, std::move(on_news)) {
     initial.operation = std::make_shared<const operation::OperationState>();
   }
   const LiveOptions options;
+  DisplayLatency display;
   LiveState initial;
   LiveWorker worker;
 };
@@ -198,6 +256,10 @@ void LiveOperation::start(TheatreSource source) { thread_->worker.post(std::move
 void LiveOperation::end_source() { thread_->worker.post(EndSource{}); }
 void LiveOperation::apply(operation::Command command) { thread_->worker.post(std::move(command)); }
 void LiveOperation::keep_video(bool on) { thread_->worker.post(KeepVideo{on}); }
+void LiveOperation::shown(const LiveState& live) {
+  if (live.operation->source != nullptr && live.operation->source->kind == sources::SourceKind::Live)
+    thread_->display.shown(live, now_s());
+}
 void LiveOperation::request_stop() { thread_->worker.request_stop(); }
 
 LiveStatePtr LiveOperation::latest() const {

@@ -33,9 +33,15 @@ struct LiveState {
   camera::FramePtr picture;                      // the newest; null before the first of this source
   std::shared_ptr<const Decoration> decoration;  // of that picture; may be null
   // When what the picture shows was so: for a live source when it was captured, else when it was published.
-  double captured_s = 0;                 // on the clock of now_s()
-  double stale_after_s = 2;              // older than that it is no picture of now
-  double frames_per_second = 0;          // that were navigated, lately
+  double captured_s = 0;         // on the clock of now_s()
+  double stale_after_s = 2;      // older than that it is no picture of now
+  double frames_per_second = 0;  // that were navigated, lately
+  double published_s = 0;        // when that picture's state could be shown, on the same clock
+  // Of a live source: what is wrong with it, in words for the screen (None and empty: nothing), and how long
+  // its pictures take from stage to stage, as of the last second that was counted.
+  SourceTrouble trouble = SourceTrouble::None;
+  std::string trouble_words;
+  LatencyReport latency{};
   std::filesystem::path session_folder;  // of the record that is written, or was written last
   bool keeps_video = false;
   std::string record_trouble;  // why nothing is recorded; empty while all is well
@@ -64,6 +70,8 @@ class LiveOperation {
   void apply(operation::Command command);
   void keep_video(bool on);
   void request_stop();
+  // The screen shows this state from now on: once for each picture. For the latency to the screen.
+  void shown(const LiveState& live);
 
   // Never null.
   [[nodiscard]] LiveStatePtr latest() const;

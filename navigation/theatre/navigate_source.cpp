@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include "navigation/sources/capture_time.h"
 #include "navigation/theatre/operation_run.h"
 #include "planning/geometry/error.h"
 
@@ -79,12 +80,16 @@ class Navigation {
   bool take_frame() {
     const OperationRun::Step step = run_.step();
     if (step.has_ended) return false;
-    if (step.picture == nullptr) return true;
+    follow_watch();
+    if (step.picture == nullptr) return waits_on();
+    picture_at_ns_ = sources::steady_now_ns();
     const operation::OperationStatePtr state = run_.state_of_frame();
     const pipeline::FrameResult& frame = state->frame;
     summary_.statistics.add(frame, frame.processing_ms);
     summary_.frames_with_tip += frame.tip_is_valid ? 1 : 0;
     summary_.last_state = frame.guidance.state;
+    summary_.frames_registered += state->registration->in_force.standing == operation::Standing::Stands;
+    summary_.frames_bone_seen += state->contour.state == contour::ContourState::Holds;
     if (frame.guidance.is_valid()) {
       ++summary_.frames_with_guidance;
       summary_.last_guidance = frame.guidance;
@@ -104,6 +109,7 @@ class Navigation {
     const operation::OperationStatePtr state = run_.state();
     run_.end_source();
     summary_.record_trouble = run_.record_trouble();
+    summary_.latency = run_.latency().report();
     summary_.curves = run_.operation().strokes_in_use();
     summary_.stroke_length_mm = strokes::length_mm(summary_.curves);
     summary_.drilled = state->drilled;
@@ -119,6 +125,18 @@ class Navigation {
   }
 
  private:
+  // Nobody stands by who could tell a source that comes back from one that is gone. Throws DeviceError.
+  bool waits_on() {
+    constexpr std::int64_t kGivesUpAfter_ns = 15'000'000'000;
+    if (observer_.on_silence) observer_.on_silence(run_.watch(), run_.state());
+    if (sources::steady_now_ns() - picture_at_ns_ < kGivesUpAfter_ns) return true;
+    throw DeviceError("no picture for 15 s. " + run_.watch().words());
+  }
+  void follow_watch() {
+    const std::string& words = run_.watch().words();
+    if (run_.watch().trouble() != trouble_ && !words.empty()) summary_.troubles.push_back(words);
+    trouble_ = run_.watch().trouble();
+  }
   void apply(const operation::Command& command) {
     run_.apply(command);
     follow_registration();
@@ -147,6 +165,8 @@ class Navigation {
   const NavigationObserver& observer_;
   OperationRun run_;
   NavigationSummary summary_;
+  SourceTrouble trouble_ = SourceTrouble::None;
+  std::int64_t picture_at_ns_ = sources::steady_now_ns();
 };
 
 }  // namespace

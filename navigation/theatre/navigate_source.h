@@ -15,6 +15,8 @@
 #include "navigation/pipeline/track_video.h"
 #include "navigation/recording/operation_record.h"
 #include "navigation/sources/frame_source.h"
+#include "navigation/theatre/latency.h"
+#include "navigation/theatre/source_watch.h"
 
 namespace arthronaut::theatre {
 
@@ -35,6 +37,9 @@ struct NavigateOptions {
 // Called in the thread of navigate_source.
 struct NavigationObserver {
   std::function<void(const camera::FramePtr& picture, const operation::OperationStatePtr& state)> on_frame;
+  // Instead of on_frame, ten times a second while a live source gives no picture: why, and what is known by
+  // now.
+  std::function<void(const SourceWatch& watch, const operation::OperationStatePtr& state)> on_silence;
   // Asked after each frame: commands to be given before the next one. A script at the pedal.
   std::function<std::vector<operation::Command>(const operation::OperationState& state)> pedal;
 };
@@ -48,12 +53,17 @@ struct NavigationSummary {
   operation::Standing standing = operation::Standing::None;
   bool registration_was_found = false;  // here, not given
   long frames_with_tip = 0, frames_with_guidance = 0;
+  // Frames in which a registration stood, and those of them whose picture was seen to show the bone where it
+  // lay.
+  long frames_registered = 0, frames_bone_seen = 0;
   guidance::GuidanceNumbers last_guidance;  // the last valid one; not valid when there was none
   guidance::GuidanceState last_state = guidance::GuidanceState::NoPlan;
   operation::DrilledState drilled;
-  std::string ending;                // why a live source ended; empty when nothing failed
-  std::string record_trouble;        // why the record ended before the source; empty when it did not
-  std::vector<std::string> reasons;  // why the result is not reliable; empty when it is
+  std::string ending;                 // why a live source ended; empty when nothing failed
+  LatencyReport latency{};            // of a live source; of others tracking and operation alone
+  std::vector<std::string> troubles;  // what was wrong with a live source, in order, each when it began
+  std::string record_trouble;         // why the record ended before the source; empty when it did not
+  std::vector<std::string> reasons;   // why the result is not reliable; empty when it is
 };
 
 struct RecordOptions {
@@ -65,7 +75,8 @@ struct RecordOptions {
 // Deterministic for a source, options and seed. Decoding runs in a thread of its own, which shares the
 // source. Throws InvalidInput when the options break their contract or a frame has another size than the
 // camera's, IoError when the record can't be begun, and what the source throws; a live source that fails
-// after its first picture has ended, which the summary's `ending` tells.
+// after its first picture has ended, which the summary's `ending` tells; so has one of which nothing came for
+// 15 s.
 [[nodiscard]] NavigationSummary navigate_source(const std::shared_ptr<sources::FrameSource>& source,
                                                 const NavigateOptions& options,
                                                 const RecordOptions& record = {},

@@ -3,8 +3,11 @@
 #include <utility>
 
 #include "navigation/pipeline/prefetched_source.h"
+#include "navigation/sources/capture_time.h"
 #include "navigation/theatre/operation_log.h"
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
+#include "planning/log/log.h"
 
 namespace arthronaut::theatre {
 
@@ -26,6 +29,7 @@ void OperationRun::start(const TheatreSource& source) {
   operation_.start_source(source.setup);
   theatre_source_ = source;
   source_ = std::move(opened);
+  live_ = Live();
   record_trouble_.clear();
   record_is_due_ = static_cast<bool>(make_session_folder_);
   begin_record();
@@ -50,7 +54,8 @@ void OperationRun::begin_record() {
   }
 }
 
-void OperationRun::write(const std::function<void(recording::OperationRecord&)>& what) {
+template <typename What>
+void OperationRun::write(const What& what) {
   if (record_ == nullptr) return;
   try {
     what(*record_);
@@ -100,14 +105,56 @@ OperationRun::Step OperationRun::step() {
     next.frame = source_->next();
     next.has_ended = next.frame == nullptr;
   }
+  const std::int64_t taken_ns = sources::steady_now_ns();
   (void)follow_registration();
-  if (next.frame == nullptr) return {nullptr, next.has_ended};
+  if (next.frame == nullptr) {
+    if (is_live && !next.has_ended && live_.watch.silence(source_->trouble(), taken_ns)) note_trouble();
+    return {nullptr, next.has_ended};
+  }
   operation_.process(*next.frame);
   frame_state_ = operation_.state();
+  if (theatre_source_.watch) theatre_source_.watch(*frame_state_);
+  measure(*next.frame, taken_ns);
   write([&](recording::OperationRecord& record) { record.add_frame(next.frame, *frame_state_, is_live); });
+  if (is_live) {
+    write([&](recording::OperationRecord& record) {
+      const FrameLatency& l = live_.newest;
+      record.add_latency(
+          {l.capture_ms, l.decode_ms, l.queue_ms, l.tracking_ms, l.operation_ms, l.guidance_ms});
+    });
+    if (live_.watch.picture(frame_state_->frame, live_.newest.guidance_ms, taken_ns)) note_trouble();
+  }
   if (auto look = operation_.take_look_request()) looks_->post(std::move(*look), next.frame);
   pass_on();
   return {next.frame, false};
+}
+
+void OperationRun::measure(const camera::Frame& frame, std::int64_t taken_ns) {
+  const std::int64_t ready_ns = sources::steady_now_ns();
+  const auto between_ms = [](std::int64_t from_ns, std::int64_t to_ns) {
+    return from_ns > 0 && to_ns >= from_ns ? static_cast<double>(to_ns - from_ns) * 1e-6 : -1;
+  };
+  FrameLatency& newest = live_.newest;
+  newest.frame = frame.index;
+  newest.capture_ms = between_ms(frame.captured_ns, frame.received_ns);
+  newest.decode_ms = between_ms(frame.received_ns, frame.decoded_ns);
+  newest.queue_ms = between_ms(frame.decoded_ns, taken_ns);
+  newest.tracking_ms = frame_state_->frame.processing_ms;
+  newest.operation_ms = between_ms(taken_ns, ready_ns) - newest.tracking_ms;
+  newest.guidance_ms = between_ms(frame.captured_ns, ready_ns);
+  live_.meter.add(newest);
+}
+
+// In the record and the log, when it begins, changes and ends.
+void OperationRun::note_trouble() {
+  const std::int64_t at_ns = frame_state_ != nullptr ? frame_state_->frame.timestamp_ns : 0;
+  if (live_.watch.words().empty())
+    log::info("source: all is well again");
+  else
+    log::warning("source: " + live_.watch.words());
+  write([&](recording::OperationRecord& record) {
+    record.add_event(recording::kSourceTroubleEvent, live_.watch.words(), at_ns);
+  });
 }
 
 void OperationRun::apply(const operation::Command& command) {
@@ -124,7 +171,16 @@ void OperationRun::end_source() {
   if (source_ == nullptr) return;
   operation_.end_source();
   pass_on();
+  const bool was_live = theatre_source_.setup.kind == sources::SourceKind::Live;
   source_.reset();
+  if (const StageLatency all = of(live_.meter.report(), Stage::ToGuidance); was_live && all.count > 0) {
+    const std::string text = files::format(
+        "%.1f ms from capture to guidance in the median, 99 %% within %.1f ms, at worst %.1f ms; %llu "
+        "pictures",
+        all.median_ms, all.p99_ms, all.worst_ms, static_cast<unsigned long long>(all.count));
+    log::info("latency: " + text);
+    write([&](recording::OperationRecord& record) { record.add_event(recording::kLatencyEvent, text, 0); });
+  }
   write([&](recording::OperationRecord& record) { record.finish(operation_.strokes_in_use()); });
   record_.reset();
 }

@@ -13,8 +13,10 @@
 #include "navigation/pipeline/prefetched_source.h"
 #include "navigation/recording/operation_record.h"
 #include "navigation/sources/frame_source.h"
+#include "navigation/theatre/latency.h"
 #include "navigation/theatre/medium_look_service.h"
 #include "navigation/theatre/registration_service.h"
+#include "navigation/theatre/source_watch.h"
 
 namespace arthronaut::theatre {
 
@@ -27,7 +29,10 @@ struct TheatreSource {
   // first.
   double patience_s = 300;
   // Where the tunnel truly goes; the simulated source alone knows, once it is open.
-  std::function<std::optional<tunnels::Tunnel>()> truth;
+  std::function<std::optional<tunnels::Tunnel>()> truth = {};
+  // Told of the state after each frame, where the frames are taken; it must not wait. An exercise is scored
+  // by it.
+  std::function<void(const operation::OperationState&)> watch = {};
 };
 
 class OperationRun {
@@ -73,12 +78,20 @@ class OperationRun {
   // Of the record that is being written, or was written last; empty before the first.
   [[nodiscard]] const std::filesystem::path& session_folder() const { return session_folder_; }
   [[nodiscard]] bool keeps_video() const;
+  // What is wrong with the live source that runs; of no other.
+  [[nodiscard]] const SourceWatch& watch() const { return live_.watch; }
+  // How long the pictures of the source that runs, or ran last, took. Whoever takes them further adds to it.
+  [[nodiscard]] LatencyMeter& latency() { return live_.meter; }
+  [[nodiscard]] const FrameLatency& newest_latency() const { return live_.newest; }
   // Why nothing is recorded any more; empty while all is well.
   [[nodiscard]] const std::string& record_trouble() const { return record_trouble_; }
 
  private:
   void begin_record();
-  void write(const std::function<void(recording::OperationRecord&)>& what);
+  void measure(const camera::Frame& frame, std::int64_t taken_ns);
+  void note_trouble();
+  template <typename What>
+  void write(const What& what);  // what(record), while there is one; its failure is told and ends it
   void pass_on();
   [[nodiscard]] recording::KeepVideo way_to_keep() const;
 
@@ -94,6 +107,11 @@ class OperationRun {
   std::string continues_, record_trouble_;
   bool record_is_due_ = false;
   operation::OperationStatePtr frame_state_;  // after the newest frame
+  struct Live {
+    SourceWatch watch;
+    LatencyMeter meter;
+    FrameLatency newest;
+  } live_;
 };
 
 }  // namespace arthronaut::theatre

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "planning/geometry/rigid_transform.h"
+#include "planning/tunnels/tunnel_pair.h"
 
 namespace arthronaut::default_plan {
 
@@ -20,9 +21,9 @@ using geometry::rad_from_deg;
 constexpr double kPortalMedial_mm = 24, kPortalAnterior_mm = 35, kPortalDistal_mm = 15;
 constexpr double kCoronal_deg = 67.5;
 constexpr double kLeastFacing = 0.25;  // of the exit's normal along where it should look
-constexpr double kThickWall_mm = 2;
+constexpr double kThickWall_mm = 2;    // to the outside and to another tunnel
 // What a millimetre of missing wall or length, and a step away from what was asked for, count.
-constexpr double kPerWall = 4, kPerLength = 3, kPerStep = 0.6;
+constexpr double kPerWall = 4, kPerBetween = 8, kPerLength = 3, kPerStep = 0.6;
 
 struct Candidate {
   Vector3d direction;
@@ -50,11 +51,17 @@ std::vector<Candidate> through_portal(const tunnels::Tunnel& at, const Joint& jo
   return candidates;
 }
 
-std::vector<Candidate> along_guide(const Joint& joint, const Options& options) {
+// The posterolateral tunnel starts behind the anteromedial one and has to come out medially of it.
+std::vector<Candidate> along_guide(const Joint& joint, const Options& options, bool is_beside) {
   std::vector<Candidate> candidates;
   const auto& axes = joint.axes;
-  for (const double guide : {0.0, -5.0, 5.0, -10.0, 10.0}) {
-    for (const double coronal : {0.0, -2.5, 2.5, -5.0, 5.0, -10.0}) {
+  std::vector<double> guides{0, -5, 5, -10, 10}, coronals{0, -2.5, 2.5, -5, 5, -10};
+  if (is_beside) {
+    guides.insert(guides.end(), {-15, 15, 20});
+    coronals.insert(coronals.end(), {10, -15, -20});
+  }
+  for (const double guide : guides) {
+    for (const double coronal : coronals) {
       const double forward = 1 / std::tan(rad_from_deg(options.guide_deg + guide));
       const double medial = 1 / std::tan(rad_from_deg(kCoronal_deg + coronal));
       candidates.push_back({(forward * axes.anterior - medial * axes.lateral - axes.proximal).normalized(),
@@ -67,7 +74,8 @@ std::vector<Candidate> along_guide(const Joint& joint, const Options& options) {
 }  // namespace
 
 std::optional<tunnels::Tunnel> aim(const tunnels::Tunnel& at_entry, const geometry::Surface& surface,
-                                   const Joint& joint, const Options& options) {
+                                   const Joint& joint, const Options& options,
+                                   const tunnels::Tunnel* beside) {
   const bool is_femur = at_entry.bone == bones::BoneKind::Femur;
   const auto& axes = joint.axes;
   const Vector3d exit_side =
@@ -76,7 +84,9 @@ std::optional<tunnels::Tunnel> aim(const tunnels::Tunnel& at_entry, const geomet
       is_femur ? std::array<double, 2>{30, 45} : std::array<double, 2>{32, 55};
   std::optional<tunnels::Tunnel> best;
   double least_cost = std::numeric_limits<double>::infinity();
-  auto candidates = is_femur ? through_portal(at_entry, joint, options) : along_guide(joint, options);
+  auto candidates =
+      is_femur ? through_portal(at_entry, joint, options) : along_guide(joint, options, beside != nullptr);
+  const auto neighbour = beside != nullptr ? tunnels::measure(*beside, surface) : tunnels::TunnelGeometry{};
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.steps < b.steps; });
   for (const Candidate& candidate : candidates) {
@@ -88,8 +98,12 @@ std::optional<tunnels::Tunnel> aim(const tunnels::Tunnel& at_entry, const geomet
     if (surface.closest_point(measured.exit_mm).normal.dot(exit_side) < kLeastFacing) continue;
     const double misfit =
         std::max({0.0, fitting_mm[0] - measured.length_mm, measured.length_mm - fitting_mm[1]});
+    const double between_mm = neighbour.enters_bone
+                                  ? tunnels::gap_between(tunnel, measured, *beside, neighbour).bone_mm
+                                  : kThickWall_mm;
     const double cost = kPerStep * candidate.steps + kPerLength * misfit +
-                        kPerWall * std::max(0.0, kThickWall_mm - measured.wall_mm);
+                        kPerWall * std::max(0.0, kThickWall_mm - measured.wall_mm) +
+                        kPerBetween * std::max(0.0, kThickWall_mm - between_mm);
     if (cost < least_cost) {
       least_cost = cost;
       best = tunnel;

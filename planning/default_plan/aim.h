@@ -24,9 +24,12 @@ struct Joint {
 // (Howell). About either, flexion (100 to 130 degrees) and portal, or the guide's two angles (+-10 degrees),
 // are varied, and the direction nearest to the asked one is taken that leaves on the right face (femur:
 // lateral, tibia: anteromedial), has a length of 30 to 45 mm in the femur, 32 to 55 mm in the tibia, and a
-// wall of 2 mm; less wall, then less length, where none has. nullopt when none leaves there.
+// wall of 2 mm; less wall, then less length, where none has. Beside another tunnel of the bone (null: there
+// is none) 2 mm of bone between them are worth twice as much as the wall, and the guide's angles are varied
+// further. nullopt when none leaves there.
 [[nodiscard]] std::optional<tunnels::Tunnel> aim(const tunnels::Tunnel& at_entry,
                                                  const geometry::Surface& surface, const Joint& joint,
-                                                 const Options& options);
+                                                 const Options& options,
+                                                 const tunnels::Tunnel* beside = nullptr);
 
 }  // namespace arthronaut::default_plan

@@ -129,7 +129,7 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
     at_entry.direction = -footprint->normal;
     result.source = norm.source;
   }
-  const auto aimed = aim(at_entry, *input.surface, *joint, options);
+  const auto aimed = aim(at_entry, *input.surface, *joint, options, input.beside);
   if (!aimed) {
     result.outcome = Outcome::NoAim;
     result.message = "no direction that a drill can follow from there leaves the " +
@@ -140,6 +140,15 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
   result.outcome = Outcome::Planned;
   result.message.clear();
   return result;
+}
+
+const tunnels::Tunnel* beside(const tunnels::TunnelKey& key,
+                              const std::map<tunnels::TunnelKey, tunnels::Tunnel>& planned) {
+  if (key.bundle == norms::Bundle::Whole) return nullptr;
+  const auto other =
+      key.bundle == norms::Bundle::Anteromedial ? norms::Bundle::Posterolateral : norms::Bundle::Anteromedial;
+  const auto found = planned.find({key.bone, other});
+  return found == planned.end() ? nullptr : &found->second;
 }
 
 std::map<bones::BoneKind, DefaultTunnel> plan_knee(const std::vector<BoneInput>& bones, bones::Side side,

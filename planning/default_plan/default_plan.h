@@ -41,6 +41,10 @@ struct BoneInput {
   landmarks::LandmarkStates states;
   // Made before and kept by the caller, since it takes a second; without it it is made here.
   const landmarks::Proposal* proposal = nullptr;
+  // Of the ligament's other bundle, planned already: bone is left between the two where a drill can follow.
+  // The anteromedial one is best planned first: beside a posterolateral one at its usual aim there is little
+  // room.
+  const tunnels::Tunnel* beside = nullptr;
 };
 
 struct DefaultTunnel {
@@ -60,6 +64,11 @@ struct DefaultTunnel {
 
 // One bone. Throws InvalidInput for options out of range alone.
 [[nodiscard]] DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options& options = {});
+
+// What to keep clear of: the tunnel of the other bundle in that bone. Null for the whole ligament's, and
+// where there is none.
+[[nodiscard]] const tunnels::Tunnel* beside(const tunnels::TunnelKey& key,
+                                            const std::map<tunnels::TunnelKey, tunnels::Tunnel>& planned);
 
 // Every bone that is given, at once.
 [[nodiscard]] std::map<bones::BoneKind, DefaultTunnel> plan_knee(const std::vector<BoneInput>& bones,

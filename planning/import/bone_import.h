@@ -65,7 +65,8 @@ struct BoneImport {
   std::vector<ImportedBone> bones;
   std::optional<bones::Side> side;  // nullopt: neither given nor in the name
   bool side_was_guessed = false;    // by the name
-  bool side_was_seen = false;       // by the anatomy
+  bool side_was_seen = false;       // by the anatomy: the fibula,
+  bool side_is_by_shape = false;    // or the shape of the bones alone, which is a doubt
   std::vector<std::string> lines;   // about the source
   // Whose bones they are, where the source says so (DICOM does). For identity.json alone: nothing else of the
   // import names a person, nor a file or folder, whose name often is the patient's.

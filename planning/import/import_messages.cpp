@@ -204,6 +204,7 @@ void describe(Archive& archive, BoneImport& import) {
   describe(archive, import.side);
   describe(archive, import.side_was_guessed);
   describe(archive, import.side_was_seen);
+  describe(archive, import.side_is_by_shape);
   describe(archive, import.lines);
   describe(archive, import.identity.patient_name);
   describe(archive, import.identity.patient_id);

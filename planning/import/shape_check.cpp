@@ -66,7 +66,7 @@ void check_shapes(BoneImport& import, bool fibula_was_seen) {
   }
   if (!import.side && told.size() > 1) {
     import.side = told.front();
-    import.side_was_seen = true;
+    import.side_was_seen = import.side_is_by_shape = true;
     import.bones.front().doubts.push_back("that it is a " + seen +
                                           " knee is told by the shape of its bones alone: check --side");
   }

@@ -1,5 +1,7 @@
 #include "planning/library/library.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -21,6 +23,12 @@ fs::path known_as(const fs::path& folder) {
   fs::path name = fs::weakly_canonical(fs::absolute(folder), error);
   if (error) name = fs::absolute(folder).lexically_normal();
   return name.has_filename() ? name : name.parent_path();  // "Knee.arthro/" is "Knee.arthro"
+}
+
+// Which file that is now: another one after it was put aside and made anew; 0 where there is none.
+ino_t identity_of(const fs::path& file) {
+  struct stat status {};
+  return ::stat(file.c_str(), &status) == 0 ? status.st_ino : 0;
 }
 
 // Of a folder that may hold a thousand: its own name is resolved once.
@@ -45,6 +53,7 @@ struct Library::State {
   fs::path data_folder;
   SessionReader read_session;
   std::unique_ptr<LibraryIndex> index;
+  ino_t index_identity = 0;  // of the file that it was opened on
   std::vector<std::string> notices;
 
   // Within a turn, so that of two programs one makes the index and the other finds it.
@@ -54,11 +63,16 @@ struct Library::State {
     const fs::path file = index_file(data_folder);
     const bool is_new = !fs::exists(file);
     try {
-      index = std::make_unique<LibraryIndex>(file);
+      open_index();
       if (is_new) fill();
     } catch (const IndexIsDamaged& damage) {
       make_anew(damage.what());
     }
+  }
+
+  void open_index() {
+    index = std::make_unique<LibraryIndex>(index_file(data_folder));
+    index_identity = identity_of(index_file(data_folder));
   }
 
   void fill() { index->add(load_known_folders(data_folder)); }
@@ -77,21 +91,23 @@ struct Library::State {
     notices.push_back("The list of cases was damaged (" + reason +
                       ") and is made anew from the cases' folders; nothing in them is lost.");
     try {
-      index = std::make_unique<LibraryIndex>(file);
+      open_index();
       fill();
     } catch (const IndexIsDamaged& damage) {
       throw IoError(file, damage.what());
     }
   }
 
-  // Damage that shows only later is mended the same way, once.
+  // Damage that shows only later is mended the same way, once; where another program has done that meanwhile,
+  // its index is taken.
   template <class Work>
   auto on_index(const Work& work) {
     try {
       return work(*index);
     } catch (const IndexIsDamaged& damage) {
       const LibraryTurn turn(data_folder);
-      make_anew(damage.what());
+      const ino_t now = identity_of(index_file(data_folder));
+      now != 0 && now != index_identity ? open_index() : make_anew(damage.what());
     }
     return work(*index);
   }

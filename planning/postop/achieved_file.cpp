@@ -48,7 +48,62 @@ ordered_json bone_json(bones::BoneKind kind, const AchievedBone& bone) {
   return json;
 }
 
+AchievedBone bone_of(const files::JsonObject& node) {
+  AchievedBone bone;
+  bone.reliable = node.boolean("reliable");
+  bone.reasons = node.texts("reasons");
+  bone.is_found = node.has("plan_from_postop");
+  if (!bone.is_found) return bone;
+  bone.plan_from_postop = node.rigid_transform("plan_from_postop");
+  bone.rms_mm = node.number("rms_mm");
+  if (node.has("on_edge_share")) bone.on_edge_share = node.number("on_edge_share");
+  if (node.has("in_view_share")) bone.in_view_share = node.number("in_view_share");
+  return bone;
+}
+
+AchievedTunnel tunnel_of(const files::JsonObject& node, const tunnels::TunnelKey& key) {
+  AchievedTunnel achieved;
+  achieved.tunnel.bone = key.bone;
+  achieved.tunnel.bundle = key.bundle;
+  achieved.reliable = node.boolean("reliable");
+  achieved.reasons = node.texts("reasons");
+  achieved.is_found = node.has("entry_mm");
+  if (!achieved.is_found) return achieved;
+  achieved.tunnel.entry_mm = node.vector3("entry_mm");
+  achieved.tunnel.direction = node.vector3("direction");
+  achieved.tunnel.diameter_mm = node.positive_number("diameter_mm");
+  achieved.length_mm = node.number("length_mm");
+  achieved.offset_mm = node.number("offset_mm");
+  achieved.angle_rad = geometry::rad_from_deg(node.number("angle_deg"));
+  if (node.has("comes_out")) achieved.comes_out = node.boolean("comes_out");
+  if (node.has("entry_sigma_mm")) achieved.entry_sigma_mm = node.number("entry_sigma_mm");
+  if (node.has("direction_sigma_deg"))
+    achieved.direction_sigma_rad = geometry::rad_from_deg(node.number("direction_sigma_deg"));
+  if (node.has("metal_share")) achieved.metal_share = node.number("metal_share");
+  if (!node.has("widths")) return achieved;
+  for (const files::JsonObject& width : node.objects("widths"))
+    achieved.widths.push_back({width.number("from_entry_mm"), width.number("diameter_mm")});
+  return achieved;
+}
+
 }  // namespace
+
+std::map<tunnels::TunnelKey, Comparison> read_achieved_file(const std::filesystem::path& file) {
+  const files::JsonObject document = files::read_json(file, "arthronaut.achieved", 1);
+  std::map<bones::BoneKind, AchievedBone> found;
+  for (const files::JsonObject& node : document.objects("bones"))
+    found[bones::bone_kind_from_text(node.text("bone"))] = bone_of(node);
+  std::map<tunnels::TunnelKey, Comparison> comparisons;
+  for (const files::JsonObject& node : document.objects("tunnels")) {
+    const tunnels::TunnelKey key{
+        bones::bone_kind_from_text(node.text("bone")),
+        node.has("bundle") ? norms::bundle_from_text(node.text("bundle")) : norms::Bundle::Whole};
+    Comparison& comparison = comparisons[key];
+    comparison.tunnel = tunnel_of(node, key);
+    if (const auto bone = found.find(key.bone); bone != found.end()) comparison.bone = bone->second;
+  }
+  return comparisons;
+}
 
 void write_achieved_file(const std::filesystem::path& file,
                          const std::map<tunnels::TunnelKey, Comparison>& comparisons) {

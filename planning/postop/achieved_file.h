@@ -17,4 +17,7 @@ namespace arthronaut::postop {
 void write_achieved_file(const std::filesystem::path& file,
                          const std::map<tunnels::TunnelKey, Comparison>& comparisons);
 
+// What was written, back; numbers of what was not found stay as they begin. Throws IoError or InvalidInput.
+[[nodiscard]] std::map<tunnels::TunnelKey, Comparison> read_achieved_file(const std::filesystem::path& file);
+
 }  // namespace arthronaut::postop

@@ -91,6 +91,31 @@ TEST(RealRegistration, AnotherPersonsFemurIsRefused) {
   }
 }
 
+// Four strokes of which half are off the bone: found with and without the marker's prior, most of them relied
+// on, and what is relied on is right.
+TEST(RealRegistration, HardStrokesAreFoundAndMostlyReliedOn) {
+  ARTHRONAUT_REQUIRE_DATA(folder, "bones/mri-femora");
+  const auto mesh = bones::read_mesh(folder / "femur_mesh_10k_pts.vtk");
+  const registration::SurfaceIndex bone(mesh);
+  const geometry::Surface surface(mesh);
+  const auto wall = experiments::find_lateral_notch_wall(mesh, surface, bones::Side::Right);
+  ASSERT_TRUE(wall.has_value());
+  const auto hard = experiments::setting_of(experiments::TrialNoise::Hard);
+  int found_count = 0, relied_on_count = 0;
+  for (const std::uint64_t seed : {1000004, 1000006, 1000008, 1000010, 1000012, 1000014, 1000016, 1000018}) {
+    const auto trial = experiments::make_trial(mesh, surface, *wall, hard, seed);
+    for (const bool use_marker_prior : {true, false}) {
+      const auto found = registration::register_curves(bone, trial.curves, {seed, use_marker_prior, *wall});
+      const double error_mm = (found.marker_from_bone * *wall - trial.marker_from_bone * *wall).norm();
+      found_count += error_mm < 2;
+      relied_on_count += found.reliable;
+      EXPECT_TRUE(error_mm < 2 || !found.reliable) << "seed " << seed << " off by " << error_mm;
+    }
+  }
+  EXPECT_GE(found_count, 15);
+  EXPECT_GE(relied_on_count, 10);
+}
+
 // Everything that cannot hold a real femur is refused, each with its own reason.
 TEST(RealRegistration, RefusesWithTheRightReason) {
   ARTHRONAUT_REQUIRE_DATA(folder, "bones/mri-femora");

@@ -44,6 +44,7 @@ class Validator {
     } else if (keyword == "oneOf") {
       const auto fitting = std::count_if(rule.begin(), rule.end(), [&](const json& choice) {
         Validator one(root_);
+        one.only_names_ = choice.size() == 1 && choice.contains("required");
         one.check(value, choice, place);
         return one.found_.empty();
       });
@@ -84,10 +85,11 @@ class Validator {
     } else {
       require(false, place, "the schema's keyword " + keyword + " is not known here");
     }
-    require(schema.contains("properties"), place, "the schema describes no members");
+    require(only_names_ || schema.contains("properties"), place, "the schema describes no members");
   }
 
   const json& root_;
+  bool only_names_ = false;  // which members there are decides between choices; what they are is said outside
   std::vector<std::string> found_;
 };
 

@@ -6,6 +6,7 @@
 
 #include "navigation/calibration/fluid_file.h"
 #include "navigation/camera/camera_file.h"
+#include "navigation/recording/session_marks.h"
 #include "navigation/registration/registration.h"
 #include "navigation/registration/registration_file.h"
 #include "navigation/tools/tool_set.h"
@@ -162,6 +163,12 @@ TEST_F(Schemas, DescribeTheNote) {
   expect_described(cases::note_file(folder_.path()), "note", [&] { (void)cases::load_note(folder_.path()); });
 }
 
+TEST_F(Schemas, DescribeTheMarks) {
+  recording::write_marks(folder_.path(), {{12, 200'000'000, "first touch"}, {30, 500'000'000, ""}});
+  expect_described(recording::marks_file(folder_.path()), "marks",
+                   [&] { (void)recording::read_marks(folder_.path()); });
+}
+
 // What `cases --json` writes: a case with everything, one that is gone, one that cannot be read.
 TEST_F(Schemas, DescribeTheListOfCases) {
   const fs::path file = folder_ / "cases.json";
@@ -226,6 +233,30 @@ TEST_F(Schemas, DescribeWhatWasAchieved) {
     broken[json::json_pointer(key)] = "none";
     EXPECT_NE(violations_of(broken, "achieved"), "") << key;
   }
+}
+
+// Several markers on a tool and on a world; both ways to say it at once fit neither schema nor reader.
+TEST_F(Schemas, DescribeBodiesOfSeveralMarkers) {
+  const fs::path file = folder_ / "tools.json";
+  tools::ToolSet set = tools::standard_tools();
+  const geometry::RigidTransform beside{Eigen::Quaterniond::Identity(), {0, 9, 0}};
+  set.tools[0].markers = {{2, 4.0, {}}, {12, 3.0, beside, 0.02, 0.1}};
+  set.world_markers[0].markers = {{0, 4.0, {}}, {10, 4.0, beside}};
+  tools::write_tools_file(file, set);
+  expect_described(file, "tools", [&] { (void)tools::read_tools_file(file); });
+  const json good = read(file);
+  const auto broken = [&](const char* place, const json& value) {
+    json document = good;
+    document[json::json_pointer(place)] = value;
+    std::ofstream(file) << document;
+    EXPECT_THROW((void)tools::read_tools_file(file), InvalidInput) << place;
+    return violations_of(document, "tools");
+  };
+  EXPECT_NE(broken("/tools/0/marker_id", 2), "");
+  EXPECT_NE(broken("/tools/0/size_mm", 4), "");
+  EXPECT_NE(broken("/tools/0/markers", json::array()), "");
+  EXPECT_NE(broken("/world_markers/0/markers/1/tool_from_marker", json::object()), "");
+  EXPECT_NE(broken("/tools/0/markers/1/sigma_deg", -1), "");
 }
 
 // The check itself: wrong types, numbers out of bounds, members that nobody described.

@@ -24,7 +24,9 @@ constexpr std::size_t kPointCount = 500;
 constexpr double kMinLengthToSearch_mm = 25;
 // Pairs to search with at each update: many while nothing is found, one as a watchdog later.
 constexpr int kPairsWhileCollecting = 6, kPairsAfterwards = 1;
-constexpr int kIterations = 6;
+// What was found is a step away from where the last solution left it.
+constexpr int kIterationsWhileCollecting = 6, kIterationsAfterwards = 3, kIterationsOfStanding = 4;
+constexpr std::size_t kJudgedPoses = 3;
 constexpr int kAgreeingSolutions = 5;
 
 }  // namespace
@@ -123,8 +125,9 @@ void OnlineRegistration::State::fit_cover() {
 void OnlineRegistration::State::solve() {
   result.bone_is_in_doubt = false;
   const strokes::Curves curves = strokes.curves_in_use();
-  points = choose_points(curves, kPointCount);
   const std::vector<strokes::OrientedPoint> oriented = strokes.oriented_in_use();
+  points = choose_points(curves, kPointCount);
+  const WeightedPoints smooth = choose_points(curves, kPointCount, oriented);
   // While drawing, few points are no objection: more are coming, and the length says how many are missing.
   const std::vector<std::string> objections =
       objections_to(curves, bone->data().bounds.size_mm().norm(), {.min_point_count = 1});
@@ -141,10 +144,14 @@ void OnlineRegistration::State::solve() {
     // Where the plan is first, then everywhere, in turn.
     if (!is_found && !reachable.empty() && result.revision % 2 == 1) search.reachable = &reachable;
     search.both_ways = !is_found;
-    pool.add(search_globally(bone->data(), oriented, points, search), points, search.seed);
-    pool.refine_all(points, kIterations);
+    pool.add(search_globally(bone->data(), oriented, smooth, search), smooth, search.seed);
+    pool.refine_all(smooth, is_found ? kIterationsAfterwards : kIterationsWhileCollecting);
   }
-  standing.replace(pool.poses(), points.centroid_mm);
+  // What stands is judged by the samples, as register_curves does.
+  std::vector<RefinedPose> foremost = pool.poses();
+  if (foremost.size() > kJudgedPoses) foremost.resize(kJudgedPoses);
+  standing.replace(std::move(foremost), points.centroid_mm);
+  standing.refine_all(points, kIterationsOfStanding);
   std::vector<std::optional<double>> offsets_mm;
   if (fitter && !standing.empty()) {
     fit_cover();
@@ -200,7 +207,7 @@ void OnlineRegistration::State::check_side() {
     constexpr int kRounds = 2;
     const strokes::Curves curves = strokes.curves_in_use();
     const SearchOutcome own = search_and_summarise(setting, curves, kRounds);
-    side = judge_side(setting, curves, own);
+    side = judge_side(setting, curves, own, !judges_all).verdict;
     side_checked_mm = result.length_mm;
   }
   if (side == SideVerdict::Own || !result.registration.has_pose) return;

@@ -54,8 +54,14 @@ strokes::Curves StrokeSet::curves_in_use() const {
 
 std::vector<strokes::OrientedPoint> StrokeSet::oriented_in_use() const {
   std::vector<strokes::OrientedPoint> oriented;
+  std::size_t begin = 0;  // of the stroke among curves_in_use()
   for (const Stroke& stroke : strokes_) {
-    if (!stroke.is_excluded) oriented.insert(oriented.end(), stroke.oriented.begin(), stroke.oriented.end());
+    if (stroke.is_excluded) continue;
+    for (const strokes::OrientedPoint& point : stroke.oriented) {
+      oriented.push_back(point);
+      oriented.back().source_index += begin;
+    }
+    begin += stroke.points.size();
   }
   return oriented;
 }

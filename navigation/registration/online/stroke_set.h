@@ -39,6 +39,7 @@ class StrokeSet {
   // Of the strokes that are not excluded, as measured.
   [[nodiscard]] double length_in_use_mm() const;
   [[nodiscard]] strokes::Curves curves_in_use() const;
+  // As measured; their source_index counts in curves_in_use().
   [[nodiscard]] std::vector<strokes::OrientedPoint> oriented_in_use() const;
 
  private:

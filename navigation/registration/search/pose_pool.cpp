@@ -1,6 +1,7 @@
 #include "navigation/registration/search/pose_pool.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace arthronaut::registration {
@@ -9,7 +10,7 @@ namespace {
 
 using geometry::RigidTransform;
 
-constexpr std::size_t kCoarsePointCount = 120, kPolishPointCount = 400;
+constexpr std::size_t kFewPoints = 60, kCoarsePointCount = 120, kPolishPointCount = 400;
 constexpr std::size_t kPoolSize = 8;
 constexpr int kPolishIterations = 3, kIterationsToJudge = 2;
 
@@ -48,26 +49,55 @@ void PosePool::add(const std::vector<Hypothesis>& hypotheses, const WeightedPoin
   const WeightedPoints coarse_points = draw_points(points, kCoarsePointCount, seed);
   // Those in the pool are refined on the same points, so that the costs compare.
   for (RefinedPose& pose : poses_) {
-    pose = refine(distance_in(bone_.field), coarse_points, pose.bone_from_marker, pose.model, prior_, 1);
+    refine_again(pose, coarse_points, 1);
   }
-  for (const Hypothesis& hypothesis : hypotheses) {
-    const RigidTransform near = approach(bone_.field, coarse_points, hypothesis.bone_from_marker);
+  for (const RigidTransform& hypothesis : most_promising(hypotheses, draw_points(points, kFewPoints, seed))) {
+    const RigidTransform near = approach(bone_.field, coarse_points, hypothesis).bone_from_marker;
     poses_.push_back(refine(distance_in(bone_.field), coarse_points, near, start_, prior_, 6));
+    poses_.back().searches = search_bit_;
   }
+  search_bit_ <<= 1;
   rank(points.centroid_mm, kPoolSize);
+}
+
+// A hypothesis is off by some degrees, so that its score says little: a few steps on few points say more, and
+// let many compete.
+std::vector<RigidTransform> PosePool::most_promising(const std::vector<Hypothesis>& hypotheses,
+                                                     const WeightedPoints& few_points) const {
+  constexpr std::size_t kCount = 24;
+  std::vector<ApproachedPose> approached;
+  for (const Hypothesis& hypothesis : hypotheses) {
+    if (hypotheses.size() <= kCount) {
+      approached.push_back({hypothesis.bone_from_marker});
+    } else {
+      approached.push_back(approach(bone_.field, few_points, hypothesis.bone_from_marker, {2.0, 1.4, 5}));
+    }
+  }
+  std::stable_sort(approached.begin(), approached.end(),
+                   [](const ApproachedPose& l, const ApproachedPose& r) { return l.cost < r.cost; });
+  std::vector<RigidTransform> promising;
+  for (std::size_t i = 0; i < std::min(kCount, approached.size()); ++i)
+    promising.push_back(approached[i].bone_from_marker);
+  return promising;
 }
 
 void PosePool::refine_all(const WeightedPoints& points, int iterations) {
   const int first_iterations = std::min(iterations, kIterationsToJudge);
   for (const int part : {first_iterations, iterations - first_iterations}) {
     if (part == 0) continue;
-    for (RefinedPose& pose : poses_) {
-      pose = refine(distance_in(bone_.field), points, pose.bone_from_marker, pose.model, prior_, part);
-    }
+    for (RefinedPose& pose : poses_) refine_again(pose, points, part);
     rank(points.centroid_mm, kPoolSize);
     drop_hopeless(points);
   }
 }
+
+void PosePool::refine_again(RefinedPose& pose, const WeightedPoints& points, int iterations) const {
+  const std::uint32_t searches = pose.searches;
+  pose = refine(distance_in(bone_.field), points, pose.bone_from_marker, pose.model, prior_, iterations);
+  pose.searches = searches;
+}
+
+int PosePool::best_find_count() const { return poses_.empty() ? 0 : std::popcount(best().searches); }
 
 void PosePool::drop_hopeless(const WeightedPoints& points) {
   constexpr double kHopeless = 25;
@@ -95,10 +125,14 @@ void PosePool::rank(const Eigen::Vector3d& centroid_mm, std::size_t max_count) {
   std::vector<RefinedPose> kept;
   for (RefinedPose& pose : poses_) {
     if (kept.size() == max_count) break;
-    const bool is_new = std::all_of(kept.begin(), kept.end(), [&](const RefinedPose& other) {
-      return are_different(pose.bone_from_marker, other.bone_from_marker, centroid_mm);
+    const auto twin = std::find_if(kept.begin(), kept.end(), [&](const RefinedPose& other) {
+      return !are_different(pose.bone_from_marker, other.bone_from_marker, centroid_mm);
     });
-    if (is_new) kept.push_back(std::move(pose));
+    if (twin == kept.end()) {
+      kept.push_back(std::move(pose));
+    } else {
+      twin->searches |= pose.searches;
+    }
   }
   poses_ = std::move(kept);
 }

@@ -34,6 +34,9 @@ class PosePool {
   // Other poses in place of those in the pool; ranked, twins dropped.
   void replace(std::vector<RefinedPose> poses, const Eigen::Vector3d& centroid_mm);
   void clear() { poses_.clear(); }
+  // How many calls of add() handed in hypotheses that led to what is the best pose now: one that was found
+  // again and again is hardly missed by the next search, and neither would be a better one.
+  [[nodiscard]] int best_find_count() const;
 
   [[nodiscard]] bool empty() const { return poses_.empty(); }
   [[nodiscard]] const RefinedPose& best() const { return poses_.front(); }
@@ -43,11 +46,15 @@ class PosePool {
 
  private:
   void rank(const Eigen::Vector3d& centroid_mm, std::size_t max_count);
+  [[nodiscard]] std::vector<geometry::RigidTransform> most_promising(
+      const std::vector<Hypothesis>& hypotheses, const WeightedPoints& few_points) const;
   void drop_hopeless(const WeightedPoints& points);
+  void refine_again(RefinedPose& pose, const WeightedPoints& points, int iterations) const;
 
   const SurfaceIndex::Data& bone_;
   MarkerPrior prior_;
   NoiseModel start_;
+  std::uint32_t search_bit_ = 1;    // of the next call of add()
   std::vector<RefinedPose> poses_;  // best first, different from one another
 };
 

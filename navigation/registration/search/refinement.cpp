@@ -145,28 +145,32 @@ ResidualEvidence evidence_of(double residual_mm, const NoiseModel& model) {
   return evidence;
 }
 
-RigidTransform approach(const DistanceField& field, const WeightedPoints& points,
-                        const RigidTransform& start) {
-  constexpr int kIterations = 18;
-  constexpr double kFirstWidth_mm = 2.0, kLastWidth_mm = 0.8;
-  RigidTransform bone_from_marker = start;
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    const double progress = std::min(1.0, iteration / 12.0);
-    const double width = kFirstWidth_mm * std::pow(kLastWidth_mm / kFirstWidth_mm, progress);
+ApproachedPose approach(const DistanceField& field, const WeightedPoints& points, const RigidTransform& start,
+                        const ApproachOptions& options) {
+  ApproachedPose approached{start};
+  RigidTransform& bone_from_marker = approached.bone_from_marker;
+  const double shrinking_iterations = options.max_iterations * 2 / 3;
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    const double progress = std::min(1.0, iteration / shrinking_iterations);
+    const double width =
+        options.first_width_mm * std::pow(options.last_width_mm / options.first_width_mm, progress);
     const Eigen::Vector3d pivot = bone_from_marker * points.centroid_mm;
     const Eigen::Matrix3d rotation = bone_from_marker.matrix();
     NormalEquations equations;
+    double cost = 0;
     for (std::size_t i = 0; i < points.positions_mm.size(); ++i) {
       const Eigen::Vector3d p = rotation * points.positions_mm[i] + bone_from_marker.translation_mm;
       const DistanceField::Sample sample = field.sample(p);
       const double ratio = width * width / (width * width + sample.distance_mm * sample.distance_mm);
+      cost += points.weights[i] * (1 - ratio);
       equations.add(p - pivot, sample.gradient, sample.distance_mm, points.weights[i] * ratio * ratio);
     }
+    approached.cost = cost / std::max(points.weight_sum, 1e-9);
     const Vector6d twist = equations.solve();
     move(bone_from_marker, twist, pivot);
     if (progress == 1.0 && is_small(twist)) break;
   }
-  return bone_from_marker;
+  return approached;
 }
 
 RefinedPose refine(const DistanceFunction& distance, const WeightedPoints& points,

@@ -10,6 +10,7 @@
 // TPAMI 32, 2010; there the parts are points, here they are ways in which a tip meets a surface.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -48,6 +49,7 @@ struct RefinedPose {
   NoiseModel model;
   double cost = 0;  // weighted negative log likelihood for each unit of weight; smaller is better
   std::vector<double> residuals_mm;  // signed, by point
+  std::uint32_t searches = 0;        // that led here, one bit each; see PosePool::best_find_count
 };
 
 // What the noise model says about one residual: the derivatives of its negative log density.
@@ -59,9 +61,19 @@ struct ResidualEvidence {
 };
 [[nodiscard]] ResidualEvidence evidence_of(double residual_mm, const NoiseModel& model);
 
-// Geman-McClure, its width shrinking from 2 mm to 0.8 mm: from several mm and degrees away to the minimum.
-[[nodiscard]] geometry::RigidTransform approach(const DistanceField& field, const WeightedPoints& points,
-                                                const geometry::RigidTransform& bone_from_marker);
+// Geman-McClure, its width shrinking from first_width_mm to last_width_mm over two thirds of the iterations:
+// from several mm and degrees away to the minimum.
+struct ApproachOptions {
+  double first_width_mm = 2.0, last_width_mm = 0.8;
+  int max_iterations = 18;
+};
+struct ApproachedPose {
+  geometry::RigidTransform bone_from_marker;
+  double cost = 1;  // mean of r^2 / (width^2 + r^2) before the last step; in [0, 1], smaller is better
+};
+[[nodiscard]] ApproachedPose approach(const DistanceField& field, const WeightedPoints& points,
+                                      const geometry::RigidTransform& bone_from_marker,
+                                      const ApproachOptions& options = {});
 
 // EM from a pose within about 1 mm.
 [[nodiscard]] RefinedPose refine(const DistanceFunction& distance, const WeightedPoints& points,

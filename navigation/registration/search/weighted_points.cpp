@@ -29,26 +29,54 @@ void weigh(WeightedPoints& points) {
   if (points.weight_sum > 0) points.centroid_mm /= points.weight_sum;
 }
 
+// The smoothed points of each stroke in place of its samples, where they span most of it. oriented: in the
+// order of the curves.
+strokes::Curves smoothed(const strokes::Curves& curves, const std::vector<strokes::OrientedPoint>& oriented) {
+  strokes::Curves result;
+  auto next = oriented.begin();
+  for (std::size_t first = 0; first < curves.size();) {
+    std::size_t last = first;
+    while (last < curves.size() && curves[last].curve == curves[first].curve) ++last;
+    const auto begin = next;
+    while (next != oriented.end() && next->source_index < last) ++next;
+    const bool is_covered =
+        next - begin > 1 && 2 * ((next - 1)->source_index - begin->source_index) >= last - first;
+    if (is_covered) {
+      for (auto it = begin; it != next; ++it) {
+        result.push_back(curves[it->source_index]);
+        result.back().position_mm = it->position_mm;
+      }
+    } else {
+      result.insert(result.end(), curves.begin() + static_cast<std::ptrdiff_t>(first),
+                    curves.begin() + static_cast<std::ptrdiff_t>(last));
+    }
+    first = last;
+  }
+  return result;
+}
+
 }  // namespace
 
-WeightedPoints choose_points(const strokes::Curves& curves, std::size_t max_count) {
+WeightedPoints choose_points(const strokes::Curves& curves, std::size_t max_count,
+                             const std::vector<strokes::OrientedPoint>& oriented) {
+  constexpr double kStretch_mm = 12.0;
+  const strokes::Curves smooth = smoothed(curves, oriented);
   WeightedPoints points;
-  const std::size_t count = std::min(curves.size(), max_count);
+  const std::size_t count = std::min(smooth.size(), max_count);
+  std::vector<int> curve_of;
   for (std::size_t i = 0; i < count; ++i) {
-    const strokes::CurvePoint& point = curves[i * curves.size() / count];
+    const strokes::CurvePoint& point = smooth[i * smooth.size() / count];
     points.positions_mm.push_back(point.position_mm);
     points.shaft_directions.push_back(point.shaft_direction);
+    curve_of.push_back(point.curve);
   }
   weigh(points);
-  constexpr double kStretch_mm = 12.0;
   double begun_mm = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_first = i == 0;
-    const bool is_new_curve =
-        !is_first && curves[i * curves.size() / count].curve != curves[(i - 1) * curves.size() / count].curve;
-    const bool is_full = begun_mm >= kStretch_mm;
-    if (is_new_curve || is_full) begun_mm = 0;
-    points.stretches.push_back(is_first ? 0 : points.stretches.back() + (is_new_curve || is_full ? 1 : 0));
+    const bool is_new = !is_first && (curve_of[i] != curve_of[i - 1] || begun_mm >= kStretch_mm);
+    if (is_new) begun_mm = 0;
+    points.stretches.push_back(is_first ? 0 : points.stretches.back() + (is_new ? 1 : 0));
     begun_mm += points.weights[i];
   }
   return points;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "navigation/strokes/curves.h"
+#include "navigation/strokes/stroke_tangents.h"
 
 namespace arthronaut::registration {
 
@@ -29,7 +30,10 @@ struct WeightedPoints {
   }
 };
 
-[[nodiscard]] WeightedPoints choose_points(const strokes::Curves& curves, std::size_t max_count);
+// Of a stroke that `oriented` covers for the most part its smoothed points are taken, of which each holds
+// less noise than a sample by far; else its samples. At most max_count, evenly chosen.
+[[nodiscard]] WeightedPoints choose_points(const strokes::Curves& curves, std::size_t max_count,
+                                           const std::vector<strokes::OrientedPoint>& oriented = {});
 // `count` of the points, at random, each drawn once; for the quick scores.
 [[nodiscard]] WeightedPoints draw_points(const WeightedPoints& points, std::size_t count, std::uint64_t seed);
 

@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
 #include "navigation/recording/video_encoder.h"
@@ -106,6 +110,76 @@ TEST_F(CheckFluidCommand, RefusesToolsThatAreNoRuler) {
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.errors, HasSubstr("marker 9"));
   EXPECT_EQ(check({"--markers", "5"}).exit_code, 2);
+}
+
+// The day's check: the ruler measured (to 0.05 mm, what the product asks of the median), kept in the library,
+// listed with its standing; another ruler than the stated one is off, and what is simulated is not kept.
+TEST_F(CheckFluidCommand, AccuracyIsMeasuredKeptAndListed) {
+  write_clip(camera::kSalineIndex, 24);
+  const auto accuracy = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "accuracy");
+    return run_program(arguments, {.data_home = folder_ / "home"});
+  };
+  const std::vector<std::string> look{
+      "check", "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json", folder_ / "clip.mkv"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), look.begin(), look.end());
+    return more;
+  };
+  EXPECT_EQ(accuracy({"list"}).exit_code, 4);
+  EXPECT_THAT(accuracy({"list"}).errors, HasSubstr("never checked"));
+  EXPECT_EQ(accuracy(with({"--no-keep"})).exit_code, 0);
+  EXPECT_EQ(accuracy({"list"}).exit_code, 4);
+
+  const auto first = accuracy(with({"--device", "scope 4"}));
+  ASSERT_EQ(first.exit_code, 0) << first.errors;
+  EXPECT_THAT(first.output, AllOf(HasSubstr("scope 4, in saline: 24 frames"), HasSubstr("checked today")));
+  const auto listed = accuracy({"list", "--json"});
+  EXPECT_EQ(listed.exit_code, 0) << listed.errors;
+  const auto json = nlohmann::json::parse(listed.output);
+  ASSERT_EQ(json.at("checks").size(), 1u);
+  EXPECT_NEAR(json["checks"][0].at("distance_mm").get<double>(), 10.0, 0.05);
+  EXPECT_EQ(json["checks"][0].at("frames"), 24);
+  EXPECT_EQ(json.at("devices").at(0).at("fine"), true);
+
+  // The same clip under another name and a month later is the same measurement.
+  std::filesystem::copy_file(folder_ / "clip.mkv", folder_ / "again.mkv");
+  auto again = look;
+  again.back() = folder_ / "again.mkv";
+  const auto twice = accuracy(again);
+  EXPECT_EQ(twice.exit_code, 3);
+  EXPECT_THAT(twice.errors, AllOf(HasSubstr("again.mkv"), HasSubstr("kept already")));
+  EXPECT_EQ(nlohmann::json::parse(accuracy({"list", "--json"}).output).at("checks").size(), 1u);
+
+  // Last month's clip is last month's check, and one that says it comes from the future is of no day.
+  write_clip(camera::kSalineIndex, 26);
+  const auto now = std::filesystem::file_time_type::clock::now();
+  std::filesystem::last_write_time(folder_ / "clip.mkv", now - std::chrono::hours(24 * 31));
+  const auto old = accuracy(with({"--device", "scope 5"}));
+  EXPECT_EQ(old.exit_code, 4);
+  EXPECT_THAT(old.output, HasSubstr("scope 5: accuracy not checked today"));
+  write_clip(camera::kSalineIndex, 27);
+  std::filesystem::last_write_time(folder_ / "clip.mkv", now + std::chrono::hours(24));
+  const auto unknown = accuracy(with({"--device", "scope 6"}));
+  EXPECT_EQ(unknown.exit_code, 4);
+  EXPECT_THAT(unknown.output, HasSubstr("when recorded unknown"));
+
+  write_clip(camera::kSalineIndex, 25);
+  const auto off = accuracy(with({"--device", "scope 4", "--spacing-mm", "10.5"}));
+  EXPECT_EQ(off.exit_code, 4);
+  EXPECT_THAT(off.errors, HasSubstr("the ruler comes out wrong"));
+  EXPECT_EQ(accuracy({"list"}).exit_code, 4);
+
+  camera::CalibrationRecord simulated;
+  simulated.calibration = simulator::standard_camera();
+  simulated.provenance.origin = provenance::Origin::Simulated;
+  camera::write_camera_file(folder_ / "camera.json", simulated);
+  const auto refused = accuracy(look);
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.errors, HasSubstr("kept already"));
+  const auto simulated_scope = accuracy(with({"--no-keep"}));
+  EXPECT_EQ(simulated_scope.exit_code, 3);
+  EXPECT_THAT(simulated_scope.errors, HasSubstr("simulated arthroscope"));
 }
 
 }  // namespace

@@ -106,6 +106,23 @@ TEST_F(CompareCommand, AWholeBoneIsSaid) {
   EXPECT_TRUE(found.at("entry_mm").is_null());
 }
 
+// Both bones planned and one of them in the images: the other one is named, and the answer is written and not
+// relied on.
+TEST_F(CompareCommand, SaysWhichOfTwoBonesIsNotSeen) {
+  cases::save_case(folder_ / "knee.arthro", phantom::case_of(made_, "Phantom"));
+  scan("femur.nrrd", knee_.plan.tunnels.at(BoneKind::Femur));
+  const auto result = compare("femur.nrrd", "achieved.json");
+  EXPECT_EQ(result.exit_code, 4) << result.errors;
+  EXPECT_THAT(result.errors, HasSubstr("tibia: "));
+  const json achieved = read("achieved.json");
+  ASSERT_EQ(achieved.at("tunnels").size(), 2U);
+  for (const json& tunnel : achieved.at("tunnels"))
+    if (tunnel.at("bone") == "tibia") {
+      EXPECT_FALSE(tunnel.at("reliable").get<bool>());
+      EXPECT_FALSE(tunnel.at("reasons").empty());
+    }
+}
+
 // Another knee's plan, and images that name another patient.
 TEST_F(CompareCommand, AnotherPatientIsNotReliable) {
   scan("postop.nrrd", made_.femoral_tunnel);

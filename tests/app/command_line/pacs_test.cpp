@@ -110,6 +110,33 @@ TEST_F(PacsCommand, SaysWhatIsWrong) {
   EXPECT_THAT(got_.names(), ElementsAre());
 }
 
+// The same verbs and answers, by the other way; the password stands on no command line.
+TEST(PacsWebCommand, FindsFetchesAndSends) {
+  const test::Orthanc orthanc({.offers_web = true});
+  const test::TemporaryFolder made, got;
+  test::write_dicom_series(made / "ct", test::ellipsoid_ct());
+  const std::string series = test::DicomSeriesForm{}.origin.series_uid;
+  const auto run = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "pacs");
+    arguments.insert(arguments.end(), {"--web", orthanc.web_url(), "--retries", "0"});
+    return run_program(arguments);
+  };
+  EXPECT_THAT(run({"echo"}).output, HasSubstr(orthanc.web_url() + " answers"));
+  const auto sent = nlohmann::json::parse(run({"send", made / "ct", "--json"}).output);
+  EXPECT_EQ(sent["stored"], true);
+  EXPECT_EQ(sent["commitment"], "not supported");
+  EXPECT_EQ(sent["peer"], orthanc.web_url());
+  EXPECT_THAT(run({"find", "--patient", "4711"}).output, AllOf(HasSubstr("44 images"), HasSubstr(series)));
+  const auto fetched =
+      nlohmann::json::parse(run({"get", "--series", series, "-o", got / "scan", "--json"}).output);
+  EXPECT_EQ(fetched["way"], "WADO-RS");
+  EXPECT_EQ(fetched["images"], kImageCount);
+  EXPECT_EQ(run({"get", "--series", "1.2.3", "-o", got / "none"}).exit_code, 3);
+  EXPECT_EQ(run({"echo", "--peer", "PACS@host:104"}).exit_code, 2);
+  EXPECT_EQ(run({"echo", "--user", "me"}).exit_code, 3);  // http
+  EXPECT_EQ(run_program({"pacs", "echo", "--web", "ftp://host"}).exit_code, 3);
+}
+
 TEST_F(PacsCommand, AFullDiskLeavesNothingHalf) {
   const auto full = get({.file_size_bytes = 2000, .as_nobody = false});
   EXPECT_EQ(full.exit_code, 3);

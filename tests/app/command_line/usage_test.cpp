@@ -33,10 +33,11 @@ TEST_P(Subcommand, RefusesAnUnknownOption) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Subcommand,
-                         ::testing::Values("calibrate", "cases", "check-fluid", "compare", "track", "pivot",
-                                           "digitise", "register", "import", "landmarks", "plan", "phantom",
-                                           "navigate", "replay", "report", "dicom", "resume", "segment",
-                                           "series", "pacs", "markers", "demo"),
+                         ::testing::Values("calibrate", "cases", "check-fluid", "accuracy", "compare",
+                                           "track", "pivot", "digitise", "register", "import", "landmarks",
+                                           "plan", "phantom", "navigate", "replay", "report", "dicom",
+                                           "resume", "rig", "segment", "series", "verify", "pacs", "markers",
+                                           "demo", "train"),
                          [](const auto& test) {
                            std::string name = test.param;
                            std::replace(name.begin(), name.end(), '-',

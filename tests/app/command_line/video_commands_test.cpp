@@ -116,6 +116,9 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   const auto same = run_program({"replay", knee, "--session", session.filename()});
   EXPECT_EQ(same.exit_code, 0) << same.output << same.errors;
   EXPECT_THAT(same.output, HasSubstr("24 of 24 frames replayed"));
+  const auto verified = run_program({"verify", knee, "--session", session.filename()});
+  EXPECT_EQ(verified.exit_code, 0) << verified.errors;
+  EXPECT_THAT(verified.output, HasSubstr("as recorded"));
 
   // Nobody was at its pedal: there is no operation to go on with.
   const auto resumed = run_program({"resume", knee, "--json"});
@@ -131,6 +134,13 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   const auto changed = run_program({"replay", knee, "-o", folder_ / "differences.csv"});
   EXPECT_EQ(changed.exit_code, 4);
   EXPECT_THAT(changed.output, HasSubstr("frame 7: pose of marker 2: 0.5"));
+  const auto broken = run_program({"verify", knee, "--json"});
+  EXPECT_EQ(broken.exit_code, 4);
+  EXPECT_THAT(broken.errors, HasSubstr("session.sqlite: frames 0 to"));
+  const auto findings = nlohmann::json::parse(broken.output).at(0).at("findings");
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_LE(findings[0].at("from"), 7);
+  EXPECT_GT(findings[0].at("to"), 7);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "differences.csv"));
 }
 

@@ -65,10 +65,10 @@ TEST_F(BoneMakingTest, JudgesTheSurfaceAndPutsItIntoTheCaseWithItsStudy) {
   making_.start(knee_, folder_.path(), knee_.images.back(), painting_);
   ASSERT_TRUE(reach(State::Judging)) << making_.failure();
   ASSERT_EQ(making_.qualities().size(), 1U);
-  const BoneQuality& quality = making_.qualities()[0];
+  const importing::BoneQuality& quality = making_.qualities()[0];
   const double ball_ml = 4.0 / 3 * M_PI * kRadius_mm * kRadius_mm * kRadius_mm / 1000;
-  EXPECT_NEAR(quality.painted_ml, ball_ml, 0.01 * ball_ml);
-  EXPECT_NEAR(quality.surface_ml, quality.painted_ml, 0.01 * ball_ml) << "not shrunk";
+  EXPECT_NEAR(quality.labelled_ml, ball_ml, 0.01 * ball_ml);
+  EXPECT_NEAR(quality.surface_ml, quality.labelled_ml, 0.01 * ball_ml) << "not shrunk";
   EXPECT_TRUE(quality.is_closed);
   EXPECT_EQ(quality.edges_not_manifold, 0U);
   EXPECT_FALSE(quality.doubts.empty()) << "a ball is no femur";
@@ -105,6 +105,11 @@ TEST_F(BoneMakingTest, ABoneThatIsPlannedOnAndAnEmptyPaintingAreRefusedBeforeThe
   tunnel.bone = BoneKind::Femur;
   knee_.plan.put(tunnel, "");
   EXPECT_THAT(BoneMaking::refusal(knee_, painting_), testing::HasSubstr("femur is planned on"));
+  EXPECT_THAT(BoneMaking::refusal(knee_, painting_, {BoneKind::Femur}),
+              testing::HasSubstr("correct them first"))
+      << "painted as the case has it, it is not made anew";
+  EXPECT_THAT(BoneMaking::refusal(knee_, painting_, {BoneKind::Tibia}),
+              testing::HasSubstr("femur is planned on"));
 }
 
 TEST_F(BoneMakingTest, ABrokenPaintingIsSaid) {

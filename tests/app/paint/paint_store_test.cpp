@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "planning/images/volume_writer.h"
+#include "tests/planning/geometry/shapes.h"
 #include "tests/planning/painting/shapes.h"
 #include "tests/temporary_folder.h"
 
@@ -26,8 +27,9 @@ class PaintStoreTest : public ::testing::Test {
     image_.spacing_mm = volume.spacing_mm();
     cases::store_image(folder_.path(), 1, images::encoded(volume), image_);
   }
-  std::optional<painting::Painting> load(PaintStore& store, bool read_only = false) {
-    store.open(folder_.path(), image_, read_only);
+  std::optional<painting::Painting> load(PaintStore& store, bool read_only = false,
+                                         std::vector<CaseBone> bones = {}) {
+    store.open(folder_.path(), image_, read_only, std::move(bones));
     for (int i = 0; i < 4000 && store.is_loading(); ++i) {
       if (auto loaded = store.take_loaded()) return loaded;
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -80,6 +82,47 @@ TEST_F(PaintStoreTest, AtTheEndNothingIsLeftUnsaved) {
   const auto saved = painting::load_painting(folder_.path(), painting->volume());
   ASSERT_TRUE(saved);
   EXPECT_EQ(saved->strokes, painting->labels(Layer::Strokes));
+}
+
+// The case's bones are what is painted, without a step; going away writes nothing, one stroke changes its
+// bone alone, and what was painted then is gone on with.
+TEST_F(PaintStoreTest, BeginsWithTheBonesOfTheCase) {
+  const auto bones = [] {
+    return std::vector<CaseBone>{
+        {bones::BoneKind::Femur,
+         std::make_shared<const geometry::TriangleMesh>(test::box({4, 4, 4}, {9.7, 9.7, 12.3}))},
+        {bones::BoneKind::Tibia,
+         std::make_shared<const geometry::TriangleMesh>(test::box({4, 4, 3}, {9.7, 9.7, 3.1}))}};
+  };
+  {
+    PaintStore store([] {});
+    auto painting = load(store, false, bones());
+    ASSERT_TRUE(painting) << store.failure();
+    EXPECT_EQ(std::ranges::count(painting->labels(Layer::Bones), painting::kFemur), 8 * 8 * 4);
+    EXPECT_EQ(std::ranges::count(painting->labels(Layer::Bones), painting::kTibia), 8 * 8 * 3);
+    EXPECT_FALSE(painting->can_undo());
+    EXPECT_THAT(store.unchanged(*painting),
+                testing::ElementsAre(bones::BoneKind::Femur, bones::BoneKind::Tibia));
+    store.keep(*painting, 10);
+    store.keep(*painting, 20);
+    store.keep_now(*painting);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "painting"));
+
+    painting->paint(Layer::Bones, {{9, 9, 12}, {9, 9, 12}, Eigen::Vector3d::UnitZ(), {2, false}},
+                    painting::kNothing, "erase", false);
+    EXPECT_THAT(store.unchanged(*painting), testing::ElementsAre(bones::BoneKind::Tibia));
+    painting->undo();
+    EXPECT_EQ(store.unchanged(*painting).size(), 2U);
+    painting->redo();
+    store.keep_now(*painting);
+  }
+  PaintStore store([] {});
+  auto painting = load(store, false, bones());
+  ASSERT_TRUE(painting);
+  EXPECT_LT(std::ranges::count(painting->labels(Layer::Bones), painting::kFemur), 8 * 8 * 4);
+  EXPECT_THAT(store.unchanged(*painting), testing::ElementsAre(bones::BoneKind::Tibia));
+  store.note_made(*painting);
+  EXPECT_EQ(store.unchanged(*painting).size(), 2U);
 }
 
 // A painting that cannot be read is not painted over: it may be all that there is of an afternoon.

@@ -43,30 +43,11 @@ TEST(PaintWords, TheNextStepIsWhatIsMissing) {
   EXPECT_THAT(next(), HasSubstr("femur too"));
 }
 
-TEST(PaintWords, AQualityIsGoodOnlyWhereNothingSpeaksAgainstIt) {
-  BoneQuality quality;
-  quality.painted_ml = 100;
-  quality.surface_ml = 99;
-  quality.is_closed = true;
-  quality.triangles = 1234;
-  const auto severities = [&] {
-    std::vector<Severity> all;
-    for (const QualityLine& line : quality_lines(quality)) all.push_back(line.severity);
-    return all;
-  };
-  EXPECT_THAT(severities(), testing::Each(Severity::Good));
-  EXPECT_THAT(quality_lines(quality)[0].text, HasSubstr("99.0 ml, painted 100.0 ml"));
-  quality.surface_ml = 94;  // an island was left out
-  EXPECT_EQ(severities()[0], Severity::Caution);
-  quality.surface_ml = 0;
-  EXPECT_EQ(severities()[0], Severity::Caution);
-  quality.is_closed = false;
-  EXPECT_EQ(severities()[1], Severity::Bad);
-  quality.edges_not_manifold = 2;
-  EXPECT_EQ(severities()[2], Severity::Caution);
-  quality.doubts = {"it has one condyle"};
-  EXPECT_EQ(quality_lines(quality).back().text, "it has one condyle");
-  EXPECT_EQ(severities().back(), Severity::Caution);
+TEST(PaintWords, WhatCannotBePlannedOnIsDrawnSo) {
+  using importing::QualityVerdict;
+  EXPECT_EQ(severity_of(QualityVerdict::Good), Severity::Good);
+  EXPECT_EQ(severity_of(QualityVerdict::Caution), Severity::Caution);
+  EXPECT_EQ(severity_of(QualityVerdict::Bad), Severity::Bad);
 }
 
 }  // namespace

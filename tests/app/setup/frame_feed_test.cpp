@@ -8,6 +8,7 @@
 #include "app/setup/setup_sources.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/simulator/simulated_operation.h"
+#include "navigation/sources/recovering_source.h"
 #include "planning/geometry/error.h"
 #include "tests/temporary_folder.h"
 
@@ -17,7 +18,7 @@ namespace {
 // `count` numbered pictures, then the end, or what a broken file throws.
 class Numbers : public sources::FrameSource {
  public:
-  Numbers(int count, bool breaks) : count_(count), breaks_(breaks) {}
+  Numbers(int count, bool breaks, bool ends = true) : count_(count), breaks_(breaks) { info_.ends = ends; }
   [[nodiscard]] const sources::SourceInfo& info() const override { return info_; }
   [[nodiscard]] camera::FramePtr next() override {
     if (given_ == count_) {
@@ -93,6 +94,25 @@ TEST(FrameFeed, HandsErrorsToTheWorker) {
 
 const sources::DeviceTurns kTurns;
 
+// A camera that is out, which its source waits for: the feed says that the source has ended, then why it does
+// not come back, and ends all the same.
+TEST(FrameFeed, EndsWhileItsSourceWaitsForACamera) {
+  FeedSource source;
+  source.is_live = true;
+  source.open = [] {
+    return sources::recovering([](const sources::Opening& opening) -> std::unique_ptr<sources::FrameSource> {
+      if (opening.is_again) throw DeviceError("camera 0: is not connected");
+      return std::make_unique<Numbers>(0, false, false);
+    });
+  };
+  FrameFeed feed(source);
+  const std::string reason = "camera 0: is not connected";
+  for (int i = 0; i < 400 && feed.trouble().find(reason) == std::string::npos; ++i)
+    EXPECT_EQ(feed.next(), nullptr);
+  EXPECT_NE(feed.trouble().find(reason), std::string::npos) << feed.trouble();
+  EXPECT_FALSE(feed.has_ended());
+}
+
 class Sources : public ::testing::Test {
  protected:
   Sources() {
@@ -115,6 +135,20 @@ TEST_F(Sources, AreFoundInTheCase) {
   EXPECT_EQ(for_camera[2].name, "knee.mkv");
   const auto for_tools = sources_for(Purpose::Tools, folder_, kTurns);
   EXPECT_EQ(for_tools[1].name, "knee.mkv");
+}
+
+// A stream is a source of every step: named by its address, shown without its password, live.
+TEST_F(Sources, AreStreamsToo) {
+  for (const Purpose purpose : {Purpose::Camera, Purpose::Tools, Purpose::Fluid}) {
+    const std::string address = "rtsp://nurse:secret@tower/scope";
+    const auto offered = sources_for(purpose, folder_, kTurns, {address, "udp://@:5000"});
+    const auto index = index_of(offered, address);
+    ASSERT_TRUE(index);
+    EXPECT_EQ(offered[*index].name, "rtsp://tower/scope");
+    EXPECT_TRUE(offered[*index].is_live);
+    EXPECT_FALSE(offered[*index].is_stills);
+    EXPECT_TRUE(index_of(offered, "udp://@:5000"));
+  }
 }
 
 // With a real scope's camera.json no step offers the simulator, but to who asks for it by its word.

@@ -3,13 +3,18 @@
 
 #include <gtest/gtest.h>
 #include <igtlClientSocket.h>
+#include <igtlImageMessage.h>
 #include <igtlMessageHeader.h>
+#include <igtlPointMessage.h>
 #include <igtlStatusMessage.h>
 #include <igtlTransformMessage.h>
 
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <thread>
+#include <vector>
 
 #include "navigation/openigtlink/named_transforms.h"
 #include "planning/geometry/error.h"
@@ -52,6 +57,17 @@ operation::OperationState made_state() {
   return state;
 }
 
+// STT_IMAGE, which the library does not have.
+class StartImages : public igtl::HeaderOnlyMessageBase {
+ public:
+  using Self = StartImages;
+  using Pointer = igtl::SmartPointer<Self>;
+  igtlNewMacro(StartImages);
+
+ protected:
+  StartImages() { m_DefaultBodyType = "STT_IMAGE"; }
+};
+
 struct Client {
   explicit Client(int port) {
     EXPECT_EQ(socket->ConnectToServer("127.0.0.1", port), 0);
@@ -69,6 +85,7 @@ struct Client {
     const auto read = [&](igtl::MessageBase& message) {
       message.SetMessageHeader(header);
       message.AllocatePack();
+      if (message.GetPackBodySize() == 0) return true;  // a list without points
       socket->Receive(message.GetPackBodyPointer(), message.GetPackBodySize());
       return (message.Unpack(1) & igtl::MessageHeader::UNPACK_BODY) != 0;  // with its checksum
     };
@@ -81,14 +98,48 @@ struct Client {
       message->GetMatrix(matrix);
       return true;
     }
+    if (type == "POINT") {
+      const auto message = igtl::PointMessage::New();
+      if (!read(*message)) return false;
+      points.clear();
+      for (int i = 0; i < message->GetNumberOfPointElement(); ++i) {
+        auto element = igtl::PointElement::New();
+        message->GetPointElement(i, element);
+        Eigen::Vector3f& at = points[element->GetName()];
+        element->GetPosition(at.x(), at.y(), at.z());
+        radius_mm = element->GetRadius();
+      }
+      return true;
+    }
+    if (type == "IMAGE") {
+      const auto message = igtl::ImageMessage::New();
+      if (!read(*message)) return false;
+      int size[3];
+      message->GetDimensions(size);
+      image_size = {size[0], size[1]};
+      const auto* const from = static_cast<const std::uint8_t*>(message->GetScalarPointer());
+      rgb.assign(from, from + message->GetImageSize());
+      return true;
+    }
     const auto message = igtl::StatusMessage::New();
     if (type != "STATUS" || !read(*message)) return false;
     code = message->GetCode();
     reason = message->GetStatusString();
     return true;
   }
+  template <typename Message>
+  void ask() {
+    const auto message = Message::New();
+    message->SetDeviceName("Arthroscope");
+    message->Pack();
+    EXPECT_EQ(socket->Send(message->GetPackPointer(), message->GetPackSize()), 1);
+  }
   igtl::ClientSocket::Pointer socket = igtl::ClientSocket::New();
   std::string name, reason;
+  std::map<std::string, Eigen::Vector3f> points;
+  float radius_mm = 0;
+  std::array<int, 2> image_size{};
+  std::vector<std::uint8_t> rgb;
   igtl::Matrix4x4 matrix = {};
   int code = 0;
   double time_s = 0;
@@ -167,13 +218,104 @@ TEST(IgtlServer, AClientThatStallsDelaysNobody) {
   const auto state = std::make_shared<const operation::OperationState>(made_state());
   const std::size_t messages_each = named_transforms(*state).size() + 1;
   constexpr int kStates = 20'000;  // 10 MB: more than a socket holds
+  std::atomic<int> received = 0;   // not more than a client may be behind
   std::thread publisher([&] {
-    for (int i = 0; i < kStates; ++i) server.publish(state, i);
+    for (int i = 0; i < kStates; ++i) {
+      while (i - received > 300) std::this_thread::yield();
+      server.publish(state, i);
+    }
   });
-  for (std::size_t i = 0; i < kStates * messages_each; ++i) ASSERT_TRUE(eager.receive()) << i;
+  for (std::size_t i = 0; i < kStates * messages_each; ++i) {
+    ASSERT_TRUE(eager.receive()) << i;
+    received = static_cast<int>(i / messages_each);
+  }
   EXPECT_EQ(eager.time_s, kStates - 1);
   publisher.join();
   wait_for_clients(server, 1);
+}
+
+// The plan goes out once to each client, and again when it is another one.
+TEST(IgtlServer, SendsThePlanWhenItIsNew) {
+  IgtlServer server(0);
+  Client client(server.port());
+  wait_for_clients(server, 1);
+  operation::OperationState state = made_state();
+  state.plan.emplace();
+  state.plan->tunnel.entry_mm = {10, 20, 30};
+  state.plan->tunnel.direction = {0, 0, 2};
+  state.plan->tunnel.diameter_mm = 8;
+  state.plan->length_mm = 25;
+  const auto publish = [&] {
+    server.publish(std::make_shared<const operation::OperationState>(state), 1);
+    std::vector<std::string> names;
+    do {
+      EXPECT_TRUE(client.receive());
+      names.push_back(client.name);
+    } while (client.name != "Arthronaut");
+    return names;
+  };
+  EXPECT_EQ(publish().front(), "Plan");
+  ASSERT_EQ(client.points.size(), 2U);
+  EXPECT_EQ(client.points["entry"], Eigen::Vector3f(-10, -20, 30)) << "RAS";
+  EXPECT_EQ(client.points["end"], Eigen::Vector3f(-10, -20, 55));
+  EXPECT_EQ(client.radius_mm, 4);
+  EXPECT_NE(publish().front(), "Plan");
+  state.plan->tunnel.entry_mm.x() = 11;
+  EXPECT_EQ(publish().front(), "Plan");
+  state.plan.reset();
+  EXPECT_EQ(publish().front(), "Plan");
+  EXPECT_TRUE(client.points.empty()) << "there is none any more";
+}
+
+// Pictures go to who asks for them, one or as they come, in red, green, blue.
+TEST(IgtlServer, SendsPicturesToWhoAsks) {
+  IgtlServer server(0);
+  Client asks(server.port()), does_not(server.port());
+  wait_for_clients(server, 2);
+  const auto state = std::make_shared<const operation::OperationState>(made_state());
+  const auto frame = std::make_shared<camera::Frame>();
+  frame->width = 4;
+  frame->height = 2;
+  for (std::uint8_t i = 0; i < 24; ++i) frame->bgr.push_back(i);
+  const auto publish_until_picture = [&](int most) {
+    for (int i = 0; i < most; ++i) {
+      server.publish(state, i, frame);
+      do {
+        if (!asks.receive()) return false;
+        if (asks.name == "Arthroscope") return true;
+      } while (asks.name != "Arthronaut");
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return false;
+  };
+  EXPECT_FALSE(publish_until_picture(5)) << "nobody has asked";
+  asks.ask<igtl::GetImageMessage>();
+  EXPECT_TRUE(publish_until_picture(2000));
+  EXPECT_EQ(asks.image_size, (std::array<int, 2>{4, 2}));
+  ASSERT_EQ(asks.rgb.size(), 24U);
+  EXPECT_EQ(asks.rgb[0], 2);
+  EXPECT_EQ(asks.rgb[2], 0);
+  EXPECT_EQ(asks.rgb[23], 21);
+  EXPECT_FALSE(publish_until_picture(5)) << "one was asked for";
+  asks.ask<StartImages>();
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(publish_until_picture(2000)) << i;
+  server.publish(state, 5000);
+  do {
+    ASSERT_TRUE(does_not.receive());
+    EXPECT_NE(does_not.name, "Arthroscope");
+  } while (does_not.time_s != 5000);
+}
+
+// While no picture comes the clients are told so.
+TEST(IgtlServer, TellsAStatusAlone) {
+  IgtlServer server(0);
+  Client client(server.port());
+  wait_for_clients(server, 1);
+  server.tell({false, "No picture comes: tower: broke off"}, 17);
+  ASSERT_TRUE(client.receive());
+  EXPECT_EQ(client.code, igtl::StatusMessage::STATUS_NOT_READY);
+  EXPECT_EQ(client.reason, "No picture comes: tower: broke off");
+  EXPECT_EQ(client.time_s, 17);
 }
 
 TEST(IgtlServer, APortThatIsTakenIsSaid) {

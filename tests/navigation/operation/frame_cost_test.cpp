@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/navigation/markers/counted_allocations.h"
+#include "tests/counted_allocations.h"
 #include "tests/navigation/operation/phantom_operation.h"
 
 namespace arthronaut::operation {
@@ -21,7 +21,7 @@ TEST(FrameCost, AnHourOfDrawingIsFlat) {
   frame.camera_from_world.is_valid = frame.tip_is_valid = true;
   std::vector<long> allocations;
   for (int minute = 0; minute < kMinutes; ++minute) {
-    markers::start_counting_allocations();
+    test::start_counting_allocations();
     for (int i = 0; i < kMinute; ++i) {
       const double at = static_cast<double>(++frame.frame_index) / 60;
       frame.timestamp_ns = static_cast<std::int64_t>(at * 1e9);
@@ -32,7 +32,7 @@ TEST(FrameCost, AnHourOfDrawingIsFlat) {
       (void)operation.take_requests();
       (void)operation.take_journal();
     }
-    allocations.push_back(markers::stop_counting_allocations());
+    allocations.push_back(test::stop_counting_allocations());
   }
   EXPECT_EQ(operation.points().size(), static_cast<std::size_t>(kMinute * kMinutes));
   EXPECT_GT(allocations.front(), 0);

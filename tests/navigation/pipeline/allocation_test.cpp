@@ -2,25 +2,10 @@
 // replaces it.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include "navigation/markers/planar_pose.h"
 #include "navigation/pipeline/medium_check.h"
+#include "tests/counted_allocations.h"
 #include "tests/navigation/pipeline/scripted_markers.h"
-
-namespace {
-std::atomic<long> allocation_count = 0;
-}
-
-void* operator new(std::size_t size) {
-  ++allocation_count;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace arthronaut {
 namespace {
@@ -52,9 +37,9 @@ TEST(NavigationPipelineAllocation, NothingPerFrameAfterTheFirstFrames) {
   ASSERT_TRUE(result.guidance.is_valid());
   ASSERT_TRUE(result.guidance.drill);
   ASSERT_GT(result.guidance.offset_error_mm.camera, 0);
-  const long before = allocation_count;
+  test::start_counting_allocations();
   for (int i = 5; i < 40; ++i) pipeline.process(frames[static_cast<std::size_t>(i)], result);
-  EXPECT_EQ(allocation_count - before, 0);
+  EXPECT_EQ(test::stop_counting_allocations(), 0);
 }
 
 // Votes on the medium, for and against, cost no memory either.
@@ -81,13 +66,13 @@ TEST(MediumCheckAllocation, NothingPerFrame) {
     view.markers[0].corners_px[k] =
         saline.project(view.markers[0].camera_from_marker * corners_mm[k]).value();
   pipeline::MediumCheck check(declared, 1.0, 1.0);
-  const long before = allocation_count;
+  test::start_counting_allocations();
   for (int i = 0; i < 60; ++i) {
     view.timestamp_ns = i * 100'000'000LL;
     check.look(view);
     if (check.wants_second_look()) check.look_again(view, view.markers);
   }
-  EXPECT_EQ(allocation_count - before, 0);
+  EXPECT_EQ(test::stop_counting_allocations(), 0);
   EXPECT_GT(check.verdict().votes_for + check.verdict().votes_against, 0);
 }
 

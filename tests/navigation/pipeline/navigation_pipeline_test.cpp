@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "planning/geometry/error.h"
@@ -185,6 +186,34 @@ TEST_F(NavigationPipeline, SaysThatAPictureIsFrozen) {
   EXPECT_TRUE(process(19, 60).guidance.is_valid());
 }
 
+// The lower half of the picture stands, the upper half goes on: what shows the guide there is not of this
+// moment, whatever the codec or the card did to it. Nothing guides from the third picture on; where the whole
+// picture is renewed again, it does.
+TEST_F(NavigationPipeline, Hazard3AMarkerInAPartThatStandsStillGuidesNobody) {
+  pipeline_.set_plan(plan_, 30);
+  pipeline_.set_registration(registration_);
+  script_[2].corners_px = {Eigen::Vector2d(60, 80), {90, 80}, {90, 110}, {60, 110}};
+  std::mt19937 random(4);
+  std::normal_distribution<double> noise(0, 2);
+  camera::Frame frame = test::plain_frame(0, 100);
+  for (int i = 0; i < 200; ++i) {
+    const bool is_lost = i >= 60 && i < 120;
+    frame.index = i;
+    frame.timestamp_ns = test::plain_frame(i, 0).timestamp_ns;
+    const std::size_t renewed = is_lost ? frame.bgr.size() / 2 : frame.bgr.size();
+    for (std::size_t k = 0; k < renewed; k += 3)
+      std::fill_n(frame.bgr.begin() + static_cast<std::ptrdiff_t>(k), 3,
+                  static_cast<std::uint8_t>(std::lround(100 + noise(random))));
+    pipeline_.process(frame, result_);
+    if (i < 60 || i > 122) {
+      EXPECT_TRUE(result_.guidance.is_valid()) << i;
+    } else if (i > 61 && i < 120) {
+      EXPECT_FALSE(result_.guidance.is_valid()) << i;
+      EXPECT_TRUE(result_.is_torn) << i;
+    }
+  }
+}
+
 // The covariance of the tip against 20 000 draws of both poses' errors; 5 % is three standard errors of that
 // many draws.
 TEST_F(NavigationPipeline, PredictsTheTipsErrorFromBothPoses) {
@@ -285,6 +314,65 @@ TEST_F(NavigationPipeline, RefusesFramesOfAnotherSize) {
 TEST_F(NavigationPipeline, NeedsTheBonesWorldMarker) {
   options_.bone = bones::BoneKind::Tibia;
   EXPECT_THROW(pipeline::NavigationPipeline{options_}, InvalidInput);
+}
+
+// A world of two markers and a probe of two, seen by either, by both, or by two that contradict each other:
+// tip and guidance follow the bodies, and of what disagrees there is neither.
+TEST_F(NavigationPipeline, FollowsBodiesOfSeveralMarkers) {
+  const RigidTransform second_of_world = pose(0, 8, 0.5, 0.2, {1, 0, 0});
+  const RigidTransform second_of_probe = pose(6, 1, -1, 0.4, {0, 1, 0});
+  options_.tools.world_markers[0].markers = {{0, 4.0, {}}, {10, 4.0, second_of_world}};
+  options_.tools.tools[0].markers = {{2, 4.0, {}}, {12, 4.0, second_of_probe}};
+  geometry::Matrix6d known = geometry::Matrix6d::Zero();
+  known.diagonal() << 1e-4, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4;
+  const RigidTransform camera_from_probe = camera_from_world_ * world_from_probe_;
+  const std::vector<markers::MarkerObservation> all{
+      test::seen(0, camera_from_world_, known), test::seen(10, camera_from_world_ * second_of_world, known),
+      test::seen(2, camera_from_probe, known), test::seen(12, camera_from_probe * second_of_probe, known),
+      test::seen(3, camera_from_world_ * world_from_guide(), known)};
+  pipeline::NavigationPipeline several(options_, std::make_unique<test::ScriptedMarkers>(&script_));
+  several.set_plan(plan_, 30);
+  several.set_registration(registration_);
+  const Eigen::Vector3d tip = world_from_probe_ * Eigen::Vector3d(1, -30, -5);
+  double error_of_both = 0;
+  for (std::int64_t frame = 0; frame < 3; ++frame) {
+    script_ = all;
+    if (frame == 1) script_[0] = test::lost(0, MarkerState::Glare);
+    if (frame == 2) script_[2] = test::lost(2, MarkerState::Covered);
+    several.process(test::plain_frame(frame, static_cast<std::uint8_t>(frame + 1)), result_);
+    ASSERT_EQ(result_.bodies.size(), 3u);
+    ASSERT_TRUE(result_.tip_is_valid) << frame;
+    EXPECT_LT((result_.tip_in_world_mm - tip).norm(), 1e-5) << frame;
+    EXPECT_EQ(result_.guidance.state, GuidanceState::Valid) << frame;
+    EXPECT_EQ(result_.tools[0].marker_id, 2);
+    if (frame == 0) error_of_both = result_.tip_covariance_mm2.trace();
+    EXPECT_TRUE(frame == 0 || result_.tip_covariance_mm2.trace() > error_of_both) << frame;
+  }
+  script_ = all;
+  script_[1].camera_from_marker = script_[1].camera_from_marker * pose(1.5, 0, 0, 0.1, {0, 1, 0});
+  several.process(test::plain_frame(3, 4), result_);
+  EXPECT_EQ(result_.bodies[0].state, MarkerState::Disagreeing);
+  EXPECT_FALSE(result_.camera_from_world.is_valid);
+  EXPECT_FALSE(result_.tip_is_valid);
+  EXPECT_EQ(result_.guidance.state, GuidanceState::WorldMarkerLost);
+  EXPECT_EQ(pipeline::body_in(result_, 0).state, MarkerState::Disagreeing);
+
+  // Whichever of the two is wrong: neither is believed alone, until they agree again.
+  for (const std::size_t covered : {0u, 1u}) {
+    script_ = all;
+    script_[covered] = test::lost(covered == 0 ? 0 : 10, MarkerState::Covered);
+    const auto frame = static_cast<std::int64_t>(4 + covered);
+    several.process(test::plain_frame(frame, static_cast<std::uint8_t>(frame + 1)), result_);
+    EXPECT_FALSE(result_.camera_from_world.is_valid) << covered;
+    EXPECT_NE(result_.guidance.state, GuidanceState::Valid) << covered;
+    EXPECT_EQ(result_.bodies[0].state, MarkerState::Disagreeing) << covered;
+  }
+  for (std::int64_t frame = 6; frame < 8; ++frame) {
+    script_ = all;
+    if (frame == 7) script_[1] = test::lost(10, MarkerState::Covered);
+    several.process(test::plain_frame(frame, static_cast<std::uint8_t>(frame + 1)), result_);
+    EXPECT_TRUE(result_.camera_from_world.is_valid) << frame;
+  }
 }
 
 }  // namespace

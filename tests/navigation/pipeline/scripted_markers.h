@@ -28,6 +28,7 @@ inline markers::MarkerObservation seen(int id, const geometry::RigidTransform& c
   markers::MarkerObservation marker;
   marker.id = id;
   marker.state = markers::MarkerState::Tracked;
+  marker.corners_px.fill(Eigen::Vector2d::Zero());  // nowhere
   marker.camera_from_marker = camera_from_marker;
   marker.covariance = covariance;
   return marker;

@@ -20,8 +20,12 @@ class CaseSessions : public ::testing::Test {
  protected:
   // A session with a registration; its RMS tells which it is.
   std::filesystem::path add_session(double rms_mm, bool reliable, const std::string& alarm = {}) {
+    return add_session(test::session_header(), rms_mm, reliable, alarm);
+  }
+  std::filesystem::path add_session(const SessionHeader& header, double rms_mm, bool reliable,
+                                    const std::string& alarm = {}) {
     const auto folder = cases::create_session_folder(temporary_.path());
-    SessionRecorder recorder(folder, test::session_header(), options_);
+    SessionRecorder recorder(folder, header, options_);
     registration::RegistrationSummary registration;
     registration.has_pose = true;
     registration.reliable = reliable;
@@ -69,6 +73,40 @@ TEST_F(CaseSessions, Hazard16AnOlderRegistrationIsNotTakenAfterAnAlarm) {
   EXPECT_FALSE(found()->is_usable());
   EXPECT_EQ(found()->session_folder, newest);
   EXPECT_THAT(found()->refusal, HasSubstr("the world marker was moved"));
+}
+
+// Hazard 40: what was known in an exercise is no registration of the case.
+TEST_F(CaseSessions, Hazard40AnExercisesRegistrationIsNotFound) {
+  SessionHeader header = test::session_header();
+  header.source_kind = "simulation";
+  header.source = kExerciseSource;
+  const auto operation = add_session(0.2, true);
+  const auto exercise = add_session(header, 0.1, true);
+  ASSERT_TRUE(found().has_value());
+  EXPECT_EQ(found()->session_folder, operation);
+  EXPECT_TRUE(is_exercise(exercise));
+  EXPECT_FALSE(is_exercise(operation));
+}
+
+// Hazard 40: a case is somebody's as soon as one of its sessions is, or may be.
+TEST_F(CaseSessions, Hazard40ARealSessionIsNamed) {
+  SessionHeader header = test::session_header();
+  header.source_kind = "simulation";
+  add_session(header, 0.1, true);
+  EXPECT_EQ(real_session(temporary_.path()), "");
+  header.source_kind = "live";
+  const auto live = add_session(header, 0.1, true);
+  EXPECT_THAT(real_session(temporary_.path()), HasSubstr(live.filename().string()));
+  EXPECT_THAT(real_session(temporary_.path()), HasSubstr("live"));
+  add_session(header, 0.1, true);
+  std::ofstream(live / "session.json") << "{";
+  EXPECT_THAT(real_session(temporary_.path()), HasSubstr("cannot be read"));
+}
+TEST_F(CaseSessions, Hazard40ASessionOfUnknownKindCountsAsReal) {
+  SessionHeader header = test::session_header();
+  header.source_kind.clear();
+  add_session(header, 0.1, true);
+  EXPECT_THAT(real_session(temporary_.path()), HasSubstr("may be of a patient"));
 }
 
 // A session that cannot be read is passed over, and never silently.

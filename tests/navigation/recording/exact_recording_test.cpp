@@ -6,6 +6,7 @@
 #include "navigation/pipeline/navigation_pipeline.h"
 #include "navigation/recording/picture_writer.h"
 #include "navigation/recording/session.h"
+#include "navigation/simulator/instruments.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "tests/navigation/recording/recorded_frames.h"
@@ -120,6 +121,77 @@ TEST_F(ExactRecording, IsTrackedAgainToTheSamePosesBitForBit) {
     EXPECT_EQ(now.tip_in_world_mm, was.tip_in_world_mm);
   }
   EXPECT_GE(poses, 8);
+}
+
+// The same with several markers on the probe and on the screw: their bodies lie where they truly are, and
+// both the pictures and the record itself give the bodies' poses back to the last bit.
+TEST_F(ExactRecording, KeepsBodiesOfSeveralMarkersBitForBit) {
+  simulator::SimulationOptions simulation = simulator::phantom_options();
+  simulation.frame_count = 8;
+  simulation.tools = simulator::with_several_markers(simulation.tools);
+  pipeline::PipelineOptions options;
+  options.calibration = simulation.camera;
+  options.refractive_index = simulation.refractive_index;
+  options.tools = simulation.tools;
+  std::vector<pipeline::FrameResult> then;
+  int bodies = 0, of_several = 0;
+  {
+    simulator::SimulatedOperation operation(simulation, simulator::Phase::Scratch);
+    recording::SessionRecorder recorder(folder_.path(), test::session_header(), options);
+    pipeline::NavigationPipeline navigation(options);
+    pipeline::FrameResult result;
+    while (const camera::FramePtr frame = operation.next()) {
+      navigation.process(*frame, result);
+      recorder.append_picture(frame);
+      recorder.append(result);
+      then.push_back(result);
+      for (const markers::BodyObservation& body : result.bodies) {
+        if (!body.is_tracked() || !result.intrinsics_are_known) continue;
+        ++bodies;
+        of_several += body.used_count() > 1 ? 1 : 0;
+        EXPECT_EQ(body.odd_marker, markers::BodyObservation::kNone);
+        for (const auto& truth : operation.truth().markers) {
+          if (truth.id != body.id) continue;
+          const auto error = geometry::log(truth.camera_from_marker.inverse() * body.camera_from_body);
+          EXPECT_LT(error.head<3>().norm(), 0.1) << body.id;
+          EXPECT_LT(geometry::deg_from_rad(error.tail<3>().norm()), 1.0) << body.id;
+        }
+      }
+    }
+    recorder.finish();
+  }
+  EXPECT_GE(bodies, 8);
+  EXPECT_GE(of_several, 4);
+  const recording::RecordedSession session(folder_.path());
+  EXPECT_TRUE(tools::are_same(session.pipeline_options().tools.find_tool("probe")->markers,
+                              options.tools.find_tool("probe")->markers));
+  const auto video = recording::open_recorded_video(session);
+  pipeline::NavigationPipeline navigation(options);
+  pipeline::FrameResult now;
+  for (std::size_t i = 0; i < then.size(); ++i) {
+    const camera::FramePtr frame = video->next();
+    ASSERT_NE(frame, nullptr);
+    navigation.process(*frame, now);
+    ASSERT_EQ(now.bodies.size(), then[i].bodies.size());
+    std::size_t recorded = 0;
+    for (std::size_t b = 0; b < now.bodies.size(); ++b) {
+      const markers::BodyObservation& was = then[i].bodies[b];
+      EXPECT_EQ(now.bodies[b].state, was.state);
+      if (!was.is_tracked() || !then[i].intrinsics_are_known) continue;
+      EXPECT_EQ(now.bodies[b].used, was.used);
+      EXPECT_EQ(now.bodies[b].camera_from_body.translation_mm, was.camera_from_body.translation_mm);
+      EXPECT_EQ(now.bodies[b].camera_from_body.rotation.coeffs(), was.camera_from_body.rotation.coeffs());
+      EXPECT_EQ(now.bodies[b].covariance, was.covariance);
+      for (const recording::RecordedBody& kept : session.frames()[i].bodies) {
+        if (kept.id != was.id) continue;
+        ++recorded;
+        EXPECT_EQ(kept.camera_from_body.translation_mm, was.camera_from_body.translation_mm);
+        EXPECT_EQ(kept.camera_from_body.rotation.coeffs(), was.camera_from_body.rotation.coeffs());
+      }
+    }
+    EXPECT_EQ(recorded, session.frames()[i].bodies.size());
+    EXPECT_EQ(now.tip_in_world_mm, then[i].tip_in_world_mm);
+  }
 }
 
 // Sessions of before have no such word in their header: their luma is not claimed to be exact.

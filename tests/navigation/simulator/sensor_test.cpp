@@ -16,7 +16,7 @@ TEST(Sensor, GivesTheLevelAndNoiseAskedFor) {
   cv::Mat light(200, 200, CV_32FC3, cv::Scalar::all(0.4));
   camera::Frame frame;
   frame.width = frame.height = 220;
-  expose(light, area, {.read_noise_levels = 2.0, .shot_noise_share = 0.02}, 3, frame);
+  Sensor({.read_noise_levels = 2.0, .shot_noise_share = 0.02}).expose(light, area, 3, frame);
   double sum = 0, squares = 0;
   long count = 0;
   for (int y = 30; y < 190; ++y) {

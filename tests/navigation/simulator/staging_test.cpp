@@ -14,30 +14,43 @@ double arc_mm(const std::vector<ProbePose>& stroke) {
   return length;
 }
 
-// Every knee, of either side, has a stage: long strokes on the bone, a wide pivot, the world marker just
-// above the bone.
+// Every knee, of either side, and either bone has a stage: long strokes on the bone, a wide pivot on the
+// femur, the world marker just above the bone.
 TEST(Staging, FindsAPlaceInEveryKnee) {
   for (const auto side : {bones::Side::Right, bones::Side::Left}) {
     for (const std::uint64_t seed : {1u, 2u}) {
-      const SimulationOptions options = phantom_options(seed, side);
-      const geometry::Surface bone(options.knee.femur.mesh);
-      const Staging staging = stage_operation(options, bone);
-      const Eigen::Vector3d tip_in_probe = *probe_of(options.tools).tip_mm;
-      double length = 0;
-      for (const auto& stroke : staging.strokes) {
-        length += arc_mm(stroke);
-        for (const ProbePose& pose : stroke) {
-          EXPECT_LT(std::abs(bone.signed_distance_mm(pose.tip_mm)), 1e-3);
-          EXPECT_LT((pose.bone_from_marker * tip_in_probe - pose.tip_mm).norm(), 1e-9);
+      for (const auto bone_kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
+        SCOPED_TRACE(std::to_string(seed) + " " + std::string(bones::to_text(bone_kind)));
+        const SimulationOptions options = phantom_options(seed, side, bone_kind);
+        const geometry::Surface bone(bone_kind == bones::BoneKind::Femur ? options.knee.femur.mesh
+                                                                         : options.knee.tibia.mesh);
+        const Staging staging = stage_operation(options, bone);
+        const Eigen::Vector3d tip_in_probe = *probe_of(options.tools).tip_mm;
+        double length = 0;
+        for (const auto& stroke : staging.strokes) {
+          length += arc_mm(stroke);
+          for (const ProbePose& pose : stroke) {
+            EXPECT_LT(std::abs(bone.signed_distance_mm(pose.tip_mm)), 1e-3);
+            EXPECT_LT((pose.bone_from_marker * tip_in_probe - pose.tip_mm).norm(), 1e-9);
+          }
         }
+        EXPECT_GE(length, 175);  // strokes of at least 200 steps of 0.5 mm at most
+        if (bone_kind == bones::BoneKind::Femur)
+          EXPECT_GE(staging.pivot_cone_deg, 25);
+        else
+          EXPECT_TRUE(staging.pivot.empty());
+        const double height = bone.signed_distance_mm(staging.bone_from_world_marker.translation_mm);
+        EXPECT_GT(height, 0.5);
+        EXPECT_LT(height, 5);
       }
-      EXPECT_GE(length, 175) << seed;  // strokes of at least 200 steps of 0.5 mm at most
-      EXPECT_GE(staging.pivot_cone_deg, 25);
-      const double height = bone.signed_distance_mm(staging.bone_from_world_marker.translation_mm);
-      EXPECT_GT(height, 0.5);
-      EXPECT_LT(height, 5);
     }
   }
+}
+
+// The probe's swing has no place above the plateau, and is not played there.
+TEST(Staging, ThePivotIsOfTheFemurAlone) {
+  const SimulationOptions options = phantom_options(1, bones::Side::Right, bones::BoneKind::Tibia);
+  EXPECT_THROW(SimulatedOperation(options, Phase::Pivot), InvalidInput);
 }
 
 // The same options give the same stage.

@@ -5,6 +5,8 @@
 #include <fstream>
 
 #include "navigation/recording/session.h"
+#include "navigation/recording/session_database.h"
+#include "navigation/sources/capture_time.h"
 #include "tests/navigation/theatre/theatre_sources.h"
 #include "tests/temporary_folder.h"
 
@@ -32,6 +34,58 @@ class OperationRunTest : public ::testing::Test {
   experiments::Trial trial_ = registration::phantom_bone().trial(experiments::TrialNoise::Dry, 1);
   operation::OperationSetup setup_ = test::phantom_setup();
 };
+
+// Pictures of a live source, each so old when it is given.
+class AgedSource : public test::PlainSource {
+ public:
+  explicit AgedSource(std::int64_t count) : PlainSource(count, false) {}
+  [[nodiscard]] camera::FramePtr next() override {
+    const camera::FramePtr plain = PlainSource::next();
+    if (plain == nullptr) return nullptr;
+    const auto frame = std::make_shared<camera::Frame>(
+        test::round_frame(plain->index, static_cast<std::uint8_t>(100 + plain->index)));
+    frame->decoded_ns = sources::steady_now_ns();
+    frame->received_ns = frame->decoded_ns - 7'000'000;
+    frame->captured_ns = frame->received_ns - (frame->index == 5 ? 140'000'000 : 11'000'000);
+    return frame;
+  }
+};
+
+// How long each picture of a live source took is in its record, stage by stage; that one was late is an
+// event.
+TEST_F(OperationRunTest, Hazard3LatencyAndLatePicturesAreInTheRecord) {
+  const fs::path session = folder_ / "session";
+  fs::create_directory(session);
+  OperationRun run(setup_, test::at_once(setup_), [&] { return session; });
+  TheatreSource source = test::plain_source(0, false, sources::SourceKind::Live);
+  source.open = [] { return std::make_unique<AgedSource>(12); };
+  run.start(source);
+  (void)run_to_end(run);
+  const LatencyReport report = run.latency().report();
+  EXPECT_EQ(of(report, Stage::Capture).count, 12U);
+  EXPECT_NEAR(of(report, Stage::Capture).median_ms, 11, 0.2);
+  EXPECT_NEAR(of(report, Stage::Decode).median_ms, 7, 0.2);
+  EXPECT_GE(of(report, Stage::ToGuidance).median_ms, 18);
+  EXPECT_GE(of(report, Stage::ToGuidance).worst_ms, 147);
+
+  recording::SessionDatabase database = recording::SessionDatabase::open(session / "session.sqlite");
+  recording::Statement row = database.prepare(
+      "SELECT COUNT(*), AVG(decode_ms), MAX(guidance_ms), MIN(queue_ms), MIN(tracking_ms) FROM latency");
+  ASSERT_TRUE(row.step());
+  EXPECT_EQ(row.integer(0), 12);
+  EXPECT_NEAR(row.number(1), 7, 0.2);
+  EXPECT_GE(row.number(2), 147);
+  EXPECT_GE(row.number(3), 0);
+  EXPECT_GE(row.number(4), 0);
+  std::string told, summary;
+  const recording::RecordedSession recorded(session);
+  for (const recording::SessionEvent& event : recorded.events()) {
+    if (event.kind == recording::kSourceTroubleEvent && told.empty()) told = event.text;
+    if (event.kind == recording::kLatencyEvent) summary = event.text;
+  }
+  EXPECT_NE(told.find("late"), std::string::npos) << told;
+  EXPECT_NE(summary.find("12 pictures"), std::string::npos) << summary;
+}
 
 // A record that cannot begin is told and ends nothing: the operation goes on to the last frame, guiding.
 TEST_F(OperationRunTest, ARecordThatCannotBeginIsToldAndNothingEnds) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "navigation/recording/case_sessions.h"
 #include "navigation/recording/operation_record.h"
 #include "planning/cases/case.h"
 #include "tests/navigation/operation/phantom_operation.h"
@@ -26,7 +27,7 @@ class ResumableTest : public ::testing::Test {
     end(run);
     const std::filesystem::path folder = cases::create_session_folder(folder_.path());
     sources::SourceInfo info;
-    info.name = "script";
+    info.name = source_name_;
     record_ = std::make_unique<OperationRecord>(folder, run.operation().setup(), source, info, continues_);
     continues_ = folder.filename().string();
     if (!early_.empty()) record_->add(std::exchange(early_, {}));
@@ -74,9 +75,31 @@ class ResumableTest : public ::testing::Test {
   experiments::Trial trial_ = phantom_bone().trial(experiments::TrialNoise::Dry, 1);
   std::unique_ptr<OperationRecord> record_;
   std::vector<JournalEntry> early_;
-  std::string continues_;
+  std::string continues_, source_name_ = "script";
   std::vector<tunnels::TunnelKey> planned_{bones::BoneKind::Femur};
 };
+
+// Hazard 40: an exercise is never gone on with, and hides no operation that was left before it.
+TEST_F(ResumableTest, Hazard40AnExerciseIsPassedOver) {
+  const SourceSetup source = test::scripted_source(SourceKind::Simulation);
+  PhantomOperation exercise;
+  source_name_ = kExerciseSource;
+  operate(exercise, source);
+  end(exercise);
+  EXPECT_FALSE(found());
+  continues_.clear();
+  source_name_ = "script";
+  PhantomOperation run;
+  operate(run, test::scripted_source(SourceKind::Live));
+  end(run);
+  const std::string left = std::exchange(continues_, "");
+  source_name_ = kExerciseSource;
+  PhantomOperation again;
+  operate(again, source);
+  end(again);
+  ASSERT_TRUE(found());
+  EXPECT_EQ(found()->operation.session, left);
+}
 
 // To the last bit: what is brought back is what there was.
 TEST_F(ResumableTest, Hazard12IsTheLastStateOfTheOperation) {
@@ -331,6 +354,7 @@ TEST_F(ResumableTest, GoesOnWhileTheOtherBundlesTunnelIsNotDrilled) {
   end(run);
   const auto left = found();
   ASSERT_TRUE(left) << "PL is not drilled";
+  EXPECT_EQ(left->drilled, std::vector<tunnels::TunnelKey>{am});
   EXPECT_TRUE(left->operation.registration);
   planned_ = {am};
   EXPECT_FALSE(found()) << "nothing else is planned";

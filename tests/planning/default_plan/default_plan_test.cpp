@@ -6,6 +6,7 @@
 
 #include "planning/geometry/error.h"
 #include "planning/phantom/phantom_knee.h"
+#include "planning/tunnels/tunnel_pair.h"
 
 namespace arthronaut::default_plan {
 namespace {
@@ -86,6 +87,44 @@ TEST(DefaultPlan, EntersAtTheMarkedNativeFootprint) {
       plan_bone(inputs[0], Side::Right, {.bundle = norms::Bundle::Posterolateral, .diameter_mm = 6});
   ASSERT_TRUE(am.is_usable() && pl.is_usable());
   EXPECT_GT((am.tunnel.entry_mm - pl.tunnel.entry_mm).norm(), 5);
+}
+
+// The posterolateral tunnel turns aside for the anteromedial one that is planned: 1.5 mm of bone are left at
+// least, where by themselves they would run into each other in the tibia.
+TEST(DefaultPlan, KeepsBoneBetweenTwoBundles) {
+  using norms::Bundle;
+  for (const Side side : {Side::Left, Side::Right}) {
+    const Knee knee(side);
+    for (BoneInput input : knee.inputs(true)) {
+      SCOPED_TRACE(bones::to_text(input.bone->kind));
+      const auto planned = [&](Bundle bundle) {
+        return plan_bone(input, side, {.bundle = bundle, .diameter_mm = usual_diameter_mm(bundle)});
+      };
+      const auto first = planned(Bundle::Anteromedial), alone = planned(Bundle::Posterolateral);
+      input.beside = &first.tunnel;
+      const auto second = planned(Bundle::Posterolateral);
+      ASSERT_TRUE(first.is_usable() && alone.is_usable() && second.is_usable());
+      const auto gap_to = [&](const tunnels::Tunnel& other) {
+        return tunnels::gap_between(first.tunnel, tunnels::measure(first.tunnel, *input.surface), other,
+                                    tunnels::measure(other, *input.surface))
+            .bone_mm;
+      };
+      EXPECT_GT(gap_to(second.tunnel), 1.5);
+      EXPECT_GT(gap_to(second.tunnel), gap_to(alone.tunnel));
+    }
+  }
+}
+
+TEST(DefaultPlan, IsBesideTheOtherBundleOfItsBoneAlone) {
+  using norms::Bundle;
+  std::map<tunnels::TunnelKey, tunnels::Tunnel> planned;
+  planned[{BoneKind::Femur, Bundle::Anteromedial}] = {};
+  planned[{BoneKind::Tibia, Bundle::Whole}] = {};
+  EXPECT_EQ(beside({BoneKind::Femur, Bundle::Posterolateral}, planned),
+            &planned.at({BoneKind::Femur, Bundle::Anteromedial}));
+  EXPECT_EQ(beside({BoneKind::Femur, Bundle::Anteromedial}, planned), nullptr);
+  EXPECT_EQ(beside({BoneKind::Femur, Bundle::Whole}, planned), nullptr);
+  EXPECT_EQ(beside({BoneKind::Tibia, Bundle::Anteromedial}, planned), nullptr);
 }
 
 TEST(DefaultPlan, RefusesOptionsOutOfRange) {

@@ -90,6 +90,7 @@ TEST(ShapeCheck, BothBonesTogetherTellTheSideButOneAloneDoesNot) {
     check_shapes(import, false);
     EXPECT_EQ(import.side, side);
     EXPECT_TRUE(import.side_was_seen);
+    EXPECT_TRUE(import.side_is_by_shape);
     EXPECT_THAT(doubts_of(import), ElementsAre(HasSubstr("alone: check --side")));
     BoneImport alone = knee(side, std::nullopt);
     alone.bones.pop_back();

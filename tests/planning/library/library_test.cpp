@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 
 #include "planning/cases/case_note.h"
 #include "planning/cases/identity.h"
@@ -179,6 +180,25 @@ INSTANTIATE_TEST_SUITE_P(All, DamagedIndex,
                            std::replace(name.begin(), name.end(), ' ', '_');
                            return name;
                          });
+
+// Two that have it open when it is damaged: one makes it anew, the other takes that one's, and what both add
+// afterwards is in one list.
+TEST_F(LibraryTest, OfTwoThatFindTheIndexDamagedOneMakesItAnew) {
+  const fs::path index = root_ / "data" / "library-1.sqlite";
+  const auto first = open(), second = open();
+  add(*first, add_case("A"));
+  EXPECT_THAT(names(second->look()), ElementsAre("A"));
+  std::string bytes = files::read_text(index);
+  std::fill(bytes.begin(), bytes.end(), '\x7f');
+  std::ofstream(index, std::ios::binary | std::ios::in) << bytes;  // the same file, still open
+  EXPECT_THAT(names(first->look()), ElementsAre("A"));
+  EXPECT_THAT(first->notices(), SizeIs(1));
+  EXPECT_THAT(names(second->look()), ElementsAre("A"));
+  EXPECT_THAT(second->notices(), IsEmpty()) << "it is whole again";
+  add(*first, add_case("B"));
+  EXPECT_THAT(names(second->look()), ElementsAre("A", "B"));
+  EXPECT_THAT(names(open()->known()), ElementsAre("A", "B"));
+}
 
 TEST_F(LibraryTest, RefusesABrokenListOfFoldersAndLeavesIt) {
   fs::create_directories(root_ / "data");

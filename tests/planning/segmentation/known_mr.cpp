@@ -5,6 +5,8 @@
 #include <random>
 
 #include "planning/images/voxel_mask.h"
+#include "planning/phantom/phantom_knee.h"
+#include "tests/planning/segmentation/known_ct.h"
 
 namespace arthronaut::test {
 
@@ -32,6 +34,21 @@ void mix(images::Volume& volume) {
 }
 
 }  // namespace
+
+images::Volume known_labels() {
+  const auto knee = phantom::make_phantom_knee();
+  const auto low = geometry::bounds_of(knee.tibia.mesh).min_mm,
+             high = geometry::bounds_of(knee.femur.mesh).max_mm;
+  images::Volume labels;
+  labels.lps_from_index.linear() = Eigen::Vector3d(0.6, 0.6, 0.8).asDiagonal();
+  labels.lps_from_index.translation() = Eigen::Vector3d(-50, -45, low.z() - 5);
+  labels.size = {167, 150, static_cast<int>((high.z() - low.z() + 10) / 0.8)};
+  labels.values.assign(static_cast<std::size_t>(labels.size.cast<std::int64_t>().prod()), 0.0F);
+  const auto femur = coverage(knee.femur.mesh, labels, 2), tibia = coverage(knee.tibia.mesh, labels, 2);
+  for (std::size_t v = 0; v < femur.size(); ++v)
+    labels.values[v] = femur[v] > 0.5F ? 5.0F : tibia[v] > 0.5F ? 6.0F : 0.0F;
+  return labels;
+}
 
 images::Volume known_mr(const images::Volume& labels, double noise, std::uint64_t seed) {
   images::Volume mr = labels;

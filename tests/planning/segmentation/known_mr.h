@@ -10,6 +10,10 @@
 namespace arthronaut::test {
 
 // Grey values run from about 100 to 900; the field makes one end 1.4 times as bright as the other.
+// Labels 5 and 6 where femur and tibia of the built-in knee cover more than half of a voxel, in sagittal
+// slices.
+[[nodiscard]] images::Volume known_labels();
+
 [[nodiscard]] images::Volume known_mr(const images::Volume& labels, double noise, std::uint64_t seed = 1);
 
 // Ten strokes, a voxel or two thick: three well within each of the two bones, on slices across the axis of

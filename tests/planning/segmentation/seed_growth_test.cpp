@@ -7,32 +7,13 @@
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
 #include "planning/images/bone_surface.h"
-#include "planning/phantom/phantom_knee.h"
 #include "tests/message_of.h"
-#include "tests/planning/segmentation/known_ct.h"
 #include "tests/planning/segmentation/known_mr.h"
 
 namespace arthronaut::segmentation {
 namespace {
 
 using testing::HasSubstr;
-
-// Labels 5 and 6 where the bones of the built-in knee cover more than half of a voxel, in sagittal slices.
-images::Volume known_labels() {
-  const auto knee = phantom::make_phantom_knee();
-  const auto low = geometry::bounds_of(knee.tibia.mesh).min_mm,
-             high = geometry::bounds_of(knee.femur.mesh).max_mm;
-  images::Volume labels;
-  labels.lps_from_index.linear() = Eigen::Vector3d(0.6, 0.6, 0.8).asDiagonal();
-  labels.lps_from_index.translation() = Eigen::Vector3d(-50, -45, low.z() - 5);
-  labels.size = {167, 150, static_cast<int>((high.z() - low.z() + 10) / 0.8)};
-  labels.values.assign(static_cast<std::size_t>(labels.size.cast<std::int64_t>().prod()), 0.0F);
-  const auto femur = test::coverage(knee.femur.mesh, labels, 2),
-             tibia = test::coverage(knee.tibia.mesh, labels, 2);
-  for (std::size_t v = 0; v < femur.size(); ++v)
-    labels.values[v] = femur[v] > 0.5F ? 5.0F : tibia[v] > 0.5F ? 6.0F : 0.0F;
-  return labels;
-}
 
 double dice(const Labels& labels, const images::Volume& truth, int label) {
   std::size_t grown = 0, true_count = 0, both = 0;
@@ -47,7 +28,7 @@ double dice(const Labels& labels, const images::Volume& truth, int label) {
 
 // What was asked for: Dice 0.97, half of the surface within 0.3 mm. With the noise of a good and a poor scan.
 TEST(SeedGrowth, TenStrokesFindBothBones) {
-  const images::Volume truth = known_labels();
+  const images::Volume truth = test::known_labels();
   const Labels seeds = test::strokes(truth, {5, 6});
   for (const double noise : {20.0, 60.0}) {
     const Labels labels = grow_from_seeds(test::known_mr(truth, noise), seeds);

@@ -32,7 +32,12 @@ TEST(StrokeSet, CountsWhatIsInUse) {
   EXPECT_FALSE(strokes.exclude(7, true));
   EXPECT_NEAR(strokes.length_in_use_mm(), 40, 0.5);
   EXPECT_EQ(strokes.curves_in_use().size(), 102u);
-  for (const strokes::OrientedPoint& point : strokes.oriented_in_use()) EXPECT_NE(point.curve, 1);
+  const strokes::Curves in_use = strokes.curves_in_use();
+  for (const strokes::OrientedPoint& point : strokes.oriented_in_use()) {
+    EXPECT_NE(point.curve, 1);
+    ASSERT_LT(point.source_index, in_use.size());
+    EXPECT_EQ(in_use[point.source_index].curve, point.curve);
+  }
   EXPECT_TRUE(strokes.undo());
   EXPECT_TRUE(strokes.exclude(1, false));
   EXPECT_NEAR(strokes.length_in_use_mm(), 40, 0.5);

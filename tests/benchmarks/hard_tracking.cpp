@@ -1,0 +1,217 @@
+// The marker tracker on clips that are drawn by seed, one kind of hardness after the other, beside OpenCV's
+// ArUco. Thresholds are set on even seeds; odd seeds are only ever printed as totals. Prints the tables of
+// docs/benchmarks.md.
+//
+//   hard_tracking [--clips N] [--frames N] [--only KIND] [--half set|report] [--cache FOLDER] [--aruco]
+//                 [--each]   every lost or wrong marker of the even seeds
+#include <Eigen/LU>
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <set>
+#include <string>
+
+#include "planning/geometry/quantile.h"
+#include "tests/benchmarks/aruco_tracker.h"
+#include "tests/benchmarks/hard_clips/hard_clip.h"
+#include "tests/real_data/pose_error.h"
+
+namespace arthronaut::hard_clips {
+namespace {
+
+struct Choice {
+  int clips = 3, frames = 40;
+  std::string only, half;
+  std::filesystem::path cache;
+  bool with_aruco = false, tells_each = false;
+};
+
+struct Count {
+  int found = 0, shown = 0;
+  void add(bool is_found) {
+    ++shown;
+    found += is_found;
+  }
+  void operator+=(const Count& other) {
+    found += other.found;
+    shown += other.shown;
+  }
+};
+
+std::string percent(const Count& count) {
+  if (count.shown == 0) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", 100.0 * count.found / count.shown);
+  return text;
+}
+
+struct Tally {
+  Count whole, half_covered, nearly_whole;
+  int wrong = 0, poses = 0, markers = 0;
+  double squares = 0, half_squares = 0;
+  int half_poses = 0;
+  std::vector<double> ms, rotation_deg, translation_mm;
+
+  void operator+=(const Tally& other) {
+    whole += other.whole;
+    half_covered += other.half_covered;
+    nearly_whole += other.nearly_whole;
+    wrong += other.wrong;
+    poses += other.poses;
+    markers += other.markers;
+    squares += other.squares;
+    half_squares += other.half_squares;
+    half_poses += other.half_poses;
+    ms.insert(ms.end(), other.ms.begin(), other.ms.end());
+    rotation_deg.insert(rotation_deg.end(), other.rotation_deg.begin(), other.rotation_deg.end());
+    translation_mm.insert(translation_mm.end(), other.translation_mm.begin(), other.translation_mm.end());
+  }
+};
+
+void print_header() {
+  std::printf(
+      "| half | hardness | tracker | markers shown | whole %% | 90 to 99.9 %% free %% | half covered %% | "
+      "wrong | rotation deg, 50 / 95 %% | translation mm | normalised error, half covered | ms: median / 99 "
+      "%% |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+}
+
+void print_row(const char* half, std::string_view hardness, const char* tracker, const Tally& tally) {
+  const auto q = [](const std::vector<double>& values, double share) {
+    return values.empty() ? 0.0 : geometry::quantile(values, share);
+  };
+  std::printf(
+      "| %s | %.*s | %s | %d | %s | %s | %s | %d | %.3f / %.3f | %.4f / %.4f | %.2f, %.2f | %.2f / %.2f |\n",
+      half, static_cast<int>(hardness.size()), hardness.data(), tracker, tally.markers,
+      percent(tally.whole).c_str(), percent(tally.nearly_whole).c_str(), percent(tally.half_covered).c_str(),
+      tally.wrong, q(tally.rotation_deg, 0.5), q(tally.rotation_deg, 0.95), q(tally.translation_mm, 0.5),
+      q(tally.translation_mm, 0.95), tally.squares / std::max(1, tally.poses),
+      tally.half_squares / std::max(1, tally.half_poses), q(tally.ms, 0.5), q(tally.ms, 0.99));
+  std::fflush(stdout);
+}
+
+using TrackerMaker = std::unique_ptr<markers::MarkerTracker> (*)(std::span<const markers::DeclaredMarker>);
+
+void judge(const markers::MarkerObservation& seen, const MarkerTruth* truth, const ClipRecipe& recipe,
+           int frame, bool tells, Tally& tally) {
+  if (!truth) {  // declared, and not in the scene
+    tally.wrong += seen.is_tracked();
+    return;
+  }
+  ++tally.markers;
+  if (truth->is_whole()) {
+    tally.whole.add(seen.is_tracked());
+  } else if (truth->is_half_covered()) {
+    tally.half_covered.add(seen.is_tracked());
+  } else if (truth->visible_share > 0.9) {
+    tally.nearly_whole.add(seen.is_tracked());
+  }
+  real_data::PoseError error;
+  double square = 0;
+  if (seen.is_tracked()) {
+    error = real_data::pose_error(seen.camera_from_marker, truth->camera_from_marker);
+    const geometry::Vector6d twist =
+        geometry::log(seen.camera_from_marker.inverse() * truth->camera_from_marker);
+    square = twist.dot(seen.covariance.inverse() * twist) / 6;
+    ++tally.poses;
+    tally.squares += square;
+    if (truth->is_half_covered()) {
+      ++tally.half_poses;
+      tally.half_squares += square;
+    }
+    tally.wrong += error.is_wrong();
+    tally.rotation_deg.push_back(error.rotation_deg);
+    tally.translation_mm.push_back(error.translation_mm);
+  }
+  if (tells && recipe.seed % 2 == 0 && truth->visible_share >= 0.5 &&
+      (!seen.is_tracked() || error.is_wrong() || square > 6)) {
+    const auto state = markers::to_text(seen.state);
+    std::printf(
+        "%s %llu frame %2d marker %d: %.*s, free %.2f, white %.2f, side %.0f px, moved %.1f px, %.2f deg "
+        "%.3f mm, square %.1f\n",
+        std::string(to_text(recipe.hardness)).c_str(), static_cast<unsigned long long>(recipe.seed), frame,
+        seen.id, static_cast<int>(state.size()), state.data(), truth->visible_share, truth->saturated_share,
+        truth->side_px, truth->motion_px, error.rotation_deg, error.translation_mm, square);
+  }
+}
+
+Tally track_clip(const ClipRecipe& recipe, const Choice& choice, TrackerMaker make) {
+  HardClip clip(recipe, choice.cache);
+  std::vector<markers::DeclaredMarker> declared;
+  for (const int id : {0, 2, 3, 4}) declared.push_back({id, recipe.marker_size_mm});
+  const auto tracker = make(declared);
+  Tally tally;
+  int frame = 0;
+  for (camera::GrayView picture = clip.next(); picture.data; picture = clip.next(), ++frame) {
+    const double start = real_data::thread_cpu_ms();
+    const auto seen = tracker->track(picture, clip.camera(), clip.timestamp_ns());
+    tally.ms.push_back(real_data::thread_cpu_ms() - start);
+    for (const auto& marker : seen) {
+      const MarkerTruth* truth = nullptr;
+      for (const MarkerTruth& candidate : clip.truth()) {
+        if (candidate.id == marker.id) truth = &candidate;
+      }
+      judge(marker, truth, recipe, frame, choice.tells_each, tally);
+    }
+  }
+  return tally;
+}
+
+int run(const Choice& choice) {
+  std::vector<std::pair<const char*, TrackerMaker>> trackers = {{"own", markers::make_tracker}};
+  if (choice.with_aruco) trackers.emplace_back("ArUco", markers::make_aruco_tracker);
+  print_header();
+  for (const std::uint64_t odd : {0, 1}) {
+    const char* half = odd ? "report" : "set";
+    if (!choice.half.empty() && choice.half != half) continue;
+    std::vector<Tally> all(trackers.size());
+    for (const Hardness hardness : kAllHardness) {
+      if (!choice.only.empty() && choice.only != to_text(hardness)) continue;
+      for (std::size_t t = 0; t < trackers.size(); ++t) {
+        Tally tally;
+        for (int k = 0; k < choice.clips; ++k) {
+          const auto recipe = recipe_of(hardness, 2 * static_cast<std::uint64_t>(k) + odd, choice.frames);
+          tally += track_clip(recipe, choice, trackers[t].second);
+        }
+        print_row(half, to_text(hardness), trackers[t].first, tally);
+        all[t] += tally;
+      }
+    }
+    for (std::size_t t = 0; t < trackers.size(); ++t) print_row(half, "all", trackers[t].first, all[t]);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace arthronaut::hard_clips
+
+int main(int argc, char** argv) {
+  arthronaut::hard_clips::Choice choice;
+  for (int i = 1; i < argc; ++i) {
+    const std::string option = argv[i];
+    const bool has_value = i + 1 < argc;
+    if (option == "--aruco") {
+      choice.with_aruco = true;
+    } else if (option == "--each") {
+      choice.tells_each = true;
+    } else if (option == "--clips" && has_value) {
+      choice.clips = std::atoi(argv[++i]);
+    } else if (option == "--frames" && has_value) {
+      choice.frames = std::atoi(argv[++i]);
+    } else if (option == "--only" && has_value) {
+      choice.only = argv[++i];
+    } else if (option == "--half" && has_value) {
+      choice.half = argv[++i];
+    } else if (option == "--cache" && has_value) {
+      choice.cache = argv[++i];
+    } else {
+      std::fprintf(stderr,
+                   "usage: hard_tracking [--clips N] [--frames N] [--only KIND] [--half set|report] "
+                   "[--cache FOLDER] [--aruco] [--each]\n");
+      return 2;
+    }
+  }
+  if (!choice.cache.empty()) std::filesystem::create_directories(choice.cache);
+  return arthronaut::hard_clips::run(choice);
+}
