@@ -14,8 +14,8 @@ namespace arthronaut::start {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::string_view kFormat = "arthronaut.pacs_peers";
-constexpr int kVersion = 2;  // with a DICOMweb server among them, else 1
+constexpr std::string_view kPeersFormat = "arthronaut.pacs_peers";
+constexpr int kPeersVersion = 2;  // with a DICOMweb server among them, else 1
 constexpr std::size_t kLongestName = 60, kMostPeers = 100;
 
 bool is_url(const std::string& address) { return address.find("://") != std::string::npos; }
@@ -99,7 +99,7 @@ fs::path pacs_peers_file() { return open_case::built_in_case_folder().parent_pat
 std::vector<PacsPeer> load_pacs_peers(const fs::path& file) {
   std::vector<PacsPeer> peers;
   if (!fs::exists(file)) return peers;
-  for (const files::JsonObject& node : files::read_json(file, kFormat, kVersion).objects("peers")) {
+  for (const files::JsonObject& node : files::read_json(file, kPeersFormat, kPeersVersion).objects("peers")) {
     if (peers.size() == kMostPeers) node.fail("name", "there are more than 100");
     PacsPeer peer{.name = node.text("name"), .peer = {}, .connection = {}};
     const bool is_known = std::any_of(peers.begin(), peers.end(),
@@ -158,7 +158,7 @@ void save_pacs_peers(const fs::path& file, const std::vector<PacsPeer>& peers) {
   const bool is_any_web =
       std::any_of(peers.begin(), peers.end(), [](const PacsPeer& peer) { return peer.is_web(); });
   files::write_json(
-      file, {{"format", kFormat}, {"version", is_any_web ? kVersion : 1}, {"peers", std::move(nodes)}});
+      file, {{"format", kPeersFormat}, {"version", is_any_web ? kPeersVersion : 1}, {"peers", std::move(nodes)}});
 }
 
 }  // namespace arthronaut::start

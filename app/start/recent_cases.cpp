@@ -16,8 +16,8 @@ namespace arthronaut::start {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::string_view kFormat = "arthronaut.recent";
-constexpr int kVersion = 1;
+constexpr std::string_view kRecentFormat = "arthronaut.recent";
+constexpr int kRecentVersion = 1;
 constexpr std::size_t kMost = 20;
 
 std::optional<std::time_t> time_of(const std::string& utc) {
@@ -38,7 +38,7 @@ std::vector<RecentCase> load_recent_cases(const fs::path& file) {
   std::vector<RecentCase> cases;
   try {
     if (!fs::exists(file)) return cases;
-    for (const auto& node : files::read_json(file, kFormat, kVersion).objects("cases"))
+    for (const auto& node : files::read_json(file, kRecentFormat, kRecentVersion).objects("cases"))
       cases.push_back({node.text("folder"), node.text("name"), node.text("side"), node.text("opened_utc")});
   } catch (const std::exception&) {
     cases.clear();
@@ -61,7 +61,7 @@ void note_recent_case(const fs::path& file, const RecentCase& opened) noexcept {
                        {"side", one.side},
                        {"opened_utc", one.opened_utc}});
     files::create_private_folder(file.parent_path());
-    files::write_json(file, {{"format", kFormat}, {"version", kVersion}, {"cases", std::move(nodes)}});
+    files::write_json(file, {{"format", kRecentFormat}, {"version", kRecentVersion}, {"cases", std::move(nodes)}});
   } catch (const std::exception&) {  // as the header says
   }
 }

@@ -9,8 +9,8 @@ namespace arthronaut::operation {
 
 namespace {
 
-constexpr std::string_view kFormat = "arthronaut.achieved";
-constexpr int kVersion = 1;
+constexpr std::string_view kAchievedFormat = "arthronaut.achieved";
+constexpr int kAchievedVersion = 1;
 
 nlohmann::ordered_json to_json(const tunnels::Tunnel& tunnel) {
   return {{"entry_mm", files::to_json(tunnel.entry_mm)},
@@ -56,7 +56,7 @@ std::vector<std::filesystem::path> achieved_files(const std::filesystem::path& s
 }
 
 AchievedTunnel read_achieved_file(const std::filesystem::path& file) {
-  const auto root = files::read_json(file, kFormat, kVersion);
+  const auto root = files::read_json(file, kAchievedFormat, kAchievedVersion);
   tunnels::TunnelKey key = bones::bone_kind_from_text(root.text("bone"));
   if (root.has("bundle")) key.bundle = norms::bundle_from_text(root.text("bundle"));
   AchievedTunnel achieved;
@@ -73,8 +73,8 @@ AchievedTunnel read_achieved_file(const std::filesystem::path& file) {
 
 void write_achieved_file(const std::filesystem::path& file, const AchievedTunnel& achieved) {
   nlohmann::ordered_json json = {
-      {"format", kFormat},
-      {"version", kVersion},
+      {"format", kAchievedFormat},
+      {"version", kAchievedVersion},
       {"bone", bones::to_text(achieved.planned.bone)},
       {"planned", to_json(achieved.planned)},
       {"measured", to_json(achieved.measured)},

@@ -14,8 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFormat = "arthronaut.command";
-constexpr int kVersion = 1;
+constexpr const char* kCommandFormat = "arthronaut.command";
+constexpr int kCommandVersion = 1;
 
 // In the order of the variant.
 constexpr std::array<std::string_view, std::variant_size_v<Command>> kNames{"draw",
@@ -179,15 +179,15 @@ std::string_view name_of(const Command& command) { return kNames[command.index()
 
 std::string to_text(const Command& command) {
   Json json;
-  json["format"] = kFormat;
-  json["version"] = kVersion;
+  json["format"] = kCommandFormat;
+  json["version"] = kCommandVersion;
   json["command"] = name_of(command);
   std::visit([&](const auto& c) { add(json, c); }, command);
   return json.dump();
 }
 
 Command command_from_text(const std::string& text, const std::string& name) {
-  const files::JsonObject json = files::parse_json(text, name, kFormat, kVersion);
+  const files::JsonObject json = files::parse_json(text, name, kCommandFormat, kCommandVersion);
   const std::string word = json.text("command");
   std::size_t index = 0;
   while (index < kNames.size() && kNames[index] != word) ++index;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kSessionFormat = "arthronaut.session";
 constexpr const char* kPlanFormat = "arthronaut.session-plan";
-constexpr int kVersion = 1;
+constexpr int kFilesVersion = 1;
 
 void append_number(std::string& line, double value) {
   char text[32];
@@ -44,7 +44,7 @@ void write_session_header(const std::filesystem::path& folder, const SessionHead
                           const pipeline::PipelineOptions& options) {
   nlohmann::ordered_json json;
   json["format"] = kSessionFormat;
-  json["version"] = kVersion;
+  json["version"] = kFilesVersion;
   json["id"] = header.id;
   json["started_utc"] = header.started_utc;
   json["bone"] = bones::to_text(header.bone);
@@ -70,7 +70,7 @@ void write_session_header(const std::filesystem::path& folder, const SessionHead
 }
 
 SessionHeader read_session_header(const std::filesystem::path& folder, pipeline::PipelineOptions& options) {
-  const files::JsonObject json = files::read_json(header_file(folder), kSessionFormat, kVersion);
+  const files::JsonObject json = files::read_json(header_file(folder), kSessionFormat, kFilesVersion);
   SessionHeader header;
   header.id = json.text("id");
   header.started_utc = json.text("started_utc");
@@ -102,7 +102,7 @@ SessionHeader read_session_header(const std::filesystem::path& folder, pipeline:
 }
 
 bool says_it_has_a_chain(const std::filesystem::path& folder) {
-  const files::JsonObject json = files::read_json(header_file(folder), kSessionFormat, kVersion);
+  const files::JsonObject json = files::read_json(header_file(folder), kSessionFormat, kFilesVersion);
   return json.has("hash_chain") && json.boolean("hash_chain");
 }
 
@@ -135,7 +135,7 @@ std::string plan_to_text(const std::optional<tunnels::Tunnel>& plan, double plan
   if (!plan) return "";
   nlohmann::ordered_json json;
   json["format"] = kPlanFormat;
-  json["version"] = kVersion;
+  json["version"] = kFilesVersion;
   json["bone"] = bones::to_text(plan->bone);
   if (plan->bundle != norms::Bundle::Whole) json["bundle"] = norms::to_text(plan->bundle);
   json["entry_mm"] = files::to_json(plan->entry_mm);
@@ -148,7 +148,7 @@ std::string plan_to_text(const std::optional<tunnels::Tunnel>& plan, double plan
 RecordedSession::PlanChange plan_from_text(const std::string& text, const std::filesystem::path& name) {
   RecordedSession::PlanChange change;
   if (text.empty()) return change;
-  const files::JsonObject json = files::parse_json(text, name, kPlanFormat, kVersion);
+  const files::JsonObject json = files::parse_json(text, name, kPlanFormat, kFilesVersion);
   tunnels::Tunnel tunnel;
   tunnel.bone = bones::bone_kind_from_text(json.text("bone"));
   if (json.has("bundle")) tunnel.bundle = norms::bundle_from_text(json.text("bundle"));

@@ -9,8 +9,8 @@ namespace arthronaut::recording {
 
 namespace {
 
-constexpr const char* kFormat = "arthronaut.marks";
-constexpr int kVersion = 1;
+constexpr const char* kMarksFormat = "arthronaut.marks";
+constexpr int kMarksVersion = 1;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ SessionMarks read_marks(const std::filesystem::path& session_folder) {
   const std::filesystem::path file = marks_file(session_folder);
   SessionMarks marks;
   if (!std::filesystem::exists(file)) return marks;
-  for (const files::JsonObject& node : files::read_json(file, kFormat, kVersion).objects("marks"))
+  for (const files::JsonObject& node : files::read_json(file, kMarksFormat, kMarksVersion).objects("marks"))
     marks =
         with_mark(std::move(marks), {node.integer("frame"), node.integer("timestamp_ns"), node.text("note")});
   return marks;
@@ -30,8 +30,8 @@ SessionMarks read_marks(const std::filesystem::path& session_folder) {
 
 void write_marks(const std::filesystem::path& session_folder, const SessionMarks& marks) {
   nlohmann::ordered_json json;
-  json["format"] = kFormat;
-  json["version"] = kVersion;
+  json["format"] = kMarksFormat;
+  json["version"] = kMarksVersion;
   json["marks"] = nlohmann::ordered_json::array();
   for (const SessionMark& mark : marks) {
     json["marks"].push_back(

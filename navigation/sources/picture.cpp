@@ -12,7 +12,7 @@
 namespace arthronaut::sources {
 namespace {
 
-constexpr std::uint64_t kMostPixels = 64'000'000;  // twice 8K
+constexpr std::uint64_t kLargestImage_px = 64'000'000;  // twice 8K
 
 std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
   std::error_code error;
@@ -51,10 +51,10 @@ void read_picture_into(const std::filesystem::path& file, camera::Frame& frame) 
   const std::optional<PictureSize> size = picture_size(bytes);
   if (!size) throw InvalidInput(file, "", "is not a picture that can be decoded");
   if (size->width == 0 || size->height == 0) throw InvalidInput(file, "", "has no pixels");
-  if (size->width > kMostPixels / size->height) {
+  if (size->width > kLargestImage_px / size->height) {
     throw InvalidInput(file, "",
                        "claims " + std::to_string(size->width) + " x " + std::to_string(size->height) +
-                           " pixels, more than the " + std::to_string(kMostPixels / 1'000'000) +
+                           " pixels, more than the " + std::to_string(kLargestImage_px / 1'000'000) +
                            " million that a picture may have");
   }
   const cv::Mat picture = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);

@@ -86,11 +86,11 @@ class DisplayLatency {
 };
 
 struct EndSource {};
-struct KeepVideo {
+struct VideoRequest {
   bool on;
 };
 struct FollowRegistration {};
-using Request = std::variant<TheatreSource, EndSource, KeepVideo, FollowRegistration, operation::Command>;
+using Request = std::variant<TheatreSource, EndSource, VideoRequest, FollowRegistration, operation::Command>;
 using LiveWorker = worker::Worker<Request, LiveState>;
 
 // What the thread does.
@@ -154,7 +154,7 @@ class Loop {
     }
     publish();
   }
-  void take(const KeepVideo& keep) {
+  void take(const VideoRequest& keep) {
     run_.keep_video(keep.on);
     publish();
   }
@@ -255,7 +255,7 @@ LiveOperation::~LiveOperation() = default;
 void LiveOperation::start(TheatreSource source) { thread_->worker.post(std::move(source)); }
 void LiveOperation::end_source() { thread_->worker.post(EndSource{}); }
 void LiveOperation::apply(operation::Command command) { thread_->worker.post(std::move(command)); }
-void LiveOperation::keep_video(bool on) { thread_->worker.post(KeepVideo{on}); }
+void LiveOperation::keep_video(bool on) { thread_->worker.post(VideoRequest{on}); }
 void LiveOperation::shown(const LiveState& live) {
   if (live.operation->source != nullptr && live.operation->source->kind == sources::SourceKind::Live)
     thread_->display.shown(live, now_s());

@@ -15,8 +15,8 @@ using simulator::HandInput;
 using simulator::Held;
 using simulator::Press;
 
-constexpr std::string_view kFormat = "arthronaut.hand";
-constexpr int kVersion = 1;
+constexpr std::string_view kHandFormat = "arthronaut.hand";
+constexpr int kHandVersion = 1;
 constexpr std::int64_t kMostFrames = 3'600'000;
 constexpr std::array<std::string_view, 9> kPresses{
     "none", "touch", "control point", "register", "draw", "stop drawing", "marker anew", "drilled", "finish"};
@@ -66,7 +66,7 @@ Pushed pushed_from(const files::JsonObject& node) {
 }  // namespace
 
 simulator::Hand read_hand_file(const std::filesystem::path& file) {
-  const files::JsonObject document = files::read_json(file, kFormat, kVersion);
+  const files::JsonObject document = files::read_json(file, kHandFormat, kHandVersion);
   auto pushes = std::make_shared<std::vector<Pushed>>();
   for (const files::JsonObject& node : document.objects("pushes")) {
     pushes->push_back(pushed_from(node));
@@ -102,7 +102,7 @@ void write_hand_file(const std::filesystem::path& file, const std::vector<simula
   }
   files::write_json(
       file,
-      {{"format", kFormat}, {"version", kVersion}, {"frames", frames.size()}, {"pushes", std::move(pushes)}});
+      {{"format", kHandFormat}, {"version", kHandVersion}, {"frames", frames.size()}, {"pushes", std::move(pushes)}});
 }
 
 }  // namespace arthronaut::training

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 constexpr std::string_view kScoreFormat = "arthronaut.score", kTrainingFormat = "arthronaut.training";
-constexpr int kVersion = 1;
+constexpr int kScoreVersion = 1;
 
 ordered_json json_of(const Score& score) {
   ordered_json node;
@@ -101,7 +101,7 @@ double time_of(const Score& score) {
 void write_score_file(const fs::path& file, const Score& score) {
   ordered_json document;
   document["format"] = kScoreFormat;
-  document["version"] = kVersion;
+  document["version"] = kScoreVersion;
   document.update(json_of(score));
   files::write_json(file, document);
 }
@@ -109,7 +109,7 @@ void write_score_file(const fs::path& file, const Score& score) {
 std::vector<Score> read_training_file(const fs::path& file) {
   std::vector<Score> scores;
   if (!fs::exists(file)) return scores;
-  for (const files::JsonObject& node : files::read_json(file, kTrainingFormat, kVersion).objects("scores"))
+  for (const files::JsonObject& node : files::read_json(file, kTrainingFormat, kScoreVersion).objects("scores"))
     scores.push_back(score_from(node));
   return scores;
 }
@@ -122,7 +122,7 @@ void add_to_training_file(const fs::path& file, const Score& score) {
   scores.push_back(score);
   auto nodes = ordered_json::array();
   for (const Score& one : scores) nodes.push_back(json_of(one));
-  files::write_json(file, {{"format", kTrainingFormat}, {"version", kVersion}, {"scores", std::move(nodes)}});
+  files::write_json(file, {{"format", kTrainingFormat}, {"version", kScoreVersion}, {"scores", std::move(nodes)}});
 }
 
 fs::path training_file() {

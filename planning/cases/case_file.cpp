@@ -15,8 +15,8 @@ namespace arthronaut::cases {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::string_view kFormat = "arthronaut.case";
-constexpr int kVersion = 1;
+constexpr std::string_view kCaseFormat = "arthronaut.case";
+constexpr int kCaseVersion = 1;
 
 nlohmann::ordered_json landmarks_to_json(const landmarks::Landmarks& landmarks,
                                          const landmarks::LandmarkStates& states) {
@@ -88,7 +88,7 @@ files::JsonObject read_case_json(const fs::path& folder) {
   if (!fs::is_directory(folder)) throw IoError(folder, "is not a case folder");
   const fs::path file = folder / "case.json";
   if (!fs::exists(file)) throw InvalidInput(folder, "", "is not a case: it holds no case.json");
-  return files::read_json(file, kFormat, kVersion);
+  return files::read_json(file, kCaseFormat, kCaseVersion);
 }
 
 bones::Side side_of(const files::JsonObject& root) {
@@ -176,8 +176,8 @@ void save_case(const fs::path& folder, const Case& contents) {
     bones.push_back(std::move(node));
   }
   save_plan(folder, with_named_meshes(contents));
-  nlohmann::ordered_json document = {{"format", kFormat},
-                                     {"version", kVersion},
+  nlohmann::ordered_json document = {{"format", kCaseFormat},
+                                     {"version", kCaseVersion},
                                      {"name", contents.name},
                                      {"side", bones::to_text(contents.side)},
                                      {"created_utc", contents.created_utc},

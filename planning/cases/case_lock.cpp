@@ -25,8 +25,8 @@ namespace arthronaut::cases {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::string_view kFormat = "arthronaut.lock";
-constexpr int kVersion = 1;
+constexpr std::string_view kLockFormat = "arthronaut.lock";
+constexpr int kLockVersion = 1;
 
 std::string host_name() {
   std::array<char, 256> name{};
@@ -74,7 +74,7 @@ struct LockFile {
 std::optional<LockFile> read_lock(const fs::path& file) {
   if (std::error_code error; !fs::exists(file, error)) return std::nullopt;
   try {
-    const auto root = files::read_json(file, kFormat, kVersion);
+    const auto root = files::read_json(file, kLockFormat, kLockVersion);
     LockFile lock{{root.text("host"), root.text("user"), static_cast<long>(root.integer("process")),
                    root.text("since_utc")},
                   root.has("process_start") ? root.text("process_start") : ""};
@@ -85,8 +85,8 @@ std::optional<LockFile> read_lock(const fs::path& file) {
 }
 
 void write_lock(const fs::path& file, const LockFile& lock) {
-  files::write_json(file, {{"format", kFormat},
-                           {"version", kVersion},
+  files::write_json(file, {{"format", kLockFormat},
+                           {"version", kLockVersion},
                            {"host", lock.holder.host},
                            {"process", lock.holder.process},
                            {"process_start", lock.start},

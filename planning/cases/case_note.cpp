@@ -12,8 +12,8 @@ namespace arthronaut::cases {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::string_view kFormat = "arthronaut.note";
-constexpr int kVersion = 1;
+constexpr std::string_view kNoteFormat = "arthronaut.note";
+constexpr int kNoteVersion = 1;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ fs::path note_file(const fs::path& case_folder) { return case_folder / "note.jso
 CaseNote load_note(const fs::path& case_folder) {
   const fs::path file = note_file(case_folder);
   if (!fs::exists(file)) return {};
-  const auto root = files::read_json(file, kFormat, kVersion);
+  const auto root = files::read_json(file, kNoteFormat, kNoteVersion);
   return {root.text("text"), root.text("changed_utc")};
 }
 
@@ -34,7 +34,7 @@ void save_note_over(const fs::path& case_folder, const std::string& text, const 
   if (text == made_from) return;
   if (text.empty()) return remove_private_json(file);
   write_private_json(
-      file, {{"format", kFormat}, {"version", kVersion}, {"text", text}, {"changed_utc", files::utc_now()}});
+      file, {{"format", kNoteFormat}, {"version", kNoteVersion}, {"text", text}, {"changed_utc", files::utc_now()}});
 }
 
 }  // namespace arthronaut::cases

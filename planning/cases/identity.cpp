@@ -11,8 +11,8 @@ namespace arthronaut::cases {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::string_view kFormat = "arthronaut.identity";
-constexpr int kVersion = 1;
+constexpr std::string_view kIdentityFormat = "arthronaut.identity";
+constexpr int kIdentityVersion = 1;
 
 // "Muster^Anna^^Dr." as "Muster, Anna, Dr."; a second alphabet ("=") is left out.
 std::string name_in_words(const std::string& dicom_name) {
@@ -49,15 +49,15 @@ fs::path identity_file(const fs::path& case_folder) { return case_folder / "iden
 std::optional<Identity> load_identity(const fs::path& case_folder) {
   const fs::path file = identity_file(case_folder);
   if (!fs::exists(file)) return std::nullopt;
-  const auto root = files::read_json(file, kFormat, kVersion);
+  const auto root = files::read_json(file, kIdentityFormat, kIdentityVersion);
   return Identity{root.text("patient_name"), root.text("patient_id"), root.text("birth_date")};
 }
 
 void save_identity(const fs::path& case_folder, const Identity& identity) {
   const fs::path file = identity_file(case_folder);
   if (identity.is_empty()) return remove_private_json(file);
-  write_private_json(file, {{"format", kFormat},
-                            {"version", kVersion},
+  write_private_json(file, {{"format", kIdentityFormat},
+                            {"version", kIdentityVersion},
                             {"patient_name", identity.patient_name},
                             {"patient_id", identity.patient_id},
                             {"birth_date", identity.birth_date}});

@@ -12,8 +12,8 @@ namespace arthronaut::cases {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::string_view kFormat = "arthronaut.measurements";
-constexpr int kVersion = 1;
+constexpr std::string_view kMeasurementsFormat = "arthronaut.measurements";
+constexpr int kMeasurementsVersion = 1;
 
 }  // namespace
 
@@ -35,7 +35,7 @@ std::vector<Measurement> load_measurements(const fs::path& case_folder) {
   std::vector<Measurement> measurements;
   const fs::path file = measurements_file(case_folder);
   if (!fs::exists(file)) return measurements;
-  for (const auto& node : files::read_json(file, kFormat, kVersion).objects("measurements")) {
+  for (const auto& node : files::read_json(file, kMeasurementsFormat, kMeasurementsVersion).objects("measurements")) {
     Measurement measurement;
     for (const auto& point : node.objects("points")) measurement.points_mm.push_back(point.vector3("mm"));
     if (measurement.points_mm.size() != 2 && measurement.points_mm.size() != 3)
@@ -67,7 +67,7 @@ void save_measurements(const fs::path& case_folder, const std::vector<Measuremen
       node["distance_mm"] = measurement.distance_mm();
     nodes.push_back(std::move(node));
   }
-  files::write_json(file, {{"format", kFormat}, {"version", kVersion}, {"measurements", std::move(nodes)}});
+  files::write_json(file, {{"format", kMeasurementsFormat}, {"version", kMeasurementsVersion}, {"measurements", std::move(nodes)}});
 }
 
 }  // namespace arthronaut::cases

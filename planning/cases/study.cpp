@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using images::DicomOrigin;
-constexpr std::string_view kFormat = "arthronaut.study";
-constexpr int kVersion = 1;
+constexpr std::string_view kStudyFormat = "arthronaut.study";
+constexpr int kStudyVersion = 1;
 
 using Text = std::pair<const char*, std::string DicomOrigin::*>;
 // The one list of the texts, for reading and writing.
@@ -38,7 +38,7 @@ Studies load_studies(const fs::path& case_folder) {
   const fs::path file = study_file(case_folder);
   if (!fs::exists(file)) return {};
   Studies studies;
-  for (const files::JsonObject& study : files::read_json(file, kFormat, kVersion).objects("studies")) {
+  for (const files::JsonObject& study : files::read_json(file, kStudyFormat, kStudyVersion).objects("studies")) {
     DicomOrigin origin;
     for (const auto& [key, text] : kTexts) origin.*text = study.text(key);
     if (origin.is_empty()) study.fail("study_uid", "is empty");
@@ -67,7 +67,7 @@ void save_studies(const fs::path& case_folder, const Studies& studies) {
     list.back()["bones"].push_back(std::string(bones::to_text(kind)));
   }
   write_private_json(study_file(case_folder),
-                     {{"format", kFormat}, {"version", kVersion}, {"studies", list}});
+                     {{"format", kStudyFormat}, {"version", kStudyVersion}, {"studies", list}});
 }
 
 }  // namespace arthronaut::cases

@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFormat = "arthronaut.accuracy";
-constexpr int kVersion = 1;
+constexpr const char* kChecksFormat = "arthronaut.accuracy";
+constexpr int kChecksVersion = 1;
 
 // "2026-11-23T06:15:00Z" as "20261123T061500Z".
 std::string compact(const std::string& utc) {
@@ -48,7 +48,7 @@ std::tm local_time(const std::string& utc) {
 std::string mm(double value) { return files::format("%.3f mm", value); }
 
 AccuracyCheck read_check(const fs::path& file) {
-  const files::JsonObject json = files::read_json(file, kFormat, kVersion);
+  const files::JsonObject json = files::read_json(file, kChecksFormat, kChecksVersion);
   AccuracyCheck check;
   check.checked_utc = json.text("checked_utc");
   (void)local_time(check.checked_utc);
@@ -90,8 +90,8 @@ fs::path keep_accuracy_check(const fs::path& data_folder, const AccuracyCheck& c
       !why.empty())
     throw InvalidInput(check.source, "", why);
   nlohmann::ordered_json json;
-  json["format"] = kFormat;
-  json["version"] = kVersion;
+  json["format"] = kChecksFormat;
+  json["version"] = kChecksVersion;
   json["checked_utc"] = check.checked_utc;
   json["device"] = check.device;
   json["medium"] = check.medium;

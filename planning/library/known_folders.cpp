@@ -17,8 +17,8 @@ namespace arthronaut::library {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::string_view kFormat = "arthronaut.case_folders";
-constexpr int kVersion = 1;
+constexpr std::string_view kFoldersFormat = "arthronaut.case_folders";
+constexpr int kFoldersVersion = 1;
 
 // A name may be any bytes, JSON is UTF-8: what is none is written as %XX, and so is the % itself.
 bool is_plain(const std::string& name) {
@@ -64,7 +64,7 @@ std::vector<fs::path> load_known_folders(const fs::path& data_folder) {
   std::vector<fs::path> folders;
   const fs::path file = known_folders_file(data_folder);
   if (!fs::exists(file)) return folders;
-  for (const std::string& text : files::read_json(file, kFormat, kVersion).texts("folders"))
+  for (const std::string& text : files::read_json(file, kFoldersFormat, kFoldersVersion).texts("folders"))
     folders.emplace_back(unescaped(text));
   return folders;
 }
@@ -97,7 +97,7 @@ void change_known_folders(const fs::path& data_folder, std::span<const fs::path>
   for (const fs::path& folder : folders) names.push_back(escaped(folder.string()));
   files::create_private_folder(data_folder);
   files::write_json(known_folders_file(data_folder),
-                    {{"format", kFormat}, {"version", kVersion}, {"folders", std::move(names)}});
+                    {{"format", kFoldersFormat}, {"version", kFoldersVersion}, {"folders", std::move(names)}});
 }
 
 }  // namespace arthronaut::library
