@@ -2,6 +2,7 @@
 
 #include "app/command_line/command.h"
 #include "app/report/report.h"
+#include "navigation/recording/case_sessions.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/dicom_out/dicom_export.h"
 
@@ -16,10 +17,10 @@ struct DicomArguments {
   bool is_deidentified = false;
 };
 
-// Of the newest session, by its folder (0007-20260131-120000), else of the case: what is exported was true
+// Of the newest operation, by its folder (0007-20260131-120000), else of the case: what is exported was true
 // then, and a clock would make the same case another one each time.
 std::string moment_of(const fs::path& case_folder, const cases::Case& knee) {
-  const auto sessions = cases::session_folders(case_folder);
+  const auto sessions = recording::operation_folders(case_folder);
   if (sessions.empty()) return knee.created_utc;
   constexpr std::size_t kMomentLength = 15;
   const std::string name = sessions.back().filename().string();

@@ -106,8 +106,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
                   .postoperative_problem = {},
                   .identity = std::nullopt};
   if (options.with_identity) content.identity = cases::load_identity(folder);
-  auto sessions = cases::session_folders(folder);
-  std::erase_if(sessions, [](const auto& session) { return recording::is_exercise(session); });
+  const auto sessions = recording::operation_folders(folder);
   for (auto it = sessions.rbegin(); it != sessions.rend(); ++it) {
     const auto achieved_files = operation::achieved_files(*it);
     const bool has_achieved = !achieved_files.empty();

@@ -5,6 +5,7 @@
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/registration/registration_file.h"
+#include "navigation/sources/exercise_source.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
 
@@ -49,7 +50,7 @@ std::optional<KnownRegistration> registration_of(const std::filesystem::path& fo
 }  // namespace
 
 bool is_exercise(const SessionHeader& header) {
-  return header.source_kind == "simulation" && header.source == kExerciseSource;
+  return header.source_kind == "simulation" && header.source == sources::kExerciseSource;
 }
 
 bool is_exercise(const std::filesystem::path& session_folder) {
@@ -60,6 +61,12 @@ bool is_exercise(const std::filesystem::path& session_folder) {
   } catch (const IoError&) {
   }
   return false;
+}
+
+std::vector<std::filesystem::path> operation_folders(const std::filesystem::path& case_folder) {
+  std::vector<std::filesystem::path> folders = cases::session_folders(case_folder);
+  std::erase_if(folders, [](const auto& folder) { return is_exercise(folder); });
+  return folders;
 }
 
 std::string real_session(const std::filesystem::path& case_folder) {
@@ -81,13 +88,12 @@ std::string real_session(const std::filesystem::path& case_folder) {
 
 std::optional<KnownRegistration> find_registration(const std::filesystem::path& case_folder,
                                                    bones::BoneKind bone, const tools::ToolSet& tools) {
-  std::vector<std::filesystem::path> folders = cases::session_folders(case_folder);
+  std::vector<std::filesystem::path> folders = operation_folders(case_folder);
   std::reverse(folders.begin(), folders.end());
   std::vector<std::string> passed_over;
   for (const std::filesystem::path& folder : folders) {
     // One broken session must not hide the others for good; that it was passed over is told.
     try {
-      if (is_exercise(folder)) continue;
       if (auto known = registration_of(folder, bone, tools)) {
         known->passed_over = std::move(passed_over);
         return known;

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "navigation/registration/provenance.h"
@@ -16,13 +15,14 @@ namespace arthronaut::recording {
 
 struct SessionHeader;
 
-// The name of the frame source that exercises alone have; it stands in the session's header.
-inline constexpr std::string_view kExerciseSource = "simulated arthroscope, by hand";
-// The session is an exercise's: a simulation of that source. It is no operation: it is never resumed, and
-// neither its registration nor its tunnel stands for anything.
+// The session is an exercise's: a simulation of sources::kExerciseSource. It is no operation: it is never
+// resumed, and neither its registration nor its tunnel stands for anything.
 [[nodiscard]] bool is_exercise(const SessionHeader& header);
 // The same of a session's folder. False where its header cannot be read. Does not throw for that.
 [[nodiscard]] bool is_exercise(const std::filesystem::path& session_folder);
+// The sessions of a case that are operations, oldest first: what is reported, trended or sent counts no
+// other.
+[[nodiscard]] std::vector<std::filesystem::path> operation_folders(const std::filesystem::path& case_folder);
 // Why nothing may be practised in this case: the first of its sessions that is not of a simulation, as a
 // sentence for the user. One whose kind is not known or cannot be read counts as real. Empty: there is none.
 [[nodiscard]] std::string real_session(const std::filesystem::path& case_folder);

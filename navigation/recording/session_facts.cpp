@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "navigation/operation/achieved_tunnel.h"
+#include "navigation/recording/case_sessions.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_database.h"
 #include "navigation/recording/session_files.h"
@@ -55,6 +56,7 @@ void read_header(const fs::path& folder, SessionFacts& facts) {
   facts.started_utc = header.started_utc;
   facts.bone = bones::to_text(header.bone);
   facts.source_kind = header.source_kind;
+  facts.is_exercise = is_exercise(header);
 }
 
 void read_registration(const fs::path& folder, SessionFacts& facts) {

@@ -10,6 +10,7 @@
 #include "navigation/simulator/random.h"
 #include "navigation/simulator/renderer.h"
 #include "navigation/simulator/staging.h"
+#include "navigation/sources/exercise_source.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::simulator {
@@ -160,7 +161,7 @@ struct HandOperation::State {
     bone_from_guide =
         guide_pose(*guide_of(options).axis, scene.start.guide_point_mm, scene.start.guide_direction,
                    scene.start.bone_from_camera_guide.translation_mm);
-    info.name = "simulated arthroscope, by hand";
+    info.name = sources::kExerciseSource;
     info.kind = sources::SourceKind::Simulation;
     info.image_size_px = camera.image_size_px;
     info.frames_per_second = options.frames_per_second;

@@ -213,8 +213,10 @@ CaseRecord read_case_record(const fs::path& case_folder, const SessionReader& re
     record.planned = outline.planned;
     record.note = cases::load_note(case_folder).text;
     record.postoperative = read_postoperative(case_folder);
-    for (const fs::path& session : cases::session_folders(case_folder))
-      record.sessions.push_back(read_session(session));
+    for (const fs::path& session : cases::session_folders(case_folder)) {
+      SessionFacts facts = read_session(session);
+      if (!facts.is_exercise) record.sessions.push_back(std::move(facts));
+    }
   } catch (const InvalidInput& error) {
     note_problem(error);
   } catch (const IoError& error) {

@@ -19,8 +19,9 @@ namespace arthronaut::library {
 // One session of a case. What is not recorded stays empty.
 struct SessionFacts {
   std::string id, started_utc;
-  std::string bone;         // "femur", "tibia"
-  std::string source_kind;  // "live", "recording", "simulation"; empty in older records
+  std::string bone;          // "femur", "tibia"
+  std::string source_kind;   // "live", "recording", "simulation"; empty in older records
+  bool is_exercise = false;  // training: no operation, and in no CaseRecord
   bool was_finished = false;
   std::optional<bool> registration_is_reliable;  // of the last registration
   std::optional<double> registration_rms_mm;
@@ -55,7 +56,7 @@ enum class CaseState {
   Unreadable,  // its case.json or plan.json is broken, newer, or not to be read by this user
   NotPlanned,
   Planned,    // a tunnel at least
-  Navigated,  // a session at least
+  Navigated,  // a session at least, that is no exercise
   Drilled,    // a session with a drilled tunnel, or one found in a post-operative CT
 };
 [[nodiscard]] std::string_view to_text(CaseState state);  // "missing", "unreadable", "not planned", ...
@@ -72,7 +73,7 @@ struct CaseRecord {
   std::string changed_utc;  // when case, plan, note or a session was written last
   std::set<bones::BoneKind> bones, planned;
   std::string note;
-  std::vector<SessionFacts> sessions;  // oldest first
+  std::vector<SessionFacts> sessions;  // operations alone, oldest first: exercises count nowhere
   std::vector<PostoperativeFacts> postoperative;
 
   [[nodiscard]] CaseState state() const;

@@ -8,6 +8,9 @@
 #include <map>
 
 #include "app/scene/image.h"
+#include "navigation/recording/session.h"
+#include "navigation/sources/exercise_source.h"
+#include "navigation/tools/tool_set.h"
 #include "planning/cases/case.h"
 #include "planning/files/atomic_file.h"
 #include "planning/phantom/phantom_case.h"
@@ -121,6 +124,28 @@ TEST_F(DicomCommand, TheSameCaseGivesTheSameBytes) {
   const auto written = contents_of(folder_ / "a");
   EXPECT_EQ(written.size(), 7U);
   EXPECT_EQ(written, contents_of(folder_ / "b"));
+}
+
+// Hazard 40: what is sent is of the moment of the last operation, whatever was practised since.
+TEST_F(DicomCommand, Hazard40AnExerciseDatesNothing) {
+  take_phantom();
+  const auto add_session = [&](const char* name, const std::string& source) {
+    const fs::path session = folder_ / "knee.arthro/sessions" / name;
+    fs::create_directories(session);
+    recording::SessionHeader header;
+    header.id = name;
+    header.source_kind = "simulation";
+    header.source = source;
+    pipeline::PipelineOptions options;
+    options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
+    options.tools = tools::standard_tools();
+    recording::SessionRecorder(session, header, options).finish();
+  };
+  add_session("0001-20260131-120000", "an operation");
+  ASSERT_EQ(run("before").exit_code, 0);
+  add_session("0002-20260315-080000", std::string(sources::kExerciseSource));
+  ASSERT_EQ(run("after").exit_code, 0);
+  EXPECT_EQ(contents_of(folder_ / "before"), contents_of(folder_ / "after"));
 }
 
 // By the validator of David Clunie's dicom3tools (installer/debian/packages.txt): no error in any object.

@@ -11,6 +11,7 @@
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_check.h"
 #include "navigation/recording/session_marks.h"
+#include "navigation/sources/exercise_source.h"
 #include "navigation/tools/tool_set.h"
 #include "planning/cases/case.h"
 #include "planning/cases/identity.h"
@@ -274,7 +275,7 @@ TEST_F(Report, Hazard40AnExerciseIsNotReported) {
       exercise / "achieved.json",
       {.planned = planned, .measured = planned, .depth_mm = 30, .pose_count = 42, .truth = {}});
   auto header = nlohmann::json::parse(files::read_text(exercise / "session.json"));
-  header["source"] = recording::kExerciseSource;
+  header["source"] = sources::kExerciseSource;
   files::write_atomically(exercise / "session.json", header.dump());
   const auto json_file = pdf().parent_path() / "report.json";
   write_report(knee_folder(), json_file, {.says_when_made = false});

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "navigation/recording/session.h"
+#include "navigation/sources/exercise_source.h"
 #include "planning/cases/case.h"
 #include "tests/navigation/recording/recorded_frames.h"
 #include "tests/temporary_folder.h"
@@ -79,13 +80,14 @@ TEST_F(CaseSessions, Hazard16AnOlderRegistrationIsNotTakenAfterAnAlarm) {
 TEST_F(CaseSessions, Hazard40AnExercisesRegistrationIsNotFound) {
   SessionHeader header = test::session_header();
   header.source_kind = "simulation";
-  header.source = kExerciseSource;
+  header.source = sources::kExerciseSource;
   const auto operation = add_session(0.2, true);
   const auto exercise = add_session(header, 0.1, true);
   ASSERT_TRUE(found().has_value());
   EXPECT_EQ(found()->session_folder, operation);
   EXPECT_TRUE(is_exercise(exercise));
   EXPECT_FALSE(is_exercise(operation));
+  EXPECT_EQ(operation_folders(temporary_.path()), std::vector{operation});
 }
 
 // Hazard 40: a case is somebody's as soon as one of its sessions is, or may be.

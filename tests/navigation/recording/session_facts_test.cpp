@@ -7,6 +7,7 @@
 
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session.h"
+#include "navigation/sources/exercise_source.h"
 #include "tests/navigation/recording/recorded_frames.h"
 #include "tests/temporary_folder.h"
 
@@ -28,9 +29,7 @@ class SessionFactsTest : public ::testing::Test {
   }
   // First frame after a minute of the source's clock; then the events, minutes after it.
   void record(const std::vector<std::pair<double, std::string_view>>& events, bool finishes = true) {
-    auto header = test::session_header();
-    header.source_kind = "live";
-    SessionRecorder recorder(session_, header, options_);
+    SessionRecorder recorder(session_, header_, options_);
     pipeline::FrameResult frame = test::frame_result(0);
     frame.timestamp_ns = kMinute_ns;
     recorder.append(frame);
@@ -47,6 +46,11 @@ class SessionFactsTest : public ::testing::Test {
   const std::filesystem::path session_ = folder_ / "0001-20260131-120000";
   const pipeline::PipelineOptions options_ = test::scripted_options();
   registration::RegistrationSummary registration_;
+  SessionHeader header_ = [] {
+    SessionHeader header = test::session_header();
+    header.source_kind = "live";
+    return header;
+  }();
 };
 
 // Steps by the clock of the events; the tunnel 3 mm beside and 10 degrees off the plan by construction.
@@ -93,6 +97,18 @@ TEST_F(SessionFactsTest, AVoidRegistrationIsNotReliable) {
   record({{1.0, kRegistrationEvent}, {2.0, kVerifiedEvent}, {3.0, kVoidEvent}});
   EXPECT_EQ(read().registration_is_reliable, false);
   EXPECT_FALSE(read().was_verified);
+}
+
+// Hazard 40: whoever counts sessions has to be told.
+TEST_F(SessionFactsTest, Hazard40SaysThatItIsAnExercise) {
+  header_.source_kind = "simulation";
+  record({{1.0, kRegistrationEvent}});
+  EXPECT_FALSE(read().is_exercise) << "a simulated operation";
+  std::filesystem::remove_all(session_);
+  std::filesystem::create_directories(session_);
+  header_.source = sources::kExerciseSource;
+  record({{1.0, kRegistrationEvent}});
+  EXPECT_TRUE(read().is_exercise);
 }
 
 TEST_F(SessionFactsTest, TellsWhatIsWholeOfABrokenSession) {

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "navigation/recording/case_sessions.h"
 #include "navigation/recording/operation_record.h"
+#include "navigation/sources/exercise_source.h"
 #include "planning/cases/case.h"
 #include "tests/navigation/operation/phantom_operation.h"
 #include "tests/temporary_folder.h"
@@ -83,7 +83,7 @@ class ResumableTest : public ::testing::Test {
 TEST_F(ResumableTest, Hazard40AnExerciseIsPassedOver) {
   const SourceSetup source = test::scripted_source(SourceKind::Simulation);
   PhantomOperation exercise;
-  source_name_ = kExerciseSource;
+  source_name_ = sources::kExerciseSource;
   operate(exercise, source);
   end(exercise);
   EXPECT_FALSE(found());
@@ -93,7 +93,7 @@ TEST_F(ResumableTest, Hazard40AnExerciseIsPassedOver) {
   operate(run, test::scripted_source(SourceKind::Live));
   end(run);
   const std::string left = std::exchange(continues_, "");
-  source_name_ = kExerciseSource;
+  source_name_ = sources::kExerciseSource;
   PhantomOperation again;
   operate(again, source);
   end(again);

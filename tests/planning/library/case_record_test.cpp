@@ -18,14 +18,16 @@ using ::testing::HasSubstr;
 class CaseRecordTest : public ::testing::Test {
  protected:
   [[nodiscard]] CaseRecord read() const {
-    return read_case_record(knee_, [](const std::filesystem::path& session) {
+    return read_case_record(knee_, [this](const std::filesystem::path& session) {
       SessionFacts facts;
       facts.id = session.filename();
+      facts.is_exercise = exercises_.contains(facts.id);
       return facts;
     });
   }
   const test::TemporaryFolder folder_;
   const std::filesystem::path knee_ = folder_ / "Knee.arthro";
+  std::set<std::string> exercises_;
 };
 
 TEST_F(CaseRecordTest, SaysWhatTheFolderHolds) {
@@ -44,6 +46,18 @@ TEST_F(CaseRecordTest, SaysWhatTheFolderHolds) {
   ASSERT_EQ(record.sessions.size(), 2U);
   EXPECT_EQ(record.sessions[0].id, "0001-20260131-120000") << "oldest first";
   EXPECT_EQ(record.state(), CaseState::Navigated);
+}
+
+// Hazard 40: an exercise is no session that is counted, shown as the last, or trended.
+TEST_F(CaseRecordTest, Hazard40ExercisesDoNotCount) {
+  test::make_case(knee_);
+  for (const char* session : {"0001-20260131-120000", "0002-20260201-120000"})
+    std::filesystem::create_directories(knee_ / "sessions" / session);
+  exercises_ = {"0002-20260201-120000"};
+  ASSERT_EQ(read().sessions.size(), 1U);
+  EXPECT_EQ(read().last_session()->id, "0001-20260131-120000");
+  exercises_.insert("0001-20260131-120000");
+  EXPECT_EQ(read().state(), CaseState::Planned) << "nobody navigated";
 }
 
 // A case as save_case() writes it, which the made ones imitate.
