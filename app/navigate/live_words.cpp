@@ -54,7 +54,7 @@ std::string words_of(NextAction action) {
 }
 
 bool must_place_anew(const operation::RegistrationState& registration) {
-  return registration.alarm.seen_drift_mm > 0 && !registration.touches.has_control_point();
+  return registration.alarm.seen_drift_mm > 0 && !registration.alarm.control_point_decides;
 }
 
 std::string place_anew_words() { return "check, then place the marker anew"; }
@@ -100,7 +100,7 @@ Trouble trouble_of(const operation::RegistrationState& registration) {
       if (must_place_anew(registration))
         return {
             "World marker may have moved",
-            why + ". No control point was set before: fix the marker, clear the points (C) and draw anew"};
+            why + ". No control point from before it: fix the marker, clear the points (C) and draw anew"};
       return {"World marker may have moved",
               why + ". Touch the control point again; if it stays off, clear the points (C) and draw anew"};
     case Standing::InDoubt:

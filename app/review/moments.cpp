@@ -5,6 +5,8 @@
 #include <cctype>
 
 #include "navigation/operation/command.h"
+#include "navigation/operation/seen_drift.h"
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::review {
@@ -46,12 +48,22 @@ std::string command_words(const SessionEvent& event) {
   }
 }
 
+std::string drift_words(const SessionEvent& event) {
+  try {
+    const double drift_mm = operation::seen_drift_from_text(event.text, "the record").drift_mm;
+    return capitalised(event.kind) + files::format(" by %.1f mm", drift_mm);
+  } catch (const InvalidInput&) {
+    return capitalised(event.kind);
+  }
+}
+
 Moment moment_of(const SessionEvent& event) {
   if (event.kind == recording::kCommandEvent) return {0, MomentKind::Command, command_words(event)};
   if (event.kind == recording::kAlarmEvent) {
     return event.text.empty() ? Moment{0, MomentKind::Step, "Alarm is over"}
                               : Moment{0, MomentKind::Alarm, "Alarm: " + event.text};
   }
+  if (event.kind == recording::kBoneMovedEvent) return {0, MomentKind::Note, drift_words(event)};
   if (event.kind == recording::kPlanEvent)
     return {0, MomentKind::Note, event.text.empty() ? "No plan in force" : "Plan in force"};
   const MomentKind kind = holds(kSteps, event.kind)    ? MomentKind::Step

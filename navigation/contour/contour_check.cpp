@@ -74,10 +74,12 @@ const ContourVerdict& ContourCheck::look(const camera::GrayView& luma, const cam
                                          std::span<const Covered> covered, std::int64_t timestamp_ns) {
   const double elapsed_s =
       time_before_ns_ != 0 ? 1e-9 * static_cast<double>(timestamp_ns - time_before_ns_) : 0;
+  const bool is_first = time_before_ns_ == 0;
   time_before_ns_ = timestamp_ns;
   verdict_.timestamp_ns = timestamp_ns;
   verdict_.outline_pieces = verdict_.surface_pieces = 0;
   if (!has_begun_) return verdict_;
+  if (is_first) verdict_.held_until_ns = timestamp_ns;  // where it lies is learned from here on
   if (!camera_from_world) {
     // What was seen stays as it was: nothing was seen to move meanwhile, and nothing to stay.
     camera_from_bone_before_.reset();
@@ -146,6 +148,20 @@ void ContourCheck::ask_surface(const camera::GrayView& luma, const camera::Camer
   }
 }
 
+// Seen so that most drifts would show, and none does. What is remembered of the time before a move outweighs
+// what is seen of it for a while, the longer the less is seen of it.
+void ContourCheck::note_held(bool outline_counts, bool surface_counts) {
+  const DriftVerdict &outline = outline_test_.verdict(), &surface = surface_test_.verdict();
+  const auto holds = [&](const DriftVerdict& test) {
+    return test.lead < 0 && test.share_seen >= options_.belies_from_share;
+  };
+  const bool contradicts = surface_counts && surface.lead >= 0;
+  if (contradicts || !((surface_counts && holds(surface)) || (outline_counts && holds(outline)))) return;
+  const double lag_s = options_.lag_memories * std::max(options_.outline.memory_s, options_.surface.memory_s);
+  verdict_.held_until_ns =
+      std::max(verdict_.held_until_ns, verdict_.timestamp_ns - static_cast<std::int64_t>(1e9 * lag_s));
+}
+
 void ContourCheck::conclude(double elapsed_s) {
   const bool has_outline = verdict_.outline_pieces >= kFewestOutlines,
              has_surface = verdict_.surface_pieces >= kFewestPieces;
@@ -166,6 +182,7 @@ void ContourCheck::conclude(double elapsed_s) {
   const bool by_outline = outline_counts && outline.has_drifted && !surface_holds,
              by_surface = surface_counts && surface.has_drifted;
   if (verdict_.state == ContourState::Drifted) return;
+  note_held(outline_counts, surface_counts);
   verdict_.share_seen =
       std::max(outline_counts ? outline.share_seen : 0, surface_counts ? surface.share_seen : 0);
   if (by_outline || by_surface) {

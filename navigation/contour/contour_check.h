@@ -36,6 +36,9 @@ struct ContourOptions {
   // A surface that shows this share of drifts, and none, is believed before the outline: it is compared with
   // itself.
   double belies_from_share = 0.5;
+  // Before it counts as seen to hold: a score may lag behind a bone that has moved by so many of its
+  // memories.
+  double lag_memories = 4;
 };
 
 // Allocates nothing after the construction and reserve_for(). One thread at a time; deterministic: the work
@@ -72,6 +75,7 @@ class ContourCheck {
   [[nodiscard]] bool is_still(const camera::CameraModel& camera,
                               const geometry::RigidTransform& camera_from_bone) const;
   void conclude(double elapsed_s);
+  void note_held(bool outline_counts, bool surface_counts);
 
   ContourOptions options_;
   VisibleBone visible_;

@@ -26,6 +26,9 @@ struct ContourVerdict {
   // With Drifted, as it was told: by which of the two, and about how far, of what can be seen of it.
   bool is_by_outline = false;
   double drift_mm = 0;
+  // Until then at the latest the bone was seen to lie where it lay; what it has done since, nobody knows.
+  // Meaningful from begin() on.
+  std::int64_t held_until_ns = 0;
 };
 
 }  // namespace arthronaut::contour

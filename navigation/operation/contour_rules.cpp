@@ -1,12 +1,11 @@
 // The registered bone against the picture: what of it an operation heeds.
 #include "navigation/operation/operation_parts.h"
-#include "planning/files/format.h"
 
 namespace arthronaut::operation {
 
 void Operation::Parts::end_contour() {
   if (contour.check) contour.check->end();
-  contour.drift_mm.reset();
+  contour.drift.reset();
 }
 
 void Operation::Parts::expect_pictures(const Eigen::Vector2i& size_px) {
@@ -49,15 +48,17 @@ void Operation::Parts::check_contour(const camera::Frame& picture) {
       contour.check->look(camera::luma_of(picture, contour.luma), frame.camera, camera_from_world,
                           contour.covered.places(), frame.timestamp_ns);
   if (verdict.state == contour::ContourState::Drifted && !setup.hears_of_drifts)
-    contour.drift_mm = verdict.drift_mm;
+    contour.drift = {verdict.drift_mm, verdict.held_until_ns};
 }
 
+// It is told a second or more after the bone has moved. A control point that was set meanwhile says that the
+// bone lies where it lies now, and nothing of whether it moved.
 void Operation::Parts::take_drift() {
-  if (!contour.drift_mm) return;
-  const double drift_mm = *std::exchange(contour.drift_mm, std::nullopt);
+  if (!contour.drift) return;
+  const SeenDrift drift = *std::exchange(contour.drift, std::nullopt);
   if (ledger.in_force().standing != Standing::Stands) return;
-  note(JournalKind::BoneMoved, files::format("%.17g", drift_mm));
-  ledger.bone_moved_in_picture(drift_mm);
+  note(JournalKind::BoneMoved, to_text(drift));
+  ledger.bone_moved_in_picture(drift.drift_mm, in_view.control_set_ns < drift.held_until_ns);
   follow_ledger();
 }
 

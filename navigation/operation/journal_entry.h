@@ -18,7 +18,7 @@ enum class JournalKind {
   CommandGiven,   // text: to_text(Command)
   OutcomeTaken,   // text: its request count
   LookTaken,      // text: index of the frame whose picture was seen in the other medium
-  BoneMoved,      // in the picture, against its marker; text: by how many mm
+  BoneMoved,      // in the picture, against its marker; text: see seen_drift.h
   SourceStarted,  // what stands before the first of these was given before any source
   SourceEnded,
   RegistrationInForce,  // registration is set; without a pose: none is in force any more

@@ -63,6 +63,7 @@ void Operation::start_source(const SourceSetup& source) {
   p.touch.refusal = TouchRefusal::None;
   p.in_view.world_was_seen = p.in_view.guide_was_seen = false;
   p.in_view.control_touched_ns = 0;  // of another clock
+  p.in_view.control_set_ns = std::numeric_limits<std::int64_t>::min();
   p.pipeline->set_plan(p.plan ? std::optional(p.plan->tunnel) : std::nullopt, p.plan ? p.plan->length_mm : 0);
   // What differed from the plan of before the crash was offered by nobody who saw it: it is still asked for.
   if (p.offered && !p.resumed_plan_waits)
@@ -156,8 +157,8 @@ void Operation::take_outcome(const OutcomePtr& outcome) {
   p.follow_ledger();
 }
 
-void Operation::tell_bone_moved(double drift_mm) {
-  if (!parts_->contour.drift_mm) parts_->contour.drift_mm = drift_mm;
+void Operation::tell_bone_moved(const SeenDrift& drift) {
+  if (!parts_->contour.drift) parts_->contour.drift = drift;
   parts_->take_drift();
 }
 

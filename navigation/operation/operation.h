@@ -26,6 +26,7 @@
 #include "navigation/operation/medium_look.h"
 #include "navigation/operation/operation_state.h"
 #include "navigation/operation/registration_work.h"
+#include "navigation/operation/seen_drift.h"
 
 namespace arthronaut::operation {
 
@@ -80,7 +81,7 @@ class Operation {
 
   // That the picture showed the bone so far from where it lay, as the journal of another run says: for frames
   // of a record. Nothing without a registration that stands, or where a picture has just told it.
-  void tell_bone_moved(double drift_mm);
+  void tell_bone_moved(const SeenDrift& drift);
 
   // The picture of the newest frame is to be seen in the other medium; once for each.
   [[nodiscard]] std::optional<MediumLookRequest> take_look_request();

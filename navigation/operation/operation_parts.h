@@ -2,6 +2,7 @@
 // operation_rules.cpp (what follows from it).
 #pragma once
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -167,6 +168,8 @@ struct Operation::Parts {
   // What was in view, and when the control point was touched last; of the source.
   struct InView {
     std::int64_t world_ns = 0, control_touched_ns = 0;
+    // When the control point was touched first; of a source before this one: before all of its frames.
+    std::int64_t control_set_ns = std::numeric_limits<std::int64_t>::min();
     bool world_was_seen = false, was_lost_for_long = false, guide_was_seen = false;
   } in_view;
   struct Medium {
@@ -182,7 +185,7 @@ struct Operation::Parts {
     std::vector<std::uint8_t> luma;  // of pictures that have none of their own
     // Told by the newest picture: in force with the next one, between the two, as everything that a run from
     // the record alone has to hear of.
-    std::optional<double> drift_mm;
+    std::optional<SeenDrift> drift;
   } contour;
   struct Drilling {
     std::optional<guidance::DrillEvidence> evidence;  // of the plan in force

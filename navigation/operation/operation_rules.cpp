@@ -267,8 +267,12 @@ void Operation::Parts::take_touch(bool is_control_point) {
     return;
   }
   if (!is_control_point) return ledger.add_touch(*tip_mm);
-  if (ledger.alarm().seen_drift_mm > 0 && !ledger.touches().has_control_point())
-    return note(JournalKind::Note, "control point not set: the picture shows that the bone has moved");
+  const bool is_set = ledger.touches().has_control_point();
+  if (const TouchAlarm alarm = ledger.alarm(); alarm.seen_drift_mm > 0 && !alarm.control_point_decides)
+    return note(JournalKind::Note,
+                is_set ? "control point not asked: it was set when the bone may have moved already"
+                       : "control point not set: the picture shows that the bone has moved");
+  if (!is_set) in_view.control_set_ns = frame.timestamp_ns;
   in_view.control_touched_ns = frame.timestamp_ns;
   in_view.was_lost_for_long = false;
   ledger.touch_control_point(*tip_mm);

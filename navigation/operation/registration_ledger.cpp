@@ -145,8 +145,8 @@ void RegistrationLedger::add_touch(const Eigen::Vector3d& tip_in_marker_mm) {
 }
 
 void RegistrationLedger::touch_control_point(const Eigen::Vector3d& tip_in_marker_mm) {
-  // Set only now, it would learn where the bone lies since it moved, and lift the alarm at the second touch.
-  if (seen_drift_mm_ && !touches_.has_control_point()) return;
+  // Set since, it knows where the bone lies since it moved, and would lift the alarm at the next touch.
+  if (seen_drift_mm_ && !control_point_is_older_) return;
   touches_.touch_control_point(tip_in_marker_mm, now_);
   judge();
   // A touch outranks what was seen, as far as it is finer than that.
@@ -159,15 +159,17 @@ void RegistrationLedger::touch_control_point(const Eigen::Vector3d& tip_in_marke
   judge();
 }
 
-void RegistrationLedger::bone_moved_in_picture(double drift_mm) {
+void RegistrationLedger::bone_moved_in_picture(double drift_mm, bool control_point_is_older) {
   if (in_force_.standing != Standing::Stands) return;
   seen_drift_mm_ = drift_mm;
+  control_point_is_older_ = control_point_is_older && touches_.has_control_point();
   judge();
 }
 
 TouchAlarm RegistrationLedger::alarm() const {
   TouchAlarm alarm = touches_.alarm();
   alarm.seen_drift_mm = seen_drift_mm_.value_or(0);
+  alarm.control_point_decides = seen_drift_mm_ && control_point_is_older_;
   if (alarm || !seen_drift_mm_) return alarm;
   alarm.kind = TouchAlarm::Kind::SeenInPicture;
   return alarm;

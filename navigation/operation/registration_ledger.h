@@ -81,9 +81,10 @@ class RegistrationLedger {
   // The picture shows the bone so far from where it lay (contour/contour_check.h). As a control point that
   // has wandered, it means that the marker sits elsewhere on the bone: an alarm until the marker is placed
   // anew, the surgeon says that it did not move, or the control point, set before (it can't be set now) and
-  // touched again, lies nearer to where it was than half of what the picture says. The first alarm stays;
-  // nothing without a registration that stands.
-  void bone_moved_in_picture(double drift_mm);
+  // touched again, lies nearer to where it was than half of what the picture says. One that was set when the
+  // bone may have moved already (control_point_is_older is false) says nothing, as if there were none. The
+  // first alarm stays; nothing without a registration that stands.
+  void bone_moved_in_picture(double drift_mm, bool control_point_is_older);
   // The touches were wrong and not the marker: takes an alarm away.
   void forget_touches();
   // What was drawn is gone: the next registration has to earn its place anew. Touches stay.
@@ -118,6 +119,7 @@ class RegistrationLedger {
   // Doubt told by strokes drawn after the newest fit of all strokes; its reasons.
   std::optional<std::vector<std::string>> doubt_;
   std::optional<double> seen_drift_mm_;                           // in the picture; empty: none
+  bool control_point_is_older_ = false;                           // than that drift
   std::uint64_t fitted_after_ = 0;                                // requests, at the newest fit
   double best_tre_mm_ = std::numeric_limits<double>::infinity();  // of those that took effect by themselves
   RegistrationInForce in_force_;

@@ -54,6 +54,9 @@ struct TouchAlarm {
   double control_shift_mm = 0;
   int touches_off = 0;
   double seen_drift_mm = 0;  // of the bone in the picture, without a touch
+  // With it: the control point was set while the bone was still seen to lie where it lay, and touched again
+  // says whether it has moved.
+  bool control_point_decides = false;
   [[nodiscard]] explicit operator bool() const { return kind != Kind::None; }
 };
 [[nodiscard]] std::string in_words(const TouchAlarm& alarm);

@@ -152,7 +152,8 @@ void Rerun::play(const SessionEvent& event) {
     const auto look = looks_.find(std::stoll(event.text));
     if (look != looks_.end()) operation_.take_look(look->second);
   } else if (event.kind == kBoneMovedEvent) {
-    operation_.tell_bone_moved(std::stod(event.text));
+    operation_.tell_bone_moved(
+        operation::seen_drift_from_text(event.text, database_file(session_->folder()).string()));
   } else if (event.kind == kSourceEndedEvent) {
     operation_.end_source();
   } else if (!has_journal_ && event.kind == kPlanEvent) {

@@ -78,7 +78,8 @@ inline constexpr std::string_view kConfirmedEvent = "registration confirmed";   
 inline constexpr std::string_view kVerificationSkippedEvent = "verification skipped";  // text: how
 inline constexpr std::string_view kTimeOutConfirmedEvent =
     "time-out confirmed";  // text: what was on the screen
-inline constexpr std::string_view kBoneMovedEvent = "bone moved in the picture";  // text: by how many mm
+inline constexpr std::string_view kBoneMovedEvent =
+    "bone moved in the picture";                                         // text: operation::SeenDrift
 inline constexpr std::string_view kGuideCheckedEvent = "guide checked";  // text: how far its tip was off
 inline constexpr std::string_view kDrilledEvent = "tunnel drilled";
 inline constexpr std::string_view kSourceStartedEvent = "source started";  // what is before it came earlier

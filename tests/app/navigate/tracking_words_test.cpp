@@ -59,6 +59,8 @@ TEST(PlaceAnew, IsWhatLeadsOnWhereNoControlPointWasSet) {
   EXPECT_NE(trouble_of(state).advice.find("draw anew"), std::string::npos);
   EXPECT_EQ(trouble_of(state).advice.find("again"), std::string::npos);
   state.touches.touch_control_point(Eigen::Vector3d::Zero(), {});
+  EXPECT_TRUE(must_place_anew(state)) << "set on a bone that may have moved already";
+  state.alarm.control_point_decides = true;
   EXPECT_FALSE(must_place_anew(state));
   EXPECT_NE(trouble_of(state).advice.find("Touch the control point again"), std::string::npos);
 }

@@ -76,6 +76,19 @@ TEST(ContourCheck, TellsAMillimetreWithinTwoSeconds) {
   }
 }
 
+// Nothing is known of a bone that cannot be seen: what it does behind a glove may have been done at once.
+TEST(ContourCheck, WhatIsCoveredIsNotSeenToHold) {
+  Watched watched;
+  watched.watch(4);
+  const std::int64_t covered_ns = watched.check().verdict().timestamp_ns;
+  const Covered all{{320, 180}, {320, 180}, 1000};
+  for (int i = 0; i < 90; ++i) (void)watched.look(moved_by({1, 0, 0}), {&all, 1});
+  EXPECT_LE(watched.check().verdict().held_until_ns, covered_ns);
+  ASSERT_TRUE(watched.told_after_s(moved_by({1, 0, 0})));
+  EXPECT_LE(watched.check().verdict().held_until_ns, covered_ns);
+  EXPECT_GE(watched.check().verdict().held_until_ns, covered_ns - 2'500'000'000);
+}
+
 TEST(ContourCheck, SaysWhyNothingIsChecked) {
   Watched watched;
   watched.watch(3);

@@ -2,6 +2,7 @@
 // here, as in a run from a record; contour_check_test.cpp has the pictures.
 #include <gtest/gtest.h>
 
+#include "planning/geometry/error.h"
 #include "tests/navigation/operation/phantom_operation.h"
 
 namespace arthronaut::operation {
@@ -30,8 +31,8 @@ class BoneMoved : public ::testing::Test {
     run_.show_guide(-5);
     return run_.state()->frame.guidance.state;
   }
-  void tell(double drift_mm) {
-    run_.operation().tell_bone_moved(drift_mm);
+  void tell(double drift_mm, std::int64_t held_until_ns = SeenDrift().held_until_ns) {
+    run_.operation().tell_bone_moved({drift_mm, held_until_ns});
     run_.apply(Draw{false});  // any command: the journal is taken
   }
   PhantomOperation run_;
@@ -48,7 +49,6 @@ TEST_F(BoneMoved, Hazard25APictureThatShowsTheBoneElsewhereEndsGuidance) {
             "The picture shows the bone 1.1 mm from where it lay under its marker");
   EXPECT_EQ(run_.state()->next_action, NextAction::CheckWorldMarker);
   EXPECT_EQ(run_.count(JournalKind::BoneMoved), 1);
-  EXPECT_EQ(std::stod(run_.last_text(JournalKind::BoneMoved)), 1.1) << "to the last bit: replay rests on it";
   EXPECT_EQ(run_.count(JournalKind::Alarm), 1);
   EXPECT_NE(shown(), GuidanceState::Valid) << "and in all that follow";
   tell(1.2);
@@ -73,6 +73,49 @@ TEST_F(BoneMoved, AControlPointThatWasNotSetBeforeConfirmsNothing) {
   run_.apply(MarkerPlacedAnew{});
   run_.touch(test::on_bone(trial(), 2), TouchControlPoint{});
   EXPECT_TRUE(run_.state()->registration->touches.has_control_point()) << "of the marker as it sits now";
+}
+
+// A knock, then the control point is set, and a second later the picture tells: it was set on a bone that had
+// moved, and agrees with itself for ever.
+TEST_F(BoneMoved, Hazard25AControlPointThatWasSetSinceConfirmsNothing) {
+  run_.apply(ForgetTouches{});
+  run_.apply(SkipVerification{});
+  shown();
+  const std::int64_t held_until_ns = run_.operation().frame().timestamp_ns;
+  run_.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+  ASSERT_TRUE(run_.state()->registration->touches.has_control_point());
+  tell(1.0, held_until_ns);
+  EXPECT_FALSE(run_.state()->registration->alarm.control_point_decides);
+  for (int press = 0; press < 3; ++press) {
+    run_.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+    EXPECT_EQ(run_.in_force().standing, Standing::Alarm) << press;
+  }
+  EXPECT_NE(run_.last_text(JournalKind::Note).find("may have moved already"), std::string::npos);
+  run_.apply(MarkerPlacedAnew{});
+  EXPECT_EQ(run_.in_force().standing, Standing::None);
+}
+
+// Set while the picture still showed the bone where it lay, and touched again when it had moved: the first
+// touch is what counts, and may lift it.
+TEST_F(BoneMoved, AControlPointThatWasSetBeforeDecides) {
+  run_.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+  const std::int64_t held_until_ns = run_.operation().frame().timestamp_ns - 500'000'000;
+  tell(1.0, held_until_ns);
+  EXPECT_TRUE(run_.state()->registration->alarm.control_point_decides);
+  run_.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+  EXPECT_EQ(run_.in_force().standing, Standing::Stands);
+}
+
+TEST(SeenDrift, IsReadAsItWasWritten) {
+  const SeenDrift drift{1.1, 4'000'000'017};
+  const SeenDrift read = seen_drift_from_text(to_text(drift), "journal");
+  EXPECT_EQ(read.drift_mm, drift.drift_mm) << "to the last bit: replay rests on it";
+  EXPECT_EQ(read.held_until_ns, drift.held_until_ns);
+  EXPECT_EQ(seen_drift_from_text("1.25", "journal").held_until_ns, SeenDrift().held_until_ns)
+      << "of an older version";
+  for (const char* broken : {"", "far", "nan", "-1", "1.1 mm", "1.1 mm, where it lay until  ns",
+                             "1.1 mm, where it lay until 5 ns and on"})
+    EXPECT_THROW((void)seen_drift_from_text(broken, "journal"), InvalidInput) << broken;
 }
 
 // The probe on the control point outranks the picture, as far as it is finer: where it was, it lifts the

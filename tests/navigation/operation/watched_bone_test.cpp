@@ -2,63 +2,23 @@
 // has to reach guidance by itself.
 #include <gtest/gtest.h>
 
-#include "navigation/operation/operation.h"
-#include "navigation/simulator/solids.h"
-#include "tests/navigation/contour/rendered_bone.h"
+#include "tests/navigation/operation/ball_pictures.h"
 
 namespace arthronaut::operation {
 namespace {
 
 using contour::ContourState;
 
-constexpr double kMarker_mm = 6;
-
-OperationSetup setup() {
-  OperationSetup setup;
-  setup.surface = std::make_shared<geometry::Surface>(contour::ball_mesh());
-  return setup;
-}
-
-SourceSetup source() {
-  SourceSetup source;
-  source.kind = sources::SourceKind::Recording;
-  source.pipeline.calibration = contour::small_camera();
-  source.pipeline.refractive_index = 1.3345;
-  source.pipeline.follow_lens = false;
-  source.pipeline.tools.world_markers = {{bones::BoneKind::Femur, 0, kMarker_mm}};
-  return source;
-}
-
 // The lens looks about. Registered as it is seen in the first picture.
 class Watched {
  public:
-  explicit Watched(const OperationSetup& with = setup()) : operation_(with), picture_(contour::ball_mesh()) {
-    operation_.start_source(source());
+  explicit Watched(const OperationSetup& with = test::ball_setup()) : operation_(with) {
+    operation_.start_source(test::ball_source());
     look();
-    GiveRegistration give;
-    give.registration.has_pose = give.registration.reliable = true;
-    give.registration.reasons.clear();
-    give.registration.covariance = geometry::Matrix6d::Identity() * 1e-4;
-    give.registration.predicted_tre_mm = 0.3;
-    give.registration.marker_from_bone =
-        operation_.frame().camera_from_world.target_from_source.inverse() * contour::before_the_lens();
-    give.of = operation_.now();
-    operation_.apply(give);
+    operation_.apply(test::registered_as_seen(operation_));
   }
   OperationStatePtr look(double moved_mm = 0) {
-    const geometry::RigidTransform camera_from_bone =
-        contour::before_the_lens(0.08 * std::sin(0.06 * frames_));
-    const geometry::RigidTransform before_it{
-        Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX())), {-13, 0, 27}};
-    simulator::PlateShape plate;
-    plate.half_size_mm.setConstant(4);
-    plate.markers = {{{0, 0}, kMarker_mm, simulator::marker_cells(0)}};
-    camera::Frame& frame = picture_.picture(
-        camera_from_bone * geometry::RigidTransform{Eigen::Quaterniond::Identity(), {moved_mm, 0, 0}},
-        simulator::make_plate(camera_from_bone * contour::before_the_lens().inverse() * before_it, plate));
-    frame.index = frames_;
-    frame.timestamp_ns = ++frames_ * 1'000'000'000 / 15;
-    operation_.process(frame);
+    operation_.process(pictures_.next(moved_mm));
     return operation_.state();
   }
   OperationStatePtr settle() {
@@ -70,8 +30,7 @@ class Watched {
 
  private:
   Operation operation_;
-  contour::RenderedBone picture_;
-  std::int64_t frames_ = 0;
+  test::BallPictures pictures_;
 };
 
 Standing standing_of(const OperationStatePtr& state) { return state->registration->in_force.standing; }
@@ -90,6 +49,23 @@ TEST(WatchedBone, Hazard25ABoneThatMovesUnderItsMarkerEndsGuidanceInTheNextPictu
   EXPECT_EQ(watched.look(1)->contour.state, ContourState::Drifted) << "what told it stays as it was";
 }
 
+// The journal says until when the bone was seen to lie where it lay, and never a time after it moved.
+TEST(WatchedBone, Hazard25SaysUntilWhenTheBoneHadNotMoved) {
+  Watched watched;
+  const std::int64_t moves_ns = watched.settle()->frame.timestamp_ns;
+  OperationStatePtr state;
+  for (int i = 0; i < 45 && (state == nullptr || state->contour.state != ContourState::Drifted); ++i)
+    state = watched.look(1);
+  (void)watched.operation().take_journal();
+  watched.operation().apply(Draw{false});
+  const std::vector<JournalEntry> journal = watched.operation().take_journal();
+  ASSERT_EQ(journal.front().kind, JournalKind::BoneMoved);
+  const SeenDrift told = seen_drift_from_text(journal.front().text, "the journal");
+  EXPECT_EQ(told.drift_mm, state->contour.drift_mm);
+  EXPECT_LE(told.held_until_ns, moves_ns);
+  EXPECT_GE(told.held_until_ns, moves_ns - 2'500'000'000) << "four memories of 0.5 s, and a picture or two";
+}
+
 // Between the picture that tells it and the next one, a press is of a bone that has moved.
 TEST(WatchedBone, WhatWasSeenComesBeforeWhatIsDoneAboutIt) {
   Watched watched;
@@ -105,14 +81,14 @@ TEST(WatchedBone, WhatWasSeenComesBeforeWhatIsDoneAboutIt) {
 
 // Of a record, its own word alone: with the same pictures, or with some of them missing.
 TEST(WatchedBone, ARunFromARecordHearsOfItAndDoesNotSeeIt) {
-  OperationSetup from_record = setup();
+  OperationSetup from_record = test::ball_setup();
   from_record.hears_of_drifts = true;
   Watched watched(from_record);
   OperationStatePtr state = watched.settle();
   for (int i = 0; i < 45; ++i) state = watched.look(1);
   EXPECT_EQ(state->contour.state, ContourState::Drifted);
   EXPECT_EQ(standing_of(state), Standing::Stands);
-  watched.operation().tell_bone_moved(1.346);
+  watched.operation().tell_bone_moved({.drift_mm = 1.346});
   EXPECT_EQ(standing_of(watched.operation().state()), Standing::Alarm);
   EXPECT_EQ(watched.operation().state()->registration->alarm.seen_drift_mm, 1.346);
 }

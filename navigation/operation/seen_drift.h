@@ -1,0 +1,23 @@
+// A bone that the picture shows elsewhere than where it lay, as an operation is told of it and its journal
+// keeps it.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+namespace arthronaut::operation {
+
+struct SeenDrift {
+  double drift_mm = 0;
+  // Time of a frame: until then it was seen to lie where it lay. A control point that was set later may have
+  // been set on a bone that had moved. Records of older versions do not say: of them any counts.
+  std::int64_t held_until_ns = std::numeric_limits<std::int64_t>::max();
+};
+
+// "1.1000000000000001 mm, where it lay until 4000000000 ns": to the last bit, since replay rests on it.
+[[nodiscard]] std::string to_text(const SeenDrift& drift);
+// Also of older versions, which wrote the millimetres alone. Throws InvalidInput that names `where`.
+[[nodiscard]] SeenDrift seen_drift_from_text(const std::string& text, const std::string& where);
+
+}  // namespace arthronaut::operation
