@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "navigation/recording/session.h"
+#include "tests/navigation/operation/ball_pictures.h"
 #include "tests/navigation/theatre/theatre_sources.h"
 #include "tests/temporary_folder.h"
 
@@ -56,6 +57,29 @@ TEST_F(NavigateSource, AMeasuredGuideAndARecordingAskForNothing) {
   live.is_confirmed = true;
   (void)navigate_source(pictures(5), live, record());
   EXPECT_TRUE(events(recording::kGuideCheckedEvent).empty());
+}
+
+// How much of the operation was watched is what `navigate` says at its end.
+TEST_F(NavigateSource, CountsPicturesThatShowedTheBoneWhereItLay) {
+  constexpr long kPictures = 60;
+  NavigateOptions ball;
+  ball.operation = test::ball_setup();
+  ball.source = test::ball_source();
+  ball.registration = test::registered_beforehand();
+  long registered = 0, seen = 0;
+  NavigationObserver observer;
+  observer.on_frame = [&](const camera::FramePtr&, const operation::OperationStatePtr& state) {
+    registered += state->registration->in_force.standing == operation::Standing::Stands;
+    seen += state->contour.state == contour::ContourState::Holds;
+  };
+  const auto source = std::make_shared<test::BallSource>(kPictures);
+  const NavigationSummary summary = navigate_source(source, ball, {}, observer);
+  EXPECT_EQ(summary.frames_registered, kPictures);
+  EXPECT_EQ(registered, kPictures);
+  EXPECT_EQ(summary.frames_bone_seen, seen);
+  // Looked at for a second before anything is said, with 15 pictures a second.
+  EXPECT_GT(seen, kPictures / 2);
+  EXPECT_LT(seen, kPictures - 14);
 }
 
 // A later frame than was asked for is the end, before it was worked in.
