@@ -2,19 +2,16 @@
 // the path-traced clip where it is there; its folder is named by ARTHRONAUT_TEST_DATA.
 #include <benchmark/benchmark.h>
 
-#include <cstdlib>
-
 #include "navigation/contour/contour_check.h"
 #include "navigation/contour/covered.h"
 #include "tests/benchmarks/contour_clips.h"
+#include "tests/recorded_data.h"
 
 namespace arthronaut {
 namespace {
 
 void check_frame(benchmark::State& state) {
-  const char* named = std::getenv("ARTHRONAUT_TEST_DATA");
-  const auto folder =
-      std::filesystem::path(named ? named : ARTHRONAUT_TEST_DATA_DEFAULT) / "arthroscopy/probe_wet";
+  const auto folder = test::recorded_data() / "arthroscopy/probe_wet";
   if (!std::filesystem::exists(folder)) return state.SkipWithError("needs the recorded data");
   static const contour_clips::Clip clip = contour_clips::traced_clip(folder);
   contour::ContourCheck check(clip.mesh);

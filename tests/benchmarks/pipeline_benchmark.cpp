@@ -2,7 +2,6 @@
 // clip where it is there; its folder is named by ARTHRONAUT_TEST_DATA.
 #include <benchmark/benchmark.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 #include "navigation/camera/camera_file.h"
@@ -10,15 +9,13 @@
 #include "navigation/pipeline/navigation_pipeline.h"
 #include "navigation/recording/video_encoder.h"
 #include "navigation/sources/frame_source.h"
+#include "tests/recorded_data.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut {
 namespace {
 
-std::filesystem::path clip_folder() {
-  const char* named = std::getenv("ARTHRONAUT_TEST_DATA");
-  return std::filesystem::path(named ? named : ARTHRONAUT_TEST_DATA_DEFAULT) / "arthroscopy/guide_wet";
-}
+std::filesystem::path clip_folder() { return test::recorded_data() / "arthroscopy/guide_wet"; }
 
 std::vector<camera::FramePtr> clip_frames() {
   std::vector<camera::FramePtr> frames;

@@ -4,15 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
+
+#include "tests/recorded_data.h"
 
 namespace arthronaut::real_data {
 
-inline std::filesystem::path folder() {
-  if (const char* named = std::getenv("ARTHRONAUT_TEST_DATA")) return named;
-  return ARTHRONAUT_TEST_DATA_DEFAULT;
-}
+inline std::filesystem::path folder() { return test::recorded_data(); }
 
 }  // namespace arthronaut::real_data
 

@@ -1,0 +1,142 @@
+// The same report for other programs, and of images after the operation; the same bytes each time.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "navigation/operation/achieved_tunnel.h"
+#include "navigation/recording/session_check.h"
+#include "navigation/recording/session_marks.h"
+#include "planning/cases/identity.h"
+#include "planning/plan_review/plan_review.h"
+#include "planning/postop/achieved_file.h"
+#include "tests/app/report/reported_case.h"
+
+namespace arthronaut::report {
+namespace {
+
+// The same numbers for other programs: whatever the table says, the document says.
+TEST_F(Report, GivesTheSameNumbersAsJsonAndAsATable) {
+  cases::save_identity(knee_folder(), {"Muster^Anna", "4711", "19900131"});
+  (void)text_of_session("live", {{recording::kVerifiedEvent, ""}});
+  const std::filesystem::path session = cases::session_folders(knee_folder()).back();
+  recording::write_marks(session, {{3, 0, "a \"quoted\" note, with a comma"}});
+  const auto planned = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  auto measured = planned;
+  measured.entry_mm += 1.25 * planned.direction.unitOrthogonal();
+  operation::write_achieved_file(
+      session / "achieved.json",
+      {.planned = planned, .measured = measured, .depth_mm = 30, .pose_count = 42, .truth = {}});
+  const auto json_file = pdf().parent_path() / "report.json", csv_file = pdf().parent_path() / "report.csv";
+  write_report(knee_folder(), json_file, {.says_when_made = false});
+  write_report(knee_folder(), csv_file, {.says_when_made = false});
+  const auto json = nlohmann::json::parse(files::read_text(json_file));
+  EXPECT_EQ(json.at("format"), "arthronaut.report");
+  EXPECT_EQ(json.at("case").at("name"), "Knee of Ærø");
+  EXPECT_FALSE(json.contains("patient"));
+  EXPECT_NEAR(json.at("achieved").at(0).at("difference").at("entry_mm").get<double>(), 1.25, 1e-9);
+  EXPECT_EQ(json.at("session").at("marks").at(0).at("note"), "a \"quoted\" note, with a comma");
+  EXPECT_EQ(json.at("session").at("steps").size(), 2u);
+  EXPECT_EQ(json.at("session").at("last_hash"), recording::chain_head(session));
+  const plan_review::CaseReview review(cases::load_case(knee_folder()));
+  EXPECT_EQ(json.at("tunnels").at(0).at("checks").size(), review.checks(bones::BoneKind::Femur).size());
+
+  const std::string csv = files::read_text(csv_file);
+  EXPECT_TRUE(csv.starts_with("quantity,value\n"));
+  expect_contains(csv, "session/marks/0/note,\"a \"\"quoted\"\" note, with a comma\"\n");
+  std::size_t numbers = 0;
+  const nlohmann::json flat = json.flatten();
+  for (const auto& [path, value] : flat.items()) {
+    if (!value.is_number()) continue;
+    ++numbers;
+    expect_contains(csv, path.substr(1) + "," + value.dump() + "\n");
+  }
+  EXPECT_GT(numbers, 30u);
+  write_report(knee_folder(), json_file, {.with_identity = true});
+  expect_contains(files::read_text(json_file), "Muster^Anna");
+}
+
+// In memory it is the same document as in a file; without its date it is the same at any time.
+TEST_F(Report, CanBeTheSameBytesEachTime) {
+  const std::string report = make_report(knee_folder(), {.says_when_made = false});
+  EXPECT_EQ(report.substr(0, 5), "%PDF-");
+  EXPECT_EQ(report, make_report(knee_folder(), {.says_when_made = false}));
+  write_report(knee_folder(), pdf(), {.says_when_made = false});
+  EXPECT_EQ(report, files::read_text(pdf()));
+  EXPECT_EQ(pdf_text().find("Report made"), std::string::npos);
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "Report made");
+}
+
+// What a CT after the operation showed, of both bones: a reliable one, and one in doubt with every reason; in
+// the PDF and, the same numbers, for other programs.
+TEST_F(Report, ComparesWithImagesAfterTheOperation) {
+  const auto achieved_file = knee_folder() / "achieved.json";
+  std::map<tunnels::TunnelKey, postop::Comparison> comparisons;
+  for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
+    const tunnels::Tunnel& plan = knee_.plan.tunnels.at(kind);
+    postop::Comparison& comparison = comparisons[plan.key()];
+    comparison.bone = {.is_found = true,
+                       .plan_from_postop = {},
+                       .rms_mm = 0.21,
+                       .on_edge_share = 0.9,
+                       .in_view_share = 1,
+                       .reliable = true,
+                       .reasons = {}};
+    postop::AchievedTunnel& found = comparison.tunnel;
+    found.is_found = found.reliable = true;
+    found.reasons.clear();
+    found.tunnel = plan;
+    found.offset_mm = kind == bones::BoneKind::Femur ? 1.37 : 2.46;
+    found.tunnel.entry_mm += found.offset_mm * plan.direction.unitOrthogonal();
+    found.tunnel.diameter_mm = 8.4;
+    found.length_mm = 27.3;
+    found.entry_sigma_mm = 0.08;
+    found.direction_sigma_rad = geometry::rad_from_deg(0.25);
+    found.widths = {{2, 8.4}, {12, 9.6}};
+  }
+  postop::AchievedTunnel& doubted = comparisons.at(bones::BoneKind::Tibia).tunnel;
+  doubted.reliable = false;
+  doubted.metal_share = 0.37;
+  doubted.reasons = {"metal hides most of the wall"};
+  postop::write_achieved_file(achieved_file, comparisons);
+  write_report(knee_folder(), pdf());
+  std::string text = pdf_text();
+  for (const char* const part :
+       {"CT after the operation", "1.37 mm", "2.46 mm", "0.08", "8.4 mm; planned", "8.4 to 9.6 mm",
+        "27.3 mm, a socket", "0.21 mm", "37 %", "NOT RELIABLE", "tibia: metal hides most of the wall"})
+    expect_contains(text, part);
+  const auto json_file = pdf().parent_path() / "report.json";
+  write_report(knee_folder(), json_file);
+  const auto json = nlohmann::json::parse(files::read_text(json_file)).at("postoperative");
+  ASSERT_EQ(json.size(), 2U);
+  EXPECT_NEAR(json[0].at("offset_mm").get<double>(), 1.37, 1e-9);
+  EXPECT_TRUE(json[0].at("reliable").get<bool>());
+  EXPECT_FALSE(json[1].at("reliable").get<bool>());
+  EXPECT_EQ(json[1].at("reasons").at(0), "metal hides most of the wall");
+  const auto csv_file = pdf().parent_path() / "report.csv";
+  write_report(knee_folder(), csv_file);
+  expect_contains(files::read_text(csv_file), "postoperative/1/achieved/diameter_mm,8.4\n");
+  // The plan goes elsewhere: the differences are not those to it.
+  tunnels::Tunnel moved = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  moved.entry_mm += 3 * moved.direction.unitOrthogonal();
+  knee_.plan.put(moved, "");
+  cases::save_case(knee_folder(), knee_);
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "of an earlier plan");
+  // Nothing was found: no number is shown.
+  comparisons.at(bones::BoneKind::Femur).tunnel = {};
+  postop::write_achieved_file(achieved_file, comparisons);
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "no tunnel found");
+  EXPECT_EQ(pdf_text().find("1.37 mm"), std::string::npos);
+  files::write_atomically(achieved_file, "{");
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "NOT READABLE");
+  std::filesystem::remove(achieved_file);
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "No comparison with images after the operation");
+}
+
+}  // namespace
+}  // namespace arthronaut::report

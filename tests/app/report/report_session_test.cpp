@@ -1,0 +1,217 @@
+// What the report says of a session: what was reached, how it was verified, what the surgeon saw.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "navigation/operation/achieved_tunnel.h"
+#include "navigation/recording/session_check.h"
+#include "navigation/recording/session_marks.h"
+#include "navigation/sources/exercise_source.h"
+#include "tests/app/report/reported_case.h"
+
+namespace arthronaut::report {
+namespace {
+
+// A session with a registration and a drilled tunnel: the comparison is the one that the geometry says.
+TEST_F(Report, ComparesPlannedAndAchieved) {
+  const auto session_folder = cases::create_session_folder(knee_folder());
+  pipeline::PipelineOptions options;
+  options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
+  options.tools = tools::standard_tools();
+  recording::SessionHeader header;
+  header.id = session_folder.filename().string();
+  header.refractive_index = 1.333;
+  registration::RegistrationSummary registration;
+  registration.has_pose = true;
+  registration.reasons = {"too few points", "one flat patch"};
+  registration.assumptions = {"the cartilage was left out"};
+  registration.point_count = 812;
+  registration.rms_mm = 0.31;
+  {
+    recording::SessionRecorder recorder(session_folder, header, options);
+    recorder.set_registration(registration);
+    recorder.finish();
+  }
+  const auto planned = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  auto measured = planned, truth = planned;
+  const Eigen::Vector3d side = planned.direction.unitOrthogonal();
+  measured.entry_mm += 1.25 * side;  // across the axis: entry and axis are off by the same
+  truth.entry_mm += 2.0 * side;
+  operation::write_achieved_file(
+      session_folder / "achieved.json",
+      {.planned = planned, .measured = measured, .depth_mm = 30, .pose_count = 42, .truth = truth});
+  write_report(knee_folder(), pdf());
+  EXPECT_GE(page_count(pdf_info()), 3);
+  const std::string text = pdf_text();
+  expect_contains(text, "NOT RELIABLE");
+  expect_contains(text, "too few points");
+  expect_contains(text, "assumed: the cartilage was left out");
+  expect_contains(text, "812");
+  expect_contains(text, "1.25 mm");  // plan to measured
+  expect_contains(text, "2.00 mm");  // plan to truth
+  expect_contains(text, "0.75 mm");  // measured to truth
+  expect_contains(text, "water");
+}
+
+// Each start of a source is a session of its own: what was drilled in the one before is not left out.
+TEST_F(Report, NamesTheTunnelOfTheOtherBundleThatWasDrilledInASessionBefore) {
+  tunnels::Tunnel am = knee_.plan.tunnels.at(bones::BoneKind::Femur), pl = am;
+  am.bundle = norms::Bundle::Anteromedial;
+  pl.bundle = norms::Bundle::Posterolateral;
+  pl.entry_mm += 8 * am.direction.unitOrthogonal();
+  knee_.plan.put(am, "");
+  knee_.plan.put(pl, "");
+  cases::save_case(knee_folder(), knee_);
+  std::string first;
+  const auto record = [&](const tunnels::Tunnel& planned, const std::string& source_kind) {
+    const auto folder = cases::create_session_folder(knee_folder());
+    if (first.empty()) first = folder.filename().string();
+    recording::SessionHeader header;
+    header.id = folder.filename().string();
+    header.source_kind = source_kind;
+    pipeline::PipelineOptions options;
+    options.calibration = {.image_size_px = {1920, 1080}, .focal_px = 600, .boundary = {{960, 540}, 520}};
+    options.tools = tools::standard_tools();
+    recording::SessionRecorder(folder, header, options).finish();
+    auto measured = planned;
+    measured.entry_mm += (planned.bundle == am.bundle ? 1.25 : 0.75) * planned.direction.unitOrthogonal();
+    operation::write_achieved_file(
+        folder / operation::achieved_file_name(planned.key()),
+        {.planned = planned, .measured = measured, .depth_mm = 30, .pose_count = 42, .truth = {}});
+  };
+  record(am, "live");
+  record(pl, "live");
+  write_report(knee_folder(), pdf());
+  const std::string text = pdf_text();
+  expect_contains(text, "Planned against achieved: femur PL");
+  expect_contains(text, "0.75 mm");
+  expect_contains(text, "Planned against achieved: femur AM");
+  expect_contains(text, "1.25 mm");
+  expect_contains(text, "Drilled in the session " + first);
+  // A rehearsal's is nobody's knee: after it the live ones are not its own.
+  record(pl, "simulation");
+  write_report(knee_folder(), pdf());
+  EXPECT_EQ(pdf_text().find("Planned against achieved: femur AM"), std::string::npos);
+}
+
+// Hazard 2: nobody takes the figures of a simulation for a patient's.
+TEST_F(Report, Hazard2NamesTheKindOfSource) {
+  expect_contains(text_of_session("simulation", {}), "simulation: nobody's knee");
+  expect_contains(text_of_session("recording", {}), "recording: a video that was made before");
+  const std::string live = text_of_session("live", {});
+  expect_contains(live, "live: a camera, as it came");
+  expect_contains(live, "not confirmed in this session");
+  expect_contains(live, "not verified");
+  expect_contains(live, "none in this session");  // of a nominal guide
+  expect_contains(text_of_session("live", {{recording::kGuideCheckedEvent, "its tip lies 0.4 mm off"}}),
+                  "its tip lies 0.4 mm off");
+}
+
+// What was asked before the guide was followed, and what spoke against it, is in the report.
+TEST_F(Report, SaysHowItWasVerifiedConfirmedAndDoubted) {
+  const std::string good = text_of_session("live", {{"time-out confirmed", "right femur"},
+                                                    {recording::kVerifiedEvent, ""},
+                                                    {recording::kAlarmEvent, "The control point has moved"},
+                                                    {recording::kAlarmEvent, ""}});
+  expect_contains(good, "verified by touches");
+  expect_contains(good, "The control point has moved; over");
+  EXPECT_EQ(good.find("not confirmed in this session"), std::string::npos);
+  const std::string skipped = text_of_session("simulation", {{"verification skipped", "guidance began"}});
+  expect_contains(skipped, "SKIPPED; guidance began without it");
+  expect_contains(skipped, "not asked: no live source");
+}
+
+// What happened when, what whoever looked at it marked, and by what the record is known. A broken file of
+// marks is told and takes nothing else away.
+TEST_F(Report, HasStepsMarksAndTheLastHash) {
+  (void)text_of_session("live", {{recording::kVerifiedEvent, ""}, {recording::kVoidEvent, "bumped"}});
+  const std::filesystem::path session = cases::session_folders(knee_folder()).back();
+  recording::write_marks(session, {{3, 65'400'000'000, "marker, in glare"}, {9, 70'000'000'000, ""}});
+  write_report(knee_folder(), pdf());
+  const std::string text = pdf_text();
+  for (const char* const part : {"bone registered", "registration verified", "registration void",
+                                 "Marks of who looked", "marker, in glare", "(frame 3)", "(no note)"})
+    expect_contains(text, part);
+  const std::string hash = recording::chain_head(session);
+  ASSERT_EQ(hash.size(), 64u);
+  for (const std::size_t at : {0, 16, 32, 48}) expect_contains(text, hash.substr(at, 16));
+  files::write_atomically(recording::marks_file(session), "{");
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "NOT READABLE");
+  expect_contains(pdf_text(), "bone registered");
+}
+
+// Hazard 40: the tunnel of an exercise is nobody's, and an older session is not hidden by it.
+TEST_F(Report, Hazard40AnExerciseIsNotReported) {
+  (void)text_of_session("simulation", {});
+  const std::filesystem::path operation = cases::session_folders(knee_folder()).back();
+  (void)text_of_session("simulation", {});
+  const std::filesystem::path exercise = cases::session_folders(knee_folder()).back();
+  ASSERT_NE(operation, exercise);
+  const auto planned = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  operation::write_achieved_file(
+      exercise / "achieved.json",
+      {.planned = planned, .measured = planned, .depth_mm = 30, .pose_count = 42, .truth = {}});
+  auto header = nlohmann::json::parse(files::read_text(exercise / "session.json"));
+  header["source"] = sources::kExerciseSource;
+  files::write_atomically(exercise / "session.json", header.dump());
+  const auto json_file = pdf().parent_path() / "report.json";
+  write_report(knee_folder(), json_file, {.says_when_made = false});
+  const auto json = nlohmann::json::parse(files::read_text(json_file));
+  EXPECT_TRUE(!json.contains("achieved") || json.at("achieved").empty());
+  EXPECT_NE(json.dump().find(operation.filename().string()), std::string::npos);
+  EXPECT_EQ(json.dump().find(exercise.filename().string()), std::string::npos);
+}
+
+// The pictures that were recorded at the moments that matter, the same bytes each time; without a video the
+// report says so, and the name of a video that is gone is not in it.
+TEST_F(Report, ShowsWhatTheSurgeonSaw) {
+  expect_contains(text_of_session("live", {}), "The session keeps no video");
+  const auto folder = cases::create_session_folder(knee_folder());
+  pipeline::PipelineOptions options;
+  options.calibration = {.image_size_px = {320, 240}, .focal_px = 100, .boundary = {{160, 120}, 110}};
+  options.tools = tools::standard_tools();
+  recording::SessionHeader header;
+  header.id = folder.filename().string();
+  registration::RegistrationSummary registration;
+  registration.has_pose = registration.reliable = true;
+  registration.reasons.clear();
+  {
+    recording::SessionRecorder recorder(folder, header, options);
+    recorder.set_registration(registration);
+    for (int i = 0; i < 5; ++i) {
+      auto frame = std::make_shared<camera::Frame>();
+      frame->index = i;
+      frame->timestamp_ns = i * 100'000'000LL;
+      frame->width = 320;
+      frame->height = 240;
+      frame->bgr.assign(3UL * 320 * 240, static_cast<std::uint8_t>(40 * i));
+      recorder.append_picture(frame);
+      pipeline::FrameResult result;
+      result.frame_index = i;
+      result.timestamp_ns = frame->timestamp_ns;
+      result.guidance.state = guidance::GuidanceState::Valid;
+      result.guidance.axis_to_entry_mm = i == 2 ? 0.7 : 3.0;  // closest in the third
+      result.guidance.angle_deg = 1.2;
+      recorder.append(result);
+    }
+    recorder.add_event({400'000'000, std::string(recording::kDrilledEvent), "", -1});
+    recorder.finish();
+  }
+  write_report(knee_folder(), pdf());
+  const std::string text = pdf_text();
+  expect_contains(text, "Pictures of the session, with the plan");
+  expect_contains(text, "0:00.2: aimed closest, 0.7 mm, 1.2\u00B0");
+  expect_contains(text, "0:00.4: drilled");
+  const std::string bytes = make_report(knee_folder(), {.says_when_made = false});
+  EXPECT_EQ(bytes, make_report(knee_folder(), {.says_when_made = false}));
+  const auto video = recording::RecordedSession(folder).video();
+  ASSERT_TRUE(std::filesystem::exists(video));
+  std::filesystem::remove(video);
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "The session's video is not there, or cannot be read");
+  EXPECT_EQ(pdf_text().find(video.filename().string()), std::string::npos);
+}
+
+}  // namespace
+}  // namespace arthronaut::report

@@ -1,0 +1,153 @@
+// What an operation in the real window leaves behind: a folder that takes nothing, a program that is killed,
+// and what was left taken up again.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+
+#include "tests/app/window/theatre.h"
+
+namespace arthronaut::test {
+namespace {
+
+// A session of the window, with strokes, an excluded one and touches, runs again to the same states.
+TEST_F(Theatre, Hazard12ASessionOfTheWindowReplaysToTheLastBit) {
+  std::string session;
+  {
+    const VirtualDisplay display(1280, 720);
+    RunningWorkstation app(display, folder_.path());
+    start_simulation(app);
+    ASSERT_TRUE(becomes([&] { return !app.state("strokes").empty() && app.state("strokes") != "0"; }, 240));
+    app.press("x");
+    app.press("t");
+    app.press("p");
+    session = app.state("journal");
+    std::this_thread::sleep_for(std::chrono::seconds(3));  // some frames more, with what the keys asked for
+    ASSERT_TRUE(app.hold_until("Escape", "guidance", "The source has ended", 60));
+    app.press("ctrl+q");
+    ASSERT_EQ(app.wait_for_exit(120), 0);
+  }
+  expect_same_states(session);
+}
+
+// Nothing can be written where sessions belong: the operation goes on, and the screen says why it is not
+// recorded.
+TEST_F(Theatre, Hazard13ARecordThatCannotStartNeverTouchesGuidance) {
+  std::ofstream(case_folder() / "sessions") << "a file where the folder belongs";
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  start_simulation(app);
+  EXPECT_TRUE(becomes([&] { return app.state("journal").find("sessions") != std::string::npos; }, 60))
+      << app.state("journal");
+  // Asking for the video too changes nothing of it.
+  app.press("ctrl+r");
+  EXPECT_FALSE(becomes([&] { return app.state("recording") == "on"; }, 1));
+  app.press("d");  // the probe draws no more: commands are still carried out
+  EXPECT_TRUE(app.wait_for_state("picture", "live", 60));
+  EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+}
+
+// Killed at any moment, the case opens again, and what was recorded by then can be read and run again.
+TEST_F(Theatre, Hazard12AKilledWindowLeavesASessionThatCanBeRead) {
+  const VirtualDisplay display(1280, 720);
+  std::mt19937 random(12);
+  constexpr int kKills = 8;
+  int empty_count = 0;
+  for (int kill = 0; kill < kKills; ++kill) {
+    RunningWorkstation app(display, folder_.path());
+    start_simulation(app);
+    ASSERT_TRUE(becomes([&] { return !app.state("journal").empty(); }, 60));
+    const std::string session = app.state("journal");
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 3000));
+    app.kill();
+    const auto [exit_code, output] = replay(session);
+    // Killed within the second after the first frame, nothing was committed yet: then that is what is said.
+    const bool is_empty = output.find(": 0 of 0 frames replayed") != std::string::npos;
+    EXPECT_EQ(exit_code, is_empty ? 4 : 0) << "kill " << kill << ": " << output;
+    empty_count += is_empty ? 1 : 0;
+    EXPECT_NE(output.find("session " + session), std::string::npos) << output;
+    EXPECT_NE(output.find("never finished"), std::string::npos) << output;
+  }
+  EXPECT_LT(empty_count, kKills);
+  RunningWorkstation app(display, folder_.path());
+  EXPECT_TRUE(app.wait_for_state("case", "open", 120));
+  EXPECT_TRUE(app.wait_for_state("access", "own"));
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(60), 0);
+}
+
+// Killed in the middle of an operation, the case offers in Navigate what was left: one key brings it back,
+// and it guides nothing until one touch on the bone. The session that follows says what it goes on from, and
+// runs again to the same states.
+TEST_F(Theatre, Hazard12AKilledOperationIsResumedAndGuidesAfterOneTouch) {
+  const VirtualDisplay display(1280, 720);
+  std::string left, next;
+  {
+    RunningWorkstation app(display, folder_.path());
+    start_simulation(app);
+    ASSERT_TRUE(app.wait_for_state("standing", "stands", 400));
+    left = app.state("journal");
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));  // that it stands is committed by then
+    app.kill();
+  }
+  {
+    RunningWorkstation app(display, folder_.path());
+    show_navigate(app);
+    ASSERT_TRUE(app.wait_for_state("resume", left, 60));
+    ASSERT_TRUE(app.wait_for_widget("navigate.resume"));
+    EXPECT_TRUE(app.wait_for_state("next", "resume the operation that was left"));
+    EXPECT_EQ(app.state("standing"), "none") << "nothing is brought back unasked";
+    app.press("space");
+    ASSERT_TRUE(app.wait_for_state("resumed", left));
+    EXPECT_TRUE(app.wait_for_state("resume", "none"));
+    EXPECT_TRUE(app.wait_for_state("standing", "void"));
+    app.press("space");
+    ASSERT_TRUE(app.wait_for_state("picture", "live", 120));
+    EXPECT_EQ(app.state("source_kind"), "SIMULATION");
+    EXPECT_EQ(app.state("standing"), "void");
+    EXPECT_TRUE(app.wait_for_state("next", "touch the bone once: confirms the registration"));
+    // The simulated surgeon's probe rests on the bone now and then.
+    ASSERT_TRUE(becomes(
+        [&] {
+          app.press("t");
+          return app.wait_for_state("standing", "stands", 0.3);
+        },
+        400));
+    next = app.state("journal");
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    ASSERT_TRUE(app.hold_until("Escape", "guidance", "The source has ended", 60));
+    app.press("ctrl+q");
+    ASSERT_EQ(app.wait_for_exit(120), 0);
+  }
+  std::stringstream header;
+  header << std::ifstream(case_folder() / "sessions" / next / "session.json").rdbuf();
+  EXPECT_NE(header.str().find("\"continues\": \"" + left + "\""), std::string::npos) << header.str();
+  const auto [exit_code, output] = replay(next);
+  EXPECT_EQ(exit_code, 0) << output;
+}
+
+// Declined, the operation begins afresh, and nothing of the old one is there.
+TEST_F(Theatre, Hazard12WhatWasLeftCanBeDeclined) {
+  const VirtualDisplay display(1280, 720);
+  std::string left;
+  {
+    RunningWorkstation app(display, folder_.path());
+    start_simulation(app);
+    ASSERT_TRUE(becomes([&] { return !app.state("strokes").empty() && app.state("strokes") != "0"; }, 240));
+    left = app.state("journal");
+    // A window that is closed in the middle of an operation leaves it too.
+    EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
+  }
+  RunningWorkstation app(display, folder_.path());
+  show_navigate(app);
+  ASSERT_TRUE(app.wait_for_state("resume", left, 60));
+  app.press("Escape");
+  EXPECT_TRUE(app.wait_for_state("resume", "none"));
+  EXPECT_TRUE(app.wait_for_state("next", "start the simulated operation"));
+  EXPECT_EQ(app.state("resumed"), "none");
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(60), 0);
+}
+
+}  // namespace
+}  // namespace arthronaut::test
