@@ -1,15 +1,15 @@
 // A case: one knee, its bones, its plan, the theatre's files and the sessions, in a folder NAME.arthro.
 //
-//   case.json      format "arthronaut.case": side, bones, sources
-//   plan.json      format "arthronaut.plan": tunnels, and which mesh each was planned on
-//   identity.json  whose knee it is (identity.h), and study.json of which study (study.h): nowhere else
-//   case.lock      who works on it now (case_lock.h)
-//   femur.ply      bone meshes, binary PLY, LPS, mm
-//   femur_cartilage.ply         surface of what cartilage covers, where it was declared for the registration
-//   images/1.nrrd  the volume that the bones were made from (case_image.h); older cases have none
-//   camera.json, tools.json     copies of what this case is navigated with; absent until they are known
-//   sessions/ID/   one folder a session (navigation/recording)
-//   cache/         what can be made again from the rest; may be deleted at any time
+//   case.json, plan.json       side, bones, sources; tunnels, each with its mesh; plan_versions/N.json kept
+//   identity.json, study.json  whose knee it is (identity.h) and of which study (study.h): nowhere else
+//   note.json, case.lock       what somebody noted (case_note.h), who works on it now (case_lock.h)
+//   femur.ply, femur_cartilage.ply   bones, LPS, mm; what cartilage covers, where it was declared
+//   images/1.nrrd, painting/   the volume that the bones were made from; what is painted over it
+//   measurements.json          taken in the images; achieved.json what a CT after the operation showed
+//   camera.json, tools.json, fluid.json   what it is navigated with; the newest check in fluid
+//   sessions/ID/               one folder a session, exercises too (navigation/recording)
+//   pictures/, report.pdf      of the operation, sent as DICOM; of the demo. Videos lie there too
+//   cache/                     what can be made again from the rest; may be deleted at any time
 //
 // Every file is replaced atomically, so that a crash at any moment leaves the last saved state. The folder is
 // its owner's alone: folders 0700, files 0600 (files/private_folder.h).
