@@ -50,6 +50,18 @@ std::optional<Joint> joint_of(const BoneInput& input, const Landmarks& marks, bo
   return std::nullopt;
 }
 
+// False where no bone is at the norm's place.
+bool put_at_norm(tunnels::Tunnel& at_entry, const BoneInput& input, bones::Side side,
+                 const Landmarks& marks) {
+  const auto footprint =
+      norms::expected_footprint(input.bone->mesh, *input.surface, at_entry.bone, side, marks,
+                                norms::default_norm(at_entry.bone, at_entry.bundle));
+  if (!footprint) return false;
+  at_entry.entry_mm = footprint->center_mm;
+  at_entry.direction = -footprint->normal;
+  return true;
+}
+
 }  // namespace
 
 double usual_diameter_mm(norms::Bundle bundle) {
@@ -116,20 +128,24 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
     at_entry.entry_mm = on.point_mm;
     at_entry.direction = -on.normal;
     result.source = "the native footprint, as marked on this bone";
+  } else if (put_at_norm(at_entry, input, side, marks)) {
+    result.source = norms::default_norm(kind, options.bundle).source;
   } else {
-    const auto& norm = norms::default_norm(kind, options.bundle);
-    const auto footprint =
-        norms::expected_footprint(input.bone->mesh, *input.surface, kind, side, marks, norm);
-    if (!footprint) {
-      result.outcome = Outcome::NoFootprint;
-      result.message = "no bone is where the norm places the insertion";
-      return result;
-    }
-    at_entry.entry_mm = footprint->center_mm;
-    at_entry.direction = -footprint->normal;
-    result.source = norm.source;
+    result.outcome = Outcome::NoFootprint;
+    result.message = "no bone is where the norm places the insertion";
+    return result;
   }
-  const auto aimed = aim(at_entry, *input.surface, *joint, options, input.beside);
+  // The anteromedial tunnel has its usual aim; the posterolateral one makes room for it, also where it comes
+  // first. Else the order in which they are planned would decide how much bone is left between them.
+  std::optional<tunnels::Tunnel> to_come;
+  if (options.bundle == norms::Bundle::Posterolateral && input.beside == nullptr) {
+    tunnels::Tunnel at_am_entry = at_entry;
+    at_am_entry.bundle = norms::Bundle::Anteromedial;
+    at_am_entry.diameter_mm = usual_diameter_mm(at_am_entry.bundle);
+    if (put_at_norm(at_am_entry, input, side, marks))
+      to_come = aim(at_am_entry, *input.surface, *joint, options);
+  }
+  const auto aimed = aim(at_entry, *input.surface, *joint, options, to_come ? &*to_come : input.beside);
   if (!aimed) {
     result.outcome = Outcome::NoAim;
     result.message = "no direction that a drill can follow from there leaves the " +

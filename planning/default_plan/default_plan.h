@@ -42,8 +42,8 @@ struct BoneInput {
   // Made before and kept by the caller, since it takes a second; without it it is made here.
   const landmarks::Proposal* proposal = nullptr;
   // Of the ligament's other bundle, planned already: bone is left between the two where a drill can follow.
-  // The anteromedial one is best planned first: beside a posterolateral one at its usual aim there is little
-  // room.
+  // Without it the posterolateral one leaves room for an anteromedial one of the usual diameter and aim: of
+  // two defaults either may be planned first.
   const tunnels::Tunnel* beside = nullptr;
 };
 
