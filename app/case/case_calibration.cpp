@@ -40,8 +40,10 @@ camera::Calibration camera_of(bool is_simulated, const fs::path& case_folder) {
 }
 
 tools::ToolSet tools_of(bool is_simulated, const fs::path& case_folder) {
-  return uses_tools_file(is_simulated, case_folder) ? tools::read_tools_file(cases::tools_file(case_folder))
-                                                    : tools::standard_tools();
+  if (!uses_tools_file(is_simulated, case_folder)) return tools::standard_tools();
+  tools::ToolSet tools = tools::read_tools_file(cases::tools_file(case_folder));
+  // No outside tracker sees what is simulated.
+  return is_simulated && tools.tracker ? tools::standard_tools() : tools;
 }
 
 CaseProvenance provenance_of(bool is_simulated, const fs::path& case_folder) {

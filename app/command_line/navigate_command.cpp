@@ -5,6 +5,7 @@
 #include "app/command_line/cartilage_option.h"
 #include "app/command_line/command.h"
 #include "app/command_line/medium_option.h"
+#include "app/command_line/tracker_option.h"
 #include "app/command_line/tracking_report.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
@@ -27,7 +28,7 @@ namespace fs = std::filesystem;
 
 struct NavigateArguments {
   std::string case_folder, video, camera, tools, registration, probe = "probe", guide;
-  std::string bone = "femur", tunnel;
+  std::string bone = "femur", tunnel, tracker;
   std::optional<double> medium_index;
   double duration_s = 0;  // 0: to the end
   int igtl_port = -1;     // -1: nothing is served
@@ -73,7 +74,9 @@ pipeline::PipelineOptions pipeline_options(const NavigateArguments& arguments, c
   options.calibration =
       camera::read_camera_file(file_to_use(arguments.camera, cases::camera_file(folder), "--camera"))
           .calibration;
-  options.tools = tools::read_tools_file(file_to_use(arguments.tools, cases::tools_file(folder), "--tools"));
+  const fs::path tools_file = file_to_use(arguments.tools, cases::tools_file(folder), "--tools");
+  options.tools = tools::read_tools_file(tools_file);
+  use_tracker(arguments.tracker, tools_file, arguments.video, options.tools);
   options.refractive_index = arguments.medium_index.value_or(
       options.calibration.refractive_index == camera::kAirIndex ? camera::kSalineIndex
                                                                 : options.calibration.refractive_index);
@@ -177,6 +180,7 @@ theatre::NavigateOptions navigate_options(const Context& context, const Navigate
       bone, knee.side, landmarks != knee.landmarks.end() ? landmarks->second : landmarks::Landmarks(),
       found->second.mesh);
   options.registration = known_registration(context, arguments, options);
+  listen_to_tracker(context, options);
   // Case, bone, medium and source are all named by whoever typed the command.
   options.is_confirmed = true;
   return options;
@@ -226,6 +230,8 @@ void say_source(const Context& context, const theatre::NavigationSummary& summar
     context.say("source: " + summary.troubles[i]);
   if (summary.troubles.size() > kMostTold)
     context.say(format("source: and %zu times more", summary.troubles.size() - kMostTold));
+  for (std::size_t i = 0; i < std::min(kMostTold, summary.tracker_troubles.size()); ++i)
+    context.say("tracker: " + summary.tracker_troubles[i]);
   const theatre::StageLatency& all = theatre::of(summary.latency, theatre::Stage::ToGuidance);
   if (all.count == 0) return;
   context.say(format(
@@ -369,6 +375,7 @@ void add_navigate_command(CLI::App& app, Context& context) {
       ->add_option("--igtl", arguments->igtl_port,
                    "Serve poses and states by OpenIGTLink on this port, 0 for any free one, while it runs")
       ->check(CLI::Range(0, 65535));
+  add_tracker_option(*command, arguments->tracker);
   command
       ->add_option("--duration-s", arguments->duration_s,
                    "Stop after so many seconds of pictures; default: at the source's end")

@@ -7,6 +7,7 @@
 #include "navigation/camera/camera_file.h"
 #include "navigation/pipeline/track_video.h"
 #include "planning/files/atomic_file.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
 
@@ -21,6 +22,9 @@ struct TrackArguments {
 void track(Context& context, const TrackArguments& arguments) {
   const camera::CalibrationRecord camera = camera::read_camera_file(arguments.camera);
   const tools::ToolSet tools = tools::read_tools_file(arguments.tools);
+  if (tools.tracker)
+    throw InvalidInput(arguments.tools, "tracker",
+                       "the tools are seen by an outside tracker: no marker is looked for in pictures");
   const auto source = sources::open_video(arguments.video);
 
   pipeline::ViewTrackerOptions options;

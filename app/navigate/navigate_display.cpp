@@ -11,6 +11,10 @@ using guidance::GuidanceState;
 using Phase = theatre::LiveState::Phase;
 
 std::string reason_of_marker(const pipeline::FrameResult& result, int marker_id) {
+  if (!result.outside.bodies.empty()) {
+    const tracker::BodyState outside = tracker::state_of(result.outside, marker_id);
+    return outside == tracker::BodyState::Tracked ? "" : std::string(tracker::to_text(outside));
+  }
   const markers::MarkerState state = pipeline::body_in(result, marker_id).state;
   return state == markers::MarkerState::Tracked ? "" : std::string(markers::to_text(state));
 }
@@ -35,7 +39,8 @@ GuidanceState cause_of(const operation::OperationState& state) {
   }
 }
 
-void explain(NavigateDisplay& display, const operation::OperationState& state) {
+void explain(NavigateDisplay& display, const theatre::LiveState& live) {
+  const operation::OperationState& state = *live.operation;
   const pipeline::FrameResult& result = state.frame;
   const pipeline::PipelineOptions& options = state.source->pipeline;
   const operation::RegistrationState& registration = *state.registration;
@@ -67,13 +72,15 @@ void explain(NavigateDisplay& display, const operation::OperationState& state) {
   using operation::Standing;
   const Standing standing = registration.in_force.standing;
   if (standing == Standing::Alarm) return tell(display, trouble_of(registration));
-  if (!result.intrinsics_are_known) {
+  if (!result.intrinsics_are_known && !options.tools.tracker) {
     tell(display, trouble_of(result.lens));
     if (display.headline.empty()) display.headline = "Lens angle unknown";
     return;
   }
   if (standing == Standing::Void || standing == Standing::InDoubt)
     return tell(display, trouble_of(registration));
+  if (!live.tracker_trouble.empty() && !result.world_is_seen())
+    return tell(display, {"Tracker lost", live.tracker_trouble});
   switch (cause_of(state)) {
     case GuidanceState::Valid:
       break;
@@ -100,7 +107,7 @@ void explain(NavigateDisplay& display, const operation::OperationState& state) {
       break;
     case GuidanceState::NoRegistration:
       // Nothing can be touched while the marker is lost: that comes first.
-      if (!result.camera_from_world.is_valid) {
+      if (!result.world_is_seen()) {
         display.headline = "Bone marker lost";
         if (const auto* marker = options.tools.find_world_marker(options.bone))
           display.detail = reason_of_marker(result, marker->marker_id);
@@ -197,14 +204,17 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   display.overlay_is_valid =
       result.camera_from_world.is_valid && result.intrinsics_are_known && !result.is_frozen && !is_revoked;
   // What was not confirmed may be of another knee: no number, and none of the plan's lines.
-  display.plan_is_valid = display.overlay_is_valid && standing == operation::Standing::Stands &&
-                          state.time_out != operation::TimeOut::Due;
-  display.tip_is_valid = display.plan_is_valid && result.tip_is_valid;
-  display.guidance_is_valid = display.plan_is_valid && result.guidance.is_valid();
+  const bool may_guide = standing == operation::Standing::Stands && state.time_out != operation::TimeOut::Due;
+  display.plan_is_valid = display.overlay_is_valid && may_guide;
+  // An outside tracker's numbers hang on no picture, and nothing of theirs lies over one.
+  display.world_is_placed =
+      display.overlay_is_valid || (result.tracker_from_world.is_valid && !result.is_frozen && !is_revoked);
+  display.tip_is_valid = display.world_is_placed && may_guide && result.tip_is_valid;
+  display.guidance_is_valid = display.world_is_placed && may_guide && result.guidance.is_valid();
   if (display.guidance_is_valid)
     display.guidance = result.guidance;
   else
-    explain(display, state);
+    explain(display, *live);
   return display;
 }
 

@@ -13,6 +13,7 @@ namespace arthronaut::navigate {
 struct NavigateDisplay {
   bool has_picture = false;       // a picture may be shown; false: nothing but the reason
   bool is_live = false;           // ... and it is of now
+  bool world_is_placed = false;   // ... and where the bone's marker is is known, by whichever eye
   bool overlay_is_valid = false;  // what was touched lies on this picture where it was touched
   bool plan_is_valid = false;     // ... and the plan's lines belong to it: a registration stands
   bool tip_is_valid = false;      // ... and where the probe's tip is to the bone is known

@@ -42,7 +42,7 @@ NavigateScene::Shown NavigateScene::shown_of(const NavigateScreen& screen) {
   shown.selected_stroke = screen.layout == NavigateLayout::Register ? screen.selected_stroke : -1;
   if (screen.live == nullptr) return shown;
   shown.registration = screen.live->operation->registration;
-  if (!screen.display.overlay_is_valid) return shown;
+  if (!screen.display.world_is_placed) return shown;
   const pipeline::FrameResult& frame = screen.frame();
   if (screen.display.tip_is_valid) shown.tip_frame = frame.frame_index;
   if (screen.display.guidance_is_valid) shown.guide_frame = frame.frame_index;

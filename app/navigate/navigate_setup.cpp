@@ -2,6 +2,7 @@
 
 #include "app/case/case_calibration.h"
 #include "navigation/camera/medium.h"
+#include "navigation/openigtlink/igtl_tracker.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
@@ -101,6 +102,8 @@ theatre::TheatreSource video_setup(const open_case::PlanModel& model, bones::Bon
                                    const std::filesystem::path& video, double refractive_index) {
   theatre::TheatreSource source =
       real_setup(model, bone, case_folder, refractive_index, sources::SourceKind::Recording);
+  if (source.setup.pipeline.tools.tracker)
+    throw InvalidInput("the tools of this case are seen by an outside tracker: no recording shows them");
   source.setup.title = video.filename().string();
   source.open = [video] { return sources::open_video(video); };
   return source;
@@ -122,6 +125,14 @@ theatre::TheatreSource camera_setup(const open_case::PlanModel& model, bones::Bo
     source.open = [turns, index = *pictures.device] { return turns.open(index); };
   else
     source.open = [address = pictures.address] { return sources::open_stream(address); };
+  if (const auto& tracker = source.setup.pipeline.tools.tracker) {
+    if (tracker->address.empty())
+      throw InvalidInput(
+          "tools.json names an outside tracker, and not where it is (\"tracker\": \"address\")");
+    (void)openigtlink::tracker_address(tracker->address);
+    source.setup.calibration += "; tools seen by " + tracker->address;
+    source.tracker = [setup = source.setup.pipeline] { return openigtlink::listen_to_tracker(setup); };
+  }
   return source;
 }
 

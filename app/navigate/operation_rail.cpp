@@ -66,7 +66,7 @@ Missing missing_of_marker(const Known& known) {
   // Seen once it is known; that it is lost for a moment is told by what is done then.
   if (registration.point_count > 0 || registration.in_force.registration != nullptr) return Missing::Nothing;
   if (!known.state.has_source) return Missing::Source;
-  const bool is_seen = known.state.frame_count > 0 && known.state.frame.camera_from_world.is_valid;
+  const bool is_seen = known.state.frame_count > 0 && known.state.frame.world_is_seen();
   return is_seen ? Missing::Nothing : Missing::MarkerInView;
 }
 

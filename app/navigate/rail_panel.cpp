@@ -130,13 +130,20 @@ void draw_states(const widgets::Ui& ui, const widgets::Rect& area, const Navigat
     const auto sign = [&](bool is_good, Severity else_is) {
       return !is_live ? Severity::Quiet : is_good ? Severity::Good : else_is;
     };
-    states.push_back({sign(frame.intrinsics_are_known, Severity::Bad), "Lens"});
-    states.push_back({sign(frame.camera_from_world.is_valid, Severity::Bad), "Marker"});
+    // With an outside tracker nothing hangs on the lens.
+    const auto& tracker = state.source->pipeline.tools.tracker;
+    if (tracker)
+      states.push_back({sign(screen.live->tracker_trouble.empty(), Severity::Bad), "Tracker"});
+    else
+      states.push_back({sign(frame.intrinsics_are_known, Severity::Bad), "Lens"});
+    states.push_back({sign(frame.world_is_seen(), Severity::Bad), "Marker"});
     const bool registers = screen.layout == NavigateLayout::Register;
     const auto* tool = state.source->pipeline.tools.find_tool(registers ? state.source->pipeline.probe_name
                                                                         : state.source->pipeline.guide_name);
     const bool is_seen =
-        tool != nullptr && pipeline::body_in(frame, tool->marker_id).camera_from_body.has_value();
+        tool != nullptr &&
+        (tracker ? tracker::state_of(frame.outside, tool->marker_id) == tracker::BodyState::Tracked
+                 : pipeline::body_in(frame, tool->marker_id).camera_from_body.has_value());
     states.push_back({sign(is_seen, Severity::Caution), registers ? "Probe" : "Guide"});
     const auto standing = state.registration->in_force.standing;
     states.push_back({standing == operation::Standing::Stands ? Severity::Good

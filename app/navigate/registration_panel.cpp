@@ -125,7 +125,7 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
     put(row.severity, is_quiet ? widgets::kText : widgets::color_of(row.severity), row.name + " " + row.text);
   };
   // A picture that is not of now, or a touch that was not taken, comes before everything else.
-  if (!screen.display.is_live || !screen.display.overlay_is_valid) {
+  if (!screen.display.is_live || !screen.display.world_is_placed) {
     const bool is_amiss = screen.display.has_picture;  // before there is one nothing is
     put(is_amiss ? widgets::Severity::Caution : widgets::Severity::Quiet,
         is_amiss ? widgets::kCaution : widgets::kText, screen.display.headline);

@@ -29,8 +29,33 @@ std::string text_of(const markers::BodyObservation& body, std::size_t marker_cou
   return text;
 }
 
+// Bodies as an outside tracker sees them, and the tracker itself.
+void draw_outside(const widgets::Ui& ui, const NavigateScreen& screen, const tools::OutsideTracker& tracker) {
+  const std::string& trouble = screen.live->tracker_trouble;
+  widgets::status_row(ui, trouble.empty() ? Severity::Good : Severity::Bad, "Tracker",
+                      trouble.empty() ? tracker.address : trouble);
+  const tracker::TrackerPoses& outside = screen.frame().outside;
+  const auto* world = screen.options().tools.find_world_marker(screen.options().bone);
+  for (const tracker::BodyPose& body : outside.bodies) {
+    const bool is_world = world != nullptr && world->marker_id == body.id;
+    if (!is_world && !body.is_tracked() && !is_needed(screen, body.id)) continue;
+    std::string text(tracker::to_text(body.state));
+    if (body.is_tracked())
+      text += ", " + widgets::fixed(1000 * body.age_s, 0) +
+              (outside.times_are_arrivals ? " ms since it came: it bears no time" : " ms old");
+    if (!screen.display.is_live) text = "no live picture";
+    widgets::status_row(ui,
+                        !screen.display.is_live ? Severity::Quiet
+                        : body.is_tracked()     ? Severity::Good
+                        : is_world              ? Severity::Bad
+                                                : Severity::Caution,
+                        guidance_severity::marker_name(screen.options().tools, body.id), text);
+  }
+}
+
 void draw_markers(const widgets::Ui& ui, const NavigateScreen& screen) {
   const pipeline::FrameResult& result = screen.frame();
+  if (const auto& tracker = screen.options().tools.tracker) return draw_outside(ui, screen, *tracker);
   const tools::ToolSet& tools = screen.options().tools;
   const auto* world = tools.find_world_marker(screen.options().bone);
   const auto marker_count = [&](int id) {

@@ -82,14 +82,16 @@ void draw_video(const widgets::Ui& ui, const widgets::Rect& area, const Navigate
                  {area.x + ui.theme.px(14), area.y + ui.theme.px(9)}, widgets::kQuietText, "Undistorted");
   // Numbers without lines beside them ask for a reason.
   if (display.guidance_is_valid) {
-    const std::string reason = why_no_plan_line(screen.lines().plan, screen.overlay_opacity);
+    const std::string reason = screen.options().tools.tracker
+                                   ? "No plan over the picture: the tracker does not see the arthroscope"
+                                   : why_no_plan_line(screen.lines().plan, screen.overlay_opacity);
     ui.log.note_state("no_overlay", reason);
     widgets::Rect below = area;
     (void)below.cut_top(ui.theme.px(screen.undistorts ? 44 : 0));
     if (!reason.empty()) widgets::caption(ui, below, widgets::kCaution, reason);
   }
   // By its edge alone: nothing lies over the picture, and so over no marker.
-  const bool is_expected = screen.layout == NavigateLayout::Register && display.overlay_is_valid;
+  const bool is_expected = screen.layout == NavigateLayout::Register && display.world_is_placed;
   if (!display.guidance_is_valid && !is_expected)
     draw.AddRect(area.min(), area.max(), widgets::kCaution, ui.theme.px(6), 0, ui.theme.px(5));
   else if (screen.reached_for_s)

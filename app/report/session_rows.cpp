@@ -76,6 +76,8 @@ SessionFigures figures_of(const recording::RecordedSession& session) {
     for (const auto& pose : frame.poses)
       with_world += world != nullptr && !is_of_several && pose.marker_id == world->marker_id;
     for (const auto& body : frame.bodies) with_world += is_of_several && body.id == world->marker_id;
+    if (options.tools.tracker && world != nullptr)
+      with_world += tracker::state_of(frame.outside, world->marker_id) == tracker::BodyState::Tracked;
     with_mark += frame.lens.mark == lens::MarkState::Found;
   }
   const double frames = std::max<double>(1, static_cast<double>(session.frames().size()));

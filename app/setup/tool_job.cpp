@@ -62,6 +62,8 @@ ToolJob::ToolJob(const pipeline::ViewTrackerOptions& view, const tools::ToolSet&
       declared_bodies_(markers::declared_bodies(tools)),
       tracker_(view, markers::make_tracker(markers::declared_markers(tools))) {
   (void)tool_of(tools_, choice_.tool_name);
+  if (tools_.tracker)
+    throw InvalidInput("the tools of this case are seen by an outside tracker: measure them there");
   if (tools_.world_markers.empty()) throw InvalidInput("tools.json declares no world marker");
 }
 

@@ -20,6 +20,10 @@ std::string name_of(const ToolChoice& choice) {
 
 // How many come from where; what is simulated is named first.
 Row row_of(const tools::ToolSet& tools) {
+  if (tools.tracker)
+    return {
+        widgets::Severity::Caution, "Tools",
+        "seen by an outside tracker" + (tools.tracker->address.empty() ? "" : ", " + tools.tracker->address)};
   const auto count = [&](provenance::Origin origin) {
     return std::count_if(tools.tools.begin(), tools.tools.end(),
                          [&](const tools::Tool& tool) { return tool.provenance.origin == origin; });

@@ -40,6 +40,7 @@ std::string_view to_text(MarkerState state) {
 
 std::vector<DeclaredMarker> declared_markers(const tools::ToolSet& tools) {
   std::vector<DeclaredMarker> declared;
+  if (tools.tracker) return declared;  // what the pictures would say has no frame in common with it
   const auto add = [&](const auto& body) {
     for (const tools::BodyMarker& marker : tools::markers_of(body))
       declared.push_back({marker.marker_id, marker.size_mm});

@@ -82,6 +82,7 @@ class MarkerTracker {
 [[nodiscard]] std::unique_ptr<MarkerTracker> make_tracker(std::span<const DeclaredMarker> declared);
 
 // Every marker that the tools declare: world markers first; of a body of several, all of them in its order.
+// None where an outside tracker sees the bodies.
 [[nodiscard]] std::vector<DeclaredMarker> declared_markers(const tools::ToolSet& tools);
 
 }  // namespace arthronaut::markers

@@ -105,9 +105,9 @@ void Operation::end_source() {
   p.medium.awaited.reset();
 }
 
-void Operation::process(const camera::Frame& frame) {
+void Operation::process(const camera::Frame& frame, const tracker::TrackerPoses* outside) {
   parts_->take_drift();
-  parts_->pipeline->process(frame, parts_->frame);
+  parts_->pipeline->process(frame, parts_->frame, outside);
   parts_->check_medium();
   parts_->take_frame();
   parts_->check_contour(frame);

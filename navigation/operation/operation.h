@@ -64,8 +64,8 @@ class Operation {
   // No more frames: nothing of the last one is valid any more. No effect without a source.
   void end_source();
   // Frames in order of time. Throws InvalidInput when the frame's size is not the camera's.
-  // Precondition: a source was started.
-  void process(const camera::Frame& frame);
+  // Precondition: a source was started. outside: as NavigationPipeline::process() takes it.
+  void process(const camera::Frame& frame, const tracker::TrackerPoses* outside = nullptr);
   // Never throws: what can't be done now changes nothing, or says so in the state.
   void apply(const Command& command);
   // The newest one that the registration has published; one that was taken in already changes nothing. Null

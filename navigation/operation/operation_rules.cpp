@@ -185,12 +185,13 @@ void Operation::Parts::hide_guidance(guidance::GuidanceState reason) {
 // Nothing that was reckoned from the picture stands.
 void Operation::Parts::end_frame() {
   frame.camera_from_world.is_valid = frame.tip_is_valid = frame.intrinsics_are_known = false;
+  frame.tracker_from_world.is_valid = false;
   for (pipeline::ToolPose& tool : frame.tools) tool.world_from_tool.is_valid = false;
   hide_guidance(guidance::GuidanceState::Stale);
 }
 
 void Operation::Parts::watch_marker() {
-  if (frame.camera_from_world.is_valid) {
+  if (frame.world_is_seen()) {
     if (in_view.world_was_seen && frame.timestamp_ns - in_view.world_ns > kLongLoss_ns)
       in_view.was_lost_for_long = changed = true;
     in_view.world_was_seen = true;

@@ -68,6 +68,9 @@ void add_frame(Digest& digest, const pipeline::FrameResult& frame) {
   digest.add(frame.is_frozen);
   for (const markers::MarkerObservation& marker : frame.markers) digest.add(marker.state);
   digest.add(frame.camera_from_world);
+  // Of operations without an outside tracker nothing: their records stay as they were.
+  for (const tracker::BodyPose& body : frame.outside.bodies) digest.add(body.state);
+  if (!frame.outside.bodies.empty()) digest.add(frame.tracker_from_world);
   for (const pipeline::ToolPose& tool : frame.tools) digest.add(tool.world_from_tool);
   digest.add(frame.tip_is_valid);
   if (frame.tip_is_valid) digest.add_matrix(frame.tip_in_world_mm);
@@ -105,7 +108,7 @@ void add_registration(Digest& digest, const RegistrationState& state) {
 NextAction action_without_registration(const OperationState& state) {
   const RegistrationState& registration = *state.registration;
   if (registration.is_fitting) return NextAction::WaitForRegistration;
-  if (state.frame_count > 0 && !state.frame.camera_from_world.is_valid) return NextAction::ShowWorldMarker;
+  if (state.frame_count > 0 && !state.frame.world_is_seen()) return NextAction::ShowWorldMarker;
   if (state.draws) return NextAction::GoOnDrawing;
   if (registration.in_force.standing == Standing::Void) return NextAction::RegisterAnew;
   return registration.point_count >= kEnoughPoints ? NextAction::RegisterStrokes : NextAction::Draw;

@@ -94,6 +94,31 @@ struct NavigationPipeline::State {
     return options.tools.world_markers.size() + tool;
   }
 
+  [[nodiscard]] bool is_outside() const { return options.tools.tracker.has_value(); }
+
+  void take_outside(const tracker::TrackerPoses* outside, FrameResult& result) const {
+    result.bodies.clear();
+    result.camera_from_world = {};
+    if (outside != nullptr)
+      result.outside = *outside;
+    else
+      tracker::set_all(options.tools, tracker::BodyState::NotConnected, result.outside);
+    result.tracker_from_world = pose_of_body(result, world);
+  }
+
+  // In the camera's frame or the outside tracker's, whichever sees the bodies.
+  [[nodiscard]] geometry::TrackedPose pose_of_body(const FrameResult& result, std::size_t body) const {
+    if (!is_outside()) return tracked_pose(result, body);
+    geometry::TrackedPose pose =
+        tracker::pose_of(result.outside, bodies[body].id, result.timestamp_ns, *options.tools.tracker);
+    pose.is_valid = pose.is_valid && !result.is_frozen && !result.is_repeating;
+    return pose;
+  }
+
+  [[nodiscard]] const geometry::TrackedPose& world_pose(const FrameResult& result) const {
+    return is_outside() ? result.tracker_from_world : result.camera_from_world;
+  }
+
   void observe_bodies(FrameResult& result) {
     result.bodies.resize(bodies.size());
     distrusted.resize(bodies.size(), 0);
@@ -123,18 +148,19 @@ struct NavigationPipeline::State {
   }
 
   void place_tools(FrameResult& result) const {
-    const geometry::TrackedPose world_from_camera = geometry::inverse(result.camera_from_world);
+    const geometry::TrackedPose world_from_reference = geometry::inverse(world_pose(result));
     result.tools.resize(options.tools.tools.size());
     for (std::size_t i = 0; i < result.tools.size(); ++i) {
       result.tools[i].marker_id = options.tools.tools[i].marker_id;
       result.tools[i].world_from_tool =
-          geometry::compose(world_from_camera, tracked_pose(result, body_of_tool(i)));
+          geometry::compose(world_from_reference, pose_of_body(result, body_of_tool(i)));
     }
   }
 
   // What the camera's error does to the pose of a body in this frame, by the corners that the pose is from.
   [[nodiscard]] guidance::TwistPerCameraError camera_error_of_body(const FrameResult& result,
                                                                    std::size_t body) const {
+    if (is_outside()) return guidance::TwistPerCameraError::Zero();
     const markers::BodyObservation& seen = result.bodies[body];
     if (!result.intrinsics_are_known || !seen.is_tracked()) return guidance::TwistPerCameraError::Zero();
     std::array<Eigen::Vector3d, 4 * tools::kMostMarkersOfBody> used_mm;
@@ -189,21 +215,21 @@ struct NavigationPipeline::State {
     input.planned.length_mm = planned_length_mm;
     input.axes = axes;
     input.registration = registration ? &*registration : nullptr;
-    input.camera_from_world_marker = result.camera_from_world;
+    input.camera_from_world_marker = world_pose(result);
     if (guide) {
-      input.camera_from_guide = tracked_pose(result, body_of_tool(*guide));
+      input.camera_from_guide = pose_of_body(result, body_of_tool(*guide));
       input.axis = options.tools.tools[*guide].axis ? &*options.tools.tools[*guide].axis : nullptr;
       input.axis_error = guide_error;
       input.guide_per_camera_error = camera_error(result, *guide);
     }
     if (drill) {
-      input.camera_from_drill = tracked_pose(result, body_of_tool(*drill));
+      input.camera_from_drill = pose_of_body(result, body_of_tool(*drill));
       input.drill = &options.tools.tools[*drill];
       input.drill_per_camera_error = camera_error(result, *drill);
     }
     input.known_errors = &known_errors;
     input.world_marker_per_camera_error = camera_error_of_world(result);
-    input.lens_is_stale = !result.intrinsics_are_known;
+    input.lens_is_stale = !is_outside() && !result.intrinsics_are_known;
     input.now_ns = result.timestamp_ns;
     result.guidance = guidance::compute_guidance(input);
     // Whatever else is missing: a frozen picture is the first thing to say.
@@ -252,11 +278,16 @@ NavigationPipeline::NavigationPipeline(const PipelineOptions& options,
 
 NavigationPipeline::~NavigationPipeline() = default;
 
-void NavigationPipeline::process(const camera::Frame& frame, FrameResult& result) {
+void NavigationPipeline::process(const camera::Frame& frame, FrameResult& result,
+                                 const tracker::TrackerPoses* outside) {
   const auto begin = std::chrono::steady_clock::now();
   state_->view_tracker.observe(frame, result);
-  state_->observe_bodies(result);
-  result.camera_from_world = tracked_pose(result, state_->world);
+  if (state_->is_outside()) {
+    state_->take_outside(outside, result);
+  } else {
+    state_->observe_bodies(result);
+    result.camera_from_world = tracked_pose(result, state_->world);
+  }
   state_->place_tools(result);
   state_->place_tip(result);
   state_->guide_the_drill(result);

@@ -16,6 +16,7 @@
 #include "navigation/pipeline/view_tracker.h"
 #include "navigation/registration/registration.h"
 #include "navigation/tools/tool_set.h"
+#include "navigation/tracker/tracker_poses.h"
 #include "planning/bones/bone.h"
 #include "planning/geometry/tracked_pose.h"
 #include "planning/tunnels/tunnel.h"
@@ -48,7 +49,16 @@ struct FrameResult : PictureObservation {  // markers: world markers first, then
   // is made from a record.
   std::vector<markers::BodyObservation> bodies;
   geometry::TrackedPose camera_from_world;  // the world marker of the bone
-  std::vector<ToolPose> tools;              // world_from_tool of each tool, in the order of the tool set
+  // Where tools.json names an outside tracker: what it says of each body, in place of the pictures, and the
+  // bone's world in its frame. Where the camera is in that frame nobody knows: camera_from_world is not valid
+  // then, there are no bodies, and nothing is drawn over the picture.
+  tracker::TrackerPoses outside;
+  geometry::TrackedPose tracker_from_world;
+  // By whichever eye.
+  [[nodiscard]] bool world_is_seen() const {
+    return camera_from_world.is_valid || tracker_from_world.is_valid;
+  }
+  std::vector<ToolPose> tools;  // world_from_tool of each tool, in the order of the tool set
   bool tip_is_valid = false;
   Eigen::Vector3d tip_in_world_mm = Eigen::Vector3d::Zero();
   std::optional<Eigen::Vector3d> shaft_in_world;  // see tools::shaft_direction
@@ -82,7 +92,11 @@ class NavigationPipeline {
   // first frames. Throws InvalidInput when the frame's size is not the camera's; never on what a picture
   // shows. A marker that is lost, a lens angle that is not known or a frozen picture makes poses, tip and
   // guidance invalid in this very frame.
-  void process(const camera::Frame& frame, FrameResult& result);
+  //
+  // outside: what the outside tracker says at this frame, where the tools name one; null: nothing. A picture
+  // of unknown intrinsics takes nothing away from it, a frozen one does: what the screen shows is not now.
+  void process(const camera::Frame& frame, FrameResult& result,
+               const tracker::TrackerPoses* outside = nullptr);
 
   // What guidance is computed from. Takes effect with the next frame.
   void set_plan(const std::optional<tunnels::Tunnel>& plan, double planned_length_mm);

@@ -44,6 +44,7 @@ std::vector<std::string> reasons_of(const TrackedVideo& video) {
 }  // namespace
 
 ViewStatistics::ViewStatistics(const tools::ToolSet& tools) {
+  if (tools.tracker) return;  // no marker is looked for
   const auto add = [&](const auto& body, const std::string& name) {
     const std::vector<tools::BodyMarker> of_body = tools::markers_of(body);
     for (const tools::BodyMarker& marker : of_body)

@@ -81,6 +81,17 @@ guidance::GuidanceNumbers guidance_at(const Statement& row, const RecordedFrame&
   return g;
 }
 
+tracker::BodyPose outside_at(const Statement& row) {
+  tracker::BodyPose body;
+  body.id = static_cast<int>(row.integer(2));
+  body.state = static_cast<tracker::BodyState>(row.integer(3));
+  body.tracker_from_body.rotation = {row.number(4), row.number(5), row.number(6), row.number(7)};
+  body.tracker_from_body.translation_mm = vector_at(row, 8);
+  body.stamp_utc_s = row.number(11);
+  body.age_s = row.number(12);
+  return body;
+}
+
 // Rows of another table, in the order of frames, each with its frame.
 template <typename Visit>
 void for_each_row(Statement& rows, std::vector<RecordedFrame>& frames, const Visit& visit) {
@@ -99,6 +110,7 @@ FrameInserter::FrameInserter(SessionDatabase& database, const tools::ToolSet& to
     : frame_(database.prepare("INSERT INTO frames VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")),
       marker_(database.prepare("INSERT INTO markers VALUES(?,?,?,?,?,?,?,?,?,?,?,?)")),
       body_(database.prepare("INSERT INTO bodies VALUES(?,?,?,?,?,?,?,?,?)")),
+      outside_(database.prepare("INSERT INTO outside VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?)")),
       guidance_(database.prepare("INSERT INTO guidance VALUES(?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)")) {
   const auto add = [&](const auto& body) {
     if (!body.markers.empty()) bodies_of_several_.push_back(body.marker_id);
@@ -144,6 +156,8 @@ void FrameInserter::insert(const pipeline::FrameResult& result) {
     body_.run();
   }
 
+  insert_outside(result);
+
   const guidance::GuidanceNumbers& g = result.guidance;
   guidance_.bind(1, result.frame_index).bind(2, static_cast<int>(g.state));
   for (int position = 3; position <= 21; ++position) guidance_.bind_null(position);
@@ -160,6 +174,22 @@ void FrameInserter::insert(const pipeline::FrameResult& result) {
     }
   }
   guidance_.run();
+}
+
+void FrameInserter::insert_outside(const pipeline::FrameResult& result) {
+  for (std::size_t i = 0; i < result.outside.bodies.size(); ++i) {
+    const tracker::BodyPose& body = result.outside.bodies[i];
+    const Eigen::Quaterniond& q = body.tracker_from_body.rotation;
+    outside_.bind(1, result.frame_index).bind(2, static_cast<int>(i)).bind(3, body.id);
+    outside_.bind(4, static_cast<int>(body.state))
+        .bind(5, q.w())
+        .bind(6, q.x())
+        .bind(7, q.y())
+        .bind(8, q.z());
+    bind_vector(outside_, 9, body.tracker_from_body.translation_mm);
+    outside_.bind(12, body.stamp_utc_s).bind(13, body.age_s).bind(14, result.outside.times_are_arrivals);
+    outside_.run();
+  }
 }
 
 std::vector<RecordedFrame> read_frames(SessionDatabase& database, std::int64_t first, std::int64_t last) {
@@ -199,6 +229,13 @@ std::vector<RecordedFrame> read_frames(SessionDatabase& database, std::int64_t f
       body.camera_from_body.rotation = {row.number(2), row.number(3), row.number(4), row.number(5)};
       body.camera_from_body.translation_mm = vector_at(row, 6);
       frame.bodies.push_back(body);
+    });
+  }
+  if (has_table("outside")) {
+    Statement outside = database.prepare(among("SELECT * FROM outside", "frame, place"));
+    for_each_row(outside, frames, [](const Statement& row, RecordedFrame& frame) {
+      frame.outside.bodies.push_back(outside_at(row));
+      frame.outside.times_are_arrivals = row.boolean(13);
     });
   }
   if (!has_table("digests")) return frames;

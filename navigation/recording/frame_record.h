@@ -18,7 +18,9 @@ class FrameInserter {
   void insert(const pipeline::FrameResult& result);
 
  private:
-  Statement frame_, marker_, body_, guidance_;
+  void insert_outside(const pipeline::FrameResult& result);
+
+  Statement frame_, marker_, body_, outside_, guidance_;
   std::vector<int> bodies_of_several_;  // their ids
 };
 

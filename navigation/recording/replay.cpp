@@ -219,11 +219,12 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
     const camera::FramePtr picture = pictures.of(recorded.index);
     rerun.play_before(recorded.index);
     const bool feeds = is_fed && picture != nullptr;
-    const operation::OperationStatePtr state = feeds ? rerun.process(*picture) : rerun.process(recorded);
+    const operation::OperationStatePtr state =
+        feeds ? rerun.process(*picture, recorded) : rerun.process(recorded);
     if (feeds) comparison.compare(recorded, state->frame);
     if (feeds && options.on_frame) options.on_frame(recorded, state->frame);
     if (cold && picture != nullptr) {
-      cold->process(*picture, cold_result);
+      cold->process(*picture, cold_result, &recorded.outside);
       cold_comparison.compare_poses(recorded, cold_result);
     }
     states.compare(recorded, *state, feeds);

@@ -16,8 +16,15 @@ pipeline::FrameResult result_of(const RecordedFrame& recorded, const pipeline::P
   result.lens = recorded.lens;
   result.intrinsics_are_known = recorded.intrinsics_are_known;
   result.is_frozen = recorded.is_frozen;
+  const auto& outside = options.tools.tracker;
+  result.outside = recorded.outside;
   const auto pose_of = [&](int marker_id, bool is_of_several) {
     geometry::TrackedPose pose;
+    if (outside) {
+      pose = tracker::pose_of(recorded.outside, marker_id, recorded.timestamp_ns, *outside);
+      pose.is_valid = pose.is_valid && !recorded.is_frozen;
+      return pose;
+    }
     pose.timestamp_ns = recorded.timestamp_ns;
     for (const strokes::PoseRow& row : recorded.poses) {
       if (row.marker_id != marker_id) continue;
@@ -34,13 +41,14 @@ pipeline::FrameResult result_of(const RecordedFrame& recorded, const pipeline::P
     }
     return pose;
   };
+  geometry::TrackedPose& world_pose = outside ? result.tracker_from_world : result.camera_from_world;
   if (const auto* world = options.tools.find_world_marker(options.bone))
-    result.camera_from_world = pose_of(world->marker_id, !world->markers.empty());
-  const geometry::TrackedPose world_from_camera = geometry::inverse(result.camera_from_world);
+    world_pose = pose_of(world->marker_id, !world->markers.empty());
+  const geometry::TrackedPose world_from_reference = geometry::inverse(world_pose);
   for (const tools::Tool& tool : options.tools.tools)
     result.tools.push_back(
         {tool.marker_id,
-         geometry::compose(world_from_camera, pose_of(tool.marker_id, !tool.markers.empty()))});
+         geometry::compose(world_from_reference, pose_of(tool.marker_id, !tool.markers.empty()))});
   result.tip_is_valid = recorded.tip_is_valid;
   result.tip_in_world_mm = recorded.tip_in_world_mm;
   for (std::size_t i = 0; i < result.tools.size(); ++i) {
@@ -106,8 +114,8 @@ void Rerun::play_rest() {
   pass_on();
 }
 
-operation::OperationStatePtr Rerun::process(const camera::Frame& picture) {
-  operation_.process(picture);
+operation::OperationStatePtr Rerun::process(const camera::Frame& picture, const RecordedFrame& recorded) {
+  operation_.process(picture, &recorded.outside);
   const operation::OperationStatePtr state = operation_.state();
   if (auto request = operation_.take_look_request())
     looks_[picture.index] = look_work_.look(std::move(*request), picture);

@@ -32,7 +32,7 @@ class Rerun {
   void play_before(std::int64_t frame);
   void play_rest();
   // The picture is that of the record; the state is that of the frame.
-  operation::OperationStatePtr process(const camera::Frame& picture);
+  operation::OperationStatePtr process(const camera::Frame& picture, const RecordedFrame& recorded);
   operation::OperationStatePtr process(const RecordedFrame& recorded);
   // All of it, from the record alone.
   void run(const RecordedSession& session);

@@ -84,7 +84,8 @@ inline constexpr std::string_view kGuideCheckedEvent = "guide checked";  // text
 inline constexpr std::string_view kDrilledEvent = "tunnel drilled";
 inline constexpr std::string_view kSourceStartedEvent = "source started";  // what is before it came earlier
 inline constexpr std::string_view kSourceEndedEvent = "source ended";
-inline constexpr std::string_view kSourceTroubleEvent = "source trouble";  // text: what; empty: it is over
+inline constexpr std::string_view kSourceTroubleEvent = "source trouble";    // text: what; empty: it is over
+inline constexpr std::string_view kTrackerTroubleEvent = "tracker trouble";  // of an outside one; likewise
 inline constexpr std::string_view kLatencyEvent = "latency";  // text: capture to guidance, of all frames
 inline constexpr std::string_view kDroppedPicturesEvent = "pictures dropped";    // text: how many
 inline constexpr std::string_view kVideoStoppedEvent = "video stopped";          // text: why
@@ -180,6 +181,7 @@ struct RecordedFrame {
   std::vector<strokes::PoseRow> poses;
   // Of bodies of several markers, named by their first, where they had a pose. The others' are in `poses`.
   std::vector<RecordedBody> bodies;
+  tracker::TrackerPoses outside;        // without an outside tracker: none
   std::vector<RecordedMarker> markers;  // every declared marker: why one has no pose
   bool tip_is_valid = false;
   Eigen::Vector3d tip_in_world_mm = Eigen::Vector3d::Zero();

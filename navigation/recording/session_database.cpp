@@ -27,6 +27,10 @@ CREATE TABLE markers(
 CREATE TABLE bodies(
   frame INTEGER, body_id INTEGER, qw REAL, qx REAL, qy REAL, qz REAL, tx_mm REAL, ty_mm REAL, tz_mm REAL,
   PRIMARY KEY(frame, body_id)) WITHOUT ROWID;
+CREATE TABLE outside(
+  frame INTEGER, place INTEGER, body_id INTEGER, state INTEGER, qw REAL, qx REAL, qy REAL, qz REAL, tx_mm REAL,
+  ty_mm REAL, tz_mm REAL, stamp_utc_s REAL, age_s REAL, is_arrival INTEGER,
+  PRIMARY KEY(frame, place)) WITHOUT ROWID;
 CREATE TABLE guidance(
   frame INTEGER PRIMARY KEY, state INTEGER,
   point_x_mm REAL, point_y_mm REAL, point_z_mm REAL, direction_x REAL, direction_y REAL, direction_z REAL,

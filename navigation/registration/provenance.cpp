@@ -157,6 +157,16 @@ std::string tools_identity(const tools::ToolSet& tools, bones::BoneKind bone, st
     if (probe->tip_mm) add_vector(text, *probe->tip_mm);
     add_markers(text, probe->markers);
   }
+  // What an outside tracker calls the bone's frame is not where a marker has it.
+  if (tools.tracker) {
+    const auto add_device = [&](const std::string& body) {
+      const auto found = tools.tracker->devices.find(body);
+      if (found != tools.tracker->devices.end()) text += found->second + " ";
+    };
+    text += "outside ";
+    add_device(std::string(bones::to_text(bone)));
+    add_device(std::string(probe_name));
+  }
   return files::sha256_of(text);
 }
 

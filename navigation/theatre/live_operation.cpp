@@ -1,5 +1,6 @@
 #include "navigation/theatre/live_operation.h"
 
+#include <algorithm>
 #include <chrono>
 #include <mutex>
 #include <variant>
@@ -187,6 +188,8 @@ class Loop {
     const bool is_dated = is_live && step.picture->captured_ns > 0;
     live_.captured_s =
         is_dated ? static_cast<double>(step.picture->captured_ns) * 1e-9 : seconds_of(Clock::now());
+    // What is shown is as old as the oldest thing in it.
+    live_.captured_s = std::min(live_.captured_s, run_.oldest_pose_s(live_.captured_s));
     live_.stale_after_s = is_live ? options_.live_stale_after_s : options_.other_stale_after_s;
     live_.frames_per_second = rate_.count();
     live_.published_s = seconds_of(Clock::now());
@@ -211,6 +214,7 @@ class Loop {
     live_.session_folder = run_.session_folder();
     live_.keeps_video = run_.keeps_video();
     live_.record_trouble = run_.record_trouble();
+    live_.tracker_trouble = run_.tracker_trouble();
     const auto published = published_.take();
     *published = live_;
     inbox_.publish(std::shared_ptr<const LiveState>(published));

@@ -42,6 +42,7 @@ struct LiveState {
   SourceTrouble trouble = SourceTrouble::None;
   std::string trouble_words;
   LatencyReport latency{};
+  std::string tracker_trouble;  // why the outside tracker gives nothing; empty while it does, and without one
   std::filesystem::path session_folder;  // of the record that is written, or was written last
   bool keeps_video = false;
   std::string record_trouble;  // why nothing is recorded; empty while all is well

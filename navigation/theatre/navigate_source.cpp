@@ -54,6 +54,7 @@ class Navigation {
   Navigation(const std::shared_ptr<sources::FrameSource>& source, const NavigateOptions& options,
              const RecordOptions& record, const NavigationObserver& observer)
       : observer_(observer),
+        is_outside_(options.source.pipeline.tools.tracker.has_value()),
         run_(
             setup_of(options), registration_of(options),
             record.folder.empty() ? OperationRun::MakeSessionFolder()
@@ -62,7 +63,8 @@ class Navigation {
     const double end_s = options.duration_s.value_or(std::numeric_limits<double>::infinity());
     run_.start({.setup = options.source,
                 .open = [source, end_s] { return std::make_unique<SharedSource>(source, end_s); },
-                .truth = {}});
+                .truth = {},
+                .tracker = options.tracker});
     if (!record.folder.empty()) {
       if (!run_.record_trouble().empty()) throw IoError(run_.record_trouble());
       run_.keep_video(record.keep, record.video);
@@ -136,6 +138,10 @@ class Navigation {
     const std::string& words = run_.watch().words();
     if (run_.watch().trouble() != trouble_ && !words.empty()) summary_.troubles.push_back(words);
     trouble_ = run_.watch().trouble();
+    const std::string& of_tracker = run_.tracker_trouble();
+    if (of_tracker != tracker_trouble_ && !of_tracker.empty())
+      summary_.tracker_troubles.push_back(of_tracker);
+    tracker_trouble_ = of_tracker;
   }
   void apply(const operation::Command& command) {
     run_.apply(command);
@@ -147,11 +153,29 @@ class Navigation {
     }
   }
 
+  // Why an outside tracker showed no tip at the end; empty where it did, and without one.
+  [[nodiscard]] std::string reason_of_tracker() {
+    if (!is_outside_ || summary_.frames_with_tip > 0) return "";
+    if (!tracker_trouble_.empty()) return tracker_trouble_;
+    const operation::OperationStatePtr state = run_.state_of_frame();
+    const tools::ToolSet& tools = state->source->pipeline.tools;
+    const auto* const world = tools.find_world_marker(state->bone);
+    const auto* const probe = tools.find_tool(state->source->pipeline.probe_name);
+    for (const auto& [name, id] : {std::pair{"bone", world != nullptr ? world->marker_id : -1},
+                                   std::pair{"probe", probe != nullptr ? probe->marker_id : -1}})
+      if (const auto seen = tracker::state_of(state->frame.outside, id); seen != tracker::BodyState::Tracked)
+        return std::string("the ") + name + ": " + std::string(tracker::to_text(seen));
+    return "";
+  }
+
   void say_reasons() {
     std::vector<std::string>& reasons = summary_.reasons;
     if (summary_.statistics.frame_count == 0) {
       reasons.emplace_back("the video has no frame");
-    } else if (summary_.statistics.frames_with_unknown_lens == summary_.statistics.frame_count) {
+    } else if (const std::string why = reason_of_tracker(); !summary_.registration && !why.empty()) {
+      reasons.emplace_back(why);
+    } else if (!is_outside_ &&
+               summary_.statistics.frames_with_unknown_lens == summary_.statistics.frame_count) {
       reasons.emplace_back("the lens mark was not seen, so the camera is not known in any frame");
     } else if (!summary_.registration) {
       reasons.emplace_back(summary_.curves.empty()
@@ -163,9 +187,11 @@ class Navigation {
   }
 
   const NavigationObserver& observer_;
+  const bool is_outside_;
   OperationRun run_;
   NavigationSummary summary_;
   SourceTrouble trouble_ = SourceTrouble::None;
+  std::string tracker_trouble_;
   std::int64_t picture_at_ns_ = sources::steady_now_ns();
 };
 

@@ -17,6 +17,7 @@
 #include "navigation/sources/frame_source.h"
 #include "navigation/theatre/latency.h"
 #include "navigation/theatre/source_watch.h"
+#include "navigation/tracker/pose_source.h"
 
 namespace arthronaut::theatre {
 
@@ -30,6 +31,8 @@ struct NavigateOptions {
   // Of a live source: whoever began it has said by what patient, bone, plan, camera and tools, and that a
   // nominal guide is used as it is. Without that it guides nobody.
   bool is_confirmed = false;
+  // See TheatreSource::tracker.
+  std::function<std::unique_ptr<tracker::PoseSource>()> tracker = {};
   double retry_after_mm = 40;        // see OperationSetup::registers_after_mm
   std::optional<double> duration_s;  // frames of later than this are not taken; else to the source's end
 };
@@ -62,8 +65,9 @@ struct NavigationSummary {
   std::string ending;                 // why a live source ended; empty when nothing failed
   LatencyReport latency{};            // of a live source; of others tracking and operation alone
   std::vector<std::string> troubles;  // what was wrong with a live source, in order, each when it began
-  std::string record_trouble;         // why the record ended before the source; empty when it did not
-  std::vector<std::string> reasons;   // why the result is not reliable; empty when it is
+  std::vector<std::string> tracker_troubles{};  // likewise with the outside tracker
+  std::string record_trouble;        // why the record ended before the source; empty when it did not
+  std::vector<std::string> reasons;  // why the result is not reliable; empty when it is
 };
 
 struct RecordOptions {

@@ -25,11 +25,19 @@ OperationRun::~OperationRun() { end_source(); }
 
 void OperationRun::start(const TheatreSource& source) {
   end_source();
+  // Its poses are of now: what a file or a simulation shows is of another time.
+  const bool is_live = source.setup.kind == sources::SourceKind::Live;
+  if (source.setup.pipeline.tools.tracker && (!is_live || !source.tracker))
+    throw InvalidInput(
+        is_live ? "the tools are seen by an outside tracker, and nobody says where it is"
+                : "the tools are seen by an outside tracker, which tells where they are now: only a live "
+                  "source goes with it");
   auto opened = std::make_unique<pipeline::PrefetchedSource>(source.open, source.patience_s);
   operation_.start_source(source.setup);
   theatre_source_ = source;
   source_ = std::move(opened);
   live_ = Live();
+  if (source.setup.pipeline.tools.tracker) outside_.tracker = source.tracker();
   record_trouble_.clear();
   record_is_due_ = static_cast<bool>(make_session_folder_);
   begin_record();
@@ -111,7 +119,7 @@ OperationRun::Step OperationRun::step() {
     if (is_live && !next.has_ended && live_.watch.silence(source_->trouble(), taken_ns)) note_trouble();
     return {nullptr, next.has_ended};
   }
-  operation_.process(*next.frame);
+  operation_.process(*next.frame, ask_tracker());
   frame_state_ = operation_.state();
   if (theatre_source_.watch) theatre_source_.watch(*frame_state_);
   measure(*next.frame, taken_ns);
@@ -127,6 +135,32 @@ OperationRun::Step OperationRun::step() {
   if (auto look = operation_.take_look_request()) looks_->post(std::move(*look), next.frame);
   pass_on();
   return {next.frame, false};
+}
+
+// As of now, which is as late as can be.
+const tracker::TrackerPoses* OperationRun::ask_tracker() {
+  if (outside_.tracker == nullptr) return nullptr;
+  outside_.asked_ns = sources::steady_now_ns();
+  outside_.tracker->poses_at(outside_.asked_ns, outside_.poses);
+  note_tracker();
+  return &outside_.poses;
+}
+
+double OperationRun::oldest_pose_s(double else_s) const {
+  if (outside_.tracker == nullptr) return else_s;
+  return static_cast<double>(outside_.asked_ns) * 1e-9 - outside_.poses.oldest_age_s();
+}
+
+// In the record and the log, when it begins, changes and ends.
+void OperationRun::note_tracker() {
+  std::string trouble = outside_.tracker->trouble();
+  if (trouble == outside_.trouble) return;
+  outside_.trouble = std::move(trouble);
+  const std::int64_t at_ns = frame_state_ != nullptr ? frame_state_->frame.timestamp_ns : 0;
+  log::info("tracker: " + (outside_.trouble.empty() ? "all is well" : outside_.trouble));
+  write([&](recording::OperationRecord& record) {
+    record.add_event(recording::kTrackerTroubleEvent, outside_.trouble, at_ns);
+  });
 }
 
 void OperationRun::measure(const camera::Frame& frame, std::int64_t taken_ns) {
@@ -173,6 +207,7 @@ void OperationRun::end_source() {
   pass_on();
   const bool was_live = theatre_source_.setup.kind == sources::SourceKind::Live;
   source_.reset();
+  outside_ = {};
   if (const StageLatency all = of(live_.meter.report(), Stage::ToGuidance); was_live && all.count > 0) {
     const std::string text = files::format(
         "%.1f ms from capture to guidance in the median, 99 %% within %.1f ms, at worst %.1f ms; %llu "

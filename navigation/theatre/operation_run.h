@@ -17,6 +17,7 @@
 #include "navigation/theatre/medium_look_service.h"
 #include "navigation/theatre/registration_service.h"
 #include "navigation/theatre/source_watch.h"
+#include "navigation/tracker/pose_source.h"
 
 namespace arthronaut::theatre {
 
@@ -33,6 +34,9 @@ struct TheatreSource {
   // Told of the state after each frame, where the frames are taken; it must not wait. An exercise is scored
   // by it.
   std::function<void(const operation::OperationState&)> watch = {};
+  // Begins to listen to the outside tracker that the tools name; empty where they name none. Called when the
+  // source is started, and does not wait for the tracker.
+  std::function<std::unique_ptr<tracker::PoseSource>()> tracker = {};
 };
 
 class OperationRun {
@@ -78,6 +82,11 @@ class OperationRun {
   // Of the record that is being written, or was written last; empty before the first.
   [[nodiscard]] const std::filesystem::path& session_folder() const { return session_folder_; }
   [[nodiscard]] bool keeps_video() const;
+  // Why the outside tracker gives nothing; empty while it does, or there is none.
+  [[nodiscard]] const std::string& tracker_trouble() const { return outside_.trouble; }
+  // When the oldest of the outside tracker's poses in the newest frame was taken, on the steady clock;
+  // `else_s` without any.
+  [[nodiscard]] double oldest_pose_s(double else_s) const;
   // What is wrong with the live source that runs; of no other.
   [[nodiscard]] const SourceWatch& watch() const { return live_.watch; }
   // How long the pictures of the source that runs, or ran last, took. Whoever takes them further adds to it.
@@ -88,6 +97,8 @@ class OperationRun {
 
  private:
   void begin_record();
+  [[nodiscard]] const tracker::TrackerPoses* ask_tracker();
+  void note_tracker();
   void measure(const camera::Frame& frame, std::int64_t taken_ns);
   void note_trouble();
   template <typename What>
@@ -107,6 +118,12 @@ class OperationRun {
   std::string continues_, record_trouble_;
   bool record_is_due_ = false;
   operation::OperationStatePtr frame_state_;  // after the newest frame
+  struct Outside {
+    std::unique_ptr<tracker::PoseSource> tracker;  // null: there is none
+    tracker::TrackerPoses poses;                   // at the newest frame
+    std::int64_t asked_ns = 0;
+    std::string trouble;
+  } outside_;
   struct Live {
     SourceWatch watch;
     LatencyMeter meter;

@@ -148,6 +148,40 @@ Tool read_tool(const files::JsonObject& entry, Owners& owners) {
   return tool;
 }
 
+OutsideTracker read_tracker(const files::JsonObject& entry, const ToolSet& set) {
+  OutsideTracker tracker;
+  if (entry.has("address")) tracker.address = entry.text("address");
+  tracker.sigma_mm = read_sigma(entry, "sigma_mm");
+  tracker.sigma_deg = read_sigma(entry, "sigma_deg");
+  if (entry.has("may_repeat")) tracker.may_repeat = entry.boolean("may_repeat");
+  if (!entry.has("devices")) return tracker;
+  for (const files::JsonObject& device : entry.objects("devices")) {
+    const std::string of = device.text("of"), name = device.text("name");
+    const bool is_world =
+        (of == "femur" || of == "tibia") && set.find_world_marker(bones::bone_kind_from_text(of)) != nullptr;
+    if (!is_world && set.find_tool(of) == nullptr) device.fail("of", "\"" + of + "\" is not declared");
+    constexpr std::size_t kLongestName = 20;  // that a message has room for
+    if (name.empty() || name.size() > kLongestName) device.fail("name", "must have 1 to 20 letters");
+    for (const auto& [other, taken] : tracker.devices)
+      if (taken == name) device.fail("name", "\"" + name + "\" is the " + other + " already");
+    if (!tracker.devices.emplace(of, name).second) device.fail("of", "\"" + of + "\" has a name already");
+  }
+  return tracker;
+}
+
+void write_tracker(const OutsideTracker& tracker, nlohmann::ordered_json& document) {
+  nlohmann::ordered_json entry = nlohmann::ordered_json::object();
+  if (!tracker.address.empty()) entry["address"] = tracker.address;
+  if (tracker.sigma_mm) entry["sigma_mm"] = *tracker.sigma_mm;
+  if (tracker.sigma_deg) entry["sigma_deg"] = *tracker.sigma_deg;
+  if (tracker.may_repeat) entry["may_repeat"] = true;
+  if (!tracker.devices.empty()) {
+    entry["devices"] = nlohmann::ordered_json::array();
+    for (const auto& [of, name] : tracker.devices) entry["devices"].push_back({{"of", of}, {"name", name}});
+  }
+  document["tracker"] = std::move(entry);
+}
+
 }  // namespace
 
 std::vector<BodyMarker> markers_of(const Tool& tool) {
@@ -254,6 +288,7 @@ ToolSet read_tools_file(const std::filesystem::path& file) {
       entry.fail("name", "a tool of the name \"" + tool.name + "\" is declared already");
     set.tools.push_back(tool);
   }
+  if (document.has("tracker")) set.tracker = read_tracker(document.object("tracker"), set);
   return set;
 }
 
@@ -291,6 +326,7 @@ void write_tools_file(const std::filesystem::path& file, const ToolSet& tools) {
     if (!tool.provenance.calibrated_utc.empty()) entry["calibrated_utc"] = tool.provenance.calibrated_utc;
     document["tools"].push_back(std::move(entry));
   }
+  if (tools.tracker) write_tracker(*tools.tracker, document);
   files::write_json(file, document);
 }
 

@@ -9,6 +9,7 @@
 
 #include "navigation/provenance/provenance.h"
 #include "navigation/tools/body_marker.h"
+#include "navigation/tools/outside_tracker.h"
 #include "planning/bones/bone.h"
 
 namespace arthronaut::tools {
@@ -81,6 +82,9 @@ struct AxisError {
 struct ToolSet {
   std::vector<WorldMarker> world_markers;
   std::vector<Tool> tools;
+  // Who sees them, where it is not the arthroscope. A marker's id only names its body then, and a body's
+  // frame is the tracker's.
+  std::optional<OutsideTracker> tracker = std::nullopt;
 
   [[nodiscard]] const Tool* find_tool(std::string_view name) const;
   [[nodiscard]] const Tool* find_drill() const;  // the first of kind Drill; null: there is none
@@ -98,8 +102,8 @@ struct ToolSet {
 
 // Refuses a marker id used twice, ids outside DICT_4X4_50, sizes that are not above 0, a zero axis direction,
 // a drill without tip or axis, an error below 0; "markers" beside marker_id or size_mm, none or more than
-// kMostMarkersOfBody of them, one without a place or whose rotation is none, two that lie on one another.
-// Throws IoError or InvalidInput.
+// kMostMarkersOfBody of them, one without a place or whose rotation is none, two that lie on one another; a
+// tracker's name for what is not declared. Throws IoError or InvalidInput.
 [[nodiscard]] ToolSet read_tools_file(const std::filesystem::path& file);
 void write_tools_file(const std::filesystem::path& file, const ToolSet& tools);
 

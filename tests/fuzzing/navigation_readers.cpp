@@ -41,8 +41,12 @@ std::vector<Reader> navigation_readers() {
        }},
       {"tools", "tools.json",
        [](const fs::path& folder) {
-         tools::write_tools_file(folder / "tools.json", tools::standard_tools());
-         return Seeds{{"seed", taken(folder / "tools.json")}};
+         tools::ToolSet set = tools::standard_tools();
+         tools::write_tools_file(folder / "tools.json", set);
+         const std::string plain = taken(folder / "tools.json");
+         set.tracker = tools::OutsideTracker{"igtl://tracker", 0.2, 0.1, {{"probe", "Stylus"}}, true};
+         tools::write_tools_file(folder / "tools.json", set);
+         return Seeds{{"seed", plain}, {"tracker", taken(folder / "tools.json")}};
        },
        [](const fs::path& folder, std::string_view bytes) {
          const auto set = tools::read_tools_file(put(folder, "tools.json", bytes));

@@ -92,6 +92,8 @@ TEST_F(Schemas, DescribeTheTools) {
   set.tools[1].axis_point_sigma_mm = set.tools[1].axis_direction_sigma_deg = 0.1;
   set.tools[1].tip_mm = set.tools[1].axis->point_mm;
   set.tools[1].kind = tools::ToolKind::Drill;
+  set.tracker =
+      tools::OutsideTracker{"igtl://tracker:18944", 0.2, 0.1, {{"femur", "ReferenceToTracker"}}, true};
   tools::write_tools_file(file, set);
   expect_described(file, "tools", [&] { (void)tools::read_tools_file(file); });
 }

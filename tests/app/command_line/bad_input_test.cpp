@@ -191,5 +191,35 @@ TEST_F(BadInput, RegistrationOfSomethingElse) {
   EXPECT_NE(run_program(arguments).exit_code, 3);
 }
 
+// An outside tracker tells where the tools are now: it goes with live pictures alone, and with none that are
+// tracked by themselves; no session is left behind.
+TEST_F(BadInput, OutsideTrackerWithARecording) {
+  const std::string knee = folder_ / "knee.arthro";
+  ASSERT_EQ(run_program({"phantom", "-o", knee}).exit_code, 0);
+  const auto navigated = [&](const std::string& video, const std::string& tracker) {
+    std::vector<std::string> arguments{"navigate", knee,
+                                       "--video",  video,
+                                       "--camera", folder_ / "camera.json",
+                                       "--tools",  folder_ / "tools.json"};
+    if (!tracker.empty()) arguments.insert(arguments.end(), {"--tracker", tracker});
+    return run_program(arguments);
+  };
+  const auto recorded = navigated(folder_ / "clip.mkv", "igtl://127.0.0.1:18944");
+  EXPECT_EQ(recorded.exit_code, 3);
+  EXPECT_THAT(recorded.errors, HasSubstr("only a live source"));
+  const auto no_address = navigated("udp://127.0.0.1:5999", "127.0.0.1:18944");
+  EXPECT_EQ(no_address.exit_code, 3);
+  EXPECT_THAT(no_address.errors, HasSubstr("igtl://HOST:PORT"));
+  spoil("tools.json", "\"version\": 1,",
+        "\"version\": 1, \"tracker\": {\"sigma_mm\": 0.2, \"sigma_deg\": 0.1},");
+  const auto nowhere = navigated("udp://127.0.0.1:5999", "");
+  EXPECT_EQ(nowhere.exit_code, 3);
+  EXPECT_THAT(nowhere.errors, AllOf(HasSubstr("tools.json"), HasSubstr("--tracker")));
+  const auto tracked = run_program(track(folder_ / "poses.csv"));
+  EXPECT_EQ(tracked.exit_code, 3);
+  EXPECT_THAT(tracked.errors, AllOf(HasSubstr("tools.json"), HasSubstr("outside tracker")));
+  EXPECT_FALSE(std::filesystem::exists(knee + "/sessions") && !std::filesystem::is_empty(knee + "/sessions"));
+}
+
 }  // namespace
 }  // namespace arthronaut

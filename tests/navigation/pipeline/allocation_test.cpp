@@ -4,6 +4,7 @@
 
 #include "navigation/markers/planar_pose.h"
 #include "navigation/pipeline/medium_check.h"
+#include "navigation/tracker/pose_book.h"
 #include "tests/counted_allocations.h"
 #include "tests/navigation/pipeline/scripted_markers.h"
 
@@ -40,6 +41,40 @@ TEST(NavigationPipelineAllocation, NothingPerFrameAfterTheFirstFrames) {
   test::start_counting_allocations();
   for (int i = 5; i < 40; ++i) pipeline.process(frames[static_cast<std::size_t>(i)], result);
   EXPECT_EQ(test::stop_counting_allocations(), 0);
+}
+
+// By an outside tracker's poses, from its book to guidance.
+TEST(NavigationPipelineAllocation, NothingPerFrameWithAnOutsideTracker) {
+  pipeline::PipelineOptions options = test::scripted_options();
+  options.tools.tracker = tools::OutsideTracker{"", 0.2, 0.1};
+  pipeline::NavigationPipeline pipeline(options);
+  pipeline.set_plan(tunnels::Tunnel{}, 30);
+  registration::RegistrationSummary registration;
+  registration.has_pose = registration.reliable = true;
+  registration.reasons.clear();
+  pipeline.set_registration(registration);
+  tracker::PoseBook book({options.tools, options.bone, options.probe_name, options.guide_name});
+  book.begin(0);
+  std::vector<camera::Frame> frames;
+  for (int i = 0; i < 80; ++i) frames.push_back(test::round_frame(i, static_cast<std::uint8_t>(90 + i % 7)));
+  pipeline::FrameResult result;
+  tracker::TrackerPoses poses;
+  const auto step = [&](int i) {
+    const std::int64_t now_ns = 1'000'000'000'000 + i * 16'000'000LL;
+    const geometry::RigidTransform pose{Eigen::Quaterniond::Identity(), {0.01 * i, 0, 500}};
+    for (const char* device : {"WorldFemur", "Probe", "Guide"})
+      book.take({device, pose, 1.8e9 + 0.016 * i, now_ns});
+    book.poses_at(now_ns, poses);
+    pipeline.process(frames[static_cast<std::size_t>(i)], result, &poses);
+  };
+  for (int i = 0; i < 40; ++i) step(i);
+  ASSERT_TRUE(result.guidance.is_valid());
+  test::start_counting_allocations();
+  for (int i = 40; i < 80; ++i) step(i);
+  EXPECT_EQ(test::stop_counting_allocations(), 0);
+  EXPECT_TRUE(result.guidance.is_valid());
+  EXPECT_TRUE(result.tip_is_valid);
+  EXPECT_FALSE(result.camera_from_world.is_valid);
 }
 
 // Votes on the medium, for and against, cost no memory either.

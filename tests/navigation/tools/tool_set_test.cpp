@@ -210,5 +210,48 @@ TEST_F(ToolsFile, NormalisesTheAxis) {
               1e-15);
 }
 
+// Who sees the tools, and how wrong that is; what is not said stays unsaid.
+TEST_F(ToolsFile, KeepsAnOutsideTracker) {
+  ToolSet set = standard_tools();
+  write_tools_file(file_, set);
+  EXPECT_FALSE(read_tools_file(file_).tracker);
+  set.tracker.emplace();
+  write_tools_file(file_, set);
+  ASSERT_TRUE(read_tools_file(file_).tracker);
+  EXPECT_FALSE(read_tools_file(file_).tracker->has_known_error());
+  set.tracker =
+      OutsideTracker{"igtl://tracker", 0.25, 0.1, {{"femur", "Reference"}, {"probe", "Stylus"}}, true};
+  write_tools_file(file_, set);
+  const auto again = read_tools_file(file_).tracker;
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->address, "igtl://tracker");
+  EXPECT_EQ(again->sigma_mm, 0.25);
+  EXPECT_EQ(again->sigma_deg, 0.1);
+  EXPECT_TRUE(again->may_repeat);
+  EXPECT_EQ(again->devices, set.tracker->devices);
+}
+
+TEST_F(ToolsFile, NamesWhatIsWrongWithATracker) {
+  const auto refusal_of = [&](const std::string& tracker) {
+    std::ofstream(file_) << R"({"format": "arthronaut.tools", "version": 1,
+      "world_markers": [{"bone": "femur", "marker_id": 0, "size_mm": 4}],
+      "tools": [{"name": "probe", "marker_id": 2, "size_mm": 4}], "tracker": )"
+                         << tracker << "}";
+    return test::message_of<InvalidInput>([&] { (void)read_tools_file(file_); });
+  };
+  EXPECT_NE(refusal_of(R"({"sigma_mm": -1})").find("sigma_mm"), std::string::npos);
+  EXPECT_NE(refusal_of(R"({"devices": [{"of": "tibia", "name": "A"}]})").find("not declared"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(R"({"devices": [{"of": "drill", "name": "A"}]})").find("not declared"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(R"({"devices": [{"of": "probe", "name": ""}]})").find("1 to 20"), std::string::npos);
+  EXPECT_NE(refusal_of(R"({"devices": [{"of": "probe", "name": "A"}, {"of": "femur", "name": "A"}]})")
+                .find("is the probe already"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(R"({"devices": [{"of": "probe", "name": "A"}, {"of": "probe", "name": "B"}]})")
+                .find("has a name already"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace arthronaut::tools

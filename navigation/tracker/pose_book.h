@@ -1,0 +1,99 @@
+// What an outside tracker has told lately, body by body, and what of it may be used at a given moment.
+//
+// A body's messages are known by name: as tools.json says ("tracker", "devices"), or else by the usual ones
+// that named_transforms.h gives out, too:
+//
+//   WorldFemur, WorldTibia        the bone's body in the tracker's frame
+//   Probe, Guide, Drill, NAME     the tool's body in the tracker's frame; NAME: what tools.json calls it
+//   Probe_World, Guide_World, ... the same in the bone's world
+//   ProbeTip_World                likewise, with its origin at the tip
+//
+// A pose is used when it came and was taken within the last tenth of a second, and only together with a pose
+// of the bone of the same moment: the tracker may be carried, and the bone moves.
+//
+// A value, without threads and clocks: the same calls give the same answers.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "navigation/tracker/clock_match.h"
+#include "navigation/tracker/tracker_poses.h"
+#include "planning/bones/bone.h"
+
+namespace arthronaut::tracker {
+
+// What the names of a tracker's messages are held against.
+struct TrackedBodies {
+  tools::ToolSet tools;
+  bones::BoneKind bone = bones::BoneKind::Femur;  // whose body is the world
+  std::string probe_name, guide_name;
+};
+
+struct ReceivedPose {
+  std::string_view device;
+  std::optional<geometry::RigidTransform> target_from_source;  // LPS; empty: what came is no rigid pose
+  double stamp_utc_s = 0;                                      // 0: the message has none
+  std::int64_t arrival_ns = 0;                                 // steady clock
+};
+
+class PoseBook {
+ public:
+  // The limit that pictures have, too (LiveOptions::live_stale_after_s).
+  static constexpr double kMaxAge_s = 0.1;
+
+  explicit PoseBook(const TrackedBodies& bodies);
+
+  // Another connection: all that came before is forgotten. longest_transit_s: see ClockMatch.
+  void begin(double longest_transit_s);
+  void end();
+  // False: nobody here goes by that name.
+  bool take(const ReceivedPose& received);
+  // The tracker says that it does not see the device, until a pose of it comes.
+  void take_lost(std::string_view device);
+
+  void poses_at(std::int64_t now_ns, TrackerPoses& poses) const;
+  // Poses come, but by the tracker's clock all of them are of a second ago or more: it was set anew, or they
+  // wait somewhere. A new connection tells which.
+  [[nodiscard]] bool is_far_behind() const { return is_connected_ && is_far_behind_; }
+
+ private:
+  struct Name {
+    std::string device;
+    bool is_in_world = false, is_at_tip = false;
+  };
+  struct Sample {
+    geometry::RigidTransform pose;
+    double stamp_utc_s = 0;
+    std::int64_t arrival_ns = 0, same_since_ns = 0;
+    bool is_in_world = false;
+  };
+  struct Body {
+    int id = 0;
+    std::vector<Name> names;
+    std::optional<Eigen::Vector3d> tip_mm;
+    std::array<Sample, 6> kept;  // newest first
+    std::size_t count = 0;
+    bool is_told_lost = false, is_broken = false;
+  };
+
+  void keep(Body& body, const Name& name, const ReceivedPose& received);
+  [[nodiscard]] BodyState standing_of(const Body& body, std::int64_t now_ns) const;
+  [[nodiscard]] double age_s(const Sample& sample, std::int64_t now_ns) const;
+  [[nodiscard]] const Sample* of_moment(const Body& body, double moment_s) const;
+  [[nodiscard]] double moment_of(const Sample& sample) const;
+  [[nodiscard]] const Sample& best_world(const TrackerPoses& poses) const;
+  void place(std::int64_t now_ns, TrackerPoses& poses) const;
+
+  std::vector<Body> bodies_;  // in the order of TrackerPoses
+  std::optional<std::size_t> world_;
+  bool may_repeat_ = false, has_known_error_ = false;
+  bool is_connected_ = false, has_stamps_ = true, is_far_behind_ = false;
+  ClockMatch clock_;
+};
+
+}  // namespace arthronaut::tracker
