@@ -90,6 +90,9 @@ void NavigateView::draw_menu(const widgets::Ui& ui, const widgets::Rect& area, c
                                      "mode.plan",
                                      "mode.setup",
                                      "mode.review",
+                                     "app.screenshot",
+                                     "app.record_screen",
+                                     "app.send_screen",
                                      "app.keys",
                                      "app.quit"};
   const float columns = 3, height = ui.theme.px(36);

@@ -136,6 +136,12 @@ TheatreSettings load_theatre_settings(const fs::path& file) {
     if (*settings.screen_diagonal_in < kSmallest_in || *settings.screen_diagonal_in > kLargest_in)
       json.fail("screen_diagonal_in", "is not from 5 to 200 inches");
   }
+  if (json.has("screen_stream")) {
+    settings.screen_stream = json.text("screen_stream");
+    if (!settings.screen_stream.starts_with("udp://") ||
+        settings.screen_stream.find(':', 6) == std::string::npos)
+      json.fail("screen_stream", "must be udp://HOST:PORT, is \"" + settings.screen_stream + "\"");
+  }
   if (json.has("foot_switches"))
     for (const std::string& path : json.texts("foot_switches")) settings.foot_switches.emplace_back(path);
   if (json.has("pedals")) settings.codes = read_map(json.object("pedals"), code_from_name);

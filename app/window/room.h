@@ -18,6 +18,7 @@ class Room {
   void listen(std::function<void()> wake);
 
   [[nodiscard]] double screen_diagonal_mm() const;  // 0: nobody said
+  [[nodiscard]] const std::string& screen_stream() const { return settings_.screen_stream; }
   // The key whose meaning this key has: its own, unless the settings say otherwise.
   [[nodiscard]] int meaning_of(int key) const;
   // Pedals that were pressed or let go, as keys; while `is_typing`, presses are nobody's.

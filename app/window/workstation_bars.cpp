@@ -67,13 +67,16 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
   }
 }
 
-std::pair<std::string, bool> WorkstationWindow::status_words() const {
+std::pair<std::string, bool> WorkstationWindow::status_words() {
   const std::string standstill = heartbeat_.words();
   const std::string notice = !failure_.empty()                ? failure_
                              : !standstill.empty()            ? standstill
                              : shows_start() || shows_paint() ? std::string()
                                                               : shown().notice();
-  if (!notice.empty()) return {notice, true};
+  // What leaves the screen is said beside whatever else there is to say.
+  const std::string copied = copies_.words(widgets::GraphicsWindow::now_s());
+  if (!notice.empty()) return {copied.empty() ? notice : notice + ".  " + copied, true};
+  if (!copied.empty()) return {copied, true};
   const std::string access = case_ == nullptr        ? std::string()
                              : case_->is_read_only() ? "READ-ONLY: the case " + case_->read_only_reason()
                                                      : case_->notice();

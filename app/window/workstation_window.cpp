@@ -7,12 +7,7 @@
 #include <utility>
 
 #include "app/library/workstation_library.h"
-#include "app/navigate/known_streams.h"
-#include "app/navigate/navigate_view.h"
-#include "app/plan/plan_view.h"
 #include "app/review/review_view.h"
-#include "app/setup/setup_view.h"
-#include "app/training/training_view.h"
 #include "app/widgets/hold_hint.h"
 #include "app/widgets/key_clashes.h"
 #include "app/widgets/source_banner.h"
@@ -25,7 +20,8 @@ namespace {
 
 using widgets::GraphicsWindow;
 
-constexpr double kIdleWait_s = 0.2, kBusyWait_s = 0.05, kHeldWait_s = 0.02;
+constexpr double kIdleWait_s = 0.2, kBusyWait_s = 0.05, kHeldWait_s = 0.02,
+                 kCopiedWait_s = 0.5 / screen_copy::ScreenCopies::kRate;
 // After input ImGui needs a few frames until hovering, pressing and layout have settled.
 constexpr int kFramesAfterInput = 4;
 
@@ -36,6 +32,7 @@ WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
       window_("Arthronaut", room_.screen_diagonal_mm()),
       log_(options.list_widgets),
       watch_([](const std::string& what) { spdlog::warn(what); }, std::chrono::milliseconds(500)),
+      copies_(room_.screen_stream(), [] { GraphicsWindow::wake(); }),
       start_([this](const std::filesystem::path& folder) { open(folder); }, [] { GraphicsWindow::wake(); }),
       paint_({.make_current = [this] { window_.make_current(); },
               .wake = [] { GraphicsWindow::wake(); },
@@ -67,42 +64,6 @@ void WorkstationWindow::open(const std::filesystem::path& folder) {
       known_to_modes_ != nullptr && std::filesystem::equivalent(wanted, known_to_modes_->folder(), error)
           ? std::make_unique<open_case::CaseOpening>(*known_to_modes_, wake)
           : std::make_unique<open_case::CaseOpening>(folder, wake);
-}
-
-void WorkstationWindow::make_modes() {
-  const auto make_current = [this] { window_.make_current(); };
-  const auto wake = [] { GraphicsWindow::wake(); };
-  const sources::DeviceTurns camera_turns;  // Set up and Navigate open one camera after the other
-  constexpr std::size_t kNavigate = 2;
-  modes_.push_back(std::make_unique<plan::PlanView>(make_current, wake, [this] { show_paint(); }));
-  modes_.push_back(std::make_unique<setup::SetupView>(
-      wake, [this] { show(kNavigate); }, camera_turns,
-      setup::SetupView::Streams{[] { return navigate::load_known_streams(navigate::known_streams_file()); },
-                                [](const std::string& address) {
-                                  navigate::note_stream(navigate::known_streams_file(), address);
-                                }}));
-  auto theatre = std::make_unique<navigate::NavigateView>(
-      make_current, wake, camera_turns, [this](navigate::Elsewhere where) {
-        const bool is_plan = where == navigate::Elsewhere::Plan;
-        actions_.run(is_plan ? "mode.plan" : "mode.setup");
-      });
-  navigate::NavigateView* const screen = theatre.get();
-  modes_.push_back(std::move(theatre));
-  auto review = std::make_unique<review::ReviewView>(make_current, wake);
-  review_ = review.get();
-  modes_.push_back(std::move(review));
-  modes_.push_back(std::make_unique<training_mode::TrainingView>(
-      training_mode::Theatre{
-          .screen = screen,
-          .refusal = [screen](bones::BoneKind bone) { return screen->refusal_to_lend(bone); },
-          .begin_anew = [screen](const mode::OpenCase& opened) { screen->case_opened(opened); },
-          .start = [screen](bones::BoneKind bone,
-                            theatre::TheatreSource source) { screen->lend(bone, std::move(source)); },
-          .live = [screen] { return screen->live(); },
-          .setup = [screen] { return screen->setup_in_use(); },
-          .ask = [screen](operation::Command command) { screen->ask(std::move(command)); },
-          .end = [screen] { screen->end_source(); }},
-      training::training_file()));
 }
 
 void WorkstationWindow::add_actions() {
@@ -143,6 +104,7 @@ void WorkstationWindow::add_actions() {
                 {},
                 [this] { quits_ = true; },
                 {"quit", [this] { return has_running_work(); }}});
+  add_screen_actions();
   start_.add_actions(actions_);
   paint_.add_actions(actions_);
   for (const auto& mode : modes_) mode->add_actions(actions_);
@@ -154,6 +116,7 @@ void WorkstationWindow::run() {
        ++count) {
     const double timeout = settle > 0           ? 0
                            : actions_.is_held() ? kHeldWait_s
+                           : copies_.is_busy()  ? kCopiedWait_s
                            : modes_are_busy() || start_.is_busy() || paint_.is_busy() || opening_ != nullptr
                                ? kBusyWait_s
                                : kIdleWait_s;
@@ -199,7 +162,7 @@ void WorkstationWindow::frame(double timeout_s) {
   watch_.frame_drawn(has_running_work());
   draw_screen(ui);
   actions_.advance(ui.now_s);  // after the buttons: what was let go in this frame is known
-  window_.end_frame();
+  end_frame(ui.now_s);
   log_.end_frame();
 }
 
@@ -381,6 +344,7 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   log_.note_state("room", room_.trouble());
   log_.note_state("foot_switch", room_.devices());
   log_.note_state("standstill", heartbeat_.words());
+  log_.note_state("screen_copy", copies_.words(ui.now_s));
   log_.note_state("mode", shown().title().name);
   if (options_.list_widgets)
     for (const std::string& clash : widgets::key_clashes(actions_, action_prefixes()))

@@ -10,6 +10,7 @@
 #include "app/case/case_opening.h"
 #include "app/mode/mode.h"
 #include "app/paint/paint_view.h"
+#include "app/screen_copy/screen_copies.h"
 #include "app/start/start_view.h"
 #include "app/widgets/graphics_window.h"
 #include "app/widgets/heartbeat.h"
@@ -32,6 +33,8 @@ class WorkstationWindow {
  private:
   void make_modes();
   void add_actions();
+  void add_screen_actions();
+  void end_frame(double now_s);
   void frame(double timeout_s);
   // Empty: the built-in case. The one that is open stays open until the other one is.
   void open(const std::filesystem::path& folder);
@@ -59,7 +62,7 @@ class WorkstationWindow {
   [[nodiscard]] bool shows_paint() const { return !shows_start() && (shows_paint_ || is_unpainted()); }
   [[nodiscard]] bool should_end();  // the window was closed, and nothing runs that it would cut off
   // What the lower bar says of the case, and whether that is a warning.
-  [[nodiscard]] std::pair<std::string, bool> status_words() const;
+  [[nodiscard]] std::pair<std::string, bool> status_words();
   [[nodiscard]] mode::Mode& shown() const { return *modes_[shown_]; }
   [[nodiscard]] bool modes_are_busy() const;    // in front or behind
   [[nodiscard]] bool has_running_work() const;  // likewise
@@ -79,6 +82,7 @@ class WorkstationWindow {
   std::size_t shown_ = 0;
   widgets::Heartbeat heartbeat_;
   DrawWatch watch_;
+  screen_copy::ScreenCopies copies_;
   start::StartView start_;
   paint::PaintView paint_;
   bool shows_keys_ = false, shows_start_ = false, shows_paint_ = false, reopens_ = false,

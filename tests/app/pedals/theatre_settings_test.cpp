@@ -53,6 +53,14 @@ TEST_F(Settings, MapEveryPedalAnew) {
   EXPECT_EQ(settings.keys, keys);
 }
 
+TEST_F(Settings, SayWhereTheScreenIsSentTo) {
+  EXPECT_EQ(load("").screen_stream, "");
+  EXPECT_EQ(load(R"(, "screen_stream": "udp://10.0.0.9:5004")").screen_stream, "udp://10.0.0.9:5004");
+  for (const char* bad : {R"("tcp://10.0.0.9:5004")", R"("udp://10.0.0.9")", R"("")"})
+    EXPECT_NE(refusal(", \"screen_stream\": " + std::string(bad)).find("screen_stream"), std::string::npos)
+        << bad;
+}
+
 // File, place and reason, for whoever wrote it by hand.
 TEST_F(Settings, SayWhatIsWrongWithTheFile) {
   struct Case {

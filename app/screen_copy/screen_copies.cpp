@@ -1,0 +1,200 @@
+#include "app/screen_copy/screen_copies.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <utility>
+
+#include "app/scene/image.h"
+#include "navigation/recording/session.h"
+#include "planning/files/format.h"
+#include "planning/files/private_folder.h"
+#include "planning/files/utc_clock.h"
+#include "planning/geometry/error.h"
+
+namespace arthronaut::screen_copy {
+
+namespace {
+
+constexpr double kSaidFor_s = 5;
+
+// Guidance first: on Linux a thread has a niceness of its own.
+void be_nice() {
+  constexpr int kNice = 10;
+  (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNice);
+}
+
+// A name that nothing in the folder has yet.
+std::filesystem::path new_file(const std::filesystem::path& case_folder, const char* extension) {
+  const std::filesystem::path folder = screens_folder(case_folder);
+  files::create_private_folder(folder);
+  const std::string time = files::utc_now_as("%Y%m%d-%H%M%S");
+  for (int number = 1;; ++number) {
+    const std::string name = time + (number > 1 ? "-" + std::to_string(number) : "") + extension;
+    if (!std::filesystem::exists(folder / name) && !std::filesystem::exists(folder / (name + ".part")))
+      return folder / name;
+  }
+}
+
+scene::Image image_of(const widgets::ScreenPicture& picture) {
+  scene::Image image{picture.width, picture.height, {}};
+  const auto width = static_cast<std::size_t>(picture.width),
+             height = static_cast<std::size_t>(picture.height);
+  image.rgb.resize(3 * width * height);
+  for (std::size_t y = 0; y < height; ++y) {
+    const std::uint8_t* from = picture.bgra.data() + 4 * width * (height - 1 - y);
+    std::uint8_t* to = image.rgb.data() + 3 * width * y;
+    for (std::size_t x = 0; x < width; ++x, from += 4, to += 3) {
+      to[0] = from[2];
+      to[1] = from[1];
+      to[2] = from[0];
+    }
+  }
+  return image;
+}
+
+// Throws IoError while there is less free than a session's own video leaves.
+void check_space(const std::string& target) {
+  const recording::DiskLimits limits;
+  const std::filesystem::path folder = std::filesystem::path(target).parent_path();
+  if (limits.free_bytes(folder) < limits.video_stops_below_bytes)
+    throw IoError(target, "the disk is nearly full");
+}
+
+}  // namespace
+
+std::filesystem::path screens_folder(const std::filesystem::path& case_folder) {
+  return case_folder / "screens";
+}
+
+ScreenCopies::ScreenCopies(std::string stream_address, std::function<void()> wake)
+    : stream_address_(std::move(stream_address)),
+      wake_(std::move(wake)),
+      pictures_([](widgets::ScreenPicture&) {}),
+      shots_(
+          worker::Backlog::Lossless,
+          [](auto& inbox) {
+            be_nice();
+            while (const auto shot = inbox.next()) {
+              const std::string name = shot->first.filename().string();
+              try {  // a disk that is full ends no later screenshot
+                scene::write_png(shot->first, image_of(*shot->second));
+                inbox.publish(Said{"Screenshot " + name + " is in the case"});
+              } catch (const IoError& error) {
+                inbox.publish(Said{"No screenshot: " + std::string(error.what())});
+              }
+            }
+          },
+          wake_) {}
+
+ScreenCopies::~ScreenCopies() {
+  end(recording_);
+  end(stream_);
+  shots_.finish();
+}
+
+void ScreenCopies::say(std::string words) {
+  said_ = std::move(words);
+  said_until_s_ = now_s_ + kSaidFor_s;
+}
+
+void ScreenCopies::take_screenshot(const std::filesystem::path& case_folder, const std::string& refusal) {
+  if (!refusal.empty()) return say("No screenshot: " + refusal);
+  try {  // said on the screen, where the key was pressed
+    shot_file_ = new_file(case_folder, ".png");
+  } catch (const IoError& error) {
+    say("No screenshot: " + std::string(error.what()));
+  }
+}
+
+void ScreenCopies::begin(Output& output, const std::string& target) {
+  output.target = target;
+  output.begun_s = -1;
+  output.writer = std::make_unique<Writer>(worker::Backlog::NewestWins, [target](auto& inbox) {
+    be_nice();
+    std::optional<ScreenEncoder> encoder;
+    Written written;
+    while (const auto picture = inbox.next()) {
+      if (!is_stream(target) && written.pictures % static_cast<long>(kRate) == 0) check_space(target);
+      if (!encoder) encoder.emplace(target, (*picture)->width, (*picture)->height);
+      encoder->encode(**picture);
+      ++written.pictures;
+      inbox.publish(written);
+    }
+    if (encoder) encoder->finish();
+  });
+}
+
+// The last picture may still be in work: nobody waits for it.
+void ScreenCopies::end(Output& output) {
+  if (output.writer == nullptr) return;
+  output.writer->request_stop();
+  ending_.end(std::move(output.writer));
+}
+
+void ScreenCopies::toggle_recording(const std::filesystem::path& case_folder, const std::string& refusal) {
+  if (is_recording()) {
+    end(recording_);
+    return say("The screen is in the case: " + std::filesystem::path(recording_.target).filename().string());
+  }
+  if (!refusal.empty()) return say("The screen is not recorded: " + refusal);
+  try {
+    begin(recording_, new_file(case_folder, ".mkv").string());
+  } catch (const IoError& error) {
+    say("The screen is not recorded: " + std::string(error.what()));
+  }
+}
+
+void ScreenCopies::toggle_stream() {
+  if (is_streaming()) {
+    end(stream_);
+    return say("The screen is not sent any more");
+  }
+  if (stream_address_.empty())
+    return say("The screen is not sent: theatre.json names no screen_stream (udp://HOST:PORT)");
+  begin(stream_, stream_address_);
+}
+
+std::shared_ptr<widgets::ScreenPicture> ScreenCopies::wanted(double now_s) {
+  now_s_ = now_s;
+  const bool is_due = is_busy() && now_s >= next_s_;
+  if (shot_file_.empty() && !is_due) return nullptr;
+  // Evenly, whatever the screen's own rate.
+  if (is_due) next_s_ = std::max(next_s_ + 1 / kRate, now_s - 1 / kRate);
+  return pictures_.take();
+}
+
+void ScreenCopies::take(const widgets::ScreenPicturePtr& picture) {
+  if (!shot_file_.empty()) shots_.post({std::exchange(shot_file_, {}), picture});
+  for (Output* const output : {&recording_, &stream_}) {
+    if (output->writer == nullptr) continue;
+    if (output->begun_s < 0) output->begun_s = picture->time_s;
+    output->writer->post(picture);
+  }
+}
+
+void ScreenCopies::end_failed(Output& output, const char* name) {
+  if (output.writer == nullptr || !output.writer->has_ended()) return;
+  say(std::string(name) + " has ended: " + output.writer->failure());
+  output.writer.reset();
+}
+
+std::string ScreenCopies::words(double now_s) {
+  now_s_ = now_s;
+  end_failed(recording_, "The recording of the screen");
+  end_failed(stream_, "The stream of the screen");
+  if (const auto shot = shots_.latest(); shot != last_shot_) {
+    last_shot_ = shot;
+    say(shot->words);
+  }
+  std::string words = now_s < said_until_s_ ? said_ : "";
+  const auto add = [&](const std::string& more) { words += (words.empty() ? "" : ".  ") + more; };
+  if (is_recording()) {
+    const int seconds = recording_.begun_s < 0 ? 0 : static_cast<int>(now_s - recording_.begun_s);
+    add(files::format("SCREEN IS RECORDED %d:%02d", seconds / 60, seconds % 60));
+  }
+  if (is_streaming()) add("SCREEN IS SENT to " + stream_.target);
+  return words;
+}
+
+}  // namespace arthronaut::screen_copy

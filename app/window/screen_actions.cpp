@@ -1,0 +1,58 @@
+// Keys for what leaves the screen as a picture.
+#include <GLFW/glfw3.h>
+
+#include "app/window/workstation_window.h"
+
+namespace arthronaut::window {
+
+namespace {
+
+// Why nothing of the screen may be written into the case; empty where it may.
+std::string refusal_to_keep(const open_case::CaseOpening* opened) {
+  if (opened == nullptr) return "no case is open";
+  return opened->is_read_only() ? "the case " + opened->read_only_reason() : "";
+}
+
+}  // namespace
+
+void WorkstationWindow::add_screen_actions() {
+  const auto folder = [this] { return case_ != nullptr ? case_->folder() : std::filesystem::path(); };
+  actions_.add({"app.screenshot",
+                "Screenshot",
+                "What the screen shows as a picture in the case, with the patient's name if it shows it",
+                GLFW_KEY_F12,
+                0,
+                false,
+                {},
+                {},
+                [this, folder] { copies_.take_screenshot(folder(), refusal_to_keep(case_.get())); }});
+  actions_.add({"app.record_screen",
+                "Record screen",
+                "What the screen shows as a video in the case, until the key is pressed again",
+                GLFW_KEY_F12,
+                GLFW_MOD_CONTROL,
+                false,
+                {},
+                [this] { return copies_.is_recording(); },
+                [this, folder] { copies_.toggle_recording(folder(), refusal_to_keep(case_.get())); }});
+  actions_.add(
+      {"app.send_screen",
+       "Send screen",
+       "What the screen shows as a stream to where theatre.json says, until the key is pressed again",
+       GLFW_KEY_F12,
+       GLFW_MOD_SHIFT,
+       false,
+       {},
+       [this] { return copies_.is_streaming(); },
+       [this] { copies_.toggle_stream(); }});
+}
+
+// The last two steps of a frame: draw -> swap, with a copy where one is wanted.
+void WorkstationWindow::end_frame(double now_s) {
+  const std::shared_ptr<widgets::ScreenPicture> copy = copies_.wanted(now_s);
+  if (copy != nullptr) widgets::copy_screen_into(*copy, now_s);
+  window_.end_frame();
+  if (copy != nullptr) copies_.take(copy);
+}
+
+}  // namespace arthronaut::window
