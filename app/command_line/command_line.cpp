@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/command_line/command.h"
+#include "app/command_line/sources_command.h"
 #include "app/command_line/train_command.h"
 #include "planning/geometry/error.h"
 #include "planning/log/log.h"
@@ -111,6 +112,7 @@ int run_command_line(int argc, char** argv,
   add_import_command(app, context);
   add_cases_command(app, context);
   add_series_command(app, context);
+  add_sources_command(app, context);
   add_landmarks_command(app, context);
   add_segment_command(app, context);
   add_plan_command(app, context);

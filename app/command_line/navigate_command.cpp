@@ -12,6 +12,7 @@
 #include "navigation/openigtlink/igtl_server.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/registration/registration_file.h"
+#include "navigation/sources/camera_device.h"
 #include "navigation/theatre/navigate_source.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
@@ -244,6 +245,14 @@ void say_source(const Context& context, const theatre::NavigationSummary& summar
                          stage.median_ms, stage.p99_ms, stage.worst_ms));
 }
 
+// A camera gives the size that was calibrated, where it has it and no other one is asked for.
+std::unique_ptr<sources::FrameSource> open_for(const std::string& video, const Eigen::Vector2i& size_px) {
+  if (!sources::is_camera_address(video)) return sources::open_source(video);
+  sources::CameraAddress address = sources::read_camera_address(video);
+  address.wish.prefers_px = size_px;
+  return sources::open_camera(address);
+}
+
 double utc_now_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
@@ -271,7 +280,8 @@ void navigate(Context& context, const NavigateArguments& arguments) {
     options.operation.cartilage.emplace().points_mm = cartilage->vertices_mm;
     context.say(std::string("cartilage: ") + (arguments.cartilage.mesh.empty() ? "of the case" : "given"));
   }
-  const std::shared_ptr<sources::FrameSource> source = sources::open_source(arguments.video);
+  const std::shared_ptr<sources::FrameSource> source =
+      open_for(arguments.video, options.source.pipeline.calibration.image_size_px);
   context.say("working medium: " + camera::medium_to_text(options.source.pipeline.refractive_index));
 
   std::optional<openigtlink::IgtlServer> igtl;
@@ -334,8 +344,10 @@ void add_navigate_command(CLI::App& app, Context& context) {
   command
       ->add_option(
           "--video", arguments->video,
-          "Video file, a pattern of still images such as f_%04d.png, or live: /dev/videoN, rtsp://..., "
-          "udp://HOST:PORT (MPEG-TS), gst:PIPELINE ! appsink")
+          "Video file, a pattern of still images such as f_%04d.png, or live: /dev/videoN, or what is wished "
+          "of "
+          "it as \"/dev/video0?format=mjpeg&size=1920x1080&rate=60&standard=pal&input=0\" (see sources), "
+          "rtsp://..., udp://HOST:PORT (MPEG-TS), gst:PIPELINE ! appsink")
       ->required();
   command->add_option("--camera", arguments->camera,
                       "camera.json; copied into the case. Default: the case's");

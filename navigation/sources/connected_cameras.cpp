@@ -4,6 +4,8 @@
 #include <charconv>
 #include <fstream>
 
+#include "navigation/sources/device_identity.h"
+
 namespace arthronaut::sources {
 
 std::vector<ConnectedCamera> connected_cameras(const std::filesystem::path& devices,
@@ -18,8 +20,11 @@ std::vector<ConnectedCamera> connected_cameras(const std::filesystem::path& devi
     const char* const end = file.data() + file.size();
     const auto parsed = std::from_chars(file.data() + kPrefix.size(), end, camera.index);
     if (parsed.ec != std::errc{} || parsed.ptr != end) continue;
+    const std::optional<DeviceSays> says = ask_device(entry.path());
+    if (says && !says->gives_pictures) continue;
     std::ifstream name(names / file / "name");
-    if (!std::getline(name, camera.name) || camera.name.empty()) camera.name = entry.path().string();
+    if (!std::getline(name, camera.name) || camera.name.empty())
+      camera.name = says && !says->card.empty() ? says->card : entry.path().string();
     cameras.push_back(std::move(camera));
   }
   std::sort(cameras.begin(), cameras.end(),

@@ -12,7 +12,8 @@ struct ConnectedCamera {
   std::string name;  // "Capture card"; "/dev/video0" where the system tells none
 };
 
-// By index; empty when there is none. The folders are given for tests alone.
+// By index; empty when there is none. Further nodes of a camera, which give no pictures (its metadata), are
+// left out. The folders are given for tests alone.
 [[nodiscard]] std::vector<ConnectedCamera> connected_cameras(
     const std::filesystem::path& devices = "/dev",
     const std::filesystem::path& names = "/sys/class/video4linux");

@@ -27,7 +27,10 @@ std::optional<DeviceSays> ask_device(const std::filesystem::path& device) {
   const bool answers = ::ioctl(file, VIDIOC_QUERYCAP, &says) == 0;
   ::close(file);
   if (!answers) return std::nullopt;
-  return DeviceSays{text_of(says.driver), text_of(says.card), text_of(says.bus_info)};
+  const bool tells_of_node = (says.capabilities & V4L2_CAP_DEVICE_CAPS) != 0;
+  const __u32 can = tells_of_node ? says.device_caps : says.capabilities;
+  const bool gives_pictures = (can & V4L2_CAP_VIDEO_CAPTURE) != 0;
+  return DeviceSays{text_of(says.driver), text_of(says.card), text_of(says.bus_info), gives_pictures};
 }
 
 std::string device_identity(const std::filesystem::path& device, const std::filesystem::path& names,

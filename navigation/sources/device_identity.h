@@ -11,6 +11,7 @@ namespace arthronaut::sources {
 
 struct DeviceSays {  // VIDIOC_QUERYCAP
   std::string driver, card, bus;
+  bool gives_pictures = true;
 };
 using AskDevice = std::function<std::optional<DeviceSays>(const std::filesystem::path& device)>;
 // Asks the driver; nullopt where there is none.

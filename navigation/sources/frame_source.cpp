@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
-#include <optional>
 
+#include "navigation/sources/camera_device.h"
+#include "navigation/sources/camera_modes.h"
 #include "navigation/sources/gstreamer_pipeline.h"
 #include "navigation/sources/logged_source.h"
 #include "navigation/sources/network_stream.h"
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kPipeline = "gst:", kVideoDevice = "/dev/video";
+constexpr std::string_view kPipeline = "gst:";
 
 // "rtsp://10.0.0.5/scope": a name, a colon and two slashes.
 bool is_address(std::string_view text) {
@@ -27,16 +27,6 @@ bool is_address(std::string_view text) {
   if (colon == std::string_view::npos || colon < 2) return false;
   return std::all_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(colon),
                      [](unsigned char c) { return std::isalnum(c) || c == '+' || c == '-' || c == '.'; });
-}
-
-// "/dev/video2": 2.
-std::optional<int> device_index_of(std::string_view name) {
-  if (!name.starts_with(kVideoDevice)) return std::nullopt;
-  const std::string_view digits = name.substr(kVideoDevice.size());
-  int index = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
-  if (error != std::errc() || end != digits.data() + digits.size() || index < 0) return std::nullopt;
-  return index;
 }
 
 // Reading a pipe waits until somebody writes into it, which may be never.
@@ -82,11 +72,11 @@ std::unique_ptr<FrameSource> open_stream(const std::string& address) {
 }
 
 SourceKind kind_of_source(std::string_view name) {
-  return device_index_of(name) || is_stream_address(name) ? SourceKind::Live : SourceKind::Recording;
+  return is_camera_address(name) || is_stream_address(name) ? SourceKind::Live : SourceKind::Recording;
 }
 
 std::unique_ptr<FrameSource> open_source(const std::string& name) {
-  if (const auto device = device_index_of(name)) return open_device(*device);
+  if (is_camera_address(name)) return open_camera(read_camera_address(name));
   if (is_stream_address(name)) return open_stream(name);
   return open_video(name);
 }

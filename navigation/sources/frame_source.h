@@ -46,9 +46,9 @@ class FrameSource {
 // A video whose luma plane is, byte for byte, what was tracked when it was recorded: frames carry it as
 // Frame::luma. Full range, as recording::VideoEncoder writes it.
 [[nodiscard]] std::unique_ptr<FrameSource> open_video_with_exact_luma(const std::filesystem::path& video);
-// Frames carry the time of their capture: the driver's (V4L2 stamps on the monotonic clock, which OpenCV
-// passes on) where it is one that can be true, else the moment the driver handed the picture over. One that
-// is pulled out is opened again when it is back, as with open_stream(). Throws DeviceError.
+// Frames carry the time of their capture: the driver's (V4L2, on the monotonic clock) where it can be true,
+// else the moment it handed the picture over. One that is pulled out, or has no signal, is opened again when
+// it is back, as with open_stream(); the mode is that of choose_mode(). Throws DeviceError.
 [[nodiscard]] std::unique_ptr<FrameSource> open_device(int device_index);
 
 // A stream over the network, as it comes: "rtsp://...", "rtsps://...", "udp://HOST:PORT" (MPEG-TS; the host
@@ -73,7 +73,7 @@ class FrameSource {
 // name ("user-pw=...").
 [[nodiscard]] std::string shown_address(const std::string& address);
 
-// What a user names: "/dev/videoN", a stream, or what open_video() opens.
+// What a user names: "/dev/videoN?size=1920x1080" (camera_modes.h), a stream, or what open_video() opens.
 [[nodiscard]] std::unique_ptr<FrameSource> open_source(const std::string& name);
 // Live for a device and a stream, else a recording. By its form alone.
 [[nodiscard]] SourceKind kind_of_source(std::string_view name);

@@ -24,7 +24,7 @@ std::string size_text(int width, int height) {
 class RecoveringSource final : public FrameSource {
  public:
   explicit RecoveringSource(LiveOpener opener) : opener_(std::move(opener)) {
-    source_ = opener_({stamps_, false, identity_});
+    source_ = opener_({stamps_, false, identity_, remark_});
     info_ = source_->info();
     info_.line = line_;
   }
@@ -43,7 +43,7 @@ class RecoveringSource final : public FrameSource {
         continue;
       }
       if (frame->width == info_.image_size_px.x() && frame->height == info_.image_size_px.y()) {
-        line_->pictures_come();
+        remark_.empty() ? line_->pictures_come() : tell(remark_);
         return frame;
       }
       tell(info_.name + ": gives pictures of " + size_text(frame->width, frame->height) +
@@ -64,13 +64,14 @@ class RecoveringSource final : public FrameSource {
       tell(error.what());
     }
     source_.reset();
+    remark_.clear();
     return nullptr;
   }
 
   bool open_again() {
     try {
       std::string identity;
-      std::unique_ptr<FrameSource> source = opener_({stamps_, true, identity});
+      std::unique_ptr<FrameSource> source = opener_({stamps_, true, identity, remark_});
       is_another_ = !identity_.empty() && identity != identity_;
       if (is_another_) {
         tell(info_.name + ": another camera is there (" +
@@ -101,15 +102,18 @@ class RecoveringSource final : public FrameSource {
   std::shared_ptr<SourceLine> line_ = std::make_shared<SourceLine>();
   SourceInfo info_;
   std::string identity_;                 // as it said first
+  std::string remark_;                   // on what source_ gives
   std::unique_ptr<FrameSource> source_;  // null: broken
   bool has_ended_ = false, is_another_ = false;
 };
 
 }  // namespace
 
-void LiveStamps::put_on(camera::Frame& frame, std::int64_t captured_ns, camera::CaptureClock clock) {
-  if (next_index_ == 0) started_at_ns_ = captured_ns;
-  frame.index = next_index_++;
+void LiveStamps::put_on(camera::Frame& frame, std::int64_t captured_ns, camera::CaptureClock clock,
+                        std::int64_t lost_before) {
+  if (last_timestamp_ns_ < 0) started_at_ns_ = captured_ns;
+  frame.index = next_index_ + lost_before;
+  next_index_ = frame.index + 1;
   // A clock that changes over (a driver's stamp that is missing once) must not run backwards.
   last_timestamp_ns_ = std::max(captured_ns - started_at_ns_, last_timestamp_ns_ + 1);
   frame.timestamp_ns = last_timestamp_ns_;

@@ -22,8 +22,9 @@ namespace arthronaut::sources {
 // Numbers and times of a live source's frames, over all its connections: they go on where they were.
 class LiveStamps {
  public:
-  // When the picture was captured, on the steady clock.
-  void put_on(camera::Frame& frame, std::int64_t captured_ns, camera::CaptureClock clock);
+  // When the picture was captured, on the steady clock. Pictures that were lost before it are counted too.
+  void put_on(camera::Frame& frame, std::int64_t captured_ns, camera::CaptureClock clock,
+              std::int64_t lost_before = 0);
 
  private:
   std::int64_t started_at_ns_ = 0, last_timestamp_ns_ = -1, next_index_ = 0;
@@ -35,6 +36,9 @@ struct Opening {
   // Who the source says it is, whatever format it gives: written by the opener. Left empty: nobody knows, and
   // a source that never said it is known by the size of its pictures alone.
   std::string& identity;
+  // What is wrong with the pictures that come, in words for the screen: written by the source while it makes
+  // one. Empty: nothing.
+  std::string& remark;
 };
 // Opens the source, which stamps what it gives by these stamps and throws DeviceError when it breaks off or
 // gives nothing for too long. An opener whose source may end for good (a pipeline that is not live) says so

@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(All, Subcommand,
                                            "track", "pivot", "digitise", "register", "import", "landmarks",
                                            "plan", "phantom", "navigate", "replay", "report", "dicom",
                                            "resume", "rig", "segment", "series", "verify", "pacs", "markers",
-                                           "demo", "train"),
+                                           "demo", "train", "sources"),
                          [](const auto& test) {
                            std::string name = test.param;
                            std::replace(name.begin(), name.end(), '-',
