@@ -5,12 +5,21 @@
 #include <algorithm>
 
 #include "navigation/sources/frame_source.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::navigate {
 
+sources::CameraAddress camera_address_of(const LivePictures& pictures, const Eigen::Vector2i& prefers_px) {
+  sources::CameraAddress address{pictures.device.value()};
+  if (!pictures.address.empty()) address = sources::read_camera_address(pictures.address);
+  address.wish.prefers_px = prefers_px;
+  return address;
+}
+
 void CameraChoice::open(const std::vector<sources::ConnectedCamera>& cameras,
-                        const std::vector<std::string>& streams, const std::optional<LivePictures>& before) {
-  *this = {};
+                        const std::vector<std::string>& streams, const std::optional<LivePictures>& before,
+                        const Look& look) {
+  close();
   is_open_ = true;
   for (const sources::ConnectedCamera& camera : cameras) offered_.push_back({camera.name, camera.index, ""});
   for (const std::string& address : streams)
@@ -18,6 +27,19 @@ void CameraChoice::open(const std::vector<sources::ConnectedCamera>& cameras,
   const auto same = std::find(offered_.begin(), offered_.end(), before);
   if (same != offered_.end()) chosen_ = static_cast<std::size_t>(same - offered_.begin());
   wants_focus_ = offered_.empty();
+  if (!look) return;
+  std::vector<previews::Opener> openers;
+  for (const LivePictures& one : offered_) openers.emplace_back([look, one] { return look(one); });
+  previews_.show(openers);
+}
+
+void CameraChoice::close() {
+  previews_.close();
+  offered_.clear();
+  chosen_ = 0;
+  is_open_ = wants_focus_ = is_typing_ = false;
+  text_.clear();
+  trouble_.clear();
 }
 
 void CameraChoice::choose_next() {
@@ -34,33 +56,44 @@ std::optional<LivePictures> CameraChoice::take_address(std::string typed) {
   typed = first == std::string::npos ? "" : typed.substr(first, last - first + 1);
   if (sources::is_stream_address(typed))
     return LivePictures{sources::shown_address(typed), std::nullopt, typed};
-  trouble_ = "No stream: rtsp://HOST/PATH, udp://@:PORT, gst:PIPELINE ! appsink";
+  if (sources::is_camera_address(typed)) {
+    try {
+      return LivePictures{typed, sources::read_camera_address(typed).index, typed};
+    } catch (const InvalidInput& refused) {  // what was typed is answered where it was typed
+      trouble_ = refused.what();
+      return std::nullopt;
+    }
+  }
+  trouble_ = "No stream: rtsp://HOST/PATH, udp://@:PORT, gst:PIPELINE ! appsink, /dev/video0?rate=60";
   return std::nullopt;
 }
 
-void CameraChoice::draw_rows(const widgets::Ui& ui, widgets::Rect& box) const {
-  const float row = ui.theme.px(56);
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
+std::optional<LivePictures> CameraChoice::draw_rows(const widgets::Ui& ui, widgets::Rect& box, float height) {
+  std::optional<LivePictures> clicked;
   for (std::size_t i = 0; i < offered_.size(); ++i) {
-    const widgets::Rect line = box.cut_top(row);
-    const bool is_chosen = i == chosen_;
-    if (is_chosen) draw.AddRectFilled(line.min(), line.max(), IM_COL32(28, 74, 104, 255));
     const LivePictures& one = offered_[i];
-    widgets::text_centered(
-        ui, line, ui.theme.strong, is_chosen ? widgets::kText : widgets::kQuietText,
-        one.device ? one.name + "  (/dev/video" + std::to_string(*one.device) + ")" : one.name);
+    const std::string name =
+        one.device ? one.name + "  (/dev/video" + std::to_string(*one.device) + ")" : one.name;
+    if (previews_.draw(ui, box.cut_top(height), i, name, i == chosen_)) {
+      chosen_ = i;
+      clicked = one;
+    }
   }
+  return clicked;
 }
 
 std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widgets::Rect& video) {
   if (!is_open_) return std::nullopt;
   const float row = ui.theme.px(56);
+  // Pictures as large as there is room for them.
+  const float count = static_cast<float>(offered_.size());
+  const float picture = std::clamp((video.height - 4 * row) / std::max(count, 1.F), row, ui.theme.px(140));
   widgets::Rect box = video;
-  box.height = row * (static_cast<float>(offered_.size()) + 4);
+  box.height = picture * count + 4 * row;
   box.y = video.center().y - box.height / 2;
   ImGui::GetWindowDrawList()->AddRectFilled(box.min(), box.max(), IM_COL32(10, 12, 15, 255));
   widgets::text_centered(ui, box.cut_top(row), ui.theme.title, widgets::kText, "Which camera?");
-  draw_rows(ui, box);
+  if (auto clicked = draw_rows(ui, box, picture)) return clicked;
   const std::string hint = !trouble_.empty()  ? trouble_
                            : offered_.empty() ? "No camera is connected. The address of a stream, then Enter"
                                               : "Or the address of a stream, then Enter";
@@ -78,7 +111,7 @@ std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widg
       !wants_focus_ && ImGui::IsItemDeactivated() && !ImGui::IsMouseDown(ImGuiMouseButton_Left);
   wants_focus_ = false;
   widgets::text_centered(ui, box, ui.theme.body, widgets::kQuietText,
-                         "K: the next one    Space: open it    Esc: none");
+                         "K: the next one    Space, or a click: open it    Esc: none");
   if (is_entered) {
     if (auto taken = take_address(text_)) return taken;
     wants_focus_ = true;

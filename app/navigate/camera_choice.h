@@ -1,13 +1,18 @@
 // Which live pictures: the cameras that are connected, the streams that were used before, and a field in
-// which the address of another one is typed. Worked by a pedal: one key for the next, one to open.
+// which the address of another one is typed; beside each what it shows now. Worked by a pedal, one key for
+// the next, one to open, or by a click on what is to be opened.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/previews/source_previews.h"
 #include "app/widgets/controls.h"
 #include "app/widgets/layout.h"
+#include "navigation/sources/camera_modes.h"
 #include "navigation/sources/connected_cameras.h"
 
 namespace arthronaut::navigate {
@@ -15,17 +20,24 @@ namespace arthronaut::navigate {
 struct LivePictures {
   std::string name;           // for the screen: what the camera is called, the address without a password
   std::optional<int> device;  // of /dev/videoN
-  std::string address;        // of a stream, where it is no device
+  std::string address;        // of a stream; of a camera what was typed, where it was
   [[nodiscard]] bool operator==(const LivePictures& other) const = default;
 };
 
+// How it is to be opened; of this size where it has it and none was typed. Precondition: it is a device.
+[[nodiscard]] sources::CameraAddress camera_address_of(const LivePictures& pictures,
+                                                       const Eigen::Vector2i& prefers_px);
+
 class CameraChoice {
  public:
+  // Opens one to be looked at, on a thread of its own; must refuse what is in use.
+  using Look = std::function<std::unique_ptr<sources::FrameSource>(const LivePictures&)>;
   // Offers them; the one that was used before is chosen, else the first. Where there is none at all the field
-  // waits for an address.
+  // waits for an address. Without `look` nothing is previewed.
   void open(const std::vector<sources::ConnectedCamera>& cameras, const std::vector<std::string>& streams,
-            const std::optional<LivePictures>& before = std::nullopt);
-  void close() { *this = {}; }
+            const std::optional<LivePictures>& before = std::nullopt, const Look& look = {});
+  // What was looked at is let go.
+  void close();
   [[nodiscard]] bool is_open() const { return is_open_; }
   // In turn; after the last one the field, in which an address is typed.
   void choose_next();
@@ -36,18 +48,21 @@ class CameraChoice {
   // Takes an address as it was typed: what it opens, or empty, and then the screen says what an address looks
   // like.
   [[nodiscard]] std::optional<LivePictures> take_address(std::string typed);
-  // While it is open; what was typed and entered with Enter, in that frame. Esc closes it.
+  // While it is open; what was clicked on, or typed and entered with Enter, in that frame. Esc closes it.
   [[nodiscard]] std::optional<LivePictures> draw(const widgets::Ui& ui, const widgets::Rect& video);
   // The field takes the keys.
   [[nodiscard]] bool wants_text() const { return is_open_ && (wants_focus_ || is_typing_); }
 
  private:
-  void draw_rows(const widgets::Ui& ui, widgets::Rect& box) const;
+  // The one that was clicked on.
+  [[nodiscard]] std::optional<LivePictures> draw_rows(const widgets::Ui& ui, widgets::Rect& box,
+                                                      float height);
 
   std::vector<LivePictures> offered_;
   std::size_t chosen_ = 0;  // offered_.size(): the field
   bool is_open_ = false, wants_focus_ = false, is_typing_ = false;
   std::string text_, trouble_;
+  previews::SourcePreviews previews_;
 };
 
 }  // namespace arthronaut::navigate

@@ -117,12 +117,16 @@ theatre::TheatreSource camera_setup(const open_case::PlanModel& model, bones::Bo
   for (const std::string& why_not :
        {open_case::camera_is_not_for_live(case_folder), open_case::tools_are_not_for_live(case_folder)})
     if (!why_not.empty()) throw InvalidInput(why_not);
-  // A device answers soon or is broken; a stream takes up to 10 s to its first picture.
-  constexpr double kDevicePatience_s = 5, kStreamPatience_s = 15;
+  // A device that was just looked at is let go, opened, and gives its first picture, or is broken; a stream
+  // takes up to 10 s to its first picture.
+  constexpr double kDevicePatience_s = 9, kStreamPatience_s = 15;
   source.setup.title = pictures.name;
   source.patience_s = pictures.device ? kDevicePatience_s : kStreamPatience_s;
   if (pictures.device)
-    source.open = [turns, index = *pictures.device] { return turns.open(index); };
+    source.open = [turns,
+                   address = camera_address_of(pictures, source.setup.pipeline.calibration.image_size_px)] {
+      return turns.open(address);
+    };
   else
     source.open = [address = pictures.address] { return sources::open_stream(address); };
   if (const auto& tracker = source.setup.pipeline.tools.tracker) {

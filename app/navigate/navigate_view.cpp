@@ -205,7 +205,10 @@ void NavigateView::start_live(const LivePictures& pictures) {
 void NavigateView::choose_camera() {
   if (refuses_while_lent()) return;
   if (cameras_.is_open()) return cameras_.choose_next();
-  cameras_.open(sources::connected_cameras(), load_known_streams(known_streams_file()), used_before_);
+  cameras_.open(sources::connected_cameras(), load_known_streams(known_streams_file()), used_before_,
+                [turns = turns_](const LivePictures& one) {
+                  return one.device ? turns.open_if_free({*one.device}) : sources::open_stream(one.address);
+                });
   if (const auto only = cameras_.chosen(); only && only->device && cameras_.count() == 1) start_live(*only);
 }
 
@@ -224,7 +227,7 @@ void NavigateView::cycle_overlay() {
 }
 
 bool NavigateView::is_busy() const {
-  return is_under_way(*live_) || registration().is_fitting || heard_.waits_to_say();
+  return is_under_way(*live_) || registration().is_fitting || heard_.waits_to_say() || cameras_.is_open();
 }
 
 void NavigateView::read_live() {

@@ -25,6 +25,8 @@ struct FeedSource {
   bool is_stills = false;
   // Only the newest picture counts. Else none is left out, and a slow worker sees the source in slow motion.
   bool newest_wins = true;
+  // As open(), to be looked at while it is chosen: refuses what is in use. Empty: open().
+  std::function<std::unique_ptr<sources::FrameSource>()> look = {};
 };
 
 class FrameFeed {

@@ -120,7 +120,8 @@ std::vector<FeedSource> sources_for(Purpose purpose, const fs::path& case_folder
     for (const sources::ConnectedCamera& camera : sources::connected_cameras()) {
       FeedSource source;
       source.name = camera.name;
-      source.open = [turns, index = camera.index] { return turns.open(index); };
+      source.open = [turns, index = camera.index] { return turns.open({index}); };
+      source.look = [turns, index = camera.index] { return turns.open_if_free({index}); };
       source.is_live = true;
       offered.push_back(std::move(source));
     }

@@ -31,6 +31,7 @@ mode::ModeTitle SetupView::title() const {
 }
 
 void SetupView::case_opened(const mode::OpenCase& opened) {
+  close_gallery();
   case_folder_ = opened.folder;
   typed_ = {};
   is_read_ = false;
@@ -51,13 +52,14 @@ void SetupView::enter() {
 
 void SetupView::leave() {
   is_shown_ = false;
+  close_gallery();
   for (Step& one : steps_) one.station->release_source();
 }
 
 bool SetupView::awaits_text() const { return typed_.wants_focus || step().station->awaits_text(); }
 
 // What a station last knew of its run is of when it was last drawn.
-bool SetupView::is_busy() const { return is_shown_ && step().station->is_busy(); }
+bool SetupView::is_busy() const { return is_shown_ && (shows_gallery_ || step().station->is_busy()); }
 
 bool SetupView::has_running_work() const {
   return std::any_of(steps_.begin(), steps_.end(), [](const Step& one) { return one.station->has_run(); });
@@ -69,6 +71,7 @@ std::optional<sources::SourceKind> SetupView::source_kind() const {
 }
 
 void SetupView::show(std::size_t index) {
+  close_gallery();
   if (index != shown_) step().station->release_source();
   shown_ = index;
   find_sources();
@@ -88,6 +91,7 @@ void SetupView::choose_source() {
 }
 
 void SetupView::start() {
+  close_gallery();
   const FeedSource* source = step().source.chosen();
   if (source == nullptr) return;
   step().started_kind = source->is_simulated ? sources::SourceKind::Simulation
@@ -116,6 +120,7 @@ std::string SetupView::next_step() const {
 // another source is chosen.
 void SetupView::take_typed_path() {
   typed_.is_open = false;
+  close_gallery();
   std::filesystem::path path = typed_.text;
   const bool is_stream = sources::is_stream_address(typed_.text);
   if (!is_stream && !path.has_filename()) path = path.parent_path();  // "pictures/"
@@ -150,6 +155,16 @@ void SetupView::add_actions(widgets::Actions& actions) {
   add("setup.source", "Other source",
       "Cameras, pictures, videos in turn; the simulator where there is no real scope", GLFW_KEY_O,
       [this] { choose_source(); }, {"take another source", has_run});
+  actions.add({"setup.gallery",
+               "All sources",
+               "All that is on offer, with what each shows now; a click takes one",
+               GLFW_KEY_L,
+               0,
+               false,
+               {},
+               [this] { return shows_gallery_; },
+               [this] { shows_gallery_ ? close_gallery() : show_gallery(); },
+               {"end the source and choose another", has_run}});
   add("setup.path", "Type a source",
       "The path of a video or of a folder of pictures, the address of a stream, or: simulator", GLFW_KEY_P,
       [this] { typed_.is_open = typed_.wants_focus = true; });
@@ -169,8 +184,8 @@ void SetupView::add_actions(widgets::Actions& actions) {
 }
 
 std::vector<std::string_view> SetupView::action_prefixes() const {
-  return {"setup.next", "setup.source", "setup.path", "setup.again",
-          "setup.stop", "setup.show_",  step().prefix};
+  return {"setup.next",  "setup.source", "setup.gallery", "setup.path",
+          "setup.again", "setup.stop",   "setup.show_",   step().prefix};
 }
 
 void SetupView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
@@ -178,7 +193,7 @@ void SetupView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::Rect rest = area;
   draw_heading(ui, rest.cut_top(ui.theme.px(88), gap));
   const widgets::Rect controls = rest.cut_bottom(ui.theme.px(100), gap);
-  step().station->draw(ui, rest);
+  shows_gallery_ ? draw_gallery(ui, rest) : step().station->draw(ui, rest);
   draw_controls(ui, controls);
   ui.log.note_state("setup_step", std::string(step().action).substr(std::string("setup.show_").size()));
   const FeedSource* source = step().source.chosen();
@@ -235,7 +250,8 @@ void SetupView::draw_path_field(const widgets::Ui& ui, const widgets::Rect& area
 }
 
 void SetupView::draw_controls(const widgets::Ui& ui, const widgets::Rect& area) {
-  std::vector<const char*> ids{"setup.next", "setup.source", "setup.path", "setup.again", "setup.stop"};
+  std::vector<const char*> ids{"setup.next", "setup.source", "setup.gallery",
+                               "setup.path", "setup.again",  "setup.stop"};
   for (const char* id : step().station->buttons()) ids.push_back(id);
   const std::size_t columns = (ids.size() + 1) / 2;
   const float gap = ui.theme.px(10), height = (area.height - gap) / 2;

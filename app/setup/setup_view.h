@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/mode/mode.h"
+#include "app/previews/source_previews.h"
 #include "app/setup/setup_sources.h"
 #include "app/setup/source_choice.h"
 #include "app/setup/station.h"
@@ -71,6 +72,10 @@ class SetupView : public mode::Mode {
   void draw_heading(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_path_field(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_controls(const widgets::Ui& ui, const widgets::Rect& area);
+  // All that is on offer, with what each shows: setup_gallery.cpp.
+  void show_gallery();
+  void close_gallery();
+  void draw_gallery(const widgets::Ui& ui, const widgets::Rect& area);
   [[nodiscard]] std::string next_step() const;
 
   std::function<void()> go_on_;
@@ -81,6 +86,8 @@ class SetupView : public mode::Mode {
   bool is_read_ = false;   // the stations know the case
   bool is_shown_ = false;  // this mode is at the front
   Typed typed_;
+  bool shows_gallery_ = false;
+  previews::SourcePreviews previews_;
   std::vector<Step> steps_;
   std::size_t shown_ = 0;
 };

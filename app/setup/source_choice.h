@@ -20,6 +20,9 @@ class SourceChoice {
   // The one made from this path; false: there is none, and nothing is chosen.
   bool choose_path(const std::filesystem::path& path);
 
+  void choose(std::size_t index);  // of offered()
+
+  [[nodiscard]] const std::vector<FeedSource>& offered() const { return sources_; }
   [[nodiscard]] const FeedSource* chosen() const;  // null: nothing
   // Why nothing is chosen; empty else.
   [[nodiscard]] const std::string& problem() const { return problem_; }
@@ -27,7 +30,6 @@ class SourceChoice {
   [[nodiscard]] std::string text() const;
 
  private:
-  void choose(std::size_t index);
   void refuse(const std::string& problem);
 
   std::vector<FeedSource> sources_;

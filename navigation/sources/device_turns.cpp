@@ -50,10 +50,19 @@ class TurnedSource : public FrameSource {
 DeviceTurns::DeviceTurns(Opener opener, double patience_s)
     : state_(std::make_shared<State>(std::move(opener), patience_s)) {}
 
-std::unique_ptr<FrameSource> DeviceTurns::open(int device_index) const {
+std::unique_ptr<FrameSource> DeviceTurns::open(const CameraAddress& address) const {
+  return open_within(address, state_->patience_s.count());
+}
+
+std::unique_ptr<FrameSource> DeviceTurns::open_if_free(const CameraAddress& address) const {
+  return open_within(address, 0);
+}
+
+std::unique_ptr<FrameSource> DeviceTurns::open_within(const CameraAddress& address, double patience_s) const {
+  const int device_index = address.index;
   {
     std::unique_lock lock(state_->mutex);
-    const bool is_free = state_->given_back.wait_for(lock, state_->patience_s,
+    const bool is_free = state_->given_back.wait_for(lock, std::chrono::duration<double>(patience_s),
                                                      [&] { return !state_->taken.contains(device_index); });
     if (!is_free)
       throw DeviceError("camera " + std::to_string(device_index) +
@@ -65,7 +74,7 @@ std::unique_ptr<FrameSource> DeviceTurns::open(int device_index) const {
     state->taken.erase(device_index);
     state->given_back.notify_all();
   });
-  std::unique_ptr<FrameSource> source = state_->opener(device_index);
+  std::unique_ptr<FrameSource> source = state_->opener(address);
   return std::make_unique<TurnedSource>(std::move(turn), std::move(source));
 }
 

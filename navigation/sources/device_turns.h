@@ -8,21 +8,28 @@
 #include <functional>
 #include <memory>
 
+#include "navigation/sources/camera_device.h"
+#include "navigation/sources/camera_modes.h"
 #include "navigation/sources/frame_source.h"
 
 namespace arthronaut::sources {
 
 class DeviceTurns {
  public:
-  using Opener = std::function<std::unique_ptr<FrameSource>(int device_index)>;
+  using Opener = std::function<std::unique_ptr<FrameSource>(const CameraAddress& address)>;
   // Letting go of a device takes a picture or two, 5 s where a driver is slow.
-  explicit DeviceTurns(Opener opener = open_device, double patience_s = 5);
+  explicit DeviceTurns(Opener opener = open_camera, double patience_s = 5);
 
   // Waits while the device is still read, patience_s at most. Throws DeviceError when it is read on ("camera
   // 0 is in use"), and what the opener throws.
-  [[nodiscard]] std::unique_ptr<FrameSource> open(int device_index) const;
+  [[nodiscard]] std::unique_ptr<FrameSource> open(const CameraAddress& address) const;
+  // The same for who only looks: waits for nobody, and takes its turn from nobody who has it.
+  [[nodiscard]] std::unique_ptr<FrameSource> open_if_free(const CameraAddress& address) const;
 
  private:
+  [[nodiscard]] std::unique_ptr<FrameSource> open_within(const CameraAddress& address,
+                                                         double patience_s) const;
+
   struct State;
   std::shared_ptr<State> state_;
 };

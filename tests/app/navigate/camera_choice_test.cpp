@@ -62,7 +62,7 @@ TEST(CameraChoice, TakesTheAddressOfAStreamAndNothingElse) {
     EXPECT_FALSE(taken->device);
   }
   EXPECT_EQ(choice.take_address(" udp://@:5000 ")->address, "udp://@:5000");
-  for (const char* typed : {"", "  ", "tower", "/dev/video0", "clip.mkv", "://"})
+  for (const char* typed : {"", "  ", "tower", "/dev/video", "/dev/video0?size=big", "clip.mkv", "://"})
     EXPECT_FALSE(choice.take_address(typed)) << typed;
 }
 

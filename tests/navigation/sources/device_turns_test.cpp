@@ -34,11 +34,12 @@ class ToyCamera : public FrameSource {
 // A device that is still being let go of is opened again only afterwards, never both at once.
 TEST(DeviceTurns, TheNextOpeningWaitsForTheOneBefore) {
   std::atomic<int> open_count = 0;
-  const DeviceTurns turns([&](int) { return std::make_unique<ToyCamera>(open_count); }, kLong_s);
-  std::unique_ptr<FrameSource> first = turns.open(0);
+  const DeviceTurns turns([&](const CameraAddress&) { return std::make_unique<ToyCamera>(open_count); },
+                          kLong_s);
+  std::unique_ptr<FrameSource> first = turns.open({0});
   std::atomic<bool> has_second = false;
   std::jthread next([&] {
-    const std::unique_ptr<FrameSource> second = turns.open(0);
+    const std::unique_ptr<FrameSource> second = turns.open({0});
     has_second = true;
   });
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -53,17 +54,17 @@ TEST(DeviceTurns, TheNextOpeningWaitsForTheOneBefore) {
 TEST(DeviceTurns, SaysThatADeviceIsInUse) {
   std::atomic<int> open_count = 0;
   const DeviceTurns turns(
-      [&](int index) -> std::unique_ptr<FrameSource> {
-        if (index == 7) throw DeviceError("camera 7: can't be opened");
+      [&](const CameraAddress& address) -> std::unique_ptr<FrameSource> {
+        if (address.index == 7) throw DeviceError("camera 7: can't be opened");
         return std::make_unique<ToyCamera>(open_count);
       },
       kShort_s);
-  const std::unique_ptr<FrameSource> first = turns.open(0);
-  EXPECT_NE(message_of<DeviceError>([&] { (void)turns.open(0); }).find("camera 0 is in use"),
+  const std::unique_ptr<FrameSource> first = turns.open({0});
+  EXPECT_NE(message_of<DeviceError>([&] { (void)turns.open({0}); }).find("camera 0 is in use"),
             std::string::npos);
-  EXPECT_NE(turns.open(1), nullptr);
+  EXPECT_NE(turns.open({1}), nullptr);
   for (int i = 0; i < 2; ++i)
-    EXPECT_EQ(message_of<DeviceError>([&] { (void)turns.open(7); }), "camera 7: can't be opened");
+    EXPECT_EQ(message_of<DeviceError>([&] { (void)turns.open({7}); }), "camera 7: can't be opened");
 }
 
 }  // namespace
