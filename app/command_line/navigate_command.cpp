@@ -199,8 +199,11 @@ void say_registration(const Context& context, const theatre::NavigationSummary& 
 
 void say_contour(const Context& context, const theatre::NavigationSummary& summary) {
   if (summary.frames_registered == 0) return;
-  context.say(format("bone in the picture: where it lay in %ld of %ld frames, not checked in the others",
+  context.say(format("bone in the picture: where it lay in %ld of %ld frames, not told in the others",
                      summary.frames_bone_seen, summary.frames_registered));
+  if (summary.frames_bone_otherwise > 0)
+    context.say(format("  in %ld of them it did not look as it did: touch the control point",
+                       summary.frames_bone_otherwise));
 }
 
 void say_guidance(const Context& context, const theatre::NavigationSummary& summary) {

@@ -32,6 +32,8 @@ std::vector<SeverityText> contour_rows(const operation::OperationState& state) {
   switch (seen.state) {
     case ContourState::Drifted:
       return {{Severity::Bad, name, widgets::fixed(seen.drift_mm, 1) + " mm from where it lay"}};
+    case ContourState::LooksOtherwise:
+      return {{Severity::Caution, name, "does not look as it did"}};
     case ContourState::Holds:
       return {{Severity::Quiet, name, "no shift of 1 to 1.7 mm seen"}};
     case ContourState::NotChecked:

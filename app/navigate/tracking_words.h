@@ -14,9 +14,8 @@ namespace arthronaut::navigate {
 // camera and tools with the source.
 [[nodiscard]] std::vector<SeverityText> beginning_rows(const operation::OperationState& state,
                                                        const std::string& patient);
-// Whether the picture shows the registered bone where it lay, or why that is not checked: never more than
-// quiet, since it makes nothing more sure. Empty while no registration stands or an alarm of another kind
-// holds.
+// Whether the picture shows the registered bone where it lay, or why that is not checked: good never, since
+// it makes nothing more sure. Empty while no registration stands or an alarm of another kind holds.
 [[nodiscard]] std::vector<SeverityText> contour_rows(const operation::OperationState& state);
 // What is wrong with a live source, and how long its pictures take: medians, in brackets what 99 of 100 keep.
 // Empty for other sources.

@@ -158,7 +158,8 @@ void save_pacs_peers(const fs::path& file, const std::vector<PacsPeer>& peers) {
   const bool is_any_web =
       std::any_of(peers.begin(), peers.end(), [](const PacsPeer& peer) { return peer.is_web(); });
   files::write_json(
-      file, {{"format", kPeersFormat}, {"version", is_any_web ? kPeersVersion : 1}, {"peers", std::move(nodes)}});
+      file,
+      {{"format", kPeersFormat}, {"version", is_any_web ? kPeersVersion : 1}, {"peers", std::move(nodes)}});
 }
 
 }  // namespace arthronaut::start

@@ -61,7 +61,8 @@ void note_recent_case(const fs::path& file, const RecentCase& opened) noexcept {
                        {"side", one.side},
                        {"opened_utc", one.opened_utc}});
     files::create_private_folder(file.parent_path());
-    files::write_json(file, {{"format", kRecentFormat}, {"version", kRecentVersion}, {"cases", std::move(nodes)}});
+    files::write_json(file,
+                      {{"format", kRecentFormat}, {"version", kRecentVersion}, {"cases", std::move(nodes)}});
   } catch (const std::exception&) {  // as the header says
   }
 }

@@ -12,6 +12,9 @@ constexpr int kKeptPerFrame = 10;
 // Fewer of either cannot outvote an edge or a highlight that happens to lie elsewhere.
 constexpr int kFewestOutlines = 8, kFewestPieces = 5;
 constexpr int kEnoughKept = 12;
+// A drift of this and more may be one of more than the drift test compares: how far, the search says, which
+// takes a few pictures.
+constexpr double kEdge_mm = 1.4;
 constexpr double kStill_px = 6;  // a picture that moves by more is smeared: nothing is kept of it
 
 }  // namespace
@@ -24,6 +27,8 @@ std::string_view to_text(ContourState state) {
       return "holds";
     case ContourState::Drifted:
       return "drifted";
+    case ContourState::LooksOtherwise:
+      return "does not look as it did";
   }
   return "unknown";
 }
@@ -47,7 +52,8 @@ ContourCheck::ContourCheck(const geometry::TriangleMesh& mesh, const ContourOpti
       visible_(mesh),
       memory_(visible_.places().size()),
       outline_test_(options.outline),
-      surface_test_(options.surface) {}
+      surface_test_(options.surface),
+      knock_(visible_.places().size(), options.knock) {}
 
 void ContourCheck::begin(const geometry::RigidTransform& world_from_bone) {
   end();
@@ -62,6 +68,7 @@ void ContourCheck::end() {
   memory_.forget();
   outline_test_.clear();
   surface_test_.clear();
+  knock_.clear();
   camera_from_bone_before_.reset();
   time_before_ns_ = 0;
   outline_settled_s_ = surface_settled_s_ = 0;
@@ -96,6 +103,8 @@ const ContourVerdict& ContourCheck::look(const camera::GrayView& luma, const cam
   ask_surface(luma, camera, camera_from_bone, covered, is_still(camera, camera_from_bone));
   camera_from_bone_before_ = camera_from_bone;
   conclude(elapsed_s);
+  if (verdict_.state != ContourState::Drifted)
+    knock_.search(visible_, memory_, luma, camera, camera_from_bone);
   return verdict_;
 }
 
@@ -130,7 +139,9 @@ void ContourCheck::ask_surface(const camera::GrayView& luma, const camera::Camer
   const DriftVerdict& so_far = surface_test_.verdict();
   // Only beside what was kept and is seen to lie where it lay: else a drift would be kept with it.
   const bool settles = surface_settled_s_ < options_.settle_s || memory_.count() < kEnoughKept;
-  may_keep = may_keep && (settles || (so_far.is_checked && so_far.lead < 0));
+  const bool lies_where_it_lay = so_far.is_checked && so_far.lead < 0;
+  const bool looks_as_it_did = settles || (lies_where_it_lay && knock_.agreement().agrees);
+  may_keep = may_keep && looks_as_it_did;
   int kept = 0;
   std::size_t compared = 0;
   for (std::size_t i = 0; i < seen.size() && compared < kPlacesPerFrame; ++i) {
@@ -139,6 +150,7 @@ void ContourCheck::ask_surface(const camera::GrayView& luma, const camera::Camer
     if (memory_.keeps(index)) {
       if (const auto map = memory_.compare(index, place, luma, camera, camera_from_bone, covered)) {
         surface_test_.add(*map);
+        knock_.add(index, *map, looks_as_it_did);
         ++verdict_.surface_pieces;
         ++compared;
       }
@@ -167,6 +179,8 @@ void ContourCheck::conclude(double elapsed_s) {
              has_surface = verdict_.surface_pieces >= kFewestPieces;
   const DriftVerdict& outline = outline_test_.judge(elapsed_s);
   const DriftVerdict& surface = surface_test_.judge(elapsed_s);
+  const KnockVerdict& knock = knock_.judge(elapsed_s);
+  const AgreementVerdict& agreement = knock_.agreement();
   outline_settled_s_ += has_outline ? elapsed_s : 0;
   surface_settled_s_ += has_surface ? elapsed_s : 0;
   if (!has_outline_reference_ && outline_settled_s_ >= options_.settle_s) {
@@ -182,14 +196,23 @@ void ContourCheck::conclude(double elapsed_s) {
   const bool by_outline = outline_counts && outline.has_drifted && !surface_holds,
              by_surface = surface_counts && surface.has_drifted;
   if (verdict_.state == ContourState::Drifted) return;
-  note_held(outline_counts, surface_counts);
+  if (!agreement.differs && !knock.is_looking) note_held(outline_counts, surface_counts);
+  verdict_.share_alike = agreement.is_asked ? agreement.share : 1;
   verdict_.share_seen =
       std::max(outline_counts ? outline.share_seen : 0, surface_counts ? surface.share_seen : 0);
-  if (by_outline || by_surface) {
+  const double drift_mm = by_surface ? surface.from_reference_mm : outline.from_reference_mm;
+  if ((by_outline || by_surface) && !(knock.is_looking && drift_mm > kEdge_mm)) {
     verdict_.state = ContourState::Drifted;
     verdict_.is_by_outline = !by_surface;
-    verdict_.drift_mm = by_surface ? surface.from_reference_mm : outline.from_reference_mm;
-  } else if ((outline_counts && outline.is_checked) || (surface_counts && surface.is_checked)) {
+    verdict_.drift_mm = std::max(drift_mm, knock.seen_mm);
+  } else if (knock.is_found) {
+    verdict_.state = ContourState::Drifted;
+    verdict_.is_by_outline = false;
+    verdict_.drift_mm = knock.knock_mm;
+  } else if (knock.is_otherwise) {
+    verdict_.state = ContourState::LooksOtherwise;
+  } else if (!agreement.differs &&
+             ((outline_counts && outline.is_checked) || (surface_counts && surface.is_checked))) {
     verdict_.state = ContourState::Holds;
   } else {
     verdict_.state = ContourState::NotChecked;

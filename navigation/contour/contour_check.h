@@ -8,10 +8,13 @@
 // and no registration is exact. The surface (surface_memory.h): what it looked like then must still lie where
 // it lay. Both by one sequential test (drift_test.h).
 //
+// A bone that was knocked further than the test compares looks like another one where it lay, all of it at
+// once. That is watched for by itself (knock_watch.h): it is found again up to 8 mm off and told as a drift,
+// or it is said that it does not look as it did.
+//
 // It can raise a doubt and nothing else: that nothing is seen to have moved makes no registration more sure.
-// It does not see what is along the line of sight alone, what is more than about 2 mm (see DriftTest), what
-// moves while nothing of the bone is in view, nor how far a registration was off from its beginning. What
-// cannot be told is NotChecked, with the reason.
+// It does not see what is along the line of sight alone, what moves while nothing of the bone is in view, nor
+// how far a registration was off from its beginning. What cannot be told is NotChecked, with the reason.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +25,7 @@
 #include "navigation/camera/frame.h"
 #include "navigation/contour/contour_verdict.h"
 #include "navigation/contour/drift_test.h"
+#include "navigation/contour/knock_watch.h"
 #include "navigation/contour/surface_memory.h"
 #include "navigation/contour/visible_bone.h"
 
@@ -32,6 +36,7 @@ struct ContourOptions {
   // a drift than of the surface, which is compared with itself.
   DriftTestOptions outline = {.lead_pieces = 3, .lead_share = 0.3, .holds_s = 0.5};
   DriftTestOptions surface;
+  KnockOptions knock;
   double settle_s = 1.0;  // with pictures that show enough
   // A surface that shows this share of drifts, and none, is believed before the outline: it is compared with
   // itself.
@@ -49,7 +54,10 @@ class ContourCheck {
   explicit ContourCheck(const geometry::TriangleMesh& mesh, const ContourOptions& options = {});
 
   // Pictures of up to that size will come.
-  void reserve_for(const Eigen::Vector2i& image_size_px) { visible_.reserve_for(image_size_px); }
+  void reserve_for(const Eigen::Vector2i& image_size_px) {
+    visible_.reserve_for(image_size_px);
+    knock_.reserve_for(image_size_px);
+  }
   // A registration stands from now on: what was seen under another one is forgotten, and a drift is over.
   void begin(const geometry::RigidTransform& world_from_bone);
   // None stands any more.
@@ -64,6 +72,7 @@ class ContourCheck {
   [[nodiscard]] const ContourVerdict& verdict() const { return verdict_; }
   [[nodiscard]] const DriftTest& outline_test() const { return outline_test_; }
   [[nodiscard]] const DriftTest& surface_test() const { return surface_test_; }
+  [[nodiscard]] const KnockWatch& knock() const { return knock_; }
   [[nodiscard]] const VisibleBone& visible() const { return visible_; }
 
  private:
@@ -81,6 +90,7 @@ class ContourCheck {
   VisibleBone visible_;
   SurfaceMemory memory_;
   DriftTest outline_test_, surface_test_;
+  KnockWatch knock_;
   bool has_begun_ = false, has_seen_bone_ = false, has_outline_reference_ = false;
   geometry::RigidTransform world_from_bone_;
   std::optional<geometry::RigidTransform> camera_from_bone_before_;

@@ -8,12 +8,15 @@ namespace arthronaut::contour {
 
 enum class ContourState {
   NotChecked,
-  Holds,    // enough is seen, and no displacement up to 1.75 mm fits better; one by more fits none of them
-  Drifted,  // it does not; stays until begin()
+  Holds,    // enough is seen, and no displacement up to 1.75 mm fits better
+  Drifted,  // it does not, or it was found again up to 8 mm off; stays until begin()
+  // What is seen is not what was seen there, as after a hard knock, and it was not found again: until it
+  // looks as it did for a second, or begin().
+  LooksOtherwise,
 };
 [[nodiscard]] std::string_view to_text(ContourState state);
 
-// Why it is NotChecked. TooLittleInView: of what looks as it did; so it is after a hard knock, too.
+// Why it is NotChecked. TooLittleInView: of what looks as it did.
 enum class NotCheckedReason { NoRegistration, NoPose, Settling, TooLittleInView };
 [[nodiscard]] std::string_view to_text(NotCheckedReason reason);
 
@@ -23,6 +26,7 @@ struct ContourVerdict {
   NotCheckedReason reason = NotCheckedReason::NoRegistration;
   double share_seen = 0;                       // of directions in which a drift by 1 mm would be told
   int outline_pieces = 0, surface_pieces = 0;  // that this frame was asked about
+  double share_alike = 1;                      // of pieces of surface that can be compared: look as they did
   // With Drifted, as it was told: by which of the two, and about how far, of what can be seen of it.
   bool is_by_outline = false;
   double drift_mm = 0;

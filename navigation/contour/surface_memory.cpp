@@ -15,6 +15,11 @@ constexpr float kBlownOut = 245;
 constexpr float kLeastContrast = 0.012f, kDark = 10;
 constexpr double kLeast_px_per_mm = 6;
 constexpr double kRim_px = 8;
+// How much less, or more, contrast than it had a piece may show to be looked at for where it lies: a film, a
+// smear or a highlight over it is no other place of the bone.
+constexpr float kDimmer = 0.4f, kStarker = 2.5f;
+// The same of its brightness: in the dark what is seen is the sensor's noise.
+constexpr float kDarker = 0.5f, kBrighter = 2.5f;
 // A piece is compared with what is seen from no other side, and neither much nearer nor much further off.
 constexpr float kSameSide = 0.82f, kNearer = 0.6f, kFurther = 1.67f;
 
@@ -62,6 +67,68 @@ bool read_field(const SurfacePlace& place, const camera::GrayView& luma, const c
   return true;
 }
 
+using PieceSamples = std::array<float, static_cast<std::size_t>(kPieceSide) * kPieceSide>;
+
+// Sum of the squares of -half ... half, over all rows.
+constexpr float kSlopeSquares = kPieceSide * 2.0f * (1 + 4 + 9 + 16);
+static_assert(kPieceHalf == 4, "kSlopeSquares");
+
+// Of samples with mean 0 and norm 1. Returns what share of their root mean square is grain; the grain then
+// has norm 1 as well.
+float take_grain(const PieceSamples& samples, PieceSamples& grain) {
+  float along_x = 0, along_y = 0;
+  std::size_t k = 0;
+  for (int y = -kPieceHalf; y <= kPieceHalf; ++y)
+    for (int x = -kPieceHalf; x <= kPieceHalf; ++x, ++k) {
+      along_x += static_cast<float>(x) * samples[k];
+      along_y += static_cast<float>(y) * samples[k];
+    }
+  along_x /= kSlopeSquares;
+  along_y /= kSlopeSquares;
+  float squares = 0;
+  k = 0;
+  for (int y = -kPieceHalf; y <= kPieceHalf; ++y)
+    for (int x = -kPieceHalf; x <= kPieceHalf; ++x, ++k) {
+      grain[k] = samples[k] - along_x * static_cast<float>(x) - along_y * static_cast<float>(y);
+      squares += grain[k] * grain[k];
+    }
+  const float norm = std::sqrt(squares);
+  for (float& value : grain) value /= std::max(norm, 1e-6f);
+  return norm;
+}
+
+// The grain about where the piece was kept, and its contrast there.
+void hold_grain(const PieceSamples& grain, float contrast_then, float brightness_then, const Field& field,
+                ShiftMap& map) {
+  for (int dv = kShifts - 1; dv <= kShifts + 1; ++dv) {
+    for (int du = kShifts - 1; du <= kShifts + 1; ++du) {
+      float sum = 0, squares = 0, product = 0, along_x = 0, along_y = 0;
+      for (int j = 0; j < kPieceSide; ++j) {
+        const float* const row = field.data() + (dv + j) * kField + du;
+        const float* const kept = grain.data() + j * kPieceSide;
+        for (int i = 0; i < kPieceSide; ++i) {
+          sum += row[i];
+          squares += row[i] * row[i];
+          product += row[i] * kept[i];
+          along_x += static_cast<float>(i - kPieceHalf) * row[i];
+          along_y += static_cast<float>(j - kPieceHalf) * row[i];
+        }
+      }
+      constexpr float kCount = kPieceSide * kPieceSide;
+      const float mean = sum / kCount;
+      const float slope = (along_x * along_x + along_y * along_y) / kSlopeSquares;
+      const float deviation = std::sqrt(std::max(0.0f, (squares - slope) / kCount - mean * mean));
+      const float floor = 0.25f * kLeastContrast * (mean + kDark);
+      map.in_place = std::max(map.in_place, product / (kPieceSide * std::max(deviation, floor)));
+      if (du != kShifts || dv != kShifts) continue;
+      const float contrast = deviation / (mean + kDark);
+      const float brightness = (mean + kDark) / brightness_then;
+      map.is_as_clear = contrast > kDimmer * contrast_then && contrast < kStarker * contrast_then &&
+                        brightness > kDarker && brightness < kBrighter;
+    }
+  }
+}
+
 }  // namespace
 
 SurfaceMemory::SurfaceMemory(std::size_t place_count) : pieces_(place_count) {}
@@ -86,6 +153,8 @@ bool SurfaceMemory::keep(std::size_t index, const SurfacePlace& place, const cam
   Eigen::Map<Eigen::ArrayXf>(piece.samples.data(), kPieceSide * kPieceSide) =
       (seen - mean) / (deviation * kPieceSide);
   piece.to_eye = (camera_from_bone.inverse().translation_mm - place.in_bone_mm).cast<float>();
+  piece.brightness = mean + kDark;
+  piece.contrast = take_grain(piece.samples, piece.grain) * deviation / (mean + kDark);
   piece.is_kept = true;
   ++count_;
   return true;
@@ -131,6 +200,7 @@ std::optional<ShiftMap> SurfaceMemory::compare(std::size_t index, const SurfaceP
       total += likeness;
     }
   }
+  hold_grain(piece.grain, piece.contrast, piece.brightness, field, map);
   for (float& likeness : map.likeness) likeness -= total / (kShiftSide * kShiftSide);
   // What lies at p + t is seen where its line of sight meets the plane: p + t - r (n.t) / (n.r).
   const Eigen::Vector3d ray = to_eye.normalized();

@@ -28,6 +28,10 @@ struct ShiftMap {
   std::array<float, kShiftSide * kShiftSide> likeness{};
   // The shift, in steps along u and v, that a bone shows which lies t mm further: d shift / d t.
   Eigen::Matrix<float, 2, 3> shift_per_mm = Eigen::Matrix<float, 2, 3>::Zero();
+  // The best correlation of the grain within one shift of none, 0 to 1. Of the grain alone, what is left of a
+  // piece without its plane of brightness: how light falls off over a bone is much the same everywhere.
+  float in_place = 0;
+  bool is_as_clear = false;  // the picture there has about the contrast and brightness that it had
 };
 
 // Allocates nothing after the construction.
@@ -48,14 +52,21 @@ class SurfaceMemory {
             const camera::CameraModel& camera, const geometry::RigidTransform& camera_from_bone,
             std::span<const Covered> covered);
   [[nodiscard]] bool keeps(std::size_t index) const { return pieces_[index].is_kept; }
+  // The grain of a place that something is kept of: rows along v, norm 1, without mean and slope.
+  [[nodiscard]] const std::array<float, kPieceSide * kPieceSide>& grain(std::size_t index) const {
+    return pieces_[index].grain;
+  }
   [[nodiscard]] int count() const { return count_; }
   void forget();
 
  private:
   struct Piece {
     bool is_kept = false;
+    float contrast = 0;                                    // of its grain, when it was kept
+    float brightness = 0;                                  // then, above black
     Eigen::Vector3f to_eye = Eigen::Vector3f::Zero();      // in the bone's frame, mm, when it was kept
     std::array<float, kPieceSide * kPieceSide> samples{};  // mean 0, norm 1
+    std::array<float, kPieceSide * kPieceSide> grain{};
   };
   std::vector<Piece> pieces_;
   int count_ = 0;

@@ -6,6 +6,15 @@ namespace arthronaut::operation {
 void Operation::Parts::end_contour() {
   if (contour.check) contour.check->end();
   contour.drift.reset();
+  contour.looks_otherwise.reset();
+  contour.is_in_doubt = false;
+}
+
+// The probe, or the surgeon, has said that the bone lies where it lay.
+void Operation::Parts::look_anew() {
+  contour.looks_otherwise.reset();
+  contour.is_in_doubt = false;
+  contour.begins_anew = true;
 }
 
 void Operation::Parts::expect_pictures(const Eigen::Vector2i& size_px) {
@@ -25,9 +34,10 @@ void Operation::Parts::check_contour(const camera::Frame& picture) {
     if (!told_it) contour.check->end();
     return;
   }
-  if (!contour.check->has_begun() || contour.change != ledger.change_count()) {
+  if (!contour.check->has_begun() || contour.change != ledger.change_count() || contour.begins_anew) {
     contour.check->begin(in_force.registration->marker_from_bone);
     contour.change = ledger.change_count();
+    contour.begins_anew = false;
   }
   std::optional<geometry::RigidTransform> camera_from_world;
   contour.covered.clear();
@@ -47,13 +57,26 @@ void Operation::Parts::check_contour(const camera::Frame& picture) {
   const contour::ContourVerdict& verdict =
       contour.check->look(camera::luma_of(picture, contour.luma), frame.camera, camera_from_world,
                           contour.covered.places(), frame.timestamp_ns);
-  if (verdict.state == contour::ContourState::Drifted && !setup.hears_of_drifts)
+  if (setup.hears_of_drifts) return;
+  if (verdict.state == contour::ContourState::Drifted)
     contour.drift = {verdict.drift_mm, verdict.held_until_ns};
+  // Where nothing is checked, a doubt stays.
+  const bool looks_otherwise = verdict.state == contour::ContourState::LooksOtherwise;
+  if ((looks_otherwise || verdict.state == contour::ContourState::Holds) &&
+      looks_otherwise != contour.is_in_doubt)
+    contour.looks_otherwise = looks_otherwise;
 }
 
 // It is told a second or more after the bone has moved. A control point that was set meanwhile says that the
 // bone lies where it lies now, and nothing of whether it moved.
 void Operation::Parts::take_drift() {
+  if (const auto otherwise = std::exchange(contour.looks_otherwise, std::nullopt);
+      otherwise && *otherwise != contour.is_in_doubt && ledger.in_force().standing == Standing::Stands) {
+    note(JournalKind::BoneLooks, std::string(*otherwise ? kLooksOtherwise : kLooksAsItDid));
+    contour.is_in_doubt = *otherwise;
+    contour.doubt_has_control_point = ledger.touches().has_control_point();
+    changed = true;
+  }
   if (!contour.drift) return;
   const SeenDrift drift = *std::exchange(contour.drift, std::nullopt);
   if (ledger.in_force().standing != Standing::Stands) return;

@@ -162,6 +162,11 @@ void Operation::tell_bone_moved(const SeenDrift& drift) {
   parts_->take_drift();
 }
 
+void Operation::tell_bone_looks(bool otherwise) {
+  parts_->contour.looks_otherwise = otherwise;
+  parts_->take_drift();
+}
+
 void Operation::take_look(const MediumLookPtr& look) { parts_->take_look(look); }
 std::optional<MediumLookRequest> Operation::take_look_request() {
   return std::exchange(parts_->medium.request, std::nullopt);

@@ -41,7 +41,8 @@ struct OperationSetup {
   // Nobody is at the pedal: while the guide is seen and no registration of all strokes stands, one is asked
   // for whenever the probe has drawn this much more.
   std::optional<double> registers_after_mm;
-  // A run from a record: that the bone has moved is told by tell_bone_moved() alone, whatever pictures show.
+  // A run from a record: that the bone has moved, or looks otherwise, is told by tell_bone_moved() and
+  // tell_bone_looks() alone, whatever pictures show.
   bool hears_of_drifts = false;
 };
 // What a registration found with this source is of.
@@ -82,6 +83,8 @@ class Operation {
   // That the picture showed the bone so far from where it lay, as the journal of another run says: for frames
   // of a record. Nothing without a registration that stands, or where a picture has just told it.
   void tell_bone_moved(const SeenDrift& drift);
+  // The same of a bone that does not look as it did, or does again.
+  void tell_bone_looks(bool otherwise);
 
   // The picture of the newest frame is to be seen in the other medium; once for each.
   [[nodiscard]] std::optional<MediumLookRequest> take_look_request();

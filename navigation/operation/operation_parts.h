@@ -65,6 +65,7 @@ struct Operation::Parts {
   void check_contour(const camera::Frame& picture);
   void take_drift();
   void end_contour();
+  void look_anew();
   void expect_pictures(const Eigen::Vector2i& size_px);
   void draw_tip();
   void watch_marker();
@@ -87,7 +88,10 @@ struct Operation::Parts {
   void apply(const Draw& draw) { draws = has_source && draw.on; }
   void apply(const TakeTouch&) { take_touch(false); }
   void apply(const TouchControlPoint&) { take_touch(true); }
-  void apply(const ForgetTouches&) { ledger.forget_touches(); }
+  void apply(const ForgetTouches&) {
+    look_anew();
+    ledger.forget_touches();
+  }
   void apply(const TakeBackStroke&) {
     ask(StrokesTakenBack{strokes.take_back()});
     strokes_changed();
@@ -186,6 +190,10 @@ struct Operation::Parts {
     // Told by the newest picture: in force with the next one, between the two, as everything that a run from
     // the record alone has to hear of.
     std::optional<SeenDrift> drift;
+    std::optional<bool> looks_otherwise;
+    // In force: it does not look as it did, and whether a control point was set before it was told.
+    bool is_in_doubt = false, doubt_has_control_point = false;
+    bool begins_anew = false;  // what it looks like now is how it looks
   } contour;
   struct Drilling {
     std::optional<guidance::DrillEvidence> evidence;  // of the plan in force

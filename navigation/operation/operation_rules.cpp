@@ -43,6 +43,7 @@ void Operation::Parts::hand_registration() {
 void Operation::Parts::follow_ledger() {
   const RegistrationInForce& in_force = ledger.in_force();
   const bool is_another = ledger.change_count() != followed.change;
+  if (is_another || in_force.standing != Standing::Stands) contour.is_in_doubt = false;
   if (is_another) {
     followed.change = ledger.change_count();
     if (pipeline != nullptr) hand_registration();
@@ -277,6 +278,9 @@ void Operation::Parts::take_touch(bool is_control_point) {
   in_view.control_touched_ns = frame.timestamp_ns;
   in_view.was_lost_for_long = false;
   ledger.touch_control_point(*tip_mm);
+  if (!contour.is_in_doubt || !contour.doubt_has_control_point) return;
+  const auto shift_mm = ledger.touches().last().distance_mm;
+  if (shift_mm && *shift_mm <= setup.limits.max_control_shift_mm) look_anew();
 }
 
 void Operation::Parts::apply(const OfferPlan& offer) {
@@ -334,6 +338,8 @@ void Operation::Parts::apply(const GiveRegistration& give) {
 
 ControlPointDue Operation::Parts::control_point_due() const {
   if (!has_source || ledger.in_force().standing != Standing::Stands) return ControlPointDue::None;
+  if (contour.is_in_doubt)
+    return contour.doubt_has_control_point ? ControlPointDue::CheckLooks : ControlPointDue::CannotCheckLooks;
   if (!ledger.touches().has_control_point()) return ControlPointDue::Set;
   if (in_view.was_lost_for_long) return ControlPointDue::CheckAfterLoss;
   return in_view.guide_was_seen && frame.timestamp_ns - in_view.control_touched_ns > kControlHolds_ns

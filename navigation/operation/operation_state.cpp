@@ -166,6 +166,7 @@ NextAction next_action_of(const OperationState& state) {
   if (in_force.standing != Standing::Stands) return action_without_registration(state);
   const bool guides = state.frame.guidance.is_valid();
   if (state.verification == Verification::NotYet && !guides) return NextAction::VerifyByTouch;
+  if (state.control_point_due == ControlPointDue::CannotCheckLooks) return NextAction::VerifyByTouch;
   if (state.control_point_due == ControlPointDue::Set && !guides) return NextAction::SetControlPoint;
   if (state.control_point_due > ControlPointDue::Set) return NextAction::CheckControlPoint;
   if (!state.guide_check.may_guide())

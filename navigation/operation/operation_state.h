@@ -61,7 +61,15 @@ enum class Verification { NotYet, ByTouches, Skipped };
 enum class TimeOut { NotAsked, Due, Confirmed };
 
 // What the control point is wanted for.
-enum class ControlPointDue { None, Set, CheckBeforeDrilling, CheckAfterLoss };
+enum class ControlPointDue {
+  None,
+  Set,
+  CheckBeforeDrilling,
+  CheckAfterLoss,
+  CheckLooks,  // the picture does not show the bone as it did
+  // So it is, and no control point was set before: one that is set now learns where the bone lies since.
+  CannotCheckLooks,
+};
 
 // The nine steps of an operation.
 enum class Step { Plan, Calibrate, WorldMarker, Tools, Digitise, Register, Verify, Guide, Finish };

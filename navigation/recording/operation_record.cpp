@@ -47,6 +47,8 @@ std::string_view kind_of(JournalKind kind) {
       return kLookEvent;
     case JournalKind::BoneMoved:
       return kBoneMovedEvent;
+    case JournalKind::BoneLooks:
+      return kBoneLooksEvent;
     case JournalKind::SourceStarted:
       return kSourceStartedEvent;
     case JournalKind::SourceEnded:

@@ -162,6 +162,8 @@ void Rerun::play(const SessionEvent& event) {
   } else if (event.kind == kBoneMovedEvent) {
     operation_.tell_bone_moved(
         operation::seen_drift_from_text(event.text, database_file(session_->folder()).string()));
+  } else if (event.kind == kBoneLooksEvent) {
+    operation_.tell_bone_looks(event.text == operation::kLooksOtherwise);
   } else if (event.kind == kSourceEndedEvent) {
     operation_.end_source();
   } else if (!has_journal_ && event.kind == kPlanEvent) {

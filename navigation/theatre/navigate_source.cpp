@@ -92,6 +92,7 @@ class Navigation {
     summary_.last_state = frame.guidance.state;
     summary_.frames_registered += state->registration->in_force.standing == operation::Standing::Stands;
     summary_.frames_bone_seen += state->contour.state == contour::ContourState::Holds;
+    summary_.frames_bone_otherwise += state->contour.state == contour::ContourState::LooksOtherwise;
     if (frame.guidance.is_valid()) {
       ++summary_.frames_with_guidance;
       summary_.last_guidance = frame.guidance;

@@ -58,7 +58,7 @@ struct NavigationSummary {
   long frames_with_tip = 0, frames_with_guidance = 0;
   // Frames in which a registration stood, and those of them whose picture was seen to show the bone where it
   // lay.
-  long frames_registered = 0, frames_bone_seen = 0;
+  long frames_registered = 0, frames_bone_seen = 0, frames_bone_otherwise = 0;
   guidance::GuidanceNumbers last_guidance;  // the last valid one; not valid when there was none
   guidance::GuidanceState last_state = guidance::GuidanceState::NoPlan;
   operation::DrilledState drilled;

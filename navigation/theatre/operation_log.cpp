@@ -33,6 +33,8 @@ std::string what_of(const JournalEntry& entry) {
       return "";  // the journal has them all
     case JournalKind::BoneMoved:
       return "bone moved in the picture, mm";
+    case JournalKind::BoneLooks:
+      return "bone looks";
     case JournalKind::SourceStarted:
       return "source started";
     case JournalKind::SourceEnded:

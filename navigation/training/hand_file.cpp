@@ -100,9 +100,10 @@ void write_hand_file(const std::filesystem::path& file, const std::vector<simula
     if (i == 0 || !is_same(before, frames[i].input))
       pushes.push_back(json_of(frames[i].frame, frames[i].input));
   }
-  files::write_json(
-      file,
-      {{"format", kHandFormat}, {"version", kHandVersion}, {"frames", frames.size()}, {"pushes", std::move(pushes)}});
+  files::write_json(file, {{"format", kHandFormat},
+                           {"version", kHandVersion},
+                           {"frames", frames.size()},
+                           {"pushes", std::move(pushes)}});
 }
 
 }  // namespace arthronaut::training

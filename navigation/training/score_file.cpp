@@ -109,7 +109,8 @@ void write_score_file(const fs::path& file, const Score& score) {
 std::vector<Score> read_training_file(const fs::path& file) {
   std::vector<Score> scores;
   if (!fs::exists(file)) return scores;
-  for (const files::JsonObject& node : files::read_json(file, kTrainingFormat, kScoreVersion).objects("scores"))
+  for (const files::JsonObject& node :
+       files::read_json(file, kTrainingFormat, kScoreVersion).objects("scores"))
     scores.push_back(score_from(node));
   return scores;
 }
@@ -122,7 +123,8 @@ void add_to_training_file(const fs::path& file, const Score& score) {
   scores.push_back(score);
   auto nodes = ordered_json::array();
   for (const Score& one : scores) nodes.push_back(json_of(one));
-  files::write_json(file, {{"format", kTrainingFormat}, {"version", kScoreVersion}, {"scores", std::move(nodes)}});
+  files::write_json(file,
+                    {{"format", kTrainingFormat}, {"version", kScoreVersion}, {"scores", std::move(nodes)}});
 }
 
 fs::path training_file() {

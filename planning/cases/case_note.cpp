@@ -33,8 +33,10 @@ void save_note_over(const fs::path& case_folder, const std::string& text, const 
     throw InvalidInput(file, "", "was changed meanwhile by another program; nothing was written");
   if (text == made_from) return;
   if (text.empty()) return remove_private_json(file);
-  write_private_json(
-      file, {{"format", kNoteFormat}, {"version", kNoteVersion}, {"text", text}, {"changed_utc", files::utc_now()}});
+  write_private_json(file, {{"format", kNoteFormat},
+                            {"version", kNoteVersion},
+                            {"text", text},
+                            {"changed_utc", files::utc_now()}});
 }
 
 }  // namespace arthronaut::cases

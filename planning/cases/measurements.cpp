@@ -35,7 +35,8 @@ std::vector<Measurement> load_measurements(const fs::path& case_folder) {
   std::vector<Measurement> measurements;
   const fs::path file = measurements_file(case_folder);
   if (!fs::exists(file)) return measurements;
-  for (const auto& node : files::read_json(file, kMeasurementsFormat, kMeasurementsVersion).objects("measurements")) {
+  for (const auto& node :
+       files::read_json(file, kMeasurementsFormat, kMeasurementsVersion).objects("measurements")) {
     Measurement measurement;
     for (const auto& point : node.objects("points")) measurement.points_mm.push_back(point.vector3("mm"));
     if (measurement.points_mm.size() != 2 && measurement.points_mm.size() != 3)
@@ -67,7 +68,9 @@ void save_measurements(const fs::path& case_folder, const std::vector<Measuremen
       node["distance_mm"] = measurement.distance_mm();
     nodes.push_back(std::move(node));
   }
-  files::write_json(file, {{"format", kMeasurementsFormat}, {"version", kMeasurementsVersion}, {"measurements", std::move(nodes)}});
+  files::write_json(file, {{"format", kMeasurementsFormat},
+                           {"version", kMeasurementsVersion},
+                           {"measurements", std::move(nodes)}});
 }
 
 }  // namespace arthronaut::cases

@@ -38,7 +38,8 @@ Studies load_studies(const fs::path& case_folder) {
   const fs::path file = study_file(case_folder);
   if (!fs::exists(file)) return {};
   Studies studies;
-  for (const files::JsonObject& study : files::read_json(file, kStudyFormat, kStudyVersion).objects("studies")) {
+  for (const files::JsonObject& study :
+       files::read_json(file, kStudyFormat, kStudyVersion).objects("studies")) {
     DicomOrigin origin;
     for (const auto& [key, text] : kTexts) origin.*text = study.text(key);
     if (origin.is_empty()) study.fail("study_uid", "is empty");

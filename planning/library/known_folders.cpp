@@ -96,8 +96,9 @@ void change_known_folders(const fs::path& data_folder, std::span<const fs::path>
   auto names = nlohmann::ordered_json::array();
   for (const fs::path& folder : folders) names.push_back(escaped(folder.string()));
   files::create_private_folder(data_folder);
-  files::write_json(known_folders_file(data_folder),
-                    {{"format", kFoldersFormat}, {"version", kFoldersVersion}, {"folders", std::move(names)}});
+  files::write_json(
+      known_folders_file(data_folder),
+      {{"format", kFoldersFormat}, {"version", kFoldersVersion}, {"folders", std::move(names)}});
 }
 
 }  // namespace arthronaut::library

@@ -15,15 +15,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
 #include <random>
 #include <string>
 
 #include "navigation/contour/contour_check.h"
-#include "navigation/contour/covered.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/quantile.h"
-#include "tests/benchmarks/contour_clips.h"
+#include "tests/benchmarks/contour_showing.h"
 
 namespace arthronaut::contour_clips {
 namespace {
@@ -36,12 +34,6 @@ struct Choice {
   bool with_guide = false;
   double size_mm = 1;
 };
-
-double thread_ms() {
-  std::timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 struct Tally {
   double clean_s = 0, checked_s = 0;
@@ -65,53 +57,6 @@ struct Tally {
   }
 };
 
-geometry::Vector6d noise(std::mt19937_64& random, double mm, double deg) {
-  std::normal_distribution<double> normal;
-  geometry::Vector6d twist;
-  for (int i = 0; i < 3; ++i) twist[i] = mm * normal(random);
-  for (int i = 3; i < 6; ++i) twist[i] = geometry::rad_from_deg(deg) * normal(random);
-  return twist;
-}
-
-// A clip shown again and again, there and back.
-class Showing {
- public:
-  explicit Showing(const Clip& clip) : clip_(clip) {
-    step_ns_ = clip.looks.size() > 1 ? clip.looks[1].timestamp_ns - clip.looks[0].timestamp_ns : 33'333'333;
-  }
-  [[nodiscard]] const Look& look(std::size_t frame) const {
-    const std::size_t n = clip_.looks.size(), at = frame % (2 * n);
-    return clip_.looks[at < n ? at : 2 * n - 1 - at];
-  }
-  [[nodiscard]] std::int64_t time_ns(std::size_t frame) const {
-    return (static_cast<std::int64_t>(frame) + 1) * step_ns_;
-  }
-  [[nodiscard]] double step_s() const { return 1e-9 * static_cast<double>(step_ns_); }
-
- private:
-  const Clip& clip_;
-  std::int64_t step_ns_;
-};
-
-// world_from_bone as registered; world_moves: how the marker was bumped, once it was.
-const contour::ContourVerdict& look_at(contour::ContourCheck& check, contour::CoveredPlaces& covered,
-                                       const Clip& clip, const Look& look, std::int64_t time_ns,
-                                       const geometry::RigidTransform& world_moves, Tally& tally) {
-  covered.clear();
-  if (look.is_valid)
-    covered.add_world_marker(look.camera, look.camera_from_world, clip.tools.world_markers.front());
-  for (std::size_t i = 0; i < look.camera_from_tool.size(); ++i)
-    if (look.tool_is_tracked[i]) covered.add_tool(look.camera, look.camera_from_tool[i], clip.tools.tools[i]);
-  const Eigen::Vector2i size = look.camera.image_size_px();
-  const double before = thread_ms();
-  const auto& verdict =
-      check.look({look.luma.data(), size.x(), size.y(), size.x()}, look.camera,
-                 look.is_valid ? std::optional(look.camera_from_world * world_moves) : std::nullopt,
-                 covered.places(), time_ns);
-  tally.ms.push_back(thread_ms() - before);
-  return verdict;
-}
-
 Tally run_clean(const Clip& clip, contour::ContourCheck& check, int rounds, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   contour::CoveredPlaces covered;
@@ -120,7 +65,8 @@ Tally run_clean(const Clip& clip, contour::ContourCheck& check, int rounds, std:
   check.begin(geometry::exp(noise(random, 0.3, 0.3)) * clip.world_from_bone);
   ++tally.clean_runs;
   for (std::size_t i = 0; i < static_cast<std::size_t>(rounds) * clip.looks.size(); ++i) {
-    const auto& verdict = look_at(check, covered, clip, showing.look(i), showing.time_ns(i), {}, tally);
+    const auto& verdict = look_at(check, covered, clip, showing.look(i), showing.look(i).luma,
+                                  showing.time_ns(i), {}, tally.ms);
     tally.clean_s += showing.step_s();
     tally.checked_s += verdict.state == contour::ContourState::Holds ? showing.step_s() : 0;
     if (verdict.state == contour::ContourState::Holds) {
@@ -181,8 +127,8 @@ void run_drift(const Clip& clip, contour::ContourCheck& check, double size_mm, s
   ++tally.drifts;
   tally.along += is_along;
   for (std::size_t i = 0; i < from; ++i) {
-    if (look_at(check, covered, clip, showing.look(i), showing.time_ns(i), {}, tally).state !=
-        contour::ContourState::Drifted)
+    if (look_at(check, covered, clip, showing.look(i), showing.look(i).luma, showing.time_ns(i), {}, tally.ms)
+            .state != contour::ContourState::Drifted)
       continue;
     std::fprintf(stderr, "false alarm on %s before the drift, after %.1f s, by the %s: %.2f mm\n",
                  clip.name.c_str(), 1e-9 * static_cast<double>(showing.time_ns(i)),
@@ -192,7 +138,8 @@ void run_drift(const Clip& clip, contour::ContourCheck& check, double size_mm, s
   }
   bool was_checked = check.verdict().state == contour::ContourState::Holds;
   for (std::size_t i = from; showing.time_ns(i) < showing.time_ns(from) + 5'000'000'000; ++i) {
-    const auto& verdict = look_at(check, covered, clip, showing.look(i), showing.time_ns(i), moved, tally);
+    const auto& verdict = look_at(check, covered, clip, showing.look(i), showing.look(i).luma,
+                                  showing.time_ns(i), moved, tally.ms);
     const double delay_s = 1e-9 * static_cast<double>(showing.time_ns(i) - showing.time_ns(from));
     was_checked = was_checked || (verdict.state == contour::ContourState::Holds && delay_s < 2);
     if (verdict.state != contour::ContourState::Drifted) continue;

@@ -76,6 +76,9 @@ TEST(ContourRows, SayWhetherTheBoneLiesWhereItLayOrWhyThatIsNotChecked) {
   state.contour.state = contour::ContourState::Holds;
   EXPECT_EQ(contour_rows(state)[0].text, "no shift of 1 to 1.7 mm seen");
   EXPECT_EQ(contour_rows(state)[0].severity, Severity::Quiet);
+  state.contour.state = contour::ContourState::LooksOtherwise;
+  EXPECT_EQ(contour_rows(state)[0].text, "does not look as it did");
+  EXPECT_EQ(contour_rows(state)[0].severity, Severity::Caution);
   state.contour.state = contour::ContourState::Drifted;
   state.contour.drift_mm = 1.14;
   EXPECT_EQ(contour_rows(state)[0].text, "1.1 mm from where it lay");

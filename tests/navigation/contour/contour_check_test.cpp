@@ -3,50 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "tests/counted_allocations.h"
-#include "tests/navigation/contour/rendered_bone.h"
+#include "tests/navigation/contour/watched_ball.h"
 
 namespace arthronaut::contour {
 namespace {
 
-constexpr std::int64_t kFrame_ns = 1'000'000'000 / 15;
-
-// The lens looks about; the bone lies where its marker and the registration say, but for `drift`.
-class Watched {
- public:
-  explicit Watched(const geometry::RigidTransform& registration_error = {})
-      : check_(ball_mesh()), picture_(ball_mesh()) {
-    check_.begin(registration_error);
-  }
-  const ContourVerdict& look(const geometry::RigidTransform& drift = {},
-                             std::span<const Covered> covered = {}) {
-    const geometry::RigidTransform camera_from_world = before_the_lens(0.08 * std::sin(0.06 * frames_));
-    const camera::GrayView luma = picture_.draw(camera_from_world * drift);
-    return check_.look(luma, picture_.camera(), camera_from_world, covered, ++frames_ * kFrame_ns);
-  }
-  void watch(double seconds, const geometry::RigidTransform& drift = {}) {
-    for (int i = 0; i < 15 * seconds; ++i) (void)look(drift);
-  }
-  // Empty: not told.
-  std::optional<double> told_after_s(const geometry::RigidTransform& drift) {
-    for (int i = 1; i < 60; ++i)
-      if (look(drift).state == ContourState::Drifted) return i / 15.0;
-    return std::nullopt;
-  }
-  ContourCheck& check() { return check_; }
-  RenderedBone& picture() { return picture_; }
-
- private:
-  ContourCheck check_;
-  RenderedBone picture_;
-  std::int64_t frames_ = 0;
-};
-
-geometry::RigidTransform moved_by(const Eigen::Vector3d& by_mm) {
-  return {Eigen::Quaterniond::Identity(), by_mm};
-}
-
 TEST(ContourCheck, HoldsWhileTheBoneLiesWhereItLay) {
-  Watched watched;
+  WatchedBall watched;
   EXPECT_EQ(watched.look().reason, NotCheckedReason::Settling);
   watched.watch(3);
   EXPECT_EQ(watched.check().verdict().state, ContourState::Holds);
@@ -55,7 +18,7 @@ TEST(ContourCheck, HoldsWhileTheBoneLiesWhereItLay) {
 
 // A registration that was never exact is no drift either.
 TEST(ContourCheck, HoldsForARegistrationThatIsOffFromTheBeginning) {
-  Watched watched(geometry::exp((geometry::Vector6d() << 0.4, -0.3, 0.2, 0.01, -0.01, 0.01).finished()));
+  WatchedBall watched(geometry::exp((geometry::Vector6d() << 0.4, -0.3, 0.2, 0.01, -0.01, 0.01).finished()));
   watched.watch(8);
   EXPECT_EQ(watched.check().verdict().state, ContourState::Holds);
 }
@@ -63,7 +26,7 @@ TEST(ContourCheck, HoldsForARegistrationThatIsOffFromTheBeginning) {
 TEST(ContourCheck, TellsAMillimetreWithinTwoSeconds) {
   for (const Eigen::Vector3d& drift :
        {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(-0.6, 0.6, 0.5)}) {
-    Watched watched;
+    WatchedBall watched;
     watched.watch(4);
     const auto after_s = watched.told_after_s(moved_by(drift.normalized()));
     ASSERT_TRUE(after_s) << drift.transpose();
@@ -90,7 +53,7 @@ TEST(ContourCheck, WhatIsCoveredIsNotSeenToHold) {
 }
 
 TEST(ContourCheck, SaysWhyNothingIsChecked) {
-  Watched watched;
+  WatchedBall watched;
   watched.watch(3);
   const auto& blind = watched.check().look({}, watched.picture().camera(), std::nullopt, {}, 4'000'000'000);
   EXPECT_EQ(blind.state, ContourState::NotChecked);
@@ -114,14 +77,14 @@ TEST(ContourCheck, NoPictureAllocatesWhereItsSizeWasTold) {
   check.reserve_for({luma.width, luma.height});
   test::start_counting_allocations();
   check.begin({});
-  for (int i = 1; i < 60; ++i) (void)check.look(luma, picture.camera(), view, {}, i * kFrame_ns);
+  for (int i = 1; i < 60; ++i) (void)check.look(luma, picture.camera(), view, {}, i * kBallFrame_ns);
   EXPECT_EQ(test::stop_counting_allocations(), 0);
   EXPECT_EQ(check.verdict().state, ContourState::Holds);
 }
 
 // The same pictures give the same verdicts to the last bit, and no picture allocates.
 TEST(ContourCheck, IsDeterministicAndAllocatesNothing) {
-  Watched one, two;
+  WatchedBall one, two;
   for (int i = 0; i < 40; ++i) {
     const ContourVerdict a = one.look(), b = two.look();
     EXPECT_EQ(a.state, b.state);
@@ -133,7 +96,7 @@ TEST(ContourCheck, IsDeterministicAndAllocatesNothing) {
   (void)one.check().look(luma, one.picture().camera(), view, {}, 9'000'000'000);
   test::start_counting_allocations();
   for (int i = 1; i < 40; ++i)
-    (void)one.check().look(luma, one.picture().camera(), view, {}, 9'000'000'000 + i * kFrame_ns);
+    (void)one.check().look(luma, one.picture().camera(), view, {}, 9'000'000'000 + i * kBallFrame_ns);
   EXPECT_EQ(test::stop_counting_allocations(), 0);
 }
 

@@ -35,6 +35,10 @@ class BoneMoved : public ::testing::Test {
     run_.operation().tell_bone_moved({drift_mm, held_until_ns});
     run_.apply(Draw{false});  // any command: the journal is taken
   }
+  void tell_looks(bool otherwise) {
+    run_.operation().tell_bone_looks(otherwise);
+    run_.apply(Draw{false});
+  }
   PhantomOperation run_;
 };
 
@@ -160,6 +164,66 @@ TEST_F(BoneMoved, SaysNothingWithoutARegistrationThatStands) {
   EXPECT_EQ(run_.count(JournalKind::BoneMoved), 0);
   run_.apply(test::true_registration(trial(), run_.operation().now()));
   EXPECT_EQ(run_.in_force().standing, Standing::Stands);
+}
+
+// A bone that does not look as it did is no proof that it moved: the numbers stay, and the control point is
+// asked for.
+TEST_F(BoneMoved, Hazard25ABoneThatLooksOtherwiseAsksForTheControlPoint) {
+  ASSERT_EQ(shown(), GuidanceState::Valid);
+  tell_looks(true);
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckLooks);
+  EXPECT_EQ(run_.state()->next_action, NextAction::CheckControlPoint);
+  EXPECT_EQ(run_.in_force().standing, Standing::Stands);
+  EXPECT_EQ(run_.last_text(JournalKind::BoneLooks), "otherwise");
+  tell_looks(true);
+  EXPECT_EQ(run_.count(JournalKind::BoneLooks), 1) << "told once";
+  run_.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None) << "it is where it was";
+}
+
+TEST_F(BoneMoved, AControlPointThatIsOffKeepsTheDoubtAndTheSecondOneIsTheAlarm) {
+  tell_looks(true);
+  run_.touch(test::on_bone(trial(), 2) + Eigen::Vector3d(3, 0, 0), TouchControlPoint{});
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CheckLooks);
+  run_.touch(test::on_bone(trial(), 2) + Eigen::Vector3d(3, 0, 0), TouchControlPoint{});
+  EXPECT_EQ(run_.in_force().standing, Standing::Alarm);
+}
+
+TEST_F(BoneMoved, ADoubtIsOverWhereTheBoneLooksAsItDid) {
+  tell_looks(true);
+  tell_looks(false);
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
+  EXPECT_EQ(run_.last_text(JournalKind::BoneLooks), "as it did");
+}
+
+// Set only now, a control point learns where the bone lies since.
+TEST_F(BoneMoved, AControlPointThatIsSetInDoubtDoesNotEndIt) {
+  run_.apply(ForgetTouches{});
+  run_.apply(SkipVerification{});
+  ASSERT_EQ(shown(), GuidanceState::Valid);
+  tell_looks(true);
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CannotCheckLooks);
+  EXPECT_EQ(run_.state()->next_action, NextAction::VerifyByTouch);
+  for (int press = 0; press < 2; ++press) {
+    run_.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+    EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CannotCheckLooks);
+  }
+  run_.apply(ForgetTouches{});
+  EXPECT_NE(run_.state()->control_point_due, ControlPointDue::CannotCheckLooks)
+      << "the surgeon's word ends it";
+}
+
+// An alarm is more than a doubt, and what comes after it begins anew.
+TEST_F(BoneMoved, NoDoubtOutlivesItsRegistration) {
+  tell_looks(true);
+  tell(3.0);
+  EXPECT_EQ(run_.in_force().standing, Standing::Alarm);
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::None);
+  tell_looks(true);
+  EXPECT_EQ(run_.count(JournalKind::BoneLooks), 1) << "nothing stands that could be doubted";
+  run_.apply(MarkerPlacedAnew{});
+  run_.apply(test::true_registration(trial(), run_.operation().now()));
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::Set);
 }
 
 }  // namespace

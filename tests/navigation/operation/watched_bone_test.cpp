@@ -66,6 +66,17 @@ TEST(WatchedBone, Hazard25SaysUntilWhenTheBoneHadNotMoved) {
   EXPECT_GE(told.held_until_ns, moves_ns - 2'500'000'000) << "four memories of 0.5 s, and a picture or two";
 }
 
+// Further than a drift: told as moved, or as a bone that does not look as it did, which asks for the control
+// point.
+TEST(WatchedBone, Hazard25AHardKnockIsNotPassedOver) {
+  Watched watched;
+  OperationStatePtr state = watched.settle();
+  ASSERT_EQ(state->contour.state, ContourState::Holds);
+  for (int i = 0; i < 45 && standing_of(state) == Standing::Stands; ++i) state = watched.look(5);
+  EXPECT_TRUE(standing_of(state) == Standing::Alarm ||
+              state->control_point_due >= ControlPointDue::CheckLooks);
+}
+
 // Between the picture that tells it and the next one, a press is of a bone that has moved.
 TEST(WatchedBone, WhatWasSeenComesBeforeWhatIsDoneAboutIt) {
   Watched watched;
