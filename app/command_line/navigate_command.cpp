@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 struct NavigateArguments {
   std::string case_folder, video, camera, tools, registration, probe = "probe", guide;
-  std::string bone = "femur", tunnel, tracker;
+  std::string bone = "femur", tunnel, tracker, pictures = "as-they-came";
   std::optional<double> medium_index;
   double duration_s = 0;  // 0: to the end
   int igtl_port = -1;     // -1: nothing is served
@@ -310,6 +310,7 @@ void navigate(Context& context, const NavigateArguments& arguments) {
     record.folder = session.folder();
     if (source->info().is_live()) {
       record.keep = arguments.no_copy ? recording::KeepVideo::No : recording::KeepVideo::Encode;
+      record.pictures = recording::pictures_as_from_option(arguments.pictures);
     } else {
       record.keep = arguments.no_copy ? recording::KeepVideo::Refer : recording::KeepVideo::Copy;
       record.video = arguments.video;
@@ -386,6 +387,13 @@ void add_navigate_command(CLI::App& app, Context& context) {
                     "The lens stays at the calibration's reference angle; the lens mark is not needed");
   command->add_flag("--no-copy", arguments->no_copy,
                     "Keep only the video's path in the session, not a copy of it; of a live source, nothing");
+  command
+      ->add_option("--pictures", arguments->pictures,
+                   "How a live source's pictures are kept: as-they-came (a network stream's own packets; "
+                   "lossless where "
+                   "it has none), lossless, or h264 (a tenth on the disk; replayed with a tolerance)")
+      ->check(CLI::IsMember({"as-they-came", "lossless", "h264"}))
+      ->capture_default_str();
   command
       ->add_option("--igtl", arguments->igtl_port,
                    "Serve poses and states by OpenIGTLink on this port, 0 for any free one, while it runs")

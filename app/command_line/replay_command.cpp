@@ -59,9 +59,14 @@ void replay(Context& context, const ReplayArguments& arguments) {
   if (summary.frames_without_picture > 0)
     context.say(format("%ld frames have no picture: what was decided on them was run again from the record",
                        summary.frames_without_picture));
+  for (const recording::SessionEvent& event : session.events())
+    if (event.kind == recording::kPicturesKeptEvent) context.say("pictures: " + event.text);
   if (summary.states_compared > 0)
     context.say(format("states the same to the last bit: %ld of %ld%s", summary.states_equal,
-                       summary.states_compared, summary.is_same_build ? "" : " (recorded by another build)"));
+                       summary.states_compared,
+                       summary.is_lossy        ? " (pictures were kept as H.264, which changes them slightly)"
+                       : summary.is_same_build ? ""
+                                               : " (recorded by another build)"));
   context.say(format("largest differences: pose %.6f mm, %.6f deg; tip %.6f mm; guidance %.6f mm, %.6f deg",
                      summary.worst_pose_mm, summary.worst_pose_deg, summary.worst_tip_mm,
                      summary.worst_offset_mm, summary.worst_angle_deg));

@@ -44,6 +44,9 @@ struct Frame {
   // The same moment on std::chrono::steady_clock, so that an age can be told; 0 when the source is not live.
   std::int64_t captured_ns = 0;
   CaptureClock capture_clock = CaptureClock::None;
+  // Which of a stream's packets it was decoded from, counted from 0 over all connections; -1: of none. (A
+  // year at 60 a second.)
+  std::int32_t packet = -1;
   // On the same clock, of a live source: when its data had come, and when it could be looked at. 0: not said.
   std::int64_t received_ns = 0, decoded_ns = 0;
   int width = 0, height = 0;

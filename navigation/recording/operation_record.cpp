@@ -126,12 +126,17 @@ void append_entries(const std::filesystem::path& session_folder, const std::vect
 
 OperationRecord::OperationRecord(const std::filesystem::path& folder, const operation::OperationSetup& setup,
                                  const operation::SourceSetup& source, const sources::SourceInfo& info,
-                                 const std::string& continues)
+                                 const std::string& continues, PicturesAs pictures)
     : folder_(folder),
       recorder_(std::make_unique<SessionRecorder>(folder, header_of(folder, setup, source, info, continues),
-                                                  source.pipeline)) {}
+                                                  source.pipeline)) {
+  // A source without any encoding of its own has nothing that could be kept as it came.
+  const bool has_none = pictures == PicturesAs::AsTheyCame && info.packets == nullptr;
+  recorder_->keep_pictures(has_none ? PicturesAs::Lossless : pictures, info.packets);
+}
 
 void OperationRecord::keep_video(KeepVideo keep, const std::filesystem::path& video) {
+  if (keep_ == KeepVideo::Encode && keep != KeepVideo::Encode) recorder_->interrupt_pictures();
   keep_ = keep;
   copied_video_ = keep == KeepVideo::Copy ? video : std::filesystem::path();
   // A record that is cut off can be run again by where the video is.

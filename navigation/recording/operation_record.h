@@ -20,16 +20,16 @@ enum class KeepVideo {
   No,
   Copy,    // the source's file, as it is, when the record ends
   Refer,   // only where it is
-  Encode,  // the source has no file: its pictures, from now on
+  Encode,  // the source has no file: its pictures, from now on, as PicturesAs says
 };
 
 class OperationRecord {
  public:
   // The folder exists and is empty. `continues`: id of the session before it in this operation, or empty.
-  // Throws IoError.
+  // `pictures`: how the pictures of a source without a file are kept. Throws IoError.
   OperationRecord(const std::filesystem::path& folder, const operation::OperationSetup& setup,
                   const operation::SourceSetup& source, const sources::SourceInfo& info,
-                  const std::string& continues);
+                  const std::string& continues, PicturesAs pictures = PicturesAs::AsTheyCame);
 
   // From the next frame on. `video` is the source's file or pattern (unused for Encode and No).
   void keep_video(KeepVideo keep, const std::filesystem::path& video = {});

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
+#include "navigation/recording/kept_pictures.h"
 #include "navigation/sources/source_files.h"
 #include "navigation/sources/still_images.h"
 #include "navigation/sources/video_file.h"
@@ -13,9 +15,8 @@ namespace arthronaut::recording {
 
 namespace {
 
-std::unique_ptr<sources::SeekableVideo> open(const SessionOverview& session) {
+std::unique_ptr<sources::SeekableVideo> open_own(const SessionOverview& session) {
   const std::filesystem::path video = session.video();
-  if (video.empty()) throw InvalidInput(session.folder, "", "no video was kept of this session");
   const bool is_there = std::filesystem::exists(video);
   if (is_there ? sources::looks_like_picture(video) : sources::is_printf_pattern(video))
     return sources::open_seekable_stills(video);
@@ -27,29 +28,63 @@ std::unique_ptr<sources::SeekableVideo> open(const SessionOverview& session) {
 }  // namespace
 
 struct RecordedPictures::State {
+  // The part in hand, by the one or the other.
+  void open(std::size_t wanted) {
+    if (part == wanted && (video != nullptr || stream)) return;
+    video.reset();
+    stream.reset();
+    part = wanted;
+    const std::filesystem::path file = folder / parts[wanted].file;
+    if (!std::filesystem::exists(file)) throw IoError(file, "the video is not there any more");
+    if (parts[wanted].as == PicturesAs::AsTheyCame)
+      stream.emplace(kept_stream_file(folder, parts, wanted, pictures), sources::KeptStream::Use::ToLookAt);
+    else
+      video = sources::open_seekable_video(
+          file, parts[wanted].as == PicturesAs::Lossless ? sources::LumaOf::File : sources::LumaOf::Colours);
+  }
+
+  camera::FramePtr picture_of(std::size_t number) {
+    open(part_of(parts, static_cast<std::int64_t>(number)));
+    const std::int64_t packet = pictures[number].packet;
+    if (stream) return stream->picture(packet);
+    return video->picture_at(
+        std::llround(static_cast<double>(packet) / video->info().frames_per_second * 1e9));
+  }
+
+  std::filesystem::path folder;
+  std::vector<VideoPart> parts;       // empty: the source's own video
+  std::vector<KeptPicture> pictures;  // by rising frames
+  std::size_t part = 0;
   std::unique_ptr<sources::SeekableVideo> video;
-  bool is_reencoded = false;
-  std::vector<std::int64_t> frame_of_picture;  // rising
+  std::optional<sources::KeptStream> stream;
 };
 
 RecordedPictures::RecordedPictures(const SessionOverview& session) : state_(std::make_unique<State>()) {
-  state_->video = open(session);
-  state_->is_reencoded = session.header.video_is_reencoded;
-  state_->frame_of_picture = session.frame_of_picture;
+  State& s = *state_;
+  if (session.video().empty()) throw InvalidInput(session.folder, "", "no video was kept of this session");
+  s.folder = session.folder;
+  s.parts = parts_of(session.header);
+  s.pictures = session.pictures;
+  if (s.parts.empty())
+    s.video = open_own(session);
+  else
+    s.open(0);
 }
 
 RecordedPictures::~RecordedPictures() = default;
 
 camera::FramePtr RecordedPictures::picture(std::int64_t frame_index, std::int64_t timestamp_ns) {
   State& s = *state_;
-  std::int64_t time_ns = timestamp_ns;  // of a source's own file: frames have its times
-  if (s.is_reencoded) {
-    const auto found = std::lower_bound(s.frame_of_picture.begin(), s.frame_of_picture.end(), frame_index);
-    if (found == s.frame_of_picture.end() || *found != frame_index) return nullptr;
-    const auto number = static_cast<double>(found - s.frame_of_picture.begin());
-    time_ns = std::llround(number / s.video->info().frames_per_second * 1e9);
+  camera::FramePtr picture;
+  if (s.parts.empty()) {
+    picture = s.video->picture_at(timestamp_ns);
+  } else {
+    const auto found =
+        std::lower_bound(s.pictures.begin(), s.pictures.end(), frame_index,
+                         [](const KeptPicture& kept, std::int64_t frame) { return kept.frame < frame; });
+    if (found == s.pictures.end() || found->frame != frame_index) return nullptr;
+    picture = s.picture_of(static_cast<std::size_t>(found - s.pictures.begin()));
   }
-  const camera::FramePtr picture = s.video->picture_at(time_ns);
   if (picture == nullptr) return nullptr;
   auto frame = std::make_shared<camera::Frame>(*picture);
   frame->index = frame_index;

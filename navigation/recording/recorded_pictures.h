@@ -1,7 +1,9 @@
 // Any picture of a session's video, by its frame: for looking at it, forwards, backwards and across.
 //
-// The recorder's own videos have nothing but key frames: a picture takes as long as decoding one. A copied
-// video takes as long as decoding from the key frame before it, a still as long as reading it.
+// What the recorder encoded without loss has nothing but key frames: a picture takes as long as decoding one.
+// A copied video, and a stream that was kept as it came, take as long as decoding from the key frame before
+// it; of a stream the last pictures are remembered, so that going back by one costs nothing. A still takes as
+// long as reading it.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 #include "navigation/camera/camera_file.h"
 #include "navigation/recording/frame_record.h"
+#include "navigation/recording/kept_pictures.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/registration/registration_file.h"
@@ -14,7 +15,7 @@ struct RecordedSession::State {
   bool was_finished = false;
   std::vector<RecordedFrame> frames;
   std::vector<SessionEvent> events;
-  std::vector<std::int64_t> frame_of_picture;  // empty when the video is the source's own
+  std::vector<KeptPicture> pictures;  // empty when the video is the source's own
   strokes::Curves curves;
   std::optional<registration::RegistrationSummary> registration;
 };
@@ -33,8 +34,7 @@ RecordedSession::RecordedSession(const std::filesystem::path& folder) : state_(s
   while (events.step()) {
     s.events.push_back({events.integer(0), events.text(1), events.text(2), events.integer(3)});
   }
-  Statement pictures = database.prepare("SELECT frame FROM pictures ORDER BY picture");
-  while (pictures.step()) s.frame_of_picture.push_back(pictures.integer(0));
+  s.pictures = read_kept_pictures(database);
   s.was_finished = database.prepare("SELECT finished FROM ending").step();
 
   if (const auto file = folder / "curves.csv"; std::filesystem::exists(file)) {
@@ -53,9 +53,7 @@ const SessionHeader& RecordedSession::header() const { return state_->header; }
 bool RecordedSession::was_finished() const { return state_->was_finished; }
 const std::vector<RecordedFrame>& RecordedSession::frames() const { return state_->frames; }
 const std::vector<SessionEvent>& RecordedSession::events() const { return state_->events; }
-const std::vector<std::int64_t>& RecordedSession::frame_of_picture() const {
-  return state_->frame_of_picture;
-}
+const std::vector<KeptPicture>& RecordedSession::pictures() const { return state_->pictures; }
 const strokes::Curves& RecordedSession::curves() const { return state_->curves; }
 const std::optional<registration::RegistrationSummary>& RecordedSession::registration() const {
   return state_->registration;

@@ -138,6 +138,37 @@ class Pictures {
   camera::FramePtr next_;
 };
 
+// Pictures that are tracked again against those that were seen, by their luma: the first that differs is
+// told, with how many do. What is wrong with one is wrong with the video, and not with the program.
+class PictureComparison {
+ public:
+  explicit PictureComparison(const RecordedSession& session) {
+    if (session.header().video_has_exact_luma) pictures_ = &session.pictures();
+  }
+  // Frames in order.
+  void compare(const camera::Frame& picture) {
+    if (pictures_ == nullptr) return;
+    while (next_ < pictures_->size() && (*pictures_)[next_].frame < picture.index) ++next_;
+    if (next_ == pictures_->size() || (*pictures_)[next_].frame != picture.index) return;
+    const KeptPicture& kept = (*pictures_)[next_];
+    if (!kept.luma || *kept.luma == digest_of_luma(camera::luma_of(picture, gray_))) return;
+    if (other_count_++ == 0) first_other_ = picture.index;
+  }
+  void add_to(ReplaySummary& summary) const {
+    if (other_count_ > 0)
+      summary.differences.push_back({first_other_, "picture", 0, "",
+                                     "is not the one that was seen; so are " + std::to_string(other_count_) +
+                                         " in all: the video was changed, or is decoded differently here"});
+  }
+
+ private:
+  const std::vector<KeptPicture>* pictures_ = nullptr;  // null: none is to be the same
+  std::size_t next_ = 0;
+  std::vector<std::uint8_t> gray_;
+  long other_count_ = 0;
+  std::int64_t first_other_ = -1;
+};
+
 // States by their digests: the first that differs is told, with how many do.
 class StateComparison {
  public:
@@ -187,11 +218,13 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   ReplaySummary summary;
   summary.recorded_frames = static_cast<long>(session.frames().size());
   const bool reencoded = session.header().video_is_reencoded && !session.header().video_has_exact_luma;
+  summary.is_lossy = reencoded;
   summary.is_same_build = !reencoded && session.header().build == build_identity();
   FrameComparison comparison(summary, reencoded ? options.reencoded_tolerance_mm : options.tolerance_mm,
                              reencoded ? options.reencoded_tolerance_deg : options.tolerance_deg);
   FrameComparison cold_comparison(summary, options.reencoded_tolerance_mm, options.reencoded_tolerance_deg);
   StateComparison states;
+  PictureComparison seen(session);
   const std::vector<RecordedSession> before = sessions_before(session, [&](const std::string& id) {
     summary.differences.push_back({-1, "session before", 0, "", id + " is not there any more"});
   });
@@ -217,6 +250,7 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
       return summary;
     }
     const camera::FramePtr picture = pictures.of(recorded.index);
+    if (picture != nullptr) seen.compare(*picture);
     rerun.play_before(recorded.index);
     const bool feeds = is_fed && picture != nullptr;
     const operation::OperationStatePtr state =
@@ -234,12 +268,13 @@ ReplaySummary replay_session(const RecordedSession& session, const ReplayOptions
   }
   rerun.play_rest();
   // A kept video that ends early is a fault of the record; pictures that nobody asked to keep are none.
-  const bool is_whole_video = !session.video().empty() && session.frame_of_picture().empty();
+  const bool is_whole_video = !session.video().empty() && session.pictures().empty();
   if (session.was_finished() && is_whole_video && summary.frames_without_picture > 0) {
     summary.differences.push_back({-1, "video", 0, "",
                                    "shows " + std::to_string(summary.replayed_frames) + " of " +
                                        std::to_string(summary.recorded_frames) + " recorded frames"});
   }
+  seen.add_to(summary);
   states.add_to(summary);
   compare_registration(session, *rerun.state(), options, summary);
   return summary;

@@ -53,8 +53,9 @@ struct ReplaySummary {
   long frames_without_picture = 0;                // run again from the record
   std::vector<Difference> differences;            // above tolerance, in the order of frames
   long states_compared = 0, states_equal = 0;     // by their digests
-  bool is_same_build = false;                     // states must be equal to the last bit
-  bool was_stopped = false;                       // by ReplayOptions::stops: the rest was not compared
+  bool is_lossy = false;       // pictures were kept as H.264: they are not quite those that were tracked
+  bool is_same_build = false;  // states must be equal to the last bit
+  bool was_stopped = false;    // by ReplayOptions::stops: the rest was not compared
   // The largest of all, also below tolerance.
   double worst_pose_mm = 0, worst_pose_deg = 0, worst_tip_mm = 0, worst_offset_mm = 0, worst_angle_deg = 0;
   std::optional<double> registration_mm;  // at the target; empty when it was not compared

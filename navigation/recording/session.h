@@ -3,8 +3,9 @@
 //
 //   session.json        format "arthronaut.session": bone, medium, tools' roles, source, versions
 //   session.sqlite      WAL while it is written; frames, poses, marker states, tips, guidance, events
-//   video.*             the video as it came: a file source is copied; frames of a device or the simulator
-//   are encoded.
+//   video.* video_2.*   the video: a file source is copied, a stream's packets are kept as they came, frames
+//   of
+//                       a device or the simulator are encoded (kept_video.h).
 //                       pictures/ holds copied stills; an absolute path stands in session.json when copying
 //                       was declined
 //   registration_N.json each registration at the moment it took effect
@@ -22,6 +23,7 @@
 #include <vector>
 
 #include "navigation/pipeline/navigation_pipeline.h"
+#include "navigation/recording/kept_video.h"
 #include "navigation/registration/provenance.h"
 #include "navigation/sources/frame_source.h"
 #include "navigation/strokes/curves.h"
@@ -39,9 +41,11 @@ struct SessionHeader {
   std::string source;  // name of the frame source
   std::string video;   // path or pattern within the folder, or an absolute one; empty when no video was kept
   bool video_is_reencoded = false;  // by append_picture(), not the source's own file
-  // Its luma is what was tracked, bit for bit: tracking it again gives the same poses. False for encoded
-  // videos of older versions, which give slightly other ones.
+  // Its luma is what was tracked, bit for bit: tracking it again gives the same poses. False for H.264 that
+  // was made of pictures, which gives slightly other ones.
   bool video_has_exact_luma = false;
+  // Of a video by append_picture(), in order; records of before have one, which they do not name.
+  std::vector<VideoPart> video_parts;
   // Of the operation that this session is a part of; empty and 0 in records that are older than it.
   std::string source_kind;          // "live", "recording", "simulation"
   std::string mesh_sha256;          // of the bone's mesh
@@ -88,6 +92,7 @@ inline constexpr std::string_view kSourceStartedEvent = "source started";  // wh
 inline constexpr std::string_view kSourceEndedEvent = "source ended";
 inline constexpr std::string_view kSourceTroubleEvent = "source trouble";    // text: what; empty: it is over
 inline constexpr std::string_view kTrackerTroubleEvent = "tracker trouble";  // of an outside one; likewise
+inline constexpr std::string_view kPicturesKeptEvent = "pictures recorded as";  // text: how, file, why so
 inline constexpr std::string_view kLatencyEvent = "latency";  // text: capture to guidance, of all frames
 inline constexpr std::string_view kDroppedPicturesEvent = "pictures dropped";    // text: how many
 inline constexpr std::string_view kVideoStoppedEvent = "video stopped";          // text: why
@@ -129,12 +134,17 @@ class SessionRecorder {
   void copy_video(const std::filesystem::path& video_or_pattern);
   // Keeps only where the video is.
   void refer_to_video(const std::filesystem::path& video_or_pattern);
-  // The frame's picture, for sources that are not files. Its luma is kept exactly (see picture_writer.h).
+  // How append_picture() keeps them: without a call, Lossless. `packets` are SourceInfo's. Before the first.
+  void keep_pictures(PicturesAs as, const std::shared_ptr<const sources::EncodedPackets>& packets = nullptr);
+  // The frame's picture, for sources that are not files (see picture_writer.h).
   // Waits while half a second of pictures is waiting: for sources that can wait.
   void append_picture(const camera::FramePtr& frame);
   // The same for a live source: never waits; false when the encoder cannot keep up and the picture is left
   // out. How many were left out is an event of the session.
   bool try_append_picture(const camera::FramePtr& frame);
+  // Of what comes between the last picture and the next one nothing is kept, also where a stream is kept as
+  // it came.
+  void interrupt_pictures();
 
   void append(const pipeline::FrameResult& result);
   // What the operation had come to after the frame that was appended last: see operation::digest_of_frame().
@@ -213,9 +223,9 @@ class RecordedSession {
   };
   [[nodiscard]] PlanChange plan_of(const SessionEvent& event) const;
   [[nodiscard]] registration::RegistrationSummary registration_of(const SessionEvent& event) const;
-  // Which frame each picture of an encoded video shows; empty when the video is the source's own: picture =
+  // Of a video by append_picture(), rising by frames; empty when the video is the source's own: picture =
   // frame.
-  [[nodiscard]] const std::vector<std::int64_t>& frame_of_picture() const;
+  [[nodiscard]] const std::vector<KeptPicture>& pictures() const;
   [[nodiscard]] const strokes::Curves& curves() const;
   [[nodiscard]] const std::optional<registration::RegistrationSummary>& registration() const;
   [[nodiscard]] pipeline::PipelineOptions pipeline_options() const;  // to run it again

@@ -11,7 +11,7 @@ namespace arthronaut::recording {
 namespace {
 
 // States are stored as the numbers of their enumerators, whose order is therefore part of this format.
-constexpr int kSchemaVersion = 1;
+constexpr int kSchemaVersion = 2;
 
 constexpr const char* kTables = R"(
 CREATE TABLE frames(
@@ -38,7 +38,9 @@ CREATE TABLE guidance(
   depth_mm REAL, remaining_mm REAL, sigma_offset_mm REAL, sigma_angle_deg REAL,
   offset_lateral_mm REAL, drill_depth_mm REAL, drill_to_exit_mm REAL, drill_sigma_mm REAL);
 CREATE TABLE events(id INTEGER PRIMARY KEY, after_frame INTEGER, timestamp_ns INTEGER, kind TEXT, text TEXT);
-CREATE TABLE pictures(picture INTEGER PRIMARY KEY, frame INTEGER NOT NULL);
+CREATE TABLE pictures(
+  picture INTEGER PRIMARY KEY, frame INTEGER NOT NULL, packet INTEGER NOT NULL, start_packet INTEGER NOT NULL,
+  start_ms INTEGER NOT NULL, luma INTEGER);
 CREATE TABLE digests(frame INTEGER PRIMARY KEY, state INTEGER NOT NULL, decisions INTEGER NOT NULL);
 CREATE TABLE latency(
   frame INTEGER PRIMARY KEY, capture_ms REAL, decode_ms REAL, queue_ms REAL, tracking_ms REAL, operation_ms REAL,

@@ -30,6 +30,25 @@ void append_drill(std::string& line, const guidance::GuidanceNumbers& numbers,
     line += ',';
 }
 
+std::vector<VideoPart> video_parts_of(const files::JsonObject& json) {
+  std::vector<VideoPart> parts;
+  for (const files::JsonObject& object : json.objects("video_parts")) {
+    VideoPart part;
+    part.file = object.text("file");
+    part.first_picture = object.integer("first_picture");
+    part.as = pictures_as_from_option(object.text("pictures"));
+    part.codec = object.text("codec");
+    part.held_back = static_cast<int>(object.integer("held_back"));
+    // A part that lies anywhere else is no part of this record.
+    if (part.file.find('/') != std::string::npos || part.held_back < 0 || part.held_back > 16 ||
+        part.first_picture < (parts.empty() ? 0 : parts.back().first_picture) ||
+        (parts.empty() && part.first_picture != 0))
+      object.fail("video_parts", "is no part of a video");
+    parts.push_back(part);
+  }
+  return parts;
+}
+
 }  // namespace
 
 const std::string& build_identity() {
@@ -56,6 +75,12 @@ void write_session_header(const std::filesystem::path& folder, const SessionHead
   json["video"] = header.video;
   json["video_is_reencoded"] = header.video_is_reencoded;
   json["video_has_exact_luma"] = header.video_has_exact_luma;
+  for (const VideoPart& part : header.video_parts)
+    json["video_parts"].push_back({{"file", part.file},
+                                   {"first_picture", part.first_picture},
+                                   {"pictures", to_option(part.as)},
+                                   {"codec", part.codec},
+                                   {"held_back", part.held_back}});
   if (!header.source_kind.empty()) json["source_kind"] = header.source_kind;
   if (!header.source_kind.empty()) json["probe_drew_at_start"] = header.probe_drew_at_start;
   if (!header.mesh_sha256.empty()) json["mesh_sha256"] = header.mesh_sha256;
@@ -83,6 +108,7 @@ SessionHeader read_session_header(const std::filesystem::path& folder, pipeline:
   header.video = json.text("video");
   header.video_is_reencoded = json.boolean("video_is_reencoded");
   header.video_has_exact_luma = json.has("video_has_exact_luma") && json.boolean("video_has_exact_luma");
+  if (json.has("video_parts")) header.video_parts = video_parts_of(json);
   header.program_version = json.text("program_version");
   if (json.has("build")) header.build = json.text("build");
   if (json.has("source_kind")) header.source_kind = json.text("source_kind");

@@ -1,6 +1,7 @@
 #include "navigation/recording/session_overview.h"
 
 #include "navigation/camera/camera_file.h"
+#include "navigation/recording/kept_pictures.h"
 #include "navigation/recording/session_database.h"
 #include "navigation/recording/session_files.h"
 #include "navigation/registration/registration_file.h"
@@ -28,10 +29,7 @@ void read_record(SessionOverview& overview) {
     Statement row = database.prepare("SELECT timestamp_ns, kind, text, after_frame FROM events ORDER BY id");
     while (row.step()) overview.events.push_back({row.integer(0), row.text(1), row.text(2), row.integer(3)});
   });
-  as_far_as_whole(overview, [&] {
-    Statement row = database.prepare("SELECT frame FROM pictures ORDER BY picture");
-    while (row.step()) overview.frame_of_picture.push_back(row.integer(0));
-  });
+  as_far_as_whole(overview, [&] { overview.pictures = read_kept_pictures(database); });
   as_far_as_whole(overview,
                   [&] { overview.was_finished = database.prepare("SELECT finished FROM ending").step(); });
 }
@@ -41,6 +39,10 @@ void look_for_video(SessionOverview& overview) {
   const bool is_pattern = file.string().find('%') != std::string::npos;
   if (!file.empty() && !is_pattern && !std::filesystem::exists(file))
     overview.problems.push_back(file.string() + ": the video is not there any more");
+  for (const VideoPart& part : overview.header.video_parts)
+    if (part.file != overview.header.video && !std::filesystem::exists(overview.folder / part.file))
+      overview.problems.push_back((overview.folder / part.file).string() +
+                                  ": this part of the video is not there any more");
 }
 
 }  // namespace

@@ -18,8 +18,8 @@ struct SessionOverview {
   pipeline::PipelineOptions options;
   bool was_finished = false;         // false: a crash cut it off
   std::vector<SessionEvent> events;  // in the order they were added
-  // Which frame each picture of an encoded video shows, rising; empty when the video is the source's own.
-  std::vector<std::int64_t> frame_of_picture;
+  // Of a video by append_picture(), rising by frames; empty when the video is the source's own.
+  std::vector<KeptPicture> pictures;
   strokes::Curves curves;
   std::optional<registration::RegistrationSummary> registration;
   // What is missing or broken, one sentence each with the file's name; empty when all is whole.

@@ -2,21 +2,18 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
-#include <variant>
 
 #include "navigation/camera/camera_file.h"
 #include "navigation/pipeline/bounded_queue.h"
-#include "navigation/recording/frame_record.h"
-#include "navigation/recording/open_formats.h"
 #include "navigation/recording/picture_writer.h"
+#include "navigation/recording/record_writer.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_files.h"
-#include "navigation/recording/session_hashes.h"
 #include "navigation/recording/video_files.h"
-#include "navigation/registration/registration_file.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::recording {
@@ -26,139 +23,12 @@ namespace {
 constexpr std::size_t kWaitingMessages = 4096;
 constexpr auto kCommitEvery =
     std::chrono::milliseconds(400);  // below the half second that the header promises
-constexpr const char* kEncodedVideo = "video.mkv";
-constexpr double kEncodedFramesPerSecond = 60;
-// Whatever the encoder writes again when the video ends (its size, its length) lies in its first bytes.
-constexpr std::int64_t kVideoHead = 65536;
-
-struct EncodedPicture {
-  std::int64_t picture = 0, frame = 0;
-};
-// Files written by the same thread, so that a registration is on disk before the frame that used it.
-struct RegistrationFile {
-  std::string name;
-  registration::RegistrationSummary registration;
-  std::optional<registration::Provenance> of;
-};
-struct HeaderFile {
-  SessionHeader header;
-};
-struct FrameLatency {
-  std::int64_t frame = 0;
-  SessionRecorder::Latency latency;
-};
-struct FrameDigests {
-  std::int64_t frame = 0;
-  SessionRecorder::StateDigests digests;
-};
-using Message = std::variant<pipeline::FrameResult, SessionEvent, EncodedPicture, RegistrationFile,
-                             strokes::Curves, FrameDigests, FrameLatency, HeaderFile>;
 
 std::string gib_text(std::uintmax_t bytes) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1f GiB", static_cast<double>(bytes) / static_cast<double>(1 << 30));
   return text;
 }
-
-// Carries out messages in the writer thread.
-class DatabaseWriter {
- public:
-  DatabaseWriter(SessionDatabase& database, OpenFormats& formats, SessionHashes& hashes,
-                 std::filesystem::path folder, const pipeline::PipelineOptions& options)
-      : database_(database),
-        formats_(formats),
-        hashes_(hashes),
-        folder_(std::move(folder)),
-        options_(options),
-        frames_(database, options.tools),
-        event_(database.prepare("INSERT INTO events(after_frame, timestamp_ns, kind, text) VALUES(?,?,?,?)")),
-        picture_(database.prepare("INSERT INTO pictures VALUES(?,?)")),
-        digests_(database.prepare("INSERT INTO digests VALUES(?,?,?)")),
-        latency_(database.prepare("INSERT INTO latency VALUES(?,?,?,?,?,?,?)")) {}
-
-  void write(const Message& message) {
-    if (!in_transaction_) database_.execute("BEGIN");
-    in_transaction_ = true;
-    std::visit([this](const auto& m) { put(m); }, message);
-  }
-
-  void commit() {
-    if (in_transaction_) database_.execute("COMMIT");
-    in_transaction_ = false;
-    formats_.flush();
-    // More may still come to be known of the last frame: it waits for the next one.
-    hashes_.cover_rows(database_, kFrameRows, last_frame_);
-    for (const char* const rows : {kEventRows, kPictureRows})
-      hashes_.cover_rows(database_, rows, rows_end(database_, rows));
-    for (const char* const table : {"poses.csv", "guidance.csv"}) hashes_.cover_growth(table);
-    if (has_pictures_) hashes_.cover_growth(kEncodedVideo, kVideoHead);
-    hashes_.sync();
-  }
-
-  // An event of the writer's own, after the last frame that was written.
-  void write_event(std::string_view kind, std::string text) {
-    write(SessionEvent{last_timestamp_ns_, std::string(kind), std::move(text), last_frame_});
-  }
-
- private:
-  void put(const pipeline::FrameResult& result) {
-    frames_.insert(result);
-    formats_.append(result);
-    last_frame_ = result.frame_index;
-    last_timestamp_ns_ = result.timestamp_ns;
-  }
-  void put(const SessionEvent& event) {
-    event_.bind(1, event.after_frame)
-        .bind(2, event.timestamp_ns)
-        .bind(3, event.kind)
-        .bind(4, event.text)
-        .run();
-    if (event.kind == kDrilledEvent) hashes_.cover_file(event.text);
-  }
-  void put(const EncodedPicture& picture) {
-    picture_.bind(1, picture.picture).bind(2, picture.frame).run();
-    has_pictures_ = true;
-  }
-  void put(const RegistrationFile& file) {
-    const registration::Provenance* of = file.of ? &*file.of : nullptr;
-    for (const std::string& name : {file.name, std::string("registration.json")})
-      hashes_.write_file(
-          name, [&] { registration::write_registration_file(folder_ / name, file.registration, of); });
-  }
-  void put(const HeaderFile& file) {
-    hashes_.write_file("session.json", [&] { write_session_header(folder_, file.header, options_); });
-  }
-  void put(const FrameDigests& frame) {
-    digests_.bind(1, frame.frame)
-        .bind(2, static_cast<std::int64_t>(frame.digests.frame))
-        .bind(3, static_cast<std::int64_t>(frame.digests.decisions))
-        .run();
-  }
-  void put(const FrameLatency& frame) {
-    latency_.bind(1, frame.frame);
-    int position = 2;
-    const SessionRecorder::Latency& l = frame.latency;
-    for (const double ms :
-         {l.capture_ms, l.decode_ms, l.queue_ms, l.tracking_ms, l.operation_ms, l.guidance_ms}) {
-      ms >= 0 ? latency_.bind(position, ms) : latency_.bind_null(position);
-      ++position;
-    }
-    latency_.run();
-  }
-  void put(const strokes::Curves& curves) {
-    hashes_.write_file("curves.csv", [&] { strokes::write_curves_file(folder_ / "curves.csv", curves); });
-  }
-
-  SessionDatabase& database_;
-  OpenFormats& formats_;
-  SessionHashes& hashes_;
-  std::filesystem::path folder_;
-  const pipeline::PipelineOptions& options_;
-  FrameInserter frames_;
-  Statement event_, picture_, digests_, latency_;
-  std::int64_t last_frame_ = -1, last_timestamp_ns_ = 0;
-  bool in_transaction_ = false, has_pictures_ = false;
-};
 
 }  // namespace
 
@@ -176,7 +46,7 @@ struct SessionRecorder::State {
 
   void run() {
     try {
-      DatabaseWriter writer(database, formats, hashes, folder, options);
+      RecordWriter writer(database, formats, hashes, folder, options);
       auto next_commit = std::chrono::steady_clock::now() + kCommitEvery;
       while (!queue.is_drained()) {
         if (const auto message = queue.pop_until(next_commit)) writer.write(*message);
@@ -193,7 +63,7 @@ struct SessionRecorder::State {
   }
 
   // In the writer's thread. False when nothing more may be written.
-  bool watch_disk(DatabaseWriter& writer) {
+  bool watch_disk(RecordWriter& writer) {
     const std::uintmax_t free = limits.free_bytes(folder);
     if (free < limits.video_stops_below_bytes && !video_stopped.exchange(true))
       writer.write_event(kVideoStoppedEvent, "only " + gib_text(free) + " are free on the disk");
@@ -227,29 +97,54 @@ struct SessionRecorder::State {
     send(SessionEvent{last_timestamp_ns, std::string(kind), std::move(text), last_frame});
   }
 
-  void rewrite_header() { send(HeaderFile{header}); }
+  // The header as it is to be from now on; pictures have a thread of their own.
+  template <typename Change>
+  void rewrite_header(const Change& change) {
+    const std::lock_guard lock(header_mutex);
+    change(header);
+    (void)queue.push(HeaderFile{header});
+  }
 
   // After the writer's thread has ended: what had to wait until now, and the video as it came.
   void cover_to_end() {
     for (const char* const rows : {kFrameRows, kEventRows, kPictureRows})
       hashes.cover_rows(database, rows, rows_end(database, rows));
     for (const char* const table : {"poses.csv", "guidance.csv"}) hashes.cover_to_end(table);
-    if (pictures) hashes.cover_to_end(kEncodedVideo, kVideoHead);
     for (const std::string& file : copied) hashes.cover_to_end(file);
     hashes.close();
   }
 
   PictureWriter& picture_writer() {
     if (!pictures) {
-      pictures.emplace(folder / kEncodedVideo, kEncodedFramesPerSecond);
-      header.video = kEncodedVideo;
-      header.video_is_reencoded = header.video_has_exact_luma = true;
-      rewrite_header();
+      PictureNews news;
+      news.begun = [this](const VideoPart& part, const camera::Frame& first, const std::string& why) {
+        tell_part(part, first, why);
+      };
+      news.kept = [this](const KeptPicture& picture) { (void)queue.push(picture); };
+      news.ended = [this](const VideoPart& part) { (void)queue.push(PartEnded{part.file}); };
+      pictures.emplace(folder, keeping, news);
     }
     return *pictures;
   }
 
+  // In the pictures' thread.
+  void tell_part(const VideoPart& part, const camera::Frame& first, const std::string& why) {
+    rewrite_header([&](SessionHeader& of) {
+      const bool is_exact = part.as != PicturesAs::H264;
+      of.video_has_exact_luma = is_exact && (of.video_parts.empty() || of.video_has_exact_luma);
+      if (of.video_parts.empty()) of.video = part.file;
+      of.video_is_reencoded = true;
+      of.video_parts.push_back(part);
+    });
+    (void)queue.push(PartBegun{part.file});
+    std::string text = std::string(to_text(part.as)) + " (" + part.codec + "), " + part.file;
+    if (!why.empty()) text += ", since " + why;
+    (void)queue.push(
+        SessionEvent{first.timestamp_ns, std::string(kPicturesKeptEvent), std::move(text), first.index});
+  }
+
   std::filesystem::path folder;
+  std::mutex header_mutex;
   SessionHeader header;
   pipeline::PipelineOptions options;
   DiskLimits limits;
@@ -261,9 +156,10 @@ struct SessionRecorder::State {
   std::exception_ptr error;
   std::atomic<bool> video_stopped = false;
   bool out_of_space = false;  // why there is an error: all was kept; the writer thread's until it has ended
+  PictureWriterOptions keeping;
   std::optional<PictureWriter> pictures;
   std::vector<std::string> copied;  // files of a video that was copied
-  std::int64_t picture_count = 0, dropped_count = 0;
+  std::int64_t dropped_count = 0;
   std::int64_t last_frame = -1, last_timestamp_ns = 0;
   int registration_count = 0;
   bool finished = false;
@@ -298,30 +194,35 @@ SessionRecorder::~SessionRecorder() {
 }
 
 void SessionRecorder::copy_video(const std::filesystem::path& video_or_pattern) {
-  state_->header.video = copy_video_into(state_->folder, video_or_pattern);
-  state_->copied = video_files(state_->folder, state_->header.video);
-  state_->rewrite_header();
+  const std::string name = copy_video_into(state_->folder, video_or_pattern);
+  state_->copied = video_files(state_->folder, name);
+  state_->rewrite_header([&](SessionHeader& header) { header.video = name; });
 }
 
 void SessionRecorder::refer_to_video(const std::filesystem::path& video_or_pattern) {
-  state_->header.video = std::filesystem::absolute(video_or_pattern).string();
-  state_->rewrite_header();
+  const std::string name = std::filesystem::absolute(video_or_pattern).string();
+  state_->rewrite_header([&](SessionHeader& header) { header.video = name; });
+}
+
+void SessionRecorder::keep_pictures(PicturesAs as,
+                                    const std::shared_ptr<const sources::EncodedPackets>& packets) {
+  state_->keeping.as = as;
+  state_->keeping.packets = packets;
 }
 
 void SessionRecorder::append_picture(const camera::FramePtr& frame) {
-  if (!state_->takes_pictures()) return;
-  state_->picture_writer().write(frame);
-  state_->send(EncodedPicture{state_->picture_count++, frame->index});
+  if (state_->takes_pictures()) state_->picture_writer().write(frame);
 }
 
 bool SessionRecorder::try_append_picture(const camera::FramePtr& frame) {
   if (!state_->takes_pictures()) return false;
-  if (!state_->picture_writer().try_write(frame)) {
-    ++state_->dropped_count;
-    return false;
-  }
-  state_->send(EncodedPicture{state_->picture_count++, frame->index});
-  return true;
+  const bool is_taken = state_->picture_writer().try_write(frame);
+  state_->dropped_count += is_taken ? 0 : 1;
+  return is_taken;
+}
+
+void SessionRecorder::interrupt_pictures() {
+  if (state_->pictures) state_->pictures->end_part();
 }
 
 void SessionRecorder::append(const pipeline::FrameResult& result) {
@@ -360,6 +261,13 @@ void SessionRecorder::set_curves(const strokes::Curves& curves) { state_->send(c
 void SessionRecorder::finish() {
   State& s = *state_;
   if (s.finished) return;
+  // What pictures still wait is told to the writer of the record, which ends after them.
+  std::exception_ptr video_error;
+  try {
+    if (s.pictures) s.pictures->finish();
+  } catch (const std::runtime_error&) {
+    video_error = std::current_exception();
+  }
   try {
     if (s.dropped_count > 0) s.send_event(kDroppedPicturesEvent, std::to_string(s.dropped_count));
     s.join_and_report();
@@ -376,7 +284,7 @@ void SessionRecorder::finish() {
     throw IoError(s.folder,
                   "was moved or deleted while it was being recorded; the end of the record is missing");
   s.formats.finish();
-  if (s.pictures) s.pictures->finish();
+  if (video_error) std::rethrow_exception(video_error);
   s.cover_to_end();
   s.database.execute("INSERT INTO ending VALUES(1)");
   s.database.seal();

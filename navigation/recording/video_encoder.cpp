@@ -4,13 +4,12 @@
 #include <cmath>
 #include <vector>
 
-#include "planning/files/private_folder.h"
+#include "navigation/recording/h264_encoder.h"
+#include "navigation/recording/matroska_writer.h"
+#include "navigation/sources/libav.h"
 #include "planning/geometry/error.h"
 
 extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-#include <libavutil/log.h>
 #include <libavutil/opt.h>
 }
 
@@ -18,20 +17,7 @@ namespace arthronaut::recording {
 
 namespace {
 
-struct FreeLibav {
-  void operator()(AVFormatContext* p) const {
-    avio_closep(&p->pb);
-    avformat_free_context(p);
-  }
-  void operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
-  void operator()(AVPacket* p) const { av_packet_free(&p); }
-  void operator()(AVFrame* p) const { av_frame_free(&p); }
-};
-template <class T>
-using LibavPtr = std::unique_ptr<T, FreeLibav>;
-
-// A cluster, the unit that reaches the disk, is no longer than this.
-constexpr const char* kClusterMs = "250";
+using sources::LibavPtr;
 
 // Colour differences of full-range BT.601 in 16-bit fixed point: (B - Y) / 1.772 and (R - Y) / 1.402.
 constexpr int kBlue = 36984, kRed = 46745;
@@ -50,26 +36,25 @@ AVPixelFormat format_of(int width, int height) {
 }  // namespace
 
 struct VideoEncoder::State {
-  State(const std::filesystem::path& to, int width, int height, double frames_per_second)
-      : file(to), packet(av_packet_alloc()), picture(av_frame_alloc()) {
-    av_log_set_level(AV_LOG_QUIET);  // what goes wrong is told by exception
-    AVFormatContext* created = nullptr;
-    check(avformat_alloc_output_context2(&created, nullptr, "matroska", file.c_str()),
-          "cannot start the video");
-    container.reset(created);
-    open_encoder(width, height, frames_per_second);
-    open_file();
+  State(const std::filesystem::path& to, int width, int height, double frames_per_second, PicturesAs as)
+      : file(to), writer(to), packet(av_packet_alloc()), picture(av_frame_alloc()) {
+    const AVRational rate{static_cast<int>(std::lround(1000 * frames_per_second)), 1000};
+    if (as == PicturesAs::H264) {
+      h264 = open_h264(file, width, height, rate);
+      encoder = std::move(h264.encoder);
+    } else {
+      open_ut_video(width, height, rate);
+    }
+    avcodec_parameters_from_context(writer.stream().codecpar, encoder.get());
+    writer.stream().time_base = encoder->time_base;
+    writer.stream().avg_frame_rate = encoder->framerate;
+    writer.begin();
     open_picture(width, height);
   }
 
-  void check(int result, const std::string& what) const {
-    if (result >= 0) return;
-    char text[AV_ERROR_MAX_STRING_SIZE] = {};
-    av_strerror(result, text, sizeof text);
-    throw IoError(file, what + ": " + text);
-  }
+  void check(int result, const std::string& what) const { writer.check(result, what); }
 
-  void open_encoder(int width, int height, double frames_per_second) {
+  void open_ut_video(int width, int height, AVRational rate) {
     const AVCodec* codec = avcodec_find_encoder(AV_CODEC_ID_UTVIDEO);
     if (!codec) throw IoError(file, "cannot write the video: this libavcodec has no Ut Video encoder");
     encoder.reset(avcodec_alloc_context3(codec));
@@ -78,28 +63,12 @@ struct VideoEncoder::State {
     encoder->pix_fmt = format_of(width, height);
     encoder->color_range = AVCOL_RANGE_JPEG;    // luma is grey as it is tracked, 0 to 255
     encoder->colorspace = AVCOL_SPC_SMPTE170M;  // BT.601, the matrix of camera::gray_from
-    encoder->framerate = {static_cast<int>(std::lround(1000 * frames_per_second)), 1000};
-    encoder->time_base = av_inv_q(encoder->framerate);
+    encoder->framerate = rate;
+    encoder->time_base = av_inv_q(rate);
     encoder->thread_count = 1;  // the other core tracks
     encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     av_opt_set(encoder->priv_data, "pred", "left", 0);
     check(avcodec_open2(encoder.get(), codec, nullptr), "cannot start the video encoder");
-  }
-
-  void open_file() {
-    stream = avformat_new_stream(container.get(), nullptr);
-    if (!stream) throw IoError(file, "cannot start the video");
-    avcodec_parameters_from_context(stream->codecpar, encoder.get());
-    stream->time_base = encoder->time_base;
-    stream->avg_frame_rate = encoder->framerate;
-    files::begin_private_file(file);
-    check(avio_open(&container->pb, file.c_str(), AVIO_FLAG_WRITE), "cannot create");
-    container->flags |= AVFMT_FLAG_FLUSH_PACKETS;
-    AVDictionary* settings = nullptr;
-    av_dict_set(&settings, "cluster_time_limit", kClusterMs, 0);
-    const int result = avformat_write_header(container.get(), &settings);
-    av_dict_free(&settings);
-    check(result, "cannot write");
   }
 
   void open_picture(int width, int height) {
@@ -152,25 +121,24 @@ struct VideoEncoder::State {
       const int received = avcodec_receive_packet(encoder.get(), packet.get());
       if (received == AVERROR(EAGAIN) || received == AVERROR_EOF) return;
       check(received, "cannot encode");
-      av_packet_rescale_ts(packet.get(), encoder->time_base, stream->time_base);
-      packet->stream_index = stream->index;
-      packet->duration = av_rescale_q(1, encoder->time_base, stream->time_base);
-      check(av_interleaved_write_frame(container.get(), packet.get()), "cannot write");
+      packet->duration = 1;
+      writer.write(*packet, encoder->time_base);
     }
   }
 
   std::filesystem::path file;
-  LibavPtr<AVFormatContext> container;
+  MatroskaWriter writer;
+  H264Encoder h264;  // empty for Ut Video
   LibavPtr<AVCodecContext> encoder;
   LibavPtr<AVPacket> packet;
   LibavPtr<AVFrame> picture;
   std::vector<std::uint8_t> gray, colours;
-  AVStream* stream = nullptr;
   std::int64_t count = 0;
 };
 
-VideoEncoder::VideoEncoder(const std::filesystem::path& file, int width, int height, double frames_per_second)
-    : state_(std::make_unique<State>(file, width, height, frames_per_second)) {}
+VideoEncoder::VideoEncoder(const std::filesystem::path& file, int width, int height, double frames_per_second,
+                           PicturesAs as)
+    : state_(std::make_unique<State>(file, width, height, frames_per_second, as)) {}
 
 VideoEncoder::~VideoEncoder() = default;
 
@@ -184,13 +152,15 @@ void VideoEncoder::encode(const camera::Frame& picture) {
   s.fill_luma(picture);
   s.fill_colour(picture);
   s.picture->pts = s.count++;
-  s.send(s.picture.get());
+  if (s.h264.frames == nullptr) return s.send(s.picture.get());
+  s.send(uploaded(s.h264, *s.picture, s.file));
 }
 
 void VideoEncoder::finish() {
   state_->send(nullptr);
-  state_->check(av_write_trailer(state_->container.get()), "cannot write");
-  state_->check(avio_closep(&state_->container->pb), "cannot write");
+  state_->writer.finish();
 }
+
+std::string VideoEncoder::codec() const { return state_->encoder->codec->name; }
 
 }  // namespace arthronaut::recording

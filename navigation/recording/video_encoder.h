@@ -1,28 +1,36 @@
-// One Ut Video stream in a Matroska file, picture by picture. PictureWriter gives it a thread.
+// Pictures encoded to a Matroska file, one by one. PictureWriter gives it a thread.
 //
-// Luma is kept bit for bit: the plane that camera::gray_from() gives, in full range, so that tracking the
-// file again gives the same poses. Colour is for the eye: half the resolution, in steps of four grey values.
-// Every picture is a key frame. FFV1 takes four to five times the time and lossless H.264 twice, at 0.6 to
-// 0.95 of the size (docs/benchmarks.md).
+// Lossless, by Ut Video: luma is kept bit for bit: the plane that camera::gray_from() gives, in full range,
+// so that tracking the file again gives the same poses. Colour is for the eye: half the resolution, in steps
+// of four grey values. Every picture is a key frame. FFV1 takes four to five times the time and lossless
+// H.264 twice, at 0.6 to 0.95 of the size (docs/benchmarks.md).
+//
+// H.264, by the graphics processor where it can (VA-API), else by libx264: a key frame every half second, no
+// picture waits for another one. Luma comes back with errors of some grey values: poses tracked again differ.
 #pragma once
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "navigation/camera/frame.h"
+#include "navigation/recording/kept_video.h"
 
 namespace arthronaut::recording {
 
 class VideoEncoder {
  public:
-  // Throws IoError when the file cannot be created or this libavcodec has no Ut Video encoder.
-  VideoEncoder(const std::filesystem::path& file, int width, int height, double frames_per_second);
+  // `as`: Lossless or H264. Throws IoError when the file cannot be created or this libavcodec has no encoder.
+  VideoEncoder(const std::filesystem::path& file, int width, int height, double frames_per_second,
+               PicturesAs as = PicturesAs::Lossless);
   ~VideoEncoder();
 
   // Throws IoError, and InvalidInput for another size than the first.
   void encode(const camera::Frame& picture);
   // Writes what is left and the file's end. Throws IoError.
   void finish();
+  // libavcodec's name of the encoder: "utvideo", "libx264", "h264_vaapi".
+  [[nodiscard]] std::string codec() const;
 
  private:
   struct State;

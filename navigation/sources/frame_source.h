@@ -13,6 +13,8 @@
 
 namespace arthronaut::sources {
 
+class EncodedPackets;  // encoded_packets.h
+
 struct SourceInfo {
   std::string name;  // for screen and record
   Eigen::Vector2i image_size_px{0, 0};
@@ -25,6 +27,8 @@ struct SourceInfo {
   // Of a live source that comes back by itself: why no picture comes, and how it is told to end. Null else.
   std::shared_ptr<SourceLine> line = nullptr;
   bool ends = true;  // false: an end is a fault, and the source is to be taken up again
+  // Of a live source whose pictures came encoded: what they were decoded from. Null else.
+  std::shared_ptr<EncodedPackets> packets = nullptr;
 };
 
 class FrameSource {

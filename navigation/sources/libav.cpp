@@ -53,6 +53,32 @@ std::string libav_message(int error) {
   return text;
 }
 
+LibavPtr<AVCodecContext> open_stream_decoder(const AVCodecParameters& parameters, AVRational time_base,
+                                             std::string& problem, DecoderUse use) {
+  const AVCodec* const codec = avcodec_find_decoder(parameters.codec_id);
+  if (codec == nullptr) {
+    problem = "no decoder for its video";
+    return nullptr;
+  }
+  LibavPtr<AVCodecContext> decoder(avcodec_alloc_context3(codec));
+  avcodec_parameters_to_context(decoder.get(), &parameters);
+  // Threads by frames would hold back as many pictures as there are threads.
+  decoder->thread_count = use == DecoderUse::Live ? 2 : 0;
+  decoder->thread_type = use == DecoderUse::Live ? FF_THREAD_SLICE : FF_THREAD_FRAME | FF_THREAD_SLICE;
+  if (use == DecoderUse::Live) decoder->flags |= AV_CODEC_FLAG_LOW_DELAY;
+  decoder->max_pixels = kMostPixels;
+  decoder->pkt_timebase = time_base;
+  if (const int error = avcodec_open2(decoder.get(), codec, nullptr); error < 0) {
+    problem = "its video can't be decoded: " + libav_message(error);
+    return nullptr;
+  }
+  return decoder;
+}
+
+bool is_whole(const AVFrame& picture) {
+  return picture.decode_error_flags == 0 && (picture.flags & AV_FRAME_FLAG_CORRUPT) == 0;
+}
+
 bool BgrConverter::convert(const AVFrame& picture, std::vector<std::uint8_t>& bgr) {
   converter_.reset(sws_getCachedContext(
       converter_.release(), picture.width, picture.height, static_cast<AVPixelFormat>(picture.format),

@@ -31,6 +31,16 @@ using LibavPtr = std::unique_ptr<T, FreeLibav>;
 // "Invalid data found when processing input".
 [[nodiscard]] std::string libav_message(int error);
 
+// Live: what must not hold pictures back, and what is decoded again to be the same to the last bit. Quick: by
+// all cores.
+enum class DecoderUse { Live, Quick };
+// Of a stream that came over the network. Null: `problem` says why.
+[[nodiscard]] LibavPtr<AVCodecContext> open_stream_decoder(const AVCodecParameters& parameters,
+                                                           AVRational time_base, std::string& problem,
+                                                           DecoderUse use = DecoderUse::Live);
+// Neither damaged nor put together from what was there before.
+[[nodiscard]] bool is_whole(const AVFrame& picture);
+
 // Colours of decoded pictures by BT.601, whatever they are tagged with: camera::gray_from() then computes the
 // luma that was sent.
 class BgrConverter {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "navigation/sources/capture_time.h"
+#include "navigation/sources/encoded_packets.h"
 #include "navigation/sources/libav.h"
 #include "navigation/sources/recovering_source.h"
 #include "planning/geometry/error.h"
@@ -32,8 +33,8 @@ struct FreeDictionary {
 class Connection {
  public:
   // Throws DeviceError.
-  Connection(const std::string& address, std::int64_t deadline_ns, bool is_again)
-      : packet_(av_packet_alloc()), picture_(av_frame_alloc()), deadline_ns_(deadline_ns) {
+  Connection(const std::string& address, std::int64_t deadline_ns, bool is_again, EncodedPackets& packets)
+      : packets_(packets), packet_(av_packet_alloc()), picture_(av_frame_alloc()), deadline_ns_(deadline_ns) {
     AVFormatContext* opening = avformat_alloc_context();
     opening->interrupt_callback = {[](void* self) { return static_cast<Connection*>(self)->is_late(); },
                                    this};
@@ -59,7 +60,10 @@ class Connection {
       stream_index_ = video_in_container();
     }
     if (stream_index_ < 0) fail(address, "holds no video");
-    open_decoder(address);
+    std::string problem;
+    decoder_ = open_stream_decoder(*stream().codecpar, stream().time_base, problem);
+    if (decoder_ == nullptr) fail(address, problem);
+    packets_.begin(stream());
   }
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -70,9 +74,7 @@ class Connection {
     for (;;) {
       const int received = avcodec_receive_frame(decoder_.get(), picture_.get());
       if (received == 0) {
-        const bool is_whole =
-            picture_->decode_error_flags == 0 && (picture_->flags & AV_FRAME_FLAG_CORRUPT) == 0;
-        if (is_whole) return picture_.get();
+        if (is_whole(*picture_)) return picture_.get();
         ++damaged_count_;
         continue;
       }
@@ -116,32 +118,25 @@ class Connection {
     throw DeviceError(shown_address(address) + ": " + reason);
   }
 
-  void open_decoder(const std::string& address) {
-    const AVCodec* codec = avcodec_find_decoder(stream().codecpar->codec_id);
-    if (codec == nullptr) fail(address, "no decoder for its video");
-    decoder_.reset(avcodec_alloc_context3(codec));
-    avcodec_parameters_to_context(decoder_.get(), stream().codecpar);
-    // Threads by frames would hold back as many pictures as there are threads.
-    decoder_->thread_count = 2;
-    decoder_->thread_type = FF_THREAD_SLICE;
-    decoder_->flags |= AV_CODEC_FLAG_LOW_DELAY;
-    decoder_->max_pixels = kMostPixels;
-    decoder_->pkt_timebase = stream().time_base;
-    if (const int error = avcodec_open2(decoder_.get(), codec, nullptr); error < 0)
-      fail(address, "its video can't be decoded: " + libav_message(error));
-  }
-
   bool feed() {
     if (av_read_frame(container_.get(), packet_.get()) < 0) return false;
     const bool is_video = packet_->stream_index == stream_index_;
-    if (is_video) received_ns_ = steady_now_ns();
-    if (is_video && packet_->pts != AV_NOPTS_VALUE) clock_.arrived(stamp_ns(packet_->pts), received_ns_);
-    // What a damaged packet makes of a picture is seen when it is decoded.
-    if (is_video) (void)avcodec_send_packet(decoder_.get(), packet_.get());
+    if (is_video) take(*packet_);
     av_packet_unref(packet_.get());
     return true;
   }
 
+  void take(AVPacket& packet) {
+    received_ns_ = steady_now_ns();
+    if (packet.pts != AV_NOPTS_VALUE) clock_.arrived(stamp_ns(packet.pts), received_ns_);
+    const std::int64_t time_ns =
+        packet.pts == AV_NOPTS_VALUE ? received_ns_ : clock_.captured_ns(stamp_ns(packet.pts));
+    decoder_->reordered_opaque = packets_.put(packet, time_ns, decoder_->has_b_frames);
+    // What a damaged packet makes of a picture is seen when it is decoded.
+    (void)avcodec_send_packet(decoder_.get(), &packet);
+  }
+
+  EncodedPackets& packets_;
   LibavPtr<AVFormatContext> container_;
   LibavPtr<AVCodecContext> decoder_;
   LibavPtr<AVPacket> packet_;
@@ -155,15 +150,18 @@ class Connection {
 // One connection as a source; whoever opened it opens another one when it breaks.
 class NetworkStream final : public FrameSource {
  public:
-  NetworkStream(const std::string& address, const Opening& opening) : stamps_(opening.stamps) {
+  NetworkStream(const std::string& address, const Opening& opening,
+                const std::shared_ptr<EncodedPackets>& packets)
+      : stamps_(opening.stamps) {
     info_.name = shown_address(address);
     info_.kind = SourceKind::Live;
     info_.ends = false;
+    info_.packets = packets;
     av_log_set_level(AV_LOG_QUIET);
     avformat_network_init();
     const std::int64_t deadline_ns =
         steady_now_ns() + (opening.is_again ? kOpensAgainWithin_ns : kOpensWithin_ns);
-    connection_ = std::make_unique<Connection>(address, deadline_ns, opening.is_again);
+    connection_ = std::make_unique<Connection>(address, deadline_ns, opening.is_again, *packets);
     const AVFrame* const picture = connection_->next(deadline_ns);
     if (picture == nullptr) throw DeviceError(info_.name + ": gives no picture");
     info_.image_size_px = {picture->width, picture->height};
@@ -191,6 +189,7 @@ class NetworkStream final : public FrameSource {
     stamps_.put_on(*frame, connection_->captured_ns(), camera::CaptureClock::Network);
     frame->received_ns = connection_->received_ns();
     frame->decoded_ns = steady_now_ns();
+    frame->packet = static_cast<std::int32_t>(picture.reordered_opaque);
     return frame;
   }
 
@@ -204,8 +203,9 @@ class NetworkStream final : public FrameSource {
 }  // namespace
 
 std::unique_ptr<FrameSource> open_network_stream(const std::string& address) {
-  return recovering(
-      [address](const Opening& opening) { return std::make_unique<NetworkStream>(address, opening); });
+  return recovering([address, packets = std::make_shared<EncodedPackets>()](const Opening& opening) {
+    return std::make_unique<NetworkStream>(address, opening, packets);
+  });
 }
 
 }  // namespace arthronaut::sources

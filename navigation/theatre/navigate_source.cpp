@@ -61,6 +61,7 @@ class Navigation {
                                   : [folder = record.folder] { return folder; }) {
     summary_.statistics = pipeline::ViewStatistics(options.source.pipeline.tools);
     const double end_s = options.duration_s.value_or(std::numeric_limits<double>::infinity());
+    run_.keep_pictures_as(record.pictures);
     run_.start({.setup = options.source,
                 .open = [source, end_s] { return std::make_unique<SharedSource>(source, end_s); },
                 .truth = {},

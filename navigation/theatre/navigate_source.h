@@ -74,6 +74,7 @@ struct RecordOptions {
   std::filesystem::path folder;  // exists and is empty; empty path: no record
   recording::KeepVideo keep = recording::KeepVideo::No;
   std::filesystem::path video;  // the source's file or pattern, for Copy and Refer
+  recording::PicturesAs pictures = recording::PicturesAs::AsTheyCame;  // for Encode
 };
 
 // Deterministic for a source, options and seed. Decoding runs in a thread of its own, which shares the

@@ -49,7 +49,7 @@ void OperationRun::begin_record() {
   try {  // a disk that fails ends the record, never the operation
     const std::filesystem::path folder = make_session_folder_();
     record_ = std::make_unique<recording::OperationRecord>(folder, operation_.setup(), theatre_source_.setup,
-                                                           source_->info(), continues_);
+                                                           source_->info(), continues_, pictures_as_);
     session_folder_ = folder;
     continues_ = folder.filename().string();
     record_->add(std::exchange(early_, {}));

@@ -69,6 +69,8 @@ class OperationRun {
   // Takes in what the registration has found and what was seen of the medium meanwhile; true when the first
   // is something new. step() does it too.
   bool follow_registration();
+  // How pictures of sources without a file are kept, from the next source on. Without a call, as they came.
+  void keep_pictures_as(recording::PicturesAs as) { pictures_as_ = as; }
   // Video from now on, or no more; the journal goes on in any case. No effect without a source.
   void keep_video(bool on);
   void keep_video(recording::KeepVideo keep, const std::filesystem::path& video);  // see OperationRecord
@@ -116,6 +118,7 @@ class OperationRun {
   std::filesystem::path session_folder_;
   std::vector<operation::JournalEntry> early_;  // from before the first source
   std::string continues_, record_trouble_;
+  recording::PicturesAs pictures_as_ = recording::PicturesAs::AsTheyCame;
   bool record_is_due_ = false;
   operation::OperationStatePtr frame_state_;  // after the newest frame
   struct Outside {

@@ -114,8 +114,7 @@ int stream(const std::string& clip, double seconds, bool records) {
               static_cast<long long>(last - first + 1), seen, 100.0 * static_cast<double>(seen) / sent);
   if (records) {
     const recording::RecordedSession session(record.folder);
-    std::printf("recorded: %zu frames, %zu pictures\n", session.frames().size(),
-                session.frame_of_picture().size());
+    std::printf("recorded: %zu frames, %zu pictures\n", session.frames().size(), session.pictures().size());
   }
   for (std::size_t i = 0; i < theatre::kStageCount; ++i)
     if (const theatre::StageLatency& stage = summary.latency[i]; stage.count > 0)

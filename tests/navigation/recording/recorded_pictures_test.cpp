@@ -213,7 +213,7 @@ TEST(RecordedPictures, LosesAtMostASecondAtAnyOf40Kills) {
       EXPECT_FALSE(session.was_finished);
       ASSERT_GT(RecordedSession(child.folder->path()).frames().size(),
                 static_cast<std::size_t>(must_be_there));
-      ASSERT_GT(session.frame_of_picture.size(), static_cast<std::size_t>(must_be_there));
+      ASSERT_GT(session.pictures.size(), static_cast<std::size_t>(must_be_there));
       RecordedPictures pictures(session);
       for (const int i : seeded_order(must_be_there + 1, 9)) {
         const camera::FramePtr picture = pictures.picture(i, test::frame_result(i).timestamp_ns);

@@ -94,7 +94,7 @@ TEST_F(RecordedVideo, IsReadableAfterAKill) {
 
 // Pictures of another size and folders that are not there are errors, not crashes.
 TEST_F(RecordedVideo, ReportsWhatTheEncoderCannotDo) {
-  recording::PictureWriter resized(folder_ / "a.mkv", 60);
+  recording::PictureWriter resized(folder_, {});
   resized.write(moving_picture(0));
   auto small = std::make_shared<camera::Frame>(*moving_picture(1));
   small->height /= 2;
@@ -102,7 +102,7 @@ TEST_F(RecordedVideo, ReportsWhatTheEncoderCannotDo) {
   resized.write(small);
   EXPECT_THROW(resized.finish(), InvalidInput);
 
-  recording::PictureWriter nowhere(folder_ / "missing" / "a.mkv", 60);
+  recording::PictureWriter nowhere(folder_ / "missing", {});
   nowhere.write(moving_picture(0));
   EXPECT_THROW(nowhere.finish(), IoError);
 }

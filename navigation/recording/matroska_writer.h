@@ -1,0 +1,39 @@
+// Inner header: a Matroska file with one stream of video, written so that a program which ends at any moment
+// leaves a file that is whole but for its last quarter of a second.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+}
+
+namespace arthronaut::recording {
+
+// stream() is described, begin(), write() in order, finish(). Members throw IoError.
+class MatroskaWriter {
+ public:
+  explicit MatroskaWriter(const std::filesystem::path& file);
+  ~MatroskaWriter();
+  MatroskaWriter(const MatroskaWriter&) = delete;
+  MatroskaWriter& operator=(const MatroskaWriter&) = delete;
+
+  [[nodiscard]] AVStream& stream() { return *stream_; }
+  void begin();
+  // The packet is let go. Its times are in `time_base`.
+  void write(AVPacket& packet, AVRational time_base);
+  // What follows begins a new cluster, which can be found by its time.
+  void end_cluster();
+  void finish();
+  // Throws where a function of libav failed.
+  void check(int result, const std::string& what) const;
+
+ private:
+  std::filesystem::path file_;
+  AVFormatContext* container_ = nullptr;
+  AVStream* stream_ = nullptr;
+};
+
+}  // namespace arthronaut::recording
