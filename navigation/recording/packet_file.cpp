@@ -47,12 +47,16 @@ void add_parameter_sets(AVCodecParameters& parameters, const AVPacket& first) {
 }  // namespace
 
 struct PacketFile::State {
-  State(const std::filesystem::path& file, const sources::EncodedPacket& first)
+  State(const std::filesystem::path& file, const sources::EncodedPacket& first, const camera::Frame& picture)
       : writer(file), begins_ns(first.time_ns) {
     AVCodecParameters& parameters = *writer.stream().codecpar;
     if (avcodec_parameters_copy(&parameters, first.format->parameters.get()) < 0) throw std::bad_alloc();
     parameters.codec_tag = 0;  // of the container that it came in
     add_parameter_sets(parameters, *first.data);
+    if (parameters.width <= 0 || parameters.height <= 0) {
+      parameters.width = picture.width;
+      parameters.height = picture.height;
+    }
     writer.stream().time_base = {1, 1000};
     if (first.format->frames_per_second > 0)
       writer.stream().avg_frame_rate = av_d2q(first.format->frames_per_second, 100'000);
@@ -75,8 +79,9 @@ bool PacketFile::takes(const sources::EncodedPacket& first) {
   return !needs_parameter_sets(*parameters) || parameters->extradata_size > 0;
 }
 
-PacketFile::PacketFile(const std::filesystem::path& file, const sources::EncodedPacket& first)
-    : state_(std::make_unique<State>(file, first)) {}
+PacketFile::PacketFile(const std::filesystem::path& file, const sources::EncodedPacket& first,
+                       const camera::Frame& picture)
+    : state_(std::make_unique<State>(file, first, picture)) {}
 
 PacketFile::~PacketFile() = default;
 

@@ -14,9 +14,11 @@ class PacketFile {
   // Whether a file can begin with this packet: Matroska has a place for such a stream, and its parameter sets
   // are known.
   [[nodiscard]] static bool takes(const sources::EncodedPacket& first);
-  // `first` is the packet that the file begins with, where decoding may begin. Throws IoError.
+  // `first` is the packet that the file begins with, where decoding may begin; `picture` one of the stream,
+  // whose size a stream that was connected to again has not said. Throws IoError.
   // Precondition: takes(first).
-  PacketFile(const std::filesystem::path& file, const sources::EncodedPacket& first);
+  PacketFile(const std::filesystem::path& file, const sources::EncodedPacket& first,
+             const camera::Frame& picture);
   ~PacketFile();
 
   // The first one, and those after it in order. Every packet that decoding may begin at begins a cluster,

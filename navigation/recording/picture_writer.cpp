@@ -50,7 +50,7 @@ class VideoParts {
     if (copy_ != nullptr) leave_copy();
     const sources::EncodedPacketPtr start = start_for(picture);
     if (start == nullptr) return false;
-    auto begun = std::make_unique<StreamCopy>(folder_ / next_file(), options_.packets, start);
+    auto begun = std::make_unique<StreamCopy>(folder_ / next_file(), options_.packets, start, picture);
     // The first picture of a part decides whether there will be one.
     if (!begun->take(picture, kept)) {
       begun->finish();

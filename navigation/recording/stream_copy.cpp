@@ -71,8 +71,8 @@ struct WrittenStart {
 
 struct StreamCopy::State {
   State(const std::filesystem::path& to, std::shared_ptr<const sources::EncodedPackets> from,
-        EncodedPacketPtr begin)
-      : file(to, *begin), packets(std::move(from)), first(std::move(begin)), next(first->number) {}
+        EncodedPacketPtr begin, const camera::Frame& picture)
+      : file(to, *begin, picture), packets(std::move(from)), first(std::move(begin)), next(first->number) {}
 
   bool refuse(const char* why) {
     refusal = why;
@@ -120,8 +120,9 @@ struct StreamCopy::State {
 };
 
 StreamCopy::StreamCopy(const std::filesystem::path& file,
-                       std::shared_ptr<const sources::EncodedPackets> packets, EncodedPacketPtr first)
-    : state_(std::make_unique<State>(file, std::move(packets), std::move(first))) {}
+                       std::shared_ptr<const sources::EncodedPackets> packets, EncodedPacketPtr first,
+                       const camera::Frame& picture)
+    : state_(std::make_unique<State>(file, std::move(packets), std::move(first), picture)) {}
 
 StreamCopy::~StreamCopy() = default;
 

@@ -18,7 +18,7 @@ class StreamCopy {
  public:
   // Throws IoError.
   StreamCopy(const std::filesystem::path& file, std::shared_ptr<const sources::EncodedPackets> packets,
-             sources::EncodedPacketPtr first);
+             sources::EncodedPacketPtr first, const camera::Frame& picture);
   ~StreamCopy();
 
   // Writes what came up to the picture's packet; says where the picture lies. False: it cannot be kept in

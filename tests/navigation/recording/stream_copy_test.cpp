@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
+#include <future>
 #include <map>
 #include <random>
 
@@ -182,17 +182,19 @@ TEST_F(StreamCopyTest, H264ByRtspComesBack) {
 // A sender that is killed and comes back is a new part; every picture of both is there.
 TEST_F(StreamCopyTest, ABreakBeginsANewPart) {
   const std::string port = stream_port(7);
-  const std::vector<std::string> codec = {"-c:v",  "libx264",     "-preset", "ultrafast",
-                                          "-tune", "zerolatency", "-g",      "15"};
+  const std::vector<std::string> codec = {"-c:v", "mpeg2video", "-g", "10", "-bf", "0"};
   auto sender = send_by_udp(port, codec);
   const auto source = open_when_there("udp://127.0.0.1:" + port);
   begin(source->info().packets);
   keep_of(*source, 40);
   sender.reset();
-  std::this_thread::sleep_for(
-      std::chrono::milliseconds(1500));  // longer than a silence that is waited through
-  sender = send_by_udp(port, codec);
+  // Longer than a silence that is waited through.
+  const std::future<void> later = std::async(std::launch::async, [&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    sender = send_by_udp(port, codec);
+  });
   keep_of(*source, 80);
+  later.wait();
   expect_all_seen_again();
   EXPECT_GE(parts_.size(), 2U);
   for (const VideoPart& part : parts_) EXPECT_EQ(part.as, PicturesAs::AsTheyCame);
