@@ -145,9 +145,9 @@ class CameraDevice final : public FrameSource {
   }
 
   void say_lost() {
-    remark_ = lost_.words().empty()
-                  ? ""
-                  : info_.name + ": " + lost_.words() + ": check its cable, and what shares its USB socket";
+    remark_ = lost_.words().empty() ? ""
+                                    : info_.name + ": " + lost_.words() +
+                                          ": check its cable, and whether this computer keeps up";
   }
 
   LiveStamps& stamps_;
