@@ -66,7 +66,7 @@ TEST_F(ScreenCopyKeys, PutWhatTheScreenShowsIntoTheCase) {
   EXPECT_EQ(video->info().image_size_px, Eigen::Vector2i(1280, 720));
   int count = 0;
   while (video->next() != nullptr) ++count;
-  EXPECT_GE(count, 5);
+  EXPECT_GE(count, 2);
   // Nobody said where to.
   app.press("shift+F12");
   EXPECT_TRUE(says(app, "names no screen_stream")) << app.state("screen_copy");
