@@ -42,8 +42,8 @@ camera::FramePtr random_picture(std::int64_t index, int width, int height) {
 // Random pictures, the hardest that there are, of even and odd sizes: every byte of luma comes back.
 TEST_F(ExactRecording, GivesBackTheLumaOfRandomPictures) {
   for (const auto& [width, height] : {std::pair{160, 120}, {322, 182}, {161, 121}, {64, 33}}) {
-    const auto file = folder_ / (std::to_string(width) + ".mkv");
-    recording::PictureWriter writer(file, 60);
+    const auto file = folder_ / "video.mkv";
+    recording::PictureWriter writer(folder_.path(), {});
     for (int i = 0; i < 12; ++i) writer.write(random_picture(i, width, height));
     writer.finish();
     const auto video = sources::open_video_with_exact_luma(file);
@@ -61,10 +61,10 @@ TEST_F(ExactRecording, PrefersThePicturesOwnLuma) {
   auto picture = std::make_shared<camera::Frame>(*random_picture(0, 160, 120));
   picture->luma.assign(160 * 120, 77);
   picture->luma[5] = 255;
-  recording::PictureWriter writer(folder_ / "v.mkv", 60);
+  recording::PictureWriter writer(folder_.path(), {});
   writer.write(picture);
   writer.finish();
-  EXPECT_EQ(luma_of(*sources::open_video_with_exact_luma(folder_ / "v.mkv")->next()), picture->luma);
+  EXPECT_EQ(luma_of(*sources::open_video_with_exact_luma(folder_ / "video.mkv")->next()), picture->luma);
 }
 
 // A simulated operation, tracked and recorded, then tracked again from the record: every number of every
