@@ -8,6 +8,7 @@
 #include "navigation/calibration/residual_plot.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/sources/frame_source.h"
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
@@ -20,13 +21,6 @@ struct CalibrateArguments {
   std::string output, plot;
   std::vector<std::string> images;
 };
-
-template <typename... Values>
-std::string line(const char* format, Values... values) {
-  char text[300];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 std::vector<calibration::CalibrationPicture> observe(const std::vector<std::string>& images) {
   std::vector<calibration::CalibrationPicture> pictures;
@@ -44,23 +38,25 @@ std::vector<calibration::CalibrationPicture> observe(const std::vector<std::stri
 
 void say_result(const Context& context, const calibration::CalibrationSummary& summary, double square_mm) {
   for (const auto& picture : summary.pictures)
-    context.say(line("%s: %zu corners, %.2f px, tilted by %.0f degrees, lens at %.1f degrees%s",
-                     picture.name.c_str(), picture.residuals_px.size(), picture.rms_px, picture.tilt_deg,
-                     picture.lens_angle_deg, picture.mark_is_used ? "" : " (without its mark)"));
+    context.say(files::format("%s: %zu corners, %.2f px, tilted by %.0f degrees, lens at %.1f degrees%s",
+                              picture.name.c_str(), picture.residuals_px.size(), picture.rms_px,
+                              picture.tilt_deg, picture.lens_angle_deg,
+                              picture.mark_is_used ? "" : " (without its mark)"));
   for (const std::string& note : summary.notes) context.say(note);
   const camera::Calibration& c = summary.record.calibration;
   const auto sigma = [&](int k) { return c.covariance ? std::sqrt((*c.covariance)(k, k)) : 0.0; };
-  context.say(line("focal length %.2f px (+- %.2f), xi %.5f (+- %.5f)", c.focal_px, sigma(0), c.distortion_xi,
-                   sigma(1)));
-  context.say(line("principal point (%.2f, %.2f) px (+- %.2f), centre of rotation (%.2f, %.2f) px (+- %.2f)",
-                   c.principal_point_px.x(), c.principal_point_px.y(), std::max(sigma(2), sigma(3)),
-                   c.rotation_center_px.x(), c.rotation_center_px.y(), std::max(sigma(4), sigma(5))));
-  context.say(line("corners miss the model by %.3f px (RMS)", summary.rms_px) +
+  context.say(files::format("focal length %.2f px (+- %.2f), xi %.5f (+- %.5f)", c.focal_px, sigma(0),
+                            c.distortion_xi, sigma(1)));
+  context.say(
+      files::format("principal point (%.2f, %.2f) px (+- %.2f), centre of rotation (%.2f, %.2f) px (+- %.2f)",
+                    c.principal_point_px.x(), c.principal_point_px.y(), std::max(sigma(2), sigma(3)),
+                    c.rotation_center_px.x(), c.rotation_center_px.y(), std::max(sigma(4), sigma(5))));
+  context.say(files::format("corners miss the model by %.3f px (RMS)", summary.rms_px) +
               (summary.leave_one_out_rms_px >= 0
-                   ? line(", those of a picture left out by %.3f px", summary.leave_one_out_rms_px)
+                   ? files::format(", those of a picture left out by %.3f px", summary.leave_one_out_rms_px)
                    : std::string()));
-  context.say(line("the boards stand %.0f mm from the lens, if their squares have sides of %g mm",
-                   summary.distance_mm, square_mm));
+  context.say(files::format("the boards stand %.0f mm from the lens, if their squares have sides of %g mm",
+                            summary.distance_mm, square_mm));
 }
 
 void run_calibrate(Context& context, CalibrateArguments& arguments) {

@@ -6,6 +6,7 @@
 #include "app/command_line/command.h"
 #include "app/command_line/ruler_option.h"
 #include "navigation/camera/medium.h"
+#include "planning/files/format.h"
 #include "planning/files/json_document.h"
 
 namespace arthronaut::command_line {
@@ -18,13 +19,6 @@ struct CheckFluidArguments {
   RulerArguments ruler;
   std::string output;
 };
-
-template <typename... Values>
-std::string line(const char* format, Values... values) {
-  char text[300];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 nlohmann::ordered_json document_of(const FluidCheckSummary& summary, std::size_t frames,
                                    double stated_index) {
@@ -52,11 +46,13 @@ nlohmann::ordered_json document_of(const FluidCheckSummary& summary, std::size_t
 void say_table(const Context& context, const FluidCheckSummary& summary, double stated_index) {
   context.say("model of the fluid         ruler, px    median mm   median deg    95 % mm    95 % deg");
   for (const auto& row : summary.rows)
-    context.say(line("%-26s %9.3f %12.3f %12.2f %10.3f %11.2f", std::string(to_text(row.hypothesis)).c_str(),
-                     row.rms_px, row.median_mm, row.median_deg, row.worst_mm, row.worst_deg));
-  context.say(line("a flat port explains the frames best with an index of %.4f (+- %.4f); stated: %s, %.4f",
-                   summary.best_index, std::max(0.0, summary.index_sigma),
-                   camera::medium_to_text(stated_index).c_str(), stated_index));
+    context.say(files::format("%-26s %9.3f %12.3f %12.2f %10.3f %11.2f",
+                              std::string(to_text(row.hypothesis)).c_str(), row.rms_px, row.median_mm,
+                              row.median_deg, row.worst_mm, row.worst_deg));
+  context.say(
+      files::format("a flat port explains the frames best with an index of %.4f (+- %.4f); stated: %s, %.4f",
+                    summary.best_index, std::max(0.0, summary.index_sigma),
+                    camera::medium_to_text(stated_index).c_str(), stated_index));
 }
 
 void run_check_fluid(Context& context, const CheckFluidArguments& arguments) {
@@ -67,8 +63,8 @@ void run_check_fluid(Context& context, const CheckFluidArguments& arguments) {
   if (!arguments.output.empty())
     files::write_json(arguments.output, document_of(summary, frame_count, options.refractive_index));
   if (arguments.output != "-") {
-    context.say(line("%zu frames, the ruler's markers %d and %d together in %zu", frame_count,
-                     options.ruler.first_id, options.ruler.second_id, summary.frame_count));
+    context.say(files::format("%zu frames, the ruler's markers %d and %d together in %zu", frame_count,
+                              options.ruler.first_id, options.ruler.second_id, summary.frame_count));
     if (summary.frame_count > 0) say_table(context, summary, options.refractive_index);
     if (summary.is_trusted()) context.say("the stated medium, behind a flat port, can be trusted");
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/command_line/frame_dump.h"
 #include "app/scene/image.h"
 #include "app/scene/plan_overlay.h"
 
@@ -11,13 +12,6 @@ namespace arthronaut::command_line {
 namespace {
 
 using Colour = std::array<std::uint8_t, 3>;
-
-scene::Image image_of(const camera::Frame& frame) {
-  std::vector<std::uint8_t> made;
-  scene::Image image{frame.width, frame.height, camera::bgr_of(frame, made)};
-  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) std::swap(image.rgb[i], image.rgb[i + 2]);
-  return image;
-}
 
 void dot(scene::Image& image, const Eigen::Vector2d& at, const Colour& colour) {
   const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));

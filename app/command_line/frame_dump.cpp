@@ -19,13 +19,6 @@ using Corners = std::array<Eigen::Vector2d, 4>;
 using Colour = std::array<std::uint8_t, 3>;
 constexpr Colour kTracked{40, 230, 70}, kWithCode{60, 140, 255}, kWithoutCode{255, 210, 0};
 
-scene::Image image_of(const camera::Frame& frame) {
-  std::vector<std::uint8_t> made;
-  scene::Image image{frame.width, frame.height, camera::bgr_of(frame, made)};
-  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) std::swap(image.rgb[i], image.rgb[i + 2]);
-  return image;
-}
-
 void paint(scene::Image& image, const Eigen::Vector2d& place_px, const Colour& colour) {
   const long x = std::lround(place_px.x()), y = std::lround(place_px.y());
   if (x < 0 || y < 0 || x >= image.width || y >= image.height) return;
@@ -79,6 +72,13 @@ nlohmann::ordered_json json_of(const pipeline::PictureObservation& seen) {
 }
 
 }  // namespace
+
+scene::Image image_of(const camera::Frame& frame) {
+  std::vector<std::uint8_t> made;
+  scene::Image image{frame.width, frame.height, camera::bgr_of(frame, made)};
+  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) std::swap(image.rgb[i], image.rgb[i + 2]);
+  return image;
+}
 
 FrameDump::FrameDump(const std::filesystem::path& folder) : folder_(folder) {
   std::error_code error;

@@ -7,10 +7,14 @@
 
 #include <filesystem>
 
+#include "app/scene/image.h"
 #include "navigation/camera/frame.h"
 #include "navigation/pipeline/view_tracker.h"
 
 namespace arthronaut::command_line {
+
+// What a frame shows, to be drawn on.
+[[nodiscard]] scene::Image image_of(const camera::Frame& frame);
 
 class FrameDump {
  public:
