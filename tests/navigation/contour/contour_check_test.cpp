@@ -41,7 +41,7 @@ TEST(ContourCheck, TellsAMillimetreWithinTwoSeconds) {
 
 // Nothing is known of a bone that cannot be seen: what it does behind a glove may have been done at once.
 TEST(ContourCheck, WhatIsCoveredIsNotSeenToHold) {
-  Watched watched;
+  WatchedBall watched;
   watched.watch(4);
   const std::int64_t covered_ns = watched.check().verdict().timestamp_ns;
   const Covered all{{320, 180}, {320, 180}, 1000};
