@@ -44,7 +44,8 @@ class RerunTest : public ::testing::Test {
     operation::OperationStatePtr state;
     for (std::int64_t i = 0; i < kFrames; ++i) {
       rerun.play_before(i);
-      state = rerun.process(pictures.next(i >= moves_at ? 1 : 0));
+      state = rerun.process(pictures.next(i >= moves_at ? 1 : 0),
+                            session.frames().at(static_cast<std::size_t>(i)));
     }
     return state;
   }
