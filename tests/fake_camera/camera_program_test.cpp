@@ -78,20 +78,21 @@ TEST_F(CameraProgram, NavigatesOnACamera) {
   const std::string knee = folder_ / "knee.arthro";
   ASSERT_EQ(run_program({"phantom", "-o", knee}).exit_code, 0);
   std::jthread hand([this] {
-    while (room_.camera().given < 30) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    // A program that shares its processor takes seconds for its first picture.
+    while (room_.camera().given < 150) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     room_.unplug();
     std::this_thread::sleep_for(std::chrono::milliseconds(1000));
     room_.plug();
   });
-  const auto navigated = run_program({"navigate", knee, "--video", "/dev/video0?rate=30", "--duration-s", "6",
-                                      "--camera", folder_ / "camera.json", "--tools", folder_ / "tools.json",
-                                      "--medium", "air", "--fixed-lens"});
+  const auto navigated = run_program({"navigate", knee, "--video", "/dev/video0?rate=30", "--duration-s",
+                                      "11", "--camera", folder_ / "camera.json", "--tools",
+                                      folder_ / "tools.json", "--medium", "air", "--fixed-lens"});
   // Nothing reliable comes of a probe that touches no bone.
   EXPECT_EQ(navigated.exit_code, 4) << navigated.errors;
   EXPECT_THAT(navigated.output, HasSubstr("source: No picture comes: "));
   EXPECT_THAT(navigated.output, HasSubstr("camera 0: "));
   EXPECT_THAT(navigated.output, HasSubstr("latency: "));
-  EXPECT_GT(room_.camera().given, 35);
+  EXPECT_GT(room_.camera().given, 155);
   EXPECT_EQ(room_.camera().streaming, 0);
   const auto refused =
       run_program({"navigate", knee, "--video", "/dev/video0?size=1x1", "--duration-s", "1"});
