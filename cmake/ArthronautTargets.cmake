@@ -78,12 +78,13 @@ function(arthronaut_check_layers name)
 endfunction()
 
 # arthronaut_test(navigation_camera SOURCES x_test.cpp ... LIBS libs...)
-# One test program a module; ctest runs each test case on its own. APART as above.
+# One test program a module; ctest runs each test case on its own. APART as above. ALONE: while one of its test cases
+# runs, no other test does.
 function(arthronaut_test name)
   if(NOT ARTHRONAUT_BUILD_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "APART" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "APART;ALONE" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
@@ -93,7 +94,7 @@ function(arthronaut_test name)
   endif()
   target_link_libraries(${name}_test PRIVATE arthronaut_compile_options ${ARG_LIBS} GTest::gtest_main GTest::gmock)
   gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
-    PROPERTIES TIMEOUT ${ARG_TIMEOUT} SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]" LABELS "${ARG_LABELS}")
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT} RUN_SERIAL ${ARG_ALONE} SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]" LABELS "${ARG_LABELS}")
 endfunction()
 
 # arthronaut_benchmark(registration SOURCES x_benchmark.cpp LIBS libs...): built with the tests, run by hand.
