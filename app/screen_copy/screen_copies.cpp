@@ -24,15 +24,17 @@ void be_nice() {
   (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNice);
 }
 
-// A name that nothing in the folder has yet.
-std::filesystem::path new_file(const std::filesystem::path& case_folder, const char* extension) {
+// A name that nothing in the folder has yet, and nothing that is still being written will have.
+std::filesystem::path new_file(const std::filesystem::path& case_folder, const char* extension,
+                               std::set<std::filesystem::path>& given) {
   const std::filesystem::path folder = screens_folder(case_folder);
   files::create_private_folder(folder);
   const std::string time = files::utc_now_as("%Y%m%d-%H%M%S");
   for (int number = 1;; ++number) {
     const std::string name = time + (number > 1 ? "-" + std::to_string(number) : "") + extension;
-    if (!std::filesystem::exists(folder / name) && !std::filesystem::exists(folder / (name + ".part")))
-      return folder / name;
+    const bool is_there =
+        std::filesystem::exists(folder / name) || std::filesystem::exists(folder / (name + ".part"));
+    if (!is_there && given.insert(folder / name).second) return folder / name;
   }
 }
 
@@ -101,7 +103,7 @@ void ScreenCopies::say(std::string words) {
 void ScreenCopies::take_screenshot(const std::filesystem::path& case_folder, const std::string& refusal) {
   if (!refusal.empty()) return say("No screenshot: " + refusal);
   try {  // said on the screen, where the key was pressed
-    shot_file_ = new_file(case_folder, ".png");
+    shot_file_ = new_file(case_folder, ".png", given_);
   } catch (const IoError& error) {
     say("No screenshot: " + std::string(error.what()));
   }
@@ -139,7 +141,7 @@ void ScreenCopies::toggle_recording(const std::filesystem::path& case_folder, co
   }
   if (!refusal.empty()) return say("The screen is not recorded: " + refusal);
   try {
-    begin(recording_, new_file(case_folder, ".mkv").string());
+    begin(recording_, new_file(case_folder, ".mkv", given_).string());
   } catch (const IoError& error) {
     say("The screen is not recorded: " + std::string(error.what()));
   }

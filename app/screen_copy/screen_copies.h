@@ -12,6 +12,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "app/screen_copy/screen_encoder.h"
@@ -77,7 +78,8 @@ class ScreenCopies {
   Output recording_, stream_;
   Shots shots_;
   std::shared_ptr<const Said> last_shot_;
-  std::filesystem::path shot_file_;  // of the screenshot that waits for its picture; empty: none
+  std::set<std::filesystem::path> given_;  // names of files that may not be there yet
+  std::filesystem::path shot_file_;        // of the screenshot that waits for its picture; empty: none
   std::string said_;
   double said_until_s_ = 0, next_s_ = 0, now_s_ = 0;
   sources::BackgroundEnd ending_;
