@@ -266,7 +266,7 @@ TEST_F(StreamSession, LosesAtMostASecondAtAnyOf20Kills) {
 // recorder ends with an error, and what was made before is there.
 TEST_F(StreamSession, LosesAtMostASecondOnADiskThatIsFullAtOnce) {
   std::mt19937 random(29);
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < 4; ++i) {
     const test::TemporaryFolder folder;
     const auto largest = std::uniform_int_distribution<rlim_t>(150'000, 1'500'000)(random);
     SCOPED_TRACE("no file beyond " + std::to_string(largest) + " bytes");
