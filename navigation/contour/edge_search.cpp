@@ -24,20 +24,17 @@ double distance_px(const Covered& covered, const Eigen::Vector2d& at) {
   return (at - covered.a_px - share * along).norm();
 }
 
-bool is_free(const camera::CameraModel& camera, std::span<const Covered> covered, const Eigen::Vector2d& at) {
-  if (at.x() < 2 || at.y() < 2 || at.x() > camera.image_size_px().x() - 3 ||
-      at.y() > camera.image_size_px().y() - 3)
-    return false;
-  const camera::Boundary& rim = camera.boundary();
-  if (rim.radius_px > 0 && (at - rim.center_px).norm() > rim.radius_px - kRim_px) return false;
-  return !is_covered(covered, at);
-}
-
 }  // namespace
 
-bool is_covered(std::span<const Covered> covered, const Eigen::Vector2d& at_px) {
-  return std::any_of(covered.begin(), covered.end(),
-                     [&](const Covered& c) { return distance_px(c, at_px) < c.radius_px; });
+bool is_free(const camera::CameraModel& camera, std::span<const Covered> covered,
+             const Eigen::Vector2d& at_px) {
+  const Eigen::Vector2i& size_px = camera.image_size_px();
+  if (at_px.x() < 2 || at_px.y() < 2 || at_px.x() > size_px.x() - 3 || at_px.y() > size_px.y() - 3)
+    return false;
+  const camera::Boundary& rim = camera.boundary();
+  if (rim.radius_px > 0 && (at_px - rim.center_px).norm() > rim.radius_px - kRim_px) return false;
+  return std::none_of(covered.begin(), covered.end(),
+                      [&](const Covered& c) { return distance_px(c, at_px) < c.radius_px; });
 }
 
 std::optional<EdgeProfile> edge_profile(const camera::GrayView& luma, const camera::CameraModel& camera,

@@ -23,7 +23,9 @@ struct Covered {
   double radius_px = 0;
 };
 
-[[nodiscard]] bool is_covered(std::span<const Covered> covered, const Eigen::Vector2d& at_px);
+// Within the picture and the view, 8 px from its rim, and nothing before it that is known.
+[[nodiscard]] bool is_free(const camera::CameraModel& camera, std::span<const Covered> covered,
+                           const Eigen::Vector2d& at_px);
 
 // Edge strength by place, from -kSteps to kSteps steps outwards: 0 to 1, 1 for the strongest of a profile
 // that shows a clear edge at all; its mean taken away, so that a profile that tells nothing is zero all

@@ -14,7 +14,6 @@ constexpr float kBlownOut = 245;
 // texture.
 constexpr float kLeastContrast = 0.012f, kDark = 10;
 constexpr double kLeast_px_per_mm = 6;
-constexpr double kRim_px = 8;
 // How much less, or more, contrast than it had a piece may show to be looked at for where it lies: a film, a
 // smear or a highlight over it is no other place of the bone.
 constexpr float kDimmer = 0.4f, kStarker = 2.5f;
@@ -24,15 +23,6 @@ constexpr float kDarker = 0.5f, kBrighter = 2.5f;
 constexpr float kSameSide = 0.82f, kNearer = 0.6f, kFurther = 1.67f;
 
 using Field = std::array<float, static_cast<std::size_t>(kField) * kField>;
-
-bool is_free(const camera::CameraModel& camera, std::span<const Covered> covered, const Eigen::Vector2d& at) {
-  if (at.x() < 2 || at.y() < 2 || at.x() > camera.image_size_px().x() - 3 ||
-      at.y() > camera.image_size_px().y() - 3)
-    return false;
-  const camera::Boundary& rim = camera.boundary();
-  if (rim.radius_px > 0 && (at - rim.center_px).norm() > rim.radius_px - kRim_px) return false;
-  return !is_covered(covered, at);
-}
 
 // Samples [-half, half] about the place in the plane of its surface; false: not all of it can be seen.
 bool read_field(const SurfacePlace& place, const camera::GrayView& luma, const camera::CameraModel& camera,

@@ -128,16 +128,10 @@ std::shared_ptr<camera::Frame> DriverPictures::make(const CameraBuffers::Filled&
   auto frame = frames_.take();
   frame->width = layout_.width;
   frame->height = layout_.height;
-  frame->bgr.clear();
   auto memory = memories_.take();
   memory->hold(layout_, buffers_, filled);
   const LumaPlane plane = memory->plane();
-  const bool is_there = plane.data == nullptr || plane.in_place().data != nullptr;
-  is_there ? frame->luma.clear() : plane.write(frame->luma);
-  if (plane.data == nullptr)
-    memory->bgr_into(frame->bgr);
-  else
-    frame->memory = std::move(memory);
+  put_picture(*frame, std::move(memory), plane);
   return frame;
 }
 

@@ -130,16 +130,9 @@ std::shared_ptr<camera::Frame> DecodedFrames::make(const AVFrame& picture) {
   auto frame = frames_.take();
   frame->width = picture.width;
   frame->height = picture.height;
-  frame->bgr.clear();
-  const LumaPlane plane = luma_plane(picture);
   auto memory = memories_.take();
   memory->hold(picture);
-  const bool is_there = plane.data == nullptr || plane.in_place().data != nullptr;
-  is_there ? frame->luma.clear() : plane.write(frame->luma);
-  if (plane.data == nullptr)
-    memory->bgr_into(frame->bgr);
-  else
-    frame->memory = std::move(memory);
+  put_picture(*frame, std::move(memory), luma_plane(picture));
   return frame;
 }
 

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "navigation/camera/frame.h"
@@ -26,5 +28,19 @@ struct LumaPlane {
   // Packed. Resized once, then reused.
   void write(std::vector<std::uint8_t>& luma) const;
 };
+
+// A frame's luma left where it lies in the memory's picture, where it is what is wanted already; else
+// written. The frame keeps the memory for its colours, unless the picture has no luma: then they are made at
+// once. Its size is set by whoever calls.
+template <typename Memory>
+void put_picture(camera::Frame& frame, std::shared_ptr<Memory> memory, const LumaPlane& plane) {
+  frame.bgr.clear();
+  const bool is_there = plane.data == nullptr || plane.in_place().data != nullptr;
+  is_there ? frame.luma.clear() : plane.write(frame.luma);
+  if (plane.data == nullptr)
+    memory->bgr_into(frame.bgr);
+  else
+    frame.memory = std::move(memory);
+}
 
 }  // namespace arthronaut::sources

@@ -1,0 +1,84 @@
+#include "app/command_line/navigation_report.h"
+
+#include <algorithm>
+
+#include "app/command_line/tracking_report.h"
+
+namespace arthronaut::command_line {
+
+namespace {
+
+void say_registration(const Context& context, const theatre::NavigationSummary& summary) {
+  if (!summary.registration || !summary.registration->has_pose) return context.say("registration: none");
+  const registration::RegistrationSummary& r = *summary.registration;
+  context.say(
+      format("registration (%s): rms %.2f mm over %d points, predicted error %.2f mm at the target, %s",
+             summary.registration_was_found ? "found" : "given", r.rms_mm, r.point_count, r.predicted_tre_mm,
+             r.reliable ? "reliable" : "not reliable"));
+  for (const std::string& assumption : r.assumptions) context.say("  " + assumption);
+}
+
+void say_contour(const Context& context, const theatre::NavigationSummary& summary) {
+  if (summary.frames_registered == 0) return;
+  context.say(format("bone in the picture: where it lay in %ld of %ld frames, not told in the others",
+                     summary.frames_bone_seen, summary.frames_registered));
+  if (summary.frames_bone_otherwise > 0)
+    context.say(format("  in %ld of them it did not look as it did: touch the control point",
+                       summary.frames_bone_otherwise));
+}
+
+void say_guidance(const Context& context, const theatre::NavigationSummary& summary) {
+  const guidance::GuidanceNumbers& g = summary.last_guidance;
+  if (!g.is_valid())
+    return context.say("guidance: none; at the end: " + std::string(guidance::to_text(summary.last_state)));
+  context.say(
+      format("guidance in %ld of %ld frames; the last: guide to entry %.2f mm, axis to entry %.2f mm, "
+             "angle %.2f deg",
+             summary.frames_with_guidance, summary.statistics.frame_count, g.tip_to_entry_mm,
+             g.axis_to_entry_mm, g.angle_deg));
+  context.say(format(
+      "  offset %.2f mm: %.2f mm %s, %.2f mm %s; guide %.1f mm beyond the entry; one sigma %.2f mm, "
+      "%.2f deg",
+      g.offset_mm, g.offset_in_mm(g.across_plan.side_is),
+      std::string(landmarks::to_text(g.across_plan.side_is)).c_str(), g.offset_in_mm(g.across_plan.up_is),
+      std::string(landmarks::to_text(g.across_plan.up_is)).c_str(), g.depth_mm, g.sigma_offset_mm,
+      g.sigma_angle_deg));
+  if (g.drill)
+    context.say(format("  drill %.1f mm deep, %.1f mm remaining, %.1f mm to the exit (+- %.1f mm)",
+                       g.drill->depth_mm, g.drill->remaining_mm, g.drill->to_exit_mm, g.drill->sigma_mm));
+}
+
+// Of a live source: what was wrong with it, and how old guidance was.
+void say_source(const Context& context, const theatre::NavigationSummary& summary) {
+  constexpr std::size_t kMostTold = 5;
+  for (std::size_t i = 0; i < std::min(kMostTold, summary.troubles.size()); ++i)
+    context.say("source: " + summary.troubles[i]);
+  if (summary.troubles.size() > kMostTold)
+    context.say(format("source: and %zu times more", summary.troubles.size() - kMostTold));
+  for (std::size_t i = 0; i < std::min(kMostTold, summary.tracker_troubles.size()); ++i)
+    context.say("tracker: " + summary.tracker_troubles[i]);
+  const theatre::StageLatency& all = theatre::of(summary.latency, theatre::Stage::ToGuidance);
+  if (all.count == 0) return;
+  context.say(format(
+      "latency: %.1f ms from capture to guidance in the median, 99 %% within %.1f ms, at worst %.1f ms",
+      all.median_ms, all.p99_ms, all.worst_ms));
+  for (std::size_t i = 0; context.verbose && i < theatre::kStageCount; ++i)
+    if (const theatre::StageLatency& stage = summary.latency[i]; stage.count > 0)
+      context.say(format("  %s: %.1f ms, 99 %% within %.1f ms, at worst %.1f ms",
+                         std::string(theatre::to_text(static_cast<theatre::Stage>(i))).c_str(),
+                         stage.median_ms, stage.p99_ms, stage.worst_ms));
+}
+
+}  // namespace
+
+void say_navigation(const Context& context, const theatre::NavigationSummary& summary) {
+  if (!summary.ending.empty()) context.say("the source ended: " + summary.ending);
+  say_source(context, summary);
+  say_statistics(context, summary.statistics);
+  context.say(format("strokes: %.0f mm in %zu points", summary.stroke_length_mm, summary.curves.size()));
+  say_registration(context, summary);
+  say_contour(context, summary);
+  say_guidance(context, summary);
+}
+
+}  // namespace arthronaut::command_line
