@@ -3,8 +3,7 @@
 //   WorldFemur, WorldTibia   the world marker in the camera
 //   ProbeTip_World           the probe in the world, origin at its tip, axes of its marker
 //   Guide_World, Drill_World the guide's and the drill's marker frame in the world (tools.json says where
-//   their
-//                            axes and tips lie in it)
+//                            their axes and tips lie in it)
 //   Bone_World               the registration: the bone's frame in the world, while it may guide
 //   Plan                     POINT: entry and end of the planned tunnel in the bone's frame
 //   Arthroscope              IMAGE, to who asks for it

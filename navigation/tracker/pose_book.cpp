@@ -58,10 +58,8 @@ PoseBook::PoseBook(const TrackedBodies& with) {
 }
 
 void PoseBook::begin(double longest_transit_s) {
-  for (Body& body : bodies_) {
-    body.count = 0;
-    body.is_told_lost = body.is_broken = false;
-  }
+  forget_poses();
+  for (Body& body : bodies_) body.is_told_lost = body.is_broken = false;
   clock_ = ClockMatch(longest_transit_s);
   is_connected_ = has_stamps_ = true;
   is_far_behind_ = false;
@@ -69,13 +67,23 @@ void PoseBook::begin(double longest_transit_s) {
 
 void PoseBook::end() {
   is_connected_ = false;
-  for (Body& body : bodies_) body.count = 0;
+  forget_poses();
+}
+
+void PoseBook::forget_poses() {
+  for (Body& body : bodies_) {
+    body.count = 0;
+    body.in_use.reset();
+  }
 }
 
 bool PoseBook::take(const ReceivedPose& received) {
   for (Body& body : bodies_) {
-    for (const Name& name : body.names) {
+    for (std::size_t n = 0; n < body.names.size(); ++n) {
+      const Name& name = body.names[n];
       if (name.device != received.device) continue;
+      if (!body.in_use) body.in_use = n;
+      if (*body.in_use != n) return true;
       body.is_broken = !received.target_from_source || (name.is_at_tip && !body.tip_mm);
       if (!body.is_broken) keep(body, name, received);
       return true;

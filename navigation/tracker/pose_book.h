@@ -8,6 +8,9 @@
 //   Probe_World, Guide_World, ... the same in the bone's world
 //   ProbeTip_World                likewise, with its origin at the tip
 //
+// A server may send one body under several of them. The first that comes is the body's for as long as the
+// connection lasts, and the others are passed over: poses of two frames are never compared or mixed.
+//
 // A pose is used when it came and was taken within the last tenth of a second, and only together with a pose
 // of the bone of the same moment: the tracker may be carried, and the bone moves.
 //
@@ -51,7 +54,7 @@ class PoseBook {
   // Another connection: all that came before is forgotten. longest_transit_s: see ClockMatch.
   void begin(double longest_transit_s);
   void end();
-  // False: nobody here goes by that name.
+  // False: nobody here goes by that name. A name that is passed over (above) is known all the same.
   bool take(const ReceivedPose& received);
   // The tracker says that it does not see the device, until a pose of it comes.
   void take_lost(std::string_view device);
@@ -75,12 +78,14 @@ class PoseBook {
   struct Body {
     int id = 0;
     std::vector<Name> names;
+    std::optional<std::size_t> in_use;  // of names
     std::optional<Eigen::Vector3d> tip_mm;
     std::array<Sample, 6> kept;  // newest first
     std::size_t count = 0;
     bool is_told_lost = false, is_broken = false;
   };
 
+  void forget_poses();
   void keep(Body& body, const Name& name, const ReceivedPose& received);
   [[nodiscard]] BodyState standing_of(const Body& body, std::int64_t now_ns) const;
   [[nodiscard]] double age_s(const Sample& sample, std::int64_t now_ns) const;

@@ -179,7 +179,8 @@ TEST(IgtlReader, WhatIsNoOpenIgtLinkEndsIt) {
   EXPECT_FALSE(reader.take(Bytes(web.begin(), web.end())));
 }
 
-// Any byte of a message changed: what is read is what was sent, or nothing.
+// Any byte of a message's body changed: what is read is what was sent, or nothing. The header, with name and
+// stamp, is not under the checksum.
 TEST(IgtlReader, NoChangedByteMakesAnotherPose) {
   const Bytes message = test::transform_message("Probe", sent_pose(), 1.8e9 + 0.25, 2);
   for (std::size_t at = IgtlReader::kHeaderSize; at < message.size(); ++at) {

@@ -182,8 +182,44 @@ TEST_F(PoseBookTest, PosesInTheWorldNeedNoneOfTheBone) {
   for (const int id : {kProbe, kGuide})
     expect_same(world_from(poses, id, *bodies_.tools.tracker), Truth{newest_s_}.world_from(id));
   // A tool in the tracker's own frame has nothing in common with them.
-  tell(book, "Guide", Truth{newest_s_}.tracker_from(kGuide), newest_s_ + kStep_s);
-  EXPECT_EQ(state_of(at(book, newest_s_ + kStep_s), kGuide), BodyState::OtherFrame);
+  book.begin(0);
+  for (double t = 1; t < 2; t += kStep_s) {
+    tell(book, "ProbeTip_World", {Truth{t}.world_from(kProbe).rotation, Truth{t}.world_from(kProbe) * tip_mm},
+         t);
+    tell(book, "Guide", Truth{t}.tracker_from(kGuide), t);
+    newest_s_ = t;
+  }
+  EXPECT_EQ(state_of(at(book, newest_s_ + 0.002), kGuide), BodyState::OtherFrame);
+}
+
+// Servers send a tool in the tracker's frame and in the bone's world at once. Between the tool's messages of
+// one moment and the bone's, nothing may be put together that is of two frames.
+TEST_F(PoseBookTest, Hazard43OneBodyUnderTwoNamesIsReadInOneFrame) {
+  PoseBook book(bodies_);
+  book.begin(0);
+  for (double t = 0; t < 1; t += kStep_s) {
+    tell(book, "Probe", Truth{t}.tracker_from(kProbe), t);
+    tell(book, "Probe_World", Truth{t}.world_from(kProbe), t);
+    if (t > 0.5) {
+      const TrackerPoses poses = at(book, t + 0.002);
+      const double told_s = t - kStep_s;  // the bone's newest
+      ASSERT_EQ(state_of(poses, kProbe), BodyState::Tracked);
+      expect_same(world_from(poses, kProbe, *bodies_.tools.tracker), Truth{told_s}.world_from(kProbe));
+    }
+    tell(book, "WorldFemur", Truth{t}.tracker_from_world(), t);
+  }
+}
+
+TEST_F(PoseBookTest, Hazard43ALostToolRepeatedUnderTwoNamesIsLost) {
+  PoseBook book(bodies_);
+  book.begin(0);
+  for (double t = 0; t < 2; t += kStep_s) {
+    tell(book, "WorldFemur", Truth{t}.tracker_from_world(), t);
+    tell(book, "Probe", Truth{0}.tracker_from(kProbe), t);
+    tell(book, "Probe_World", Truth{0}.world_from(kProbe), t);
+    newest_s_ = t;
+  }
+  EXPECT_EQ(state_of(at(book, newest_s_ + 0.002), kProbe), BodyState::Repeats);
 }
 
 TEST_F(PoseBookTest, NamesAreThoseOfTheTools) {
