@@ -197,11 +197,11 @@ void ContourCheck::conclude(double elapsed_s) {
              by_surface = surface_counts && surface.has_drifted;
   if (verdict_.state == ContourState::Drifted) return;
   if (!agreement.differs && !knock.is_looking) note_held(outline_counts, surface_counts);
-  verdict_.share_alike = agreement.is_asked ? agreement.share : 1;
   verdict_.share_seen =
       std::max(outline_counts ? outline.share_seen : 0, surface_counts ? surface.share_seen : 0);
   const double drift_mm = by_surface ? surface.from_reference_mm : outline.from_reference_mm;
-  if ((by_outline || by_surface) && !(knock.is_looking && drift_mm > kEdge_mm)) {
+  const bool has_drifted = by_outline || by_surface;
+  if (has_drifted && !(knock.is_looking && drift_mm > kEdge_mm)) {
     verdict_.state = ContourState::Drifted;
     verdict_.is_by_outline = !by_surface;
     verdict_.drift_mm = std::max(drift_mm, knock.seen_mm);
@@ -211,7 +211,7 @@ void ContourCheck::conclude(double elapsed_s) {
     verdict_.drift_mm = knock.knock_mm;
   } else if (knock.is_otherwise) {
     verdict_.state = ContourState::LooksOtherwise;
-  } else if (!agreement.differs &&
+  } else if (!has_drifted && !agreement.differs &&
              ((outline_counts && outline.is_checked) || (surface_counts && surface.is_checked))) {
     verdict_.state = ContourState::Holds;
   } else {

@@ -26,7 +26,6 @@ struct ContourVerdict {
   NotCheckedReason reason = NotCheckedReason::NoRegistration;
   double share_seen = 0;                       // of directions in which a drift by 1 mm would be told
   int outline_pieces = 0, surface_pieces = 0;  // that this frame was asked about
-  double share_alike = 1;                      // of pieces of surface that can be compared: look as they did
   // With Drifted, as it was told: by which of the two, and about how far, of what can be seen of it.
   bool is_by_outline = false;
   double drift_mm = 0;

@@ -46,7 +46,6 @@ bool take_slope_away(std::array<float, 25>& samples) {
 KnockSearch::KnockSearch() {
   pieces_.reserve(kMostPieces);
   score_.resize(static_cast<std::size_t>(kLayers) * kRow * kRow);
-  in_view_.resize(score_.size());
 }
 
 void KnockSearch::reserve_for(const Eigen::Vector2i& image_size_px) {
@@ -124,7 +123,6 @@ void KnockSearch::begin(const VisibleBone& visible, const SurfaceMemory& memory,
   across_.col(2) = ray;
   bone_from_camera_ = camera_from_bone.inverse().matrix();
   std::fill(score_.begin(), score_.end(), 0.0f);
-  std::fill(in_view_.begin(), in_view_.end(), std::uint8_t{0});
   const double px_per_mm =
       camera.central_focal_px() / std::max(1.0, middle.norm() / static_cast<double>(pieces_.size()));
   shrink(luma, std::clamp(static_cast<int>(kCell_mm * px_per_mm + 0.5), kSmallestCell_px, 32));
@@ -213,7 +211,6 @@ void KnockSearch::look_for(const Wanted& piece, int layer) {
       const auto place = (static_cast<std::size_t>(layer) * kRow + static_cast<std::size_t>(y)) * kRow +
                          static_cast<std::size_t>(x);
       score_[place] += product / norm;
-      ++in_view_[place];
     }
   }
 }
@@ -240,7 +237,6 @@ void KnockSearch::conclude() {
     if (score_[place] < best * (1 - kAsWell) || by_mm.norm() >= nearest_mm) return;
     nearest_mm = by_mm.norm();
     nearest = by_mm;
-    found_.pieces_in_view = in_view_[place];
   });
   const Eigen::Vector3d ray = across_.col(2);
   each([&](std::size_t place, const Eigen::Vector3d& by_mm) {

@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "navigation/camera/camera_model.h"
@@ -24,8 +23,7 @@ struct KnockFound {
   // Correlations, summed over pieces: at the best displacement, within 1 mm of none, and at the best that
   // lies apart from both.
   double best = 0, in_place = 0, elsewhere = 0;
-  int pieces = 0;          // that were looked for
-  int pieces_in_view = 0;  // of them, at the best displacement
+  int pieces = 0;  // that were looked for
 };
 
 // Allocates nothing after reserve_for(). Deterministic: the work of a frame is counted, not timed.
@@ -70,8 +68,7 @@ class KnockSearch {
   camera::CameraModel camera_;
   Eigen::Matrix3d across_;  // columns: two directions across the line of sight, and that
   Eigen::Matrix3d bone_from_camera_;
-  std::vector<float> score_;           // by layer, y, x
-  std::vector<std::uint8_t> in_view_;  // how many pieces were
+  std::vector<float> score_;  // by layer, y, x
   std::size_t next_ = 0;
   KnockFound found_;
 };

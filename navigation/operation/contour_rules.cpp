@@ -26,7 +26,8 @@ void Operation::Parts::expect_pictures(const Eigen::Vector2i& size_px) {
 // From the moment on that a registration stands, and anew with every other one. While an alarm holds, what
 // told it stays as it was.
 void Operation::Parts::check_contour(const camera::Frame& picture) {
-  if (!contour.check) return;
+  // Where an outside tracker has the markers, no picture tells where the lens is.
+  if (!contour.check || source->pipeline.tools.tracker) return;
   const RegistrationInForce& in_force = ledger.in_force();
   if (in_force.standing != Standing::Stands) {
     const bool told_it = in_force.standing == Standing::Alarm &&

@@ -19,7 +19,8 @@ enum class JournalKind {
   OutcomeTaken,   // text: its request count
   LookTaken,      // text: index of the frame whose picture was seen in the other medium
   BoneMoved,      // in the picture, against its marker; text: see seen_drift.h
-  BoneLooks,      // in the picture; text: "otherwise", or "as it did" when that is over
+  BoneLooks,      // in the picture; text: "otherwise", or "as it did". A doubt ends without it, too: by the
+                  // control point, and with its registration
   SourceStarted,  // what stands before the first of these was given before any source
   SourceEnded,
   RegistrationInForce,  // registration is set; without a pose: none is in force any more

@@ -123,13 +123,17 @@ void Operation::apply(const Command& command) {
   p.take_drift();  // what the last picture showed comes before what is done about it
   p.note(JournalKind::CommandGiven, to_text(command));
   std::visit([&](const auto& c) { p.apply(c); }, command);
-  if (!p.ledger.touches().has_control_point()) p.guide_check.forget_point();
+  if (!p.ledger.touches().has_control_point()) {
+    p.guide_check.forget_point();
+    p.contour.doubt_has_control_point = false;  // one that is set anew was set in doubt
+  }
   p.follow_ledger();
 }
 
 void Operation::take_outcome(const OutcomePtr& outcome) {
   Parts& p = *parts_;
   if (outcome == nullptr || outcome == p.outcome) return;
+  p.take_drift();  // it was seen of the registration that the outcome may replace
   const OutcomePtr before = std::exchange(p.outcome, outcome);
   p.note(JournalKind::OutcomeTaken, std::to_string(outcome->request_count));
   const bool has_become_ready = outcome->bone_is_ready && (before == nullptr || !before->bone_is_ready);

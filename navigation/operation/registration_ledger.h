@@ -6,8 +6,9 @@
 // stands until the newest is chosen again. What may not guide, whoever chose it:
 //   void      it is of another mesh, bone, marker, placement, camera, probe, medium or kind of source
 //   alarm     touches lie off the bone, the control point has wandered, or the picture shows the bone
-//   elsewhere doubt     strokes drawn since miss the surface, or fit its mirror image as well; until
-//   confirmed anew
+//             elsewhere
+//   doubt     strokes drawn since miss the surface, or fit its mirror image as well; until confirmed anew
+//
 // Thread-free, deterministic.
 #pragma once
 

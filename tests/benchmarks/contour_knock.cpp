@@ -75,11 +75,11 @@ void tell_each(const Clip& clip, double size_mm, const contour::ContourCheck& ch
   const contour::KnockFound& found = check.knock().last_found();
   std::fprintf(
       stderr,
-      "%s, %.0f mm: %s; alike %.2f, pieces %d; %d searches, the last: best %.1f of %d (%d in view), in "
-      "place %.1f, elsewhere %.1f, %.1f mm\n",
+      "%s, %.0f mm: %s; alike %.2f, pieces %d; %d searches, the last: best %.1f of %d, in place %.1f, "
+      " elsewhere %.1f, %.1f mm\n",
       clip.name.c_str(), size_mm, is_in_doubt ? "in doubt" : "not told", check.knock().agreement().share,
-      check.verdict().surface_pieces, check.knock().search_count(), found.best, found.pieces,
-      found.pieces_in_view, found.in_place, found.elsewhere, found.offset_in_bone_mm.norm());
+      check.verdict().surface_pieces, check.knock().search_count(), found.best, found.pieces, found.in_place,
+      found.elsewhere, found.offset_in_bone_mm.norm());
 }
 
 void run_knock(const Clip& clip, contour::ContourCheck& check, double size_mm, double over_s,

@@ -213,6 +213,17 @@ TEST_F(BoneMoved, AControlPointThatIsSetInDoubtDoesNotEndIt) {
       << "the surgeon's word ends it";
 }
 
+// Strokes that are cleared take the touches with them: what is set after that learns where the bone lies now.
+TEST_F(BoneMoved, AControlPointThatIsForgottenInDoubtDoesNotEndItAnew) {
+  tell_looks(true);
+  ASSERT_EQ(run_.state()->control_point_due, ControlPointDue::CheckLooks);
+  run_.apply(ClearStrokes{});
+  ASSERT_EQ(run_.in_force().standing, Standing::Stands);
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CannotCheckLooks);
+  for (int press = 0; press < 2; ++press) run_.touch(test::on_bone(trial(), 2), TouchControlPoint{});
+  EXPECT_EQ(run_.state()->control_point_due, ControlPointDue::CannotCheckLooks);
+}
+
 // An alarm is more than a doubt, and what comes after it begins anew.
 TEST_F(BoneMoved, NoDoubtOutlivesItsRegistration) {
   tell_looks(true);
