@@ -69,7 +69,8 @@ void export_dicom(Context& context, const DicomArguments& arguments) {
   contents.studies = cases::load_studies(arguments.case_folder);
   if (!arguments.is_deidentified) contents.identity = cases::load_identity(arguments.case_folder);
   contents.report_pdf = report::make_report(
-      arguments.case_folder, {.with_identity = !arguments.is_deidentified, .says_when_made = false});
+      arguments.case_folder,
+      {.with_identity = true, .is_deidentified = arguments.is_deidentified, .says_when_made = false});
   contents.pictures = pictures_of(arguments.case_folder);
   const auto summary = dicom_out::export_dicom(contents, arguments.output);
   for (const std::string& note : summary.notes) context.say(note);

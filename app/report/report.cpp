@@ -52,6 +52,8 @@ std::string in_groups(const std::string& hash) {
 }
 
 // Of a body of several markers, all of them.
+constexpr const char* kNotTold = "not told";
+
 template <typename Body>
 std::string ids_of(const Body& body) {
   std::string ids;
@@ -64,7 +66,7 @@ class Report {
  public:
   Report(const Content& content, const ReportOptions& options)
       : content_(content),
-        says_when_made_(options.says_when_made),
+        options_(options),
         pdf_("Arthronaut report: " + content.knee.name, options.paper),
         pages_(pdf_, content.knee.name) {}
 
@@ -146,7 +148,7 @@ class Report {
   void settings();
 
   const Content& content_;
-  bool says_when_made_;
+  const ReportOptions options_;
   PdfDocument pdf_;
   FlowingPages pages_;
 };
@@ -155,10 +157,10 @@ void Report::plan_page() {
   pages_.begin_page("ACL reconstruction: the plan");
   std::vector<std::vector<std::string>> about = {{"Case", ""}};
   if (content_.identity) about.push_back({"Patient", content_.identity->in_words()});
-  about.insert(about.end(), {{"Name", content_.knee.name},
-                             {"Side", std::string(bones::to_text(content_.knee.side))},
-                             {"Created", content_.knee.created_utc}});
-  if (says_when_made_) about.push_back({"Report made", files::utc_now_as("%Y-%m-%d %H:%M UTC")});
+  about.insert(about.end(),
+               {{"Name", content_.knee.name}, {"Side", std::string(bones::to_text(content_.knee.side))}});
+  if (!options_.is_deidentified) about.push_back({"Created", content_.knee.created_utc});
+  if (options_.says_when_made) about.push_back({"Report made", files::utc_now_as("%Y-%m-%d %H:%M UTC")});
   pages_.table({45, 125}, about);
   pages_.sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
   pages_.heading("Planned tunnels");
@@ -274,12 +276,11 @@ void Report::navigate_page() {
   const auto& header = session.header();
   const SessionFigures figures = figures_of(session);
   std::vector<std::vector<std::string>> rows{
-      {"Session", ""},
-      {"Id", header.id},
-      {"Started", header.started_utc},
+      {"Session", options_.is_deidentified ? "" : header.id},
+      {"Started", options_.is_deidentified ? kNotTold : header.started_utc},
       {"Bone", std::string(bones::to_text(header.bone))},
       {"Source", kind_in_words(header)},
-      {"Video", content_.identity ? header.source : neutral_source(header.source)},
+      {"Video", content_.identity ? header.source : neutral_source(header)},
       {"Medium", camera::medium_to_text(header.refractive_index)},
       {"Frames",
        std::to_string(session.frames().size()) + (session.was_finished() ? "" : " (cut off by a crash)")},
@@ -295,7 +296,10 @@ void Report::navigate_page() {
   for (const operation::AchievedTunnel& achieved : content_.achieved) result_section(achieved);
   for (const Content::Earlier& earlier : content_.earlier) {
     result_section(earlier.achieved);
-    pages_.sentence("Drilled in the session " + earlier.session + ".", {.size_pt = 8.5, .ink = kGray});
+    pages_.sentence("Drilled in " +
+                        (options_.is_deidentified ? "an earlier session" : "the session " + earlier.session) +
+                        ".",
+                    {.size_pt = 8.5, .ink = kGray});
   }
   draw_postop_section(pages_, content_);
 }
@@ -303,7 +307,7 @@ void Report::navigate_page() {
 void Report::result_pictures() {
   if (!content_.session) return pictures(joint_view(), scene::ViewDirection::Medial, false);
   pages_.continue_as("Result, camera, tools and versions");
-  draw_stills_section(pages_, content_);
+  if (!options_.is_deidentified) draw_stills_section(pages_, content_);
   pictures(joint_view(), scene::ViewDirection::Lateral, true);
   if (!content_.achieved.empty()) {
     pages_.sentence(
@@ -329,8 +333,11 @@ void Report::settings() {
           number(c.rotation_center_px.x(), ", ", 1) + number(c.rotation_center_px.y(), " px", 1)},
          {"Reprojection error", record.rms_px >= 0 ? number(record.rms_px, " px", 2) : "not recorded",
           "Calibrated in", camera::medium_to_text(c.refractive_index)},
-         {"Date", record.date_utc.empty() ? "not recorded" : record.date_utc, "Scope, head",
-          record.scope_name + (record.head_name.empty() ? "" : ", " + record.head_name)}});
+         {"Date",
+          record.date_utc.empty()    ? "not recorded"
+          : options_.is_deidentified ? kNotTold
+                                     : record.date_utc,
+          "Scope, head", record.scope_name + (record.head_name.empty() ? "" : ", " + record.head_name)}});
   }
   if (content_.session) {
     pages_.heading("Tools");

@@ -12,6 +12,9 @@ struct ReportOptions {
   // Names the patient as identity.json does. Without it nothing of identity.json is in the report, nor the
   // name of the video's file, which often is the patient's.
   bool with_identity = false;
+  // For strangers: no date, no session's name and no picture of the video, into which a name may be drawn.
+  // Identity is left out whatever is said above. Of a PDF.
+  bool is_deidentified = false;
   // Says when it was made; without it the same case gives the same bytes at any time.
   bool says_when_made = true;
   Paper paper = Paper::A4;  // of a PDF

@@ -105,7 +105,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
                   .postoperative = {},
                   .postoperative_problem = {},
                   .identity = std::nullopt};
-  if (options.with_identity) content.identity = cases::load_identity(folder);
+  if (options.with_identity && !options.is_deidentified) content.identity = cases::load_identity(folder);
   const auto sessions = recording::operation_folders(folder);
   for (auto it = sessions.rbegin(); it != sessions.rend(); ++it) {
     const auto achieved_files = operation::achieved_files(*it);

@@ -10,10 +10,15 @@
 
 namespace arthronaut::report {
 
-std::string neutral_source(const std::string& source) {
-  if (sources::is_stream_address(source)) return source;  // its numbers are no extension
-  const std::string extension = std::filesystem::path(source).extension().string();
-  return extension.empty() ? source : "recording (" + extension.substr(1) + ")";
+std::string neutral_source(const recording::SessionHeader& header) {
+  constexpr std::size_t kLongestExtension = 5;  // with its dot; what is longer may be a name
+  const auto kind = sources::source_kind_from_text(header.source_kind);
+  if (kind && *kind != sources::SourceKind::Recording) return header.source;
+  const std::string extension = std::filesystem::path(header.source).extension().string();
+  const bool is_type = extension.size() > 1 && extension.size() <= kLongestExtension &&
+                       std::all_of(extension.begin() + 1, extension.end(),
+                                   [](unsigned char c) { return std::isalnum(c) != 0; });
+  return is_type ? "recording (" + extension.substr(1) + ")" : "recording";
 }
 
 std::string kind_in_words(const recording::SessionHeader& header) {

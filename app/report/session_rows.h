@@ -10,7 +10,7 @@ namespace arthronaut::report {
 
 // The name of a recording's file is often the patient's: only of what kind it is. A camera, a stream and a
 // simulation are called what they are.
-[[nodiscard]] std::string neutral_source(const std::string& source);
+[[nodiscard]] std::string neutral_source(const recording::SessionHeader& header);
 // "live: a camera, as it came"; "not recorded".
 [[nodiscard]] std::string kind_in_words(const recording::SessionHeader& header);
 // Which tunnels of bundles the session guided to, in the order of time: "femur AM, femur PL"; empty where a

@@ -7,10 +7,20 @@ namespace {
 
 // A file may be called after its patient; nothing else is.
 TEST(SessionRows, Hazard19ARecordingsFileIsNotNamed) {
-  EXPECT_EQ(neutral_source("/media/Mueller, Jane.mkv"), "recording (mkv)");
-  for (const char* source : {"Capture card", "Simulated operation: drill", "udp://127.0.0.1:5000",
-                             "rtsp://tower.or3/scope.sdp", "gst:videotestsrc ! appsink"})
-    EXPECT_EQ(neutral_source(source), source);
+  const auto neutral = [](const char* kind, const char* source) {
+    recording::SessionHeader header;
+    header.source_kind = kind;
+    header.source = source;
+    return neutral_source(header);
+  };
+  EXPECT_EQ(neutral("recording", "/media/Mueller, Jane.mkv"), "recording (mkv)");
+  for (const char* named : {"Mueller_Jane", "Dr. Mueller Jane", "/media/Jane.Mueller"})
+    EXPECT_EQ(neutral("recording", named), "recording") << named;
+  EXPECT_EQ(neutral("", "Mueller_Jane"), "recording") << "an old session does not say of what kind it is";
+  EXPECT_EQ(neutral("simulation", "Simulated operation: drill"), "Simulated operation: drill");
+  for (const char* source :
+       {"Capture card", "udp://127.0.0.1:5000", "rtsp://tower.or3/scope.sdp", "gst:videotestsrc ! appsink"})
+    EXPECT_EQ(neutral("live", source), source);
 }
 
 }  // namespace
