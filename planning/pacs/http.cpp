@@ -168,8 +168,8 @@ HttpAnswer HttpClient::perform(const HttpRequest& request) {
     std::string reason;
     if (request.restart) request.restart();
     const bool is_answered = try_once(request, answer, reason);
+    if (is_answered) return answer;  // what the server has done is told, stopped or not
     if (stop_.stop_requested()) return {.was_stopped = true};
-    if (is_answered) return answer;
     if (attempt >= options_.retries)
       fail(reason + (attempt == 0 ? "" : " (tried " + std::to_string(attempt + 1) + " times)"));
     pause_before_retry(options_, attempt, stop_);
@@ -208,7 +208,7 @@ bool HttpClient::try_once(const HttpRequest& request, HttpAnswer& answer, std::s
   curl_easy_setopt(handle, CURLOPT_NOPROGRESS, 0L);
   curl_->error[0] = '\0';
   const CURLcode outcome = curl_easy_perform(handle);
-  if (stop_.stop_requested()) return false;
+  if (outcome != CURLE_OK && stop_.stop_requested()) return false;
   if (transfer.is_too_long) fail(request.complaint);
   if (transfer.cannot_keep) return true;  // who gave the sink knows why
   if (outcome != CURLE_OK) {

@@ -24,7 +24,7 @@ struct RetrieveSummary {
   enum class Outcome { NotRun, Whole, Stopped, UnknownSeries, Incomplete } outcome = Outcome::NotRun;
   std::string message = "retrieve_series was not called.";
   std::string study_uid;  // of the series, where the peer said it
-  std::string way;        // "C-GET" or "C-MOVE"; empty: nothing had to be fetched
+  std::string way;        // "C-GET", "C-MOVE" or "WADO-RS"; empty: nothing had to be fetched
   int image_count = 0;    // whole ones, now
   int kept_count = 0;     // of these, there before
   std::int64_t received_bytes = 0;

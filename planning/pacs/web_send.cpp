@@ -1,11 +1,13 @@
 // STOW-RS, one object a request: what the server has confirmed is not sent again.
 #include <algorithm>
+#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "planning/files/sha256.h"
 #include "planning/geometry/error.h"
 #include "planning/pacs/association.h"
 #include "planning/pacs/http.h"
+#include "planning/pacs/web_query.h"
 
 namespace arthronaut::pacs {
 
@@ -22,10 +24,10 @@ bool names(const json& answer, const char* sequence, const std::string& uid, int
     return false;
   for (const json& item : answer[sequence]["Value"]) {
     if (!item.is_object()) continue;
-    const json named = item.value("/00081155/Value/0"_json_pointer, json());
-    if (!named.is_string() || named.get<std::string>() != uid) continue;
-    const json code = item.value("/00081197/Value/0"_json_pointer, json());
-    reason = code.is_number_integer() ? code.get<int>() : 0;
+    if (web_text(item, "00081155") != uid) continue;
+    const std::string code = web_text(item, "00081197");
+    reason = 0;
+    std::from_chars(code.data(), code.data() + code.size(), reason);
     return true;
   }
   return false;
@@ -33,7 +35,7 @@ bool names(const json& answer, const char* sequence, const std::string& uid, int
 
 // False when stopped.
 bool send_one(HttpClient& client, SentFile& file) {
-  const std::string boundary = "arthronaut-" + files::sha256_of_file(file.file);
+  const std::string boundary = "arthronaut-" + files::sha256_of(file.sop_instance_uid);
   const HttpAnswer answer =
       client.perform({.path = "/studies",
                       .accept = "application/dicom+json",

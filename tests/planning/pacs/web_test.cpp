@@ -207,5 +207,26 @@ TEST_F(PacsWeb, BoundsWhatAServerCanDo) {
   EXPECT_THAT(failure("HTTP/1.1 503 Busy\r\nContent-Length: 0\r\n\r\n"), HasSubstr("HTTP 503"));
 }
 
+// What it says of what it was sent may be of any shape: nothing of it is stored, and nothing is thrown.
+TEST_F(PacsWeb, AnAnswerToWhatWasSentMayBeOfAnyShape) {
+  test::TemporaryFolder folder;
+  std::ofstream(folder / "object.dcm") << "DICM";
+  SentFile file;
+  file.file = folder / "object.dcm";
+  file.sop_instance_uid = "1.2.3";
+  for (const char* item : {"{\"00081155\":[\"1.2.3\"]}", "{\"00081155\":{\"Value\":{}}}", "7", "{}",
+                           "{\"00081155\":{\"Value\":[\"1.2.3\"]},\"00081197\":[1]}"}) {
+    const std::string body = std::string("{\"00081198\":{\"Value\":[") + item + "]}}";
+    const test::RawWebServer raw(
+        "HTTP/1.1 200 OK\r\nContent-Type: application/dicom+json\r\nContent-Length: " +
+        std::to_string(body.size()) + "\r\n\r\n" + body);
+    ConnectionOptions once = quick_connection();
+    once.retries = 0;
+    const SendSummary summary = send_files(WebServer{raw.url(), {}, {}, {}}, once, {file});
+    EXPECT_EQ(summary.outcome, SendSummary::Outcome::SomeRefused) << item;
+    EXPECT_FALSE(summary.files.front().is_stored) << item;
+  }
+}
+
 }  // namespace
 }  // namespace arthronaut::pacs
