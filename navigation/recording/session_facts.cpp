@@ -94,7 +94,8 @@ void read_record(const fs::path& folder, SessionFacts& facts) {
     steps.follow(event);
     if (event.kind == kAlarmEvent && !event.text.empty()) ++facts.alarm_count;
     if (event.kind == kVerifiedEvent) facts.was_verified = true;
-    if (event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent) is_void = false;
+    if (event.kind == kRegistrationEvent || event.kind == kGivenRegistrationEvent)
+      is_void = facts.was_verified = false;  // what verified the one before says nothing of this one
     if (event.kind == kVoidEvent) {
       is_void = true;
       facts.was_verified = false;

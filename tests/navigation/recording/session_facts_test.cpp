@@ -99,6 +99,11 @@ TEST_F(SessionFactsTest, AVoidRegistrationIsNotReliable) {
   EXPECT_FALSE(read().was_verified);
 }
 
+TEST_F(SessionFactsTest, WhatVerifiedOneRegistrationDoesNotVerifyTheNext) {
+  record({{1.0, kRegistrationEvent}, {2.0, kVerifiedEvent}, {3.0, kRegistrationEvent}});
+  EXPECT_FALSE(read().was_verified);
+}
+
 // Hazard 40: whoever counts sessions has to be told.
 TEST_F(SessionFactsTest, Hazard40SaysThatItIsAnExercise) {
   header_.source_kind = "simulation";
