@@ -1,5 +1,5 @@
 // Keyboard, mouse and gamepad as a trainee's hands: what is held down, moved and tilted becomes a push of
-// simulator::HandControl. The mapping is pure; reading the devices is read_devices() alone.
+// simulator::HandControl. The mapping is pure; the devices are read by the calls below alone.
 //
 //   keyboard  A D, W S, Q E: the tool left and right, up and down, nearer and away; J L, I K, U O: its handle
 //             likewise; Shift: the scope instead; Z X: the lens; F: the drill

@@ -211,7 +211,6 @@ void TrainingView::start() {
   run_->inbox = std::make_shared<HandInbox>();
   run_->held = exercise.goal == training::Goal::Aim ? Held::Guide : Held::Probe;
   run_->inbox->set({.held = run_->held});
-  run_->began_s = theatre::LiveOperation::now_s();
   score_.reset();
   page_ = Page::Running;
   theatre_.begin_anew(*opened_);
@@ -292,8 +291,9 @@ void TrainingView::take_score(const theatre::LiveState& live) {
 void TrainingView::push(double now_s) {
   const double dt_s = std::clamp(now_s - last_push_s_, 0.001, 0.2);
   last_push_s_ = now_s;
-  const float height = is_shown_ ? ImGui::GetIO().DisplaySize.y : 0;
-  run_->inbox->set(hand_input(devices_.read(height), run_->held, dt_s));
+  // Behind another mode no device moves anything, the gamepad's drill least of all.
+  const DeviceState devices = is_shown_ ? devices_.read(ImGui::GetIO().DisplaySize.y) : DeviceState();
+  run_->inbox->set(hand_input(devices, run_->held, dt_s));
 }
 
 void TrainingView::tick(double now_s) {

@@ -8,7 +8,6 @@
 #pragma once
 
 #include <functional>
-#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -82,7 +81,6 @@ class TrainingView : public mode::Mode {
     std::shared_ptr<HandInbox> inbox;
     simulator::Held held = simulator::Held::Probe;
     bool is_prepared = false, is_ended = false;
-    double began_s = 0;
   };
   void start();
   void prepare(const theatre::LiveState& live);

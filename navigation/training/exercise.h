@@ -37,8 +37,7 @@ enum class Measure {
   DrawnInAir,      // % of the drawn length off the bone
   OutOfView,       // % of the time in which the marker of bone or tool was not seen
   AlarmsIgnored,   // alarms that were dismissed, or drilled through
-  ActedOnBadData,  // mm drilled, or s of aiming that were ended, while the screen's numbers were gone or
-                   // wrong
+  ActedOnBadData,  // mm drilled while the screen's numbers were gone or wrong
 };
 [[nodiscard]] std::string_view to_text(Measure measure);  // "entry offset"
 [[nodiscard]] std::string_view unit_of(Measure measure);  // "mm"; empty for a count

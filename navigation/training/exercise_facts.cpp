@@ -72,7 +72,10 @@ void Examiner::follow_touches(const operation::OperationState& state) {
   const bool was_refused =
       state.touch_refusal != operation::TouchRefusal::None && state.touch_asked_ns != before_.touch_asked_ns;
   before_.touch_asked_ns = state.touch_asked_ns;
-  if (was_refused) ++facts_.wasted_touches;
+  if (was_refused) {
+    ++facts_.touches;
+    ++facts_.wasted_touches;
+  }
   if (touches.count() > before_.touch_count) {
     const bool tells_nothing =
         state.registration->in_force.registration == nullptr || !touches.last().is_new_place;

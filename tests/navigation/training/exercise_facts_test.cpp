@@ -151,6 +151,7 @@ TEST_F(ExaminerTest, CountsWhatIsOutOfViewAndWasted) {
   go_on(3);
   EXPECT_NEAR(examiner_.facts().unseen_s, 1.1, 1e-6);
   EXPECT_EQ(examiner_.facts().wasted_touches, 1);
+  EXPECT_EQ(examiner_.facts().touches, 1) << "of which it was one";
 }
 
 // Verified is what touches have verified; skipped is as good as none.
