@@ -6,6 +6,7 @@
 #include "app/library/daily_check.h"
 #include "app/library/workstation_library.h"
 #include "planning/files/format.h"
+#include "planning/files/json_document.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 #include "planning/library/accuracy_checks.h"
@@ -105,7 +106,7 @@ void list(Context& context, const ListArguments& arguments) {
     if (!standing.is_fine()) reasons.push_back(standing.text);
   }
   if (arguments.json) {
-    context.say(json_of(read, now_utc).dump(2));
+    files::write_json("-", json_of(read, now_utc));
   } else {
     for (const AccuracyCheck& check : read.checks)
       context.say(files::format("%s  %s  %s  %.3f of %.3f mm  %zu frames%s%s", check.checked_utc.c_str(),

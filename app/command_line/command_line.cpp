@@ -8,6 +8,7 @@
 #include "app/command_line/command.h"
 #include "app/command_line/sources_command.h"
 #include "app/command_line/train_command.h"
+#include "navigation/sources/frame_source.h"
 #include "planning/geometry/error.h"
 #include "planning/log/log.h"
 
@@ -55,7 +56,7 @@ void open_log(const Context& context, const std::vector<std::string>& arguments)
   if (context.log_file.empty()) return;
   log::open(context.log_file, context.verbose ? log::Level::Debug : log::Level::Info);
   std::string line = std::string("started: arthronaut ") + kProgramVersion;
-  for (const std::string& argument : arguments) line += " " + argument;
+  for (const std::string& argument : arguments) line += " " + sources::shown_address(argument);
   log::info(line);
 }
 

@@ -57,6 +57,8 @@ void say_source(const Context& context, const theatre::NavigationSummary& summar
     context.say(format("source: and %zu times more", summary.troubles.size() - kMostTold));
   for (std::size_t i = 0; i < std::min(kMostTold, summary.tracker_troubles.size()); ++i)
     context.say("tracker: " + summary.tracker_troubles[i]);
+  if (summary.tracker_troubles.size() > kMostTold)
+    context.say(format("tracker: and %zu times more", summary.tracker_troubles.size() - kMostTold));
   const theatre::StageLatency& all = theatre::of(summary.latency, theatre::Stage::ToGuidance);
   if (all.count == 0) return;
   context.say(format(

@@ -164,7 +164,6 @@ void remove_tunnel(const PlanArguments& arguments, cases::Case& knee) {
   knee.plan.remove(key);
 }
 
-// What the new tunnel takes the place of beside the one of its own name is said.
 // Of the same bones' meshes as it was kept: plan_fit says where that is no longer the case's.
 void take_version(const PlanArguments& arguments, cases::Case& knee) {
   const auto versions = cases::load_plan_versions(arguments.case_folder);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <span>
 
 #include "app/command_line/command.h"
 #include "navigation/strokes/poses_file.h"
@@ -79,7 +80,7 @@ std::vector<int> markers_on_body(const RigArguments& arguments, const tools::Too
   return own;
 }
 
-double size_of(int id, const RigArguments& arguments, const tools::ToolSet& set) {
+double size_of(int id, const RigArguments& arguments, const tools::ToolSet& set, const Body& body) {
   constexpr double kStandardSize_mm = 4;
   const auto look = [&](const auto& bodies) -> std::optional<double> {
     for (const auto& body : bodies)
@@ -88,7 +89,8 @@ double size_of(int id, const RigArguments& arguments, const tools::ToolSet& set)
     return std::nullopt;
   };
   if (!arguments.tools.empty()) {
-    if (const auto size_mm = look(set.tools)) return *size_mm;
+    const std::size_t said = set.tools.size() - (body.is_new ? 1 : 0);  // a new one says nothing yet
+    if (const auto size_mm = look(std::span(set.tools).first(said))) return *size_mm;
     if (const auto size_mm = look(set.world_markers)) return *size_mm;
   }
   return arguments.size_mm.value_or(kStandardSize_mm);
@@ -133,7 +135,7 @@ tools::RigOptions rig_options(const RigArguments& arguments, const tools::ToolSe
                               const std::vector<strokes::PoseRow>& rows) {
   tools::RigOptions options;
   for (const int id : markers_on_body(arguments, set, body, rows))
-    options.markers.emplace_back(id, size_of(id, arguments, set));
+    options.markers.emplace_back(id, size_of(id, arguments, set, body));
   if (options.markers.size() < 2)
     throw InvalidInput(arguments.poses, "marker_id",
                        "holds fewer than two markers that may be on \"" + arguments.tool +

@@ -5,15 +5,15 @@
 
 #include "navigation/sources/camera_facts.h"
 #include "navigation/sources/connected_cameras.h"
-#include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
+#include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
 
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 using sources::CameraFacts;
 using sources::CameraInput;
 using sources::CameraMode;
@@ -99,7 +99,7 @@ void list_sources(Context& context, const SourcesArguments& arguments) {
     else
       print(context, facts);
   }
-  if (arguments.as_json) files::write_atomically("-", list.dump(2) + "\n");
+  if (arguments.as_json) files::write_json("-", list);
   if (addresses.empty() && !arguments.as_json) context.say("No camera is connected.");
 }
 

@@ -3,6 +3,7 @@
 #include "app/command_line/command.h"
 #include "navigation/recording/session_check.h"
 #include "planning/cases/case.h"
+#include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
@@ -69,7 +70,7 @@ void verify(Context& context, const VerifyArguments& arguments) {
     for (const recording::CheckFinding& finding : check.findings)
       reasons.push_back(session + ": " + finding.text());
   }
-  if (arguments.json) context.say(all.dump(2));
+  if (arguments.json) files::write_json("-", all);
   if (!reasons.empty()) context.say_unreliable("the record", reasons);
 }
 

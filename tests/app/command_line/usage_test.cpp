@@ -51,6 +51,17 @@ TEST(CommandLine, SaysItsVersion) {
   EXPECT_THAT(result.output, HasSubstr("arthronaut 0."));
 }
 
+// A stream's password goes nowhere that others read.
+TEST(CommandLine, TheLogHoldsNoPassword) {
+  const test::TemporaryFolder folder;
+  (void)run_program({"navigate", folder / "none.arthro", "--video", "rtsp://nurse:s3cret@127.0.0.1:1/scope",
+                     "--log", folder / "run.log"});
+  std::ifstream stream(folder / "run.log");
+  const std::string log{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_THAT(log, HasSubstr("127.0.0.1"));
+  EXPECT_THAT(log, ::testing::Not(HasSubstr("s3cret")));
+}
+
 // The log tells how a run was started, what went wrong, and how it ended; a second run appends.
 TEST(CommandLine, LogsStartErrorAndEnd) {
   const test::TemporaryFolder folder;
