@@ -57,11 +57,13 @@ class ModeList {
           fits(height, range.min_height, range.max_height, range.step_height))
         add_rates(fourcc, width, height);
     };
+    const std::size_t before = modes_.size();
     for (const auto& [width, height] : kUsualSizes)
       add(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height));
-    if (wish_.size_px.x() > 0)
-      add(static_cast<std::uint32_t>(wish_.size_px.x()), static_cast<std::uint32_t>(wish_.size_px.y()));
-    if (modes_.empty()) add_rates(fourcc, range.max_width, range.max_height);
+    for (const Eigen::Vector2i& size_px : {wish_.size_px, wish_.prefers_px})
+      if (size_px.x() > 0)
+        add(static_cast<std::uint32_t>(size_px.x()), static_cast<std::uint32_t>(size_px.y()));
+    if (modes_.size() == before) add_rates(fourcc, range.max_width, range.max_height);
   }
 
   // A capture card that tells no sizes gives that of the signal, whatever is asked for.

@@ -35,6 +35,7 @@ struct FakeCamera {
   FakeClock clock;
   std::uint64_t standards;        // of its input; 0: it is a digital one
   std::atomic<bool> tells_sizes;  // else, as some capture cards, none
+  std::uint32_t size_step;  // above 0: all sizes between its smallest mode and its largest, in such steps
   std::atomic<bool> is_plugged;
   std::atomic<bool> is_stalled;             // gives nothing, and says nothing
   std::atomic<bool> is_busy;                // another program has it

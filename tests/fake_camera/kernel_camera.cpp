@@ -23,14 +23,23 @@ int OpenCamera::enumerate_format(v4l2_fmtdesc& format) const {
 int OpenCamera::enumerate_size(v4l2_frmsizeenum& size) const {
   if (!camera_.tells_sizes) return ENOTTY;
   std::uint32_t index = 0;
+  v4l2_frmsize_stepwise range{UINT32_MAX, 0, camera_.size_step, UINT32_MAX, 0, camera_.size_step};
   for (std::uint32_t i = camera_.first_mode; i < camera_.mode_count; ++i) {
     const FakeMode& one = camera_.modes[i];
-    if (one.fourcc != size.pixel_format || index++ != size.index) continue;
+    if (one.fourcc != size.pixel_format) continue;
+    range.min_width = std::min(range.min_width, one.width);
+    range.max_width = std::max(range.max_width, one.width);
+    range.min_height = std::min(range.min_height, one.height);
+    range.max_height = std::max(range.max_height, one.height);
+    if (camera_.size_step > 0 || index++ != size.index) continue;
     size.type = V4L2_FRMSIZE_TYPE_DISCRETE;
     size.discrete = {one.width, one.height};
     return 0;
   }
-  return EINVAL;
+  if (camera_.size_step == 0 || range.max_width == 0 || size.index > 0) return EINVAL;
+  size.type = V4L2_FRMSIZE_TYPE_STEPWISE;
+  size.stepwise = range;
+  return 0;
 }
 
 int OpenCamera::enumerate_rate(v4l2_frmivalenum& rate) const {

@@ -201,6 +201,21 @@ TEST(CameraDevice, TakesTheModeThatIsWished) {
   EXPECT_EQ(room.camera().most_streaming, 1);
 }
 
+// A range of sizes instead of a list: that of the calibration is on offer, too; and a format whose range
+// holds none of the usual sizes is given at its largest, whatever other formats there are.
+TEST(CameraDevice, TakesTheCalibratedSizeOutOfARange) {
+  CameraRoom room;
+  room.add_mode(0, V4L2_PIX_FMT_H264, clip(640, 480), {30});
+  for (const auto& [width, height] : {std::pair{64, 48}, {312, 232}, {316, 236}})
+    room.add_mode(0, V4L2_PIX_FMT_YUYV, clip(width, height), {30});
+  room.camera().size_step = 4;
+  room.plug();
+  CameraAddress address{0};
+  EXPECT_EQ(camera_facts(address).chosen.value().size_px, Eigen::Vector2i(316, 236));
+  address.wish.prefers_px = {312, 232};
+  EXPECT_EQ(camera_facts(address).chosen.value().size_px, Eigen::Vector2i(312, 232));
+}
+
 // An analogue input: the standard that is wished, by its name or family, else the one on the line.
 TEST(CameraDevice, TakesTheStandardThatIsWished) {
   CameraRoom room;
