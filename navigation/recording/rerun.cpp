@@ -1,9 +1,11 @@
 #include "navigation/recording/rerun.h"
 
 #include <algorithm>
+#include <charconv>
 #include <utility>
 
 #include "navigation/recording/session_files.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::recording {
 
@@ -150,14 +152,24 @@ void Rerun::play_before_source() {
   while (events.begin() + static_cast<std::ptrdiff_t>(next_event_) != started) play(events[next_event_++]);
 }
 
+std::int64_t Rerun::number_of(const SessionEvent& event) const {
+  std::int64_t number = 0;
+  const char* const end = event.text.data() + event.text.size();
+  if (const auto [at, error] = std::from_chars(event.text.data(), end, number);
+      error != std::errc() || at != end)
+    throw InvalidInput(database_file(session_->folder()), "events",
+                       "\"" + event.text + "\" of " + event.kind + " is no number");
+  return number;
+}
+
 void Rerun::play(const SessionEvent& event) {
   if (event.kind == kCommandEvent) {
     play_command(command_of(*session_, event));
   } else if (event.kind == kOutcomeEvent) {
-    const auto outcome = outcomes_.find(std::stoull(event.text));
+    const auto outcome = outcomes_.find(number_of(event));
     if (outcome != outcomes_.end()) operation_.take_outcome(outcome->second);
   } else if (event.kind == kLookEvent) {
-    const auto look = looks_.find(std::stoll(event.text));
+    const auto look = looks_.find(number_of(event));
     if (look != looks_.end()) operation_.take_look(look->second);
   } else if (event.kind == kBoneMovedEvent) {
     operation_.tell_bone_moved(

@@ -43,6 +43,7 @@ class Rerun {
  private:
   void play_before_source();
   void play(const SessionEvent& event);
+  [[nodiscard]] std::int64_t number_of(const SessionEvent& event) const;
   void play_command(const operation::Command& command);
   void play_registration(const SessionEvent& event);
   void pass_on();
@@ -52,7 +53,7 @@ class Rerun {
   std::optional<operation::RegistrationWork> work_;
   operation::MediumLookWork look_work_;
   // All there ever were: the record says which was taken.
-  std::map<std::uint64_t, operation::OutcomePtr> outcomes_;
+  std::map<std::int64_t, operation::OutcomePtr> outcomes_;
   std::map<std::int64_t, operation::MediumLookPtr> looks_;  // of this session, by frame
   const RecordedSession* session_ = nullptr;
   pipeline::PipelineOptions pipeline_;  // of the session

@@ -1,7 +1,7 @@
 // When a picture of a device was taken: the driver's stamp where it can be true.
 //
 // V4L2 drivers stamp a picture on the monotonic clock, which is std::chrono::steady_clock on Linux. Some
-// stamp nothing, some on the wall clock, and the interface that passes the stamp on does not say which; so a
+// stamp nothing, some on the wall clock, and what passes the stamp on (GStreamer) may not say which; so a
 // stamp is believed only when it lies in the last two seconds.
 #pragma once
 

@@ -265,15 +265,9 @@ class GStreamerPipeline final : public FrameSource {
     auto frame = frames_.take();
     frame->width = GST_VIDEO_INFO_WIDTH(&format);
     frame->height = GST_VIDEO_INFO_HEIGHT(&format);
-    frame->bgr.clear();
-    const LumaPlane plane = memory->plane();
-    const bool is_there = plane.data == nullptr || plane.in_place().data != nullptr;
-    is_there ? frame->luma.clear() : plane.write(frame->luma);
     stamp(*frame, sample);
-    if (plane.data == nullptr)
-      memory->bgr_into(frame->bgr);
-    else
-      frame->memory = std::move(memory);
+    const LumaPlane plane = memory->plane();
+    put_picture(*frame, std::move(memory), plane);
     frame->received_ns = received_ns;
     frame->decoded_ns = steady_now_ns();
     return frame;

@@ -13,7 +13,7 @@ class LostPictures {
   // A picture with the driver's number of it came; how many between it and the one before did not. Damaged
   // ones are lost as well.
   std::int64_t came(std::uint32_t sequence, bool is_damaged, std::int64_t now_ns);
-  // "12 of 100 pictures are lost"; empty while it is no more than one in twenty, over the last 2 s.
+  // "12 of the last 100 pictures were lost"; empty while it is no more than one in twenty, over the last 2 s.
   [[nodiscard]] const std::string& words() const { return words_; }
   [[nodiscard]] long lost() const { return lost_; }
   [[nodiscard]] long all() const { return all_; }
