@@ -65,8 +65,9 @@ class FrameSource {
 // guide. Encoders of live pictures go without them.
 //
 // A stream that breaks off, falls silent for a second or gives pictures of another size is taken up again by
-// itself, for as long as it takes, and pictures that came damaged are left out; meanwhile nothing is given,
-// and info().line says why. Only a pipeline that is not live comes to an end, and gives null then. Opening
+// itself, for as long as it takes, and pictures that came damaged are left out, as is what comes before the
+// first key frame; meanwhile nothing is given, and info().line says why, within 0.3 s where data come all the
+// same. Only a pipeline that is not live comes to an end, and gives null then. Opening
 // throws DeviceError when no picture comes within 10 s, and InvalidInput for a pipeline that is none.
 [[nodiscard]] std::unique_ptr<FrameSource> open_stream(const std::string& address);
 // Whether text names a stream, by its form alone.

@@ -23,6 +23,11 @@ constexpr std::int64_t kOpensWithin_ns = 10 * kSecond_ns;
 // after 1, 3, 7 s.
 constexpr std::int64_t kOpensAgainWithin_ns = 2 * kSecond_ns;
 constexpr std::int64_t kSilence_ns = kSecond_ns;  // after so much the connection is made anew
+// Data that make no picture for so long are told of: by then everybody waits for one.
+constexpr std::int64_t kPictureless_ns = 300'000'000;
+// x264 gives a key frame every 250 pictures unless it is told otherwise. If none helped by then, a new
+// decoder may.
+constexpr std::int64_t kKeyFrameWithin_ns = 15 * kSecond_ns;
 
 struct FreeDictionary {
   AVDictionary* entries = nullptr;
@@ -34,7 +39,7 @@ class Connection {
  public:
   // Throws DeviceError.
   Connection(const std::string& address, std::int64_t deadline_ns, bool is_again, EncodedPackets& packets)
-      : packets_(packets), packet_(av_packet_alloc()), picture_(av_frame_alloc()), deadline_ns_(deadline_ns) {
+      : packets_(packets), packet_(av_packet_alloc()), picture_(av_frame_alloc()), data_by_ns_(deadline_ns) {
     AVFormatContext* opening = avformat_alloc_context();
     opening->interrupt_callback = {[](void* self) { return static_cast<Connection*>(self)->is_late(); },
                                    this};
@@ -68,9 +73,10 @@ class Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  // The next whole picture; null when the connection has ended or nothing came until then.
-  const AVFrame* next(std::int64_t deadline_ns) {
-    deadline_ns_ = deadline_ns;
+  // The next whole picture. Null: data came and made none until picture_by_ns, or none came until data_by_ns.
+  // The latter ends the connection, since libavformat does not go on after a wait that was interrupted.
+  const AVFrame* next(std::int64_t picture_by_ns, std::int64_t data_by_ns) {
+    data_by_ns_ = data_by_ns;
     for (;;) {
       const int received = avcodec_receive_frame(decoder_.get(), picture_.get());
       if (received == 0) {
@@ -78,8 +84,15 @@ class Connection {
         ++damaged_count_;
         continue;
       }
-      if (received != AVERROR(EAGAIN) || !feed()) return nullptr;
+      has_ended_ = received != AVERROR(EAGAIN);
+      if (has_ended_ || steady_now_ns() > picture_by_ns) return nullptr;
+      has_ended_ = !feed();
+      if (has_ended_) return nullptr;
     }
+  }
+  // Sound and the like do not count.
+  [[nodiscard]] bool gives_data() const {
+    return !has_ended_ && received_ns_ > 0 && steady_now_ns() - received_ns_ < kSilence_ns;
   }
   // Since the connection was made: pictures that came, and were left out.
   [[nodiscard]] long damaged_count() const { return damaged_count_; }
@@ -110,7 +123,7 @@ class Connection {
     return is_known ? index : -1;
   }
   AVStream& stream() const { return *container_->streams[stream_index_]; }
-  int is_late() const { return steady_now_ns() > deadline_ns_ ? 1 : 0; }
+  int is_late() const { return steady_now_ns() > data_by_ns_ ? 1 : 0; }
   std::int64_t stamp_ns(std::int64_t ticks) const {
     return av_rescale_q(ticks, stream().time_base, {1, static_cast<int>(kSecond_ns)});
   }
@@ -142,8 +155,9 @@ class Connection {
   LibavPtr<AVPacket> packet_;
   LibavPtr<AVFrame> picture_;
   StreamClock clock_;
-  std::int64_t deadline_ns_, received_ns_ = 0;
+  std::int64_t data_by_ns_, received_ns_ = 0;
   long damaged_count_ = 0;
+  bool has_ended_ = false;
   int stream_index_ = -1;
 };
 
@@ -152,7 +166,7 @@ class NetworkStream final : public FrameSource {
  public:
   NetworkStream(const std::string& address, const Opening& opening,
                 const std::shared_ptr<EncodedPackets>& packets)
-      : stamps_(opening.stamps) {
+      : stamps_(opening.stamps), remark_(opening.remark) {
     info_.name = shown_address(address);
     info_.kind = SourceKind::Live;
     info_.ends = false;
@@ -162,11 +176,15 @@ class NetworkStream final : public FrameSource {
     const std::int64_t deadline_ns =
         steady_now_ns() + (opening.is_again ? kOpensAgainWithin_ns : kOpensWithin_ns);
     connection_ = std::make_unique<Connection>(address, deadline_ns, opening.is_again, *packets);
-    const AVFrame* const picture = connection_->next(deadline_ns);
-    if (picture == nullptr) throw DeviceError(info_.name + ": gives no picture");
+    opening.identity = connection_->identity();
+    last_picture_ns_ = steady_now_ns();
+    const AVFrame* const picture =
+        connection_->next(opening.is_again ? last_picture_ns_ + kPictureless_ns : deadline_ns, deadline_ns);
+    // One that is taken up between two key frames is kept: connecting anew might miss every one of them.
+    if (picture == nullptr && opening.is_again && connection_->gives_data()) return;
+    if (picture == nullptr) throw DeviceError(why_no_picture("gives no picture"));
     info_.image_size_px = {picture->width, picture->height};
     info_.frames_per_second = connection_->frames_per_second();
-    opening.identity = connection_->identity();
     first_ = frame_of(*picture);
   }
 
@@ -174,30 +192,47 @@ class NetworkStream final : public FrameSource {
 
   camera::FramePtr next() override {
     if (first_) return std::exchange(first_, nullptr);
-    const long damaged_before = connection_->damaged_count();
-    if (const AVFrame* const picture = connection_->next(steady_now_ns() + kSilence_ns))
+    remark_.clear();
+    const std::int64_t now_ns = steady_now_ns();
+    if (const AVFrame* const picture = connection_->next(now_ns + kPictureless_ns, now_ns + kSilence_ns))
       return frame_of(*picture);
-    if (connection_->damaged_count() > damaged_before)
-      throw DeviceError(info_.name + ": every picture comes damaged: check cable and network");
-    throw DeviceError(info_.name + ": broke off; connecting again");
+    const std::string why = why_no_picture("broke off; connecting again");
+    if (!connection_->gives_data() || steady_now_ns() - last_picture_ns_ > kKeyFrameWithin_ns)
+      throw DeviceError(why);
+    remark_ = why;
+    return nullptr;
   }
 
  private:
   camera::FramePtr frame_of(const AVFrame& picture) {
     const std::shared_ptr<camera::Frame> frame = frames_.make(picture);
     if (frame == nullptr) throw DeviceError(info_.name + ": has a pixel format that can't be converted");
+    last_picture_ns_ = steady_now_ns();
+    damaged_before_ = connection_->damaged_count();
     stamps_.put_on(*frame, connection_->captured_ns(), camera::CaptureClock::Network);
     frame->received_ns = connection_->received_ns();
-    frame->decoded_ns = steady_now_ns();
+    frame->decoded_ns = last_picture_ns_;
     frame->packet = static_cast<std::int32_t>(picture.reordered_opaque);
     return frame;
   }
 
+  // Since the last one; without_data: when nothing came.
+  [[nodiscard]] std::string why_no_picture(const char* without_data) const {
+    if (connection_->damaged_count() > damaged_before_)
+      return info_.name + ": every picture comes damaged: check cable and network";
+    if (connection_->gives_data())
+      return info_.name + ": gives data without a key frame, and no picture can begin without one";
+    return info_.name + ": " + without_data;
+  }
+
   LiveStamps& stamps_;
+  std::string& remark_;
   std::unique_ptr<Connection> connection_;
   DecodedFrames frames_;
   SourceInfo info_;
   camera::FramePtr first_;
+  std::int64_t last_picture_ns_ = 0;  // or since when one is waited for
+  long damaged_before_ = 0;           // that one
 };
 
 }  // namespace

@@ -58,6 +58,10 @@ class RecoveringSource final : public FrameSource {
     try {
       camera::FramePtr frame = source_->next();
       if (frame != nullptr) return frame;
+      if (!remark_.empty()) {
+        tell(remark_);
+        return nullptr;
+      }
       has_ended_ = source_->info().ends;
       if (!has_ended_) tell(info_.name + ": has ended; waiting for it to come back");
     } catch (const DeviceError& error) {

@@ -6,6 +6,7 @@
 //   opened by its maker (throws what opening throws: who names a source wants to know at once)
 //     -> giving -> broken (DeviceError, or null) -> opened again, every 0.1 s -> giving
 //     -> another size -> giving
+//     -> there, but without a picture (null and a remark) -> giving, or broken
 //     -> opened again, and it says to be another one -> not taken, looked at every second until it is the
 //     first
 //        one again
@@ -37,7 +38,8 @@ struct Opening {
   // a source that never said it is known by the size of its pictures alone.
   std::string& identity;
   // What is wrong with the pictures that come, in words for the screen: written by the source while it makes
-  // one. Empty: nothing.
+  // one. Empty: nothing. With null instead of a picture: why it makes none for now; the source is still there
+  // and is asked again.
   std::string& remark;
 };
 // Opens the source, which stamps what it gives by these stamps and throws DeviceError when it breaks off or

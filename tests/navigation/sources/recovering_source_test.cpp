@@ -12,13 +12,13 @@ namespace {
 
 using testing::HasSubstr;
 
-// What a source does with each of its frames: gives one of a width, breaks, or ends.
-enum class Does { Gives, GivesSmall, Breaks, Ends };
+// What a source does with each of its frames: gives one of a width, has none yet, breaks, or ends.
+enum class Does { Gives, GivesSmall, HasNone, Breaks, Ends };
 
 class Scripted : public FrameSource {
  public:
-  Scripted(std::vector<Does> script, LiveStamps& stamps, std::int64_t at_ns)
-      : script_(std::move(script)), stamps_(stamps), at_ns_(at_ns) {
+  Scripted(std::vector<Does> script, const Opening& opening, std::int64_t at_ns)
+      : script_(std::move(script)), stamps_(opening.stamps), remark_(opening.remark), at_ns_(at_ns) {
     info_.name = "scope";
     info_.image_size_px = {64, 48};
     info_.kind = SourceKind::Live;
@@ -28,7 +28,8 @@ class Scripted : public FrameSource {
   camera::FramePtr next() override {
     const Does does = next_ < script_.size() ? script_[next_++] : Does::Ends;
     if (does == Does::Breaks) throw DeviceError("scope: unplugged");
-    if (does == Does::Ends) return nullptr;
+    remark_ = does == Does::HasNone ? "scope: no key frame" : "";
+    if (does == Does::Ends || does == Does::HasNone) return nullptr;
     auto frame = std::make_shared<camera::Frame>();
     frame->width = does == Does::Gives ? 64 : 32;
     frame->height = 48;
@@ -39,6 +40,7 @@ class Scripted : public FrameSource {
  private:
   std::vector<Does> script_;
   LiveStamps& stamps_;
+  std::string& remark_;
   std::int64_t at_ns_;
   std::size_t next_ = 0;
   SourceInfo info_;
@@ -52,9 +54,8 @@ TEST(RecoveringSource, GoesOnWhereItWas) {
     const std::int64_t at_ns = 1'000'000'000LL * ++opened;
     if (opened == 2) throw DeviceError("scope: nobody there");
     if (opened == 1)
-      return std::make_unique<Scripted>(std::vector{Does::Gives, Does::Gives, Does::Breaks}, opening.stamps,
-                                        at_ns);
-    return std::make_unique<Scripted>(std::vector{Does::Gives, Does::Ends}, opening.stamps, at_ns);
+      return std::make_unique<Scripted>(std::vector{Does::Gives, Does::Gives, Does::Breaks}, opening, at_ns);
+    return std::make_unique<Scripted>(std::vector{Does::Gives, Does::Ends}, opening, at_ns);
   });
   std::int64_t before_ns = -1;
   for (int i = 0; i < 4; ++i) {
@@ -71,7 +72,7 @@ TEST(RecoveringSource, GoesOnWhereItWas) {
 TEST(RecoveringSource, PassesOverAnotherSizeAndSaysSo) {
   const auto source = recovering([&](const Opening& opening) {
     return std::make_unique<Scripted>(
-        std::vector{Does::Gives, Does::GivesSmall, Does::GivesSmall, Does::Breaks}, opening.stamps, 5);
+        std::vector{Does::Gives, Does::GivesSmall, Does::GivesSmall, Does::Breaks}, opening, 5);
   });
   ASSERT_NE(source->next(), nullptr);
   std::thread ender([line = source->info().line] {
@@ -85,6 +86,29 @@ TEST(RecoveringSource, PassesOverAnotherSizeAndSaysSo) {
   ender.join();
 }
 
+// It says why and is asked again, since opening it anew would lose what it waits for; and it can be ended.
+TEST(RecoveringSource, WaitsForOneThatIsThereWithoutAPicture) {
+  int opened = 0;
+  const auto source = recovering([&](const Opening& opening) {
+    ++opened;
+    std::vector<Does> script(100'000'000, Does::HasNone);
+    script[0] = script[2] = Does::Gives;
+    return std::make_unique<Scripted>(std::move(script), opening, 5);
+  });
+  ASSERT_NE(source->next(), nullptr);
+  ASSERT_NE(source->next(), nullptr);
+  EXPECT_EQ(source->info().line->trouble(), "");
+  std::string told;
+  std::thread ender([&, line = source->info().line] {
+    while (told.empty()) told = line->trouble();
+    line->end();
+  });
+  EXPECT_EQ(source->next(), nullptr);
+  ender.join();
+  EXPECT_EQ(told, "scope: no key frame");
+  EXPECT_EQ(opened, 1);
+}
+
 // Another camera in the place of the first one gives no picture, whatever its size, nor does one that no
 // longer says who it is; the first one does when it is there again.
 TEST(RecoveringSource, HazardAnotherCameraInItsPlaceIsNotTakenForIt) {
@@ -93,7 +117,7 @@ TEST(RecoveringSource, HazardAnotherCameraInItsPlaceIsNotTakenForIt) {
     const auto source = recovering([&](const Opening& opening) {
       ++opened;
       opening.identity = opened == 2 ? other : "uvc, card, serial 1";
-      return std::make_unique<Scripted>(std::vector{Does::Gives, Does::Breaks}, opening.stamps,
+      return std::make_unique<Scripted>(std::vector{Does::Gives, Does::Breaks}, opening,
                                         1'000'000'000LL * opened);
     });
     ASSERT_NE(source->next(), nullptr);
@@ -118,7 +142,7 @@ TEST(RecoveringSource, IsKnownByItsSizeAloneWhereItSaysNothing) {
   int opened = 0;
   const auto source = recovering([&](const Opening& opening) {
     if (++opened == 2) opening.identity = "now it does";
-    return std::make_unique<Scripted>(std::vector{Does::Gives, Does::Breaks}, opening.stamps, opened);
+    return std::make_unique<Scripted>(std::vector{Does::Gives, Does::Breaks}, opening, opened);
   });
   EXPECT_NE(source->next(), nullptr);
   EXPECT_NE(source->next(), nullptr);
@@ -138,7 +162,7 @@ TEST(RecoveringSource, EndsWhenItIsTold) {
   bool is_first = true;
   const auto source = recovering([&](const Opening& opening) -> std::unique_ptr<FrameSource> {
     if (!std::exchange(is_first, false)) throw DeviceError("scope: nobody there");
-    return std::make_unique<Scripted>(std::vector{Does::Breaks}, opening.stamps, 5);
+    return std::make_unique<Scripted>(std::vector{Does::Breaks}, opening, 5);
   });
   std::thread ender([line = source->info().line] {
     while (line->trouble().empty()) std::this_thread::yield();

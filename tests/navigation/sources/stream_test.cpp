@@ -32,15 +32,20 @@ constexpr double kInterval_s = 1 / kRate;
 // A port of this process alone, so that tests side by side do not hear each other.
 std::string port(int offset) { return std::to_string(20000 + (::getpid() * 4 + offset) % 40000); }
 
+// As one sees a sender that began long before its next key frame.
+enum class KeyFrames { Sent, LeftOut };
+
 // ffmpeg sending a test picture as MPEG-TS, at its own rate, until it is killed.
 class Sender {
  public:
-  Sender(const std::string& address, const std::string& size) : process_(::fork()) {
+  Sender(const std::string& address, const std::string& size, KeyFrames key_frames = KeyFrames::Sent)
+      : process_(::fork()) {
     if (process_ != 0) return;
     const std::string picture = "testsrc=size=" + size + ":rate=30";
     const std::string target = address + "?pkt_size=1316";
     ::execlp("ffmpeg", "ffmpeg", "-loglevel", "quiet", "-re", "-f", "lavfi", "-i", picture.c_str(), "-c:v",
-             "mpeg2video", "-g", "10", "-bf", "0", "-f", "mpegts", target.c_str(),
+             "libx264", "-tune", "zerolatency", "-g", "10", "-bf", "0", "-bsf:v",
+             key_frames == KeyFrames::Sent ? "null" : "noise=drop=key", "-f", "mpegts", target.c_str(),
              static_cast<char*>(nullptr));
     ::_exit(127);
   }
@@ -148,6 +153,45 @@ TEST(Stream, AnotherSizeIsToldAndPassedOver) {
   line->end();
   reader.join();
   EXPECT_EQ(wrong_size, 0);
+}
+
+// Packets that make no picture hold nobody up: it is told what is missing, a reader can be ended, and the
+// first key frame goes on where pictures left off.
+TEST(Stream, WithoutAKeyFrameIsToldAndTakenUpWithTheNext) {
+  const std::string address = "udp://127.0.0.1:" + port(1);
+  auto sender = std::make_unique<Sender>(address, "320x240");
+  const auto source = open_source(address);
+  (void)take(*source, 10);
+  const std::shared_ptr<SourceLine> line = source->info().line;
+  std::atomic<int> count = 0;
+  std::thread reader([&] {
+    while (source->next()) ++count;
+  });
+  sender.reset();
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));  // broken off: a decoder begins anew
+  sender = std::make_unique<Sender>(address, "320x240", KeyFrames::LeftOut);
+  const auto waits_until = [&](const auto& condition) {
+    for (int i = 0; i < 2000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return condition();
+  };
+  EXPECT_TRUE(waits_until([&] { return line->trouble().find("without a key frame") != std::string::npos; }))
+      << line->trouble();
+  const int before = count;
+  sender = nullptr;
+  sender = std::make_unique<Sender>(address, "320x240");
+  EXPECT_TRUE(waits_until([&] { return count > before && line->trouble().empty(); })) << line->trouble();
+  sender = nullptr;
+  sender = std::make_unique<Sender>(address, "320x240", KeyFrames::LeftOut);
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  line->end();
+  reader.join();  // within the time of the test
+}
+
+// Whoever names such a stream is told after the 10 s that a picture may take.
+TEST(Stream, WithoutAKeyFrameIsNotOpenedForever) {
+  const std::string address = "udp://127.0.0.1:" + port(2);
+  const Sender sender(address, "320x240", KeyFrames::LeftOut);
+  EXPECT_THAT(message_of<DeviceError>([&] { (void)open_source(address); }), HasSubstr("without a key frame"));
 }
 
 TEST(Stream, AnAddressIsShownWithoutItsPassword) {
