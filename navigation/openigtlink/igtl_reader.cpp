@@ -6,7 +6,7 @@
 #include <bit>
 #include <cmath>
 
-#include "navigation/openigtlink/named_transforms.h"
+#include "navigation/openigtlink/ras_from_lps.h"
 
 namespace arthronaut::openigtlink {
 

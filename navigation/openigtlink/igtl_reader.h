@@ -6,8 +6,8 @@
 // pose must be one. One that is not as it must be is told and left out. A header that is none means that
 // nobody knows where the next message begins: then the connection is of no use any more.
 //
-// 3D Slicer and OpenIGTLink keep everything in RAS; poses are handed on in LPS, by ras_from_lps() of
-// named_transforms.h, which turns back what it turned.
+// 3D Slicer and OpenIGTLink keep everything in RAS; poses are handed on in LPS, by ras_from_lps(),
+// which turns back what it turned.
 #pragma once
 
 #include <cstddef>

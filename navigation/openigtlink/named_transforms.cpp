@@ -1,5 +1,7 @@
 #include "navigation/openigtlink/named_transforms.h"
 
+#include "navigation/openigtlink/ras_from_lps.h"
+
 namespace arthronaut::openigtlink {
 
 namespace {
@@ -13,13 +15,6 @@ const pipeline::ToolPose* pose_of(const operation::OperationState& state, int ma
 }
 
 }  // namespace
-
-RigidTransform ras_from_lps(const RigidTransform& target_from_source) {
-  const Eigen::Quaterniond& q = target_from_source.rotation;
-  const Eigen::Vector3d& t = target_from_source.translation_mm;
-  // Turning x and y about is a half turn about z, so the rotation's axis turns with them.
-  return {{q.w(), -q.x(), -q.y(), q.z()}, {-t.x(), -t.y(), t.z()}};
-}
 
 std::vector<NamedTransform> named_transforms(const operation::OperationState& state) {
   std::vector<NamedTransform> named;

@@ -8,10 +8,8 @@
 //   Plan                     POINT: entry and end of the planned tunnel in the bone's frame
 //   Arthroscope              IMAGE, to who asks for it
 //
-// The world is the frame of the bone's world marker. 3D Slicer and OpenIGTLink keep everything in RAS; this
-// program in LPS. So each frame is taken with x and y turned about, the world's and the tools' too: with F =
-// diag(-1, -1, 1), what goes out is F * target_from_source * F, and the bone as Slicer shows it, put under
-// Bone_World, lies right to everything else.
+// The world is the frame of the bone's world marker; all of it goes out in RAS (ras_from_lps.h), so that the
+// bone as Slicer shows it, put under Bone_World, lies right to everything else.
 #pragma once
 
 #include <string>
@@ -26,9 +24,6 @@ struct NamedTransform {
   std::string name;
   geometry::RigidTransform target_from_source;  // in RAS
 };
-
-// F * t * F.
-[[nodiscard]] geometry::RigidTransform ras_from_lps(const geometry::RigidTransform& target_from_source);
 
 // What is valid in the newest frame, and nothing else: a transform has no place for its validity.
 [[nodiscard]] std::vector<NamedTransform> named_transforms(const operation::OperationState& state);

@@ -1,5 +1,5 @@
-// The readers of files that others made, one by one, for a fuzzer: what each starts from and how it is
-// called.
+// The readers of files that others made, and of what comes over the network, one by one, for a fuzzer: what
+// each starts from and how it is called.
 #pragma once
 
 #include <filesystem>
@@ -27,6 +27,7 @@ struct Reader {
 [[nodiscard]] std::vector<Reader> volume_readers();
 [[nodiscard]] std::vector<Reader> case_readers();
 [[nodiscard]] std::vector<Reader> navigation_readers();
+[[nodiscard]] std::vector<Reader> wire_readers();
 
 // The file of the folder that holds these bytes now.
 [[nodiscard]] std::filesystem::path put(const std::filesystem::path& folder, std::string_view name,

@@ -18,7 +18,8 @@ namespace {
 
 std::vector<Reader> all_readers() {
   std::vector<Reader> all;
-  for (const auto& family : {mesh_readers(), volume_readers(), case_readers(), navigation_readers()}) {
+  for (const auto& family :
+       {mesh_readers(), volume_readers(), case_readers(), navigation_readers(), wire_readers()}) {
     all.insert(all.end(), family.begin(), family.end());
   }
   return all;

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "navigation/openigtlink/named_transforms.h"
+#include "navigation/openigtlink/ras_from_lps.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::openigtlink {

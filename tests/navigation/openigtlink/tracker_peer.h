@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "navigation/openigtlink/named_transforms.h"
+#include "navigation/openigtlink/ras_from_lps.h"
 
 namespace arthronaut::test {
 
@@ -80,6 +80,31 @@ inline Bytes transform_message(const std::string& device, const geometry::RigidT
   message->SetMatrix(matrix);
   Bytes bytes = packed(*message, device, stamp_s);
   return version == 1 ? bytes : as_version_2(std::move(bytes));
+}
+
+inline Bytes matrix_message(const std::string& tool, const geometry::RigidTransform& lps, double stamp_s) {
+  const auto message = igtl::TrackingDataMessage::New();
+  auto element = igtl::TrackingDataElement::New();
+  element->SetName(tool.c_str());
+  igtl::Matrix4x4 matrix;
+  into_matrix(lps, matrix);
+  element->SetMatrix(matrix);
+  message->AddTrackingDataElement(element);
+  return packed(*message, "Tracker", stamp_s);
+}
+
+inline Bytes quaternion_message(const std::string& tool, const geometry::RigidTransform& lps,
+                                double stamp_s) {
+  const auto message = igtl::QuaternionTrackingDataMessage::New();
+  auto element = igtl::QuaternionTrackingDataElement::New();
+  element->SetName(tool.c_str());
+  const geometry::RigidTransform ras = openigtlink::ras_from_lps(lps);
+  const Eigen::Vector3f t = ras.translation_mm.cast<float>();
+  const Eigen::Quaternionf q = ras.rotation.cast<float>();
+  element->SetPosition(t.x(), t.y(), t.z());
+  element->SetQuaternion(q.x(), q.y(), q.z(), q.w());
+  message->AddQuaternionTrackingDataElement(element);
+  return packed(*message, "Tracker", stamp_s);
 }
 
 inline Bytes status_message(const std::string& device, bool is_ok, const std::string& words) {
