@@ -1,39 +1,94 @@
 #include "app/review/picture_fetcher.h"
 
 #include <algorithm>
-#include <memory>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include "navigation/recording/recorded_pictures.h"
+#include "planning/files/format.h"
 
 namespace arthronaut::review {
 
 namespace {
-constexpr std::size_t kKept = 12;  // pictures of 8 MB
 
-std::function<ReadPicture()> opening(const std::filesystem::path& folder) {
-  return [folder]() -> ReadPicture {
+constexpr std::size_t kKept = 12;  // pictures of 8 MB
+// Of what is passed on the way to a picture, so much is shown: the first at once, then ten a second.
+constexpr auto kShowEvery = std::chrono::milliseconds(100);
+
+// The frame that a passed picture is of, by the one of its names that it has (recorded_pictures.h).
+camera::FramePtr named(const camera::FramePtr& picture, const std::vector<recording::FrameGlance>& frames) {
+  if (picture == nullptr || frames.empty()) return nullptr;
+  const bool has_index = picture->index >= 0;
+  auto found = std::lower_bound(frames.begin(), frames.end(), *picture,
+                                [has_index](const recording::FrameGlance& f, const camera::Frame& p) {
+                                  return has_index ? f.index < p.index : f.timestamp_ns < p.timestamp_ns;
+                                });
+  if (has_index && (found == frames.end() || found->index != picture->index)) return nullptr;
+  // A file's clock may be coarse: the nearer of the two that a time lies between.
+  const auto distance_ns = [&](auto at) { return std::abs(at->timestamp_ns - picture->timestamp_ns); };
+  if (found == frames.end() ||
+      (!has_index && found != frames.begin() && distance_ns(std::prev(found)) < distance_ns(found)))
+    --found;
+  auto frame = std::make_shared<camera::Frame>(*picture);
+  frame->index = found->index;
+  frame->timestamp_ns = found->timestamp_ns;
+  return frame;
+}
+
+std::function<PictureReader()> opening(const std::filesystem::path& folder,
+                                       std::shared_ptr<const recording::SessionTimeline> timeline) {
+  return [folder, timeline = std::move(timeline)]() -> PictureReader {
     const auto pictures = std::make_shared<recording::RecordedPictures>(recording::read_overview(folder));
-    return [pictures](const PictureWish& wish) { return pictures->picture(wish.frame, wish.timestamp_ns); };
+    return {[pictures, timeline](const PictureWish& wish, const sources::OnTheWay& on_the_way) {
+              return pictures->picture(wish.frame, wish.timestamp_ns, [&](const auto& passed) {
+                return on_the_way([&] { return named(passed(), timeline->frames()); });
+              });
+            },
+            [pictures](const std::function<bool()>& goes_on) { pictures->read_before_remembered(goes_on); }};
   };
 }
 
 }  // namespace
 
-PictureFetcher::PictureFetcher(const std::filesystem::path& session_folder, std::function<void()> on_news)
-    : PictureFetcher(opening(session_folder), std::move(on_news)) {}
+PictureFetcher::PictureFetcher(const std::filesystem::path& session_folder,
+                               std::shared_ptr<const recording::SessionTimeline> timeline,
+                               std::function<void()> on_news)
+    : PictureFetcher(opening(session_folder, std::move(timeline)), std::move(on_news)) {}
 
-PictureFetcher::PictureFetcher(std::function<ReadPicture()> open, std::function<void()> on_news)
+PictureFetcher::PictureFetcher(std::function<PictureReader()> open, std::function<void()> on_news)
     : worker_(worker::Backlog::NewestWins, reading(std::move(open)), std::move(on_news)) {}
 
-PictureFetcher::Worker::Body PictureFetcher::reading(std::function<ReadPicture()> open) {
+PictureFetcher::Worker::Body PictureFetcher::reading(std::function<PictureReader()> open) {
   return [open = std::move(open)](Worker::Inbox& inbox) {
-    const ReadPicture read = open();
+    using Clock = std::chrono::steady_clock;
+    const PictureReader reader = open();
     Pictures kept;
-    while (const auto wish = inbox.next()) {
+    const auto keep = [&](std::int64_t frame, const camera::FramePtr& picture) {
       if (kept.size() == kKept) kept.erase(kept.begin());
-      kept.push_back({wish->frame, read(*wish)});
+      kept.push_back({frame, picture});
       inbox.publish(kept);
+    };
+    const auto is_undisturbed = [&] { return !inbox.has_message() && !inbox.stops(); };
+    std::int64_t last_ns = 0;
+    while (const auto wish = inbox.next()) {
+      Clock::time_point shows_again{};
+      bool is_wanted = true, has_passed = false;
+      const camera::FramePtr picture = reader.read(*wish, [&](const auto& passed) {
+        // One at least of each search, so that something moves however fast wishes come.
+        if (Clock::now() >= shows_again) {
+          if (const camera::FramePtr on_the_way = passed()) {
+            if (std::exchange(has_passed, true)) kept.pop_back();
+            keep(on_the_way->index, on_the_way);
+          }
+          shows_again = Clock::now() + kShowEvery;
+        }
+        return is_wanted = is_undisturbed();
+      });
+      if (is_wanted) keep(wish->frame, picture);
+      const bool goes_back = wish->timestamp_ns < std::exchange(last_ns, wish->timestamp_ns);
+      if (goes_back && reader.read_before && is_undisturbed()) reader.read_before(is_undisturbed);
     }
   };
 }
@@ -46,6 +101,23 @@ std::optional<Fetched> PictureFetcher::picture(const PictureWish& wish) {
   }
   if (std::exchange(wish_, wish.frame) != wish.frame) worker_.post(wish);
   return std::nullopt;
+}
+
+camera::FramePtr PictureFetcher::nearest(const PictureWish& wish) const {
+  camera::FramePtr nearest;
+  const auto distance_ns = [&](const camera::Frame& of) {
+    return std::abs(of.timestamp_ns - wish.timestamp_ns);
+  };
+  if (const auto pictures = worker_.latest())
+    for (const Fetched& fetched : *pictures)
+      if (fetched.picture && (!nearest || distance_ns(*fetched.picture) < distance_ns(*nearest)))
+        nearest = fetched.picture;
+  return nearest;
+}
+
+std::string nearness_in_words(std::int64_t picture_ns, std::int64_t wanted_ns) {
+  return files::format("%.2f s %s", static_cast<double>(std::abs(picture_ns - wanted_ns)) * 1e-9,
+                       picture_ns < wanted_ns ? "earlier" : "later");
 }
 
 }  // namespace arthronaut::review

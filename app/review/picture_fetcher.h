@@ -1,5 +1,6 @@
-// Fetches single pictures of a recorded session in a thread of its own: the newest wish wins, the last ones
-// are kept. A picture takes as long as recorded_pictures.h says.
+// Fetches single pictures of a recorded session in a thread of its own: the newest wish wins, and ends the
+// search for the one before; the last ones are kept. A picture takes as long as recorded_pictures.h says:
+// until it is there, the nearest one that came by can be shown, as what it is.
 //
 // Threads: the window asks; one worker reads. States: reading -> failed (error() says why).
 #pragma once
@@ -7,11 +8,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "navigation/camera/frame.h"
+#include "navigation/recording/session_timeline.h"
+#include "navigation/sources/on_the_way.h"
 #include "navigation/worker/worker.h"
 
 namespace arthronaut::review {
@@ -24,27 +28,38 @@ struct Fetched {
   std::int64_t frame = 0;
   camera::FramePtr picture;
 };
-using ReadPicture = std::function<camera::FramePtr(const PictureWish& wish)>;
+// How pictures are read. `read` as RecordedPictures::picture(), but that what is passed has index and
+// timestamp; `read_before` as its read_before_remembered(), may be empty.
+struct PictureReader {
+  std::function<camera::FramePtr(const PictureWish& wish, const sources::OnTheWay& on_the_way)> read;
+  std::function<void(const std::function<bool()>& goes_on)> read_before = {};
+};
 
 class PictureFetcher {
  public:
   // on_news is called from the worker when a picture has come; it must not call back.
-  PictureFetcher(const std::filesystem::path& session_folder, std::function<void()> on_news);
+  PictureFetcher(const std::filesystem::path& session_folder,
+                 std::shared_ptr<const recording::SessionTimeline> timeline, std::function<void()> on_news);
   // The same of anything: open is called once, and what it gives as often as there are wishes, on the worker.
-  PictureFetcher(std::function<ReadPicture()> open, std::function<void()> on_news);
+  PictureFetcher(std::function<PictureReader()> open, std::function<void()> on_news);
 
   // Wishes the picture of this frame; returns it when it was read already: else ask again after news.
   [[nodiscard]] std::optional<Fetched> picture(const PictureWish& wish);
+  // Of those that are there the one nearest in time; its index and timestamp say which one it is. Null: none.
+  [[nodiscard]] camera::FramePtr nearest(const PictureWish& wish) const;
   [[nodiscard]] std::string error() const { return worker_.failure(); }
 
  private:
   using Pictures = std::vector<Fetched>;  // that were read last, oldest first
   using Worker = worker::Worker<PictureWish, Pictures>;
 
-  static Worker::Body reading(std::function<ReadPicture()> open);
+  static Worker::Body reading(std::function<PictureReader()> open);
 
   std::int64_t wish_ = -1;  // the last one posted
   Worker worker_;
 };
+
+// Which picture that is: "1.24 s earlier".
+[[nodiscard]] std::string nearness_in_words(std::int64_t picture_ns, std::int64_t wanted_ns);
 
 }  // namespace arthronaut::review

@@ -106,7 +106,7 @@ void ReviewView::take_opened() {
       break;
     }
   if (!open.review.session->video().empty())
-    open.pictures = std::make_unique<PictureFetcher>(open.review.folder, wake_);
+    open.pictures = std::make_unique<PictureFetcher>(open.review.folder, open.review.timeline, wake_);
   look_at_tunnel();
 }
 
@@ -282,14 +282,18 @@ void ReviewView::draw_picture(const widgets::Ui& ui, const widgets::Rect& area) 
   if (const std::string error = open_->pictures->error(); !error.empty())
     return widgets::text_centered(ui, area, ui.theme.strong, widgets::kBad, error);
   const recording::FrameGlance& glance = open_->glance();
-  const auto fetched = open_->pictures->picture({glance.index, glance.timestamp_ns});
-  const camera::FramePtr picture = fetched ? fetched->picture : nullptr;
+  const PictureWish wish{glance.index, glance.timestamp_ns};
+  const auto fetched = open_->pictures->picture(wish);
+  // Until it is there the nearest one, which says that it is another: the numbers beside it are not its.
+  const camera::FramePtr picture = fetched ? fetched->picture : open_->pictures->nearest(wish);
   video_.upload(picture);
-  ui.log.note_state("review_picture", !fetched ? "reading" : picture ? "shown" : "none");
+  ui.log.note_state("review_picture", picture == nullptr ? (fetched ? "none" : "reading")
+                                      : fetched          ? "shown"
+                                                         : "another");
   if (fetched && picture == nullptr)
     return widgets::text_centered(ui, area, ui.theme.strong, widgets::kQuietText,
                                   "No picture of this frame was kept");
-  if (video_.texture() == 0)
+  if (picture == nullptr)
     return widgets::text_centered(ui, area, ui.theme.strong, widgets::kQuietText, "Reading the video");
   const float w = static_cast<float>(video_.width()), h = static_cast<float>(video_.height());
   // The square about the middle: the round view of the arthroscope.
@@ -297,9 +301,10 @@ void ReviewView::draw_picture(const widgets::Ui& ui, const widgets::Rect& area) 
   const widgets::Rect at = widgets::fitted(area, 1);
   const ImVec2 from{(w - side) / 2 / w, (h - side) / 2 / h}, to{(w + side) / 2 / w, (h + side) / 2 / h};
   draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(video_.texture())), at.min(),
-                at.max(), from, to, picture != nullptr ? IM_COL32_WHITE : IM_COL32(90, 90, 90, 255));
-  if (picture == nullptr && !open_->playback.plays)
-    widgets::text_centered(ui, area, ui.theme.strong, widgets::kText, "Reading the video");
+                at.max(), from, to, fetched ? IM_COL32_WHITE : IM_COL32(150, 150, 150, 255));
+  if (!fetched)
+    widgets::caption(ui, area, widgets::kCaution,
+                     "Reading. This picture: " + nearness_in_words(picture->timestamp_ns, wish.timestamp_ns));
 }
 
 void ReviewView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area) {

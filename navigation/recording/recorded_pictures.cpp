@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "navigation/recording/kept_pictures.h"
@@ -25,28 +24,68 @@ std::unique_ptr<sources::SeekableVideo> open_own(const SessionOverview& session)
       video, session.header.video_has_exact_luma ? sources::LumaOf::File : sources::LumaOf::Colours);
 }
 
+camera::FramePtr with_names(const camera::Frame& picture, std::int64_t index, std::int64_t timestamp_ns) {
+  auto frame = std::make_shared<camera::Frame>(picture);
+  frame->index = index;
+  frame->timestamp_ns = timestamp_ns;
+  return frame;
+}
+
+// What is passed, by the names that the session has for it.
+template <typename Rename>
+sources::OnTheWay renamed(const sources::OnTheWay& on_the_way, const Rename& rename) {
+  if (!on_the_way) return {};
+  return [&on_the_way, rename](const auto& passed) {
+    return on_the_way([&]() -> camera::FramePtr {
+      const camera::FramePtr picture = passed();
+      return picture == nullptr ? nullptr : rename(*picture);
+    });
+  };
+}
+
 }  // namespace
 
 struct RecordedPictures::State {
   // The part in hand, by the one or the other.
   void open(std::size_t wanted) {
-    if (part == wanted && (video != nullptr || stream)) return;
+    if (part == wanted && (video != nullptr || stream != nullptr)) return;
     video.reset();
     stream.reset();
+    before.reset();
     part = wanted;
     const std::filesystem::path file = folder / parts[wanted].file;
     if (!std::filesystem::exists(file)) throw IoError(file, "the video is not there any more");
     if (parts[wanted].as == PicturesAs::AsTheyCame)
-      stream.emplace(kept_stream_file(folder, parts, wanted, pictures), sources::KeptStream::Use::ToLookAt);
+      stream = open_stream();
     else
       video = sources::open_seekable_video(
           file, parts[wanted].as == PicturesAs::Lossless ? sources::LumaOf::File : sources::LumaOf::Colours);
   }
 
-  camera::FramePtr picture_of(std::size_t number) {
+  [[nodiscard]] std::unique_ptr<sources::KeptStream> open_stream() const {
+    return std::make_unique<sources::KeptStream>(kept_stream_file(folder, parts, part, pictures),
+                                                 sources::KeptStream::Use::ToLookAt);
+  }
+
+  // The one of that packet, which was passed on the way to pictures[number]; null: no frame has it.
+  [[nodiscard]] const KeptPicture* passed_before(std::size_t number, std::int64_t packet) const {
+    const std::int64_t start = pictures[number].start_packet;
+    for (std::size_t i = number; i-- > 0 && pictures[i].start_packet == start;)
+      if (pictures[i].packet == packet) return &pictures[i];
+    return nullptr;
+  }
+
+  camera::FramePtr picture_of(std::size_t number, const sources::OnTheWay& on_the_way) {
     open(part_of(parts, static_cast<std::int64_t>(number)));
     const std::int64_t packet = pictures[number].packet;
-    if (stream) return stream->picture(packet);
+    if (stream != nullptr) {
+      if (before != nullptr && !stream->remembers(packet) && before->remembers(packet))
+        std::swap(stream, before);
+      return stream->picture(packet, renamed(on_the_way, [this, number](const camera::Frame& passed) {
+                               const KeptPicture* const kept = passed_before(number, passed.packet);
+                               return kept == nullptr ? nullptr : with_names(passed, kept->frame, -1);
+                             }));
+    }
     return video->picture_at(
         std::llround(static_cast<double>(packet) / video->info().frames_per_second * 1e9));
   }
@@ -56,7 +95,8 @@ struct RecordedPictures::State {
   std::vector<KeptPicture> pictures;  // by rising frames
   std::size_t part = 0;
   std::unique_ptr<sources::SeekableVideo> video;
-  std::optional<sources::KeptStream> stream;
+  std::unique_ptr<sources::KeptStream> stream;
+  std::unique_ptr<sources::KeptStream> before;  // the same file, at what lies before; null: nobody went back
 };
 
 RecordedPictures::RecordedPictures(const SessionOverview& session) : state_(std::make_unique<State>()) {
@@ -73,23 +113,31 @@ RecordedPictures::RecordedPictures(const SessionOverview& session) : state_(std:
 
 RecordedPictures::~RecordedPictures() = default;
 
-camera::FramePtr RecordedPictures::picture(std::int64_t frame_index, std::int64_t timestamp_ns) {
+camera::FramePtr RecordedPictures::picture(std::int64_t frame_index, std::int64_t timestamp_ns,
+                                           const sources::OnTheWay& on_the_way) {
   State& s = *state_;
   camera::FramePtr picture;
   if (s.parts.empty()) {
-    picture = s.video->picture_at(timestamp_ns);
+    picture = s.video->picture_at(timestamp_ns, renamed(on_the_way, [](const camera::Frame& passed) {
+                                    return with_names(passed, -1, passed.timestamp_ns);
+                                  }));
   } else {
     const auto found =
         std::lower_bound(s.pictures.begin(), s.pictures.end(), frame_index,
                          [](const KeptPicture& kept, std::int64_t frame) { return kept.frame < frame; });
     if (found == s.pictures.end() || found->frame != frame_index) return nullptr;
-    picture = s.picture_of(static_cast<std::size_t>(found - s.pictures.begin()));
+    picture = s.picture_of(static_cast<std::size_t>(found - s.pictures.begin()), on_the_way);
   }
-  if (picture == nullptr) return nullptr;
-  auto frame = std::make_shared<camera::Frame>(*picture);
-  frame->index = frame_index;
-  frame->timestamp_ns = timestamp_ns;
-  return frame;
+  return picture == nullptr ? nullptr : with_names(*picture, frame_index, timestamp_ns);
+}
+
+void RecordedPictures::read_before_remembered(const std::function<bool()>& goes_on) {
+  State& s = *state_;
+  const auto first = s.stream == nullptr ? std::nullopt : s.stream->first_remembered();
+  if (!first || *first == 0) return;
+  if (s.before == nullptr) s.before = s.open_stream();
+  if (s.before->remembers(*first - 1)) return;
+  (void)s.before->picture(*first - 1, [&goes_on](const auto& /*passed*/) { return goes_on(); });
 }
 
 }  // namespace arthronaut::recording

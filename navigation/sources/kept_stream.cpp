@@ -128,7 +128,8 @@ struct KeptStream::State {
     return nullptr;
   }
 
-  camera::FramePtr read_on_to(std::int64_t number) {
+  // Null: it is not there, or on_the_way ended it.
+  camera::FramePtr read_on_to(std::int64_t number, const OnTheWay& on_the_way) {
     while (next_packet <= number + kLatest && decode()) {
       LibavPtr<AVFrame> picture(av_frame_alloc());
       av_frame_move_ref(picture.get(), decoded.get());
@@ -136,6 +137,7 @@ struct KeptStream::State {
       remembered.push_back(std::move(picture));
       if (remembered.size() > kRememberedPictures) remembered.pop_front();
       if (remembered.back()->reordered_opaque == number) return frame_of(*remembered.back());
+      if (!on_the_way([this] { return frame_of(*remembered.back()); })) return nullptr;
     }
     return nullptr;
   }
@@ -164,7 +166,19 @@ camera::FramePtr KeptStream::next() {
   return state_->decode() ? state_->frame_of(*state_->decoded) : nullptr;
 }
 
-camera::FramePtr KeptStream::picture(std::int64_t packet) {
+bool KeptStream::remembers(std::int64_t packet) const {
+  const auto& remembered = state_->remembered;
+  return std::any_of(remembered.begin(), remembered.end(), [packet](const LibavPtr<AVFrame>& picture) {
+    return picture->reordered_opaque == packet;
+  });
+}
+
+std::optional<std::int64_t> KeptStream::first_remembered() const {
+  if (state_->remembered.empty()) return std::nullopt;
+  return state_->remembered.front()->reordered_opaque;
+}
+
+camera::FramePtr KeptStream::picture(std::int64_t packet, const OnTheWay& on_the_way) {
   State& s = *state_;
   if (const camera::FramePtr known = s.find_remembered(packet)) return known;
   const auto after =
@@ -174,9 +188,13 @@ camera::FramePtr KeptStream::picture(std::int64_t packet) {
   const StreamStart& start = *std::prev(after);
   // Some that have been read may still be in the decoder.
   const bool is_ahead = s.next_packet > start.packet && s.newest >= 0 && s.newest < packet;
+  bool is_wanted = true;
+  const OnTheWay passing = [&](const auto& passed) {
+    return is_wanted = on_the_way == nullptr || on_the_way(passed);
+  };
   if (is_ahead)
-    if (const camera::FramePtr found = s.read_on_to(packet)) return found;
-  return s.seek(start) ? s.read_on_to(packet) : nullptr;
+    if (const camera::FramePtr found = s.read_on_to(packet, passing); found || !is_wanted) return found;
+  return s.seek(start) ? s.read_on_to(packet, passing) : nullptr;
 }
 
 }  // namespace arthronaut::sources

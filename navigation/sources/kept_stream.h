@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "navigation/sources/frame_source.h"
+#include "navigation/sources/on_the_way.h"
 
 namespace arthronaut::sources {
 
@@ -40,8 +42,12 @@ class KeptStream {
   // where the file breaks off.
   [[nodiscard]] camera::FramePtr next();
   // The picture of that packet. Decodes from the last start before it, unless it lies shortly behind what was
-  // decoded, or was decoded lately: the last 32 pictures are remembered. Null where the file is broken there.
-  [[nodiscard]] camera::FramePtr picture(std::int64_t packet);
+  // decoded, or was decoded lately: the last 32 pictures are remembered. Null where the file is broken there,
+  // and where on_the_way said that it is not wanted: asked for again, decoding goes on from there.
+  [[nodiscard]] camera::FramePtr picture(std::int64_t packet, const OnTheWay& on_the_way = {});
+  [[nodiscard]] bool remembers(std::int64_t packet) const;
+  // The first of those that are remembered; nullopt: none is.
+  [[nodiscard]] std::optional<std::int64_t> first_remembered() const;
 
  private:
   struct State;

@@ -104,7 +104,7 @@ class StillImages : public FrameSource, public SeekableVideo {
     return frame;
   }
 
-  camera::FramePtr picture_at(std::int64_t time_ns) override {
+  camera::FramePtr picture_at(std::int64_t time_ns, const OnTheWay& /*none is passed*/) override {
     next_index_ = std::llround(static_cast<double>(time_ns) * 1e-9 * kFramesPerSecond);
     if (next_index_ < 0 || next_index_ >= info_.frame_count) return nullptr;
     return next();

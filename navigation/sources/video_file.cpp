@@ -54,15 +54,19 @@ class VideoFile : public FrameSource, public SeekableVideo {
     is_at_end_ = true;  // the first wish seeks
   }
 
-  camera::FramePtr picture_at(std::int64_t time_ns) override {
+  camera::FramePtr picture_at(std::int64_t time_ns, const OnTheWay& on_the_way) override {
     const double wanted_s = static_cast<double>(time_ns) * 1e-9;
     if (wanted_s < -grace_s()) return nullptr;
     if (shown_ && std::abs(shown_s_ - wanted_s) <= grace_s()) return shown_;
     shown_ = nullptr;
-    if (is_reached_by_reading_on(wanted_s) && read_on_to(wanted_s)) return shown_;
+    bool is_wanted = true;
+    const OnTheWay passing = [&](const auto& passed) {
+      return is_wanted = on_the_way == nullptr || on_the_way(passed);
+    };
+    if (is_reached_by_reading_on(wanted_s) && read_on_to(wanted_s, passing)) return shown_;
     for (const double back_s : kSeekBack_s) {
-      if (!seek(std::max(wanted_s - back_s, 0.0))) return nullptr;
-      if (read_on_to(wanted_s)) return shown_;
+      if (!is_wanted || !seek(std::max(wanted_s - back_s, 0.0))) return nullptr;
+      if (read_on_to(wanted_s, passing)) return shown_;
       if (is_at_end_) return nullptr;
     }
     return nullptr;
@@ -121,16 +125,23 @@ class VideoFile : public FrameSource, public SeekableVideo {
     return true;
   }
 
-  // Decodes up to the picture of that time and shows it. False when there is none or it lies behind.
-  bool read_on_to(double wanted_s) {
+  // Decodes up to the picture of that time and shows it. False when there is none, it lies behind, or
+  // on_the_way ended it.
+  bool read_on_to(double wanted_s, const OnTheWay& on_the_way) {
     while (decode()) {
       const double at_s = picture_s() - first_time_s_;
       shown_s_ = at_s;
-      if (at_s < wanted_s - grace_s()) continue;
+      const auto taken = [this, at_s] {
+        next_index_ = std::llround(at_s * rate());
+        last_timestamp_ns_ = -1;
+        return frame_of_picture();
+      };
+      if (at_s < wanted_s - grace_s()) {
+        if (!is_damaged() && !on_the_way(taken)) return false;
+        continue;
+      }
       if (at_s > wanted_s + grace_s() || is_damaged()) return false;
-      next_index_ = std::llround(at_s * rate());
-      last_timestamp_ns_ = -1;
-      shown_ = frame_of_picture();
+      shown_ = taken();
       return true;
     }
     is_at_end_ = true;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "navigation/sources/frame_source.h"
+#include "navigation/sources/on_the_way.h"
 
 namespace arthronaut::sources {
 
@@ -24,8 +25,10 @@ class SeekableVideo {
   [[nodiscard]] virtual const SourceInfo& info() const = 0;
   // The picture that is shown time_ns after the first one, with half a picture's time of grace for files
   // whose clock is coarse. Null before the first, beyond the last and where the file is broken: what is whole
-  // before and after is given all the same. Its index counts by the frame rate.
-  [[nodiscard]] virtual camera::FramePtr picture_at(std::int64_t time_ns) = 0;
+  // before and after is given all the same. Its index counts by the frame rate. Null, too, where on_the_way
+  // said that it is not wanted: asked for again, decoding goes on from there.
+  [[nodiscard]] virtual camera::FramePtr picture_at(std::int64_t time_ns,
+                                                    const OnTheWay& on_the_way = {}) = 0;
 };
 
 // The file's own index of key frames is used. A Matroska file that a crash left without one, all of whose

@@ -4,7 +4,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <memory>
+#include <mutex>
 #include <random>
 #include <thread>
 
@@ -18,14 +20,15 @@ constexpr std::int64_t kFrames = 100;
 constexpr auto kPatience = std::chrono::seconds(60);
 
 // Pictures 0 to 99, without waiting.
-ReadPicture numbers() {
-  return [](const PictureWish& wish) -> camera::FramePtr {
-    if (wish.frame >= kFrames) return nullptr;
-    auto frame = std::make_shared<camera::Frame>();
-    frame->index = wish.frame;
-    frame->timestamp_ns = wish.timestamp_ns;
-    return frame;
-  };
+camera::FramePtr number(std::int64_t number) {
+  if (number >= kFrames) return nullptr;
+  auto frame = std::make_shared<camera::Frame>();
+  frame->index = number;
+  frame->timestamp_ns = number * 1000;
+  return frame;
+}
+PictureReader numbers() {
+  return {[](const PictureWish& wish, const sources::OnTheWay&) { return number(wish.frame); }};
 }
 
 PictureWish wish_of(std::int64_t frame) { return {frame, frame * 1000}; }
@@ -72,12 +75,12 @@ TEST(PictureFetcher, EndsAtAnyMoment) {
 TEST(PictureFetcher, OpensOnceAndSaysWhatHasNoPicture) {
   std::atomic<int> opened = 0, read = 0;
   PictureFetcher fetcher(
-      [&]() -> ReadPicture {
+      [&]() -> PictureReader {
         ++opened;
-        return [&, one = numbers()](const PictureWish& wish) {
+        return {[&](const PictureWish& wish, const sources::OnTheWay&) {
           ++read;
-          return one(wish);
-        };
+          return number(wish.frame);
+        }};
       },
       [] {});
   for (const std::int64_t frame : {90, 70, 3, 90}) ASSERT_TRUE(wait_for(fetcher, frame));
@@ -90,8 +93,113 @@ TEST(PictureFetcher, OpensOnceAndSaysWhatHasNoPicture) {
   EXPECT_EQ(fetcher.error(), "");
 }
 
+// A video in which every picture is decoded from the first one on, and none comes out before it is allowed
+// to.
+class SlowVideo {
+ public:
+  PictureReader reader() {
+    return {[this](const PictureWish& wish, const sources::OnTheWay& on_the_way) -> camera::FramePtr {
+      std::unique_lock lock(mutex_);
+      for (std::int64_t at = 0; at < wish.frame; ++at) {
+        const bool goes_on = on_the_way([at] { return number(at); });
+        if (!goes_on) return ++left_, nullptr;
+        allowed_.wait_for(lock, std::chrono::milliseconds(1), [&] { return at < limit_; });
+        if (at >= limit_) --at;  // the same one again, until it may go on
+      }
+      return number(wish.frame);
+    }};
+  }
+  void allow(std::int64_t limit) {
+    const std::lock_guard lock(mutex_);
+    limit_ = limit;
+    allowed_.notify_all();
+  }
+  [[nodiscard]] int left() {
+    const std::lock_guard lock(mutex_);
+    return left_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable allowed_;
+  std::int64_t limit_ = 0;
+  int left_ = 0;
+};
+
+template <typename Holds>
+bool comes_true(const Holds& holds) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (!holds() && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  return holds();
+}
+
+// While a picture is looked for, the nearest that came by is there, and says that it is another one; the
+// right one takes its place.
+TEST(PictureFetcher, ShowsWhatComesByAsWhatItIs) {
+  SlowVideo video;
+  PictureFetcher fetcher([&] { return video.reader(); }, [] {});
+  const auto looks_at = [&](std::int64_t wanted) {
+    EXPECT_FALSE(fetcher.picture(wish_of(wanted)));
+    const camera::FramePtr picture = fetcher.nearest(wish_of(wanted));
+    EXPECT_TRUE(picture == nullptr || picture->timestamp_ns == picture->index * 1000);
+    return picture == nullptr ? -1 : picture->index;
+  };
+  EXPECT_TRUE(comes_true([&] { return looks_at(50) == 0; }));
+  video.allow(30);
+  EXPECT_TRUE(comes_true([&] { return looks_at(50) == 30; }));
+  video.allow(kFrames);
+  const auto fetched = wait_for(fetcher, 50);
+  ASSERT_TRUE(fetched && fetched->picture);
+  EXPECT_EQ(fetched->picture->index, 50);
+  EXPECT_EQ(fetcher.nearest(wish_of(52))->index, 50);  // not the one that was passed before it
+}
+
+// A search that is not wanted any more ends for the next wish, and for the end of the program.
+TEST(PictureFetcher, LeavesASearchForTheNextWish) {
+  SlowVideo video;
+  {
+    PictureFetcher fetcher([&] { return video.reader(); }, [] {});
+    EXPECT_FALSE(fetcher.picture(wish_of(50)));
+    EXPECT_TRUE(comes_true([&] { return fetcher.nearest(wish_of(50)) != nullptr; }));
+    const auto first = wait_for(fetcher, 0);  // it takes no decoding
+    ASSERT_TRUE(first && first->picture);
+    EXPECT_EQ(first->picture->index, 0);
+    EXPECT_FALSE(fetcher.picture(wish_of(60)));
+    EXPECT_TRUE(comes_true([&] { return video.left() == 1; }));
+  }
+  EXPECT_EQ(video.left(), 2);
+}
+
+// What lies before is read for somebody who goes back, and until the next wish alone.
+TEST(PictureFetcher, ReadsBeforeForWhoGoesBack) {
+  std::atomic<int> read_before = 0, disturbed = 0;
+  PictureFetcher fetcher(
+      [&]() -> PictureReader {
+        PictureReader reader = numbers();
+        reader.read_before = [&](const std::function<bool()>& goes_on) {
+          ++read_before;
+          while (goes_on()) std::this_thread::yield();
+          ++disturbed;
+        };
+        return reader;
+      },
+      [] {});
+  for (const std::int64_t frame : {7, 8, 9}) ASSERT_TRUE(wait_for(fetcher, frame));
+  EXPECT_EQ(read_before.load(), 0);
+  ASSERT_TRUE(wait_for(fetcher, 6));
+  EXPECT_TRUE(comes_true([&] { return read_before.load() == 1; }));
+  ASSERT_TRUE(wait_for(fetcher, 20));
+  EXPECT_EQ(disturbed.load(), 1);
+}
+
+TEST(PictureFetcher, SaysHowNearAPictureIs) {
+  EXPECT_EQ(nearness_in_words(1'000'000'000, 2'240'000'000), "1.24 s earlier");
+  EXPECT_EQ(nearness_in_words(2'240'000'000, 2'220'000'000), "0.02 s later");
+}
+
 TEST(PictureFetcher, SaysWhyThereIsNoPicture) {
-  PictureFetcher fetcher([]() -> ReadPicture { throw InvalidInput("video.mkv: broken"); }, [] {});
+  PictureFetcher fetcher([]() -> PictureReader { throw InvalidInput("video.mkv: broken"); }, [] {});
   const auto end = std::chrono::steady_clock::now() + kPatience;
   while (fetcher.error().empty() && std::chrono::steady_clock::now() < end)
     EXPECT_FALSE(fetcher.picture(wish_of(1)));

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cstdio>
 #include <map>
+#include <numeric>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
@@ -123,6 +124,45 @@ TEST(RecordedPictures, FindsThePicturesOfCopiedVideos) {
     }
     expect_every_picture(folder / "session", kFrames);
   }
+}
+
+// What is passed on the way to a picture of a copied video says by its timestamp which one it is; a search
+// that was ended goes on where it was.
+TEST(RecordedPictures, NamesWhatIsPassedInACopiedVideo) {
+  const test::TemporaryFolder folder;
+  {
+    // A key frame every 12 pictures.
+    cv::VideoWriter writer((folder / "a.mp4").string(), cv::VideoWriter::fourcc('m', 'p', '4', 'v'), 60,
+                           {kWidth, kHeight});
+    ASSERT_TRUE(writer.isOpened());
+    for (int i = 0; i < kFrames; ++i) writer.write(numbered(i));
+  }
+  fs::create_directory(folder / "session");
+  {
+    SessionRecorder recorder(folder / "session", test::session_header(), test::scripted_options());
+    for (int i = 0; i < kFrames; ++i) recorder.append(test::frame_result(i));
+    recorder.copy_video(folder / "a.mp4");
+    recorder.finish();
+  }
+  RecordedPictures pictures(read_overview(folder / "session"));
+  constexpr int kLeftAfter = 3, kWanted = 95;  // a key frame is 84
+  std::vector<int> passed;
+  const auto note = [&](const auto& make) {
+    const camera::FramePtr picture = make();
+    EXPECT_EQ(picture->index, -1);
+    // The file's clock counts in ticks finer than a tenth of a millisecond.
+    EXPECT_NEAR(static_cast<double>(picture->timestamp_ns),
+                static_cast<double>(test::frame_result(number_of(*picture)).timestamp_ns), 1e5);
+    passed.push_back(number_of(*picture));
+    return passed.size() != kLeftAfter;
+  };
+  EXPECT_EQ(pictures.picture(kWanted, test::frame_result(kWanted).timestamp_ns, note), nullptr);
+  const camera::FramePtr found = pictures.picture(kWanted, test::frame_result(kWanted).timestamp_ns, note);
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(number_of(*found), kWanted);
+  std::vector<int> all(11);
+  std::iota(all.begin(), all.end(), 84);
+  EXPECT_EQ(passed, all);
 }
 
 // Stills of a pattern that does not begin with nought.

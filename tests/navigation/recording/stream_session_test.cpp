@@ -63,6 +63,57 @@ class StreamSession : public ::testing::Test {
   std::unique_ptr<test::ChildProcess> sender_;
 };
 
+// What is passed on the way to a picture is the picture of the frame that it says it is, and what no frame
+// has is none of any. Going back goes on at once where what lies before was read meanwhile, across a key
+// frame, too.
+TEST_F(StreamSession, NamesWhatIsPassedAndReadsBefore) {
+  const test::TemporaryFolder folder;
+  std::map<std::int64_t, std::uint64_t> given;
+  {
+    const auto source = open();
+    SessionRecorder recorder(folder.path(), test::session_header(), test::scripted_options());
+    record(*source, recorder, [&](const GivenPicture& picture) {
+      if (picture.frame % 11 != 4) given.emplace(picture.frame, picture.luma);
+      return given.size() == 150;
+    });
+    recorder.finish();
+  }
+  RecordedPictures pictures(read_overview(folder.path()));
+  const auto time_of = [](std::int64_t frame) { return test::frame_result(frame).timestamp_ns; };
+  int passed = 0, without_frame = 0;
+  const auto note = [&](const auto& make) {
+    ++passed;
+    const camera::FramePtr picture = make();
+    if (picture == nullptr) return ++without_frame, true;
+    EXPECT_EQ(picture->timestamp_ns, -1);
+    const auto same = given.find(picture->index);
+    EXPECT_TRUE(same != given.end() && luma_of_picture(*picture) == same->second) << picture->index;
+    return true;
+  };
+  // The last is up to 44 pictures behind its key frame, of which 32 are remembered.
+  auto at = std::prev(given.end());
+  ASSERT_NE(pictures.picture(at->first, time_of(at->first), note), nullptr);
+  std::mt19937 random(4);
+  for (int i = 0; i < 30; ++i) {
+    at = std::next(given.begin(), std::uniform_int_distribution(0, 149)(random));
+    ASSERT_NE(pictures.picture(at->first, time_of(at->first), note), nullptr);
+  }
+  EXPECT_GT(passed, 100);
+  EXPECT_GT(without_frame, 0);
+
+  at = std::prev(given.end());
+  ASSERT_NE(pictures.picture(at->first, time_of(at->first)), nullptr);
+  passed = 0;
+  for (int back = 0; back < 110; ++back) {
+    --at;
+    pictures.read_before_remembered([] { return true; });
+    const camera::FramePtr picture = pictures.picture(at->first, time_of(at->first), note);
+    ASSERT_NE(picture, nullptr) << at->first;
+    EXPECT_EQ(luma_of_picture(*picture), at->second);
+  }
+  EXPECT_EQ(passed, 0);
+}
+
 // A session of its own: whole by its hashes, every picture under its frame, in order and across; it says how
 // its pictures were kept. A bit that is changed in the video is told by the hashes.
 TEST_F(StreamSession, ComesBackWholeAndTellsTampering) {

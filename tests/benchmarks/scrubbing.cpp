@@ -1,0 +1,146 @@
+// What it takes to move about in a session whose pictures were kept as they came, by the fetcher that Review
+// uses: until there is a picture to look at, until it is the right one, and how far off the former is.
+//   scrubbing CLIP SECONDS     CLIP: 1080p60 H.264 in Matroska, sent by RTSP over the loopback at its own
+//   rate
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <thread>
+
+#include "app/review/picture_fetcher.h"
+#include "navigation/recording/session.h"
+#include "tests/navigation/recording/recorded_frames.h"
+#include "tests/navigation/recording/streams.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::review {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+double processor_ms() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  const auto ms = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_usec) * 1e-3;
+  };
+  return ms(usage.ru_utime) + ms(usage.ru_stime);
+}
+
+void print(const char* what, std::vector<double> values, const char* unit) {
+  if (values.empty()) return;
+  std::sort(values.begin(), values.end());
+  std::printf("  %-34s median %7.1f, 90 %% %7.1f, worst %7.1f %s of %zu\n", what, values[values.size() / 2],
+              values[values.size() * 9 / 10], values.back(), unit, values.size());
+}
+
+void record(const std::string& clip, double seconds, const std::filesystem::path& folder) {
+  const std::string port = test::stream_port(0);
+  const auto sender = test::send_by_rtsp(port, test::h264_clip_launch(clip));
+  const auto source = test::open_when_there(test::rtsp_address(port));
+  recording::SessionRecorder recorder(folder, test::session_header(), test::scripted_options());
+  recorder.keep_pictures(recording::PicturesAs::AsTheyCame, source->info().packets);
+  const auto begin = Clock::now();
+  while (ms_since(begin) < 1000 * seconds) {
+    const camera::FramePtr frame = source->next();
+    if (frame == nullptr) break;
+    recorder.append(test::frame_result(frame->index));
+    recorder.append_picture(frame);
+  }
+  source->info().line->end();
+  recorder.finish();
+}
+
+class Screen {
+ public:
+  explicit Screen(const std::filesystem::path& folder)
+      : timeline_(std::make_shared<const recording::SessionTimeline>(folder)),
+        fetcher_(folder, timeline_, [] {}) {}
+
+  [[nodiscard]] std::size_t size() const { return timeline_->frames().size(); }
+
+  // As the window asks, until it is the right one or the time is over.
+  void look(std::size_t at, double at_most_ms = 1e5) {
+    const recording::FrameGlance& frame = timeline_->frames()[at];
+    const PictureWish wish{frame.index, frame.timestamp_ns};
+    const auto begin = Clock::now();
+    bool has_come = false;
+    double off_ms = -1;
+    while (ms_since(begin) < at_most_ms) {
+      if (fetcher_.picture(wish)) {
+        if (!has_come) come_ms.push_back(ms_since(begin));
+        right_ms.push_back(ms_since(begin));
+        off_ms = 0;
+        break;
+      }
+      if (const camera::FramePtr near = fetcher_.nearest(wish)) {
+        const double near_ms = static_cast<double>(std::abs(near->timestamp_ns - wish.timestamp_ns)) * 1e-6;
+        // Within what a key frame can be away: not what was looked at before.
+        if (!has_come && near_ms < kGroup_ms) come_ms.push_back(ms_since(begin));
+        has_come = has_come || near_ms < kGroup_ms;
+        off_ms = near_ms;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    if (off_ms >= 0) left_off_ms.push_back(off_ms);
+  }
+
+  std::vector<double> come_ms, right_ms, left_off_ms;
+
+ private:
+  static constexpr double kGroup_ms = 250 / 60.0 * 1000;
+  std::shared_ptr<const recording::SessionTimeline> timeline_;
+  PictureFetcher fetcher_;
+};
+
+template <typename Go>
+void measure(const char* what, const std::filesystem::path& folder, const Go& go) {
+  Screen screen(folder);
+  const double before_ms = processor_ms();
+  const auto begin = Clock::now();
+  go(screen);
+  std::printf("%s: %.0f ms, of processor time %.0f ms\n", what, ms_since(begin), processor_ms() - before_ms);
+  print("a picture that says which it is", screen.come_ms, "ms");
+  print("the right one", screen.right_ms, "ms");
+  print("what is shown at last is off by", screen.left_off_ms, "ms");
+}
+
+}  // namespace
+}  // namespace arthronaut::review
+
+int main(int count, char** arguments) {
+  using namespace arthronaut;
+  using namespace arthronaut::review;
+  if (count < 3) return std::puts("scrubbing CLIP SECONDS"), 2;
+  const test::TemporaryFolder folder;
+  record(arguments[1], std::atof(arguments[2]), folder.path());
+  measure("40 frames at random, each until it is right", folder.path(), [](Screen& screen) {
+    std::mt19937 random(1);
+    for (int i = 0; i < 40; ++i)
+      screen.look(std::uniform_int_distribution<std::size_t>(0, screen.size() - 1)(random));
+  });
+  measure("300 back from the last, 20 a second", folder.path(), [](Screen& screen) {
+    screen.look(screen.size() - 1);
+    screen.come_ms.clear(), screen.right_ms.clear(), screen.left_off_ms.clear();
+    auto next = Clock::now();
+    for (std::size_t back = 2; back <= std::min<std::size_t>(300, screen.size()); ++back) {
+      std::this_thread::sleep_until(next += std::chrono::milliseconds(50));
+      screen.look(screen.size() - back);
+    }
+  });
+  measure("dragged over all of it in 3 s, and back", folder.path(), [](Screen& screen) {
+    constexpr int kWishes = 180;
+    for (int i = -kWishes; i <= kWishes; ++i)
+      screen.look((screen.size() - 1) * static_cast<std::size_t>(kWishes - std::abs(i)) / kWishes,
+                  1000 / 60.0);
+  });
+  return 0;
+}
