@@ -2,6 +2,7 @@
 
 #include "app/command_line/command.h"
 #include "app/command_line/tracking_report.h"
+#include "navigation/recording/cut_short.h"
 #include "navigation/recording/replay.h"
 #include "planning/cases/case.h"
 #include "planning/files/atomic_file.h"
@@ -53,9 +54,11 @@ void replay(Context& context, const ReplayArguments& arguments) {
     if (!summary.is_same()) context.exit_code = kUnreliable;
     return;
   }
-  context.say(format("session %s: %ld of %ld frames replayed%s", session.header().id.c_str(),
-                     summary.replayed_frames, summary.recorded_frames,
-                     session.was_finished() ? "" : " (the recording was cut off and never finished)"));
+  context.say(format("session %s: %ld of %ld frames replayed", session.header().id.c_str(),
+                     summary.replayed_frames, summary.recorded_frames));
+  if (const std::string cut = recording::cut_short_in_words(session.was_finished(), session.events());
+      !cut.empty())
+    context.say("the recording was cut short: " + cut);
   if (summary.frames_without_picture > 0)
     context.say(format("%ld frames have no picture: what was decided on them was run again from the record",
                        summary.frames_without_picture));

@@ -282,8 +282,7 @@ void Report::navigate_page() {
       {"Source", kind_in_words(header)},
       {"Video", content_.identity ? header.source : neutral_source(header)},
       {"Medium", camera::medium_to_text(header.refractive_index)},
-      {"Frames",
-       std::to_string(session.frames().size()) + (session.was_finished() ? "" : " (cut off by a crash)")},
+      {"Frames", std::to_string(session.frames().size())},
       {"World marker tracked", number(figures.world_percent, " % of the frames")},
       {"Lens mark found", number(figures.mark_percent, " % of the frames")},
       {"Last hash of the record", content_.last_hash.empty() ? "none" : in_groups(content_.last_hash)}};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "navigation/recording/cut_short.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/files/format.h"
 
@@ -63,7 +64,9 @@ std::vector<std::vector<std::string>> safety_rows(const recording::RecordedSessi
                      : "not verified";
   const std::string& kind = session.header().source_kind;
   const bool is_live = kind == sources::to_text(sources::SourceKind::Live);
-  return {{"Verification", verified + (was_skipped ? "; guidance began without it" : "")},
+  const std::string cut = recording::cut_short_in_words(session.was_finished(), session.events());
+  return {{"Record", cut.empty() ? "from beginning to end" : "CUT SHORT: " + cut},
+          {"Verification", verified + (was_skipped ? "; guidance began without it" : "")},
           {"Time-out", is_confirmed   ? "confirmed"
                        : is_live      ? "not confirmed in this session"
                        : kind.empty() ? "not recorded"

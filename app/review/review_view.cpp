@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/widgets/source_banner.h"
+#include "navigation/recording/cut_short.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
 
@@ -183,9 +184,12 @@ void ReviewView::draw_side(const widgets::Ui& ui, const widgets::Rect& area) {
   draw_sessions(ui);
   ImGui::Separator();
   draw_buttons(ui);
-  if (open_ && !open_->review.session->was_finished)
-    widgets::status_row(ui, widgets::Severity::Caution, "Cut off",
-                        "the program ended before the session did");
+  if (open_) {
+    const recording::SessionOverview& session = *open_->review.session;
+    const std::string cut = recording::cut_short_in_words(session.was_finished, session.events);
+    if (!cut.empty()) widgets::status_row(ui, widgets::Severity::Caution, "Cut short", cut);
+    ui.log.note_state("cut_short", cut);
+  }
   if (open_) draw_check(ui);
   if (has_frames()) {
     draw_note_field(ui);

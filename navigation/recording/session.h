@@ -113,7 +113,8 @@ struct DiskLimits {
 // Writes while the operation goes on. Calls hand over to a writer thread by a bounded, lossless queue (more
 // than a minute of frames; only a disk that hangs for longer makes a call wait); the writer commits at least
 // twice a second. Pictures go through a queue and a thread of their own. An error of the disk reaches the
-// next call, or finish(), as IoError.
+// next call, or finish(), as IoError; such a session is never finished, and where the video alone could not
+// be written it says so (kVideoStoppedEvent).
 //
 // Free space is looked at with every commit. When it runs short the video ends (kVideoStoppedEvent; pictures
 // are then left out and counted), and before the disk is full the whole record: what was made is committed,

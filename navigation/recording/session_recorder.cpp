@@ -76,6 +76,21 @@ struct SessionRecorder::State {
     return false;
   }
 
+  // What the pictures' thread could not write is in the record, too, as far as that can still be written:
+  // whoever reads it would take the rest for all there was.
+  template <typename What>
+  auto with_pictures(const What& what) {
+    try {
+      return what(picture_writer());
+    } catch (const IoError& failure) {
+      video_failed = true;
+      if (!video_stopped.exchange(true))
+        (void)queue.push(
+            SessionEvent{last_timestamp_ns, std::string(kVideoStoppedEvent), failure.what(), last_frame});
+      throw;
+    }
+  }
+
   // Whether pictures are still taken; counts those that are not.
   bool takes_pictures() {
     if (video_stopped) ++dropped_count;
@@ -155,6 +170,7 @@ struct SessionRecorder::State {
   std::thread worker;
   std::exception_ptr error;
   std::atomic<bool> video_stopped = false;
+  bool video_failed = false;  // the disk did not take it; said to the caller
   bool out_of_space = false;  // why there is an error: all was kept; the writer thread's until it has ended
   PictureWriterOptions keeping;
   std::optional<PictureWriter> pictures;
@@ -211,18 +227,20 @@ void SessionRecorder::keep_pictures(PicturesAs as,
 }
 
 void SessionRecorder::append_picture(const camera::FramePtr& frame) {
-  if (state_->takes_pictures()) state_->picture_writer().write(frame);
+  if (!state_->takes_pictures()) return;
+  state_->with_pictures([&](PictureWriter& writer) { writer.write(frame); });
 }
 
 bool SessionRecorder::try_append_picture(const camera::FramePtr& frame) {
   if (!state_->takes_pictures()) return false;
-  const bool is_taken = state_->picture_writer().try_write(frame);
+  const bool is_taken = state_->with_pictures([&](PictureWriter& writer) { return writer.try_write(frame); });
   state_->dropped_count += is_taken ? 0 : 1;
   return is_taken;
 }
 
 void SessionRecorder::interrupt_pictures() {
-  if (state_->pictures) state_->pictures->end_part();
+  if (!state_->pictures || state_->video_failed) return;
+  state_->with_pictures([](PictureWriter& writer) { writer.end_part(); });
 }
 
 void SessionRecorder::append(const pipeline::FrameResult& result) {
@@ -264,7 +282,7 @@ void SessionRecorder::finish() {
   // What pictures still wait is told to the writer of the record, which ends after them.
   std::exception_ptr video_error;
   try {
-    if (s.pictures) s.pictures->finish();
+    if (s.pictures) s.with_pictures([](PictureWriter& writer) { writer.finish(); });
   } catch (const std::runtime_error&) {
     video_error = std::current_exception();
   }
@@ -285,6 +303,7 @@ void SessionRecorder::finish() {
                   "was moved or deleted while it was being recorded; the end of the record is missing");
   s.formats.finish();
   if (video_error) std::rethrow_exception(video_error);
+  if (s.video_failed) return;  // said at the call that met it; such a record is not finished
   s.cover_to_end();
   s.database.execute("INSERT INTO ending VALUES(1)");
   s.database.seal();

@@ -16,6 +16,7 @@ namespace {
 
 using test::run_program;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class VideoCommands : public ::testing::Test {
  protected:
@@ -116,6 +117,7 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   const auto same = run_program({"replay", knee, "--session", session.filename()});
   EXPECT_EQ(same.exit_code, 0) << same.output << same.errors;
   EXPECT_THAT(same.output, HasSubstr("24 of 24 frames replayed"));
+  EXPECT_THAT(same.output, Not(HasSubstr("cut short")));
   const auto verified = run_program({"verify", knee, "--session", session.filename()});
   EXPECT_EQ(verified.exit_code, 0) << verified.errors;
   EXPECT_THAT(verified.output, HasSubstr("as recorded"));
@@ -130,10 +132,13 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   ASSERT_EQ(sqlite3_open((session / "session.sqlite").c_str(), &database), SQLITE_OK);
   sqlite3_exec(database, "UPDATE markers SET tx_mm = tx_mm + 0.5 WHERE frame = 7 AND marker_id = 2", nullptr,
                nullptr, nullptr);
+  sqlite3_exec(database, "DELETE FROM ending", nullptr, nullptr, nullptr);
   sqlite3_close(database);
   const auto changed = run_program({"replay", knee, "-o", folder_ / "differences.csv"});
   EXPECT_EQ(changed.exit_code, 4);
   EXPECT_THAT(changed.output, HasSubstr("frame 7: pose of marker 2: 0.5"));
+  EXPECT_THAT(changed.output,
+              HasSubstr("the recording was cut short: the program ended before the session did"));
   const auto broken = run_program({"verify", knee, "--json"});
   EXPECT_EQ(broken.exit_code, 4);
   EXPECT_THAT(broken.errors, HasSubstr("session.sqlite: frames 0 to"));

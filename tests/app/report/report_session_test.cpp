@@ -30,6 +30,7 @@ TEST_F(Report, ComparesPlannedAndAchieved) {
   {
     recording::SessionRecorder recorder(session_folder, header, options);
     recorder.set_registration(registration);
+    recorder.add_event({0, std::string(recording::kVideoStoppedEvent), "video.mkv: disk full"});
     recorder.finish();
   }
   const auto planned = knee_.plan.tunnels.at(bones::BoneKind::Femur);
@@ -51,6 +52,7 @@ TEST_F(Report, ComparesPlannedAndAchieved) {
   expect_contains(text, "2.00 mm");  // plan to truth
   expect_contains(text, "0.75 mm");  // measured to truth
   expect_contains(text, "water");
+  expect_contains(text, "CUT SHORT: the video stopped: video.mkv: disk full");
 }
 
 // Each start of a source is a session of its own: what was drilled in the one before is not left out.

@@ -8,8 +8,11 @@
 
 #include <chrono>
 #include <fstream>
+#include <random>
 #include <thread>
 
+#include "navigation/recording/cut_short.h"
+#include "navigation/recording/session_check.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "tests/navigation/recording/recorded_frames.h"
@@ -162,6 +165,63 @@ TEST_F(Session, ReportsADiskThatIsFull) {
   ::waitpid(child, &status, 0);
   EXPECT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+// A disk that takes no more of the video: the caller hears of it once, and whatever becomes of the recorder
+// then, the session does not pass for a whole one: not finished, and it says why. What was made is there.
+TEST_F(Session, SaysThatTheVideoCouldNotBeWritten) {
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    int exit_code = 1;
+    {
+      recording::SessionRecorder recorder(folder_, test::session_header(), options_);
+      const rlimit limit{2'000'000, 2'000'000};
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+      std::mt19937 random(1);
+      camera::Frame noise = test::plain_frame(0, 0);
+      for (std::uint8_t& value : noise.bgr) value = static_cast<std::uint8_t>(random());
+      try {
+        for (int i = 0; i < 3000; ++i) {
+          noise.index = i;
+          recorder.append(test::frame_result(i));
+          recorder.append_picture(std::make_shared<camera::Frame>(noise));
+        }
+      } catch (const IoError&) {
+        exit_code = 0;
+      }
+    }  // as the operation lets go of a record that failed
+    ::_exit(exit_code);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+
+  const recording::RecordedSession session(folder_);
+  EXPECT_FALSE(session.was_finished());
+  EXPECT_GT(session.frames().size(), 10U);
+  ASSERT_FALSE(session.events().empty());
+  EXPECT_EQ(session.events().back().kind, recording::kVideoStoppedEvent);
+  EXPECT_NE(session.events().back().text.find("video.mkv"), std::string::npos)
+      << session.events().back().text;
+  const std::string words = recording::cut_short_in_words(session.was_finished(), session.events());
+  EXPECT_EQ(words, "the video stopped: " + session.events().back().text + "; the record was never finished");
+  int pictures = 0;
+  const auto video = recording::open_recorded_video(session);
+  while (video->next()) ++pictures;
+  EXPECT_GT(pictures, 5);
+  EXPECT_NE(recording::check_session(folder_).outcome, recording::SessionCheck::Outcome::Broken);
+}
+
+// A whole session says nothing of the kind, also after one that stopped for want of room was finished.
+TEST_F(Session, SaysWhyItIsCutShort) {
+  const auto words = recording::cut_short_in_words;
+  EXPECT_EQ(words(true, {{0, "note", "all well"}}), "");
+  EXPECT_EQ(words(false, {}), "the program ended before the session did");
+  EXPECT_EQ(words(true, {{0, std::string(recording::kVideoStoppedEvent), "only 1.9 GiB are free"},
+                         {0, std::string(recording::kRecordingStoppedEvent), "only 0.1 GiB are free"}}),
+            "the video stopped: only 1.9 GiB are free; the recording stopped: only 0.1 GiB are free");
 }
 
 // Stills are copied under their names, and nothing else of their folder.
