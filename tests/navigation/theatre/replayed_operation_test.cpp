@@ -2,9 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <nlohmann/json.hpp>
 #include <random>
 
+#include "navigation/recording/recorded_pictures.h"
 #include "navigation/recording/replay.h"
+#include "navigation/recording/session_database.h"
+#include "planning/files/atomic_file.h"
 #include "tests/navigation/simulator/phantom_options.h"
 #include "tests/navigation/theatre/theatre_sources.h"
 #include "tests/temporary_folder.h"
@@ -96,6 +100,46 @@ TEST_F(ReplayedOperation, EveryCommandOverTwoSourcesGivesTheSameStates) {
   EXPECT_EQ(recording::RecordedSession(folder_ / "session2").header().continues, "session1");
   expect_replays("session1", 60);
   expect_replays("session2", 50);
+}
+
+// A record as it was before streams were kept as they come: of a picture the frame alone, one video without
+// parts, no bodies and no outside tracker.
+void make_older(const std::filesystem::path& session) {
+  auto database = recording::SessionDatabase::open(session / "session.sqlite");
+  for (const char* const column : {"packet", "start_packet", "start_ms", "luma"})
+    database.execute((std::string("ALTER TABLE pictures DROP COLUMN ") + column).c_str());
+  database.execute("DROP TABLE bodies; DROP TABLE outside; DROP TABLE latency; PRAGMA user_version = 1");
+  auto header = nlohmann::json::parse(files::read_text(session / "session.json"));
+  ASSERT_EQ(header.erase("video_parts"), 1U);
+  files::write_atomically(session / "session.json", header.dump());
+}
+
+TEST_F(ReplayedOperation, ARecordOfTheVersionBeforeGivesTheSameStates) {
+  constexpr int kFrames = 40;
+  {
+    OperationRun run(setup_, test::at_once(setup_), folders());
+    const TheatreSource source = test::plain_source(kFrames);
+    run.start(source);
+    run.keep_video(true);
+    for (int i = 0; i < kFrames; ++i) {
+      ASSERT_TRUE(run.step().picture);
+      if (i == 5) run.apply(commands(source.setup).at(1));
+      if (i == 10) run.apply(operation::SkipVerification{});
+    }
+    run.end_source();
+  }
+  make_older(folder_ / "session1");
+  EXPECT_EQ(recording::RecordedSession(folder_ / "session1").pictures().size(), std::size_t{kFrames});
+  expect_replays("session1", kFrames);
+  recording::RecordedPictures pictures(recording::read_overview(folder_ / "session1"));
+  const auto video = recording::open_recorded_video(recording::RecordedSession(folder_ / "session1"));
+  for (int i = 0; i < kFrames; ++i) {
+    const camera::FramePtr replayed = video->next();
+    ASSERT_NE(replayed, nullptr) << i;
+    const camera::FramePtr shown = pictures.picture(replayed->index, replayed->timestamp_ns);
+    ASSERT_NE(shown, nullptr) << i;
+    EXPECT_EQ(shown->luma, replayed->luma) << i;
+  }
 }
 
 // Whether a nominal guide may guide is a part of the states, too: due, refused, trusted.

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "navigation/recording/operation_record.h"
+#include "navigation/recording/session_database.h"
 #include "tests/navigation/operation/ball_pictures.h"
 #include "tests/navigation/theatre/theatre_sources.h"
 #include "tests/temporary_folder.h"
@@ -64,6 +66,35 @@ TEST_F(RerunTest, ThatTheBoneHasMovedIsTheRecordsWordAlone) {
   EXPECT_EQ(standing_of(seen), Standing::Stands) << "and stands for nothing";
   const RecordedSession moved = recorded(kMovesAt);
   EXPECT_EQ(standing_of(run_again(moved, kNever)), Standing::Alarm);
+}
+
+// Adds what the pictures told after a frame, where it belongs among the events.
+void tell_in_record(const std::filesystem::path& session, std::int64_t after_frame, std::string_view text) {
+  operation::JournalEntry entry;
+  entry.kind = operation::JournalKind::BoneLooks;
+  entry.text = text;
+  append_entries(session, {entry});
+  SessionDatabase database = SessionDatabase::open(session / "session.sqlite");
+  Statement later = database.prepare("UPDATE events SET id = id + 1000 WHERE after_frame > ? OR text = ?");
+  later.bind(1, after_frame).bind(2, text).run();
+  Statement place = database.prepare(
+      "UPDATE events SET after_frame = ?, id = (SELECT MAX(id) + 1 FROM events WHERE id < 1000) WHERE text = "
+      "?");
+  place.bind(1, after_frame).bind(2, text).run();
+}
+
+// So it is with how the bone looks: a doubt begins and ends where the record says so, whatever the pictures
+// show.
+TEST_F(RerunTest, HowTheBoneLooksIsTheRecordsWordAlone) {
+  using operation::ControlPointDue;
+  const std::filesystem::path session = recorded(kNever).folder();
+  const auto due = [&] { return run_again(RecordedSession(session), kNever)->control_point_due; };
+  const ControlPointDue undoubted = due();
+  EXPECT_NE(undoubted, ControlPointDue::CannotCheckLooks);
+  tell_in_record(session, kMovesAt, operation::kLooksOtherwise);
+  EXPECT_EQ(due(), ControlPointDue::CannotCheckLooks);
+  tell_in_record(session, kMovesAt + 20, operation::kLooksAsItDid);
+  EXPECT_EQ(due(), undoubted);
 }
 
 }  // namespace
