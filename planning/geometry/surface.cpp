@@ -30,6 +30,12 @@ using AabbTree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 
 Point to_cgal(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 Eigen::Vector3d to_eigen(const Point& p) { return {p.x(), p.y(), p.z()}; }
+Kernel::Ray_3 ray_of(const Eigen::Vector3d& origin, const Eigen::Vector3d& unit) {
+  return {to_cgal(origin), Kernel::Vector_3(unit.x(), unit.y(), unit.z())};
+}
+bool is_before(const RayHit& a, const RayHit& b) {
+  return std::tie(a.distance_mm, a.triangle) < std::tie(b.distance_mm, b.triangle);
+}
 
 }  // namespace
 
@@ -40,6 +46,7 @@ struct Surface::Tree {
   std::optional<PseudoNormals> normals;  // of merged
   std::optional<TriangleTree> boxes;     // of merged
   std::vector<std::array<Eigen::Vector3d, 3>> smooth_normals;
+  Bounds bounds;  // of merged
   AabbTree aabb;
 
   void add_triangles(const TriangleMesh& mesh);
@@ -47,6 +54,11 @@ struct Surface::Tree {
   [[nodiscard]] const Eigen::Vector3d& normal(std::size_t triangle,
                                               TrianglePart part = TrianglePart::Face) const {
     return normals->at(static_cast<std::int32_t>(triangle), part);
+  }
+  [[nodiscard]] RayHit hit_at(const Point& where, std::size_t triangle, const Eigen::Vector3d& origin,
+                              const Eigen::Vector3d& unit) const {
+    const Eigen::Vector3d at = to_eigen(where);
+    return {{at, normal(triangle), mesh_triangle[triangle]}, std::max(0.0, (at - origin).dot(unit))};
   }
   [[nodiscard]] std::size_t index_of(AabbTree::Primitive_id id) const {
     return static_cast<std::size_t>(id - triangles.cbegin());
@@ -90,6 +102,7 @@ void Surface::Tree::add_triangles(const TriangleMesh& mesh) {
   normals.emplace(merged);
   boxes.emplace(merged);
   smooth_normals = smooth_corner_normals(merged);
+  bounds = bounds_of(merged);
 }
 
 std::pair<NearestOnTriangle, std::size_t> Surface::Tree::closest(const Eigen::Vector3d& query) const {
@@ -126,25 +139,15 @@ double Surface::signed_distance_mm(const Eigen::Vector3d& query_mm) const {
 std::vector<RayHit> Surface::all_hits(const Eigen::Vector3d& origin_mm,
                                       const Eigen::Vector3d& direction) const {
   const Eigen::Vector3d unit = direction.normalized();
-  const Kernel::Ray_3 ray(to_cgal(origin_mm), Kernel::Vector_3(unit.x(), unit.y(), unit.z()));
   std::vector<AabbTree::Intersection_and_primitive_id<Kernel::Ray_3>::Type> found;
-  tree_->aabb.all_intersections(ray, std::back_inserter(found));
+  tree_->aabb.all_intersections(ray_of(origin_mm, unit), std::back_inserter(found));
   std::vector<RayHit> hits;
   for (const auto& [where, id] : found) {
-    const std::size_t t = tree_->index_of(id);
     // A ray that runs within a triangle's plane meets it in a segment: it neither enters nor leaves there.
-    const Point* point = boost::get<Point>(&where);
-    if (!point) continue;
-    RayHit hit;
-    hit.point_mm = to_eigen(*point);
-    hit.normal = tree_->normal(t);
-    hit.triangle = tree_->mesh_triangle[t];
-    hit.distance_mm = std::max(0.0, (hit.point_mm - origin_mm).dot(unit));
-    hits.push_back(hit);
+    if (const Point* point = boost::get<Point>(&where))
+      hits.push_back(tree_->hit_at(*point, tree_->index_of(id), origin_mm, unit));
   }
-  std::sort(hits.begin(), hits.end(), [](const RayHit& a, const RayHit& b) {
-    return std::tie(a.distance_mm, a.triangle) < std::tie(b.distance_mm, b.triangle);
-  });
+  std::sort(hits.begin(), hits.end(), is_before);
   // A ray through an edge or a vertex meets all the triangles there: it enters, or leaves, once.
   const auto is_same_crossing = [&](const RayHit& a, const RayHit& b) {
     return b.distance_mm - a.distance_mm <= 1e-9 * (1 + b.distance_mm) &&
@@ -171,9 +174,31 @@ void Surface::triangles_near(const Eigen::Vector3d& from_mm, const Eigen::Vector
 
 std::optional<RayHit> Surface::first_hit(const Eigen::Vector3d& origin_mm,
                                          const Eigen::Vector3d& direction) const {
-  auto hits = all_hits(origin_mm, direction);
-  if (hits.empty()) return std::nullopt;
-  return hits.front();
+  constexpr double kFirstReach_mm = 16;
+  constexpr double kRounding_mm =
+      1e-6;  // of the boxes; what the ray meets is decided by the exact predicates
+  const Eigen::Vector3d unit = direction.normalized();
+  const Kernel::Ray_3 ray = ray_of(origin_mm, unit);
+  const double furthest_mm = (tree_->bounds.center_mm() - origin_mm).norm() + tree_->bounds.size_mm().norm();
+  // What lies behind the first hit is not asked: the ray is followed in longer and longer stretches until one
+  // holds a hit.
+  std::vector<std::int32_t> near;
+  std::optional<RayHit> first;
+  for (double reach_mm = kFirstReach_mm, before_mm = 0; before_mm < furthest_mm;
+       before_mm = reach_mm, reach_mm *= 2) {
+    near.clear();
+    tree_->boxes->near_segment(origin_mm + before_mm * unit, origin_mm + reach_mm * unit, kRounding_mm, near);
+    for (const std::int32_t t : near) {
+      const auto triangle = static_cast<std::size_t>(t);
+      const auto met = CGAL::intersection(tree_->triangles[triangle], ray);
+      const Point* point = met ? boost::get<Point>(&*met) : nullptr;
+      if (!point) continue;
+      const RayHit hit = tree_->hit_at(*point, triangle, origin_mm, unit);
+      if (!first || is_before(hit, *first)) first = hit;
+    }
+    if (first && first->distance_mm < reach_mm - kRounding_mm) return first;
+  }
+  return first;
 }
 
 }  // namespace arthronaut::geometry

@@ -34,7 +34,8 @@ class Surface {
   // Distance, negative inside. The sign is right for closed, outward oriented meshes.
   [[nodiscard]] double signed_distance_mm(const Eigen::Vector3d& query_mm) const;
   // direction need not be unit. Hits in order of distance, the origin's own triangle included when it
-  // touches. A ray through an edge or a vertex crosses the surface once there, not once a triangle.
+  // touches. A ray through an edge or a vertex crosses the surface once there, not once a triangle. The first
+  // costs less than all: what lies behind it is not looked at.
   [[nodiscard]] std::optional<RayHit> first_hit(const Eigen::Vector3d& origin_mm,
                                                 const Eigen::Vector3d& direction) const;
   [[nodiscard]] std::vector<RayHit> all_hits(const Eigen::Vector3d& origin_mm,

@@ -190,7 +190,7 @@ Proposal propose_femur(const geometry::TriangleMesh& mesh, const ProposalOptions
   const geometry::Surface surface(mesh);
   std::optional<Shape> shape;
   proposal.reason = "the surface has no joint's end that comes near to its own mirror image";
-  for (const RoughFrame& rough : rough_frames(mesh, bones::BoneKind::Femur)) {
+  for (const RoughFrame& rough : rough_frames(mesh, surface, bones::BoneKind::Femur)) {
     shape = find_shape(mesh, surface, rough, options.roof, proposal.reason);
     if (shape) break;
   }

@@ -62,7 +62,7 @@ struct Proposal {
 };
 
 // mesh: closed, outward, mm (bones::mend_mesh). Never throws for a shape that it does not know: read the
-// outcome. A femur takes a few seconds, a tibia about one.
+// outcome. A femur takes about a second, a tibia half of that.
 [[nodiscard]] Proposal propose(const geometry::TriangleMesh& mesh, bones::BoneKind bone,
                                const ProposalOptions& options = {});
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "planning/geometry/rigid_transform.h"
-#include "planning/geometry/surface.h"
 #include "planning/landmarks/shape_samples.h"
 
 namespace arthronaut::landmarks {
@@ -248,12 +247,12 @@ std::vector<JointEnd> joint_ends(const std::vector<SurfaceSample>& samples, cons
 
 }  // namespace
 
-std::vector<RoughFrame> rough_frames(const geometry::TriangleMesh& mesh, bones::BoneKind bone) {
+std::vector<RoughFrame> rough_frames(const geometry::TriangleMesh& mesh, const geometry::Surface& surface,
+                                     bones::BoneKind bone) {
   const auto samples = sample_surface(mesh, kSamples);
   if (samples.size() < kSamples / 2) return {};
   const double area_each = geometry::surface_area_mm2(mesh) / static_cast<double>(samples.size());
   const auto cut = find_cut(mesh, samples, area_each);
-  const geometry::Surface surface(mesh);
   std::vector<std::pair<double, RoughFrame>> found;
   for (const JointEnd& end : joint_ends(samples, cut)) {
     double tip = -1e9;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "planning/bones/bone.h"
+#include "planning/geometry/surface.h"
 #include "planning/geometry/triangle_mesh.h"
 
 namespace arthronaut::landmarks {
@@ -26,6 +27,8 @@ struct RoughFrame {
 // its own mirror image. Where the cut was found there is one. Empty: nothing here looks like the joint's end
 // of a bone (no area, no mirror plane). The right one lies within 25 degrees of the anatomical axes for bones
 // of which 55 mm or more are there.
-[[nodiscard]] std::vector<RoughFrame> rough_frames(const geometry::TriangleMesh& mesh, bones::BoneKind bone);
+// `surface` is the mesh's.
+[[nodiscard]] std::vector<RoughFrame> rough_frames(const geometry::TriangleMesh& mesh,
+                                                   const geometry::Surface& surface, bones::BoneKind bone);
 
 }  // namespace arthronaut::landmarks

@@ -138,6 +138,34 @@ TEST(Surface, RayHitsAreInOrder) {
   EXPECT_FALSE(surface.first_hit({-100, 33, 4}, {1, 0, 0}));
 }
 
+// The first of all hits, whatever lies behind it: from inside and outside, from far away, through vertices
+// and edges, where triangles that touch there are told apart by their order alone.
+TEST(Surface, FirstHitIsTheFirstOfAllHits) {
+  const TriangleMesh mesh = ellipsoid({40, 25, 30}, 3);
+  const Surface surface(mesh);
+  std::mt19937 random(7);
+  int met = 0;
+  const auto expect_same = [&](const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+    const auto all = surface.all_hits(origin, direction);
+    const auto first = surface.first_hit(origin, direction);
+    ASSERT_EQ(first.has_value(), !all.empty());
+    if (!first) return;
+    ++met;
+    EXPECT_EQ(first->triangle, all.front().triangle);
+    EXPECT_EQ(first->point_mm, all.front().point_mm);
+    EXPECT_EQ(first->distance_mm, all.front().distance_mm);
+  };
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Vector3d origin = random_point(random, i % 3 == 0 ? 2000 : 60),
+                          vertex = mesh.vertices_mm[static_cast<std::size_t>(i)];
+    expect_same(origin, -origin + random_point(random, 20));
+    expect_same(origin, vertex - origin);
+    expect_same(vertex, origin - vertex);
+    expect_same(origin, origin);
+  }
+  EXPECT_GT(met, 600);
+}
+
 // The origin on the surface counts as hit at distance 0: a tunnel starts where the surgeon picked.
 TEST(Surface, OriginOnTheSurfaceIsAHit) {
   const Surface surface(box({30, 20, 10}));
