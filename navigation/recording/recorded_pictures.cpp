@@ -46,6 +46,17 @@ sources::OnTheWay renamed(const sources::OnTheWay& on_the_way, const Rename& ren
 }  // namespace
 
 struct RecordedPictures::State {
+  // False: a crash has left the part behind before it held anything.
+  bool open_if_begun(std::size_t wanted) {
+    try {
+      open(wanted);
+    } catch (const InvalidInput&) {
+      if (was_finished) throw;
+      return false;
+    }
+    return true;
+  }
+
   // The part in hand, by the one or the other.
   void open(std::size_t wanted) {
     if (part == wanted && (video != nullptr || stream != nullptr)) return;
@@ -76,7 +87,7 @@ struct RecordedPictures::State {
   }
 
   camera::FramePtr picture_of(std::size_t number, const sources::OnTheWay& on_the_way) {
-    open(part_of(parts, static_cast<std::int64_t>(number)));
+    if (!open_if_begun(part_of(parts, static_cast<std::int64_t>(number)))) return nullptr;
     const std::int64_t packet = pictures[number].packet;
     if (stream != nullptr) {
       if (before != nullptr && !stream->remembers(packet) && before->remembers(packet))
@@ -93,6 +104,7 @@ struct RecordedPictures::State {
   std::filesystem::path folder;
   std::vector<VideoPart> parts;       // empty: the source's own video
   std::vector<KeptPicture> pictures;  // by rising frames
+  bool was_finished = true;
   std::size_t part = 0;
   std::unique_ptr<sources::SeekableVideo> video;
   std::unique_ptr<sources::KeptStream> stream;
@@ -105,6 +117,7 @@ RecordedPictures::RecordedPictures(const SessionOverview& session) : state_(std:
   s.folder = session.folder;
   s.parts = parts_of(session.header);
   s.pictures = session.pictures;
+  s.was_finished = session.was_finished;
   if (s.parts.empty())
     s.video = open_own(session);
   else

@@ -83,8 +83,7 @@ class RecordedVideo final : public sources::FrameSource {
     while (given_ < info_.frame_count) {
       const camera::FramePtr picture = next_picture();
       if (picture == nullptr) {
-        if (part_ + 1 == parts_.size()) return nullptr;
-        open(part_ + 1);
+        if (!open_next()) return nullptr;
         continue;
       }
       const auto index = frame_of_packet_.find(picture->packet);
@@ -108,6 +107,18 @@ class RecordedVideo final : public sources::FrameSource {
       const KeptPicture& picture = pictures_[static_cast<std::size_t>(i)];
       frame_of_packet_[picture.packet] = picture.frame;
     }
+  }
+
+  // A crash may have left a part behind that was announced and holds nothing yet.
+  bool open_next() {
+    if (part_ + 1 == parts_.size()) return false;
+    try {
+      open(part_ + 1);
+    } catch (const InvalidInput&) {
+      if (!may_break_off_) throw;
+      return false;
+    }
+    return true;
   }
 
   // A crash may cut our own video off in the middle of a picture: what is before it is what there is.

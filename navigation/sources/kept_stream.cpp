@@ -94,6 +94,7 @@ struct KeptStream::State {
     }
     if (awaited != nullptr && std::exchange(awaited, nullptr)->time_ms != file_ms(*packet)) {
       is_drained = true;  // the file's index led somewhere else
+      av_packet_unref(packet.get());
       return;
     }
     decoder->reordered_opaque = next_packet++;

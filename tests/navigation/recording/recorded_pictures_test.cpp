@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sqlite3.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -288,6 +289,38 @@ TEST(RecordedPictures, GivesWhatIsWholeOfACutVideo) {
   }
   EXPECT_GT(whole, kFrames / 4);
   EXPECT_LT(whole, kFrames * 3 / 4);
+}
+
+// A part is announced before it holds anything: what a crash leaves of it then is no video. What was kept
+// before it is there all the same, to look at and to replay.
+TEST(RecordedPictures, GivesWhatIsBeforeAPartThatACrashLeftEmpty) {
+  const test::TemporaryFolder folder;
+  const fs::path left = folder / "left";
+  fs::create_directory(folder / "made");
+  {
+    SessionRecorder recorder(folder / "made", test::session_header(), test::scripted_options());
+    for (int i = 0; i < 2 * kFrames; ++i) {
+      if (i == kFrames) recorder.interrupt_pictures();
+      recorder.append_picture(frame_of(i % kFrames));
+      recorder.append(test::frame_result(i));
+    }
+    recorder.finish();
+  }
+  fs::copy(folder / "made", left, fs::copy_options::recursive);
+  fs::resize_file(left / "video_2.mkv", 64);
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open((left / "session.sqlite").c_str(), &database), SQLITE_OK);
+  sqlite3_exec(database, "DELETE FROM ending", nullptr, nullptr, nullptr);  // nobody ended it
+  sqlite3_close(database);
+  const SessionOverview session = read_overview(left);
+  ASSERT_FALSE(session.was_finished);
+  RecordedPictures pictures(session);
+  EXPECT_EQ(pictures.picture(kFrames + 3, test::frame_result(kFrames + 3).timestamp_ns), nullptr);
+  EXPECT_NE(pictures.picture(3, test::frame_result(3).timestamp_ns), nullptr);
+  const auto video = open_recorded_video(RecordedSession(left));
+  int replayed = 0;
+  while (video->next() != nullptr) ++replayed;
+  EXPECT_EQ(replayed, kFrames);
 }
 
 // No video, and one that is gone, are told as such.
