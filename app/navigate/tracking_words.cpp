@@ -46,8 +46,9 @@ std::vector<SeverityText> contour_rows(const operation::OperationState& state) {
 std::vector<SeverityText> source_rows(const theatre::LiveState& live) {
   std::vector<SeverityText> rows;
   if (live.trouble != theatre::SourceTrouble::None) {
-    const bool still_guides =
-        live.trouble == theatre::SourceTrouble::Torn || live.trouble == theatre::SourceTrouble::Repeated;
+    const bool still_guides = live.trouble == theatre::SourceTrouble::Torn ||
+                              live.trouble == theatre::SourceTrouble::Repeated ||
+                              live.trouble == theatre::SourceTrouble::Lost;
     rows.push_back({still_guides ? Severity::Caution : Severity::Bad, "Source", live.trouble_words});
   }
   using theatre::Stage;

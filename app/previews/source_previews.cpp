@@ -45,7 +45,9 @@ std::string words_of(const Preview& preview) {
   if (!preview.trouble.empty()) return preview.trouble;
   if (preview.picture == nullptr) return kBeingOpened;
   const std::string size = std::to_string(preview.size_px.x()) + " x " + std::to_string(preview.size_px.y());
-  return preview.frames_per_second > 0 ? size + files::format(", %.1f/s", preview.frames_per_second) : size;
+  const std::string known =
+      preview.frames_per_second > 0 ? size + files::format(", %.1f/s", preview.frames_per_second) : size;
+  return preview.remark.empty() ? known : known + "; " + preview.remark;
 }
 
 class SourcePreview::Reader {
@@ -64,7 +66,10 @@ class SourcePreview::Reader {
   [[nodiscard]] Preview latest() const {
     const auto known = worker_.latest();
     Preview preview = known != nullptr ? known->preview : Preview();
-    if (known != nullptr && known->line != nullptr) preview.trouble = known->line->trouble();
+    if (known != nullptr && known->line != nullptr) {
+      preview.trouble = known->line->trouble();
+      preview.remark = known->line->remark();
+    }
     if (worker_.has_ended() && !worker_.failure().empty()) preview.trouble = worker_.failure();
     return preview;
   }

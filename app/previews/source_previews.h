@@ -28,8 +28,9 @@ struct Preview {
   Eigen::Vector2i size_px{0, 0};
   double frames_per_second = 0;  // measured where it is live, else what the file says; 0: not known yet
   std::string trouble = {};      // why no picture comes
+  std::string remark = {};       // what is wrong with those that come
 };
-// "1920 x 1080, 59.9/s", the trouble, or that it is being opened.
+// "1920 x 1080, 59.9/s" and the remark, the trouble, or that it is being opened.
 [[nodiscard]] std::string words_of(const Preview& preview);
 
 // One source, read on a thread of its own. The destructor waits for the picture that is being made.

@@ -186,4 +186,8 @@ std::string PrefetchedSource::trouble() const {
   return state_->info.line != nullptr ? state_->info.line->trouble() : "";
 }
 
+std::string PrefetchedSource::remark() const {
+  return state_->info.line != nullptr ? state_->info.line->remark() : "";
+}
+
 }  // namespace arthronaut::pipeline

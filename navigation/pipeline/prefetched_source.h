@@ -49,6 +49,8 @@ class PrefetchedSource : public sources::FrameSource {
   [[nodiscard]] NextFrame next_within(double seconds);
   // Why a live source gives nothing now; empty: it does, or does not know.
   [[nodiscard]] std::string trouble() const;
+  // What is wrong with the pictures that it gives; empty: nothing that it knows of.
+  [[nodiscard]] std::string remark() const;
 
  private:
   struct State;

@@ -43,7 +43,8 @@ class RecoveringSource final : public FrameSource {
         continue;
       }
       if (frame->width == info_.image_size_px.x() && frame->height == info_.image_size_px.y()) {
-        remark_.empty() ? line_->pictures_come() : tell(remark_);
+        line_->pictures_come();
+        tell_of_pictures();
         return frame;
       }
       tell(info_.name + ": gives pictures of " + size_text(frame->width, frame->height) +
@@ -96,6 +97,13 @@ class RecoveringSource final : public FrameSource {
     return false;
   }
 
+  void tell_of_pictures() {
+    if (remark_ == told_of_pictures_) return;
+    if (told_of_pictures_.empty()) log::warning("source: " + remark_);  // and not with every count of it
+    told_of_pictures_ = remark_;
+    line_->say_of_pictures(remark_);
+  }
+
   void tell(const std::string& trouble) {
     if (trouble != line_->trouble()) log::warning("source: " + trouble);
     line_->say(trouble);
@@ -107,6 +115,7 @@ class RecoveringSource final : public FrameSource {
   SourceInfo info_;
   std::string identity_;                 // as it said first
   std::string remark_;                   // on what source_ gives
+  std::string told_of_pictures_;         // of it, while pictures come
   std::unique_ptr<FrameSource> source_;  // null: broken
   bool has_ended_ = false, is_another_ = false;
 };

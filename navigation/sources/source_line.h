@@ -24,6 +24,12 @@ class SourceLine {
   void pictures_come() {
     if (has_trouble_) say("");
   }
+  // The source: what is wrong with the pictures that come; empty: nothing.
+  void say_of_pictures(std::string remark) {
+    const std::lock_guard lock(mutex_);
+    remark_ = std::move(remark);
+    has_remark_ = !remark_.empty();
+  }
   // The source: waits, but not when it is to end.
   void rest(std::chrono::milliseconds time) {
     std::unique_lock lock(mutex_);
@@ -36,6 +42,12 @@ class SourceLine {
     const std::lock_guard lock(mutex_);
     return trouble_;
   }
+  // Without a lock while there is none: asked for with every picture.
+  [[nodiscard]] std::string remark() const {
+    if (!has_remark_) return {};
+    const std::lock_guard lock(mutex_);
+    return remark_;
+  }
   void end() {
     const std::lock_guard lock(mutex_);
     ends_ = true;
@@ -45,8 +57,8 @@ class SourceLine {
  private:
   mutable std::mutex mutex_;
   std::condition_variable ending_;
-  std::string trouble_;
-  std::atomic<bool> has_trouble_ = false, ends_ = false;
+  std::string trouble_, remark_;
+  std::atomic<bool> has_trouble_ = false, has_remark_ = false, ends_ = false;
 };
 
 }  // namespace arthronaut::sources

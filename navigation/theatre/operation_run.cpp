@@ -130,7 +130,8 @@ OperationRun::Step OperationRun::step() {
       record.add_latency(
           {l.capture_ms, l.decode_ms, l.queue_ms, l.tracking_ms, l.operation_ms, l.guidance_ms});
     });
-    if (live_.watch.picture(frame_state_->frame, live_.newest.guidance_ms, taken_ns)) note_trouble();
+    if (live_.watch.picture(frame_state_->frame, live_.newest.guidance_ms, taken_ns, source_->remark()))
+      note_trouble();
   }
   if (auto look = operation_.take_look_request()) looks_->post(std::move(*look), next.frame);
   pass_on();

@@ -22,7 +22,8 @@ std::string_view to_text(SourceTrouble trouble) {
                                          "frozen picture",
                                          "torn picture",
                                          "repeated pictures",
-                                         "late pictures"};
+                                         "late pictures",
+                                         "lost pictures"};
   return kNames[static_cast<std::size_t>(trouble)];
 }
 
@@ -42,7 +43,8 @@ bool SourceWatch::silence(const std::string& why, std::int64_t now_ns) {
   return set(SourceTrouble::NoPicture, why.empty() ? "No picture comes" : "No picture comes: " + why);
 }
 
-bool SourceWatch::picture(const pipeline::PictureObservation& view, double guidance_ms, std::int64_t now_ns) {
+bool SourceWatch::picture(const pipeline::PictureObservation& view, double guidance_ms, std::int64_t now_ns,
+                          const std::string& remark) {
   has_begun_ = true;
   last_picture_ns_ = now_ns;
   if (view.is_torn) {
@@ -76,6 +78,8 @@ bool SourceWatch::picture(const pipeline::PictureObservation& view, double guida
     return set(SourceTrouble::Repeated,
                files::format("The source repeats %.0f pictures in 100", 100 * view.repeat_share));
   }
+  // Its words count on; they change with the first ones only.
+  if (!remark.empty()) return trouble_ != SourceTrouble::Lost && set(SourceTrouble::Lost, remark);
   return set(SourceTrouble::None, "");
 }
 

@@ -1,7 +1,7 @@
 // What is wrong with a live source, in words, while it is wrong: no picture comes, the picture is plain,
-// frozen, torn, repeated, or late. Says it within half a second and takes it back when it is over. Guidance
-// does not wait for it: what a picture does not stand for is gone in that picture, and an old picture guides
-// nobody.
+// frozen, torn, repeated, or late, or others are lost. Says it within half a second and takes it back when it
+// is over. Guidance does not wait for it: what a picture does not stand for is gone in that picture, and an
+// old picture guides nobody.
 //
 // Pure: told of pictures and of their absence, with the time; one thread at a time.
 #pragma once
@@ -13,7 +13,7 @@
 
 namespace arthronaut::theatre {
 
-enum class SourceTrouble { None, NoPicture, Plain, Frozen, Torn, Repeated, Late };
+enum class SourceTrouble { None, NoPicture, Plain, Frozen, Torn, Repeated, Late, Lost };
 // "no picture", "plain picture", ...; empty for None.
 [[nodiscard]] std::string_view to_text(SourceTrouble trouble);
 
@@ -23,8 +23,9 @@ class SourceWatch {
   explicit SourceWatch(double late_after_ms) : late_after_ms_(late_after_ms) {}
 
   // A picture that was worked in; guidance_ms: from its capture until guidance was known, below 0 when nobody
-  // knows. True: what is wrong has changed.
-  bool picture(const pipeline::PictureObservation& view, double guidance_ms, std::int64_t now_ns);
+  // knows; remark: what the source says of its pictures. True: what is wrong has changed.
+  bool picture(const pipeline::PictureObservation& view, double guidance_ms, std::int64_t now_ns,
+               const std::string& remark = "");
   // None came since the last call; why, as the source says it.
   bool silence(const std::string& why, std::int64_t now_ns);
 

@@ -76,7 +76,8 @@ long told_after_ms(FrameSource& source, const std::string& words) {
   });
   long taken_ms = -1;
   for (int i = 0; i < 2000 && taken_ms < 0; ++i) {
-    if (source.info().line->trouble().find(words) != std::string::npos)
+    const SourceLine& line = *source.info().line;
+    if ((line.trouble() + line.remark()).find(words) != std::string::npos)
       taken_ms = std::chrono::duration_cast<milliseconds>(std::chrono::steady_clock::now() - begun).count();
     else
       std::this_thread::sleep_for(milliseconds(5));
@@ -357,6 +358,7 @@ TEST(CameraDevice, TellsThatPicturesAreLost) {
   camera::FramePtr frame = source->next();
   while (frame->index < first + 30) frame = source->next();
   EXPECT_GE(told_after_ms(*source, "pictures were lost: check its cable"), 0);
+  EXPECT_EQ(source->info().line->trouble(), "") << "pictures come";
 }
 
 // A second reader is refused, and the first goes on: what shows a camera never takes it from the operation.

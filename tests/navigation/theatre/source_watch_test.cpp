@@ -40,6 +40,19 @@ TEST_F(SourceWatchTest, SilenceIsToldWithinHalfASecond) {
   EXPECT_EQ(watch_.words(), "");
 }
 
+// Pictures come, and others were lost: that is no silence, whatever the rate.
+TEST_F(SourceWatchTest, LostPicturesAreToldWhileOthersCome) {
+  const std::string lost = "camera 0: 31 of the last 120 pictures were lost";
+  EXPECT_TRUE(watch_.picture(well_, 5, now_ns_ += 100 * kMs, lost));
+  EXPECT_EQ(watch_.trouble(), SourceTrouble::Lost);
+  EXPECT_EQ(watch_.words(), lost);
+  silence(200);
+  EXPECT_FALSE(watch_.picture(well_, 5, now_ns_, "camera 0: 32 of the last 120 pictures were lost"))
+      << "its count is no news";
+  EXPECT_TRUE(watch_.picture(well_, 5, now_ns_ += 100 * kMs));
+  EXPECT_EQ(watch_.trouble(), SourceTrouble::None);
+}
+
 // A source that knows why is believed at once.
 TEST_F(SourceWatchTest, AReasonIsNotWaitedFor) {
   pictures(well_, 100);
