@@ -5,6 +5,7 @@
 #include "app/case/case_calibration.h"
 #include "navigation/simulator/simulated_operation.h"
 #include "navigation/simulator/simulated_ruler.h"
+#include "navigation/sources/camera_modes.h"
 #include "navigation/sources/connected_cameras.h"
 #include "navigation/sources/frame_source.h"
 #include "navigation/sources/source_files.h"
@@ -92,6 +93,16 @@ FeedSource stream(const std::string& address) {
   return source;
 }
 
+// Of one camera, the way in which it is to be opened said with it; looked at, it is opened the same way.
+FeedSource addressed_camera(const std::string& address, const sources::DeviceTurns& turns) {
+  FeedSource source;
+  source.name = source.path = address;
+  source.open = [turns, address] { return turns.open(sources::read_camera_address(address)); };
+  source.look = [turns, address] { return turns.open_if_free(sources::read_camera_address(address)); };
+  source.is_live = true;
+  return source;
+}
+
 FeedSource video(const fs::path& file, Purpose purpose) {
   FeedSource source;
   source.name = file.filename().string();
@@ -125,8 +136,12 @@ std::vector<FeedSource> sources_for(Purpose purpose, const fs::path& case_folder
       source.is_live = true;
       offered.push_back(std::move(source));
     }
-    for (const fs::path& path : named)
-      if (sources::is_stream_address(path.string())) offered.push_back(stream(path.string()));
+    for (const fs::path& path : named) {
+      if (sources::is_camera_address(path.string()))
+        offered.push_back(addressed_camera(path.string(), turns));
+      else if (sources::is_stream_address(path.string()))
+        offered.push_back(stream(path.string()));
+    }
   };
   const auto offer_stills = [&](const fs::path& folder) {
     if (purpose == Purpose::Camera && !sources::pictures_in(folder).empty())

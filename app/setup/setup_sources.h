@@ -20,8 +20,9 @@ inline constexpr const char* kSimulatorWord = "simulator";
 // offered only to who asks for it by its word, last; there the cameras come first. May be empty. Looks into
 // the file system, opens nothing. Folders of stills (the case's own and those right inside it) are offered
 // for the camera alone. `named` are what the user typed, and the streams that this room has used: a folder
-// of pictures, a video, or the address of a stream ("rtsp://...", "udp://...", "gst:..."); others are left
-// out. A stream stands where the cameras do. Cameras are opened in their turn.
+// of pictures, a video, or the address of a camera ("/dev/video0?rate=60") or of a stream ("rtsp://...",
+// "udp://...", "gst:..."); others are left out. An address stands where the cameras do. Cameras are opened in
+// their turn.
 [[nodiscard]] std::vector<FeedSource> sources_for(Purpose purpose, const std::filesystem::path& case_folder,
                                                   const sources::DeviceTurns& turns,
                                                   const std::vector<std::filesystem::path>& named = {});

@@ -9,6 +9,8 @@
 #include "app/setup/calibrate_station.h"
 #include "app/setup/fluid_station.h"
 #include "app/setup/tool_station.h"
+#include "navigation/sources/camera_modes.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::setup {
 
@@ -124,8 +126,15 @@ void SetupView::take_typed_path() {
   std::filesystem::path path = typed_.text;
   const bool is_stream = sources::is_stream_address(typed_.text);
   if (!is_stream && !path.has_filename()) path = path.parent_path();  // "pictures/"
-  typed_.paths.push_back(path);
   step().station->stop();
+  if (sources::is_camera_address(typed_.text)) {
+    try {
+      (void)sources::read_camera_address(typed_.text);
+    } catch (const InvalidInput& refused) {  // what was typed is answered where sources are chosen
+      return step().source.refuse(refused.what());
+    }
+  }
+  typed_.paths.push_back(path);
   find_sources();
   if (!step().source.choose_path(path)) typed_.paths.pop_back();
 }
@@ -166,8 +175,8 @@ void SetupView::add_actions(widgets::Actions& actions) {
                [this] { shows_gallery_ ? close_gallery() : show_gallery(); },
                {"end the source and choose another", has_run}});
   add("setup.path", "Type a source",
-      "The path of a video or of a folder of pictures, the address of a stream, or: simulator", GLFW_KEY_P,
-      [this] { typed_.is_open = typed_.wants_focus = true; });
+      "The path of a video or of a folder of pictures, the address of a camera or of a stream, or: simulator",
+      GLFW_KEY_P, [this] { typed_.is_open = typed_.wants_focus = true; });
   add("setup.again", "Start again", "From the first picture; what was adopted stays", GLFW_KEY_R,
       [this] { start(); }, {"start again", has_run});
   actions.add({"setup.stop",
@@ -241,8 +250,8 @@ void SetupView::draw_path_field(const widgets::Ui& ui, const widgets::Rect& area
   ImGui::SetNextItemWidth(area.width);
   if (typed_.wants_focus) ImGui::SetKeyboardFocusHere();
   const bool is_entered = ImGui::InputTextWithHint(
-      "##path", "path of a video or of a folder, or rtsp://HOST/PATH, udp://@:PORT; then Enter", &typed_.text,
-      ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+      "##path", "path of a video or of a folder, /dev/video0, rtsp://HOST/PATH, udp://@:PORT; then Enter",
+      &typed_.text, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   ui.log.note("setup.path_field", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   if (is_entered) return take_typed_path();
   if (!typed_.wants_focus && ImGui::IsItemDeactivated()) typed_.is_open = false;

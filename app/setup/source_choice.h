@@ -21,6 +21,8 @@ class SourceChoice {
   bool choose_path(const std::filesystem::path& path);
 
   void choose(std::size_t index);  // of offered()
+  // Nothing is chosen, and why.
+  void refuse(const std::string& problem);
 
   [[nodiscard]] const std::vector<FeedSource>& offered() const { return sources_; }
   [[nodiscard]] const FeedSource* chosen() const;  // null: nothing
@@ -30,8 +32,6 @@ class SourceChoice {
   [[nodiscard]] std::string text() const;
 
  private:
-  void refuse(const std::string& problem);
-
   std::vector<FeedSource> sources_;
   std::optional<std::size_t> chosen_;
   bool was_offered_ = false;

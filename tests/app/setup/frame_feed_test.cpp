@@ -151,6 +151,19 @@ TEST_F(Sources, AreStreamsToo) {
   }
 }
 
+// So is a camera that was typed with the way in which it is to be opened; what is no address is left out.
+TEST_F(Sources, AreCamerasByTheirAddressToo) {
+  for (const Purpose purpose : {Purpose::Camera, Purpose::Tools, Purpose::Fluid}) {
+    const std::string address = "/dev/video7?size=1920x1080&rate=60";
+    const auto offered = sources_for(purpose, folder_, kTurns, {address, "/dev/video7x"});
+    const auto index = index_of(offered, address);
+    ASSERT_TRUE(index);
+    EXPECT_EQ(offered[*index].name, address);
+    EXPECT_TRUE(offered[*index].is_live && offered[*index].look);
+    EXPECT_FALSE(index_of(offered, "/dev/video7x"));
+  }
+}
+
 // With a real scope's camera.json no step offers the simulator, but to who asks for it by its word.
 TEST_F(Sources, Hazard26ARealCaseNeverOffersTheSimulatorUnasked) {
   camera::CalibrationRecord record;
