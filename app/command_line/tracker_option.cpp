@@ -16,8 +16,7 @@ void add_tracker_option(CLI::App& subcommand, std::string& address) {
 void use_tracker(const std::string& given, const std::filesystem::path& tools_file, const std::string& video,
                  tools::ToolSet& tools) {
   if (given.empty() && !tools.tracker) return;
-  if (!tools.tracker) tools.tracker.emplace();
-  if (!given.empty()) tools.tracker->address = given;
+  openigtlink::see_by(tools, given);
   if (tools.tracker->address.empty())
     throw InvalidInput(tools_file, "tracker",
                        "the tools are seen by an outside tracker: give --tracker igtl://HOST:PORT");

@@ -4,10 +4,17 @@
 
 #include <algorithm>
 
+#include "navigation/openigtlink/igtl_tracker.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::navigate {
+
+namespace {
+
+constexpr std::string_view kTracker = "igtl://";
+
+}  // namespace
 
 sources::CameraAddress camera_address_of(const LivePictures& pictures, const Eigen::Vector2i& prefers_px) {
   sources::CameraAddress address{pictures.device.value()};
@@ -42,6 +49,11 @@ void CameraChoice::close() {
   trouble_.clear();
 }
 
+void CameraChoice::choose_field() {
+  chosen_ = offered_.size();
+  wants_focus_ = true;
+}
+
 void CameraChoice::choose_next() {
   chosen_ = (chosen_ + 1) % (offered_.size() + 1);
   wants_focus_ = chosen_ == offered_.size();
@@ -54,17 +66,24 @@ std::optional<LivePictures> CameraChoice::chosen() const {
 std::optional<LivePictures> CameraChoice::take_address(std::string typed) {
   const std::size_t first = typed.find_first_not_of(" \t"), last = typed.find_last_not_of(" \t");
   typed = first == std::string::npos ? "" : typed.substr(first, last - first + 1);
-  if (sources::is_stream_address(typed))
-    return LivePictures{sources::shown_address(typed), std::nullopt, typed};
-  if (sources::is_camera_address(typed)) {
-    try {
-      return LivePictures{typed, sources::read_camera_address(typed).index, typed};
-    } catch (const InvalidInput& refused) {  // what was typed is answered where it was typed
-      trouble_ = refused.what();
+  trouble_.clear();
+  try {  // what was typed is answered where it was typed
+    if (typed.starts_with(kTracker)) {
+      if (typed != kTracker) (void)openigtlink::tracker_address(typed);
+      tracker_ = typed != kTracker ? typed : "";
       return std::nullopt;
     }
+    if (sources::is_camera_address(typed))
+      return LivePictures{typed, sources::read_camera_address(typed).index, typed};
+  } catch (const InvalidInput& refused) {
+    trouble_ = refused.what();
+    return std::nullopt;
   }
-  trouble_ = "No stream: rtsp://HOST/PATH, udp://@:PORT, gst:PIPELINE ! appsink, /dev/video0?rate=60";
+  if (sources::is_stream_address(typed))
+    return LivePictures{sources::shown_address(typed), std::nullopt, typed};
+  trouble_ =
+      "No address: rtsp://HOST/PATH, udp://@:PORT, gst:PIPELINE ! appsink, /dev/video0?rate=60, "
+      "igtl://TRACKER:PORT";
   return std::nullopt;
 }
 
@@ -94,7 +113,9 @@ std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widg
   ImGui::GetWindowDrawList()->AddRectFilled(box.min(), box.max(), IM_COL32(10, 12, 15, 255));
   widgets::text_centered(ui, box.cut_top(row), ui.theme.title, widgets::kText, "Which camera?");
   if (auto clicked = draw_rows(ui, box, picture)) return clicked;
-  const std::string hint = !trouble_.empty()  ? trouble_
+  const std::string hint = !trouble_.empty() ? trouble_
+                           : !tracker_.empty()
+                               ? "Tools seen by " + tracker_ + ": now the pictures (igtl:// alone: not)"
                            : offered_.empty() ? "No camera is connected. The address of a stream, then Enter"
                                               : "Or the address of a stream, then Enter";
   widgets::text_centered(ui, box.cut_top(row), ui.theme.strong,
@@ -114,6 +135,7 @@ std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widg
                          "K: the next one    Space, or a click: open it    Esc: none");
   if (is_entered) {
     if (auto taken = take_address(text_)) return taken;
+    if (trouble_.empty()) text_.clear();  // a tracker's: the pictures are still to be chosen
     wants_focus_ = true;
   } else if (was_left) {
     close();

@@ -1,5 +1,6 @@
 // Which live pictures: the cameras that are connected, the streams that were used before, and a field in
-// which the address of another one is typed; beside each what it shows now. Worked by a pedal, one key for
+// which the address of another one is typed, or of an outside tracker that sees bones and tools in the place
+// of the pictures; beside each what it shows now. Worked by a pedal, one key for
 // the next, one to open, or by a click on what is to be opened.
 #pragma once
 
@@ -36,6 +37,8 @@ class CameraChoice {
   // waits for an address. Without `look` nothing is previewed.
   void open(const std::vector<sources::ConnectedCamera>& cameras, const std::vector<std::string>& streams,
             const std::optional<LivePictures>& before = std::nullopt, const Look& look = {});
+  // The same with the field chosen, whatever is on offer.
+  void choose_field();
   // What was looked at is let go.
   void close();
   [[nodiscard]] bool is_open() const { return is_open_; }
@@ -45,9 +48,15 @@ class CameraChoice {
   [[nodiscard]] std::optional<LivePictures> chosen() const;
   [[nodiscard]] std::size_t count() const { return offered_.size(); }
 
-  // Takes an address as it was typed: what it opens, or empty, and then the screen says what an address looks
-  // like.
+  // Takes an address as it was typed: what it opens. Empty: a tracker's, which opens nothing, or none, and
+  // then trouble() says what an address looks like.
   [[nodiscard]] std::optional<LivePictures> take_address(std::string typed);
+  // Of what was typed last; empty: nothing is wrong.
+  [[nodiscard]] const std::string& trouble() const { return trouble_; }
+  // Of the outside tracker that was typed, "igtl://HOST:PORT", for whatever live source is begun from now on.
+  // Empty: none was, or "igtl://" alone, and the tools say who sees them.
+  [[nodiscard]] const std::string& tracker() const { return tracker_; }
+  void forget_tracker() { tracker_.clear(); }
   // While it is open; what was clicked on, or typed and entered with Enter, in that frame. Esc closes it.
   [[nodiscard]] std::optional<LivePictures> draw(const widgets::Ui& ui, const widgets::Rect& video);
   // The field takes the keys.
@@ -61,7 +70,7 @@ class CameraChoice {
   std::vector<LivePictures> offered_;
   std::size_t chosen_ = 0;  // offered_.size(): the field
   bool is_open_ = false, wants_focus_ = false, is_typing_ = false;
-  std::string text_, trouble_;
+  std::string text_, trouble_, tracker_;
   previews::SourcePreviews previews_;
 };
 

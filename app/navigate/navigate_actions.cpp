@@ -76,6 +76,16 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                [this] { return cameras_.is_open(); },
                [this] { choose_camera(); },
                {"choose a camera instead", [this] { return is_running() && !cameras_.is_open(); }}});
+  actions.add({"navigate.address",
+               "Type an address",
+               "Of a stream, of a camera, or of an outside tracker that sees the tools (igtl://HOST:PORT)",
+               GLFW_KEY_K,
+               GLFW_MOD_SHIFT,
+               false,
+               [this] { return model_ != nullptr && model_->has_bone(choices_.bone); },
+               {},
+               [this] { type_address(); },
+               {"choose a camera instead", [this] { return is_running() && !cameras_.is_open(); }}});
   actions.add({"navigate.digitise", "Probe draws",
                "While on, where the probe's tip goes is kept for the registration", GLFW_KEY_D, 0, false,
                running, [this] { return is_running() && live_->operation->draws; },

@@ -111,9 +111,11 @@ theatre::TheatreSource video_setup(const open_case::PlanModel& model, bones::Bon
 
 theatre::TheatreSource camera_setup(const open_case::PlanModel& model, bones::BoneKind bone,
                                     const std::filesystem::path& case_folder, const LivePictures& pictures,
-                                    const sources::DeviceTurns& turns, double refractive_index) {
+                                    const sources::DeviceTurns& turns, double refractive_index,
+                                    const std::string& tracker_address) {
   theatre::TheatreSource source =
       real_setup(model, bone, case_folder, refractive_index, sources::SourceKind::Live);
+  openigtlink::see_by(source.setup.pipeline.tools, tracker_address);
   for (const std::string& why_not :
        {open_case::camera_is_not_for_live(case_folder), open_case::tools_are_not_for_live(case_folder)})
     if (!why_not.empty()) throw InvalidInput(why_not);

@@ -31,11 +31,14 @@ enum class SimulatedPart { Scratch, Drill };
                                                  const std::filesystem::path& video, double refractive_index);
 
 // The same with live pictures: a camera that is connected, or a stream. Opened on the worker, a camera in its
-// turn. Throws InvalidInput, too, when camera.json or tools.json may not be used live.
+// turn. `tracker_address`: of the outside tracker that sees bones and tools, before the one that tools.json
+// names; its error is that of tools.json, and without one it guides nothing. Throws InvalidInput, too, when
+// camera.json or tools.json may not be used live.
 [[nodiscard]] theatre::TheatreSource camera_setup(const open_case::PlanModel& model, bones::BoneKind bone,
                                                   const std::filesystem::path& case_folder,
                                                   const LivePictures& pictures,
-                                                  const sources::DeviceTurns& turns, double refractive_index);
+                                                  const sources::DeviceTurns& turns, double refractive_index,
+                                                  const std::string& tracker_address = "");
 
 // Whether the case is of a real arthroscope: it has a calibration that is not the simulated one's.
 [[nodiscard]] bool has_real_scope(const std::filesystem::path& case_folder);

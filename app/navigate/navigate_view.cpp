@@ -63,6 +63,7 @@ void NavigateView::case_opened(const mode::OpenCase& opened) {
   case_folder_ = opened.folder;
   depth_ = {};
   cameras_.close();
+  cameras_.forget_tracker();
   resume_.open(*opened.model, opened.folder, !opened.read_only.empty());
   patient_.clear();
   try {  // who it is is never guessed: what cannot be read is said
@@ -193,7 +194,7 @@ void NavigateView::start_live(const LivePictures& pictures) {
   if (refuses_while_lent()) return;
   try {
     start(camera_setup(*model_, choices_.bone, case_folder_, pictures, turns_,
-                       choices_.saline ? camera::kSalineIndex : camera::kAirIndex));
+                       choices_.saline ? camera::kSalineIndex : camera::kAirIndex, cameras_.tracker()));
     used_before_ = pictures;
     stream_is_new_ = !pictures.device;
   } catch (const std::runtime_error& error) {
@@ -205,11 +206,21 @@ void NavigateView::start_live(const LivePictures& pictures) {
 void NavigateView::choose_camera() {
   if (refuses_while_lent()) return;
   if (cameras_.is_open()) return cameras_.choose_next();
+  offer_cameras();
+  if (const auto only = cameras_.chosen(); only && only->device && cameras_.count() == 1) start_live(*only);
+}
+
+void NavigateView::offer_cameras() {
   cameras_.open(sources::connected_cameras(), load_known_streams(known_streams_file()), used_before_,
                 [turns = turns_](const LivePictures& one) {
                   return one.device ? turns.open_if_free({*one.device}) : sources::open_stream(one.address);
                 });
-  if (const auto only = cameras_.chosen(); only && only->device && cameras_.count() == 1) start_live(*only);
+}
+
+void NavigateView::type_address() {
+  if (refuses_while_lent()) return;
+  if (!cameras_.is_open()) offer_cameras();
+  cameras_.choose_field();
 }
 
 bool NavigateView::is_running() const { return live_->phase == Phase::Running; }

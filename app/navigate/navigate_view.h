@@ -69,6 +69,8 @@ class NavigateView : public mode::Mode {
   void start_live(const LivePictures& pictures);
   // The one camera that there is, is opened at once; else cameras and streams are offered.
   void choose_camera();
+  void offer_cameras();
+  void type_address();  // of a stream, a camera or an outside tracker
   // The same kind of source again: nothing but a key of its own ever changes the kind.
   void start_same_kind();
   void take_other_bone();

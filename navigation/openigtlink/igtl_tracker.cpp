@@ -180,6 +180,12 @@ TrackerAddress tracker_address(std::string_view text) {
   return address;
 }
 
+void see_by(tools::ToolSet& tools, const std::string& address) {
+  if (address.empty()) return;
+  if (!tools.tracker) tools.tracker.emplace();
+  tools.tracker->address = address;
+}
+
 std::unique_ptr<tracker::PoseSource> listen_to_tracker(const pipeline::PipelineOptions& options) {
   return std::make_unique<IgtlTracker>(
       options.tools.tracker->address,

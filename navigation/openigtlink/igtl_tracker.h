@@ -27,6 +27,9 @@ struct TrackerAddress {
 // "igtl://HOST:PORT", "igtl://HOST", "igtl://[::1]:18944". Throws InvalidInput.
 [[nodiscard]] TrackerAddress tracker_address(std::string_view text);
 
+// The tools are seen by the tracker at this address, whichever they name; empty: as they are.
+void see_by(tools::ToolSet& tools, const std::string& address);
+
 // The tracker that the tools of the set-up name. Precondition: they name one, with its address.
 [[nodiscard]] std::unique_ptr<tracker::PoseSource> listen_to_tracker(
     const pipeline::PipelineOptions& options);

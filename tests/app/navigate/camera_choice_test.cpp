@@ -66,6 +66,29 @@ TEST(CameraChoice, TakesTheAddressOfAStreamAndNothingElse) {
     EXPECT_FALSE(choice.take_address(typed)) << typed;
 }
 
+// A tracker's address opens no pictures: it is kept for those that are chosen next, until another is typed or
+// none, and one that is wrong takes nothing away.
+TEST(CameraChoice, KeepsTheAddressOfAnOutsideTracker) {
+  CameraChoice choice;
+  choice.open({{0, "Webcam"}}, {});
+  choice.choose_field();
+  EXPECT_TRUE(choice.wants_text());
+  EXPECT_FALSE(choice.take_address(" igtl://tower:18944 "));
+  EXPECT_EQ(choice.tracker(), "igtl://tower:18944");
+  EXPECT_EQ(choice.trouble(), "");
+  for (const char* wrong : {"igtl://tower:port", "igtl://:18944", "igtl://tower:99999"}) {
+    EXPECT_FALSE(choice.take_address(wrong)) << wrong;
+    EXPECT_NE(choice.trouble(), "") << wrong;
+    EXPECT_EQ(choice.tracker(), "igtl://tower:18944") << wrong;
+  }
+  choice.close();
+  choice.open({{0, "Webcam"}}, {});
+  EXPECT_EQ(choice.tracker(), "igtl://tower:18944");
+  EXPECT_TRUE(choice.take_address("udp://@:5000"));
+  EXPECT_FALSE(choice.take_address("igtl://"));
+  EXPECT_EQ(choice.tracker(), "");
+}
+
 TEST(KnownStreams, AreKeptTheNewestFirstAndForTheirUserAlone) {
   const test::TemporaryFolder folder;
   const std::filesystem::path file = folder / "data/streams.json";

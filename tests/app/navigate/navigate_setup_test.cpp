@@ -42,5 +42,32 @@ TEST(NavigateSetup, TheSimulationIsTrackedWithWhatSetUpAdopted) {
   EXPECT_TRUE(adopted.calibration.starts_with("camera simulated")) << adopted.calibration;
 }
 
+// Typed in the window, a tracker goes before the one of the tools, whose names and errors stay; without one
+// it is what the tools say.
+TEST(NavigateSetup, ATrackerThatWasTypedSeesTheToolsOfALiveSource) {
+  const test::TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
+  const open_case::PlanModel model(
+      phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 2.5}), "test"));
+  camera::CalibrationRecord record;
+  record.calibration = simulator::standard_camera();
+  record.scope_name = "Scope 30";
+  record.date_utc = "2026-11-21T10:00:00Z";
+  camera::write_camera_file(cases::camera_file(folder), record);
+  tools::ToolSet tools = tools::standard_tools();
+  tools.tracker = tools::OutsideTracker{"igtl://tower", 0.2, 0.1, {{"probe", "Stylus"}}, true};
+  tools::write_tools_file(cases::tools_file(folder), tools);
+  const auto setup = [&](const std::string& tracker) {
+    return camera_setup(model, bones::BoneKind::Femur, folder, {"scope", std::nullopt, "udp://@:5000"},
+                        sources::DeviceTurns(), 1.33, tracker);
+  };
+  EXPECT_EQ(setup("").setup.pipeline.tools.tracker->address, "igtl://tower");
+  const theatre::TheatreSource typed = setup("igtl://cart:18945");
+  EXPECT_EQ(typed.setup.pipeline.tools.tracker->address, "igtl://cart:18945");
+  EXPECT_EQ(typed.setup.pipeline.tools.tracker->sigma_mm, 0.2);
+  EXPECT_NE(typed.setup.calibration.find("igtl://cart:18945"), std::string::npos);
+  EXPECT_TRUE(typed.tracker) << "somebody listens to it";
+}
+
 }  // namespace
 }  // namespace arthronaut::navigate
