@@ -21,7 +21,14 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                [this] { return choices_.looked_at.has_value(); }, [this] { take_step_back(); }});
   actions.add({"navigate.menu", "Menu", "Everything that can be done here, and every state", GLFW_KEY_ENTER,
                0, false, [this] { return model_ != nullptr; }, [this] { return choices_.shows_menu; },
-               [this] { choices_.shows_menu = !choices_.shows_menu; }});
+               [this] {
+                 choices_.shows_menu = !choices_.shows_menu;
+                 choices_.shows_more = false;
+               }});
+  actions.add({"navigate.more", "More", "Sources, window, and what can't be used now", GLFW_KEY_ENTER,
+               GLFW_MOD_SHIFT, false, [this] { return choices_.shows_menu; },
+               [this] { return choices_.shows_more; },
+               [this] { choices_.shows_more = !choices_.shows_more; }});
   actions.add({"navigate.scratch",
                "Simulate: probe",
                "The simulated surgeon touches the bone with the probe",

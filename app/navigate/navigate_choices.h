@@ -33,11 +33,11 @@ struct NavigateChoices {
   std::map<std::pair<sources::SourceKind, tunnels::TunnelKey>, operation::AchievedTunnel> measured;
   // Whose world markers were said to be out, likewise.
   std::set<std::pair<sources::SourceKind, bones::BoneKind>> markers_out;
-  std::optional<operation::Step> looked_at;  // the surgeon went back to it; empty: the one of now
-  std::string next;                          // what is asked of the surgeon now
-  double next_since_s = 0;                   // and since when
-  bool goes_to_other_bone = false;           // once the source has ended
-  bool shows_menu = false;
+  std::optional<operation::Step> looked_at;     // the surgeon went back to it; empty: the one of now
+  std::string next;                             // what is asked of the surgeon now
+  double next_since_s = 0;                      // and since when
+  bool goes_to_other_bone = false;              // once the source has ended
+  bool shows_menu = false, shows_more = false;  // of the menu its second page
   ReachedPlan reached;
   // Of the case, as it was when this mode was entered.
   bool has_real_scope = false, has_camera_file = false;

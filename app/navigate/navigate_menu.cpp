@@ -1,25 +1,24 @@
 // Where things stand on the theatre screen, and the menu: everything that is not needed at every moment.
+#include "app/navigate/menu_page.h"
 #include "app/navigate/navigate_view.h"
 
 namespace arthronaut::navigate {
 
 namespace {
 
-// Rows of buttons of one width; returns the height taken.
-float draw_buttons(const widgets::Ui& ui, const widgets::Rect& area, const std::vector<const char*>& ids,
-                   int columns, float height) {
+// Rows of buttons of one width.
+void draw_buttons(const widgets::Ui& ui, const widgets::Rect& area, const std::vector<std::string_view>& ids,
+                  int columns, float height) {
   const float gap = ui.theme.px(6);
   const float width = (area.width - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns);
   int count = 0;
-  for (const char* id : ids) {
+  for (const std::string_view id : ids) {
     if (ui.actions.find(id) == nullptr) continue;
     const auto column = static_cast<float>(count % columns), row = static_cast<float>(count / columns);
     ++count;
     ImGui::SetCursorScreenPos({area.x + column * (width + gap), area.y + row * (height + gap)});
     widgets::action_button(ui, id, width, height);
   }
-  const int rows = (count + columns - 1) / columns;
-  return static_cast<float>(rows) * (height + gap);
 }
 
 }  // namespace
@@ -41,7 +40,7 @@ std::optional<widgets::Rect> NavigateView::header_in(const widgets::Ui& ui,
 }
 
 void NavigateView::draw_controls(const widgets::Ui& ui, const widgets::Rect& area) {
-  std::vector<const char*> ids{"navigate.next"};
+  std::vector<std::string_view> ids{"navigate.next"};
   // Where there are two to choose from, right beside the next step.
   if (model_ != nullptr)
     for (const auto& [bundle, id] : {std::pair(norms::Bundle::Anteromedial, "navigate.tunnel_am"),
@@ -56,49 +55,17 @@ void NavigateView::draw_controls(const widgets::Ui& ui, const widgets::Rect& are
 void NavigateView::draw_menu(const widgets::Ui& ui, const widgets::Rect& area, const NavigateScreen& screen) {
   ui.log.note("navigate.menu_sheet", area.min(), area.max());
   ImGui::GetWindowDrawList()->AddRectFilled(area.min(), area.max(), widgets::kBackground);
-  widgets::Rect rest = area;
-  const std::vector<const char*> ids{"navigate.menu",
-                                     "navigate.back",
-                                     "navigate.stop",
-                                     "navigate.digitise",
-                                     "navigate.register",
-                                     "navigate.take_back",
-                                     "navigate.exclude",
-                                     "navigate.clear",
-                                     "navigate.touch",
-                                     "navigate.control_point",
-                                     "navigate.check_guide",
-                                     "navigate.forget_touches",
-                                     "navigate.earlier",
-                                     "navigate.later",
-                                     "navigate.panel",
-                                     "navigate.overlay",
-                                     "navigate.undistort",
-                                     "navigate.sounds",
-                                     "navigate.depth_stop",
-                                     "navigate.drilled",
-                                     "navigate.marker_anew",
-                                     "navigate.bone",
-                                     "navigate.tunnel_am",
-                                     "navigate.tunnel_pl",
-                                     "navigate.record",
-                                     "navigate.camera",
-                                     "navigate.video",
-                                     "navigate.scratch",
-                                     "navigate.drill",
-                                     "navigate.medium",
-                                     "mode.plan",
-                                     "mode.setup",
-                                     "mode.review",
-                                     "app.screenshot",
-                                     "app.record_screen",
-                                     "app.send_screen",
-                                     "app.keys",
-                                     "app.quit"};
-  const float columns = 3, height = ui.theme.px(36);
-  (void)rest.cut_top(draw_buttons(ui, rest, ids, static_cast<int>(columns), height));
-  draw_registration_details(ui, rest.cut_right(rest.width * 0.5F, ui.theme.px(8)), screen);
-  draw_tracking(ui, rest, screen);
+  const auto can_run = [&](std::string_view id) {
+    const widgets::Action* const action = ui.actions.find(id);
+    return action != nullptr && action->can_run();
+  };
+  const std::vector<std::string_view> ids = menu_page(choices_.shows_more, can_run);
+  widgets::Rect buttons = area;
+  widgets::Rect states = cut_menu_states(buttons, ids.size(), ui.theme.scale);
+  draw_buttons(ui, buttons, ids, kMenuColumns, menu_row_height(ui.theme.scale) - ui.theme.px(6));
+  if (states.height <= 0) return;
+  draw_registration_details(ui, states.cut_right(states.width * 0.5F, ui.theme.px(8)), screen);
+  draw_tracking(ui, states, screen);
 }
 
 }  // namespace arthronaut::navigate
