@@ -1,10 +1,17 @@
 #include "planning/default_plan/default_plan.h"
 
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+
 #include "planning/default_plan/aim.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/landmarks/anatomical_axes.h"
 #include "planning/norms/footprint.h"
+#include "planning/tunnels/plan_norms.h"
+#include "planning/tunnels/tunnel_pair.h"
 
 namespace arthronaut::default_plan {
 
@@ -12,9 +19,15 @@ namespace {
 
 using Eigen::Vector3d;
 using landmarks::Landmarks;
+using norms::Bundle;
+using tunnels::Tunnel;
 using Outcome = DefaultTunnel::Outcome;
 
 constexpr double kUsualCondyles_mm = 48, kCondyleRadius_mm = 21;
+
+Bundle other_bundle(Bundle bundle) {
+  return bundle == Bundle::Anteromedial ? Bundle::Posterolateral : Bundle::Anteromedial;
+}
 
 // What the entry follows from; of either pair that tells the direction of the view one will do.
 std::vector<std::string> needed(bones::BoneKind bone, const Landmarks& known) {
@@ -50,16 +63,106 @@ std::optional<Joint> joint_of(const BoneInput& input, const Landmarks& marks, bo
   return std::nullopt;
 }
 
-// False where no bone is at the norm's place.
-bool put_at_norm(tunnels::Tunnel& at_entry, const BoneInput& input, bones::Side side,
-                 const Landmarks& marks) {
-  const auto footprint =
-      norms::expected_footprint(input.bone->mesh, *input.surface, at_entry.bone, side, marks,
-                                norms::default_norm(at_entry.bone, at_entry.bundle));
-  if (!footprint) return false;
-  at_entry.entry_mm = footprint->center_mm;
-  at_entry.direction = -footprint->normal;
-  return true;
+// A bundle's norm, its mean moved on the line through both bundles' means away from the other one, by a share
+// of its own spread: at 1 as far as two knees of three have it.
+norms::InsertionNorm norm_apart(bones::BoneKind kind, Bundle bundle, double share) {
+  norms::InsertionNorm norm = norms::default_norm(kind, bundle);
+  if (bundle == Bundle::Whole) return norm;
+  const auto& other = norms::default_norm(kind, other_bundle(bundle));
+  const Eigen::Vector2d away(norm.along.mean - other.along.mean, norm.across.mean - other.across.mean);
+  const double spreads = std::hypot(away.x() / norm.along.sd, away.y() / norm.across.sd);
+  norm.along.mean += share / spreads * away.x();
+  norm.across.mean += share / spreads * away.y();
+  return norm;
+}
+
+// What tunnels of a bone are put by.
+struct Site {
+  const BoneInput& input;
+  bones::Side side;
+  const Landmarks& marks;
+  const Joint& joint;
+  const Options& options;
+
+  [[nodiscard]] Tunnel tunnel_of(Bundle bundle) const {
+    return {.bone = input.bone->kind,
+            .entry_mm = {},
+            .direction = {},
+            .diameter_mm = bundle == options.bundle ? options.diameter_mm : usual_diameter_mm(bundle),
+            .bundle = bundle};
+  }
+  // nullopt where no bone is at the norm's place.
+  [[nodiscard]] std::optional<Tunnel> at_norm(Bundle bundle, double share = 0) const {
+    Tunnel tunnel = tunnel_of(bundle);
+    const auto footprint = norms::expected_footprint(input.bone->mesh, *input.surface, tunnel.bone, side,
+                                                     marks, norm_apart(tunnel.bone, bundle, share));
+    if (!footprint) return std::nullopt;
+    tunnel.entry_mm = footprint->center_mm;
+    tunnel.direction = -footprint->normal;
+    return tunnel;
+  }
+  [[nodiscard]] std::optional<Tunnel> aimed(const std::optional<Tunnel>& at_entry,
+                                            const Tunnel* beside = nullptr) const {
+    return at_entry ? aim(*at_entry, *input.surface, joint, options, beside) : std::nullopt;
+  }
+  [[nodiscard]] double between_mm(const Tunnel& one, const Tunnel& other) const {
+    return tunnels::gap_between(one, tunnels::measure(one, *input.surface), other,
+                                tunnels::measure(other, *input.surface))
+        .bone_mm;
+  }
+};
+
+// How far either bundle's entry is moved off its norm: see norm_apart.
+struct Shares {
+  double am = 0, pl = 0;
+  [[nodiscard]] double of(Bundle bundle) const { return bundle == Bundle::Anteromedial ? am : pl; }
+};
+// Of two defaults the posterolateral one gives way, since the back wall is behind the anteromedial one.
+constexpr std::array<Shares, 9> kBothGiveWay{
+    {{0, 0}, {0, 0.25}, {0, 0.5}, {0, 0.75}, {0, 1}, {0.25, 1}, {0.5, 1}, {0.75, 1}, {1, 1}}};
+// Beside a tunnel that is planned there is one to move.
+constexpr std::array<Shares, 5> kOneGivesWay{{{0, 0}, {0.25, 0.25}, {0.5, 0.5}, {0.75, 0.75}, {1, 1}}};
+
+struct Apart {
+  Tunnel tunnel;                                                // the one asked for
+  double between_mm = std::numeric_limits<double>::infinity();  // to the other bundle's, where it has one
+};
+
+// Beside the other bundle's tunnel where that is planned. Else both are laid out, the posterolateral one
+// beside the anteromedial one, which has its usual aim, and the one asked for is taken of them: otherwise the
+// order in which they are planned would decide how much bone is left between them.
+std::optional<Apart> bundle_apart(const Site& site, const Shares& shares) {
+  const Bundle bundle = site.options.bundle;
+  const auto at_norm = [&](Bundle of) { return site.at_norm(of, shares.of(of)); };
+  if (site.input.beside != nullptr) {
+    const auto own = site.aimed(at_norm(bundle), site.input.beside);
+    if (!own) return std::nullopt;
+    return Apart{*own, site.between_mm(*own, *site.input.beside)};
+  }
+  const auto am = site.aimed(at_norm(Bundle::Anteromedial));
+  const auto pl = site.aimed(at_norm(Bundle::Posterolateral), am ? &*am : nullptr);
+  const auto& own = bundle == Bundle::Anteromedial ? am : pl;
+  if (!own) return std::nullopt;
+  Apart apart{*own};
+  if (am && pl) apart.between_mm = site.between_mm(*am, *pl);
+  return apart;
+}
+
+// No further off the norm than leaves the bone that the plan's check asks for between the bundles; where
+// nothing does, where most is left.
+std::optional<Tunnel> bundle_tunnel(const Site& site) {
+  std::span<const Shares> steps = kBothGiveWay;
+  if (site.input.beside != nullptr)
+    steps = kOneGivesWay;
+  else if (site.options.bundle == Bundle::Anteromedial)
+    steps = steps.subspan(4);  // it stays as long as the other one can still give way
+  std::optional<Apart> best;
+  for (const Shares& shares : steps) {
+    const auto apart = bundle_apart(site, shares);
+    if (apart && (!best || apart->between_mm > best->between_mm)) best = apart;
+    if (best && best->between_mm >= tunnels::PlanNorms{}.thin_bone_between_tunnels_mm) break;
+  }
+  return best ? std::optional(best->tunnel) : std::nullopt;
 }
 
 }  // namespace
@@ -118,34 +221,30 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
                      (proposal != nullptr && !proposal->is_usable() ? ": " + proposal->reason : "");
     return result;
   }
-  tunnels::Tunnel at_entry{.bone = kind,
-                           .entry_mm = {},
-                           .direction = {},
-                           .diameter_mm = options.diameter_mm,
-                           .bundle = options.bundle};
-  if (options.bundle == norms::Bundle::Whole && is_confirmed("native_footprint")) {
+  const Site site{input, side, marks, *joint, options};
+  std::optional<Tunnel> at_entry = site.at_norm(options.bundle), aimed;
+  if (options.bundle == Bundle::Whole && is_confirmed("native_footprint")) {
     const auto on = input.surface->closest_point(input.landmarks.at("native_footprint"));
-    at_entry.entry_mm = on.point_mm;
-    at_entry.direction = -on.normal;
+    at_entry = site.tunnel_of(Bundle::Whole);
+    at_entry->entry_mm = on.point_mm;
+    at_entry->direction = -on.normal;
     result.source = "the native footprint, as marked on this bone";
-  } else if (put_at_norm(at_entry, input, side, marks)) {
+  } else if (at_entry) {
     result.source = norms::default_norm(kind, options.bundle).source;
   } else {
     result.outcome = Outcome::NoFootprint;
     result.message = "no bone is where the norm places the insertion";
     return result;
   }
-  // The anteromedial tunnel has its usual aim; the posterolateral one makes room for it, also where it comes
-  // first. Else the order in which they are planned would decide how much bone is left between them.
-  std::optional<tunnels::Tunnel> to_come;
-  if (options.bundle == norms::Bundle::Posterolateral && input.beside == nullptr) {
-    tunnels::Tunnel at_am_entry = at_entry;
-    at_am_entry.bundle = norms::Bundle::Anteromedial;
-    at_am_entry.diameter_mm = usual_diameter_mm(at_am_entry.bundle);
-    if (put_at_norm(at_am_entry, input, side, marks))
-      to_come = aim(at_am_entry, *input.surface, *joint, options);
+  if (options.bundle == Bundle::Whole) {
+    aimed = site.aimed(at_entry, input.beside);
+  } else {
+    aimed = bundle_tunnel(site);
+    const double moved_mm = aimed ? (aimed->entry_mm - at_entry->entry_mm).norm() : 0;
+    if (moved_mm > 0)
+      result.source +=
+          files::format("; moved by %.1f mm, away from the other bundle, for bone between the two", moved_mm);
   }
-  const auto aimed = aim(at_entry, *input.surface, *joint, options, to_come ? &*to_come : input.beside);
   if (!aimed) {
     result.outcome = Outcome::NoAim;
     result.message = "no direction that a drill can follow from there leaves the " +
@@ -160,10 +259,8 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
 
 const tunnels::Tunnel* beside(const tunnels::TunnelKey& key,
                               const std::map<tunnels::TunnelKey, tunnels::Tunnel>& planned) {
-  if (key.bundle == norms::Bundle::Whole) return nullptr;
-  const auto other =
-      key.bundle == norms::Bundle::Anteromedial ? norms::Bundle::Posterolateral : norms::Bundle::Anteromedial;
-  const auto found = planned.find({key.bone, other});
+  if (key.bundle == Bundle::Whole) return nullptr;
+  const auto found = planned.find({key.bone, other_bundle(key.bundle)});
   return found == planned.end() ? nullptr : &found->second;
 }
 

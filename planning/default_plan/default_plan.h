@@ -42,8 +42,11 @@ struct BoneInput {
   // Made before and kept by the caller, since it takes a second; without it it is made here.
   const landmarks::Proposal* proposal = nullptr;
   // Of the ligament's other bundle, planned already: bone is left between the two where a drill can follow.
-  // Without it the posterolateral one leaves room for an anteromedial one of the usual diameter and aim: of
-  // two defaults either may be planned first.
+  // Without it either leaves room for the other one of the usual diameter: of two defaults either may be
+  // planned first. Where the norms' places leave less bone than the plan's check asks for, the posterolateral
+  // entry is moved off its norm, away from the other one on the line between them, by quarters of its spread
+  // (one sigma), then the anteromedial one, whose wall is the thinner; beside a planned one the one asked
+  // for. DefaultTunnel::source says how far.
   const tunnels::Tunnel* beside = nullptr;
 };
 
@@ -57,7 +60,7 @@ struct DefaultTunnel {
   } outcome = Outcome::NotRun;
   std::string message = "no default was asked for";
   tunnels::Tunnel tunnel;
-  std::string source;               // of the norm that the entry follows
+  std::string source;               // of the norm that the entry follows, and how far it was moved off it
   std::vector<std::string> doubts;  // why the plan is not reliable: proposed landmarks, doubts of the shape
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Planned; }
 };
