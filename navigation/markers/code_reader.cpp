@@ -229,8 +229,9 @@ SeenCode judge_cells(std::span<const SeenCell> seen, std::span<const MarkerCode>
     Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
     for (int i = 0; i < count; ++i) {
       const auto r = regressors(seen[i].x, seen[i].y, expected[i]);
-      normal += weights[i] * r * r.transpose();
-      right += weights[i] * seen[i].value * r;
+      const Eigen::Matrix<double, 6, 1> weighted = weights[i] * r;
+      normal.noalias() += weighted * r.transpose();
+      right += seen[i].value * weighted;
     }
     // A slope of the light is not expected to be larger than the light.
     for (const int slope : {1, 2, 4, 5}) normal(slope, slope) += 0.3;
@@ -240,7 +241,8 @@ SeenCode judge_cells(std::span<const SeenCell> seen, std::span<const MarkerCode>
     for (int i = 0; i < count; ++i) {
       const double error =
           (seen[i].value - fit.dot(regressors(seen[i].x, seen[i].y, expected[i]))) / (kAgrees * fit[3]);
-      weights[i] = 1 / std::pow(1 + error * error, 2);
+      const double root = 1 / (1 + error * error);
+      weights[i] = root * root;
     }
   }
   for (int i = 0; i < count; ++i) {
@@ -254,6 +256,7 @@ SeenCode judge_cells(std::span<const SeenCell> seen, std::span<const MarkerCode>
     result.agreeing_inside += shades[i] == (expected[i] ? 1 : 0);
     result.opposite_inside += contradicts(i, expected[i]);
   }
+  if (!result.agrees()) return result;  // most of what is looked at is no marker
   int other_score = -count;
   for (std::size_t other = 0; other < codes.size(); ++other) {
     for (int other_turn = 0; other_turn < 4; ++other_turn) {
@@ -321,9 +324,13 @@ std::optional<ReadCode> read_code(const LinearImage& image, const camera::Camera
   return best || !has_unknown ? best : read(light, beside_unknown(light, cells), true);
 }
 
-bool SeenCode::is_confirmed() const {
+bool SeenCode::agrees() const {
   return agreeing > kMinAgreeing * seen && agreeing_inside >= kMinAgreeingInside &&
-         opposite_inside <= kMaxOppositeInside && lead >= (opposite_inside == 0 ? kClearLead : kLead);
+         opposite_inside <= kMaxOppositeInside;
+}
+
+bool SeenCode::is_confirmed() const {
+  return agrees() && lead >= (opposite_inside == 0 ? kClearLead : kLead);
 }
 
 SeenCode see_code(const LinearImage& image, const camera::CameraModel& camera,

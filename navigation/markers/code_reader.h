@@ -37,10 +37,12 @@ struct SeenCode {
   int agreeing_inside = 0, seen_inside = 0;
   int opposite_inside = 0;  // dark where it should be bright, or bright where dark
   // By how much the inner cells that agree, less those that say the opposite, lead over any other turn or
-  // code: a cell that tells two apart counts twice.
+  // code: a cell that tells two apart counts twice. Not counted unless the code agrees.
   int lead = 0;
-  // Nearly half of all that is seen agrees, and the inside by itself speaks for this code, this way up: by
-  // two cells when none says the opposite, else by three.
+  // Nearly half of all that is seen, and of the inside seven cells; few say the opposite.
+  [[nodiscard]] bool agrees() const;
+  // It agrees, and the inside by itself speaks for this code, this way up: by two cells when none says the
+  // opposite, else by three.
   [[nodiscard]] bool is_confirmed() const;
 };
 [[nodiscard]] SeenCode see_code(const LinearImage& image, const camera::CameraModel& camera,

@@ -81,6 +81,7 @@ std::span<const FoundSquare> SquareSearch::find(const camera::CameraModel& camer
 std::span<const FoundSquare> SquareSearch::find_covered(const camera::CameraModel& camera) {
   sum_rows(white_pixels_ >= kMinWhitePixels);
   find_squares(camera, true);
+  if (white_pixels_ >= kMinWhitePixels) combine_pieces(camera);
   return squares_;
 }
 
@@ -99,6 +100,7 @@ void SquareSearch::find_squares(const camera::CameraModel& camera, bool are_cove
           region.area < across * down / (are_covered ? 10 : 6))
         continue;
       if (are_covered) {
+        outline_.clear();
         trace_outline(static_cast<int>(label), region, camera);
         combine_sides(camera);
       }
@@ -239,7 +241,6 @@ void SquareSearch::label_regions() {
 
 void SquareSearch::trace_outline(int label, const Region& region, const camera::CameraModel& camera) {
   // The outermost pixels of every row and column are all of a convex outline.
-  outline_.clear();
   const auto add = [&](double x, double y) {
     const auto point = camera.undistort({left_ + x, top_ + y});
     if (point) outline_.push_back(*point);
@@ -269,6 +270,7 @@ void SquareSearch::trace_outline(int label, const Region& region, const camera::
 
 bool SquareSearch::outline_square(int label, const Region& region, const camera::CameraModel& camera,
                                   FoundSquare& square) {
+  outline_.clear();
   trace_outline(label, region, camera);
   if (outline_.size() < 16) return false;
   take_hull();

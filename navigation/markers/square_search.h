@@ -36,7 +36,7 @@ class SquareSearch {
   // In place of find(), or after it: all that it finds, and squares of which a part is hidden. White pixels
   // are left out of the means, since highlights raise what is thought bright; and of each dark region the
   // straight parts of the outline are sought one by one, of which four make a square, whatever lies between
-  // them.
+  // them; or three and the ends of the outer two. Where something is white, two regions may be one square.
   [[nodiscard]] std::span<const FoundSquare> find_covered(const camera::CameraModel& camera);
 
   // The frame that was looked at last, made smaller: pixel (x, y) shows frame pixels from left + times * x
@@ -62,9 +62,13 @@ class SquareSearch {
   void label_regions();
   bool outline_square(int label, const Region& region, const camera::CameraModel& camera,
                       FoundSquare& square);
+  // Adds the region's to the outline.
   void trace_outline(int label, const Region& region, const camera::CameraModel& camera);
-  // One square or two out of the straight parts of the outline.
+  // The likeliest squares out of the straight parts of the outline: of four sides, or of three of which the
+  // ends show where the last one is.
   void combine_sides(const camera::CameraModel& camera);
+  // The same of any two dark regions that are near each other.
+  void combine_pieces(const camera::CameraModel& camera);
   bool measure_sides(const camera::CameraModel& camera, const std::array<Eigen::Vector2d, 4>& quad,
                      FoundSquare& square) const;
   void take_hull();

@@ -51,6 +51,38 @@ TEST_F(MarkerRecovery, FindsAMarkerUnderAHighlight) {
   EXPECT_FALSE(seen[1].is_tracked());
 }
 
+// From nothing, though hardly a piece is seen of one side: the ends of those beside it say where it lies.
+TEST_F(MarkerRecovery, FindsAMarkerOfWhichAHighlightHidesOneSide) {
+  for (const Eigen::Vector2d& side :
+       {Eigen::Vector2d(-1, 0), Eigen::Vector2d(0, -1), Eigen::Vector2d(0, 1)}) {
+    tracker_->reset();
+    auto shown = picture(pose_);
+    for (const double along_mm : {-1.2, -0.4, 0.4, 1.2}) {
+      const Eigen::Vector2d place_mm = 1.9 * side + along_mm * Eigen::Vector2d(side.y(), side.x());
+      const Eigen::Vector2d place = seen_at(pose_, place_mm.x(), place_mm.y());
+      shown.shine(place.x(), place.y(), 8, kHighlight);
+    }
+    for (int frame = 0; frame < 3; ++frame) (void)tracker_->track(shown.view(), camera_, frame * kFrameNs);
+    const auto seen = tracker_->track(shown.view(), camera_, 3 * kFrameNs);
+    SCOPED_TRACE(::testing::Message() << "side " << side.transpose());
+    expect_near(seen[0], pose_);
+    EXPECT_FALSE(seen[1].is_tracked());
+  }
+}
+
+// From nothing, though highlights cut its dark in two.
+TEST_F(MarkerRecovery, FindsAMarkerThatHighlightsCutInTwo) {
+  auto shown = picture(pose_);
+  for (const double y_mm : {-1.8, -0.9, 0.0, 0.9, 1.8}) {
+    const Eigen::Vector2d place = seen_at(pose_, 0.2, y_mm);
+    shown.shine(place.x(), place.y(), 5, kHighlight);
+  }
+  for (int frame = 0; frame < 3; ++frame) (void)tracker_->track(shown.view(), camera_, frame * kFrameNs);
+  const auto seen = tracker_->track(shown.view(), camera_, 3 * kFrameNs);
+  expect_near(seen[0], pose_);
+  EXPECT_FALSE(seen[1].is_tracked());
+}
+
 // Out of sight for four frames, then half a side away and under a highlight.
 TEST_F(MarkerRecovery, FindsALostMarkerWhereItWentUnderAHighlight) {
   for (int frame = 0; frame < 2; ++frame)
