@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ranges>
 
 #include "app/guidance_severity/guidance_severity.h"
 #include "app/navigate/navigate_panels.h"
@@ -16,14 +17,18 @@ constexpr std::array<double, 3> kRings_mm{1, 2, 5};
 void draw_target(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, float radius) {
   const float per_mm = radius / static_cast<float>(kShown_mm);
   draw.AddCircleFilled(center, radius, IM_COL32(15, 19, 24, 255), 96);
-  for (const double ring : kRings_mm) {
+  // Where they would stand in each other, the outer one is named.
+  float below = radius;
+  for (const double ring : kRings_mm | std::views::reverse) {
     const float r = static_cast<float>(ring) * per_mm;
     draw.AddCircle(center, r, ring == 1 ? widgets::kGood : IM_COL32(90, 104, 118, 255), 96,
                    ui.theme.px(ring == 1 ? 3 : 2));
+    const float top = r * 0.70F;
+    if (below - top < ui.theme.body->FontSize) continue;
+    below = top;
     const std::string text = widgets::fixed(ring, 0) + (ring == 5 ? " mm" : "");
     draw.AddText(ui.theme.body, ui.theme.body->FontSize,
-                 {center.x + r * 0.72F + ui.theme.px(3), center.y + r * 0.70F}, widgets::kQuietText,
-                 text.c_str());
+                 {center.x + r * 0.72F + ui.theme.px(3), center.y + top}, widgets::kQuietText, text.c_str());
   }
   draw.AddLine({center.x - radius, center.y}, {center.x + radius, center.y}, IM_COL32(64, 75, 86, 255),
                ui.theme.px(1.5F));
@@ -36,9 +41,34 @@ std::string in_short(std::string_view direction) {
   return std::string(direction.substr(0, direction == "medial" || direction == "lateral" ? 3 : 4));
 }
 
-void draw_directions(const widgets::Ui& ui, ImDrawList& draw, const widgets::Rect& area, const ImVec2& center,
-                     float radius, const BullseyePoint& point) {
-  ImFont* font = ui.theme.afar;
+// The target as large as it can be with its words around it; where large words would take most of it, or
+// stand in it, they are small.
+struct Layout {
+  ImFont* font = nullptr;  // of the directions
+  float radius = 0;
+};
+
+Layout layout_in(const widgets::Ui& ui, const widgets::Rect& area, const BullseyePoint* point) {
+  const auto with = [&](ImFont* font) {
+    float beside = 0;
+    for (const bool is_positive : {true, false})
+      if (point != nullptr)
+        beside = std::max(
+            beside, font->CalcTextSizeA(font->FontSize, 1e9F, 0,
+                                        in_short(landmarks::to_text(point->side_is, is_positive)).c_str())
+                        .x);
+    const float radius =
+        std::min(area.width / 2 - beside - ui.theme.px(8), area.height / 2 - font->FontSize * 1.05F);
+    return Layout{font, std::max(radius, 10.F)};
+  };
+  const Layout large = with(ui.theme.afar), small = with(ui.theme.body);
+  return large.radius > 0.85F * small.radius ? large : small;
+}
+
+void draw_directions(ImDrawList& draw, const widgets::Rect& area, const ImVec2& center, const Layout& layout,
+                     const BullseyePoint& point) {
+  ImFont* const font = layout.font;
+  const float radius = layout.radius;
   const auto put = [&](landmarks::AnatomicalDirection direction, bool is_positive, float x, float y,
                        float align) {
     const std::string text = in_short(landmarks::to_text(direction, is_positive));
@@ -48,7 +78,7 @@ void draw_directions(const widgets::Ui& ui, ImDrawList& draw, const widgets::Rec
   };
   put(point.up_is, true, center.x, center.y - radius - font->FontSize * 1.02F, 0.5F);
   put(point.up_is, false, center.x, center.y + radius + font->FontSize * 0.02F, 0.5F);
-  // In the corners between circle and edge, above the line that they belong to.
+  // Between circle and edge, above the line that they belong to.
   const float y = center.y - font->FontSize * 1.02F;
   put(point.side_is, point.side_is_right, area.x + area.width, y, 1);
   put(point.side_is, !point.side_is_right, area.x, y, 0);
@@ -98,18 +128,18 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
   draw.AddRectFilled(area.min(), area.max(), widgets::kPanel, ui.theme.px(6));
   ui.log.note("navigate.bullseye", area.min(), area.max());
   const float font = ui.theme.afar->FontSize;
-  const float radius =
-      std::max(std::min(area.width / 2 - ui.theme.px(8), area.height / 2 - font * 1.05F), 10.F);
   const ImVec2 center = area.center();
   // Which of two is aimed at stands beside the target, also while there is nothing to aim by.
   draw.AddText(ui.theme.title, ui.theme.title->FontSize, {area.x + ui.theme.px(12), area.y + ui.theme.px(6)},
                widgets::kAccent, screen.tunnel.c_str());
   if (!screen.display.guidance_is_valid || !screen.plan) {
-    draw.AddCircle(center, radius, widgets::kPanelEdge, 96, ui.theme.px(2));
+    draw.AddCircle(center, layout_in(ui, area, nullptr).radius, widgets::kPanelEdge, 96, ui.theme.px(2));
     widgets::text_centered(ui, area.inset(font), ui.theme.title, widgets::kCaution, screen.display.headline);
     return;
   }
   const BullseyePoint point = bullseye_point(screen.display.guidance, *screen.plan);
+  const Layout layout = layout_in(ui, area, &point);
+  const float radius = layout.radius;
   draw_target(ui, draw, center, radius);
   // The guide stands on the plan: seen at a glance, by a ring and a tick, in the first second the whole disc.
   if (screen.reached_for_s) {
@@ -119,7 +149,7 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
                        widgets::Severity::Good);
   }
   ui.log.note_state("reached", screen.reached_for_s ? "yes" : "no");
-  draw_directions(ui, draw, area, center, radius, point);
+  draw_directions(draw, area, center, layout, point);
   draw_guide(ui, draw, center, radius, point,
              worse(guidance_severity::severity_of_offset(screen.display.guidance),
                    guidance_severity::severity_of_angle(screen.display.guidance)));
