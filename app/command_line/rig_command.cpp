@@ -83,8 +83,8 @@ std::vector<int> markers_on_body(const RigArguments& arguments, const tools::Too
 double size_of(int id, const RigArguments& arguments, const tools::ToolSet& set, const Body& body) {
   constexpr double kStandardSize_mm = 4;
   const auto look = [&](const auto& bodies) -> std::optional<double> {
-    for (const auto& body : bodies)
-      for (const tools::BodyMarker& marker : tools::markers_of(body))
+    for (const auto& one : bodies)
+      for (const tools::BodyMarker& marker : tools::markers_of(one))
         if (marker.marker_id == id) return marker.size_mm;
     return std::nullopt;
   };

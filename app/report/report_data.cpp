@@ -194,7 +194,7 @@ void add_rows(const ordered_json& node, const std::string& path, std::string& te
 }  // namespace
 
 std::string report_json(const Content& content, const ReportOptions& options) {
-  return document_of(content, options).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return document_of(content, options).dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string report_csv(const Content& content, const ReportOptions& options) {

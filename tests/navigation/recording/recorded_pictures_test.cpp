@@ -294,14 +294,15 @@ TEST(RecordedPictures, GivesWhatIsWholeOfACutVideo) {
 // A part is announced before it holds anything: what a crash leaves of it then is no video. What was kept
 // before it is there all the same, to look at and to replay.
 TEST(RecordedPictures, GivesWhatIsBeforeAPartThatACrashLeftEmpty) {
+  constexpr int kOfAPart = kFrames / 2;
   const test::TemporaryFolder folder;
   const fs::path left = folder / "left";
   fs::create_directory(folder / "made");
   {
     SessionRecorder recorder(folder / "made", test::session_header(), test::scripted_options());
-    for (int i = 0; i < 2 * kFrames; ++i) {
-      if (i == kFrames) recorder.interrupt_pictures();
-      recorder.append_picture(frame_of(i % kFrames));
+    for (int i = 0; i < 2 * kOfAPart; ++i) {
+      if (i == kOfAPart) recorder.interrupt_pictures();
+      recorder.append_picture(frame_of(i));
       recorder.append(test::frame_result(i));
     }
     recorder.finish();
@@ -315,12 +316,12 @@ TEST(RecordedPictures, GivesWhatIsBeforeAPartThatACrashLeftEmpty) {
   const SessionOverview session = read_overview(left);
   ASSERT_FALSE(session.was_finished);
   RecordedPictures pictures(session);
-  EXPECT_EQ(pictures.picture(kFrames + 3, test::frame_result(kFrames + 3).timestamp_ns), nullptr);
+  EXPECT_EQ(pictures.picture(kOfAPart + 3, test::frame_result(kOfAPart + 3).timestamp_ns), nullptr);
   EXPECT_NE(pictures.picture(3, test::frame_result(3).timestamp_ns), nullptr);
   const auto video = open_recorded_video(RecordedSession(left));
   int replayed = 0;
   while (video->next() != nullptr) ++replayed;
-  EXPECT_EQ(replayed, kFrames);
+  EXPECT_EQ(replayed, kOfAPart);
 }
 
 // No video, and one that is gone, are told as such.

@@ -206,7 +206,7 @@ TEST(CameraDevice, TakesTheModeThatIsWished) {
 // holds none of the usual sizes is given at its largest, whatever other formats there are.
 TEST(CameraDevice, TakesTheCalibratedSizeOutOfARange) {
   CameraRoom room;
-  room.add_mode(0, V4L2_PIX_FMT_H264, clip(640, 480), {30});
+  room.add_mode(0, V4L2_PIX_FMT_H264, cv::Size(640, 480), {std::vector<std::uint8_t>(16)}, {30});
   for (const auto& [width, height] : {std::pair{64, 48}, {312, 232}, {316, 236}})
     room.add_mode(0, V4L2_PIX_FMT_YUYV, clip(width, height), {30});
   room.camera().size_step = 4;
