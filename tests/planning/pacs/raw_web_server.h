@@ -51,6 +51,10 @@ class RawWebServer {
                      ::send(caller, answer_.data(), answer_.size(), MSG_NOSIGNAL) > 0;
       for (std::size_t sent = 0; goes_on && sent < filler_; sent += blanks.size())
         goes_on = ::send(caller, blanks.data(), blanks.size(), MSG_NOSIGNAL) > 0;
+      // What is closed before all that it was sent is read breaks off for the other one, answered or not.
+      ::shutdown(caller, SHUT_WR);
+      while (::recv(caller, request, sizeof(request), 0) > 0) {
+      }
       ::close(caller);
     }
   }
