@@ -165,11 +165,9 @@ TEST_F(Report, Hazard40AnExerciseIsNotReported) {
   EXPECT_EQ(json.dump().find(exercise.filename().string()), std::string::npos);
 }
 
-// The pictures that were recorded at the moments that matter, the same bytes each time; without a video the
-// report says so, and the name of a video that is gone is not in it.
-TEST_F(Report, ShowsWhatTheSurgeonSaw) {
-  expect_contains(text_of_session("live", {}), "The session keeps no video");
-  const auto folder = cases::create_session_folder(knee_folder());
+// A session with five pictures of one grey each, and numbers of which the third picture's are the best.
+std::filesystem::path record_pictures(const std::filesystem::path& knee_folder) {
+  const auto folder = cases::create_session_folder(knee_folder);
   pipeline::PipelineOptions options;
   options.calibration = {.image_size_px = {320, 240}, .focal_px = 100, .boundary = {{160, 120}, 110}};
   options.tools = tools::standard_tools();
@@ -200,6 +198,14 @@ TEST_F(Report, ShowsWhatTheSurgeonSaw) {
     recorder.add_event({400'000'000, std::string(recording::kDrilledEvent), "", -1});
     recorder.finish();
   }
+  return folder;
+}
+
+// The pictures that were recorded at the moments that matter, the same bytes each time; without a video the
+// report says so, and the name of a video that is gone is not in it.
+TEST_F(Report, ShowsWhatTheSurgeonSaw) {
+  expect_contains(text_of_session("live", {}), "The session keeps no video");
+  const auto folder = record_pictures(knee_folder());
   write_report(knee_folder(), pdf());
   const std::string text = pdf_text();
   expect_contains(text, "Pictures of the session, with the plan");
@@ -213,6 +219,19 @@ TEST_F(Report, ShowsWhatTheSurgeonSaw) {
   write_report(knee_folder(), pdf());
   expect_contains(pdf_text(), "The session's video is not there, or cannot be read");
   EXPECT_EQ(pdf_text().find(video.filename().string()), std::string::npos);
+}
+
+// For strangers: not who, not when, and nothing that was filmed.
+TEST_F(Report, Hazard19ADeidentifiedOneShowsNoPictureAndNoDay) {
+  const std::string session = record_pictures(knee_folder()).filename().string();
+  const std::string day = cases::load_case(knee_folder()).created_utc.substr(0, 10);
+  write_report(knee_folder(), pdf(), {.is_deidentified = false, .says_when_made = false});
+  for (const std::string& told : {std::string("Pictures of the session"), session, day})
+    expect_contains(pdf_text(), told);
+  write_report(knee_folder(), pdf(),
+               {.with_identity = true, .is_deidentified = true, .says_when_made = false});
+  for (const std::string& told : {std::string("Pictures of the session"), session, day})
+    EXPECT_EQ(pdf_text().find(told), std::string::npos) << told;
 }
 
 }  // namespace
