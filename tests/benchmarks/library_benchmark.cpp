@@ -46,7 +46,7 @@ class ThousandCases {
   [[nodiscard]] std::unique_ptr<Library> open() const {
     return std::make_unique<Library>(folder_ / "data", recording::read_session_facts);
   }
-  void forget_index() const { fs::remove(folder_ / "data" / "library-2.sqlite"); }
+  void forget_index() const { fs::remove(folder_ / "data" / "library-3.sqlite"); }
 
  private:
   const test::TemporaryFolder folder_;
