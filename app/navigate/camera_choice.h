@@ -1,7 +1,7 @@
 // Which live pictures: the cameras that are connected, the streams that were used before, and a field in
 // which the address of another one is typed, or of an outside tracker that sees bones and tools in the place
-// of the pictures; beside each what it shows now. Worked by a pedal, one key for
-// the next, one to open, or by a click on what is to be opened.
+// of the pictures; beside each what it shows now. Worked by a pedal, one key for the next, one to open, or by
+// a click on what is to be opened.
 #pragma once
 
 #include <functional>

@@ -175,8 +175,8 @@ void Surface::triangles_near(const Eigen::Vector3d& from_mm, const Eigen::Vector
 std::optional<RayHit> Surface::first_hit(const Eigen::Vector3d& origin_mm,
                                          const Eigen::Vector3d& direction) const {
   constexpr double kFirstReach_mm = 16;
-  constexpr double kRounding_mm =
-      1e-6;  // of the boxes; what the ray meets is decided by the exact predicates
+  // Of the boxes; what the ray meets is decided by the exact predicates.
+  constexpr double kRounding_mm = 1e-6;
   const Eigen::Vector3d unit = direction.normalized();
   const Kernel::Ray_3 ray = ray_of(origin_mm, unit);
   const double furthest_mm = (tree_->bounds.center_mm() - origin_mm).norm() + tree_->bounds.size_mm().norm();

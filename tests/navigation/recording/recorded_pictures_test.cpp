@@ -103,26 +103,28 @@ TEST(RecordedPictures, GivesEachFrameItsOwnPicture) {
   EXPECT_EQ(pictures.picture(kFrames + 100, test::frame_result(kFrames + 100).timestamp_ns), nullptr);
 }
 
+// A session with a copy of a video that another program made, of the pictures 0, 1, ...
+void copy_numbered_video(const fs::path& file, const std::string& code, const fs::path& session) {
+  {
+    cv::VideoWriter writer(file.string(), cv::VideoWriter::fourcc(code[0], code[1], code[2], code[3]), 60,
+                           {kWidth, kHeight});
+    ASSERT_TRUE(writer.isOpened());
+    for (int i = 0; i < kFrames; ++i) writer.write(numbered(i));
+  }
+  fs::create_directory(session);
+  SessionRecorder recorder(session, test::session_header(), test::scripted_options());
+  for (int i = 0; i < kFrames; ++i) recorder.append(test::frame_result(i));
+  recorder.copy_video(file);
+  recorder.finish();
+}
+
 // Copied videos: one with a key frame every 12 pictures, and one whose pictures are all key frames.
 TEST(RecordedPictures, FindsThePicturesOfCopiedVideos) {
   for (const auto& [name, code] :
        std::map<std::string, std::string>{{"a.mp4", "mp4v"}, {"b.avi", "MJPG"}, {"c.mkv", "mp4v"}}) {
     SCOPED_TRACE(name);
     const test::TemporaryFolder folder;
-    const fs::path file = folder / name;
-    {
-      cv::VideoWriter writer(file.string(), cv::VideoWriter::fourcc(code[0], code[1], code[2], code[3]), 60,
-                             {kWidth, kHeight});
-      ASSERT_TRUE(writer.isOpened());
-      for (int i = 0; i < kFrames; ++i) writer.write(numbered(i));
-    }
-    fs::create_directory(folder / "session");
-    {
-      SessionRecorder recorder(folder / "session", test::session_header(), test::scripted_options());
-      for (int i = 0; i < kFrames; ++i) recorder.append(test::frame_result(i));
-      recorder.copy_video(file);
-      recorder.finish();
-    }
+    ASSERT_NO_FATAL_FAILURE(copy_numbered_video(folder / name, code, folder / "session"));
     expect_every_picture(folder / "session", kFrames);
   }
 }
@@ -131,20 +133,8 @@ TEST(RecordedPictures, FindsThePicturesOfCopiedVideos) {
 // that was ended goes on where it was.
 TEST(RecordedPictures, NamesWhatIsPassedInACopiedVideo) {
   const test::TemporaryFolder folder;
-  {
-    // A key frame every 12 pictures.
-    cv::VideoWriter writer((folder / "a.mp4").string(), cv::VideoWriter::fourcc('m', 'p', '4', 'v'), 60,
-                           {kWidth, kHeight});
-    ASSERT_TRUE(writer.isOpened());
-    for (int i = 0; i < kFrames; ++i) writer.write(numbered(i));
-  }
-  fs::create_directory(folder / "session");
-  {
-    SessionRecorder recorder(folder / "session", test::session_header(), test::scripted_options());
-    for (int i = 0; i < kFrames; ++i) recorder.append(test::frame_result(i));
-    recorder.copy_video(folder / "a.mp4");
-    recorder.finish();
-  }
+  // A key frame every 12 pictures.
+  ASSERT_NO_FATAL_FAILURE(copy_numbered_video(folder / "a.mp4", "mp4v", folder / "session"));
   RecordedPictures pictures(read_overview(folder / "session"));
   constexpr int kLeftAfter = 3, kWanted = 95;  // a key frame is 84
   std::vector<int> passed;

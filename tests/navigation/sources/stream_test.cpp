@@ -98,6 +98,13 @@ void expect_live(FrameSource& source, camera::CaptureClock clock) {
   EXPECT_LT(age_s(*frames.back()), 1);
 }
 
+// At most 20 s.
+template <typename Condition>
+bool waits_for(const Condition& condition) {
+  for (int i = 0; i < 2000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  return condition();
+}
+
 TEST(Stream, IsReadFromAUdpPort) {
   const std::string address = "udp://127.0.0.1:" + port(0);
   const Sender sender(address, "320x240");
@@ -139,10 +146,6 @@ TEST(Stream, AnotherSizeIsToldAndPassedOver) {
   std::thread reader([&] {
     while (const camera::FramePtr frame = source->next()) wrong_size += frame->width != 320 ? 1 : 0;
   });
-  const auto waits_for = [](const auto& condition) {
-    for (int i = 0; i < 2000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    return condition();
-  };
   sender.reset();
   sender = std::make_unique<Sender>(address, "640x480");
   EXPECT_TRUE(waits_for([&] { return line->trouble().find("640 x 480 now") != std::string::npos; }))
@@ -170,16 +173,12 @@ TEST(Stream, WithoutAKeyFrameIsToldAndTakenUpWithTheNext) {
   sender.reset();
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));  // broken off: a decoder begins anew
   sender = std::make_unique<Sender>(address, "320x240", KeyFrames::LeftOut);
-  const auto waits_until = [&](const auto& condition) {
-    for (int i = 0; i < 2000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    return condition();
-  };
-  EXPECT_TRUE(waits_until([&] { return line->trouble().find("without a key frame") != std::string::npos; }))
+  EXPECT_TRUE(waits_for([&] { return line->trouble().find("without a key frame") != std::string::npos; }))
       << line->trouble();
   const int before = count;
   sender = nullptr;
   sender = std::make_unique<Sender>(address, "320x240");
-  EXPECT_TRUE(waits_until([&] { return count > before && line->trouble().empty(); })) << line->trouble();
+  EXPECT_TRUE(waits_for([&] { return count > before && line->trouble().empty(); })) << line->trouble();
   sender = nullptr;
   sender = std::make_unique<Sender>(address, "320x240", KeyFrames::LeftOut);
   std::this_thread::sleep_for(std::chrono::seconds(2));
