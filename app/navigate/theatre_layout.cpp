@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/widgets/two_screens.h"
+
 namespace arthronaut::navigate {
 
 TheatreLayout theatre_layout(const widgets::Rect& area, const TheatreLayoutOptions& options) {
@@ -12,12 +14,15 @@ TheatreLayout theatre_layout(const widgets::Rect& area, const TheatreLayoutOptio
   if (options.has_buttons) layout.buttons = rest.cut_bottom(50 * options.scale, gap);
   // A letter is about half as wide as its line is high.
   const float least_column = kColumnLetters * 0.53F * afar;
-  const float side =
-      std::floor(std::min(rest.height, std::max(rest.width - gap - least_column, rest.width * 0.4F)));
-  widgets::Rect left = rest.cut_left(side, gap);
+  const bool is_two = widgets::is_two_screens(area.width, area.height);
+  // Of two screens one is the picture's; as far from the seam as from the edge.
+  const float widest =
+      is_two ? (rest.width - 2 * gap) / 2 : std::max(rest.width - gap - least_column, rest.width * 0.4F);
+  const float side = std::floor(std::min(rest.height, widest));
+  widgets::Rect left = is_two ? rest.cut_left(widest, 2 * gap) : rest.cut_left(side, gap);
   const float below = left.height - side;
-  const bool is_tall = below > 5 * afar;  // as a screen of 4:3 is
-  layout.video = {left.x, is_tall ? left.y : left.y + below / 2, side, side};
+  const bool is_tall = !is_two && below > 5 * afar;  // as a screen of 4:3 is
+  layout.video = {left.x + (left.width - side) / 2, is_tall ? left.y : left.y + below / 2, side, side};
 
   if (options.is_whole_window) layout.header = rest.cut_top(1.2F * afar + 30 * options.scale, gap);
   layout.rail = rest.cut_top(1.25F * afar + 32 * options.scale, gap);

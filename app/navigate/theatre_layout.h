@@ -1,5 +1,6 @@
 // How the theatre screen is cut up: the picture as large as the window allows, everything that is read from
-// afar in one column beside it. Pure; works for 16:9, 16:10, 4:3 and 4K alike.
+// afar in one column beside it. Pure; works for 16:9, 16:10, 4:3 and 4K alike. Across two screens the picture
+// has the left one and the column the right one; nothing lies on the seam.
 #pragma once
 
 #include "app/widgets/layout.h"

@@ -7,13 +7,39 @@
 #include <backends/imgui_impl_opengl3.h>
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "app/widgets/key_labels.h"
 #include "app/widgets/key_queue.h"
+#include "app/widgets/two_screens.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::widgets {
+
+namespace {
+
+// The one that the user calls the first stands first.
+std::vector<ScreenArea> connected_screens() {
+  std::vector<ScreenArea> screens;
+  int count = 0;
+  GLFWmonitor** const monitors = glfwGetMonitors(&count);
+  for (int i = 0; i < count; ++i) {
+    const GLFWvidmode* const mode = glfwGetVideoMode(monitors[i]);
+    if (mode == nullptr) continue;
+    ScreenArea area{0, 0, mode->width, mode->height};
+    glfwGetMonitorPos(monitors[i], &area.x, &area.y);
+    screens.push_back(area);
+  }
+  return screens;
+}
+
+void put_window(GLFWwindow* window, const ScreenArea& area) {
+  glfwSetWindowPos(window, area.x, area.y);
+  glfwSetWindowSize(window, area.width, area.height);
+}
+
+}  // namespace
 
 struct GraphicsWindow::State {
   GLFWwindow* window = nullptr;
@@ -25,6 +51,7 @@ struct GraphicsWindow::State {
   std::vector<std::filesystem::path> dropped;
   double diagonal_mm = 0;
   int frames_to_hold = 0;
+  std::optional<ScreenArea> on_one_screen;  // where it was, while it covers two
 
   static State& of(GLFWwindow* window) { return *static_cast<State*>(glfwGetWindowUserPointer(window)); }
   static void on_key(GLFWwindow* window, int key, int scancode, int action, int mods) {
@@ -183,6 +210,29 @@ void GraphicsWindow::end_frame() {
   glClear(GL_COLOR_BUFFER_BIT);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   glfwSwapBuffers(state_->window);
+}
+
+bool GraphicsWindow::can_cover_two() { return across_two(connected_screens()).has_value(); }
+bool GraphicsWindow::covers_two() const { return state_->on_one_screen.has_value(); }
+
+void GraphicsWindow::cover_two(bool covers) {
+  State& s = *state_;
+  if (covers == covers_two()) return;
+  if (!covers) {
+    glfwSetWindowAttrib(s.window, GLFW_DECORATED, GLFW_TRUE);
+    put_window(s.window, *std::exchange(s.on_one_screen, std::nullopt));
+    glfwMaximizeWindow(s.window);
+    return;
+  }
+  const std::optional<ScreenArea> area = across_two(connected_screens());
+  if (!area) return;
+  glfwRestoreWindow(s.window);  // a maximized one is kept on its screen
+  ScreenArea before;
+  glfwGetWindowPos(s.window, &before.x, &before.y);
+  glfwGetWindowSize(s.window, &before.width, &before.height);
+  s.on_one_screen = before;
+  glfwSetWindowAttrib(s.window, GLFW_DECORATED, GLFW_FALSE);
+  put_window(s.window, *area);
 }
 
 void GraphicsWindow::await_text_field() {

@@ -44,6 +44,11 @@ class GraphicsWindow {
   void keep_open();  // takes back that it should close
   void make_current() const;
   [[nodiscard]] Screen screen() const;
+  // Across two screens that stand side by side, or back where it was. Without two such screens
+  // can_cover_two() says no, and cover_two(true) does nothing. A window manager may refuse.
+  [[nodiscard]] static bool can_cover_two();
+  void cover_two(bool covers);
+  [[nodiscard]] bool covers_two() const;
   [[nodiscard]] const Theme& theme() const;
   [[nodiscard]] static double now_s();
   // From any thread: ends the wait in begin_frame().

@@ -1,9 +1,11 @@
-// Keys for what leaves the screen as a picture.
+// Keys for where the screen is shown: on two screens, as a picture, as a video, as a stream.
 #include <GLFW/glfw3.h>
 
 #include "app/window/workstation_window.h"
 
 namespace arthronaut::window {
+
+using widgets::GraphicsWindow;
 
 namespace {
 
@@ -17,6 +19,11 @@ std::string refusal_to_keep(const open_case::CaseOpening* opened) {
 
 void WorkstationWindow::add_screen_actions() {
   const auto folder = [this] { return case_ != nullptr ? case_->folder() : std::filesystem::path(); };
+  actions_.add(
+      {"app.two_screens", "Two screens",
+       "The window across two screens that stand side by side: in theatre the video has one of them",
+       GLFW_KEY_F11, 0, false, [this] { return window_.covers_two() || GraphicsWindow::can_cover_two(); },
+       [this] { return window_.covers_two(); }, [this] { window_.cover_two(!window_.covers_two()); }});
   actions_.add({"app.screenshot",
                 "Screenshot",
                 "What the screen shows as a picture in the case, with the patient's name if it shows it",

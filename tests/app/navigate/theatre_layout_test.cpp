@@ -20,13 +20,16 @@ struct Shape {
   int width, height;
   double diagonal_mm = 0;  // 0: as a 27-inch one
 };
-constexpr std::array<Shape, 7> kShapes{Shape{"16:9", 1920, 1080},
-                                       {"16:9 of 24 inches", 1920, 1080, 610},
-                                       {"16:9 small", 1280, 720},
-                                       {"16:10", 1920, 1200},
-                                       {"4:3", 1600, 1200},
-                                       {"4K", 3840, 2160},
-                                       {"4K of 55 inches", 3840, 2160, 1397}};
+constexpr std::array<Shape, 10> kShapes{Shape{"16:9", 1920, 1080},
+                                        {"16:9 of 24 inches", 1920, 1080, 610},
+                                        {"16:9 small", 1280, 720},
+                                        {"16:10", 1920, 1200},
+                                        {"4:3", 1600, 1200},
+                                        {"4K", 3840, 2160},
+                                        {"4K of 55 inches", 3840, 2160, 1397},
+                                        {"two of 16:9", 3840, 1080},
+                                        {"two of 4:3", 3200, 1200},
+                                        {"two of 4K", 7680, 2160}};
 
 // The theme as a window of this shape has it.
 struct Screen {
@@ -106,6 +109,23 @@ TEST(TheatreLayout, ThePictureIsAsLargeAsItCanBe) {
     EXPECT_GE(video.width, 0.9F * std::min(screen.area.height, screen.area.width - column));
     const bool is_wide = std::string(shape.name) == "16:9";
     EXPECT_GT(video.width, is_wide ? 0.95F * screen.area.height : 0);
+  }
+}
+
+TEST(TheatreLayout, AcrossTwoScreensNothingLiesOnTheSeam) {
+  for (const Shape& shape : kShapes) {
+    if (std::string(shape.name).rfind("two", 0) != 0) continue;
+    for (const bool guides : {false, true}) {
+      SCOPED_TRACE(std::string(shape.name) + (guides ? ", guides" : ", registers"));
+      const Screen screen(shape);
+      const TheatreLayout l = screen.layout(guides);
+      const float seam = static_cast<float>(shape.width) / 2;
+      EXPECT_LT(l.video.x + l.video.width, seam);
+      EXPECT_NEAR(l.video.x + l.video.width / 2, seam / 2, 12 * screen.theme.scale)
+          << "in the middle of its screen";
+      for (const Rect& part : {l.header, l.rail, l.words, l.block, l.main, l.scene, l.states})
+        EXPECT_GT(part.x, seam);
+    }
   }
 }
 
