@@ -59,13 +59,15 @@ CaseOpening::CaseOpening(const std::filesystem::path& folder, std::function<void
 
 CaseOpening::CaseOpening(CaseOpening& before, std::function<void()> on_end) {
   open_.lock = std::move(before.open_.lock);
-  opening_ = std::async(std::launch::async, [folder = before.folder(), on_end = std::move(on_end)] {
+  const bool is_ours = open_.lock.is_held();
+  opening_ = std::async(std::launch::async, [folder = before.folder(), is_ours, on_end = std::move(on_end)] {
     const struct AtEnd {
       const std::function<void()>& call;
       ~AtEnd() { call(); }
     } at_end{on_end};
     OpenedCase opened;
     opened.folder = folder;
+    if (!is_ours) opened.lock = cases::CaseLock(folder);  // read-only, unless it has become free
     load(opened);
     return opened;
   });

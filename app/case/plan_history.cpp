@@ -178,7 +178,10 @@ void PlanHistory::look_at_disk(double now_s) {
   std::error_code error;
   if (!std::filesystem::is_directory(case_folder_, error))
     return;  // one that is gone is told by the next save
-  if (cases::plan_version(case_folder_) != version_) set_conflict();
+  try {
+    if (cases::plan_version(case_folder_) != version_) set_conflict();
+  } catch (const std::runtime_error&) {  // so is one that cannot be read: a share that is away for a moment
+  }
 }
 
 void PlanHistory::set_conflict() {
@@ -200,6 +203,8 @@ void PlanHistory::take_theirs() {
     status_.save = PlanStatus::Save::Saved;
     status_.text = "as the other program saved it";
     describe();
+    // What is no plan could not be saved beside the other one.
+    if (!is_saved_beside_plan(steps_.back().after)) save();
   } catch (const std::exception& error) {  // a file of another program: whatever is wrong with it is said
     status_.text = std::string("the other program's plan cannot be read: ") + error.what();
   }
@@ -208,9 +213,19 @@ void PlanHistory::take_theirs() {
 void PlanHistory::keep_ours() {
   if (!is_in_conflict()) return;
   is_moving_ = false;
-  version_ = cases::plan_version(case_folder_);
+  try {
+    version_ = cases::plan_version(case_folder_);
+  } catch (const std::runtime_error& error) {
+    status_.text = std::string("the other program's plan cannot be read: ") + error.what();
+    return;
+  }
   status_.save = PlanStatus::Save::NotYet;
   save();
+}
+
+bool PlanHistory::is_saved_beside_plan(const State& now) const {
+  return now.measurements == saved_.measurements && now.landmarks == saved_.landmarks &&
+         now.landmark_states == saved_.landmark_states;
 }
 
 void PlanHistory::save() {
@@ -233,6 +248,8 @@ void PlanHistory::save() {
     status_.save = PlanStatus::Save::Saved;
     status_.text = "saved at " + clock_text();
   } catch (const IoError& error) {
+    fail(error);
+  } catch (const std::filesystem::filesystem_error& error) {
     fail(error);
   } catch (const InvalidInput& error) {  // another program has written it, or the folder is gone
     std::error_code none;

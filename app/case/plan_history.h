@@ -81,6 +81,7 @@ class PlanHistory {
   };
   [[nodiscard]] State state() const;
   void put(const State& state);
+  [[nodiscard]] bool is_saved_beside_plan(const State& now) const;
   // Before and after a change: begins a step, or goes on with the one that is moving.
   void begin(const std::string& what, bool continues);
   void moved(double now_s);

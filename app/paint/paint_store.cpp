@@ -14,6 +14,8 @@ struct Stopped {};
 
 // A hand that draws one stroke after the other is not waited for longer than it pauses.
 constexpr double kRest_s = 0.4;
+// A disk that was full is asked again.
+constexpr double kTryAgain_s = 5;
 
 }  // namespace
 
@@ -127,12 +129,18 @@ void PaintStore::post(const painting::Painting& painting) {
 
 void PaintStore::keep(const painting::Painting& painting, double now_s) {
   if (is_read_only_ || saver_ == nullptr) return;
-  if (const auto saved = saver_->latest(); saved != nullptr) failure_ = saved->failure;
+  const auto saved = saver_->latest();
+  if (saved != nullptr) failure_ = saved->failure;
   if (painting.revision() != seen_) {
     seen_ = painting.revision();
     changed_at_s_ = now_s;
   }
-  if (seen_ != posted_ && now_s - changed_at_s_ >= kRest_s) post(painting);
+  const double rests_s = now_s - changed_at_s_;
+  if (seen_ != posted_ && rests_s >= kRest_s) return post(painting);
+  if (saved == nullptr || saved->revision != posted_ || saved->failure.empty() || rests_s < kTryAgain_s)
+    return;
+  changed_at_s_ = now_s;
+  post(painting);
 }
 
 void PaintStore::keep_now(const painting::Painting& painting) {
@@ -140,6 +148,10 @@ void PaintStore::keep_now(const painting::Painting& painting) {
   if (painting.revision() != posted_) post(painting);
   seen_ = posted_;
   saver_->finish();
+  if (!is_saved(painting)) {  // what could not be written before may be possible now
+    post(painting);
+    saver_->finish();
+  }
   if (const auto saved = saver_->latest(); saved != nullptr) failure_ = saved->failure;
 }
 

@@ -1,5 +1,6 @@
 // The images that are painted in and what is painted of them, from the case's folder and back into it.
-// Loading and saving are on threads of their own; the window never waits, but at its end.
+// Loading and saving are on threads of their own; the window waits for them only in keep_now(), and in open()
+// for what is still being loaded.
 #pragma once
 
 #include <atomic>
@@ -60,7 +61,8 @@ class PaintStore {
   // The case has the bones that are painted from now on.
   void note_made(const painting::Painting& painting);
 
-  // For every frame: saves what has changed when the hand has rested for a moment.
+  // For every frame: saves what has changed when the hand has rested for a moment; what could not be saved,
+  // every few seconds again.
   void keep(const painting::Painting& painting, double now_s);
   // Saves what has changed, and waits for that.
   void keep_now(const painting::Painting& painting);

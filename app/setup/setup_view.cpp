@@ -176,7 +176,7 @@ void SetupView::add_actions(widgets::Actions& actions) {
                {"end the source and choose another", has_run}});
   add("setup.path", "Type a source",
       "The path of a video or of a folder of pictures, the address of a camera or of a stream, or: simulator",
-      GLFW_KEY_P, [this] { typed_.is_open = typed_.wants_focus = true; });
+      GLFW_KEY_P, [this] { typed_.is_open = typed_.wants_focus = true; }, {"take another source", has_run});
   add("setup.again", "Start again", "From the first picture; what was adopted stays", GLFW_KEY_R,
       [this] { start(); }, {"start again", has_run});
   actions.add({"setup.stop",

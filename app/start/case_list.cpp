@@ -31,7 +31,17 @@ void CaseList::enter() {
   filter();
 }
 
-void CaseList::leave() { pictures_.finish(); }
+void CaseList::leave() {
+  keep_note();
+  pictures_.finish();
+}
+
+void CaseList::keep_note() {
+  if (view_.note_of.empty() || view_.note == view_.note_before) return;
+  if (!library_.save_note(view_.note_of, view_.note, view_.note_before)) return;
+  view_.note_before = view_.note;
+  filter();
+}
 
 void CaseList::tick() {
   if (library_.poll()) filter();
@@ -141,7 +151,8 @@ void CaseList::add_actions(widgets::Actions& actions, const std::function<bool()
                GLFW_KEY_DELETE,
                0,
                false,
-               [this, lists] { return lists() && selected() != nullptr && !selected()->is_there; },
+               [this, lists] { // A look that goes on would bring it back.
+                 return lists() && !library_.is_looking() && selected() != nullptr && !selected()->is_there; },
                {},
                [this] {
                  (void)library_.forget(fs::path(view_.selected));

@@ -26,7 +26,7 @@ class CaseList {
   // All start with "start."; is_shown: whether this page is in front.
   void add_actions(widgets::Actions& actions, const std::function<bool()>& is_shown);
   void enter();  // comes to the front: the folders are looked at again
-  void leave();  // nothing is drawn off-screen any more
+  void leave();  // a note that is being written is kept, nothing is drawn off-screen any more
   void tick();
   void draw(const widgets::Ui& ui, const widgets::Rect& area);
 
@@ -56,6 +56,7 @@ class CaseList {
     bool with_simulated = false;
   };
   void filter();
+  void keep_note();  // where it was changed
   void add_filter_actions(widgets::Actions& actions, const std::function<bool()>& is_shown);
   [[nodiscard]] const library::CaseRecord* selected() const;
   // A note that was changed and not yet kept.

@@ -294,11 +294,7 @@ void CaseList::draw_note(const widgets::Ui& ui, const CaseRecord& record) {
   // Not edited: what somebody else has written meanwhile is shown.
   if (!ImGui::IsItemActive() && !was_left && is_same && record.note != view_.note_before)
     view_.note = view_.note_before = record.note;
-  if (!was_left || view_.note == view_.note_before) return;
-  if (library_.save_note(std::filesystem::path(view_.note_of), view_.note, view_.note_before)) {
-    view_.note_before = view_.note;
-    filter();
-  }
+  if (was_left) keep_note();
 }
 
 }  // namespace arthronaut::start

@@ -7,6 +7,7 @@
 
 #include "planning/bones/mesh_file.h"
 #include "planning/files/format.h"
+#include "planning/library/folder_search.h"
 
 namespace arthronaut::start {
 
@@ -34,11 +35,6 @@ std::string size_text(std::uintmax_t bytes) {
 
 }  // namespace
 
-bool is_case_folder(const fs::path& folder) {
-  std::error_code error;
-  return fs::is_regular_file(folder / "case.json", error);
-}
-
 bool is_image_name(const fs::path& file) {
   if (lower(file.filename().string()) == "dicomdir") return true;
   return ends_with_one(file, std::array<std::string_view, 9>{".nii", ".nii.gz", ".nrrd", ".nhdr", ".mha",
@@ -63,7 +59,7 @@ FolderListing list_folder(const fs::path& folder) {
     std::error_code none;
     FolderEntry entry{FolderEntry::Kind::Folder, it->path(), name, ""};
     if (it->is_directory(none)) {
-      if (is_case_folder(it->path())) entry.kind = FolderEntry::Kind::Case;
+      if (library::is_case_folder(it->path())) entry.kind = FolderEntry::Kind::Case;
     } else if (bones::is_mesh_file(name) || is_image_name(name)) {
       entry.kind = bones::is_mesh_file(name) ? FolderEntry::Kind::Mesh : FolderEntry::Kind::Image;
       entry.detail = size_text(it->file_size(none));

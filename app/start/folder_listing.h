@@ -17,7 +17,7 @@ struct FolderEntry {
   } kind = Kind::Folder;
   std::filesystem::path path;
   std::string name;
-  std::string detail;  // size of a file, date of a case
+  std::string detail;  // size of a file
 };
 
 struct FolderListing {
@@ -30,7 +30,6 @@ struct FolderListing {
 // Hidden names are left out. Never throws.
 [[nodiscard]] FolderListing list_folder(const std::filesystem::path& folder);
 
-[[nodiscard]] bool is_case_folder(const std::filesystem::path& folder);
 // By extension: a volume, or a DICOM file or directory.
 [[nodiscard]] bool is_image_name(const std::filesystem::path& file);
 

@@ -110,7 +110,6 @@ void ImportWork::start_next() {
   const ImportSource& source = sources_.sources.at(wishes_.sources[next_]);
   importing::BoneImportOptions options;
   options.side = wishes_.side;
-  options.threshold = wishes_.threshold;
   if (source.series) options.series = source.series->uid;
   options.kind = source.bone;
   options.images_only = wishes_.images_only;
@@ -146,7 +145,12 @@ void ImportWork::take_bones() {
       state_ = State::Choosing;
       return;
     }
-    if (!result_.side) result_.side = made.side;
+    if (!result_.side) {  // with how it is known
+      result_.side = made.side;
+      result_.side_was_guessed = made.side_was_guessed;
+      result_.side_was_seen = made.side_was_seen;
+      result_.side_is_by_shape = made.side_is_by_shape;
+    }
     result_.bones.insert(result_.bones.end(), made.bones.begin(), made.bones.end());
     result_.lines.insert(result_.lines.end(), made.lines.begin(), made.lines.end());
   }
@@ -179,7 +183,6 @@ void ImportWork::save(const fs::path& folder, const std::string& name) {
   failure_.clear();
   folder_ = folder;
   importing::BoneImport import = result_;
-  if (!wishes_.keeps_identity) import.forget_patient();
   saving_ =
       std::async(std::launch::async, [this, folder, name, import = std::move(import), root = sources_.root] {
         const struct AtEnd {

@@ -28,10 +28,8 @@ namespace arthronaut::start {
 struct ImportWishes {
   std::vector<std::size_t> sources;      // of the list; one volume, or meshes of different bones
   std::optional<bones::Side> side = {};  // nullopt: as names and images tell; asked for where they do not
-  std::optional<double> threshold = {};
   // The images alone, for a case in which the bones are painted; of a grey volume.
   bool images_only = false;
-  bool keeps_identity = true;  // whose bones they are, in identity.json and study.json
 };
 
 class ImportWork {

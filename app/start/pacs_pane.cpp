@@ -35,6 +35,15 @@ void PacsPane::enter(const SendableCase& sendable) {
   if (peers_.size() == 1 && !lights_.contains(peers_.front().name)) echo();
 }
 
+PacsPane::~PacsPane() {
+  work_.end();
+  forget_outgoing();
+}
+
+void PacsPane::leave() {
+  if (!work_.is_busy()) forget_outgoing();
+}
+
 const PacsPeer* PacsPane::peer() const { return view_.peer < peers_.size() ? &peers_[view_.peer] : nullptr; }
 
 bool PacsPane::has_running_work() const {
@@ -113,6 +122,13 @@ bool PacsPane::go_back() {
   return std::exchange(view_.page, Page::Search) != Page::Search;
 }
 
+// What was found is of one PACS.
+void PacsPane::forget_found() {
+  found_ = {};
+  rows_.clear();
+  view_.row = 0;
+}
+
 // It names the patient.
 void PacsPane::forget_outgoing() {
   std::error_code ignored;
@@ -130,8 +146,7 @@ void PacsPane::echo() {
 
 void PacsPane::find() {
   if (peer() == nullptr || work_.is_busy()) return;
-  found_ = {};
-  rows_.clear();
+  forget_found();
   work_.start({.kind = Kind::Find,
                .peer = *peer(),
                .keys = {.patient_id = view_.patient_id,
@@ -167,6 +182,7 @@ void PacsPane::keep_peer() {
     lights_.erase(at->name);
     peers_ = std::move(peers);
     view_.peer = row;
+    forget_found();  // of another, or of another address
     view_.page = Page::Search;
     view_.failure.clear();
     echo();
@@ -182,6 +198,7 @@ void PacsPane::remove_peer() {
     save_pacs_peers(pacs_peers_file(), peers);
     peers_ = std::move(peers);
     view_.peer = 0;
+    forget_found();
     view_.failure.clear();
   } catch (const std::exception& error) {
     view_.failure = error.what();
@@ -266,8 +283,7 @@ void PacsPane::add_peer_actions(widgets::Actions& actions, const std::function<b
                {},
                [this] {
                  view_.peer = (view_.peer + 1) % peers_.size();
-                 found_ = {};
-                 rows_.clear();
+                 forget_found();
                  if (!lights_.contains(peer()->name)) echo();
                }});
   const auto edit = [this](bool is_new) {

@@ -25,9 +25,14 @@ class PacsPane {
   // look_into: hands a fetched folder to the import.
   PacsPane(std::function<void(const std::filesystem::path&)> look_into, std::function<void()> wake);
 
+  ~PacsPane();  // stops what runs; what was written to be sent is gone with it
+  PacsPane(const PacsPane&) = delete;
+  PacsPane& operator=(const PacsPane&) = delete;
+
   // All start with "start.pacs."; is_shown: whether this page is in front.
   void add_actions(widgets::Actions& actions, const std::function<bool()>& is_shown);
   void enter(const SendableCase& sendable);  // comes to the front; what runs goes on
+  void leave();  // something else does; what was written to be sent goes, unless it is being sent
   void tick(bool is_shown);
   void draw(const widgets::Ui& ui, const widgets::Rect& area);
 
@@ -73,6 +78,7 @@ class PacsPane {
   void fetch();
   void keep_peer();
   void remove_peer();
+  void forget_found();
   void forget_outgoing();
   void write_results();
   void take(const PacsNews& news, bool is_shown);

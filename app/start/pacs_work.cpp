@@ -157,6 +157,11 @@ void PacsWork::start(PacsJob job) {
 
 void PacsWork::cancel() { stop_.request_stop(); }
 
+void PacsWork::end() {
+  cancel();
+  worker_.finish();
+}
+
 bool PacsWork::poll() {
   const auto latest = worker_.latest();
   if (latest == taken_) return false;

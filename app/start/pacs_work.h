@@ -56,6 +56,7 @@ class PacsWork {
 
   void start(PacsJob job);  // nothing while one runs
   void cancel();            // asked for: it ends within a second or two
+  void end();               // the same, and waits for it
   // Takes over what the worker has published; true when it is new.
   bool poll();
   [[nodiscard]] const PacsNews& news() const { return *news_; }

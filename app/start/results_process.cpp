@@ -71,6 +71,7 @@ ResultsOutcome write_dicom_results(const fs::path& program, const fs::path& case
       ::kill(process, SIGKILL);
       ::waitpid(process, nullptr, 0);
       fs::remove_all(folder, error);
+      fs::remove(log, error);
       return {ResultsOutcome::End::Stopped, "Stopped"};
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(30));

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "planning/files/utc_clock.h"
+#include "planning/library/folder_search.h"
 
 namespace arthronaut::start {
 
@@ -41,7 +42,10 @@ void StartView::enter(bool can_close) {
   }
 }
 
-void StartView::leave() { cases_.leave(); }
+void StartView::leave() {
+  cases_.leave();
+  pacs_.leave();
+}
 
 void StartView::say_side(bones::Side side) {
   state_.side = side;
@@ -50,8 +54,9 @@ void StartView::say_side(bones::Side side) {
 
 void StartView::take(const fs::path& path) {
   std::error_code error;
-  if (is_case_folder(path)) return open_(path);
+  if (library::is_case_folder(path)) return open_(path);
   if (path.filename() == "case.json" && fs::exists(path, error)) return open_(path.parent_path());
+  leave();
   state_.page = Page::Import;
   state_.selected = 0;
   state_.ticked.clear();

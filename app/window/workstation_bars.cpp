@@ -69,7 +69,9 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
 
 std::pair<std::string, bool> WorkstationWindow::status_words() {
   const std::string standstill = heartbeat_.words();
+  const std::string fault = fault_.words(widgets::GraphicsWindow::now_s());
   const std::string notice = !failure_.empty()                ? failure_
+                             : !fault.empty()                 ? fault
                              : !standstill.empty()            ? standstill
                              : shows_start() || shows_paint() ? std::string()
                                                               : shown().notice();

@@ -1,9 +1,11 @@
 #include "app/window/workstation_window.h"
 
 #include <GLFW/glfw3.h>
+#include <imgui_internal.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "app/library/workstation_library.h"
@@ -57,13 +59,13 @@ void WorkstationWindow::open(const std::filesystem::path& folder) {
     return;
   }
   failure_.clear();
-  is_reopening_ = false;
+  lender_ = nullptr;
   const auto wake = [] { GraphicsWindow::wake(); };
   // One that the modes still know is this program's already.
-  opening_ =
-      known_to_modes_ != nullptr && std::filesystem::equivalent(wanted, known_to_modes_->folder(), error)
-          ? std::make_unique<open_case::CaseOpening>(*known_to_modes_, wake)
-          : std::make_unique<open_case::CaseOpening>(folder, wake);
+  if (known_to_modes_ != nullptr && std::filesystem::equivalent(wanted, known_to_modes_->folder(), error))
+    lender_ = known_to_modes_.get();
+  opening_ = lender_ != nullptr ? std::make_unique<open_case::CaseOpening>(*lender_, wake)
+                                : std::make_unique<open_case::CaseOpening>(folder, wake);
 }
 
 void WorkstationWindow::add_actions() {
@@ -72,12 +74,18 @@ void WorkstationWindow::add_actions() {
     const mode::ModeTitle title = modes_[i]->title();
     actions_.add(
         {std::string(title.action), std::string(title.label), std::string(title.tooltip), title.key, 0, false,
-         [this, is_open, i] { return is_open() && (!case_->is_read_only() || modes_[i]->works_read_only()); },
+         [this, is_open, i] {
+           // What writes the bones, or is about to be another case, is left by nothing but its own end.
+           if (!is_open() || opening_ != nullptr || paint_.has_running_work()) return false;
+           return !case_->is_read_only() || modes_[i]->works_read_only();
+         },
          [this, i] { return shown_ == i && !shows_start() && !shows_paint(); }, [this, i] { show(i); }});
   }
   actions_.add({"app.cases", "Cases",
                 "Open another case, or import one; drop a folder on the window for the same", GLFW_KEY_F5, 0,
-                false, [this] { return case_ != nullptr && !has_running_work() && opening_ == nullptr; },
+                false,
+                // An import that waits for an answer is here, and nowhere else.
+                [this] { return case_ != nullptr && !works_elsewhere() && opening_ == nullptr; },
                 [this] { return shows_start(); },
                 [this] {
                   if (shows_start_) return close_start();
@@ -126,6 +134,7 @@ void WorkstationWindow::run() {
     settle = woken && !modes_are_busy() ? kFramesAfterInput : std::max(settle - 1, 0);
   }
   shown().leave();
+  start_.leave();
   paint_.leave();
 }
 
@@ -142,13 +151,37 @@ bool WorkstationWindow::modes_are_busy() const {
 }
 
 bool WorkstationWindow::has_running_work() const {
-  return start_.has_running_work() || paint_.has_running_work() ||
+  return start_.has_running_work() || works_elsewhere();
+}
+
+bool WorkstationWindow::works_elsewhere() const {
+  return paint_.has_running_work() ||
          std::any_of(modes_.begin(), modes_.end(), [](const auto& mode) { return mode->has_running_work(); });
 }
 
 // poll -> queues and actions -> UI (with the scenes that are dirty) -> draw -> swap
 void WorkstationWindow::frame(double timeout_s) {
   window_.begin_frame(timeout_s);
+  try {
+    work();
+  } catch (const std::runtime_error& error) {
+    fault_.note(error.what(), GraphicsWindow::now_s());
+  }
+  const widgets::Ui ui{window_.theme(), actions_, log_, GraphicsWindow::now_s()};
+  heartbeat_.beat(ui.now_s, has_running_work());
+  watch_.frame_drawn(has_running_work());
+  try {
+    draw_screen(ui);
+  } catch (const std::runtime_error& error) {
+    fault_.note(error.what(), ui.now_s);
+    ImGui::ErrorCheckEndFrameRecover(nullptr);  // ends what was begun
+  }
+  actions_.advance(ui.now_s);  // after the buttons: what was let go in this frame is known
+  end_frame(ui.now_s);
+  log_.end_frame();
+}
+
+void WorkstationWindow::work() {
   take_dropped();
   start_.tick();
   take_opened_case();
@@ -157,13 +190,6 @@ void WorkstationWindow::frame(double timeout_s) {
   for (const auto& mode : modes_) mode->tick(GraphicsWindow::now_s());
   paint_.tick(GraphicsWindow::now_s());
   if (std::exchange(reopens_, false)) reopen();
-  const widgets::Ui ui{window_.theme(), actions_, log_, GraphicsWindow::now_s()};
-  heartbeat_.beat(ui.now_s, has_running_work());
-  watch_.frame_drawn(has_running_work());
-  draw_screen(ui);
-  actions_.advance(ui.now_s);  // after the buttons: what was let go in this frame is known
-  end_frame(ui.now_s);
-  log_.end_frame();
 }
 
 void WorkstationWindow::take_opened_case() {
@@ -172,7 +198,7 @@ void WorkstationWindow::take_opened_case() {
   if (!is_open && opening_->is_busy()) return;
   if (!is_open) {
     failure_ = opening_->failure();
-    if (is_reopening_) case_->keep_lock(*opening_);
+    if (lender_ != nullptr) lender_->keep_lock(*opening_);
     opening_.reset();
     return;
   }
@@ -186,13 +212,16 @@ void WorkstationWindow::take_opened_case() {
   }
   if (case_ == nullptr || case_->folder() != opening_->folder()) paint_.close();
   case_ = std::move(opening_);  // the one before is let go when no mode knows it any more
+  lender_ = nullptr;
   const cases::Case& knee = is_unpainted() ? *case_->unpainted() : model()->knee();
   if (is_unpainted()) paint_.open(knee, case_->folder(), case_->is_read_only());
   start::note_recent_case(
       start::recent_cases_file(),
       {case_->folder(), knee.name, std::string(bones::to_text(knee.side)), files::utc_now()});
   workstation_library::note_case(case_->folder());
+  start_.leave();  // it may have begun a picture since, and Plan draws from here on
   shows_start_ = shows_paint_ = false;
+  if (case_->is_read_only() && !shown().works_read_only()) shown_ = 0;
   if (!is_unpainted()) shown().enter();
 }
 
@@ -221,7 +250,7 @@ void WorkstationWindow::close_paint() {
 
 void WorkstationWindow::reopen() {
   if (opening_ != nullptr) return;
-  is_reopening_ = true;
+  lender_ = case_.get();
   opening_ = std::make_unique<open_case::CaseOpening>(*case_, [] { GraphicsWindow::wake(); });
 }
 
@@ -345,6 +374,7 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   log_.note_state("foot_switch", room_.devices());
   log_.note_state("standstill", heartbeat_.words());
   log_.note_state("screen_copy", copies_.words(ui.now_s));
+  log_.note_state("frame_fault", fault_.words(ui.now_s));
   log_.note_state("mode", shown().title().name);
   if (options_.list_widgets)
     for (const std::string& clash : widgets::key_clashes(actions_, action_prefixes()))

@@ -15,6 +15,7 @@
 #include "app/widgets/graphics_window.h"
 #include "app/widgets/heartbeat.h"
 #include "app/window/draw_watch.h"
+#include "app/window/frame_fault.h"
 #include "app/window/room.h"
 #include "app/window/workstation.h"
 
@@ -35,7 +36,9 @@ class WorkstationWindow {
   void add_actions();
   void add_screen_actions();
   void end_frame(double now_s);
+  // A frame whose work or drawing throws is broken off there, says why, and the next one follows.
   void frame(double timeout_s);
+  void work();  // what is done in a frame before it is drawn
   // Empty: the built-in case. The one that is open stays open until the other one is.
   void open(const std::filesystem::path& folder);
   void take_opened_case();
@@ -65,7 +68,8 @@ class WorkstationWindow {
   [[nodiscard]] std::pair<std::string, bool> status_words();
   [[nodiscard]] mode::Mode& shown() const { return *modes_[shown_]; }
   [[nodiscard]] bool modes_are_busy() const;    // in front or behind
-  [[nodiscard]] bool has_running_work() const;  // likewise
+  [[nodiscard]] bool has_running_work() const;  // likewise, and on the start
+  [[nodiscard]] bool works_elsewhere() const;   // than on the start
 
   WorkstationOptions options_;
   Room room_;
@@ -74,6 +78,7 @@ class WorkstationWindow {
   std::unique_ptr<open_case::CaseOpening> case_, opening_;
   // The last case with bones, which the modes know until the next one with bones; null while that is case_.
   std::unique_ptr<open_case::CaseOpening> known_to_modes_;
+  open_case::CaseOpening* lender_ = nullptr;  // one of these, whose lock opening_ has
   std::string failure_;  // why the last one could not be opened; empty when it could
   widgets::Actions actions_;
   widgets::WidgetLog log_;
@@ -82,11 +87,11 @@ class WorkstationWindow {
   std::size_t shown_ = 0;
   widgets::Heartbeat heartbeat_;
   DrawWatch watch_;
+  FrameFault fault_;
   screen_copy::ScreenCopies copies_;
   start::StartView start_;
   paint::PaintView paint_;
-  bool shows_keys_ = false, shows_start_ = false, shows_paint_ = false, reopens_ = false,
-       is_reopening_ = false, quits_ = false;
+  bool shows_keys_ = false, shows_start_ = false, shows_paint_ = false, reopens_ = false, quits_ = false;
 };
 
 }  // namespace arthronaut::window

@@ -1,8 +1,8 @@
 // The library: all cases that this workstation knows, with what is to be said of each.
 //
-//   library-3.sqlite    what is known of them (library_index.h): a cache, made anew when it is damaged or
-//   gone case_folders.json   which folders they are (known_folders.h) cases/              where imported
-//   cases go: whatever lies there is known without being added
+//   library-3.sqlite    what is known of them (library_index.h): a cache, made anew when damaged or gone
+//   case_folders.json   which folders they are (known_folders.h)
+//   cases/              where imported cases go: whatever lies there is known without being added
 //
 // All three in the user's data folder, which is his alone (0700, files 0600). The facts themselves, and notes
 // and thumbnails, are in the folders of the cases. A case whose folder is gone stays in the list as missing

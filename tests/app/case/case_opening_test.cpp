@@ -48,6 +48,33 @@ TEST(CaseOpening, SaysWhyACaseCannotBeOpened) {
   EXPECT_NE(opening.failure().find("absent.arthro"), std::string::npos) << opening.failure();
 }
 
+// Hazard 15: a case that is read-only stays so when it is opened again, and one that could not be opened again
+// is still held.
+TEST(CaseOpening, Hazard15OpeningAgainGivesNoRightToWrite) {
+  const test::TemporaryFolder folder;
+  cases::save_case(folder.path(),
+                   phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "test"));
+  CaseOpening first(folder.path(), [] {});
+  CaseOpening second(folder.path(), [] {});
+  ASSERT_EQ(take_until_done(first), 1);
+  ASSERT_EQ(take_until_done(second), 1);
+  CaseOpening& reader = first.is_read_only() ? first : second;
+  CaseOpening& writer = first.is_read_only() ? second : first;
+  CaseOpening read_again(reader, [] {});
+  EXPECT_EQ(take_until_done(read_again), 1);
+  EXPECT_TRUE(read_again.is_read_only());
+
+  const auto aside = folder.path() / "aside.json";
+  std::filesystem::rename(folder.path() / "case.json", aside);
+  CaseOpening in_vain(writer, [] {});
+  EXPECT_EQ(take_until_done(in_vain), 0);
+  writer.keep_lock(in_vain);
+  std::filesystem::rename(aside, folder.path() / "case.json");
+  CaseOpening third(folder.path(), [] {});
+  EXPECT_EQ(take_until_done(third), 1);
+  EXPECT_TRUE(third.is_read_only());
+}
+
 // Hazard 15: two windows on one case. The second one opens, read-only, and says who has it; when the first is
 // gone the next is free to write.
 TEST(CaseOpening, Hazard15TheSecondOpensReadOnlyAndSaysWhoHolds) {

@@ -308,5 +308,39 @@ TEST_F(PlanConflict, Hazard15ABrokenPlanOfAnotherProgramIsSaid) {
   EXPECT_EQ(saved_diameter_mm(), start_mm_);
 }
 
+// Hazard 15: what could not be saved while two plans stood against each other is saved with the choice.
+TEST_F(PlanConflict, Hazard15WhatWasMeasuredMeanwhileIsKeptWithTheirs) {
+  save_elsewhere(7.25);
+  history_.look_at_disk(10.0);
+  const cases::Measurement distance{{{0, 0, 0}, {3, 4, 0}}};
+  history_.apply_measurements({distance}, "Measure a distance");
+  ASSERT_TRUE(cases::load_measurements(folder_).empty());
+  history_.take_theirs();
+  EXPECT_EQ(history_.status().save, PlanStatus::Save::Saved);
+  EXPECT_EQ(cases::load_measurements(folder_), std::vector{distance});
+  EXPECT_EQ(saved_diameter_mm(), 7.25);
+}
+
+// A plan.json that cannot be looked at for a while ends nothing: not the frame, not the conflict.
+TEST_F(PlanConflict, APlanThatCannotBeReadForAMomentEndsNothing) {
+  const auto plan = folder_ / "plan.json", aside = folder_ / "aside.json";
+  std::filesystem::rename(plan, aside);
+  std::filesystem::create_symlink("plan.json", plan);  // leads to itself
+  EXPECT_NO_THROW(history_.look_at_disk(10.0));
+  EXPECT_FALSE(history_.is_in_conflict());
+  std::filesystem::rename(aside, plan);
+  save_elsewhere(7.25);
+  history_.look_at_disk(12.0);
+  ASSERT_TRUE(history_.is_in_conflict());
+  std::filesystem::rename(plan, aside);
+  std::filesystem::create_symlink("plan.json", plan);
+  EXPECT_NO_THROW(history_.keep_ours());
+  EXPECT_TRUE(history_.is_in_conflict());
+  EXPECT_NE(history_.status().text.find("plan.json"), std::string::npos) << history_.status().text;
+  std::filesystem::rename(aside, plan);
+  history_.keep_ours();
+  EXPECT_EQ(saved_diameter_mm(), start_mm_);
+}
+
 }  // namespace
 }  // namespace arthronaut::open_case

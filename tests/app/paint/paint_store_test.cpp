@@ -139,6 +139,34 @@ TEST_F(PaintStoreTest, WhatCannotBeReadIsSaidAndLeftAlone) {
   EXPECT_THAT(store.failure(), testing::HasSubstr("left alone"));
 }
 
+// A disk that was full and is not any more: at the end, and by itself after some seconds.
+TEST_F(PaintStoreTest, WhatCouldNotBeSavedIsSavedLater) {
+  const auto in_the_way = folder_ / "painting";
+  PaintStore store([] {});
+  auto painting = load(store);
+  ASSERT_TRUE(painting);
+  std::ofstream(in_the_way) << "no folder";
+  paint(*painting, 5);
+  store.keep_now(*painting);
+  EXPECT_FALSE(store.is_saved(*painting));
+  EXPECT_NE(store.failure(), "");
+  std::filesystem::remove(in_the_way);
+  store.keep_now(*painting);
+  EXPECT_TRUE(store.is_saved(*painting));
+  EXPECT_EQ(store.failure(), "");
+
+  std::filesystem::remove_all(in_the_way);
+  std::ofstream(in_the_way) << "no folder";
+  paint(*painting, 9);
+  store.keep_now(*painting);
+  ASSERT_FALSE(store.is_saved(*painting));
+  std::filesystem::remove(in_the_way);
+  store.keep(*painting, 100);
+  for (int i = 0; i < 4000 && !store.is_saved(*painting); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_TRUE(store.is_saved(*painting));
+}
+
 TEST_F(PaintStoreTest, AReadOnlyCaseIsNotWrittenInto) {
   PaintStore store([] {});
   auto painting = load(store, true);

@@ -95,6 +95,18 @@ TEST_F(ImportWorkTest, MeshesOfTwoSidesAreRefused) {
   EXPECT_NE(work_.failure().find("different sides"), std::string::npos) << work_.failure();
 }
 
+// The side that the second mesh's name tells is a guess as well as the first one's.
+TEST_F(ImportWorkTest, HowTheSideIsKnownComesWithIt) {
+  write_meshes("femur.stl", "tibia_left.stl");
+  work_.look_into(folder_.path());
+  ASSERT_TRUE(reach(State::Choosing));
+  work_.start({.sources = {0, 1}});
+  ASSERT_TRUE(reach(State::Asking)) << work_.failure();
+  if (work_.result().side_was_seen) GTEST_SKIP() << "the femur tells its side by itself";
+  EXPECT_EQ(work_.result().side, bones::Side::Left);
+  EXPECT_TRUE(work_.result().side_was_guessed);
+}
+
 // A file that is broken is refused with its reason, and something else can be chosen; a cancelled import
 // leaves nothing.
 TEST_F(ImportWorkTest, RefusalAndCancelLeadBackToTheChoice) {

@@ -2,7 +2,9 @@
 // made.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 #include "navigation/recording/session_marks.h"
 #include "planning/cases/case.h"
@@ -48,6 +50,26 @@ TEST_F(ReviewWindow, SaysThatARecordWasChanged) {
   app.press("F3");
   ASSERT_TRUE(app.wait_for_state("review_picture", "shown"));
   EXPECT_TRUE(app.wait_for_state("record", "broken"));
+}
+
+// A folder that cannot be looked into is a sentence on the screen; the workstation goes on.
+TEST_F(ReviewWindow, AFolderThatCannotBeReadEndsNothing) {
+  const VirtualDisplay display(1920, 1080);
+  RunningWorkstation app(display, folder_.path(), {case_folder_.string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  const auto sessions = case_folder_ / "sessions", aside = folder_ / "aside";
+  std::filesystem::rename(sessions, aside);
+  std::filesystem::create_symlink("sessions", sessions);  // leads to itself
+  app.press("F3");
+  ASSERT_TRUE(app.wait_for_state("mode", "review"));
+  for (int i = 0; i < 100 && app.state("frame_fault").empty(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_NE(app.state("frame_fault").find("sessions"), std::string::npos) << app.state("frame_fault");
+  std::filesystem::rename(aside, sessions);
+  app.press("F1");
+  ASSERT_TRUE(app.wait_for_state("mode", "plan"));
+  app.press("F3");
+  EXPECT_TRUE(app.wait_for_state("session", session_.filename().string()));
 }
 
 // Opened at the last moment with guidance; by keys to the beginning, to the alarm, a frame on; a mark with a
