@@ -36,10 +36,11 @@ struct OpenedCase {
 // reason. While it is open it is this program's to write, or read-only, and stays so.
 class CaseOpening {
  public:
-  // Opens the folder, see open_folder(). on_end is called from the other thread when that is done, well or not.
+  // Opens the folder, see open_folder(). on_end is called from the other thread when that is done, well or
+  // not.
   CaseOpening(const std::filesystem::path& folder, std::function<void()> on_end);
-  // The same case once more, since its bones are others now, or another was looked at meanwhile: the lock that
-  // `before` has goes over, and back again by keep_lock() when it cannot be opened.
+  // The same case once more, since its bones are others now, or another was looked at meanwhile: the lock
+  // that `before` has goes over, and back again by keep_lock() when it cannot be opened.
   CaseOpening(CaseOpening& before, std::function<void()> on_end);
   void keep_lock(CaseOpening& from) { open_.lock = std::move(from.open_.lock); }
   ~CaseOpening();  // waits for the end

@@ -41,7 +41,7 @@ TheatreLayout theatre_layout(const widgets::Rect& area, const TheatreLayoutOptio
     layout.scene = column;
     layout.main = rest;
   } else {
-    layout.scene = rest.cut_top(rest.height * 0.4F, gap);
+    layout.scene = is_two ? rest.cut_left(rest.width * 0.45F, gap) : rest.cut_top(rest.height * 0.4F, gap);
     layout.main = rest;
   }
   return layout;

@@ -35,7 +35,7 @@ class SetupView : public mode::Mode {
   [[nodiscard]] bool works_read_only() const override { return false; }  // what it finds goes into the case
   // Nothing of the case is read before enter().
   void case_opened(const mode::OpenCase& opened) override;
-  void enter() override;  // sees anew what the case and the machine have
+  void enter() override;  // sees anew what sources there are; the case's own files when it was opened
   void leave() override;  // cameras and files are let go, what was taken stays
   void add_actions(widgets::Actions& actions) override;
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const override;

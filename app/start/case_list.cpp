@@ -151,8 +151,9 @@ void CaseList::add_actions(widgets::Actions& actions, const std::function<bool()
                GLFW_KEY_DELETE,
                0,
                false,
-               [this, lists] { // A look that goes on would bring it back.
-                 return lists() && !library_.is_looking() && selected() != nullptr && !selected()->is_there; },
+               [this, lists] {  // A look that goes on would bring it back.
+                 return lists() && !library_.is_looking() && selected() != nullptr && !selected()->is_there;
+               },
                {},
                [this] {
                  (void)library_.forget(fs::path(view_.selected));

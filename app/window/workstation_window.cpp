@@ -150,9 +150,7 @@ bool WorkstationWindow::modes_are_busy() const {
   return std::any_of(modes_.begin(), modes_.end(), [](const auto& mode) { return mode->is_busy(); });
 }
 
-bool WorkstationWindow::has_running_work() const {
-  return start_.has_running_work() || works_elsewhere();
-}
+bool WorkstationWindow::has_running_work() const { return start_.has_running_work() || works_elsewhere(); }
 
 bool WorkstationWindow::works_elsewhere() const {
   return paint_.has_running_work() ||

@@ -79,7 +79,7 @@ class WorkstationWindow {
   // The last case with bones, which the modes know until the next one with bones; null while that is case_.
   std::unique_ptr<open_case::CaseOpening> known_to_modes_;
   open_case::CaseOpening* lender_ = nullptr;  // one of these, whose lock opening_ has
-  std::string failure_;  // why the last one could not be opened; empty when it could
+  std::string failure_;                       // why the last one could not be opened; empty when it could
   widgets::Actions actions_;
   widgets::WidgetLog log_;
   std::vector<std::unique_ptr<mode::Mode>> modes_;  // in the order of their buttons

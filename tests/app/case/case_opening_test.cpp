@@ -48,8 +48,8 @@ TEST(CaseOpening, SaysWhyACaseCannotBeOpened) {
   EXPECT_NE(opening.failure().find("absent.arthro"), std::string::npos) << opening.failure();
 }
 
-// Hazard 15: a case that is read-only stays so when it is opened again, and one that could not be opened again
-// is still held.
+// Hazard 15: a case that is read-only stays so when it is opened again, and one that could not be opened
+// again is still held.
 TEST(CaseOpening, Hazard15OpeningAgainGivesNoRightToWrite) {
   const test::TemporaryFolder folder;
   cases::save_case(folder.path(),

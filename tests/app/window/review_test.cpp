@@ -65,6 +65,7 @@ TEST_F(ReviewWindow, AFolderThatCannotBeReadEndsNothing) {
   for (int i = 0; i < 100 && app.state("frame_fault").empty(); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_NE(app.state("frame_fault").find("sessions"), std::string::npos) << app.state("frame_fault");
+  std::filesystem::remove(sessions);
   std::filesystem::rename(aside, sessions);
   app.press("F1");
   ASSERT_TRUE(app.wait_for_state("mode", "plan"));
