@@ -113,11 +113,12 @@ std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widg
   ImGui::GetWindowDrawList()->AddRectFilled(box.min(), box.max(), IM_COL32(10, 12, 15, 255));
   widgets::text_centered(ui, box.cut_top(row), ui.theme.title, widgets::kText, "Which camera?");
   if (auto clicked = draw_rows(ui, box, picture)) return clicked;
-  const std::string hint = !trouble_.empty() ? trouble_
-                           : !tracker_.empty()
-                               ? "Tools seen by " + tracker_ + ": now the pictures (igtl:// alone: not)"
-                           : offered_.empty() ? "No camera is connected. The address of a stream, then Enter"
-                                              : "Or the address of a stream, then Enter";
+  const std::string hint =
+      !trouble_.empty()   ? trouble_
+      : !tracker_.empty() ? "Tools seen by " + tracker_ + ": now the pictures (igtl:// alone: not)"
+      : offered_.empty()
+          ? "No camera is connected. The address of a stream, or of a tracker (igtl://HOST:PORT)"
+          : "Or the address of a stream, or of a tracker (igtl://HOST:PORT)";
   widgets::text_centered(ui, box.cut_top(row), ui.theme.strong,
                          trouble_.empty() ? widgets::kQuietText : widgets::kCaution, hint);
   const widgets::Rect field = box.cut_top(row).inset(ui.theme.px(6));

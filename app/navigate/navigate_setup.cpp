@@ -86,6 +86,10 @@ theatre::TheatreSource real_setup(const open_case::PlanModel& model, bones::Bone
   if (!model.has_bone(bone)) throw InvalidInput("the case has no " + std::string(bones::to_text(bone)));
   theatre::TheatreSource source = source_of(model, bone, kind);
   operation::SourceSetup& setup = source.setup;
+  if (!std::filesystem::exists(cases::camera_file(case_folder)))
+    throw InvalidInput("no camera is calibrated for this case: do it in Set up (F4)");
+  if (!std::filesystem::exists(cases::tools_file(case_folder)))
+    throw InvalidInput("no tools are known in this case: make them known in Set up (F4)");
   setup.pipeline.calibration = camera::read_camera_file(cases::camera_file(case_folder)).calibration;
   setup.pipeline.tools = tools::read_tools_file(cases::tools_file(case_folder));
   setup.calibration = open_case::calibration_in_words(false, case_folder, files::utc_now());

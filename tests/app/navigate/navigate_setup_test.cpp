@@ -5,7 +5,9 @@
 #include "app/case/case_calibration.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/simulator/simulated_operation.h"
+#include "planning/geometry/error.h"
 #include "planning/phantom/phantom_case.h"
+#include "tests/message_of.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::navigate {
@@ -67,6 +69,24 @@ TEST(NavigateSetup, ATrackerThatWasTypedSeesTheToolsOfALiveSource) {
   EXPECT_EQ(typed.setup.pipeline.tools.tracker->sigma_mm, 0.2);
   EXPECT_NE(typed.setup.calibration.find("igtl://cart:18945"), std::string::npos);
   EXPECT_TRUE(typed.tracker) << "somebody listens to it";
+}
+
+// Before anything is calibrated: where that is done, and no names of files.
+TEST(NavigateSetup, ACaseWithoutCameraOrToolsSaysWhereTheyAreMade) {
+  const test::TemporaryFolder temporary;
+  const open_case::PlanModel model(
+      phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 2.5}), "test"));
+  const auto refusal = [&] {
+    return test::message_of<InvalidInput>([&] {
+      (void)camera_setup(model, bones::BoneKind::Femur, temporary.path(),
+                         {"scope", std::nullopt, "udp://@:5000"}, sources::DeviceTurns(), 1.33, "");
+    });
+  };
+  EXPECT_EQ(refusal(), "no camera is calibrated for this case: do it in Set up (F4)");
+  camera::CalibrationRecord record;
+  record.calibration = simulator::standard_camera();
+  camera::write_camera_file(cases::camera_file(temporary.path()), record);
+  EXPECT_EQ(refusal(), "no tools are known in this case: make them known in Set up (F4)");
 }
 
 }  // namespace
