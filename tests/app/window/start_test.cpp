@@ -5,6 +5,7 @@
 
 #include "planning/bones/mesh_file.h"
 #include "planning/cases/case.h"
+#include "planning/cases/case_lock.h"
 #include "planning/phantom/phantom_case.h"
 #include "tests/app/window/display.h"
 #include "tests/temporary_folder.h"
@@ -94,6 +95,59 @@ TEST_F(StartWindow, FindsACaseInTheFoldersByKeys) {
   app.press("Return");
   ASSERT_TRUE(app.wait_for_state("folder", (folder_ / "cases" / "A.arthro").string(), 120));
   EXPECT_EQ(app.state("case"), "open");
+}
+
+// Hazard 15: what writes into a case is not in front of one that another program has open.
+TEST_F(StartWindow, Hazard15SetUpDoesNotStandOnAReadOnlyCase) {
+  const auto mine = folder_ / "arthronaut" / "cases" / "Mine.arthro";
+  const auto theirs = folder_ / "arthronaut" / "cases" / "Theirs.arthro";
+  cases::Case made = knee();
+  for (const auto& folder : {mine, theirs}) {
+    made.name = folder.stem();
+    cases::save_case(folder, made);
+  }
+  const cases::CaseLock lock(theirs);
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {mine.string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F4");
+  ASSERT_TRUE(app.wait_for_state("mode", "set up"));
+  app.press("F5");
+  ASSERT_TRUE(app.wait_for_state("cases_listed", "2"));
+  app.press("f");
+  app.type("theirs");
+  ASSERT_TRUE(app.wait_for_state("case_selected", "Theirs"));
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("typing", "no"));
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("access", "read-only", 120));
+  EXPECT_TRUE(app.wait_for_state("mode", "plan"));
+}
+
+// An import that waits for an answer is found again from any mode.
+TEST_F(StartWindow, AnImportThatAsksIsNotLost) {
+  write_meshes();
+  const auto open = folder_ / "Knee.arthro";
+  cases::save_case(open, knee());
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {open.string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F5");
+  app.press("o");
+  ASSERT_TRUE(app.wait_for_widget("start.entry.given"));
+  app.click("start.entry.given");
+  ASSERT_TRUE(app.wait_for_state("selected", "given"));
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_widget("start.entry.femur.stl"));
+  app.press("i");
+  ASSERT_TRUE(app.wait_for_state("import", "choosing", 120));
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("import", "asking", 240));
+  app.press("F1");
+  ASSERT_TRUE(app.wait_for_state("screen", "mode"));
+  app.press("F5");
+  ASSERT_TRUE(app.wait_for_state("screen", "start"));
+  EXPECT_TRUE(app.wait_for_state("import", "asking"));
 }
 
 // What is no case and holds no images is said, and the start stays.
