@@ -28,6 +28,7 @@
 #include "navigation/sources/frame_source.h"
 #include "navigation/strokes/curves.h"
 #include "navigation/strokes/poses_file.h"
+#include "planning/files/free_space.h"
 
 namespace arthronaut::recording {
 
@@ -98,16 +99,13 @@ inline constexpr std::string_view kDroppedPicturesEvent = "pictures dropped";   
 inline constexpr std::string_view kVideoStoppedEvent = "video stopped";          // text: why
 inline constexpr std::string_view kRecordingStoppedEvent = "recording stopped";  // text: why
 
-// What the system has for users without privileges. Throws IoError.
-[[nodiscard]] std::uintmax_t free_bytes_at(const std::filesystem::path& folder);
-
 // How much must stay free on the disk. A video fills disks, the rest of a session takes a megabyte a minute:
 // so the video stops first, and the record of poses and events goes on nearly to the end.
 struct DiskLimits {
   std::uintmax_t video_stops_below_bytes = std::uintmax_t{2} << 30;
   std::uintmax_t all_stops_below_bytes = std::uintmax_t{128} << 20;
   // What is free where a folder lies; for tests another than the system's answer.
-  std::function<std::uintmax_t(const std::filesystem::path& folder)> free_bytes = free_bytes_at;
+  std::function<std::uintmax_t(const std::filesystem::path& folder)> free_bytes = files::free_bytes_at;
 };
 
 // Writes while the operation goes on. Calls hand over to a writer thread by a bounded, lossless queue (more

@@ -181,13 +181,6 @@ struct SessionRecorder::State {
   bool finished = false;
 };
 
-std::uintmax_t free_bytes_at(const std::filesystem::path& folder) {
-  std::error_code error;
-  const std::filesystem::space_info space = std::filesystem::space(folder, error);
-  if (error) throw IoError(folder, "cannot tell how much room its disk has: " + error.message());
-  return space.available;
-}
-
 SessionRecorder::SessionRecorder(const std::filesystem::path& folder, const SessionHeader& header,
                                  const pipeline::PipelineOptions& options, const DiskLimits& limits)
     : state_(std::make_unique<State>(folder, header, options, limits)) {

@@ -153,12 +153,19 @@ bool IncomingSeries::admits(const std::string& sop_uid) {
   return is_listed && !is_again;
 }
 
+std::int64_t IncomingSeries::free_bytes() const {
+  constexpr auto kMost = static_cast<std::uintmax_t>(std::numeric_limits<std::int64_t>::max());
+  return static_cast<std::int64_t>(std::min(limits_.free_bytes(waiting_room_), kMost));
+}
+
+void IncomingSeries::fail_to_write(int error_number) const {
+  throw IoError(folder_,
+                files::format("cannot be written to: %s; the disk has %.0f MB free",
+                              std::strerror(error_number), static_cast<double>(free_bytes()) / kMegabyte));
+}
+
 IncomingSeries::Room IncomingSeries::room() const {
-  std::error_code error;
-  const fs::space_info space = fs::space(waiting_room_, error);
-  if (error) throw IoError(folder_, "its disk cannot be asked for room: " + error.message());
-  const auto free = static_cast<std::int64_t>(
-      std::min<std::uintmax_t>(space.available, std::numeric_limits<std::int64_t>::max()));
+  const std::int64_t free = free_bytes();
   const std::scoped_lock lock(mutex_);
   const std::int64_t of_disk = free - limits_.least_free_bytes,
                      of_series = limits_.most_bytes - received_bytes_;

@@ -11,10 +11,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
 #include <vector>
+
+#include "planning/files/free_space.h"
 
 namespace arthronaut::pacs {
 
@@ -28,6 +31,7 @@ class IncomingSeries {
   struct Limits {
     std::int64_t most_bytes;        // of the series, this time
     std::int64_t least_free_bytes;  // that are left on the disk
+    std::function<std::uintmax_t(const std::filesystem::path&)> free_bytes = files::free_bytes_at;
   };
   // What the next image may take; `complaint`: what is said of one that takes more.
   struct Room {
@@ -60,6 +64,8 @@ class IncomingSeries {
 
   // Where the next image may be written; gone when the process ends without keep().
   [[nodiscard]] std::filesystem::path begin(const std::string& sop_uid);
+  // Throws IoError: folder, the system's reason, and how much room there is.
+  [[noreturn]] void fail_to_write(int error_number) const;
   // The temporary file is whole: it becomes the image of that UID. False, and the file is gone, when it is of
   // another patient, study or series, of another UID, or cannot be read. Throws IoError.
   bool keep(const std::filesystem::path& temporary, const std::string& sop_uid);
@@ -71,6 +77,7 @@ class IncomingSeries {
   void leave() noexcept;
 
  private:
+  [[nodiscard]] std::int64_t free_bytes() const;
   void check_waiting_room() const;
   void create_waiting_room() const;
   void refuse(const std::string& sop_uid, const std::string& reason);

@@ -92,7 +92,7 @@ class Retrieval {
         on_progress_(on_progress),
         stop_(stop),
         series_(request.folder, request.series_uid,
-                {.most_bytes = request.most_bytes, .least_free_bytes = request.least_free_bytes}) {}
+                {request.most_bytes, request.least_free_bytes, request.free_bytes}) {}
 
   RetrieveSummary run() {
     RetrieveSummary summary;

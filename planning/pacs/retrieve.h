@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
+#include "planning/files/free_space.h"
 #include "planning/pacs/connection.h"
 
 namespace arthronaut::pacs {
@@ -18,6 +20,8 @@ struct RetrieveRequest {
   // What is received at most, and what must stay free on the disk; whoever needs more says so.
   std::int64_t most_bytes = std::int64_t{32} << 30;
   std::int64_t least_free_bytes = std::int64_t{512} << 20;
+  // What is free where a folder lies; for tests another than the system's answer.
+  std::function<std::uintmax_t(const std::filesystem::path& folder)> free_bytes = files::free_bytes_at;
 };
 
 struct RetrieveSummary {
@@ -41,8 +45,8 @@ struct RetrieveSummary {
 // it does not list, is refused and told; so is more than `most_bytes`, and a list of more than 100,000
 // images.
 //
-// Throws InvalidInput (UID, folder, options), IoError (disk) and DeviceError (peer, with its reason); what
-// came whole then stays, as when stopped.
+// Throws InvalidInput (UID, folder, options), IoError (disk; a full one with the room that it has) and
+// DeviceError (peer, with its reason); what came whole then stays, as when stopped.
 [[nodiscard]] RetrieveSummary retrieve_series(const Peer& peer, const ConnectionOptions& connection,
                                               const RetrieveRequest& request,
                                               const OnProgress& on_progress = {},

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <vector>
 
 #include "planning/geometry/error.h"
@@ -164,7 +163,7 @@ OFCondition receive_image(T_ASC_Association& association, Line& line, T_ASC_Pres
     std::error_code ignored;
     fs::remove(temporary, ignored);
     if (outcome.good()) (void)answer(association, context, request, kOutOfResources);
-    throw IoError(series.folder(), std::string("cannot be written to: ") + std::strerror(error));
+    series.fail_to_write(error);
   }
   if (outcome.bad()) {
     std::error_code ignored;

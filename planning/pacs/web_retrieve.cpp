@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
+#include <limits>
 
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -107,18 +107,30 @@ bool fetch_image(HttpClient& client, const std::string& path, const std::string&
   const fs::path temporary = series.begin(uid);
   PartFile part(temporary);
   HttpAnswer answer;
+  // An answer that is longer than it may be is the server's fault; a disk that is too full for it is not.
+  constexpr std::int64_t kUnbounded = std::numeric_limits<std::int64_t>::max();
+  std::int64_t received = 0;
+  bool is_out_of_room = false;
   const auto remove = [&] {
     std::error_code ignored;
     fs::remove(temporary, ignored);
   };
   try {
-    answer =
-        client.perform({.path = path + "/instances/" + uid,
-                        .accept = "multipart/related; type=\"application/dicom\"; transfer-syntax=*",
-                        .most_bytes = room.bytes,
-                        .complaint = room.complaint,
-                        .sink = [&](const char* data, std::size_t count) { return part.take(data, count); },
-                        .restart = [&] { part.restart(); }});
+    answer = client.perform({.path = path + "/instances/" + uid,
+                             .accept = "multipart/related; type=\"application/dicom\"; transfer-syntax=*",
+                             .most_bytes = room.is_of_disk ? kUnbounded : room.bytes,
+                             .complaint = room.complaint,
+                             .sink =
+                                 [&](const char* data, std::size_t count) {
+                                   received += static_cast<std::int64_t>(count);
+                                   is_out_of_room = room.is_of_disk && received > room.bytes;
+                                   return !is_out_of_room && part.take(data, count);
+                                 },
+                             .restart =
+                                 [&] {
+                                   received = 0;
+                                   part.restart();
+                                 }});
   } catch (...) {
     remove();
     throw;
@@ -126,8 +138,8 @@ bool fetch_image(HttpClient& client, const std::string& path, const std::string&
   const bool is_whole = part.finish();
   if (answer.was_stopped || !is_whole) remove();
   if (answer.was_stopped) return false;
-  if (part.error() != 0)
-    throw IoError(series.folder(), std::string("cannot be written to: ") + std::strerror(part.error()));
+  if (part.error() != 0) series.fail_to_write(part.error());
+  if (is_out_of_room) throw IoError(series.folder(), room.complaint);
   if (answer.status >= 300)
     client.fail("does not give image " + uid + ": HTTP " + std::to_string(answer.status));
   if (!is_whole || part.is_malformed()) client.fail("sends image " + uid + " not whole, or not as one part");
@@ -143,7 +155,7 @@ RetrieveSummary retrieve_series(const WebServer& server, const ConnectionOptions
   check(request);
   HttpClient client(server, connection, stop);
   IncomingSeries series(request.folder, request.series_uid,
-                        {.most_bytes = request.most_bytes, .least_free_bytes = request.least_free_bytes});
+                        {request.most_bytes, request.least_free_bytes, request.free_bytes});
   RetrieveSummary summary;
   summary.kept_count = series.count();
   try {

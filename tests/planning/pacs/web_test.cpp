@@ -3,8 +3,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <csignal>
 #include <fstream>
 #include <utility>
 
@@ -137,6 +139,49 @@ TEST_F(PacsWeb, KeepsAnAccountOfWhatWasStoredWhenTheServerIsGone) {
               HasSubstr("cannot be reached"));
   orthanc.start();
   EXPECT_EQ(send_files(server, quick_connection(), files).outcome, SendSummary::Outcome::Stored);
+}
+
+// A disk that is too full for the next image is told as that, with folder and room, and not as the server's
+// fault; of the image nothing is left, and what came whole before waits for more room.
+TEST_F(PacsWeb, TellsAFullDiskAsWhatItIs) {
+  const test::Orthanc orthanc({.offers_web = true});
+  test::write_and_send(orthanc, made_ / "ct");
+  RetrieveRequest tight = request();
+  int asked = 0;
+  tight.free_bytes = [&](const fs::path&) {
+    constexpr std::uintmax_t kPlenty = std::uintmax_t{100} << 30;
+    return ++asked <= 3 ? kPlenty : static_cast<std::uintmax_t>(tight.least_free_bytes) + 1000;
+  };
+  const std::string failure =
+      failure_of([&] { (void)retrieve_series(server_of(orthanc), quick_connection(), tight); });
+  EXPECT_EQ(failure, (got_ / "scan").string() + ": the disk has 537 MB free, of which 537 MB are to stay");
+  EXPECT_FALSE(fs::exists(got_ / "scan"));
+  ASSERT_EQ(got_.names().size(), 1U);
+  for (const auto& waiting : fs::directory_iterator(got_ / got_.names().front()))
+    EXPECT_EQ(waiting.path().extension(), ".dcm");
+  const auto whole = retrieve_series(server_of(orthanc), quick_connection(), request());
+  EXPECT_EQ(whole.outcome, Outcome::Whole) << whole.message;
+  EXPECT_EQ(whole.kept_count, 3);
+  EXPECT_EQ(pixels_of(got_ / "scan"), pixels_of(made_ / "ct"));
+}
+
+// A limit on the size of files ends a write half-way, as a disk does that somebody else fills meanwhile.
+TEST_F(PacsWeb, TellsAWriteThatFailsAsWhatItIs) {
+  const test::Orthanc orthanc({.offers_web = true});
+  test::write_and_send(orthanc, made_ / "ct");
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = ::signal(SIGXFSZ, SIG_IGN);
+  const rlimit full{1000, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &full);
+  const std::string failure =
+      failure_of([&] { (void)retrieve_series(server_of(orthanc), quick_connection(), request()); });
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  ::signal(SIGXFSZ, handler);
+  EXPECT_THAT(failure,
+              ::testing::MatchesRegex((got_ / "scan").string() +
+                                      ": cannot be written to: File too large; the disk has [0-9]+ MB free"));
+  EXPECT_THAT(got_.names(), ElementsAre());
 }
 
 TEST_F(PacsWeb, AnUnknownSeriesLeavesNothing) {
