@@ -55,12 +55,10 @@ scene::Image image_of(const widgets::ScreenPicture& picture) {
   return image;
 }
 
-// Throws IoError while there is less free than a session's own video leaves.
-void check_space(const std::string& target) {
+// As much stays free as a session's own video leaves.
+bool is_nearly_full(const std::filesystem::path& folder) {
   const recording::DiskLimits limits;
-  const std::filesystem::path folder = std::filesystem::path(target).parent_path();
-  if (limits.free_bytes(folder) < limits.video_stops_below_bytes)
-    throw IoError(target, "the disk is nearly full");
+  return limits.free_bytes(folder) < limits.video_stops_below_bytes;
 }
 
 }  // namespace
@@ -112,33 +110,35 @@ void ScreenCopies::take_screenshot(const std::filesystem::path& case_folder, con
 void ScreenCopies::begin(Output& output, const std::string& target) {
   output.target = target;
   output.begun_s = -1;
-  output.writer = std::make_unique<Writer>(worker::Backlog::NewestWins, [target](auto& inbox) {
+  const auto body = [target](auto& inbox) {
     be_nice();
+    const std::filesystem::path folder = std::filesystem::path(target).parent_path();
     std::optional<ScreenEncoder> encoder;
-    Written written;
-    while (const auto picture = inbox.next()) {
-      if (!is_stream(target) && written.pictures % static_cast<long>(kRate) == 0) check_space(target);
+    bool has_room = true;
+    for (long count = 0; const auto picture = inbox.next(); ++count) {
+      const bool is_due = !is_stream(target) && count % static_cast<long>(kRate) == 0;
+      has_room = !is_due || !is_nearly_full(folder);
+      if (!has_room) break;
       if (!encoder) encoder.emplace(target, (*picture)->width, (*picture)->height);
       encoder->encode(**picture);
-      ++written.pictures;
-      inbox.publish(written);
     }
-    if (encoder) encoder->finish();
-  });
+    if (encoder) {
+      encoder->finish();
+      inbox.publish(Written{});
+    }
+    if (!has_room) throw IoError(target, "the disk is nearly full");
+  };
+  output.writer = std::make_unique<Writer>(worker::Backlog::NewestWins, body, wake_);
 }
 
-// The last picture may still be in work: nobody waits for it.
 void ScreenCopies::end(Output& output) {
   if (output.writer == nullptr) return;
   output.writer->request_stop();
-  ending_.end(std::move(output.writer));
+  ending_.push_back(std::exchange(output, {}));
 }
 
 void ScreenCopies::toggle_recording(const std::filesystem::path& case_folder, const std::string& refusal) {
-  if (is_recording()) {
-    end(recording_);
-    return say("The screen is in the case: " + std::filesystem::path(recording_.target).filename().string());
-  }
+  if (is_recording()) return end(recording_);
   if (!refusal.empty()) return say("The screen is not recorded: " + refusal);
   try {
     begin(recording_, new_file(case_folder, ".mkv", given_).string());
@@ -175,16 +175,31 @@ void ScreenCopies::take(const widgets::ScreenPicturePtr& picture) {
   }
 }
 
-void ScreenCopies::end_failed(Output& output, const char* name) {
-  if (output.writer == nullptr || !output.writer->has_ended()) return;
-  say(std::string(name) + " has ended: " + output.writer->failure());
-  output.writer.reset();
+std::string ScreenCopies::outcome_of(const Output& ended) {
+  const std::string failure = ended.writer->failure();
+  if (is_stream(ended.target)) return failure.empty() ? "" : "The stream of the screen has ended: " + failure;
+  const bool is_whole = ended.writer->latest() != nullptr;
+  if (!failure.empty())
+    return (is_whole ? "The recording of the screen has ended: "
+                     : "The recording of the screen is not whole: ") +
+           failure;
+  return is_whole ? "The screen is in the case: " + std::filesystem::path(ended.target).filename().string()
+                  : "The screen is not recorded: it was ended before its first picture";
+}
+
+void ScreenCopies::read_ended() {
+  for (Output* const output : {&recording_, &stream_})
+    if (output->writer != nullptr && output->writer->has_ended()) end(*output);
+  std::erase_if(ending_, [this](const Output& output) {
+    if (!output.writer->has_ended()) return false;
+    if (std::string words = outcome_of(output); !words.empty()) say(std::move(words));
+    return true;
+  });
 }
 
 std::string ScreenCopies::words(double now_s) {
   now_s_ = now_s;
-  end_failed(recording_, "The recording of the screen");
-  end_failed(stream_, "The stream of the screen");
+  read_ended();
   if (const auto shot = shots_.latest(); shot != last_shot_) {
     last_shot_ = shot;
     say(shot->words);

@@ -2,6 +2,9 @@
 // each begun and ended by a key, and each on a thread of its own at the lowest priority, so that guidance
 // never waits for it. Of pictures at most one waits for each: a machine that is busy leaves some out.
 //
+// A file is said to be in the case when it is there whole. One that is not, as on a full disk, stays as
+// FILE.part, and why is said; it can be played as far as it goes.
+//
 // Screenshots and files lie in CASE/screens, named by the time (UTC). They show what the screen shows, the
 // patient's name among it.
 //
@@ -14,9 +17,9 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "app/screen_copy/screen_encoder.h"
-#include "navigation/sources/background_end.h"
 #include "navigation/worker/recycler.h"
 #include "navigation/worker/worker.h"
 
@@ -53,9 +56,7 @@ class ScreenCopies {
   [[nodiscard]] std::string words(double now_s);
 
  private:
-  struct Written {
-    long pictures = 0;
-  };
+  struct Written {};  // all of it; published at the end alone
   using Writer = worker::Worker<widgets::ScreenPicturePtr, Written>;
   struct Output {
     std::unique_ptr<Writer> writer;  // null: it does not run
@@ -68,9 +69,12 @@ class ScreenCopies {
   using Shots = worker::Worker<std::pair<std::filesystem::path, widgets::ScreenPicturePtr>, Said>;
 
   void begin(Output& output, const std::string& target);
+  // Its end is in work from now on: nobody waits for it.
   void end(Output& output);
+  // Says what has become of those that have ended, asked to or not.
+  void read_ended();
+  [[nodiscard]] static std::string outcome_of(const Output& ended);
   void say(std::string words);
-  void end_failed(Output& output, const char* name);
 
   const std::string stream_address_;
   const std::function<void()> wake_;
@@ -82,7 +86,7 @@ class ScreenCopies {
   std::filesystem::path shot_file_;        // of the screenshot that waits for its picture; empty: none
   std::string said_;
   double said_until_s_ = 0, next_s_ = 0, now_s_ = 0;
-  sources::BackgroundEnd ending_;
+  std::vector<Output> ending_;
 };
 
 }  // namespace arthronaut::screen_copy

@@ -3,12 +3,14 @@
 #include "app/screen_copy/screen_copies.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <thread>
 
 #include "navigation/sources/frame_source.h"
@@ -133,7 +135,8 @@ TEST_F(ScreenCopiesTest, RefusalsAndFailuresAreSaid) {
 // The file is there whole when it is ended, in the screen's own time, with no more than 15 pictures a second.
 TEST_F(ScreenCopiesTest, AFileHoldsTheScreenInItsOwnTime) {
   {
-    ScreenCopies copies("", [] {});
+    std::atomic<int> woken = 0;
+    ScreenCopies copies("", [&woken] { ++woken; });
     copies.toggle_recording(folder_.path(), "");
     EXPECT_TRUE(copies.is_recording());
     show(copies, 60);
@@ -141,7 +144,11 @@ TEST_F(ScreenCopiesTest, AFileHoldsTheScreenInItsOwnTime) {
     for (const fs::path& file : files()) EXPECT_EQ(file.extension(), ".part") << "not whole yet";
     copies.toggle_recording(folder_.path(), "");
     EXPECT_FALSE(copies.is_recording());
+    // Not before it is.
+    while (words(copies).empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     EXPECT_NE(words(copies).find("The screen is in the case"), std::string::npos) << words(copies);
+    for (const fs::path& file : files()) EXPECT_EQ(file.extension(), ".mkv");
+    EXPECT_GE(woken, 1) << "a screen that stands still is drawn again";
   }
   ASSERT_EQ(files().size(), 1U);
   ASSERT_EQ(files()[0].extension(), ".mkv");
@@ -162,6 +169,33 @@ TEST_F(ScreenCopiesTest, AFileHoldsTheScreenInItsOwnTime) {
   const auto upper = bgr_at(*last, 100, 20), lower = bgr_at(*last, 100, kHeight - 20);
   EXPECT_GT(upper[2], upper[0] + 80);
   EXPECT_GT(lower[0], lower[2] + 80);
+}
+
+// What cannot be written is not said to be in the case, but why not; what there is stays.
+TEST_F(ScreenCopiesTest, AFileThatIsNotWholeIsSaidWithTheReason) {
+  ScreenCopies copies("", [] {});
+  copies.toggle_recording(folder_.path(), "");
+  show(copies, 30);
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = ::signal(SIGXFSZ, SIG_IGN);
+  const rlimit full{1, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &full);  // as a disk that is full, from now on
+  copies.toggle_recording(folder_.path(), "");
+  const bool is_said = says(copies, "The recording of the screen is not whole");
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  ::signal(SIGXFSZ, handler);
+  EXPECT_TRUE(is_said) << words(copies);
+  EXPECT_NE(words(copies).find(".mkv: cannot be written: File too large"), std::string::npos)
+      << words(copies);
+  EXPECT_EQ(words(copies).find("is in the case"), std::string::npos);
+  ASSERT_EQ(files().size(), 1U);
+  EXPECT_EQ(files()[0].extension(), ".part");
+  // Ended before there was any picture.
+  copies.toggle_recording(folder_.path(), "");
+  copies.toggle_recording(folder_.path(), "");
+  EXPECT_TRUE(says(copies, "ended before its first picture")) << words(copies);
+  EXPECT_EQ(files().size(), 1U);
 }
 
 // A window that changes its size goes on in the first one's.
