@@ -6,6 +6,7 @@
 #include "navigation/recording/replay.h"
 #include "planning/cases/case.h"
 #include "planning/files/atomic_file.h"
+#include "planning/files/csv_cell.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
@@ -35,8 +36,9 @@ std::string line_of(const recording::Difference& difference) {
 std::string table_of(const std::vector<recording::Difference>& differences) {
   std::string text = "frame,what,amount,unit,detail\n";
   for (const recording::Difference& d : differences) {
-    text += (d.frame < 0 ? "" : std::to_string(d.frame)) + "," + d.what + "," +
-            (d.unit.empty() ? "" : format("%.9g", d.amount)) + "," + d.unit + "," + d.detail + "\n";
+    text += (d.frame < 0 ? "" : std::to_string(d.frame)) + "," + files::csv_cell(d.what) + "," +
+            (d.unit.empty() ? "" : format("%.9g", d.amount)) + "," + d.unit + "," +
+            files::csv_cell(d.detail) + "\n";
   }
   return text;
 }

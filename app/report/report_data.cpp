@@ -5,6 +5,7 @@
 #include "app/report/session_rows.h"
 #include "app/report/versions.h"
 #include "navigation/camera/medium.h"
+#include "planning/files/csv_cell.h"
 #include "planning/files/json_document.h"
 #include "planning/files/utc_clock.h"
 #include "planning/plan_review/plan_review.h"
@@ -170,15 +171,6 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
   return json;
 }
 
-std::string cell(std::string text) {
-  if (!text.empty() && std::string("=+-@").find(text.front()) != std::string::npos)
-    text.insert(text.begin(), '\'');
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
 void add_rows(const ordered_json& node, const std::string& path, std::string& text) {
   if (node.is_structured()) {
     for (const auto& [key, value] : node.items())
@@ -186,9 +178,9 @@ void add_rows(const ordered_json& node, const std::string& path, std::string& te
     return;
   }
   const std::string value = node.is_null()     ? ""
-                            : node.is_string() ? cell(node.get<std::string>())
+                            : node.is_string() ? files::csv_cell(node.get<std::string>())
                                                : node.dump();
-  text += cell(path) + "," + value + "\n";
+  text += files::csv_cell(path) + "," + value + "\n";
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "planning/files/csv_cell.h"
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
@@ -21,14 +22,7 @@ constexpr const char* kColumns =
     "tibia_am_postop_angle_deg,tibia_am_postop_reliable,tibia_pl_postop_offset_mm,tibia_pl_postop_angle_deg,"
     "tibia_pl_postop_reliable,note,problem";
 
-std::string cell(std::string text) {
-  if (!text.empty() && std::string("=+-@").find(text.front()) != std::string::npos) text.insert(0, "'");
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
+std::string cell(std::string text) { return files::csv_cell(std::move(text)); }
 std::string cell(const std::optional<double>& number) {
   return number ? files::format("%.3f", *number) : std::string();
 }
