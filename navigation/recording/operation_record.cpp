@@ -132,7 +132,7 @@ OperationRecord::OperationRecord(const std::filesystem::path& folder, const oper
                                                   source.pipeline)) {
   // A source without any encoding of its own has nothing that could be kept as it came.
   const bool has_none = pictures == PicturesAs::AsTheyCame && info.packets == nullptr;
-  recorder_->keep_pictures(has_none ? PicturesAs::Lossless : pictures, info.packets);
+  recorder_->keep_pictures(has_none ? PicturesAs::Lossless : pictures, info);
 }
 
 void OperationRecord::keep_video(KeepVideo keep, const std::filesystem::path& video) {

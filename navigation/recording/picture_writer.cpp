@@ -19,6 +19,15 @@ namespace {
 
 constexpr std::size_t kWaitingPictures = 32;  // half a second, 200 MB at 1080p
 
+// Streams now and then name their clock's ticks. Files count in ms: beyond this a picture could not be found
+// by its time.
+constexpr double kMostPerSecond = 240, kUnknownPerSecond = 60;
+
+double rate_of_file(double frames_per_second) {
+  const bool is_credible = frames_per_second >= 1 && frames_per_second <= kMostPerSecond;
+  return is_credible ? frames_per_second : kUnknownPerSecond;
+}
+
 // Writes pictures into parts, in one thread.
 class VideoParts {
  public:
@@ -99,7 +108,8 @@ class VideoParts {
   void encode(const camera::Frame& picture) {
     if (!encoder_) {
       const PicturesAs as = options_.as == PicturesAs::AsTheyCame ? PicturesAs::Lossless : options_.as;
-      encoder_.emplace(folder_ / next_file(), picture.width, picture.height, options_.frames_per_second, as);
+      encoder_.emplace(folder_ / next_file(), picture.width, picture.height,
+                       rate_of_file(options_.frames_per_second), as);
       begin(picture, {next_file(), count_, as, encoder_->codec(), 0}, why_);
     }
     encoder_->encode(picture);

@@ -21,7 +21,9 @@ namespace arthronaut::recording {
 struct PictureWriterOptions {
   PicturesAs as = PicturesAs::Lossless;
   std::shared_ptr<const sources::EncodedPackets> packets = nullptr;  // for AsTheyCame
-  double frames_per_second = 60;                                     // as encoded files say
+  // Of the source, which encoded files say for their players; 0: unknown. Pictures that were left out make
+  // it go faster than it was.
+  double frames_per_second = 0;
 };
 
 // Told in the writer's thread, in order; they must not call back.

@@ -133,8 +133,9 @@ class SessionRecorder {
   void copy_video(const std::filesystem::path& video_or_pattern);
   // Keeps only where the video is.
   void refer_to_video(const std::filesystem::path& video_or_pattern);
-  // How append_picture() keeps them: without a call, Lossless. `packets` are SourceInfo's. Before the first.
-  void keep_pictures(PicturesAs as, const std::shared_ptr<const sources::EncodedPackets>& packets = nullptr);
+  // How append_picture() keeps them: without a call, Lossless. Of the source its packets count, and how many
+  // pictures a second encoded files say they have, for players. Before the first.
+  void keep_pictures(PicturesAs as, const sources::SourceInfo& source = {});
   // The frame's picture, for sources that are not files (see picture_writer.h).
   // Waits while half a second of pictures is waiting: for sources that can wait.
   void append_picture(const camera::FramePtr& frame);

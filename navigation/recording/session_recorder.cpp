@@ -213,10 +213,8 @@ void SessionRecorder::refer_to_video(const std::filesystem::path& video_or_patte
   state_->rewrite_header([&](SessionHeader& header) { header.video = name; });
 }
 
-void SessionRecorder::keep_pictures(PicturesAs as,
-                                    const std::shared_ptr<const sources::EncodedPackets>& packets) {
-  state_->keeping.as = as;
-  state_->keeping.packets = packets;
+void SessionRecorder::keep_pictures(PicturesAs as, const sources::SourceInfo& source) {
+  state_->keeping = {.as = as, .packets = source.packets, .frames_per_second = source.frames_per_second};
 }
 
 void SessionRecorder::append_picture(const camera::FramePtr& frame) {

@@ -47,7 +47,7 @@ void record(const std::string& clip, double seconds, const std::filesystem::path
   const auto sender = test::send_by_rtsp(port, test::h264_clip_launch(clip));
   const auto source = test::open_when_there(test::rtsp_address(port));
   recording::SessionRecorder recorder(folder, test::session_header(), test::scripted_options());
-  recorder.keep_pictures(recording::PicturesAs::AsTheyCame, source->info().packets);
+  recorder.keep_pictures(recording::PicturesAs::AsTheyCame, source->info());
   const auto begin = Clock::now();
   while (ms_since(begin) < 1000 * seconds) {
     const camera::FramePtr frame = source->next();

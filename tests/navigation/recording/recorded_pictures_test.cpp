@@ -103,6 +103,29 @@ TEST(RecordedPictures, GivesEachFrameItsOwnPicture) {
   EXPECT_EQ(pictures.picture(kFrames + 100, test::frame_result(kFrames + 100).timestamp_ns), nullptr);
 }
 
+// Players show it as fast as it was; a source that does not say how fast that is, or names its clock's ticks,
+// is taken for one of 60 a second. Whatever it says, each frame gives its own picture.
+TEST(RecordedPictures, OfAnEncodedVideoPlayAtTheSourcesPace) {
+  for (const auto& [of_source, as_played] :
+       {std::pair(7.5, 7.5), {29.97, 29.97}, {240, 240}, {0, 60}, {90'000, 60}}) {
+    SCOPED_TRACE(of_source);
+    const test::TemporaryFolder folder;
+    {
+      SessionRecorder recorder(folder.path(), test::session_header(), test::scripted_options());
+      sources::SourceInfo source;
+      source.frames_per_second = of_source;
+      recorder.keep_pictures(PicturesAs::Lossless, source);
+      for (int i = 0; i < kFrames; ++i) {
+        recorder.append_picture(frame_of(i));
+        recorder.append(test::frame_result(i));
+      }
+      recorder.finish();
+    }
+    EXPECT_NEAR(sources::open_video(folder / "video.mkv")->info().frames_per_second, as_played, 1e-3);
+    expect_every_picture(folder.path(), kFrames);
+  }
+}
+
 // A session with a copy of a video that another program made, of the pictures 0, 1, ...
 void copy_numbered_video(const fs::path& file, const std::string& code, const fs::path& session) {
   {

@@ -38,7 +38,7 @@ std::uint64_t luma_of_picture(const camera::Frame& frame) {
 // Live frames and their pictures into a session, until `stops` says so.
 template <typename Stops>
 void record(sources::FrameSource& source, SessionRecorder& recorder, const Stops& stops) {
-  recorder.keep_pictures(PicturesAs::AsTheyCame, source.info().packets);
+  recorder.keep_pictures(PicturesAs::AsTheyCame, source.info());
   while (const camera::FramePtr frame = source.next()) {
     recorder.append(test::frame_result(frame->index));
     if (frame->index % 11 != 4) recorder.append_picture(frame);
