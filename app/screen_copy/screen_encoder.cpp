@@ -3,33 +3,20 @@
 #include <cmath>
 #include <filesystem>
 
+#include "navigation/sources/libav.h"
 #include "planning/files/private_folder.h"
 #include "planning/geometry/error.h"
 
 extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
 #include <libavutil/log.h>
 #include <libavutil/opt.h>
-#include <libswscale/swscale.h>
 }
 
 namespace arthronaut::screen_copy {
 
 namespace {
 
-struct FreeScreenLibav {
-  void operator()(AVFormatContext* p) const {
-    avio_closep(&p->pb);
-    avformat_free_context(p);
-  }
-  void operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
-  void operator()(AVPacket* p) const { av_packet_free(&p); }
-  void operator()(AVFrame* p) const { av_frame_free(&p); }
-  void operator()(SwsContext* p) const { sws_freeContext(p); }
-};
-template <class T>
-using ScreenLibavPtr = std::unique_ptr<T, FreeScreenLibav>;
+using sources::LibavPtr;
 
 constexpr AVRational kMilliseconds{1, 1000};
 // Whoever tunes in sees a whole picture within two seconds at 15 a second.
@@ -63,10 +50,7 @@ struct ScreenEncoder::State {
   }
 
   void check(int result, const std::string& what) const {
-    if (result >= 0) return;
-    char text[AV_ERROR_MAX_STRING_SIZE] = {};
-    av_strerror(result, text, sizeof text);
-    throw IoError(target, what + ": " + text);
+    if (result < 0) throw IoError(target, what + ": " + sources::libav_message(result));
   }
 
   void open_encoder(int width, int height) {
@@ -132,11 +116,11 @@ struct ScreenEncoder::State {
   }
 
   const std::string target, written;
-  ScreenLibavPtr<AVFormatContext> container;
-  ScreenLibavPtr<AVCodecContext> encoder;
-  ScreenLibavPtr<AVPacket> packet;
-  ScreenLibavPtr<AVFrame> frame;
-  ScreenLibavPtr<SwsContext> scaler;
+  sources::LibavOutput container;
+  LibavPtr<AVCodecContext> encoder;
+  LibavPtr<AVPacket> packet;
+  LibavPtr<AVFrame> frame;
+  LibavPtr<SwsContext> scaler;
   AVStream* stream = nullptr;
   double begun_s = -1;
   std::int64_t last_ms = -1;

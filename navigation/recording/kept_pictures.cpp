@@ -62,14 +62,20 @@ std::vector<VideoPart> parts_of(const SessionHeader& header) {
   return {{header.video, 0, header.video_has_exact_luma ? PicturesAs::Lossless : PicturesAs::H264}};
 }
 
+std::span<const KeptPicture> pictures_of(const std::vector<VideoPart>& parts, std::size_t part,
+                                         std::span<const KeptPicture> pictures) {
+  const auto place_of = [&](std::size_t of) {
+    return of < parts.size() ? std::min(static_cast<std::size_t>(parts[of].first_picture), pictures.size())
+                             : pictures.size();
+  };
+  return pictures.subspan(place_of(part), place_of(part + 1) - place_of(part));
+}
+
 sources::KeptStreamFile kept_stream_file(const std::filesystem::path& session_folder,
                                          const std::vector<VideoPart>& parts, std::size_t part,
                                          const std::vector<KeptPicture>& pictures) {
   sources::KeptStreamFile file{session_folder / parts[part].file, parts[part].held_back, {}};
-  const auto all = static_cast<std::int64_t>(pictures.size());
-  const std::int64_t end = part + 1 < parts.size() ? std::min(parts[part + 1].first_picture, all) : all;
-  for (std::int64_t i = parts[part].first_picture; i < end; ++i) {
-    const KeptPicture& picture = pictures[static_cast<std::size_t>(i)];
+  for (const KeptPicture& picture : pictures_of(parts, part, pictures)) {
     if (file.starts.empty() || picture.start_packet > file.starts.back().packet)
       file.starts.push_back({picture.start_packet, picture.start_ms});
   }

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "navigation/recording/session.h"
@@ -18,6 +19,9 @@ namespace arthronaut::recording {
 // The parts of a video that append_picture() wrote, also one of an older version, which does not name its
 // one.
 [[nodiscard]] std::vector<VideoPart> parts_of(const SessionHeader& header);
+// Those of one part that are there.
+[[nodiscard]] std::span<const KeptPicture> pictures_of(const std::vector<VideoPart>& parts, std::size_t part,
+                                                       std::span<const KeptPicture> pictures);
 // Where decoding may begin in a part that was kept as it came.
 [[nodiscard]] sources::KeptStreamFile kept_stream_file(const std::filesystem::path& session_folder,
                                                        const std::vector<VideoPart>& parts, std::size_t part,

@@ -18,22 +18,16 @@ constexpr const char* kClusterMs = "250";
 
 MatroskaWriter::MatroskaWriter(const std::filesystem::path& file) : file_(file) {
   av_log_set_level(AV_LOG_QUIET);  // what goes wrong is told by exception
-  check(avformat_alloc_output_context2(&container_, nullptr, "matroska", file.c_str()),
+  AVFormatContext* created = nullptr;
+  check(avformat_alloc_output_context2(&created, nullptr, "matroska", file.c_str()),
         "cannot start the video");
-  stream_ = avformat_new_stream(container_, nullptr);
+  container_.reset(created);
+  stream_ = avformat_new_stream(created, nullptr);
   if (stream_ == nullptr) throw IoError(file_, "cannot start the video");
 }
 
-MatroskaWriter::~MatroskaWriter() {
-  if (container_ != nullptr) avio_closep(&container_->pb);
-  avformat_free_context(container_);
-}
-
 void MatroskaWriter::check(int result, const std::string& what) const {
-  if (result >= 0) return;
-  char text[AV_ERROR_MAX_STRING_SIZE] = {};
-  av_strerror(result, text, sizeof text);
-  throw IoError(file_, what + ": " + text);
+  if (result < 0) throw IoError(file_, what + ": " + sources::libav_message(result));
 }
 
 void MatroskaWriter::begin() {
@@ -42,7 +36,7 @@ void MatroskaWriter::begin() {
   container_->flags |= AVFMT_FLAG_FLUSH_PACKETS;
   AVDictionary* settings = nullptr;
   av_dict_set(&settings, "cluster_time_limit", kClusterMs, 0);
-  const int result = avformat_write_header(container_, &settings);
+  const int result = avformat_write_header(container_.get(), &settings);
   av_dict_free(&settings);
   check(result, "cannot write");
 }
@@ -50,17 +44,17 @@ void MatroskaWriter::begin() {
 void MatroskaWriter::write(AVPacket& packet, AVRational time_base) {
   av_packet_rescale_ts(&packet, time_base, stream_->time_base);
   packet.stream_index = stream_->index;
-  const int written = av_write_frame(container_, &packet);
+  const int written = av_write_frame(container_.get(), &packet);
   av_packet_unref(&packet);
   check(written, "cannot write");
   // The disk's own errors are kept until somebody asks.
   check(container_->pb->error, "cannot write");
 }
 
-void MatroskaWriter::end_cluster() { check(av_write_frame(container_, nullptr), "cannot write"); }
+void MatroskaWriter::end_cluster() { check(av_write_frame(container_.get(), nullptr), "cannot write"); }
 
 void MatroskaWriter::finish() {
-  check(av_write_trailer(container_), "cannot write");
+  check(av_write_trailer(container_.get()), "cannot write");
   check(avio_closep(&container_->pb), "cannot write");
 }
 

@@ -5,10 +5,7 @@
 #include <filesystem>
 #include <string>
 
-extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-}
+#include "navigation/sources/libav.h"
 
 namespace arthronaut::recording {
 
@@ -16,9 +13,6 @@ namespace arthronaut::recording {
 class MatroskaWriter {
  public:
   explicit MatroskaWriter(const std::filesystem::path& file);
-  ~MatroskaWriter();
-  MatroskaWriter(const MatroskaWriter&) = delete;
-  MatroskaWriter& operator=(const MatroskaWriter&) = delete;
 
   [[nodiscard]] AVStream& stream() { return *stream_; }
   void begin();
@@ -32,7 +26,7 @@ class MatroskaWriter {
 
  private:
   std::filesystem::path file_;
-  AVFormatContext* container_ = nullptr;
+  sources::LibavOutput container_;
   AVStream* stream_ = nullptr;
 };
 

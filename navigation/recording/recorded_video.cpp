@@ -101,12 +101,8 @@ class RecordedVideo final : public sources::FrameSource {
     part_ = part;
     video_ = open_part(folder_, parts_, part);
     frame_of_packet_.clear();
-    const auto all = static_cast<std::int64_t>(pictures_.size());
-    const std::int64_t end = part + 1 < parts_.size() ? std::min(parts_[part + 1].first_picture, all) : all;
-    for (std::int64_t i = parts_[part].first_picture; i < end; ++i) {
-      const KeptPicture& picture = pictures_[static_cast<std::size_t>(i)];
+    for (const KeptPicture& picture : pictures_of(parts_, part, pictures_))
       frame_of_packet_[picture.packet] = picture.frame;
-    }
   }
 
   // A crash may have left a part behind that was announced and holds nothing yet.

@@ -59,8 +59,7 @@ void EncodedPackets::begin(const AVStream& stream) {
   format->parameters.reset(avcodec_parameters_alloc());
   if (avcodec_parameters_copy(format->parameters.get(), stream.codecpar) < 0) throw std::bad_alloc();
   format->time_base = stream.time_base;
-  const AVRational rate = stream.avg_frame_rate.num > 0 ? stream.avg_frame_rate : stream.r_frame_rate;
-  format->frames_per_second = rate.num > 0 && rate.den > 0 ? av_q2d(rate) : 0;
+  format->frames_per_second = frames_per_second_of(stream);
   const std::lock_guard lock(mutex_);
   format_ = std::move(format);
 }

@@ -53,6 +53,11 @@ std::string libav_message(int error) {
   return text;
 }
 
+double frames_per_second_of(const AVStream& stream) {
+  const AVRational rate = stream.avg_frame_rate.num > 0 ? stream.avg_frame_rate : stream.r_frame_rate;
+  return rate.num > 0 && rate.den > 0 ? av_q2d(rate) : 0;
+}
+
 LibavPtr<AVCodecContext> open_stream_decoder(const AVCodecParameters& parameters, AVRational time_base,
                                              std::string& problem, DecoderUse use) {
   const AVCodec* const codec = avcodec_find_decoder(parameters.codec_id);

@@ -1,4 +1,5 @@
-// Inner header: what the readers of files and of streams share of libavformat, libavcodec and libswscale.
+// Inner header: what readers and writers of files and of streams share of libavformat, libavcodec and
+// libswscale.
 #pragma once
 
 #include <memory>
@@ -28,8 +29,19 @@ struct FreeLibav {
 template <class T>
 using LibavPtr = std::unique_ptr<T, FreeLibav>;
 
+// Of a container that is written.
+struct CloseOutput {
+  void operator()(AVFormatContext* p) const {
+    avio_closep(&p->pb);
+    avformat_free_context(p);
+  }
+};
+using LibavOutput = std::unique_ptr<AVFormatContext, CloseOutput>;
+
 // "Invalid data found when processing input".
 [[nodiscard]] std::string libav_message(int error);
+// As the container says, else as it was guessed of the first pictures; 0: neither.
+[[nodiscard]] double frames_per_second_of(const AVStream& stream);
 
 // Live: what must not hold pictures back, and what is decoded again to be the same to the last bit. Quick: by
 // all cores.

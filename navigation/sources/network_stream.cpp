@@ -110,10 +110,7 @@ class Connection {
     const AVDictionaryEntry* const title = av_dict_get(container_->metadata, "title", nullptr, 0);
     return title != nullptr ? title->value : "";
   }
-  double frames_per_second() const {
-    const AVRational rate = stream().avg_frame_rate.num > 0 ? stream().avg_frame_rate : stream().r_frame_rate;
-    return rate.num > 0 && rate.den > 0 ? av_q2d(rate) : 0;
-  }
+  double frames_per_second() const { return frames_per_second_of(stream()); }
 
  private:
   // Below 0: none that is known.

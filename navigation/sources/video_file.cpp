@@ -29,10 +29,9 @@ class VideoFile : public FrameSource, public SeekableVideo {
     if (luma_ == LumaOf::File) converter_.expect_full_range();
     open_container();
     open_decoder();
-    const AVRational rate = stream().avg_frame_rate.num > 0 ? stream().avg_frame_rate : stream().r_frame_rate;
     info_.name = file.filename().string();
     info_.image_size_px = {decoder_->width, decoder_->height};
-    info_.frames_per_second = rate.num > 0 && rate.den > 0 ? av_q2d(rate) : 0;
+    info_.frames_per_second = frames_per_second_of(stream());
     info_.frame_count = stream().nb_frames > 0 ? stream().nb_frames : -1;
     info_.encoded_file = file;
   }
