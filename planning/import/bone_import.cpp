@@ -7,6 +7,7 @@
 #include "planning/geometry/error.h"
 #include "planning/images/bone_surface.h"
 #include "planning/images/volume_file.h"
+#include "planning/import/cut_check.h"
 #include "planning/import/shape_check.h"
 #include "planning/segmentation/anatomy_check.h"
 #include "planning/segmentation/ct_bones.h"
@@ -212,8 +213,7 @@ bool import_ct(const Volume& volume, const BoneImportOptions& options, BoneImpor
   return found.side_by_fibula.has_value();
 }
 
-// Returns whether a fibula told the side.
-bool import_volume(const std::filesystem::path& source, const BoneImportOptions& options, BoneImport& result,
+void import_volume(const std::filesystem::path& source, const BoneImportOptions& options, BoneImport& result,
                    const Tell& tell) {
   if (options.space || options.unit) {
     throw InvalidInput(
@@ -265,7 +265,12 @@ bool import_volume(const std::filesystem::path& source, const BoneImportOptions&
                                          .size = volume.size,
                                          .spacing_mm = spacing},
                                .volume = encoded(volume)};
-  return fibula_was_seen;
+  tell("Looking at the bones", kUnknown);
+  check_shapes(result, fibula_was_seen);
+  // After the shapes, which are looked at where nothing speaks against a bone yet.
+  for (ImportedBone& imported : result.bones)
+    for (std::string& doubt : cut_doubts(imported.bone.mesh, imported.bone.kind, volume))
+      imported.doubts.push_back(std::move(doubt));
 }
 
 }  // namespace
@@ -279,19 +284,18 @@ BoneImport import_bones(const std::filesystem::path& source, const BoneImportOpt
   BoneImport result;
   result.side = options.side ? options.side : side_in_name(source);
   result.side_was_guessed = !options.side && result.side;
-  bool fibula_was_seen = false;
   if (bones::is_mesh_file(source) && !std::filesystem::is_directory(source)) {
     import_mesh(source, options, result, tell);
+    tell("Looking at the bones", kUnknown);
+    check_shapes(result, false);
   } else if (is_volume_source(source)) {
-    fibula_was_seen = import_volume(source, options, result, tell);
+    import_volume(source, options, result, tell);
   } else {
     throw InvalidInput(
         source, "",
         "is nothing that is imported: a mesh (STL, PLY, OBJ, VTK, VTP), DICOM, or a volume (NIfTI, NRRD, "
         "MetaImage)");
   }
-  tell("Looking at the bones", kUnknown);
-  check_shapes(result, fibula_was_seen);
   return result;
 }
 
@@ -318,10 +322,10 @@ std::map<BoneKind, int> labels_from_text(const std::string& text) {
     const char* begin = part.data() + std::min(equals, part.size() - 1) + 1;
     const auto [stop, error] = std::from_chars(begin, part.data() + part.size(), label);
     if (equals == std::string::npos || error != std::errc() || stop != part.data() + part.size()) {
-      throw InvalidInput("--label: \"" + part + "\" is not BONE=NUMBER, as in femur=5,tibia=6");
+      throw InvalidInput("\"" + part + "\" is not BONE=NUMBER, as in femur=5,tibia=6");
     }
     if (!labels.emplace(bones::bone_kind_from_text(part.substr(0, equals)), label).second) {
-      throw InvalidInput("--label: names " + part.substr(0, equals) + " twice");
+      throw InvalidInput("names " + part.substr(0, equals) + " twice");
     }
     at = end + 1;
   }

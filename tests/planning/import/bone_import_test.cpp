@@ -20,6 +20,7 @@ using test::message_of;
 using test::TemporaryFolder;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST(BoneImport, NamesTellBoneAndSide) {
   EXPECT_EQ(bone_kind_in_name("/left/3_RIGHT_femur_Nov.vtk"), BoneKind::Femur);
@@ -115,6 +116,34 @@ TEST(BoneImport, SegmentsAreFoundByTheirNames) {
   EXPECT_EQ(import.bones[1].bone.source, "label 2 of NRRD");
   ASSERT_TRUE(import.image.has_value());
   EXPECT_TRUE(import.image->image.is_label_map);
+}
+
+// A knee that fills the images up to their front edge: the bone ends there, flat, and what was in front of it
+// is missing. Through the shaft every scan cuts.
+TEST(BoneImport, Hazard46ABoneThatTheEdgeOfTheImagesCutsRaisesADoubt) {
+  const TemporaryFolder folder;
+  images::Volume volume;
+  volume.size = {60, 60, 60};
+  volume.values.assign(60 * 60 * 60, 0.0F);
+  for (int k = 30; k < 60; ++k)
+    for (int j = 0; j < 30; ++j)
+      for (int i = 10; i < 50; ++i) volume.values[volume.index(i, j, k)] = 1.0F;
+  BoneImportOptions options;
+  options.labels = {{BoneKind::Femur, 1}};
+  const auto doubts_at = [&](const char* name) {
+    images::write_volume(folder / name, volume);
+    return import_bones(folder / name, options).bones.at(0).doubts;
+  };
+  // 40 by 30 mm, less a rim of a voxel that is rounded off.
+  const auto is_cut = [](const char* area) {
+    return Contains(HasSubstr(std::string(area) + " cm2 of it are cut off flat in front"));
+  };
+  EXPECT_THAT(doubts_at("cut.nrrd"), testing::AnyOf(is_cut("10"), is_cut("11"), is_cut("12")));
+  EXPECT_THAT(doubts_at("cut.nrrd"), Not(Contains(HasSubstr("cut off flat above"))));
+  volume.lps_from_index.translation().y() = 5;
+  for (int k = 30; k < 60; ++k)
+    for (int i = 10; i < 50; ++i) volume.values[volume.index(i, 0, k)] = 0.0F;
+  EXPECT_THAT(doubts_at("whole.nrrd"), Not(Contains(HasSubstr("cut off flat"))));
 }
 
 TEST(BoneImport, WhatIsNotSaidIsAskedFor) {
