@@ -42,7 +42,10 @@ void BonePane::look_from(scene::ViewDirection view) {
   const BoneKind of = only_.value_or(model_->has_bone(BoneKind::Femur) ? BoneKind::Femur : BoneKind::Tibia);
   cut_.reset();
   if (view == scene::ViewDirection::Notch && of == BoneKind::Femur) cut_ = model_->notch_cut();
-  pane_.look(scene::look_from(view, model_->axes(of), model_->joint_bounds(only_), aspect_));
+  const geometry::Bounds joint = model_->joint_bounds(only_);
+  const scene::SceneCamera camera = scene::look_from(view, model_->axes(of), joint, aspect_);
+  open_ = {(joint.min_mm + joint.max_mm) / 2, (camera.position_mm - camera.focus_mm).normalized()};
+  pane_.look(camera);
   is_stale_ = true;
 }
 
@@ -64,6 +67,7 @@ void BonePane::look_at(const Eigen::Vector3d& point_mm, BoneKind bone) {
       }
   }
   const Eigen::Vector3d up = std::abs(outwards.dot(axes.proximal)) > 0.9 ? axes.anterior : axes.proximal;
+  open_ = {point_mm, outwards};
   pane_.look(scene::look_along(-outwards, point_mm, kAway_mm, up));
 }
 
@@ -110,6 +114,7 @@ void BonePane::show() {
     if (is_see_through_) item.opacity = kSeeThroughOpacity;
     for (const auto& cut : {cut_, cut_of_other_bone()})
       if (cut) item.cuts.push_back(*cut);
+    if (item.preset == scene::VolumePreset::Grey && !cut_) item.cuts.push_back(open_);
     content.volume = std::make_shared<const scene::VolumeItem>(std::move(item));
     pane_.show(content);
     is_stale_ = false;

@@ -59,8 +59,8 @@ class BonePane {
   [[nodiscard]] const scene::SceneCamera& camera() const { return pane_.camera(); }
   void see_through(bool on);
   [[nodiscard]] bool is_see_through() const { return is_see_through_; }
-  // The images in the bones' place, cut as these are; nullptr: the bones. What is seen and taken hold of
-  // stays the bones' surface, which lies where the images' does.
+  // The images in the bones' place, cut as these are, an MR also cut open; nullptr: the bones. What is seen
+  // and taken hold of stays the bones' surface, which lies where the images' does.
   void show_volume(const std::shared_ptr<const scene::VolumeItem>& item);
   [[nodiscard]] bool shows_volume() const { return volume_ != nullptr; }
   // What is drawn beside the bones, and the tunnels' lines; kept until it is set again.
@@ -84,6 +84,7 @@ class BonePane {
   std::optional<scene::ViewDirection> looked_from_;
   std::optional<bones::BoneKind> only_;
   std::optional<scene::CutPlane> cut_;
+  scene::CutPlane open_;  // through the middle of what is looked at, towards the eye: of an MR in 3D
   bool is_see_through_ = false, is_stale_ = true;
   double aspect_ = 1.5;
   std::string held_;                                          // the mark that is dragged

@@ -136,8 +136,8 @@ std::string in_words(VolumePreset preset) {
 }
 
 double first_threshold(const DrawnVolume& volume) {
-  constexpr double kBone_hu = 250;
-  return volume.is_ct ? kBone_hu : (volume.lowest + volume.highest) / 2;
+  constexpr double kBone_hu = 250, kAboveAir = 0.1;
+  return volume.is_ct ? kBone_hu : volume.lowest + kAboveAir * (volume.highest - volume.lowest);
 }
 
 double moved_threshold(const DrawnVolume& volume, double threshold, int steps) {

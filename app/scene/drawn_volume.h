@@ -37,10 +37,12 @@ struct DrawnVolume {
 enum class VolumePreset {
   Bone,               // one opaque surface at the threshold
   BoneAndSoftTissue,  // the same within muscle and skin, faint
-  Grey,               // MR: what is brighter than the threshold, the brighter the denser
+  // MR: everything but air, opaque and in its own grey. Skin is among the brightest, so that no threshold
+  // shows what lies within: cut open it shows the anatomy, as a slice does.
+  Grey,
 };
 [[nodiscard]] std::string in_words(VolumePreset preset);  // "bone and soft tissue"
-// That a look at it begins with: 250 HU, or the middle of an MR's values.
+// That a look at it begins with: 250 HU, or a tenth of an MR's range, above its air.
 [[nodiscard]] double first_threshold(const DrawnVolume& volume);
 // Moved by steps of 25 HU, or 40 to the range of an MR; between the values that are drawn.
 [[nodiscard]] double moved_threshold(const DrawnVolume& volume, double threshold, int steps);

@@ -77,12 +77,10 @@ void dress(vtkVolume& volume, const VolumeItem& item) {
   const double t = item.threshold;
   const bool is_grey = item.preset == VolumePreset::Grey;
   if (is_grey) {
-    const double highest = drawn.highest;
-    let_see(t, 0);
-    let_see(std::max(t + drawn.per_level, 0.5 * (t + highest)), 0.35);
-    let_see(std::max(t + 2 * drawn.per_level, highest), 0.6);
+    let_see(t - drawn.per_level, 0);
+    let_see(t + drawn.per_level, 1);
     paint(drawn.lowest, 0, 0, 0);
-    paint(highest, 1, 1, 1);
+    paint(drawn.highest, 1, 1, 1);
   } else {
     let_see(t - kRamp_hu, item.preset == VolumePreset::Bone ? 0 : 0.05);
     let_see(t + kRamp_hu, 1);
@@ -109,9 +107,10 @@ void dress(vtkVolume& volume, const VolumeItem& item) {
   }
   property->SetColor(color);
   property->SetInterpolationTypeToLinear();
-  property->ShadeOn();
-  property->SetAmbient(is_grey ? 0.5 : 0.15);
-  property->SetDiffuse(is_grey ? 0.6 : 0.85);
+  // A cut through an MR is read by its greys: light would turn the noise of their slope into dark and bright.
+  property->SetShade(is_grey ? 0 : 1);
+  property->SetAmbient(0.15);
+  property->SetDiffuse(0.85);
   property->SetSpecular(0.12);
   property->SetSpecularPower(18);
   property->SetScalarOpacityUnitDistance(item.opacity < 1 ? kTranslucent_mm : 1);

@@ -207,5 +207,32 @@ TEST_F(DrawnScene, TheThresholdMovesTheSurface) {
   EXPECT_LT(gap.mean_mm, 1.9);
 }
 
+// An MR whose brightest value is its skin: cut open, what lies within has its own grey, and not the skin's.
+TEST_F(DrawnScene, AnMrThatIsCutOpenShowsTheGreysWithin) {
+  images::Volume mr = volume_of(axes()[1].directions, axes()[1].spacing_mm);
+  mr.modality = "MR";
+  const Vector3d core(10, 0, 15);
+  std::size_t v = 0;
+  for (int k = 0; k < mr.size.z(); ++k)
+    for (int j = 0; j < mr.size.y(); ++j)
+      for (int i = 0; i < mr.size.x(); ++i, ++v) {
+        const float steepness = mr.values[v];  // above kThreshold within the body, by 500 a millimetre
+        const bool is_core = (mr.lps_from_index * Vector3d(i, j, k) - core).norm() < 8;
+        mr.values[v] = is_core ? 600.F : steepness < kThreshold ? 0.F : steepness < 1400 ? 900.F : 300.F;
+      }
+  SceneContent content = content_of(mr);
+  VolumeItem item = *content.volume;
+  item.preset = VolumePreset::Grey;
+  item.threshold = first_threshold(*item.volume);
+  const auto grey_in_the_middle = [&] {
+    content.volume = std::make_shared<VolumeItem>(item);
+    const Image image = picture(content, {0, 1, 0});
+    return static_cast<int>(image.rgb[3 * (kSize_px / 2 * kSize_px + kSize_px / 2)]);
+  };
+  EXPECT_LT(grey_in_the_middle(), 100) << "the skin's edge, where its values pass the threshold";
+  item.cuts.push_back({core, -Vector3d::UnitY()});
+  EXPECT_NEAR(grey_in_the_middle(), 600.0 / 900 * 255, 8);
+}
+
 }  // namespace
 }  // namespace arthronaut::scene
