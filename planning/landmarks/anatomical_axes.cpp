@@ -85,16 +85,21 @@ bool agrees(const AnatomicalAxes& axes, const AnatomicalAxes& scanner) {
          axes.lateral.dot(scanner.lateral) > kLeastCosine;
 }
 
+// The landmarks of the shaft, laid across `lateral`.
+std::optional<Vector3d> along_shaft(const Landmarks& landmarks, const Vector3d& lateral) {
+  const auto shaft = between(find(landmarks, "shaft_distal"), find(landmarks, "shaft_proximal"));
+  return shaft ? laid_across(*shaft, lateral) : std::nullopt;
+}
+
 // The long axis across `lateral`: what the joint's end says, and the landmarks of the shaft as far as they
 // lie apart.
 std::optional<Vector3d> long_axis(const std::optional<Vector3d>& by_joint, double joint_sigma_deg,
                                   const Landmarks& landmarks, const Vector3d& lateral) {
-  const auto distal = find(landmarks, "shaft_distal"), proximal = find(landmarks, "shaft_proximal");
-  const auto shaft = between(distal, proximal);
-  const auto by_shaft = shaft ? laid_across(*shaft, lateral) : std::nullopt;
+  const auto by_shaft = along_shaft(landmarks, lateral);
   if (!by_shaft) return by_joint;
-  if (!by_joint || by_joint->dot(*by_shaft) < kLeastCosine) return by_shaft;
-  const double sigma = shaft_sigma_deg((*proximal - *distal).norm());
+  if (!by_joint) return by_shaft;
+  const double sigma =
+      shaft_sigma_deg((landmarks.at("shaft_proximal") - landmarks.at("shaft_distal")).norm());
   const double weight = 1 / (sigma * sigma), joint_weight = 1 / (joint_sigma_deg * joint_sigma_deg);
   return Vector3d((weight * *by_shaft + joint_weight * *by_joint).normalized());
 }
@@ -141,6 +146,10 @@ std::optional<AnatomicalAxes> from_landmarks(bones::BoneKind bone, bones::Side s
         above(between(find(landmarks, "plateau_posterior"), find(landmarks, "plateau_anterior")));
     if (plateau) by_joint = turned(*plateau, kPlateauSlope_deg);
   }
+  // Medial and lateral mixed up turn over what the joint's end says and leave the shaft as it is: believing
+  // the shaft would leave the bone upright, and every other word mirrored.
+  const auto by_shaft = along_shaft(landmarks, *lateral);
+  if (by_joint && by_shaft && by_joint->dot(*by_shaft) < kLeastCosine) return std::nullopt;
   auto proximal = long_axis(by_joint, sigma_deg, landmarks, *lateral);
   if (!proximal) proximal = laid_across(shaft.value_or(Vector3d::UnitZ()), *lateral);
   if (!proximal) return std::nullopt;

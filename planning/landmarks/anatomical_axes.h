@@ -37,8 +37,9 @@ inline constexpr double kPlateauSlope_deg = 8, kSlopeSigma_deg = 4;
 // Proximal is across it: what the joint's end tells (femur: Blumensaat's line, else the epicondyles in front
 // of the posterior condyles; tibia: the plateau's anterior and posterior edges) and the landmarks of the
 // shaft, weighted by how well either tells it; the mesh's shaft or the scanner where neither is there. Not
-// taken when most of the mesh then lies on the wrong side of the joint (mixed-up landmarks); without a mesh,
-// when an axis is more than 60 degrees off the scanner's. Without landmarks: proximal is the shaft, the
+// taken when they are mixed up: when most of the mesh then lies on the wrong side of the joint, when the
+// joint's end and the landmarks of the shaft tell axes more than 60 degrees apart, or, without a mesh, when
+// an axis is more than 60 degrees off the scanner's. Without landmarks: proximal is the shaft, the
 // longest principal axis of the surface, when its variance is more than 1.6 times the next one's; lateral is
 // the scanner's, laid across it, unless more than 60 degrees off the scanner's. Never throws; an empty mesh
 // has no shape.

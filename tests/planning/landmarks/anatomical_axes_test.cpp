@@ -82,6 +82,25 @@ TEST(AnatomicalAxes, Hazard31DoNotBelieveMixedUpLandmarks) {
   EXPECT_EQ(axes.origin, Origin::FromScanner);
 }
 
+// The landmarks of the shaft are right whichever side is which: they must not vouch for the joint's.
+TEST(AnatomicalAxes, Hazard31TheShaftDoesNotVouchForMixedUpLandmarks) {
+  Landmarks mixed = femur_landmarks(kTurn);
+  mixed["shaft_distal"] = kTurn * Vector3d(0, 0, 60);
+  mixed["shaft_proximal"] = kTurn * Vector3d(0, 0, 150);
+  geometry::TriangleMesh femur = box({30, 28, 90}, kTurn);
+  for (Vector3d& vertex : femur.vertices_mm) vertex += kTurn * Vector3d(0, 0, 80);
+  const auto axes_of = [&](const Landmarks& landmarks) {
+    return anatomical_axes(bones::BoneKind::Femur, bones::Side::Right, landmarks, femur);
+  };
+  EXPECT_EQ(axes_of(mixed).origin, Origin::FromLandmarks);
+  for (const char* part : {"epicondyle", "condyle_posterior"})
+    std::swap(mixed[std::string("medial_") + part], mixed[std::string("lateral_") + part]);
+  const AnatomicalAxes axes = axes_of(mixed);
+  EXPECT_EQ(axes.origin, Origin::FromShaft);
+  EXPECT_GT(axes.lateral.dot(kTurn * -Vector3d::UnitX()), 0.5);
+  EXPECT_GT(axes.anterior.dot(kTurn * -Vector3d::UnitY()), 0.5);
+}
+
 // For lines that run anyhow: two unit vectors at right angles across it, each within 55 degrees of what it is
 // named after (the worst is a line that runs amid all three axes).
 TEST(AnatomicalAxes, Hazard31TwoDirectionsAcrossALineAreNamedByTheNearest) {
