@@ -4,12 +4,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <iostream>
-#include <sstream>
 #include <utility>
 
 #include "planning/files/private_folder.h"
@@ -125,10 +125,12 @@ std::string read_text(const fs::path& file) {
   if (fs::is_directory(file)) throw IoError(file, "is a folder, not a file");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw IoError(file, std::string("cannot open: ") + std::strerror(errno));
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (stream.bad()) throw IoError(file, "cannot read");
-  return std::move(text).str();
+  std::string text;
+  std::array<char, 65536> buffer{};
+  while (stream.read(buffer.data(), buffer.size()), stream.gcount() > 0)
+    text.append(buffer.data(), static_cast<std::size_t>(stream.gcount()));
+  if (stream.bad()) throw IoError(file, "cannot be read to its end");
+  return text;
 }
 
 }  // namespace arthronaut::files

@@ -44,6 +44,13 @@ TEST(AtomicFile, MissingThingsAreIoErrorsThatNameTheFile) {
   EXPECT_EQ(folder.names().size(), 1U);
 }
 
+// A disk or a share that fails while a file is read: no part of it passes for the whole. A program's memory
+// can be opened and not be read at its beginning, as such a file.
+TEST(AtomicFile, AReadThatFailsIsAnIoError) {
+  EXPECT_THAT(message_of<IoError>([] { (void)read_text("/proc/self/mem"); }),
+              HasSubstr("/proc/self/mem: cannot be read to its end"));
+}
+
 // /proc refuses new files even to root, as a folder without write permission does to everybody else.
 TEST(AtomicFile, AReadOnlyFolderIsAnIoErrorOfTheTarget) {
   EXPECT_THAT(message_of<IoError>([&] { write_atomically("/proc/case.json", "1"); }),
