@@ -4,6 +4,7 @@
 
 #include "planning/cases/private_json.h"
 #include "planning/files/json_document.h"
+#include "planning/files/remove_file.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
@@ -32,7 +33,7 @@ void save_note_over(const fs::path& case_folder, const std::string& text, const 
   if (load_note(case_folder).text != made_from)
     throw InvalidInput(file, "", "was changed meanwhile by another program; nothing was written");
   if (text == made_from) return;
-  if (text.empty()) return remove_private_json(file);
+  if (text.empty()) return files::remove_file(file);
   write_private_json(file, {{"format", kNoteFormat},
                             {"version", kNoteVersion},
                             {"text", text},

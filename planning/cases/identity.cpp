@@ -5,6 +5,7 @@
 
 #include "planning/cases/private_json.h"
 #include "planning/files/json_document.h"
+#include "planning/files/remove_file.h"
 
 namespace arthronaut::cases {
 
@@ -55,7 +56,7 @@ std::optional<Identity> load_identity(const fs::path& case_folder) {
 
 void save_identity(const fs::path& case_folder, const Identity& identity) {
   const fs::path file = identity_file(case_folder);
-  if (identity.is_empty()) return remove_private_json(file);
+  if (identity.is_empty()) return files::remove_file(file);
   write_private_json(file, {{"format", kIdentityFormat},
                             {"version", kIdentityVersion},
                             {"patient_name", identity.patient_name},

@@ -4,6 +4,7 @@
 
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
+#include "planning/files/remove_file.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/rigid_transform.h"
 
@@ -48,12 +49,7 @@ std::vector<Measurement> load_measurements(const fs::path& case_folder) {
 
 void save_measurements(const fs::path& case_folder, const std::vector<Measurement>& measurements) {
   const fs::path file = measurements_file(case_folder);
-  if (measurements.empty()) {
-    std::error_code error;
-    fs::remove(file, error);
-    if (error) throw IoError(file, error.message());
-    return;
-  }
+  if (measurements.empty()) return files::remove_file(file);
   auto nodes = nlohmann::ordered_json::array();
   for (const Measurement& measurement : measurements) {
     if (measurement.points_mm.size() != 2 && measurement.points_mm.size() != 3)

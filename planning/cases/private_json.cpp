@@ -25,10 +25,4 @@ void write_private_json(const fs::path& file, const nlohmann::ordered_json& docu
   });
 }
 
-void remove_private_json(const fs::path& file) {
-  std::error_code error;
-  fs::remove(file, error);
-  if (error) throw IoError(file, "cannot remove: " + error.message());
-}
-
 }  // namespace arthronaut::cases

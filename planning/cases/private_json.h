@@ -10,7 +10,4 @@ namespace arthronaut::cases {
 // an old character set) are replaced. Throws IoError; what was there is then as before.
 void write_private_json(const std::filesystem::path& file, const nlohmann::ordered_json& document);
 
-// Nothing happens when there is none. Throws IoError.
-void remove_private_json(const std::filesystem::path& file);
-
 }  // namespace arthronaut::cases

@@ -6,6 +6,7 @@
 
 #include "planning/cases/private_json.h"
 #include "planning/files/json_document.h"
+#include "planning/files/remove_file.h"
 
 namespace arthronaut::cases {
 
@@ -53,7 +54,7 @@ Studies load_studies(const fs::path& case_folder) {
 }
 
 void save_studies(const fs::path& case_folder, const Studies& studies) {
-  if (studies.empty()) return remove_private_json(study_file(case_folder));
+  if (studies.empty()) return files::remove_file(study_file(case_folder));
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   const DicomOrigin* before = nullptr;
   for (const auto& [kind, origin] : studies) {
