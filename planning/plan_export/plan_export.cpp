@@ -8,6 +8,7 @@
 #include "planning/bones/mesh_file.h"
 #include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
+#include "planning/files/remove_file.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
 #include "planning/plan_export/drilled_bone.h"
@@ -16,6 +17,14 @@
 namespace arthronaut::plan_export {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+fs::path drilled_file(const fs::path& folder, bones::BoneKind kind) {
+  return folder / (std::string(bones::to_text(kind)) + "_drilled.stl");
+}
+
+}  // namespace
 
 std::string plan_csv(const cases::Case& knee) {
   std::string text =
@@ -73,12 +82,15 @@ ExportSummary export_plan(const cases::Case& knee, const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder)) throw IoError(folder, "cannot make the folder: " + error.message());
+  // What an earlier plan left drilled would pass for this one's.
+  for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia})
+    if (!drilled.contains(kind)) files::remove_file(drilled_file(folder, kind));
   cases::save_plan(folder, knee.plan);
   files::write_atomically(folder / "plan.csv", csv);
   files::write_atomically(folder / "plan.mrk.json", markups);
   summary.files = {folder / "plan.json", folder / "plan.csv", folder / "plan.mrk.json"};
   for (const auto& [kind, mesh] : drilled) {
-    summary.files.push_back(folder / (std::string(bones::to_text(kind)) + "_drilled.stl"));
+    summary.files.push_back(drilled_file(folder, kind));
     bones::write_mesh_stl(summary.files.back(), mesh);
   }
   return summary;

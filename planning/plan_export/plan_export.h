@@ -17,8 +17,9 @@ struct ExportSummary {
 };
 
 // Writes plan.json, plan.csv, plan.mrk.json and, of every bone that is planned on, femur_drilled.stl or
-// tibia_drilled.stl (LPS, mm). Everything is computed before anything is written, each file whole or not at
-// all; the folder is made where needed. Throws InvalidInput when nothing is planned, IoError.
+// tibia_drilled.stl (LPS, mm); one of an earlier plan that this one does not drill is removed. Everything is
+// computed before anything is written, each file whole or not at all; the folder is made where needed. Throws
+// InvalidInput when nothing is planned, IoError.
 [[nodiscard]] ExportSummary export_plan(const cases::Case& knee, const std::filesystem::path& folder);
 
 // One row a tunnel, header first: bone, entry, direction, diameter, exit, length, wall (empty where the

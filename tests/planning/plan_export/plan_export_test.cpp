@@ -80,6 +80,20 @@ TEST(PlanExport, WritesWhatIsReadBackTheSame) {
               0.15);  // mouths slant
 }
 
+// A folder that is exported to again holds no bone drilled by the plan before.
+TEST(PlanExport, LeavesNoBoneDrilledByAnEarlierPlan) {
+  const test::TemporaryFolder folder;
+  auto knee = knee_case();
+  (void)export_plan(knee, folder.path());
+  knee.plan.remove(BoneKind::Tibia);
+  knee.plan.tunnels.at(BoneKind::Femur).entry_mm.x() += 300;
+  const auto summary = export_plan(knee, folder.path());
+  EXPECT_EQ(summary.files.size(), 3U);
+  EXPECT_FALSE(summary.doubts.empty());
+  for (const char* name : {"femur_drilled.stl", "tibia_drilled.stl"})
+    EXPECT_FALSE(std::filesystem::exists(folder / name)) << name;
+}
+
 TEST(PlanExport, RefusesAnEmptyPlan) {
   const test::TemporaryFolder folder;
   auto knee = knee_case();
