@@ -5,6 +5,7 @@
 
 #include "planning/cases/identity.h"
 #include "planning/cases/study.h"
+#include "planning/files/remove_file.h"
 #include "planning/files/utc_clock.h"
 #include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
@@ -61,7 +62,7 @@ bool holds_same(const fs::path& file, const images::EncodedVolume& volume) {
   return true;
 }
 
-void add_bones(const fs::path& folder, cases::Case& target, const BoneImport& import) {
+void refuse_planned_bones(const fs::path& folder, const cases::Case& target, const BoneImport& import) {
   for (const ImportedBone& imported : import.bones) {
     const bones::BoneKind kind = imported.bone.kind;
     if (target.bones.contains(kind) && !target.plan.of(kind).empty()) {
@@ -69,28 +70,46 @@ void add_bones(const fs::path& folder, cases::Case& target, const BoneImport& im
                          "holds a plan on its " + std::string(bones::to_text(kind)) +
                              ", which another bone would make wrong: import into another case");
     }
-    target.bones[kind] = imported.bone;
-    target.landmarks.erase(kind);
-    target.landmark_states.erase(kind);
   }
 }
 
-// Beside the bones, which were made from it. The same volume once more takes its own place again.
-void add_image(const fs::path& folder, cases::Case& target, const BoneImport& import) {
-  if (!import.image) return;
+// Landmarks and cartilage of a bone that is replaced lie on its surface. They leave the disk before another
+// surface comes: whatever happens in between, none is found on a bone that it is not of.
+void forget_replaced(const fs::path& folder, cases::Case& target, const BoneImport& import) {
+  bool is_replaced = false;
+  for (const ImportedBone& imported : import.bones) {
+    const bones::BoneKind kind = imported.bone.kind;
+    if (!target.bones.contains(kind)) continue;
+    is_replaced = true;
+    target.landmarks.erase(kind);
+    target.landmark_states.erase(kind);
+    files::remove_file(cases::cartilage_file(folder, kind));
+  }
+  if (is_replaced) cases::save_case(folder, target);
+}
+
+void put_bones(cases::Case& target, const BoneImport& import) {
+  for (const ImportedBone& imported : import.bones) target.bones[imported.bone.kind] = imported.bone;
+}
+
+// Beside the bones, which were made from it. Empty when there is none to store: the same volume once more
+// keeps its place.
+std::optional<cases::CaseImage> store_new_image(const fs::path& folder, const cases::Case& target,
+                                                const BoneImport& import) {
+  if (!import.image) return std::nullopt;
   cases::CaseImage image = import.image->image;
-  auto& there = target.images;
+  const auto& there = target.images;
   const auto same = std::find_if(there.begin(), there.end(), [&](const cases::CaseImage& other) {
     return other.size == image.size && other.spacing_mm == image.spacing_mm &&
            other.modality == image.modality && other.is_label_map == image.is_label_map &&
            holds_same(folder / other.file, import.image->volume);
   });
-  if (same != there.end()) return;
+  if (same != there.end()) return std::nullopt;
   int number = 1;
   const auto is_taken = [&] { return fs::exists(folder / ("images/" + std::to_string(number) + ".nrrd")); };
   while (is_taken()) ++number;
   cases::store_image(folder, number, import.image->volume, image);
-  there.push_back(image);
+  return image;
 }
 
 // Of the bones that were added, and of no other: one that is now a mesh is no longer of the images.
@@ -118,11 +137,28 @@ void refuse_another_patient(const fs::path& folder, const cases::Identity& of_im
 
 void save_new(const fs::path& folder, cases::Case& contents, const BoneImport& import) {
   files::make_whole_folder(folder, [&](const fs::path& unfinished) {
-    add_image(unfinished, contents, import);
+    if (const auto image = store_new_image(unfinished, contents, import)) contents.images.push_back(*image);
     cases::save_case(unfinished, contents);
     if (!import.identity.is_empty()) cases::save_identity(unfinished, import.identity);
     save_studies_of(unfinished, import);
   });
+}
+
+// The image, the largest, first: a disk that it fills is as it was before.
+void save_into(const fs::path& folder, cases::Case& target, const BoneImport& import) {
+  const auto image = store_new_image(folder, target, import);
+  try {
+    forget_replaced(folder, target, import);
+    put_bones(target, import);
+    if (image) target.images.push_back(*image);
+    cases::save_case(folder, target);
+  } catch (...) {
+    std::error_code ignored;  // of two failures the first is told
+    if (image) fs::remove(folder / image->file, ignored);
+    throw;
+  }
+  if (!import.identity.is_empty()) cases::save_identity(folder, import.identity);
+  save_studies_of(folder, import);
 }
 
 }  // namespace
@@ -139,14 +175,12 @@ void refuse_missing_side(const fs::path& folder, const fs::path& source, const B
 cases::Case add_to_case(const fs::path& folder, const BoneImport& import, const std::string& name,
                         const fs::path& source) {
   cases::Case target = case_to_extend(folder, import, name, source);
-  add_bones(folder, target, import);
+  refuse_planned_bones(folder, target, import);
   if (fs::exists(folder / "case.json")) {
     refuse_another_patient(folder, import.identity);
-    add_image(folder, target, import);
-    cases::save_case(folder, target);
-    if (!import.identity.is_empty()) cases::save_identity(folder, import.identity);
-    save_studies_of(folder, import);
+    save_into(folder, target, import);
   } else {
+    put_bones(target, import);
     save_new(folder, target, import);
   }
   return target;

@@ -17,10 +17,12 @@ void refuse_missing_side(const std::filesystem::path& folder, const std::filesys
 // Writes the case with these bones into `folder`, and returns it. `name` becomes the case's name; empty:
 // "Knee" and the date, or the one it has. `source` is for messages.
 //
-// A new case appears whole, by renaming, or not at all. In one that is there bones are replaced, and
-// landmarks on them go. Throws InvalidInput: a folder that holds something else; a knee of the other side, or
-// of neither; another patient's; a bone that is planned on, as its tunnel would lie somewhere else in another
-// surface. Throws IoError. The folder is then as before.
+// A new case appears whole, by renaming, or not at all. In one that is there bones are replaced, and their
+// landmarks and cartilage go. Throws InvalidInput: a folder that holds something else; a knee of the other
+// side, or of neither; another patient's; a bone that is planned on, as its tunnel would lie somewhere else
+// in another surface; the folder is then as before. Throws IoError: of a case that was there, bones to be
+// replaced may have lost landmarks and cartilage, or be replaced; none has those of another surface, and no
+// image was added. After a crash neither, but the image may lie there unused.
 cases::Case add_to_case(const std::filesystem::path& folder, const BoneImport& import,
                         const std::string& name, const std::filesystem::path& source);
 

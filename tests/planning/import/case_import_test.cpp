@@ -95,7 +95,6 @@ TEST(CaseImport, KeepsOfWhichStudyABoneIs) {
   EXPECT_EQ(studies.at(BoneKind::Tibia), of_images.origin);
 }
 
-// A bone that is planned on is not exchanged under its tunnel.
 // Images alone make a case without bones, in which they are painted; the study is that of both.
 TEST(CaseImport, ImagesAloneMakeACaseToPaintIn) {
   const TemporaryFolder folder;
@@ -149,6 +148,50 @@ TEST(CaseImport, EdgesOfAnotherImageAreRefused) {
               HasSubstr("is not the image that the labels were painted in"));
 }
 
+// An import that fails half-way, here at a tibia that cannot be written, leaves no landmark and no cartilage
+// of the femur that it has replaced, and no image.
+TEST(CaseImport, WhatFailsHalfWayLeavesNothingOnAnotherSurface) {
+  const TemporaryFolder folder;
+  cases::Case made = add_to_case(folder / "a", imported(BoneKind::Femur), "", "bone.stl");
+  made.landmarks[BoneKind::Femur]["medial_epicondyle"] = {40, 0, 0};
+  cases::save_case(folder / "a", made);
+  cases::save_cartilage(folder / "a", BoneKind::Femur, test::box({4, 4, 1}));
+  std::filesystem::create_directory(cases::mesh_file(folder / "a", BoneKind::Tibia));
+  BoneImport both = imported(BoneKind::Femur);
+  both.bones[0].bone.mesh = test::ellipsoid({38, 30, 25}, 2);
+  both.bones.push_back(imported(BoneKind::Tibia).bones[0]);
+  images::Volume volume;
+  volume.size = {4, 3, 2};
+  volume.values.assign(24, 0.0F);
+  images::write_volume(folder / "ct.nrrd", volume);
+  BoneImportOptions options;
+  options.side = Side::Right;
+  options.images_only = true;
+  both.image = import_bones(folder / "ct.nrrd", options).image;
+  ASSERT_TRUE(both.image);
+  EXPECT_THAT(message_of<IoError>([&] { add_to_case(folder / "a", both, "", "bone.stl"); }),
+              HasSubstr("tibia.ply"));
+  const cases::Case after = cases::load_case(folder / "a");
+  EXPECT_EQ(after.bones.at(BoneKind::Femur).mesh.vertices_mm, both.bones[0].bone.mesh.vertices_mm);
+  EXPECT_TRUE(after.landmarks.empty());
+  EXPECT_FALSE(cases::load_cartilage(folder / "a", BoneKind::Femur));
+  EXPECT_TRUE(after.images.empty());
+  EXPECT_FALSE(std::filesystem::exists(folder / "a/images/1.nrrd"));
+}
+
+// Cartilage is of the surface that it was declared on; that of the bone that stays, stays.
+TEST(CaseImport, AReplacedBoneLosesItsCartilage) {
+  const TemporaryFolder folder;
+  add_to_case(folder / "a", imported(BoneKind::Femur), "", "bone.stl");
+  add_to_case(folder / "a", imported(BoneKind::Tibia), "", "bone.stl");
+  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia})
+    cases::save_cartilage(folder / "a", kind, test::box({4, 4, 1}));
+  add_to_case(folder / "a", imported(BoneKind::Femur), "", "bone.stl");
+  EXPECT_FALSE(cases::load_cartilage(folder / "a", BoneKind::Femur));
+  EXPECT_TRUE(cases::load_cartilage(folder / "a", BoneKind::Tibia));
+}
+
+// A bone that is planned on is not exchanged under its tunnel.
 TEST(CaseImport, ABoneThatIsPlannedOnStays) {
   const TemporaryFolder folder;
   cases::Case planned = add_to_case(folder / "a", imported(BoneKind::Femur), "", "bone.stl");
