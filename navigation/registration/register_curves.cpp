@@ -149,13 +149,11 @@ SearchOutcome search_and_summarise(const SearchSetting& setting, const strokes::
     offsets_mm = cartilage.offsets_mm(*setting.cartilage, curves, pool.best().bone_from_marker);
     outcome.cost = cartilage.cost;  // not of fewer points where the region was left out
   }
-  outcome.summary = summarise(
-      bone, pool,
-      {curves, points, strokes::smoothed_length_mm(curves), white_noise_mm, std::move(offsets_mm)}, options);
-  if (setting.cartilage && outcome.summary.has_pose) {
-    const Eigen::Vector3d centroid_mm = pool.best().bone_from_marker * points.centroid_mm;
-    cartilage.add_to(outcome.summary, options.target_in_bone_mm.value_or(centroid_mm));
-  }
+  outcome.summary = summarise(bone, pool,
+                              {curves, points, cartilage.kept_share * strokes::smoothed_length_mm(curves),
+                               white_noise_mm, std::move(offsets_mm), cartilage.drift()},
+                              options);
+  if (setting.cartilage && outcome.summary.has_pose) cartilage.add_to(outcome.summary);
   if (options.plan_entry_in_bone_mm && !pool.empty()) {
     outcome.summary.assumptions.push_back(
         describe_reach(bone, setting.reachable, pool.best().bone_from_marker * points.centroid_mm));

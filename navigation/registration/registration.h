@@ -62,8 +62,8 @@ enum class CartilageUse { None, Solved, LeftOut };
 // What the verdict on a pose rests on besides the error at the target, for experiments that set its
 // thresholds.
 struct VerdictEvidence {
-  double stroke_length_mm = 0;
-  double white_noise_mm = 0;  // of the tip, one coordinate
+  double stroke_length_mm = 0;  // less what lies on cartilage that was left out
+  double white_noise_mm = 0;    // of the tip, one coordinate
   // By how much the points miss the surface beyond what such noise explains, and how much is borne.
   double excess_misfit_mm = 0, bearable_excess_mm = 0;
   // Over the next pose, in independent measurements' log likelihood; and what this pose needs.

@@ -153,15 +153,20 @@ void OnlineRegistration::State::solve() {
   standing.replace(std::move(foremost), points.centroid_mm);
   standing.refine_all(points, kIterationsOfStanding);
   std::vector<std::optional<double>> offsets_mm;
+  cartilage = {};
   if (fitter && !standing.empty()) {
     fit_cover();
     offsets_mm = cartilage.offsets_mm(*setting.cartilage, curves, standing.best().bone_from_marker);
   }
   const double white_noise_mm = white_noise_of(oriented);
-  const TouchedCurves touched{curves, points, strokes.length_in_use_mm(), white_noise_mm,
-                              std::move(offsets_mm)};
+  const TouchedCurves touched{curves,
+                              points,
+                              cartilage.kept_share * strokes.length_in_use_mm(),
+                              white_noise_mm,
+                              std::move(offsets_mm),
+                              cartilage.drift()};
   result.registration = summarise(bone->data(), standing, touched, setting.options);
-  if (fitter && !standing.empty()) cartilage.add_to(result.registration, target_mm());
+  if (fitter && !standing.empty()) cartilage.add_to(result.registration);
   if (!result.registration.has_pose) {
     result.registration.reasons = objections;
     if (objections.empty())

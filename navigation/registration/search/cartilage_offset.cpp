@@ -222,6 +222,7 @@ WeightedPoints bare_points(const PoseFit& fit) {
     bare.positions_mm.push_back(points.positions_mm[i]);
     bare.weights.push_back(points.weights[i]);
     bare.stretches.push_back(points.stretches[i]);
+    bare.shaft_directions.push_back(points.shaft_directions[i]);
     bare.weight_sum += points.weights[i];
     bare.centroid_mm += points.weights[i] * points.positions_mm[i];
   }
@@ -241,6 +242,7 @@ CartilageFit summarised(const std::vector<PoseFit>& fits, PosePool& pool, const 
   cartilage.sigma_mm = best.sigma_mm;
   cartilage.drift_per_mm = best.drift_per_mm;
   cartilage.points = cartilage.is_left_out ? bare_points(best) : best.points;
+  cartilage.kept_share = points.weight_sum > 0 ? cartilage.points.weight_sum / points.weight_sum : 0;
   std::vector<RefinedPose> poses;
   for (const PoseFit& fit : fits) poses.push_back(fit.pose);
   pool.replace(std::move(poses), points.centroid_mm);
@@ -321,7 +323,7 @@ std::vector<std::optional<double>> CartilageFit::offsets_mm(
   return offsets_mm;
 }
 
-void CartilageFit::add_to(RegistrationSummary& summary, const Eigen::Vector3d& target_in_bone_mm) const {
+void CartilageFit::add_to(RegistrationSummary& summary) const {
   summary.cartilage_use = is_solved     ? CartilageUse::Solved
                           : is_left_out ? CartilageUse::LeftOut
                                         : CartilageUse::None;
@@ -331,10 +333,6 @@ void CartilageFit::add_to(RegistrationSummary& summary, const Eigen::Vector3d& t
     summary.reliable = false;
     summary.reasons.push_back("all strokes lie on the cartilage: touch what is bare too");
   }
-  if (!is_solved) return;
-  // What the thickness is uncertain by, the pose is too.
-  summary.covariance += sigma_mm * sigma_mm * drift_per_mm * drift_per_mm.transpose();
-  summary.predicted_tre_mm = predicted_error_mm(summary, target_in_bone_mm);
 }
 
 CartilageFit CartilageFitter::fit(PosePool& pool, const WeightedPoints& points, bool anew) {

@@ -31,6 +31,7 @@ class CartilageMap {
 
 struct CartilageFit {
   WeightedPoints points;  // with their offsets; without the region where it was left out
+  double kept_share = 1;  // of the touched path; below 1 where the region was left out
   bool is_solved = false;
   bool is_left_out = false;  // neither: no stroke lies on the region, or none beside it
   bool has_bare = true;      // false: all strokes lie on the region, and nothing was done about it
@@ -49,9 +50,13 @@ struct CartilageFit {
   [[nodiscard]] std::vector<std::optional<double>> offsets_mm(
       const CartilageMap& map, const strokes::Curves& curves,
       const geometry::RigidTransform& bone_from_marker) const;
-  // Says what was assumed, and adds what the thickness leaves uncertain to the covariance and to the error at
-  // the target.
-  void add_to(RegistrationSummary& summary, const Eigen::Vector3d& target_in_bone_mm) const;
+  // What the pose is uncertain by because the thickness is, one sigma: a twist of the bone frame about its
+  // origin.
+  [[nodiscard]] geometry::Vector6d drift() const {
+    return is_solved ? geometry::Vector6d(sigma_mm * drift_per_mm) : geometry::Vector6d::Zero();
+  }
+  // Says in a summary of these points what was assumed, and doubts one that nothing bare holds.
+  void add_to(RegistrationSummary& summary) const;
 };
 
 // Gives each pose of a pool the thickness that suits it best and refines it with it, so that the poses

@@ -224,7 +224,9 @@ RegistrationSummary summarise(const SurfaceIndex::Data& bone, const PosePool& po
   const Eigen::Vector3d pivot = best.bone_from_marker * touched.points.centroid_mm;
   summary.has_pose = true;
   summary.marker_from_bone = best.bone_from_marker.inverse();
-  summary.covariance = about_origin(covariance_about(best, touched.points, bone, pool.prior(), pivot), pivot);
+  summary.covariance =
+      about_origin(covariance_about(best, touched.points, bone, pool.prior(), pivot), pivot) +
+      touched.drift * touched.drift.transpose();
   summary.predicted_tre_mm = predicted_error_mm(summary, options.target_in_bone_mm.value_or(pivot));
   constexpr double kNoRival = 10;
   summary.runner_up_ratio =

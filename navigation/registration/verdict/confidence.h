@@ -15,11 +15,14 @@ inline constexpr double kMinLength_mm = 100, kMaxError_mm = 1.2;
 struct TouchedCurves {
   const strokes::Curves& curves;
   const WeightedPoints& points;  // chosen from them
-  double length_mm = 0;
-  double white_noise_mm = 0;  // of the tip, one coordinate, from the strokes alone
+  double length_mm = 0;          // of what was not left out
+  double white_noise_mm = 0;     // of the tip, one coordinate, from the strokes alone
   // By point of the curves, how far off the mesh it touched; nullopt: not known, left out. Empty: on the
   // mesh, all of them.
   std::vector<std::optional<double>> offsets_mm = {};
+  // What the pose is uncertain by beyond what the points say: twist of the bone frame about its origin, one
+  // sigma. See CartilageFit::drift.
+  geometry::Vector6d drift = geometry::Vector6d::Zero();
 };
 [[nodiscard]] double white_noise_of(const std::vector<strokes::OrientedPoint>& oriented);
 

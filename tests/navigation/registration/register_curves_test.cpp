@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "navigation/registration/registration_file.h"
+#include "navigation/strokes/stroke_tangents.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/quantile.h"
@@ -259,6 +260,24 @@ TEST(RegisterCurves, LeavesOutCartilageThatWasHardlyTouched) {
   EXPECT_TRUE(found.reliable) << testing::PrintToString(found.reasons);
   EXPECT_THAT(found.assumptions, Contains(HasSubstr("left out")));
   EXPECT_LT(target_error_mm(found, laid.trial, bone.target_mm), 0.4);
+}
+
+// A little over the 100 mm that are needed, of which too little lies on the region to hold its thickness:
+// what is left is not enough.
+TEST(RegisterCurves, DoesNotCountStrokesThatAreLeftOut) {
+  const PhantomBone& bone = phantom_bone();
+  experiments::TrialSetting setting = experiments::setting_of(TrialNoise::Dry);
+  setting.stroke_count = 2;
+  setting.stroke_length_mm = 46;
+  for (const std::uint64_t seed : {2u, 8u}) {
+    const CartilageTrial laid = cartilage_trial(bone, bone.trial(setting, seed), -2, 14);
+    ASSERT_GT(strokes::smoothed_length_mm(laid.trial.curves), 100);
+    RegistrationOptions options{1, true, bone.target_mm};
+    options.cartilage = laid.region;
+    const auto found = register_curves(*bone.prepared, laid.trial.curves, options);
+    EXPECT_THAT(found.assumptions, Contains(HasSubstr("left out")));
+    EXPECT_THAT(found.reasons, Contains(HasSubstr("too little was touched")));
+  }
 }
 
 // Where all strokes lie on the cartilage, nothing holds its thickness, and that is said.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "navigation/registration/search/cartilage_offset.h"
 #include "tests/navigation/registration/phantom_bone.h"
 
 namespace arthronaut::registration {
@@ -73,6 +74,22 @@ TEST(ShaftCollision, RefusesPosesThatLeadTheProbeThroughTheBone) {
     EXPECT_FALSE(found.reliable) << "seed " << seed;
     EXPECT_FALSE(found.reasons.empty());
   }
+}
+
+// What is kept where a hardly touched region is left out keeps its shafts.
+TEST(ShaftCollision, IsAskedOfWhatIsKeptWhereCartilageIsLeftOut) {
+  const PhantomBone& bone = phantom_bone();
+  const CartilageTrial laid = cartilage_trial(bone, bone.trial(TrialNoise::Dry, 2), -2, 15);
+  const WeightedPoints points = choose_points(with_shafts(bone, laid.trial, -1), 800);
+  const geometry::RigidTransform truth = laid.trial.marker_from_bone.inverse();
+  PosePool pool(bone.prepared->data(), {});
+  pool.add({{truth, 1}}, points, 1);
+  const CartilageMap map(bone.prepared->data(), laid.region);
+  const MarkerPrior prior;
+  const CartilageFit fit = CartilageFitter(bone.prepared->data(), map, prior).fit(pool, points, true);
+  ASSERT_TRUE(fit.is_left_out);
+  EXPECT_FALSE(ShaftCollision(bone.prepared->data(), fit.points)
+                   .is_possible(truth.matrix().cast<float>(), truth.translation_mm.cast<float>()));
 }
 
 }  // namespace arthronaut::registration

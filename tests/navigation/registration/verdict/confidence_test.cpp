@@ -1,0 +1,46 @@
+#include "navigation/registration/verdict/confidence.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/navigation/registration/phantom_bone.h"
+
+namespace arthronaut::registration {
+
+namespace {
+
+// The verdict on the right pose of a dry trial, which no other one rivals.
+RegistrationSummary judged(const geometry::Vector6d& drift) {
+  const PhantomBone& bone = phantom_bone();
+  const auto trial = bone.trial(experiments::TrialNoise::Dry, 1);
+  const WeightedPoints points = choose_points(trial.curves, 800);
+  PosePool pool(bone.prepared->data(), {});
+  pool.add({{trial.marker_from_bone.inverse(), 1}}, points, 1);
+  pool.refine_all(points, 12);
+  const double white_noise_mm = white_noise_of(strokes::oriented_points(trial.curves));
+  RegistrationOptions options;
+  options.target_in_bone_mm = bone.target_mm;
+  return summarise(
+      bone.prepared->data(), pool,
+      {trial.curves, points, strokes::smoothed_length_mm(trial.curves), white_noise_mm, {}, drift}, options);
+}
+
+}  // namespace
+
+// What the pose is uncertain by beyond its points counts in every verdict that goes by the predicted error,
+// and in the covariance: a shift of the whole bone is an error of that length at any target.
+TEST(Confidence, JudgesByWhatTheCartilageLeavesUncertainToo) {
+  constexpr double kShift_mm = 1.5;
+  const RegistrationSummary sure = judged(geometry::Vector6d::Zero());
+  const RegistrationSummary doubted = judged(kShift_mm * geometry::Vector6d::Unit(1));
+  EXPECT_TRUE(sure.reliable) << testing::PrintToString(sure.reasons);
+  EXPECT_FALSE(doubted.reliable);
+  EXPECT_THAT(doubted.reasons, testing::Contains(testing::HasSubstr("does not hold the bone fast")));
+  EXPECT_NEAR(doubted.predicted_tre_mm, std::hypot(sure.predicted_tre_mm, kShift_mm), 1e-9);
+  EXPECT_NEAR(doubted.covariance(1, 1) - sure.covariance(1, 1), kShift_mm * kShift_mm, 1e-9);
+  EXPECT_GT(doubted.evidence.lead_needed, sure.evidence.lead_needed);
+}
+
+}  // namespace arthronaut::registration
