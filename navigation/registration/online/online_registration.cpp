@@ -73,6 +73,12 @@ struct OnlineRegistration::State {
     return registering;
   }
 
+  // Strokes were taken away, or brought back: what was found with others is to be found anew. A doubt about
+  // the side stays until then.
+  void forget_what_was_judged() {
+    is_changed = true;
+    side_checked_mm = 0;
+  }
   void check_side();
   void solve();
   void fit_cover();
@@ -212,7 +218,9 @@ void OnlineRegistration::State::check_side() {
     constexpr int kRounds = 2;
     const strokes::Curves curves = strokes.curves_in_use();
     const SearchOutcome own = search_and_summarise(setting, curves, kRounds);
-    side = judge_side(setting, curves, own, !judges_all).verdict;
+    const SideJudgement judged = judge_side(setting, curves, own, !judges_all);
+    side = judged.verdict;
+    result.registration.evidence.side_lead = judged.lead;
     side_checked_mm = result.length_mm;
   }
   if (side == SideVerdict::Own || !result.registration.has_pose) return;
@@ -272,12 +280,14 @@ void OnlineRegistration::judge_all() { state_->judges_all = true; }
 
 bool OnlineRegistration::exclude_stroke(int curve, bool is_excluded) {
   if (!state_->strokes.exclude(curve, is_excluded)) return false;
-  return state_->is_changed = true;
+  state_->forget_what_was_judged();
+  return true;
 }
 
 bool OnlineRegistration::undo_stroke() {
   if (!state_->strokes.undo()) return false;
-  return state_->is_changed = true;
+  state_->forget_what_was_judged();
+  return true;
 }
 
 void OnlineRegistration::clear() {
@@ -286,8 +296,7 @@ void OnlineRegistration::clear() {
   state_->pool.clear();
   if (state_->fitter) state_->fitter->forget();
   state_->side = SideVerdict::Own;
-  state_->side_checked_mm = 0;
-  state_->is_changed = true;
+  state_->forget_what_was_judged();
 }
 
 const OnlineResult& OnlineRegistration::update() {

@@ -90,7 +90,8 @@ class OnlineRegistration {
   // is until then.
   void aim_at(const std::optional<Eigen::Vector3d>& target_in_bone_mm,
               const std::optional<Eigen::Vector3d>& direction_in_bone);
-  // Takes a stroke out of the fit, or back in; false when there is no such stroke.
+  // Takes a stroke out of the fit, or back in; false when there is no such stroke. What was solved and which
+  // side's bone it is has to be found anew, as after undo_stroke().
   bool exclude_stroke(int curve, bool is_excluded = true);
   // Forgets the stroke drawn last; false when there is none.
   bool undo_stroke();

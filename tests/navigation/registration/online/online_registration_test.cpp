@@ -88,6 +88,31 @@ TEST(OnlineRegistration, StrokesCanBeExcludedAndUndone) {
   EXPECT_FALSE(online.undo_stroke());
 }
 
+// Which side's bone it is was found with the strokes of then: without one of them it is asked again before
+// anything is confirmed, though nothing longer was drawn.
+TEST(OnlineRegistration, AsksForTheSideAgainWhenAStrokeIsTakenOut) {
+  const PhantomBone& bone = phantom_bone();
+  const strokes::Curves curves = bone.trial(TrialNoise::Dry, 1).curves;
+  OnlineRegistration online(bone.prepared, options_for(bone));
+  std::size_t next = 0;
+  // Whether it was asked on the way to being confirmed.
+  const auto asks_until_confirmed = [&] {
+    bool asks = false;
+    do {
+      online.add_points({&curves[next++], 1});
+      asks = online.update().registration.evidence.side_lead.has_value() || asks;
+    } while (next < curves.size() && online.result().state != OnlineState::Confirmed);
+    return asks;
+  };
+  EXPECT_TRUE(asks_until_confirmed());
+  const double length_mm = online.result().length_mm;
+  EXPECT_TRUE(online.exclude_stroke(0));
+  EXPECT_NE(online.update().state, OnlineState::Confirmed);
+  EXPECT_TRUE(asks_until_confirmed());
+  EXPECT_EQ(online.result().state, OnlineState::Confirmed);
+  EXPECT_LT(online.result().length_mm, 1.5 * length_mm);
+}
+
 // The wrong side's bone is never confirmed: neither by clean strokes nor by noisy ones, of which the second
 // trial fits the phantom's notch, which is much like its own mirror image, a little better the wrong way
 // round.
