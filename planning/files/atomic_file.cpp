@@ -84,7 +84,8 @@ fs::path temporary_beside(const fs::path& target) {
 
 void write_atomically(const fs::path& target, const std::function<void(const fs::path&)>& write) {
   const fs::path folder = folder_of(target);
-  if (!fs::is_directory(folder)) throw IoError(target, "the folder " + folder.string() + " does not exist");
+  if (std::error_code ignored; !fs::is_directory(folder, ignored))
+    throw IoError(target, "the folder " + folder.string() + " does not exist");
   // The user knows the target's name, not that of the file beside it: errors speak of the target.
   const fs::path temporary = temporary_beside(target);
   try {
@@ -122,7 +123,8 @@ void write_atomically(const fs::path& target, std::string_view contents) {
 }
 
 std::string read_text(const fs::path& file) {
-  if (fs::is_directory(file)) throw IoError(file, "is a folder, not a file");
+  if (std::error_code ignored; fs::is_directory(file, ignored))
+    throw IoError(file, "is a folder, not a file");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw IoError(file, std::string("cannot open: ") + std::strerror(errno));
   std::string text;

@@ -27,7 +27,7 @@ std::uint64_t key_of(const geometry::TriangleMesh& mesh) {
 // Key, checksum of what follows, field, pairs.
 std::unique_ptr<const SurfaceIndex::Data> read_cache(const std::filesystem::path& file,
                                                      const geometry::TriangleMesh& mesh, std::uint64_t key) {
-  if (!std::filesystem::exists(file)) return nullptr;
+  if (std::error_code ignored; !std::filesystem::exists(file, ignored)) return nullptr;
   try {
     const std::string contents = files::read_text(file);
     ByteReader bytes(contents);

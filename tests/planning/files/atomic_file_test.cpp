@@ -52,6 +52,15 @@ TEST(AtomicFile, AReadThatFailsIsAnIoError) {
 }
 
 // /proc refuses new files even to root, as a folder without write permission does to everybody else.
+// A path that leads nowhere is an error of that file too, not of the library that walks it.
+TEST(AtomicFile, ALoopOfLinksIsAnIoError) {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("loop", folder / "loop");
+  EXPECT_THAT(message_of<IoError>([&] { (void)read_text(folder / "loop" / "x"); }), HasSubstr("loop"));
+  EXPECT_THAT(message_of<IoError>([&] { write_atomically(folder / "loop" / "x", "text"); }),
+              HasSubstr("loop"));
+}
+
 TEST(AtomicFile, AReadOnlyFolderIsAnIoErrorOfTheTarget) {
   EXPECT_THAT(message_of<IoError>([&] { write_atomically("/proc/case.json", "1"); }),
               AllOf(HasSubstr("/proc/case.json"), Not(HasSubstr(".partial"))));

@@ -67,11 +67,15 @@ TEST_F(SurfaceIndexCache, KnowsItsMesh) {
   EXPECT_NE(files::read_text(file_), before);
 }
 
-// Where nothing can be written, here below a file instead of a folder, the bone is prepared all the same.
+// Where nothing can be written, here below a file instead of a folder, or not even looked for, below a link
+// that leads in a circle, the bone is prepared all the same.
 TEST_F(SurfaceIndexCache, DoesWithoutAFileThatCannotBeWritten) {
   std::ofstream(folder_ / "cache") << "a file";
-  const SurfaceIndex bone(octahedron(), file_);
-  EXPECT_NEAR(bone.data().field.sample({0, 0, 15.5}).distance_mm, 0.5, 0.05);
+  std::filesystem::create_symlink("loop", folder_ / "loop");
+  for (const std::filesystem::path& file : {file_, folder_ / "loop" / "femur.prepared"}) {
+    const SurfaceIndex bone(octahedron(), file);
+    EXPECT_NEAR(bone.data().field.sample({0, 0, 15.5}).distance_mm, 0.5, 0.05);
+  }
 }
 
 // What lies at the entry and looks the same way can be touched; what is far away, or not there, cannot.
