@@ -71,6 +71,9 @@ CalibrationRecord read_camera_file(const std::filesystem::path& file) {
   c.reference_mark_angle_deg = root.number("reference_mark_angle_deg");
   const auto boundary = root.object("boundary");
   c.boundary.center_px = boundary.vector2("center_px");
+  if (c.boundary.center_px.minCoeff() < 0 ||
+      ((size - Eigen::Vector2d::Ones()) - c.boundary.center_px).minCoeff() < 0)
+    boundary.fail("center_px", "must lie in the image");
   c.boundary.radius_px = boundary.positive_number("radius_px");
   c.refractive_index = read_medium(root);
   if (root.has("covariance")) c.covariance = read_covariance(root);

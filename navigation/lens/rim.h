@@ -34,7 +34,7 @@ struct RimProfile {
 
 // The mask's grey level is taken from the outer end of the rays, the edge is where the light (not the grey
 // value: a display gamma of 2.2 is undone) has risen half way from it. Rays reach from `inner` to `outer`
-// times the radius.
+// times the radius. About a centre outside the picture all of them are clipped.
 void measure_rim(const camera::GrayView& picture, const camera::Boundary& expected, double inner,
                  double outer, RimProfile& profile);
 

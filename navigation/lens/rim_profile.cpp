@@ -53,11 +53,13 @@ struct Ray {
   int half_width = 0;  // pixels to each side
 
   // The last radius at which all of the ray, with a pixel to spare for interpolation, is still in the
-  // picture.
+  // picture; -1 where not even the centre is.
   [[nodiscard]] float reach() const {
     const float spare = static_cast<float>(1 + half_width);
     const float right = static_cast<float>(picture.width - 1) - spare;
     const float bottom = static_cast<float>(picture.height - 1) - spare;
+    if (!(center.x() >= spare && center.x() <= right && center.y() >= spare && center.y() <= bottom))
+      return -1;
     float most = 1e9F;
     if (dx > 1e-6F) most = std::min(most, (right - center.x()) / dx);
     if (dx < -1e-6F) most = std::min(most, (spare - center.x()) / dx);
@@ -153,7 +155,7 @@ void measure_rim(const camera::GrayView& picture, const camera::Boundary& expect
   const Eigen::Vector2f center = expected.center_px.cast<float>();
   const float outer_px = static_cast<float>(expected.radius_px * outer);
   // Room for telling an edge from the end of the ray, whatever the size of the circle.
-  const float inner_px = static_cast<float>(expected.radius_px * inner) - 8;
+  const float inner_px = std::max(0.0F, static_cast<float>(expected.radius_px * inner) - 8);
   constexpr double kQuietScatter = 2;  // grey levels
   constexpr int kNoisyHalfWidth = 3;
   double scatter = 0;

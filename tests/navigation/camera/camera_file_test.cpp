@@ -100,6 +100,8 @@ TEST_F(CameraFile, RefusalsNameThePlace) {
   expect(with(good, "\"version\": 1", "\"version\": 2"), "newer");
   expect(with(good, "arthronaut.camera", "arthronaut.tools"), "format");
   expect(with(good, "\"radius_px\"", "\"radius\""), "boundary.radius_px: is missing");
+  expect(with(good, "960.5", "9605"), "boundary.center_px: must lie in the image");
+  expect(with(good, "540.2", "-0.2"), "boundary.center_px: must lie in the image");
   expect(with(good, "\"air\"", "\"milk\""), "medium");
   expect(with(good, "1920", "1920.5"), "image_size_px");
   expect(good.substr(0, good.size() / 2), "line");
