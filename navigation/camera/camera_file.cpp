@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "navigation/camera/medium.h"
+#include "planning/files/json_covariance.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
 
@@ -33,15 +34,6 @@ nlohmann::ordered_json medium_to_json(double index) {
   const std::string text = medium_to_text(index);
   if (text == "air" || text == "water" || text == "saline") return text;
   return index;
-}
-
-CameraCovariance read_covariance(const files::JsonObject& root) {
-  const auto values = root.numbers("covariance");
-  if (values.size() != 36) root.fail("covariance", "must hold 36 numbers, row by row");
-  const CameraCovariance covariance =
-      Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(values.data());
-  if (!(covariance.diagonal().minCoeff() >= 0)) root.fail("covariance", "a variance must not be negative");
-  return covariance;
 }
 
 bool is_simulated_scope(const std::string& name) {
@@ -76,7 +68,7 @@ CalibrationRecord read_camera_file(const std::filesystem::path& file) {
     boundary.fail("center_px", "must lie in the image");
   c.boundary.radius_px = boundary.positive_number("radius_px");
   c.refractive_index = read_medium(root);
-  if (root.has("covariance")) c.covariance = read_covariance(root);
+  if (root.has("covariance")) c.covariance = files::read_covariance(root, "covariance", 6);
   if (root.has("rms_px")) record.rms_px = root.number("rms_px");
   if (root.has("date_utc")) record.date_utc = root.text("date_utc");
   if (root.has("scope")) record.scope_name = root.text("scope");
@@ -103,11 +95,7 @@ void write_camera_file(const std::filesystem::path& file, const CalibrationRecor
        {{"center_px", files::to_json(c.boundary.center_px)}, {"radius_px", c.boundary.radius_px}}},
       {"medium", medium_to_json(c.refractive_index)},
   };
-  if (c.covariance) {
-    auto values = nlohmann::ordered_json::array();
-    for (int i = 0; i < 36; ++i) values.push_back((*c.covariance)(i / 6, i % 6));
-    json["covariance"] = std::move(values);
-  }
+  if (c.covariance) json["covariance"] = files::covariance_to_json(*c.covariance);
   if (record.rms_px >= 0) json["rms_px"] = record.rms_px;
   if (!record.date_utc.empty()) json["date_utc"] = record.date_utc;
   if (!record.scope_name.empty()) json["scope"] = record.scope_name;

@@ -1,9 +1,9 @@
 #include "navigation/registration/registration_file.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "navigation/camera/medium.h"
+#include "planning/files/json_covariance.h"
 #include "planning/files/json_document.h"
 
 namespace arthronaut::registration {
@@ -30,9 +30,11 @@ RegistrationSummary summary_from(const files::JsonObject& document) {
   if (document.has("shared_misfit_mm")) summary.shared_misfit_mm = document.number("shared_misfit_mm");
   if (document.has("assumptions")) summary.assumptions = document.texts("assumptions");
   if (document.has("covariance")) {
-    const std::vector<double> entries = document.numbers("covariance");
-    if (entries.size() != 36) document.fail("covariance", "must hold 36 numbers");
-    for (int i = 0; i < 36; ++i) summary.covariance(i / 6, i % 6) = entries[static_cast<std::size_t>(i)];
+    summary.covariance = files::read_covariance(document, "covariance", 6);
+  } else {
+    // As far off at every place as it is said to be at the target, each coordinate alike.
+    summary.covariance.topLeftCorner<3, 3>() =
+        summary.predicted_tre_mm * summary.predicted_tre_mm / 3 * Eigen::Matrix3d::Identity();
   }
   return summary;
 }
@@ -102,9 +104,7 @@ nlohmann::ordered_json to_json(const RegistrationSummary& registration, const Pr
   document["misfit_mm"] = registration.misfit_mm;
   document["shared_misfit_mm"] = registration.shared_misfit_mm;
   document["assumptions"] = registration.assumptions;
-  std::vector<double> entries;
-  for (int i = 0; i < 36; ++i) entries.push_back(registration.covariance(i / 6, i % 6));
-  document["covariance"] = entries;
+  document["covariance"] = files::covariance_to_json(registration.covariance);
   if (of != nullptr) document["of"] = to_json(*of);
   return document;
 }

@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "planning/files/json_covariance.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/rigid_transform.h"
@@ -111,13 +112,7 @@ std::optional<Eigen::Matrix3d> read_tip_covariance(const files::JsonObject& entr
     if (!sigma) return std::nullopt;
     return Eigen::Matrix3d(*sigma * *sigma * Eigen::Matrix3d::Identity());
   }
-  const std::vector<double> values = entry.numbers("tip_covariance_mm2");
-  if (values.size() != 9) entry.fail("tip_covariance_mm2", "must hold 9 numbers, row by row");
-  const Eigen::Matrix3d covariance =
-      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
-  if (!(covariance.diagonal().minCoeff() >= 0))
-    entry.fail("tip_covariance_mm2", "a variance must not be negative");
-  return covariance;
+  return Eigen::Matrix3d(files::read_covariance(entry, "tip_covariance_mm2", 3));
 }
 
 ToolKind read_kind(const files::JsonObject& entry) {
@@ -315,11 +310,8 @@ void write_tools_file(const std::filesystem::path& file, const ToolSet& tools) {
       entry["axis_direction"] = files::to_json(tool.axis->direction);
     }
     if (tool.residual_mm) entry["residual_mm"] = *tool.residual_mm;
-    if (tool.tip_covariance_mm2) {
-      auto values = nlohmann::ordered_json::array();
-      for (int i = 0; i < 9; ++i) values.push_back((*tool.tip_covariance_mm2)(i / 3, i % 3));
-      entry["tip_covariance_mm2"] = std::move(values);
-    }
+    if (tool.tip_covariance_mm2)
+      entry["tip_covariance_mm2"] = files::covariance_to_json(*tool.tip_covariance_mm2);
     if (tool.axis_point_sigma_mm) entry["axis_point_sigma_mm"] = *tool.axis_point_sigma_mm;
     if (tool.axis_direction_sigma_deg) entry["axis_direction_sigma_deg"] = *tool.axis_direction_sigma_deg;
     entry["origin"] = provenance::to_text(tool.provenance.origin);

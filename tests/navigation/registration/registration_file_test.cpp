@@ -55,5 +55,28 @@ TEST(RegistrationFile, ABrokenOfIsRefused) {
   EXPECT_THROW((void)read_registration_record(folder / "registration.json"), InvalidInput);
 }
 
+RegistrationSummary read_text_of(const test::TemporaryFolder& folder, const std::string& covariance) {
+  files::write_atomically(folder / "registration.json", R"({"format": "arthronaut.registration", "version": 1,
+    "marker_from_bone": {"q_wxyz": [1, 0, 0, 0], "t_mm": [0, 0, 0]}, "rms_mm": 0.1, "inlier_fraction": 1,
+    "point_count": 5, "reliable": true, "reasons": [], "predicted_tre_mm": 0.6)" +
+                                                            covariance + "}");
+  return read_registration_file(folder / "registration.json");
+}
+
+// Another program's file has no covariance: as wrong as it says it is at the target, and not exact.
+TEST(RegistrationFile, Hazard6ARegistrationWithoutCovarianceIsNotExact) {
+  const test::TemporaryFolder folder;
+  const RegistrationSummary read = read_text_of(folder, "");
+  EXPECT_NEAR(predicted_error_mm(read, Eigen::Vector3d(40, -300, 25)), 0.6, 1e-9);
+}
+
+// One whose parts beside the diagonal are too large would predict an error of nothing.
+TEST(RegistrationFile, RefusesWhatIsNoCovariance) {
+  const test::TemporaryFolder folder;
+  std::string values = "1";
+  for (int i = 1; i < 36; ++i) values += i % 7 == 0 ? ", 1" : i == 4 || i == 24 ? ", 5" : ", 0";
+  EXPECT_THROW((void)read_text_of(folder, R"(, "covariance": [)" + values + "]"), InvalidInput);
+}
+
 }  // namespace
 }  // namespace arthronaut::registration
