@@ -28,16 +28,6 @@ Eigen::Vector3d median_vector(const Poses& poses, const Vector& vector) {
   return result;
 }
 
-// Where the line crosses the plane through the entry across the plan; its nearest point where it lies in it.
-Eigen::Vector3d crossing_of(const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
-                            const tunnels::Tunnel& planned) {
-  const Eigen::Vector3d along = planned.direction.normalized();
-  const double advance = direction.dot(along);
-  const Eigen::Vector3d to_entry = planned.entry_mm - point;
-  const double way = std::abs(advance) > 0.1 ? to_entry.dot(along) / advance : to_entry.dot(direction);
-  return point + way * direction;
-}
-
 }  // namespace
 
 std::string_view to_text(EvidenceOutcome outcome) {
@@ -94,12 +84,11 @@ void DrillEvidence::clear() {
 }
 
 void DrillEvidence::add(const GuidanceNumbers& numbers) {
-  if (numbers.drill && numbers.drill->source == DrillDepth::Source::Drill) {
+  if (numbers.drill) {
     const DrillDepth& drill = *numbers.drill;
     if (drill.depth_mm >= limits_.least_drilled_mm && drill.lateral_mm <= limits_.most_lateral_mm)
-      drill_.add({drill.tip_mm, drill.direction, drill.depth_mm,
-                  numbers.is_valid() ? numbers.sigma_offset_mm : std::sqrt(2.0) * drill.sigma_mm,
-                  numbers.sigma_angle_deg, numbers.timestamp_ns});
+      drill_.add({drill.tip_mm, drill.direction, drill.depth_mm, drill.sigma_offset_mm, drill.sigma_angle_deg,
+                  numbers.timestamp_ns});
   }
   if (!numbers.is_valid()) return;
   nearest_mm_ = valid_count_ == 0 ? numbers.tip_to_entry_mm : std::min(nearest_mm_, numbers.tip_to_entry_mm);

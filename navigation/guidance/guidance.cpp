@@ -36,25 +36,15 @@ GuidanceState missing_input(const GuidanceInput& input) {
   return GuidanceState::Valid;
 }
 
-// Where the guide's axis crosses the plane through the entry across the plan; a guide that lies almost in
-// that plane crosses it nowhere near, and its nearest point is taken instead.
-Eigen::Vector3d crossing_of(const Eigen::Vector3d& guide_point, const Eigen::Vector3d& guide_direction,
-                            const Eigen::Vector3d& entry, const Eigen::Vector3d& plan_direction) {
-  const double advance = guide_direction.dot(plan_direction);
-  const double along = std::abs(advance) > kLeastAdvance ? (entry - guide_point).dot(plan_direction) / advance
-                                                         : (entry - guide_point).dot(guide_direction);
-  return guide_point + along * guide_direction;
-}
-
-// How that crossing moves with the guide's axis: by what is across it, run along the axis back into the
-// plane.
-Eigen::Matrix3d into_plane(const Eigen::Vector3d& guide_direction, const Eigen::Vector3d& plan_direction) {
+// How the crossing of an axis with the plane through the entry moves with it: by what is across the axis, run
+// along it back into the plane.
+Eigen::Matrix3d into_plane(const Eigen::Vector3d& direction, const Eigen::Vector3d& plan_direction) {
   const Eigen::Matrix3d across_plan =
       Eigen::Matrix3d::Identity() - plan_direction * plan_direction.transpose();
-  const double advance = guide_direction.dot(plan_direction);
+  const double advance = direction.dot(plan_direction);
   if (std::abs(advance) > kLeastAdvance)
-    return Eigen::Matrix3d::Identity() - guide_direction * plan_direction.transpose() / advance;
-  return across_plan * (Eigen::Matrix3d::Identity() - guide_direction * guide_direction.transpose());
+    return Eigen::Matrix3d::Identity() - direction * plan_direction.transpose() / advance;
+  return across_plan * (Eigen::Matrix3d::Identity() - direction * direction.transpose());
 }
 
 void put_offset(landmarks::AnatomicalDirection direction, double value_mm, GuidanceNumbers& numbers) {
@@ -90,25 +80,32 @@ std::optional<Placed> place(const GuidanceInput& input, const TrackedPose& camer
                              input.known_errors != nullptr ? *input.known_errors : kExact)};
 }
 
-void predict_errors(const GuidanceInput& input, const TwistBudget& budget, const Eigen::Vector3d& crossing,
-                    GuidanceNumbers& numbers) {
-  const Eigen::Vector3d& direction = numbers.guide_direction;
-  const Eigen::Matrix3d across_guide = Eigen::Matrix3d::Identity() - direction * direction.transpose();
-  const Eigen::Matrix3d in_plane = into_plane(direction, input.plan->direction.normalized());
-  // A point p of the guide moves by v - [p]x w, a direction g by -[g]x w.
+// A tool's axis in the bone's frame, and how well it is known in the tool itself.
+struct PlacedAxis {
+  Eigen::Vector3d point_mm, direction;
+  Eigen::Matrix3d point_error_mm2;
+  double direction_sigma_rad = 0;
+};
+
+struct AxisErrors {
+  PredictedError offset_mm, angle_deg;
+};
+
+AxisErrors predict_errors(const PlacedAxis& axis, const TwistBudget& budget, const tunnels::Tunnel& plan) {
+  const Eigen::Vector3d crossing = crossing_of(axis.point_mm, axis.direction, plan);
+  const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - axis.direction * axis.direction.transpose();
+  const Eigen::Matrix3d in_plane = into_plane(axis.direction, plan.direction.normalized());
+  // A point p of the axis moves by v - [p]x w, a direction g by -[g]x w.
   Eigen::Matrix<double, 3, 6> move;
   move << in_plane, -in_plane * cross_matrix(crossing);
-  const double reach_mm = (crossing - numbers.guide_point_mm).norm();
-  const double own_mm2 = input.axis_error.point_sigma_mm * input.axis_error.point_sigma_mm +
-                         std::pow(reach_mm * input.axis_error.direction_sigma_rad, 2);
-  numbers.offset_error_mm =
-      predicted_error(budget, move, own_mm2 * in_plane * across_guide * in_plane.transpose());
+  const double reach_mm = (crossing - axis.point_mm).norm();
+  const Eigen::Matrix3d own_mm2 =
+      axis.point_error_mm2 + std::pow(reach_mm * axis.direction_sigma_rad, 2) * across;
   Eigen::Matrix<double, 3, 6> turn;
-  turn << Eigen::Matrix3d::Zero(), -geometry::deg_from_rad(1) * cross_matrix(direction);
-  const double own_deg = geometry::deg_from_rad(input.axis_error.direction_sigma_rad);
-  numbers.angle_error_deg = predicted_error(budget, turn, own_deg * own_deg * across_guide);
-  numbers.sigma_offset_mm = numbers.offset_error_mm.total;
-  numbers.sigma_angle_deg = numbers.angle_error_deg.total;
+  turn << Eigen::Matrix3d::Zero(), -geometry::deg_from_rad(1) * cross_matrix(axis.direction);
+  const double own_deg = geometry::deg_from_rad(axis.direction_sigma_rad);
+  return {predicted_error(budget, move, in_plane * own_mm2 * in_plane.transpose()),
+          predicted_error(budget, turn, own_deg * own_deg * across)};
 }
 
 // The drill by its own marker.
@@ -119,17 +116,23 @@ std::optional<DrillDepth> seen_drill(const GuidanceInput& input) {
     return std::nullopt;
   const auto placed = place(input, input.camera_from_drill, input.drill_per_camera_error);
   if (!placed) return std::nullopt;
+  const Eigen::Matrix3d turned = placed->bone_from_tool.matrix();
   const Eigen::Vector3d tip = placed->bone_from_tool * *input.drill->tip_mm;
+  const Eigen::Matrix3d tip_error_mm2 = turned * tools::tip_error_mm2(*input.drill) * turned.transpose();
   const Eigen::Vector3d along = input.plan->direction.normalized();
   Eigen::Matrix<double, 3, 6> move =
       Eigen::Matrix<double, 3, 6>::Zero();  // of the one coordinate along the plan
   move.row(0) << along.transpose(), -along.transpose() * cross_matrix(tip);
-  const Eigen::Vector3d along_in_drill = placed->bone_from_tool.inverse().rotate(along);
   Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
-  own(0, 0) = along_in_drill.dot(tools::tip_error_mm2(*input.drill) * along_in_drill);
-  return drill_depth(*input.plan, input.planned, tip,
-                     placed->bone_from_tool.rotate(input.drill->axis->direction).normalized(),
-                     predicted_error(placed->budget, move, own).total, DrillDepth::Source::Drill);
+  own(0, 0) = along.dot(tip_error_mm2 * along);
+  const PlacedAxis axis{tip, (turned * input.drill->axis->direction).normalized(), tip_error_mm2,
+                        tools::axis_error(*input.drill).direction_sigma_rad};
+  DrillDepth drill = drill_depth(*input.plan, input.planned_length_mm, tip, axis.direction,
+                                 predicted_error(placed->budget, move, own).total);
+  const AxisErrors errors = predict_errors(axis, placed->budget, *input.plan);
+  drill.sigma_offset_mm = errors.offset_mm.total;
+  drill.sigma_angle_deg = errors.angle_deg.total;
+  return drill;
 }
 
 }  // namespace
@@ -176,6 +179,16 @@ double GuidanceNumbers::offset_in_mm(landmarks::AnatomicalDirection direction) c
   return 0;
 }
 
+Eigen::Vector3d crossing_of(const Eigen::Vector3d& point_mm, const Eigen::Vector3d& direction,
+                            const tunnels::Tunnel& plan) {
+  const Eigen::Vector3d along = plan.direction.normalized();
+  const double advance = direction.dot(along);
+  const Eigen::Vector3d to_entry = plan.entry_mm - point_mm;
+  const double way_mm =
+      std::abs(advance) > kLeastAdvance ? to_entry.dot(along) / advance : to_entry.dot(direction);
+  return point_mm + way_mm * direction;
+}
+
 GuidanceNumbers compute_guidance(const GuidanceInput& input) {
   GuidanceNumbers numbers;
   numbers.timestamp_ns = input.camera_from_guide.timestamp_ns;
@@ -199,14 +212,22 @@ GuidanceNumbers compute_guidance(const GuidanceInput& input) {
   numbers.angle_deg = geometry::deg_from_rad(geometry::angle_between_rad(direction, plan_direction));
   numbers.depth_mm = (point - entry).dot(plan_direction);
 
-  const Eigen::Vector3d crossing = crossing_of(point, direction, entry, plan_direction);
+  const Eigen::Vector3d crossing = crossing_of(point, direction, *input.plan);
   numbers.across_plan = landmarks::axes_across(input.axes, plan_direction);
   const double up_mm = (crossing - entry).dot(numbers.across_plan.up);
   const double side_mm = (crossing - entry).dot(numbers.across_plan.side);
   numbers.offset_mm = std::hypot(up_mm, side_mm);
   put_offset(numbers.across_plan.up_is, up_mm, numbers);
   put_offset(numbers.across_plan.side_is, side_mm, numbers);
-  predict_errors(input, placed->budget, crossing, numbers);
+  const double point_sigma_mm = input.axis_error.point_sigma_mm;
+  const AxisErrors errors =
+      predict_errors({point, direction, point_sigma_mm * point_sigma_mm * Eigen::Matrix3d::Identity(),
+                      input.axis_error.direction_sigma_rad},
+                     placed->budget, *input.plan);
+  numbers.offset_error_mm = errors.offset_mm;
+  numbers.angle_error_deg = errors.angle_deg;
+  numbers.sigma_offset_mm = errors.offset_mm.total;
+  numbers.sigma_angle_deg = errors.angle_deg.total;
   return numbers;
 }
 

@@ -35,7 +35,7 @@ enum class GuidanceState {
 
 struct GuidanceInput {
   const tunnels::Tunnel* plan = nullptr;  // null: NoPlan
-  PlannedDepth planned;                   // inside bone, along the plan
+  double planned_length_mm = 0;           // inside bone, along the plan
   landmarks::AnatomicalAxes axes;         // of the bone, in its frame
   const registration::RegistrationSummary* registration = nullptr;
   geometry::TrackedPose camera_from_world_marker;
@@ -82,6 +82,11 @@ struct GuidanceNumbers {
   [[nodiscard]] bool is_valid() const { return state == GuidanceState::Valid; }
   [[nodiscard]] double offset_in_mm(landmarks::AnatomicalDirection direction) const;
 };
+
+// Where an axis crosses the plane through the plan's entry across the plan. One that lies almost in that
+// plane, within 6 degrees, crosses it nowhere near: then its nearest point to the entry.
+[[nodiscard]] Eigen::Vector3d crossing_of(const Eigen::Vector3d& point_mm, const Eigen::Vector3d& direction,
+                                          const tunnels::Tunnel& plan);
 
 // Allocates nothing.
 [[nodiscard]] GuidanceNumbers compute_guidance(const GuidanceInput& input);

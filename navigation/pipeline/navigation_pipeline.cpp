@@ -212,7 +212,7 @@ struct NavigationPipeline::State {
   void guide_the_drill(FrameResult& result) const {
     guidance::GuidanceInput input;
     input.plan = plan ? &*plan : nullptr;
-    input.planned.length_mm = planned_length_mm;
+    input.planned_length_mm = planned_length_mm;
     input.axes = axes;
     input.registration = registration ? &*registration : nullptr;
     input.camera_from_world_marker = world_pose(result);

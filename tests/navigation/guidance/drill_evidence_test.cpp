@@ -99,8 +99,10 @@ TEST(DrillEvidence, TheDrillsOwnPosesCountFirst) {
   for (int i = 0; i <= 60; ++i) {
     GuidanceNumbers numbers = guide_at(0, plan().entry_mm, plan().direction);
     const double depth_mm = std::min(0.5 * i, 25.0);
-    numbers.drill = drill_depth(plan(), {.length_mm = 30}, plan().entry_mm + depth_mm * leaning, leaning, 0.3,
-                                DrillDepth::Source::Drill);
+    numbers.drill = drill_depth(plan(), 30, plan().entry_mm + depth_mm * leaning, leaning, 0.3);
+    numbers.drill->sigma_offset_mm = 0.4;
+    numbers.drill->sigma_angle_deg = 0.6;
+    if (i % 2 == 1) numbers.state = GuidanceState::GuideLost;
     for (int k = 0; k < 3; ++k) evidence.add(numbers);
   }
   const DrillEvidenceSummary summary = evidence.summary();
@@ -109,6 +111,8 @@ TEST(DrillEvidence, TheDrillsOwnPosesCountFirst) {
   EXPECT_NEAR(summary.depth_mm, 25, 0.1);
   EXPECT_LT(geometry::angle_between_rad(summary.direction, leaning), 1e-9);
   EXPECT_LT((summary.entry_mm - plan().entry_mm).norm(), 1e-6);
+  EXPECT_EQ(summary.sigma_offset_mm, 0.4);
+  EXPECT_EQ(summary.sigma_angle_deg, 0.6);
 }
 
 // An hour of it: the store stays as large as it was, and the answer is that of all of the time.

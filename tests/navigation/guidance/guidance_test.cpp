@@ -58,7 +58,7 @@ struct Scene {
   [[nodiscard]] GuidanceNumbers compute() const {
     GuidanceInput input;
     input.plan = &plan;
-    input.planned.length_mm = 30;
+    input.planned_length_mm = 30;
     input.registration = &registration;
     input.camera_from_world_marker = world;
     input.camera_from_guide = guide;
@@ -225,6 +225,32 @@ TEST(Guidance, Hazard7DepthIsSaidOnlyOfADrillThatIsSeen) {
   scene.hold_drill(scene.plan.entry_mm);
   scene.registration.reliable = false;
   EXPECT_FALSE(scene.compute().drill);
+}
+
+// A drill by itself is as uncertain as a guide with its tip and its axis would be, whether a guide is seen or
+// not: what the guide is known to is not what the drill is.
+TEST(Guidance, Hazard29TheDrillsErrorIsItsOwn) {
+  Scene scene;
+  scene.registration.covariance.bottomRightCorner<3, 3>() = 1e-4 * Eigen::Matrix3d::Identity();
+  scene.hold_drill(scene.plan.entry_mm + 20 * scene.plan.direction);
+  scene.drill->axis_direction_sigma_deg = 0.4;
+  scene.axis_error = {0.7, geometry::rad_from_deg(2)};
+  const GuidanceNumbers seen = scene.compute();
+  scene.guide.is_valid = false;
+  const GuidanceNumbers alone = scene.compute();
+  for (const GuidanceNumbers& numbers : {seen, alone}) {
+    ASSERT_TRUE(numbers.drill);
+    // Two directions across the drill: the registration's turn of 0.01 rad each, and the axis's own.
+    EXPECT_NEAR(numbers.drill->sigma_angle_deg,
+                std::sqrt(2.0) * std::hypot(geometry::deg_from_rad(0.01), 0.4), 1e-6);
+    // At the entry: the tip's 0.2 mm in two coordinates, the axis's turn over 20 mm, and the registration's
+    // about the bone's origin.
+    const Eigen::Vector3d& entry = scene.plan.entry_mm;
+    const double along = entry.dot(scene.plan.direction);
+    const double arm_squares = entry.squaredNorm() + along * along;  // of [p]x across the plan
+    const double own = 2 * 0.04 + 2 * std::pow(20 * geometry::rad_from_deg(0.4), 2);
+    EXPECT_NEAR(numbers.drill->sigma_offset_mm, std::sqrt(own + 1e-4 * arm_squares), 1e-6);
+  }
 }
 
 // A tool set without the guide, or a guide without axis, is not "no plan".
