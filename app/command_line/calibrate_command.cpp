@@ -44,13 +44,17 @@ void say_result(const Context& context, const calibration::CalibrationSummary& s
                               picture.mark_is_used ? "" : " (without its mark)"));
   for (const std::string& note : summary.notes) context.say(note);
   const camera::Calibration& c = summary.record.calibration;
-  const auto sigma = [&](int k) { return c.covariance ? std::sqrt((*c.covariance)(k, k)) : 0.0; };
-  context.say(files::format("focal length %.2f px (+- %.2f), xi %.5f (+- %.5f)", c.focal_px, sigma(0),
-                            c.distortion_xi, sigma(1)));
-  context.say(
-      files::format("principal point (%.2f, %.2f) px (+- %.2f), centre of rotation (%.2f, %.2f) px (+- %.2f)",
-                    c.principal_point_px.x(), c.principal_point_px.y(), std::max(sigma(2), sigma(3)),
-                    c.rotation_center_px.x(), c.rotation_center_px.y(), std::max(sigma(4), sigma(5))));
+  // One sigma, the larger one of two numbers.
+  const auto sigma = [&](int first, int last, int decimals) {
+    if (!c.covariance) return std::string("(error not known)");
+    const double variance = c.covariance->diagonal().segment(first, last - first + 1).maxCoeff();
+    return files::format("(+- %.*f)", decimals, std::sqrt(variance));
+  };
+  context.say(files::format("focal length %.2f px %s, xi %.5f %s", c.focal_px, sigma(0, 0, 2).c_str(),
+                            c.distortion_xi, sigma(1, 1, 5).c_str()));
+  context.say(files::format("principal point (%.2f, %.2f) px %s, centre of rotation (%.2f, %.2f) px %s",
+                            c.principal_point_px.x(), c.principal_point_px.y(), sigma(2, 3, 2).c_str(),
+                            c.rotation_center_px.x(), c.rotation_center_px.y(), sigma(4, 5, 2).c_str()));
   context.say(files::format("corners miss the model by %.3f px (RMS)", summary.rms_px) +
               (summary.leave_one_out_rms_px >= 0
                    ? files::format(", those of a picture left out by %.3f px", summary.leave_one_out_rms_px)

@@ -119,7 +119,7 @@ void set_constant(ceres::Problem& problem, Blocks& blocks, const AdjustmentOptio
 void compute_covariance(ceres::Problem& problem, const Blocks& blocks, AdjustmentResult& result) {
   ceres::Covariance::Options options;
   options.algorithm_type = ceres::DENSE_SVD;
-  options.null_space_rank = -1;
+  options.null_space_rank = 0;  // a direction that the pictures leave open is a failure, not exact
   ceres::Covariance covariance(options);
   std::vector<std::pair<const double*, const double*>> wanted = {{blocks.lens, blocks.lens}};
   for (const double& angle : blocks.angles) wanted.emplace_back(&angle, &angle);

@@ -57,7 +57,7 @@ struct CalibrationSummary {
   std::vector<std::string> notes;
   camera::CalibrationRecord record;  // meaningful unless Failed
   double rms_px = -1;                // over all corners
-  double leave_one_out_rms_px = -1;  // -1 when not computed
+  double leave_one_out_rms_px = -1;  // -1 when not computed, or in vain: then a reason says so
   double distance_mm = -1;           // of the boards from the lens along its axis, in the median
   struct Picture {
     std::string name;

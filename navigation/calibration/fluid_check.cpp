@@ -6,6 +6,7 @@
 
 #include "navigation/calibration/plane_pose.h"
 #include "navigation/camera/medium.h"
+#include "navigation/markers/planar_pose.h"
 #include "planning/files/format.h"
 #include "planning/geometry/quantile.h"
 
@@ -14,11 +15,6 @@ namespace {
 
 using geometry::RigidTransform;
 
-std::array<Eigen::Vector3d, 4> marker_corners_mm(double size_mm) {
-  const double h = 0.5 * size_mm;
-  return {{{-h, h, 0}, {h, h, 0}, {h, -h, 0}, {-h, -h, 0}}};
-}
-
 struct FrameErrors {
   std::vector<double> square_px, mm, deg, distance_mm;
 };
@@ -26,7 +22,7 @@ struct FrameErrors {
 // One frame under one camera: both markers by themselves, then the ruler as one body.
 void add_errors(const RulerSighting& seen, const Ruler& ruler, const camera::CameraModel& model,
                 FrameErrors& errors) {
-  const auto corners = marker_corners_mm(ruler.size_mm);
+  const auto corners = markers::square_corners_mm(ruler.size_mm);
   const auto first = solve_plane_pose(corners, seen.first_px, model);
   const auto second = solve_plane_pose(corners, seen.second_px, model);
   if (!first || !second) return;
@@ -56,9 +52,10 @@ FrameErrors errors_under(std::span<const RulerSighting> sightings, const Ruler& 
   return errors;
 }
 
-// The median resists frames with a corner in glare.
+// The median resists frames with a corner in glare. What no frame can be solved with fits worst of all.
 double misfit_px(const FrameErrors& errors) {
-  return std::sqrt(std::max(0.0, geometry::quantile(errors.square_px, 0.5, 0)));
+  constexpr double kNoFit_px = 1e9;
+  return errors.square_px.empty() ? kNoFit_px : std::sqrt(geometry::quantile(errors.square_px, 0.5));
 }
 
 FluidCheckSummary::Row row_of(FluidHypothesis hypothesis, const FrameErrors& errors) {
@@ -110,7 +107,7 @@ std::vector<RulerSighting> spread(std::span<const RulerSighting> sightings) {
 double index_sigma(const std::function<FrameErrors(double)>& under, double index, std::size_t frames) {
   constexpr double kStep = 0.03;
   const double usual = geometry::quantile(under(index).square_px, 0.5);
-  if (usual <= 0) return -1;
+  if (!(usual > 0)) return -1;
   const auto mean_at = [&](double at) {
     const FrameErrors errors = under(at);
     double sum = 9 * usual * static_cast<double>(frames - errors.square_px.size());
@@ -145,10 +142,10 @@ std::vector<std::string> reasons_against(const FluidCheckSummary& summary, const
         camera::medium_to_text(options.refractive_index) +
         files::format(" (they show a refractive index of %.2f): is the medium right, and the port flat?",
                       summary.best_index));
-  if (summary.frame_count < options.fewest_frames)
-    reasons.push_back(
-        files::format("the ruler's two markers were seen together in %.0f frames only (needs %.0f)",
-                      static_cast<double>(summary.frame_count), static_cast<double>(options.fewest_frames)));
+  const std::size_t fewest_frames = std::max<std::size_t>(options.fewest_frames, 1);
+  if (summary.frame_count < fewest_frames)
+    reasons.push_back(files::format("the ruler could be measured in %zu frames only (needs %zu)",
+                                    summary.frame_count, fewest_frames));
   if (summary.rows.front().rms_px < 0) return reasons;
   const auto& flat = *std::find_if(
       summary.rows.begin(), summary.rows.end(),
@@ -191,12 +188,12 @@ std::string_view to_text(FluidHypothesis hypothesis) {
 FluidCheckSummary check_fluid(std::span<const RulerSighting> sightings, const Ruler& ruler,
                               const camera::Calibration& calibration, const FluidCheckOptions& options) {
   FluidCheckSummary summary;
-  summary.frame_count = sightings.size();
   const auto under = [&](double index, camera::FluidModel fluid) {
     return errors_under(sightings, ruler, calibration, index, fluid);
   };
   using camera::FluidModel;
   const FrameErrors stated = under(options.refractive_index, FluidModel::FlatPort);
+  summary.frame_count = stated.square_px.size();
   summary.distance_mm = geometry::quantile(stated.distance_mm, 0.5, -1);
   if (!stated.distance_mm.empty())
     summary.distance_spread_mm =

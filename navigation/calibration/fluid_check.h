@@ -36,9 +36,9 @@ struct FluidCheckSummary {
     double median_mm = -1, median_deg = -1;  // of the markers' relative pose, each marker solved by itself
     double worst_mm = -1, worst_deg = -1;    // of 95 % of the frames
   };
-  std::vector<Row> rows;  // best (least rms_px) first
-  std::size_t frame_count = 0;
-  double best_index = 0;  // the working medium's index that a flat port explains the frames best with
+  std::vector<Row> rows;        // best (least rms_px) first
+  std::size_t frame_count = 0;  // in which the ruler could be measured, in the stated medium
+  double best_index = 0;        // the working medium's index that a flat port explains the frames best with
   // One sigma of it by the corners' scatter alone; -1: not known. Large where the ruler was held so that
   // every index looks alike: small, in the middle of the view, facing the lens.
   double index_sigma = -1;

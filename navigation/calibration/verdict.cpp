@@ -77,7 +77,9 @@ std::vector<std::string> reasons_against(const CalibrationSummary& summary,
   if (!(summary.rms_px <= kMostRms_px))
     reasons.push_back(
         files::format("corners miss the model by %.2f px (at most %.2f)", summary.rms_px, kMostRms_px));
-  if (summary.leave_one_out_rms_px > kMostLeaveOneOutRms_px)
+  if (options.leave_one_out && !(summary.leave_one_out_rms_px >= 0))
+    reasons.push_back("no picture could be held against the camera that the others give");
+  else if (summary.leave_one_out_rms_px > kMostLeaveOneOutRms_px)
     reasons.push_back(files::format("a picture left out is missed by %.2f px (at most %.2f)",
                                     summary.leave_one_out_rms_px, kMostLeaveOneOutRms_px));
   for (const auto& picture : summary.pictures)

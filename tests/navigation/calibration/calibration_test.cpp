@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
+#include "navigation/calibration/verdict.h"
 #include "planning/geometry/error.h"
+#include "planning/geometry/quantile.h"
 #include "tests/navigation/calibration/board_scene.h"
 
 namespace arthronaut::calibration {
@@ -12,6 +16,7 @@ namespace {
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 const std::vector<BoardView> kThreeViews = {
     {board_pose(18, 6, 30, 5), 0}, {board_pose(20, 20, 120, 33), 60}, {board_pose(22, 34, 250, 71), -70}};
@@ -79,6 +84,32 @@ TEST(Calibration, CovarianceIsTrue) {
   for (int k = 0; k < 6; ++k) {
     EXPECT_GT(mean_square(k), 0.3) << k;
     EXPECT_LT(mean_square(k), 2.0) << k;
+  }
+}
+
+// Boards that all but face the lens leave the focal length open, which is not the same as knowing it.
+TEST(Calibration, WhatThePicturesLeaveOpenIsNotKnown) {
+  const std::vector<BoardView> facing = {{board_pose(18, 0.3, 30, 5), 0},
+                                         {board_pose(20, 0.5, 120, 33), 60},
+                                         {board_pose(22, 0.3, 250, 71), -70}};
+  const CalibrationSummary summary = calibrate(pictures_of(facing, 0.1, 5), options_with(2));
+  EXPECT_EQ(summary.outcome, CalibrationSummary::Outcome::Unreliable);
+  const auto& covariance = summary.record.calibration.covariance;
+  const double variance = covariance ? (*covariance)(0, 0) : std::numeric_limits<double>::infinity();
+  EXPECT_GT(std::sqrt(variance), 0.1 * true_scope().focal_px);
+}
+
+// A check that could not be done is not one that was passed; one that nobody asked for is no reason.
+TEST(Calibration, ALeaveOneOutInVainIsAReason) {
+  CalibrationOptions options = options_with(2);
+  CalibrationSummary summary = calibrate(pictures_of(kThreeViews, 0.1, 5), options);
+  ASSERT_EQ(summary.outcome, CalibrationSummary::Outcome::Ok);
+  for (const double rms_px : {-1.0, geometry::kNotKnown}) {
+    summary.leave_one_out_rms_px = rms_px;
+    options.leave_one_out = true;
+    EXPECT_THAT(reasons_against(summary, {}, options, true), Contains(HasSubstr("the others give")));
+    options.leave_one_out = false;
+    EXPECT_THAT(reasons_against(summary, {}, options, true), Not(Contains(HasSubstr("the others give"))));
   }
 }
 

@@ -71,6 +71,18 @@ TEST(FluidCheck, RanksTheFocalRuleBehind) {
   EXPECT_GT(summary.rows[2].rms_px, summary.rows[1].rms_px);
 }
 
+// Corners of which no pose can be made measure nothing, and nothing is not trusted.
+TEST(FluidCheck, DoesNotTrustWhatCouldNotBeMeasured) {
+  RulerSighting folded;
+  folded.first_px.fill({800, 500});
+  folded.second_px.fill({1000, 500});
+  const FluidCheckSummary summary = check_fluid(std::vector<RulerSighting>(60, folded), {}, true_scope(), {});
+  EXPECT_EQ(summary.frame_count, 0U);
+  EXPECT_FALSE(summary.is_trusted());
+  EXPECT_EQ(summary.index_sigma, -1);
+  EXPECT_EQ(summary.shown_index, 0);
+}
+
 // A dome port does not refract: told, instead of trusted.
 TEST(FluidCheck, NoticesThatNothingIsRefracted) {
   const auto sightings = sightings_in(camera::kAirIndex, camera::FluidModel::FlatPort, 0.1);
