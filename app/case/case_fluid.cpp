@@ -17,12 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr double kSameMedium = 0.005;  // of the index: water and saline are 0.0015 apart
 
-// Of the camera.json that is there; empty without one: the built-in camera.
-std::string camera_fingerprint(const fs::path& case_folder) {
-  const fs::path file = cases::camera_file(case_folder);
-  return fs::exists(file) ? files::sha256_of_file(file) : "";
-}
-
 FluidStanding standing_of(const calibration::FluidRecord& record, double refractive_index, bool is_simulated,
                           const std::string& fingerprint) {
   const bool was_simulated = record.provenance.origin == provenance::Origin::Simulated;
@@ -68,15 +62,21 @@ std::string text_of(const FluidState& state, double refractive_index) {
 
 fs::path fluid_file(const fs::path& case_folder) { return case_folder / "fluid.json"; }
 
+std::string camera_fingerprint(const fs::path& case_folder) {
+  const fs::path file = cases::camera_file(case_folder);
+  std::error_code ignored;
+  return fs::exists(file, ignored) ? files::sha256_of_file(file) : "";
+}
+
 std::string keep_fluid_verdict(const fs::path& case_folder, calibration::FluidRecord record,
                                bool is_simulated, const std::string& source, const std::string& now_utc) {
   const bool has_real = has_real_camera(case_folder);
   if (is_simulated && has_real) return "this case has a real scope; what is simulated says nothing about it";
+  if (record.camera_sha256 != camera_fingerprint(case_folder)) return "camera.json has changed since";
   using provenance::Origin;
   // A real picture that was measured with the simulator's camera says nothing of a real scope either.
   record.provenance = {is_simulated || !has_real ? Origin::Simulated : Origin::Measured, now_utc};
   record.source = source;
-  record.camera_sha256 = camera_fingerprint(case_folder);
   calibration::write_fluid_file(fluid_file(case_folder), record);
   return "";
 }

@@ -1,5 +1,6 @@
-// The last verdict of the check in fluid that a case keeps (fluid.json), and what it says about the medium
-// that is in force now. Set up writes it; Navigate asks before it shows numbers.
+// The last verdict of the check in fluid that a case keeps (fluid.json), and what it says about a medium and
+// the camera.json of now. Set up writes it and shows it; Navigate does not ask for it, but looks at the
+// medium in its own pictures (navigation/pipeline/medium_check.h).
 #pragma once
 
 #include <filesystem>
@@ -12,9 +13,13 @@ namespace arthronaut::open_case {
 
 [[nodiscard]] std::filesystem::path fluid_file(const std::filesystem::path& case_folder);
 
-// Keeps what a check found, with the time, where it was seen, and a fingerprint of the case's camera.json. A
-// verdict of simulated pictures is not kept in a case with a real scope: then this writes nothing and says
-// why. Empty when it was kept. Throws IoError.
+// Of the case's camera.json; empty without one: the built-in camera. Throws IoError.
+[[nodiscard]] std::string camera_fingerprint(const std::filesystem::path& case_folder);
+
+// Keeps what a check found, with the time and where it was seen. record.camera_sha256 is the fingerprint of
+// the camera that it was measured through: where camera.json has changed since, or in a case with a real
+// scope where the pictures were simulated, this writes nothing and says why. Empty when it was kept. Throws
+// IoError.
 [[nodiscard]] std::string keep_fluid_verdict(const std::filesystem::path& case_folder,
                                              calibration::FluidRecord record, bool is_simulated,
                                              const std::string& source, const std::string& now_utc);

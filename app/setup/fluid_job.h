@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "navigation/calibration/ruler_sightings.h"
 
@@ -18,7 +19,8 @@ struct FluidStatus {
   std::size_t sighting_count = 0;
   double seconds = 0;  // of the source, since the first sighting
   bool is_checking = false;
-  double refractive_index = 0;                                    // of the medium that is said to be there
+  double refractive_index = 0;  // of the medium that is said to be there
+  std::string camera_sha256;    // of the camera.json that is measured through; empty: the built-in camera
   std::shared_ptr<const calibration::FluidCheckSummary> summary;  // null: not checked yet
 };
 
@@ -27,7 +29,10 @@ class FluidJob {
   using Status = FluidStatus;
 
   // Throws InvalidInput for an unusable calibration or index.
-  explicit FluidJob(const calibration::RulerSightingsOptions& options) : sightings_(options) {}
+  explicit FluidJob(const calibration::RulerSightingsOptions& options, std::string camera_sha256 = "")
+      : sightings_(options) {
+    status_.camera_sha256 = std::move(camera_sha256);
+  }
 
   void look(const camera::FramePtr& frame);
   bool work();  // the check, once five seconds were seen or it was asked for

@@ -2,6 +2,8 @@
 
 #include <GLFW/glfw3.h>
 
+#include <utility>
+
 #include "app/case/case_calibration.h"
 #include "app/library/daily_check.h"
 #include "app/library/workstation_library.h"
@@ -42,10 +44,12 @@ void FluidStation::keep_verdict() {
   if (summary == nullptr || summary == kept_) return;
   kept_ = summary;
   const FeedSource& source = run_->source();
+  std::string why_not;
   try {  // a disk that is full is a state of the screen
-    const std::string why_not = open_case::keep_fluid_verdict(
-        case_folder_, calibration::record_of(*summary, status_.job.refractive_index), source.is_simulated,
-        source.name, files::utc_now());
+    calibration::FluidRecord record = calibration::record_of(*summary, status_.job.refractive_index);
+    record.camera_sha256 = status_.job.camera_sha256;
+    why_not = open_case::keep_fluid_verdict(case_folder_, std::move(record), source.is_simulated, source.name,
+                                            files::utc_now());
     read_standing();
     if (!why_not.empty()) checked_ = {widgets::Severity::Caution, "Fluid", "not kept: " + why_not};
   } catch (const InvalidInput& error) {
@@ -54,7 +58,11 @@ void FluidStation::keep_verdict() {
     checked_ = {widgets::Severity::Bad, "Fluid", std::string("not saved: ") + error.what()};
   }
   if (source.is_simulated) return;
-  // The same look is the day's check of accuracy, whatever became of the verdict.
+  if (!why_not.empty()) {
+    daily_check_ = {widgets::Severity::Caution, "Daily check", "not kept: " + why_not};
+    return;
+  }
+  // The same look is the day's check of accuracy, also where the verdict could not be written.
   const workstation_library::DailyKeeping daily = workstation_library::keep_daily_check(
       workstation_library::data_folder(), *summary, status_.job.refractive_index,
       cases::camera_file(case_folder_), source.name, source.is_live);
@@ -73,7 +81,7 @@ void FluidStation::start(const FeedSource& source) {
         calibration::RulerSightingsOptions options;
         options.calibration = open_case::camera_of(source.is_simulated, folder);
         options.refractive_index = index;
-        return std::make_unique<FluidJob>(options);
+        return std::make_unique<FluidJob>(options, open_case::camera_fingerprint(folder));
       },
       wake_);
 }

@@ -18,6 +18,7 @@ class FluidStation : public Station {
       : wake_(std::move(wake)), ending_(ending) {}
 
   void open(const std::filesystem::path& case_folder) override;
+  void show() override { read_standing(); }
   void start(const FeedSource& source) override;
   void stop() override;
   void release_source() override;

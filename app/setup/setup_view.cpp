@@ -76,6 +76,7 @@ void SetupView::show(std::size_t index) {
   close_gallery();
   if (index != shown_) step().station->release_source();
   shown_ = index;
+  for (Step& one : steps_) one.station->show();
   find_sources();
 }
 

@@ -46,10 +46,11 @@ class Station {
  public:
   virtual ~Station() = default;
   virtual void open(const std::filesystem::path& case_folder) = 0;  // another case; ends what runs
-  virtual void start(const FeedSource& source) = 0;                 // anew, from this source
-  virtual void stop() = 0;                                          // ends what runs and forgets it
-  virtual void release_source() = 0;                                // another mode may want the camera
-  virtual void add_actions(widgets::Actions& actions) = 0;          // all are named "setup.ID..."
+  virtual void show() {}  // a step came into view: another one may have adopted something meanwhile
+  virtual void start(const FeedSource& source) = 0;         // anew, from this source
+  virtual void stop() = 0;                                  // ends what runs and forgets it
+  virtual void release_source() = 0;                        // another mode may want the camera
+  virtual void add_actions(widgets::Actions& actions) = 0;  // all are named "setup.ID..."
   virtual void draw(const widgets::Ui& ui, const widgets::Rect& area) = 0;
   [[nodiscard]] virtual bool awaits_text() const { return false; }  // see SetupView::awaits_text()
   // The two rows of buttons; ids of actions.

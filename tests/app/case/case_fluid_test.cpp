@@ -31,8 +31,10 @@ class CaseFluid : public ::testing::Test {
     record.scope_name = scope_name;
     camera::write_camera_file(cases::camera_file(folder_), record);
   }
-  static calibration::FluidRecord verdict(double index, std::vector<std::string> reasons = {}) {
+  // Measured through the camera that the case has now.
+  [[nodiscard]] calibration::FluidRecord verdict(double index, std::vector<std::string> reasons = {}) const {
     calibration::FluidRecord record;
+    record.camera_sha256 = camera_fingerprint(folder_);
     record.refractive_index = index;
     record.is_trusted = reasons.empty();
     record.reasons = std::move(reasons);
@@ -85,6 +87,16 @@ TEST_F(CaseFluid, Hazard10ACameraCalibratedAnewIsNotChecked) {
   (void)keep_fluid_verdict(folder_, verdict(kSalineIndex), kReal, "HD camera", kThen);
   adopt_camera("Scope 30", 601);
   EXPECT_EQ(state(kSalineIndex).standing, FluidStanding::OtherCamera);
+}
+
+// Nor does a case keep the verdict on a camera that it has no more: it would stand for the new one.
+TEST_F(CaseFluid, Hazard10AVerdictOnAnotherCameraIsNotKept) {
+  adopt_camera("Scope 30", 600);
+  const calibration::FluidRecord of_the_old = verdict(kSalineIndex);
+  adopt_camera("Scope 30", 601);
+  EXPECT_EQ(keep_fluid_verdict(folder_, of_the_old, kReal, "HD camera", kThen),
+            "camera.json has changed since");
+  EXPECT_EQ(state(kSalineIndex).standing, FluidStanding::NeverChecked);
 }
 
 // A real case keeps no simulated verdict; one from before the real camera was calibrated is worth nothing.
