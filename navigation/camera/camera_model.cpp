@@ -33,6 +33,7 @@ CameraCovariance covariance_of(const Calibration& calibration) {
 CameraModel::CameraModel(const Calibration& calibration, double lens_angle_rad, double refractive_index,
                          FluidModel fluid_model)
     : image_size_(calibration.image_size_px),
+      lens_angle_rad_(lens_angle_rad),
       center_(calibration.turned(calibration.principal_point_px, lens_angle_rad)),
       boundary_{calibration.turned(calibration.boundary.center_px, lens_angle_rad),
                 calibration.boundary.radius_px},
@@ -124,9 +125,10 @@ std::optional<Eigen::Vector2d> CameraModel::undistort(const Eigen::Vector2d& pix
   const double f = refracts ? focal_ : focal_ * index_ratio_;
   const Eigen::Vector2d scale(1 / f, 1 / (f * aspect_));
   const Eigen::Vector2d distorted = (pixel - center_).cwiseProduct(scale);
-  const double denominator = 1 + xi_ * distorted.squaredNorm();
-  if (!(denominator > 0)) return std::nullopt;  // a ray at 90 degrees or beyond
-  const double g = 1 / denominator;
+  const double bend = xi_ * distorted.squaredNorm();
+  // At -1 a barrel's ray reaches 90 degrees; at 1 a pincushion folds, and what lies beyond comes back inside.
+  if (!(std::abs(bend) < 1)) return std::nullopt;
+  const double g = 1 / (1 + bend);
   const Eigen::Vector2d m = g * distorted;
   Eigen::Matrix2d jacobian =
       g * Eigen::Matrix2d::Identity() - (2 * xi_ * g * g) * distorted * distorted.transpose();

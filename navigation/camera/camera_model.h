@@ -94,6 +94,7 @@ class CameraModel {
   [[nodiscard]] double focal_px() const { return focal_; }  // of the calibration's medium
   // d pixel / d angle at the axis, in the working medium.
   [[nodiscard]] double central_focal_px() const;
+  [[nodiscard]] double lens_angle_rad() const { return lens_angle_rad_; }
   [[nodiscard]] const Eigen::Vector2d& principal_point_px() const { return center_; }
   [[nodiscard]] double distortion_xi() const { return xi_; }
   [[nodiscard]] double aspect_ratio() const { return aspect_; }
@@ -110,6 +111,7 @@ class CameraModel {
 
  private:
   Eigen::Vector2i image_size_{0, 0};
+  double lens_angle_rad_ = 0;
   Eigen::Vector2d center_ = Eigen::Vector2d::Zero();
   Boundary boundary_;
   double focal_ = 1, aspect_ = 1, xi_ = 0, index_ratio_ = 1;

@@ -151,8 +151,7 @@ class Operation {
     if (!pose) return std::nullopt;
     Seen seen;
     seen.pose = {pose->camera_from_marker, 0, true, markers::square_covariance(*pose, corner_sigma_px_)};
-    seen.per_camera_error =
-        guidance::twist_per_camera_error(pose->camera_from_marker, size_mm, taken, taken_);
+    seen.per_camera_error = guidance::twist_per_camera_error(pose->camera_from_marker, size_mm, taken);
     return seen;
   }
 

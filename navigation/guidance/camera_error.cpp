@@ -1,44 +1,26 @@
 #include "navigation/guidance/camera_error.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <array>
-#include <cmath>
 
 namespace arthronaut::guidance {
 
-namespace {
-
-// How the lens is turned in this frame, from where its principal point went.
-Eigen::Matrix2d turn_of(const camera::CameraModel& camera, const camera::Calibration& calibration) {
-  const Eigen::Vector2d before = calibration.principal_point_px - calibration.rotation_center_px;
-  const Eigen::Vector2d now = camera.principal_point_px() - calibration.rotation_center_px;
-  const double length = before.norm() * now.norm();
-  if (length < 1e-9) return Eigen::Matrix2d::Identity();  // it turns about itself: the angle does not matter
-  const double c = before.dot(now) / length, s = (before.x() * now.y() - before.y() * now.x()) / length;
-  Eigen::Matrix2d turn;
-  turn << c, -s, s, c;
-  return turn;
-}
-
-}  // namespace
-
 TwistPerCameraError twist_per_camera_error(const geometry::RigidTransform& camera_from_marker, double size_mm,
-                                           const camera::CameraModel& camera,
-                                           const camera::Calibration& calibration) {
+                                           const camera::CameraModel& camera) {
   const double half_mm = size_mm / 2;
   const std::array<Eigen::Vector3d, 4> corners_mm{
       Eigen::Vector3d(-half_mm, -half_mm, 0), Eigen::Vector3d(-half_mm, half_mm, 0),
       Eigen::Vector3d(half_mm, -half_mm, 0), Eigen::Vector3d(half_mm, half_mm, 0)};
-  return twist_per_camera_error(camera_from_marker, corners_mm, camera, calibration);
+  return twist_per_camera_error(camera_from_marker, corners_mm, camera);
 }
 
 TwistPerCameraError twist_per_camera_error(const geometry::RigidTransform& camera_from_body,
                                            std::span<const Eigen::Vector3d> corners_mm,
-                                           const camera::CameraModel& camera,
-                                           const camera::Calibration& calibration) {
-  // The principal point follows c = q + R (c0 - q).
+                                           const camera::CameraModel& camera) {
+  // The principal point follows c = q + R (c0 - q): by R and I - R, wherever the two lie.
   Eigen::Matrix<double, 4, 6> lens = Eigen::Matrix<double, 4, 6>::Zero();
-  const Eigen::Matrix2d turn = turn_of(camera, calibration);
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(camera.lens_angle_rad()).toRotationMatrix();
   lens(0, 0) = lens(1, 1) = 1;
   lens.block<2, 2>(2, 2) = turn;
   lens.block<2, 2>(2, 4) = Eigen::Matrix2d::Identity() - turn;

@@ -15,15 +15,13 @@ using TwistPerCameraError = Eigen::Matrix<double, 6, 6>;
 
 // First order, by the corners: the pose found through a camera that is off by d is T * exp(result * d), where
 // T is the pose that it would find without. Zero where a corner has no image. `camera` is that of the frame,
-// of `calibration` with its lens turned. Allocates nothing.
+// with its lens turned. Allocates nothing.
 // For a body of several markers: its corners, all alike in weight, in its frame.
 [[nodiscard]] TwistPerCameraError twist_per_camera_error(const geometry::RigidTransform& camera_from_body,
                                                          std::span<const Eigen::Vector3d> corners_mm,
-                                                         const camera::CameraModel& camera,
-                                                         const camera::Calibration& calibration);
+                                                         const camera::CameraModel& camera);
 // For one marker.
 [[nodiscard]] TwistPerCameraError twist_per_camera_error(const geometry::RigidTransform& camera_from_marker,
-                                                         double size_mm, const camera::CameraModel& camera,
-                                                         const camera::Calibration& calibration);
+                                                         double size_mm, const camera::CameraModel& camera);
 
 }  // namespace arthronaut::guidance

@@ -167,9 +167,8 @@ struct NavigationPipeline::State {
     std::size_t count = 0;
     for (std::size_t i = 0; i < corners_mm[body].size(); ++i)
       if (seen.used & (1U << (i / 4))) used_mm[count++] = corners_mm[body][i];
-    return guidance::twist_per_camera_error(seen.camera_from_body,
-                                            std::span<const Eigen::Vector3d>(used_mm.data(), count),
-                                            result.camera, options.calibration);
+    return guidance::twist_per_camera_error(
+        seen.camera_from_body, std::span<const Eigen::Vector3d>(used_mm.data(), count), result.camera);
   }
 
   [[nodiscard]] guidance::TwistPerCameraError camera_error(const FrameResult& result,

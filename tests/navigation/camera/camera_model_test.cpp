@@ -219,6 +219,13 @@ TEST(CameraModel, SaysNoWhereNoRayGoes) {
   EXPECT_FALSE(wet.project({std::numeric_limits<double>::quiet_NaN(), 0, 20}));
   const CameraModel pincushion(scope(0.2), 0, 1);
   EXPECT_FALSE(pincushion.project({30, 0, 20}));  // beyond the fold at r_u = 1 / (2 sqrt(xi)) = 1.118
+  // The pixels beyond it, at 1 / sqrt(xi), are of no ray: not of one that lies as far within.
+  const auto along = [&](double share) {
+    return pincushion.undistort(pincushion.principal_point_px() +
+                                Eigen::Vector2d(share * pincushion.focal_px() / std::sqrt(0.2), 0));
+  };
+  EXPECT_TRUE(along(0.99));
+  EXPECT_FALSE(along(1.01));
 }
 
 TEST(CameraModel, RefusesAnUnusableCalibration) {
