@@ -12,8 +12,9 @@
 //   screens/                   screenshots and videos of the screen (app/screen_copy)
 //   cache/                     what can be made again from the rest; may be deleted at any time
 //
-// Every file is replaced atomically, so that a crash at any moment leaves the last saved state. The folder is
-// its owner's alone: folders 0700, files 0600 (files/private_folder.h).
+// Every file is replaced atomically: a crash at any moment leaves each as it was last saved, and of a whole
+// case that was being saved some already new. The folder is its owner's alone: folders 0700, files 0600
+// (files/private_folder.h).
 #pragma once
 
 #include <cstdint>
@@ -61,7 +62,9 @@ struct Case {
 [[nodiscard]] Case load_case(const std::filesystem::path& folder);
 
 // Creates the folder where needed and makes it private. Meshes are written only when they differ from what is
-// there. A tunnel that names no mesh is saved with the name of the case's. Throws IoError.
+// there, and before case.json: landmarks of a mesh that another one replaces are to be gone from the disk by
+// then (import/case_import.h). A tunnel that names no mesh is saved with the name of the case's. Throws
+// IoError.
 void save_case(const std::filesystem::path& folder, const Case& contents);
 // The plan alone: what changes while a surgeon plans. Replaces what is there, whatever it is.
 void save_plan(const std::filesystem::path& folder, const Plan& plan);
