@@ -12,16 +12,23 @@ namespace {
 
 using Verdict = PlanCheck::Verdict;
 
-// Empty when both tunnels are there.
+std::string name_of(const char* tunnel, norms::Bundle graft) {
+  return tunnel + std::string(graft == norms::Bundle::Whole          ? ""
+                              : graft == norms::Bundle::Anteromedial ? " of the AM graft"
+                                                                     : " of the PL graft");
+}
+
+bool is_there(const Tunnel* tunnel, const TunnelGeometry* measured) {
+  return tunnel && measured && measured->enters_bone;
+}
+
+// Empty when it is there; when both are.
+std::string missing_tibial_tunnel(const KneePlan& plan) {
+  return is_there(plan.tibial, plan.tibial_measured) ? "" : name_of("the tibial tunnel", plan.graft);
+}
 std::string missing_tunnel(const KneePlan& plan) {
-  const auto is_there = [](const Tunnel* tunnel, const TunnelGeometry* measured) {
-    return tunnel && measured && measured->enters_bone;
-  };
-  const std::string graft = plan.graft == norms::Bundle::Whole          ? ""
-                            : plan.graft == norms::Bundle::Anteromedial ? " of the AM graft"
-                                                                        : " of the PL graft";
-  if (!is_there(plan.femoral, plan.femoral_measured)) return "the femoral tunnel" + graft;
-  return is_there(plan.tibial, plan.tibial_measured) ? "" : "the tibial tunnel" + graft;
+  if (!is_there(plan.femoral, plan.femoral_measured)) return name_of("the femoral tunnel", plan.graft);
+  return missing_tibial_tunnel(plan);
 }
 
 graft::GraftEnd end_of(const Tunnel& tunnel, const TunnelGeometry& measured) {
@@ -72,6 +79,8 @@ PlanCheck note_bend(const char* name, double extended_deg, double greatest_deg) 
 }
 
 PlanCheck check_roof(const KneePlan& plan, const KneeSurroundings& surroundings, const PlanNorms& norms) {
+  if (const std::string missing = missing_tibial_tunnel(plan); !missing.empty())
+    return not_checked("Roof", missing);
   const auto& marks = surroundings.femur_landmarks;
   const auto anterior = marks.find("blumensaat_anterior"), posterior = marks.find("blumensaat_posterior");
   if (anterior == marks.end() || posterior == marks.end() || !surroundings.femur_axes)
@@ -119,13 +128,15 @@ std::vector<PlanCheck> check_knee(bones::BoneKind bone, const KneePlan& plan,
   const bool is_femur = bone == bones::BoneKind::Femur;
   const char* bend = is_femur ? "Bend at the femur" : "Bend at the tibia";
   const std::string missing = missing_tunnel(plan);
-  if (!missing.empty()) {
-    if (!is_femur) return {not_checked("Roof", missing), not_checked(bend, missing)};
-    return {not_checked("Graft length", missing), not_checked("Length over flexion", missing),
-            not_checked(bend, missing)};
-  }
   std::vector<PlanCheck> checks;
-  checks.push_back(is_femur ? check_graft_length(plan) : check_roof(plan, surroundings, norms));
+  if (!is_femur) checks.push_back(check_roof(plan, surroundings, norms));
+  if (!missing.empty()) {
+    if (is_femur)
+      checks = {not_checked("Graft length", missing), not_checked("Length over flexion", missing)};
+    checks.push_back(not_checked(bend, missing));
+    return checks;
+  }
+  if (is_femur) checks.push_back(check_graft_length(plan));
   if (!surroundings.axis) {
     const char* needed = "the flexion axis: two condyles' centres, their posterior points or the epicondyles";
     if (is_femur) checks.push_back(not_checked("Length over flexion", needed));

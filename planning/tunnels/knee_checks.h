@@ -30,8 +30,8 @@ struct KneePlan {
 };
 
 // Femur: length of the graft in the joint and in all, its change over flexion, its bend at the femur. Tibia:
-// the roof in extension, the bend at the tibia. What lacks a tunnel, an axis or Blumensaat's line is said to
-// be not checked.
+// the roof in extension, which asks for the tibial tunnel alone, the bend at the tibia. What lacks a tunnel,
+// an axis or Blumensaat's line is said to be not checked.
 [[nodiscard]] std::vector<PlanCheck> check_knee(bones::BoneKind bone, const KneePlan& plan,
                                                 const KneeSurroundings& surroundings,
                                                 const PlanNorms& norms = {});

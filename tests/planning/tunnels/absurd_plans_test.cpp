@@ -189,7 +189,7 @@ TEST_P(AbsurdPlans, EveryCheckIsData) {
 }
 
 // Both tunnels together: graft, flexion, roof and bends are there as numbers; without one of them they are
-// not checked.
+// not checked, but for the roof, which asks for the tibial one alone.
 TEST_P(AbsurdPlans, TheKneeIsCheckedAsAWhole) {
   const auto femoral = measure(knee_.femoral_tunnel, *femur_.surface),
              tibial = measure(knee_.tibial_tunnel, *tibia_.surface);
@@ -200,9 +200,16 @@ TEST_P(AbsurdPlans, TheKneeIsCheckedAsAWhole) {
       EXPECT_NE(check.verdict, Verdict::NotChecked) << check.name << ": " << check.text;
       EXPECT_TRUE(check.value) << check.name;
     }
-    for (const auto& check : check_knee(kind, {&knee_.femoral_tunnel, &femoral, nullptr, nullptr}, knee))
+    for (const auto& check : check_knee(kind, {&knee_.femoral_tunnel, &femoral, nullptr, nullptr}, knee)) {
       EXPECT_EQ(check.verdict, Verdict::NotChecked) << check.name;
+      EXPECT_THAT(check.text, ::testing::HasSubstr("the tibial tunnel")) << check.name;
+    }
   }
+  const auto roof = check_knee(BoneKind::Tibia, plan, knee).front();
+  const auto alone = check_knee(BoneKind::Tibia, {nullptr, nullptr, &knee_.tibial_tunnel, &tibial}, knee);
+  EXPECT_EQ(alone.front().name, "Roof");
+  EXPECT_EQ(alone.front().text, roof.text);
+  EXPECT_EQ(alone.back().verdict, Verdict::NotChecked) << alone.back().name;
 }
 
 // The map about the planned entry passes somewhere near it, and fails on the rim of the notch, with a reason.
