@@ -239,6 +239,7 @@ TEST_P(AbsurdPlans, APortalAllowsSomeAims) {
   const auto aims =
       portal_aims(entry, 4, anteromedial_portal(*knee.axis, axes_), *knee.axis, *femur_.surface);
   EXPECT_EQ(aims.size(), 7U * 9U);
+  EXPECT_TRUE(std::ranges::any_of(aims, &PortalAim::is_clear));
   EXPECT_GT(off_portal_deg(-axes_.anterior, aims), 30);
   for (const auto& aim : aims) {
     EXPECT_NEAR(aim.direction.norm(), 1, 1e-12);
@@ -248,9 +249,11 @@ TEST_P(AbsurdPlans, APortalAllowsSomeAims) {
       EXPECT_NEAR(off_portal_deg(aim.direction, aims), 0, 1e-5);
     }
   }
+  // Each costs a measurement: rows of 21 from 75 deg down to 30 deg up.
   int asked = 0;
-  const auto outside_in =
-      outside_in_aims(knee_.femoral_tunnel, *femur_.surface, femur_.known, {}, [&] { return ++asked > 60; });
+  const auto outside_in = outside_in_aims(knee_.femoral_tunnel, *femur_.surface, femur_.known, {},
+                                          [&] { return ++asked > 15 * 21; });
+  ASSERT_FALSE(outside_in.empty());
   for (const auto& direction : outside_in) {
     Tunnel tunnel = knee_.femoral_tunnel;
     tunnel.direction = direction;
