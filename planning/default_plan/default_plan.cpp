@@ -105,10 +105,12 @@ struct Site {
                                             const Tunnel* beside = nullptr) const {
     return at_entry ? aim(*at_entry, *input.surface, joint, options, beside) : std::nullopt;
   }
+  // Infinite where one of them misses the bone.
   [[nodiscard]] double between_mm(const Tunnel& one, const Tunnel& other) const {
-    return tunnels::gap_between(one, tunnels::measure(one, *input.surface), other,
-                                tunnels::measure(other, *input.surface))
-        .bone_mm;
+    const auto of_one = tunnels::measure(one, *input.surface),
+               of_other = tunnels::measure(other, *input.surface);
+    if (!of_one.enters_bone || !of_other.enters_bone) return std::numeric_limits<double>::infinity();
+    return tunnels::gap_between(one, of_one, other, of_other).bone_mm;
   }
 };
 

@@ -155,6 +155,30 @@ TEST(DefaultPlan, MovesBundlesApartWithinTheirSpreadAndSaysSo) {
   }
 }
 
+// A tunnel of the other bundle that misses the bone, as after a move of the landmarks or by another program:
+// nothing is there to make room for.
+TEST(DefaultPlan, MakesNoRoomForATunnelThatMissesTheBone) {
+  using norms::Bundle;
+  const Knee knee(Side::Right);
+  for (BoneInput input : knee.inputs(true)) {
+    const auto kind = input.bone->kind;
+    const auto expected =
+        norms::expected_footprint(input.bone->mesh, *input.surface, kind, Side::Right, input.landmarks,
+                                  norms::default_norm(kind, Bundle::Posterolateral));
+    ASSERT_TRUE(expected);
+    const tunnels::Tunnel missing{
+        .bone = kind,
+        .entry_mm = expected->center_mm + 300 * expected->normal,
+        .direction = expected->normal,
+        .diameter_mm = 700,  // so thick that only a bone it enters is out of its way
+        .bundle = Bundle::Anteromedial};
+    input.beside = &missing;
+    const auto planned = plan_bone(input, Side::Right, {.bundle = Bundle::Posterolateral, .diameter_mm = 6});
+    ASSERT_TRUE(planned.is_usable());
+    EXPECT_EQ(planned.tunnel.entry_mm, expected->center_mm) << planned.source;
+  }
+}
+
 TEST(DefaultPlan, IsBesideTheOtherBundleOfItsBoneAlone) {
   using norms::Bundle;
   std::map<tunnels::TunnelKey, tunnels::Tunnel> planned;
