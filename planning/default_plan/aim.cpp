@@ -95,7 +95,7 @@ std::optional<tunnels::Tunnel> aim(const tunnels::Tunnel& at_entry, const geomet
     tunnel.direction = candidate.direction;
     const auto measured = tunnels::measure(tunnel, surface);
     if (!measured.enters_bone || (measured.entry_on_surface_mm - tunnel.entry_mm).norm() > 2) continue;
-    if (surface.closest_point(measured.exit_mm).normal.dot(exit_side) < kLeastFacing) continue;
+    if (measured.exit.normal.dot(exit_side) < kLeastFacing) continue;
     const double misfit =
         std::max({0.0, fitting_mm[0] - measured.length_mm, measured.length_mm - fitting_mm[1]});
     const double between_mm = neighbour.enters_bone
