@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "planning/landmarks/grid_landmarks.h"
+
 namespace arthronaut::plan {
 
 namespace {
@@ -18,9 +20,8 @@ bool is_wrong(const open_case::PlanModel& model, const tunnels::TunnelKey& key) 
 
 bool has_unconfirmed_grid(const open_case::PlanModel& model, BoneKind bone) {
   const auto& states = model.landmark_states(bone);
-  return std::any_of(states.begin(), states.end(), [](const auto& one) {
-    return (one.first.starts_with("blumensaat_") || one.first.starts_with("plateau_")) &&
-           one.second == landmarks::LandmarkState::Proposed;
+  return std::ranges::any_of(landmarks::grid_landmarks(bone, model.landmarks(bone)), [&](const auto& name) {
+    return landmarks::state_of(states, name) == landmarks::LandmarkState::Proposed;
   });
 }
 

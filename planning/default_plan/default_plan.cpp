@@ -9,6 +9,7 @@
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/landmarks/anatomical_axes.h"
+#include "planning/landmarks/grid_landmarks.h"
 #include "planning/norms/footprint.h"
 #include "planning/tunnels/plan_norms.h"
 #include "planning/tunnels/tunnel_pair.h"
@@ -27,16 +28,6 @@ constexpr double kUsualCondyles_mm = 48, kCondyleRadius_mm = 21;
 
 Bundle other_bundle(Bundle bundle) {
   return bundle == Bundle::Anteromedial ? Bundle::Posterolateral : Bundle::Anteromedial;
-}
-
-// What the entry follows from; of either pair that tells the direction of the view one will do.
-std::vector<std::string> needed(bones::BoneKind bone, const Landmarks& known) {
-  if (bone == bones::BoneKind::Tibia)
-    return {"plateau_anterior", "plateau_posterior", "plateau_medial", "plateau_lateral"};
-  const std::string pair = known.contains("lateral_condyle_center") && known.contains("medial_condyle_center")
-                               ? "center"
-                               : "posterior";
-  return {"blumensaat_anterior", "blumensaat_posterior", "lateral_condyle_" + pair, "medial_condyle_" + pair};
 }
 
 void check_range(const char* field, double value, double least, double greatest) {
@@ -198,8 +189,8 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
            landmarks::state_of(input.states, name) == landmarks::LandmarkState::Confirmed;
   };
   bool all_confirmed = true;
-  const auto follows_from = needed(kind, input.landmarks);
-  for (const std::string& name : follows_from) all_confirmed &= is_confirmed(name);
+  for (const std::string& name : landmarks::grid_landmarks(kind, input.landmarks))
+    all_confirmed &= is_confirmed(name);
   Landmarks marks = input.landmarks;
   if (!all_confirmed) {
     if (proposal == nullptr) {
@@ -209,7 +200,7 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
     landmarks::LandmarkStates states = input.states;
     landmarks::take_proposal(*proposal, marks, states);
     std::string names;
-    for (const std::string& name : follows_from) {
+    for (const std::string& name : landmarks::grid_landmarks(kind, marks)) {
       if (!is_confirmed(name)) names += (names.empty() ? "" : ", ") + name;
     }
     result.doubts.push_back("the " + std::string(bones::to_text(kind)) +

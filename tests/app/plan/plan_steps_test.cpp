@@ -50,6 +50,13 @@ TEST(NextStep, ProposedLandmarksAreToBeLookedAt) {
   states["blumensaat_anterior"] = landmarks::LandmarkState::Confirmed;
   model.set_landmarks(BoneKind::Femur, model.landmarks(BoneKind::Femur), states);
   EXPECT_EQ(next_step(model, {}).action, "mode.setup");
+  // The direction of the view of the grid is told by the condyles.
+  landmarks::Landmarks marks = model.landmarks(BoneKind::Femur);
+  ASSERT_TRUE(marks.contains("lateral_condyle_center") || marks.contains("lateral_condyle_posterior"));
+  for (const char* part : {"lateral_condyle_center", "lateral_condyle_posterior"})
+    states[part] = landmarks::LandmarkState::Proposed;
+  model.set_landmarks(BoneKind::Femur, marks, states);
+  EXPECT_EQ(next_step(model, {}).action, "plan.landmarks_page");
 }
 
 // What stands against every edit is named first.

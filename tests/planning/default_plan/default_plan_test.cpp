@@ -75,6 +75,23 @@ TEST(DefaultPlan, SaysThatNobodyHasConfirmedItsLandmarks) {
   }
 }
 
+// The extents of the quadrant, where they are known, are what depth and height of the entry follow from.
+TEST(DefaultPlan, DoubtsProposedExtentsOfTheQuadrant) {
+  const Knee knee(Side::Right);
+  BoneInput femur = knee.inputs(true)[0];
+  femur.states.clear();
+  for (const char* extent : {"lateral_condyle_deep", "lateral_condyle_shallow", "lateral_condyle_low"})
+    femur.landmarks.try_emplace(
+        extent, landmarks::propose(knee.made.femur.mesh, BoneKind::Femur, {.side = Side::Right})
+                    .landmarks.at(extent));
+  ASSERT_TRUE(plan_bone(femur, Side::Right).doubts.empty());
+  femur.states["lateral_condyle_low"] = landmarks::LandmarkState::Proposed;
+  const auto doubted = plan_bone(femur, Side::Right);
+  ASSERT_FALSE(doubted.doubts.empty());
+  EXPECT_TRUE(doubted.doubts[0].ends_with(", lateral_condyle_low")) << doubted.doubts[0];
+  EXPECT_EQ(doubted.doubts[0].find("lateral_condyle_deep"), std::string::npos) << "that one is confirmed";
+}
+
 // A native footprint that a person marked is better than any norm, for the whole ligament.
 TEST(DefaultPlan, EntersAtTheMarkedNativeFootprint) {
   const Knee knee(Side::Right);

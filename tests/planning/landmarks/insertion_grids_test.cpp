@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "planning/geometry/rigid_transform.h"
+#include "planning/landmarks/grid_landmarks.h"
 #include "tests/planning/geometry/shapes.h"
 
 namespace arthronaut::landmarks {
@@ -27,6 +29,35 @@ TEST(FemoralQuadrant, ReadsPercentagesOffABox) {
   const auto percent = quadrant->percent_of({-17, 30 - 0.28 * 60, -0.35 * 20});
   EXPECT_NEAR(percent.deep_shallow, 28, 1e-9);
   EXPECT_NEAR(percent.high_low, 35, 1e-9);
+}
+
+// Each landmark that is named moves the grid of a box, whose corners give it no condyles; no other one does.
+TEST(FemoralQuadrant, NamesWhatItFollowsFrom) {
+  Landmarks marks = roof_of_a_box();
+  marks["lateral_epicondyle"] = {-30, 0, -5};
+  for (const auto& [name, at] : Landmarks{{"lateral_condyle_center", {-20, 20, -5}},
+                                          {"medial_condyle_center", {20, 21, -5}},
+                                          {"lateral_condyle_posterior", {-20, 25, -5}},
+                                          {"medial_condyle_posterior", {20, 25, -6}},
+                                          {"lateral_condyle_deep", {-20, 28, -4}},
+                                          {"lateral_condyle_shallow", {-20, -27, -4}},
+                                          {"lateral_condyle_low", {-20, 3, -19}}})
+    marks[name] = at;
+  const auto box = test::box({40, 30, 20});
+  const auto percent_with = [&](const Landmarks& with) {
+    const auto quadrant = femoral_quadrant(box, with, bones::Side::Right);
+    const auto percent = quadrant->percent_of({-17, 5, -7});
+    return Eigen::Vector2d(percent.deep_shallow, percent.high_low);
+  };
+  const auto named = grid_landmarks(bones::BoneKind::Femur, marks);
+  for (const auto& [name, at] : marks) {
+    Landmarks moved = marks;
+    moved[name] += Vector3d(3, 2, -4);
+    const bool moves_grid = (percent_with(moved) - percent_with(marks)).norm() > 1e-6;
+    EXPECT_EQ(moves_grid, std::ranges::find(named, name) != named.end()) << name;
+  }
+  marks.erase("lateral_condyle_low");
+  EXPECT_EQ(grid_landmarks(bones::BoneKind::Femur, marks).size(), 4U) << "the outline tells the extents";
 }
 
 TEST(FemoralQuadrant, FindsThePointOfAPercentage) {

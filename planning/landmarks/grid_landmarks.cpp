@@ -1,0 +1,19 @@
+#include "planning/landmarks/grid_landmarks.h"
+
+namespace arthronaut::landmarks {
+
+std::vector<std::string> grid_landmarks(bones::BoneKind bone, const Landmarks& known) {
+  if (bone == bones::BoneKind::Tibia)
+    return {"plateau_anterior", "plateau_posterior", "plateau_medial", "plateau_lateral"};
+  const std::string pair = known.contains("lateral_condyle_center") && known.contains("medial_condyle_center")
+                               ? "center"
+                               : "posterior";
+  std::vector<std::string> names{"blumensaat_anterior", "blumensaat_posterior", "lateral_condyle_" + pair,
+                                 "medial_condyle_" + pair};
+  if (known.contains("lateral_condyle_deep") && known.contains("lateral_condyle_shallow") &&
+      known.contains("lateral_condyle_low"))
+    names.insert(names.end(), {"lateral_condyle_deep", "lateral_condyle_shallow", "lateral_condyle_low"});
+  return names;
+}
+
+}  // namespace arthronaut::landmarks

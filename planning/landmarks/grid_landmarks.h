@@ -1,0 +1,16 @@
+// What the grids of insertion_grids.h follow from: a grid is as good as the least looked at of these.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "planning/bones/bone.h"
+#include "planning/landmarks/landmarks.h"
+
+namespace arthronaut::landmarks {
+
+// The names that the bone's grid needs, and of those that may tell its view and its extents the ones that do
+// when these are known. Of what it needs also those that are not known.
+[[nodiscard]] std::vector<std::string> grid_landmarks(bones::BoneKind bone, const Landmarks& known);
+
+}  // namespace arthronaut::landmarks
