@@ -35,6 +35,14 @@ DicomOrigin origin_of(DcmDataset& dataset) {
   return origin;
 }
 
+// What is there and cannot be read must not pass for what is not there: bone would have other values.
+double rescaling_of(const DicomSlice& slice, DcmDataset& dataset, const DcmTagKey& key, double absent) {
+  if (const auto value = decimals_of(dataset, key, 1)) return value->front();
+  if (!text_of(dataset, key).empty())
+    throw InvalidInput(slice.file, slice.place(), "its rescaling holds no numbers");
+  return absent;
+}
+
 DicomSlice common_part(const std::filesystem::path& file, DcmDataset& dataset) {
   DicomSlice slice;
   slice.file = file;
@@ -53,9 +61,8 @@ DicomSlice common_part(const std::filesystem::path& file, DcmDataset& dataset) {
       throw InvalidInput(file, "number of frames", "is out of range");
     slice.frames_in_file = static_cast<int>(frames->front());
   }
-  if (const auto slope = decimals_of(dataset, DCM_RescaleSlope, 1)) slice.frame.slope = slope->front();
-  if (const auto intercept = decimals_of(dataset, DCM_RescaleIntercept, 1))
-    slice.frame.intercept = intercept->front();
+  slice.frame.slope = rescaling_of(slice, dataset, DCM_RescaleSlope, slice.frame.slope);
+  slice.frame.intercept = rescaling_of(slice, dataset, DCM_RescaleIntercept, slice.frame.intercept);
   if (const auto echo = decimals_of(dataset, DCM_EchoTime, 1)) slice.echo_time_ms = echo->front();
   return slice;
 }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "planning/geometry/error.h"
@@ -155,6 +156,8 @@ TEST(DicomSeries, OddImagesAreRefusedByName) {
   EXPECT_THAT(with_odd([](Slice& s) { s.position_mm += 2 * s.along_rows; }), HasSubstr("beside the line"));
   EXPECT_THAT(with_odd([](Slice& s) { s.stored.resize(20); }), HasSubstr("pixel"));
   EXPECT_THAT(with_odd([](Slice& s) { s.series_uid = "1.2.3.5"; }), HasSubstr("--series"));
+  EXPECT_THAT(with_odd([](Slice& s) { s.slope = std::nan(""); }),
+              AllOf(HasSubstr(".dcm"), HasSubstr("rescaling holds no numbers")));
 }
 
 TEST(DicomSeries, TheSameSliceTwiceIsRefused) {
