@@ -7,9 +7,11 @@
 #include <mutex>
 
 #include "app/case/case_calibration.h"
-#include "app/command_line/demo_pictures.h"
+#include "app/command_line/frame_dump.h"
 #include "app/command_line/tracking_report.h"
 #include "app/report/report.h"
+#include "app/scene/overlay_picture.h"
+#include "app/scene/tool_clearance.h"
 #include "navigation/calibration/calibration.h"
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/operation_record.h"
@@ -265,12 +267,24 @@ class Demo {
         theatre::navigate_source(source, navigation_, record, observer);
     true_marker_from_bone_ = source->operation().marker_from_bone();
     if (phase == Phase::Drill) true_tunnel_ = source->operation().drilled_tunnel();
-    if (last_frame) {
-      write_frame_picture(options_.case_folder / "pictures" / (name + ".png"), *last_frame, last_result,
-                          summary.registration, simulation_.knee.femur.mesh, simulation_.plan,
-                          planned_length_mm_);
-    }
+    if (last_frame) write_picture(name, *last_frame, last_result, summary.registration);
     return summary;
+  }
+
+  // With the plan where registration and world marker of this frame put it; without them the frame alone.
+  void write_picture(const std::string& name, const camera::Frame& frame, const pipeline::FrameResult& result,
+                     const std::optional<registration::RegistrationSummary>& registration) const {
+    scene::Image picture = image_of(frame);
+    if (registration && registration->has_pose && result.camera_from_world.is_valid) {
+      const geometry::TriangleMesh& bone = simulation_.knee.femur.mesh;
+      const scene::OverlayModel overlay(std::make_shared<geometry::Surface>(bone), bone, simulation_.plan,
+                                        planned_length_mm_);
+      const auto clear = scene::clear_discs_of(result, navigation_.source.pipeline.tools);
+      const geometry::RigidTransform camera_from_bone =
+          result.camera_from_world.target_from_source * registration->marker_from_bone;
+      scene::draw_overlay(picture, overlay.project(result.camera, camera_from_bone, clear));
+    }
+    scene::write_png(options_.case_folder / "pictures" / (name + ".png"), picture);
   }
 
   void say_result() {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "app/navigate/tool_clearance.h"
+#include "app/scene/tool_clearance.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
 #include "planning/geometry/error.h"
@@ -26,7 +26,7 @@ class LineMaker {
     if (!frame.camera_from_world.is_valid) return nullptr;
     auto made = std::make_shared<PictureLines>();
     const geometry::RigidTransform& camera_from_world = frame.camera_from_world.target_from_source;
-    const std::vector<scene::ClearDisc> clear = clear_discs_of(frame, state.source->pipeline.tools);
+    const std::vector<scene::ClearDisc> clear = scene::clear_discs_of(frame, state.source->pipeline.tools);
     const operation::RegistrationInForce& in_force = state.registration->in_force;
     const bool may_guide = state.time_out != operation::TimeOut::Due;
     if (in_force.standing == operation::Standing::Stands && may_guide) {

@@ -9,7 +9,9 @@
 
 #include "app/report/session_rows.h"
 #include "app/scene/image.h"
+#include "app/scene/overlay_picture.h"
 #include "app/scene/plan_overlay.h"
+#include "app/scene/tool_clearance.h"
 #include "navigation/recording/recorded_pictures.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/files/format.h"
@@ -19,7 +21,6 @@ namespace arthronaut::report {
 
 namespace {
 
-using Colour = std::array<std::uint8_t, 3>;
 constexpr int kStill_px = 560;
 
 struct Moment {
@@ -45,16 +46,23 @@ InForce in_force(const recording::RecordedSession& session, std::int64_t frame_i
   return at;
 }
 
+// Of a world marker or a tool, as far as the picture shows it; of one of several markers, of all of them.
+template <typename MarkerOrTool>
+std::optional<geometry::RigidTransform> camera_from(const MarkerOrTool& declared,
+                                                    const recording::RecordedFrame& frame) {
+  if (!frame.intrinsics_are_known || frame.is_frozen) return std::nullopt;
+  for (const auto& body : frame.bodies)
+    if (body.id == declared.marker_id) return body.camera_from_body;
+  if (!declared.markers.empty()) return std::nullopt;
+  for (const auto& pose : frame.poses)
+    if (pose.marker_id == declared.marker_id) return pose.camera_from_marker;
+  return std::nullopt;
+}
+
 std::optional<geometry::RigidTransform> camera_from_world(const pipeline::PipelineOptions& options,
                                                           const recording::RecordedFrame& frame) {
   const auto* world = options.tools.find_world_marker(options.bone);
-  if (world == nullptr || !frame.intrinsics_are_known || frame.is_frozen) return std::nullopt;
-  for (const auto& body : frame.bodies)
-    if (body.id == world->marker_id) return body.camera_from_body;
-  if (!world->markers.empty()) return std::nullopt;
-  for (const auto& pose : frame.poses)
-    if (pose.marker_id == world->marker_id) return pose.camera_from_marker;
-  return std::nullopt;
+  return world == nullptr ? std::nullopt : camera_from(*world, frame);
 }
 
 // Registered: the first frame with a pose after the last registration. Closest: the least distance of the
@@ -92,13 +100,8 @@ std::vector<Moment> key_moments(const recording::RecordedSession& session,
   return moments;
 }
 
-// The square about the round view, and how many of the picture's pixels one of the still's is.
-struct Cut {
-  Eigen::Vector2d corner_px;
-  double scale = 1;
-};
-
-Cut cut_of(const recording::RecordedFrame& frame, const camera::Calibration& calibration) {
+// The square about the round view.
+scene::FrameCut cut_of(const recording::RecordedFrame& frame, const camera::Calibration& calibration) {
   const camera::Boundary& view = frame.lens.circle.radius_px > 1 ? frame.lens.circle : calibration.boundary;
   const double half_px = view.radius_px > 1 ? view.radius_px : 0.5 * calibration.image_size_px.minCoeff();
   const Eigen::Vector2d middle =
@@ -107,7 +110,7 @@ Cut cut_of(const recording::RecordedFrame& frame, const camera::Calibration& cal
 }
 
 // The mean of the pixels below each of the still's; black beyond the picture.
-scene::Image still_of(const camera::Frame& frame, const Cut& cut) {
+scene::Image still_of(const camera::Frame& frame, const scene::FrameCut& cut) {
   std::vector<std::uint8_t> made;
   const std::vector<std::uint8_t>& bgr = camera::bgr_of(frame, made);
   scene::Image still{kStill_px, kStill_px, std::vector<std::uint8_t>(3UL * kStill_px * kStill_px, 0)};
@@ -133,26 +136,6 @@ scene::Image still_of(const camera::Frame& frame, const Cut& cut) {
   return still;
 }
 
-// Hidden lines are dotted: form, not colour alone, tells them apart.
-void draw(scene::Image& still, const scene::OverlayLine& line, const Cut& cut) {
-  if (line.kind == scene::OverlayLine::Kind::TunnelFace) return;  // lines alone
-  const Colour colour =
-      line.kind == scene::OverlayLine::Kind::BoneOutline ? Colour{90, 200, 255} : Colour{120, 255, 120};
-  const double step_px = line.is_hidden ? 7 : 1;
-  for (std::size_t i = 1; i < line.points_px.size(); ++i) {
-    const Eigen::Vector2d from = (line.points_px[i - 1] - cut.corner_px) / cut.scale,
-                          to = (line.points_px[i] - cut.corner_px) / cut.scale;
-    const int count = std::max(1, static_cast<int>((to - from).norm() / step_px));
-    for (int k = 0; k <= count; ++k) {
-      const Eigen::Vector2i at = (from + (to - from) * k / count).array().round().cast<int>();
-      for (int y = std::max(0, at.y() - 1); y <= std::min(kStill_px - 1, at.y() + 1); ++y)
-        for (int x = std::max(0, at.x() - 1); x <= std::min(kStill_px - 1, at.x() + 1); ++x)
-          std::copy(colour.begin(), colour.end(),
-                    still.rgb.begin() + 3 * (static_cast<std::ptrdiff_t>(y) * kStill_px + x));
-    }
-  }
-}
-
 class Drawer {
  public:
   explicit Drawer(const Content& content)
@@ -170,14 +153,18 @@ class Drawer {
     const recording::RecordedFrame& frame = session_.frames().at(place);
     const camera::FramePtr picture = pictures.picture(frame.index, frame.timestamp_ns);
     if (picture == nullptr) return std::nullopt;
-    const Cut cut = cut_of(frame, options_.calibration);
+    const scene::FrameCut cut = cut_of(frame, options_.calibration);
     scene::Image still = still_of(*picture, cut);
     const InForce at = in_force(session_, frame.index);
     const auto pose = camera_from_world(options_, frame);
     if (!pose || surface_ == nullptr || !at.registration || !at.registration->has_pose) return still;
     const scene::OverlayModel overlay(surface_, *mesh_, at.plan.plan, at.plan.planned_length_mm);
-    const auto lines = overlay.project(camera_at(place), *pose * at.registration->marker_from_bone, {});
-    for (const scene::OverlayLine& line : lines) draw(still, line, cut);
+    const camera::CameraModel camera = camera_at(place);
+    // As over the live picture: what is done with a tool is seen, no line lies over it.
+    const auto clear = scene::clear_discs_of(
+        camera, options_.tools, [&frame](const tools::Tool& tool) { return camera_from(tool, frame); });
+    scene::draw_overlay(still, overlay.project(camera, *pose * at.registration->marker_from_bone, clear),
+                        cut);
     return still;
   }
   [[nodiscard]] bool has_overlay() const { return surface_ != nullptr; }

@@ -7,7 +7,7 @@
 
 namespace arthronaut::report {
 
-// Lines run over the tools, which the window spares. Up to three of the session: registered, aimed closest,
+// No line runs over a tool, as in the window. Up to three of the session: registered, aimed closest,
 // drilled. Cut to the arthroscope's round view; the plan lies where that frame's recorded pose and the
 // registration and plan of that moment put it. Says why where there are none. Of the video's file nothing is
 // named. Nothing without a session.

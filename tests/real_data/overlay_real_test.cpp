@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "app/navigate/overlay_lines.h"
-#include "app/navigate/tool_clearance.h"
+#include "app/scene/tool_clearance.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
 #include "navigation/registration/registration_file.h"
@@ -59,7 +59,7 @@ TEST(OverlayReal, Hazard30StaysWhileGuidanceIsValid) {
     const pipeline::FrameResult& result = state.frame;
     if (!result.guidance.is_valid()) return;
     ++guided;
-    const auto discs = navigate::clear_discs_of(result, options.source.pipeline.tools);
+    const auto discs = scene::clear_discs_of(result, options.source.pipeline.tools);
     const scene::PlanOverlay overlay = model.project(
         result.camera, result.camera_from_world.target_from_source * known.marker_from_bone, discs);
     EXPECT_EQ(navigate::why_no_plan_line(overlay, 1), "") << "frame " << result.frame_index;

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/navigate/tool_clearance.h"
+#include "app/scene/tool_clearance.h"
 #include "tests/app/scope.h"
 #include "tests/planning/geometry/shapes.h"
 
@@ -94,7 +94,7 @@ struct Theatre {
   [[nodiscard]] const tools::ToolAxis& guide() const { return *tools.find_tool("femoral guide")->axis; }
   [[nodiscard]] scene::PlanOverlay overlay() const {
     const scene::OverlayModel model(surface, test::box({20, 20, 15}, {0, 0, 15}), plan, 25);
-    return model.project(result.camera, camera_from_bone, clear_discs_of(result, tools));
+    return model.project(result.camera, camera_from_bone, scene::clear_discs_of(result, tools));
   }
   // Whether the sleeve lies over this pixel: the ray comes closer to the axis than the sleeve is thick.
   [[nodiscard]] bool sleeve_is_at(int x, int y) const {

@@ -1,7 +1,10 @@
 // What the report says of a session: what was reached, how it was verified, what the surgeon saw.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session_check.h"
@@ -232,6 +235,91 @@ TEST_F(Report, Hazard19ADeidentifiedOneShowsNoPictureAndNoDay) {
                {.with_identity = true, .is_deidentified = true, .says_when_made = false});
   for (const std::string& told : {std::string("Pictures of the session"), session, day})
     EXPECT_EQ(pdf_text().find(told), std::string::npos) << told;
+}
+
+// Green of the plan in the stills that the report shows.
+cv::Mat green_of(const std::filesystem::path& pdf) {
+  const auto images = pdf.parent_path() / "images";
+  std::filesystem::remove_all(images);
+  std::filesystem::create_directory(images);
+  EXPECT_EQ(std::system(
+                ("pdfimages -png " + pdf.string() + " " + (images / "i").string() + " 2>/dev/null").c_str()),
+            0);
+  cv::Mat all = cv::Mat::zeros(560, 560, CV_8U);
+  for (const auto& entry : std::filesystem::directory_iterator(images)) {
+    const cv::Mat image = cv::imread(entry.path().string());
+    if (image.size() != all.size()) continue;  // no still
+    cv::Mat green;
+    cv::inRange(image, cv::Scalar(120, 255, 120), cv::Scalar(120, 255, 120), green);
+    all |= green;
+  }
+  return all;
+}
+
+// The eye looks into the planned tunnel from 25 mm before it, and the guide's tip is at its entry, the shaft
+// off to the side: no line lies over the guide, as over the live picture, and there is one without it.
+TEST_F(Report, DrawsNoPlanOverATool) {
+  const tunnels::Tunnel plan = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  pipeline::PipelineOptions options;
+  options.calibration = {.image_size_px = {320, 240},
+                         .focal_px = 100,
+                         .principal_point_px = {160, 120},
+                         .boundary = {{160, 120}, 110}};
+  options.tools = tools::standard_tools();
+  options.follow_lens = false;
+  const tools::Tool& guide = *options.tools.find_tool(tools::standard_guide_name(bones::BoneKind::Femur));
+  const auto looking = [](const Eigen::Vector3d& direction, const Eigen::Vector3d& in_camera,
+                          const Eigen::Vector3d& at_25_mm) {
+    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(direction, in_camera);
+    return geometry::RigidTransform{turn, Eigen::Vector3d(0, 0, 25) - turn * at_25_mm};
+  };
+  const Eigen::Vector3d shaft_in_camera = Eigen::Vector3d(-1, 0, 0.2).normalized();
+  const auto camera_from_bone = looking(plan.direction, Eigen::Vector3d::UnitZ(), plan.entry_mm);
+  const auto camera_from_guide = looking(guide.axis->direction, shaft_in_camera, guide.axis->point_mm);
+  // Whether the plan is drawn where the shaft's axis is seen in the still.
+  const auto shaft_is_crossed = [&](bool guide_is_tracked) {
+    const auto folder = cases::create_session_folder(knee_folder());
+    recording::SessionHeader header;
+    header.id = folder.filename().string();
+    recording::SessionRecorder recorder(folder, header, options);
+    registration::RegistrationSummary registration;  // the bone is where its marker is
+    registration.has_pose = registration.reliable = true;
+    registration.reasons.clear();
+    recorder.set_registration(registration);
+    recorder.set_plan(plan, 30);
+    auto frame = std::make_shared<camera::Frame>();
+    frame->width = 320;
+    frame->height = 240;
+    frame->bgr.assign(3UL * 320 * 240, 90);
+    recorder.append_picture(frame);
+    pipeline::FrameResult result;
+    result.intrinsics_are_known = true;
+    result.guidance.state = guidance::GuidanceState::Valid;
+    const auto see = [&](int id, const geometry::RigidTransform& camera_from_marker) {
+      markers::MarkerObservation& marker = result.markers.emplace_back();
+      marker.id = id;
+      marker.state = markers::MarkerState::Tracked;
+      marker.camera_from_marker = camera_from_marker;
+    };
+    see(options.tools.find_world_marker(bones::BoneKind::Femur)->marker_id, camera_from_bone);
+    if (guide_is_tracked) see(guide.marker_id, camera_from_guide);
+    recorder.append(result);
+    recorder.finish();
+    write_report(knee_folder(), pdf());
+    const cv::Mat green = green_of(pdf());
+    EXPECT_GT(cv::countNonZero(green), 500);
+    const camera::CameraModel camera(options.calibration, 0, options.refractive_index);
+    bool is_crossed = false;
+    for (double back_mm = 0; back_mm < 15; back_mm += 0.1) {
+      const auto seen = camera.project(Eigen::Vector3d(0, 0, 25) - back_mm * shaft_in_camera);
+      if (!seen || !camera.is_inside_view(*seen)) continue;
+      const Eigen::Vector2i at = ((*seen - Eigen::Vector2d(50, 10)) * 560 / 220).cast<int>();
+      is_crossed = is_crossed || green.at<std::uint8_t>(at.y(), at.x()) != 0;
+    }
+    return is_crossed;
+  };
+  EXPECT_TRUE(shaft_is_crossed(false));
+  EXPECT_FALSE(shaft_is_crossed(true));
 }
 
 }  // namespace

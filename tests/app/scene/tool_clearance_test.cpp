@@ -1,4 +1,4 @@
-#include "app/navigate/tool_clearance.h"
+#include "app/scene/tool_clearance.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "tests/app/scope.h"
 
-namespace arthronaut::navigate {
+namespace arthronaut::scene {
 namespace {
 
 // The femoral guide before the camera, its shaft across the picture.
@@ -42,7 +42,7 @@ TEST(ToolClearance, CoversTheShaftFromTheTipToTheHandle) {
       ++seen;
       EXPECT_TRUE(std::any_of(
           discs.begin(), discs.end(),
-          [&](const scene::ClearDisc& disc) { return (*pixel - disc.center_px).norm() < disc.radius_px; }))
+          [&](const ClearDisc& disc) { return (*pixel - disc.center_px).norm() < disc.radius_px; }))
           << along << " mm from the tip";
     }
   }
@@ -57,7 +57,7 @@ TEST(ToolClearance, LeavesTheRestOfThePicture) {
   const Eigen::Vector3d beside = axis.point_mm - 25 * axis.direction + 6 * Eigen::Vector3d::UnitX();
   const auto pixel = result.camera.project(result.markers[0].camera_from_marker * beside);
   ASSERT_TRUE(pixel);
-  for (const scene::ClearDisc& disc : clear_discs_of(result, tools))
+  for (const ClearDisc& disc : clear_discs_of(result, tools))
     EXPECT_GT((*pixel - disc.center_px).norm(), disc.radius_px);
 }
 
@@ -84,11 +84,11 @@ TEST(OverlayHazard30, ClearingIsBoundedAtTheRimOfTheView) {
           const Eigen::Vector2d pixel(x, y);
           if (!result.camera.is_inside_view(pixel)) continue;
           ++all;
-          cleared += std::any_of(discs.begin(), discs.end(), [&](const scene::ClearDisc& disc) {
+          cleared += std::any_of(discs.begin(), discs.end(), [&](const ClearDisc& disc) {
             return (pixel - disc.center_px).norm() < disc.radius_px;
           });
         }
-      for (const scene::ClearDisc& disc : discs) {
+      for (const ClearDisc& disc : discs) {
         ++discs_seen;
         // Small against the view, also over a shaft that is so near that it fills much of it.
         EXPECT_LT(disc.radius_px, 0.13 * view.radius_px) << lean << " " << turn;
@@ -108,4 +108,4 @@ TEST(ToolClearance, NeedsTheToolOfThisFrame) {
 }
 
 }  // namespace
-}  // namespace arthronaut::navigate
+}  // namespace arthronaut::scene

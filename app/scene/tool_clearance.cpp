@@ -1,10 +1,10 @@
-#include "app/navigate/tool_clearance.h"
+#include "app/scene/tool_clearance.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-namespace arthronaut::navigate {
+namespace arthronaut::scene {
 
 namespace {
 
@@ -59,7 +59,7 @@ std::optional<Width> width_of(const camera::CameraModel& camera, const Eigen::Ve
 
 // Covers the width by as many discs as keep each small, and half the way to the width before: a shaft near
 // the lens is wide, and one disc over it would clear as much in front of it and behind.
-void add_discs(std::vector<scene::ClearDisc>& discs, const Width& width, const std::optional<Width>& before,
+void add_discs(std::vector<ClearDisc>& discs, const Width& width, const std::optional<Width>& before,
                double most_px) {
   const Eigen::Vector2d along = width.to_px - width.from_px;
   const int count = std::max(static_cast<int>(std::ceil(along.norm() / most_px)), 1);
@@ -70,18 +70,18 @@ void add_discs(std::vector<scene::ClearDisc>& discs, const Width& width, const s
 
 }  // namespace
 
-std::vector<scene::ClearDisc> clear_discs_of(const pipeline::FrameResult& result,
-                                             const tools::ToolSet& tools) {
-  std::vector<scene::ClearDisc> discs;
-  const double tip_radius_px = kTipClearance_px * result.camera.image_size_px().y() / 1080.0;
-  const double most_px = std::max(kMostOfView * result.camera.boundary().radius_px, tip_radius_px);
+std::vector<ClearDisc> clear_discs_of(const camera::CameraModel& camera, const tools::ToolSet& tools,
+                                      const CameraFromTool& pose_of) {
+  std::vector<ClearDisc> discs;
+  const double tip_radius_px = kTipClearance_px * camera.image_size_px().y() / 1080.0;
+  const double most_px = std::max(kMostOfView * camera.boundary().radius_px, tip_radius_px);
   for (const tools::Tool& tool : tools.tools) {
-    const auto camera_from_tool = pipeline::body_in(result, tool.marker_id).camera_from_body;
+    const auto camera_from_tool = pose_of(tool);
     const auto shaft = camera_from_tool ? shaft_of(tool) : std::nullopt;
     if (!shaft) continue;
     const Eigen::Vector3d end = *camera_from_tool * shaft->end_mm;
     const Eigen::Vector3d backwards = camera_from_tool->rotate(shaft->backwards);
-    if (const auto tip = result.camera.project(end); tip && is_near_view(result.camera, *tip))
+    if (const auto tip = camera.project(end); tip && is_near_view(camera, *tip))
       discs.push_back({*tip, tip_radius_px});
     std::optional<Width> before;
     double along = 0;
@@ -89,7 +89,7 @@ std::vector<scene::ClearDisc> clear_discs_of(const pipeline::FrameResult& result
       const Eigen::Vector3d middle = end + along * backwards;
       // Near the lens a step is wide in the picture.
       along += kStep_mm * std::clamp(middle.z() / 15, 0.15, 1.0);
-      const auto width = width_of(result.camera, middle, backwards);
+      const auto width = width_of(camera, middle, backwards);
       if (width) add_discs(discs, *width, before, most_px);
       before = width;
     }
@@ -97,4 +97,10 @@ std::vector<scene::ClearDisc> clear_discs_of(const pipeline::FrameResult& result
   return discs;
 }
 
-}  // namespace arthronaut::navigate
+std::vector<ClearDisc> clear_discs_of(const pipeline::FrameResult& result, const tools::ToolSet& tools) {
+  return clear_discs_of(result.camera, tools, [&result](const tools::Tool& tool) {
+    return pipeline::body_in(result, tool.marker_id).camera_from_body;
+  });
+}
+
+}  // namespace arthronaut::scene
