@@ -57,7 +57,8 @@ void ReviewView::draw_note_field(const widgets::Ui& ui) {
   const bool is_entered = ImGui::InputText("##mark", &note_.text, ImGuiInputTextFlags_EnterReturnsTrue);
   ui.log.note("review.note", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   if (is_entered) return keep_mark();
-  if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGuiKey_Escape)) note_ = {};
+  const bool is_escape = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  if (is_escape && ImGui::IsItemDeactivated()) note_ = {};
 }
 
 void ReviewView::toggle_today() {

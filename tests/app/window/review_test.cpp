@@ -105,6 +105,15 @@ TEST_F(ReviewWindow, LeadsThroughASession) {
   app.press("ctrl+y");
   ASSERT_TRUE(app.wait_for_state("marks", "1"));
 
+  // A note that was begun is let go by Esc: nothing is kept, and keys are keys again.
+  app.press("Right");
+  ASSERT_TRUE(app.wait_for_state("frame", "62"));
+  app.press("m");
+  ASSERT_TRUE(app.wait_for_state("note_field", "open"));
+  app.type("no");
+  app.press("Escape");
+  ASSERT_TRUE(app.wait_for_state("note_field", "closed"));
+  EXPECT_EQ(app.state("marks"), "1");
   app.press("period");
   ASSERT_TRUE(app.wait_for_state("speed", "2 x"));
   app.press("l");
