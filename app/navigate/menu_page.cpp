@@ -14,11 +14,29 @@ constexpr std::array<std::string_view, 19> kOperation{
     "navigate.control_point", "navigate.check_guide", "navigate.forget_touches", "navigate.earlier",
     "navigate.later",         "navigate.depth_stop",  "navigate.drilled",        "navigate.marker_anew",
     "navigate.bone",          "navigate.tunnel_am",   "navigate.tunnel_pl"};
-constexpr std::array<std::string_view, 19> kRest{
-    "navigate.panel",    "navigate.overlay", "navigate.undistort", "navigate.sounds",  "navigate.record",
-    "navigate.camera",   "navigate.address", "navigate.video",     "navigate.scratch", "navigate.drill",
-    "navigate.medium",   "mode.plan",        "mode.setup",         "mode.review",      "app.screenshot",
-    "app.record_screen", "app.send_screen",  "app.keys",           "app.quit"};
+// Two buttons stand before them, and three stand in a row.
+constexpr std::array<std::string_view, 22> kRest{"navigate.panel",
+                                                 "navigate.overlay",
+                                                 "navigate.undistort",
+                                                 "navigate.sounds",
+                                                 "navigate.record",
+                                                 "navigate.camera",
+                                                 "navigate.address",
+                                                 "navigate.pictures_as_came",
+                                                 "navigate.pictures_lossless",
+                                                 "navigate.pictures_h264",
+                                                 "navigate.video",
+                                                 "navigate.scratch",
+                                                 "navigate.drill",
+                                                 "navigate.medium",
+                                                 "mode.plan",
+                                                 "mode.setup",
+                                                 "mode.review",
+                                                 "app.screenshot",
+                                                 "app.record_screen",
+                                                 "app.send_screen",
+                                                 "app.keys",
+                                                 "app.quit"};
 
 }  // namespace
 

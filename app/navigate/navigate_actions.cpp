@@ -1,6 +1,9 @@
 #include <GLFW/glfw3.h>
 
+#include <array>
+
 #include "app/navigate/navigate_view.h"
+#include "app/navigate/picture_keeping.h"
 
 namespace arthronaut::navigate {
 
@@ -167,6 +170,39 @@ void NavigateView::add_actions(widgets::Actions& actions) {
   add_tunnel_actions(actions);
   add_registration_actions(actions);
   add_answer_actions(actions);
+  add_picture_actions(actions);
+}
+
+// The command line's --pictures.
+void NavigateView::add_picture_actions(widgets::Actions& actions) {
+  using recording::PicturesAs;
+  struct Way {
+    PicturesAs as;
+    const char *id, *label, *tooltip;
+    int key;
+  };
+  constexpr std::array kWays{
+      Way{PicturesAs::AsTheyCame, "navigate.pictures_as_came", "Keep as it came",
+          "Record keeps a stream's video as it came, any other without loss; from the next source on",
+          GLFW_KEY_1},
+      Way{PicturesAs::Lossless, "navigate.pictures_lossless", "Keep lossless",
+          "Record keeps every video without loss, in much room; from the next source on", GLFW_KEY_2},
+      Way{PicturesAs::H264, "navigate.pictures_h264", "Keep as H.264",
+          "Record keeps video in far less room; replayed, poses differ slightly; from the next source on",
+          GLFW_KEY_3}};
+  for (const Way& way : kWays)
+    actions.add({way.id,
+                 way.label,
+                 way.tooltip,
+                 way.key,
+                 GLFW_MOD_CONTROL,
+                 false,
+                 {},
+                 [this, as = way.as] { return bones_.pictures_as() == as; },
+                 [this, as = way.as] {
+                   bones_.keep_pictures_as(as);
+                   save_picture_keeping(picture_keeping_file(), as);
+                 }});
 }
 
 void NavigateView::add_answer_actions(widgets::Actions& actions) {

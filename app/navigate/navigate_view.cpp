@@ -8,6 +8,7 @@
 #include "app/case/case_calibration.h"
 #include "app/navigate/known_streams.h"
 #include "app/navigate/overlay_lines.h"
+#include "app/navigate/picture_keeping.h"
 #include "app/scene/scene_camera.h"
 #include "navigation/camera/medium.h"
 #include "navigation/sources/connected_cameras.h"
@@ -34,7 +35,9 @@ NavigateView::NavigateView(std::function<void()> make_current, std::function<voi
       go_elsewhere_(std::move(go_elsewhere)),
       scene_(std::move(make_current)),
       bones_(wake),
-      resume_(wake) {}
+      resume_(wake) {
+  bones_.keep_pictures_as(load_picture_keeping(picture_keeping_file()));
+}
 NavigateView::~NavigateView() = default;
 
 mode::ModeTitle NavigateView::title() const {

@@ -105,6 +105,7 @@ class NavigateView : public mode::Mode {
   // Another plan than the one in force is offered to an operation that runs, and nothing stands before it.
   [[nodiscard]] bool waits_for_take_over() const;
   void add_answer_actions(widgets::Actions& actions);
+  void add_picture_actions(widgets::Actions& actions);
   void cycle_overlay();
   void sound(double now_s);
   void follow_reached(const NavigateDisplay& display, double now_s);

@@ -166,6 +166,7 @@ theatre::LiveOperation& TheatreBones::operation(bones::BoneKind kind) {
     ending_.end(std::move(bone.operation));
   }
   bone.operation = made(kind);
+  bone.operation->keep_pictures_as(pictures_as_);
   bone.is_used = false;
   note_told(kind, bone);
   return *bone.operation;
@@ -186,6 +187,12 @@ theatre::LiveStatePtr TheatreBones::nothing() {
   auto state = std::make_shared<theatre::LiveState>();
   state->operation = std::make_shared<const OperationState>();
   return state;
+}
+
+void TheatreBones::keep_pictures_as(recording::PicturesAs as) {
+  pictures_as_ = as;
+  for (auto& [kind, bone] : bones_)
+    if (bone.operation != nullptr) bone.operation->keep_pictures_as(as);
 }
 
 void TheatreBones::offer_plans() {

@@ -91,7 +91,8 @@ struct VideoRequest {
   bool on;
 };
 struct FollowRegistration {};
-using Request = std::variant<TheatreSource, EndSource, VideoRequest, FollowRegistration, operation::Command>;
+using Request = std::variant<TheatreSource, EndSource, VideoRequest, recording::PicturesAs,
+                             FollowRegistration, operation::Command>;
 using LiveWorker = worker::Worker<Request, LiveState>;
 
 // What the thread does.
@@ -159,6 +160,7 @@ class Loop {
     run_.keep_video(keep.on);
     publish();
   }
+  void take(const recording::PicturesAs& as) { run_.keep_pictures_as(as); }
   void take(const FollowRegistration&) {
     if (run_.follow_registration()) publish();
   }
@@ -260,6 +262,7 @@ void LiveOperation::start(TheatreSource source) { thread_->worker.post(std::move
 void LiveOperation::end_source() { thread_->worker.post(EndSource{}); }
 void LiveOperation::apply(operation::Command command) { thread_->worker.post(std::move(command)); }
 void LiveOperation::keep_video(bool on) { thread_->worker.post(VideoRequest{on}); }
+void LiveOperation::keep_pictures_as(recording::PicturesAs as) { thread_->worker.post(as); }
 void LiveOperation::shown(const LiveState& live) {
   if (live.operation->source != nullptr && live.operation->source->kind == sources::SourceKind::Live)
     thread_->display.shown(live, now_s());

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <random>
 
+#include "navigation/recording/session.h"
 #include "tests/app/window/theatre.h"
 
 namespace arthronaut::test {
@@ -28,6 +29,42 @@ TEST_F(Theatre, Hazard12ASessionOfTheWindowReplaysToTheLastBit) {
     ASSERT_EQ(app.wait_for_exit(120), 0);
   }
   expect_same_states(session);
+}
+
+// How pictures are kept is chosen in the menu, is so from the next source on, and is remembered.
+TEST_F(Theatre, KeepsPicturesAsWasChosenAndRemembersIt) {
+  const VirtualDisplay display(1280, 720);
+  std::string session;
+  {
+    RunningWorkstation app(display, folder_.path());
+    show_navigate(app);
+    EXPECT_TRUE(app.wait_for_state("pictures", "as-they-came"));
+    app.press("Return");
+    app.press("shift+Return");
+    ASSERT_TRUE(app.wait_for_widget("navigate.pictures_h264"));
+    app.click("navigate.pictures_h264");
+    ASSERT_TRUE(app.wait_for_state("pictures", "h264"));
+    app.press("Return");
+    app.press("s");
+    ASSERT_TRUE(app.wait_for_state("picture", "live", 120));
+    app.press("ctrl+r");
+    ASSERT_TRUE(app.wait_for_state("recording", "on", 60));
+    session = app.state("journal");
+    app.press("ctrl+2");  // the one that runs stays as it was begun
+    ASSERT_TRUE(app.wait_for_state("pictures", "lossless"));
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    ASSERT_TRUE(app.hold_until("Escape", "guidance", "The source has ended", 60));
+    app.press("ctrl+q");
+    ASSERT_EQ(app.wait_for_exit(120), 0);
+  }
+  const recording::RecordedSession recorded(case_folder() / "sessions" / session);
+  ASSERT_EQ(recorded.header().video_parts.size(), 1U);
+  EXPECT_EQ(recorded.header().video_parts[0].as, recording::PicturesAs::H264);
+  RunningWorkstation app(display, folder_.path());
+  show_navigate(app);
+  EXPECT_TRUE(app.wait_for_state("pictures", "lossless"));
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(60), 0);
 }
 
 // Nothing can be written where sessions belong: the operation goes on, and the screen says why it is not
