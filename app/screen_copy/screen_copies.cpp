@@ -113,9 +113,14 @@ void ScreenCopies::begin(Output& output, const std::string& target) {
   const auto body = [target](auto& inbox) {
     be_nice();
     const std::filesystem::path folder = std::filesystem::path(target).parent_path();
+    // The one that still waits when it is ended is written, too.
+    const auto next = [&inbox] {
+      auto picture = inbox.next();
+      return picture ? picture : inbox.poll();
+    };
     std::optional<ScreenEncoder> encoder;
     bool has_room = true;
-    for (long count = 0; const auto picture = inbox.next(); ++count) {
+    for (long count = 0; const auto picture = next(); ++count) {
       const bool is_due = !is_stream(target) && count % static_cast<long>(kRate) == 0;
       has_room = !is_due || !is_nearly_full(folder);
       if (!has_room) break;

@@ -171,6 +171,20 @@ TEST_F(ScreenCopiesTest, AFileHoldsTheScreenInItsOwnTime) {
   EXPECT_GT(lower[0], lower[2] + 80);
 }
 
+// What was shown when it was ended is in it, however busy the machine is.
+TEST_F(ScreenCopiesTest, ThePictureThatWaitsAtTheEndIsWritten) {
+  ScreenCopies copies("", [] {});
+  copies.toggle_recording(folder_.path(), "");
+  const auto picture = copies.wanted(0);
+  ASSERT_NE(picture, nullptr);
+  *picture = picture_of(0, 0);
+  copies.take(picture);
+  copies.toggle_recording(folder_.path(), "");
+  EXPECT_TRUE(says(copies, "is in the case")) << words(copies);
+  ASSERT_EQ(files().size(), 1U);
+  EXPECT_NE(sources::open_video(files()[0])->next(), nullptr);
+}
+
 // What cannot be written is not said to be in the case, but why not; what there is stays.
 TEST_F(ScreenCopiesTest, AFileThatIsNotWholeIsSaidWithTheReason) {
   ScreenCopies copies("", [] {});
