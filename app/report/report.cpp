@@ -1,7 +1,6 @@
 #include "app/report/report.h"
 
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "app/report/flowing_pages.h"
@@ -20,6 +19,7 @@
 #include "navigation/recording/session.h"
 #include "planning/cases/case.h"
 #include "planning/files/atomic_file.h"
+#include "planning/files/format.h"
 #include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 #include "planning/tunnels/tunnel.h"
@@ -34,10 +34,10 @@ constexpr const char* kResearchSentence =
     "support no "
     "clinical claim and no decision about a patient.";
 
+// Never "-0.0".
 std::string number(double value, const char* unit, int decimals = 1) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%.*f%s", decimals, value, unit);
-  return text;
+  const bool is_zero = std::abs(value) < 0.5 * std::pow(10, -decimals);
+  return files::format("%.*f%s", decimals, is_zero ? 0 : value, unit);
 }
 
 std::string point(const Eigen::Vector3d& p, int decimals = 1) {
@@ -159,7 +159,7 @@ void Report::plan_page() {
   if (content_.identity) about.push_back({"Patient", content_.identity->in_words()});
   about.insert(about.end(),
                {{"Name", content_.knee.name}, {"Side", std::string(bones::to_text(content_.knee.side))}});
-  if (!options_.is_deidentified) about.push_back({"Created", content_.knee.created_utc});
+  if (!options_.is_deidentified) about.push_back({"Created", utc_in_words(content_.knee.created_utc)});
   if (options_.says_when_made) about.push_back({"Report made", files::utc_now_as("%Y-%m-%d %H:%M UTC")});
   pages_.table({45, 125}, about);
   pages_.sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
@@ -277,12 +277,12 @@ void Report::navigate_page() {
   const SessionFigures figures = figures_of(session);
   std::vector<std::vector<std::string>> rows{
       {"Session", options_.is_deidentified ? "" : header.id},
-      {"Started", options_.is_deidentified ? kNotTold : header.started_utc},
+      {"Started", options_.is_deidentified ? kNotTold : utc_in_words(header.started_utc)},
       {"Bone", std::string(bones::to_text(header.bone))},
       {"Source", kind_in_words(header)},
       {"Video", content_.identity ? header.source : neutral_source(header)},
       {"Medium", camera::medium_to_text(header.refractive_index)},
-      {"Frames", std::to_string(session.frames().size())},
+      {"Frames", std::to_string(figures.frames) + " in " + clock_text(figures.length_s)},
       {"World marker tracked", number(figures.world_percent, " % of the frames")},
       {"Lens mark found", number(figures.mark_percent, " % of the frames")},
       {"Last hash of the record", content_.last_hash.empty() ? "none" : in_groups(content_.last_hash)}};
@@ -308,11 +308,11 @@ void Report::result_pictures() {
   pages_.continue_as("Result, camera, tools and versions");
   if (!options_.is_deidentified) draw_stills_section(pages_, content_);
   pictures(joint_view(), scene::ViewDirection::Lateral, true);
-  if (!content_.achieved.empty()) {
-    pages_.sentence(
-        "Planned tunnel, and beside it the tunnel as drilled; dots: where the probe touched the bone.",
-        {.size_pt = 8, .ink = kGray});
-  }
+  std::string legend = "Blue: as planned.";
+  if (!content_.achieved.empty() || !content_.earlier.empty())
+    legend += " Banded: as drilled, measured by navigation or, of a simulation, as it truly lies.";
+  if (!touched_points().empty()) legend += " Dots: where the probe touched the bone.";
+  pages_.sentence(legend, {.size_pt = 8, .ink = kGray});
 }
 
 void Report::settings() {
@@ -335,7 +335,7 @@ void Report::settings() {
          {"Date",
           record.date_utc.empty()    ? "not recorded"
           : options_.is_deidentified ? kNotTold
-                                     : record.date_utc,
+                                     : utc_in_words(record.date_utc),
           "Scope, head", record.scope_name + (record.head_name.empty() ? "" : ", " + record.head_name)}});
   }
   if (content_.session) {

@@ -89,13 +89,21 @@ SessionFigures figures_of(const recording::RecordedSession& session) {
     with_mark += frame.lens.mark == lens::MarkState::Found;
   }
   const double frames = std::max<double>(1, static_cast<double>(session.frames().size()));
-  return {session.frames().size(), 100 * static_cast<double>(with_world) / frames,
+  const double length_s =
+      session.frames().empty() ? 0 : time_s(session, session.frames().back().timestamp_ns);
+  return {session.frames().size(), length_s, 100 * static_cast<double>(with_world) / frames,
           100 * static_cast<double>(with_mark) / frames};
 }
 
 double time_s(const recording::RecordedSession& session, std::int64_t timestamp_ns) {
   if (session.frames().empty()) return 0;
   return std::max(0.0, static_cast<double>(timestamp_ns - session.frames().front().timestamp_ns) * 1e-9);
+}
+
+std::string utc_in_words(const std::string& utc) {
+  constexpr std::string_view kForm = "2026-01-31T12:00:00Z";
+  if (utc.size() != kForm.size() || utc[10] != 'T' || utc.back() != 'Z') return utc;
+  return utc.substr(0, 10) + " " + utc.substr(11, 5) + " UTC";
 }
 
 std::string clock_text(double seconds) {

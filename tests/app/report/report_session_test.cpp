@@ -214,6 +214,9 @@ TEST_F(Report, ShowsWhatTheSurgeonSaw) {
   expect_contains(text, "Pictures of the session, with the plan");
   expect_contains(text, "0:00.2: aimed closest, 0.7 mm, 1.2\u00B0");
   expect_contains(text, "0:00.4: drilled");
+  expect_contains(text, "5 in 0:00.4");  // frames
+  expect_contains(text, "Blue: as planned.");
+  EXPECT_EQ(text.find("-0.0"), std::string::npos) << text;
   const std::string bytes = make_report(knee_folder(), {.says_when_made = false});
   EXPECT_EQ(bytes, make_report(knee_folder(), {.says_when_made = false}));
   const auto video = recording::RecordedSession(folder).video();
