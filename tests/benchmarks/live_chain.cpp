@@ -1,6 +1,7 @@
 // The whole chain on a live stream over the loopback, without a window: 1080p60 H.264 by RTSP, with and
 // without the recording of its pictures. And faults, many of them.
-//   live_chain stream CLIP SECONDS [--record]   CLIP: 1080p60 H.264 without B-frames, sent round and round
+//   live_chain stream CLIP SECONDS [--record] [--camera FILE MEDIUM]
+//                                               CLIP: 1080p60 H.264 without B-frames, sent round and round
 //   live_chain faults COUNT [SEED]              prints a row a kind: how soon gone, told and back
 // Prints what was sent, tracked and recorded, latency by stage, and how the memory grew.
 #include <gst/rtsp-server/rtsp-server.h>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "navigation/camera/camera_file.h"
+#include "navigation/camera/medium.h"
 #include "navigation/recording/session.h"
 #include "navigation/sources/frame_source.h"
 #include "navigation/theatre/navigate_source.h"
@@ -63,14 +65,33 @@ class FileSender {
   pid_t process_ = -1;
 };
 
-int stream(const std::string& clip, double seconds, bool records) {
+// What a clip whose camera is not given is looked at with: its markers are found, and no pose of them is
+// right.
+camera::Calibration supposed_camera(const Eigen::Vector2i& size_px) {
+  camera::Calibration camera;
+  camera.image_size_px = size_px;
+  camera.focal_px = 0.31 * size_px.x();
+  camera.principal_point_px = camera.rotation_center_px = size_px.cast<double>() / 2;
+  camera.boundary = {camera.principal_point_px, 0.49 * size_px.y()};
+  return camera;
+}
+
+struct StreamChoice {
+  std::string clip;
+  double seconds = 0;
+  bool records = false;
+  const char *camera_file = nullptr, *medium = nullptr;
+};
+
+int stream(const StreamChoice& choice) {
+  const bool records = choice.records;
   const int port = 20000 + ::getpid() % 40000;
-  const FileSender sender(clip, port);
+  const FileSender sender(choice.clip, port);
   const test::TemporaryFolder folder;
   theatre::NavigateOptions options;
   options.source.kind = sources::SourceKind::Live;
   options.source.pipeline.tools = tools::standard_tools();
-  options.duration_s = seconds;
+  options.duration_s = choice.seconds;
   std::shared_ptr<sources::FrameSource> source;
   for (int i = 0; source == nullptr; ++i) {
     try {
@@ -80,12 +101,14 @@ int stream(const std::string& clip, double seconds, bool records) {
       std::this_thread::sleep_for(std::chrono::milliseconds(200));
     }
   }
-  camera::Calibration& camera = options.source.pipeline.calibration;
-  camera.image_size_px = source->info().image_size_px;
-  camera.focal_px = 0.31 * camera.image_size_px.x();
-  camera.principal_point_px = camera.rotation_center_px = camera.image_size_px.cast<double>() / 2;
-  camera.boundary = {camera.principal_point_px, 0.49 * camera.image_size_px.y()};
-  options.source.pipeline.follow_lens = false;
+  pipeline::PipelineOptions& pipeline = options.source.pipeline;
+  pipeline.follow_lens = choice.camera_file != nullptr;
+  if (choice.camera_file != nullptr) {
+    pipeline.calibration = camera::read_camera_file(choice.camera_file).calibration;
+    pipeline.refractive_index = camera::refractive_index_from_text(choice.medium);
+  } else {
+    pipeline.calibration = supposed_camera(source->info().image_size_px);
+  }
   theatre::RecordOptions record;
   if (records) {
     record.folder = folder.path() / "session";
@@ -165,11 +188,19 @@ int faults(int count, unsigned seed) {
 
 int main(int count, char** arguments) {
   const auto is = [&](int i, const char* word) { return count > i && std::strcmp(arguments[i], word) == 0; };
-  if (is(1, "stream") && count > 3)
-    return arthronaut::stream(arguments[2], std::atof(arguments[3]), is(4, "--record"));
+  if (is(1, "stream") && count > 3) {
+    arthronaut::StreamChoice choice{arguments[2], std::atof(arguments[3])};
+    for (int i = 4; i < count; ++i) {
+      choice.records = choice.records || is(i, "--record");
+      if (!is(i, "--camera") || i + 2 >= count) continue;
+      choice.camera_file = arguments[i + 1];
+      choice.medium = arguments[i + 2];
+    }
+    return arthronaut::stream(choice);
+  }
   if (is(1, "faults") && count > 2)
     return arthronaut::faults(std::atoi(arguments[2]),
                               count > 3 ? static_cast<unsigned>(std::atoi(arguments[3])) : 13);
-  std::puts("live_chain stream CLIP SECONDS [--record] | faults COUNT [SEED]");
+  std::puts("live_chain stream CLIP SECONDS [--record] [--camera FILE MEDIUM] | faults COUNT [SEED]");
   return 2;
 }
