@@ -7,6 +7,25 @@
 #include "planning/geometry/rigid_transform.h"
 
 namespace arthronaut::camera {
+namespace {
+
+// W and D of the header's closed form, and what R^2 is taken by in them, for the square n2 of the ratio of
+// the indices; nullopt where no ray reaches the point.
+struct Roots {
+  double a = 0, b = 0, w = 0, d = 0;
+};
+std::optional<Roots> roots_at(const Eigen::Vector3d& point, double n2, double xi) {
+  const double z = point.z(), r2 = point.head<2>().squaredNorm();
+  const double a = n2 - 1, b = a + 4 * n2 * xi, w2 = z * z - a * r2, d2 = z * z - b * r2;
+  if (!(z > 0) || !(w2 > 0) || !(d2 > 0)) return std::nullopt;
+  return Roots{a, b, std::sqrt(w2), std::sqrt(d2)};
+}
+
+double refracting_square(FluidModel fluid_model, double index_ratio) {
+  return fluid_model == FluidModel::FlatPort ? index_ratio * index_ratio : 1.0;
+}
+
+}  // namespace
 
 double Calibration::lens_angle_rad(double mark_angle_deg) const {
   return geometry::rad_from_deg(std::remainder(mark_angle_deg - reference_mark_angle_deg, 360.0));
@@ -66,9 +85,13 @@ CameraModel CameraModel::in_medium(double index_ratio) const {
   return other;
 }
 
+// Without the derivative, which most who ask for many points have no use for.
 std::optional<Eigen::Vector2d> CameraModel::project(const Eigen::Vector3d& point_in_camera_mm) const {
-  Eigen::Matrix<double, 2, 3> ignored;
-  return project(point_in_camera_mm, ignored);
+  const auto roots = roots_at(point_in_camera_mm, refracting_square(fluid_model_, index_ratio_), xi_);
+  if (!roots) return std::nullopt;
+  const double k = 2 * index_ratio_ * focal_ / (roots->w + roots->d);
+  return Eigen::Vector2d(center_ +
+                         k * point_in_camera_mm.head<2>().cwiseProduct(Eigen::Vector2d(1, aspect_)));
 }
 
 // The closed form of the header, and its derivative: with S = W + D, a = n^2 - 1, b = a + 4 n^2 xi, v = (X,
@@ -79,14 +102,10 @@ std::optional<Eigen::Vector2d> CameraModel::project(const Eigen::Vector3d& point
                                                     Eigen::Matrix<double, 2, 3>& d_pixel_d_point) const {
   const Eigen::Vector2d v = point_in_camera_mm.head<2>();
   const double z = point_in_camera_mm.z();
-  if (!(z > 0)) return std::nullopt;
-  const bool refracts = fluid_model_ == FluidModel::FlatPort;
-  const double n2 = refracts ? index_ratio_ * index_ratio_ : 1.0;
-  const double a = n2 - 1, b = a + 4 * n2 * xi_, r2 = v.squaredNorm();
-  const double w2 = z * z - a * r2, d2 = z * z - b * r2;
-  if (!(w2 > 0) || !(d2 > 0)) return std::nullopt;
-  const double w = std::sqrt(w2), d = std::sqrt(d2), s = w + d;
-  const double k = 2 * index_ratio_ * focal_ / s;
+  const auto roots = roots_at(point_in_camera_mm, refracting_square(fluid_model_, index_ratio_), xi_);
+  if (!roots) return std::nullopt;
+  const auto [a, b, w, d] = *roots;
+  const double s = w + d, k = 2 * index_ratio_ * focal_ / s;
   const Eigen::Vector2d axis_scale(1, aspect_);
   d_pixel_d_point.leftCols<2>() =
       k * (Eigen::Matrix2d::Identity() + ((a / w + b / d) / s) * v * v.transpose());

@@ -63,12 +63,44 @@ int turned_cell(int row, int column, int turn, int cells) {
   }
 }
 
-Eigen::Matrix<double, 6, 1> regressors(double x, double y, bool is_bright) {
-  const double c = is_bright ? 1 : 0;
-  Eigen::Matrix<double, 6, 1> r;
-  r << 1, x, y, c, c * x, c * y;
-  return r;
-}
+// light = (1, x, y) bias + code (1, x, y) gain, by least squares. Most of what is looked at is no marker, and
+// every code is tried on it at every turn: the normal equations are put together of the sums over all cells
+// and over the bright ones.
+class LightFit {
+ public:
+  void add(double weight, double x, double y, double value, bool is_bright) {
+    const double wx = weight * x, wy = weight * y, wv = weight * value;
+    const Sums part = {weight, wx, wy, wx * x, wx * y, wy * y, wv, wv * x, wv * y};
+    for (std::size_t i = 0; i < part.size(); ++i) all_[i] += part[i];
+    if (!is_bright) return;
+    for (std::size_t i = 0; i < part.size(); ++i) bright_[i] += part[i];
+  }
+  // Slopes are held near 0 by as much.
+  void solve(double slope_prior) {
+    Eigen::Matrix<double, 6, 6> normal;
+    Eigen::Matrix<double, 6, 1> right;
+    normal << squares(all_), squares(bright_), squares(bright_), squares(bright_);
+    right << all_[6], all_[7], all_[8], bright_[6], bright_[7], bright_[8];
+    for (const int slope : {1, 2, 4, 5}) normal(slope, slope) += slope_prior;
+    normal.diagonal().array() += 1e-6;
+    fit_ = normal.ldlt().solve(right);
+  }
+  [[nodiscard]] double bias(double x, double y) const { return fit_[0] + fit_[1] * x + fit_[2] * y; }
+  [[nodiscard]] double gain(double x, double y) const { return fit_[3] + fit_[4] * x + fit_[5] * y; }
+  [[nodiscard]] double light(double x, double y, bool is_bright) const {
+    return is_bright ? bias(x, y) + gain(x, y) : bias(x, y);
+  }
+
+ private:
+  using Sums = std::array<double, 9>;  // of 1, x, y, xx, xy, yy; of the light times 1, x, y
+  static Eigen::Matrix3d squares(const Sums& s) {
+    Eigen::Matrix3d matrix;
+    matrix << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+    return matrix;
+  }
+  Sums all_{}, bright_{};
+  Eigen::Matrix<double, 6, 1> fit_ = Eigen::Matrix<double, 6, 1>::Zero();
+};
 
 // Cells beside one that is not known.
 std::array<bool, kMaxCells * kMaxCells> beside_unknown(const CellLight& light, int cells) {
@@ -87,8 +119,7 @@ std::array<bool, kMaxCells * kMaxCells> beside_unknown(const CellLight& light, i
 bool fits(const CellLight& light, const std::array<bool, kMaxCells * kMaxCells>& is_tainted, bool has_unknown,
           const MarkerCode& code, int turn, int& wrong) {
   const int cells = code.cells;
-  Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
+  LightFit fit;
   double sum = 0, squares = 0;
   int known = 0;
   // A highlight only adds light: beside it, what should be dark and is not says nothing.
@@ -96,24 +127,19 @@ bool fits(const CellLight& light, const std::array<bool, kMaxCells * kMaxCells>&
     const int cell = turned_cell(row, column, turn, cells);
     return light[cell] != kUnknown && !(is_tainted[cell] && !code.is_bright(row, column));
   };
-  const auto regressors_of = [&](int row, int column) {
-    return regressors((column + 0.5) / cells - 0.5, (row + 0.5) / cells - 0.5, code.is_bright(row, column));
-  };
+  const auto place = [cells](int k) { return (k + 0.5) / cells - 0.5; };
   for (int row = 0; row < cells; ++row) {
     for (int column = 0; column < cells; ++column) {
       if (!is_used(row, column)) continue;
       const double value = light[turned_cell(row, column, turn, cells)];
-      const auto r = regressors_of(row, column);
-      normal += r * r.transpose();
-      right += value * r;
+      fit.add(1, place(column), place(row), value, code.is_bright(row, column));
       sum += value;
       squares += value * value;
       ++known;
     }
   }
   if (has_unknown && known < kMinKnown * cells * cells / 36) return false;
-  normal.diagonal().array() += 1e-6;
-  const Eigen::Matrix<double, 6, 1> fit = normal.ldlt().solve(right);
+  fit.solve(0);
   double residual = 0;
   int wrong_inside = 0, inside = 0;
   wrong = 0;
@@ -122,13 +148,11 @@ bool fits(const CellLight& light, const std::array<bool, kMaxCells * kMaxCells>&
       const int cell = turned_cell(row, column, turn, cells);
       if (light[cell] == kUnknown) continue;
       const double value = light[cell];
-      const auto r = regressors_of(row, column);
-      const double x = r[1], y = r[2];
-      const double gain = fit[3] + fit[4] * x + fit[5] * y, bias = fit[0] + fit[1] * x + fit[2] * y;
+      const double x = place(column), y = place(row), gain = fit.gain(x, y), bias = fit.bias(x, y);
       if (gain < kMinRange) return false;
       const bool is_bright = value > bias + 0.5 * gain;
       if (is_bright && is_tainted[cell] && !code.is_bright(row, column)) continue;
-      const double error = value - fit.dot(r);
+      const double error = value - fit.light(x, y, code.is_bright(row, column));
       if (is_used(row, column)) residual += error * error;
       const bool is_inside = row > 0 && column > 0 && row + 1 < cells && column + 1 < cells;
       inside += is_inside;
@@ -223,32 +247,23 @@ SeenCode judge_cells(std::span<const SeenCell> seen, std::span<const MarkerCode>
   const auto contradicts = [&](int i, bool is_bright) {
     return shades[i] == (is_bright ? 0 : 1) && !(shades[i] == 1 && seen[i].is_beside_white);
   };
-  Eigen::Matrix<double, 6, 1> fit;
+  LightFit fit;
   for (int pass = 0; pass < kSeePasses; ++pass) {
-    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
-    Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
-    for (int i = 0; i < count; ++i) {
-      const auto r = regressors(seen[i].x, seen[i].y, expected[i]);
-      const Eigen::Matrix<double, 6, 1> weighted = weights[i] * r;
-      normal.noalias() += weighted * r.transpose();
-      right += seen[i].value * weighted;
-    }
+    fit = LightFit();
+    for (int i = 0; i < count; ++i) fit.add(weights[i], seen[i].x, seen[i].y, seen[i].value, expected[i]);
     // A slope of the light is not expected to be larger than the light.
-    for (const int slope : {1, 2, 4, 5}) normal(slope, slope) += 0.3;
-    normal.diagonal().array() += 1e-6;
-    fit = normal.ldlt().solve(right);
-    if (!(fit[3] > kMinRange)) return result;
+    fit.solve(0.3);
+    const double range = fit.gain(0, 0);
+    if (!(range > kMinRange)) return result;
     for (int i = 0; i < count; ++i) {
-      const double error =
-          (seen[i].value - fit.dot(regressors(seen[i].x, seen[i].y, expected[i]))) / (kAgrees * fit[3]);
+      const double error = (seen[i].value - fit.light(seen[i].x, seen[i].y, expected[i])) / (kAgrees * range);
       const double root = 1 / (1 + error * error);
       weights[i] = root * root;
     }
   }
   for (int i = 0; i < count; ++i) {
     const SeenCell& cell = seen[i];
-    const double gain = fit[3] + fit[4] * cell.x + fit[5] * cell.y;
-    const double level = (cell.value - fit[0] - fit[1] * cell.x - fit[2] * cell.y) / std::max(gain, 1e-3);
+    const double level = (cell.value - fit.bias(cell.x, cell.y)) / std::max(fit.gain(cell.x, cell.y), 1e-3);
     shades[i] = std::abs(level) < kAgrees ? 0 : std::abs(level - 1) < kAgrees ? 1 : -1;
     result.agreeing += shades[i] == (expected[i] ? 1 : 0);
     if (!cell.is_inside) continue;

@@ -4,6 +4,7 @@
 // start for the measurement, and stands for nothing by itself.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "navigation/camera/camera_model.h"
@@ -22,6 +23,7 @@ struct CodePlace {
 class CodeSearch {
  public:
   static constexpr double kMinScore = 0.55;
+  static constexpr int kTogether = 16;  // places of a row that are scored at once
 
   // The best place within reach_px (frame pixels) of where the pose puts the marker; a score below kMinScore
   // is none. The wider the reach, the more turns and distances are tried.
@@ -33,12 +35,15 @@ class CodeSearch {
   struct Point {
     int offset = 0;  // into the small picture, from the marker's centre
     int dx = 0, dy = 0;
-    float level = 0;
+    bool is_bright = false;
   };
   bool place_points(const SquareSearch::SmallPicture& picture, const camera::CameraModel& camera,
                     const geometry::RigidTransform& pose, double size_mm, const MarkerCode& code,
                     Eigen::Vector2i& center);
+  // Of a place by itself; and of so many in a row, `step` pixels apart from x on.
   [[nodiscard]] float score_at(const SquareSearch::SmallPicture& picture, int x, int y) const;
+  void score_row(const SquareSearch::SmallPicture& picture, int x, int y, int step,
+                 std::array<float, kTogether>& scores) const;
 
   std::vector<Point> points_;
   int left_ = 0, right_ = 0, top_ = 0, bottom_ = 0;  // reach of the points
