@@ -1,6 +1,7 @@
 // Squares of which a part is hidden: out of the straight parts of an outline.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "navigation/markers/outline_lines.h"
 #include "navigation/markers/square_search.h"
@@ -18,6 +19,12 @@ constexpr int kClosedOfARegion = 2;
 // they are, the longer one of two at least, and how many are looked at in a frame.
 constexpr int kGlow = 3, kMinPieceLength = 3, kMinPieceArea = 8, kMinLongerLength = 8, kMostPieceLength = 60,
               kMostPieces = 64;
+
+constexpr int kMinWhitePixels = 4;  // fewer are no highlight on a marker
+constexpr int kLeastFilled = 10;    // of the box about a region, one pixel of so many
+// What one call finds, and what it looks at, so that no frame takes long; the next call goes on from there.
+constexpr std::size_t kSquaresAtATime = 32;
+constexpr int kOutlinesAtATime = 64;
 
 struct Side {
   Line line;
@@ -110,6 +117,37 @@ int find_sides(const std::vector<Eigen::Vector2d>& outline, double size, const E
 
 }  // namespace
 
+std::span<const FoundSquare> SquareSearch::find_covered(const camera::CameraModel& camera) {
+  const bool has_highlights = white_pixels_ >= kMinWhitePixels;
+  sum_rows(has_highlights);
+  find_regions();
+  if (!has_highlights && covered_.is_at_pieces) start_over();
+  covered_.outlines = 0;
+  if (!covered_.is_at_pieces) {
+    for (std::size_t label = std::exchange(covered_.next, 0); label < regions_.size(); ++label) {
+      const Region& region = regions_[label];
+      if (!may_be_square(region, kLeastFilled)) continue;
+      if (is_done_or_takes_outline()) {
+        covered_.next = label;
+        return squares_;
+      }
+      outline_.clear();
+      trace_outline(static_cast<int>(label), region, camera);
+      combine_sides(camera);
+      FoundSquare square;
+      if (outline_square(static_cast<int>(label), region, camera, square) && squares_.size() < kMaxSquares)
+        squares_.push_back(square);
+    }
+  }
+  covered_.is_at_pieces = has_highlights;
+  if (has_highlights) combine_pieces(camera);
+  return squares_;
+}
+
+bool SquareSearch::is_done_or_takes_outline() {
+  return squares_.size() >= kSquaresAtATime || covered_.outlines++ >= kOutlinesAtATime;
+}
+
 void SquareSearch::combine_sides(const camera::CameraModel& camera) {
   if (outline_.size() < 16) return;
   Eigen::Vector2d low = outline_[0], high = outline_[0];
@@ -183,19 +221,25 @@ void SquareSearch::combine_pieces(const camera::CameraModel& camera) {
         region.area >= kMinPieceArea)
       pieces[count++] = static_cast<int>(label);
   }
+  const std::size_t first = std::exchange(covered_.next, 0);
+  std::size_t pair = 0;
   for (int i = 0; i < count; ++i) {
     for (int k = 0; k < i; ++k) {
+      if (pair++ < first) continue;
       const Region &a = regions_[pieces[i]], &b = regions_[pieces[k]];
       const int apart = std::max({a.left - b.right, b.left - a.right, a.top - b.bottom, b.top - a.bottom});
-      if (apart > 2 * kGlow || std::max(length_of(a), length_of(b)) < kMinLongerLength ||
-          squares_.size() >= kMaxSquares)
-        continue;
+      if (apart > 2 * kGlow || std::max(length_of(a), length_of(b)) < kMinLongerLength) continue;
+      if (is_done_or_takes_outline()) {
+        covered_.next = pair - 1;
+        return;
+      }
       outline_.clear();
       trace_outline(pieces[i], a, camera);
       trace_outline(pieces[k], b, camera);
       combine_sides(camera);
     }
   }
+  covered_.is_at_pieces = false;
 }
 
 }  // namespace arthronaut::markers

@@ -22,6 +22,8 @@ constexpr int kFitsAFrame = 200;
 constexpr int kMostSquares = 8;
 constexpr std::size_t kSearchesForCovered = 3;
 constexpr std::int64_t kUsualIntervalNs = 33'333'333;
+// A marker that was sought in every frame for so long, and is not there, is sought in every few frames.
+constexpr std::int64_t kSoughtOftenNs = 1'000'000'000;
 // How long a marker that was lost is looked for about where it was, and another one's company counts.
 constexpr std::int64_t kMissedNs = 2'000'000'000, kCompanyNs = 1'000'000'000;
 // How far about it, in sides: at once, more with every second, and at most.
@@ -58,7 +60,6 @@ class EdgeTracker final : public MarkerTracker {
                                interval_ns_, smear_, options_.fit_directly ? &direct_ : nullptr,
                                fits_left,    codes_};
     candidates_.clear();
-    bool missing = false;
     // Whose turn is first changes, so that none takes all of a frame's fits for ever.
     ++frames_;
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
@@ -66,9 +67,9 @@ class EdgeTracker final : public MarkerTracker {
       observations_[i] = MarkerObservation();
       observations_[i].id = tracks_[i].marker().id;
       const auto start = tracks_[i].predicted(timestamp_ns);
-      missing |= !start || !tracks_[i].measure(tracked, *start, false, observations_[i]);
+      if (start) (void)tracks_[i].measure(tracked, *start, false, observations_[i]);
     }
-    if (missing || frames_to_search_-- <= 0) {
+    if (is_any_sought_often(timestamp_ns) || frames_to_search_-- <= 0) {
       frames_to_search_ = options_.search_every_frames - 1;
       search(tracked);
     }
@@ -76,6 +77,7 @@ class EdgeTracker final : public MarkerTracker {
       if (tracks_[i].is_duplicate && observations_[i].is_tracked())
         observations_[i].state = MarkerState::Duplicate;
       tracks_[i].follow(observations_[i], timestamp_ns);
+      if (observations_[i].is_tracked()) sought_since_ns_[i] = timestamp_ns;
     }
     remember_company(timestamp_ns);
     return observations_;
@@ -94,8 +96,10 @@ class EdgeTracker final : public MarkerTracker {
     smear_.gamma = options_.gamma;
     smear_.bloom.sigma_px = options_.bloom_sigma_px;
     frames_to_search_ = 0;
+    search_.start_over();
     company_.assign(tracks_.size(), Company());
     attempts_.assign(tracks_.size(), 0);
+    sought_since_ns_.assign(tracks_.size(), -1);
     interval_ns_ = kUsualIntervalNs;
     last_ns_ = -1;
     frames_ = searches_ = 0;
@@ -121,6 +125,17 @@ class EdgeTracker final : public MarkerTracker {
       if (!observations_[i].is_tracked()) recover(i, frame);
     }
     if (is_for_covered && is_missing()) take_squares(search_.find_covered(frame.camera), frame, true);
+  }
+
+  // A marker is missing that was there a short while ago, or may be found for the first time.
+  [[nodiscard]] bool is_any_sought_often(std::int64_t timestamp_ns) {
+    bool is_any = false;
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+      std::int64_t& since_ns = sought_since_ns_[i];
+      if (since_ns < 0 || since_ns > timestamp_ns) since_ns = timestamp_ns;
+      is_any |= !observations_[i].is_tracked() && timestamp_ns - since_ns < kSoughtOftenNs;
+    }
+    return is_any;
   }
 
   [[nodiscard]] bool is_missing() const {
@@ -234,7 +249,8 @@ class EdgeTracker final : public MarkerTracker {
   SquareSearch search_;
   CodeSearch code_search_;
   std::vector<Company> company_;
-  std::vector<int> attempts_;  // of this frame's search, by marker
+  std::vector<int> attempts_;                  // of this frame's search, by marker
+  std::vector<std::int64_t> sought_since_ns_;  // by marker: when it was last tracked; below 0: no frame yet
   std::size_t frames_ = 0, searches_ = 0;
   std::int64_t interval_ns_ = kUsualIntervalNs, last_ns_ = -1;
   CameraSmear smear_;

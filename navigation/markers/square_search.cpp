@@ -14,12 +14,12 @@ constexpr int kShrink = 4, kShrinkSmall = 2;
 constexpr int kSmallView = 700;  // in frame pixels
 // In shrunk pixels.
 constexpr int kMinSide = 8;
-constexpr int kRadii[] = {14};
+constexpr int kRadius = 14;
+constexpr int kLeastFilled = 6;  // of the box about a region, one pixel of so many
 // A pixel is dark below this share of its neighbourhood's mean (in grey levels, so after the camera's gamma).
 constexpr int kDarkPercent = 84;
 constexpr int kMinMean = 8;
-constexpr int kMinWhitePixels = 4;  // fewer are no highlight on a marker
-constexpr double kMinFill = 0.6;    // hull / quadrilateral
+constexpr double kMinFill = 0.6;  // hull / quadrilateral
 constexpr double kMaxSideRatio = 5;
 // Of the side's length: what may belong to a side, and what lies on it.
 constexpr double kNearSide = 0.25, kOnLine = 0.02;
@@ -74,40 +74,29 @@ void SquareSearch::look_at(const camera::GrayView& frame, const camera::CameraMo
 
 std::span<const FoundSquare> SquareSearch::find(const camera::CameraModel& camera) {
   sum_rows(false);
-  find_squares(camera, false);
+  find_regions();
+  for (std::size_t label = 0; label < regions_.size() && squares_.size() < kMaxSquares; ++label) {
+    FoundSquare square;
+    if (may_be_square(regions_[label], kLeastFilled) &&
+        outline_square(static_cast<int>(label), regions_[label], camera, square))
+      squares_.push_back(square);
+  }
   return squares_;
 }
 
-std::span<const FoundSquare> SquareSearch::find_covered(const camera::CameraModel& camera) {
-  sum_rows(white_pixels_ >= kMinWhitePixels);
-  find_squares(camera, true);
-  if (white_pixels_ >= kMinWhitePixels) combine_pieces(camera);
-  return squares_;
-}
-
-void SquareSearch::find_squares(const camera::CameraModel& camera, bool are_covered) {
+void SquareSearch::find_regions() {
   squares_.clear();
   squares_.reserve(kMaxSquares);
+  regions_.clear();
   if (width_ < 2 * kMinSide || height_ < 2 * kMinSide) return;
-  for (const int radius : kRadii) {
-    mark_dark_pixels(radius);
-    label_regions();
-    for (std::size_t label = 0; label < regions_.size() && squares_.size() < kMaxSquares; ++label) {
-      const Region& region = regions_[label];
-      const int across = region.right - region.left + 1, down = region.bottom - region.top + 1;
-      if (std::min(across, down) < kMinSide / 2 || std::max(across, down) < kMinSide) continue;
-      if (across > width_ * 9 / 10 || down > height_ * 9 / 10 ||
-          region.area < across * down / (are_covered ? 10 : 6))
-        continue;
-      if (are_covered) {
-        outline_.clear();
-        trace_outline(static_cast<int>(label), region, camera);
-        combine_sides(camera);
-      }
-      FoundSquare square;
-      if (outline_square(static_cast<int>(label), region, camera, square)) squares_.push_back(square);
-    }
-  }
+  mark_dark_pixels(kRadius);
+  label_regions();
+}
+
+bool SquareSearch::may_be_square(const Region& region, int least_filled) const {
+  const int across = region.right - region.left + 1, down = region.bottom - region.top + 1;
+  return std::min(across, down) >= kMinSide / 2 && std::max(across, down) >= kMinSide &&
+         across <= width_ * 9 / 10 && down <= height_ * 9 / 10 && region.area >= across * down / least_filled;
 }
 
 // The bounding box of the view, four by four pixels to one.

@@ -37,7 +37,10 @@ class SquareSearch {
   // are left out of the means, since highlights raise what is thought bright; and of each dark region the
   // straight parts of the outline are sought one by one, of which four make a square, whatever lies between
   // them; or three and the ends of the outer two. Where something is white, two regions may be one square.
+  // So many of them at a time (kSquaresAtATime): what is left is found by the next calls, from where this one
+  // stopped.
   [[nodiscard]] std::span<const FoundSquare> find_covered(const camera::CameraModel& camera);
+  void start_over() { covered_ = {}; }  // another source: from the top again
 
   // The frame that was looked at last, made smaller: pixel (x, y) shows frame pixels from left + times * x
   // and top + times * y on. Valid until the next call.
@@ -56,7 +59,9 @@ class SquareSearch {
     int left, right, top, bottom, area;
   };
   void shrink(const camera::GrayView& frame, const camera::CameraModel& camera);
-  void find_squares(const camera::CameraModel& camera, bool are_covered);
+  // Dark regions that may be of a square.
+  void find_regions();
+  [[nodiscard]] bool may_be_square(const Region& region, int least_filled) const;
   void sum_rows(bool without_white);
   void mark_dark_pixels(int radius);
   void label_regions();
@@ -69,6 +74,8 @@ class SquareSearch {
   void combine_sides(const camera::CameraModel& camera);
   // The same of any two dark regions that are near each other.
   void combine_pieces(const camera::CameraModel& camera);
+  // Whether this call has done its part; if not, it looks at one outline more.
+  bool is_done_or_takes_outline();
   bool measure_sides(const camera::CameraModel& camera, const std::array<Eigen::Vector2d, 4>& quad,
                      FoundSquare& square) const;
   void take_hull();
@@ -87,6 +94,12 @@ class SquareSearch {
   std::vector<Eigen::Vector2d> outline_, hull_;
   std::vector<char> is_used_;  // of the outline's points
   std::vector<FoundSquare> squares_;
+  // Where the search for covered squares goes on: at this region, or at this pair of pieces.
+  struct {
+    std::size_t next = 0;
+    bool is_at_pieces = false;
+    int outlines = 0;  // that this call has looked at
+  } covered_;
 };
 
 }  // namespace arthronaut::markers

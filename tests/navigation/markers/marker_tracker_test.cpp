@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "navigation/markers/square_search.h"
@@ -177,6 +178,62 @@ TEST_F(MarkerTracking, IsDeterministic) {
   const MarkerObservation again = tracker->track(shown.view(), camera_, 0)[0];
   EXPECT_EQ(first.camera_from_marker.translation_mm, again.camera_from_marker.translation_mm);
   EXPECT_EQ(first.covariance, again.covariance);
+}
+
+// What is declared and not there for a second costs a search in one frame of four; what is lost only now is
+// sought in every frame, and what comes into view is found in the fourth frame at the latest.
+TEST_F(MarkerTracking, SeeksAMarkerThatIsLongLostInEveryFourthFrame) {
+  const auto one = picture({placed(0, world_)}), both = picture({placed(0, world_), placed(2, probe_)});
+  const auto tracker = make_tracker(declared_);
+  int frame = 0;
+  const auto searches_in = [&](const RenderedPicture& shown, int frames) {
+    int searches = 0;
+    for (const int end = frame + frames; frame < end; ++frame) {
+      EXPECT_TRUE(tracker->track(shown.view(), camera_, frame * kFrameNs)[0].is_tracked());
+      searches += !tracker->candidates().empty();
+    }
+    return searches;
+  };
+  EXPECT_EQ(searches_in(one, 60), 60);
+  (void)searches_in(one, 4);
+  EXPECT_EQ(searches_in(one, 40), 10);
+  (void)searches_in(both, 3);
+  EXPECT_TRUE(tracker->track(both.view(), camera_, frame++ * kFrameNs)[1].is_tracked());
+  EXPECT_EQ(searches_in(one, 40), 40);
+}
+
+// However much of a picture looks like covered squares, a call looks at a part of it, and the calls go round.
+TEST(SquareSearch, GoesRoundThePictureForCoveredSquares) {
+  constexpr int kSide = 60, kApart = 110, kAcross = 14, kDown = 10;
+  const int width = kApart * kAcross, height = kApart * kDown;
+  std::vector<std::uint8_t> grey(static_cast<std::size_t>(width) * height, 180);
+  const auto is_dark = [](int x, int y) { return x < kSide && y < kSide && x + y > kSide / 3; };
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      if (is_dark(x % kApart - 25, y % kApart - 25) && x % kApart >= 25 && y % kApart >= 25)
+        grey[static_cast<std::size_t>(y) * width + x] = 40;
+  camera::Calibration calibration;
+  calibration.image_size_px = {width, height};
+  calibration.focal_px = width;
+  calibration.principal_point_px = {0.5 * width, 0.5 * height};
+  const camera::CameraModel camera(calibration, 0, 1);
+  SquareSearch search;
+  search.look_at({grey.data(), width, height, width}, camera);
+  std::vector<char> is_found(kAcross * kDown, 0);
+  const std::size_t first = search.find_covered(camera).size();
+  search.start_over();
+  for (int call = 0; call < 20; ++call) {
+    const auto squares = search.find_covered(camera);
+    EXPECT_LE(squares.size(), 40U);
+    EXPECT_TRUE(call > 0 || squares.size() == first);
+    for (const FoundSquare& square : squares) {
+      const Eigen::Vector2d middle =
+          0.25 * (square.corners_px[0] + square.corners_px[1] + square.corners_px[2] + square.corners_px[3]);
+      const int column = static_cast<int>(middle.x()) / kApart, row = static_cast<int>(middle.y()) / kApart;
+      if (column >= 0 && column < kAcross && row >= 0 && row < kDown) is_found[row * kAcross + column] = 1;
+    }
+  }
+  EXPECT_EQ(std::count(is_found.begin(), is_found.end(), 1), kAcross * kDown);
 }
 
 // What breaks the contract is said, with its name.
