@@ -69,9 +69,11 @@ class EdgeTracker final : public MarkerTracker {
       const auto start = tracks_[i].predicted(timestamp_ns);
       if (start) (void)tracks_[i].measure(tracked, *start, false, observations_[i]);
     }
+    leave_one_a_place();
     if (is_any_sought_often(timestamp_ns) || frames_to_search_-- <= 0) {
       frames_to_search_ = options_.search_every_frames - 1;
       search(tracked);
+      leave_one_a_place();
     }
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       if (tracks_[i].is_duplicate && observations_[i].is_tracked())
@@ -148,10 +150,11 @@ class EdgeTracker final : public MarkerTracker {
     for (MarkerTrack& track : tracks_) track.is_duplicate = false;
     for (const FoundSquare& square : squares) {
       auto code = read_code(frame.image, frame.camera, square.tangent, codes_);
-      // Nothing that is tracked is doubted for what was read in part.
+      // Nothing that is tracked is doubted for what was read in part, and what is read in part where another
+      // marker stands is a part of that one.
       if (!code && are_covered) {
         code = read_covered_code(frame.image, frame.camera, square.tangent, codes_);
-        if (code && observations_[code->index].is_tracked()) continue;
+        if (code && (observations_[code->index].is_tracked() || is_of_another(square))) continue;
       }
       candidates_.push_back({square.corners_px, code ? codes_[code->index].id : MarkerCandidate::kNoCode});
       if (!code) continue;
@@ -201,12 +204,38 @@ class EdgeTracker final : public MarkerTracker {
 
   [[nodiscard]] bool is_taken(const RigidTransform& pose, std::size_t index) const {
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
-      if (i == index || !observations_[i].is_tracked()) continue;
-      const Eigen::Vector3d apart =
-          observations_[i].camera_from_marker.translation_mm.normalized() - pose.translation_mm.normalized();
-      if (apart.norm() * pose.translation_mm.norm() < 0.5 * tracks_[i].marker().size_mm) return true;
+      if (i != index && observations_[i].is_tracked() && stands_at(i, pose.translation_mm)) return true;
     }
     return false;
+  }
+
+  // The marker's middle is seen less than half of its side from this point.
+  [[nodiscard]] bool stands_at(std::size_t index, const Eigen::Vector3d& point_mm) const {
+    const Eigen::Vector3d& middle_mm = observations_[index].camera_from_marker.translation_mm;
+    const double distance_mm = std::max(middle_mm.norm(), point_mm.norm());
+    return (middle_mm.normalized() - point_mm.normalized()).norm() * distance_mm <
+           0.5 * tracks_[index].marker().size_mm;
+  }
+
+  [[nodiscard]] bool is_of_another(const FoundSquare& square) const {
+    return std::any_of(observations_.begin(), observations_.end(), [&](const MarkerObservation& seen) {
+      return seen.is_tracked() && is_same_place(square, seen);
+    });
+  }
+
+  // Where one marker is seen no other one is: of one that is hidden by half nothing could be measured. The
+  // one whose corners are less its own was the other's outline, and is forgotten.
+  void leave_one_a_place() {
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        if (!observations_[i].is_tracked() || !observations_[k].is_tracked() ||
+            !stands_at(i, observations_[k].camera_from_marker.translation_mm))
+          continue;
+        const std::size_t none = observations_[i].rms_px > observations_[k].rms_px ? i : k;
+        observations_[none].state = MarkerState::Doubtful;
+        tracks_[none].forget();
+      }
+    }
   }
 
   void remember_company(std::int64_t timestamp_ns) {
