@@ -81,8 +81,9 @@ default_plan::DefaultTunnel PlanModel::default_tunnel(const tunnels::TunnelKey& 
        .surface = bone.review.surface.get(),
        .landmarks = landmarks(kind),
        .states = landmark_states(kind),
-       .proposal = bone.proposal ? &*bone.proposal : nullptr,
-       .beside = default_plan::beside(key, knee_.plan.tunnels)},
+       // Both bundles of a bone are made at once: each leaves the other's default its room, whatever is
+       // there.
+       .proposal = bone.proposal ? &*bone.proposal : nullptr},
       knee_.side, {.bundle = key.bundle, .diameter_mm = default_plan::usual_diameter_mm(key.bundle)});
 }
 

@@ -2,6 +2,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "app/plan/plan_view.h"
 
@@ -21,10 +22,16 @@ void PlanView::work_on(const tunnels::TunnelKey& key) {
   state_.survey = nullptr;
   state_.places_entry = false;
   state_.hint.clear();
+  state_.hint_of.reset();
 }
 
 void PlanView::follow_plan() {
   if (model_ == nullptr) return;
+  // What was said of a plan is true of that plan alone.
+  if (state_.hint_of && *state_.hint_of != model_->revision()) {
+    state_.hint.clear();
+    state_.hint_of.reset();
+  }
   const auto keys = model_->knee().plan.of(state_.key.bone);
   if (!keys.empty() && (keys.front().bundle == Bundle::Whole) != (state_.key.bundle == Bundle::Whole))
     work_on(keys.front());
@@ -36,36 +43,31 @@ void PlanView::plan_bundles() {
   const bones::BoneKind bone = state_.key.bone;
   const tunnels::TunnelKey am{bone, Bundle::Anteromedial}, pl{bone, Bundle::Posterolateral};
   const std::string what = "Plan two bundles in the " + std::string(bones::to_text(bone));
-  std::map<tunnels::TunnelKey, tunnels::Tunnel> both;
-  std::string missing;
-  for (const tunnels::TunnelKey& key : {am, pl}) {
-    const default_plan::DefaultTunnel made = model_->default_tunnel(key);
-    if (made.is_usable())
-      both.emplace(key, made.tunnel);
-    else
-      missing = made.message;
-  }
-  if (both.size() == 2) {
-    history_.apply_tunnels(both, what);
+  std::vector<MadeTunnel> both = defaults_of({am, pl});
+  const auto missing =
+      std::ranges::find_if(both, [](const MadeTunnel& one) { return !one.made.is_usable(); });
+  if (missing == both.end()) {
     work_on(am);
-    return;
+    return take_defaults(std::move(both), what);
   }
   // One of another surface would pass for one of this.
   const auto single = model_->plan_fit(bone).is_valid() ? model_->tunnel(bone) : std::nullopt;
   if (single) history_.apply_tunnels({{am, *single}}, what);
   work_on(single ? pl : am);
   state_.page = PanelPage::Checks;  // where P places the entry
-  state_.hint = "No default for two bundles: " + missing + ". Press P and place the entry.";
+  state_.hint = "No default for two bundles: " + missing->made.message + ". Press P and place the entry.";
 }
 
 void PlanView::plan_single() {
   const bones::BoneKind bone = state_.key.bone;
-  const default_plan::DefaultTunnel made = model_->default_tunnel(bone);
+  const std::string what = "Plan one tunnel in the " + std::string(bones::to_text(bone));
   const auto here = model_->plan_fit(state_.key).is_valid() ? model_->tunnel(state_.key) : std::nullopt;
-  if (!made.is_usable() && !here) return;
-  history_.apply_tunnels({{bone, made.is_usable() ? made.tunnel : *here}},
-                         "Plan one tunnel in the " + std::string(bones::to_text(bone)));
+  std::vector<MadeTunnel> made = defaults_of({bone});
+  const bool is_usable = made.front().made.is_usable();
+  if (!is_usable && !here) return;
   work_on(bone);
+  if (is_usable) return take_defaults(std::move(made), what);
+  history_.apply_tunnels({{bone, *here}}, what);
 }
 
 void PlanView::add_bundle_actions(widgets::Actions& actions) {

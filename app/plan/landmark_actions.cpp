@@ -1,6 +1,8 @@
 // Landmarks in plan mode: gone through, confirmed, moved; and the default plan that follows from them.
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
+
 #include "app/plan/plan_view.h"
 
 namespace arthronaut::plan {
@@ -46,28 +48,24 @@ void PlanView::confirm_landmarks(bool all) {
     select_landmark(*next);
 }
 
-void PlanView::make_default_plan() {
+std::vector<MadeTunnel> PlanView::defaults_of(const std::vector<tunnels::TunnelKey>& keys) const {
+  std::vector<MadeTunnel> made;
+  for (const tunnels::TunnelKey& key : keys)
+    made.push_back({.key = key, .made = model_->default_tunnel(key)});
+  return made;
+}
+
+void PlanView::take_defaults(std::vector<MadeTunnel> made, const std::string& what) {
+  const cases::Plan before = model_->knee().plan;
   std::map<tunnels::TunnelKey, tunnels::Tunnel> tunnels;
-  std::string doubts;
-  std::vector<tunnels::TunnelKey> keys;
-  for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia}) {
-    if (!model_->has_bone(bone)) continue;
-    const tunnels::TunnelKey key = key_in(bone);
-    keys.push_back(key);
-    if (const auto beside = other_bundle(key)) keys.push_back(*beside);
-  }
-  for (const tunnels::TunnelKey& key : keys) {
-    const default_plan::DefaultTunnel made = model_->default_tunnel(key);
-    if (made.is_usable()) {
-      tunnels.emplace(key, made.tunnel);
-      if (doubts.empty() && !made.doubts.empty())
-        doubts = "A proposal that follows from landmarks: look at them (L) before you rely on it.";
-    } else {
-      doubts = "No default for the " + tunnels::name_of(key) + ": " + made.message;
-    }
-  }
-  if (!tunnels.empty()) history_.apply_tunnels(tunnels, "Make the default plan");
-  state_.hint = doubts;
+  for (const MadeTunnel& one : made)
+    if (one.made.is_usable()) tunnels.emplace(one.key, one.made.tunnel);
+  if (!tunnels.empty()) history_.apply_tunnels(tunnels, what);
+  for (MadeTunnel& one : made) one.checks = model_->checks(one.key);
+  const bool took_the_place = std::ranges::any_of(cases::compare_plans(model_->knee().plan, before),
+                                                  &cases::TunnelDifference::is_lost_here);
+  state_.hint = default_in_words(made, took_the_place);
+  state_.hint_of = model_->revision();
   state_.page = PanelPage::Checks;
 }
 
@@ -164,9 +162,19 @@ void PlanView::add_landmark_actions(widgets::Actions& actions) {
                GLFW_KEY_N,
                0,
                false,
-               [this] { return model_ != nullptr; },
+               [this] {
+                 return model_ != nullptr && history_.status().save != open_case::PlanStatus::Save::ReadOnly;
+               },
                {},
-               [this] { make_default_plan(); }});
+               [this] {
+                 std::vector<tunnels::TunnelKey> keys;
+                 for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia}) {
+                   if (!model_->has_bone(bone)) continue;
+                   keys.push_back(key_in(bone));
+                   if (const auto beside = other_bundle(keys.back())) keys.push_back(*beside);
+                 }
+                 take_defaults(defaults_of(keys), "Make the default plan");
+               }});
 }
 
 }  // namespace arthronaut::plan

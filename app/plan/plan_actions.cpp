@@ -6,6 +6,7 @@
 
 #include "app/plan/plan_view.h"
 #include "app/plan/tunnel_moves.h"
+#include "planning/tunnels/aim.h"
 
 namespace arthronaut::plan {
 
@@ -22,6 +23,7 @@ void PlanView::add_actions(widgets::Actions& actions) {
   add_measuring_actions(actions);
   add_volume_actions(actions);
   add_history_actions(actions);
+  add_version_actions(actions);
   add_tour_actions(actions);
   actions.add({"plan.bone",
                "Other bone",
@@ -89,32 +91,6 @@ void PlanView::add_tunnel_actions(widgets::Actions& actions) {
                }});
 }
 
-// What is wrong with the versions says the place that a click's answer has: it stands in nobody's way.
-void PlanView::load_versions() {
-  versions_.clear();
-  try {
-    versions_ = cases::load_plan_versions(case_folder_);
-  } catch (const std::runtime_error& error) {  // a file of the case that was changed by hand
-    state_.hint = error.what();
-  }
-}
-
-void PlanView::keep_version() {
-  history_.settle_now();
-  try {  // a full disk is a state of the screen
-    const cases::PlanVersion kept = cases::keep_plan_version(case_folder_, model_->knee().plan);
-    state_.hint = "Kept as version " + std::to_string(kept.number);
-    load_versions();
-  } catch (const std::runtime_error& error) {
-    state_.hint = error.what();
-  }
-}
-
-void PlanView::take_version(std::size_t version) {
-  history_.apply_plan(versions_.at(version).plan,
-                      "Take version " + std::to_string(versions_[version].number));
-}
-
 void PlanView::add_history_actions(widgets::Actions& actions) {
   actions.add({"plan.undo",
                "Undo",
@@ -134,18 +110,6 @@ void PlanView::add_history_actions(widgets::Actions& actions) {
                [this] { return history_.can_redo(); },
                {},
                [this] { history_.redo(); }});
-  actions.add({"plan.keep",
-               "Keep version",
-               "The plan as it is now stays beside the one that is worked on, to be compared and taken again",
-               GLFW_KEY_K,
-               0,
-               false,
-               [this] {
-                 return model_ != nullptr && !model_->knee().plan.tunnels.empty() &&
-                        history_.status().save != open_case::PlanStatus::Save::ReadOnly;
-               },
-               {},
-               [this] { keep_version(); }});
   const auto in_conflict = [this] { return history_.is_in_conflict(); };
   actions.add({"plan.take_theirs",
                "Take theirs",
@@ -170,6 +134,32 @@ void PlanView::add_history_actions(widgets::Actions& actions) {
 
 bool PlanView::can_stop_placing() const {
   return state_.places_entry || state_.places_landmark || !state_.hint.empty();
+}
+
+// Where the eye sees the bone that is planned; anything else is said and changes nothing.
+void PlanView::place_entry(const scene::SceneRay& ray) {
+  const auto met = first_visible(bones_.visible(), ray);
+  const std::string planned(bones::to_text(state_.key.bone));
+  if (!met) {
+    state_.hint = "That is beside the bone. Click on the " + planned + ", or press Esc.";
+    return;
+  }
+  if (met->is_section) {
+    state_.hint = "There the bone is cut open. Click on its surface, or press Esc.";
+    return;
+  }
+  if (met->bone != state_.key.bone) {
+    state_.hint = "That is the " + std::string(bones::to_text(met->bone)) + ". Click on the " + planned +
+                  ", or press Tab to plan the other bone.";
+    return;
+  }
+  const auto tunnel = model_->tunnel(state_.key);
+  change("Place the entry of the", false,
+         tunnel ? with_entry_at(*tunnel, met->point_mm)
+                : tunnels::first_tunnel(state_.key.bone, met->point_mm, model_->axes(state_.key.bone),
+                                        model_->surface(state_.key.bone)));
+  state_.places_entry = false;
+  state_.hint.clear();
 }
 
 void PlanView::add_placing_actions(widgets::Actions& actions) {

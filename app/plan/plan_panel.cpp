@@ -185,7 +185,7 @@ std::optional<std::size_t> draw_steps(const widgets::Ui& ui, const open_case::Pl
 std::optional<std::size_t> draw_versions(const widgets::Ui& ui, const PlanPanel& panel) {
   std::optional<std::size_t> clicked;
   ImGui::Separator();
-  widgets::action_button(ui, "plan.keep", ImGui::GetContentRegionAvail().x);
+  button_pair(ui, "plan.keep", "plan.export");
   ImGui::BeginChild("versions", {0, ImGui::GetContentRegionAvail().y - ui.theme.px(110)});
   if (panel.versions.empty())
     widgets::text_in(ui.theme.body, widgets::kQuietText,

@@ -6,7 +6,6 @@
 #include "app/plan/tunnel_moves.h"
 #include "app/scene/grid_lines.h"
 #include "app/scene/solid_mesh.h"
-#include "planning/tunnels/aim.h"
 
 namespace arthronaut::plan {
 
@@ -49,7 +48,8 @@ PlanView::PlanView(std::function<void()> make_current, const std::function<void(
       bones_(std::move(make_current)),
       slices_(wake),
       volume_(wake),
-      survey_(wake) {}
+      survey_(wake),
+      export_(wake) {}
 
 mode::ModeTitle PlanView::title() const {
   return {"plan", "mode.plan", "Plan", "Place the tunnels", GLFW_KEY_F1};
@@ -76,6 +76,7 @@ void PlanView::tick(double now_s) {
   history_.settle(now_s);
   history_.look_at_disk(now_s);
   follow_plan();
+  if (const auto exported = export_.take_outcome()) state_.hint = *exported;
   if (volume_.is_on()) slices_.want();
   slices_.tick();
   volume_.follow(slices_.shared_volume());
@@ -110,10 +111,12 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
        "plan.plateau", "plan.see_through"});
   ImGui::SetCursorScreenPos(rest.cut_top(ui.theme.px(44), ui.theme.px(10)).min());
   row({"plan.grid", "plan.map", "plan.aims", "plan.xray", "plan.volume", "plan.slices", "plan.paint"});
-  if (state_.shows_slices)
+  if (state_.shows_slices) {
+    // A row of their own: beside the others they would run under the panel.
+    ImGui::SetCursorScreenPos(rest.cut_top(ui.theme.px(44), ui.theme.px(10)).min());
     row({"plan.window", "plan.fit", "plan.cross_to_entry", "plan.distance", "plan.angle", "plan.unmeasure"});
-  else if (volume_.is_on())
-    row({"plan.volume_less", "plan.volume_more"});
+  }
+  if (volume_.is_on()) row({"plan.volume_less", "plan.volume_more"});
   follow_tour();
   const std::optional<TourCard> card = tour_.card();
   if (card) draw_tour(ui, rest.cut_top(ui.theme.px(88), ui.theme.px(10)), *card);
@@ -270,7 +273,7 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
     text = "Click on the " + bone + " where the landmark is. Esc leaves it.";
   if (text.empty()) return;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  ImFont* font = text.size() > 90 ? ui.theme.strong : ui.theme.title;
+  ImFont* font = state_.hint_of ? ui.theme.body : text.size() > 90 ? ui.theme.strong : ui.theme.title;
   draw.AddText(font, font->FontSize, {area.x + ui.theme.px(20), area.y + ui.theme.px(16)},
                state_.hint.empty() ? widgets::kAccent : widgets::kCaution, text.c_str(), nullptr,
                area.width - ui.theme.px(40));
@@ -367,32 +370,6 @@ void PlanView::follow(const PaneEvent& event) {
     place_entry(*event.click);
   else if (const auto met = first_visible(bones_.visible(), *event.click))
     slices_.set_cross(met->point_mm);
-}
-
-// Where the eye sees the bone that is planned; anything else is said and changes nothing.
-void PlanView::place_entry(const scene::SceneRay& ray) {
-  const auto met = first_visible(bones_.visible(), ray);
-  const std::string planned(bones::to_text(state_.key.bone));
-  if (!met) {
-    state_.hint = "That is beside the bone. Click on the " + planned + ", or press Esc.";
-    return;
-  }
-  if (met->is_section) {
-    state_.hint = "There the bone is cut open. Click on its surface, or press Esc.";
-    return;
-  }
-  if (met->bone != state_.key.bone) {
-    state_.hint = "That is the " + std::string(bones::to_text(met->bone)) + ". Click on the " + planned +
-                  ", or press Tab to plan the other bone.";
-    return;
-  }
-  const auto tunnel = model_->tunnel(state_.key);
-  change("Place the entry of the", false,
-         tunnel ? with_entry_at(*tunnel, met->point_mm)
-                : tunnels::first_tunnel(state_.key.bone, met->point_mm, model_->axes(state_.key.bone),
-                                        model_->surface(state_.key.bone)));
-  state_.places_entry = false;
-  state_.hint.clear();
 }
 
 }  // namespace arthronaut::plan

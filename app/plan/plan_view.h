@@ -8,11 +8,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/case/plan_history.h"
 #include "app/case/plan_model.h"
 #include "app/mode/mode.h"
 #include "app/plan/bone_pane.h"
+#include "app/plan/default_words.h"
+#include "app/plan/export_work.h"
 #include "app/plan/landmark_panel.h"
 #include "app/plan/lateral_view.h"
 #include "app/plan/plan_steps.h"
@@ -54,13 +57,18 @@ class PlanView : public mode::Mode {
   void add_history_actions(widgets::Actions& actions);
   void add_tunnel_actions(widgets::Actions& actions);
   void add_placing_actions(widgets::Actions& actions);
+  void place_entry(const scene::SceneRay& ray);
   [[nodiscard]] bool can_stop_placing() const;
   void add_slice_actions(widgets::Actions& actions);
   void add_measuring_actions(widgets::Actions& actions);
   void add_volume_actions(widgets::Actions& actions);
+
+  // version_actions.cpp
+  void add_version_actions(widgets::Actions& actions);
   void load_versions();
   void keep_version();
   void take_version(std::size_t version);
+  void export_plan();
 
   // landmark_actions.cpp
   void add_landmark_actions(widgets::Actions& actions);
@@ -68,7 +76,9 @@ class PlanView : public mode::Mode {
   void confirm_landmarks(bool all);
   void put_landmark(const Eigen::Vector3d& point_mm, const std::string& what, bool continues);
   [[nodiscard]] std::string landmark() const;  // that is selected; empty without a bone
-  void make_default_plan();
+  [[nodiscard]] std::vector<MadeTunnel> defaults_of(const std::vector<tunnels::TunnelKey>& keys) const;
+  // Those that there are become the plan, as one step; of all of them it is said how they are.
+  void take_defaults(std::vector<MadeTunnel> made, const std::string& what);
   void add_landmark_marks(std::vector<PaneMark>& marks) const;
 
   // Where else the tunnel could begin, and from where it can be drilled: survey_view.cpp.
@@ -102,7 +112,6 @@ class PlanView : public mode::Mode {
   void show_content();
   [[nodiscard]] std::vector<PaneMark> marks() const;
   void follow(const PaneEvent& event);
-  void place_entry(const scene::SceneRay& ray);
   [[nodiscard]] std::optional<Eigen::Vector3d> aim_handle() const;
   [[nodiscard]] const geometry::TriangleMesh& tunnel_mesh(const tunnels::TunnelKey& key);
 
@@ -115,7 +124,8 @@ class PlanView : public mode::Mode {
     bool shows_map = false, shows_aims = false;
     std::shared_ptr<const Survey> survey = nullptr;  // of what is planned now; null: none is there
     PanelPage page = PanelPage::Checks;
-    std::string hint = {};  // why a click did nothing; until the next one
+    std::string hint = {};                      // why a click did nothing; until the next one
+    std::optional<std::uint64_t> hint_of = {};  // of the model that alone it is true of
     std::uint64_t shown_revision = 0;
     // As the tour compares the plan with it, and the landmarks that it follows from.
     std::map<bones::BoneKind, tunnels::Tunnel> defaults = {};
@@ -135,6 +145,7 @@ class PlanView : public mode::Mode {
   VolumeDrawing volume_;
   LateralView lateral_;
   TunnelSurvey survey_;
+  ExportWork export_;
   Tour tour_{tour_file()};
   std::filesystem::path case_folder_;
   std::vector<cases::PlanVersion> versions_;  // that were kept, the oldest first

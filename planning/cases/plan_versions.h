@@ -28,6 +28,8 @@ struct TunnelDifference {
   enum class Kind { Same, Moved, OnlyHere, OnlyThere } kind = Kind::Same;
   // Of Same and Moved; there less here.
   double entry_mm = 0, angle_deg = 0, diameter_mm = 0;
+  // Whether going from there to here loses the tunnel as it is there.
+  [[nodiscard]] bool is_lost_here() const { return kind == Kind::Moved || kind == Kind::OnlyThere; }
   [[nodiscard]] std::string in_words() const;  // "femur: entry 2.1 mm, 3.4 deg, +0.5 mm wide"
 };
 // Of the tunnels that either plans. Same: not further apart than is seen, 0.05 mm and 0.05 deg.

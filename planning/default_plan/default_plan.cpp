@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "planning/default_plan/aim.h"
 #include "planning/files/format.h"
@@ -116,6 +117,28 @@ constexpr std::array<Shares, 9> kBothGiveWay{
 // Beside a tunnel that is planned there is one to move.
 constexpr std::array<Shares, 5> kOneGivesWay{{{0, 0}, {0.25, 0.25}, {0.5, 0.5}, {0.75, 0.75}, {1, 1}}};
 
+// Where norms put entries and how a drill usually comes to them, each found once: the steps by which bundles
+// give way ask for the same again.
+class Places {
+ public:
+  explicit Places(const Site& site) : site_(site) {}
+  [[nodiscard]] const std::optional<Tunnel>& entry(Bundle bundle, double share = 0) {
+    const auto [at, is_new] = entries_.try_emplace({bundle, share});
+    if (is_new) at->second = site_.at_norm(bundle, share);
+    return at->second;
+  }
+  // With nothing beside it.
+  [[nodiscard]] const std::optional<Tunnel>& aimed(Bundle bundle, double share) {
+    const auto [at, is_new] = aimed_.try_emplace({bundle, share});
+    if (is_new) at->second = site_.aimed(entry(bundle, share));
+    return at->second;
+  }
+
+ private:
+  const Site& site_;
+  std::map<std::pair<Bundle, double>, std::optional<Tunnel>> entries_, aimed_;
+};
+
 struct Apart {
   Tunnel tunnel;                                                // the one asked for
   double between_mm = std::numeric_limits<double>::infinity();  // to the other bundle's, where it has one
@@ -124,16 +147,15 @@ struct Apart {
 // Beside the other bundle's tunnel where that is planned. Else both are laid out, the posterolateral one
 // beside the anteromedial one, which has its usual aim, and the one asked for is taken of them: otherwise the
 // order in which they are planned would decide how much bone is left between them.
-std::optional<Apart> bundle_apart(const Site& site, const Shares& shares) {
+std::optional<Apart> bundle_apart(const Site& site, Places& places, const Shares& shares) {
   const Bundle bundle = site.options.bundle;
-  const auto at_norm = [&](Bundle of) { return site.at_norm(of, shares.of(of)); };
-  if (site.input.beside != nullptr) {
-    const auto own = site.aimed(at_norm(bundle), site.input.beside);
+  if (const Tunnel* beside = site.input.beside; beside != nullptr) {
+    const auto own = site.aimed(places.entry(bundle, shares.of(bundle)), beside);
     if (!own) return std::nullopt;
-    return Apart{*own, site.between_mm(*own, *site.input.beside)};
+    return Apart{*own, site.between_mm(*own, *beside)};
   }
-  const auto am = site.aimed(at_norm(Bundle::Anteromedial));
-  const auto pl = site.aimed(at_norm(Bundle::Posterolateral), am ? &*am : nullptr);
+  const auto& am = places.aimed(Bundle::Anteromedial, shares.am);
+  const auto pl = site.aimed(places.entry(Bundle::Posterolateral, shares.pl), am ? &*am : nullptr);
   const auto& own = bundle == Bundle::Anteromedial ? am : pl;
   if (!own) return std::nullopt;
   Apart apart{*own};
@@ -142,20 +164,30 @@ std::optional<Apart> bundle_apart(const Site& site, const Shares& shares) {
 }
 
 // No further off the norm than leaves the bone that the plan's check asks for between the bundles; where
-// nothing does, where most is left.
-std::optional<Tunnel> bundle_tunnel(const Site& site) {
+// nothing does, where most is left. Puts it, and where it is, into the result.
+std::optional<Tunnel> bundle_tunnel(const Site& site, Places& places, DefaultTunnel& result) {
+  const Bundle bundle = site.options.bundle;
   std::span<const Shares> steps = kBothGiveWay;
   if (site.input.beside != nullptr)
     steps = kOneGivesWay;
-  else if (site.options.bundle == Bundle::Anteromedial)
+  else if (bundle == Bundle::Anteromedial)
     steps = steps.subspan(4);  // it stays as long as the other one can still give way
-  std::optional<Apart> best;
+  std::optional<Apart> first, best;
   for (const Shares& shares : steps) {
-    const auto apart = bundle_apart(site, shares);
+    const auto apart = bundle_apart(site, places, shares);
+    if (shares.of(bundle) == 0) first = apart;
     if (apart && (!best || apart->between_mm > best->between_mm)) best = apart;
     if (best && best->between_mm >= tunnels::PlanNorms{}.thin_bone_between_tunnels_mm) break;
   }
-  return best ? std::optional(best->tunnel) : std::nullopt;
+  if (!best) return std::nullopt;
+  result.off_norm_mm = (best->tunnel.entry_mm - places.entry(bundle)->entry_mm).norm();
+  if (result.off_norm_mm == 0) return best->tunnel;
+  const std::string other = tunnels::name_of({site.input.bone->kind, other_bundle(bundle)});
+  result.place = files::format(
+      "%.1f mm off the norm's place, away from the tunnel %s, for %.1f mm of bone between the two",
+      result.off_norm_mm, other.c_str(), best->between_mm);
+  if (first) result.place += files::format(": %.1f mm at the norm's place", first->between_mm);
+  return best->tunnel;
 }
 
 }  // namespace
@@ -215,28 +247,25 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
     return result;
   }
   const Site site{input, side, marks, *joint, options};
-  std::optional<Tunnel> at_entry = site.at_norm(options.bundle), aimed;
+  Places places(site);
+  std::optional<Tunnel> aimed;
   if (options.bundle == Bundle::Whole && is_confirmed("native_footprint")) {
     const auto on = input.surface->closest_point(input.landmarks.at("native_footprint"));
-    at_entry = site.tunnel_of(Bundle::Whole);
-    at_entry->entry_mm = on.point_mm;
-    at_entry->direction = -on.normal;
+    Tunnel marked = site.tunnel_of(Bundle::Whole);
+    marked.entry_mm = on.point_mm;
+    marked.direction = -on.normal;
+    aimed = site.aimed(marked, input.beside);
     result.source = "the native footprint, as marked on this bone";
-  } else if (at_entry) {
+    result.place = "at the native footprint";
+  } else if (const auto& at_norm = places.entry(options.bundle); at_norm) {
     result.source = norms::default_norm(kind, options.bundle).source;
+    result.place = "at the norm's place";
+    aimed = options.bundle == Bundle::Whole ? site.aimed(at_norm, input.beside)
+                                            : bundle_tunnel(site, places, result);
   } else {
     result.outcome = Outcome::NoFootprint;
     result.message = "no bone is where the norm places the insertion";
     return result;
-  }
-  if (options.bundle == Bundle::Whole) {
-    aimed = site.aimed(at_entry, input.beside);
-  } else {
-    aimed = bundle_tunnel(site);
-    const double moved_mm = aimed ? (aimed->entry_mm - at_entry->entry_mm).norm() : 0;
-    if (moved_mm > 0)
-      result.source +=
-          files::format("; moved by %.1f mm, away from the other bundle, for bone between the two", moved_mm);
   }
   if (!aimed) {
     result.outcome = Outcome::NoAim;

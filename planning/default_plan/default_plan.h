@@ -46,7 +46,7 @@ struct BoneInput {
   // planned first. Where the norms' places leave less bone than the plan's check asks for, the posterolateral
   // entry is moved off its norm, away from the other one on the line between them, by quarters of its spread
   // (one sigma), then the anteromedial one, whose wall is the thinner; beside a planned one the one asked
-  // for. DefaultTunnel::source says how far.
+  // for. DefaultTunnel::place says how far.
   const tunnels::Tunnel* beside = nullptr;
 };
 
@@ -60,7 +60,11 @@ struct DefaultTunnel {
   } outcome = Outcome::NotRun;
   std::string message = "no default was asked for";
   tunnels::Tunnel tunnel;
-  std::string source;               // of the norm that the entry follows, and how far it was moved off it
+  std::string source;      // of the norm that the entry follows
+  double off_norm_mm = 0;  // how far the entry was moved off the norm's place
+  // The same in words, and why: "1.1 mm off the norm's place, away from the AM tunnel, for 2.0 mm of bone
+  // between the two: 0.9 mm at the norm's place".
+  std::string place;
   std::vector<std::string> doubts;  // why the plan is not reliable: proposed landmarks, doubts of the shape
   [[nodiscard]] bool is_usable() const { return outcome == Outcome::Planned; }
 };

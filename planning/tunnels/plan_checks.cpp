@@ -171,6 +171,13 @@ std::string_view to_text(PlanCheck::Verdict verdict) {
   return "unknown";
 }
 
+std::vector<std::string> wrong_in_words(const std::vector<PlanCheck>& checks) {
+  std::vector<std::string> wrong;
+  for (const PlanCheck& check : checks)
+    if (check.verdict == Verdict::Wrong) wrong.push_back(check.name + ": " + check.text);
+  return wrong;
+}
+
 double coronal_angle_deg(const Eigen::Vector3d& direction, const landmarks::AnatomicalAxes& axes) {
   return geometry::deg_from_rad(
       std::atan2(std::abs(direction.dot(axes.proximal)), std::abs(direction.dot(axes.lateral))));

@@ -45,6 +45,18 @@ TEST(PlanModel, SaysWhatTheReviewOfTheCaseSays) {
   }
 }
 
+// The defaults of a bone's two bundles are made at once: where a hand has put one of them moves neither.
+TEST(PlanModel, ADefaultKeepsNoClearOfWhatItsOwnPairTakesThePlaceOf) {
+  PlanModel model(phantom());
+  const tunnels::TunnelKey am{BoneKind::Femur, norms::Bundle::Anteromedial},
+      pl{BoneKind::Femur, norms::Bundle::Posterolateral};
+  const tunnels::Tunnel fresh = model.default_tunnel(am).tunnel;
+  tunnels::Tunnel in_the_way = model.default_tunnel(pl).tunnel;
+  in_the_way.entry_mm = fresh.entry_mm;
+  model.set_tunnel(pl, in_the_way);
+  EXPECT_EQ(model.default_tunnel(am).tunnel.entry_mm, fresh.entry_mm);
+}
+
 // A case without a bone is refused with its name.
 TEST(PlanModel, RefusesACaseWithoutBones) {
   cases::Case empty;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/norms/footprint.h"
 #include "planning/phantom/phantom_knee.h"
@@ -100,6 +101,7 @@ TEST(DefaultPlan, EntersAtTheMarkedNativeFootprint) {
   const auto single = plan_bone(inputs[0], Side::Right);
   ASSERT_TRUE(single.is_usable());
   EXPECT_LT((single.tunnel.entry_mm - knee.made.femur_landmarks.at("native_footprint")).norm(), 1e-6);
+  EXPECT_EQ(single.place, "at the native footprint");
   const auto am =
       plan_bone(inputs[0], Side::Right, {.bundle = norms::Bundle::Anteromedial, .diameter_mm = 6});
   const auto pl =
@@ -150,7 +152,8 @@ TEST(DefaultPlan, MovesBundlesApartWithinTheirSpreadAndSaysSo) {
           plan_bone(input, Side::Right, {.bundle = bundle, .diameter_mm = usual_diameter_mm(bundle)});
       ASSERT_TRUE(planned.is_usable());
       const double off_mm = (planned.tunnel.entry_mm - expected->center_mm).norm();
-      EXPECT_EQ(off_mm > 0, planned.source.find("moved by") != std::string::npos) << planned.source;
+      EXPECT_EQ(planned.off_norm_mm, off_mm);
+      EXPECT_EQ(planned.source, norms::default_norm(kind, bundle).source);
       double spread_mm = 0;
       for (const auto& at : expected->spread_mm)
         spread_mm = std::max(spread_mm, (at - expected->center_mm).norm());
@@ -161,13 +164,22 @@ TEST(DefaultPlan, MovesBundlesApartWithinTheirSpreadAndSaysSo) {
       tunnels::Tunnel needle =
           plan_bone(input, Side::Right, {.bundle = of_other, .diameter_mm = usual_diameter_mm(of_other)})
               .tunnel;
+      const double between_mm =
+          tunnels::gap_between(planned.tunnel, tunnels::measure(planned.tunnel, *input.surface), needle,
+                               tunnels::measure(needle, *input.surface))
+              .bone_mm;
+      const std::string moved =
+          files::format("%.1f mm off the norm's place, away from the tunnel %s AM, for ", off_mm,
+                        std::string(bones::to_text(kind)).c_str()) +
+          files::format("%.1f mm of bone between the two: 1.", between_mm);
+      EXPECT_EQ(planned.place.substr(0, moved.size()), off_mm > 0 ? moved : "at the norm's place");
       needle.diameter_mm = 3;
       BoneInput thin = input;
       thin.beside = &needle;
       const auto beside_thin = plan_bone(thin, Side::Right, {.bundle = bundle, .diameter_mm = 3});
       ASSERT_TRUE(beside_thin.is_usable());
       EXPECT_EQ(beside_thin.tunnel.entry_mm, expected->center_mm);
-      EXPECT_EQ(beside_thin.source, norms::default_norm(kind, bundle).source);
+      EXPECT_EQ(beside_thin.place, "at the norm's place");
     }
   }
 }

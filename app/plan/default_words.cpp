@@ -1,0 +1,27 @@
+#include "app/plan/default_words.h"
+
+#include <algorithm>
+
+namespace arthronaut::plan {
+
+std::string default_in_words(const std::vector<MadeTunnel>& made, bool took_the_place) {
+  std::string words;
+  for (const MadeTunnel& one : made) {
+    const std::string name = tunnels::name_of(one.key);
+    if (!one.made.is_usable()) {
+      words += "No default for the " + name + ": " + one.made.message + ".\n";
+      continue;
+    }
+    words += "Default " + name + ": " + one.made.place + ".";
+    for (const std::string& wrong : tunnels::wrong_in_words(one.checks))
+      words += " Wrong there: " + wrong + ".";
+    words += "\n";
+  }
+  if (std::ranges::any_of(made, [](const MadeTunnel& one) { return !one.made.doubts.empty(); }))
+    words += "It follows from landmarks that nobody has confirmed: look at them (L) before you rely on it.\n";
+  if (took_the_place) words += "Ctrl+Z brings back the plan that was there.\n";
+  if (!words.empty()) words.pop_back();
+  return words;
+}
+
+}  // namespace arthronaut::plan

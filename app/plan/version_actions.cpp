@@ -1,0 +1,68 @@
+// What is kept of a plan beside the one that is worked on, and what goes to other programs.
+#include <GLFW/glfw3.h>
+
+#include "app/plan/plan_view.h"
+
+namespace arthronaut::plan {
+
+// What is wrong with the versions says the place that a click's answer has: it stands in nobody's way.
+void PlanView::load_versions() {
+  versions_.clear();
+  try {
+    versions_ = cases::load_plan_versions(case_folder_);
+  } catch (const std::runtime_error& error) {  // a file of the case that was changed by hand
+    state_.hint = error.what();
+  }
+}
+
+void PlanView::keep_version() {
+  history_.settle_now();
+  try {  // a full disk is a state of the screen
+    const cases::PlanVersion kept = cases::keep_plan_version(case_folder_, model_->knee().plan);
+    state_.hint = "Kept as version " + std::to_string(kept.number);
+    load_versions();
+  } catch (const std::runtime_error& error) {
+    state_.hint = error.what();
+  }
+}
+
+void PlanView::take_version(std::size_t version) {
+  history_.apply_plan(versions_.at(version).plan,
+                      "Take version " + std::to_string(versions_[version].number));
+}
+
+// Into the case, which is its owner's alone to read; from there it goes wherever it is to go.
+void PlanView::export_plan() {
+  history_.settle_now();
+  state_.hint = "Exporting: the bones are drilled, which takes a while ...";
+  export_.start(model_->knee(), case_folder_ / "export");
+}
+
+void PlanView::add_version_actions(widgets::Actions& actions) {
+  const auto has_plan = [this] {
+    return model_ != nullptr && !model_->knee().plan.tunnels.empty() &&
+           history_.status().save != open_case::PlanStatus::Save::ReadOnly;
+  };
+  actions.add({"plan.keep",
+               "Keep version",
+               "The plan as it is now stays beside the one that is worked on, to be compared and taken again",
+               GLFW_KEY_K,
+               0,
+               false,
+               has_plan,
+               {},
+               [this] { keep_version(); }});
+  actions.add(
+      {"plan.export",
+       "Export",
+       "For other programs, into the folder \"export\" of the case: the plan as JSON, CSV and markups of 3D "
+       "Slicer, the drilled bones as STL",
+       GLFW_KEY_E,
+       GLFW_MOD_CONTROL,
+       false,
+       [this, has_plan] { return has_plan() && !export_.is_running(); },
+       {},
+       [this] { export_plan(); }});
+}
+
+}  // namespace arthronaut::plan

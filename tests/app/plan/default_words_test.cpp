@@ -1,0 +1,48 @@
+#include "app/plan/default_words.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace arthronaut::plan {
+namespace {
+
+using bones::BoneKind;
+using testing::HasSubstr;
+using testing::Not;
+
+MadeTunnel made(const tunnels::TunnelKey& key, const std::string& place) {
+  MadeTunnel one{.key = key};
+  one.made.outcome = default_plan::DefaultTunnel::Outcome::Planned;
+  one.made.place = place;
+  return one;
+}
+
+// Each tunnel says where its entry is; what its own checks call wrong is not left to be found in a list.
+TEST(DefaultWords, SayWhereEachTunnelIsAndWhatIsWrongThere) {
+  using Verdict = tunnels::PlanCheck::Verdict;
+  std::vector<MadeTunnel> both{made({BoneKind::Femur, norms::Bundle::Anteromedial}, "at the norm's place"),
+                               made({BoneKind::Femur, norms::Bundle::Posterolateral}, "1.1 mm off it")};
+  both[0].checks = {{.verdict = Verdict::Look, .name = "Length", .text = "28.0 mm"},
+                    {.verdict = Verdict::Wrong, .name = "Wall", .text = "0.4 mm: may break out"}};
+  EXPECT_EQ(default_in_words(both, false),
+            "Default femur AM: at the norm's place. Wrong there: Wall: 0.4 mm: may break out.\n"
+            "Default femur PL: 1.1 mm off it.");
+}
+
+TEST(DefaultWords, SayWhatTheyRestOnAndHowToHaveThePlanBack) {
+  std::vector<MadeTunnel> one{made(BoneKind::Tibia, "at the norm's place")};
+  EXPECT_THAT(default_in_words(one, false), Not(HasSubstr("Ctrl+Z")));
+  EXPECT_THAT(default_in_words(one, true), HasSubstr("Ctrl+Z brings back the plan that was there."));
+  EXPECT_THAT(default_in_words(one, true), Not(HasSubstr("landmarks")));
+  one[0].made.doubts = {"nobody has confirmed them"};
+  EXPECT_THAT(default_in_words(one, false), HasSubstr("look at them (L)"));
+}
+
+TEST(DefaultWords, SayWhyThereIsNone) {
+  MadeTunnel none{.key = BoneKind::Femur};
+  none.made.message = "no bone is there";
+  EXPECT_EQ(default_in_words({none}, false), "No default for the femur: no bone is there.");
+}
+
+}  // namespace
+}  // namespace arthronaut::plan
