@@ -17,7 +17,8 @@ std::string default_in_words(const std::vector<MadeTunnel>& made, bool took_the_
       words += " Wrong there: " + wrong + ".";
     words += "\n";
   }
-  if (std::ranges::any_of(made, [](const MadeTunnel& one) { return !one.made.doubts.empty(); }))
+  if (std::ranges::any_of(
+          made, [](const MadeTunnel& one) { return one.made.is_usable() && !one.made.doubts.empty(); }))
     words += "It follows from landmarks that nobody has confirmed: look at them (L) before you rely on it.\n";
   if (took_the_place) words += "Ctrl+Z brings back the plan that was there.\n";
   if (!words.empty()) words.pop_back();

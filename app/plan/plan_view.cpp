@@ -274,9 +274,14 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
   if (text.empty()) return;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   ImFont* font = state_.hint_of ? ui.theme.body : text.size() > 90 ? ui.theme.strong : ui.theme.title;
-  draw.AddText(font, font->FontSize, {area.x + ui.theme.px(20), area.y + ui.theme.px(16)},
-               state_.hint.empty() ? widgets::kAccent : widgets::kCaution, text.c_str(), nullptr,
-               area.width - ui.theme.px(40));
+  const float wrap = area.width - ui.theme.px(40), pad = ui.theme.px(6);
+  const ImVec2 at{area.x + ui.theme.px(20), area.y + ui.theme.px(16)};
+  const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, wrap, text.c_str());
+  // Read over a bright bone or a brighter MR, too.
+  draw.AddRectFilled({at.x - pad, at.y - pad}, {at.x + size.x + pad, at.y + size.y + pad},
+                     IM_COL32(12, 16, 20, 210), pad);
+  draw.AddText(font, font->FontSize, at, state_.hint.empty() ? widgets::kAccent : widgets::kCaution,
+               text.c_str(), nullptr, wrap);
 }
 
 std::optional<Eigen::Vector3d> PlanView::aim_handle() const {

@@ -68,9 +68,8 @@ void VolumeDrawing::make_item() {
 std::string VolumeDrawing::in_words(const std::string& no_images) const {
   if (!is_on()) return "";
   if (item_ != nullptr && item_->preset == scene::VolumePreset::Grey)
-    return "Images: cut open through the middle, towards you as the views (1 to 7) are chosen; grey values "
-           "above " +
-           std::to_string(std::lround(threshold_)) + " (, less, . more)";
+    return "Images: cut open; grey values above " + std::to_string(std::lround(threshold_)) +
+           " (, less, . more)";
   if (item_ != nullptr)
     return "Images: " + scene::in_words(item_->preset) + " above " +
            std::to_string(static_cast<int>(std::lround(threshold_))) + (volume_->is_ct ? " HU" : "") +

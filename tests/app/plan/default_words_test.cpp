@@ -41,6 +41,7 @@ TEST(DefaultWords, SayWhatTheyRestOnAndHowToHaveThePlanBack) {
 TEST(DefaultWords, SayWhyThereIsNone) {
   MadeTunnel none{.key = BoneKind::Femur};
   none.made.message = "no bone is there";
+  none.made.doubts = {"nobody has confirmed them"};
   EXPECT_EQ(default_in_words({none}, false), "No default for the femur: no bone is there.");
 }
 
