@@ -1,6 +1,7 @@
 // The bars above and below every screen.
 #include <utility>
 
+#include "app/start/start_drawing.h"
 #include "app/widgets/source_banner.h"
 #include "app/window/workstation_window.h"
 
@@ -37,25 +38,31 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
   }
   if (case_ != nullptr) {
     const cases::Case& knee = is_unpainted() ? *case_->unpainted() : model()->knee();
-    const std::string text = knee.name + "  \u2013  " + std::string(bones::to_text(knee.side)) + " knee";
+    const std::string side = std::string(bones::to_text(knee.side)) + " knee", beside = "  \u2013  " + side;
     const std::string patient = case_->identity() ? case_->identity()->in_words() : "";
-    const float right = area.x + area.width - ui.theme.px(482);
-    const auto line = [&](const ImFont* font, float y, ImU32 color, const std::string& words) {
-      const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, words.c_str()).x;
-      draw.AddText(font, font->FontSize, {right - wide, y}, color, words.c_str());
-    };
-    const ImFont* const strong = ui.theme.strong;
+    const float right = area.x + area.width - ui.theme.px(482), room = right - x - ui.theme.px(8);
+    ImFont* const strong = ui.theme.strong;
     const float row = strong->FontSize;
-    const bool is_too_long = strong->CalcTextSizeA(row, 1e9F, 0, text.c_str()).x > right - x - ui.theme.px(8);
+    const auto width_of = [&](const std::string& words) {
+      return strong->CalcTextSizeA(row, 1e9F, 0, words.c_str()).x;
+    };
+    // A name that is too long is cut short; the side, which stands behind it, never.
+    const auto line = [&](float y, ImU32 color, const std::string& words_before,
+                          const std::string& rest = "") {
+      const std::string words = start::fitting(strong, words_before, room - width_of(rest)) + rest;
+      const ImVec2 at{right - width_of(words), y};
+      draw.AddText(strong, row, at, color, words.c_str());
+      ui.log.note("app.whose", at, {right, y + row});
+    };
     // Whose knee it is stands over the name of the case; a long name over the side.
     if (!patient.empty()) {
-      line(strong, middle - row, widgets::kText, patient);
-      line(strong, middle, widgets::kQuietText, text);
-    } else if (is_too_long) {
-      line(strong, middle - row, widgets::kText, knee.name);
-      line(strong, middle, widgets::kText, std::string(bones::to_text(knee.side)) + " knee");
+      line(middle - row, widgets::kText, patient);
+      line(middle, widgets::kQuietText, knee.name, beside);
+    } else if (width_of(knee.name + beside) > room) {
+      line(middle - row, widgets::kText, knee.name);
+      line(middle, widgets::kText, side);
     } else {
-      line(strong, middle - row / 2, widgets::kText, text);
+      line(middle - row / 2, widgets::kText, knee.name, beside);
     }
   }
   x = area.x + area.width - ui.theme.px(12);
