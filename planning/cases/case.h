@@ -9,7 +9,7 @@
 //   camera.json, tools.json, fluid.json   what it is navigated with; the newest check in fluid
 //   sessions/ID/               one folder a session, exercises too (navigation/recording)
 //   pictures/, report.pdf      of the operation, sent as DICOM; of the demo. Videos lie there too
-//   screens/                   screenshots and videos of the screen (app/screen_copy)
+//   screens/, export/          pictures of the screen (app/screen_copy); the plan for other programs
 //   cache/                     what can be made again from the rest; may be deleted at any time
 //
 // Every file is replaced atomically: a crash at any moment leaves each as it was last saved, and of a whole
