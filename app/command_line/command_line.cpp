@@ -79,7 +79,8 @@ int run_parsed(CLI::App& app, Context& context, const std::vector<std::string>& 
   } catch (const DeviceError& error) {
     return report_error(error, kInvalidInput);
   } catch (const std::filesystem::filesystem_error& error) {
-    return report_error(error, kInvalidInput);
+    // In the words of every other error: the library's begin with the call that failed.
+    return report_error(IoError(error.path1(), error.code().message()), kInvalidInput);
   } catch (const std::exception& error) {
     return report_error(error, kInternalError);
   }

@@ -5,6 +5,7 @@
 
 #include "app/command_line/command.h"
 #include "app/command_line/interruption.h"
+#include "app/command_line/option_checks.h"
 #include "app/library/workstation_library.h"
 #include "planning/cases/case_lock.h"
 #include "planning/geometry/error.h"
@@ -70,6 +71,7 @@ void import(Context& context, const ImportArguments& arguments) {
   cases::CaseLock lock;  // before the case is read; a new one nobody else knows of
   if (fs::exists(folder / "case.json")) lock = cases::lock_or_refuse(folder);
   if (!lock.notice().empty()) context.say(lock.notice() + ".");
+  importing::refuse_folder(folder);
   importing::refuse_missing_side(folder, arguments.source, options_of(arguments));
   const Interruption interruption;  // over the writing as well, which takes no time
   importing::ImportProcess process({.source = arguments.source,
@@ -129,14 +131,16 @@ void add_import_command(CLI::App& app, Context& context) {
                   "Axes of a mesh: lps or ras; default: as the file says, else lps")
       ->check(CLI::IsMember({"lps", "ras"}, CLI::ignore_case));
   sub->add_option("--label", arguments->labels,
-                  "Labels of a label map, as in femur=5,tibia=6; default: by the names of its segments");
+                  "Labels of a label map, as in femur=5,tibia=6; default: by the names of its segments")
+      ->check(read_by([](const std::string& text) { (void)importing::labels_from_text(text); }));
   sub->add_option("--threshold", arguments->threshold,
-                  "Least value of bone in a grey volume; default for CT: 250 HU, 180 HU for coarse voxels");
+                  "Least value of bone in a grey volume; default for CT: 250 HU, 180 HU for coarse voxels")
+      ->check(finite());
   sub->add_option("--series", arguments->series, "Series number or UID, for DICOM with several");
   sub->add_option("--name", arguments->name, "Name of the case; default: \"Knee\" and the date");
   sub->add_option("--memory-limit-gib", arguments->memory_limit_gib,
                   "Memory that reading and surface making may take; default: 2")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   sub->add_flag(
       "--without-identity", arguments->without_identity,
       "Do not keep whose bones they are; else identity.json and study.json hold what a DICOM source says");

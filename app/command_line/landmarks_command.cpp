@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "planning/cases/case.h"
 #include "planning/cases/case_lock.h"
 #include "planning/files/format.h"
@@ -39,8 +40,8 @@ NamedPlace place_from(const std::string& text) {
   if (landmarks::find_landmark(place.bone, place.name) == nullptr) {
     std::string known;
     for (const auto& kind : landmarks::known_landmarks(place.bone)) known += " " + std::string(kind.name);
-    throw InvalidInput("landmarks: the " + std::string(bones::to_text(place.bone)) + " has no landmark \"" +
-                       place.name + "\"; it has" + known);
+    throw InvalidInput("the " + std::string(bones::to_text(place.bone)) + " has no landmark \"" + place.name +
+                       "\"; it has" + known);
   }
   return place;
 }
@@ -49,7 +50,7 @@ NamedPlace place_from(const std::string& text) {
 NamedPlace placed_from(const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || text.find('.') == std::string::npos)
-    throw InvalidInput("landmarks: --set \"" + text + "\" is not BONE.NAME=x,y,z");
+    throw InvalidInput("\"" + text + "\" is not BONE.NAME=x,y,z");
   NamedPlace place = place_from(text.substr(0, equals));
   std::string rest = text.substr(equals + 1) + ",";
   for (Eigen::Index k = 0; k < 3; ++k) {
@@ -62,10 +63,10 @@ NamedPlace placed_from(const std::string& text) {
       used = 0;
     }
     if (used == 0 || used != number.size() || !std::isfinite(place.at_mm[k]))
-      throw InvalidInput("landmarks: --set \"" + text + "\" is not BONE.NAME=x,y,z");
+      throw InvalidInput("\"" + text + "\" is not BONE.NAME=x,y,z");
     rest.erase(0, comma + 1);
   }
-  if (!rest.empty()) throw InvalidInput("landmarks: --set \"" + text + "\" has more than three numbers");
+  if (!rest.empty()) throw InvalidInput("\"" + text + "\" has more than three numbers");
   return place;
 }
 
@@ -188,13 +189,17 @@ void add_landmarks_command(CLI::App& app, Context& context) {
                      "Propose a bone's landmarks from its shape, place or confirm them, or list them",
                      "arthronaut landmarks Knee.arthro --propose --set femur.notch_apex=-71.2,8.1,44.0");
   sub->add_option("case", arguments->case_folder, "Case folder")->required();
-  sub->add_flag("--propose", arguments->propose, "Propose from the shape what nobody has confirmed");
-  sub->add_option("--set", arguments->set, "BONE.NAME=x,y,z in mm, LPS: placed by hand, and so confirmed");
-  sub->add_option("--confirm", arguments->confirm, "BONE.NAME, or BONE for all of it: looked at and right");
+  auto* propose =
+      sub->add_flag("--propose", arguments->propose, "Propose from the shape what nobody has confirmed");
+  sub->add_option("--set", arguments->set, "BONE.NAME=x,y,z in mm, LPS: placed by hand, and so confirmed")
+      ->check(read_by([](const std::string& text) { (void)placed_from(text); }));
+  sub->add_option("--confirm", arguments->confirm, "BONE.NAME, or BONE for all of it: looked at and right")
+      ->check(read_by([](const std::string& text) { (void)place_from(text); }));
   sub->add_option("--roof", arguments->roof,
                   "How Blumensaat's line is proposed: flat (through the roof without its hill) or ends "
                   "(joins its ends)")
       ->check(CLI::IsMember({"flat", "ends"}))
+      ->needs(propose)
       ->capture_default_str();
   sub->add_flag("--json", arguments->as_json, "Print the landmarks as JSON");
   sub->callback([arguments, &context] {

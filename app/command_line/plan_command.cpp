@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "app/command_line/plan_report.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/cases/case.h"
@@ -45,7 +46,7 @@ double diameter_mm_of(const PlanArguments& arguments) {
 }
 
 tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case& knee,
-                               const geometry::Surface& surface, bool has_entry) {
+                               const geometry::Surface& surface) {
   const tunnels::TunnelKey key = key_of(arguments);
   const bones::BoneKind kind = key.bone;
   tunnels::Tunnel tunnel{.bone = kind,
@@ -60,8 +61,6 @@ tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case
                          "has no landmark native_footprint: give --entry");
     }
     tunnel.entry_mm = marks->second.at("native_footprint");
-  } else if (!has_entry) {
-    throw InvalidInput("plan: --entry (or --at-footprint) is needed beside --direction");
   }
   const auto nearest = surface.closest_point(tunnel.entry_mm);
   const double off_mm = (nearest.point_mm - tunnel.entry_mm).norm();
@@ -92,8 +91,33 @@ tunnels::Tunnel default_tunnel(const PlanArguments& arguments, const cases::Case
       default_plan::plan_bone(input, knee.side, {.bundle = bundle, .diameter_mm = diameter_mm_of(arguments)});
   if (!planned.is_usable())
     throw InvalidInput(arguments.case_folder, "", "has no default plan: " + planned.message);
-  verdict = {planned.doubts.empty(), planned.doubts, planned.source};
+  verdict = {.is_reliable = planned.doubts.empty(),
+             .reasons = planned.doubts,
+             .source = planned.source,
+             .place = planned.place,
+             .off_norm_mm = planned.off_norm_mm};
   return planned.tunnel;
+}
+
+// What a default takes the place of may be an evening's work, and nobody undoes a command: it is kept as a
+// version, unless one is the same.
+void keep_replaced(const PlanArguments& arguments, const Context& context, const cases::Plan& before,
+                   const cases::Plan& now, PlanVerdict& verdict) {
+  std::string replaced;
+  for (const auto& difference : cases::compare_plans(now, before))
+    if (difference.is_lost_here()) replaced += (replaced.empty() ? "" : "; ") + difference.in_words();
+  if (replaced.empty()) return;
+  const auto versions = cases::load_plan_versions(arguments.case_folder);
+  const auto same = std::ranges::find_if(versions, [&](const cases::PlanVersion& version) {
+    return std::ranges::none_of(cases::compare_plans(version.plan, before),
+                                &cases::TunnelDifference::is_lost_here);
+  });
+  verdict.kept_version =
+      same != versions.end() ? same->number : cases::keep_plan_version(arguments.case_folder, before).number;
+  const std::string number = std::to_string(verdict.kept_version);
+  if (!arguments.as_json)
+    context.say("The plan that was there is kept as version " + number + ", --take " + number +
+                " brings it back. Against the default, " + replaced + ".");
 }
 
 // Tunnels as another program moved them; only those of bones that the case holds.
@@ -128,22 +152,27 @@ void take_markups(const PlanArguments& arguments, const Context& context, cases:
 }
 
 void show(const PlanArguments& arguments, const Context& context, const cases::Case& knee,
-          const PlanVerdict& verdict) {
-  const plan_review::CaseReview review(knee);
+          const plan_review::CaseReview& review, const PlanVerdict& verdict) {
   auto tunnels_json = nlohmann::ordered_json::array();
+  bool has_any = false;
   for (const auto& [key, tunnel] : knee.plan.tunnels) {
     if (!arguments.bone.empty() && arguments.bone != bones::to_text(key.bone)) continue;
     if (arguments.names_type && arguments.type != norms::to_text(key.bundle)) continue;
     if (!review.has_bone(key.bone))
       throw InvalidInput(arguments.case_folder, "plan.json", "plans a bone that the case lacks");
+    has_any = true;
     if (arguments.as_json) {
       tunnels_json.push_back(tunnel_to_json(knee, review, key, verdict));
     } else {
-      describe_tunnel(context, knee, review, key);
+      describe_tunnel(context, knee, review, key, verdict);
     }
   }
-  if (!arguments.as_json && knee.plan.tunnels.empty()) context.say("No tunnel is planned.");
-  if (!arguments.as_json) return;
+  if (!arguments.as_json) {
+    if (!has_any)
+      context.say("No " + (arguments.bone.empty() ? "" : arguments.bone + " ") + "tunnel is planned" +
+                  (arguments.names_type ? " of type " + arguments.type : "") + ".");
+    return;
+  }
   // Of one bone the tunnel itself; of a bone with two it is never one of them unasked.
   if (!arguments.bone.empty() && tunnels_json.size() < 2) {
     std::cout << (tunnels_json.empty() ? nlohmann::ordered_json() : tunnels_json[0]).dump(2) << '\n';
@@ -215,7 +244,7 @@ void add_plan_command(CLI::App& app, Context& context) {
           ->excludes(entry);
   auto* diameter =
       sub->add_option("--diameter-mm", arguments->diameter_mm, "Diameter; by default 9, of AM 7, of PL 6")
-          ->check(CLI::Range(3.0, 15.0));
+          ->check(between(3, 15));
   auto* by_default =
       sub->add_flag(
              "--default", arguments->by_default,
@@ -248,7 +277,7 @@ void add_plan_command(CLI::App& app, Context& context) {
       ->excludes(by_default)
       ->excludes(markups);
   auto* take = sub->add_option("--take", arguments->version, "Take a kept version as the plan")
-                   ->check(CLI::PositiveNumber)
+                   ->check(above_zero())
                    ->excludes(by_default)
                    ->excludes(markups)
                    ->excludes(direction)
@@ -266,6 +295,13 @@ void add_plan_command(CLI::App& app, Context& context) {
     arguments->names_diameter = diameter->count() > 0;
     const bool writes = direction->count() > 0 || arguments->by_default || !arguments->markups.empty() ||
                         arguments->version > 0 || arguments->removes;
+    // What the parser cannot ask for.
+    if (direction->count() > 0 && entry->count() == 0 && !arguments->at_footprint)
+      throw CLI::RequiredError("beside --direction, --entry or --at-footprint");
+    if (direction->count() > 0 && arguments->direction.norm() < 1e-9)
+      throw CLI::ValidationError("--direction", "must not be zero");
+    if (arguments->names_diameter && direction->count() == 0 && !arguments->by_default)
+      throw CLI::RequiredError("beside --diameter-mm, --default or --direction");
     cases::CaseLock lock;
     if (writes || arguments->keeps) lock = cases::lock_or_refuse(arguments->case_folder);
     if (!lock.notice().empty() && !arguments->as_json) context.say(lock.notice() + ".");
@@ -278,17 +314,17 @@ void add_plan_command(CLI::App& app, Context& context) {
     } else if (arguments->removes) {
       remove_tunnel(*arguments, knee);
     } else if (writes) {
-      if (!arguments->by_default && arguments->direction.norm() < 1e-9)
-        throw InvalidInput("plan: --direction must not be zero");
       const auto kind = bones::bone_kind_from_text(arguments->bone);
       const auto bone_of_case = knee.bones.find(kind);
       if (bone_of_case == knee.bones.end()) {
         throw InvalidInput(arguments->case_folder, "case.json", "holds no " + arguments->bone);
       }
       const geometry::Surface surface(bone_of_case->second.mesh);
+      const cases::Plan before = knee.plan;
       put(arguments->by_default ? default_tunnel(*arguments, knee, kind, surface, verdict)
-                                : planned_tunnel(*arguments, knee, surface, entry->count() > 0),
+                                : planned_tunnel(*arguments, knee, surface),
           bones::mesh_sha256(bone_of_case->second.mesh), *arguments, context, knee);
+      if (arguments->by_default) keep_replaced(*arguments, context, before, knee.plan, verdict);
       arguments->names_type = true;  // what was placed is shown
     }
     if (writes) {
@@ -296,7 +332,13 @@ void add_plan_command(CLI::App& app, Context& context) {
       knee.plan_version = cases::save_plan_over(arguments->case_folder, knee.plan, knee.plan_version);
     }
     if (arguments->lists_versions) return list_versions(*arguments, context, knee);
-    show(*arguments, context, knee, verdict);
+    const plan_review::CaseReview review(knee);
+    if (arguments->by_default) {
+      for (std::string& wrong : tunnels::wrong_in_words(review.checks(key_of(*arguments))))
+        verdict.reasons.push_back(std::move(wrong));
+      verdict.is_reliable = verdict.reasons.empty();
+    }
+    show(*arguments, context, knee, review, verdict);
     if (arguments->keeps) {
       const auto kept = cases::keep_plan_version(arguments->case_folder, knee.plan);
       if (!arguments->as_json) context.say("Kept as version " + std::to_string(kept.number) + ".");

@@ -28,13 +28,14 @@ const char* sign_of(PlanCheck::Verdict verdict) {
 }  // namespace
 
 void describe_tunnel(const Context& context, const cases::Case& knee, const plan_review::CaseReview& review,
-                     const tunnels::TunnelKey& key) {
+                     const tunnels::TunnelKey& key, const PlanVerdict& verdict) {
   const auto& [tunnel, measured] = review.tunnels().at(key);
   const auto& e = tunnel.entry_mm;
   const auto& d = tunnel.direction;
   context.say(files::format("%s tunnel, %.1f mm", tunnels::name_of(key).c_str(), tunnel.diameter_mm));
   context.say(files::format("  entry      %.3f, %.3f, %.3f mm", e.x(), e.y(), e.z()));
   context.say(files::format("  direction  %.5f, %.5f, %.5f", d.x(), d.y(), d.z()));
+  if (!verdict.source.empty()) context.say("  default    " + verdict.place + " [" + verdict.source + "]");
   if (measured.enters_bone) {
     const auto& x = measured.exit_mm;
     context.say(files::format("  length     %.2f mm inside bone", measured.length_mm));
@@ -76,7 +77,12 @@ nlohmann::ordered_json tunnel_to_json(const cases::Case& knee, const plan_review
   auto reasons = verdict.reasons;
   const auto fit = cases::plan_fit(knee, key);
   if (!fit.is_valid()) reasons.push_back(fit.reason);
-  if (!verdict.source.empty()) node["source"] = verdict.source;
+  if (!verdict.source.empty()) {
+    node["source"] = verdict.source;
+    node["place"] = verdict.place;
+    node["off_norm_mm"] = verdict.off_norm_mm;
+  }
+  if (verdict.kept_version > 0) node["kept_version"] = verdict.kept_version;
   node["reliable"] = verdict.is_reliable && fit.is_valid();
   node["reasons"] = reasons;
   return node;

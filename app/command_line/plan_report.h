@@ -11,17 +11,19 @@
 
 namespace arthronaut::command_line {
 
-// Lines for the user: entry, direction, what was measured, every check.
-// Precondition of both: the review, which is of this case, has the tunnel.
-void describe_tunnel(const Context& context, const cases::Case& knee, const plan_review::CaseReview& review,
-                     const tunnels::TunnelKey& key);
-
 // What a default plan says about itself beside the tunnel.
 struct PlanVerdict {
   bool is_reliable = true;
   std::vector<std::string> reasons;
-  std::string source;  // of the norm; empty without one
+  std::string source, place;  // as default_plan::DefaultTunnel has them; empty where no default was made
+  double off_norm_mm = 0;
+  int kept_version = 0;  // of the plan that the default took the place of; 0: it took none's
 };
+
+// Lines for the user: entry, direction, what was measured, every check.
+// Precondition of both: the review, which is of this case, has the tunnel.
+void describe_tunnel(const Context& context, const cases::Case& knee, const plan_review::CaseReview& review,
+                     const tunnels::TunnelKey& key, const PlanVerdict& verdict);
 [[nodiscard]] nlohmann::ordered_json tunnel_to_json(const cases::Case& knee,
                                                     const plan_review::CaseReview& review,
                                                     const tunnels::TunnelKey& key,

@@ -5,8 +5,10 @@
 #include <optional>
 
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "app/report/segmentation_sheet.h"
 #include "planning/files/format.h"
+#include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
 #include "planning/images/volume_file.h"
 #include "planning/images/volume_writer.h"
@@ -149,12 +151,32 @@ std::vector<std::string> judge(const Context& context, const SegmentArguments& a
   return reasons;
 }
 
+// The images and what was painted in them are nobody's to lose, and a file of another ending would be no
+// volume to anything that reads it.
+void refuse_before_the_work(const SegmentArguments& arguments) {
+  namespace fs = std::filesystem;
+  if (!arguments.report.empty() && arguments.bones.empty())
+    throw CLI::RequiredError("beside --report, which bones it draws: --label, as in femur=1,tibia=2,");
+  const fs::path output = arguments.output;
+  if (output.extension() != ".nrrd")
+    throw CLI::ValidationError("--output", output.string() + " does not end in .nrrd, as what is written");
+  std::error_code none;
+  for (const std::string& input : {arguments.volume, arguments.seeds})
+    if (fs::equivalent(output, input, none))
+      throw InvalidInput(output, "", "is what is read: the label map needs a file of its own");
+  for (const fs::path& written : {output, fs::path(arguments.report)}) {
+    if (written.empty()) continue;
+    const fs::path folder = fs::absolute(written).parent_path();
+    if (!fs::is_directory(folder, none))
+      throw IoError(written, "the folder " + folder.string() + " does not exist");
+    files::refuse_unwritable(folder);
+  }
+}
+
 void segment(Context& context, const SegmentArguments& arguments) {
   const auto named = arguments.bones.empty() ? std::map<bones::BoneKind, int>{}
                                              : importing::labels_from_text(arguments.bones);
-  if (!arguments.report.empty() && named.empty())
-    throw InvalidInput(
-        "--report draws bones: say with --label which they are, as in --label femur=1,tibia=2");
+  refuse_before_the_work(arguments);
   const images::Volume seeds = read(arguments.seeds, "", "Reading the seeds");
   images::Volume volume = read(arguments.volume, arguments.series, "Reading");
   const segmentation::Labels painted = labels_from(arguments.seeds, seeds, volume);
@@ -197,18 +219,19 @@ void add_segment_command(CLI::App& app, Context& context) {
   sub->add_option("--series", arguments->series, "Series number or UID, for DICOM with several");
   sub->add_option("--label", arguments->bones,
                   "Which of the numbers are bones, as in femur=1,tibia=2: these alone are tidied, made into "
-                  "surfaces and judged (4 when a person should look); default: all are tidied, none judged");
+                  "surfaces and judged (4 when a person should look); default: all are tidied, none judged")
+      ->check(read_by([](const std::string& text) { (void)importing::labels_from_text(text); }));
   sub->add_option("--side", arguments->side,
                   "left or right, for the judgement; default: by the name of the label map, else not judged")
       ->check(CLI::IsMember({"left", "right"}));
   sub->add_flag("--largest", arguments->keeps_largest, "Of each bone's pieces keep the largest, no islands");
   sub->add_option("--fill-holes", arguments->closing_mm,
                   "Fill what a bone encloses, gaps of up to twice so many mm closed before; 0 closes none")
-      ->check(CLI::Range(0.0, 5.0));
+      ->check(between(0, 5));
   sub->add_option("--report", arguments->report,
                   "Page to write (.pdf): each bone's surface over the images, and what speaks against it");
   sub->add_option("--smooth-mm", arguments->smoothing_mm, "Round borders off at this radius; default: not")
-      ->check(CLI::Range(0.0, 5.0));
+      ->check(between(0, 5));
   sub->callback([&context, arguments] { segment(context, *arguments); });
 }
 

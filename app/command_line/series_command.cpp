@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
@@ -56,10 +57,15 @@ void print(const Context& context, const images::SeriesList& list) {
     if (!series.description.empty()) line += " \"" + series.description + "\"";
     context.say(line);
     if (!series.uid.empty()) context.say("    UID " + series.uid);
-    context.say(files::format("    %d %s; %d x %d x %d voxels of %.3g x %.3g x %.3g mm", series.image_count,
-                              series.image_count == 1 ? "image" : "images", series.size.x(), series.size.y(),
-                              series.size.z(), series.spacing_mm.x(), series.spacing_mm.y(),
-                              series.spacing_mm.z()));
+    std::string size =
+        files::format("    %d %s", series.image_count, series.image_count == 1 ? "image" : "images");
+    // Of what cannot be opened some of it is not known.
+    if (series.size.minCoeff() > 0)
+      size += files::format("; %d x %d x %d voxels", series.size.x(), series.size.y(), series.size.z());
+    if (series.spacing_mm.minCoeff() > 0)
+      size += files::format(" of %.3g x %.3g x %.3g mm", series.spacing_mm.x(), series.spacing_mm.y(),
+                            series.spacing_mm.z());
+    context.say(size);
     if (!series.is_readable()) context.say("  ! cannot be opened: " + series.refusal);
     for (const auto& warning : series.warnings) context.say("  ! " + warning);
   }
@@ -111,7 +117,7 @@ void add_series_command(CLI::App& app, Context& context) {
   sub->add_flag("--json", arguments->as_json, "The list as JSON");
   sub->add_option("--memory-limit-gib", arguments->memory_limit_gib,
                   "Memory that looking may take; default: 2")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   sub->callback([&context, arguments] { list_series(context, *arguments); });
 }
 

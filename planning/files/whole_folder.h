@@ -13,4 +13,8 @@ namespace arthronaut::files {
 void make_whole_folder(const std::filesystem::path& folder,
                        const std::function<void(const std::filesystem::path& unfinished)>& fill);
 
+// Before work whose result goes there: throws IoError, which names the folder, where nothing can be made in
+// `folder`, or, while it is not there, in the nearest one above it that is.
+void refuse_unwritable(const std::filesystem::path& folder);
+
 }  // namespace arthronaut::files

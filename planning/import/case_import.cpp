@@ -20,6 +20,11 @@ namespace fs = std::filesystem;
   throw InvalidInput(source, "", "its name does not say which knee it is: add --side left or --side right");
 }
 
+void refuse_what_is_no_case(const fs::path& folder) {
+  if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
+    throw InvalidInput(folder, "", "exists and is not a case: nothing was written");
+}
+
 cases::Case case_to_extend(const fs::path& folder, const BoneImport& import, const std::string& name,
                            const fs::path& source) {
   if (fs::exists(folder / "case.json")) {
@@ -33,9 +38,7 @@ cases::Case case_to_extend(const fs::path& folder, const BoneImport& import, con
     if (!name.empty()) existing.name = name;
     return existing;
   }
-  if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder))) {
-    throw InvalidInput(folder, "", "exists and is not a case: nothing was written");
-  }
+  refuse_what_is_no_case(folder);
   if (!import.side) refuse_unknown_side(source);
   cases::Case created;
   // Not by the source's or the folder's name: it often is the patient's.
@@ -162,6 +165,12 @@ void save_into(const fs::path& folder, cases::Case& target, const BoneImport& im
 }
 
 }  // namespace
+
+void refuse_folder(const fs::path& folder) {
+  if (fs::exists(folder / "case.json")) return;
+  refuse_what_is_no_case(folder);
+  files::refuse_unwritable(fs::absolute(folder).parent_path());
+}
 
 void refuse_missing_side(const fs::path& folder, const fs::path& source, const BoneImportOptions& options) {
   if (options.side || side_in_name(source) || fs::exists(folder / "case.json") || !fs::exists(source)) return;

@@ -9,8 +9,11 @@
 
 namespace arthronaut::importing {
 
-// Throws InvalidInput when add_to_case() will need a side that nothing can say: before the import's work, not
-// after it. A volume may still show it by its fibula.
+// Both before the import's work, not after it. Throws what add_to_case() will of a folder that is no case:
+// InvalidInput where it holds something else, IoError where none can be made.
+void refuse_folder(const std::filesystem::path& folder);
+// Throws InvalidInput when add_to_case() will need a side that nothing can say. A volume may still show it by
+// its fibula.
 void refuse_missing_side(const std::filesystem::path& folder, const std::filesystem::path& source,
                          const BoneImportOptions& options);
 

@@ -9,6 +9,7 @@
 #include "planning/files/atomic_file.h"
 #include "planning/files/format.h"
 #include "planning/files/remove_file.h"
+#include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
 #include "planning/plan_export/drilled_bone.h"
@@ -55,6 +56,7 @@ std::string plan_csv(const cases::Case& knee) {
 ExportSummary export_plan(const cases::Case& knee, const fs::path& folder) {
   if (knee.plan.tunnels.empty())
     throw InvalidInput("plan: nothing is planned, so there is nothing to export");
+  files::refuse_unwritable(folder);  // drilling takes half a minute
   ExportSummary summary;
   std::map<bones::BoneKind, geometry::TriangleMesh> drilled;
   for (const auto kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {

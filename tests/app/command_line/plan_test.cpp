@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "planning/cases/case.h"
+#include "planning/cases/plan_versions.h"
 #include "planning/phantom/phantom_case.h"
 #include "planning/phantom/phantom_knee.h"
 #include "tests/app/command_line/program.h"
@@ -65,6 +66,46 @@ TEST_F(PlanCommand, MakesADefaultPlanAndPrintsIt) {
   const cases::Case saved = cases::load_case(folder_ / "knee.arthro");
   EXPECT_NEAR(saved.plan.tunnels.at(bones::BoneKind::Tibia).entry_mm.x(),
               tunnel.at("entry_mm").at(0).get<double>(), 1e-6);
+}
+
+// A default takes the place of a plan that may be an evening's work, and no undo follows a command: it is
+// kept, once, and said; what is new takes nothing's place.
+TEST_F(PlanCommand, KeepsWhatADefaultTakesThePlaceOf) {
+  const tunnels::Tunnel by_hand = knee_.plan.tunnels.at(bones::BoneKind::Femur);
+  const auto first = run({"plan", "--bone", "femur", "--default"});
+  EXPECT_THAT(first.output, HasSubstr("kept as version 1, --take 1 brings it back"));
+  EXPECT_THAT(first.output, HasSubstr("femur: entry "));
+  EXPECT_THAT(first.output, HasSubstr("default    at the native footprint ["));
+  EXPECT_THAT(run({"plan", "--bone", "femur", "--default"}).output, Not(HasSubstr("kept as version")));
+  EXPECT_EQ(run({"plan", "--take", "1"}).exit_code, 0);
+  const auto taken = cases::load_case(folder_ / "knee.arthro").plan.tunnels.at(bones::BoneKind::Femur);
+  EXPECT_LT((taken.entry_mm - by_hand.entry_mm).norm(), 1e-6);
+  const auto again = run({"plan", "--bone", "femur", "--default", "--json"});
+  EXPECT_EQ(nlohmann::json::parse(again.output).at("kept_version"), 1) << "it is a version already";
+  EXPECT_EQ(cases::load_plan_versions(folder_ / "knee.arthro").size(), 1U);
+}
+
+// A diameter without a tunnel to place would be taken for a change of the one that is there; of a tunnel that
+// is not planned it is said so; an export that cannot be written is refused before half a minute of drilling.
+TEST_F(PlanCommand, WhatWouldDoNothingIsRefused) {
+  const auto diameter = run({"plan", "--bone", "femur", "--diameter-mm", "5"});
+  EXPECT_EQ(diameter.exit_code, 2);
+  EXPECT_THAT(diameter.errors, HasSubstr("--default or --direction"));
+  const auto nan = run({"plan", "--bone", "femur", "--default", "--diameter-mm", "nan"});
+  EXPECT_EQ(nan.exit_code, 2);
+  EXPECT_THAT(nan.errors, HasSubstr("--diameter-mm: \"nan\" is not a number, 3 to 15"));
+  EXPECT_THAT(run({"plan", "--take", "0"}).errors, HasSubstr("--take: \"0\" is not a number, above 0"));
+  EXPECT_EQ(run({"plan", "--bone", "femur", "--direction", "1,0,0"}).exit_code, 2);
+  EXPECT_EQ(run({"plan", "--bone", "femur", "--at-footprint", "--direction", "0,0,0"}).exit_code, 2);
+  EXPECT_THAT(run({"plan", "--bone", "femur", "--type", "am"}).output,
+              HasSubstr("No femur tunnel is planned of type am."));
+  const auto file = run({"plan", "--export", folder_ / "knee.arthro" / "plan.json"});
+  EXPECT_EQ(file.exit_code, 3);
+  EXPECT_THAT(file.errors, HasSubstr("plan.json: cannot be written: Not a directory"));
+  EXPECT_EQ(run({"landmarks", "--roof", "flat"}).exit_code, 2) << "nothing is proposed";
+  const auto set = run({"landmarks", "--set", "femur.notch_apex=1,2,nan"});
+  EXPECT_EQ(set.exit_code, 2);
+  EXPECT_THAT(set.errors, HasSubstr("--set: \"femur.notch_apex=1,2,nan\" is not BONE.NAME=x,y,z"));
 }
 
 // A knee without landmarks: they are proposed, and that is a reason to look before relying on it.

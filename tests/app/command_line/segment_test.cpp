@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "planning/files/atomic_file.h"
 #include "planning/images/volume_file.h"
 #include "planning/images/volume_writer.h"
 #include "tests/app/command_line/program.h"
@@ -95,9 +96,34 @@ TEST_F(SegmentCommand, RemovesIslandsAndFillsHoles) {
 }
 
 // What cannot be is said before anything is grown, and nothing is written.
+// Neither the patient's images nor the strokes are written over, and what no reader would take for a volume
+// is not written at all.
+TEST_F(SegmentCommand, RefusesAnOutputThatWouldLoseSomething) {
+  const std::string images = files::read_text(folder_ / "mr.nrrd"),
+                    seeds = files::read_text(folder_ / "seeds.nrrd");
+  for (const char* input : {"mr.nrrd", "seeds.nrrd"}) {
+    const auto result = run_program(
+        {"segment", folder_ / "mr.nrrd", "--seeds", folder_ / "seeds.nrrd", "-o", folder_ / input});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_THAT(result.errors, AllOf(HasSubstr(input), HasSubstr("is what is read")));
+  }
+  EXPECT_EQ(files::read_text(folder_ / "mr.nrrd"), images);
+  EXPECT_EQ(files::read_text(folder_ / "seeds.nrrd"), seeds);
+  const auto text = run_program(
+      {"segment", folder_ / "mr.nrrd", "--seeds", folder_ / "seeds.nrrd", "-o", folder_ / "labels.txt"});
+  EXPECT_EQ(text.exit_code, 2);
+  EXPECT_THAT(text.errors, HasSubstr("does not end in .nrrd"));
+  const auto nowhere = segment({"--label", "femur=5", "--report", folder_ / "nowhere" / "page.pdf"});
+  EXPECT_EQ(nowhere.exit_code, 3);
+  EXPECT_THAT(nowhere.errors, HasSubstr("page.pdf: the folder"));
+  EXPECT_EQ(segment({"--smooth-mm", "nan"}).exit_code, 2);
+  EXPECT_EQ(segment({"--label", "fibula=5"}).exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "labels.nrrd"));
+}
+
 TEST_F(SegmentCommand, RefusesWhatItCannotJudge) {
   const auto unnamed = segment({"--report", folder_ / "quality.pdf"});
-  EXPECT_EQ(unnamed.exit_code, 3);
+  EXPECT_EQ(unnamed.exit_code, 2);
   EXPECT_THAT(unnamed.errors, HasSubstr("--label"));
   const auto unpainted = segment({"--label", "femur=5,tibia=9"});
   EXPECT_EQ(unpainted.exit_code, 3);

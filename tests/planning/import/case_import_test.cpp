@@ -57,6 +57,20 @@ TEST(CaseImport, TakesAnEmptyFolder) {
   EXPECT_EQ(cases::load_case(folder / "new/Mustermann.arthro").bones.size(), 1U);
 }
 
+// Half a minute of making bones is not spent on a folder that cannot take them.
+TEST(CaseImport, RefusesAFolderBeforeTheWork) {
+  const TemporaryFolder folder;
+  EXPECT_NO_THROW(refuse_folder(folder / "New.arthro"));
+  EXPECT_NO_THROW(refuse_folder(folder / "not" / "there" / "New.arthro"));
+  EXPECT_TRUE(folder.names().empty()) << "looking leaves nothing behind";
+  test::write_bytes(folder / "file", "text");
+  EXPECT_THAT(message_of<InvalidInput>([&] { refuse_folder(folder / "file"); }), HasSubstr("is not a case"));
+  EXPECT_THAT(message_of<IoError>([&] { refuse_folder(folder / "file" / "New.arthro"); }),
+              HasSubstr("Not a directory"));
+  cases::save_case(folder / "Old.arthro", {});
+  EXPECT_NO_THROW(refuse_folder(folder / "Old.arthro"));
+}
+
 TEST(CaseImport, WhatItRefusesStaysAsItWas) {
   const TemporaryFolder folder;
   test::write_bytes(folder / "letter.txt", "Dear colleague");
