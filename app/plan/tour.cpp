@@ -41,7 +41,7 @@ constexpr std::array<StepText, kTourStepCount> kSteps{{
     {"checks", "Read the checks of both bones",
      "Press C for the checks, Tab for the other bone. Rest the mouse on one for its source; mend what is "
      "wrong."},
-    {"take_back", "Take a step back", "Press Ctrl+Z. Every step can be taken back; S lists them all."},
+    {"take_back", "Take a step back", "Press Ctrl+Z. Every step can be taken back; H lists them all."},
     {"keep", "Keep this version",
      "The plan saves itself. K keeps it as it is beside the one that you work on."},
     {"theatre", "That is planning",
