@@ -8,8 +8,6 @@
 
 namespace arthronaut::plan {
 
-namespace {
-
 widgets::Severity severity_of(tunnels::PlanCheck::Verdict verdict) {
   switch (verdict) {
     case tunnels::PlanCheck::Verdict::Fine:
@@ -25,7 +23,9 @@ widgets::Severity severity_of(tunnels::PlanCheck::Verdict verdict) {
   return widgets::Severity::Quiet;
 }
 
-widgets::Severity severity_of(open_case::PlanStatus::Save save) {
+namespace {
+
+widgets::Severity severity_of_save(open_case::PlanStatus::Save save) {
   switch (save) {
     case open_case::PlanStatus::Save::Saved:
       return widgets::Severity::Good;
@@ -64,7 +64,7 @@ void button_pair(const widgets::Ui& ui, const char* left, const char* right) {
 
 void draw_saved(const widgets::Ui& ui, const open_case::PlanStatus& status) {
   button_pair(ui, "plan.undo", "plan.redo");
-  widgets::status_row(ui, severity_of(status.save), "Plan", status.text);
+  widgets::status_row(ui, severity_of_save(status.save), "Plan", status.text);
 }
 
 // What to do next, and the button that begins it.

@@ -2,6 +2,8 @@
 
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
+
 #include "app/case/case_opening.h"
 #include "app/plan/tunnel_moves.h"
 #include "app/scene/grid_lines.h"
@@ -307,12 +309,11 @@ std::vector<PaneMark> PlanView::marks() const {
   if (!tunnel) return marks;
   const tunnels::TunnelGeometry& measured = model_->measured(state_.key);
   if (measured.enters_bone) {
-    const tunnels::PlanNorms norms;
-    const ImU32 color = measured.wall_mm < norms.breaking_wall_mm ? widgets::kBad
-                        : measured.wall_mm < norms.thin_wall_mm   ? widgets::kCaution
-                                                                  : widgets::kGood;
-    marks.push_back({PaneMark::Shape::Pin, "thinnest", widgets::fixed(measured.wall_mm, 1) + " mm",
-                     measured.thinnest_mm, color, false, "Here the wall of the tunnel is thinnest"});
+    const auto& checks = model_->checks(state_.key);
+    if (const auto wall = std::ranges::find(checks, "Wall", &tunnels::PlanCheck::name); wall != checks.end())
+      marks.push_back({PaneMark::Shape::Pin, "thinnest", widgets::fixed(measured.wall_mm, 1) + " mm",
+                       measured.thinnest_mm, widgets::color_of(severity_of(wall->verdict)), false,
+                       "Here the wall of the tunnel is thinnest"});
     marks.push_back({PaneMark::Shape::Pin, "exit", "Exit", measured.exit_mm, widgets::kText, false,
                      "Here the drill leaves the bone"});
   }

@@ -170,5 +170,7 @@ struct PanelClick {
 };
 [[nodiscard]] PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area,
                                          const PlanPanel& panel);
+// A note, and what was not checked, are quiet.
+[[nodiscard]] widgets::Severity severity_of(tunnels::PlanCheck::Verdict verdict);
 
 }  // namespace arthronaut::plan
