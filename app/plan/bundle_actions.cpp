@@ -17,12 +17,19 @@ tunnels::TunnelKey PlanView::key_in(bones::BoneKind bone) const {
 }
 
 void PlanView::work_on(const tunnels::TunnelKey& key) {
+  if (key.bone != state_.key.bone) state_.landmark = 0;  // a row of the other bone's list
   state_.key = key;
   state_.shown_revision = 0;
   state_.survey = nullptr;
-  state_.places_entry = false;
+  state_.placing = Placing::Nothing;
   state_.hint.clear();
   state_.hint_of.reset();
+}
+
+void PlanView::work_on_bone(bones::BoneKind bone) {
+  const bool places_entry = state_.placing == Placing::Entry;
+  work_on(key_in(bone));
+  if (places_entry) state_.placing = Placing::Entry;
 }
 
 void PlanView::follow_plan() {
@@ -54,7 +61,7 @@ void PlanView::plan_bundles() {
   const auto single = model_->plan_fit(bone).is_valid() ? model_->tunnel(bone) : std::nullopt;
   if (single) history_.apply_tunnels({{am, *single}}, what);
   work_on(single ? pl : am);
-  state_.page = PanelPage::Checks;  // where P places the entry
+  show_page(PanelPage::Checks);  // where P places the entry
   state_.hint = "No default for two bundles: " + missing->made.message + ". Press P and place the entry.";
 }
 

@@ -66,7 +66,13 @@ void PlanView::take_defaults(std::vector<MadeTunnel> made, const std::string& wh
                                                   &cases::TunnelDifference::is_lost_here);
   state_.hint = default_in_words(made, took_the_place);
   state_.hint_of = model_->revision();
-  state_.page = PanelPage::Checks;
+  show_page(PanelPage::Checks);
+}
+
+// A landmark is placed where it is listed: elsewhere nothing shows which one a click would move.
+void PlanView::show_page(PanelPage page) {
+  state_.page = page;
+  if (page != PanelPage::Landmarks && state_.placing == Placing::Landmark) state_.placing = Placing::Nothing;
 }
 
 void PlanView::add_landmark_marks(std::vector<PaneMark>& marks) const {
@@ -131,10 +137,9 @@ void PlanView::add_landmark_actions(widgets::Actions& actions) {
                {},
                [this] { confirm_landmarks(true); }});
   actions.add({"plan.landmark_place", "Place", "Then click where the landmark is", GLFW_KEY_P, 0, false, here,
-               [this] { return state_.places_landmark; },
+               [this] { return state_.placing == Placing::Landmark; },
                [this] {
-                 state_.places_landmark = !state_.places_landmark;
-                 state_.places_entry = false;
+                 state_.placing = state_.placing == Placing::Landmark ? Placing::Nothing : Placing::Landmark;
                  state_.hint.clear();
                }});
   actions.add({"plan.landmark_reset",

@@ -38,9 +38,7 @@ void PlanView::add_actions(widgets::Actions& actions) {
                },
                {},
                [this] {
-                 const bool places = state_.places_entry;
-                 work_on(key_in(state_.key.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur));
-                 state_.places_entry = places;
+                 work_on_bone(state_.key.bone == BoneKind::Femur ? BoneKind::Tibia : BoneKind::Femur);
                  if (bones_.only()) look_from(scene::ViewDirection::Anterior);
                }});
 }
@@ -132,9 +130,7 @@ void PlanView::add_history_actions(widgets::Actions& actions) {
                {"write over the other program's plan"}});
 }
 
-bool PlanView::can_stop_placing() const {
-  return state_.places_entry || state_.places_landmark || !state_.hint.empty();
-}
+bool PlanView::can_stop_placing() const { return state_.placing != Placing::Nothing || !state_.hint.empty(); }
 
 // Where the eye sees the bone that is planned; anything else is said and changes nothing.
 void PlanView::place_entry(const scene::SceneRay& ray) {
@@ -158,7 +154,7 @@ void PlanView::place_entry(const scene::SceneRay& ray) {
          tunnel ? with_entry_at(*tunnel, met->point_mm)
                 : tunnels::first_tunnel(state_.key.bone, met->point_mm, model_->axes(state_.key.bone),
                                         model_->surface(state_.key.bone)));
-  state_.places_entry = false;
+  state_.placing = Placing::Nothing;
   state_.hint.clear();
 }
 
@@ -167,9 +163,9 @@ void PlanView::add_placing_actions(widgets::Actions& actions) {
                0, false,
                // On the page of the landmarks P places these.
                [this] { return model_ != nullptr && state_.page != PanelPage::Landmarks; },
-               [this] { return state_.places_entry; },
+               [this] { return state_.placing == Placing::Entry; },
                [this] {
-                 state_.places_entry = !state_.places_entry;
+                 state_.placing = state_.placing == Placing::Entry ? Placing::Nothing : Placing::Entry;
                  state_.hint.clear();
                }});
   actions.add({"plan.stop_placing",
@@ -181,7 +177,7 @@ void PlanView::add_placing_actions(widgets::Actions& actions) {
                [this] { return can_stop_placing(); },
                {},
                [this] {
-                 state_.places_entry = state_.places_landmark = false;
+                 state_.placing = Placing::Nothing;
                  state_.hint.clear();
                }});
 }
@@ -335,7 +331,7 @@ void PlanView::add_measuring_actions(widgets::Actions& actions) {
                [this] { slices_.use(MeasuringTool::None); }});
   const auto page = [&](const char* id, const char* label, const char* tooltip, int key, PanelPage shown) {
     actions.add({id, label, tooltip, key, 0, false, [this] { return model_ != nullptr; },
-                 [this, shown] { return state_.page == shown; }, [this, shown] { state_.page = shown; }});
+                 [this, shown] { return state_.page == shown; }, [this, shown] { show_page(shown); }});
   };
   page("plan.checks_page", "Checks", "Numbers and checks of the tunnel", GLFW_KEY_C, PanelPage::Checks);
   page("plan.landmarks_page", "Landmarks",

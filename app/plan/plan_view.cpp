@@ -88,7 +88,7 @@ void PlanView::tick(double now_s) {
 void PlanView::look_from(scene::ViewDirection view) {
   bones_.look_from(view);
   state_.shows_lateral = false;
-  if (bones_.only() && *bones_.only() != state_.key.bone) state_.key = key_in(*bones_.only());
+  if (bones_.only() && *bones_.only() != state_.key.bone) work_on_bone(*bones_.only());
   state_.shown_revision = 0;
 }
 
@@ -134,7 +134,7 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   } else {
     draw_bones(ui, rest);
   }
-  const StepState step{state_.key, state_.places_entry, state_.page == PanelPage::Landmarks,
+  const StepState step{state_.key, state_.placing == Placing::Entry, state_.page == PanelPage::Landmarks,
                        status.save == open_case::PlanStatus::Save::ReadOnly, history_.is_in_conflict()};
   const NextStep next = next_step(*model_, step);
   const PanelClick clicked = draw_plan_panel(
@@ -148,9 +148,9 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("plan", name_of(status.save));
   ui.log.note_state("undo", status.undo_what);
   ui.log.note_state("redo", status.redo_what);
-  ui.log.note_state("placing", state_.places_entry      ? "entry"
-                               : state_.places_landmark ? "landmark"
-                                                        : "nothing");
+  ui.log.note_state("placing", state_.placing == Placing::Entry      ? "entry"
+                               : state_.placing == Placing::Landmark ? "landmark"
+                                                                     : "nothing");
   ui.log.note_state("hint", state_.hint);
   ui.log.note_state("volume", volume_.in_words(slices_.reason()));
   ui.log.note_state("view_direction",
@@ -269,9 +269,9 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
   draw_survey_legend(ui, area);
   const std::string bone(bones::to_text(state_.key.bone));
   std::string text = state_.hint;
-  if (text.empty() && state_.places_entry)
+  if (text.empty() && state_.placing == Placing::Entry)
     text = "Click on the " + bone + ": the tunnel begins there. Esc leaves it.";
-  if (text.empty() && state_.places_landmark)
+  if (text.empty() && state_.placing == Placing::Landmark)
     text = "Click on the " + bone + " where the landmark is. Esc leaves it.";
   if (text.empty()) return;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
@@ -361,7 +361,7 @@ void PlanView::follow(const PaneEvent& event) {
       if (rows[i].name == event.pressed) state_.landmark = i;
   }
   if (!event.click) return;
-  if (state_.places_landmark) {
+  if (state_.placing == Placing::Landmark) {
     const auto met = first_visible(bones_.visible(), *event.click);
     if (!met || met->is_section || met->bone != state_.key.bone) {
       state_.hint = "That is not the surface of the " + std::string(bones::to_text(state_.key.bone)) +
@@ -370,9 +370,9 @@ void PlanView::follow(const PaneEvent& event) {
     }
     put_landmark(met->point_mm, "Place a landmark of the " + std::string(bones::to_text(state_.key.bone)),
                  false);
-    state_.places_landmark = false;
+    state_.placing = Placing::Nothing;
     state_.hint.clear();
-  } else if (state_.places_entry)
+  } else if (state_.placing == Placing::Entry)
     place_entry(*event.click);
   else if (const auto met = first_visible(bones_.visible(), *event.click))
     slices_.set_cross(met->point_mm);

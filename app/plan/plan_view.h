@@ -99,7 +99,11 @@ class PlanView : public mode::Mode {
   void plan_single();
   // The bone's tunnel to go on with: of the bundle that was worked on where it has one.
   [[nodiscard]] tunnels::TunnelKey key_in(bones::BoneKind bone) const;
+  // Leaves the placing.
   void work_on(const tunnels::TunnelKey& key);
+  // An entry goes on being placed, of the other bone now; a landmark does not, it is another one there.
+  void work_on_bone(bones::BoneKind bone);
+  void show_page(PanelPage page);
   // Undo, a version or another program may have made two tunnels of one, or one of two.
   void follow_plan();
 
@@ -115,9 +119,11 @@ class PlanView : public mode::Mode {
   [[nodiscard]] std::optional<Eigen::Vector3d> aim_handle() const;
   [[nodiscard]] const geometry::TriangleMesh& tunnel_mesh(const tunnels::TunnelKey& key);
 
+  enum class Placing { Nothing, Entry, Landmark };  // by the next click on the bone
+
   struct ViewState {
     tunnels::TunnelKey key = bones::BoneKind::Femur;  // that is worked on; of a bone's two it alone moves
-    bool places_entry = false, places_landmark = false;
+    Placing placing = Placing::Nothing;
     std::size_t landmark = 0;  // row of landmark_rows()
     bool has_dragged = false;
     bool shows_slices = false, shows_lateral = false, shows_grid = true;

@@ -91,6 +91,33 @@ TEST_F(PlanWindow, PlacingCanBeLeftAndTakesNoOtherBone) {
   EXPECT_EQ(app.state("placing"), "nothing");
 }
 
+// What a click would do is what is shown: a landmark that was being placed is not, once its page is left or
+// the other bone is worked on, and a click that is meant for an entry moves no landmark.
+TEST_F(PlanWindow, AClickForAnEntryMovesNoLandmark) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  app.press("l");
+  app.press("Next");
+  ASSERT_TRUE(app.wait_for_state("landmark", "blumensaat_posterior"));
+  app.press("p");
+  ASSERT_TRUE(app.wait_for_state("placing", "landmark"));
+  app.press("c");
+  EXPECT_TRUE(app.wait_for_state("placing", "nothing", 5));
+  app.press("p");
+  ASSERT_TRUE(app.wait_for_state("placing", "entry", 5));
+  const Area view = app.widgets().at("plan.view");
+  app.click_at(view.x + view.width / 2, view.y + view.height / 4);  // the femur's shaft
+  EXPECT_TRUE(app.wait_for_state("undo", "Place the entry of the femoral tunnel"));
+  app.press("l");
+  app.press("p");
+  ASSERT_TRUE(app.wait_for_state("placing", "landmark"));
+  app.press("Tab");
+  EXPECT_TRUE(app.wait_for_state("tunnel", "tibia"));
+  EXPECT_TRUE(app.wait_for_state("placing", "nothing", 5));
+  EXPECT_EQ(app.state("landmark"), "plateau_anterior") << "the first of this bone's";
+}
+
 // "+" is understood from every key that has it.
 TEST_F(PlanWindow, PlusAndTheNumberPadWiden) {
   const VirtualDisplay display(1280, 720);
