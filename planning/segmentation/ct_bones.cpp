@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
+#include <future>
 
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
@@ -268,10 +268,11 @@ CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
   }
   std::vector<std::vector<Eigen::Vector3d>> appendages(wanted.size());
   const auto for_each_bone = [&](const auto& work) {
-    std::vector<std::thread> threads;
-    for (std::size_t i = 1; i < wanted.size(); ++i) threads.emplace_back([&work, i] { work(i); });
+    std::vector<std::future<void>> others;  // waited for where work(0) throws, too
+    for (std::size_t i = 1; i < wanted.size(); ++i)
+      others.push_back(std::async(std::launch::async, [&work, i] { work(i); }));
     work(0);
-    for (auto& thread : threads) thread.join();
+    for (auto& other : others) other.get();
   };
   for_each_bone([&](std::size_t i) { appendages[i] = take_off_appendage(volume, wanted[i].second->solid); });
   tell(options, 0.8);
