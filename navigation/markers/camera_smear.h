@@ -3,6 +3,7 @@
 
 #include "navigation/markers/edge_pose.h"
 #include "navigation/markers/edge_profiles.h"
+#include "navigation/markers/row_timing.h"
 
 namespace arthronaut::markers {
 
@@ -12,6 +13,7 @@ struct CameraSmear {
   double exposure_share = 0.5;  // of the time between frames
   double gamma = 1.6;           // of the grey levels, as the direct fits find it
   BloomPrior bloom;
+  RowTiming rows;
 };
 
 // A motion in the image plane at the marker's depth, as a body twist.

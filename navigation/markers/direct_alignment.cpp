@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "navigation/markers/product_sum.h"
+#include "navigation/markers/row_timing.h"
 #include "planning/geometry/quantile.h"
 
 namespace arthronaut::markers {
@@ -99,6 +100,8 @@ void DirectFit::take_pixels(const camera::GrayView& frame, const camera::CameraM
   const RigidTransform& pose = start.pose.camera_from_marker;
   const Eigen::Matrix3d rotation = pose.matrix();
   const double sigma_cells = std::hypot(start.sigma_px, kPixelSigmaPx) * cells / size_mm;
+  const auto center = camera.project(pose.translation_mm);
+  if (!center) return;
   const std::size_t stride =
       (samples.size() * (2 * kStepsToASide + 1) + options.max_pixels - 1) / options.max_pixels;
   for (std::size_t s = first * stride; s < samples.size(); s += every * stride) {
@@ -119,19 +122,24 @@ void DirectFit::take_pixels(const camera::GrayView& frame, const camera::CameraM
     const int lane = static_cast<int>((sample.axis == 0 ? 0.5 - sample.y : sample.x + 0.5) * cells);
     const auto line =
         static_cast<int>(std::lround((sample.axis == 0 ? sample.x + 0.5 : 0.5 - sample.y) * cells));
+    const Eigen::Vector2d moves =
+        d_marker * (start.interval_motion.head<3>() + start.interval_motion.tail<3>().cross(place));
     for (int k = -kStepsToASide; k <= kStepsToASide; ++k) {
       const Eigen::Vector2d pixel = (*point + k * reach / kStepsToASide * normal).array().round();
       if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() >= frame.width || pixel.y() >= frame.height) continue;
       const std::uint8_t grey = frame.row(static_cast<int>(pixel.y()))[static_cast<int>(pixel.x())];
       if (grey >= options.saturated_grey) continue;
-      const auto ray = camera.ray(pixel);
+      // Where it would look, had its row been exposed with the centre's.
+      const Eigen::Vector2d there =
+          pixel - row_delay(start.delays, pixel.y(), center->y(), frame.height) * moves;
+      const auto ray = camera.ray(there);
       if (!ray) continue;
       Pixel& added = pixels_.emplace_back();
       added.ray = ray->cast<float>();
       added.grey = grey;
       added.sigma_x = static_cast<float>(sigma_cells * back.row(0).norm());
       added.sigma_y = static_cast<float>(sigma_cells * back.row(1).norm());
-      added.place = (2 / size_mm * (place.head<2>() + back * (pixel - *point))).cast<float>();
+      added.place = (2 / size_mm * (place.head<2>() + back * (there - *point))).cast<float>();
       added.edge = (sample.axis * (cells + 1) + line) * cells + lane;
     }
   }

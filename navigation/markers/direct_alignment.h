@@ -26,6 +26,9 @@ struct DirectStart {
   double change_sigma_px = 4;    // and how far its change
   double sigma_px = 1.2;         // smear of the optics
   double gamma = 1.6;            // grey level = light ^ (1 / gamma), as far as it is known
+  // When the rows were exposed (row_timing.h), and the motion over one unit of that.
+  Eigen::Vector2d delays = Eigen::Vector2d::Zero();
+  geometry::Vector6d interval_motion = geometry::Vector6d::Zero();
 };
 
 struct DirectOptions {

@@ -184,6 +184,41 @@ bool may_be_tilted_back(const camera::CameraModel& camera, double size_mm,
   return independent * (other.scale * other.scale - fit.scale * fit.scale) < kMinChiSquared * noise * noise;
 }
 
+RowTrend row_trend(const camera::CameraModel& camera, double size_mm, std::span<const EdgeSample> samples,
+                   std::span<const EdgeMeasurement> measurements, std::span<const char> is_inlier,
+                   const EdgePose& pose) {
+  const Eigen::Matrix3d rotation = pose.camera_from_marker.matrix();
+  Matrix7d normal = Matrix7d::Identity() * 1e-9;
+  Eigen::Matrix<double, 7, 2> mixed = Eigen::Matrix<double, 7, 2>::Zero();
+  Vector7d pull = Vector7d::Zero();
+  RowTrend trend;
+  double squares = 0, count = 0;
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    const EdgeMeasurement& edge = measurements[i];
+    Row row;
+    if (!is_inlier[i] || !find_row(camera, size_mm, samples[edge.sample], edge, pose.camera_from_marker,
+                                   rotation, pose.bloom_px, row))
+      continue;
+    const double weight = 1 / (edge.sigma_px * edge.sigma_px);
+    normal.noalias() += weight * row.jacobian * row.jacobian.transpose();
+    mixed.noalias() += weight * row.jacobian * edge.by_delays_px.transpose();
+    trend.weight.noalias() += weight * edge.by_delays_px * edge.by_delays_px.transpose();
+    trend.gain += weight * row.residual_px * edge.by_delays_px;
+    pull += weight * row.residual_px * row.jacobian;
+    squares += weight * row.residual_px * row.residual_px;
+    count += 1;
+  }
+  // As far as no other pose explains the same.
+  const Eigen::Matrix<double, 7, 2> explained = normal.ldlt().solve(mixed);
+  trend.twist_by_delays = explained.topRows<6>();
+  trend.weight -= mixed.transpose() * explained;
+  trend.gain -= explained.transpose() * pull;
+  const double inflation = kCorrelatedEdges * std::max(1.0, squares / std::max(1.0, count - 9));
+  trend.weight /= inflation;
+  trend.gain /= inflation;
+  return trend;
+}
+
 MeasuredCorners measured_corners(const camera::CameraModel& camera, double size_mm,
                                  std::span<const EdgeSample> samples,
                                  std::span<const EdgeMeasurement> measurements,

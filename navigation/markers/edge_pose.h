@@ -9,6 +9,7 @@
 #include "navigation/camera/camera_model.h"
 #include "navigation/markers/edge_profiles.h"
 #include "navigation/markers/planar_pose.h"
+#include "navigation/markers/row_timing.h"
 
 namespace arthronaut::markers {
 
@@ -48,6 +49,12 @@ inline constexpr double kHarmlessTiltRad = 3 * geometry::kPi / 180;
                                       std::span<const EdgeMeasurement> measurements, const EdgePose& fit,
                                       const Corners& corners_px, const BloomPrior& bloom,
                                       std::vector<char>& scratch);
+
+// What the edges of a pose say of when its rows were exposed.
+[[nodiscard]] RowTrend row_trend(const camera::CameraModel& camera, double size_mm,
+                                 std::span<const EdgeSample> samples,
+                                 std::span<const EdgeMeasurement> measurements,
+                                 std::span<const char> is_inlier, const EdgePose& pose);
 
 struct MeasuredCorners {
   Corners corners_px;

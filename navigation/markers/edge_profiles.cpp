@@ -33,7 +33,8 @@ struct Crossing {
   Eigen::Vector2d point, normal;
   float cell_px = 0;  // distance of neighbouring edges along the normal
   float box_px = kPixelBox;
-  bool moves_backwards = false;  // against the normal
+  bool moves_backwards = false;                     // against the normal
+  Eigen::Vector2d moves = Eigen::Vector2d::Zero();  // in the time between frames
 };
 
 bool locate(const camera::CameraModel& camera, const RigidTransform& pose, const Eigen::Matrix3d& rotation,
@@ -56,6 +57,8 @@ bool locate(const camera::CameraModel& camera, const RigidTransform& pose, const
   const double motion_px = crossing.normal.dot(d_marker * moved);
   crossing.moves_backwards = motion_px < 0;
   crossing.box_px = std::max(kPixelBox, static_cast<float>(std::abs(motion_px)));
+  crossing.moves =
+      d_marker * (smear.interval_motion.head<3>() + smear.interval_motion.tail<3>().cross(place));
   return crossing.cell_px > 1.5F;
 }
 
@@ -66,7 +69,8 @@ int reach_of(const Crossing& crossing, double sigma_px) {
       std::clamp(std::min(wanted, 0.75F * crossing.cell_px + 0.25F * crossing.box_px), 2.0F, 16.0F));
 }
 
-bool read_profile(const LinearImage& image, const Crossing& crossing, int reach, Profile& profile) {
+bool read_profile(const LinearImage& image, const Crossing& crossing, double between_fields, int reach,
+                  Profile& profile) {
   const Eigen::Vector2d first = crossing.point - reach * crossing.normal,
                         last = crossing.point + reach * crossing.normal;
   if (!image.contains(first.x(), first.y()) || !image.contains(last.x(), last.y())) return false;
@@ -75,8 +79,24 @@ bool read_profile(const LinearImage& image, const Crossing& crossing, int reach,
   auto x = static_cast<float>(first.x()), y = static_cast<float>(first.y());
   const auto step_x = static_cast<float>(crossing.normal.x()),
              step_y = static_cast<float>(crossing.normal.y());
+  // The odd field is later by this much of the way; the mean of both is of the moment between them.
+  const Eigen::Vector2d apart = between_fields * crossing.moves;
+  const auto half_x = static_cast<float>(0.5 * apart.x()), half_y = static_cast<float>(0.5 * apart.y());
+  if (between_fields != 0) {
+    const Eigen::Vector2d room = 0.5 * apart.cwiseAbs() + Eigen::Vector2d(0, 2);
+    for (const Eigen::Vector2d& end : {first, last})
+      if (!image.contains(end.x() - room.x(), end.y() - room.y()) ||
+          !image.contains(end.x() + room.x(), end.y() + room.y()))
+        return false;
+  }
   for (int i = 0; i <= 2 * reach; ++i, x += step_x, y += step_y) {
-    profile.light[i] = image.sample(x, y);
+    if (between_fields == 0) {
+      profile.light[i] = image.sample(x, y);
+    } else {
+      const float even = image.sample_field(x - half_x, y - half_y, 0);
+      const float odd = image.sample_field(x + half_x, y + half_y, 1);
+      profile.light[i] = even < 0 || odd < 0 ? -1 : 0.5F * (even + odd);
+    }
     profile.saturated += profile.light[i] < 0;
   }
   return true;
@@ -249,10 +269,11 @@ void measure_edges(const LinearImage& image, const camera::CameraModel& camera,
     if (!locate(camera, camera_from_marker, rotation, size_mm, cells, samples[k], smear, crossing)) continue;
     const int reach = reach_of(crossing, smear.sigma_px);
     const int search = std::min(options.search_px, kMaxReach - reach);
-    if (!read_profile(image, crossing, reach + search, profile)) continue;
+    if (!read_profile(image, crossing, smear.between_fields, reach + search, profile)) continue;
     measurement.point_px = crossing.point;
     measurement.normal = crossing.normal;
     measurement.box_px = crossing.box_px;
+    measurement.moves_px = crossing.normal.dot(crossing.moves);
     if (profile.saturated > profile.reach) {
       measurement.state = EdgeState::Saturated;
       continue;

@@ -20,6 +20,11 @@ struct Smear {
   double sigma_px = 1.2;  // optics
   // Motion of the marker over the exposure, as a body twist (v mm, w rad).
   geometry::Vector6d motion = geometry::Vector6d::Zero();
+  // The same over the time between frames, where its direction is known, too; else zero.
+  geometry::Vector6d interval_motion = geometry::Vector6d::Zero();
+  // From the field of the even rows to that of the odd ones, in the time between frames; 0: no fields. Each
+  // is looked at where the marker was at its time.
+  double between_fields = 0;
 };
 
 enum class EdgeState {
@@ -40,6 +45,9 @@ struct EdgeMeasurement {
   double contrast = 0;       // bright less dark level, in light
   double box_px = 0;         // length of the smear across the edge
   double likeness = 0;       // correlation of profile and model
+  double moves_px = 0;       // along the normal, in the time between frames
+  // What a unit of the delays of row_timing.h moves it by, along the normal.
+  Eigen::Vector2d by_delays_px = Eigen::Vector2d::Zero();
 };
 
 struct ProfileOptions {

@@ -44,9 +44,23 @@ class LinearImage {
     const float lower = table_[bottom[0]] + right * (table_[bottom[1]] - table_[bottom[0]]);
     return upper + below * (lower - upper);
   }
+  // The same from the even rows alone, or from the odd ones. Precondition: contains(x, y - 2) and (x, y + 2).
+  [[nodiscard]] float sample_field(float x, float y, int parity) const {
+    const int row = (static_cast<int>(y) - parity) / 2 * 2 + parity;
+    const float below = 0.5F * (y - static_cast<float>(row));
+    const float upper = sample_row(x, row), lower = sample_row(x, row + 2);
+    return upper < 0 || lower < 0 ? -1 : upper + below * (lower - upper);
+  }
   [[nodiscard]] const camera::GrayView& view() const { return view_; }
 
  private:
+  [[nodiscard]] float sample_row(float x, int row) const {
+    const int column = static_cast<int>(x);
+    const std::uint8_t* left = view_.row(row) + column;
+    if (left[0] >= kSaturated || left[1] >= kSaturated) return -1;
+    return table_[left[0]] + (x - static_cast<float>(column)) * (table_[left[1]] - table_[left[0]]);
+  }
+
   camera::GrayView view_;
   const LinearTable& table_;
 };

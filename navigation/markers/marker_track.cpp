@@ -93,9 +93,15 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
         direct = moving;
     }
     // With no edge pose to agree with, the corners have to be its own all the more.
-    if (direct.is_usable())
+    RowTrend rows;
+    if (direct.is_usable()) {
       report_direct(frame, direct, fit.converged ? options_.max_direct_rms_px : options_.max_lone_rms_px,
                     observation);
+      EdgePose edges;
+      edges.camera_from_marker = direct.pose.camera_from_marker;
+      rows = row_trend(frame.camera, marker_.size_mm, samples_, measurements_, is_inlier_, edges);
+      doubt_rows(frame, rows, observation);
+    }
     if (observation.is_tracked() &&
         direct.pose.velocity.head<3>().norm() * px_per_mm > options_.max_new_smear_cells * cell &&
         !goes_on_from_published(frame, direct.pose.camera_from_marker)) {
@@ -121,7 +127,10 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
       observation.state = MarkerState::Doubtful;
       return false;
     }
-    if (observation.is_tracked() && !(is_sharp && fit.converged)) return true;
+    if (observation.is_tracked() && !(is_sharp && fit.converged)) {
+      frame.smear.rows.learn(rows);
+      return true;
+    }
     if (!is_sharp) {
       if (!fit.converged) {
         observation.state = reason_of_loss(start, measurements_, cell);
@@ -143,15 +152,47 @@ bool MarkerTrack::measure_from_edges(const TrackedFrame& frame, const RigidTrans
     observation.state = reason_of_loss(start, measurements_, cell);
     return false;
   }
-  report_edges(frame, fit, picture, is_found, observation);
+  const RowTrend rows = report_edges(frame, fit, picture, is_found, observation);
   if (!observation.is_tracked()) return false;
   learn(trend, fit.bloom_px, frame.smear);
+  frame.smear.rows.learn(rows);
   if (!is_found) {
     learn_exposure(frame.smear.exposure_share *
                        motion_.twist_to(fit.camera_from_marker, frame.timestamp_ns, frame.interval_ns),
                    picture.motion, px_per_mm, frame.smear);
   }
   return true;
+}
+
+void MarkerTrack::look_at_edges(const TrackedFrame& frame, const RigidTransform& pose, Smear picture,
+                                const ProfileOptions& options, SmearTrend& trend) {
+  picture.interval_motion = interval_motion(frame, pose);
+  picture.between_fields = frame.smear.rows.known()[1];
+  measure_edges(frame.image, frame.camera, pose, marker_.size_mm, cells_, samples_, picture, options,
+                measurements_, trend);
+  if (const auto center = frame.camera.project(pose.translation_mm))
+    correct_rows(frame.smear.rows, center->y(), frame.image.view().height, picture.sigma_px, measurements_);
+}
+
+Vector6d MarkerTrack::interval_motion(const TrackedFrame& frame, const RigidTransform& pose) const {
+  const Vector6d motion = motion_.twist_to(pose, frame.timestamp_ns, frame.interval_ns);
+  const auto change = motion_.change_to(pose, frame.timestamp_ns, frame.interval_ns);
+  return change ? Vector6d(motion + 0.5 * *change) : motion;
+}
+
+void MarkerTrack::doubt_rows(const TrackedFrame& frame, const RowTrend& trend,
+                             MarkerObservation& observation) const {
+  const RowTiming& rows = frame.smear.rows;
+  const auto& twists = trend.twist_by_delays;
+  observation.covariance += twists * rows.uncertainty() * twists.transpose();
+  const RigidTransform& pose = observation.camera_from_marker;
+  const auto change = motion_.change_to(pose, frame.timestamp_ns, frame.interval_ns);
+  const double px_per_mm = cell_px(frame, pose) * cells_ / marker_.size_mm;
+  const double comb_px = rows.comb_px(px_per_mm * interval_motion(frame, pose).head<3>().norm(),
+                                      change ? px_per_mm * change->head<3>().norm() : 0);
+  if (!(comb_px > 0)) return;
+  if (const auto square = refine_square_pose(frame.camera, observation.corners_px, marker_.size_mm, pose))
+    observation.covariance += square_covariance(*square, comb_px);
 }
 
 EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform& start, bool is_found,
@@ -165,8 +206,7 @@ EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform&
                                  ? likely_motion(frame, start, coarse.search_px)
                                  : Vector6d(smear.exposure_share *
                                             motion_.twist_to(start, frame.timestamp_ns, frame.interval_ns))};
-  measure_edges(frame.image, frame.camera, start, marker_.size_mm, cells_, samples_, picture, coarse,
-                measurements_, trend);
+  look_at_edges(frame, start, picture, coarse, trend);
   EdgePose fit =
       fit_edge_pose(frame.camera, marker_.size_mm, samples_, measurements_, start, smear.bloom, is_inlier_);
   if (!fit.converged || fit.share[0] + fit.share[1] < kMinEdgeShare) {
@@ -178,8 +218,7 @@ EdgePose MarkerTrack::fit_edges(const TrackedFrame& frame, const RigidTransform&
                      motion_.twist_to(fit.camera_from_marker, frame.timestamp_ns, frame.interval_ns);
   for (int pass = 0; pass < kMaxPasses; ++pass) {
     const RigidTransform here = fit.camera_from_marker;
-    measure_edges(frame.image, frame.camera, here, marker_.size_mm, cells_, samples_, picture, {},
-                  measurements_, trend);
+    look_at_edges(frame, here, picture, {}, trend);
     fit =
         fit_edge_pose(frame.camera, marker_.size_mm, samples_, measurements_, here, smear.bloom, is_inlier_);
     if (!fit.converged) break;
@@ -198,6 +237,8 @@ DirectPose MarkerTrack::fit_directly(const TrackedFrame& frame, const RigidTrans
   from.pose = {start, motion, Vector6d::Zero()};
   from.sigma_px = frame.smear.sigma_px;
   from.gamma = frame.smear.gamma;
+  from.delays = frame.smear.rows.known();
+  from.interval_motion = interval_motion(frame, start);
   const double px_per_mm = frame.camera.central_focal_px() / start.translation_mm.z();
   const double motion_px = px_per_mm * motion.head<3>().norm();
   from.change_sigma_px = 2 + 0.35 * motion_px;
@@ -220,8 +261,7 @@ void MarkerTrack::report_direct(const TrackedFrame& frame, const DirectPose& fit
   observation.covariance.diagonal() += left_out.cwiseAbs2();
   // The corners as the edges by themselves would have them.
   SmearTrend ignored;
-  measure_edges(frame.image, frame.camera, fit.pose.camera_from_marker, marker_.size_mm, cells_, samples_,
-                {frame.smear.sigma_px, fit.pose.velocity}, {}, measurements_, ignored);
+  look_at_edges(frame, fit.pose.camera_from_marker, {frame.smear.sigma_px, fit.pose.velocity}, {}, ignored);
   is_inlier_.resize(measurements_.size());
   for (std::size_t i = 0; i < measurements_.size(); ++i)
     is_inlier_[i] =
@@ -259,14 +299,16 @@ void MarkerTrack::report_direct(const TrackedFrame& frame, const DirectPose& fit
     observation.state = MarkerState::Ambiguous;
 }
 
-void MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, const Smear& picture,
-                               bool is_found, MarkerObservation& observation) {
+RowTrend MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, const Smear& picture,
+                                   bool is_found, MarkerObservation& observation) {
   observation.camera_from_marker = fit.camera_from_marker;
   observation.covariance = fit.covariance;
   const MeasuredCorners corners =
       measured_corners(frame.camera, marker_.size_mm, samples_, measurements_, is_inlier_, fit);
   observation.corners_px = corners.corners_px;
   observation.rms_px = corners.rms_px;
+  const RowTrend rows = row_trend(frame.camera, marker_.size_mm, samples_, measurements_, is_inlier_, fit);
+  doubt_rows(frame, rows, observation);
   std::optional<SquarePose> other;
   bool is_contradicted = false;
   observation.ambiguity_ratio = kNoOtherPose;
@@ -313,6 +355,7 @@ void MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fit, c
     observation.state = MarkerState::Blur;
     go_on_from(fit);
   }
+  return rows;
 }
 
 }  // namespace arthronaut::markers

@@ -111,6 +111,14 @@ class MarkerTrack {
   // Edge profiles: refines the pose and the motion of `picture`.
   [[nodiscard]] EdgePose fit_edges(const TrackedFrame& frame, const geometry::RigidTransform& start,
                                    bool is_found, Smear& picture, SmearTrend& trend);
+  // Where its edges lie about a pose, as far as is known had all rows been exposed at once.
+  void look_at_edges(const TrackedFrame& frame, const geometry::RigidTransform& pose, Smear picture,
+                     const ProfileOptions& options, SmearTrend& trend);
+  // How it moves in this frame, by the frames before: body twist of one frame's time; zero when not known.
+  [[nodiscard]] geometry::Vector6d interval_motion(const TrackedFrame& frame,
+                                                   const geometry::RigidTransform& pose) const;
+  // What is not known of the rows' timing is an error of the pose.
+  void doubt_rows(const TrackedFrame& frame, const RowTrend& trend, MarkerObservation& observation) const;
   // Direct fit from a pose and a motion.
   [[nodiscard]] DirectPose fit_directly(const TrackedFrame& frame, const geometry::RigidTransform& start,
                                         const geometry::Vector6d& motion, const DirectOptions& options);
@@ -119,8 +127,9 @@ class MarkerTrack {
   [[nodiscard]] DirectPose try_motions(const TrackedFrame& frame, const geometry::RigidTransform& start);
   // From here on the pose in the observation is judged: what the edges say, and the direct fit where there is
   // one.
-  void report_edges(const TrackedFrame& frame, const EdgePose& fit, const Smear& picture, bool is_found,
-                    MarkerObservation& observation);
+  // Gives what they say of the rows' timing.
+  RowTrend report_edges(const TrackedFrame& frame, const EdgePose& fit, const Smear& picture, bool is_found,
+                        MarkerObservation& observation);
   void report_direct(const TrackedFrame& frame, const DirectPose& fit, double max_rms_px,
                      MarkerObservation& observation);
   // The cells at the pose, as far as they are seen, are this marker's.

@@ -45,7 +45,9 @@ struct MarkerObservation {
   // The rest is meaningful when is_tracked().
   std::array<Eigen::Vector2d, 4>
       corners_px;  // raw pixels: the marker's top-left, top-right, bottom-right, bottom-left
-  geometry::RigidTransform camera_from_marker;  // marker frame: x right, y up, z out of the printed face
+  // Marker frame: x right, y up, z out of the printed face. Of the middle of the exposure of the row that its
+  // centre is in; of two fields, of the moment between them.
+  geometry::RigidTransform camera_from_marker;
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // body twist (v mm, w rad)
   double rms_px = 0;           // corner reprojection error on the distorted frame
   double ambiguity_ratio = 0;  // reprojection error of the other planar solution / of this one

@@ -58,17 +58,16 @@ struct HardClip::State {
   [[nodiscard]] double time_s() const { return next_frame * interval_s(); }
   // From the middle of the frame to the middle of this row's exposure.
   [[nodiscard]] double delay_s(double y) const {
-    double delay = (y / recipe.height - 0.5) * recipe.readout_share * interval_s();
-    if (recipe.is_interlaced) delay += (static_cast<int>(y) % 2 ? 0.25 : -0.25) * interval_s();
-    return delay;
+    return (y / recipe.height - 0.5) * recipe.readout_share * interval_s();
   }
 
   void trace_rays();
   void place_markers();
-  void draw_light();
+  void draw_light(double field_delay_s);
   [[nodiscard]] cv::Vec3f look(const Eigen::Vector3f& ray, double time_share,
                                const std::array<bool, 3>& near) const;
   [[nodiscard]] cv::Vec3f tissue(const Eigen::Vector3f& ray) const;
+  void pass_optics();
   void expose();
   void find_truth();
   void draw_frame();
@@ -181,14 +180,14 @@ cv::Vec3f HardClip::State::look(const Eigen::Vector3f& ray, double time_share,
   return tissue(ray);
 }
 
-void HardClip::State::draw_light() {
+void HardClip::State::draw_light(double field_delay_s) {
   light.create(recipe.height, recipe.width, CV_32FC3);
   const int samples = recipe.smear_px < 2 ? 16 : recipe.smear_px < 10 ? 32 : 64;
   const double span = last_s - first_s, open = recipe.exposure_share * interval_s();
   Draw draw(recipe.seed * 131 + next_frame);
   for (int y = 0; y < recipe.height; ++y) {
     auto* row = light.ptr<cv::Vec3f>(y);
-    const double delay = delay_s(y);
+    const double delay = field_delay_s + delay_s(y);
     for (int x = 0; x < recipe.width; ++x) {
       const std::size_t at = static_cast<std::size_t>(y) * recipe.width + x;
       row[x] = {0, 0, 0};
@@ -223,7 +222,7 @@ void HardClip::State::draw_light() {
   }
 }
 
-void HardClip::State::expose() {
+void HardClip::State::pass_optics() {
   cover.create(light.size(), CV_8UC1);
   cover.setTo(0);
   obstructions.paint(time_s(), places, light, cover);
@@ -236,6 +235,9 @@ void HardClip::State::expose() {
   }
   cv::GaussianBlur(light, light, {0, 0}, recipe.optics_sigma_px, recipe.optics_sigma_px,
                    cv::BORDER_REPLICATE);
+}
+
+void HardClip::State::expose() {
   double gain = 1;
   if (recipe.has_exposure_steps) {
     // Two frames on the way from one level to the next.
@@ -346,7 +348,16 @@ void HardClip::State::draw_frame() {
     if (in) return;
   }
   trace_rays();
-  draw_light();
+  // What the lens blurs is one moment's picture: the sensor takes every other row of each field's.
+  const double half_apart_s = recipe.is_interlaced ? 0.25 * interval_s() : 0;
+  draw_light(half_apart_s);
+  pass_optics();
+  if (recipe.is_interlaced) {
+    const cv::Mat odd = light.clone();
+    draw_light(-half_apart_s);
+    pass_optics();
+    for (int y = 1; y < light.rows; y += 2) odd.row(y).copyTo(light.row(y));
+  }
   expose();
   if (file.empty()) return;
   std::ofstream out(file, std::ios::binary);

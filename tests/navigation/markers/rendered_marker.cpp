@@ -35,6 +35,23 @@ float light_at(const std::vector<Shown>& shown, const Eigen::Vector3d& ray) {
   return kTissue;
 }
 
+// Each marker as the row sees it over the exposure, as many moments as asked for.
+void show(const camera::CameraModel& camera, const std::vector<PlacedMarker>& markers, int row,
+          double readout, double delay, std::vector<std::vector<Shown>>& moments) {
+  for (std::size_t k = 0; k < moments.size(); ++k) {
+    moments[k].clear();
+    const double t = (static_cast<double>(k) + 0.5) / static_cast<double>(moments.size()) - 0.5;
+    for (const PlacedMarker& marker : markers) {
+      const auto center = camera.project(marker.camera_from_marker.translation_mm);
+      const double from_center = center ? (row - center->y()) / camera.image_size_px().y() : 0;
+      const double at = t + delay + readout * from_center;
+      const auto there =
+          marker.camera_from_marker * geometry::exp(at * marker.velocity + 0.5 * at * at * marker.change);
+      moments[k].push_back({&marker, there.inverse()});
+    }
+  }
+}
+
 void blur(std::vector<float>& light, int width, int height, double sigma) {
   const int reach = static_cast<int>(std::ceil(3.5 * sigma));
   std::vector<float> kernel(2 * reach + 1);
@@ -75,34 +92,36 @@ RenderedPicture::RenderedPicture(const camera::CameraModel& camera, const std::v
   };
   const bool is_moving = std::any_of(markers.begin(), markers.end(),
                                      [](const PlacedMarker& marker) { return !marker.velocity.isZero(); });
-  const int moments = is_moving ? kMoments : 1;
-  std::vector<std::vector<Shown>> shown(moments);
-  for (int k = 0; k < moments; ++k) {
-    const double t = (k + 0.5) / moments - 0.5;
-    for (const PlacedMarker& marker : markers) {
-      const auto there =
-          marker.camera_from_marker * geometry::exp(t * marker.velocity + 0.5 * t * t * marker.change);
-      shown[k].push_back({&marker, there.inverse()});
-    }
-  }
-  std::vector<float> light(static_cast<std::size_t>(width_) * height_, 0.0F);
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) {
-      if (!camera.is_inside_view(Eigen::Vector2d(x, y))) continue;
-      light[y * width_ + x] = kTissue;
-      const auto middle = camera.ray(Eigen::Vector2d(x, y));
-      if (!middle || !is_near_marker(*middle)) continue;
-      float sum = 0;
-      for (int k = 0; k < kSub * kSub; ++k) {
-        const Eigen::Vector2d pixel(x + (k % kSub + 0.5) / kSub - 0.5, y + (k / kSub + 0.5) / kSub - 0.5);
-        const auto ray = camera.ray(pixel);
-        for (int moment = 0; ray && moment < moments; ++moment)
-          sum += light_at(shown[moment], *ray) / moments;
+  std::vector<std::vector<Shown>> shown(is_moving ? kMoments : 1);
+  // All rows as they would be if exposed with those of one field.
+  const auto light_of_field = [&](double delay) {
+    std::vector<float> light(static_cast<std::size_t>(width_) * height_, 0.0F);
+    for (int y = 0; y < height_; ++y) {
+      if (y == 0 || options.readout != 0) show(camera, markers, y, options.readout, delay, shown);
+      for (int x = 0; x < width_; ++x) {
+        if (!camera.is_inside_view(Eigen::Vector2d(x, y))) continue;
+        light[y * width_ + x] = kTissue;
+        const auto middle = camera.ray(Eigen::Vector2d(x, y));
+        if (!middle || !is_near_marker(*middle)) continue;
+        float sum = 0;
+        for (int k = 0; k < kSub * kSub; ++k) {
+          const Eigen::Vector2d pixel(x + (k % kSub + 0.5) / kSub - 0.5, y + (k / kSub + 0.5) / kSub - 0.5);
+          const auto ray = camera.ray(pixel);
+          for (std::size_t moment = 0; ray && moment < shown.size(); ++moment)
+            sum += light_at(shown[moment], *ray) / static_cast<float>(shown.size());
+        }
+        light[y * width_ + x] = sum / (kSub * kSub);
       }
-      light[y * width_ + x] = sum / (kSub * kSub);
     }
+    blur(light, width_, height_, options.blur_px);
+    return light;
+  };
+  std::vector<float> light = light_of_field(-0.5 * options.fields);
+  if (options.fields != 0) {
+    const std::vector<float> second = light_of_field(0.5 * options.fields);
+    for (int y = 1; y < height_; y += 2)
+      std::copy_n(second.begin() + y * width_, width_, light.begin() + y * width_);
   }
-  blur(light, width_, height_, options.blur_px);
   std::mt19937 random(options.seed);
   std::normal_distribution<double> noise(0, options.noise_grey);
   grey_.resize(light.size());

@@ -26,6 +26,9 @@ struct PictureOptions {
   double gamma = 2.2;
   double noise_grey = 1.5;  // sigma, in grey levels
   unsigned seed = 1;
+  // When the rows are exposed, counted in exposures from the row of each marker's centre: the last row after
+  // the first, and the odd rows after the even ones, those half before and half after.
+  double readout = 0, fields = 0;
 };
 
 // The body twist that moves a marker by this much in the picture, at its centre.
