@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "navigation/markers/marker_tracker.h"
+#include "navigation/simulator/simulated_operation.h"
 #include "navigation/simulator/simulated_ruler.h"
 
 namespace arthronaut::markers {
@@ -120,6 +122,39 @@ INSTANTIATE_TEST_SUITE_P(Drawn, Sequences,
                                            Sequence{"small720p", 24, 2.2, 1.3345, true, 1},
                                            Sequence{"longShutter", 25, 4, 1.3345, true, 5}),
                          [](const auto& sequence) { return std::string(sequence.param.name); });
+
+// The drilling of the simulated operation, in which there is no probe: half of the guide's marker and what lies
+// beside it once passed for the probe's, nearer to the scope.
+TEST(SimulatedDrilling, Hazard48NoMarkerIsSeenInTheOutlineOfAnother) {
+  simulator::SimulationOptions options;
+  options.knee = phantom::make_phantom_knee();
+  options.camera = simulator::standard_camera();
+  options.tools = tools::standard_tools();
+  options.plan = options.knee.femoral_tunnel;
+
+  simulator::SimulatedOperation operation(options, simulator::Phase::Drill);
+  const auto tracker = make_tracker(declared_markers(options.tools));
+  std::vector<std::uint8_t> gray;
+  int right = 0;
+  while (const auto frame = operation.next()) {
+    const simulator::FrameTruth& truth = operation.truth();
+    camera::gray_from(*frame, gray);
+    const camera::CameraModel camera(options.camera, options.camera.lens_angle_rad(truth.mark_angle_deg),
+                                     options.refractive_index);
+    const Eigen::Vector2i size = camera.image_size_px();
+    for (const MarkerObservation& seen :
+         tracker->track({gray.data(), size.x(), size.y(), size.x()}, camera, frame->timestamp_ns)) {
+      if (!seen.is_tracked()) continue;
+      const auto is = std::ranges::find(truth.markers, seen.id, &simulator::FrameTruth::Marker::id);
+      ASSERT_NE(is, truth.markers.end()) << "marker " << seen.id << " in frame " << frame->index;
+      const geometry::Vector6d error =
+          geometry::log(seen.camera_from_marker.inverse() * is->camera_from_marker);
+      EXPECT_LT(error.head<3>().norm(), 1);
+      ++right;
+    }
+  }
+  EXPECT_GE(right, 200) << "world marker and guide";
+}
 
 }  // namespace
 }  // namespace arthronaut::markers
