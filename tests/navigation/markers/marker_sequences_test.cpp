@@ -123,8 +123,8 @@ INSTANTIATE_TEST_SUITE_P(Drawn, Sequences,
                                            Sequence{"longShutter", 25, 4, 1.3345, true, 5}),
                          [](const auto& sequence) { return std::string(sequence.param.name); });
 
-// The drilling of the simulated operation, in which there is no probe: half of the guide's marker and what lies
-// beside it once passed for the probe's, nearer to the scope.
+// The drilling of the simulated operation, in which there is no probe: half of the guide's marker and what
+// lies beside it once passed for the probe's, nearer to the scope.
 TEST(SimulatedDrilling, Hazard48NoMarkerIsSeenInTheOutlineOfAnother) {
   simulator::SimulationOptions options;
   options.knee = phantom::make_phantom_knee();
