@@ -10,8 +10,8 @@ namespace arthronaut::navigate {
 
 namespace {
 
-constexpr std::string_view kFormat = "arthronaut.pictures";
-constexpr int kVersion = 1;
+constexpr std::string_view kPicturesFormat = "arthronaut.pictures";
+constexpr int kPicturesVersion = 1;
 
 }  // namespace
 
@@ -22,7 +22,8 @@ std::filesystem::path picture_keeping_file() {
 recording::PicturesAs load_picture_keeping(const std::filesystem::path& file) {
   try {
     if (std::filesystem::exists(file))
-      return recording::pictures_as_from_option(files::read_json(file, kFormat, kVersion).text("kept"));
+      return recording::pictures_as_from_option(
+          files::read_json(file, kPicturesFormat, kPicturesVersion).text("kept"));
   } catch (const std::runtime_error&) {  // as the header says
   }
   return recording::PicturesAs::AsTheyCame;
@@ -30,7 +31,8 @@ recording::PicturesAs load_picture_keeping(const std::filesystem::path& file) {
 
 void save_picture_keeping(const std::filesystem::path& file, recording::PicturesAs as) {
   files::create_private_folder(file.parent_path());
-  files::write_json(file, {{"format", kFormat}, {"version", kVersion}, {"kept", recording::to_option(as)}});
+  files::write_json(
+      file, {{"format", kPicturesFormat}, {"version", kPicturesVersion}, {"kept", recording::to_option(as)}});
 }
 
 }  // namespace arthronaut::navigate
