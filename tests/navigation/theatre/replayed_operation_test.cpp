@@ -274,7 +274,7 @@ class LateLooks : public MediumLookService {
 // The wrong medium is found by second looks, whenever they come: run again from the record, every state is
 // the same, since the record says after which frame each was taken in.
 TEST_F(ReplayedOperation, SecondLooksThatComeLateGiveTheSameStates) {
-  constexpr int kFrames = 30;
+  constexpr int kFrames = 45;  // in which the latest look, too, is followed by another
   simulator::SimulationOptions options = simulator::phantom_options();
   options.frame_count = kFrames;
   TheatreSource source;
