@@ -12,6 +12,9 @@ namespace {
 constexpr double kTellingSigmas = 5;
 // Fields are half a frame apart or are none; edges between combs tell the time roughly.
 constexpr double kBetweenFields = 0.5, kLeastOfFields = 0.25;
+// A rolling shutter takes a good part of the frame: less is what edges have wrong together. One that seems to
+// take all of it and more is something else that bends the picture, as another medium does.
+constexpr double kLeastReadout = 0.15, kMostReadout = 0.95;
 // No camera's delay is known better, and none is longer.
 constexpr double kLeastSigma = 0.01, kMostDelay = 1;
 // Of the way between two fields: each edge is off by half of it, to one side or the other, and corners, which
@@ -36,7 +39,9 @@ Eigen::Vector2d RowTiming::known() const {
   const Eigen::Vector2d sigma = sigmas();
   const auto is_told = [&](int k) { return std::abs(mean_[k]) > kTellingSigmas * sigma[k]; };
   const bool are_fields = is_told(1) && std::abs(mean_[1]) > kLeastOfFields;
-  return {is_told(0) ? mean_[0] : 0, are_fields ? std::copysign(kBetweenFields, mean_[1]) : 0};
+  const double readout = std::abs(mean_[0]);
+  const bool is_readout = is_told(0) && readout > kLeastReadout && readout < kMostReadout;
+  return {is_readout ? mean_[0] : 0, are_fields ? std::copysign(kBetweenFields, mean_[1]) : 0};
 }
 
 Eigen::Matrix2d RowTiming::uncertainty() const {
