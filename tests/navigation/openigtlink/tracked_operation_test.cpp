@@ -22,6 +22,7 @@ using geometry::RigidTransform;
 using theatre::OperationRun;
 
 constexpr int kWidth = 160, kHeight = 120, kFemur = 0;
+constexpr int kFramesCompared = 20;
 
 // Pictures of noise, 60 a second, as a camera that sees no marker.
 class NoiseSource : public sources::FrameSource {
@@ -243,11 +244,14 @@ TEST_F(TrackedOperation, IsReplayedToTheLastBit) {
       ASSERT_TRUE(step_until(run, false));
       peer_.pause(false);
       ASSERT_TRUE(step_until(run, true)) << run.tracker_trouble();
+      // How many pictures all this took is the machine's affair: as many more as the comparison shall have.
+      for (int more = 0; more < kFramesCompared;)
+        if (run.step().picture != nullptr) ++more;
       run.end_source();
       EXPECT_EQ(run.record_trouble(), "");
     }
     const recording::RecordedSession session(session_);
-    ASSERT_GT(session.frames().size(), 20U);
+    ASSERT_GT(session.frames().size(), std::size_t{kFramesCompared});
     EXPECT_EQ(session.frames().back().outside.bodies.size(), 5U);
     EXPECT_GT(session.frames().back().outside.bodies.front().stamp_utc_s, 1e9);
     const auto replayed = recording::replay_session(session, {});
