@@ -116,9 +116,8 @@ std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widg
   const std::string hint =
       !trouble_.empty()   ? trouble_
       : !tracker_.empty() ? "Tools seen by " + tracker_ + ": now the pictures (igtl:// alone: not)"
-      : offered_.empty()
-          ? "No camera is connected. The address of a stream, or of a tracker (igtl://HOST:PORT)"
-          : "Or the address of a stream, or of a tracker (igtl://HOST:PORT)";
+      : offered_.empty()  ? "No camera is connected. A stream's address, or a tracker's (igtl://HOST:PORT)"
+                          : "Or a stream's address, or a tracker's (igtl://HOST:PORT)";
   widgets::text_centered(ui, box.cut_top(row), ui.theme.strong,
                          trouble_.empty() ? widgets::kQuietText : widgets::kCaution, hint);
   const widgets::Rect field = box.cut_top(row).inset(ui.theme.px(6));

@@ -1,7 +1,7 @@
 #include "app/plan/export_work.h"
 
 #include <chrono>
-#include <stdexcept>
+#include <exception>
 
 #include "planning/plan_export/plan_export.h"
 
@@ -15,7 +15,7 @@ void ExportWork::start(cases::Case knee, std::filesystem::path folder) {
       outcome = "Exported into " + folder.string() + ":";
       for (const auto& file : summary.files) outcome += " " + file.filename().string();
       for (const std::string& doubt : summary.doubts) outcome += "\nLook: " + doubt;
-    } catch (const std::runtime_error& error) {
+    } catch (const std::exception& error) {  // the top of a thread: the geometry library's assertions too
       outcome = std::string("Not exported: ") + error.what();
     }
     wake_();

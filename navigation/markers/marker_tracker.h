@@ -64,9 +64,10 @@ struct MarkerCandidate {
 class MarkerTracker {
  public:
   virtual ~MarkerTracker() = default;
-  // One observation for each declared marker, in their order; valid until the next call. Frames in order of
-  // time; the camera is that of this frame's lens angle. Never throws on what a picture shows; throws
-  // InvalidInput when the frame's size is not the camera's.
+  // One observation for each declared marker, in their order; valid until the next call. Of two in one place
+  // the one read worse is not tracked. Frames in order of time; the camera is that of this frame's lens
+  // angle. Never throws on what a picture shows; throws InvalidInput when the frame's size is not the
+  // camera's.
   virtual std::span<const MarkerObservation> track(const camera::GrayView& frame,
                                                    const camera::CameraModel& camera,
                                                    std::int64_t timestamp_ns) = 0;

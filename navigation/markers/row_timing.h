@@ -31,7 +31,7 @@ struct RowTrend {
 class RowTiming {
  public:
   // Of the last row after the first, and of the odd rows after the even ones: half a frame, if at all. Zero
-  // until it is told from zero.
+  // until it is told from zero, and where it is told as what no camera has: outside 0.15 to 0.95 of a frame.
   [[nodiscard]] Eigen::Vector2d known() const;
   // Of known(): the mean square of what it may be off by.
   [[nodiscard]] Eigen::Matrix2d uncertainty() const;
