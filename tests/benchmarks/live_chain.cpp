@@ -83,6 +83,8 @@ struct StreamChoice {
   const char *camera_file = nullptr, *medium = nullptr;
 };
 
+constexpr std::int64_t kBuffersFull_s = 60;
+
 int stream(const StreamChoice& choice) {
   const bool records = choice.records;
   const int port = 20000 + ::getpid() % 40000;
@@ -120,8 +122,8 @@ int stream(const StreamChoice& choice) {
   double first_s = 0, last_s = 0, memory_mb = 0;
   theatre::NavigationObserver observer;
   observer.on_frame = [&](const camera::FramePtr& picture, const operation::OperationStatePtr&) {
-    // The first seconds fill buffers.
-    if (memory_mb == 0 && picture->timestamp_ns > 5'000'000'000) memory_mb = resident_mb();
+    // Until then buffers fill, of which the 20 s of encoded pictures to reach back to are the longest.
+    if (memory_mb == 0 && picture->timestamp_ns > kBuffersFull_s * 1'000'000'000) memory_mb = resident_mb();
     if (first < 0) {
       first = picture->index;
       first_s = static_cast<double>(picture->timestamp_ns) * 1e-9;
@@ -144,7 +146,9 @@ int stream(const StreamChoice& choice) {
       std::printf("  %-12s median %6.2f ms, 99 %% %6.2f ms, worst %7.2f ms\n",
                   std::string(theatre::to_text(static_cast<theatre::Stage>(i))).c_str(), stage.median_ms,
                   stage.p99_ms, stage.worst_ms);
-  std::printf("memory: %.1f MB after 5 s, %+.1f MB since\n", memory_mb, resident_mb() - memory_mb);
+  if (memory_mb > 0)
+    std::printf("memory: %.1f MB after %lld s, %+.1f MB since\n", memory_mb,
+                static_cast<long long>(kBuffersFull_s), resident_mb() - memory_mb);
   for (const std::string& trouble : summary.troubles) std::printf("trouble: %s\n", trouble.c_str());
   if (!summary.ending.empty()) std::printf("ended: %s\n", summary.ending.c_str());
   return 0;
