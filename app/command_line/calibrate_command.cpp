@@ -4,6 +4,7 @@
 
 #include "app/command_line/command.h"
 #include "app/command_line/medium_option.h"
+#include "app/command_line/option_checks.h"
 #include "navigation/calibration/calibration.h"
 #include "navigation/calibration/residual_plot.h"
 #include "navigation/camera/camera_file.h"
@@ -90,11 +91,11 @@ void add_calibrate_command(CLI::App& app, Context& context) {
   const auto arguments = std::make_shared<CalibrateArguments>();
   command->add_option("--square-mm", arguments->options.square_mm, "Side of one square of the board, mm")
       ->required()
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command
       ->add_option("--distance-mm", arguments->options.distance_mm,
                    "How far the boards stood from the lens, about, if measured: tells a wrong square size")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   add_medium_option(*command, arguments->medium_index,
                     "What the pictures were taken in: air (default), water, saline or a refractive index");
   command->add_option("--scope", arguments->options.scope_name, "Name of the scope, kept in camera.json");

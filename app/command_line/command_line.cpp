@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "app/command_line/sources_command.h"
 #include "app/command_line/train_command.h"
 #include "navigation/sources/frame_source.h"
@@ -105,7 +106,7 @@ int run_command_line(int argc, char** argv,
                  "Case folder to open in the workstation, or images to import there");
   app.add_flag("--built-in", request.built_in, "Open the workstation on the built-in knee");
   app.add_option("--frames", request.frames, "Close the workstation after so many frames")
-      ->check(CLI::NonNegativeNumber);
+      ->check(between(0, 1e9));
   app.add_flag("--list-widgets", request.list_widgets,
                "Print where the workstation's widgets are, for tests");
 

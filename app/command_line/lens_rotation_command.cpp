@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/command_line/medium_option.h"
+#include "app/command_line/option_checks.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/experiments/lens_rotation.h"
 #include "navigation/tools/tool_set.h"
@@ -109,7 +110,7 @@ void add_lens_rotation_experiment(CLI::App& experiment, Context& context) {
                                      "on a recorded clip",
                                      "arthronaut experiment lens-rotation --frames 500 -o rotation");
   const auto arguments = std::make_shared<LensRotationArguments>();
-  command->add_option("--frames", arguments->frames, "Frames to simulate")->check(CLI::Range(1, 100000));
+  command->add_option("--frames", arguments->frames, "Frames to simulate")->check(between(1, 100000));
   command->add_option("--seed", arguments->seed,
                       "Seed of the simulation; the same seed gives the same figures");
   command->add_option("-o", arguments->output, "Folder for the plot and the figures of every frame");

@@ -1,4 +1,5 @@
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "app/report/marker_sheet.h"
 
 namespace arthronaut::command_line {
@@ -16,8 +17,11 @@ void add_markers_command(CLI::App& app, Context& context) {
   sub->add_option("--ids", arguments->sheet.ids, "Marker ids of DICT_4X4_50")
       ->delimiter(',')
       ->capture_default_str();
-  sub->add_option("--size-mm", arguments->sheet.size_mm, "Side of the black square")->capture_default_str();
+  sub->add_option("--size-mm", arguments->sheet.size_mm, "Side of the black square")
+      ->check(above_zero())
+      ->capture_default_str();
   sub->add_option("--square-mm", arguments->sheet.square_mm, "Side of the checkerboard's squares")
+      ->check(above_zero())
       ->capture_default_str();
   sub->callback([arguments, &context] {
     report::write_marker_sheet(arguments->output, arguments->sheet);

@@ -5,6 +5,7 @@
 #include "app/command_line/command.h"
 #include "app/command_line/medium_option.h"
 #include "app/command_line/navigation_report.h"
+#include "app/command_line/option_checks.h"
 #include "app/command_line/tracker_option.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
@@ -329,12 +330,12 @@ void add_navigate_command(CLI::App& app, Context& context) {
   command
       ->add_option("--igtl", arguments->igtl_port,
                    "Serve poses and states by OpenIGTLink on this port, 0 for any free one, while it runs")
-      ->check(CLI::Range(0, 65535));
+      ->check(between(0, 65535));
   add_tracker_option(*command, arguments->tracker);
   command
       ->add_option("--duration-s", arguments->duration_s,
                    "Stop after so many seconds of pictures; default: at the source's end")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->callback([&context, arguments] { navigate(context, *arguments); });
 }
 

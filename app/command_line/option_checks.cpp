@@ -23,7 +23,7 @@ CLI::Validator of_number(const std::string& limits, const std::function<bool(dou
 }  // namespace
 
 CLI::Validator between(double least, double greatest) {
-  return of_number(files::format("%g to %g", least, greatest),
+  return of_number(files::format("%.16g to %.16g", least, greatest),
                    [least, greatest](double value) { return value >= least && value <= greatest; });
 }
 

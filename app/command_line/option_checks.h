@@ -1,4 +1,5 @@
-// Checks of options' values, made before any work. CLI11's own let NaN pass, and name limits of 309 digits.
+// Checks of options' values, made before any work. CLI11's own let NaN pass, and name limits of 309 digits:
+// every option that takes a fraction has one of these.
 #pragma once
 
 #include <CLI/CLI.hpp>

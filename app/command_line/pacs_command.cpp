@@ -6,6 +6,7 @@
 
 #include "app/command_line/command.h"
 #include "app/command_line/interruption.h"
+#include "app/command_line/option_checks.h"
 #include "app/command_line/pacs_report.h"
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
@@ -85,18 +86,18 @@ void add_connection_options(CLI::App& sub, Connection& connection, bool peer_may
       ->needs(tls);
   sub.add_option("--connect-timeout-s", connection.options.connect_timeout_s,
                  "Longest wait for a connection; default: 10")
-      ->check(CLI::Range(1.0, 3600.0));
+      ->check(between(1, 3600));
   sub.add_option("--timeout-s", connection.options.answer_timeout_s,
                  "Longest silence of the peer; default: 60")
-      ->check(CLI::Range(1.0, 3600.0));
+      ->check(between(1, 3600));
   sub.add_option("--retries", connection.options.retries,
                  "How often a connection that fails or breaks is tried again; default: 3")
-      ->check(CLI::Range(0, 100));
+      ->check(between(0, 100));
   if (peer_may_call_us)
     sub.add_option("--listen", connection.options.listening_port,
                    "Port where the peer may call us by our AE title: images by C-MOVE, reports of storage "
                    "commitment")
-        ->check(CLI::Range(1, 65535));
+        ->check(between(1, 65535));
 }
 
 // Ctrl+C ends the connection; what came whole is kept.
@@ -182,7 +183,7 @@ void add_find(CLI::App& pacs_app, Context& context) {
                                                  {"study", pacs::FindLevel::Study},
                                                  {"series", pacs::FindLevel::Series}}));
   sub->add_option("--most", arguments->find.most_studies, "Most studies to list; default: 500")
-      ->check(CLI::Range(1, 1000000));
+      ->check(between(1, 1000000));
   sub->add_flag("--json", arguments->as_json, "The list as JSON");
   sub->callback([&context, arguments] { find(context, *arguments); });
 }
@@ -241,7 +242,7 @@ void add_get(CLI::App& pacs_app, Context& context) {
            arguments->request.most_bytes = static_cast<std::int64_t>(gigabytes * 1e9);
          },
          "Most gigabytes to take from the PACS; default: 34")
-      ->check(CLI::Range(0.001, 100000.0));
+      ->check(between(0.001, 100000));
   sub->add_flag("--json", arguments->as_json, "What was fetched, as JSON");
   sub->callback([&context, arguments] { get(context, *arguments); });
 }
@@ -308,7 +309,7 @@ void add_send(CLI::App& pacs_app, Context& context) {
                 "Exit code 4 unless the PACS has confirmed that it keeps everything");
   sub->add_option("--commitment-wait-s", arguments->send.commitment_wait_s,
                   "How long its report is waited for; default: 5")
-      ->check(CLI::Range(0.0, 86400.0));
+      ->check(between(0, 86400));
   sub->add_flag("--json", arguments->as_json, "What was taken, as JSON");
   sub->callback([&context, arguments] { send(context, *arguments); });
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "app/command_line/option_checks.h"
 #include "navigation/experiments/predicted_error.h"
 #include "planning/files/format.h"
 
@@ -58,8 +59,7 @@ void add_predicted_error_experiment(CLI::App& experiment, Context& context) {
                      "pictures, with poor tools and a poor camera among them",
                      "arthronaut experiment predicted-error --operations 100 -o errors.csv");
   const auto arguments = std::make_shared<PredictedErrorArguments>();
-  command->add_option("--operations", arguments->operations, "Number of operations")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--operations", arguments->operations, "Number of operations")->check(above_zero());
   command->add_option("--seed", arguments->seed,
                       "Seed of the operations; the same seed gives the same figures");
   command->add_option("-o,--output", arguments->table, "CSV to write one row an operation into");

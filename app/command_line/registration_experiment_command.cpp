@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/command_line/option_checks.h"
 #include "navigation/experiments/registration_experiment.h"
 #include "planning/bones/mesh_file.h"
 
@@ -107,7 +108,7 @@ void add_registration_experiment(CLI::App& experiment, Context& context) {
   const auto arguments = std::make_shared<ExperimentArguments>();
   command->add_option("--bone", arguments->bone, "Surface mesh of a femur, or of any bone with --area")
       ->required();
-  command->add_option("--trials", arguments->trials, "Number of trials")->check(CLI::PositiveNumber);
+  command->add_option("--trials", arguments->trials, "Number of trials")->check(above_zero());
   command->add_option("--noise", arguments->noise, "dry, ex-vivo or hard")
       ->check(CLI::IsMember({"dry", "ex-vivo", "hard"}));
   command->add_option("--seed", arguments->seed, "Seed of the trials; the same seed gives the same figures");

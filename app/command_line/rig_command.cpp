@@ -6,6 +6,7 @@
 #include <span>
 
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "navigation/strokes/poses_file.h"
 #include "navigation/tools/rig_calibration.h"
 #include "navigation/tools/tool_set.h"
@@ -298,7 +299,7 @@ void add_rig_command(CLI::App& app, Context& context) {
   command
       ->add_option("--size-mm", arguments->size_mm,
                    "Size of markers that the tools do not declare (default: 4)")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->add_option("-o,--output", arguments->output, "tools.json to write; - is standard output")
       ->required();
   command->callback([&context, arguments] { calibrate(context, *arguments); });

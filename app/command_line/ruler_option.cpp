@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "app/command_line/medium_option.h"
+#include "app/command_line/option_checks.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
 #include "navigation/experiments/lens_rotation.h"
@@ -109,7 +110,7 @@ void add_ruler_options(CLI::App& command, RulerArguments& arguments) {
           .add_option("--spacing-mm", arguments.spacing_mm,
                       "The second marker's centre along the first one's x axis, mm (default: 10); "
                       "both face the same way")
-          ->check(CLI::PositiveNumber);
+          ->check(above_zero());
   command
       .add_option("--ruler", arguments.ruler,
                   "ruler.json: the two markers' relative pose, where it is another")

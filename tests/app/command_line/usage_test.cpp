@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <regex>
+#include <sstream>
 
 #include "tests/app/command_line/program.h"
 #include "tests/temporary_folder.h"
@@ -111,6 +113,60 @@ TEST(CommandLine, RefusesAnUnknownMedium) {
       run_program({"track", "--camera", "c", "--tools", "t", "--medium", "mud", "-o", "-", "clip.mkv"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.errors, HasSubstr("mud"));
+}
+
+struct Help {
+  std::vector<std::string> subcommands;
+  std::vector<std::pair<std::string, std::string>> fractions;  // options that take them, with their type
+};
+
+Help help_of(std::vector<std::string> command) {
+  command.push_back("--help");
+  std::istringstream lines(run_program(command).output);
+  const std::regex fraction(R"( +(?:-\w,)?(--[\w-]+) (FLOAT|MEDIUM|X,Y,Z)\b.*)"),
+      subcommand(R"(  ([a-z][\w-]*).*)");
+  Help help;
+  bool lists_subcommands = false;
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch found;
+    if (!line.starts_with(' ')) lists_subcommands = line == "Subcommands:";
+    if (lists_subcommands && std::regex_match(line, found, subcommand)) help.subcommands.push_back(found[1]);
+    if (std::regex_match(line, found, fraction)) help.fractions.emplace_back(found[1], found[2]);
+  }
+  return help;
+}
+
+// Asks it of the command's options and of those of its subcommands; which they are.
+std::vector<std::string> refuse_what_is_no_number(const std::vector<std::string>& command) {
+  std::vector<std::string> refused;
+  const Help help = help_of(command);
+  for (const auto& [option, type] : help.fractions) {
+    for (std::string value : {"nan", "inf", "1e999"}) {
+      if (type == "X,Y,Z") value += ",0,0";
+      std::vector<std::string> arguments = command;
+      arguments.push_back(option + "=" + value);
+      const auto result = run_program(arguments);
+      EXPECT_EQ(result.exit_code, 2) << option << "=" << value;
+      EXPECT_THAT(result.errors, HasSubstr(option)) << value;
+    }
+    refused.push_back((command.empty() ? "" : command.back() + " ") + option);
+  }
+  for (const std::string& name : help.subcommands) {
+    std::vector<std::string> subcommand = command;
+    subcommand.push_back(name);
+    const auto of_it = refuse_what_is_no_number(subcommand);
+    refused.insert(refused.end(), of_it.begin(), of_it.end());
+  }
+  return refused;
+}
+
+// Not a number, infinite and too large: no option takes these for a number, and each is named, before any
+// other thing that is missing.
+TEST(CommandLine, NoOptionTakesWhatIsNoNumber) {
+  EXPECT_THAT(refuse_what_is_no_number({}),
+              ::testing::IsSupersetOf({"calibrate --square-mm", "get --most-gb", "get --timeout-s",
+                                       "markers --size-mm", "navigate --duration-s", "plan --entry",
+                                       "registration --area", "track --medium"}));
 }
 
 }  // namespace
