@@ -1,6 +1,5 @@
 #include "app/case/case_opening.h"
 
-#include <chrono>
 #include <cstdlib>
 #include <utility>
 
@@ -48,40 +47,28 @@ OpenedCase open_folder(const std::filesystem::path& folder) {
   return opened;
 }
 
-CaseOpening::CaseOpening(const std::filesystem::path& folder, std::function<void()> on_end)
-    : opening_(std::async(std::launch::async, [folder, on_end = std::move(on_end)] {
-        const struct AtEnd {
-          const std::function<void()>& call;
-          ~AtEnd() { call(); }
-        } at_end{on_end};
-        return open_folder(folder);
-      })) {}
+CaseOpening::CaseOpening(const std::filesystem::path& folder, std::function<void()> on_end) {
+  opening_.start([folder] { return open_folder(folder); }, std::move(on_end));
+}
 
 CaseOpening::CaseOpening(CaseOpening& before, std::function<void()> on_end) {
   open_.lock = std::move(before.open_.lock);
   const bool is_ours = open_.lock.is_held();
-  opening_ = std::async(std::launch::async, [folder = before.folder(), is_ours, on_end = std::move(on_end)] {
-    const struct AtEnd {
-      const std::function<void()>& call;
-      ~AtEnd() { call(); }
-    } at_end{on_end};
-    OpenedCase opened;
-    opened.folder = folder;
-    if (!is_ours) opened.lock = cases::CaseLock(folder);  // read-only, unless it has become free
-    load(opened);
-    return opened;
-  });
-}
-
-CaseOpening::~CaseOpening() {
-  if (opening_.valid()) opening_.wait();  // what it calls at its end must still be there
+  opening_.start(
+      [folder = before.folder(), is_ours] {
+        OpenedCase opened;
+        opened.folder = folder;
+        if (!is_ours) opened.lock = cases::CaseLock(folder);  // read-only, unless it has become free
+        load(opened);
+        return opened;
+      },
+      std::move(on_end));
 }
 
 bool CaseOpening::take() {
-  if (!opening_.valid() || opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-    return false;
+  if (!opening_.is_ready()) return false;
   try {  // the top of the opening thread: a case that cannot be read is said on the screen
-    OpenedCase opened = opening_.get();
+    OpenedCase opened = opening_.take();
     if (open_.lock.is_held()) opened.lock = std::move(open_.lock);
     open_ = std::move(opened);
   } catch (const std::exception& error) {

@@ -3,12 +3,12 @@
 
 #include <filesystem>
 #include <functional>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "app/case/plan_model.h"
+#include "navigation/worker/awaited.h"
 #include "planning/cases/case_lock.h"
 #include "planning/cases/identity.h"
 
@@ -37,17 +37,16 @@ struct OpenedCase {
 class CaseOpening {
  public:
   // Opens the folder, see open_folder(). on_end is called from the other thread when that is done, well or
-  // not.
+  // not; its end is waited for.
   CaseOpening(const std::filesystem::path& folder, std::function<void()> on_end);
   // The same case once more, since its bones are others now, or another was looked at meanwhile: the lock
   // that `before` has goes over, and back again by keep_lock() when it cannot be opened.
   CaseOpening(CaseOpening& before, std::function<void()> on_end);
   void keep_lock(CaseOpening& from) { open_.lock = std::move(from.open_.lock); }
-  ~CaseOpening();  // waits for the end
 
   // Takes over what the thread has made, without waiting; true once, when the case has become open just now.
   bool take();
-  [[nodiscard]] bool is_busy() const { return opening_.valid(); }
+  [[nodiscard]] bool is_busy() const { return opening_.is_busy(); }
   // Null until it is open, and in a case whose bones are still to be painted.
   [[nodiscard]] PlanModel* model() const { return open_.model.get(); }
   // That case; null where there are bones.
@@ -66,9 +65,9 @@ class CaseOpening {
   [[nodiscard]] const std::optional<cases::Identity>& identity() const { return open_.identity; }
 
  private:
-  std::future<OpenedCase> opening_;
   OpenedCase open_;
   std::string failure_;
+  worker::Awaited<OpenedCase> opening_;
 };
 
 }  // namespace arthronaut::open_case

@@ -1,7 +1,6 @@
 #include "app/paint/bone_making.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "planning/cases/study.h"
@@ -23,10 +22,6 @@ constexpr std::pair<BoneKind, std::uint8_t> kBones[] = {{BoneKind::Femur, painti
 
 BoneMaking::BoneMaking(std::function<void()> wake, std::filesystem::path program)
     : wake_(std::move(wake)), program_(std::move(program)) {}
-
-BoneMaking::~BoneMaking() {
-  if (saving_.valid()) saving_.wait();
-}
 
 std::string BoneMaking::refusal(const cases::Case& knee, const painting::Painting& painting,
                                 const std::vector<BoneKind>& unchanged) {
@@ -100,18 +95,15 @@ void BoneMaking::save() {
   if (state_ != State::Judging) return;
   state_ = State::Saving;
   failure_.clear();
-  saving_ =
-      std::async(std::launch::async, [this, import = result_, folder = folder_, side = side_]() mutable {
-        const struct AtEnd {
-          const std::function<void()>& call;
-          ~AtEnd() { call(); }
-        } at_end{wake_};
+  saving_.start(
+      [import = result_, folder = folder_, side = side_]() mutable {
         import.side = side;
         import.image.reset();  // the labels stay where they are painted
         // Bones that are painted in images are of the images' study.
         for (const auto& [kind, origin] : cases::load_studies(folder)) import.origin = origin;
         importing::add_to_case(folder, import, "", painting::bones_file(folder));
-      });
+      },
+      wake_);
 }
 
 void BoneMaking::poll() {
@@ -130,9 +122,9 @@ void BoneMaking::poll() {
     }
     process_.reset();
   }
-  if (state_ == State::Saving && saving_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+  if (state_ == State::Saving && saving_.is_ready()) {
     try {  // the top of the saving thread
-      saving_.get();
+      saving_.take();
       state_ = State::Done;
     } catch (const std::exception& error) {
       failure_ = error.what();

@@ -5,16 +5,16 @@
 //    ▲ cancel() │  refused │ cancel() │ refused: back to Judging, with the reason
 //    └──────────┴──────────┘
 //
-// One thread; poll() once a frame. A thread of its own writes.
+// One thread; poll() once a frame. A thread of its own writes, and is waited for.
 #pragma once
 
 #include <filesystem>
 #include <functional>
-#include <future>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "navigation/worker/awaited.h"
 #include "planning/cases/case.h"
 #include "planning/import/bone_quality.h"
 #include "planning/import/import_process.h"
@@ -28,7 +28,6 @@ class BoneMaking {
 
   // program: what answers importing::kImportChildWord.
   explicit BoneMaking(std::function<void()> wake, std::filesystem::path program = "/proc/self/exe");
-  ~BoneMaking();  // waits for what is being written
   BoneMaking(const BoneMaking&) = delete;
   BoneMaking& operator=(const BoneMaking&) = delete;
 
@@ -64,7 +63,7 @@ class BoneMaking {
   std::vector<importing::BoneQuality> qualities_;  // the painted volume is known from the start
   bones::Side side_ = bones::Side::Right;
   std::string failure_;
-  std::future<void> saving_;
+  worker::Awaited<void> saving_;
 };
 
 }  // namespace arthronaut::paint

@@ -9,10 +9,10 @@
 
 #include <atomic>
 #include <functional>
-#include <future>
 #include <optional>
 #include <string>
 
+#include "navigation/worker/awaited.h"
 #include "planning/painting/label_change.h"
 
 namespace arthronaut::paint {
@@ -36,7 +36,7 @@ class LabelJob {
   // Precondition: !is_running().
   void start(std::string what, Work work);
   void cancel() { stops_ = true; }
-  [[nodiscard]] bool is_running() const { return running_.valid(); }
+  [[nodiscard]] bool is_running() const { return running_.is_busy(); }
   [[nodiscard]] bool is_cancelled() const { return is_running() && stops_; }
   [[nodiscard]] const std::string& what() const { return what_; }  // that runs, or ran last
   [[nodiscard]] double fraction() const { return fraction_; }
@@ -48,7 +48,7 @@ class LabelJob {
   std::string what_;
   std::atomic<bool> stops_{false};
   std::atomic<double> fraction_{0};
-  std::future<Done> running_;
+  worker::Awaited<Done> running_;  // last: ends first
 };
 
 }  // namespace arthronaut::paint

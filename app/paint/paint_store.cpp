@@ -1,6 +1,5 @@
 #include "app/paint/paint_store.h"
 
-#include <chrono>
 #include <utility>
 
 #include "planning/cases/case_image.h"
@@ -28,15 +27,12 @@ std::optional<cases::CaseImage> image_to_paint(const cases::Case& knee) {
 
 PaintStore::PaintStore(std::function<void()> wake) : wake_(std::move(wake)) {}
 
-PaintStore::~PaintStore() {
-  stops_ = true;
-  if (loading_.valid()) loading_.wait();
-}
+PaintStore::~PaintStore() { stops_ = true; }
 
 void PaintStore::open(const std::filesystem::path& case_folder, const cases::CaseImage& image, bool read_only,
                       std::vector<CaseBone> case_bones) {
   stops_ = true;
-  if (loading_.valid()) loading_.wait();
+  loading_.drop();
   stops_ = false;
   if (saver_ != nullptr) saver_->finish();
   // A worker of its own: what one case's saving failed of says nothing of the next.
@@ -58,45 +54,47 @@ void PaintStore::open(const std::filesystem::path& case_folder, const cases::Cas
   is_read_only_ = read_only;
   failure_.clear();
   loaded_ = 0;
-  loading_ = std::async(std::launch::async, [this, folder = case_folder, image,
-                                             bones = std::move(case_bones)] {
-    Loaded loaded;
-    try {  // the top of the loading thread
-      auto volume = std::make_shared<const images::Volume>(cases::load_image(folder, image, [this](double f) {
-        if (stops_) throw Stopped();
-        loaded_ = f;
-      }));
-      painting::Painting painting(volume);
-      painting::Labels of_case(volume->values.size(), painting::kNothing);
-      for (const CaseBone& bone : bones)
-        painting::add_bone(of_case, *volume, *bone.mesh, label_of(bone.kind));
-      for (const CaseBone& bone : bones)
-        loaded.digests[bone.kind] = painting::digest_of(of_case, label_of(bone.kind));
-      try {
-        if (auto saved = painting::load_painting(folder, *volume)) {
-          painting.restore(std::move(saved->strokes), std::move(saved->bones));
-        } else if (!bones.empty()) {
-          painting::Labels strokes(of_case.size(), painting::kNothing);  // before the labels are moved away
-          painting.restore(std::move(strokes), std::move(of_case));
-          loaded.is_of_case = true;
+  loading_.start(
+      [this, folder = case_folder, image, bones = std::move(case_bones)] {
+        Loaded loaded;
+        try {  // the top of the loading thread
+          auto volume =
+              std::make_shared<const images::Volume>(cases::load_image(folder, image, [this](double f) {
+                if (stops_) throw Stopped();
+                loaded_ = f;
+              }));
+          painting::Painting painting(volume);
+          painting::Labels of_case(volume->values.size(), painting::kNothing);
+          for (const CaseBone& bone : bones)
+            painting::add_bone(of_case, *volume, *bone.mesh, label_of(bone.kind));
+          for (const CaseBone& bone : bones)
+            loaded.digests[bone.kind] = painting::digest_of(of_case, label_of(bone.kind));
+          try {
+            if (auto saved = painting::load_painting(folder, *volume)) {
+              painting.restore(std::move(saved->strokes), std::move(saved->bones));
+            } else if (!bones.empty()) {
+              painting::Labels strokes(of_case.size(),
+                                       painting::kNothing);  // before the labels are moved away
+              painting.restore(std::move(strokes), std::move(of_case));
+              loaded.is_of_case = true;
+            }
+          } catch (const std::exception& error) {
+            loaded.failure =
+                std::string("What was painted cannot be read, and is left alone: ") + error.what();
+          }
+          loaded.painting = std::move(painting);
+        } catch (const Stopped&) {
+        } catch (const std::exception& error) {
+          loaded.failure = error.what();
         }
-      } catch (const std::exception& error) {
-        loaded.failure = std::string("What was painted cannot be read, and is left alone: ") + error.what();
-      }
-      loaded.painting = std::move(painting);
-    } catch (const Stopped&) {
-    } catch (const std::exception& error) {
-      loaded.failure = error.what();
-    }
-    wake_();
-    return loaded;
-  });
+        return loaded;
+      },
+      wake_);
 }
 
 std::optional<painting::Painting> PaintStore::take_loaded() {
-  if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-    return std::nullopt;
-  Loaded loaded = loading_.get();
+  if (!loading_.is_ready()) return std::nullopt;
+  Loaded loaded = loading_.take();
   failure_ = loaded.failure;
   is_of_case_ = loaded.is_of_case;
   digests_ = std::move(loaded.digests);

@@ -6,13 +6,13 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
-#include <future>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "navigation/worker/awaited.h"
 #include "navigation/worker/worker.h"
 #include "planning/cases/case.h"
 #include "planning/painting/painting.h"
@@ -44,7 +44,7 @@ class PaintStore {
   // nothing is written before they are changed.
   void open(const std::filesystem::path& case_folder, const cases::CaseImage& image, bool read_only,
             std::vector<CaseBone> case_bones = {});
-  [[nodiscard]] bool is_loading() const { return loading_.valid(); }
+  [[nodiscard]] bool is_loading() const { return loading_.is_busy(); }
   [[nodiscard]] double loaded_fraction() const { return loaded_; }
   // The painting, once, when it has been loaded. What was painted before is in it, without steps. A saved
   // painting that cannot be read is said by failure(), and nothing is saved over it.
@@ -90,14 +90,14 @@ class PaintStore {
   std::function<void()> wake_;
   std::filesystem::path folder_;
   bool is_read_only_ = false, is_of_case_ = false;
-  std::future<Loaded> loading_;
   std::atomic<double> loaded_{0};
   std::atomic<bool> stops_{false};
   std::string failure_;
   std::map<bones::BoneKind, std::uint64_t> digests_;           // of the case's bones, as labels
   std::uint64_t seen_ = 1, posted_ = 1, loaded_revision_ = 1;  // revisions of the painting
   double changed_at_s_ = 0;
-  std::unique_ptr<worker::Worker<Snapshot, Saved>> saver_;  // last: ends first
+  worker::Awaited<Loaded> loading_;  // last: end first
+  std::unique_ptr<worker::Worker<Snapshot, Saved>> saver_;
 };
 
 }  // namespace arthronaut::paint

@@ -1,7 +1,6 @@
 #include "app/start/case_library.h"
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
 #include <utility>
 
@@ -16,26 +15,21 @@ namespace fs = std::filesystem;
 CaseLibrary::CaseLibrary(fs::path data_folder, std::function<void()> wake)
     : data_folder_(std::move(data_folder)), wake_(std::move(wake)) {}
 
-CaseLibrary::~CaseLibrary() {
-  stops_ = true;
-  if (looking_.valid()) looking_.wait();
-}
+CaseLibrary::~CaseLibrary() { stops_ = true; }
 
 void CaseLibrary::refresh(const std::vector<fs::path>& recent) {
   if (is_looking()) return;
   what_.clear();
   if (records_.empty()) show_known();
-  looking_ = std::async(std::launch::async, [this, recent] {
-    const struct AtEnd {
-      const std::function<void()>& call;
-      ~AtEnd() { call(); }
-    } at_end{wake_};
-    const auto known = workstation_library::open_library(data_folder_);
-    known->add_those_there(recent);
-    Found found{known->look([this](std::size_t, std::size_t) { return !stops_; }), {}};
-    if (!known->notices().empty()) found.what = known->notices().back();
-    return found;
-  });
+  looking_.start(
+      [this, recent] {
+        const auto known = workstation_library::open_library(data_folder_);
+        known->add_those_there(recent);
+        Found found{known->look([this](std::size_t, std::size_t) { return !stops_; }), {}};
+        if (!known->notices().empty()) found.what = known->notices().back();
+        return found;
+      },
+      wake_);
 }
 
 // Some 30 ms of a thousand cases, so at once.
@@ -50,10 +44,9 @@ void CaseLibrary::show_known() {
 }
 
 bool CaseLibrary::poll() {
-  if (!looking_.valid() || looking_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-    return false;
+  if (!looking_.is_ready()) return false;
   try {  // the top of the looking thread: a list that cannot be had is said on the screen
-    Found found = looking_.get();
+    Found found = looking_.take();
     records_ = std::move(found.records);
     for (library::CaseRecord& record : records_)
       if (const auto note = notes_meanwhile_.find(record.folder); note != notes_meanwhile_.end())

@@ -6,11 +6,11 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
-#include <future>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "navigation/worker/awaited.h"
 #include "planning/library/case_record.h"
 
 namespace arthronaut::start {
@@ -27,7 +27,7 @@ class CaseLibrary {
   void refresh(const std::vector<std::filesystem::path>& recent);
   // Takes over what the thread has found; true once when it has.
   bool poll();
-  [[nodiscard]] bool is_looking() const { return looking_.valid(); }
+  [[nodiscard]] bool is_looking() const { return looking_.is_busy(); }
 
   // In no order. Another list after each refresh() and poll().
   [[nodiscard]] const std::vector<library::CaseRecord>& records() const { return records_; }
@@ -48,11 +48,11 @@ class CaseLibrary {
   std::filesystem::path data_folder_;
   std::function<void()> wake_;
   std::atomic<bool> stops_ = false;
-  std::future<Found> looking_;
   std::vector<library::CaseRecord> records_;
   // Kept while the thread looks: it may have read the case before.
   std::map<std::filesystem::path, std::string> notes_meanwhile_;
   std::string what_;
+  worker::Awaited<Found> looking_;  // last: ends first
 };
 
 }  // namespace arthronaut::start

@@ -1,6 +1,5 @@
 #include "app/start/case_pictures.h"
 
-#include <chrono>
 #include <exception>
 #include <utility>
 
@@ -31,28 +30,22 @@ const widgets::VideoTexture* CasePictures::of(const fs::path& case_folder) {
 }
 
 void CasePictures::poll() {
-  if (making_.valid()) {
-    if (making_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  if (making_.is_busy()) {
+    if (!making_.is_ready()) return;
     const fs::path next = wanted_;
     finish();
     wanted_ = next;
   }
   if (wanted_.empty()) return;
   made_ = std::exchange(wanted_, {});
-  making_ = std::async(std::launch::async, [folder = made_, wake = wake_] {
-    const struct AtEnd {
-      const std::function<void()>& call;
-      ~AtEnd() { call(); }
-    } at_end{wake};
-    workstation_library::make_thumbnail(folder);
-  });
+  making_.start([folder = made_] { workstation_library::make_thumbnail(folder); }, wake_);
 }
 
 void CasePictures::finish() {
   wanted_.clear();
-  if (!making_.valid()) return;
+  if (!making_.is_busy()) return;
   try {
-    making_.get();
+    making_.take();
     if (!workstation_library::has_thumbnail(made_)) without_.insert(made_);
   } catch (const std::exception&) {  // as in of()
     without_.insert(made_);

@@ -7,12 +7,12 @@
 
 #include <filesystem>
 #include <functional>
-#include <future>
 #include <map>
 #include <memory>
 #include <set>
 
 #include "app/widgets/video_texture.h"
+#include "navigation/worker/awaited.h"
 
 namespace arthronaut::start {
 
@@ -30,14 +30,14 @@ class CasePictures {
   // Waits for the one that is being made; none is begun before another is asked for.
   void finish();
   void forget_all();  // what is on disk is looked at again
-  [[nodiscard]] bool is_busy() const { return making_.valid(); }
+  [[nodiscard]] bool is_busy() const { return making_.is_busy(); }
 
  private:
   std::function<void()> wake_;
   std::map<std::filesystem::path, std::unique_ptr<widgets::VideoTexture>> shown_;
   std::set<std::filesystem::path> without_;  // have none, and will have none until forget_all()
   std::filesystem::path wanted_, made_;      // next to be made; being made
-  std::future<void> making_;
+  worker::Awaited<void> making_;
 };
 
 }  // namespace arthronaut::start

@@ -1,7 +1,6 @@
 #include "app/start/import_work.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "app/case/case_opening.h"
@@ -12,22 +11,13 @@ namespace arthronaut::start {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-bool is_ready(const auto& future) {
-  return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-}
-
-}  // namespace
-
 ImportWork::ImportWork(std::function<void()> wake, fs::path program)
     : wake_(std::move(wake)), program_(std::move(program)) {}
 
 ImportWork::~ImportWork() { end_work(); }
 
 void ImportWork::end_work() {
-  if (saving_.valid()) saving_.wait();
-  saving_ = {};
+  saving_.drop();
   series_.reset();
   process_.reset();
 }
@@ -182,16 +172,12 @@ void ImportWork::save(const fs::path& folder, const std::string& name) {
   state_ = State::Saving;
   failure_.clear();
   folder_ = folder;
-  importing::BoneImport import = result_;
-  saving_ =
-      std::async(std::launch::async, [this, folder, name, import = std::move(import), root = sources_.root] {
-        const struct AtEnd {
-          const std::function<void()>& call;
-          ~AtEnd() { call(); }
-        } at_end{wake_};
+  saving_.start(
+      [folder, name, import = result_, root = sources_.root] {
         files::create_private_folder(folder.parent_path());
         importing::add_to_case(folder, import, name, root);
-      });
+      },
+      wake_);
 }
 
 void ImportWork::poll() {
@@ -199,9 +185,9 @@ void ImportWork::poll() {
   if (state_ == State::Looking) take_sources();
   if (state_ != State::Looking && series_ != nullptr) note_pictures();
   if (state_ == State::Running) take_bones();
-  if (state_ == State::Saving && is_ready(saving_)) {
+  if (state_ == State::Saving && saving_.is_ready()) {
     try {  // the top of the saving thread
-      saving_.get();
+      saving_.take();
       state_ = State::Done;
     } catch (const std::exception& error) {
       failure_ = error.what();

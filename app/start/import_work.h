@@ -12,13 +12,13 @@
 
 #include <filesystem>
 #include <functional>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/start/import_sources.h"
+#include "navigation/worker/awaited.h"
 #include "planning/import/bone_import.h"
 #include "planning/import/import_process.h"
 #include "planning/import/series_process.h"
@@ -79,7 +79,7 @@ class ImportWork {
   State state_ = State::Idle;
   std::unique_ptr<importing::SeriesProcess> series_;
   std::size_t noted_ = 0;  // of its pictures
-  std::future<void> saving_;
+  worker::Awaited<void> saving_;
   ImportSources sources_;
   ImportWishes wishes_;
   std::size_t next_ = 0;  // of the wished sources
