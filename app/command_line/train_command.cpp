@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/case/exercise_case.h"
-#include "navigation/training/exercise_run.h"
+#include "navigation/training/board_run.h"
 #include "navigation/training/score_file.h"
 #include "navigation/training/trainee.h"
 #include "planning/cases/case.h"
@@ -83,10 +83,15 @@ void train(Context& context, const Arguments& arguments) {
     throw InvalidInput("there is no exercise \"" + arguments.exercise +
                        "\"; \"arthronaut train --list\" names them");
   const Level level = training::level_from_text(arguments.level);
+  const bool is_operation = exercise->goal != training::Goal::Calibrate;
+  if (!is_operation && !arguments.case_folder.empty())
+    throw InvalidInput(
+        "calibrating is no operation: it needs no knee and leaves no session; leave out --case");
   const simulator::Hand hand = hand_of(arguments, *exercise);
   training::ExerciseSetup setup{
       .exercise = *exercise, .level = level, .knee = {}, .plan = {}, .seed = arguments.seed};
-  std::string knee = "built-in knee " + std::to_string(arguments.seed);
+  std::string knee =
+      is_operation ? "built-in knee " + std::to_string(arguments.seed) : std::string(training::kBoardAlone);
   theatre::RecordOptions record;
   cases::CaseLock lock;
   if (arguments.case_folder.empty()) {

@@ -5,10 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "app/setup/calibrate_job.h"
 #include "app/setup/station.h"
+#include "navigation/calibration/calibrate_job.h"
 
 namespace arthronaut::setup {
+
+using calibration::CalibrateJob;
+using calibration::CalibrateStatus;
 
 enum class CalibrateStep {
   Wait,

@@ -39,8 +39,6 @@ class CalibrateStation : public Station {
   void adopt();
   void draw_pictures(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_result(const widgets::Ui& ui, const widgets::Rect& area);
-  void draw_live_picture(const widgets::Ui& ui, const widgets::Rect& area);
-  void draw_taken(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_form(const widgets::Ui& ui, const widgets::Rect& area);
 
   // What camera.json says beside the numbers, and the board.

@@ -48,17 +48,20 @@ simulator::HandInput hand_input(const DeviceState& devices, simulator::Held held
   if (dt_s > 0) {
     const Vector3d mouse(devices.mouse_px.x() / (kFullPx_s * dt_s), devices.mouse_px.y() / (kFullPx_s * dt_s),
                          devices.wheel / (kFullNotches_s * dt_s));
-    if (devices.mouse_tilts)
-      input.tilt += mouse;
-    else if (devices.mouse_moves || devices.mouse_scope)
+    if (devices.mouse_tilts) {
+      input.tilt += Vector3d(mouse.x(), mouse.y(), 0);
+      input.turn_lens += mouse.z();
+    } else if (devices.mouse_moves || devices.mouse_scope) {
       input.move += mouse;
-    else
+    } else {
       input.move.z() += mouse.z();
+    }
     input.moves_scope = input.moves_scope || devices.mouse_scope;
   }
   if (devices.has_pad) {
     input.move += without_rest(devices.pad_move);
     input.tilt += without_rest(devices.pad_tilt);
+    input.turn_lens += devices.pad_lens;
     input.moves_scope = input.moves_scope || devices.pad_scope;
   }
   input.drill = devices.keys_drill || (devices.has_pad && devices.pad_drill) ? 1 : 0;
@@ -97,6 +100,7 @@ DeviceState HandDevices::read(float window_height_px) {
                     (axis(GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER) - axis(GLFW_GAMEPAD_AXIS_LEFT_TRIGGER)) / 2};
   state.pad_tilt = {axis(GLFW_GAMEPAD_AXIS_RIGHT_X), axis(GLFW_GAMEPAD_AXIS_RIGHT_Y),
                     between(is_down(GLFW_GAMEPAD_BUTTON_DPAD_DOWN), is_down(GLFW_GAMEPAD_BUTTON_DPAD_UP))};
+  state.pad_lens = between(is_down(GLFW_GAMEPAD_BUTTON_DPAD_LEFT), is_down(GLFW_GAMEPAD_BUTTON_DPAD_RIGHT));
   state.pad_scope = is_down(GLFW_GAMEPAD_BUTTON_LEFT_BUMPER);
   state.pad_drill = is_down(GLFW_GAMEPAD_BUTTON_RIGHT_BUMPER);
   return state;

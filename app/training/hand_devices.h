@@ -4,9 +4,12 @@
 //   keyboard  A D, W S, Q E: the tool left and right, up and down, nearer and away; J L, I K, U O: its handle
 //             likewise; Shift: the scope instead; Z X: the lens; F: the drill
 //   mouse     left button: the tool; right button: its handle; middle button: the scope; the wheel: nearer
-//             and away
-//   gamepad   left stick, triggers: the tool; right stick, D-pad: its handle; left bumper: the scope
-//             instead; right bumper: the drill
+//             and away, with the right button held: the lens
+//   gamepad   left stick, triggers: the tool; right stick, D-pad up and down: its handle; D-pad left and
+//   right:
+//             the lens; left bumper: the scope instead; right bumper: the drill
+//
+// The calibration board is a tool like the others, and the side that faces the lens its handle.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,6 +29,7 @@ struct DeviceState {
   bool mouse_moves = false, mouse_tilts = false, mouse_scope = false;
   bool has_pad = false;
   Eigen::Vector3d pad_move = Eigen::Vector3d::Zero(), pad_tilt = Eigen::Vector3d::Zero();
+  double pad_lens = 0;
   bool pad_scope = false, pad_drill = false;
 };
 

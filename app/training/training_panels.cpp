@@ -66,7 +66,7 @@ void TrainingView::draw_list(const widgets::Ui& ui, const widgets::Rect& area) {
   const widgets::Rect buttons = rest.cut_bottom(ui.theme.px(56), ui.theme.px(12));
   const widgets::Rect left = rest.cut_left(rest.width * 0.5F, ui.theme.px(12));
   widgets::begin_panel(ui, "train.list", left, "Exercises on the simulator");
-  const float row = ui.theme.px(104), width = ImGui::GetContentRegionAvail().x;
+  const float row = ui.theme.px(96), width = ImGui::GetContentRegionAvail().x;
   for (std::size_t i = 0; i < training::exercises().size(); ++i) {
     const Exercise& exercise = training::exercises()[i];
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -106,11 +106,16 @@ void TrainingView::draw_list(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::text_in(ui.theme.strong, widgets::kCaution,
                    "At this level: " + training::words_of_faults(chosen(), level_));
   ImGui::Spacing();
+  const bool is_board = chosen().goal == training::Goal::Calibrate;
   widgets::text_in(
       ui.theme.body, widgets::kQuietText,
-      "Keys: A D W S Q E move the tool, J L I K U O its handle, Shift the scope instead, Z X the "
-      "lens, F the drill, G takes the other tool, Space is the pedal, Enter says done. Mouse: left "
-      "button the tool, right its handle, middle the scope, wheel nearer and away.");
+      is_board ? "Keys: A D W S Q E move the board, J L I K tilt it, U O roll it, Shift the scope "
+                 "instead, Z X turn the lens, Space takes the picture, Enter says done. Mouse: left "
+                 "button the board, right its tilt and with the wheel the lens, wheel nearer and away."
+               : "Keys: A D W S Q E move the tool, J L I K U O its handle, Shift the scope instead, Z X "
+                 "the lens, F the drill, G takes the other tool, Space is the pedal, Enter says done. "
+                 "Mouse: left button the tool, right its handle, middle the scope, wheel nearer and "
+                 "away.");
   const std::string pad = HandDevices::pad_name();
   widgets::text_in(ui.theme.body, widgets::kQuietText,
                    pad.empty() ? "No gamepad is connected." : "Also by " + pad + ": sticks and triggers.");
@@ -230,6 +235,9 @@ void TrainingView::draw_score(const widgets::Ui& ui, const widgets::Rect& area) 
   if (!score.session.empty())
     widgets::text_in(ui.theme.body, widgets::kQuietText,
                      "Recorded as session " + score.session + " (F3, Review).");
+  else if (exercise->goal == training::Goal::Calibrate)
+    widgets::text_in(ui.theme.body, widgets::kQuietText,
+                     "Calibrating is no operation: the score is kept, no session and no camera is.");
   widgets::end_panel();
   draw_history(ui, rest);
 

@@ -26,6 +26,11 @@ void HandInbox::set(const simulator::HandInput& input) {
   input_ = input;
 }
 
+void HandInbox::press(simulator::Press press) {
+  const std::lock_guard lock(mutex_);
+  press_ = press;
+}
+
 void HandInbox::end() {
   const std::lock_guard lock(mutex_);
   is_over_ = true;
@@ -35,12 +40,15 @@ simulator::Hand HandInbox::hand(const std::shared_ptr<HandInbox>& self) const {
   return [self](const simulator::HandScene&,
                 const simulator::HandState&) -> std::optional<simulator::HandInput> {
     const std::lock_guard lock(self->mutex_);
-    return self->is_over_ ? std::nullopt : std::optional(self->input_);
+    if (self->is_over_) return std::nullopt;
+    simulator::HandInput input = self->input_;
+    input.press = std::exchange(self->press_, simulator::Press::None);
+    return input;
   };
 }
 
-TrainingView::TrainingView(Theatre theatre, std::filesystem::path scores)
-    : theatre_(std::move(theatre)), scores_file_(std::move(scores)) {}
+TrainingView::TrainingView(Theatre theatre, DrawBoard draw_board, std::filesystem::path scores)
+    : theatre_(std::move(theatre)), draw_board_(std::move(draw_board)), scores_file_(std::move(scores)) {}
 
 mode::ModeTitle TrainingView::title() const {
   return {"train", "mode.training", "Train", "Exercises on the simulator, with a score", GLFW_KEY_F6};
@@ -53,6 +61,7 @@ std::vector<std::string_view> TrainingView::action_prefixes() const {
     case Page::Score:
       return {"train.score."};
     case Page::Running:
+      if (is_with_board()) return {"train.run.", "train.board."};
       // The pedal is the theatre's; its letters are the hands' here.
       return {"train.run.", "navigate.next", "navigate.back", "navigate.overlay", "navigate.sounds"};
   }
@@ -119,7 +128,8 @@ void TrainingView::add_actions(widgets::Actions& actions) {
                {},
                [this] { done(); }});
   actions.add({"train.run.tool", "Other tool",
-               "Puts the probe down and takes the guide, or the other way round", GLFW_KEY_G, 0, false, runs,
+               "Puts the probe down and takes the guide, or the other way round", GLFW_KEY_G, 0, false,
+               [this, runs] { return runs() && !is_with_board(); },
                [this] { return run_ && run_->held == Held::Guide; },
                [this] { run_->held = run_->held == Held::Probe ? Held::Guide : Held::Probe; }});
   actions.add({"train.run.stop",
@@ -132,6 +142,7 @@ void TrainingView::add_actions(widgets::Actions& actions) {
                {},
                [this] { stop(false); },
                {"stop the exercise"}});
+  add_board_actions(actions);
   actions.add({"train.score.again",
                "Once more",
                "The same exercise again",
@@ -175,12 +186,19 @@ void TrainingView::enter() {
   notice_.clear();
   if (opened_ && !run_) case_refusal_ = open_case::refusal_to_train(opened_->folder);
   read_scores();
-  if (page_ == Page::Running) theatre_.screen->enter();
+  if (page_ == Page::Running && !is_with_board()) theatre_.screen->enter();
 }
 
 void TrainingView::leave() {
   is_shown_ = false;
   if (run_) run_->inbox->set({.held = run_->held});
+}
+
+// Another place for everything each time: who learns the places learns nothing.
+std::uint64_t TrainingView::next_seed() const {
+  return static_cast<std::uint64_t>(
+      1 + std::count_if(scores_.begin(), scores_.end(),
+                        [&](const training::Score& score) { return score.exercise == chosen().id; }));
 }
 
 void TrainingView::start() {
@@ -189,23 +207,20 @@ void TrainingView::start() {
   // Once more, at the last moment: what the case holds decides, not what was seen of it.
   case_refusal_ = open_case::refusal_to_train(opened_->folder);
   if (!case_refusal_.empty()) return;
+  if (exercise.goal == training::Goal::Calibrate) return start_board();
   const std::optional<tunnels::Tunnel> plan = model.tunnel(tunnels::TunnelKey(exercise.bone));
   if (!plan) {
     notice_ = "There is no planned tunnel in the " + std::string(bones::to_text(exercise.bone));
     return;
   }
   notice_.clear();
-  // Another place for everything each time: who learns the places learns nothing.
-  const auto seed = static_cast<std::uint64_t>(
-      1 + std::count_if(scores_.begin(), scores_.end(),
-                        [&](const training::Score& score) { return score.exercise == exercise.id; }));
   run_.emplace();
   run_->setup = {
       .exercise = exercise,
       .level = level_,
       .knee = phantom::knee_of(model.knee()),
       .plan = *plan,
-      .seed = seed,
+      .seed = next_seed(),
       .plan_length_mm = tunnels::length_along(*plan, *model.shared_surface(exercise.bone)).value_or(0)};
   run_->watch = std::make_shared<training::ExerciseWatch>(run_->setup);
   run_->inbox = std::make_shared<HandInbox>();
@@ -256,6 +271,10 @@ void TrainingView::done() { stop(true); }
 
 void TrainingView::stop(bool is_done) {
   if (!run_ || run_->is_ended) return;
+  if (is_with_board()) {
+    run_->is_ended = true;
+    return is_done ? run_->inbox->press(simulator::Press::Finish) : run_->inbox->end();
+  }
   if (is_another(*theatre_.live())) return drop();
   if (is_done) run_->watch->finish();
   run_->is_ended = true;
@@ -264,15 +283,22 @@ void TrainingView::stop(bool is_done) {
 }
 
 void TrainingView::take_score(const theatre::LiveState& live) {
-  const training::ExerciseFacts facts = run_->watch->facts();
+  keep_score(run_->watch->facts(), opened_->model->knee().name, live.session_folder.filename().string(),
+             live.phase == Phase::Failed ? live.message : "");
+  // Nothing of it stays in the theatre, where the next thing may be real.
+  theatre_.begin_anew(*opened_);
+}
+
+void TrainingView::keep_score(const training::ExerciseFacts& facts, const std::string& knee,
+                              const std::string& session, const std::string& failure) {
   training::Score score = training::score_of(run_->setup.exercise, run_->setup.level, facts);
   score.seed = run_->setup.seed;
   score.when_utc = files::utc_now();
-  score.knee = opened_->model->knee().name;
-  score.session = live.session_folder.filename().string();
+  score.knee = knee;
+  score.session = session;
   score.trainee = kByHand;
-  if (live.phase == Phase::Failed)
-    notice_ = live.message;
+  if (!failure.empty())
+    notice_ = failure;
   else if (facts.frames > 0) {
     try {
       training::add_to_training_file(scores_file_, score);
@@ -284,8 +310,6 @@ void TrainingView::take_score(const theatre::LiveState& live) {
   score_ = std::move(score);
   run_.reset();
   page_ = Page::Score;
-  // Nothing of it stays in the theatre, where the next thing may be real.
-  theatre_.begin_anew(*opened_);
 }
 
 void TrainingView::push(double now_s) {
@@ -298,6 +322,7 @@ void TrainingView::push(double now_s) {
 
 void TrainingView::tick(double now_s) {
   if (!run_) return;
+  if (is_with_board()) return tick_board(now_s);
   const theatre::LiveStatePtr live = theatre_.live();
   if (is_another(*live)) return drop();
   // Whoever ended it, and however early: it was begun with nothing in the theatre, so the end is this one's.
@@ -307,6 +332,7 @@ void TrainingView::tick(double now_s) {
 }
 
 std::optional<sources::SourceKind> TrainingView::source_kind() const {
+  if (is_with_board()) return sources::SourceKind::Simulation;
   return page_ == Page::Running ? theatre_.screen->source_kind() : std::nullopt;
 }
 
@@ -316,7 +342,7 @@ widgets::Rect TrainingView::strip_of(const widgets::Ui& ui, widgets::Rect& area)
 
 std::optional<widgets::Rect> TrainingView::header_in(const widgets::Ui& ui,
                                                      const widgets::Rect& window) const {
-  if (page_ != Page::Running) return std::nullopt;
+  if (page_ != Page::Running || is_with_board()) return std::nullopt;
   widgets::Rect rest = window;
   (void)strip_of(ui, rest);
   return theatre_.screen->header_in(ui, rest);
@@ -328,10 +354,11 @@ void TrainingView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
                                                            : "score");
   if (page_ != Page::Running) return page_ == Page::List ? draw_list(ui, area) : draw_score(ui, area);
   const PadPresses pad = devices_.presses();
-  if (pad.do_it) (void)ui.actions.run("navigate.next");
-  if (pad.back) (void)ui.actions.run("navigate.back");
+  if (pad.do_it) (void)ui.actions.run(is_with_board() ? "train.board.take" : "navigate.next");
+  if (pad.back) (void)ui.actions.run(is_with_board() ? "train.board.drop" : "navigate.back");
   if (pad.other_tool) (void)ui.actions.run("train.run.tool");
   if (pad.done) (void)ui.actions.run("train.run.done");
+  if (is_with_board()) return draw_board(ui, area);
   widgets::Rect rest = area;
   const widgets::Rect strip = strip_of(ui, rest);
   theatre_.screen->draw(ui, rest);

@@ -4,6 +4,9 @@
 // is somebody's (app/case/exercise_case.h). What else runs in the theatre is neither asked, ended nor wiped
 // from here: an exercise that was replaced there is over, and said to be.
 //
+// The calibration of a camera is no operation: it takes nothing of the theatre's, runs on a thread of its own
+// (training::BoardRun), and leaves no session.
+//
 // Pages: the exercises -> one that runs, on the theatre's screen -> its score -> the exercises.
 #pragma once
 
@@ -17,8 +20,10 @@
 #include "app/mode/mode.h"
 #include "app/training/hand_devices.h"
 #include "navigation/theatre/live_operation.h"
+#include "navigation/training/board_run.h"
 #include "navigation/training/exercise_run.h"
 #include "navigation/training/score_file.h"
+#include "navigation/worker/worker.h"
 
 namespace arthronaut::training_mode {
 
@@ -37,25 +42,40 @@ struct Theatre {
   std::function<void()> end;
 };
 
+// Draws the taking of calibration pictures as Set up shows it, which the window hands over likewise; left
+// free for the keys: so many pixels below the lens's dial, the place that is returned.
+using DrawBoard = std::function<widgets::Rect(const widgets::Ui& ui, const widgets::Rect& area,
+                                              const calibration::CalibrateStatus& status, float free_px)>;
+
 // What the hand pushes now: written by the window, read by the simulator's thread.
 class HandInbox {
  public:
   void set(const simulator::HandInput& input);
+  void press(simulator::Press press);  // with the next picture, once
   void end();
   [[nodiscard]] simulator::Hand hand(const std::shared_ptr<HandInbox>& self) const;
 
  private:
   mutable std::mutex mutex_;
   simulator::HandInput input_;
+  simulator::Press press_ = simulator::Press::None;
   bool is_over_ = false;
 };
 
 enum class Page { List, Running, Score };
 
+// A calibration as the window sees it.
+struct BoardShown {
+  calibration::CalibrateStatus job;
+  training::ExerciseFacts facts;
+  bool is_over = false;
+};
+using BoardWork = worker::Worker<int, BoardShown>;
+
 class TrainingView : public mode::Mode {
  public:
   // scores: the file that the user's scores are kept in.
-  TrainingView(Theatre theatre, std::filesystem::path scores);
+  TrainingView(Theatre theatre, DrawBoard draw_board, std::filesystem::path scores);
 
   [[nodiscard]] mode::ModeTitle title() const override;
   [[nodiscard]] bool works_read_only() const override { return false; }
@@ -81,8 +101,13 @@ class TrainingView : public mode::Mode {
     std::shared_ptr<HandInbox> inbox;
     simulator::Held held = simulator::Held::Probe;
     bool is_prepared = false, is_ended = false;
+    std::unique_ptr<BoardWork> board = nullptr;  // of a calibration, which is not the theatre's
   };
   void start();
+  void start_board();
+  void tick_board(double now_s);
+  void add_board_actions(widgets::Actions& actions);
+  [[nodiscard]] bool is_with_board() const { return run_ && run_->board != nullptr; }
   void prepare(const theatre::LiveState& live);
   void done();
   void stop(bool is_done);
@@ -90,17 +115,22 @@ class TrainingView : public mode::Mode {
   void drop();
   [[nodiscard]] std::string refusal() const;  // why nothing can begin; empty: it can
   void take_score(const theatre::LiveState& live);
+  void keep_score(const training::ExerciseFacts& facts, const std::string& knee, const std::string& session,
+                  const std::string& failure);
   void push(double now_s);
   void read_scores();
+  [[nodiscard]] std::uint64_t next_seed() const;
   [[nodiscard]] const training::Exercise& chosen() const { return training::exercises()[chosen_]; }
   [[nodiscard]] widgets::Rect strip_of(const widgets::Ui& ui, widgets::Rect& area) const;
 
   void draw_list(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_history(const widgets::Ui& ui, const widgets::Rect& area) const;
   void draw_strip(const widgets::Ui& ui, const widgets::Rect& area) const;
+  void draw_board(const widgets::Ui& ui, const widgets::Rect& area) const;
   void draw_score(const widgets::Ui& ui, const widgets::Rect& area);
 
   Theatre theatre_;
+  DrawBoard draw_board_;
   std::filesystem::path scores_file_;
   std::optional<mode::OpenCase> opened_;
   std::string case_refusal_;  // by what the case holds

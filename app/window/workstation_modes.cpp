@@ -5,6 +5,7 @@
 #include "app/navigate/navigate_view.h"
 #include "app/plan/plan_view.h"
 #include "app/review/review_view.h"
+#include "app/setup/capture_panels.h"
 #include "app/setup/setup_view.h"
 #include "app/training/training_view.h"
 #include "app/window/workstation_window.h"
@@ -46,6 +47,9 @@ void WorkstationWindow::make_modes() {
           .setup = [screen] { return screen->setup_in_use(); },
           .ask = [screen](operation::Command command) { screen->ask(std::move(command)); },
           .end = [screen] { screen->end_source(); }},
+      [texture = std::make_shared<widgets::VideoTexture>()](
+          const widgets::Ui& ui, const widgets::Rect& area, const calibration::CalibrateStatus& status,
+          float free_px) { return setup::draw_exercise(ui, area, *texture, status, free_px); },
       training::training_file()));
 }
 

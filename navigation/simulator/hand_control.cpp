@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "navigation/simulator/hand_push.h"
 #include "navigation/simulator/script.h"
 #include "planning/geometry/error.h"
 
@@ -15,21 +16,6 @@ using Eigen::Vector3d;
 constexpr double kTouch_mm = 0.05;    // nearer than that is on the bone
 constexpr double kSubstep_mm = 0.25;  // no wall of the bone is that thin
 constexpr double kGlide_s = 1.2;      // of the scope from one tool's view to the other's
-
-double cut(double value) { return std::isfinite(value) ? std::clamp(value, -1.0, 1.0) : 0.0; }
-
-Vector3d cut_all(const Vector3d& value) {
-  const Vector3d all = value.unaryExpr([](double v) { return cut(v); });
-  return all.norm() > 1 ? Vector3d(all.normalized()) : all;
-}
-
-// The unit direction as its end is pushed by `way_rad`, seen from its other end.
-Vector3d pushed_end(const Vector3d& direction, const Vector3d& way_rad) {
-  const Vector3d turn = direction.cross(way_rad);
-  const double angle = turn.norm();
-  if (angle < 1e-12) return direction;
-  return (Eigen::AngleAxisd(angle, turn / angle) * direction).normalized();
-}
 
 }  // namespace
 
@@ -120,9 +106,10 @@ void HandControl::move_tool(double dt_s) {
     point = kept_out(point, dt_s * state_.bone_from_camera.rotate(speeds_.tool));
     const Vector3d way_rad = dt_s * state_.bone_from_camera.rotate(speeds_.tool_tilt);
     if (is_probe)
-      state_.probe_handle = pushed_end(state_.probe_handle, way_rad);
+      state_.probe_handle = (turn_of_push(state_.probe_handle, way_rad) * state_.probe_handle).normalized();
     else  // the handle is behind the point
-      state_.guide_direction = -pushed_end(-state_.guide_direction, way_rad);
+      state_.guide_direction =
+          (turn_of_push(-state_.guide_direction, way_rad) * state_.guide_direction).normalized();
   }
   state_.touches_bone = bone_.signed_distance_mm(point) <= kTouch_mm;
 }

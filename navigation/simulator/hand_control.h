@@ -19,10 +19,22 @@
 
 namespace arthronaut::simulator {
 
-enum class Held { Probe, Guide };
+enum class Held { Probe, Guide, Board };
 
 // What a trainee asks of the operation with the pedal, where a script stands at it.
-enum class Press { None, Touch, ControlPoint, Register, Draw, StopDrawing, MarkerAnew, Drilled, Finish };
+enum class Press {
+  None,
+  Touch,
+  ControlPoint,
+  Register,
+  Draw,
+  StopDrawing,
+  MarkerAnew,
+  Drilled,
+  Finish,
+  Picture,      // of the board: take it
+  DropPicture,  // the one taken last
+};
 
 // What is pushed now. Every axis from -1 to 1; more is cut off, what is no number is 0.
 struct HandInput {
@@ -30,7 +42,7 @@ struct HandInput {
   bool moves_scope = false;                        // move and tilt go to the scope, not to the tool
   Eigen::Vector3d move = Eigen::Vector3d::Zero();  // right, down, forward
   // Where the handle's end is pushed, the tip staying: right, down, forward. Of the scope: the view pans
-  // right, tilts down, and rolls.
+  // right, tilts down, and rolls. Of the board: the side that faces the lens; the third axis rolls it.
   Eigen::Vector3d tilt = Eigen::Vector3d::Zero();
   double turn_lens = 0;  // clockwise on the screen
   double drill = 0;      // 0 to 1: how fast it goes in
@@ -63,10 +75,12 @@ struct HandState {
   Held held = Held::Probe;
   geometry::RigidTransform bone_from_camera;
   double mark_angle_deg = 0;
-  Eigen::Vector3d probe_tip_mm, probe_handle, guide_point_mm, guide_direction;
-  bool touches_bone = false;    // the tip, or the point, of what is held
-  double drilled_depth_mm = 0;  // beyond the guide's point
-  double time_s = 0;            // of all steps
+  Eigen::Vector3d probe_tip_mm = Eigen::Vector3d::Zero(), probe_handle = Eigen::Vector3d::Zero();
+  Eigen::Vector3d guide_point_mm = Eigen::Vector3d::Zero(), guide_direction = Eigen::Vector3d::Zero();
+  geometry::RigidTransform camera_from_board;  // where the calibration board is what is held (hand_board.h)
+  bool touches_bone = false;                   // the tip, or the point, of what is held
+  double drilled_depth_mm = 0;                 // beyond the guide's point
+  double time_s = 0;                           // of all steps
 };
 
 class HandControl {

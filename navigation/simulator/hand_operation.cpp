@@ -1,12 +1,10 @@
 #include "navigation/simulator/hand_operation.h"
 
-#include <chrono>
 #include <cmath>
-#include <thread>
 
+#include "navigation/simulator/frame_pace.h"
 #include "navigation/simulator/holding.h"
 #include "navigation/simulator/instruments.h"
-#include "navigation/simulator/picture_faults.h"
 #include "navigation/simulator/random.h"
 #include "navigation/simulator/renderer.h"
 #include "navigation/simulator/staging.h"
@@ -19,7 +17,6 @@ namespace {
 
 using Eigen::Vector3d;
 using geometry::RigidTransform;
-using Clock = std::chrono::steady_clock;
 
 constexpr double kLifted_mm = 5;     // of the probe's tip off the bone at the beginning
 constexpr double kGuideBack_mm = 7;  // of the guide's point from the planned entry, at the beginning
@@ -77,20 +74,6 @@ HandScene scene_of(const SimulationOptions& options, const Staging& staging, con
 
 }  // namespace
 
-std::string_view to_text(FaultKind kind) {
-  switch (kind) {
-    case FaultKind::Bleeding:
-      return "bleeding";
-    case FaultKind::Glare:
-      return "glare";
-    case FaultKind::BumpedMarker:
-      return "bumped marker";
-    case FaultKind::LostSource:
-      return "lost source";
-  }
-  return "";
-}
-
 void HandLog::add(const HandTruth& truth) {
   const std::lock_guard lock(mutex_);
   frames_.push_back(truth);
@@ -138,10 +121,10 @@ struct HandOperation::State {
   Renderer renderer;
   sources::SourceInfo info;
   RigidTransform bone_from_probe, bone_from_guide;  // as they could be held last
-  std::vector<std::optional<double>> fault_began_s;
+  FramePace pace;
+  FaultPlay faults;
   std::int64_t next_index = 0;
   double time_s = 0, slid_mm = 0;
-  Clock::time_point began = Clock::now();
 
   State(const SimulationOptions& o, HandOptions h)
       : options(o),
@@ -155,7 +138,8 @@ struct HandOperation::State {
         bone_view(mesh_of(o), o.seed),
         renderer(&bone_view, SensorOptions{.blur_sigma_px = std::max(0.5, hand.picture_share)}),
         bone_from_probe(staging.strokes.front().front().bone_from_marker),
-        fault_began_s(hand.faults.size()) {
+        pace(o.frames_per_second, hand.in_real_time),
+        faults(hand.faults, o.seed) {
     if (options.frames_per_second < 1) throw InvalidInput("simulator: frames_per_second must be above 0");
     if (!hand.hand) throw InvalidInput("simulator: there is no hand");
     bone_from_guide =
@@ -167,21 +151,10 @@ struct HandOperation::State {
     info.frames_per_second = options.frames_per_second;
   }
 
-  bool act(std::size_t i) {
-    const Fault& fault = hand.faults[i];
-    std::optional<double>& began_s = fault_began_s[i];
-    if (!began_s) {
-      const HandState& now = control.state();
-      const bool is_due =
-          fault.trigger == Fault::Trigger::AtTime ? time_s >= fault.after
-          : fault.trigger == Fault::Trigger::ProbeDrawn
-              ? slid_mm >= fault.after
-              : now.held == Held::Guide && (now.guide_point_mm - scene.plan.entry_mm).norm() <= fault.after;
-      if (!is_due) return false;
-      began_s = time_s;
-      if (fault.kind == FaultKind::BumpedMarker) bump(fault.strength);
-    }
-    return fault.kind == FaultKind::BumpedMarker || time_s < *began_s + fault.duration_s;
+  bool is_due(const Fault& fault) const {
+    if (fault.trigger == Fault::Trigger::ProbeDrawn) return slid_mm >= fault.after;
+    const HandState& now = control.state();
+    return now.held == Held::Guide && (now.guide_point_mm - scene.plan.entry_mm).norm() <= fault.after;
   }
 
   void bump(double shift_mm) {
@@ -214,14 +187,7 @@ struct HandOperation::State {
 
   // False: the hand has ended it.
   bool move() {
-    double dt_s = 1.0 / options.frames_per_second;
-    if (hand.in_real_time) {
-      if (next_index == 0) began = Clock::now();
-      const auto due = began + std::chrono::duration_cast<Clock::duration>(
-                                   std::chrono::duration<double>(time_s + 1.0 / options.frames_per_second));
-      std::this_thread::sleep_until(due);
-      dt_s = std::chrono::duration<double>(Clock::now() - began).count() - time_s;
-    }
+    const double dt_s = pace.next_s();
     const auto input = hand.hand(scene, control.state());
     if (!input) return false;
     const Vector3d tip_before = control.state().probe_tip_mm;
@@ -238,9 +204,11 @@ struct HandOperation::State {
   HandTruth truth;
 
   camera::FramePtr render() {
-    truth.faults = 0;
-    for (std::size_t i = 0; i < hand.faults.size(); ++i)
-      if (act(i)) truth.faults |= 1U << static_cast<unsigned>(hand.faults[i].kind);
+    truth.faults = faults.advance(
+        time_s, [this](const Fault& fault) { return is_due(fault); },
+        [this](const Fault& fault) {
+          if (fault.kind == FaultKind::BumpedMarker) bump(fault.strength);
+        });
     const HandState& now = control.state();
     truth.frame = next_index;
     truth.time_s = time_s;
@@ -263,23 +231,10 @@ struct HandOperation::State {
     const auto frame = std::make_shared<camera::Frame>();
     const std::uint64_t noise_seed = options.seed * 1'000'003 + static_cast<std::uint64_t>(next_index);
     renderer.render(picture, model, now.mark_angle_deg, noise_seed, *frame);
-    for (std::size_t i = 0; i < hand.faults.size(); ++i) spoil(hand.faults[i], i, noise_seed, *frame);
+    faults.spoil(*frame, noise_seed);
     frame->index = next_index++;
     frame->timestamp_ns = static_cast<std::int64_t>(std::llround(time_s * 1e9));
     return frame;
-  }
-
-  void spoil(const Fault& fault, std::size_t i, std::uint64_t noise_seed, camera::Frame& frame) {
-    const auto& began_s = fault_began_s[i];
-    if (!began_s || time_s >= *began_s + fault.duration_s) return;
-    const double since_s = time_s - *began_s;
-    const double grown = std::min({1.0, since_s / 1.5, (*began_s + fault.duration_s - time_s) / 1.5});
-    if (fault.kind == FaultKind::Bleeding)
-      add_bleeding(frame, options.seed, since_s, grown * fault.strength);
-    else if (fault.kind == FaultKind::Glare)
-      add_glare(frame, options.seed, since_s, fault.strength);
-    else if (fault.kind == FaultKind::LostSource)
-      black_out(frame, noise_seed);
   }
 };
 

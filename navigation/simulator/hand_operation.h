@@ -11,30 +11,13 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <string_view>
 #include <vector>
 
+#include "navigation/simulator/fault.h"
 #include "navigation/simulator/hand_control.h"
 #include "navigation/simulator/simulated_operation.h"
 
 namespace arthronaut::simulator {
-
-enum class FaultKind { Bleeding, Glare, BumpedMarker, LostSource };
-[[nodiscard]] std::string_view to_text(FaultKind kind);
-
-struct Fault {
-  enum class Trigger {
-    AtTime,      // `after` in s
-    ProbeDrawn,  // once the tip has slid over `after` mm of bone
-    GuideNear,   // once the guide's point is within `after` mm of the planned entry
-  };
-  FaultKind kind = FaultKind::Bleeding;
-  Trigger trigger = Trigger::AtTime;
-  double after = 0;
-  double duration_s = 5;  // of a bumped marker without meaning: it stays where it was pushed
-  // Bleeding and glare: 0 to 1. A bumped marker: mm that it shifts along the bone, with 1.5 degrees a mm.
-  double strength = 0.5;
-};
 
 // What was true in a frame, and what was pushed before it.
 struct HandTruth {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "navigation/simulator/random.h"
 #include "planning/geometry/rigid_transform.h"
@@ -36,6 +38,9 @@ std::uint8_t mixed(std::uint8_t value, double other, double share) {
   return static_cast<std::uint8_t>(std::clamp((1 - share) * value + share * other, 0.0, 255.0));
 }
 
+// Outside the field stop, or as dark.
+bool is_behind_stop(const std::uint8_t* pixel) { return pixel[0] + pixel[1] + pixel[2] < 24; }
+
 // What spoils the picture takes its colours alone: luma is computed from them anew.
 void colours_changed(camera::Frame& frame) { frame.luma.clear(); }
 
@@ -61,8 +66,7 @@ void add_bleeding(camera::Frame& frame, std::uint64_t seed, double time_s, doubl
           std::uint8_t* const pixel =
               frame.bgr.data() + 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) +
                                       static_cast<std::size_t>(x));
-          // Outside the field stop nothing shines, blood neither.
-          if (pixel[0] + pixel[1] + pixel[2] < 24) continue;
+          if (is_behind_stop(pixel)) continue;  // nothing shines there, blood neither
           for (std::size_t c = 0; c < 3; ++c) pixel[c] = mixed(pixel[c], kBlood[c], share);
         }
     }
@@ -89,6 +93,20 @@ void add_glare(camera::Frame& frame, std::uint64_t seed, double time_s, double s
                                   static_cast<std::size_t>(column));
       for (std::size_t c = 0; c < 3; ++c) pixel[c] = mixed(pixel[c], 255, share);
     }
+  colours_changed(frame);
+}
+
+void add_fog(camera::Frame& frame, double strength) {
+  const double sigma_px = 0.012 * frame.height * std::clamp(strength, 0.0, 1.0);
+  if (!(sigma_px > 0.1)) return;
+  cv::Mat picture(frame.height, frame.width, CV_8UC3, frame.bgr.data()), fogged;
+  cv::GaussianBlur(picture, fogged, {}, sigma_px);
+  for (int y = 0; y < frame.height; ++y) {
+    auto* const out = picture.ptr<std::uint8_t>(y);
+    const auto* const in = fogged.ptr<std::uint8_t>(y);
+    for (int x = 0; x < 3 * frame.width; x += 3)
+      if (!is_behind_stop(out + x)) std::copy_n(in + x, 3, out + x);
+  }
   colours_changed(frame);
 }
 

@@ -25,6 +25,21 @@ std::vector<Mark> drill_marks() {
 
 std::vector<Exercise> make_exercises() {
   std::vector<Exercise> all;
+  // A camera is good enough while the overlay is off by no more than half a pixel of a picture 1920 px wide,
+  // which is a quarter of one here. A picture that is less covered than the limit is refused.
+  all.push_back({.id = "calibrate",
+                 .title = "Calibrate the camera",
+                 .goal = Goal::Calibrate,
+                 .bone = BoneKind::Femur,
+                 .what = "Pictures of a board, the lens turned in between, tell where the camera looks.",
+                 .steps = {"Hold the board 12 to 22 mm before the lens, tilted, until it fills the view",
+                           "Hold still and take the picture; what is refused says why",
+                           "Turn the lens by 40 degrees or more, and take the next",
+                           "Three or more, 100 degrees apart in all; then say that you are done"},
+                 .marks = {{Measure::CameraError, 0.25, 1.0, 50},
+                           {Measure::Uncovered, 10, 40, 15},
+                           {Measure::Refused, 0, 4, 15},
+                           {Measure::Time, 45, 180, 20}}});
   all.push_back(
       {.id = "pivot",
        .title = "Find the probe's tip",
@@ -106,6 +121,12 @@ std::string_view to_text(Measure measure) {
       return "registration error at the entry";
     case Measure::TipError:
       return "tip error";
+    case Measure::CameraError:
+      return "camera error over the view";
+    case Measure::Uncovered:
+      return "view without corners";
+    case Measure::Refused:
+      return "pictures refused";
     case Measure::Verification:
       return "verifying touches missing";
     case Measure::WastedTouches:
@@ -134,9 +155,13 @@ std::string_view unit_of(Measure measure) {
     case Measure::TipError:
     case Measure::ActedOnBadData:
       return "mm";
+    case Measure::CameraError:
+      return "px";
+    case Measure::Uncovered:
     case Measure::DrawnInAir:
     case Measure::OutOfView:
       return "%";
+    case Measure::Refused:
     case Measure::Verification:
     case Measure::WastedTouches:
     case Measure::AlarmsIgnored:
@@ -165,7 +190,14 @@ std::vector<Fault> faults_of(const Exercise& exercise, Level level) {
   const auto over_guide = [](FaultKind kind, double within_mm, double duration_s, double strength) {
     return Fault{kind, Trigger::GuideNear, within_mm, duration_s, strength};
   };
+  const auto over_board = [](FaultKind kind, double at_s, double duration_s, double strength) {
+    return Fault{kind, Trigger::AtTime, at_s, duration_s, strength};
+  };
   switch (exercise.goal) {
+    case Goal::Calibrate:
+      if (!is_hard) return {over_board(FaultKind::Glare, 4, 8, 0.6)};
+      return {over_board(FaultKind::FoggedLens, 3, 6, 0.7), over_board(FaultKind::SlippedBoard, 12, 0, 45),
+              over_board(FaultKind::Glare, 16, 20, 0.9)};
     case Goal::Pivot:
       return {{FaultKind::Glare, Trigger::AtTime, 3, is_hard ? 15.0 : 6.0, is_hard ? 0.6 : 0.4}};
     case Goal::Register:

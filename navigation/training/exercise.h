@@ -13,10 +13,11 @@
 namespace arthronaut::training {
 
 enum class Goal {
-  Pivot,     // the probe's tip is found by turning it about its tip
-  Register,  // the bone is drawn, found and verified
-  Aim,       // the guide stands on the plan; where the bone lies is known
-  Drill,     // all of it, and the tunnel
+  Calibrate,  // the camera is found from pictures of a board; no operation, no session
+  Pivot,      // the probe's tip is found by turning it about its tip
+  Register,   // the bone is drawn, found and verified
+  Aim,        // the guide stands on the plan; where the bone lies is known
+  Drill,      // all of it, and the tunnel
 };
 
 enum class Level { Easy, Medium, Hard };
@@ -32,6 +33,9 @@ enum class Measure {
   DepthError,      // mm, of the tunnel, too deep or too shallow
   TunnelError,     // mm, true: how far off the registration puts the planned entry
   TipError,        // mm, of the tip that the pivot finds
+  CameraError,     // px, true: between the camera that was found and the one there is, over the view
+  Uncovered,       // % of the view without corners, in the mean of the pictures taken
+  Refused,         // pictures that were asked for and not taken: blurred, moved, not turned
   Verification,    // places short of a registration that touches have verified
   WastedTouches,   // refused, at a place touched before, or before there was anything to verify
   DrawnInAir,      // % of the drawn length off the bone

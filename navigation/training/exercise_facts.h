@@ -22,6 +22,11 @@ struct ExerciseFacts {
   std::optional<double> tunnel_error_mm;             // of the registration that was in force at the end
   std::optional<double> tip_error_mm;
   std::string tip_trouble;  // why the pivot found no tip
+  // Of a camera that the program would adopt; why there is none. See board_run.h.
+  std::optional<double> camera_error_px;
+  std::string camera_trouble;
+  std::vector<double> coverage;  // of each picture taken: share of the view that has corners near
+  int refused_pictures = 0;
   int verifying_touches_missing = 3;
   bool verification_was_skipped = false;
   int touches = 0, wasted_touches = 0;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "navigation/camera/medium.h"
+#include "navigation/training/board_run.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/geometry/error.h"
 #include "planning/landmarks/anatomical_axes.h"
@@ -81,11 +82,9 @@ ExerciseFacts ExerciseWatch::facts() const {
 }
 
 ExerciseSetup standard_setup(const Exercise& exercise, Level level, std::uint64_t seed) {
-  ExerciseSetup setup{.exercise = exercise,
-                      .level = level,
-                      .knee = phantom::make_phantom_knee({.seed = seed}),
-                      .plan = {},
-                      .seed = seed};
+  ExerciseSetup setup{.exercise = exercise, .level = level, .knee = {}, .plan = {}, .seed = seed};
+  if (exercise.goal == Goal::Calibrate) return setup;  // the board alone needs no knee
+  setup.knee = phantom::make_phantom_knee({.seed = seed});
   setup.plan = exercise.bone == BoneKind::Femur ? setup.knee.femoral_tunnel : setup.knee.tibial_tunnel;
   return setup;
 }
@@ -158,14 +157,40 @@ std::vector<operation::Command> commands_of(Press press, double depth_mm) {
       return {operation::ReadDepthStop{std::round(depth_mm)}, operation::TunnelDrilled{}};
     case Press::None:
     case Press::Finish:
+    case Press::Picture:
+    case Press::DropPicture:
       return {};
   }
   return {};
 }
 
+namespace {
+
+ExerciseOutcome scored(const ExerciseSetup& setup, const ExerciseFacts& facts,
+                       std::vector<HandTruth> frames) {
+  ExerciseOutcome outcome{facts, score_of(setup.exercise, setup.level, facts), std::move(frames)};
+  outcome.score.seed = setup.seed;
+  return outcome;
+}
+
+ExerciseOutcome run_calibrating(const ExerciseSetup& setup, const simulator::Hand& hand,
+                                const std::function<void(long frames)>& on_frame) {
+  BoardRun run(setup, hand, false);
+  while (run.step())
+    if (on_frame) on_frame(run.facts().frames);
+  return scored(setup, run.facts(), run.frames());
+}
+
+}  // namespace
+
 ExerciseOutcome run_exercise(const ExerciseSetup& setup, const simulator::Hand& hand,
                              const theatre::RecordOptions& record,
                              const std::function<void(long frames)>& on_frame) {
+  if (setup.exercise.goal == Goal::Calibrate) {
+    if (!record.folder.empty())
+      throw InvalidInput("training: calibrating is no operation and leaves no session");
+    return run_calibrating(setup, hand, on_frame);
+  }
   const auto watch = std::make_shared<ExerciseWatch>(setup);
   const theatre::TheatreSource source = exercise_source(setup, hand, watch, false);
   const std::shared_ptr<sources::FrameSource> opened = source.open();
@@ -202,10 +227,7 @@ ExerciseOutcome run_exercise(const ExerciseSetup& setup, const simulator::Hand& 
   };
   const theatre::NavigationSummary summary = theatre::navigate_source(opened, options, record, observer);
   if (!summary.record_trouble.empty()) throw IoError(summary.record_trouble);
-  ExerciseOutcome outcome{watch->facts(), {}, watch->log()->all()};
-  outcome.score = score_of(setup.exercise, setup.level, outcome.facts);
-  outcome.score.seed = setup.seed;
-  return outcome;
+  return scored(setup, watch->facts(), watch->log()->all());
 }
 
 }  // namespace arthronaut::training

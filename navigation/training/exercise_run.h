@@ -70,7 +70,8 @@ struct ExerciseOutcome {
   std::vector<simulator::HandTruth> frames;
 };
 // Deterministic for a setup and a hand that is. `on_frame` may be empty. Throws InvalidInput where the knee
-// offers no place for the scope, IoError when the record cannot be begun.
+// offers no place for the scope, or where the calibration of a camera is to be recorded, which is no
+// operation (board_run.h); IoError when the record cannot be begun.
 [[nodiscard]] ExerciseOutcome run_exercise(const ExerciseSetup& setup, const simulator::Hand& hand,
                                            const theatre::RecordOptions& record = {},
                                            const std::function<void(long frames)>& on_frame = {});

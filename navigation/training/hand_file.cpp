@@ -18,8 +18,10 @@ using simulator::Press;
 constexpr std::string_view kHandFormat = "arthronaut.hand";
 constexpr int kHandVersion = 1;
 constexpr std::int64_t kMostFrames = 3'600'000;
-constexpr std::array<std::string_view, 9> kPresses{
-    "none", "touch", "control point", "register", "draw", "stop drawing", "marker anew", "drilled", "finish"};
+constexpr std::array<std::string_view, 3> kHeld{"probe", "guide", "board"};
+constexpr std::array<std::string_view, 11> kPresses{"none",   "touch",        "control point", "register",
+                                                    "draw",   "stop drawing", "marker anew",   "drilled",
+                                                    "finish", "picture",      "drop picture"};
 
 bool is_same(const HandInput& a, const HandInput& b) {
   return a.held == b.held && a.moves_scope == b.moves_scope && a.move == b.move && a.tilt == b.tilt &&
@@ -29,7 +31,7 @@ bool is_same(const HandInput& a, const HandInput& b) {
 ordered_json json_of(std::int64_t frame, const HandInput& input) {
   ordered_json node;
   node["frame"] = frame;
-  node["held"] = input.held == Held::Probe ? "probe" : "guide";
+  node["held"] = kHeld[static_cast<std::size_t>(input.held)];
   node["moves_scope"] = input.moves_scope;
   node["move"] = files::to_json(input.move);
   node["tilt"] = files::to_json(input.tilt);
@@ -49,8 +51,9 @@ Pushed pushed_from(const files::JsonObject& node) {
   pushed.frame = node.integer("frame");
   if (pushed.frame < 0 || pushed.frame > kMostFrames) node.fail("frame", "must lie in 0 to 3600000");
   const std::string held = node.text("held");
-  if (held != "probe" && held != "guide") node.fail("held", "must be \"probe\" or \"guide\"");
-  pushed.input.held = held == "probe" ? Held::Probe : Held::Guide;
+  const auto* const hand = std::find(kHeld.begin(), kHeld.end(), held);
+  if (hand == kHeld.end()) node.fail("held", "must be \"probe\", \"guide\" or \"board\"");
+  pushed.input.held = static_cast<Held>(hand - kHeld.begin());
   pushed.input.moves_scope = node.boolean("moves_scope");
   pushed.input.move = node.vector3("move");
   pushed.input.tilt = node.vector3("tilt");

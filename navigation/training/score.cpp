@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "planning/files/format.h"
 
@@ -27,6 +28,15 @@ std::optional<double> value_of(Measure measure, const ExerciseFacts& facts) {
       return facts.tunnel_error_mm;
     case Measure::TipError:
       return facts.tip_error_mm;
+    case Measure::CameraError:
+      return facts.camera_error_px;
+    case Measure::Uncovered:
+      if (facts.coverage.empty()) return std::nullopt;
+      return 100 - share_percent(std::accumulate(facts.coverage.begin(), facts.coverage.end(), 0.0),
+                                 static_cast<double>(facts.coverage.size()));
+    case Measure::Refused:
+      // Who takes no picture has none refused either.
+      return facts.coverage.empty() ? std::nullopt : std::optional<double>(facts.refused_pictures);
     case Measure::Verification:
       return facts.verifying_touches_missing;
     case Measure::WastedTouches:
@@ -49,9 +59,8 @@ std::string number(double value, Measure measure) {
   const std::string_view unit = unit_of(measure);
   if (unit.empty()) return format("%.0f", value);
   const bool is_whole = measure == Measure::Time || unit == "%";
-  return format(is_whole ? "%.0f" : "%.1f", value) + (unit == "deg" ? "\u00B0"
-                                                      : unit == "%" ? " %"
-                                                                    : " " + std::string(unit));
+  const char* const digits = is_whole ? "%.0f" : measure == Measure::CameraError ? "%.2f" : "%.1f";
+  return format(digits, value) + (unit == "deg" ? "\u00B0" : unit == "%" ? " %" : " " + std::string(unit));
 }
 
 std::string what_was_found(Measure measure, double value, const ExerciseFacts& facts) {
@@ -69,6 +78,13 @@ std::string what_was_found(Measure measure, double value, const ExerciseFacts& f
       return "The registration puts the entry " + said + " from where it truly is";
     case Measure::TipError:
       return "The tip that was found is " + said + " from the true one";
+    case Measure::CameraError:
+      return "The camera that was found is off by " + said + " over the view";
+    case Measure::Uncovered:
+      return said + " of the view had no corners, in the mean of the pictures";
+    case Measure::Refused:
+      return format("%d pictures taken, %d refused", static_cast<int>(facts.coverage.size()),
+                    facts.refused_pictures);
     case Measure::Verification:
       return facts.verification_was_skipped         ? std::string("The verification was skipped")
              : facts.verifying_touches_missing == 0 ? std::string("Touches have verified the registration")
@@ -99,6 +115,11 @@ std::string never_came_to_that(Measure measure, const ExerciseFacts& facts) {
       return "No registration was in force at the end";
     case Measure::TipError:
       return "No tip was found: " + facts.tip_trouble;
+    case Measure::CameraError:
+      return "No camera that may be used was found: " + facts.camera_trouble;
+    case Measure::Uncovered:
+    case Measure::Refused:
+      return "No picture was taken";
     case Measure::DrawnInAir:
       return "Nothing was drawn";
     default:
@@ -124,6 +145,13 @@ std::string advice_for(Measure measure, const ExerciseFacts& facts) {
                  : "Draw longer strokes in several directions, also across the notch's edge.";
     case Measure::TipError:
       return "Keep the tip where it is and tilt further to all sides.";
+    case Measure::CameraError:
+      if (facts.coverage.size() < 3) return "Take three or more pictures, the lens turned in between.";
+      return "Tilt the board by 20 to 35 degrees, fill the view with it, and turn the lens further.";
+    case Measure::Uncovered:
+      return "Hold the board nearer and less aslant, and wait until no glare lies on it.";
+    case Measure::Refused:
+      return "Look at the picture before you take it: sharp, at rest, the lens turned by 40 degrees.";
     case Measure::Verification:
       return "Touch three places that lie apart, and hold still at each, before you take the guide.";
     case Measure::WastedTouches:

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "navigation/simulator/random.h"
+#include "navigation/training/board_trainee.h"
 
 namespace arthronaut::training {
 
@@ -55,6 +56,8 @@ class Trainee {
   void plan(const HandScene& scene) {
     is_planned_ = true;
     switch (goal_) {
+      case Goal::Calibrate:  // board_trainee.h
+        return;
       case Goal::Pivot:
         add_go(Held::Probe, scene.dimple_mm, scene.dimple_handle, true);
         acts_.push_back({.kind = Act::Kind::Turn,
@@ -271,10 +274,14 @@ Skill hasty(std::uint64_t seed) {
           .touches = 1,
           .useless_touches = 2,
           .tilts_deg = 18,
-          .looks_s = 0.3};
+          .looks_s = 0.3,
+          .pictures = 4,
+          .turns_lens_deg = 25,
+          .rests_s = 0};
 }
 
 simulator::Hand make_trainee(Goal goal, const Skill& skill) {
+  if (goal == Goal::Calibrate) return make_board_trainee(skill);
   return [trainee = std::make_shared<Trainee>(goal, skill)](const HandScene& scene, const HandState& state) {
     return trainee->push(scene, state);
   };

@@ -23,6 +23,9 @@ struct Skill {
   int useless_touches = 0;      // more of them at the place of the last one
   double tilts_deg = 32;        // Pivot: half-angle of the cone
   double looks_s = 4;           // with the guide on the plan, before it drills or says that it is done
+  int pictures = 5;             // Calibrate: of the board
+  double turns_lens_deg = 50;   // from one to the next
+  double rests_s = 0.6;         // with the board at rest, before each
 };
 [[nodiscard]] Skill careful(std::uint64_t seed);
 [[nodiscard]] Skill hasty(std::uint64_t seed);

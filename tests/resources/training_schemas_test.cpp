@@ -73,6 +73,8 @@ TEST_F(TrainingSchemas, DescribeHands) {
   const fs::path file = folder_ / "hand.json";
   std::vector<simulator::HandTruth> frames(3);
   frames[0].input.move = {1, 0, 0};
+  frames[0].input.held = simulator::Held::Board;
+  frames[0].input.press = simulator::Press::DropPicture;
   frames[2].frame = 2;
   frames[2].input.press = simulator::Press::ControlPoint;
   training::write_hand_file(file, frames);

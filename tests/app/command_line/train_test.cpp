@@ -42,7 +42,8 @@ class TrainCommand : public ::testing::Test {
 TEST_F(TrainCommand, ListsExercisesAndScores) {
   const auto list = train({"--list"});
   EXPECT_EQ(list.exit_code, 0) << list.errors;
-  for (const char* id : {"pivot: ", "register: ", "aim: ", "drill-femur: ", "drill-tibia: ", "bumped marker"})
+  for (const char* id :
+       {"calibrate: ", "pivot: ", "register: ", "aim: ", "drill-femur: ", "drill-tibia: ", "bumped marker"})
     EXPECT_THAT(list.output, HasSubstr(id));
   const auto none = train({"--scores"});
   EXPECT_EQ(none.exit_code, 0) << none.errors;
@@ -59,6 +60,9 @@ TEST_F(TrainCommand, RefusesWhatIsNotThere) {
   EXPECT_EQ(hand.exit_code, 3);
   EXPECT_THAT(hand.errors, HasSubstr("none.json"));
   EXPECT_EQ(train({"--exercise", "aim", "--case", folder_ / "none.arthro"}).exit_code, 3);
+  const auto session = train({"--exercise", "calibrate", "--case", folder_ / "none.arthro"});
+  EXPECT_EQ(session.exit_code, 3);
+  EXPECT_THAT(session.errors, HasSubstr("leaves no session"));
 }
 
 // An exercise on a case becomes a session of it; the score is a file and stands in the user's list.
@@ -78,6 +82,18 @@ TEST_F(TrainCommand, ScoresAndRecords) {
   EXPECT_NEAR(written.at("parts").at(1).at("value"), 11, 0.1);
   EXPECT_TRUE(fs::exists(knee / "sessions" / written.at("session") / "session.json"));
   EXPECT_THAT(train({"--scores"}).output, HasSubstr("hand of hand.json"));
+}
+
+// The calibration of a camera needs no case; done at once it has found none, and says why.
+TEST_F(TrainCommand, Calibrates) {
+  const fs::path score = folder_ / "score.json";
+  const auto run = train({"--exercise", "calibrate", "--hand", hand(3, true), "-o", score});
+  EXPECT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("No camera that may be used was found"));
+  const json written = json::parse(files::read_text(score));
+  EXPECT_EQ(written.at("knee"), "checkerboard");
+  EXPECT_EQ(written.at("session"), "");
+  EXPECT_EQ(written.at("parts").at(0).at("value"), nullptr);
 }
 
 // Hazard 40: a case with a session that is no simulation, or with the camera of a real scope, is somebody's.

@@ -46,6 +46,26 @@ TEST(HandDevices, ButtonsChooseWhatMoves) {
   EXPECT_GT(hand_input(state, Held::Probe, kFrame_s).move.x(), 0);
 }
 
+// The lens of the scope can be turned by every device: the wheel does with the right button, and is then no
+// way nearer or away.
+TEST(HandDevices, EveryDeviceTurnsTheLens) {
+  DeviceState keys;
+  keys.keys_lens = 1;
+  EXPECT_EQ(hand_input(keys, Held::Board, kFrame_s).turn_lens, 1);
+  DeviceState mouse;
+  mouse.wheel = 1;
+  EXPECT_EQ(hand_input(mouse, Held::Board, kFrame_s).turn_lens, 0);
+  EXPECT_GT(hand_input(mouse, Held::Board, kFrame_s).move.z(), 0);
+  mouse.mouse_tilts = true;
+  EXPECT_GT(hand_input(mouse, Held::Board, kFrame_s).turn_lens, 0);
+  EXPECT_EQ(hand_input(mouse, Held::Board, kFrame_s).move.z(), 0);
+  DeviceState pad;
+  pad.pad_lens = -1;
+  EXPECT_EQ(hand_input(pad, Held::Board, kFrame_s).turn_lens, 0);
+  pad.has_pad = true;
+  EXPECT_EQ(hand_input(pad, Held::Board, kFrame_s).turn_lens, -1);
+}
+
 // A thumb that rests on a stick pushes nothing; a full stick pushes fully; a pad that is not there nothing.
 TEST(HandDevices, SticksHaveARest) {
   DeviceState state;

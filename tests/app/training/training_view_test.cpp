@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
 
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include "planning/phantom/phantom_case.h"
 #include "tests/temporary_folder.h"
@@ -34,7 +36,7 @@ class TrainingViewTest : public ::testing::Test {
     live_ = std::make_shared<const theatre::LiveState>(nothing);
     view_.add_actions(actions_);
     view_.case_opened({&model_, folder_.path()});
-    for (int i = 0; i < 2; ++i) actions_.run("train.list.next");
+    for (int i = 0; i < 3; ++i) actions_.run("train.list.next");
   }
   ~TrainingViewTest() override { ImGui::DestroyContext(context_); }
 
@@ -96,6 +98,8 @@ class TrainingViewTest : public ::testing::Test {
                       .setup = [this] { return &setup_; },
                       .ask = [this](operation::Command command) { asked_.push_back(std::move(command)); },
                       .end = [this] { ++ended_; }},
+                     [](const widgets::Ui&, const widgets::Rect& area, const calibration::CalibrateStatus&,
+                        float) { return area; },
                      folder_ / "training.json"};
 };
 
@@ -154,6 +158,37 @@ TEST_F(TrainingViewTest, EveryEndIsTheEnd) {
   view_.tick(++now_s_);
   EXPECT_FALSE(view_.has_running_work());
   EXPECT_EQ(begun_anew_, 2);
+}
+
+// The calibration is an exercise of its own: the theatre is neither asked, started nor wiped; a picture that
+// is asked for at once, before the lens stands before a board near enough, is refused and counted; "done"
+// ends it.
+TEST_F(TrainingViewTest, ACalibrationTakesNothingOfTheTheatres) {
+  for (int i = 0; i < 3; ++i) actions_.run("train.list.previous");
+  actions_.run("train.list.start");
+  const auto wait_until = [&](const std::function<bool()>& is_so) {
+    for (int i = 0; i < 400 && !is_so(); ++i) {
+      view_.tick(++now_s_);
+      std::this_thread::sleep_for(std::chrono::milliseconds(25));
+    }
+    return is_so();
+  };
+  EXPECT_EQ(view_.source_kind(), sources::SourceKind::Simulation);
+  const auto can = [&](const char* id) { return actions_.find(id)->can_run(); };
+  ASSERT_TRUE(wait_until([&] { return can("train.board.take"); }));
+  EXPECT_FALSE(can("train.run.tool"));
+  actions_.run("train.run.done");
+  ASSERT_TRUE(wait_until([&] { return !view_.has_running_work(); }));
+  EXPECT_TRUE(can("train.score.again"));
+  EXPECT_FALSE(source_.has_value());
+  EXPECT_EQ(begun_anew_, 0);
+  EXPECT_EQ(ended_, 0);
+  EXPECT_TRUE(asked_.empty());
+  const std::vector<training::Score> scores = training::read_training_file(folder_ / "training.json");
+  ASSERT_EQ(scores.size(), 1U);
+  EXPECT_EQ(scores[0].exercise, "calibrate");
+  EXPECT_TRUE(scores[0].is_done);
+  EXPECT_EQ(scores[0].session, "");
 }
 
 // A case that holds a session of which nobody can tell is somebody's.

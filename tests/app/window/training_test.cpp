@@ -37,8 +37,7 @@ TEST_F(WorkstationTraining, AnExerciseIsDoneByHandAndScored) {
   ASSERT_TRUE(app.wait_for_state("train_page", "list"));
   EXPECT_TRUE(app.wait_for_state("train_refusal", ""));
   EXPECT_TRUE(app.wait_for_state("train_runs", "0"));
-  app.press("Down");
-  app.press("Down");  // pivot, register, aim
+  for (int i = 0; i < 3; ++i) app.press("Down");  // calibrate, pivot, register, aim
   app.press("space");
   ASSERT_TRUE(app.wait_for_state("train_page", "running"));
   ASSERT_TRUE(app.wait_for_state("train_hand", "guide", 120));
@@ -70,6 +69,32 @@ TEST_F(WorkstationTraining, AnExerciseIsDoneByHandAndScored) {
   EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);
 }
 
+// Calibrate: the board is moved by a key that is held until a picture of it is good, which is taken; "done"
+// with one picture finds no camera, and says so. No session of it is kept.
+TEST_F(WorkstationTraining, ACalibrationIsDoneByHandAndScored) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F6");
+  ASSERT_TRUE(app.wait_for_state("train_page", "list"));
+  EXPECT_TRUE(app.wait_for_state("train_refusal", ""));
+  app.press("space");
+  ASSERT_TRUE(app.wait_for_state("train_hand", "board", 60));
+  EXPECT_EQ(app.state("source_kind"), "SIMULATION");
+  app.hold_until("q", "train_taken", "1", 1);  // nearer
+  app.press("space");
+  ASSERT_TRUE(app.wait_for_state("train_taken", "1", 30)) << app.state("train_refused");
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("train_page", "score", 60));
+  EXPECT_EQ(app.state("train_done"), "yes");
+  std::ifstream in(found("training.json"));
+  const nlohmann::json score = nlohmann::json::parse(in).at("scores").at(0);
+  EXPECT_EQ(score.at("exercise"), "calibrate");
+  EXPECT_EQ(score.at("session"), "");
+  EXPECT_EQ(score.at("parts").at(0).at("points"), 0);
+  EXPECT_TRUE(found("sessions").empty() || fs::is_empty(found("sessions")));
+}
+
 // Hazard 40: while an exercise has the theatre, Navigate starts nothing over it; stopped there, it is over.
 TEST_F(WorkstationTraining, Hazard40NavigateStartsNothingWhileItIsLent) {
   const VirtualDisplay display(1280, 720);
@@ -78,8 +103,7 @@ TEST_F(WorkstationTraining, Hazard40NavigateStartsNothingWhileItIsLent) {
   app.press("F6");
   ASSERT_TRUE(app.wait_for_state("train_page", "list"));
   EXPECT_TRUE(app.wait_for_state("train_refusal", ""));
-  app.press("Down");
-  app.press("Down");
+  for (int i = 0; i < 3; ++i) app.press("Down");
   app.press("space");
   ASSERT_TRUE(app.wait_for_state("train_hand", "guide", 120));
   app.press("F2");
@@ -101,8 +125,7 @@ TEST_F(WorkstationTraining, WhatIsStoppedCountsNothing) {
   ASSERT_TRUE(app.wait_for_state("case", "open", 120));
   app.press("F6");
   ASSERT_TRUE(app.wait_for_state("train_page", "list"));
-  app.press("Down");
-  app.press("Down");
+  for (int i = 0; i < 3; ++i) app.press("Down");
   app.press("space");
   ASSERT_TRUE(app.wait_for_state("train_hand", "guide", 120));
   app.press("Escape");

@@ -21,6 +21,8 @@ ExerciseFacts flawless() {
   facts.depth_error_mm = -0.3;
   facts.tunnel_error_mm = 0.5;
   facts.tip_error_mm = 0.05;
+  facts.camera_error_px = 0.1;
+  facts.coverage = {0.95, 0.93, 0.97};
   facts.verifying_touches_missing = 0;
   facts.touches = 4;
   facts.drawn_mm = 180;
@@ -145,6 +147,33 @@ TEST(Score, AdviceComesByWhatItCosts) {
   EXPECT_EQ(score.better[0], part_of(score, Measure::EntryOffset).advice);
   EXPECT_EQ(score.better[1], part_of(score, Measure::Angle).advice);
   EXPECT_EQ(score.better[2], part_of(score, Measure::Time).advice);
+}
+
+// A camera is worth what it is off in truth; the view's share without corners is the mean of the pictures'.
+TEST(Score, OfACameraIsItsTrueError) {
+  ExerciseFacts facts = flawless();
+  facts.time_s = 40;
+  facts.camera_error_px = 0.625;
+  facts.coverage = {0.9, 0.6};
+  facts.refused_pictures = 1;
+  const Score score = score_of(*find_exercise("calibrate"), Level::Easy, facts);
+  EXPECT_NEAR(part_of(score, Measure::CameraError).points, 25, 1e-9);  // half way from 0.25 to 1
+  EXPECT_NEAR(*part_of(score, Measure::Uncovered).value, 25, 1e-9);
+  EXPECT_NEAR(part_of(score, Measure::Refused).points, 0.75 * 15, 1e-9);
+  EXPECT_NE(part_of(score, Measure::CameraError).reason.find("0.62 px"), std::string::npos)
+      << part_of(score, Measure::CameraError).reason;
+}
+
+// One that the program refuses guides nobody, and who takes no picture has none refused.
+TEST(Score, WithoutACameraSaysWhy) {
+  ExerciseFacts facts = flawless();
+  facts.camera_error_px.reset();
+  facts.camera_trouble = "the lens was not turned";
+  facts.coverage.clear();
+  const Score score = score_of(*find_exercise("calibrate"), Level::Easy, facts);
+  EXPECT_NE(part_of(score, Measure::CameraError).reason.find("the lens was not turned"), std::string::npos);
+  for (const Measure none : {Measure::CameraError, Measure::Uncovered, Measure::Refused})
+    EXPECT_EQ(part_of(score, none).points, 0);
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
-#include "app/setup/calibrate_job.h"
+#include "navigation/calibration/calibrate_job.h"
 
 #include <utility>
 
 #include "navigation/calibration/residual_plot.h"
 #include "planning/geometry/error.h"
 
-namespace arthronaut::setup {
+namespace arthronaut::calibration {
 
 namespace {
 
@@ -24,8 +24,7 @@ void CalibrateJob::look(const camera::FramePtr& frame) {
   picture_ = frame;
   ++looks_at_this_;
   camera::gray_from(*frame, gray_);
-  const calibration::CaptureAdvice& advice =
-      guide_.look({gray_.data(), frame->width, frame->height, frame->width});
+  const CaptureAdvice& advice = guide_.look({gray_.data(), frame->width, frame->height, frame->width});
   good_looks_ = advice.is_good() ? good_looks_ + 1 : 0;
   const bool may_take = takes_by_itself_ && !is_calibrating_ && summary_ == nullptr;
   if (may_take && good_looks_ >= kGoodLooks) take();
@@ -63,7 +62,7 @@ void CalibrateJob::forget_result() {
   residuals_.reset();
 }
 
-void CalibrateJob::calibrate(const calibration::CalibrationOptions& options) {
+void CalibrateJob::calibrate(const CalibrationOptions& options) {
   forget_result();
   options_ = options;
   is_calibrating_ = true;
@@ -71,25 +70,24 @@ void CalibrateJob::calibrate(const calibration::CalibrationOptions& options) {
 
 bool CalibrateJob::work() {
   if (!std::exchange(is_calibrating_, false)) return false;
-  calibration::CalibrationSummary summary;
+  CalibrationSummary summary;
   try {  // pictures that can't be calibrated from are an outcome here: others can be taken
     summary = calibration::calibrate(guide_.taken(), options_);
   } catch (const InvalidInput& error) {
-    summary.outcome = calibration::CalibrationSummary::Outcome::Failed;
+    summary.outcome = CalibrationSummary::Outcome::Failed;
     summary.reasons = {error.what()};
   }
   if (summary.is_usable())
-    residuals_ = std::make_shared<const camera::Frame>(calibration::draw_residuals(summary, guide_.taken()));
-  summary_ = std::make_shared<const calibration::CalibrationSummary>(std::move(summary));
+    residuals_ = std::make_shared<const camera::Frame>(draw_residuals(summary, guide_.taken()));
+  summary_ = std::make_shared<const CalibrationSummary>(std::move(summary));
   return true;
 }
 
 CalibrateStatus CalibrateJob::status() const {
   CalibrateStatus status;
   status.picture = picture_;
-  if (picture_ != nullptr)
-    status.advice = std::make_shared<const calibration::CaptureAdvice>(guide_.advice());
-  for (const calibration::CalibrationPicture& picture : guide_.taken()) {
+  if (picture_ != nullptr) status.advice = std::make_shared<const CaptureAdvice>(guide_.advice());
+  for (const CalibrationPicture& picture : guide_.taken()) {
     status.taken.push_back(picture.name);
     status.taken_angles_deg.push_back(picture.lens.mark_angle_deg);
   }
@@ -102,4 +100,4 @@ CalibrateStatus CalibrateJob::status() const {
   return status;
 }
 
-}  // namespace arthronaut::setup
+}  // namespace arthronaut::calibration
