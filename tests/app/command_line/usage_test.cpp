@@ -7,6 +7,7 @@
 #include <regex>
 #include <sstream>
 
+#include "app/command_line/command.h"
 #include "tests/app/command_line/program.h"
 #include "tests/temporary_folder.h"
 
@@ -120,9 +121,24 @@ struct Help {
   std::vector<std::pair<std::string, std::string>> fractions;  // options that take them, with their type
 };
 
+// In this process: two hundred starts of the executable would take a minute.
+test::ProgramResult run_here(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "arthronaut");
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  test::ProgramResult result;
+  result.exit_code = command_line::run_command_line(static_cast<int>(argv.size()), argv.data(),
+                                                    [](const auto&) { return 0; });
+  result.output = ::testing::internal::GetCapturedStdout();
+  result.errors = ::testing::internal::GetCapturedStderr();
+  return result;
+}
+
 Help help_of(std::vector<std::string> command) {
   command.push_back("--help");
-  std::istringstream lines(run_program(command).output);
+  std::istringstream lines(run_here(command).output);
   const std::regex fraction(R"( +(?:-\w,)?(--[\w-]+) (FLOAT|MEDIUM|X,Y,Z)\b.*)"),
       subcommand(R"(  ([a-z][\w-]*).*)");
   Help help;
@@ -145,7 +161,7 @@ std::vector<std::string> refuse_what_is_no_number(const std::vector<std::string>
       if (type == "X,Y,Z") value += ",0,0";
       std::vector<std::string> arguments = command;
       arguments.push_back(option + "=" + value);
-      const auto result = run_program(arguments);
+      const auto result = run_here(arguments);
       EXPECT_EQ(result.exit_code, 2) << option << "=" << value;
       EXPECT_THAT(result.errors, HasSubstr(option)) << value;
     }
