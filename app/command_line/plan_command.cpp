@@ -6,6 +6,7 @@
 #include "app/command_line/option_checks.h"
 #include "app/command_line/plan_report.h"
 #include "planning/bones/mesh_hash.h"
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/cases/case_lock.h"
 #include "planning/cases/plan_versions.h"
@@ -155,6 +156,7 @@ void show(const PlanArguments& arguments, const Context& context, const cases::C
           const plan_review::CaseReview& review, const PlanVerdict& verdict) {
   auto tunnels_json = nlohmann::ordered_json::array();
   bool has_any = false;
+  cases::BoneDoubts doubts = cases::load_bone_doubts(arguments.case_folder);
   for (const auto& [key, tunnel] : knee.plan.tunnels) {
     if (!arguments.bone.empty() && arguments.bone != bones::to_text(key.bone)) continue;
     if (arguments.names_type && arguments.type != norms::to_text(key.bundle)) continue;
@@ -163,8 +165,10 @@ void show(const PlanArguments& arguments, const Context& context, const cases::C
     has_any = true;
     if (arguments.as_json) {
       tunnels_json.push_back(tunnel_to_json(knee, review, key, verdict));
+      tunnels_json.back()["bone_doubts"] = doubts[key.bone];
     } else {
       describe_tunnel(context, knee, review, key, verdict);
+      for (const std::string& doubt : doubts[key.bone]) context.say("  ! Bone: " + doubt);
     }
   }
   if (!arguments.as_json) {
@@ -336,6 +340,9 @@ void add_plan_command(CLI::App& app, Context& context) {
     if (arguments->by_default) {
       for (std::string& wrong : tunnels::wrong_in_words(review.checks(key_of(*arguments))))
         verdict.reasons.push_back(std::move(wrong));
+      cases::BoneDoubts doubts = cases::load_bone_doubts(arguments->case_folder);
+      for (const std::string& doubt : doubts[bones::bone_kind_from_text(arguments->bone)])
+        verdict.reasons.push_back("the " + arguments->bone + ": " + doubt);
       verdict.is_reliable = verdict.reasons.empty();
     }
     show(*arguments, context, knee, review, verdict);

@@ -13,6 +13,7 @@
 #include "app/scene/plan_picture.h"
 #include "app/scene/radiograph.h"
 #include "app/scene/reslice.h"
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/case_image.h"
 #include "planning/files/format.h"
 #include "planning/plan_review/plan_review.h"
@@ -50,7 +51,13 @@ class Sheet {
  public:
   Sheet(PdfDocument& pdf, const SheetFrame& frame, const cases::Case& knee, std::filesystem::path folder,
         norms::Bundle graft)
-      : pdf_(pdf), frame_(frame), knee_(knee), folder_(std::move(folder)), graft_(graft), review_(knee) {}
+      : pdf_(pdf),
+        frame_(frame),
+        knee_(knee),
+        folder_(std::move(folder)),
+        graft_(graft),
+        review_(knee),
+        bone_doubts_(cases::load_bone_doubts(folder_)) {}
 
   void draw();
 
@@ -78,6 +85,7 @@ class Sheet {
   std::filesystem::path folder_;
   norms::Bundle graft_;
   plan_review::CaseReview review_;
+  cases::BoneDoubts bone_doubts_;
 };
 
 const plan_review::MeasuredTunnel* Sheet::planned(BoneKind kind) const {
@@ -246,6 +254,16 @@ double Sheet::checks(BoneKind kind, double x_mm, double y_mm, double width_mm, d
                                                       : std::string(bones::to_text(kind))),
               {.size_pt = 9, .bold = true});
   y_mm += 4;
+  const auto row = [&](std::string_view verdict, bool is_amiss, const std::string& text) {
+    if (is_drawn) {
+      pdf_.text(x_mm, y_mm, verdict,
+                {.size_pt = size_pt, .bold = is_amiss, .ink = is_amiss ? kWarning : kGray});
+      pdf_.paragraph(x_mm + word_mm, y_mm, width_mm - word_mm, text, {.size_pt = size_pt});
+    }
+    y_mm += pdf_.paragraph_height_mm(width_mm - word_mm, text, {.size_pt = size_pt}) + gap_mm;
+  };
+  if (const auto doubts = bone_doubts_.find(kind); doubts != bone_doubts_.end())
+    for (const std::string& doubt : doubts->second) row("look", true, "Bone: " + doubt);
   if (of_graft == nullptr) {
     if (is_drawn)
       pdf_.text(x_mm, y_mm, review_.has_bone(kind) ? "No tunnel is planned." : "The case has no such bone.",
@@ -256,13 +274,7 @@ double Sheet::checks(BoneKind kind, double x_mm, double y_mm, double width_mm, d
     const bool is_amiss =
         check.verdict == PlanCheck::Verdict::Look || check.verdict == PlanCheck::Verdict::Wrong;
     const std::string source = is_amiss && !check.source.empty() ? " [" + check.source + "]" : "";
-    const std::string text = check.name + ": " + check.text + source;
-    if (is_drawn) {
-      pdf_.text(x_mm, y_mm, to_text(check.verdict),
-                {.size_pt = size_pt, .bold = is_amiss, .ink = is_amiss ? kWarning : kGray});
-      pdf_.paragraph(x_mm + word_mm, y_mm, width_mm - word_mm, text, {.size_pt = size_pt});
-    }
-    y_mm += pdf_.paragraph_height_mm(width_mm - word_mm, text, {.size_pt = size_pt}) + gap_mm;
+    row(to_text(check.verdict), is_amiss, check.name + ": " + check.text + source);
   }
   return y_mm;
 }

@@ -5,6 +5,7 @@
 #include "app/report/session_rows.h"
 #include "app/report/versions.h"
 #include "navigation/camera/medium.h"
+#include "planning/cases/bone_doubts.h"
 #include "planning/files/csv_cell.h"
 #include "planning/files/json_document.h"
 #include "planning/files/utc_clock.h"
@@ -156,6 +157,9 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
     json["patient"] = {{"name", content.identity->patient_name},
                        {"id", content.identity->patient_id},
                        {"birth_date", content.identity->birth_date}};
+  json["bone_doubts"] = ordered_json::object();
+  for (const auto& [kind, doubts] : cases::load_bone_doubts(content.folder))
+    json["bone_doubts"][std::string(bones::to_text(kind))] = doubts;
   json["tunnels"] = tunnels_of(content.knee);
   json["session"] = session_of(content);
   json["achieved"] = ordered_json::array();

@@ -4,7 +4,7 @@
 //   identity.json, study.json  whose knee it is (identity.h) and of which study (study.h): nowhere else
 //   note.json, case.lock       what somebody noted (case_note.h), who works on it now (case_lock.h)
 //   femur.ply, femur_cartilage.ply   bones, LPS, mm; what cartilage covers, where it was declared
-//   images/1.nrrd, painting/   the volume that the bones were made from; what is painted over it
+//   images/1.nrrd, painting/, bone_doubts.json  what the bones were made from, and what spoke against them
 //   measurements.json          taken in the images; achieved.json what a CT after the operation showed
 //   camera.json, tools.json, fluid.json   what it is navigated with; the newest check in fluid
 //   sessions/ID/               one folder a session, exercises too (navigation/recording)

@@ -195,14 +195,13 @@ bool import_ct(const Volume& volume, const BoneImportOptions& options, BoneImpor
       const std::string seen(bones::to_text(*found.side_by_fibula));
       imported.doubts.push_back("the fibula lies on the " + seen + " of the tibia, as in a " + seen +
                                 " knee, but the side is " + std::string(bones::to_text(*result.side)) +
-                                ": check --side");
+                                ": check the side");
     }
   }
   if (!options.kind && found.bones.size() == 1) {
     const bool has_femur = found.bones.front().kind == BoneKind::Femur;
     result.bones.front().doubts.push_back(std::string("the volume shows no ") +
-                                          (has_femur ? "tibia" : "femur") +
-                                          ": --bone says that one is enough");
+                                          (has_femur ? "tibia" : "femur"));
   }
   if (!result.side && found.side_by_fibula) {
     result.side = found.side_by_fibula;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/identity.h"
 #include "planning/cases/study.h"
 #include "planning/files/remove_file.h"
@@ -129,6 +130,13 @@ void save_studies_of(const fs::path& folder, const BoneImport& import) {
   cases::save_studies(folder, studies);
 }
 
+// Those of the bones that were added take the place of what was said of the bones before them.
+void save_doubts_of(const fs::path& folder, const BoneImport& import) {
+  cases::BoneDoubts doubts = cases::load_bone_doubts(folder);
+  for (const ImportedBone& imported : import.bones) doubts[imported.bone.kind] = imported.doubts;
+  cases::save_bone_doubts(folder, doubts);
+}
+
 // Another patient's bone in a case would be navigated by.
 void refuse_another_patient(const fs::path& folder, const cases::Identity& of_import) {
   const auto of_case = cases::load_identity(folder);
@@ -142,6 +150,7 @@ void save_new(const fs::path& folder, cases::Case& contents, const BoneImport& i
   files::make_whole_folder(folder, [&](const fs::path& unfinished) {
     if (const auto image = store_new_image(unfinished, contents, import)) contents.images.push_back(*image);
     cases::save_case(unfinished, contents);
+    save_doubts_of(unfinished, import);
     if (!import.identity.is_empty()) cases::save_identity(unfinished, import.identity);
     save_studies_of(unfinished, import);
   });
@@ -152,6 +161,8 @@ void save_into(const fs::path& folder, cases::Case& target, const BoneImport& im
   const auto image = store_new_image(folder, target, import);
   try {
     forget_replaced(folder, target, import);
+    // Before its bone: of a doubt too many, after a crash, nobody drills wrongly.
+    save_doubts_of(folder, import);
     put_bones(target, import);
     if (image) target.images.push_back(*image);
     cases::save_case(folder, target);

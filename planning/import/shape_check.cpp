@@ -62,13 +62,13 @@ void check_shapes(BoneImport& import, bool fibula_was_seen) {
   if (import.side && *import.side != *told.front()) {
     import.bones.front().doubts.push_back(
         "by the shape of " + std::string(told.size() > 1 ? "both bones" : "the bone") + " it is a " + seen +
-        " knee, but the side is " + word_of(*import.side) + ": check --side");
+        " knee, but the side is " + word_of(*import.side) + ": check the side");
   }
   if (!import.side && told.size() > 1) {
     import.side = told.front();
     import.side_was_seen = import.side_is_by_shape = true;
     import.bones.front().doubts.push_back("that it is a " + seen +
-                                          " knee is told by the shape of its bones alone: check --side");
+                                          " knee is told by the shape of its bones alone: check the side");
   }
 }
 

@@ -1,3 +1,4 @@
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/cases/identity.h"
 #include "planning/cases/measurements.h"
@@ -85,6 +86,16 @@ std::vector<Reader> case_readers() {
            [](const fs::path& folder, std::string_view bytes) {
              (void)put(folder, "measurements.json", bytes);
              for (const auto& each : cases::load_measurements(folder)) (void)each.in_words();
+             return std::string();
+           }},
+          {"bone_doubts", "bone_doubts.json",
+           [](const fs::path& folder) {
+             cases::save_bone_doubts(folder, {{BoneKind::Femur, {"cut off", "too short"}}});
+             return std::map<std::string, std::string>{{"seed", taken(cases::bone_doubts_file(folder))}};
+           },
+           [](const fs::path& folder, std::string_view bytes) {
+             (void)put(folder, "bone_doubts.json", bytes);
+             (void)cases::load_bone_doubts(folder);
              return std::string();
            }},
           {"identity", "identity.json",

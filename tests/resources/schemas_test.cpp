@@ -10,6 +10,7 @@
 #include "navigation/registration/registration.h"
 #include "navigation/registration/registration_file.h"
 #include "navigation/tools/tool_set.h"
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/cases/case_note.h"
 #include "planning/cases/identity.h"
@@ -157,6 +158,12 @@ TEST_F(Schemas, DescribeTheMeasurements) {
   cases::save_measurements(folder_.path(), {{{{1, 2, 3}, {4, 5, 6}}}, {{{1, 0, 0}, {0, 0, 0}, {0, 1, 0}}}});
   expect_described(cases::measurements_file(folder_.path()), "measurements",
                    [&] { (void)cases::load_measurements(folder_.path()); });
+}
+
+TEST_F(Schemas, DescribeTheBonesDoubts) {
+  cases::save_bone_doubts(folder_.path(), {{bones::BoneKind::Femur, {"cut off", "too short"}}});
+  expect_described(cases::bone_doubts_file(folder_.path()), "bone_doubts",
+                   [&] { (void)cases::load_bone_doubts(folder_.path()); });
 }
 
 TEST_F(Schemas, DescribeTheNote) {

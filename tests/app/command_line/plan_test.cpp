@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/cases/plan_versions.h"
 #include "planning/phantom/phantom_case.h"
@@ -115,6 +116,18 @@ TEST_F(PlanCommand, ADefaultOnProposedLandmarksIsNotReliable) {
   const auto result = run({"plan", "--bone", "femur", "--default"});
   EXPECT_EQ(result.exit_code, 4) << result.output << result.errors;
   EXPECT_THAT(result.output + result.errors, HasSubstr("blumensaat_anterior"));
+}
+
+// Hazard 46: on landmarks that somebody confirmed, a bone that was cut off is a doubtful one all the same.
+TEST_F(PlanCommand, Hazard46SaysWhatSpokeAgainstTheBone) {
+  cases::save_bone_doubts(folder_ / "knee.arthro", {{bones::BoneKind::Femur, {"the images end within it"}}});
+  EXPECT_THAT(run({"plan", "--bone", "femur"}).output, HasSubstr("  ! Bone: the images end within it"));
+  EXPECT_THAT(run({"plan", "--bone", "tibia"}).output, Not(HasSubstr("  ! Bone: ")));
+  const auto json = nlohmann::json::parse(run({"plan", "--bone", "femur", "--json"}).output);
+  EXPECT_EQ(json.at("bone_doubts").at(0), "the images end within it");
+  const auto made = run({"plan", "--bone", "femur", "--default"});
+  EXPECT_EQ(made.exit_code, 4);
+  EXPECT_THAT(made.errors, HasSubstr("the femur: the images end within it"));
 }
 
 TEST_F(PlanCommand, ExportsPlanAndDrilledBones) {

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "navigation/recording/session_marks.h"
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/identity.h"
 #include "planning/geometry/error.h"
 #include "planning/plan_review/plan_review.h"
@@ -37,6 +38,20 @@ TEST_F(Report, HasThePlanOnOneSheet) {
     expect_contains(text, "Checks of the " + std::string(bones::to_text(kind)));
     for (const auto& check : review.checks(kind)) expect_contains(text, check.name + ":");
   }
+}
+
+// Hazard 46: whoever reads the sheet alone reads what whoever imported the bone read.
+TEST_F(Report, Hazard46SaysWhatSpokeAgainstABone) {
+  cases::save_bone_doubts(knee_folder(), {{bones::BoneKind::Tibia, {"the images end within it"}}});
+  write_report(knee_folder(), pdf());
+  expect_contains(pdf_text(), "Bone: the images end within it");
+  const auto json = knee_folder().parent_path() / "report.json";
+  write_report(knee_folder(), json);
+  expect_contains(files::read_text(json), R"("bone_doubts": {
+    "tibia": [
+      "the images end within it"
+    ]
+  })");
 }
 
 // One bone is a case too: neither page asks for a picture of the other.

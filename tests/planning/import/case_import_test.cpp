@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/study.h"
 #include "planning/geometry/error.h"
 #include "planning/images/volume_writer.h"
@@ -107,6 +108,20 @@ TEST(CaseImport, KeepsOfWhichStudyABoneIs) {
   const cases::Studies studies = cases::load_studies(folder / "a");
   ASSERT_EQ(studies.size(), 1U);
   EXPECT_EQ(studies.at(BoneKind::Tibia), of_images.origin);
+}
+
+// Hazard 46: what spoke against a bone is in the case as long as the bone is; another one brings its own.
+TEST(CaseImport, Hazard46WhatSpokeAgainstABoneStaysWithTheCase) {
+  const TemporaryFolder folder;
+  BoneImport cut = imported(BoneKind::Femur);
+  cut.bones[0].doubts = {"the images end within it"};
+  add_to_case(folder / "a", cut, "", "ct");
+  const cases::BoneDoubts of_femur{{BoneKind::Femur, cut.bones[0].doubts}};
+  EXPECT_EQ(cases::load_bone_doubts(folder / "a"), of_femur);
+  add_to_case(folder / "a", imported(BoneKind::Tibia), "", "bone.stl");
+  EXPECT_EQ(cases::load_bone_doubts(folder / "a"), of_femur) << "a tibia changes nothing of it";
+  add_to_case(folder / "a", imported(BoneKind::Femur), "", "bone.stl");
+  EXPECT_TRUE(cases::load_bone_doubts(folder / "a").empty());
 }
 
 // Images alone make a case without bones, in which they are painted; the study is that of both.

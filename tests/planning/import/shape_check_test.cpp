@@ -74,7 +74,8 @@ TEST(ShapeCheck, ASideThatBothBonesContradictRaisesADoubt) {
   BoneImport import = knee(Side::Left, Side::Right);
   check_shapes(import, false);
   EXPECT_EQ(import.side, Side::Right);  // what a person said stands
-  EXPECT_THAT(doubts_of(import), ElementsAre(::testing::AllOf(HasSubstr("left knee"), HasSubstr("--side"))));
+  EXPECT_THAT(doubts_of(import),
+              ElementsAre(::testing::AllOf(HasSubstr("left knee"), HasSubstr("check the side"))));
 }
 
 // What a fibula told was looked at before.
@@ -91,7 +92,7 @@ TEST(ShapeCheck, BothBonesTogetherTellTheSideButOneAloneDoesNot) {
     EXPECT_EQ(import.side, side);
     EXPECT_TRUE(import.side_was_seen);
     EXPECT_TRUE(import.side_is_by_shape);
-    EXPECT_THAT(doubts_of(import), ElementsAre(HasSubstr("alone: check --side")));
+    EXPECT_THAT(doubts_of(import), ElementsAre(HasSubstr("alone: check the side")));
     BoneImport alone = knee(side, std::nullopt);
     alone.bones.pop_back();
     check_shapes(alone, false);
