@@ -19,6 +19,13 @@ bool is_same(const std::optional<tunnels::Tunnel>& a, const std::optional<tunnel
   return a->entry_mm == b->entry_mm && a->direction == b->direction && a->diameter_mm == b->diameter_mm;
 }
 
+bool is_same(const cases::Plan& a, const cases::Plan& b) {
+  return a.mesh_sha256 == b.mesh_sha256 &&
+         std::ranges::equal(a.tunnels, b.tunnels, [](const auto& one, const auto& other) {
+           return one.first == other.first && is_same(one.second, other.second);
+         });
+}
+
 std::string clock_text() {
   const std::time_t now = std::time(nullptr);
   std::tm parts{};
@@ -96,7 +103,7 @@ void PlanHistory::apply_tunnels(const std::map<tunnels::TunnelKey, tunnels::Tunn
 }
 
 void PlanHistory::apply_plan(const cases::Plan& plan, const std::string& what) {
-  if (model_ == nullptr || is_read_only_) return;
+  if (model_ == nullptr || is_read_only_ || is_same(model_->knee().plan, plan)) return;
   settle_now();
   begin(what, false);
   model_->set_plan(plan);

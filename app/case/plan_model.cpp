@@ -6,6 +6,7 @@
 #include "app/scene/notch_cut.h"
 #include "planning/bones/mesh_hash.h"
 #include "planning/geometry/error.h"
+#include "planning/landmarks/grid_landmarks.h"
 
 namespace arthronaut::open_case {
 
@@ -16,6 +17,14 @@ bool has_grid(const landmarks::Landmarks& marks, bones::BoneKind kind, const geo
               bones::Side side) {
   return kind == bones::BoneKind::Femur ? landmarks::femoral_quadrant(mesh, marks, side).has_value()
                                         : landmarks::tibial_grid(marks).has_value();
+}
+
+// Whether somebody has looked at all that the grid follows from.
+bool is_confirmed(const landmarks::Landmarks& marks, const landmarks::LandmarkStates& states,
+                  bones::BoneKind kind) {
+  return std::ranges::all_of(landmarks::grid_landmarks(kind, marks), [&](const std::string& name) {
+    return marks.contains(name) && landmarks::state_of(states, name) == landmarks::LandmarkState::Confirmed;
+  });
 }
 
 geometry::Bounds joined(geometry::Bounds all, const geometry::Bounds& other) {
@@ -35,10 +44,12 @@ PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
     made.bounds = geometry::bounds_of(bone.mesh);
     made.mesh_sha256 = bones::mesh_sha256(bone.mesh);
     landmarks::LandmarkStates& states = knee_.landmark_states[kind];
-    if (!has_grid(knee_.landmarks[kind], kind, bone.mesh, knee_.side)) {
+    const bool is_there = has_grid(knee_.landmarks[kind], kind, bone.mesh, knee_.side);
+    // A default plan asks for it, too, as long as somebody has to look at the grid: not then, when a key is
+    // pressed and the window waits.
+    if (!is_there || !is_confirmed(knee_.landmarks[kind], states, kind))
       made.proposal = landmarks::propose(bone.mesh, kind, {.side = knee_.side});
-      landmarks::take_proposal(*made.proposal, knee_.landmarks[kind], states);
-    }
+    if (!is_there) landmarks::take_proposal(*made.proposal, knee_.landmarks[kind], states);
     use_landmarks(kind);
     for (const tunnels::TunnelKey& key : knee_.plan.of(kind))
       knee_.plan.mesh_sha256.try_emplace(key, made.mesh_sha256);

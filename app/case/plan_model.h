@@ -26,8 +26,8 @@ namespace arthronaut::open_case {
 
 class PlanModel {
  public:
-  // Proposes landmarks of a bone that the case has no grid for. Takes about two seconds such a bone: run it
-  // in a job. Throws InvalidInput when the case has no bone.
+  // Proposes landmarks of a bone that the case has no grid for, or one that nobody confirmed: two seconds
+  // each, for a job. Throws InvalidInput when the case has no bone.
   explicit PlanModel(cases::Case knee);
 
   [[nodiscard]] const cases::Case& knee() const { return knee_; }
@@ -74,7 +74,7 @@ class PlanModel {
   // as above.
   [[nodiscard]] const landmarks::Landmarks& landmarks(bones::BoneKind kind) const;
   [[nodiscard]] const landmarks::LandmarkStates& landmark_states(bones::BoneKind kind) const;
-  // What the shape alone gives, with its doubts; nullopt where nothing had to be proposed.
+  // What the shape alone gives, with its doubts; nullopt where somebody confirmed what the grid asks for.
   [[nodiscard]] const std::optional<landmarks::Proposal>& proposal(bones::BoneKind kind) const {
     return bones_.at(kind).proposal;
   }

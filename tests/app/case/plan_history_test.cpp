@@ -142,6 +142,7 @@ TEST_F(PlanHistoryTest, Hazard15AReadOnlyCaseRefusesEditsWithTheReason) {
 // An edit that leaves the tunnel as it is makes no step: undo would seem to do nothing.
 TEST_F(PlanHistoryTest, AnEditThatChangesNothingIsNoStep) {
   history_.apply(wider(0, false), 1.0);
+  history_.apply_plan(model_.knee().plan, "Take version 1");  // kept just now, and clicked on
   history_.settle_now();
   EXPECT_FALSE(history_.can_undo());
   EXPECT_EQ(history_.status().save, PlanStatus::Save::Saved);

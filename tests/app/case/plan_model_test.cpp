@@ -57,6 +57,20 @@ TEST(PlanModel, ADefaultKeepsNoClearOfWhatItsOwnPairTakesThePlaceOf) {
   EXPECT_EQ(model.default_tunnel(am).tunnel.entry_mm, fresh.entry_mm);
 }
 
+// A case that was saved before somebody confirmed its landmarks: opened again it knows what the shape
+// proposes, so that "As proposed" and the default plan need not look for it while a key is held.
+TEST(PlanModel, KnowsWhatTheShapeProposesUntilTheGridIsConfirmed) {
+  cases::Case knee = phantom();
+  EXPECT_FALSE(PlanModel(knee).proposal(BoneKind::Femur)) << "a person placed them";
+  for (const auto& [name, position] : knee.landmarks.at(BoneKind::Femur))
+    knee.landmark_states[BoneKind::Femur][name] = landmarks::LandmarkState::Proposed;
+  const PlanModel model(knee);
+  ASSERT_TRUE(model.proposal(BoneKind::Femur));
+  EXPECT_TRUE(model.proposal(BoneKind::Femur)->landmarks.contains("blumensaat_anterior"));
+  EXPECT_EQ(model.landmarks(BoneKind::Femur), knee.landmarks.at(BoneKind::Femur)) << "those of the case stay";
+  EXPECT_FALSE(model.proposal(BoneKind::Tibia));
+}
+
 // A case without a bone is refused with its name.
 TEST(PlanModel, RefusesACaseWithoutBones) {
   cases::Case empty;
