@@ -1,8 +1,11 @@
 #include "app/plan/bone_pane.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 
+#include "app/plan/edge_words.h"
+#include "app/scene/lateral_plane.h"
 #include "app/scene/notch_cut.h"
 #include "app/widgets/tooltip.h"
 
@@ -42,7 +45,10 @@ void BonePane::look_from(scene::ViewDirection view) {
   const BoneKind of = only_.value_or(model_->has_bone(BoneKind::Femur) ? BoneKind::Femur : BoneKind::Tibia);
   cut_.reset();
   if (view == scene::ViewDirection::Notch && of == BoneKind::Femur) cut_ = model_->notch_cut();
-  const geometry::Bounds joint = model_->joint_bounds(only_);
+  geometry::Bounds joint = model_->joint_bounds(only_);
+  if (const auto& quadrant = model_->surroundings(of).quadrant;
+      quadrant && view == scene::ViewDirection::Notch)
+    joint = scene::with_grid(joint, *quadrant);
   const scene::SceneCamera camera = scene::look_from(view, model_->axes(of), joint, aspect_);
   open_ = {(joint.min_mm + joint.max_mm) / 2, (camera.position_mm - camera.focus_mm).normalized()};
   pane_.look(camera);
@@ -155,6 +161,11 @@ PaneEvent BonePane::draw(const widgets::Ui& ui, const widgets::Rect& area,
     return !held_.empty();
   };
   const widgets::PaneInput input = pane_.draw(ui, "plan.view", area, take_hold);
+  const scene::SceneCamera& camera = pane_.camera();
+  const Eigen::Vector3d right = (camera.focus_mm - camera.position_mm).cross(camera.up).normalized();
+  const BoneKind axes_of =
+      only_.value_or(model_->has_bone(BoneKind::Femur) ? BoneKind::Femur : BoneKind::Tibia);
+  draw_edge_words(ui, area, edge_words(right, camera.up.normalized(), model_->axes(axes_of)));
   draw_marks(ui, area, marks, input.is_hovered);
   PaneEvent event;
   if (input.was_clicked) event.click = scene::ray_through(pane_.camera(), input.mouse_px, input.size_px);

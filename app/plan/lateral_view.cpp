@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "app/plan/edge_words.h"
 #include "app/scene/grid_lines.h"
 #include "app/scene/lateral_plane.h"
 #include "app/scene/radiograph.h"
@@ -57,6 +58,7 @@ void LateralView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   draw.PushClipRect(area.min(), area.max(), true);
   draw.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_.texture())), area.min(),
                 area.max());
+  draw_edge_words(ui, area, edge_words(plane_.right, -plane_.down, model_->axes(BoneKind::Femur)));
   draw_grid(ui, area);
   draw.PopClipRect();
   ui.log.note("plan.lateral_view", area.min(), area.max());
@@ -65,7 +67,10 @@ void LateralView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const auto percent =
         quadrant->percent_of(plane_.point_at({mouse.x - area.x, mouse.y - area.y}, size_px_));
-    widgets::tooltip(ui.theme, percent_text(percent) + "\n" + kNormSource);
+    // Elsewhere the percentages mean nothing.
+    if (percent.deep_shallow >= 0 && percent.deep_shallow <= 100 && percent.high_low >= 0 &&
+        percent.high_low <= 100)
+      widgets::tooltip(ui.theme, percent_text(percent) + "\n" + kNormSource);
   }
 }
 
@@ -95,9 +100,13 @@ void LateralView::draw_grid(const widgets::Ui& ui, const widgets::Rect& area) co
     for (const Eigen::Vector3d& point : lines.norm) ellipse.push_back(at(point));
     draw.AddPolyline(ellipse.data(), static_cast<int>(ellipse.size()), norm, ImDrawFlags_Closed,
                      ui.theme.px(2.5F));
-    const ImVec2 blumensaat = at(quadrant->point_at({100, 0}));
-    draw.AddText(ui.theme.body, ui.theme.body->FontSize, {blumensaat.x + ui.theme.px(8), blumensaat.y}, grid,
-                 "Blumensaat's line");
+    // Beside the line's shallow end, away from the grid: which side that is, is the knee's.
+    constexpr const char* kLine = "Blumensaat's line";
+    const ImVec2 shallow = at(quadrant->point_at({100, 0})), deep = at(quadrant->point_at({0, 0}));
+    const float gap = ui.theme.px(8), font = ui.theme.body->FontSize;
+    const float wide = ui.theme.body->CalcTextSizeA(font, 1e9F, 0, kLine).x;
+    draw.AddText(ui.theme.body, font,
+                 {deep.x < shallow.x ? shallow.x + gap : shallow.x - gap - wide, shallow.y}, grid, kLine);
   } else {
     text += ". No grid: Blumensaat's line is not marked";
   }
@@ -114,7 +123,7 @@ void LateralView::draw_grid(const widgets::Ui& ui, const widgets::Rect& area) co
     if (quadrant) {
       const std::string percent = percent_text(quadrant->percent_of(tunnel->entry_mm));
       const bool is_single = key.bundle == norms::Bundle::Whole;
-      text += (is_single ? ". Entry: " : ". Entry of the " + tunnels::name_of(key) + ": ") + percent;
+      text += (is_single ? ". Entry: " : "\nEntry of the " + tunnels::name_of(key) + ": ") + percent;
       percents += (percents.empty() ? "" : "; ") + percent;
       ui.log.note_state("lateral_percent", percents);
     }

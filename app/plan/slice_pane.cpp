@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "app/plan/pane_text.h"
+
 namespace arthronaut::plan {
 
 namespace {
@@ -207,8 +209,14 @@ void SlicePane::draw_overlay(const widgets::Ui& ui, const widgets::Rect& rect, c
       draw.AddLine(at(line.points_mm[i]), at(line.points_mm[i + 1]), kMeasured, ui.theme.px(2));
     for (const Eigen::Vector3d& point : line.points_mm)
       draw.AddCircleFilled(at(point), ui.theme.px(4), kMeasured);
-    const ImVec2 word = at(line.points_mm.back());
-    shadowed(draw, ui.theme.strong, {word.x + ui.theme.px(9), word.y}, kMeasured, line.word);
+    if (line.word.empty()) continue;
+    // A distance's beside the middle of its line, an angle's beside its vertex: two that end at one place are
+    // told apart.
+    const ImVec2 first = at(line.points_mm[0]), second = at(line.points_mm[1]);
+    const ImVec2 point =
+        line.points_mm.size() == 3 ? second : ImVec2((first.x + second.x) / 2, (first.y + second.y) / 2);
+    const ImVec2 size = ui.theme.strong->CalcTextSizeA(ui.theme.strong->FontSize, 1e9F, 0, line.word.c_str());
+    shadowed(draw, ui.theme.strong, beside(point, size, ui.theme.px(9), rect), kMeasured, line.word);
   }
 }
 

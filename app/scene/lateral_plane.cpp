@@ -20,6 +20,17 @@ geometry::Bounds joint_bounds(const geometry::TriangleMesh& mesh, BoneKind kind,
   return geometry::bounds_of(part);
 }
 
+geometry::Bounds with_grid(geometry::Bounds shown, const landmarks::FemoralQuadrant& quadrant) {
+  for (const double along : {0.0, 100.0}) {
+    for (const double across : {0.0, 100.0}) {
+      const Eigen::Vector3d corner = quadrant.point_at({along, across});
+      shown.min_mm = shown.min_mm.cwiseMin(corner);
+      shown.max_mm = shown.max_mm.cwiseMax(corner);
+    }
+  }
+  return shown;
+}
+
 SlicePlane lateral_plane(const landmarks::AnatomicalAxes& axes,
                          const std::optional<landmarks::FemoralQuadrant>& quadrant,
                          const geometry::Bounds& shown, const Eigen::Vector2i& size_px) {
@@ -31,8 +42,9 @@ SlicePlane lateral_plane(const landmarks::AnatomicalAxes& axes,
   SlicePlane plane;
   plane.down = (-axes.proximal + axes.proximal.dot(medially) * medially).normalized();
   plane.right = plane.down.cross(medially);
-  plane.center_mm = shown.center_mm();
-  const Eigen::Vector3d half = 0.5 * shown.size_mm();
+  const geometry::Bounds all = quadrant ? with_grid(shown, *quadrant) : shown;
+  plane.center_mm = all.center_mm();
+  const Eigen::Vector3d half = 0.5 * all.size_mm();
   constexpr double kMargin = 1.08;
   plane.mm_per_px = kMargin * std::max(2 * half.dot(plane.right.cwiseAbs()) / std::max(size_px.x(), 1),
                                        2 * half.dot(plane.down.cwiseAbs()) / std::max(size_px.y(), 1));

@@ -15,8 +15,12 @@ namespace arthronaut::scene {
 [[nodiscard]] geometry::Bounds joint_bounds(const geometry::TriangleMesh& mesh, bones::BoneKind kind,
                                             const landmarks::AnatomicalAxes& axes);
 
+// With the grid's corners, which reach beyond the bone.
+[[nodiscard]] geometry::Bounds with_grid(geometry::Bounds shown, const landmarks::FemoralQuadrant& quadrant);
+
 // The plane of the picture, looked at from the lateral side: across the grid's own plane where there is a
-// grid, else across the bone's lateral axis. Centred on the joint's end of the femur; all of `shown` fits in.
+// grid, else across the bone's lateral axis. All of `shown`, the joint's end of the femur, and of the grid
+// fits in.
 [[nodiscard]] SlicePlane lateral_plane(const landmarks::AnatomicalAxes& axes,
                                        const std::optional<landmarks::FemoralQuadrant>& quadrant,
                                        const geometry::Bounds& shown, const Eigen::Vector2i& size_px);
