@@ -22,8 +22,7 @@ void PlanView::work_on(const tunnels::TunnelKey& key) {
   state_.shown_revision = 0;
   state_.survey = nullptr;
   state_.placing = Placing::Nothing;
-  state_.hint.clear();
-  state_.hint_of.reset();
+  state_.hint = {};
 }
 
 void PlanView::work_on_bone(bones::BoneKind bone) {
@@ -35,10 +34,7 @@ void PlanView::work_on_bone(bones::BoneKind bone) {
 void PlanView::follow_plan() {
   if (model_ == nullptr) return;
   // What was said of a plan is true of that plan alone.
-  if (state_.hint_of && *state_.hint_of != model_->revision()) {
-    state_.hint.clear();
-    state_.hint_of.reset();
-  }
+  if (state_.hint.of && *state_.hint.of != model_->revision()) state_.hint = {};
   const auto keys = model_->knee().plan.of(state_.key.bone);
   if (!keys.empty() && (keys.front().bundle == Bundle::Whole) != (state_.key.bundle == Bundle::Whole))
     work_on(keys.front());
@@ -62,7 +58,7 @@ void PlanView::plan_bundles() {
   if (single) history_.apply_tunnels({{am, *single}}, what);
   work_on(single ? pl : am);
   show_page(PanelPage::Checks);  // where P places the entry
-  state_.hint = "No default for two bundles: " + missing->made.message + ". Press P and place the entry.";
+  state_.hint = {"No default for two bundles: " + missing->made.message + ". Press P and place the entry."};
 }
 
 void PlanView::plan_single() {

@@ -7,23 +7,30 @@
 
 namespace arthronaut::plan {
 
-void ExportWork::start(cases::Case knee, std::filesystem::path folder) {
-  running_ = std::async(std::launch::async, [this, knee = std::move(knee), folder = std::move(folder)] {
-    std::string outcome;
+std::string ExportOutcome::in_words(const std::filesystem::path& open_case_folder) const {
+  std::string words = case_folder == open_case_folder ? text : "Of the case \"" + case_name + "\": " + text;
+  for (const std::string& doubt : doubts) words += "\nLook: " + doubt;
+  return words;
+}
+
+void ExportWork::start(cases::Case knee, std::filesystem::path case_folder) {
+  running_ = std::async(std::launch::async, [this, knee = std::move(knee), folder = std::move(case_folder)] {
+    ExportOutcome outcome{.case_folder = folder, .case_name = knee.name};
     try {  // a full disk is a state of the screen
-      const plan_export::ExportSummary summary = plan_export::export_plan(knee, folder);
-      outcome = "Exported into " + folder.string() + ":";
-      for (const auto& file : summary.files) outcome += " " + file.filename().string();
-      for (const std::string& doubt : summary.doubts) outcome += "\nLook: " + doubt;
+      const plan_export::ExportSummary summary = plan_export::export_plan(knee, folder / "export");
+      outcome.text = "Exported into " + (folder / "export").string() + ":";
+      for (const auto& file : summary.files) outcome.text += " " + file.filename().string();
+      outcome.doubts = summary.doubts;
+      outcome.is_written = true;
     } catch (const std::exception& error) {  // the top of a thread: the geometry library's assertions too
-      outcome = std::string("Not exported: ") + error.what();
+      outcome.text = std::string("Not exported: ") + error.what();
     }
     wake_();
     return outcome;
   });
 }
 
-std::optional<std::string> ExportWork::take_outcome() {
+std::optional<ExportOutcome> ExportWork::take_outcome() {
   if (!running_.valid() || running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
     return std::nullopt;
   return running_.get();

@@ -6,25 +6,38 @@
 #include <future>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "planning/cases/case.h"
 
 namespace arthronaut::plan {
+
+struct ExportOutcome {
+  std::filesystem::path case_folder;
+  std::string case_name;
+  bool is_written = false;
+  std::string text = {};                 // where what was written, or why nothing was
+  std::vector<std::string> doubts = {};  // what to look at in what was written
+
+  // For who has that case open by now. To another one's eyes it names its own case.
+  [[nodiscard]] std::string in_words(const std::filesystem::path& open_case_folder) const;
+};
 
 class ExportWork {
  public:
   // wake: called from another thread when it is done.
   explicit ExportWork(std::function<void()> wake) : wake_(std::move(wake)) {}
 
-  // As `arthronaut plan --export` writes them (plan_export::export_plan). Precondition: not is_running().
-  void start(cases::Case knee, std::filesystem::path folder);
+  // Into the folder "export" of the case, which is its owner's alone to read, as `arthronaut plan --export`
+  // writes them (plan_export::export_plan). Precondition: not is_running().
+  void start(cases::Case knee, std::filesystem::path case_folder);
   [[nodiscard]] bool is_running() const { return running_.valid(); }
-  // For every frame: once what was written, or why nothing was; nullopt while there is no news.
-  [[nodiscard]] std::optional<std::string> take_outcome();
+  // For every frame: once what came of it; nullopt while there is no news.
+  [[nodiscard]] std::optional<ExportOutcome> take_outcome();
 
  private:
   std::function<void()> wake_;
-  std::future<std::string> running_;  // last: ends first
+  std::future<ExportOutcome> running_;  // last: ends first
 };
 
 }  // namespace arthronaut::plan

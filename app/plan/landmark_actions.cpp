@@ -18,21 +18,28 @@ std::string PlanView::landmark() const {
 // Looked at straight from outside, near enough to judge; the bone may be turned from there.
 void PlanView::select_landmark(std::size_t row) {
   state_.landmark = row;
-  state_.hint.clear();
+  state_.hint = {};
   const auto& marks = model_->landmarks(state_.key.bone);
   const auto at = marks.find(landmark());
   if (at == marks.end()) return;
+  state_.shows_lateral = false;
   bones_.look_at(at->second, state_.key.bone);
   state_.shown_revision = 0;
   slices_.set_cross(at->second);
 }
 
-void PlanView::put_landmark(const Eigen::Vector3d& point_mm, const std::string& what, bool continues) {
+std::string PlanView::landmark_title() const {
+  const landmarks::LandmarkKind* kind = landmarks::find_landmark(state_.key.bone, landmark());
+  return kind == nullptr ? "" : std::string(kind->title);
+}
+
+void PlanView::put_landmark(const Eigen::Vector3d& point_mm, const std::string& how, bool continues) {
   landmarks::Landmarks marks = model_->landmarks(state_.key.bone);
   landmarks::LandmarkStates states = model_->landmark_states(state_.key.bone);
   marks[landmark()] = point_mm;
   states[landmark()] = LandmarkState::Confirmed;
-  history_.apply_landmarks(state_.key.bone, marks, states, what, continues, widgets::GraphicsWindow::now_s());
+  history_.apply_landmarks(state_.key.bone, marks, states, how + ": " + landmark_title(), continues,
+                           widgets::GraphicsWindow::now_s());
 }
 
 void PlanView::confirm_landmarks(bool all) {
@@ -41,7 +48,7 @@ void PlanView::confirm_landmarks(bool all) {
   for (const auto& [name, position] : marks)
     if (all || name == landmark()) states[name] = LandmarkState::Confirmed;
   history_.apply_landmarks(state_.key.bone, marks, states,
-                           all ? "Confirm all landmarks" : "Confirm a landmark", false,
+                           all ? "Confirm all landmarks" : "Confirm: " + landmark_title(), false,
                            widgets::GraphicsWindow::now_s());
   history_.settle_now();
   if (const auto next = next_proposed(landmark_rows(*model_, state_.key.bone), state_.landmark))
@@ -64,8 +71,10 @@ void PlanView::take_defaults(std::vector<MadeTunnel> made, const std::string& wh
   for (MadeTunnel& one : made) one.checks = model_->checks(one.key);
   const bool took_the_place = std::ranges::any_of(cases::compare_plans(model_->knee().plan, before),
                                                   &cases::TunnelDifference::is_lost_here);
-  state_.hint = default_in_words(made, took_the_place);
-  state_.hint_of = model_->revision();
+  const bool is_as_it_should_be = std::ranges::all_of(made, [](const MadeTunnel& one) {
+    return one.made.is_usable() && one.made.doubts.empty() && tunnels::wrong_in_words(one.checks).empty();
+  });
+  state_.hint = {default_in_words(made, took_the_place), is_as_it_should_be, model_->revision()};
   show_page(PanelPage::Checks);
 }
 
@@ -140,7 +149,8 @@ void PlanView::add_landmark_actions(widgets::Actions& actions) {
                [this] { return state_.placing == Placing::Landmark; },
                [this] {
                  state_.placing = state_.placing == Placing::Landmark ? Placing::Nothing : Placing::Landmark;
-                 state_.hint.clear();
+                 state_.shows_lateral = false;  // in the radiograph nothing is placed
+                 state_.hint = {};
                }});
   actions.add({"plan.landmark_reset",
                "As proposed",
@@ -158,8 +168,8 @@ void PlanView::add_landmark_actions(widgets::Actions& actions) {
                  landmarks::LandmarkStates states = model_->landmark_states(state_.key.bone);
                  marks[landmark()] = model_->proposal(state_.key.bone)->landmarks.at(landmark());
                  states[landmark()] = LandmarkState::Proposed;
-                 history_.apply_landmarks(state_.key.bone, marks, states, "Take the proposed landmark", false,
-                                          widgets::GraphicsWindow::now_s());
+                 history_.apply_landmarks(state_.key.bone, marks, states, "As proposed: " + landmark_title(),
+                                          false, widgets::GraphicsWindow::now_s());
                }});
   actions.add({"plan.default",
                "Default plan",

@@ -42,7 +42,14 @@ std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_
   const std::vector<LandmarkRow> rows = landmark_rows(model, bone);
   if (rows.empty()) return clicked;
   widgets::text_in(ui.theme.body, widgets::kQuietText, confirmed_in_words(rows));
-  ImGui::BeginChild("landmarks", {0, ImGui::GetContentRegionAvail().y - ui.theme.px(300)});
+  const LandmarkRow& row = rows[std::min(selected, rows.size() - 1)];
+  const std::string about = row.title + ": " + row.meaning + ".";
+  // Below the list: what the selected one means, of however many lines, its state, the buttons.
+  const float lines =
+      ui.theme.body
+          ->CalcTextSizeA(ui.theme.body->FontSize, 1e9F, ImGui::GetContentRegionAvail().x, about.c_str())
+          .y;
+  ImGui::BeginChild("landmarks", {0, ImGui::GetContentRegionAvail().y - lines - ui.theme.px(252)});
   const float height = ui.theme.px(34);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -68,12 +75,11 @@ std::optional<std::size_t> draw_landmark_list(const widgets::Ui& ui, const open_
       ui.log.note("plan.landmark." + rows[i].name, at, {at.x + width, at.y + height});
   }
   ImGui::EndChild();
-  const LandmarkRow& row = rows[std::min(selected, rows.size() - 1)];
   const char* word = row.state == LandmarkRow::State::Confirmed ? "confirmed"
                      : row.state == LandmarkRow::State::Proposed
                          ? "proposed by the shape, looked at by nobody"
                          : "not there: P, then click where it is";
-  widgets::text_in(ui.theme.body, widgets::kText, row.title + ": " + row.meaning + ".");
+  widgets::text_in(ui.theme.body, widgets::kText, about);
   widgets::text_in(ui.theme.body,
                    row.state == LandmarkRow::State::Proposed ? widgets::kCaution : widgets::kQuietText, word);
   return clicked;

@@ -130,23 +130,25 @@ void PlanView::add_history_actions(widgets::Actions& actions) {
                {"write over the other program's plan"}});
 }
 
-bool PlanView::can_stop_placing() const { return state_.placing != Placing::Nothing || !state_.hint.empty(); }
+bool PlanView::can_stop_placing() const {
+  return state_.placing != Placing::Nothing || !state_.hint.text.empty();
+}
 
 // Where the eye sees the bone that is planned; anything else is said and changes nothing.
 void PlanView::place_entry(const scene::SceneRay& ray) {
   const auto met = first_visible(bones_.visible(), ray);
   const std::string planned(bones::to_text(state_.key.bone));
   if (!met) {
-    state_.hint = "That is beside the bone. Click on the " + planned + ", or press Esc.";
+    state_.hint = {"That is beside the bone. Click on the " + planned + ", or press Esc."};
     return;
   }
   if (met->is_section) {
-    state_.hint = "There the bone is cut open. Click on its surface, or press Esc.";
+    state_.hint = {"There the bone is cut open. Click on its surface, or press Esc."};
     return;
   }
   if (met->bone != state_.key.bone) {
-    state_.hint = "That is the " + std::string(bones::to_text(met->bone)) + ". Click on the " + planned +
-                  ", or press Tab to plan the other bone.";
+    state_.hint = {"That is the " + std::string(bones::to_text(met->bone)) + ". Click on the " + planned +
+                   ", or press Tab to plan the other bone."};
     return;
   }
   const auto tunnel = model_->tunnel(state_.key);
@@ -155,7 +157,7 @@ void PlanView::place_entry(const scene::SceneRay& ray) {
                 : tunnels::first_tunnel(state_.key.bone, met->point_mm, model_->axes(state_.key.bone),
                                         model_->surface(state_.key.bone)));
   state_.placing = Placing::Nothing;
-  state_.hint.clear();
+  state_.hint = {};
 }
 
 void PlanView::add_placing_actions(widgets::Actions& actions) {
@@ -166,7 +168,8 @@ void PlanView::add_placing_actions(widgets::Actions& actions) {
                [this] { return state_.placing == Placing::Entry; },
                [this] {
                  state_.placing = state_.placing == Placing::Entry ? Placing::Nothing : Placing::Entry;
-                 state_.hint.clear();
+                 state_.shows_lateral = false;  // in the radiograph nothing is placed
+                 state_.hint = {};
                }});
   actions.add({"plan.stop_placing",
                "Cancel",
@@ -178,7 +181,7 @@ void PlanView::add_placing_actions(widgets::Actions& actions) {
                {},
                [this] {
                  state_.placing = Placing::Nothing;
-                 state_.hint.clear();
+                 state_.hint = {};
                }});
 }
 

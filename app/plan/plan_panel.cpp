@@ -87,9 +87,19 @@ void draw_next(const widgets::Ui& ui, const NextStep& next) {
   ui.log.note("plan.next", at, {at.x + width, at.y + height});
 }
 
+// What spoke against the bone when it was made: all that follows from its shape is as doubtful.
+void draw_bone_doubts(const widgets::Ui& ui, const PlanPanel& panel) {
+  const auto doubts = panel.doubts.find(panel.key.bone);
+  const std::size_t count = doubts == panel.doubts.end() ? 0 : doubts->second.size();
+  ui.log.note_state("bone_doubts", std::to_string(count));
+  for (std::size_t i = 0; i < count; ++i)
+    widgets::status_row(ui, widgets::Severity::Caution, "Bone", doubts->second[i]);
+}
+
 void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
   const auto tunnel = panel.model.tunnel(panel.key);
   if (!tunnel) {
+    draw_bone_doubts(ui, panel);
     widgets::text_in(ui.theme.body, widgets::kText,
                      "No tunnel yet. Press P and click on the bone where it is to begin.");
     return;
@@ -103,6 +113,7 @@ void draw_checks(const widgets::Ui& ui, const PlanPanel& panel) {
                                          panel.model.axes(panel.key.bone)) +
                          " of the entry");
   ImGui::Dummy({0, ui.theme.px(4)});
+  draw_bone_doubts(ui, panel);
   for (const tunnels::PlanCheck& check : panel.model.checks(panel.key)) {
     ImGui::BeginGroup();
     widgets::status_row(ui, severity_of(check.verdict), check.name, check.text);
@@ -158,6 +169,8 @@ bool draw_row(const widgets::Ui& ui, const ListRow& row) {
                : row.is_here ? widgets::kText
                              : widgets::kQuietText,
                row.text.c_str());
+  const float wide = font->CalcTextSizeA(font->FontSize, 1e9F, 0, row.text.c_str()).x;
+  if (ImGui::IsItemHovered() && wide > width - ui.theme.px(20)) widgets::tooltip(ui.theme, row.text);
   if (ImGui::IsRectVisible(at, {at.x + width, at.y + height}))
     ui.log.note("plan." + row.id, at, {at.x + width, at.y + height});
   return is_clicked;
@@ -191,7 +204,7 @@ std::optional<std::size_t> draw_versions(const widgets::Ui& ui, const PlanPanel&
     widgets::text_in(ui.theme.body, widgets::kQuietText,
                      "No version is kept. One that is can be compared with, and taken again.");
   for (std::size_t i = panel.versions.size(); i-- > 0;) {
-    const cases::PlanVersion& version = panel.versions[i];
+    const cases::PlanVersion& version = panel.versions[i].version;
     const auto differences = cases::compare_plans(panel.model.knee().plan, version.plan);
     const bool is_same = std::ranges::all_of(differences, [](const cases::TunnelDifference& difference) {
       return difference.kind == cases::TunnelDifference::Kind::Same;
@@ -199,8 +212,8 @@ std::optional<std::size_t> draw_versions(const widgets::Ui& ui, const PlanPanel&
     if (draw_row(ui, {"version." + std::to_string(version.number),
                       "Version " + std::to_string(version.number) + ", " + version.kept_utc, is_same, false}))
       clicked = i;
-    for (const cases::TunnelDifference& difference : differences)
-      widgets::text_in(ui.theme.body, widgets::kQuietText, "   " + difference.in_words());
+    for (const std::string& line : against_the_plan(panel.model, panel.versions[i]))
+      widgets::text_in(ui.theme.body, widgets::kQuietText, line);
   }
   ImGui::EndChild();
   return clicked;
@@ -235,7 +248,7 @@ PanelClick draw_plan_panel(const widgets::Ui& ui, const widgets::Rect& area, con
     case PanelPage::Landmarks:
       clicked.landmark = draw_landmark_list(ui, panel.model, panel.key.bone, panel.landmark);
       button_pair(ui, "plan.landmark_confirm", "plan.landmark_place");
-      widgets::action_button(ui, "plan.landmark_reset", ImGui::GetContentRegionAvail().x);
+      button_pair(ui, "plan.landmark_reset", "plan.landmark_confirm_all");
       break;
     case PanelPage::Steps:
       clicked.step = draw_steps(ui, panel.history);

@@ -64,7 +64,6 @@ void PlanView::case_opened(const mode::OpenCase& opened) {
   std::error_code error;
   tour_.case_opened(opened.read_only.empty() &&
                     std::filesystem::equivalent(opened.folder, open_case::built_in_case_folder(), error));
-  load_versions();
   state_ = {};
   tunnel_meshes_.clear();
   work_on(key_in(model_->has_bone(BoneKind::Femur) ? BoneKind::Femur : BoneKind::Tibia));
@@ -72,13 +71,16 @@ void PlanView::case_opened(const mode::OpenCase& opened) {
   slices_.open(model_->knee(), opened.folder, model_->joint_bounds(std::nullopt));
   volume_.open(model_->joint_bounds(std::nullopt));
   lateral_.open(model_);
+  load_versions();
+  load_bone_doubts();
 }
 
 void PlanView::tick(double now_s) {
   history_.settle(now_s);
   history_.look_at_disk(now_s);
   follow_plan();
-  if (const auto exported = export_.take_outcome()) state_.hint = *exported;
+  if (const auto exported = export_.take_outcome())
+    state_.hint = {exported->in_words(case_folder_), exported->is_written && exported->doubts.empty()};
   if (volume_.is_on()) slices_.want();
   slices_.tick();
   volume_.follow(slices_.shared_volume());
@@ -138,7 +140,8 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
                        status.save == open_case::PlanStatus::Save::ReadOnly, history_.is_in_conflict()};
   const NextStep next = next_step(*model_, step);
   const PanelClick clicked = draw_plan_panel(
-      ui, panel, {*model_, history_, state_.key, state_.page, state_.landmark, versions_, next});
+      ui, panel,
+      {*model_, history_, state_.key, state_.page, state_.landmark, versions_, bone_doubts_, next});
   if (clicked.step) history_.go_to(*clicked.step);
   if (clicked.landmark) select_landmark(*clicked.landmark);
   if (clicked.version) take_version(*clicked.version);
@@ -151,7 +154,7 @@ void PlanView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("placing", state_.placing == Placing::Entry      ? "entry"
                                : state_.placing == Placing::Landmark ? "landmark"
                                                                      : "nothing");
-  ui.log.note_state("hint", state_.hint);
+  ui.log.note_state("hint", state_.hint.text);
   ui.log.note_state("volume", volume_.in_words(slices_.reason()));
   ui.log.note_state("view_direction",
                     bones_.looked_from() ? scene::to_text(*bones_.looked_from()) : "a landmark");
@@ -259,7 +262,12 @@ void PlanView::show_content() {
 }
 
 void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
-  if (state_.shows_lateral) return lateral_.draw(ui, area);
+  if (state_.shows_lateral) {
+    lateral_.draw(ui, area);
+    widgets::Rect rest = area;
+    rest.cut_top(ui.theme.px(100));  // below its caption, which has a line for each bundle
+    return draw_hint(ui, rest);
+  }
   if (auto survey = wanted_survey(); survey != state_.survey) {
     state_.survey = std::move(survey);
     state_.shown_revision = 0;
@@ -267,22 +275,34 @@ void PlanView::draw_bones(const widgets::Ui& ui, const widgets::Rect& area) {
   if (state_.shown_revision != model_->revision()) show_content();
   follow(bones_.draw(ui, area, marks()));
   draw_survey_legend(ui, area);
+  draw_hint(ui, area);
+}
+
+void PlanView::draw_hint(const widgets::Ui& ui, const widgets::Rect& area) const {
   const std::string bone(bones::to_text(state_.key.bone));
-  std::string text = state_.hint;
+  const Hint& hint = state_.hint;
+  std::string text = hint.text;
   if (text.empty() && state_.placing == Placing::Entry)
     text = "Click on the " + bone + ": the tunnel begins there. Esc leaves it.";
   if (text.empty() && state_.placing == Placing::Landmark)
     text = "Click on the " + bone + " where the landmark is. Esc leaves it.";
   if (text.empty()) return;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  ImFont* font = state_.hint_of ? ui.theme.body : text.size() > 90 ? ui.theme.strong : ui.theme.title;
+  ImFont* font = hint.of ? ui.theme.body : text.size() > 90 ? ui.theme.strong : ui.theme.title;
   const float wrap = area.width - ui.theme.px(40), pad = ui.theme.px(6);
   const ImVec2 at{area.x + ui.theme.px(20), area.y + ui.theme.px(16)};
   const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, wrap, text.c_str());
+  // What came of something stands there until somebody has read it, and hides the bone.
+  const float way_out = hint.is_news || hint.of ? ui.theme.body->FontSize : 0;
   // Read over a bright bone or a brighter MR, too.
-  draw.AddRectFilled({at.x - pad, at.y - pad}, {at.x + size.x + pad, at.y + size.y + pad},
+  draw.AddRectFilled({at.x - pad, at.y - pad}, {at.x + size.x + pad, at.y + size.y + way_out + pad},
                      IM_COL32(12, 16, 20, 210), pad);
-  draw.AddText(font, font->FontSize, at, state_.hint.empty() ? widgets::kAccent : widgets::kCaution,
+  if (way_out > 0)
+    draw.AddText(ui.theme.body, way_out, {at.x, at.y + size.y}, widgets::kQuietText, "Esc takes this away");
+  draw.AddText(font, font->FontSize, at,
+               hint.text.empty() ? widgets::kAccent
+               : hint.is_news    ? widgets::kText
+                                 : widgets::kCaution,
                text.c_str(), nullptr, wrap);
 }
 
@@ -349,9 +369,7 @@ void PlanView::follow(const PaneEvent& event) {
     if (const auto at = marks.find(landmark()); at != marks.end() && event.dragged == at->first) {
       const auto to = dragged_over(bones_.visible(), state_.key.bone, at->second, event.drag_ray,
                                    bones_.is_see_through());
-      if (to)
-        put_landmark(*to, "Drag a landmark of the " + std::string(bones::to_text(state_.key.bone)),
-                     state_.has_dragged);
+      if (to) put_landmark(*to, "Drag", state_.has_dragged);
       state_.has_dragged = state_.has_dragged || to.has_value();
     }
   }
@@ -364,14 +382,13 @@ void PlanView::follow(const PaneEvent& event) {
   if (state_.placing == Placing::Landmark) {
     const auto met = first_visible(bones_.visible(), *event.click);
     if (!met || met->is_section || met->bone != state_.key.bone) {
-      state_.hint = "That is not the surface of the " + std::string(bones::to_text(state_.key.bone)) +
-                    ". Click on it, or press Esc.";
+      state_.hint = {"That is not the surface of the " + std::string(bones::to_text(state_.key.bone)) +
+                     ". Click on it, or press Esc."};
       return;
     }
-    put_landmark(met->point_mm, "Place a landmark of the " + std::string(bones::to_text(state_.key.bone)),
-                 false);
+    put_landmark(met->point_mm, "Place", false);
     state_.placing = Placing::Nothing;
-    state_.hint.clear();
+    state_.hint = {};
   } else if (state_.placing == Placing::Entry)
     place_entry(*event.click);
   else if (const auto met = first_visible(bones_.visible(), *event.click))

@@ -22,8 +22,9 @@
 #include "app/plan/slice_panes.h"
 #include "app/plan/tour.h"
 #include "app/plan/tunnel_survey.h"
+#include "app/plan/version_words.h"
 #include "app/plan/volume_drawing.h"
-#include "planning/cases/plan_versions.h"
+#include "planning/cases/bone_doubts.h"
 
 namespace arthronaut::plan {
 
@@ -66,16 +67,19 @@ class PlanView : public mode::Mode {
   // version_actions.cpp
   void add_version_actions(widgets::Actions& actions);
   void load_versions();
+  void load_bone_doubts();
   void keep_version();
-  void take_version(std::size_t version);
+  void take_version(std::size_t place);  // in versions_
   void export_plan();
 
   // landmark_actions.cpp
   void add_landmark_actions(widgets::Actions& actions);
   void select_landmark(std::size_t row);
   void confirm_landmarks(bool all);
-  void put_landmark(const Eigen::Vector3d& point_mm, const std::string& what, bool continues);
+  // how: "Drag"; the step names the landmark.
+  void put_landmark(const Eigen::Vector3d& point_mm, const std::string& how, bool continues);
   [[nodiscard]] std::string landmark() const;  // that is selected; empty without a bone
+  [[nodiscard]] std::string landmark_title() const;
   [[nodiscard]] std::vector<MadeTunnel> defaults_of(const std::vector<tunnels::TunnelKey>& keys) const;
   // Those that there are become the plan, as one step; of all of them it is said how they are.
   void take_defaults(std::vector<MadeTunnel> made, const std::string& what);
@@ -116,10 +120,18 @@ class PlanView : public mode::Mode {
   void show_content();
   [[nodiscard]] std::vector<PaneMark> marks() const;
   void follow(const PaneEvent& event);
+  void draw_hint(const widgets::Ui& ui, const widgets::Rect& area) const;
   [[nodiscard]] std::optional<Eigen::Vector3d> aim_handle() const;
   [[nodiscard]] const geometry::TriangleMesh& tunnel_mesh(const tunnels::TunnelKey& key);
 
   enum class Placing { Nothing, Entry, Landmark };  // by the next click on the bone
+
+  // Over the bones, until the next one, a change of mind or Esc: why a click did nothing, or what came of it.
+  struct Hint {
+    std::string text = {};
+    bool is_news = false;                  // nothing to mend
+    std::optional<std::uint64_t> of = {};  // of the model that alone it is true of
+  };
 
   struct ViewState {
     tunnels::TunnelKey key = bones::BoneKind::Femur;  // that is worked on; of a bone's two it alone moves
@@ -130,8 +142,7 @@ class PlanView : public mode::Mode {
     bool shows_map = false, shows_aims = false;
     std::shared_ptr<const Survey> survey = nullptr;  // of what is planned now; null: none is there
     PanelPage page = PanelPage::Checks;
-    std::string hint = {};                      // why a click did nothing; until the next one
-    std::optional<std::uint64_t> hint_of = {};  // of the model that alone it is true of
+    Hint hint = {};
     std::uint64_t shown_revision = 0;
     // As the tour compares the plan with it, and the landmarks that it follows from.
     std::map<bones::BoneKind, tunnels::Tunnel> defaults = {};
@@ -154,7 +165,8 @@ class PlanView : public mode::Mode {
   ExportWork export_;
   Tour tour_{tour_file()};
   std::filesystem::path case_folder_;
-  std::vector<cases::PlanVersion> versions_;  // that were kept, the oldest first
+  std::vector<KeptVersion> versions_;  // the oldest first
+  cases::BoneDoubts bone_doubts_;
   std::map<tunnels::TunnelKey, TunnelMesh> tunnel_meshes_;
   ViewState state_;
 };
@@ -166,7 +178,8 @@ struct PlanPanel {
   tunnels::TunnelKey key;  // that is worked on
   PanelPage page;
   std::size_t landmark;  // the row that is selected
-  const std::vector<cases::PlanVersion>& versions;
+  const std::vector<KeptVersion>& versions;
+  const cases::BoneDoubts& doubts;
   NextStep next;
 };
 struct PanelClick {

@@ -1,6 +1,8 @@
 // What is kept of a plan beside the one that is worked on, and what goes to other programs.
 #include <GLFW/glfw3.h>
 
+#include <utility>
+
 #include "app/plan/plan_view.h"
 
 namespace arthronaut::plan {
@@ -9,9 +11,19 @@ namespace arthronaut::plan {
 void PlanView::load_versions() {
   versions_.clear();
   try {
-    versions_ = cases::load_plan_versions(case_folder_);
+    for (cases::PlanVersion& version : cases::load_plan_versions(case_folder_))
+      versions_.push_back(measured_in(*model_, std::move(version)));
   } catch (const std::runtime_error& error) {  // a file of the case that was changed by hand
-    state_.hint = error.what();
+    state_.hint = {error.what()};
+  }
+}
+
+void PlanView::load_bone_doubts() {
+  bone_doubts_.clear();
+  try {
+    bone_doubts_ = cases::load_bone_doubts(case_folder_);
+  } catch (const std::runtime_error& error) {  // as of the versions
+    state_.hint = {error.what()};
   }
 }
 
@@ -19,23 +31,24 @@ void PlanView::keep_version() {
   history_.settle_now();
   try {  // a full disk is a state of the screen
     const cases::PlanVersion kept = cases::keep_plan_version(case_folder_, model_->knee().plan);
-    state_.hint = "Kept as version " + std::to_string(kept.number);
+    // Of the plan as it is: the next change is not in it.
+    state_.hint = {"Kept as version " + std::to_string(kept.number), true, model_->revision()};
     load_versions();
   } catch (const std::runtime_error& error) {
-    state_.hint = error.what();
+    state_.hint = {error.what()};
   }
 }
 
-void PlanView::take_version(std::size_t version) {
-  history_.apply_plan(versions_.at(version).plan,
-                      "Take version " + std::to_string(versions_[version].number));
+void PlanView::take_version(std::size_t place) {
+  const cases::PlanVersion& version = versions_.at(place).version;
+  history_.apply_plan(version.plan, "Take version " + std::to_string(version.number));
 }
 
 // Into the case, which is its owner's alone to read; from there it goes wherever it is to go.
 void PlanView::export_plan() {
   history_.settle_now();
-  state_.hint = "Exporting: the bones are drilled, which takes a while ...";
-  export_.start(model_->knee(), case_folder_ / "export");
+  state_.hint = {"Exporting: the bones are drilled, which takes a while ...", true};
+  export_.start(model_->knee(), case_folder_);
 }
 
 void PlanView::add_version_actions(widgets::Actions& actions) {

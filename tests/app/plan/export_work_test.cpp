@@ -12,16 +12,16 @@
 namespace arthronaut::plan {
 namespace {
 
-using testing::HasSubstr;
+using testing::StartsWith;
 
 // What came of it: waits as the window does, for the wake.
-std::string outcome_of(const cases::Case& knee, const std::filesystem::path& folder) {
+ExportOutcome outcome_of(const cases::Case& knee, const std::filesystem::path& case_folder) {
   std::promise<void> woken;
   ExportWork work([&] { woken.set_value(); });
-  work.start(knee, folder);
+  work.start(knee, case_folder);
   EXPECT_TRUE(work.is_running());
   woken.get_future().wait();
-  std::optional<std::string> outcome;
+  std::optional<ExportOutcome> outcome;
   while (!outcome) outcome = work.take_outcome();
   EXPECT_FALSE(work.is_running());
   EXPECT_FALSE(work.take_outcome()) << "said once";
@@ -31,15 +31,32 @@ std::string outcome_of(const cases::Case& knee, const std::filesystem::path& fol
 TEST(ExportWork, WritesThePlanAndSaysWhere) {
   const test::TemporaryFolder folder;
   const cases::Case knee = phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "export");
-  const std::string outcome = outcome_of(knee, folder / "out");
-  EXPECT_THAT(outcome,
-              HasSubstr("out: plan.json plan.csv plan.mrk.json femur_drilled.stl tibia_drilled.stl"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "out" / "plan.mrk.json"));
+  const ExportOutcome outcome = outcome_of(knee, folder / "Knee.arthro");
+  EXPECT_TRUE(outcome.is_written);
+  EXPECT_THAT(outcome.in_words(folder / "Knee.arthro"),
+              StartsWith("Exported into " + (folder / "Knee.arthro/export").string() +
+                         ": plan.json plan.csv plan.mrk.json femur_drilled.stl tibia_drilled.stl"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "Knee.arthro/export/plan.mrk.json"));
 }
 
 TEST(ExportWork, SaysWhyNothingWasWritten) {
   const test::TemporaryFolder folder;
-  EXPECT_THAT(outcome_of({}, folder / "out"), HasSubstr("Not exported: plan: nothing is planned"));
+  const ExportOutcome outcome = outcome_of({}, folder / "Knee.arthro");
+  EXPECT_FALSE(outcome.is_written);
+  EXPECT_THAT(outcome.in_words(folder / "Knee.arthro"), StartsWith("Not exported: plan: nothing is planned"));
+}
+
+// It takes a while: by then another case may be open, whose plan was not exported.
+TEST(ExportWork, NamesItsCaseWhereAnotherOneIsOpen) {
+  const ExportOutcome outcome{.case_folder = "/cases/A.arthro",
+                              .case_name = "Knee A",
+                              .is_written = true,
+                              .text = "Exported into /cases/A.arthro/export: plan.json",
+                              .doubts = {"the femur is not closed"}};
+  EXPECT_EQ(outcome.in_words("/cases/B.arthro"),
+            "Of the case \"Knee A\": Exported into /cases/A.arthro/export: plan.json\n"
+            "Look: the femur is not closed");
+  EXPECT_THAT(outcome.in_words("/cases/A.arthro"), StartsWith("Exported into"));
 }
 
 }  // namespace

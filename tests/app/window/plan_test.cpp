@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/cases/measurements.h"
 #include "planning/painting/bone_labels.h"
@@ -306,6 +307,23 @@ TEST_F(PlanWindow, AVersionIsKeptAndTakenAgain) {
   EXPECT_EQ(saved_tunnel().diameter_mm, before_mm);
   app.press("ctrl+z");
   EXPECT_TRUE(app.wait_for_state("diameter_mm", fixed(before_mm + 0.5)));
+}
+
+// Hazard 46: what spoke against the femur is said on its page, not on the tibia's; and in the radiograph,
+// where no entry can be placed, P goes back to the bones.
+TEST_F(PlanWindow, Hazard46WhatSpokeAgainstTheBoneStandsByItsChecks) {
+  cases::save_case(case_folder(), phantom::case_of(phantom::make_phantom_knee(), "Phantom knee"));
+  cases::save_bone_doubts(case_folder(), {{bones::BoneKind::Femur, {"the images end within it"}}});
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  EXPECT_TRUE(app.wait_for_state("bone_doubts", "1"));
+  app.press("Tab");
+  EXPECT_TRUE(app.wait_for_state("bone_doubts", "0"));
+  app.press("x");
+  ASSERT_TRUE(app.wait_for_widget("plan.lateral_view"));
+  app.press("p");
+  EXPECT_TRUE(app.wait_for_widget("plan.view"));
 }
 
 // The map of entries is of the tunnel as it is: an edit takes it away until it is made anew.

@@ -1,0 +1,38 @@
+#include "app/plan/version_words.h"
+
+#include <utility>
+
+#include "planning/files/format.h"
+
+namespace arthronaut::plan {
+
+KeptVersion measured_in(const open_case::PlanModel& model, cases::PlanVersion version) {
+  KeptVersion kept{std::move(version), {}};
+  for (const auto& [key, tunnel] : kept.version.plan.tunnels)
+    if (model.has_bone(key.bone))
+      kept.measured.emplace(
+          key, plan_review::MeasuredTunnel{tunnel, tunnels::measure(tunnel, model.surface(key.bone))});
+  return kept;
+}
+
+std::vector<std::string> against_the_plan(const open_case::PlanModel& model, const KeptVersion& kept) {
+  using Kind = cases::TunnelDifference::Kind;
+  std::vector<std::string> lines;
+  for (const auto& difference : cases::compare_plans(model.knee().plan, kept.version.plan)) {
+    std::string line = difference.in_words();
+    const auto there = kept.measured.find(difference.key);
+    if (difference.kind != Kind::Same && there != kept.measured.end()) {
+      const tunnels::TunnelGeometry &then = there->second.geometry, &now = model.measured(difference.key);
+      const auto beside = [&](double value_now) {
+        return now.enters_bone ? files::format(" (now %.1f)", value_now) : std::string();
+      };
+      line += !then.enters_bone ? "; it misses the bone"
+                                : files::format("; %.1f mm long", then.length_mm) + beside(now.length_mm) +
+                                      files::format(", wall %.1f mm", then.wall_mm) + beside(now.wall_mm);
+    }
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+}  // namespace arthronaut::plan
