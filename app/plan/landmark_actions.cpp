@@ -2,6 +2,7 @@
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
+#include <future>
 
 #include "app/plan/plan_view.h"
 
@@ -56,9 +57,13 @@ void PlanView::confirm_landmarks(bool all) {
 }
 
 std::vector<MadeTunnel> PlanView::defaults_of(const std::vector<tunnels::TunnelKey>& keys) const {
-  std::vector<MadeTunnel> made;
+  // Side by side: the window waits for them.
+  std::vector<std::future<default_plan::DefaultTunnel>> running;
+  running.reserve(keys.size());
   for (const tunnels::TunnelKey& key : keys)
-    made.push_back({.key = key, .made = model_->default_tunnel(key)});
+    running.push_back(std::async(std::launch::async, [this, key] { return model_->default_tunnel(key); }));
+  std::vector<MadeTunnel> made;
+  for (std::size_t i = 0; i < keys.size(); ++i) made.push_back({.key = keys[i], .made = running[i].get()});
   return made;
 }
 
