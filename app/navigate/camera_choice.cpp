@@ -87,6 +87,11 @@ std::optional<LivePictures> CameraChoice::take_address(std::string typed) {
   return std::nullopt;
 }
 
+std::string_view CameraChoice::keys() const {
+  if (!wants_text()) return "K: the next one    Space, or a click: open it    Esc: none";
+  return offered_.empty() ? "Enter: open it    Esc: none" : "Enter, or a click: open it    Esc: none";
+}
+
 std::optional<LivePictures> CameraChoice::draw_rows(const widgets::Ui& ui, widgets::Rect& box, float height) {
   std::optional<LivePictures> clicked;
   for (std::size_t i = 0; i < offered_.size(); ++i) {
@@ -131,8 +136,8 @@ std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widg
   const bool was_left =
       !wants_focus_ && ImGui::IsItemDeactivated() && !ImGui::IsMouseDown(ImGuiMouseButton_Left);
   wants_focus_ = false;
-  widgets::text_centered(ui, box, ui.theme.body, widgets::kQuietText,
-                         "K: the next one    Space, or a click: open it    Esc: none");
+  ui.log.note_state("camera_keys", std::string(keys()));
+  widgets::text_centered(ui, box, ui.theme.body, widgets::kQuietText, std::string(keys()));
   if (is_entered) {
     if (auto taken = take_address(text_)) return taken;
     if (trouble_.empty()) text_.clear();  // a tracker's: the pictures are still to be chosen

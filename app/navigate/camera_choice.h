@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/previews/source_previews.h"
@@ -59,6 +60,8 @@ class CameraChoice {
   void forget_tracker() { tracker_.clear(); }
   // While it is open; what was clicked on, or typed and entered with Enter, in that frame. Esc closes it.
   [[nodiscard]] std::optional<LivePictures> draw(const widgets::Ui& ui, const widgets::Rect& video);
+  // What the keys do now: in the field a letter is a letter.
+  [[nodiscard]] std::string_view keys() const;
   // The field takes the keys.
   [[nodiscard]] bool wants_text() const { return is_open_ && (wants_focus_ || is_typing_); }
 

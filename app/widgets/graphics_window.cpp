@@ -94,7 +94,7 @@ struct GraphicsWindow::State {
       return;
     }
     frames_to_hold = 0;
-    queue.take_frame(dealt);
+    queue.take_frame(dealt, ImGui::GetIO().WantTextInput);
     constexpr int kOurs = GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT;
     for (const KeyEvent& event : dealt) {
       if (event.kind == KeyEvent::Kind::Text) {

@@ -31,15 +31,27 @@ bool clashes(const KeyEvent& event, const KeyEvent& before) {
 
 }  // namespace
 
-void KeyQueue::take_frame(std::vector<KeyEvent>& events) {
+// GLFW gives a letter right after the press, or the repeat, that types it.
+bool KeyQueue::is_of_a_command(const KeyEvent& text) const {
+  return text.kind == Kind::Text && newest_.kind == Kind::Repeat && commands_.contains(newest_.key);
+}
+
+void KeyQueue::follow(const KeyEvent& event, bool takes_text) {
+  if (event.kind == Kind::Press && !takes_text) commands_.insert(event.key);
+  if (event.kind == Kind::Release || (event.kind == Kind::Press && takes_text)) commands_.erase(event.key);
+  if (event.kind == Kind::Press || event.kind == Kind::Repeat) newest_ = event;
+}
+
+void KeyQueue::take_frame(std::vector<KeyEvent>& events, bool takes_text) {
   events.clear();
-  while (!waiting_.empty()) {
+  for (; !waiting_.empty(); waiting_.pop_front()) {
     const KeyEvent& next = waiting_.front();
+    if (is_of_a_command(next)) continue;
     if (std::any_of(events.begin(), events.end(),
                     [&](const KeyEvent& before) { return clashes(next, before); }))
       return;
+    follow(next, takes_text);
     events.push_back(next);
-    waiting_.pop_front();
   }
 }
 

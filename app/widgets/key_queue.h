@@ -4,6 +4,7 @@
 #pragma once
 
 #include <deque>
+#include <set>
 #include <vector>
 
 namespace arthronaut::widgets {
@@ -19,12 +20,18 @@ class KeyQueue {
  public:
   void add(const KeyEvent& event) { waiting_.push_back(event); }
   // What belongs to the next frame, into `events`: as much as keeps its order and leaves every key that goes
-  // down down for a frame.
-  void take_frame(std::vector<KeyEvent>& events);
+  // down down for a frame. takes_text: a field has the keys. What a key that went down where none had them
+  // types by being held on is left out: it is the hand that opened the field, and writes nothing into it.
+  void take_frame(std::vector<KeyEvent>& events, bool takes_text);
   [[nodiscard]] bool is_empty() const { return waiting_.empty(); }
 
  private:
+  [[nodiscard]] bool is_of_a_command(const KeyEvent& text) const;
+  void follow(const KeyEvent& event, bool takes_text);
+
   std::deque<KeyEvent> waiting_;
+  std::set<int> commands_;  // keys that are down and went down where no field had them
+  KeyEvent newest_;         // that was pressed or repeats
 };
 
 }  // namespace arthronaut::widgets

@@ -53,6 +53,17 @@ TEST(CameraChoice, WithoutAnyTheFieldWaits) {
   EXPECT_TRUE(choice.wants_text());
 }
 
+// In the field K writes a k, and Space a space.
+TEST(CameraChoice, SaysWhatTheKeysDoNow) {
+  CameraChoice choice;
+  choice.open({{0, "Webcam"}}, {});
+  EXPECT_NE(choice.keys().find("K: the next one"), std::string_view::npos);
+  choice.choose_field();
+  EXPECT_EQ(choice.keys().find("K:"), std::string_view::npos);
+  EXPECT_EQ(choice.keys().find("Space"), std::string_view::npos);
+  EXPECT_NE(choice.keys().find("Enter"), std::string_view::npos);
+}
+
 TEST(CameraChoice, TakesTheAddressOfAStreamAndNothingElse) {
   CameraChoice choice;
   choice.open({}, {});
