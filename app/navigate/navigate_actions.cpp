@@ -109,16 +109,18 @@ void NavigateView::add_actions(widgets::Actions& actions) {
                [this] { return registration().point_count > 0 && !registration().is_fitting; },
                {},
                [this] { ask(operation::RegisterStrokes{}); }});
-  actions.add({"navigate.record",
-               "Record",
-               "Keeps the video too; poses and decisions are kept in any case",
-               GLFW_KEY_R,
-               GLFW_MOD_CONTROL,
-               false,
-               running,
-               [this] { return live_->keeps_video; },
-               [this] { bones_.used(choices_.bone).keep_video(!live_->keeps_video); },
-               {"end the video's record", [this] { return live_->keeps_video; }}});
+  actions.add(
+      {"navigate.record",
+       "Record",
+       "Keeps the video too, of this and every later source, a stream's from up to 20 s before; poses and "
+       "decisions are kept in any case",
+       GLFW_KEY_R,
+       GLFW_MOD_CONTROL,
+       false,
+       running,
+       [this] { return live_->keeps_video; },
+       [this] { bones_.keep_video(!live_->keeps_video); },
+       {"end the video's record", [this] { return live_->keeps_video; }}});
   actions.add({"navigate.overlay",
                "Plan on video",
                "Full, off; it fades by itself",

@@ -71,6 +71,7 @@ void TheatreBones::open(const open_case::PlanModel* model, const std::filesystem
   // A bone that is just being made ready would be waited for.
   ending_.end(std::exchange(bones_, {}));
   chosen_.clear();
+  keeps_video_ = false;  // of another case nobody has asked for it
   model_ = model;
   case_folder_ = case_folder;
   read_only_ = read_only;
@@ -167,6 +168,7 @@ theatre::LiveOperation& TheatreBones::operation(bones::BoneKind kind) {
   }
   bone.operation = made(kind);
   bone.operation->keep_pictures_as(pictures_as_);
+  if (keeps_video_) bone.operation->keep_video(true);
   bone.is_used = false;
   note_told(kind, bone);
   return *bone.operation;
@@ -187,6 +189,12 @@ theatre::LiveStatePtr TheatreBones::nothing() {
   auto state = std::make_shared<theatre::LiveState>();
   state->operation = std::make_shared<const OperationState>();
   return state;
+}
+
+void TheatreBones::keep_video(bool on) {
+  keeps_video_ = on;
+  for (auto& [kind, bone] : bones_)
+    if (bone.operation != nullptr) bone.operation->keep_video(on);
 }
 
 void TheatreBones::keep_pictures_as(recording::PicturesAs as) {

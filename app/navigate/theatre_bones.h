@@ -58,6 +58,8 @@ class TheatreBones {
   // A plan that was edited is offered to the operation of its bone; it guides by the one in force until the
   // surgeon takes the other one over.
   void offer_plans();
+  // Of all operations, from now on; see theatre::OperationRun.
+  void keep_video(bool on);
   // Of all operations, from the next source of each on.
   void keep_pictures_as(recording::PicturesAs as);
   [[nodiscard]] recording::PicturesAs pictures_as() const { return pictures_as_; }
@@ -82,6 +84,7 @@ class TheatreBones {
   const open_case::PlanModel* model_ = nullptr;
   std::filesystem::path case_folder_;
   std::string read_only_;
+  bool keeps_video_ = false;
   recording::PicturesAs pictures_as_ = recording::PicturesAs::AsTheyCame;
   std::map<bones::BoneKind, Bone> bones_;
   std::map<bones::BoneKind, tunnels::TunnelKey> chosen_;

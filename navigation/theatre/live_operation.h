@@ -69,7 +69,7 @@ class LiveOperation {
   void start(TheatreSource source);
   void end_source();
   void apply(operation::Command command);
-  void keep_video(bool on);
+  void keep_video(bool on);                         // see OperationRun
   void keep_pictures_as(recording::PicturesAs as);  // see OperationRun
   void request_stop();
   // The screen shows this state from now on: once for each picture. For the latency to the screen.

@@ -56,6 +56,7 @@ void OperationRun::begin_record() {
     // Where the video is costs nothing and makes the record one that can be run again.
     if (!source_->info().encoded_file.empty())
       record_->keep_video(KeepVideo::Refer, source_->info().encoded_file);
+    if (video_is_wanted_) record_->keep_video(way_to_keep(), source_->info().encoded_file);
   } catch (const std::runtime_error& error) {
     record_trouble_ = error.what();
     record_.reset();
@@ -230,6 +231,7 @@ bool OperationRun::keeps_video() const {
 }
 
 void OperationRun::keep_video(bool on) {
+  video_is_wanted_ = on;
   if (source_ == nullptr) return;
   const std::filesystem::path& file = source_->info().encoded_file;
   const KeepVideo otherwise = file.empty() ? KeepVideo::No : KeepVideo::Refer;

@@ -71,7 +71,8 @@ class OperationRun {
   bool follow_registration();
   // How pictures of sources without a file are kept, from the next source on. Without a call, as they came.
   void keep_pictures_as(recording::PicturesAs as) { pictures_as_ = as; }
-  // Video from now on, or no more; the journal goes on in any case. No effect without a source.
+  // Video from now on, or no more, also of every source that begins later: who asked for it once has not
+  // asked for the end of it by a source that broke off or was changed. The journal goes on in any case.
   void keep_video(bool on);
   void keep_video(recording::KeepVideo keep, const std::filesystem::path& video);  // see OperationRecord
 
@@ -109,6 +110,7 @@ class OperationRun {
   [[nodiscard]] recording::KeepVideo way_to_keep() const;
 
   operation::Operation operation_;
+  bool video_is_wanted_ = false;
   std::unique_ptr<RegistrationService> registration_;
   std::unique_ptr<MediumLookService> looks_;
   MakeSessionFolder make_session_folder_;

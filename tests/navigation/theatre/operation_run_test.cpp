@@ -170,5 +170,27 @@ TEST_F(OperationRunTest, ASourceThatCannotBeOpenedIsNone) {
   EXPECT_FALSE(run.has_source());
 }
 
+// Video that was asked for is kept of the source that follows, too, until it is asked for no more.
+TEST_F(OperationRunTest, VideoThatWasAskedForIsKeptOfTheNextSourceToo) {
+  int sessions = 0;
+  OperationRun run(setup_, test::at_once(setup_), [&] {
+    const fs::path session = folder_ / ("session" + std::to_string(++sessions));
+    fs::create_directory(session);
+    return session;
+  });
+  run.start(test::plain_source(3));
+  EXPECT_FALSE(run.keeps_video());
+  run.keep_video(true);
+  EXPECT_TRUE(run.keeps_video());
+  EXPECT_EQ(run_to_end(run), 3);
+  run.start(test::plain_source(3));
+  EXPECT_TRUE(run.keeps_video());
+  run.keep_video(false);
+  EXPECT_EQ(run_to_end(run), 3);
+  run.start(test::plain_source(3));
+  EXPECT_FALSE(run.keeps_video());
+  run.end_source();
+}
+
 }  // namespace
 }  // namespace arthronaut::theatre
