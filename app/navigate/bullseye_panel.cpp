@@ -134,7 +134,10 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
                widgets::kAccent, screen.tunnel.c_str());
   if (!screen.display.guidance_is_valid || !screen.plan) {
     draw.AddCircle(center, layout_in(ui, area, nullptr).radius, widgets::kPanelEdge, 96, ui.theme.px(2));
-    widgets::text_centered(ui, area.inset(font), ui.theme.title, widgets::kCaution, screen.display.headline);
+    // That there is no picture is said where it would be.
+    if (screen.display.has_picture)
+      widgets::text_centered(ui, area.inset(font), ui.theme.title, widgets::kCaution,
+                             screen.display.headline);
     return;
   }
   const BullseyePoint point = bullseye_point(screen.display.guidance, *screen.plan);

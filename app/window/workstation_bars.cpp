@@ -113,13 +113,17 @@ void WorkstationWindow::draw_header(const widgets::Ui& ui, const widgets::Rect& 
   };
   line(ui.theme.title, rest.y, widgets::kText, side_words);
   line(ui.theme.strong, rest.y + ui.theme.title->FontSize, widgets::kQuietText, patient);
-  const ImFont* const font = ui.theme.body;
-  const float notice = font->CalcTextSizeA(font->FontSize, 1e9F, 0, kNotice).x;
-  draw.AddText(font, font->FontSize, foot.min(), widgets::kQuietText, kNotice);
+  ImFont* const font = ui.theme.body;
   const auto [text, warns] = status_words();
-  if (!warns) return;
-  const ImVec4 clip{foot.x + notice + ui.theme.px(20), foot.y, foot.x + foot.width, foot.y + foot.height};
-  draw.AddText(font, font->FontSize, {clip.x, foot.y}, widgets::kCaution, text.c_str(), nullptr, 0, &clip);
+  const float standing = font->CalcTextSizeA(font->FontSize, 1e9F, 0, kNotice).x + ui.theme.px(20);
+  // What is to be said now is said whole: what always stands there makes room for it.
+  const bool has_room =
+      !warns || standing + font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x <= foot.width;
+  if (has_room) draw.AddText(font, font->FontSize, foot.min(), widgets::kQuietText, kNotice);
+  const float left = foot.x + (has_room ? standing : 0);
+  const std::string words = warns ? start::fitting(font, text, foot.x + foot.width - left) : "";
+  ui.log.note_state("header_notice", words);
+  draw.AddText(font, font->FontSize, {left, foot.y}, widgets::kCaution, words.c_str());
 }
 
 void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Rect& area) {
