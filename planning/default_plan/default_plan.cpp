@@ -258,7 +258,7 @@ DefaultTunnel plan_bone(const BoneInput& input, bones::Side side, const Options&
     result.source = "the native footprint, as marked on this bone";
     result.place = "at the native footprint";
   } else if (const auto& at_norm = places.entry(options.bundle); at_norm) {
-    result.source = norms::default_norm(kind, options.bundle).source;
+    result.source = norms::cited(norms::default_norm(kind, options.bundle));
     result.place = "at the norm's place";
     aimed = options.bundle == Bundle::Whole ? site.aimed(at_norm, input.beside)
                                             : bundle_tunnel(site, places, result);

@@ -27,7 +27,8 @@ struct Options {
   // Femur: the knee is flexed while the portal's drill goes in; the axis points at the portal then. 110 to
   // 120 degrees is customary through the anteromedial portal.
   double flexion_deg = 115;
-  // Tibia: of the guide, between the tunnel and the plateau, in the sagittal plane.
+  // Tibia: of the guide, between the tunnel and the plane across the bone's long axis, in the sagittal plane;
+  // between it and a plateau that slopes backwards it is greater by the slope.
   double guide_deg = 55;
   // Throws InvalidInput: field, value, range.
   void check() const;

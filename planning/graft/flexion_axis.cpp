@@ -44,6 +44,7 @@ std::optional<FlexionAxis> through(FlexionAxis::Origin origin, const std::option
                                    const landmarks::AnatomicalAxes& axes) {
   if (!lateral || !medial || (*lateral - *medial).norm() < kLeastSpan_mm) return std::nullopt;
   FlexionAxis axis{origin, 0.5 * (*lateral + *medial), (*lateral - *medial).normalized()};
+  if (origin != FlexionAxis::Origin::Epicondyles) axis.condyles_apart_mm = (*lateral - *medial).norm();
   // Flexing takes what is distal backwards.
   if (axis.direction.cross(Vector3d(-axes.proximal)).dot(axes.anterior) > 0) axis.direction = -axis.direction;
   return axis;

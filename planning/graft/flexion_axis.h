@@ -26,6 +26,11 @@ struct FlexionAxis {
   // Unit: turning by a positive angle about it, right-handed, flexes the knee. It points to the patient's
   // left.
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
+  // Between the condyles' centres: how large the knee is. Of an average one where the epicondyles, which
+  // stand further apart, are all that is known.
+  static constexpr double kAverageApart_mm = 48;
+  double condyles_apart_mm = kAverageApart_mm;
+  [[nodiscard]] double scale() const { return condyles_apart_mm / kAverageApart_mm; }
 };
 [[nodiscard]] std::string_view to_text(FlexionAxis::Origin origin);
 

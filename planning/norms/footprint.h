@@ -16,8 +16,8 @@ namespace arthronaut::norms {
 
 struct ExpectedFootprint {
   InsertionNorm norm;
-  Eigen::Vector3d center_mm;  // on the surface, bone frame
-  Eigen::Vector3d normal;     // unit, out of the bone, of the surface about the centre
+  Eigen::Vector3d center_mm = Eigen::Vector3d::Zero();  // on the surface, bone frame
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();    // unit, out of the bone, about the centre
   // Closed polylines on the surface; the last point joins the first. `outline` is the insertion itself at the
   // published size; `spread` is where its centre lies in two knees of three (one sigma along and across).
   std::vector<Eigen::Vector3d> outline_mm, spread_mm;

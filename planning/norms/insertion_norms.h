@@ -2,7 +2,7 @@
 // Means of studies with their spread and their source: no limits of safety; the surgeon decides.
 #pragma once
 
-#include <span>
+#include <string>
 #include <string_view>
 
 #include "planning/bones/bone.h"
@@ -26,11 +26,11 @@ struct InsertionNorm {
   // lateral.
   PercentNorm along, across;
   std::string_view source;
-  bool is_recalled = false;  // the number was not re-read in its source: show it as customary
+  bool is_recalled = false;  // the number was not re-read in its source: see cited()
 };
 
-// All that are known, the default of each bone and bundle first among its own.
-[[nodiscard]] std::span<const InsertionNorm> insertion_norms();
 [[nodiscard]] const InsertionNorm& default_norm(bones::BoneKind bone, Bundle bundle);
+// Its source as a person is shown it, "..., customary" where the number is recalled.
+[[nodiscard]] std::string cited(const InsertionNorm& norm);
 
 }  // namespace arthronaut::norms

@@ -210,8 +210,7 @@ ShareNorm share_norm(const Tunnel& tunnel, const NormRange& whole, const char* w
   if (tunnel.bundle == norms::Bundle::Whole) return {whole, whole_source};
   const norms::InsertionNorm& norm = norms::default_norm(tunnel.bone, tunnel.bundle);
   return {{(norm.*share).mean, (norm.*share).sd},
-          std::string(tunnel.bundle == norms::Bundle::Anteromedial ? "AM: " : "PL: ") +
-              std::string(norm.source) + (norm.is_recalled ? ", customary" : "")};
+          (tunnel.bundle == norms::Bundle::Anteromedial ? "AM: " : "PL: ") + norms::cited(norm)};
 }
 
 void add_grid_checks(const Tunnel& tunnel, const Eigen::Vector3d& entry, const PlanSurroundings& surroundings,

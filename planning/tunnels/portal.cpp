@@ -16,7 +16,6 @@ bool is_clear(const Vector3d& from, const Vector3d& entry, double radius_mm, con
   constexpr double kBeforeEntry_mm = 3, kStep_mm = 1.5;
   const double length = (entry - from).norm();
   const Vector3d along = (entry - from) / std::max(length, 1e-9);
-  // The drill is as wide as the tunnel up to the entry, where it meets the bone at a slant.
   for (double at = 0; at < length - kBeforeEntry_mm - radius_mm; at += kStep_mm)
     if (femur.signed_distance_mm(from + at * along) < radius_mm) return false;
   return length > 0;
@@ -25,7 +24,8 @@ bool is_clear(const Vector3d& from, const Vector3d& entry, double radius_mm, con
 }  // namespace
 
 Portal anteromedial_portal(const graft::FlexionAxis& axis, const landmarks::AnatomicalAxes& axes) {
-  return {.at_mm = axis.point_mm - 24 * axes.lateral + 35 * axes.anterior - 15 * axes.proximal};
+  return {.at_mm =
+              axis.point_mm + axis.scale() * (-24 * axes.lateral + 35 * axes.anterior - 15 * axes.proximal)};
 }
 
 std::vector<PortalAim> portal_aims(const Vector3d& entry_mm, double diameter_mm, const Portal& portal,

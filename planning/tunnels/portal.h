@@ -17,15 +17,18 @@ struct Portal {
   double radius_mm = 5;                                        // how far skin gives way about it
   double least_flexion_deg = 100, greatest_flexion_deg = 130;  // in which it is drilled
 };
-// The accessory anteromedial one: 24 mm medial of, 35 mm in front of and 15 mm below the middle of the
-// flexion axis, in the femur's axes with the knee extended. A custom; where the surgeon makes it is his.
+// The accessory anteromedial one: of an average knee 24 mm medial of, 35 mm in front of and 15 mm below the
+// middle of the flexion axis, in the femur's axes with the knee extended; of another as its condyles stand
+// apart. A custom; where the surgeon makes it is his.
 [[nodiscard]] Portal anteromedial_portal(const graft::FlexionAxis& axis,
                                          const landmarks::AnatomicalAxes& axes);
 
 struct PortalAim {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  // unit, of drilling
   double flexion_deg = 0;
-  bool is_clear = false;  // no femur beside the drill between the portal and 3 mm before the entry
+  // No femur beside the drill from the portal to 3 mm and the drill's radius before the entry, where it meets
+  // the bone at a slant.
+  bool is_clear = false;
 };
 // The portal's middle and 8 points of its rim, at every 5 deg of flexion. entry_mm: on the femur.
 [[nodiscard]] std::vector<PortalAim> portal_aims(const Eigen::Vector3d& entry_mm, double diameter_mm,

@@ -35,11 +35,12 @@ struct Tunnel {
 };
 
 struct TunnelGeometry {
-  bool enters_bone = false;             // false: the rest is meaningless
-  Eigen::Vector3d entry_on_surface_mm;  // where the axis enters the bone, within 5 mm of the planned entry
-  Eigen::Vector3d exit_mm;              // where the axis leaves the bone
-  double length_mm = 0;                 // inside bone, along the axis
-  double wall_mm = 0;                   // the least bone beside the tunnel, mouth to mouth: see tunnel_wall.h
+  bool enters_bone = false;  // false: the rest is meaningless
+  // Where the axis enters the bone, within 5 mm of the planned entry, and where it leaves it.
+  Eigen::Vector3d entry_on_surface_mm = Eigen::Vector3d::Zero();
+  Eigen::Vector3d exit_mm = Eigen::Vector3d::Zero();
+  double length_mm = 0;  // inside bone, along the axis
+  double wall_mm = 0;    // the least bone beside the tunnel, mouth to mouth: see tunnel_wall.h
   Eigen::Vector3d thinnest_mm = Eigen::Vector3d::Zero();  // on the bone's surface, where it is that thin
   double thinnest_station_mm = 0;                         // along the axis, from the entry
   TunnelMouth entry = {}, exit = {};

@@ -20,8 +20,9 @@ struct TunnelMouth {
   double angle_to_surface_deg = 90;  // between axis and face: 90 is square on
 };
 
-// The mouth that the axis has at `station_mm` of the view, which must reach 4 diameters about it. The normal
-// is the mean over the surface within the tunnel's circle there, each part weighted by how large the drill
+// The mouth that the axis has at `station_mm` of the view, which must reach beyond it by the tunnel's rim
+// (rim_reach_mm) and across by its radius. The normal is the mean over the surface within the tunnel's circle
+// there, up to 4 diameters along the axis as far as the view goes, each part weighted by how large the drill
 // sees it; parts that turn away by more than 45 deg from the first such mean are left out and belong to
 // another face. is_entry: the drill goes in there, else out.
 [[nodiscard]] TunnelMouth mouth_at(const AxisView& view, double station_mm, double diameter_mm,

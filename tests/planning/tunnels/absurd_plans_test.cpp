@@ -261,5 +261,17 @@ TEST_P(AbsurdPlans, APortalAllowsSomeAims) {
   }
 }
 
+// The portal stands off a knee as far as the knee is large.
+TEST(Portal, OfALargerKneeLiesFurtherOff) {
+  const auto axes = landmarks::scanner_axes(Side::Right);
+  const auto portal_mm = [&](double larger) {
+    const auto axis = graft::flexion_axis({{"lateral_condyle_center", larger * Vector3d(-22, 3, -4)},
+                                           {"medial_condyle_center", larger * Vector3d(22, 3, -4)}},
+                                          {}, axes);
+    return Vector3d(anteromedial_portal(axis.value(), axes).at_mm);
+  };
+  EXPECT_LT((portal_mm(1.25) - 1.25 * portal_mm(1)).norm(), 1e-9);
+}
+
 }  // namespace
 }  // namespace arthronaut::tunnels
