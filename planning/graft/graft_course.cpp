@@ -54,26 +54,4 @@ GraftCourse graft_course(const GraftEnd& femur, const GraftEnd& tibia, const Fle
   return course;
 }
 
-std::vector<double> length_changes_mm(const std::vector<Vector3d>& femoral_mm, const Vector3d& tibial_mm,
-                                      const FlexionAxis& axis, const FlexionRange& range,
-                                      const std::function<bool()>& is_cancelled) {
-  check(range);
-  std::vector<Vector3d> tibial_path_mm;
-  for (const double flexion_deg : flexions_deg(range))
-    tibial_path_mm.push_back(femur_from_tibia(axis, geometry::rad_from_deg(flexion_deg)) * tibial_mm);
-  std::vector<double> changes_mm;
-  changes_mm.reserve(femoral_mm.size());
-  for (const Vector3d& point : femoral_mm) {
-    if (is_cancelled && is_cancelled()) break;
-    double shortest = std::numeric_limits<double>::infinity(), longest = 0;
-    for (const Vector3d& at : tibial_path_mm) {
-      const double length = (point - at).norm();
-      shortest = std::min(shortest, length);
-      longest = std::max(longest, length);
-    }
-    changes_mm.push_back(longest - shortest);
-  }
-  return changes_mm;
-}
-
 }  // namespace arthronaut::graft

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <vector>
 
 #include "planning/graft/flexion_axis.h"
@@ -43,13 +42,5 @@ struct FlexionRange {
 // deg or more.
 [[nodiscard]] GraftCourse graft_course(const GraftEnd& femur, const GraftEnd& tibia, const FlexionAxis& axis,
                                        const FlexionRange& range = {});
-
-// How much the distance to one tibial opening changes over flexion, for each of many femoral points: the map
-// on the wall of the notch. One value a point, mm; stops early, with the values so far, when is_cancelled
-// says so.
-[[nodiscard]] std::vector<double> length_changes_mm(const std::vector<Eigen::Vector3d>& femoral_mm,
-                                                    const Eigen::Vector3d& tibial_mm, const FlexionAxis& axis,
-                                                    const FlexionRange& range = {},
-                                                    const std::function<bool()>& is_cancelled = {});
 
 }  // namespace arthronaut::graft

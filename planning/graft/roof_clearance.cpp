@@ -1,7 +1,6 @@
 #include "planning/graft/roof_clearance.h"
 
 #include <Eigen/Geometry>
-#include <cmath>
 
 #include "planning/geometry/rigid_transform.h"
 
@@ -33,10 +32,6 @@ std::optional<RoofClearance> roof_clearance(const RoofQuery& query) {
   // tunnel.
   const Vector2d border = opening + radius_mm * forwards_of(up_tunnel);
   clearance.opening_mm = (outlet - border).dot(forwards_of(up_roof));
-  const auto steepness = [](const Vector2d& upwards) {
-    return std::atan2(upwards.y(), std::abs(upwards.x()));
-  };
-  clearance.steeper_by_deg = geometry::deg_from_rad(steepness(up_tunnel) - steepness(up_roof));
   return clearance;
 }
 

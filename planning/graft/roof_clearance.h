@@ -18,7 +18,8 @@ struct RoofQuery {
       Eigen::Vector3d::Zero();                             // the middle of the tunnel's mouth on the plateau
   Eigen::Vector3d into_tibia = -Eigen::Vector3d::UnitZ();  // unit, the tunnel's direction
   double diameter_mm = 9;
-  Eigen::Vector3d blumensaat_anterior_mm, blumensaat_posterior_mm;
+  Eigen::Vector3d blumensaat_anterior_mm = Eigen::Vector3d::Zero(),
+                  blumensaat_posterior_mm = Eigen::Vector3d::Zero();
   landmarks::AnatomicalAxes femur_axes;
 };
 
@@ -29,9 +30,6 @@ struct RoofClearance {
   // Across Blumensaat's line, from the anterior border of the opening to the line prolonged to the plateau:
   // negative where a part of the opening lies in front of it.
   double opening_mm = 0;
-  // Between the tunnel and Blumensaat's line: 0 parallel, positive where the tunnel is the steeper one and
-  // runs into the roof further back.
-  double steeper_by_deg = 0;
 };
 // nullopt where Blumensaat's line is shorter than 5 mm in the lateral view, or the tunnel stands along the
 // view.

@@ -267,7 +267,6 @@ std::optional<Notch> find_notch(const geometry::Surface& femur, const Condyles& 
     slope += turn;
   }
   Notch notch;
-  notch.half_width_mm = walls->half_width_mm;
   double deepest_hill = 0, hill_at = 0;
   for (const auto& p : profile) {
     if (p.s < roof.from + 2 || p.s > roof.to - 2) continue;

@@ -19,7 +19,6 @@ struct Notch {
   Eigen::Vector3d roof;  // forward along the best straight line through the roof, whatever the convention
   Eigen::Vector3d anterior_mm, posterior_mm;  // the ends of Blumensaat's line by the convention; bone frame
   Eigen::Vector3d apex_mm;                    // of the roof's ridge, halfway
-  double half_width_mm = 0;
   RoofShape shape = RoofShape::Straight;
   double hill_mm = 0;
   double cost =

@@ -50,14 +50,4 @@ void take_proposal(const Proposal& proposal, Landmarks& landmarks, LandmarkState
   }
 }
 
-Landmarks completed(const Landmarks& landmarks, const LandmarkStates& states, const Proposal& proposal,
-                    bool& used_proposed) {
-  Landmarks all = landmarks;
-  LandmarkStates of_all = states;
-  take_proposal(proposal, all, of_all);
-  used_proposed = false;
-  for (const auto& [name, position] : all) used_proposed |= state_of(of_all, name) == LandmarkState::Proposed;
-  return all;
-}
-
 }  // namespace arthronaut::landmarks

@@ -69,9 +69,4 @@ struct Proposal {
 // Puts the proposed landmarks where there are none or proposed ones; confirmed ones stay.
 void take_proposal(const Proposal& proposal, Landmarks& landmarks, LandmarkStates& states);
 
-// The landmarks to plan by: the given ones, and proposed ones where there are none. `used_proposed` is set
-// when one of the result is proposed.
-[[nodiscard]] Landmarks completed(const Landmarks& landmarks, const LandmarkStates& states,
-                                  const Proposal& proposal, bool& used_proposed);
-
 }  // namespace arthronaut::landmarks

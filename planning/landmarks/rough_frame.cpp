@@ -103,7 +103,7 @@ std::optional<Cut> find_cut(const geometry::TriangleMesh& mesh, const std::vecto
 // A plane: normal and offset.
 struct Mirror {
   Vector3d normal;
-  double offset_mm = 0, misfit_mm = 0, cost = 0;
+  double offset_mm = 0, cost = 0;  // cost: the less, the better a mirror
 };
 
 class MirrorSearch {
@@ -115,8 +115,8 @@ class MirrorSearch {
   }
 
   // The best plane among those whose normal lies across `joint`, the direction of the joint's end, to at most
-  // this sine.
-  [[nodiscard]] Mirror find(const Vector3d& joint, double greatest_sine) const {
+  // this sine; nullopt where what the search comes to leans further than that.
+  [[nodiscard]] std::optional<Mirror> find(const Vector3d& joint, double greatest_sine) const {
     std::vector<Mirror> starts;
     const Vector3d u = joint.unitOrthogonal(), v = joint.cross(u);
     constexpr int kTurns = 18;
@@ -124,18 +124,19 @@ class MirrorSearch {
       for (int i = 0; i < kTurns; ++i) {
         const double angle = geometry::kPi * i / kTurns;
         const Vector3d across = std::cos(angle) * u + std::sin(angle) * v;
-        Mirror start{(std::cos(lean) * across + std::sin(lean) * joint).normalized(), 0, 0, 0};
+        Mirror start{(std::cos(lean) * across + std::sin(lean) * joint).normalized()};
         start.offset_mm = center_.dot(start.normal);
         start = step(start, 5);
         starts.push_back(start);
       }
     }
     std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.cost < b.cost; });
-    Mirror best{joint, 0, kGreatestMisfit_mm, 1e9};
+    std::optional<Mirror> best;
     for (std::size_t i = 0; i < 4 && i < starts.size(); ++i) {
       Mirror refined = starts[i];
       for (int k = 0; k < 15; ++k) refined = step(refined, 1);
-      if (refined.cost < best.cost && std::abs(refined.normal.dot(joint)) < greatest_sine) best = refined;
+      if (std::abs(refined.normal.dot(joint)) < greatest_sine && (!best || refined.cost < best->cost))
+        best = refined;
     }
     return best;
   }
@@ -165,15 +166,15 @@ class MirrorSearch {
     Matrix3d moment = Matrix3d::Zero();
     for (const auto& [d, pair] : pairs) moment += (pair.first - mean) * (pair.second - mean).transpose();
     const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(moment + moment.transpose());
-    Mirror next{solver.eigenvectors().col(0), 0, misfit, 0};
+    Mirror next{solver.eigenvectors().col(0)};
     next.offset_mm = mean.dot(next.normal);
     if (stride > 1) next.normal = plane.normal, next.offset_mm = plane.offset_mm;
     next.cost = misfit / breadth(plane.normal);
     return next;
   }
 
-  // How much wider the joint's end is along the normal than along the widest line across it and the smallest
-  // extent: condyles and plateau are wider than they are deep.
+  // How wide the joint's end is along the normal, one standard deviation: of two planes that mirror it alike
+  // the one between its sides is meant, since condyles and plateau are wider than they are deep.
   [[nodiscard]] double breadth(const Vector3d& normal) const {
     Matrix3d moment = Matrix3d::Zero();
     for (const Vector3d& p : points_) moment += (p - center_) * (p - center_).transpose();
@@ -269,13 +270,15 @@ std::vector<RoughFrame> rough_frames(const geometry::TriangleMesh& mesh, const g
       points = std::move(fewer);
     }
     const MirrorSearch search(points, surface);
-    const Mirror mirror = search.find(end.direction, end.greatest_sine);
+    const auto mirror = search.find(end.direction, end.greatest_sine);
+    if (!mirror) continue;
     RoughFrame frame;
     const double up = bone == bones::BoneKind::Femur ? -1 : 1;
-    const Vector3d z = (up * (end.direction - end.direction.dot(mirror.normal) * mirror.normal)).normalized();
-    frame.bone_from_frame.col(0) = mirror.normal;
+    const Vector3d z =
+        (up * (end.direction - end.direction.dot(mirror->normal) * mirror->normal)).normalized();
+    frame.bone_from_frame.col(0) = mirror->normal;
     frame.bone_from_frame.col(2) = z;
-    frame.bone_from_frame.col(1) = z.cross(mirror.normal);
+    frame.bone_from_frame.col(1) = z.cross(mirror->normal);
     const double tip_z = bone == bones::BoneKind::Femur ? 1e9 : -1e9;
     double end_z = tip_z;
     Vector3d middle = Vector3d::Zero();
@@ -283,18 +286,17 @@ std::vector<RoughFrame> rough_frames(const geometry::TriangleMesh& mesh, const g
       end_z = bone == bones::BoneKind::Femur ? std::min(end_z, p.dot(z)) : std::max(end_z, p.dot(z));
       middle += p / static_cast<double>(points.size());
     }
-    frame.origin_mm = middle + (mirror.offset_mm - middle.dot(mirror.normal)) * mirror.normal;
+    frame.origin_mm = middle + (mirror->offset_mm - middle.dot(mirror->normal)) * mirror->normal;
     frame.origin_mm += (end_z - frame.origin_mm.dot(z)) * z;
     if (forwardness(points, surface, frame.bone_from_frame, frame.origin_mm, bone) < 0) {
       frame.bone_from_frame.col(0) *= -1;
       frame.bone_from_frame.col(1) *= -1;
     }
-    frame.asymmetry_mm = mirror.misfit_mm;
     if (cut) {
       frame.cut_normal = cut->normal;
       frame.cut_offset_mm = cut->offset_mm;
     }
-    found.push_back({mirror.cost, frame});
+    found.push_back({mirror->cost, frame});
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });

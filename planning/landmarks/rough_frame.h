@@ -20,7 +20,6 @@ struct RoughFrame {
   // whole bone.
   std::optional<Eigen::Vector3d> cut_normal;
   double cut_offset_mm = 0;  // of the face along its normal
-  double asymmetry_mm = 0;   // mean distance of the mirrored joint end to the bone
 };
 
 // One for each end of the surface that may be the joint's, the likeliest first: the one that comes nearest to

@@ -40,9 +40,7 @@ AxisView::AxisView(const geometry::Surface& bone, const Vector3d& entry_mm, cons
     : entry_mm_(entry_mm),
       direction_(direction),
       across_(direction.unitOrthogonal()),
-      further_across_(direction.cross(across_)),
-      from_station_mm_(from_station_mm),
-      to_station_mm_(to_station_mm) {
+      further_across_(direction.cross(across_)) {
   std::vector<std::int32_t> found;
   bone.triangles_near(entry_mm + from_station_mm * direction, entry_mm + to_station_mm * direction, reach_mm,
                       found);

@@ -32,12 +32,9 @@ class AxisView {
   [[nodiscard]] Eigen::Vector3d direction_to_bone(const Eigen::Vector3d& in_view) const {
     return in_view.x() * across_ + in_view.y() * further_across_ + in_view.z() * direction_;
   }
-  [[nodiscard]] double from_station_mm() const { return from_station_mm_; }
-  [[nodiscard]] double to_station_mm() const { return to_station_mm_; }
 
  private:
   Eigen::Vector3d entry_mm_, direction_, across_, further_across_;
-  double from_station_mm_, to_station_mm_;
   std::vector<AxisTriangle> triangles_;
 };
 

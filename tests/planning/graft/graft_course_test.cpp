@@ -49,21 +49,6 @@ TEST(GraftCourse, MeasuresBends) {
   for (const auto& state : sideways.states) EXPECT_NEAR(state.femoral_bend_deg, 90, 1e-9);
 }
 
-// The map is the same numbers point by point, and stops when it is told to.
-TEST(GraftCourse, MapsTheWall) {
-  std::vector<Vector3d> points;
-  for (int i = 0; i < 20; ++i) points.emplace_back(-8, 2 + 0.7 * i, 3 - 0.4 * i);
-  const Vector3d tibia(4, -3, -25);
-  const auto map = length_changes_mm(points, tibia, kAxis);
-  ASSERT_EQ(map.size(), points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-    EXPECT_NEAR(map[i],
-                graft_course({points[i], Vector3d::UnitX()}, {tibia, Vector3d::UnitZ()}, kAxis).change_mm(),
-                1e-12);
-  int asked = 0;
-  EXPECT_EQ(length_changes_mm(points, tibia, kAxis, {}, [&] { return ++asked > 5; }).size(), 5U);
-}
-
 TEST(GraftCourse, RefusesARangeThatIsNone) {
   EXPECT_THROW((void)graft_course({}, {}, kAxis, {.to_deg = -1}), InvalidInput);
   EXPECT_THROW((void)graft_course({}, {}, kAxis, {.step_deg = std::nan("")}), InvalidInput);
