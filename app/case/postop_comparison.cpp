@@ -2,6 +2,7 @@
 
 #include "planning/cases/identity.h"
 #include "planning/geometry/error.h"
+#include "planning/plan_review/plan_review.h"
 #include "planning/postop/postop_source.h"
 
 namespace arthronaut::open_case {
@@ -37,6 +38,14 @@ void doubt(postop::Comparison& comparison, const std::string& reason) {
   comparison.tunnel.reasons.push_back(reason);
 }
 
+void add_places(const cases::Case& knee, PostopAnswer& answer) {
+  const plan_review::CaseReview review(knee);
+  for (const auto& [key, comparison] : answer.comparisons)
+    if (comparison.tunnel.is_found)
+      answer.places.emplace(key, postop::place_of(comparison.tunnel, knee.plan.tunnels.at(key),
+                                                  review.bone(key.bone).surroundings));
+}
+
 void compare_all(const cases::Case& knee, const std::vector<tunnels::Tunnel>& plan,
                  const PostopQuestion& question, PostopAnswer& answer) {
   const auto tell = [&](const std::string& what, std::size_t done) {
@@ -54,6 +63,7 @@ void compare_all(const cases::Case& knee, const std::vector<tunnels::Tunnel>& pl
       if (other.bone == tunnel.bone && other.bundle != tunnel.bundle) others.push_back(other);
     answer.comparisons[tunnel.key()] = images.compare(knee.bones.at(tunnel.bone).mesh, tunnel, others);
   }
+  add_places(knee, answer);
   tell("Compared", plan.size());
 }
 

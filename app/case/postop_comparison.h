@@ -11,6 +11,7 @@
 
 #include "planning/cases/case.h"
 #include "planning/images/volume.h"
+#include "planning/postop/achieved_place.h"
 #include "planning/postop/comparison.h"
 
 namespace arthronaut::open_case {
@@ -29,7 +30,9 @@ struct PostopQuestion {
 
 struct PostopAnswer {
   std::map<tunnels::TunnelKey, postop::Comparison>
-      comparisons;           // one for each planned tunnel that was asked for
+      comparisons;  // one for each planned tunnel that was asked for
+  // Of those that were found, by the landmarks that the case has.
+  std::map<tunnels::TunnelKey, postop::AchievedPlace> places;
   images::Volume images;     // as they were read
   bool was_stopped = false;  // then there may be fewer comparisons
   // Why it must not be relied on, each sentence beginning with the tunnel: "femur: ..."; empty: reliable.

@@ -15,6 +15,14 @@ struct CompareArguments {
   std::vector<int> labels;
 };
 
+// Where it lies: which way its entry is off, its percentages, its wall.
+std::string place_line(const tunnels::TunnelKey& key, const postop::AchievedPlace& place) {
+  std::string line = tunnels::name_of(key) + ": entry " + postop::off_in_words(place);
+  if (const std::string grid = postop::grid_in_words(place); !grid.empty()) line += "; " + grid;
+  if (const std::string wall = postop::wall_in_words(place); !wall.empty()) line += "; least wall " + wall;
+  return line;
+}
+
 std::string line_of(const tunnels::TunnelKey& key, const postop::AchievedTunnel& tunnel) {
   std::string line = tunnels::name_of(key) + ": ";
   if (!tunnel.is_found) return line + "no tunnel found";
@@ -42,13 +50,15 @@ void compare(Context& context, const CompareArguments& arguments) {
     progress.advance_to(static_cast<long>(100 * share));
   };
   const open_case::PostopAnswer answer = open_case::compare_with_postop(question);
-  postop::write_achieved_file(arguments.output, answer.comparisons);
+  postop::write_achieved_file(arguments.output, answer.comparisons, answer.places);
   if (arguments.output != "-") {
     for (const auto& [key, comparison] : answer.comparisons) {
       if (comparison.bone.is_found)
         context.say(files::format("%s: found in the images, %.2f mm (rms) off their edges",
                                   tunnels::name_of(key).c_str(), comparison.bone.rms_mm));
       context.say(line_of(key, comparison.tunnel));
+      if (const auto place = answer.places.find(key); place != answer.places.end())
+        context.say(place_line(key, place->second));
     }
     context.say("Wrote " + arguments.output + ".");
   }

@@ -41,6 +41,14 @@ std::vector<std::string> column(const Content& content, const tunnels::TunnelKey
   if (found.is_found) {
     const auto plan = content.knee.plan.tunnels.find(key);
     cells.push_back(format("%.2f mm \u00B1 %.2f", found.offset_mm, std::max(found.entry_sigma_mm, 0.01)));
+    const auto place = content.places.find(key);
+    const bool has_place = place != content.places.end();
+    const auto told = [&](std::string (&words)(const postop::AchievedPlace&)) {
+      const std::string text = has_place ? words(place->second) : std::string();
+      return text.empty() ? std::string("\u2013") : text;
+    };
+    cells.push_back(told(postop::off_in_words));
+    cells.push_back(told(postop::grid_in_words));
     cells.push_back(format("%.2f\u00B0 \u00B1 %.2f", geometry::deg_from_rad(found.angle_rad),
                            std::max(geometry::deg_from_rad(found.direction_sigma_rad), 0.01)));
     cells.push_back(format("%.1f mm", found.tunnel.diameter_mm) +
@@ -50,9 +58,10 @@ std::vector<std::string> column(const Content& content, const tunnels::TunnelKey
     cells.push_back(along_the_wall(found.widths));
     cells.push_back(format("%.1f mm%s", found.length_mm, found.comes_out ? "" : ", a socket") +
                     planned_length(content, key));
+    cells.push_back(told(postop::wall_in_words));
     cells.push_back(format("%.0f %%", 100 * found.metal_share));
   } else {
-    cells.insert(cells.end(), 6, "\u2013");
+    cells.insert(cells.end(), 9, "\u2013");
   }
   cells.push_back(comparison.bone.is_found ? format("%.2f mm", comparison.bone.rms_mm) : "\u2013");
   return cells;
@@ -73,10 +82,13 @@ void draw_postop_section(FlowingPages& pages, const Content& content) {
   std::vector<std::vector<std::string>> rows = {{"Quantity"},
                                                 {"Verdict"},
                                                 {"Entry off the planned one"},
+                                                {"Which way"},
+                                                {"Entry in the grid"},
                                                 {"Angle to the planned axis"},
                                                 {"Diameter"},
                                                 {"Diameter along the wall"},
                                                 {"Length in bone"},
+                                                {"Least wall"},
                                                 {"Metal in it"},
                                                 {"Bone off the images' edges, RMS"}};
   constexpr double kName_mm = 54;

@@ -257,6 +257,13 @@ void Report::result_section(const operation::AchievedTunnel& achieved) {
                     number(measured_true.angle_deg, "°", 2)});
   }
   pages_.table({86, 28, 28, 28}, rows);
+  if (const auto place = place_of(content_, achieved)) {
+    std::string words = "As navigation measured it: entry " + postop::off_in_words(*place);
+    if (const std::string grid = postop::grid_in_words(*place); !grid.empty()) words += "; " + grid;
+    if (const std::string wall = postop::wall_in_words(*place); !wall.empty())
+      words += "; least wall " + wall;
+    pages_.sentence(words + ".");
+  }
   pages_.sentence(
       "Depth reached " + (achieved.depth_mm ? number(*achieved.depth_mm, " mm") : "not known") +
           ". Predicted error of these figures, one sigma: " + number(achieved.sigma_offset_mm, " mm", 2) +
@@ -267,6 +274,11 @@ void Report::result_section(const operation::AchievedTunnel& achieved) {
 
 void Report::navigate_page() {
   pages_.begin_page("In theatre");
+  for (const auto& [session, reason] : content_.unreadable)
+    pages_.sentence(options_.is_deidentified ? "NOT READABLE, and not in this report: a session of this case."
+                                             : "NOT READABLE, and not in this report: the session " +
+                                                   session + " (" + reason + ").",
+                    {.bold = true, .ink = kWarning});
   if (!content_.session) {
     pages_.sentence("No session with a registration or a drilled tunnel is recorded in this case.");
     draw_postop_section(pages_, content_);

@@ -1,7 +1,7 @@
 #include "app/report/report_content.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -15,6 +15,36 @@ namespace arthronaut::report {
 
 namespace {
 
+// A broken session takes nothing else away: it is named, and another one is told of.
+template <typename Read>
+void unless_unreadable(const std::filesystem::path& session, Content& content, const Read& read) {
+  const std::string name = session.filename().string();
+  const auto is_known = [&](const auto& one) { return one.first == name; };
+  if (std::any_of(content.unreadable.begin(), content.unreadable.end(), is_known)) return;
+  try {
+    read();
+  } catch (const InvalidInput& error) {
+    content.unreadable.emplace_back(name, error.what());
+  } catch (const IoError& error) {
+    content.unreadable.emplace_back(name, error.what());
+  }
+}
+
+// Where it has a drilled tunnel; where it has a registration alone, only while no other one is taken.
+void take_session(const std::filesystem::path& folder, Content& content) {
+  unless_unreadable(folder, content, [&] {
+    const auto achieved_files = operation::achieved_files(folder);
+    if (achieved_files.empty() && (content.session || !std::filesystem::exists(folder / "session.json")))
+      return;
+    auto session = std::make_unique<recording::RecordedSession>(folder);
+    if (achieved_files.empty() && !session->registration()) return;
+    std::vector<operation::AchievedTunnel> achieved;
+    for (const auto& file : achieved_files) achieved.push_back(operation::read_achieved_file(file));
+    content.session = std::move(session);
+    content.achieved = std::move(achieved);
+  });
+}
+
 // The newest of each bundle that is planned and not among the session's own.
 void add_earlier(const std::vector<std::filesystem::path>& sessions, Content& content) {
   if (content.achieved.empty()) return;
@@ -23,15 +53,17 @@ void add_earlier(const std::vector<std::filesystem::path>& sessions, Content& co
   for (const auto& achieved : content.achieved) known.insert(achieved.planned.key());
   if (known.contains(tunnels::TunnelKey(bone))) return;  // a single tunnel: what was before it is not planned
   for (auto it = sessions.rbegin(); it != sessions.rend(); ++it) {
-    for (const auto& file : operation::achieved_files(*it)) {
-      auto achieved = operation::read_achieved_file(file);
-      const tunnels::TunnelKey key = achieved.planned.key();
-      if (key.bone != bone || !content.knee.plan.tunnels.contains(key) || known.contains(key)) continue;
-      if (recording::RecordedSession(*it).header().source_kind != content.session->header().source_kind)
-        continue;
-      known.insert(key);
-      content.earlier.push_back({std::move(achieved), it->filename().string()});
-    }
+    unless_unreadable(*it, content, [&] {
+      for (const auto& file : operation::achieved_files(*it)) {
+        auto achieved = operation::read_achieved_file(file);
+        const tunnels::TunnelKey key = achieved.planned.key();
+        if (key.bone != bone || !content.knee.plan.tunnels.contains(key) || known.contains(key)) continue;
+        if (recording::RecordedSession(*it).header().source_kind != content.session->header().source_kind)
+          continue;
+        known.insert(key);
+        content.earlier.push_back({std::move(achieved), it->filename().string()});
+      }
+    });
   }
 }
 
@@ -48,6 +80,21 @@ void add_looked_at(Content& content) {
   }
 }
 
+bool is_of_the_plan(const Content& content, const tunnels::TunnelKey& key,
+                    const postop::AchievedTunnel& found) {
+  const auto plan = content.knee.plan.tunnels.find(key);
+  return plan != content.knee.plan.tunnels.end() && postop::is_against(found, plan->second);
+}
+
+void add_places(Content& content) {
+  for (const auto& [key, comparison] : content.postoperative) {
+    const bool is_known = comparison.tunnel.is_found && content.review->has_bone(key.bone);
+    if (is_known && is_of_the_plan(content, key, comparison.tunnel))
+      content.places.emplace(key, postop::place_of(comparison.tunnel, content.knee.plan.tunnels.at(key),
+                                                   content.review->bone(key.bone).surroundings));
+  }
+}
+
 // A broken comparison takes nothing else away.
 void add_postoperative(Content& content) {
   const std::filesystem::path file = content.folder / "achieved.json";
@@ -61,18 +108,16 @@ void add_postoperative(Content& content) {
   }
 }
 
-// Whether the differences are those to today's plan: the entry's is kept to what files round.
-bool is_of_the_plan(const Content& content, const tunnels::TunnelKey& key,
-                    const postop::AchievedTunnel& found) {
-  constexpr double kRounded_mm = 0.01, kRounded_rad = 1e-3;
-  const auto plan = content.knee.plan.tunnels.find(key);
-  return plan != content.knee.plan.tunnels.end() &&
-         std::abs((found.tunnel.entry_mm - plan->second.entry_mm).norm() - found.offset_mm) < kRounded_mm &&
-         std::abs(geometry::angle_between_rad(found.tunnel.direction, plan->second.direction) -
-                  found.angle_rad) < kRounded_rad;
-}
-
 }  // namespace
+
+std::optional<postop::AchievedPlace> place_of(const Content& content,
+                                              const operation::AchievedTunnel& achieved) {
+  const bones::BoneKind bone = achieved.planned.bone;
+  if (!content.review->has_bone(bone)) return std::nullopt;
+  const double depth_mm = achieved.depth_mm.value_or(std::numeric_limits<double>::infinity());
+  return postop::place_of(achieved.measured, depth_mm, achieved.planned,
+                          content.review->bone(bone).surroundings);
+}
 
 std::string verdict_of(const Content& content, const tunnels::TunnelKey& key) {
   const postop::Comparison& comparison = content.postoperative.at(key);
@@ -96,35 +141,27 @@ std::vector<std::string> doubts_of(const Content& content, const tunnels::Tunnel
 Content gather(const std::filesystem::path& folder, const ReportOptions& options) {
   Content content{.folder = folder,
                   .knee = cases::load_case(folder),
+                  .review = nullptr,
                   .session = nullptr,
                   .achieved = {},
                   .earlier = {},
+                  .unreadable = {},
                   .marks = {},
                   .marks_problem = {},
                   .last_hash = {},
                   .postoperative = {},
+                  .places = {},
                   .postoperative_problem = {},
                   .identity = std::nullopt};
   if (options.with_identity && !options.is_deidentified) content.identity = cases::load_identity(folder);
   const auto sessions = recording::operation_folders(folder);
-  for (auto it = sessions.rbegin(); it != sessions.rend(); ++it) {
-    const auto achieved_files = operation::achieved_files(*it);
-    const bool has_achieved = !achieved_files.empty();
-    if (!has_achieved && !std::filesystem::exists(*it / "session.json")) continue;
-    auto session = std::make_unique<recording::RecordedSession>(*it);
-    if (!has_achieved && !session->registration()) continue;
-    content.session = std::move(session);
-    for (const auto& file : achieved_files) content.achieved.push_back(operation::read_achieved_file(file));
-    // The newest session with a drilled tunnel; failing that, the newest with a registration.
-    if (has_achieved) break;
-    bool older_has_achieved = false;
-    for (auto older = it; older != sessions.rend(); ++older) {
-      older_has_achieved |= !operation::achieved_files(*older).empty();
-    }
-    if (!older_has_achieved) break;
-  }
+  // The newest session with a drilled tunnel; failing that, the newest with a registration.
+  for (auto it = sessions.rbegin(); it != sessions.rend() && content.achieved.empty(); ++it)
+    take_session(*it, content);
+  content.review = std::make_unique<const plan_review::CaseReview>(content.knee);
   add_earlier(sessions, content);
   add_postoperative(content);
+  add_places(content);
   if (content.session) add_looked_at(content);
   return content;
 }

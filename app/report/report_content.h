@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/report/report.h"
@@ -14,6 +15,8 @@
 #include "navigation/recording/session_marks.h"
 #include "planning/cases/case.h"
 #include "planning/cases/identity.h"
+#include "planning/plan_review/plan_review.h"
+#include "planning/postop/achieved_place.h"
 #include "planning/postop/comparison.h"
 
 namespace arthronaut::report {
@@ -22,6 +25,7 @@ namespace arthronaut::report {
 struct Content {
   std::filesystem::path folder;
   cases::Case knee;
+  std::unique_ptr<const plan_review::CaseReview> review = nullptr;  // of `knee`; never null once gathered
   std::unique_ptr<recording::RecordedSession> session;
   std::vector<operation::AchievedTunnel> achieved;  // in `session`
   // Tunnels of other bundles of that bone, drilled in sessions before it: after each start of a source there
@@ -31,11 +35,15 @@ struct Content {
     std::string session;
   };
   std::vector<Earlier> earlier = {};
+  // Sessions that may have been the one that matters, and cannot be read: their folders' names, and why.
+  std::vector<std::pair<std::string, std::string>> unreadable = {};
   recording::SessionMarks marks = {};  // of `session`: what whoever looked at it marked
   std::string marks_problem = {};      // why they cannot be read; empty when they can
   std::string last_hash = {};          // of the chain of `session`; empty: it has none, or a broken one
   // With images after the operation, as the case's achieved.json keeps it.
   std::map<tunnels::TunnelKey, postop::Comparison> postoperative = {};
+  // Of those of them that are against today's plan.
+  std::map<tunnels::TunnelKey, postop::AchievedPlace> places = {};
   std::string postoperative_problem = {};   // why it cannot be read; empty when it can
   std::optional<cases::Identity> identity;  // where it is to be named
 };
@@ -43,6 +51,9 @@ struct Content {
 // Throws IoError or InvalidInput (file, place, reason).
 [[nodiscard]] Content gather(const std::filesystem::path& folder, const ReportOptions& options);
 
+// Where navigation says that it was drilled; nullopt where the case lacks the bone.
+[[nodiscard]] std::optional<postop::AchievedPlace> place_of(const Content& content,
+                                                            const operation::AchievedTunnel& achieved);
 // "reliable", "not reliable", "of an earlier plan", "no tunnel found", "bone not found in the images".
 [[nodiscard]] std::string verdict_of(const Content& content, const tunnels::TunnelKey& key);
 // Why it must not be relied on, each reason once; empty: reliable.

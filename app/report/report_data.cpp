@@ -9,7 +9,7 @@
 #include "planning/files/csv_cell.h"
 #include "planning/files/json_document.h"
 #include "planning/files/utc_clock.h"
-#include "planning/plan_review/plan_review.h"
+#include "planning/postop/achieved_file.h"
 
 namespace arthronaut::report {
 
@@ -29,8 +29,9 @@ ordered_json json_of(const operation::TunnelDifference& difference) {
           {"angle_deg", difference.angle_deg}};
 }
 
-ordered_json tunnels_of(const cases::Case& knee) {
-  const plan_review::CaseReview review(knee);
+ordered_json tunnels_of(const Content& content) {
+  const cases::Case& knee = content.knee;
+  const plan_review::CaseReview& review = *content.review;
   ordered_json all = ordered_json::array();
   for (const auto& [key, tunnel] : knee.plan.tunnels) {
     ordered_json node = {{"tunnel", tunnels::name_of(key)}};
@@ -98,11 +99,13 @@ ordered_json session_of(const Content& content) {
   return node;
 }
 
-ordered_json json_of(const operation::AchievedTunnel& achieved, const std::string& session) {
+ordered_json json_of(const Content& content, const operation::AchievedTunnel& achieved,
+                     const std::string& session) {
   ordered_json node = {{"tunnel", tunnels::name_of(achieved.planned.key())}, {"session", session}};
   node["planned"] = json_of(achieved.planned);
   node["measured"] = json_of(achieved.measured);
   node["difference"] = json_of(operation::compare(achieved.planned, achieved.measured));
+  if (const auto place = place_of(content, achieved)) postop::put_place(node, *place);
   node["depth_mm"] = nullptr;
   if (achieved.depth_mm) node["depth_mm"] = *achieved.depth_mm;
   node["sigma_offset_mm"] = achieved.sigma_offset_mm;
@@ -139,6 +142,8 @@ ordered_json postoperative_of(const Content& content) {
     node["widths"] = ordered_json::array();
     for (const postop::Width& width : found.widths)
       node["widths"].push_back({{"from_entry_mm", width.from_entry_mm}, {"diameter_mm", width.diameter_mm}});
+    if (const auto place = content.places.find(key); place != content.places.end())
+      postop::put_place(node, place->second);
     node["bone_rms_mm"] = comparison.bone.is_found ? ordered_json(comparison.bone.rms_mm) : ordered_json();
     all.push_back(std::move(node));
   }
@@ -160,13 +165,16 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
   json["bone_doubts"] = ordered_json::object();
   for (const auto& [kind, doubts] : cases::load_bone_doubts(content.folder))
     json["bone_doubts"][std::string(bones::to_text(kind))] = doubts;
-  json["tunnels"] = tunnels_of(content.knee);
+  json["tunnels"] = tunnels_of(content);
   json["session"] = session_of(content);
+  json["unreadable_sessions"] = ordered_json::array();
+  for (const auto& [session, reason] : content.unreadable)
+    json["unreadable_sessions"].push_back({{"id", session}, {"reason", reason}});
   json["achieved"] = ordered_json::array();
   for (const operation::AchievedTunnel& achieved : content.achieved)
-    json["achieved"].push_back(json_of(achieved, content.session->header().id));
+    json["achieved"].push_back(json_of(content, achieved, content.session->header().id));
   for (const Content::Earlier& earlier : content.earlier)
-    json["achieved"].push_back(json_of(earlier.achieved, earlier.session));
+    json["achieved"].push_back(json_of(content, earlier.achieved, earlier.session));
   json["postoperative"] = postoperative_of(content);
   if (!content.postoperative_problem.empty()) json["postoperative_problem"] = content.postoperative_problem;
   json["versions"] = ordered_json::object();

@@ -29,6 +29,8 @@ void PostopPage::open(const open_case::PlanModel* model, const std::filesystem::
   run_.reset();
   answer_.reset();
   comparisons_.clear();
+  places_are_of_ = 0;
+  which_.clear();
   problem_.clear();
   field_ = {};
   scene_is_stale_ = true;
@@ -43,10 +45,12 @@ void PostopPage::open(const open_case::PlanModel* model, const std::filesystem::
   if (!comparisons_.empty()) chosen_ = comparisons_.begin()->first;
 }
 
-void PostopPage::compare_with(const std::filesystem::path& source) {
+void PostopPage::compare_with(const std::filesystem::path& source, const std::string& series) {
   if (is_running() || model_ == nullptr) return;
   problem_.clear();
-  run_ = std::make_unique<PostopRun>(case_folder_, source, read_only_.empty(), wake_);
+  which_.clear();
+  source_ = source;
+  run_ = std::make_unique<PostopRun>(case_folder_, source, series, read_only_.empty(), wake_);
 }
 
 void PostopPage::stop() {
@@ -74,19 +78,29 @@ std::map<tunnels::TunnelKey, tunnels::Tunnel> PostopPage::planned() const {
   return planned;
 }
 
+const Places& PostopPage::places() {
+  if (std::exchange(places_are_of_, model_->revision()) == model_->revision()) return places_;
+  places_.clear();
+  for (const auto& [key, plan] : planned())
+    if (const auto& found = comparisons_.at(key).tunnel; found.is_found && model_->has_bone(key.bone))
+      places_.emplace(key, postop::place_of(found, plan, model_->surroundings(key.bone)));
+  return places_;
+}
+
 void PostopPage::take_answer() {
-  if (run_ == nullptr) return;
-  if (const std::string error = run_->error(); !error.empty()) {
-    problem_ = error;
-    run_.reset();
-    return;
-  }
-  auto answer = run_->progress().answer;
-  if (!run_->has_ended()) return;
+  // What it says last it says before it has ended: asked for first, an answer might come in between and be
+  // lost.
+  if (run_ == nullptr || !run_->has_ended()) return;
+  problem_ = run_->error();
+  PostopProgress progress = run_->progress();
   run_.reset();
-  if (answer == nullptr) return;  // stopped: what was there stays
+  if (!problem_.empty()) return;
+  which_ = std::move(progress.which);
+  auto answer = std::move(progress.answer);
+  if (answer == nullptr) return;  // stopped, or it asks: what was there stays
   answer_ = std::move(answer);
   comparisons_ = answer_->comparisons;
+  places_are_of_ = 0;
   if (!comparisons_.empty() && !comparisons_.contains(chosen_)) chosen_ = comparisons_.begin()->first;
   scene_is_stale_ = true;
 }
@@ -111,12 +125,14 @@ void PostopPage::show_scene() {
 void PostopPage::draw(const widgets::Ui& ui, widgets::Rect area) {
   take_answer();
   ui.log.note_state("postop", is_running()           ? "running"
+                              : !which_.empty()      ? "asks"
                               : !problem_.empty()    ? "failed"
                               : answer_ != nullptr   ? "compared"
                               : comparisons_.empty() ? "none"
                                                      : "kept");
   const float gap = ui.theme.px(12);
   draw_head(ui, area.cut_top(ui.theme.px(176), gap));
+  if (!which_.empty()) return draw_question(ui, area);
   if (comparisons_.empty() || !model_->has_bone(chosen_.bone)) {
     widgets::text_centered(ui, area, ui.theme.title, widgets::kQuietText,
                            is_running()
@@ -171,15 +187,38 @@ void PostopPage::draw_head(const widgets::Ui& ui, widgets::Rect area) {
   widgets::end_panel();
 }
 
+void PostopPage::draw_question(const widgets::Ui& ui, const widgets::Rect& area) {
+  widgets::begin_panel(ui, "review.postop_question", area,
+                       "Several CTs are there: which one is to be compared?");
+  std::string chosen;
+  for (std::size_t i = 0; i < which_.size(); ++i) {
+    const images::ImageSeries& series = which_[i];
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::Button(images::title_of(series).c_str(), {-1, 0})) chosen = series.uid;
+    ImGui::PopID();
+    ui.log.note("review.postop_series_" + std::to_string(i), ImGui::GetItemRectMin(),
+                ImGui::GetItemRectMax());
+    widgets::text_in(ui.theme.body, widgets::kQuietText, images::detail_of(series));
+    for (const std::string& warning : series.warnings)
+      widgets::text_in(ui.theme.body, widgets::kCaution, "- " + warning);
+  }
+  widgets::text_in(ui.theme.body, widgets::kQuietText,
+                   "The finest slices stand first. A sharp (bone) kernel tells a tunnel's wall best.");
+  widgets::end_panel();
+  if (!chosen.empty()) compare_with(std::filesystem::path(source_), chosen);
+}
+
 void PostopPage::draw_table(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::begin_panel(ui, "review.postop_table", area, "");
   std::map<tunnels::TunnelKey, double> lengths;
   for (const auto& [key, tunnel] : planned()) lengths[key] = model_->measured(key).length_mm;
-  for (const AchievedRow& row : achieved_rows(comparisons_, planned(), lengths)) {
+  for (const AchievedRow& row : achieved_rows(comparisons_, planned(), lengths, places())) {
     widgets::status_row(ui, row.severity, row.tunnel, row.verdict);
-    for (const auto& [name, value] : {std::pair("Entry", &row.offset), std::pair("Angle", &row.angle),
-                                      std::pair("Diameter", &row.diameter), std::pair("Length", &row.length)})
-      widgets::text_in(ui.theme.body, widgets::kText, std::string(name) + ": " + *value);
+    for (const auto& [name, value] : {std::pair("Entry", &row.offset), std::pair("Grid", &row.grid),
+                                      std::pair("Angle", &row.angle), std::pair("Diameter", &row.diameter),
+                                      std::pair("Length", &row.length), std::pair("Least wall", &row.wall)})
+      if (!value->empty() && row.severity != widgets::Severity::Bad)
+        widgets::text_in(ui.theme.body, widgets::kText, std::string(name) + ": " + *value);
     for (const std::string& reason : row.reasons)
       widgets::text_in(ui.theme.body, widgets::kCaution, "- " + reason);
     ui.log.note_state("postop_" + row.tunnel, row.verdict + "; " + row.offset);

@@ -16,23 +16,26 @@
 #include "app/widgets/controls.h"
 #include "app/widgets/grey_texture.h"
 #include "app/widgets/scene_pane.h"
+#include "planning/postop/achieved_place.h"
 
 namespace arthronaut::review {
 
 using Comparisons = std::map<tunnels::TunnelKey, postop::Comparison>;
+using Places = std::map<tunnels::TunnelKey, postop::AchievedPlace>;
 
 // One row of the table: what was planned, what was found, how far off and how sure.
 struct AchievedRow {
   std::string tunnel;                                     // "femur", "femur AM"
   std::string offset, angle, diameter, length;            // "1.2 mm ± 0.2", "–" where nothing was found
+  std::string grid, wall;                                 // empty where they are not known
   widgets::Severity severity = widgets::Severity::Quiet;  // Good: reliable; Caution: not; Bad: not found
   std::string verdict;                                    // "reliable", "not reliable", "not found"
   std::vector<std::string> reasons;                       // why not
 };
-// planned_length_mm: inside the bone, along the plan; by the same keys.
+// planned_length_mm: inside the bone, along the plan; by the same keys, as the places are.
 [[nodiscard]] std::vector<AchievedRow> achieved_rows(
     const Comparisons& comparisons, const std::map<tunnels::TunnelKey, tunnels::Tunnel>& planned,
-    const std::map<tunnels::TunnelKey, double>& planned_length_mm);
+    const std::map<tunnels::TunnelKey, double>& planned_length_mm, const Places& places);
 // What the differences may be off by, and what nobody knows: sentences for the panel.
 [[nodiscard]] std::vector<std::string> error_budget(const postop::Comparison& comparison,
                                                     const Eigen::Vector3d& voxel_mm);
@@ -48,7 +51,8 @@ class PostopPage {
   // Another case: what runs is ended, what the case keeps is read.
   void open(const open_case::PlanModel* model, const std::filesystem::path& case_folder,
             const std::string& read_only);
-  void compare_with(const std::filesystem::path& source);
+  // series: of a folder with several CTs, its UID; empty: the one that there is, or asked for.
+  void compare_with(const std::filesystem::path& source, const std::string& series = {});
   void stop();
   [[nodiscard]] bool is_running() const { return run_ != nullptr && !run_->has_ended(); }
   [[nodiscard]] bool has_any() const { return !comparisons_.empty(); }
@@ -68,8 +72,10 @@ class PostopPage {
     scene::SlicePlane plane;  // in the images' frame; what the texture shows
   };
   void take_answer();
+  [[nodiscard]] const Places& places();
   void show_scene();
   void draw_head(const widgets::Ui& ui, widgets::Rect area);
+  void draw_question(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_table(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_slice(const widgets::Ui& ui, const widgets::Rect& area, int quarter_turns);
   [[nodiscard]] const postop::Comparison* chosen() const;
@@ -81,8 +87,14 @@ class PostopPage {
   std::function<void()> wake_;
   widgets::ScenePane pane_;
   std::unique_ptr<PostopRun> run_;
+  std::filesystem::path source_;                           // that was compared with last
+  std::vector<images::ImageSeries> which_;                 // of it, to be chosen among; empty: no question
   std::shared_ptr<const open_case::PostopAnswer> answer_;  // with the images; null: only what the case keeps
   Comparisons comparisons_;
+  // By the landmarks of now. Measured when the plan, the landmarks or the comparisons have changed: every
+  // frame asks.
+  Places places_;
+  std::uint64_t places_are_of_ = 0;  // PlanModel::revision(); 0: none yet
   tunnels::TunnelKey chosen_{bones::BoneKind::Femur};
   bool scene_is_stale_ = true;
   PathField field_;

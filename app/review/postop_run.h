@@ -1,5 +1,6 @@
 // The comparison with a post-operative CT, beside the screen: the same that `arthronaut compare` computes,
-// kept in the case as achieved.json when it has come to its end.
+// kept in the case as achieved.json when it has come to its end. Of a folder with several CTs it ends with
+// the question which of them; one alone is taken, whatever lies beside it.
 //
 // Threads: made and asked on the window's thread; one worker computes. It ends within one step of the
 // comparison (3 to 10 s) after stop().
@@ -9,23 +10,27 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/case/postop_comparison.h"
 #include "navigation/worker/worker.h"
+#include "planning/images/series_list.h"
 
 namespace arthronaut::review {
 
 struct PostopProgress {
   std::string what = "Beginning";
   double share = 0;                                       // of that, 0 to 1
-  std::shared_ptr<const open_case::PostopAnswer> answer;  // null: not yet, or it failed
+  std::shared_ptr<const open_case::PostopAnswer> answer;  // null: not yet, it failed, or it asks
+  std::vector<images::ImageSeries> which = {};            // it asks: one of these
 };
 
 class PostopRun {
  public:
-  // writes: whether achieved.json is kept; false in a case that is read-only.
-  PostopRun(const std::filesystem::path& case_folder, const std::filesystem::path& source, bool writes,
-            std::function<void()> on_news);
+  // series: its UID; empty: not known yet. writes: whether achieved.json is kept; false in a case that is
+  // read-only.
+  PostopRun(const std::filesystem::path& case_folder, const std::filesystem::path& source,
+            const std::string& series, bool writes, std::function<void()> on_news);
   [[nodiscard]] PostopProgress progress() const;
   [[nodiscard]] bool has_ended() const { return worker_.has_ended(); }
   [[nodiscard]] std::string error() const { return worker_.failure(); }  // empty: none

@@ -27,19 +27,12 @@ void fill_found(const postop::AchievedTunnel& found, AchievedRow& row) {
                          least->diameter_mm, most->diameter_mm, most->from_entry_mm);
 }
 
-// Whether the differences are those to this plan: the entry's is kept to what files round.
-bool is_of(const postop::AchievedTunnel& found, const tunnels::Tunnel& plan) {
-  constexpr double kRounded_mm = 0.01, kRounded_rad = 1e-3;
-  return std::abs((found.tunnel.entry_mm - plan.entry_mm).norm() - found.offset_mm) < kRounded_mm &&
-         std::abs(geometry::angle_between_rad(found.tunnel.direction, plan.direction) - found.angle_rad) <
-             kRounded_rad;
-}
-
 }  // namespace
 
 std::vector<AchievedRow> achieved_rows(const Comparisons& comparisons,
                                        const std::map<tunnels::TunnelKey, tunnels::Tunnel>& planned,
-                                       const std::map<tunnels::TunnelKey, double>& planned_length_mm) {
+                                       const std::map<tunnels::TunnelKey, double>& planned_length_mm,
+                                       const Places& places) {
   std::vector<AchievedRow> rows;
   for (const auto& [key, comparison] : comparisons) {
     const postop::AchievedTunnel& tunnel = comparison.tunnel;
@@ -60,7 +53,13 @@ std::vector<AchievedRow> achieved_rows(const Comparisons& comparisons,
                                             : "not reliable";
     row.reasons = comparison.bone.reasons;
     const auto plan = planned.find(key);
-    if (tunnel.is_found && (plan == planned.end() || !is_of(tunnel, plan->second))) {
+    const bool is_of_plan = plan != planned.end() && postop::is_against(tunnel, plan->second);
+    if (const auto place = places.find(key); place != places.end() && tunnel.is_found && is_of_plan) {
+      row.offset += ": " + postop::off_in_words(place->second);
+      row.grid = postop::grid_in_words(place->second);
+      row.wall = postop::wall_in_words(place->second);
+    }
+    if (tunnel.is_found && !is_of_plan) {
       row.severity = widgets::Severity::Caution;
       row.verdict = "of an earlier plan";
       row.reasons.insert(row.reasons.begin(), "the plan was changed since: compare again");

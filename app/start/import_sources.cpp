@@ -44,20 +44,8 @@ ImportSource source_of(const fs::path& root, const images::ImageSeries& series) 
   source.series = series;
   // A file that is no DICOM is a volume of its own; a DICOM series is read from the folder by its UID.
   source.source = series.uid.empty() && !series.files.empty() ? series.files.front() : root;
-  source.title = series.modality.empty() ? series.format : series.modality;
-  if (!series.number.empty()) source.title += " series " + series.number;
-  if (!series.description.empty())
-    source.title += ": " + series.description;
-  else if (series.uid.empty() && !series.files.empty())
-    source.title += ": " + series.files.front().filename().string();
-  source.detail = std::to_string(series.image_count) + (series.image_count == 1 ? " image" : " images");
-  if (series.size.minCoeff() > 0) {
-    source.detail +=
-        files::format(", %d \u00D7 %d \u00D7 %d", series.size.x(), series.size.y(), series.size.z());
-    if (series.spacing_mm.minCoeff() > 0)
-      source.detail += files::format(" voxels of %.2g \u00D7 %.2g \u00D7 %.2g mm", series.spacing_mm.x(),
-                                     series.spacing_mm.y(), series.spacing_mm.z());
-  }
+  source.title = images::title_of(series);
+  source.detail = images::detail_of(series);
   source.refusal = series.refusal;
   source.warnings = series.warnings;
   return source;

@@ -150,6 +150,26 @@ SeriesList find_series(const fs::path& source, const VolumeFileOptions& options)
   return list;
 }
 
+std::string title_of(const ImageSeries& series) {
+  std::string title = series.modality.empty() ? series.format : series.modality;
+  if (!series.number.empty()) title += " series " + series.number;
+  if (!series.description.empty())
+    title += ": " + series.description;
+  else if (series.uid.empty() && !series.files.empty())
+    title += ": " + series.files.front().filename().string();
+  return title;
+}
+
+std::string detail_of(const ImageSeries& series) {
+  std::string detail = std::to_string(series.image_count) + (series.image_count == 1 ? " image" : " images");
+  if (series.size.minCoeff() <= 0) return detail;
+  detail += files::format(", %d \u00D7 %d \u00D7 %d", series.size.x(), series.size.y(), series.size.z());
+  if (series.spacing_mm.minCoeff() > 0)
+    detail += files::format(" voxels of %.2g \u00D7 %.2g \u00D7 %.2g mm", series.spacing_mm.x(),
+                            series.spacing_mm.y(), series.spacing_mm.z());
+  return detail;
+}
+
 Thumbnail thumbnail_of(const ImageSeries& series, int longest_side) {
   if (series.files.empty()) throw InvalidInput("the series has no files");
   if (longest_side < 1 || longest_side > 4096) throw InvalidInput("a thumbnail has 1 to 4096 pixels a side");

@@ -35,6 +35,11 @@ struct ImageSeries {
   [[nodiscard]] bool is_readable() const { return refusal.empty(); }
 };
 
+// "CT series 3: Knee 0.6 bone"; of what has no description its file's name.
+[[nodiscard]] std::string title_of(const ImageSeries& series);
+// "400 images, 512 x 512 x 400 voxels of 0.4 x 0.4 x 0.6 mm", with signs of multiplication.
+[[nodiscard]] std::string detail_of(const ImageSeries& series);
+
 struct SkippedFile {
   std::filesystem::path file;
   std::string reason;  // without the file's name: "is no image", "byte 312: broken or cut off: ..."

@@ -105,8 +105,23 @@ std::map<tunnels::TunnelKey, Comparison> read_achieved_file(const std::filesyste
   return comparisons;
 }
 
+void put_place(ordered_json& node, const AchievedPlace& place) {
+  node["off_plan"] = {{"anterior_mm", place.off_mm.x()},
+                      {"proximal_mm", place.off_mm.y()},
+                      {"lateral_mm", place.off_mm.z()},
+                      {"axes_from", landmarks::to_text(place.axes_from)}};
+  node["grid"] = ordered_json::array();
+  for (const AchievedPlace::Share& share : place.grid)
+    node["grid"].push_back({{"name", share.name},
+                            {"planned_percent", share.planned_percent},
+                            {"achieved_percent", share.achieved_percent}});
+  node["wall_mm"] = number(place.wall_mm.has_value(), place.wall_mm.value_or(0));
+  node["planned_wall_mm"] = number(place.planned_wall_mm.has_value(), place.planned_wall_mm.value_or(0));
+}
+
 void write_achieved_file(const std::filesystem::path& file,
-                         const std::map<tunnels::TunnelKey, Comparison>& comparisons) {
+                         const std::map<tunnels::TunnelKey, Comparison>& comparisons,
+                         const std::map<tunnels::TunnelKey, AchievedPlace>& places) {
   ordered_json document;
   document["format"] = "arthronaut.achieved";
   document["version"] = 1;
@@ -115,6 +130,8 @@ void write_achieved_file(const std::filesystem::path& file,
   std::set<bones::BoneKind> told;
   for (const auto& [key, comparison] : comparisons) {
     document["tunnels"].push_back(tunnel_json(key, comparison.tunnel));
+    if (const auto place = places.find(key); place != places.end())
+      put_place(document["tunnels"].back(), place->second);
     if (told.insert(key.bone).second) document["bones"].push_back(bone_json(key.bone, comparison.bone));
   }
   files::write_json(file, document);

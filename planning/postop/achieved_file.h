@@ -2,20 +2,28 @@
 //
 // Numbers of a tunnel or a bone that was not found are null; its "reliable" is false and its "reasons" say
 // why. Beside what was asked for: "comes_out", one sigma of entry and direction, "widths" along the tunnel
-// and the share of metal in it; of a bone how much of its surface was seen and lies on an edge.
-// A tunnel of one bundle has "bundle", am or pl; a bone with two stands there once, as the first found it.
+// and the share of metal in it; of a bone how much of its surface was seen and lies on an edge. Where the
+// place is given: "off_plan", the entry's way from the planned one along the bone's axes, "grid" in percent,
+// "wall_mm" and "planned_wall_mm". These are for other programs; they follow from the bone and are not read
+// back. A tunnel of one bundle has "bundle", am or pl; a bone with two stands there once, as the first found
+// it.
 #pragma once
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 
+#include "planning/postop/achieved_place.h"
 #include "planning/postop/comparison.h"
 
 namespace arthronaut::postop {
 
 // Atomic; "-" is standard output. Throws IoError; nothing is written then.
 void write_achieved_file(const std::filesystem::path& file,
-                         const std::map<tunnels::TunnelKey, Comparison>& comparisons);
+                         const std::map<tunnels::TunnelKey, Comparison>& comparisons,
+                         const std::map<tunnels::TunnelKey, AchievedPlace>& places = {});
+// Adds the keys of a place to those of its tunnel.
+void put_place(nlohmann::ordered_json& node, const AchievedPlace& place);
 
 // What was written, back; numbers of what was not found stay as they begin. Throws IoError or InvalidInput.
 [[nodiscard]] std::map<tunnels::TunnelKey, Comparison> read_achieved_file(const std::filesystem::path& file);

@@ -55,6 +55,13 @@ AchievedTunnel told(const DrilledTunnel& drilled, const FoundBone& bone, const t
 
 }  // namespace
 
+bool is_against(const AchievedTunnel& achieved, const tunnels::Tunnel& plan) {
+  constexpr double kRounded_mm = 0.01, kRounded_rad = 1e-3;
+  return std::abs((achieved.tunnel.entry_mm - plan.entry_mm).norm() - achieved.offset_mm) < kRounded_mm &&
+         std::abs(geometry::angle_between_rad(achieved.tunnel.direction, plan.direction) -
+                  achieved.angle_rad) < kRounded_rad;
+}
+
 struct PostopImages::Prepared {
   const images::Volume& volume;
   VolumeSampler sampler;

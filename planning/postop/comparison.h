@@ -53,6 +53,9 @@ struct AchievedTunnel {
   std::vector<std::string> reasons = {"compare was not called"};  // why it is not reliable
 };
 
+// Whether the differences are those to this plan, and not to one of before: to what files round.
+[[nodiscard]] bool is_against(const AchievedTunnel& achieved, const tunnels::Tunnel& plan);
+
 struct AchievedBone {
   bool is_found = false;  // false: the pose is meaningless
   geometry::RigidTransform plan_from_postop;

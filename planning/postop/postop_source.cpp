@@ -85,6 +85,21 @@ images::Volume volume_of_mesh(const std::filesystem::path& source) {
 
 }  // namespace
 
+std::vector<images::ImageSeries> comparable_series(const std::filesystem::path& source,
+                                                   const std::function<void(double)>& on_progress) {
+  if (!images::is_volume_source(source)) return {};
+  images::VolumeFileOptions options;
+  options.on_progress = on_progress;
+  std::vector<images::ImageSeries> series = images::find_series(source, options).series;
+  // A scout has one image.
+  std::erase_if(series, [](const images::ImageSeries& one) {
+    return !one.is_readable() || one.uid.empty() || one.modality != "CT" || one.size.z() < 2;
+  });
+  std::stable_sort(series.begin(), series.end(),
+                   [](const auto& a, const auto& b) { return a.spacing_mm.z() < b.spacing_mm.z(); });
+  return series;
+}
+
 images::Volume read_postop(const std::filesystem::path& source, const PostopSourceOptions& options) {
   if (!std::filesystem::exists(source)) throw IoError(source, "does not exist");
   const bool is_mesh = bones::is_mesh_file(source) && !std::filesystem::is_directory(source);

@@ -5,7 +5,9 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "planning/images/series_list.h"
 #include "planning/images/volume.h"
 
 namespace arthronaut::postop {
@@ -15,6 +17,11 @@ struct PostopSourceOptions {
   std::set<int> labels = {};  // label maps: those that are bone; empty: all but 0
   std::function<void(double fraction)> on_progress = nullptr;  // of reading
 };
+
+// Of a folder or a disc from a hospital, what may be compared: the CTs that can be opened, the finest slices
+// first. Empty: there is none, or the source holds no DICOM. Throws as images::find_series().
+[[nodiscard]] std::vector<images::ImageSeries> comparable_series(
+    const std::filesystem::path& source, const std::function<void(double fraction)>& on_progress = nullptr);
 
 // A CT as it is. A label map, or a mesh of one drilled bone (closed, or with holes that can be mended), as a
 // picture of it without noise: 1000 HU where there is bone, 0 HU elsewhere. Throws IoError, InvalidInput

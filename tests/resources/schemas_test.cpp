@@ -233,11 +233,14 @@ TEST_F(Schemas, DescribeWhatWasAchieved) {
   postop::Comparison found;
   found.bone.is_found = found.tunnel.is_found = true;
   found.tunnel.widths = {{.from_entry_mm = 2, .diameter_mm = 9.5}};
-  postop::write_achieved_file(file, {{bones::BoneKind::Femur, found}, {bones::BoneKind::Tibia, {}}});
+  postop::write_achieved_file(
+      file, {{bones::BoneKind::Femur, found}, {bones::BoneKind::Tibia, {}}},
+      {{bones::BoneKind::Femur, {.grid = {{"High to low", 35, 38}}, .wall_mm = 1.5}}});
   const json written = read(file);
   EXPECT_EQ(violations_of(written, "achieved"), "");
   EXPECT_TRUE(written.at("tunnels").at(1).at("entry_mm").is_null());
-  for (const char* key : {"/tunnels/0/offset_mm", "/tunnels/1/reasons", "/bones/0/rms_mm", "/bones"}) {
+  for (const char* key : {"/tunnels/0/offset_mm", "/tunnels/1/reasons", "/tunnels/0/grid/0/planned_percent",
+                          "/bones/0/rms_mm", "/bones"}) {
     json broken = written;
     broken[json::json_pointer(key)] = "none";
     EXPECT_NE(violations_of(broken, "achieved"), "") << key;

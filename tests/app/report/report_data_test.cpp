@@ -1,6 +1,7 @@
 // The same report for other programs, and of images after the operation; the same bytes each time.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -104,13 +105,19 @@ TEST_F(Report, ComparesWithImagesAfterTheOperation) {
   std::string text = pdf_text();
   for (const char* const part :
        {"CT after the operation", "1.37 mm", "2.46 mm", "0.08", "8.4 mm; planned", "8.4 to 9.6 mm",
-        "27.3 mm, a socket", "0.21 mm", "37 %", "NOT RELIABLE", "tibia: metal hides most of the wall"})
+        "27.3 mm, a socket", "Which way", "deep to shallow", "Least wall", "0.21 mm", "37 %", "NOT RELIABLE",
+        "tibia: metal hides most of the wall"})
     expect_contains(text, part);
   const auto json_file = pdf().parent_path() / "report.json";
   write_report(knee_folder(), json_file);
   const auto json = nlohmann::json::parse(files::read_text(json_file)).at("postoperative");
   ASSERT_EQ(json.size(), 2U);
   EXPECT_NEAR(json[0].at("offset_mm").get<double>(), 1.37, 1e-9);
+  EXPECT_EQ(json[0].at("grid").at(0).at("name"), "Deep to shallow");
+  const auto& off = json[0].at("off_plan");
+  EXPECT_NEAR(std::hypot(off.at("anterior_mm").get<double>(), off.at("proximal_mm").get<double>(),
+                         off.at("lateral_mm").get<double>()),
+              1.37, 1e-9);
   EXPECT_TRUE(json[0].at("reliable").get<bool>());
   EXPECT_FALSE(json[1].at("reliable").get<bool>());
   EXPECT_EQ(json[1].at("reasons").at(0), "metal hides most of the wall");

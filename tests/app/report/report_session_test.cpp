@@ -54,6 +54,9 @@ TEST_F(Report, ComparesPlannedAndAchieved) {
   expect_contains(text, "1.25 mm");  // plan to measured
   expect_contains(text, "2.00 mm");  // plan to truth
   expect_contains(text, "0.75 mm");  // measured to truth
+  expect_contains(text, "As navigation measured it: entry ");
+  expect_contains(text, "high to low");
+  expect_contains(text, "least wall");
   expect_contains(text, "water");
   expect_contains(text, "CUT SHORT: the video stopped: video.mkv: disk full");
 }
@@ -97,6 +100,28 @@ TEST_F(Report, NamesTheTunnelOfTheOtherBundleThatWasDrilledInASessionBefore) {
   record(pl, "simulation");
   write_report(knee_folder(), pdf());
   EXPECT_EQ(pdf_text().find("Planned against achieved: femur AM"), std::string::npos);
+}
+
+// A session that a disk has spoilt takes no report away: it is named with its reason, and the one before it
+// is told of. Its name holds a date, which a report without names does not.
+TEST_F(Report, NamesASessionThatCannotBeRead) {
+  (void)text_of_session("live", {});
+  (void)text_of_session("simulation", {});
+  const std::filesystem::path newest = cases::session_folders(knee_folder()).back();
+  files::write_atomically(newest / "session.sqlite", "spoilt");
+  write_report(knee_folder(), pdf());
+  std::string text = pdf_text();
+  expect_contains(text, "NOT READABLE, and not in this report: the session " + newest.filename().string());
+  expect_contains(text, "live: a camera, as it came");
+  const auto json_file = pdf().parent_path() / "report.json";
+  write_report(knee_folder(), json_file);
+  const auto json = nlohmann::json::parse(files::read_text(json_file));
+  EXPECT_EQ(json.at("unreadable_sessions").at(0).at("id"), newest.filename().string());
+  EXPECT_EQ(json.at("session").at("source_kind"), "live");
+  write_report(knee_folder(), pdf(), {.is_deidentified = true});
+  text = pdf_text();
+  expect_contains(text, "NOT READABLE, and not in this report: a session of this case");
+  EXPECT_EQ(text.find(newest.filename().string()), std::string::npos);
 }
 
 // Hazard 2: nobody takes the figures of a simulation for a patient's.

@@ -47,12 +47,20 @@ TEST(PostopWords, SayWhatWasFoundAndHowSure) {
   plan.entry_mm = Eigen::Vector3d(1, 2, 3) + 1.23 * Eigen::Vector3d::UnitX();
   plan.direction =
       Eigen::AngleAxisd(geometry::rad_from_deg(2.5), Eigen::Vector3d::UnitX()) * Eigen::Vector3d(0, 0.6, 0.8);
-  auto rows = achieved_rows(some(), {{bones::BoneKind::Femur, plan}}, {{bones::BoneKind::Femur, 35}});
+  const Places places{{bones::BoneKind::Femur,
+                       {.off_mm = {-1.2, 0.3, 0},
+                        .grid = {{"High to low", 35, 38.2}},
+                        .planned_wall_mm = 2,
+                        .wall_mm = 1.6}}};
+  auto rows = achieved_rows(some(), {{bones::BoneKind::Femur, plan}}, {{bones::BoneKind::Femur, 35}}, places);
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[0].tunnel, "femur");
   EXPECT_EQ(rows[0].verdict, "reliable");
   EXPECT_EQ(rows[0].severity, widgets::Severity::Good);
   EXPECT_THAT(rows[0].offset, HasSubstr("1.2 mm \u00B1 0.2"));
+  EXPECT_THAT(rows[0].offset, HasSubstr("1.2 mm posterior, 0.3 mm proximal"));
+  EXPECT_EQ(rows[0].grid, "high to low 38.2 %, planned 35.0 %");
+  EXPECT_EQ(rows[0].wall, "1.6 mm; planned 2.0 mm");
   EXPECT_THAT(rows[0].angle, HasSubstr("2.5\u00B0 \u00B1 0.3"));
   EXPECT_THAT(rows[0].diameter, HasSubstr("9.0 to 9.9 mm, widest 10 mm from the entry; planned 9.0 mm"));
   EXPECT_THAT(rows[0].length, HasSubstr("36.5 mm; planned 35.0 mm"));
@@ -63,9 +71,10 @@ TEST(PostopWords, SayWhatWasFoundAndHowSure) {
 
   // The numbers are of the plan that was compared. Another one, half a millimetre away, has none yet.
   plan.entry_mm.x() += 0.5;
-  rows = achieved_rows(some(), {{bones::BoneKind::Femur, plan}}, {{bones::BoneKind::Femur, 35}});
+  rows = achieved_rows(some(), {{bones::BoneKind::Femur, plan}}, {{bones::BoneKind::Femur, 35}}, places);
   EXPECT_EQ(rows[0].verdict, "of an earlier plan");
   EXPECT_EQ(rows[0].severity, widgets::Severity::Caution);
+  EXPECT_EQ(rows[0].grid + rows[0].wall, "");
 }
 
 // What is in the numbers, and what is in none of them.

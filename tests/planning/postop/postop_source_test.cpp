@@ -11,6 +11,7 @@
 #include "planning/images/volume_writer.h"
 #include "tests/message_of.h"
 #include "tests/planning/geometry/shapes.h"
+#include "tests/planning/images/dicom_series_form.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut::postop {
@@ -65,6 +66,30 @@ TEST_F(PostopSource, WhatShowsNoTunnelIsRefused) {
   std::ofstream(folder_ / "notes.txt") << "no images";
   EXPECT_THAT(refusal("notes.txt"), HasSubstr("notes.txt"));
   EXPECT_THROW((void)read_postop(folder_ / "none.nrrd"), IoError);
+}
+
+// A hospital's folder: the scan by two kernels, a scout, a report. Both CTs may be compared, the finer first;
+// the scout is none, and neither is a volume that is no DICOM.
+TEST_F(PostopSource, SaysWhichCtsOfAFolderMayBeCompared) {
+  const auto write = [&](const std::string& uid, double step_mm, int slices) {
+    test::DicomSeriesForm form;
+    form.origin.series_uid = uid;
+    images::Volume volume = small("CT");
+    volume.size.z() = slices;
+    volume.values.resize(static_cast<std::size_t>(16 * slices), 0.0F);
+    volume.lps_from_index.linear().diagonal() = Eigen::Vector3d(0.4, 0.4, step_mm);
+    test::write_dicom_series(folder_ / uid, volume, form);
+  };
+  write("1.2.3.1", 1.0, 4);
+  write("1.2.3.2", 0.6, 4);
+  write("1.2.3.3", 0.5, 1);
+  std::ofstream(folder_ / "report.txt") << "no image";
+  const auto series = comparable_series(folder_.path());
+  ASSERT_EQ(series.size(), 2U);
+  EXPECT_EQ(series[0].uid, "1.2.3.2");
+  EXPECT_EQ(series[1].uid, "1.2.3.1");
+  EXPECT_TRUE(comparable_series(folder_ / "report.txt").empty());
+  EXPECT_EQ(read_postop(folder_.path(), {.series = series[0].uid}).spacing_mm().z(), 0.6);
 }
 
 }  // namespace

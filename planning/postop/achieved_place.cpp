@@ -1,0 +1,97 @@
+#include "planning/postop/achieved_place.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "planning/files/format.h"
+
+namespace arthronaut::postop {
+
+namespace {
+
+using Eigen::Vector3d;
+using landmarks::AnatomicalDirection;
+
+std::vector<AchievedPlace::Share> shares(const Vector3d& planned, const Vector3d& achieved,
+                                         const tunnels::PlanSurroundings& surroundings) {
+  if (const auto& quadrant = surroundings.quadrant) {
+    const auto from = quadrant->percent_of(planned), to = quadrant->percent_of(achieved);
+    return {{"Deep to shallow", from.deep_shallow, to.deep_shallow},
+            {"High to low", from.high_low, to.high_low}};
+  }
+  if (const auto& plateau = surroundings.plateau) {
+    const auto from = plateau->percent_of(planned), to = plateau->percent_of(achieved);
+    return {{"Anterior to posterior", from.anterior_posterior, to.anterior_posterior},
+            {"Medial to lateral", from.medial_lateral, to.medial_lateral}};
+  }
+  return {};
+}
+
+}  // namespace
+
+AchievedPlace place_of(const tunnels::Tunnel& drilled, double depth_mm, const tunnels::Tunnel& plan,
+                       const tunnels::PlanSurroundings& surroundings) {
+  AchievedPlace place;
+  if (surroundings.axes) {
+    const Vector3d off = drilled.entry_mm - plan.entry_mm;
+    const landmarks::AnatomicalAxes& axes = *surroundings.axes;
+    place.off_mm = {off.dot(axes.anterior), off.dot(axes.proximal), off.dot(axes.lateral)};
+    place.axes_from = axes.origin;
+  }
+  place.grid = shares(plan.entry_mm, drilled.entry_mm, surroundings);
+  if (!surroundings.surface) return place;
+  const auto planned = tunnels::measure(plan, *surroundings.surface),
+             measured = tunnels::measure(drilled, *surroundings.surface);
+  if (planned.enters_bone) place.planned_wall_mm = planned.wall_mm;
+  if (measured.enters_bone && measured.thinnest_station_mm <= depth_mm) place.wall_mm = measured.wall_mm;
+  return place;
+}
+
+AchievedPlace place_of(const AchievedTunnel& achieved, const tunnels::Tunnel& plan,
+                       const tunnels::PlanSurroundings& surroundings) {
+  constexpr double kOut = std::numeric_limits<double>::infinity();
+  return place_of(achieved.tunnel, achieved.comes_out ? kOut : achieved.length_mm, plan, surroundings);
+}
+
+std::string off_in_words(const AchievedPlace& place) {
+  constexpr double kNothing_mm = 0.05;  // rounds to 0.0
+  std::array<std::pair<AnatomicalDirection, double>, 3> ways{
+      {{AnatomicalDirection::Anterior, place.off_mm.x()},
+       {AnatomicalDirection::Proximal, place.off_mm.y()},
+       {AnatomicalDirection::Lateral, place.off_mm.z()}}};
+  std::stable_sort(ways.begin(), ways.end(),
+                   [](const auto& a, const auto& b) { return std::abs(a.second) > std::abs(b.second); });
+  std::string words;
+  for (const auto& [direction, mm] : ways) {
+    if (std::abs(mm) < kNothing_mm) continue;
+    words += (words.empty() ? "" : ", ") +
+             files::format("%.1f mm %s", std::abs(mm), std::string(to_text(direction, mm > 0)).c_str());
+  }
+  if (words.empty()) return "in place";
+  return place.axes_from == landmarks::AnatomicalAxes::Origin::FromScanner
+             ? words + " (by " + std::string(to_text(place.axes_from)) + ")"
+             : words;
+}
+
+std::string grid_in_words(const AchievedPlace& place) {
+  std::string words;
+  for (const AchievedPlace::Share& share : place.grid) {
+    std::string name(share.name);
+    name[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(name[0])));
+    words += (words.empty() ? "" : "; ") + files::format("%s %.1f %%, planned %.1f %%", name.c_str(),
+                                                         share.achieved_percent, share.planned_percent);
+  }
+  return words;
+}
+
+std::string wall_in_words(const AchievedPlace& place) {
+  if (!place.wall_mm) return {};
+  return files::format("%.1f mm", *place.wall_mm) +
+         (place.planned_wall_mm ? files::format("; planned %.1f mm", *place.planned_wall_mm) : "");
+}
+
+}  // namespace arthronaut::postop

@@ -1,0 +1,47 @@
+// Where a drilled tunnel lies beside the planned one, in the words that surgeons use: which way its entry is
+// off, where both entries are in the bone's grid, and how much bone both leave beside them.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "planning/postop/comparison.h"
+#include "planning/tunnels/plan_checks.h"
+
+namespace arthronaut::postop {
+
+struct AchievedPlace {
+  // Of the drilled entry from the planned one: anterior, proximal and lateral, along the bone's own axes.
+  Eigen::Vector3d off_mm = Eigen::Vector3d::Zero();
+  landmarks::AnatomicalAxes::Origin axes_from = landmarks::AnatomicalAxes::Origin::FromScanner;
+  struct Share {
+    std::string_view name;  // "Deep to shallow", as the checks of a plan call it
+    double planned_percent = 0, achieved_percent = 0;
+  };
+  std::vector<Share> grid = {};  // empty: the landmarks give none
+  // The least bone beside either. Empty: it misses the bone; of a socket also where it is thinnest only
+  // beyond the socket's end.
+  std::optional<double> planned_wall_mm = {}, wall_mm = {};
+};
+
+// depth_mm: how far it was drilled, from its entry; infinite: out of the bone, or nobody knows. surroundings:
+// of the bone of both, with its axes and its surface.
+[[nodiscard]] AchievedPlace place_of(const tunnels::Tunnel& drilled, double depth_mm,
+                                     const tunnels::Tunnel& plan,
+                                     const tunnels::PlanSurroundings& surroundings);
+// Precondition: the tunnel was found.
+[[nodiscard]] AchievedPlace place_of(const AchievedTunnel& achieved, const tunnels::Tunnel& plan,
+                                     const tunnels::PlanSurroundings& surroundings);
+
+// "1.9 mm proximal, 0.6 mm posterior", the farthest first, what rounds to nothing left out; "in place" where
+// all does. Axes that are only the scanner's are named.
+[[nodiscard]] std::string off_in_words(const AchievedPlace& place);
+// "deep to shallow 31.2 %, planned 28.4 %; high to low ..."; empty without a grid.
+[[nodiscard]] std::string grid_in_words(const AchievedPlace& place);
+// "1.8 mm; planned 2.6 mm"; empty where the drilled one's is not known.
+[[nodiscard]] std::string wall_in_words(const AchievedPlace& place);
+
+}  // namespace arthronaut::postop

@@ -1,0 +1,97 @@
+// A tunnel put beside its plan by known ways: told by the bone's own axes, its grid and the bone beside it.
+#include "planning/postop/achieved_place.h"
+
+#include <gtest/gtest.h>
+
+#include "planning/phantom/phantom_knee.h"
+
+namespace arthronaut::postop {
+namespace {
+
+class AchievedPlaceTest : public ::testing::Test {
+ protected:
+  [[nodiscard]] static tunnels::PlanSurroundings around(const bones::Bone& bone,
+                                                        const landmarks::Landmarks& landmarks) {
+    return tunnels::surroundings_of(bone.mesh, bone.kind, landmarks, bones::Side::Right,
+                                    std::make_shared<const geometry::Surface>(bone.mesh));
+  }
+  [[nodiscard]] static AchievedTunnel drilled(const tunnels::Tunnel& tunnel) {
+    AchievedTunnel achieved;
+    achieved.is_found = achieved.comes_out = true;
+    achieved.tunnel = tunnel;
+    return achieved;
+  }
+  const phantom::PhantomKnee knee_ = phantom::make_phantom_knee({.edge_length_mm = 3});
+  const tunnels::PlanSurroundings femur_ = around(knee_.femur, knee_.femur_landmarks);
+};
+
+TEST_F(AchievedPlaceTest, SaysWhichWayTheEntryIsOff) {
+  AchievedTunnel achieved = drilled(knee_.femoral_tunnel);
+  const landmarks::AnatomicalAxes& axes = femur_.axes.value();
+  achieved.tunnel.entry_mm += -1.5 * axes.anterior + 2.5 * axes.proximal + 0.02 * axes.lateral;
+  AchievedPlace place = place_of(achieved, knee_.femoral_tunnel, femur_);
+  EXPECT_LT((place.off_mm - Eigen::Vector3d(-1.5, 2.5, 0.02)).norm(), 1e-9);
+  EXPECT_EQ(off_in_words(place), "2.5 mm proximal, 1.5 mm posterior");
+  place.axes_from = landmarks::AnatomicalAxes::Origin::FromScanner;
+  EXPECT_EQ(off_in_words(place), "2.5 mm proximal, 1.5 mm posterior (by the scanner's axes)");
+  EXPECT_EQ(off_in_words({}), "in place");
+}
+
+// A tenth of the grid's depth shallower and a twentieth of its height lower; on the tibia a tenth posterior.
+TEST_F(AchievedPlaceTest, SaysWhereBothAreInTheGrid) {
+  const landmarks::FemoralQuadrant& quadrant = femur_.quadrant.value();
+  AchievedTunnel achieved = drilled(knee_.femoral_tunnel);
+  achieved.tunnel.entry_mm +=
+      0.1 * quadrant.depth_mm * quadrant.shallow + 0.05 * quadrant.height_mm * quadrant.low;
+  AchievedPlace place = place_of(achieved, knee_.femoral_tunnel, femur_);
+  ASSERT_EQ(place.grid.size(), 2U);
+  const auto planned = quadrant.percent_of(knee_.femoral_tunnel.entry_mm);
+  EXPECT_NEAR(place.grid[0].planned_percent, planned.deep_shallow, 1e-9);
+  EXPECT_NEAR(place.grid[0].achieved_percent, planned.deep_shallow + 10, 1e-9);
+  EXPECT_NEAR(place.grid[1].achieved_percent, planned.high_low + 5, 1e-9);
+  place.grid = {{"Deep to shallow", 28.4, 31.24}};
+  EXPECT_EQ(grid_in_words(place), "deep to shallow 31.2 %, planned 28.4 %");
+
+  const tunnels::PlanSurroundings tibia = around(knee_.tibia, knee_.tibia_landmarks);
+  achieved = drilled(knee_.tibial_tunnel);
+  achieved.tunnel.entry_mm += 0.1 * tibia.plateau.value().depth_mm * tibia.plateau->posterior;
+  place = place_of(achieved, knee_.tibial_tunnel, tibia);
+  ASSERT_EQ(place.grid.size(), 2U);
+  EXPECT_EQ(place.grid[0].name, "Anterior to posterior");
+  EXPECT_NEAR(place.grid[0].achieved_percent - place.grid[0].planned_percent, 10, 1e-9);
+  EXPECT_NEAR(place.grid[1].achieved_percent, place.grid[1].planned_percent, 1e-9);
+}
+
+// What a plan of that place and width would be said to leave. A socket that ends before the thin place leaves
+// nobody knows how much.
+TEST_F(AchievedPlaceTest, SaysHowMuchBoneIsLeftBesideIt) {
+  AchievedTunnel achieved = drilled(knee_.femoral_tunnel);
+  achieved.tunnel.diameter_mm += 1;
+  const auto planned = tunnels::measure(knee_.femoral_tunnel, *femur_.surface),
+             wider = tunnels::measure(achieved.tunnel, *femur_.surface);
+  const AchievedPlace place = place_of(achieved, knee_.femoral_tunnel, femur_);
+  EXPECT_EQ(place.planned_wall_mm, planned.wall_mm);
+  EXPECT_EQ(place.wall_mm, wider.wall_mm);
+  achieved.comes_out = false;
+  achieved.length_mm = wider.thinnest_station_mm + 0.1;
+  EXPECT_TRUE(place_of(achieved, knee_.femoral_tunnel, femur_).wall_mm);
+  achieved.length_mm = wider.thinnest_station_mm - 0.1;
+  const AchievedPlace socket = place_of(achieved, knee_.femoral_tunnel, femur_);
+  EXPECT_FALSE(socket.wall_mm);
+  EXPECT_EQ(wall_in_words(socket), "");
+  EXPECT_EQ(wall_in_words({.planned_wall_mm = 2.61, .wall_mm = 1.84}), "1.8 mm; planned 2.6 mm");
+}
+
+// Without landmarks there is no grid, and axes come from the bone's shape.
+TEST_F(AchievedPlaceTest, SaysNothingOfAGridThatIsNotThere) {
+  const auto shape_alone = around(knee_.femur, {});
+  AchievedTunnel achieved = drilled(knee_.femoral_tunnel);
+  achieved.tunnel.entry_mm += Eigen::Vector3d(0, 0, 1);
+  const AchievedPlace place = place_of(achieved, knee_.femoral_tunnel, shape_alone);
+  EXPECT_TRUE(place.grid.empty());
+  EXPECT_EQ(grid_in_words(place), "");
+  EXPECT_NEAR(place.off_mm.norm(), 1, 1e-9);
+}
+
+}  // namespace
+}  // namespace arthronaut::postop
