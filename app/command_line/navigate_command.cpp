@@ -324,7 +324,7 @@ void add_navigate_command(CLI::App& app, Context& context) {
       ->add_option("--pictures", arguments->pictures,
                    "How a live source's pictures are kept: as-they-came (a network stream's own packets; "
                    "lossless where "
-                   "it has none), lossless, or h264 (a tenth on the disk; replayed with a tolerance)")
+                   "it has none), lossless, or h264 (a sixth on the disk; replayed with a tolerance)")
       ->check(CLI::IsMember({"as-they-came", "lossless", "h264"}))
       ->capture_default_str();
   command

@@ -18,7 +18,7 @@ namespace arthronaut::recording {
 enum class PicturesAs {
   AsTheyCame,  // the stream's own packets, as they came over the network; what cannot be kept so: Lossless
   Lossless,    // Ut Video: luma to the last bit, colour for the eye
-  H264,        // a tenth of that on the disk; tracked again, poses differ slightly
+  H264,        // a sixth of that on the disk; tracked again, poses differ slightly
 };
 // "as they came", "lossless", "H.264".
 [[nodiscard]] std::string_view to_text(PicturesAs as);
