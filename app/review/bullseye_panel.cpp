@@ -17,14 +17,11 @@ struct Crossing {
   double right_mm = 0, up_mm = 0;
 };
 
-Crossing crossing_of(const guidance::GuidanceNumbers& numbers, const tunnels::Tunnel& plan,
-                     const landmarks::PlaneAxes& across) {
-  const Eigen::Vector3d ahead = plan.direction.normalized();
-  const double advance = numbers.guide_direction.dot(ahead);
-  if (std::abs(advance) < 1e-6) return {kShown_mm * 10, 0};
-  const double along = (plan.entry_mm - numbers.guide_point_mm).dot(ahead) / advance;
-  const Eigen::Vector3d off = numbers.guide_point_mm + along * numbers.guide_direction - plan.entry_mm;
-  const double to_the_right = ahead.cross(across.up).dot(across.side) > 0 ? 1 : -1;
+Crossing seen_along(const tunnels::Tunnel& plan, const guidance::GuidanceNumbers& numbers,
+                    const landmarks::PlaneAxes& across) {
+  const Eigen::Vector3d off =
+      guidance::crossing_of(numbers.guide_point_mm, numbers.guide_direction, plan) - plan.entry_mm;
+  const double to_the_right = plan.direction.cross(across.up).dot(across.side) > 0 ? 1 : -1;
   return {to_the_right * off.dot(across.side), off.dot(across.up)};
 }
 
@@ -39,7 +36,7 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Revie
       std::max(std::min(area.width / 2 - ui.theme.px(70), area.height / 2 - font->FontSize * 1.3F), 10.F);
   const ImVec2 center = area.center();
   const guidance::GuidanceNumbers& numbers = screen.frame().guidance;
-  const auto& plan = screen.review.plan.plan;
+  const auto& plan = screen.standing().plan.plan;
   if (!numbers.is_valid() || !plan) {
     draw.AddCircle(center, radius, widgets::kPanelEdge, 96, ui.theme.px(2));
     return widgets::text_centered(ui, area.inset(font->FontSize), ui.theme.strong, widgets::kQuietText,
@@ -61,7 +58,7 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Revie
   draw.AddText(font, font->FontSize, {center.x + radius + ui.theme.px(6), center.y - font->FontSize / 2},
                widgets::kQuietText, right.c_str());
 
-  Crossing at = crossing_of(numbers, *plan, across);
+  Crossing at = seen_along(*plan, numbers, across);
   const double far = std::hypot(at.right_mm, at.up_mm);
   const widgets::Severity severity = guidance_severity::severity_of_offset(numbers);
   if (far > kShown_mm) {  // on the rim: farther that way

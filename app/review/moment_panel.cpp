@@ -89,9 +89,9 @@ void draw_moment(const widgets::Ui& ui, const widgets::Rect& area, const ReviewS
     widgets::status_row(ui, widgets::Severity::Quiet, "No guidance",
                         std::string(guidance::to_text(at.guidance.state)));
   }
-  const auto& registration = review.session->registration;
-  if (!registration)
-    widgets::status_row(ui, widgets::Severity::Quiet, "Registration", "none");
+  const auto& registration = screen.standing().registration;
+  if (registration == nullptr)
+    widgets::status_row(ui, widgets::Severity::Quiet, "Registration", "none at this moment");
   else if (registration->reliable)
     widgets::status_row(ui, widgets::Severity::Good, "Registration",
                         "target " + widgets::plus_minus(registration->predicted_tre_mm) + " mm");

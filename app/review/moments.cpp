@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <utility>
 
 #include "navigation/operation/command.h"
 #include "navigation/operation/seen_drift.h"
@@ -82,8 +83,10 @@ Moment moment_of(const SessionEvent& event) {
 std::vector<Moment> moments_of(const std::vector<SessionEvent>& events,
                                const recording::SessionTimeline& timeline) {
   std::vector<Moment> moments;
+  std::optional<std::string> plan;  // in force: an operation says it again when its source starts
   for (const SessionEvent& event : events) {
     if (event.kind == recording::kOutcomeEvent || event.kind == recording::kLookEvent) continue;
+    if (event.kind == recording::kPlanEvent && std::exchange(plan, event.text) == event.text) continue;
     Moment moment = moment_of(event);
     moment.frame = timeline.at_index(event.after_frame);
     moments.push_back(std::move(moment));

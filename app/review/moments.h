@@ -25,7 +25,7 @@ struct Moment {
 };
 
 // In the order of the record. What the record holds for running it again alone (outcomes, second looks) is
-// left out. Preconditions: the timeline has frames.
+// left out, and so is a plan that was in force already. Preconditions: the timeline has frames.
 [[nodiscard]] std::vector<Moment> moments_of(const std::vector<recording::SessionEvent>& events,
                                              const recording::SessionTimeline& timeline);
 

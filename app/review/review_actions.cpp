@@ -217,7 +217,7 @@ void ReviewView::add_actions(widgets::Actions& actions) {
                GLFW_KEY_DOWN,
                0,
                false,
-               [this] { return chosen_ && *chosen_ + 1 < sessions_.size(); },
+               [this] { return chosen_ && *chosen_ + 1 < sessions_.folders().size(); },
                {},
                [this] { choose(*chosen_ + 1); }});
 }

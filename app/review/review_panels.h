@@ -22,6 +22,10 @@ struct ReviewScreen {
   [[nodiscard]] const recording::RecordedFrame& frame() const {
     return review.timeline->frame(playback.frame);
   }
+  // What guidance stood on at this moment.
+  [[nodiscard]] const Standing& standing() const {
+    return review.standing_at(review.timeline->frames()[playback.frame].index);
+  }
 };
 
 // Which part of the session the time line shows, as shares of its frames.

@@ -13,37 +13,38 @@ namespace arthronaut::review {
 
 namespace {
 
-// "0007-20261121-122356" as "7:  2026-11-21  12:23:56 UTC"; of older sessions, without a number, the date;
-// other names as they are.
-std::string date_text(const std::string& name) {
-  const std::int64_t number = cases::session_number(name);
-  const std::string date = number > 0 ? name.substr(name.find('-') + 1) : name;
-  const bool is_date =
-      date.size() >= 15 && date[8] == '-' && date.find_first_not_of("0123456789-") == std::string::npos;
-  if (!is_date) return name;
-  return (number > 0 ? std::to_string(number) + ":  " : "") + date.substr(0, 4) + "-" + date.substr(4, 2) +
-         "-" + date.substr(6, 2) + "  " + date.substr(9, 2) + ":" + date.substr(11, 2) + ":" +
-         date.substr(13) + " UTC";
+const char* no_frames_words(const SessionReview& review) {
+  return review.problems.empty()
+             ? "No frame was recorded in this session."
+             : "The frames of this session cannot be read. What is wrong stands on the left.";
+}
+
+// A video that is the source's own has a picture of every frame.
+bool was_kept(const recording::SessionOverview& session, std::int64_t frame) {
+  const auto& kept = session.pictures;
+  return kept.empty() || std::any_of(kept.begin(), kept.end(),
+                                     [frame](const auto& picture) { return picture.frame == frame; });
 }
 
 }  // namespace
 
 ReviewView::ReviewView(std::function<void()> make_current, std::function<void()> wake)
-    : wake_(std::move(wake)), pane_(make_current), postop_(make_current, wake_) {}
+    : wake_(std::move(wake)), pane_(make_current), sessions_(wake_), postop_(make_current, wake_) {}
 
 mode::ModeTitle ReviewView::title() const {
   return {"review", "mode.review", "Review", "What happened", GLFW_KEY_F3};
 }
 
 std::optional<sources::SourceKind> ReviewView::source_kind() const {
-  return has_frames() ? std::optional(sources::SourceKind::Recording) : std::nullopt;
+  // A CT is nobody's recording.
+  return has_frames() && !shows_postop_ ? std::optional(sources::SourceKind::Recording) : std::nullopt;
 }
 
 void ReviewView::case_opened(const mode::OpenCase& opened) {
   model_ = opened.model;
   case_folder_ = opened.folder;
   read_only_ = opened.read_only;
-  sessions_.clear();
+  sessions_.open(case_folder_);
   chosen_.reset();
   open_.reset();
   opens_for_another_case_ = opening_.valid();
@@ -54,25 +55,24 @@ void ReviewView::case_opened(const mode::OpenCase& opened) {
 }
 
 void ReviewView::enter() {
-  sessions_ = cases::session_folders(case_folder_);
-  std::reverse(sessions_.begin(), sessions_.end());  // newest first
-  if (sessions_.empty()) return;
+  sessions_.read();
+  const auto& folders = sessions_.folders();
+  if (folders.empty()) return;
   // What was chosen keeps its place in the list as new sessions come.
-  const auto same =
-      open_ ? std::find(sessions_.begin(), sessions_.end(), open_->review.folder) : sessions_.end();
-  if (same != sessions_.end())
-    chosen_ = static_cast<std::size_t>(same - sessions_.begin());
+  const auto same = open_ ? std::find(folders.begin(), folders.end(), open_->review.folder) : folders.end();
+  if (same != folders.end())
+    chosen_ = static_cast<std::size_t>(same - folders.begin());
   else
     choose(0);
 }
 
 void ReviewView::choose(std::size_t session) {
-  if (session >= sessions_.size() || opening_.valid()) return;
+  if (session >= sessions_.folders().size() || opening_.valid()) return;
   chosen_ = session;
   open_.reset();
   note_ = {};
   notice_.clear();
-  opening_ = std::async(std::launch::async, [folder = sessions_[session], wake = wake_] {
+  opening_ = std::async(std::launch::async, [folder = sessions_.folders()[session], wake = wake_] {
     const struct Waker {
       const std::function<void()>& wake;
       ~Waker() { wake(); }
@@ -114,7 +114,7 @@ void ReviewView::take_opened() {
 void ReviewView::look_at_tunnel() {
   const bones::BoneKind bone = open_->review.session->header.bone;
   if (!model_->has_bone(bone)) return;
-  const std::optional<tunnels::Tunnel>& tunnel = open_->review.plan.plan;
+  const std::optional<tunnels::Tunnel>& tunnel = open_->standing().plan.plan;
   const geometry::Bounds bounds = model_->bounds(bone);
   pane_.look(tunnel ? scene::orbited(
                           scene::look_along(tunnel->direction.normalized(), tunnel->entry_mm, 190, {0, 0, 1}),
@@ -127,7 +127,8 @@ bool ReviewView::has_frames() const { return open_ && !open_->timeline().frames(
 bool ReviewView::runs_today() const { return open_ && open_->today && !open_->today->has_ended(); }
 
 bool ReviewView::is_busy() const {
-  return opening_.valid() || runs_today() || postop_.is_running() || (open_ && open_->playback.plays);
+  return opening_.valid() || sessions_.is_busy() || runs_today() || postop_.is_running() ||
+         (open_ && open_->playback.plays);
 }
 
 ReviewScreen ReviewView::screen() const {
@@ -147,17 +148,18 @@ void ReviewView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("review_page", shows_postop_ ? "achieved" : "session");
   if (shows_postop_) return postop_.draw(ui, rest);
   if (!has_frames()) {
-    const char* text = sessions_.empty()  ? "No session yet. Record one in Navigate."
-                       : opening_.valid() ? "Opening the session"
-                       : !notice_.empty() ? "This session cannot be read. The reason stands below."
-                       : open_            ? "This session has no pictures."
-                                          : "Choose a session.";
+    const char* text = sessions_.folders().empty() ? "No session yet. Record one in Navigate."
+                       : opening_.valid()          ? "Opening the session"
+                       : !notice_.empty()          ? "This session cannot be read. The reason stands below."
+                       : open_                     ? no_frames_words(open_->review)
+                                                   : "Choose a session.";
     widgets::text_centered(ui, rest, ui.theme.title, widgets::kQuietText, text);
     return;
   }
   draw_origin(ui, rest.cut_top(ui.theme.px(58), gap));
-  const widgets::Rect line = rest.cut_bottom(ui.theme.px(330), gap);
+  // The numbers first: what was achieved stands below the moment's, and is to be read without scrolling.
   const widgets::Rect numbers = rest.cut_right(ui.theme.px(430), gap);
+  const widgets::Rect line = rest.cut_bottom(ui.theme.px(330), gap);
   const widgets::Rect picture = rest.cut_left((rest.width - gap) / 2, gap);
   draw_picture(ui, picture);
   draw_scene(ui, rest);
@@ -181,16 +183,20 @@ void ReviewView::draw_numbers(const widgets::Ui& ui, widgets::Rect area) {
 
 void ReviewView::draw_side(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::begin_panel(ui, "review.sessions", area, "Sessions of this case");
-  draw_sessions(ui);
+  if (const auto pressed = sessions_.draw(ui, chosen_)) choose(*pressed);
   ImGui::Separator();
   draw_buttons(ui);
   if (open_) {
     const recording::SessionOverview& session = *open_->review.session;
-    const std::string cut = recording::cut_short_in_words(session.was_finished, session.events);
+    const std::string cut =
+        recording::cut_short_in_words(session.was_finished || !session.end_was_read, session.events);
     if (!cut.empty()) widgets::status_row(ui, widgets::Severity::Caution, "Cut short", cut);
     ui.log.note_state("cut_short", cut);
   }
   if (open_) draw_check(ui);
+  if (open_ && !has_frames())
+    for (const std::string& problem : open_->review.problems)
+      widgets::status_row(ui, widgets::Severity::Caution, "Not whole", problem);
   if (has_frames()) {
     draw_note_field(ui);
     ImGui::Separator();
@@ -220,19 +226,6 @@ void ReviewView::draw_check(const widgets::Ui& ui) const {
                       : check.is_unbroken() ? widgets::Severity::Good
                                             : widgets::Severity::Quiet,
                       is_broken ? "Not as recorded" : "Hashes", recording::check_words(check));
-}
-
-void ReviewView::draw_sessions(const widgets::Ui& ui) {
-  const float line = ImGui::GetTextLineHeightWithSpacing();
-  const float shown = static_cast<float>(std::clamp<std::size_t>(sessions_.size(), 1, 5)) + 0.3F;
-  ImGui::BeginChild("review.list", {0, shown * line});
-  for (std::size_t i = 0; i < sessions_.size(); ++i) {
-    const std::string name = sessions_[i].filename().string();
-    if (ImGui::Selectable(date_text(name).c_str(), chosen_ && *chosen_ == i)) choose(i);
-    ui.log.note("review.session." + name, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
-  }
-  if (sessions_.empty()) widgets::text_in(ui.theme.body, widgets::kQuietText, "None yet");
-  ImGui::EndChild();
 }
 
 void ReviewView::draw_buttons(const widgets::Ui& ui) {
@@ -295,8 +288,11 @@ void ReviewView::draw_picture(const widgets::Ui& ui, const widgets::Rect& area) 
                                       : fetched          ? "shown"
                                                          : "another");
   if (fetched && picture == nullptr)
-    return widgets::text_centered(ui, area, ui.theme.strong, widgets::kQuietText,
-                                  "No picture of this frame was kept");
+    return widgets::text_centered(
+        ui, area, ui.theme.strong, widgets::kQuietText,
+        was_kept(*open_->review.session, glance.index)
+            ? "The picture of this frame was kept and cannot be read: the video is damaged, or ends before it"
+            : "No picture of this frame was kept");
   if (picture == nullptr)
     return widgets::text_centered(ui, area, ui.theme.strong, widgets::kQuietText, "Reading the video");
   const float w = static_cast<float>(video_.width()), h = static_cast<float>(video_.height());
@@ -320,7 +316,7 @@ void ReviewView::draw_scene(const widgets::Ui& ui, const widgets::Rect& area) {
   }
   pane_.draw(ui, "review.view", area);
   const bool is_femur = review.session->header.bone == bones::BoneKind::Femur;
-  const auto& plan = review.plan.plan;
+  const auto& plan = open_->standing().plan.plan;
   const std::string planned = !plan ? ""
                               : plan->bundle == norms::Bundle::Whole
                                   ? ". Blue: planned"
@@ -337,15 +333,16 @@ void ReviewView::show_scene() {
   const bones::BoneKind bone = session.header.bone;
   scene::SceneContent content;
   content.bones.push_back({model_->drawn_mesh(bone), scene::kBoneColor, 1.0});
-  const recording::RecordedSession::PlanChange& plan = review.plan;
+  const Standing& standing = open_->standing();
+  const recording::RecordedSession::PlanChange& plan = standing.plan;
   if (plan.plan) scene::add_planned_tunnel(content, *plan.plan, plan.planned_length_mm);
   for (const operation::AchievedTunnel& achieved : review.achieved) {
     // Of a depth that nobody knows, in older records nought, the tunnel is drawn as long as planned.
     const double depth_mm = achieved.depth_mm.value_or(0);
     scene::add_achieved_tunnel(content, achieved.measured, depth_mm > 1 ? depth_mm : plan.planned_length_mm);
   }
-  if (session.registration && session.registration->has_pose) {
-    const geometry::RigidTransform bone_from_marker = session.registration->marker_from_bone.inverse();
+  if (standing.registration != nullptr && standing.registration->has_pose) {
+    const geometry::RigidTransform bone_from_marker = standing.registration->marker_from_bone.inverse();
     std::vector<Eigen::Vector3d> touched;
     for (const strokes::CurvePoint& point : session.curves)
       touched.push_back(bone_from_marker * point.position_mm);

@@ -16,6 +16,7 @@
 #include "app/review/picture_fetcher.h"
 #include "app/review/postop_page.h"
 #include "app/review/review_panels.h"
+#include "app/review/session_list.h"
 #include "app/widgets/scene_pane.h"
 #include "app/widgets/video_texture.h"
 
@@ -34,6 +35,7 @@ struct OpenSession {
 
   [[nodiscard]] const recording::SessionTimeline& timeline() const { return *review.timeline; }
   [[nodiscard]] const recording::FrameGlance& glance() const { return timeline().frames()[playback.frame]; }
+  [[nodiscard]] const Standing& standing() const { return review.standing_at(glance().index); }
 };
 
 class ReviewView : public mode::Mode {
@@ -79,7 +81,6 @@ class ReviewView : public mode::Mode {
   [[nodiscard]] bool runs_today() const;
   [[nodiscard]] ReviewScreen screen() const;
   void draw_side(const widgets::Ui& ui, const widgets::Rect& area);
-  void draw_sessions(const widgets::Ui& ui);
   void draw_buttons(const widgets::Ui& ui);
   void draw_check(const widgets::Ui& ui) const;
   void draw_note_field(const widgets::Ui& ui);
@@ -95,7 +96,7 @@ class ReviewView : public mode::Mode {
   std::function<void()> wake_;
   widgets::ScenePane pane_;
   widgets::VideoTexture video_;
-  std::vector<std::filesystem::path> sessions_;
+  SessionList sessions_;
   std::optional<std::size_t> chosen_;
   std::future<SessionReview> opening_;
   bool opens_for_another_case_ = false;  // what opening_ reads is of the case that was open before

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/guidance_severity/guidance_severity.h"
+#include "navigation/registration/registration_file.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::review {
@@ -25,7 +26,44 @@ TimeTrack marker_track(const recording::SessionTimeline& timeline, const tools::
                   [bit](const recording::FrameGlance& frame) { return (frame.posed & bit) != 0; });
 }
 
+// A registration that cannot be read is said, and none stands in its place.
+std::shared_ptr<const registration::RegistrationSummary> registration_of(const recording::SessionEvent& event,
+                                                                         const std::filesystem::path& folder,
+                                                                         std::vector<std::string>& problems) {
+  try {
+    return std::make_shared<const registration::RegistrationSummary>(
+        registration::read_registration_file(folder / event.text));
+  } catch (const std::runtime_error& error) {
+    problems.emplace_back(error.what());
+    return nullptr;
+  }
+}
+
+// Each change is in force from the frame on that comes after it.
+void follow(SessionReview& review) {
+  for (const recording::SessionEvent& event : review.session->events) {
+    Standing next = review.standings.back();
+    next.from_frame = event.after_frame < 0 ? -1 : event.after_frame + 1;
+    if (event.kind == recording::kPlanEvent)
+      next.plan = review.session->plan_of(event);
+    else if (event.kind == recording::kRegistrationEvent || event.kind == recording::kGivenRegistrationEvent)
+      next.registration = registration_of(event, review.folder, review.problems);
+    else if (event.kind == recording::kVoidEvent)
+      next.registration = nullptr;
+    else
+      continue;
+    review.standings.push_back(std::move(next));
+  }
+}
+
 }  // namespace
+
+const Standing& SessionReview::standing_at(std::int64_t frame_index) const {
+  const auto after =
+      std::upper_bound(standings.begin() + 1, standings.end(), frame_index,
+                       [](std::int64_t frame, const Standing& s) { return frame < s.from_frame; });
+  return *std::prev(after);
+}
 
 std::vector<Stretch> stretches_of(const std::vector<bool>& holds, std::size_t bridge) {
   std::vector<Stretch> stretches;
@@ -61,8 +99,7 @@ SessionReview read_review(const std::filesystem::path& session_folder) {
   review.tracks.push_back(
       track_of(timeline, "Guidance", [](const recording::FrameGlance& f) { return f.is_guided(); }));
   if (!timeline.frames().empty()) review.moments = moments_of(session.events, timeline);
-  for (const recording::SessionEvent& event : session.events)
-    if (event.kind == recording::kPlanEvent) review.plan = session.plan_of(event);
+  follow(review);
   try {  // a broken file must not hide the session: its reason is shown in its place
     for (const std::filesystem::path& file : operation::achieved_files(session_folder))
       review.achieved.push_back(operation::read_achieved_file(file));

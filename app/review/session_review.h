@@ -25,19 +25,29 @@ struct TimeTrack {
   std::vector<Stretch> stretches;
 };
 
+// What guidance stood on, from a frame of the record on.
+struct Standing {
+  std::int64_t from_frame = -1;                                           // its index; -1: before the first
+  recording::RecordedSession::PlanChange plan;                            // no tunnel where there was none
+  std::shared_ptr<const registration::RegistrationSummary> registration;  // null: none yet, or void
+};
+
 struct SessionReview {
   std::filesystem::path folder;
   std::shared_ptr<const recording::SessionOverview> session;   // never null
   std::shared_ptr<const recording::SessionTimeline> timeline;  // its frames; never null
   std::vector<Moment> moments;
   std::vector<TimeTrack> tracks;
-  // That guided, the last one; no tunnel when there was none. Not what the case plans by now.
-  recording::RecordedSession::PlanChange plan;
+  // Rising, and never empty. Not what the case plans by now.
+  std::vector<Standing> standings = {{}};
   std::vector<operation::AchievedTunnel> achieved;  // none, one, or those of two bundles
   std::string
       achieved_problem;  // why one of their files could not be read; empty when it was or is not there
   // What is missing or broken of the session: the rest is shown. Empty where nothing is.
   std::vector<std::string> problems;
+
+  // At the frame of that index.
+  [[nodiscard]] const Standing& standing_at(std::int64_t frame_index) const;
 };
 
 // As far as the session is whole. Throws IoError or InvalidInput where nothing can be shown of it: no header,

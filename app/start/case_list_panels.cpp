@@ -239,14 +239,18 @@ void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {
     widgets::status_row(ui, record->planned.empty() ? Severity::Quiet : Severity::Good, "Plan",
                         record->plan_in_words());
   if (const library::SessionFacts* last = record->last_session()) {
-    const bool is_bad = !last->problem.empty();
-    widgets::status_row(ui, is_bad ? Severity::Bad : Severity::Quiet,
-                        std::string("Last session") + (last->is_simulated() ? " (simulated)" : ""),
-                        last->started_utc.substr(0, 10) + ", " + last->bone + ": " + last->outcome());
+    std::string words;
+    for (const std::string& part : {last->started_utc.substr(0, 10), last->what(), last->outcome()})
+      if (!part.empty()) words += (words.empty() ? "" : "; ") + part;
+    for (const std::string& doubt : last->doubts()) words += "; " + doubt;
+    widgets::status_row(ui,
+                        !last->problem.empty()    ? Severity::Bad
+                        : !last->doubts().empty() ? Severity::Caution
+                                                  : Severity::Quiet,
+                        "Last session", words);
+    const bool is_trusted = last->registration_is_reliable.value_or(false) && last->was_verified;
     if (last->predicted_error_mm)
-      widgets::status_row(ui,
-                          last->registration_is_reliable.value_or(false) ? Severity::Good : Severity::Caution,
-                          "Registration",
+      widgets::status_row(ui, is_trusted ? Severity::Good : Severity::Caution, "Registration",
                           files::format("predicted error %.2f mm, ", *last->predicted_error_mm) +
                               (!last->registration_is_reliable.value_or(false) ? "not reliable"
                                : last->was_verified                            ? "verified"

@@ -85,6 +85,10 @@ void read_record(const fs::path& folder, SessionFacts& facts) {
   SessionDatabase database = SessionDatabase::open(database_file(folder));
   Statement first = database.prepare("SELECT timestamp_ns FROM frames ORDER BY frame LIMIT 1");
   Steps steps(first.step() ? first.integer(0) : 0);
+  Statement span = database.prepare(
+      "SELECT (SELECT timestamp_ns FROM frames ORDER BY frame DESC LIMIT 1) - "
+      "(SELECT timestamp_ns FROM frames ORDER BY frame LIMIT 1)");
+  if (span.step() && !span.is_null(0)) facts.length_min = static_cast<double>(span.integer(0)) * 1e-9 / 60;
   Statement events = database.prepare(
       "SELECT timestamp_ns, kind, text FROM events WHERE kind NOT IN ('command', 'outcome', 'plan') ORDER BY "
       "id");

@@ -30,8 +30,10 @@ void read_record(SessionOverview& overview) {
     while (row.step()) overview.events.push_back({row.integer(0), row.text(1), row.text(2), row.integer(3)});
   });
   as_far_as_whole(overview, [&] { overview.pictures = read_kept_pictures(database); });
-  as_far_as_whole(overview,
-                  [&] { overview.was_finished = database.prepare("SELECT finished FROM ending").step(); });
+  as_far_as_whole(overview, [&] {
+    overview.was_finished = database.prepare("SELECT finished FROM ending").step();
+    overview.end_was_read = true;
+  });
 }
 
 void look_for_video(SessionOverview& overview) {

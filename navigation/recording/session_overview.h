@@ -16,7 +16,8 @@ struct SessionOverview {
   std::filesystem::path folder;
   SessionHeader header;
   pipeline::PipelineOptions options;
-  bool was_finished = false;         // false: a crash cut it off
+  bool was_finished = false;  // false: a crash cut it off, where its end could be read
+  bool end_was_read = false;
   std::vector<SessionEvent> events;  // in the order they were added
   // Of a video by append_picture(), rising by frames; empty when the video is the source's own.
   std::vector<KeptPicture> pictures;

@@ -33,6 +33,8 @@ constexpr std::array<std::pair<CaseState, std::string_view>, 6> kStates{{
     {CaseState::Drilled, "drilled"},
 }};
 constexpr std::array<const char*, 4> kFiles{"case.json", "plan.json", "note.json", "achieved.json"};
+// Another word when a record holds more than before: what an index kept of it is then read again.
+constexpr std::string_view kHolds = "length";
 
 // An open folder: what lies in it is looked at by the thousand, and by short names that costs half.
 class OpenFolder {
@@ -102,6 +104,7 @@ std::vector<std::string> names_in(const OpenFolder& folder) {
 // Nothing where there is no case.
 std::optional<Fingerprint> look_at(const fs::path& case_folder) {
   Fingerprint fingerprint;
+  fingerprint.add_name(kHolds);
   const OpenFolder folder(case_folder.c_str());
   if (!folder.is_open()) return std::nullopt;
   for (const char* file : kFiles)
@@ -167,6 +170,28 @@ std::string SessionFacts::outcome() const {
   const std::string end = was_finished ? "" : ", cut off";
   if (!registration_is_reliable) return "not registered" + end;
   return (*registration_is_reliable ? "registered, not drilled" : "registration not reliable") + end;
+}
+
+std::string SessionFacts::what() const {
+  std::string words;
+  for (const std::string& part : {is_exercise ? std::string("exercise") : source_kind, bone,
+                                  length_min ? files::format("%.1f min", *length_min) : std::string()})
+    if (!part.empty()) words += (words.empty() ? "" : ", ") + part;
+  return words;
+}
+
+std::vector<std::string> SessionFacts::doubts() const {
+  std::vector<std::string> doubts;
+  const bool was_registered = registration_is_reliable.has_value();
+  if (is_drilled() && was_registered && !*registration_is_reliable)
+    doubts.emplace_back("registration not reliable");
+  if (is_drilled() && !was_registered && problem.empty()) doubts.emplace_back("not registered");
+  if (was_registered && *registration_is_reliable && !was_verified) doubts.emplace_back("not verified");
+  if (alarm_count > 0)
+    doubts.push_back(std::to_string(alarm_count) + (alarm_count == 1 ? " alarm" : " alarms"));
+  if (is_drilled() && !was_finished && problem.empty()) doubts.emplace_back("cut off");
+  if (is_drilled() && !problem.empty()) doubts.push_back("cannot be read whole: " + problem);
+  return doubts;
 }
 
 CaseState CaseRecord::state() const {

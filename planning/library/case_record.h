@@ -28,6 +28,7 @@ struct SessionFacts {
   std::optional<double> predicted_error_mm;  // of that registration: one sigma at its target
   bool was_verified = false;                 // by touches, after the last registration
   int alarm_count = 0;
+  std::optional<double> length_min;  // from the first frame to the last
   // The tunnel as navigation measured it, against the plan: between the entries, between the axes.
   std::optional<double> entry_offset_mm, angle_deg, depth_mm;
   // Minutes from the first frame to the first registration, from there to the first time it was verified or
@@ -39,6 +40,10 @@ struct SessionFacts {
   [[nodiscard]] bool is_drilled() const { return entry_offset_mm.has_value(); }
   // "drilled, 1.2 mm and 0.8° from the plan", "registered, not drilled", "cut off before a registration", ...
   [[nodiscard]] std::string outcome() const;
+  // "simulation, femur, 5.2 min"; what is not known is left out.
+  [[nodiscard]] std::string what() const;
+  // What whoever reads the outcome should know beside it: "not verified", "2 alarms", "cut off", ...
+  [[nodiscard]] std::vector<std::string> doubts() const;
 };
 // Reads one session's folder. Does not throw for what it finds there: see SessionFacts::problem.
 using SessionReader = std::function<SessionFacts(const std::filesystem::path& session_folder)>;

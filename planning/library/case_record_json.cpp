@@ -43,6 +43,7 @@ ordered_json to_json(const SessionFacts& facts) {
   put(node, "registration_reliable", facts.registration_is_reliable);
   put(node, "registration_rms_mm", facts.registration_rms_mm);
   put(node, "predicted_tre_mm", facts.predicted_error_mm);
+  put(node, "length_min", facts.length_min);
   put(node, "entry_offset_mm", facts.entry_offset_mm);
   put(node, "angle_deg", facts.angle_deg);
   put(node, "depth_mm", facts.depth_mm);
@@ -65,6 +66,7 @@ SessionFacts session_from(const json& node) {
   take(node, "registration_reliable", facts.registration_is_reliable);
   take(node, "registration_rms_mm", facts.registration_rms_mm);
   take(node, "predicted_tre_mm", facts.predicted_error_mm);
+  take(node, "length_min", facts.length_min);
   take(node, "entry_offset_mm", facts.entry_offset_mm);
   take(node, "angle_deg", facts.angle_deg);
   take(node, "depth_mm", facts.depth_mm);

@@ -70,7 +70,8 @@ std::vector<TrendPoint> trend_of(std::span<const CaseRecord> records, Trend tren
   std::vector<TrendPoint> points;
   for (const CaseRecord& record : records) {
     for (const SessionFacts& session : record.sessions) {
-      if (session.is_simulated() && !options.with_simulated) continue;
+      // Without a header nobody knows when it was, or whether of a simulation.
+      if (session.started_utc.empty() || (session.is_simulated() && !options.with_simulated)) continue;
       if (!options.bone.empty() && session.bone != options.bone) continue;
       const auto value = value_of(session, trend);
       if (value) points.push_back({session.started_utc, *value, record.name, session.id, record.folder});

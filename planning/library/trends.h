@@ -35,7 +35,8 @@ struct TrendOptions {
   bool with_simulated = false;  // a simulation is no operation: it would make the spread look small
   std::string bone = {};        // "femur", "tibia"; empty: either
 };
-// In the order of time. Sessions that do not say the number are left out.
+// In the order of time. Sessions that do not say the number, or whose header cannot be read, are left
+// out.
 [[nodiscard]] std::vector<TrendPoint> trend_of(std::span<const CaseRecord> records, Trend trend,
                                                const TrendOptions& options = {});
 

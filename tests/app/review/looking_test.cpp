@@ -90,6 +90,20 @@ TEST_F(Looking, TellsWhatHappenedAndJumpsToIt) {
   EXPECT_FALSE(moment_after(frames, 90) || moment_before(frames, 30));
 }
 
+// An operation says its plan when it is made and again when its source starts: it came into force once.
+TEST_F(Looking, TellsAPlanOnceUntilItChanges) {
+  const auto plan = [](std::int64_t after, const char* text) {
+    return recording::SessionEvent{0, std::string(recording::kPlanEvent), text, after};
+  };
+  const auto moments =
+      moments_of({plan(-1, "a"), plan(-1, "a"), plan(30, "b"), plan(40, ""), plan(50, "b")}, *timeline_);
+  ASSERT_EQ(moments.size(), 4U);
+  EXPECT_EQ(moments[0].words, "Plan in force");
+  EXPECT_EQ(moments[1].frame, 30U);
+  EXPECT_EQ(moments[2].words, "No plan in force");
+  EXPECT_EQ(moments[3].frame, 50U);
+}
+
 // Every change is on disk at once; undo and redo write, too; another change after an undo ends the redo.
 TEST_F(Looking, KeepsMarksWithUndo) {
   MarkBook book(folder_.path(), "");

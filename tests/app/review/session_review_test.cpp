@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "tests/navigation/recording/recorded_frames.h"
 #include "tests/temporary_folder.h"
 
@@ -21,24 +23,52 @@ TEST(SessionReview, StretchesBridgeShortGaps) {
   EXPECT_TRUE(stretches_of({}, 3).empty());
 }
 
-// A session is looked at with the plan that guided in it, the last one, whatever the case plans by now.
-TEST(SessionReview, HoldsThePlanThatGuided) {
+// Each moment is looked at with the plan and the registration of that moment, whatever came after it and
+// whatever the case plans by now: an offset to another plan is no offset.
+TEST(SessionReview, HoldsWhatGuidedAtEachMoment) {
   const test::TemporaryFolder folder;
+  registration::RegistrationSummary registration;
+  registration.has_pose = registration.reliable = true;
   {
     recording::SessionRecorder recorder(folder.path(), test::session_header(), test::scripted_options());
     tunnels::Tunnel plan;
-    for (const double x_mm : {1.0, 2.0}) {
-      plan.entry_mm = {x_mm, 0, 0};
-      recorder.set_plan(plan, 30 + x_mm);
-      recorder.append(test::frame_result(static_cast<int>(x_mm)));
+    for (const int i : {0, 1, 2, 3}) {
+      if (i == 1) recorder.set_registration(registration);
+      if (i == 3) recorder.add_event({test::frame_result(i).timestamp_ns, "registration void", "bumped"});
+      plan.entry_mm = {static_cast<double>(i / 2), 0, 0};
+      if (i % 2 == 0) recorder.set_plan(plan, 30 + i);
+      recorder.append(test::frame_result(i));
     }
     recorder.finish();
   }
   const SessionReview review = read_review(folder.path());
-  ASSERT_TRUE(review.plan.plan);
-  EXPECT_EQ(review.plan.plan->entry_mm.x(), 2.0);
-  EXPECT_EQ(review.plan.planned_length_mm, 32.0);
+  for (const int i : {0, 1, 2, 3}) {
+    const Standing& standing = review.standing_at(i);
+    ASSERT_TRUE(standing.plan.plan) << i;
+    EXPECT_EQ(standing.plan.plan->entry_mm.x(), i / 2) << i;
+    EXPECT_EQ(standing.plan.planned_length_mm, i < 2 ? 30 : 32) << i;
+    EXPECT_EQ(standing.registration != nullptr, i == 1 || i == 2) << i;
+  }
+  EXPECT_TRUE(review.problems.empty());
   EXPECT_TRUE(review.achieved.empty());
+}
+
+// A registration that cannot be read is told, and the session is shown.
+TEST(SessionReview, SaysWhichRegistrationIsBroken) {
+  const test::TemporaryFolder folder;
+  {
+    recording::SessionRecorder recorder(folder.path(), test::session_header(), test::scripted_options());
+    registration::RegistrationSummary registration;
+    registration.has_pose = true;
+    recorder.set_registration(registration);
+    recorder.append(test::frame_result(0));
+    recorder.finish();
+  }
+  std::ofstream(folder / "registration_1.json") << "{";
+  const SessionReview review = read_review(folder.path());
+  EXPECT_EQ(review.standing_at(0).registration, nullptr);
+  ASSERT_FALSE(review.problems.empty());
+  EXPECT_NE(review.problems.front().find("registration_1.json"), std::string::npos);
 }
 
 // What a session was made of is told with the word that it is a recording: a simulated one is nobody's knee.

@@ -93,6 +93,24 @@ TEST_F(SessionFactsTest, SaysTheRegistration) {
   EXPECT_FALSE(facts.is_drilled());
 }
 
+// By its frames, whatever the events say: half a minute between the first and the last.
+TEST_F(SessionFactsTest, SaysHowLongItWas) {
+  record({{9.0, kAlarmEvent}});
+  EXPECT_EQ(read().length_min, 0) << "one frame";
+  std::filesystem::remove_all(session_);
+  std::filesystem::create_directories(session_);
+  {
+    SessionRecorder recorder(session_, header_, options_);
+    for (const int i : {0, 1, 2}) {
+      pipeline::FrameResult frame = test::frame_result(i);
+      frame.timestamp_ns = kMinute_ns + i * kMinute_ns / 4;
+      recorder.append(frame);
+    }
+    recorder.finish();
+  }
+  EXPECT_NEAR(read().length_min.value(), 0.5, 1e-9);
+}
+
 TEST_F(SessionFactsTest, AVoidRegistrationIsNotReliable) {
   record({{1.0, kRegistrationEvent}, {2.0, kVerifiedEvent}, {3.0, kVoidEvent}});
   EXPECT_EQ(read().registration_is_reliable, false);

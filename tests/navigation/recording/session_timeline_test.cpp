@@ -95,8 +95,11 @@ TEST(SessionTimeline, TellsWhatIsMissing) {
   EXPECT_NE(session.problems[0].find("camera.json"), std::string::npos);
   EXPECT_NE(session.problems[1].find("tools.json"), std::string::npos);
   EXPECT_EQ(session.events.size(), 1U);
-  EXPECT_TRUE(session.was_finished);
+  EXPECT_TRUE(session.was_finished && session.end_was_read);
   EXPECT_EQ(SessionTimeline(folder.path()).frames().size(), 10U);
+  // Of a record that cannot be read nobody knows how it ended: it was not cut off for that.
+  std::ofstream(folder / "session.sqlite") << "spoilt";
+  EXPECT_FALSE(read_overview(folder.path()).end_was_read);
 }
 
 // A record that is none, or of a newer program, is refused with its name.

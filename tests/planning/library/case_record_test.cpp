@@ -152,6 +152,29 @@ TEST(SessionFactsTest, TellItsOutcomeInWords) {
   EXPECT_EQ(facts.outcome(), "drilled, 1.2 mm and 0.8\u00B0 from the plan");
 }
 
+// Beside the outcome: what it was, as far as it is known, and each doubt once.
+TEST(SessionFactsTest, TellWhatItWasAndWhatIsDoubtful) {
+  SessionFacts facts;
+  EXPECT_EQ(facts.what(), "");
+  EXPECT_TRUE(facts.doubts().empty()) << "that it was cut off stands in the outcome";
+  facts.bone = "tibia";
+  facts.source_kind = "simulation";
+  facts.length_min = 2.04;
+  EXPECT_EQ(facts.what(), "simulation, tibia, 2.0 min");
+  facts.is_exercise = true;
+  EXPECT_EQ(facts.what(), "exercise, tibia, 2.0 min");
+  facts.entry_offset_mm = 1;
+  facts.alarm_count = 1;
+  EXPECT_EQ(facts.doubts(), (std::vector<std::string>{"not registered", "1 alarm", "cut off"}));
+  facts.registration_is_reliable = facts.was_finished = true;
+  EXPECT_EQ(facts.doubts(), (std::vector<std::string>{"not verified", "1 alarm"}));
+  facts.was_verified = true;
+  facts.alarm_count = 0;
+  EXPECT_TRUE(facts.doubts().empty());
+  facts.problem = "session.json: version: is 99";
+  EXPECT_EQ(facts.doubts(), (std::vector<std::string>{"cannot be read whole: session.json: version: is 99"}));
+}
+
 // Two programs write a note: the second is told, and nothing is lost.
 TEST_F(CaseRecordTest, ANoteIsNotWrittenOverAnother) {
   test::make_case(knee_);

@@ -35,6 +35,15 @@ TEST(TrendTest, GoesThroughTheSessionsInTime) {
   EXPECT_TRUE(trend_of(records, Trend::Drilling).empty());
 }
 
+// Of a session whose header a newer program wrote nobody knows whether it was a simulation's.
+TEST(TrendTest, LeavesOutWhatMayBeASimulation) {
+  std::vector<CaseRecord> records(1);
+  records[0].sessions = {session("2026-01-01", 1), session("", 0.1, "")};
+  records[0].sessions[1].problem = "session.json: version: is 99";
+  EXPECT_EQ(trend_of(records, Trend::EntryOffset).size(), 1U);
+  EXPECT_EQ(trend_of(records, Trend::EntryOffset, {.with_simulated = true}).size(), 1U);
+}
+
 // By hand: moving ranges 1, 2, 1, 0, 2, 1, 0 have the mean 1, so the limits are 3 / 1.128 = 2.6596 about 4.5.
 TEST(ControlLimitsTest, AreThoseOfAnIndividualsChart) {
   const std::vector<double> values{4, 5, 3, 4, 4, 6, 5, 5};

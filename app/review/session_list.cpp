@@ -1,0 +1,107 @@
+#include "app/review/session_list.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "navigation/recording/session_facts.h"
+#include "planning/cases/case.h"
+
+namespace arthronaut::review {
+
+std::string session_title(const std::string& folder_name) {
+  const std::int64_t number = cases::session_number(folder_name);
+  const std::string date = number > 0 ? folder_name.substr(folder_name.find('-') + 1) : folder_name;
+  const bool is_date =
+      date.size() >= 15 && date[8] == '-' && date.find_first_not_of("0123456789-") == std::string::npos;
+  if (!is_date) return folder_name;
+  return (number > 0 ? std::to_string(number) + ":  " : "") + date.substr(0, 4) + "-" + date.substr(4, 2) +
+         "-" + date.substr(6, 2) + "  " + date.substr(9, 2) + ":" + date.substr(11, 2) + ":" +
+         date.substr(13) + " UTC";
+}
+
+SessionLine session_line(const library::SessionFacts& facts) {
+  SessionLine line;
+  const std::vector<std::string> doubts = facts.doubts();
+  line.words = facts.what();
+  line.words += (line.words.empty() ? "" : "; ") + facts.outcome();
+  for (const std::string& doubt : doubts) line.words += "; " + doubt;
+  const bool is_unreliable = !facts.registration_is_reliable.value_or(true);
+  line.severity = !facts.problem.empty()                                    ? widgets::Severity::Bad
+                  : !doubts.empty() || is_unreliable || !facts.was_finished ? widgets::Severity::Caution
+                  : facts.is_drilled()                                      ? widgets::Severity::Good
+                                                                            : widgets::Severity::Quiet;
+  return line;
+}
+
+void SessionList::open(const std::filesystem::path& case_folder) {
+  case_folder_ = case_folder;
+  folders_.clear();
+  lines_.clear();
+  reads_again_ = reading_.valid();
+}
+
+void SessionList::read() {
+  folders_ = cases::session_folders(case_folder_);
+  std::reverse(folders_.begin(), folders_.end());
+  if ((reads_again_ = reading_.valid())) return;
+  if (folders_.empty()) return;
+  reading_ = std::async(std::launch::async, [folders = folders_, wake = wake_] {
+    Lines lines;  // read_session_facts() throws nothing for what it finds
+    for (const auto& folder : folders)
+      lines.emplace(folder, session_line(recording::read_session_facts(folder)));
+    wake();
+    return lines;
+  });
+}
+
+void SessionList::take_read() {
+  if (!reading_.valid() || reading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  Lines lines = reading_.get();
+  if (std::exchange(reads_again_, false)) return read();
+  lines_ = std::move(lines);
+}
+
+std::optional<std::size_t> SessionList::draw(const widgets::Ui& ui, std::optional<std::size_t> chosen) {
+  take_read();
+  if (folders_.empty()) {
+    widgets::text_in(ui.theme.body, widgets::kQuietText, "None yet");
+    return std::nullopt;
+  }
+  std::optional<std::size_t> pressed;
+  ImFont* const font = ui.theme.body;
+  const float sign = ui.theme.px(26), gap = ui.theme.px(8);
+  ImGui::BeginChild("review.list",
+                    {0, std::min(ui.theme.px(250), ui.theme.px(96) * static_cast<float>(folders_.size()))});
+  for (std::size_t i = 0; i < folders_.size(); ++i) {
+    const std::string name = folders_[i].filename().string();
+    const auto found = lines_.find(folders_[i]);
+    const SessionLine line = found != lines_.end() ? found->second : SessionLine{};
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x, wrap = std::max(width - sign, 1.F);
+    const char* const end = line.words.data() + line.words.size();
+    const float below = line.words.empty()
+                            ? font->FontSize
+                            : font->CalcTextSizeA(font->FontSize, 1e9F, wrap, line.words.data(), end).y;
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::Selectable("##session", chosen == i, 0, {0, font->FontSize + below + gap})) pressed = i;
+    ImGui::PopID();
+    ui.log.note("review.session." + name, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+    ui.log.note_state("session_line." + name, line.words);
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    draw.AddText(font, font->FontSize, at, widgets::kText, session_title(name).c_str());
+    if (line.words.empty()) continue;
+    widgets::draw_sign(draw, {at.x + ui.theme.px(9), at.y + font->FontSize * 1.5F}, ui.theme.px(7),
+                       line.severity);
+    draw.AddText(font, font->FontSize, {at.x + sign, at.y + font->FontSize},
+                 line.severity == widgets::Severity::Good || line.severity == widgets::Severity::Quiet
+                     ? widgets::kQuietText
+                     : widgets::color_of(line.severity),
+                 line.words.data(), end, wrap);
+  }
+  ImGui::EndChild();
+  return pressed;
+}
+
+}  // namespace arthronaut::review

@@ -1,0 +1,52 @@
+// The sessions of the case, newest first, each with what it was: its source and bone, how far it came, how
+// long it took and what is doubtful of it. The names stand at once; the rest is read beside the screen.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/widgets/controls.h"
+#include "planning/library/case_record.h"
+
+namespace arthronaut::review {
+
+// "0007-20261121-122356" as "7:  2026-11-21  12:23:56 UTC"; of older sessions, without a number, the date;
+// other names as they are.
+[[nodiscard]] std::string session_title(const std::string& folder_name);
+// What it was: "simulation, femur, 5.2 min; drilled, 1.2 mm and 0.8° from the plan; not verified".
+struct SessionLine {
+  widgets::Severity severity = widgets::Severity::Quiet;  // Caution: in doubt; Bad: it cannot be read
+  std::string words;
+};
+[[nodiscard]] SessionLine session_line(const library::SessionFacts& facts);
+
+class SessionList {
+ public:
+  explicit SessionList(std::function<void()> wake) : wake_(std::move(wake)) {}
+
+  void open(const std::filesystem::path& case_folder);  // of another case: nothing is listed yet
+  // As the folders are now. Throws std::filesystem::filesystem_error.
+  void read();
+  [[nodiscard]] const std::vector<std::filesystem::path>& folders() const { return folders_; }
+  [[nodiscard]] bool is_busy() const { return reading_.valid(); }
+  // The one that was pressed.
+  [[nodiscard]] std::optional<std::size_t> draw(const widgets::Ui& ui, std::optional<std::size_t> chosen);
+
+ private:
+  using Lines = std::map<std::filesystem::path, SessionLine>;
+  void take_read();
+
+  std::function<void()> wake_;
+  std::filesystem::path case_folder_;
+  std::vector<std::filesystem::path> folders_;
+  std::future<Lines> reading_;
+  bool reads_again_ = false;  // what is being read is of before
+  Lines lines_;
+};
+
+}  // namespace arthronaut::review

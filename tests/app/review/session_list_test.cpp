@@ -1,0 +1,68 @@
+// What the list of sessions says of one.
+#include "app/review/session_list.h"
+
+#include <gtest/gtest.h>
+
+namespace arthronaut::review {
+namespace {
+
+TEST(SessionList, SaysWhenItWas) {
+  EXPECT_EQ(session_title("0007-20261121-122356"), "7:  2026-11-21  12:23:56 UTC");
+  EXPECT_EQ(session_title("20261121-122356"), "2026-11-21  12:23:56 UTC");
+  EXPECT_EQ(session_title("before the flood"), "before the flood");
+}
+
+library::SessionFacts drilled() {
+  library::SessionFacts facts;
+  facts.bone = "femur";
+  facts.source_kind = "live";
+  facts.was_finished = facts.was_verified = true;
+  facts.registration_is_reliable = true;
+  facts.length_min = 5.2;
+  facts.entry_offset_mm = 1.24;
+  facts.angle_deg = 0.8;
+  return facts;
+}
+
+// Source, bone, how long and how far; a tick only for what came to its end without a doubt.
+TEST(SessionList, SaysWhatItWas) {
+  const SessionLine line = session_line(drilled());
+  EXPECT_EQ(line.words, "live, femur, 5.2 min; drilled, 1.2 mm and 0.8\u00B0 from the plan");
+  EXPECT_EQ(line.severity, widgets::Severity::Good);
+  library::SessionFacts facts;
+  facts.bone = "tibia";
+  facts.was_finished = true;
+  EXPECT_EQ(session_line(facts).words, "tibia; not registered");
+  EXPECT_EQ(session_line(facts).severity, widgets::Severity::Quiet);
+  facts.is_exercise = true;
+  EXPECT_EQ(session_line(facts).words, "exercise, tibia; not registered");
+}
+
+// Each doubt is said, and none of them has a tick.
+TEST(SessionList, SaysWhatIsDoubtfulOfIt) {
+  library::SessionFacts facts = drilled();
+  facts.was_verified = facts.was_finished = false;
+  facts.alarm_count = 2;
+  EXPECT_EQ(
+      session_line(facts).words,
+      "live, femur, 5.2 min; drilled, 1.2 mm and 0.8\u00B0 from the plan; not verified; 2 alarms; cut off");
+  EXPECT_EQ(session_line(facts).severity, widgets::Severity::Caution);
+  facts.entry_offset_mm.reset();
+  facts.alarm_count = 0;
+  facts.registration_is_reliable = false;
+  EXPECT_EQ(session_line(facts).words, "live, femur, 5.2 min; registration not reliable, cut off");
+  EXPECT_EQ(session_line(facts).severity, widgets::Severity::Caution);
+  facts.problem = "session.sqlite: is damaged";
+  EXPECT_EQ(session_line(facts).words, "live, femur, 5.2 min; cannot be read: session.sqlite: is damaged");
+  EXPECT_EQ(session_line(facts).severity, widgets::Severity::Bad);
+  facts = drilled();
+  facts.registration_is_reliable = false;
+  facts.problem = "session.sqlite: is damaged";
+  EXPECT_EQ(session_line(facts).words,
+            "live, femur, 5.2 min; drilled, 1.2 mm and 0.8\u00B0 from the plan; registration not reliable; "
+            "cannot be "
+            "read whole: session.sqlite: is damaged");
+}
+
+}  // namespace
+}  // namespace arthronaut::review
