@@ -11,6 +11,7 @@
 #include "planning/phantom/phantom_case.h"
 #include "tests/app/window/display.h"
 #include "tests/navigation/recording/recorded_frames.h"
+#include "tests/planning/images/dicom_series_form.h"
 #include "tests/temporary_folder.h"
 
 namespace arthronaut {
@@ -148,6 +149,42 @@ TEST_F(ReviewWindow, SaysWhyNothingWasCompared) {
   EXPECT_FALSE(std::filesystem::exists(case_folder_ / "achieved.json"));
   app.press("p");
   ASSERT_TRUE(app.wait_for_state("review_page", "session"));
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(30), 0);
+}
+
+// The folder that a hospital gives holds the scan by two kernels: it is asked which of them is meant, and the
+// one that is pressed is compared. No bone of this patient is in it, which the answer says.
+TEST_F(ReviewWindow, AsksWhichOfTwoCtsIsMeant) {
+  for (const char* uid : {"1.2.3.1", "1.2.3.2"}) {
+    test::DicomSeriesForm form;
+    form.origin.series_uid = uid;
+    test::write_dicom_series(folder_ / "ct" / uid, test::ellipsoid_ct(), form);
+  }
+  const VirtualDisplay display(1920, 1080);
+  RunningWorkstation app(display, folder_.path(), {case_folder_.string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F3");
+  ASSERT_TRUE(app.wait_for_state("session", session_.filename().string()));
+  app.press("c");
+  ASSERT_TRUE(app.wait_for_widget("review.postop_path"));
+  app.type((folder_ / "ct").string());
+  app.press("Return");
+  ASSERT_TRUE(app.wait_for_state("postop", "asks", 60));
+  app.click("review.postop_series_1");
+  EXPECT_TRUE(app.wait_for_state("postop", "compared", 120));
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(30), 0);
+}
+
+// What each session was stands in the list: how long, how far, and that nobody registered.
+TEST_F(ReviewWindow, SaysWhatEachSessionWas) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path(), {case_folder_.string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F3");
+  EXPECT_TRUE(app.wait_for_state("session_line." + session_.filename().string(),
+                                 "femur, 0.0 min; not registered; 1 alarm"));
   app.press("ctrl+q");
   EXPECT_EQ(app.wait_for_exit(30), 0);
 }
