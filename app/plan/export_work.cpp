@@ -1,6 +1,5 @@
 #include "app/plan/export_work.h"
 
-#include <chrono>
 #include <exception>
 
 #include "planning/plan_export/plan_export.h"
@@ -14,26 +13,26 @@ std::string ExportOutcome::in_words(const std::filesystem::path& open_case_folde
 }
 
 void ExportWork::start(cases::Case knee, std::filesystem::path case_folder) {
-  running_ = std::async(std::launch::async, [this, knee = std::move(knee), folder = std::move(case_folder)] {
-    ExportOutcome outcome{.case_folder = folder, .case_name = knee.name};
-    try {  // a full disk is a state of the screen
-      const plan_export::ExportSummary summary = plan_export::export_plan(knee, folder / "export");
-      outcome.text = "Exported into " + (folder / "export").string() + ":";
-      for (const auto& file : summary.files) outcome.text += " " + file.filename().string();
-      outcome.doubts = summary.doubts;
-      outcome.is_written = true;
-    } catch (const std::exception& error) {  // the top of a thread: the geometry library's assertions too
-      outcome.text = std::string("Not exported: ") + error.what();
-    }
-    wake_();
-    return outcome;
-  });
+  running_.start(
+      [knee = std::move(knee), folder = std::move(case_folder)] {
+        ExportOutcome outcome{.case_folder = folder, .case_name = knee.name};
+        try {  // a full disk is a state of the screen
+          const plan_export::ExportSummary summary = plan_export::export_plan(knee, folder / "export");
+          outcome.text = "Exported into " + (folder / "export").string() + ":";
+          for (const auto& file : summary.files) outcome.text += " " + file.filename().string();
+          outcome.doubts = summary.doubts;
+          outcome.is_written = true;
+        } catch (const std::exception& error) {  // the top of a thread: the geometry library's assertions too
+          outcome.text = std::string("Not exported: ") + error.what();
+        }
+        return outcome;
+      },
+      wake_);
 }
 
 std::optional<ExportOutcome> ExportWork::take_outcome() {
-  if (!running_.valid() || running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-    return std::nullopt;
-  return running_.get();
+  if (!running_.is_ready()) return std::nullopt;
+  return running_.take();
 }
 
 }  // namespace arthronaut::plan

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 #include <functional>
-#include <future>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "navigation/worker/awaited.h"
 #include "planning/cases/case.h"
 
 namespace arthronaut::plan {
@@ -31,13 +31,13 @@ class ExportWork {
   // Into the folder "export" of the case, which is its owner's alone to read, as `arthronaut plan --export`
   // writes them (plan_export::export_plan). Precondition: not is_running().
   void start(cases::Case knee, std::filesystem::path case_folder);
-  [[nodiscard]] bool is_running() const { return running_.valid(); }
+  [[nodiscard]] bool is_running() const { return running_.is_busy(); }
   // For every frame: once what came of it; nullopt while there is no news.
   [[nodiscard]] std::optional<ExportOutcome> take_outcome();
 
  private:
   std::function<void()> wake_;
-  std::future<ExportOutcome> running_;  // last: ends first
+  worker::Awaited<ExportOutcome> running_;  // last: ends first
 };
 
 }  // namespace arthronaut::plan

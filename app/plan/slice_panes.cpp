@@ -1,6 +1,5 @@
 #include "app/plan/slice_panes.h"
 
-#include <chrono>
 #include <utility>
 
 #include "planning/cases/case_image.h"
@@ -25,8 +24,7 @@ SlicePanes::~SlicePanes() { stop_loading(); }
 
 void SlicePanes::stop_loading() {
   stops_ = true;
-  if (loading_.valid()) loading_.wait();
-  loading_ = {};
+  loading_.drop();
   stops_ = false;
 }
 
@@ -44,34 +42,35 @@ void SlicePanes::open(const cases::Case& knee, const std::filesystem::path& fold
 }
 
 void SlicePanes::want() {
-  if (images_.empty() || volume_ != nullptr || loading_.valid() || !failure_.empty()) return;
+  if (images_.empty() || volume_ != nullptr || loading_.is_busy() || !failure_.empty()) return;
   loaded_ = 0;
   // A grey image rather than a label map; the last of them, which is the newest.
   cases::CaseImage image = images_.back();
   for (const cases::CaseImage& other : images_)
     if (!other.is_label_map) image = other;
-  loading_ = std::async(std::launch::async, [this, image, folder = folder_] {
-    Loaded loaded;
-    try {  // the top of the loading thread
-      loaded.volume =
-          std::make_shared<const images::Volume>(cases::load_image(folder, image, [this](double fraction) {
-            if (stops_) throw Stopped();
-            loaded_ = fraction;
-          }));
-      loaded.automatic = scene::automatic_window(*loaded.volume);
-    } catch (const Stopped&) {
-    } catch (const std::exception& error) {
-      loaded.volume.reset();
-      loaded.failure = error.what();
-    }
-    wake_();
-    return loaded;
-  });
+  loading_.start(
+      [this, image, folder = folder_] {
+        Loaded loaded;
+        try {  // the top of the loading thread
+          loaded.volume = std::make_shared<const images::Volume>(
+              cases::load_image(folder, image, [this](double fraction) {
+                if (stops_) throw Stopped();
+                loaded_ = fraction;
+              }));
+          loaded.automatic = scene::automatic_window(*loaded.volume);
+        } catch (const Stopped&) {
+        } catch (const std::exception& error) {
+          loaded.volume.reset();
+          loaded.failure = error.what();
+        }
+        return loaded;
+      },
+      wake_);
 }
 
 void SlicePanes::tick() {
-  if (!loading_.valid() || loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  Loaded loaded = loading_.get();
+  if (!loading_.is_ready()) return;
+  Loaded loaded = loading_.take();
   volume_ = std::move(loaded.volume);
   failure_ = loaded.failure;
   if (volume_ == nullptr) return;

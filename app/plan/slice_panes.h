@@ -6,13 +6,13 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/plan/slice_pane.h"
+#include "navigation/worker/awaited.h"
 #include "planning/cases/case.h"
 
 namespace arthronaut::plan {
@@ -34,7 +34,7 @@ class SlicePanes {
   // Begins to load, once.
   void want();
   void tick();  // takes over what was loaded
-  [[nodiscard]] bool is_loading() const { return loading_.valid(); }
+  [[nodiscard]] bool is_loading() const { return loading_.is_busy(); }
   [[nodiscard]] const images::Volume* volume() const { return volume_.get(); }
   [[nodiscard]] const std::shared_ptr<const images::Volume>& shared_volume() const { return volume_; }
   // Why there is nothing to show; empty when there is.
@@ -67,7 +67,7 @@ class SlicePanes {
   std::function<void()> wake_;
   std::vector<cases::CaseImage> images_;
   std::filesystem::path folder_;
-  std::future<Loaded> loading_;
+  worker::Awaited<Loaded> loading_;
   std::atomic<double> loaded_{0};
   std::atomic<bool> stops_{false};
   std::shared_ptr<const images::Volume> volume_;

@@ -1,6 +1,5 @@
 #include "app/plan/volume_drawing.h"
 
-#include <chrono>
 #include <cmath>
 
 namespace arthronaut::plan {
@@ -13,8 +12,7 @@ constexpr double kAbout_mm = 30;
 }  // namespace
 
 void VolumeDrawing::open(const geometry::Bounds& joint) {
-  if (preparing_.valid()) preparing_.wait();
-  preparing_ = {};
+  preparing_.drop();
   turn_ = 0;
   box_ = {joint.min_mm - Eigen::Vector3d::Constant(kAbout_mm),
           joint.max_mm + Eigen::Vector3d::Constant(kAbout_mm)};
@@ -38,15 +36,10 @@ void VolumeDrawing::move_threshold(int steps) {
 void VolumeDrawing::follow(const std::shared_ptr<const images::Volume>& volume) {
   if (is_on() && volume != nullptr && source_ == nullptr) {
     source_ = volume;
-    preparing_ = std::async(std::launch::async, [this, volume, box = box_] {
-      auto made = scene::drawn_volume(*volume, box);
-      wake_();
-      return made;
-    });
+    preparing_.start([volume, box = box_] { return scene::drawn_volume(*volume, box); }, wake_);
   }
-  if (!preparing_.valid() || preparing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-    return;
-  volume_ = preparing_.get();
+  if (!preparing_.is_ready()) return;
+  volume_ = preparing_.take();
   if (volume_ == nullptr) return;
   threshold_ = scene::first_threshold(*volume_);
   if (!volume_->is_ct && turn_ > 1) turn_ = 0;  // pressed twice before it was known

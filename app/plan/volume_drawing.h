@@ -3,12 +3,12 @@
 #pragma once
 
 #include <functional>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "app/scene/drawn_volume.h"
+#include "navigation/worker/awaited.h"
 
 namespace arthronaut::plan {
 
@@ -26,7 +26,7 @@ class VolumeDrawing {
   // For every frame: the images, nullptr while there are none (yet). Takes over what was made ready.
   void follow(const std::shared_ptr<const images::Volume>& volume);
 
-  [[nodiscard]] bool is_preparing() const { return preparing_.valid(); }
+  [[nodiscard]] bool is_preparing() const { return preparing_.is_busy(); }
   // What is to be drawn; nullptr: nothing, or not yet. Another one for every change.
   [[nodiscard]] const std::shared_ptr<const scene::VolumeItem>& item() const { return item_; }
   // "Images: bone above 250 HU"; no_images: why there are none. Empty while it is off.
@@ -42,7 +42,7 @@ class VolumeDrawing {
   std::shared_ptr<const scene::DrawnVolume> volume_;
   double threshold_ = 0;
   std::shared_ptr<const scene::VolumeItem> item_;
-  std::future<std::shared_ptr<const scene::DrawnVolume>> preparing_;  // last: ends first
+  worker::Awaited<std::shared_ptr<const scene::DrawnVolume>> preparing_;  // last: ends first
 };
 
 }  // namespace arthronaut::plan

@@ -47,7 +47,7 @@ void ReviewView::case_opened(const mode::OpenCase& opened) {
   sessions_.open(case_folder_);
   chosen_.reset();
   open_.reset();
-  opens_for_another_case_ = opening_.valid();
+  opens_for_another_case_ = opening_.is_busy();
   note_ = {};
   notice_.clear();
   shows_postop_ = false;
@@ -67,28 +67,22 @@ void ReviewView::enter() {
 }
 
 void ReviewView::choose(std::size_t session) {
-  if (session >= sessions_.folders().size() || opening_.valid()) return;
+  if (session >= sessions_.folders().size() || opening_.is_busy()) return;
   chosen_ = session;
   open_.reset();
   note_ = {};
   notice_.clear();
-  opening_ = std::async(std::launch::async, [folder = sessions_.folders()[session], wake = wake_] {
-    const struct Waker {
-      const std::function<void()>& wake;
-      ~Waker() { wake(); }
-    } waker{wake};
-    return read_review(folder);
-  });
+  opening_.start([folder = sessions_.folders()[session]] { return read_review(folder); }, wake_);
 }
 
 void ReviewView::take_opened() {
-  if (!opening_.valid() || opening_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  if (!opening_.is_ready()) return;
   if (std::exchange(opens_for_another_case_, false)) {
-    opening_ = {};  // a session of the case before says nothing here
+    opening_.drop();  // a session of the case before says nothing here
     return choose(0);
   }
   try {  // the top of the job
-    open_.emplace().review = opening_.get();
+    open_.emplace().review = opening_.take();
   } catch (const std::exception& error) {
     open_.reset();
     notice_ = error.what();
@@ -127,7 +121,7 @@ bool ReviewView::has_frames() const { return open_ && !open_->timeline().frames(
 bool ReviewView::runs_today() const { return open_ && open_->today && !open_->today->has_ended(); }
 
 bool ReviewView::is_busy() const {
-  return opening_.valid() || sessions_.is_busy() || runs_today() || postop_.is_running() ||
+  return opening_.is_busy() || sessions_.is_busy() || runs_today() || postop_.is_running() ||
          (open_ && open_->playback.plays);
 }
 
@@ -142,14 +136,14 @@ void ReviewView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   const float gap = ui.theme.px(12);
   widgets::Rect rest = area;
   draw_side(ui, rest.cut_left(ui.theme.px(380), gap));
-  ui.log.note_state("session", open_              ? open_->review.folder.filename().string()
-                               : opening_.valid() ? "opening"
-                                                  : "none");
+  ui.log.note_state("session", open_                ? open_->review.folder.filename().string()
+                               : opening_.is_busy() ? "opening"
+                                                    : "none");
   ui.log.note_state("review_page", shows_postop_ ? "achieved" : "session");
   if (shows_postop_) return postop_.draw(ui, rest);
   if (!has_frames()) {
     const char* text = sessions_.folders().empty() ? "No session yet. Record one in Navigate."
-                       : opening_.valid()          ? "Opening the session"
+                       : opening_.is_busy()        ? "Opening the session"
                        : !notice_.empty()          ? "This session cannot be read. The reason stands below."
                        : open_                     ? no_frames_words(open_->review)
                                                    : "Choose a session.";

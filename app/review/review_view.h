@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,6 +18,7 @@
 #include "app/review/session_list.h"
 #include "app/widgets/scene_pane.h"
 #include "app/widgets/video_texture.h"
+#include "navigation/worker/awaited.h"
 
 namespace arthronaut::review {
 
@@ -98,7 +98,7 @@ class ReviewView : public mode::Mode {
   widgets::VideoTexture video_;
   SessionList sessions_;
   std::optional<std::size_t> chosen_;
-  std::future<SessionReview> opening_;
+  worker::Awaited<SessionReview> opening_;
   bool opens_for_another_case_ = false;  // what opening_ reads is of the case that was open before
   std::optional<OpenSession> open_;
   NoteField note_;

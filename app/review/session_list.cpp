@@ -39,26 +39,27 @@ void SessionList::open(const std::filesystem::path& case_folder) {
   case_folder_ = case_folder;
   folders_.clear();
   lines_.clear();
-  reads_again_ = reading_.valid();
+  reads_again_ = reading_.is_busy();
 }
 
 void SessionList::read() {
   folders_ = cases::session_folders(case_folder_);
   std::reverse(folders_.begin(), folders_.end());
-  if ((reads_again_ = reading_.valid())) return;
+  if ((reads_again_ = reading_.is_busy())) return;
   if (folders_.empty()) return;
-  reading_ = std::async(std::launch::async, [folders = folders_, wake = wake_] {
-    Lines lines;  // read_session_facts() throws nothing for what it finds
-    for (const auto& folder : folders)
-      lines.emplace(folder, session_line(recording::read_session_facts(folder)));
-    wake();
-    return lines;
-  });
+  reading_.start(
+      [folders = folders_] {
+        Lines lines;  // read_session_facts() throws nothing for what it finds
+        for (const auto& folder : folders)
+          lines.emplace(folder, session_line(recording::read_session_facts(folder)));
+        return lines;
+      },
+      wake_);
 }
 
 void SessionList::take_read() {
-  if (!reading_.valid() || reading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  Lines lines = reading_.get();
+  if (!reading_.is_ready()) return;
+  Lines lines = reading_.take();
   if (std::exchange(reads_again_, false)) return read();
   lines_ = std::move(lines);
 }

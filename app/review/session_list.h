@@ -4,13 +4,13 @@
 
 #include <filesystem>
 #include <functional>
-#include <future>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/widgets/controls.h"
+#include "navigation/worker/awaited.h"
 #include "planning/library/case_record.h"
 
 namespace arthronaut::review {
@@ -33,7 +33,7 @@ class SessionList {
   // As the folders are now. Throws std::filesystem::filesystem_error.
   void read();
   [[nodiscard]] const std::vector<std::filesystem::path>& folders() const { return folders_; }
-  [[nodiscard]] bool is_busy() const { return reading_.valid(); }
+  [[nodiscard]] bool is_busy() const { return reading_.is_busy(); }
   // The one that was pressed.
   [[nodiscard]] std::optional<std::size_t> draw(const widgets::Ui& ui, std::optional<std::size_t> chosen);
 
@@ -44,7 +44,7 @@ class SessionList {
   std::function<void()> wake_;
   std::filesystem::path case_folder_;
   std::vector<std::filesystem::path> folders_;
-  std::future<Lines> reading_;
+  worker::Awaited<Lines> reading_;
   bool reads_again_ = false;  // what is being read is of before
   Lines lines_;
 };
