@@ -35,10 +35,6 @@ Eigen::Matrix<double, 3, 4> null_map(const Eigen::Matrix<double, 12, 12>& normal
 
 }  // namespace
 
-Eigen::Vector2d ConformalMap::plane_from_pixel(const Eigen::Vector2d& pixel) const {
-  return (b * monomials((pixel - mean_px) * scale)).hnormalized();
-}
-
 std::optional<Eigen::Vector2d> ConformalMap::pixel_from_plane(const Eigen::Vector2d& point,
                                                               const Eigen::Vector2d& start_px) const {
   Eigen::Vector2d v = (start_px - mean_px) * scale;

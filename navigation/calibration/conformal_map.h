@@ -21,7 +21,6 @@ struct ConformalMap {
   Eigen::Vector2d mean_px = Eigen::Vector2d::Zero();
   double scale = 1;
 
-  [[nodiscard]] Eigen::Vector2d plane_from_pixel(const Eigen::Vector2d& pixel) const;
   // Newton from a nearby pixel; nullopt when it does not arrive.
   [[nodiscard]] std::optional<Eigen::Vector2d> pixel_from_plane(const Eigen::Vector2d& point,
                                                                 const Eigen::Vector2d& start_px) const;

@@ -224,13 +224,6 @@ AxisError axis_error(const Tool& tool) {
           geometry::rad_from_deg(tool.axis_direction_sigma_deg.value_or(unsaid.direction_sigma_deg))};
 }
 
-const Tool* ToolSet::find_drill() const {
-  for (const Tool& tool : tools) {
-    if (tool.kind == ToolKind::Drill) return &tool;
-  }
-  return nullptr;
-}
-
 const Tool* ToolSet::find_tool(std::string_view name) const {
   for (const Tool& tool : tools) {
     if (tool.name == name) return &tool;

@@ -87,7 +87,6 @@ struct ToolSet {
   std::optional<OutsideTracker> tracker = std::nullopt;
 
   [[nodiscard]] const Tool* find_tool(std::string_view name) const;
-  [[nodiscard]] const Tool* find_drill() const;  // the first of kind Drill; null: there is none
   [[nodiscard]] const WorldMarker* find_world_marker(bones::BoneKind bone) const;
   // Whether a body has more to it than one marker at its own frame.
   [[nodiscard]] bool has_bodies_of_several() const;

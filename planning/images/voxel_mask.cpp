@@ -1,7 +1,6 @@
 #include "planning/images/voxel_mask.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -9,19 +8,6 @@
 namespace arthronaut::images {
 
 namespace {
-
-// Steps to the neighbours through faces; a step is taken only when the coordinate stays within the volume.
-template <typename Visit>
-void for_each_neighbour(const Eigen::Vector3i& size, std::size_t voxel, unsigned axes, const Visit& visit) {
-  const auto nx = static_cast<std::size_t>(size.x()), ny = static_cast<std::size_t>(size.y());
-  const std::array<std::size_t, 3> at{voxel % nx, voxel / nx % ny, voxel / (nx * ny)};
-  const std::array<std::size_t, 3> step{1, nx, nx * ny};
-  for (unsigned axis = 0; axis < 3; ++axis) {
-    if (!(axes >> axis & 1U)) continue;
-    if (at[axis] > 0) visit(voxel - step[axis]);
-    if (at[axis] + 1 < static_cast<std::size_t>(size[static_cast<int>(axis)])) visit(voxel + step[axis]);
-  }
-}
 
 // One row of squared distances to the nearest set voxel: the lower envelope of parabolas (Felzenszwalb and
 // Huttenlocher, Distance transforms of sampled functions, 2012).
@@ -97,34 +83,6 @@ void grow(VoxelMask& mask, std::uint8_t value, const Eigen::Vector3d& spacing_mm
   }
 }
 
-// Sets what cannot be reached from the border through unset voxels, moving along the given axes only.
-void fill_unreached(VoxelMask& mask, unsigned axes) {
-  std::vector<std::uint8_t> reached(mask.inside.size(), 0);
-  std::vector<std::size_t> front;
-  const auto visit = [&](std::size_t voxel) {
-    if (mask.inside[voxel] || reached[voxel]) return;
-    reached[voxel] = 1;
-    front.push_back(voxel);
-  };
-  for (int k = 0; k < mask.size.z(); ++k) {
-    for (int j = 0; j < mask.size.y(); ++j) {
-      for (int i = 0; i < mask.size.x(); ++i) {
-        const Eigen::Vector3i at(i, j, k);
-        for (int axis = 0; axis < 3; ++axis) {
-          if ((axes >> axis & 1U) && (at[axis] == 0 || at[axis] == mask.size[axis] - 1))
-            visit(mask.index(i, j, k));
-        }
-      }
-    }
-  }
-  while (!front.empty()) {
-    const std::size_t voxel = front.back();
-    front.pop_back();
-    for_each_neighbour(mask.size, voxel, axes, visit);
-  }
-  for (std::size_t i = 0; i < reached.size(); ++i) mask.inside[i] = reached[i] ? 0 : 1;
-}
-
 }  // namespace
 
 std::size_t VoxelMask::count() const { return std::accumulate(inside.begin(), inside.end(), std::size_t{0}); }
@@ -139,7 +97,7 @@ std::vector<VoxelPiece> connected_pieces(const VoxelMask& mask, std::size_t leas
     piece.voxels.push_back(seed);
     taken[seed] = 1;
     for (std::size_t at = 0; at < piece.voxels.size(); ++at) {
-      for_each_neighbour(mask.size, piece.voxels[at], 7, [&](std::size_t voxel) {
+      for_each_neighbour(mask.size, piece.voxels[at], [&](std::size_t voxel) {
         if (!mask.inside[voxel] || taken[voxel]) return;
         taken[voxel] = 1;
         piece.voxels.push_back(voxel);
@@ -157,10 +115,6 @@ std::vector<VoxelPiece> connected_pieces(const VoxelMask& mask, std::size_t leas
   std::stable_sort(pieces.begin(), pieces.end(),
                    [](const auto& a, const auto& b) { return a.count > b.count; });
   return pieces;
-}
-
-void erode(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm) {
-  grow(mask, 0, spacing_mm, radius_mm);
 }
 
 std::vector<float> distances_mm(const Eigen::Vector3i& size, const std::vector<std::size_t>& voxels,
@@ -189,8 +143,35 @@ void close_gaps(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radiu
   for (std::size_t i = 0; i < mask.inside.size(); ++i) mask.inside[i] |= before.inside[i];
 }
 
+void fill_unreached(VoxelMask& mask, unsigned axes) {
+  std::vector<std::uint8_t> reached(mask.inside.size(), 0);
+  std::vector<std::size_t> front;
+  const auto visit = [&](std::size_t voxel) {
+    if (mask.inside[voxel] || reached[voxel]) return;
+    reached[voxel] = 1;
+    front.push_back(voxel);
+  };
+  for (int k = 0; k < mask.size.z(); ++k) {
+    for (int j = 0; j < mask.size.y(); ++j) {
+      for (int i = 0; i < mask.size.x(); ++i) {
+        const Eigen::Vector3i at(i, j, k);
+        for (int axis = 0; axis < 3; ++axis) {
+          if ((axes >> axis & 1U) && (at[axis] == 0 || at[axis] == mask.size[axis] - 1))
+            visit(mask.index(i, j, k));
+        }
+      }
+    }
+  }
+  while (!front.empty()) {
+    const std::size_t voxel = front.back();
+    front.pop_back();
+    for_each_neighbour(mask.size, voxel, visit, axes);
+  }
+  for (std::size_t i = 0; i < reached.size(); ++i) mask.inside[i] = reached[i] ? 0 : 1;
+}
+
 void fill_enclosed(VoxelMask& mask, int axis) {
-  fill_unreached(mask, 7);
+  fill_unreached(mask);
   fill_unreached(mask, 7U & ~(1U << axis));
 }
 

@@ -1,4 +1,4 @@
-// Sets of voxels: connected pieces, closing, filling. Inner header of images and segmentation.
+// Sets of voxels: neighbours, connected pieces, closing, filling. For whoever works voxel by voxel.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,6 +23,21 @@ struct VoxelMask {
   [[nodiscard]] std::size_t count() const;
 };
 
+// The voxels that share a face with this one, along those axes that have a bit in `axes`: 1, 2 and 4.
+template <typename Visit>
+void for_each_neighbour(const Eigen::Vector3i& size, std::size_t voxel, const Visit& visit,
+                        unsigned axes = 7) {
+  const auto nx = static_cast<std::size_t>(size.x()), plane = nx * static_cast<std::size_t>(size.y()),
+             count = plane * static_cast<std::size_t>(size.z());
+  const std::size_t i = voxel % nx, in_plane = voxel % plane;
+  if ((axes & 1U) && i > 0) visit(voxel - 1);
+  if ((axes & 1U) && i + 1 < nx) visit(voxel + 1);
+  if ((axes & 2U) && in_plane >= nx) visit(voxel - nx);
+  if ((axes & 2U) && in_plane + nx < plane) visit(voxel + nx);
+  if ((axes & 4U) && voxel >= plane) visit(voxel - plane);
+  if ((axes & 4U) && voxel + plane < count) visit(voxel + plane);
+}
+
 struct VoxelPiece {
   std::size_t count = 0;
   Eigen::Vector3d center_index = Eigen::Vector3d::Zero();
@@ -31,9 +46,6 @@ struct VoxelPiece {
 
 // Pieces connected through faces, largest first; those below `least_count` are left out.
 [[nodiscard]] std::vector<VoxelPiece> connected_pieces(const VoxelMask& mask, std::size_t least_count);
-
-// Takes away what is nearer than this to an unset voxel.
-void erode(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm);
 
 // Distance of every voxel from the nearest of these, in mm.
 [[nodiscard]] std::vector<float> distances_mm(const Eigen::Vector3i& size,
@@ -45,6 +57,9 @@ void erode(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm)
 
 // Adds what a ball of this radius cannot enter from outside. Beyond the volume nothing is inside.
 void close_gaps(VoxelMask& mask, const Eigen::Vector3d& spacing_mm, double radius_mm);
+
+// Adds what cannot be reached from the border through unset voxels, by steps along those axes alone.
+void fill_unreached(VoxelMask& mask, unsigned axes = 7);
 
 // Adds what is enclosed on all sides, and what is enclosed within a slice across `axis` (the marrow of a
 // shaft that runs out of the volume).

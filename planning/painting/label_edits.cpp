@@ -97,18 +97,6 @@ VoxelMask mask_of(const Labels& labels, const Vector3i& size, const IsOne& is_on
   return mask;
 }
 
-template <typename Visit>
-void for_each_neighbour(const Vector3i& size, std::size_t v, const Visit& visit) {
-  const auto nx = static_cast<std::size_t>(size.x()), plane = nx * static_cast<std::size_t>(size.y());
-  const std::size_t i = v % nx, in_plane = v % plane;
-  if (i > 0) visit(v - 1);
-  if (i + 1 < nx) visit(v + 1);
-  if (in_plane >= nx) visit(v - nx);
-  if (in_plane + nx < plane) visit(v + nx);
-  if (v >= plane) visit(v - plane);
-  if (v + plane < plane * static_cast<std::size_t>(size.z())) visit(v + plane);
-}
-
 // A stroke near a bone's border stands for all of the bone: it takes what can be reached by going deeper all
 // the way. Else the other bone would come in through a neck that is deeper than the stroke.
 void climb(const VoxelMask& mask, const std::vector<float>& depth_mm, Labels& owner) {
@@ -117,7 +105,7 @@ void climb(const VoxelMask& mask, const std::vector<float>& depth_mm, Labels& ow
     if (owner[v] != kNothing) front.push_back(v);
   for (std::size_t at = 0; at < front.size(); ++at) {
     const std::size_t v = front[at];
-    for_each_neighbour(mask.size, v, [&](std::size_t next) {
+    images::for_each_neighbour(mask.size, v, [&](std::size_t next) {
       if (!mask.inside[next] || owner[next] != kNothing || depth_mm[next] <= depth_mm[v]) return;
       owner[next] = owner[v];
       front.push_back(next);
@@ -142,7 +130,7 @@ void flood(const VoxelMask& mask, const std::vector<float>& depth_mm, Labels& ow
     // What is reached from here is as deep as here at the most: it joins this level or a lower one.
     for (std::size_t n = 0; n < levels[at].size(); ++n) {
       const std::size_t v = levels[at][n];
-      for_each_neighbour(mask.size, v, [&](std::size_t next) {
+      images::for_each_neighbour(mask.size, v, [&](std::size_t next) {
         if (!mask.inside[next] || owner[next] != kNothing) return;
         owner[next] = owner[v];
         levels[std::min(level(next), at)].push_back(static_cast<std::uint32_t>(next));

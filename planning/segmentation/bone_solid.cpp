@@ -39,37 +39,6 @@ void cap_face(VoxelMask& mask, int axis, bool is_last) {
   });
 }
 
-// What cannot be reached from the border through unset voxels, row by row.
-void fill_unreached(VoxelMask& mask) {
-  const auto nx = static_cast<std::size_t>(mask.size.x()),
-             plane = nx * static_cast<std::size_t>(mask.size.y());
-  std::vector<std::uint8_t> reached(mask.inside.size(), 0);
-  std::vector<std::size_t> front;
-  const auto visit = [&](std::size_t voxel) {
-    if (mask.inside[voxel] || reached[voxel]) return;
-    reached[voxel] = 1;
-    front.push_back(voxel);
-  };
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const bool is_last : {false, true}) {
-      for_each_of_face(mask, axis, is_last,
-                       [&](const Eigen::Vector3i& at) { visit(mask.index(at.x(), at.y(), at.z())); });
-    }
-  }
-  while (!front.empty()) {
-    const std::size_t v = front.back();
-    front.pop_back();
-    const std::size_t i = v % nx, jk = v % plane;
-    if (i > 0) visit(v - 1);
-    if (i + 1 < nx) visit(v + 1);
-    if (jk >= nx) visit(v - nx);
-    if (jk + nx < plane) visit(v + nx);
-    if (v >= plane) visit(v - plane);
-    if (v + plane < mask.inside.size()) visit(v + plane);
-  }
-  for (std::size_t v = 0; v < reached.size(); ++v) mask.inside[v] = reached[v] ? 0 : 1;
-}
-
 Box padded(const Volume& volume, const Eigen::Vector3i& low, const Eigen::Vector3i& high, double margin_mm) {
   const Eigen::Vector3i margin = (margin_mm / volume.spacing_mm().array()).ceil().cast<int>() + 2;
   Box box;
@@ -85,7 +54,7 @@ void close_and_fill(const Volume& volume, BoneSolid& solid, double closing_radiu
     if (solid.box.first[axis] == 0) cap_face(solid.mask, axis, false);
     if (solid.box.first[axis] + solid.box.size[axis] == volume.size[axis]) cap_face(solid.mask, axis, true);
   }
-  fill_unreached(solid.mask);
+  images::fill_unreached(solid.mask);
 }
 
 }  // namespace

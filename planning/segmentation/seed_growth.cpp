@@ -35,10 +35,6 @@ struct Grid {
   std::vector<float> grey;
 
   [[nodiscard]] std::size_t count() const { return grey.size(); }
-  [[nodiscard]] std::array<std::size_t, 3> steps() const {
-    const auto nx = static_cast<std::size_t>(size.x());
-    return {1, nx, nx * static_cast<std::size_t>(size.y())};
-  }
 };
 
 template <typename Visit>
@@ -66,14 +62,11 @@ double noise_of(const Grid& grid) {
 // Shortest paths from what is labelled to what is not, by buckets of whole costs (Dial 1969). Voxels for
 // which `may_change` is 0 stay as they are and pass nothing on but their own label.
 void spread(const Grid& grid, Labels& labels, const std::vector<std::uint8_t>& may_change) {
-  const auto steps = grid.steps();
   const double scale = kLargestCost / (kStrongEdge * kStrongEdge * noise_of(grid) * noise_of(grid));
   std::vector<std::uint32_t> cost(grid.count(), UINT32_MAX);
   std::array<std::vector<std::uint32_t>, kLargestCost + kFlatCost + 1> buckets;
-  const std::size_t nx = steps[1], plane = steps[2];
   const auto relax_all = [&](std::size_t v, std::uint32_t here, const auto& push) {
-    const std::size_t i = v % nx, in_plane = v % plane;
-    const auto relax = [&](std::size_t next) {
+    images::for_each_neighbour(grid.size, v, [&](std::size_t next) {
       if (!may_change[next]) return;
       const double difference = grid.grey[next] - grid.grey[v];
       const int edge = static_cast<int>(std::min<double>(kLargestCost, scale * difference * difference));
@@ -82,13 +75,7 @@ void spread(const Grid& grid, Labels& labels, const std::vector<std::uint8_t>& m
       cost[next] = there;
       labels[next] = labels[v];
       push(next, there);
-    };
-    if (i > 0) relax(v - 1);
-    if (i + 1 < nx) relax(v + 1);
-    if (in_plane >= nx) relax(v - nx);
-    if (in_plane + nx < plane) relax(v + nx);
-    if (v >= plane) relax(v - plane);
-    if (v + plane < grid.count()) relax(v + plane);
+    });
   };
   std::size_t waiting = 0;
   const auto push = [&](std::size_t v, std::uint32_t at) {

@@ -75,9 +75,7 @@ TEST_F(ToolsFile, Hazard6KeepsHowWellTheToolsAreKnown) {
   EXPECT_EQ(axis_error(read.tools[1]).point_sigma_mm, 0.07);
   EXPECT_NEAR(geometry::deg_from_rad(axis_error(read.tools[1]).direction_sigma_rad), 0.11, 1e-12);
   EXPECT_FALSE(read.tools[2].axis_point_sigma_mm);
-  ASSERT_NE(read.find_drill(), nullptr);
-  EXPECT_EQ(read.find_drill()->name, "drill");
-  EXPECT_EQ(standard_tools().find_drill(), nullptr);
+  EXPECT_EQ(read.tools.back().kind, ToolKind::Drill);
 }
 
 // A nominal tool is worse than a measured one, and neither is exact; one number stands for every direction.

@@ -74,74 +74,27 @@ TEST(BoneSurface, OfALabelInAnObliqueGrid) {
   }
 }
 
-// Grey values place the surface within the voxel: a cortex 3 mm thick around marrow below the threshold.
-TEST(BoneSurface, AboveAThresholdTheMarrowIsFilledIn) {
-  const Volume volume = sampled({0.8, 0.8, 1.6}, {130, 130, 70}, [](const auto& p) {
-    const double depth_mm = (ellipsoid_level(p) - 1) * 28;
-    const double outer = std::clamp(0.5 - depth_mm / 1.6, 0.0, 1.0),
-                 inner = std::clamp(0.5 - (depth_mm + 3) / 1.6, 0.0, 1.0);
-    // Soft tissue 50, cortex 1000, marrow 100; the threshold lies half-way up the outer edge.
-    return 50 + 950 * outer - 900 * inner;
-  });
-  ThresholdOptions options;
-  options.threshold = 525;
-  const auto repair = bones::mend_mesh(surface_above_threshold(volume, options).mesh);
-  EXPECT_TRUE(repair.report.is_closed);
-  const double true_mm3 = 4.0 / 3 * geometry::kPi * kRadii.prod();
-  EXPECT_NEAR(repair.report.volume_mm3, true_mm3, 0.015 * true_mm3);
-  EXPECT_LT(error_of(repair.mesh).mean_mm, 0.15);
-}
-
-// A shaft that runs out of the scan is closed there, its marrow filled in although it is open to the edge.
+// A shaft that runs out of the scan at both ends is closed there.
 TEST(BoneSurface, ABoneThatLeavesTheVolumeIsCapped) {
   Volume volume = sampled({1, 1, 1}, {60, 60, 40}, [](const auto&) { return 0; });
   volume.lps_from_index.linear() = Eigen::Matrix3d::Identity();
   volume.lps_from_index.translation().setZero();
   for (int k = 0; k < 40; ++k) {
     for (int j = 0; j < 60; ++j) {
-      for (int i = 0; i < 60; ++i) {
-        const double r = std::hypot(i - 30, j - 30);
-        volume.values[volume.index(i, j, k)] = r < 15 && r > 10 ? 1000 : 0;
-      }
+      for (int i = 0; i < 60; ++i)
+        volume.values[volume.index(i, j, k)] = std::hypot(i - 30, j - 30) < 15 ? 1 : 0;
     }
   }
-  const auto repair = bones::mend_mesh(surface_above_threshold(volume, {500, Piece::Largest, 2}).mesh);
+  const auto repair = bones::mend_mesh(surface_of_label(volume, 1).mesh);
   EXPECT_TRUE(repair.report.is_closed);
   EXPECT_EQ(repair.report.holes_filled, 0U);
-  const double true_mm3 = geometry::kPi * 14.75 * 14.75 * 40;
+  const double true_mm3 = geometry::kPi * 15 * 15 * 40;
   EXPECT_NEAR(repair.report.volume_mm3, true_mm3, 0.04 * true_mm3);
-}
-
-// Two bones that touch over 5 mm: femur above, tibia below, parted at the neck.
-TEST(BoneSurface, BonesThatTouchAreParted) {
-  Volume volume = sampled({1, 1, 1}, {70, 70, 110}, [](const auto&) { return 0; });
-  volume.lps_from_index.linear() = Eigen::Matrix3d::Identity();
-  volume.lps_from_index.translation() = Eigen::Vector3d(-35, -35, -55);
-  for (int k = 0; k < 110; ++k) {
-    for (int j = 0; j < 70; ++j) {
-      for (int i = 0; i < 70; ++i) {
-        const Eigen::Vector3d p = volume.lps_from_index * Eigen::Vector3d(i, j, k);
-        const bool above = (p - Eigen::Vector3d(0, 0, 25)).norm() < 25.2,
-                   below = (p + Eigen::Vector3d(0, 0, 25)).norm() < 25.2;
-        volume.values[volume.index(i, j, k)] = above || below ? 800 : 0;
-      }
-    }
-  }
-  for (const Piece piece : {Piece::Superior, Piece::Inferior}) {
-    const BoneSurface surface = surface_above_threshold(volume, {400, piece, 2});
-    EXPECT_TRUE(surface.doubts.empty());
-    const auto repair = bones::mend_mesh(surface.mesh);
-    const double true_mm3 = 4.0 / 3 * geometry::kPi * std::pow(25.2, 3);
-    EXPECT_NEAR(repair.report.volume_mm3, true_mm3, 0.03 * true_mm3);
-    EXPECT_NEAR(geometry::bounds_of(repair.mesh).center_mm().z(), piece == Piece::Superior ? 25 : -25, 1.0);
-  }
 }
 
 TEST(BoneSurface, WhatIsNotThereIsRefused) {
   const Volume labels = sampled({1, 1, 1}, {20, 20, 20}, [](const auto& p) { return p.norm() < 5 ? 3 : 0; });
   EXPECT_THAT(message_of<InvalidInput>([&] { (void)surface_of_label(labels, 5); }), HasSubstr("0, 3"));
-  EXPECT_THAT(message_of<InvalidInput>([&] { (void)surface_above_threshold(labels, {}); }),
-              HasSubstr("from 0 to 3"));
   const Volume grey = sampled({1, 1, 1}, {20, 20, 20}, [](const auto& p) { return p.norm(); });
   EXPECT_THAT(message_of<InvalidInput>([&] { (void)surface_of_label(grey, 5); }), HasSubstr("no label map"));
 }
