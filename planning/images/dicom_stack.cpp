@@ -6,6 +6,7 @@
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/quantile.h"
+#include "planning/geometry/rigid_transform.h"
 #include "planning/images/dicom_study.h"
 
 namespace arthronaut::images {
@@ -94,6 +95,21 @@ Eigen::Vector3d slice_step_mm(const DicomSlices& sorted) {
   return step;
 }
 
+// Slices of a tilted gantry lie aslant above one another. Where their places do not say so and their header
+// does, either may be right: a copy that straightened the places alone shows sheared bones.
+void note_untold_tilt(const DicomSlice& slice, const Eigen::Vector3d& step_mm,
+                      std::vector<std::string>& notes) {
+  constexpr double kLeast_deg = 1;
+  const double named_deg = std::abs(slice.gantry_tilt_deg);
+  const double placed_deg =
+      geometry::deg_from_rad(std::acos(std::min(std::abs(step_mm.normalized().dot(slice.normal())), 1.0)));
+  if (named_deg < kLeast_deg || placed_deg > named_deg / 2) return;
+  notes.push_back(
+      files::format("its header names a gantry tilt of %.1f degrees, its slices lie %.1f degrees "
+                    "aslant: if that is not so, its bones are sheared",
+                    named_deg, placed_deg));
+}
+
 }  // namespace
 
 DicomStack stacked(const std::filesystem::path& source, DicomSlices slices) {
@@ -114,6 +130,7 @@ DicomStack stacked(const std::filesystem::path& source, DicomSlices slices) {
     }
   }
   stack.step_mm = slice_step_mm(slices);
+  note_untold_tilt(slices.front(), stack.step_mm, stack.notes);
   stack.slices = std::move(slices);
   return stack;
 }

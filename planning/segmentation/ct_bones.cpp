@@ -109,6 +109,18 @@ void keep_one_knee(Found& found, const CtBonesOptions& options) {
   std::erase_if(found.slender, [&](const Slender& s) { return (s.center_mm.x() > middle) != is_left; });
 }
 
+// Whether a whole bone lies above it already: then it is no femur, however high its plateau reaches above its
+// largest level section, as it does in a knee that leans.
+bool stands_below_a_bone(const Found& found, std::size_t at) {
+  constexpr double kLeastShare = 0.25;  // a patella is less of a tibia
+  const SectionProfile& below = found.candidates[at].profile;
+  return std::any_of(found.candidates.begin(), found.candidates.begin() + static_cast<std::ptrdiff_t>(at),
+                     [&](const Candidate& other) {
+                       return other.profile.volume_mm3 > kLeastShare * below.volume_mm3 &&
+                              other.profile.center_mm.z() > below.high_mm();
+                     });
+}
+
 // The part of the candidate above or below the joint space, its largest piece.
 Candidate part_of(const Volume& volume, const Candidate& whole, const JointSpace& joint, bool is_above,
                   double closing_radius_mm) {
@@ -249,6 +261,7 @@ CtBones bones_of_ct(const Volume& volume, const CtBonesOptions& options) {
   }
   bool is_joined = false;
   for (std::size_t i = 0; i < found.candidates.size(); ++i) {
+    if (stands_below_a_bone(found, i)) continue;
     const bool holds_both = found.candidates[i].may_hold_both();
     if (!holds_both && found.candidates.size() > 1) continue;
     if (part_at_joint(volume, found, i, options, result)) {

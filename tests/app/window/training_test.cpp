@@ -81,7 +81,7 @@ TEST_F(WorkstationTraining, ACalibrationIsDoneByHandAndScored) {
   app.press("space");
   ASSERT_TRUE(app.wait_for_state("train_hand", "board", 60));
   EXPECT_EQ(app.state("source_kind"), "SIMULATION");
-  app.hold_until("q", "train_taken", "1", 1);  // nearer
+  (void)app.hold_until("q", "train_taken", "1", 1);  // nearer, for a second
   app.press("space");
   ASSERT_TRUE(app.wait_for_state("train_taken", "1", 30)) << app.state("train_refused");
   app.press("Return");

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "planning/geometry/error.h"
+#include "planning/geometry/rigid_transform.h"
 #include "planning/images/volume_bytes.h"
 #include "tests/message_of.h"
 #include "tests/planning/images/volume_forms.h"
@@ -121,6 +122,28 @@ TEST(DicomSeries, ATiltedGantryIsASheardGrid) {
   const TemporaryFolder folder;
   write_series(folder, test::dicom_slices(sheared));
   expect_same(read_volume(folder.path()), sheared);
+}
+
+// A copy that straightened the slices' places and kept what the header says: nobody can tell which is right.
+TEST(DicomSeries, ATiltThatThePlacesDoNotShowIsSaid) {
+  Volume sheared = even_volume();
+  sheared.lps_from_index.linear().col(2) += sheared.lps_from_index.linear().col(1) * 0.8;
+  const auto notes_of = [](const Volume& written, const char* tilt) {
+    const TemporaryFolder folder;
+    auto slices = test::dicom_slices(written);
+    for (auto& [name, slice] : slices) slice.gantry_tilt = tilt;
+    write_series(folder, slices);
+    return read_volume(folder.path()).notes;
+  };
+  EXPECT_THAT(notes_of(even_volume(), "-12"), testing::Contains(HasSubstr("gantry tilt of 12.0 degrees")));
+  const Eigen::Matrix3d axes = sheared.lps_from_index.linear();
+  const double tilt_deg = geometry::deg_from_rad(
+      std::acos(std::abs(axes.col(2).normalized().dot(axes.col(0).cross(axes.col(1)).normalized()))));
+  ASSERT_GT(tilt_deg, 5);
+  EXPECT_THAT(notes_of(sheared, std::to_string(tilt_deg).c_str()),
+              testing::Not(testing::Contains(HasSubstr("tilt"))));
+  for (const char* none : {"", "0", "0.2"})
+    EXPECT_THAT(notes_of(even_volume(), none), testing::Not(testing::Contains(HasSubstr("tilt")))) << none;
 }
 
 TEST(DicomSeries, AMissingSliceIsRefusedWithItsPlace) {

@@ -141,7 +141,7 @@ inline std::map<std::string, std::string> all_volume_forms(const images::Volume&
 
 // One slice as an explicit little-endian DICOM file with what a CT of the knee says, and nothing more.
 struct DicomSliceForm {
-  std::string series_uid = "1.2.3.4", modality = "CT", echo_time;
+  std::string series_uid = "1.2.3.4", modality = "CT", echo_time, gantry_tilt;
   Eigen::Vector3d position_mm, along_columns{1, 0, 0}, along_rows{0, 1, 0};
   double column_spacing_mm = 0.5, row_spacing_mm = 0.75;
   int columns = 7, rows = 5;
@@ -173,6 +173,7 @@ inline std::string dicom(const DicomSliceForm& slice) {
   std::string data = element(8, 0x16, "UI", ct_storage) + element(8, 0x60, "CS", slice.modality) +
                      element(0x18, 0x50, "DS", "99");  // a slice thickness that must not be believed
   if (!slice.echo_time.empty()) data += element(0x18, 0x81, "DS", slice.echo_time);
+  if (!slice.gantry_tilt.empty()) data += element(0x18, 0x1120, "DS", slice.gantry_tilt);
   data +=
       element(0x20, 0x0e, "UI", slice.series_uid) + element(0x20, 0x11, "IS", "3") +
       element(0x20, 0x32, "DS", joined(slice.position_mm, "\\")) +

@@ -5,8 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "planning/bones/mesh_repair.h"
 #include "planning/geometry/error.h"
+#include "planning/geometry/rigid_transform.h"
 #include "planning/phantom/phantom_knee.h"
 #include "planning/segmentation/anatomy_check.h"
 #include "tests/message_of.h"
@@ -69,6 +72,25 @@ TEST(CtBones, SurfacesLieAtTheEdgeOfKnownBones) {
         EXPECT_LT(distances[distances.size() * 95 / 100], 0.35);
       }
       EXPECT_TRUE(anatomy_doubts(mended.mesh, found.bones[i].kind).empty());
+    }
+  }
+}
+
+// A knee lies on the table as it can. Its plateau then reaches far above the largest level section of the
+// tibia, which is a whole bone all the same: nothing of it is cut off along the joint.
+TEST(CtBones, AKneeThatLeansKeepsItsPlateau) {
+  for (const Eigen::Vector3d& axis : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitY().eval()}) {
+    auto truth = knee();
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(geometry::rad_from_deg(25), axis).toRotationMatrix();
+    for (TriangleMesh& mesh : truth)
+      for (Eigen::Vector3d& vertex : mesh.vertices_mm) vertex = turn * vertex;
+    const CtBones found = bones_of_ct(test::known_ct(truth));
+    ASSERT_EQ(found.bones.size(), 2U);
+    EXPECT_TRUE(found.notes.empty()) << found.notes.front();
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto distances = test::distances_to(found.bones[i].mesh, truth[i], 0);
+      EXPECT_LT(distances[distances.size() * 95 / 100], 0.35);
+      EXPECT_LT(distances.back(), 1.5) << "a plateau that is cut off is 4 to 11 mm short";
     }
   }
 }
