@@ -24,13 +24,20 @@ struct Arguments {
   bool as_json = false, as_csv = false, with_identity = false;
 };
 
-void add_folder(const Context& context, library::Library& known, const std::string& folder) {
+// What was done, in words; nothing beside what another program is to read.
+void say_done(const Context& context, const Arguments& arguments, const std::string& line) {
+  if (!arguments.as_json && !arguments.as_csv) context.say(line);
+}
+
+void add_folder(const Context& context, library::Library& known, const Arguments& arguments) {
   Progress progress("Looking through folders", 0);
-  const auto found = library::find_case_folders(folder, [&](long looked) { progress.advance_to(looked); });
-  if (found.empty()) throw InvalidInput(folder, "", "holds no case");
+  const auto found =
+      library::find_case_folders(arguments.add, [&](long looked) { progress.advance_to(looked); });
+  if (found.empty()) throw InvalidInput(arguments.add, "", "holds no case");
   const std::size_t fresh = known.add(found);
-  context.say(std::to_string(found.size()) + (found.size() == 1 ? " case found, " : " cases found, ") +
-              std::to_string(fresh) + " of them new.");
+  say_done(context, arguments,
+           std::to_string(found.size()) + (found.size() == 1 ? " case found, " : " cases found, ") +
+               std::to_string(fresh) + " of them new.");
 }
 
 std::vector<CaseRecord> looked_at(library::Library& known) {
@@ -77,16 +84,17 @@ void list_cases(const Context& context, const Arguments& arguments) {
   const auto opened = workstation_library::open_library();
   library::Library& known = *opened;
   for (const std::string& notice : known.notices()) std::cerr << "arthronaut: " << notice << '\n';
-  if (!arguments.add.empty()) add_folder(context, known, arguments.add);
+  if (!arguments.add.empty()) add_folder(context, known, arguments);
   if (!arguments.forget.empty()) {
     known.forget(arguments.forget);
-    context.say("Forgot " + arguments.forget + "; the folder stays as it is.");
+    say_done(context, arguments, "Forgot " + arguments.forget + "; the folder stays as it is.");
   }
   if (!arguments.note.empty()) {
     const std::string before = cases::load_note(arguments.note).text;
     cases::save_note_over(arguments.note, arguments.note_text, before);
     (void)known.add(std::vector<fs::path>{arguments.note});
-    context.say((arguments.note_text.empty() ? "Took the note off " : "Noted with ") + arguments.note + ".");
+    say_done(context, arguments,
+             (arguments.note_text.empty() ? "Took the note off " : "Noted with ") + arguments.note + ".");
   }
   const bool only_changes = !arguments.forget.empty() || !arguments.note.empty();
   if (only_changes && !arguments.as_json && !arguments.as_csv) return;

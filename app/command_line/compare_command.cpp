@@ -84,7 +84,8 @@ void add_compare_command(CLI::App& app, Context& context) {
       ->check(CLI::IsMember({"femur", "tibia"}));
   sub->add_option("--series", arguments->series, "Series number or UID, for DICOM with several");
   sub->add_option("--label", arguments->labels, "Label maps: the labels that are bone; default: all but 0")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);  // the case may follow
   sub->callback([&context, arguments] { compare(context, *arguments); });
 }
 

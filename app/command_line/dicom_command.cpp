@@ -2,6 +2,7 @@
 
 #include "app/command_line/command.h"
 #include "app/report/report.h"
+#include "app/scene/plan_picture.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/dicom_out/dicom_export.h"
@@ -31,8 +32,28 @@ std::string moment_of(const fs::path& case_folder, const cases::Case& knee) {
          part(13, 2) + "Z";
 }
 
+// Each bone from the joint's side, with its planned tunnels.
+void add_plan_pictures(const cases::Case& knee, std::vector<dicom_out::KeyPicture>& pictures) {
+  for (const bones::BoneKind kind : {bones::BoneKind::Femur, bones::BoneKind::Tibia}) {
+    const auto bone = knee.bones.find(kind);
+    if (bone == knee.bones.end() || bone->second.mesh.empty()) continue;
+    scene::PictureRequest request;
+    request.knee = &knee;
+    request.view =
+        kind == bones::BoneKind::Femur ? scene::ViewDirection::Notch : scene::ViewDirection::Plateau;
+    request.width = 1024;
+    request.height = 768;
+    scene::Image image = scene::render_plan_picture(request);
+    pictures.push_back({.title = "Plan of the " + std::string(bones::to_text(kind)) + ", from the " +
+                                 (kind == bones::BoneKind::Femur ? "notch" : "joint"),
+                        .width = image.width,
+                        .height = image.height,
+                        .rgb = std::move(image.rgb)});
+  }
+}
+
 // Those in the case's own folder of pictures, by name.
-std::vector<dicom_out::KeyPicture> pictures_of(const fs::path& case_folder) {
+void add_pictures_of_operation(const fs::path& case_folder, std::vector<dicom_out::KeyPicture>& pictures) {
   std::vector<fs::path> files;
   const fs::path folder = case_folder / "pictures";
   if (fs::is_directory(folder)) {
@@ -43,17 +64,16 @@ std::vector<dicom_out::KeyPicture> pictures_of(const fs::path& case_folder) {
     }
   }
   std::sort(files.begin(), files.end());
-  std::vector<dicom_out::KeyPicture> pictures;
+  int number = 0;
   for (const fs::path& file : files) {
     camera::Frame frame = sources::read_picture(file);
     for (std::size_t at = 0; at + 2 < frame.bgr.size(); at += 3) std::swap(frame.bgr[at], frame.bgr[at + 2]);
     // Not by the file's name: it may be the patient's.
-    pictures.push_back({.title = "Picture of the operation " + std::to_string(pictures.size() + 1),
+    pictures.push_back({.title = "Picture of the operation " + std::to_string(++number),
                         .width = frame.width,
                         .height = frame.height,
                         .rgb = std::move(frame.bgr)});
   }
-  return pictures;
 }
 
 void export_dicom(Context& context, const DicomArguments& arguments) {
@@ -71,7 +91,8 @@ void export_dicom(Context& context, const DicomArguments& arguments) {
   contents.report_pdf = report::make_report(
       arguments.case_folder,
       {.with_identity = true, .is_deidentified = arguments.is_deidentified, .says_when_made = false});
-  contents.pictures = pictures_of(arguments.case_folder);
+  add_plan_pictures(contents.knee, contents.pictures);
+  add_pictures_of_operation(arguments.case_folder, contents.pictures);
   const auto summary = dicom_out::export_dicom(contents, arguments.output);
   for (const std::string& note : summary.notes) context.say(note);
   for (const fs::path& file : summary.files) context.say("Wrote " + file.string());

@@ -192,8 +192,10 @@ void add_landmarks_command(CLI::App& app, Context& context) {
   auto* propose =
       sub->add_flag("--propose", arguments->propose, "Propose from the shape what nobody has confirmed");
   sub->add_option("--set", arguments->set, "BONE.NAME=x,y,z in mm, LPS: placed by hand, and so confirmed")
+      ->allow_extra_args(false)  // one each: the case may follow
       ->check(read_by([](const std::string& text) { (void)placed_from(text); }));
   sub->add_option("--confirm", arguments->confirm, "BONE.NAME, or BONE for all of it: looked at and right")
+      ->allow_extra_args(false)
       ->check(read_by([](const std::string& text) { (void)place_from(text); }));
   sub->add_option("--roof", arguments->roof,
                   "How Blumensaat's line is proposed: flat (through the roof without its hill) or ends "

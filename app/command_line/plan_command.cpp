@@ -222,7 +222,8 @@ void list_versions(const PlanArguments& arguments, const Context& context, const
 
 void export_to(const PlanArguments& arguments, Context& context, const cases::Case& knee) {
   const auto summary = plan_export::export_plan(knee, arguments.export_folder);
-  for (const auto& file : summary.files) context.say("Wrote " + file.string());
+  if (!arguments.as_json)
+    for (const auto& file : summary.files) context.say("Wrote " + file.string());
   if (!summary.doubts.empty()) context.say_unreliable("The exported plan", summary.doubts);
 }
 
@@ -275,7 +276,8 @@ void add_plan_command(CLI::App& app, Context& context) {
           ->excludes(remove);
   sub->add_option("--export", arguments->export_folder,
                   "Folder for plan.json, plan.csv, plan.mrk.json and the drilled bones");
-  sub->add_flag("--json", arguments->as_json, "Print the tunnel as JSON, without --bone every tunnel");
+  auto* json =
+      sub->add_flag("--json", arguments->as_json, "Print the tunnel as JSON, without --bone every tunnel");
   sub->add_flag("--list", arguments->list, "Show the plan")
       ->excludes(direction)
       ->excludes(by_default)
@@ -291,7 +293,8 @@ void add_plan_command(CLI::App& app, Context& context) {
       ->excludes(by_default)
       ->excludes(markups)
       ->excludes(direction)
-      ->excludes(take);
+      ->excludes(take)
+      ->excludes(json);
   entry->needs(direction);
   footprint->needs(direction);
   sub->callback([arguments, entry, direction, type, diameter, &context] {

@@ -66,6 +66,8 @@ TEST_F(CasesCommand, WritesJsonAndCsvAndSaysDamageBeside) {
   const auto json = cases({"--json", "--sort", "name"});
   ASSERT_EQ(json.exit_code, 0) << json.errors;
   EXPECT_THAT(json.errors, HasSubstr("made anew"));
+  EXPECT_TRUE(nlohmann::json::accept(cases({"--add", a_, "--json"}).output));
+  EXPECT_TRUE(nlohmann::json::accept(cases({"--note", a_, "--text", "seen", "--json"}).output));
   const auto document = nlohmann::json::parse(json.output);
   EXPECT_EQ(document.at("format"), "arthronaut.cases");
   ASSERT_EQ(document.at("cases").size(), 2U);

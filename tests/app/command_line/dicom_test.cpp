@@ -122,8 +122,22 @@ TEST_F(DicomCommand, TheSameCaseGivesTheSameBytes) {
   ASSERT_EQ(run("a").exit_code, 0);
   ASSERT_EQ(run("b").exit_code, 0);
   const auto written = contents_of(folder_ / "a");
-  EXPECT_EQ(written.size(), 7U);
+  EXPECT_EQ(written.size(), 9U);
   EXPECT_EQ(written, contents_of(folder_ / "b"));
+}
+
+// A case that nobody operated on yet has pictures, too: of its plan.
+TEST_F(DicomCommand, PicturesShowThePlan) {
+  take_phantom();
+  fs::remove_all(folder_ / "knee.arthro/pictures");
+  ASSERT_EQ(run("out").exit_code, 0);
+  for (const char* name : {"image_001.dcm", "image_002.dcm"}) {
+    DcmFileFormat picture;
+    ASSERT_TRUE(picture.loadFile((folder_ / "out" / name).c_str()).good()) << name;
+    EXPECT_EQ(text(*picture.getDataset(), DCM_SOPClassUID), UID_SecondaryCaptureImageStorage);
+    EXPECT_EQ(text(*picture.getDataset(), DCM_Columns), "1024");
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "out" / "image_003.dcm"));
 }
 
 // Hazard 40: what is sent is of the moment of the last operation, whatever was practised since.

@@ -136,6 +136,11 @@ TEST_F(PlanCommand, ExportsPlanAndDrilledBones) {
   for (const char* file :
        {"plan.json", "plan.csv", "plan.mrk.json", "femur_drilled.stl", "tibia_drilled.stl"})
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / file)) << file;
+  // What another program reads is the document alone.
+  const auto json = run({"plan", "--bone", "femur", "--json", "--export", folder_ / "again"});
+  EXPECT_TRUE(nlohmann::json::accept(json.output)) << json.output;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "again" / "plan.csv"));
+  EXPECT_EQ(run({"plan", "--versions", "--json"}).exit_code, 2) << "versions are listed in words";
   // Read back, they are the same plan.
   EXPECT_EQ(run({"plan", "--from-markups", folder_ / "out" / "plan.mrk.json"}).exit_code, 0);
   const cases::Case saved = cases::load_case(folder_ / "knee.arthro");
@@ -216,6 +221,11 @@ TEST_F(PlanCommand, LandmarksAreProposedSetAndKept) {
   const cases::Case saved = cases::load_case(folder_ / "knee.arthro");
   EXPECT_EQ(saved.landmarks.at(bones::BoneKind::Femur).at("notch_apex"), Eigen::Vector3d(1, 2, 3));
   EXPECT_GT(saved.landmarks.at(bones::BoneKind::Femur).size(), 5U);
+  // The case may follow what is set and confirmed.
+  EXPECT_EQ(run_program({"landmarks", "--set", "femur.notch_apex=1,2,4", "--confirm", "femur",
+                         folder_ / "knee.arthro", "--json"})
+                .exit_code,
+            0);
   const auto unknown = run({"landmarks", "--set", "femur.no_such_point=1,2,3"});
   EXPECT_NE(unknown.exit_code, 0);
   EXPECT_THAT(unknown.errors, HasSubstr("no_such_point"));
