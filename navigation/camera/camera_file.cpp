@@ -49,11 +49,9 @@ CalibrationRecord read_camera_file(const std::filesystem::path& file) {
   CalibrationRecord record;
   Calibration& c = record.calibration;
   const auto size = root.vector2("image_size_px");
-  c.image_size_px = size.cast<int>();
-  if (c.image_size_px.cast<double>() != size || c.image_size_px.minCoeff() <= 0 ||
-      c.image_size_px.maxCoeff() > 16384) {
+  if (size.minCoeff() < 1 || size.maxCoeff() > 16384 || size.array().floor().matrix() != size)
     root.fail("image_size_px", "must hold two whole numbers from 1 to 16384");
-  }
+  c.image_size_px = size.cast<int>();
   c.focal_px = root.positive_number("focal_px");
   c.aspect_ratio = root.positive_number("aspect_ratio");
   c.principal_point_px = root.vector2("principal_point_px");
