@@ -217,25 +217,32 @@ std::vector<std::string> anatomy_doubts(const geometry::TriangleMesh& mesh, Bone
   if (const double most = bounds.size_mm().maxCoeff(), up = bounds.size_mm().z();
       most < kLeastLength_mm || (up < kLeastLength_mm && most < kKneeWidth_mm))
     return {files::format("only %.0f mm of it are there, from top to bottom: too little for a tunnel", up)};
-  // No knee is so deep from front to back, or so wide, unless it lies on its side.
-  const Vector3d size = bounds.size_mm();
-  if (size.y() > kMostDepth_mm && size.y() > kLyingDown * size.z())
-    return {wrong_axes(kind, "forwards or backwards")};
-  if (size.x() > kMostWidth_mm && size.x() > kLyingDown * size.z()) return {wrong_axes(kind, "sideways")};
-  const std::string amiss = amiss_along(mesh, kind, Vector3d::UnitZ());
-  if (amiss.empty()) return {};
-  // The shaft's cut end tells how a bone lies, whatever shape the rest has that way. Not asked of a bone that
-  // fits upright: the end of a volume may have cut it flat in front.
+  // The shaft's cut end tells how a bone lies, whatever shape the rest has.
   constexpr double kLeastCap_mm2 = 350, kMostOtherCap = 0.4;
   const double sign = kind == BoneKind::Femur ? 1 : -1;
   const double expected = cap_area_mm2(mesh, sign * Vector3d::UnitZ());
-  for (const Direction& side : sideways()) {
+  const auto is_cut_at = [&](const Direction& side) {
     const double cap = cap_area_mm2(mesh, side.axis);
-    if (cap > kLeastCap_mm2 && expected < kMostOtherCap * cap &&
+    return cap > kLeastCap_mm2 && expected < kMostOtherCap * cap;
+  };
+  // No knee is so deep from front to back, or so wide, unless it lies on its side or, with its shaft cut
+  // where it must be, is rolled outwards.
+  const bool ends_upright =
+      expected > kLeastCap_mm2 && std::none_of(sideways().begin(), sideways().end(), is_cut_at);
+  const Vector3d size = bounds.size_mm();
+  if (size.y() > kMostDepth_mm && size.y() > kLyingDown * size.z() && !ends_upright)
+    return {wrong_axes(kind, "forwards or backwards")};
+  if (size.x() > kMostWidth_mm && size.x() > kLyingDown * size.z() && !ends_upright)
+    return {wrong_axes(kind, "sideways")};
+  const std::string amiss = amiss_along(mesh, kind, Vector3d::UnitZ());
+  if (amiss.empty()) return {};
+  // Not asked of a bone that fits upright: the end of a volume may have cut it flat in front.
+  for (const Direction& side : sideways()) {
+    if (is_cut_at(side) &&
         (amiss_along(mesh, kind, sign * side.axis).empty() || fits_about(mesh, kind, sign * side.axis)))
       return {wrong_axes(kind, side.name)};
   }
-  if (amiss.empty() || fits_about(mesh, kind, Vector3d::UnitZ())) return {};
+  if (fits_about(mesh, kind, Vector3d::UnitZ())) return {};
   return {"it does not look like a " + std::string(bones::to_text(kind)) + ": " + amiss};
 }
 

@@ -47,6 +47,29 @@ TEST(AnatomyCheck, KneesOfAllSizesPassHoweverTheyLean) {
   }
 }
 
+// The shaft cut off where so much of the bone is left.
+TriangleMesh cut_to(TriangleMesh mesh, BoneKind kind, double length_mm) {
+  const geometry::Bounds bounds = geometry::bounds_of(mesh);
+  for (auto& p : mesh.vertices_mm) {
+    p.z() = kind == BoneKind::Femur ? std::min(p.z(), bounds.min_mm.z() + length_mm)
+                                    : std::max(p.z(), bounds.max_mm.z() - length_mm);
+  }
+  return mesh;
+}
+
+// The leg of a large knee rolls outwards on the table: from front to back it is then as deep as it is wide.
+TEST(AnatomyCheck, ALargeKneeThatIsRolledIsNoneThatLies) {
+  for (const BoneKind kind : {BoneKind::Femur, BoneKind::Tibia}) {
+    for (const double rolled_deg : {-40, -20, 20, 40}) {
+      TriangleMesh mesh =
+          turned(bone(kind), Eigen::AngleAxisd(rolled_deg * M_PI / 180, Eigen::Vector3d::UnitZ()));
+      for (auto& p : mesh.vertices_mm) p *= 1.2;
+      EXPECT_THAT(anatomy_doubts(cut_to(mesh, kind, 75), kind), testing::IsEmpty())
+          << bones::to_text(kind) << " " << rolled_deg;
+    }
+  }
+}
+
 TEST(AnatomyCheck, OneBoneIsNotTheOther) {
   EXPECT_THAT(anatomy_doubts(bone(BoneKind::Tibia), BoneKind::Femur), Contains(HasSubstr("femur")));
   EXPECT_THAT(anatomy_doubts(bone(BoneKind::Femur), BoneKind::Tibia), Contains(HasSubstr("tibia")));
