@@ -64,6 +64,8 @@ DicomSlice common_part(const std::filesystem::path& file, DcmDataset& dataset) {
   slice.frame.slope = rescaling_of(slice, dataset, DCM_RescaleSlope, slice.frame.slope);
   slice.frame.intercept = rescaling_of(slice, dataset, DCM_RescaleIntercept, slice.frame.intercept);
   if (const auto echo = decimals_of(dataset, DCM_EchoTime, 1)) slice.echo_time_ms = echo->front();
+  if (const auto number = decimals_of(dataset, DCM_InstanceNumber, 1))
+    slice.instance_number = number->front();
   if (const auto tilt = decimals_of(dataset, DCM_GantryDetectorTilt, 1))
     slice.gantry_tilt_deg = tilt->front();
   return slice;

@@ -27,6 +27,7 @@ struct DicomSlice {
   Eigen::Vector3d along_rows = Eigen::Vector3d::Zero();     // unit, of increasing row index
   double column_spacing_mm = 0, row_spacing_mm = 0;
   std::optional<double> echo_time_ms;
+  std::optional<double> instance_number;      // of the file, as its scanner counted
   double gantry_tilt_deg = 0;                 // as the header says; 0 where it does not
   std::shared_ptr<const DicomOrigin> origin;  // of the whole file
   std::shared_ptr<const DicomPixels> pixels;  // of the whole file

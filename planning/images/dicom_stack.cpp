@@ -110,13 +110,27 @@ void note_untold_tilt(const DicomSlice& slice, const Eigen::Vector3d& step_mm,
                     named_deg, placed_deg));
 }
 
+// A scanner counts its slices one by one; a copy that lost every second one is as even as the whole series.
+void note_steps_of_numbers(const DicomSlices& sorted, std::vector<std::string>& notes) {
+  if (!sorted[0].instance_number || !sorted[1].instance_number) return;
+  const double step = *sorted[1].instance_number - *sorted[0].instance_number;
+  if (!(std::abs(step) >= 2)) return;
+  for (std::size_t i = 1; i + 1 < sorted.size(); ++i) {
+    const auto &here = sorted[i].instance_number, &next = sorted[i + 1].instance_number;
+    if (!here || !next || *next - *here != step) return;
+  }
+  notes.push_back(files::format("its slices are numbered in steps of %.0f: those between may be missing",
+                                std::abs(step)));
+}
+
 }  // namespace
 
 DicomStack stacked(const std::filesystem::path& source, DicomSlices slices) {
   DicomStack stack;
   refuse_odd_ones(slices);
   sort_by_position(slices);
-  if (has_position_twice(slices)) keep_first_echo(slices, stack.notes);
+  const bool has_echoes = has_position_twice(slices);
+  if (has_echoes) keep_first_echo(slices, stack.notes);
   if (slices.size() < 2) {
     throw InvalidInput(source, "",
                        std::filesystem::is_directory(source)
@@ -131,6 +145,7 @@ DicomStack stacked(const std::filesystem::path& source, DicomSlices slices) {
   }
   stack.step_mm = slice_step_mm(slices);
   note_untold_tilt(slices.front(), stack.step_mm, stack.notes);
+  if (!has_echoes) note_steps_of_numbers(slices, stack.notes);  // echoes are counted in between
   stack.slices = std::move(slices);
   return stack;
 }

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include "planning/geometry/error.h"
@@ -144,6 +146,29 @@ TEST(DicomSeries, ATiltThatThePlacesDoNotShowIsSaid) {
               testing::Not(testing::Contains(HasSubstr("tilt"))));
   for (const char* none : {"", "0", "0.2"})
     EXPECT_THAT(notes_of(even_volume(), none), testing::Not(testing::Contains(HasSubstr("tilt")))) << none;
+}
+
+// As even as a whole series: only the scanner's own count tells. It may run downwards.
+TEST(DicomSeries, EverySecondSliceMissingIsSaid) {
+  const auto notes_of = [](const std::function<std::string(int)>& number) {
+    const TemporaryFolder folder;
+    auto slices = test::dicom_slices(even_volume());
+    std::vector<test::DicomSliceForm*> by_place;
+    for (auto& [name, slice] : slices) by_place.push_back(&slice);
+    std::sort(by_place.begin(), by_place.end(),
+              [](const auto* a, const auto* b) { return a->position_mm.z() < b->position_mm.z(); });
+    for (std::size_t k = 0; k < by_place.size(); ++k)
+      by_place[k]->instance_number = number(static_cast<int>(k));
+    write_series(folder, slices);
+    return read_volume(folder.path()).notes;
+  };
+  const auto said = testing::Contains(HasSubstr("numbered in steps of 2"));
+  EXPECT_THAT(notes_of([](int k) { return std::to_string(1 + 2 * k); }), said);
+  EXPECT_THAT(notes_of([](int k) { return std::to_string(91 - 2 * k); }), said);
+  for (const auto& whole :
+       {+[](int k) { return std::to_string(k); }, +[](int) { return std::string(); },
+        +[](int) { return std::string("7"); }, +[](int k) { return std::to_string(k == 0 ? 0 : k + 1); }})
+    EXPECT_THAT(notes_of(whole), testing::Not(testing::Contains(HasSubstr("steps"))));
 }
 
 TEST(DicomSeries, AMissingSliceIsRefusedWithItsPlace) {

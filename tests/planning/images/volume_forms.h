@@ -141,7 +141,7 @@ inline std::map<std::string, std::string> all_volume_forms(const images::Volume&
 
 // One slice as an explicit little-endian DICOM file with what a CT of the knee says, and nothing more.
 struct DicomSliceForm {
-  std::string series_uid = "1.2.3.4", modality = "CT", echo_time, gantry_tilt;
+  std::string series_uid = "1.2.3.4", modality = "CT", echo_time, gantry_tilt, instance_number;
   Eigen::Vector3d position_mm, along_columns{1, 0, 0}, along_rows{0, 1, 0};
   double column_spacing_mm = 0.5, row_spacing_mm = 0.75;
   int columns = 7, rows = 5;
@@ -176,6 +176,7 @@ inline std::string dicom(const DicomSliceForm& slice) {
   if (!slice.gantry_tilt.empty()) data += element(0x18, 0x1120, "DS", slice.gantry_tilt);
   data +=
       element(0x20, 0x0e, "UI", slice.series_uid) + element(0x20, 0x11, "IS", "3") +
+      (slice.instance_number.empty() ? "" : element(0x20, 0x13, "IS", slice.instance_number)) +
       element(0x20, 0x32, "DS", joined(slice.position_mm, "\\")) +
       element(0x20, 0x37, "DS", joined(slice.along_columns, "\\") + "\\" + joined(slice.along_rows, "\\")) +
       element(0x28, 2, "US", short_value(1)) + element(0x28, 4, "CS", "MONOCHROME2") +
