@@ -120,7 +120,7 @@ int find_sides(const std::vector<Eigen::Vector2d>& outline, double size, const E
 std::span<const FoundSquare> SquareSearch::find_covered(const camera::CameraModel& camera) {
   const bool has_highlights = white_pixels_ >= kMinWhitePixels;
   sum_rows(has_highlights);
-  find_regions();
+  find_regions(Contrast::Usual);
   if (!has_highlights && covered_.is_at_pieces) start_over();
   covered_.outlines = 0;
   if (!covered_.is_at_pieces) {

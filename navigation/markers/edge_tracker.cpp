@@ -117,11 +117,18 @@ class EdgeTracker final : public MarkerTracker {
 
   void search(const TrackedFrame& frame) {
     std::fill(attempts_.begin(), attempts_.end(), 0);
+    for (MarkerTrack& track : tracks_) track.is_duplicate = false;
     ++searches_;
     search_.look_at(frame.image.view(), frame.camera);
     // The dearer search takes the place of the other now and then; what was just lost is looked for before.
     const bool is_for_covered = searches_ % kSearchesForCovered == 0 && is_missing();
-    if (!is_for_covered) take_squares(search_.find(frame.camera), frame);
+    if (!is_for_covered) {
+      take_squares(search_.find(frame.camera), frame);
+      if (is_missing()) {
+        const Contrast other = searches_ % kSearchesForCovered == 1 ? Contrast::Deep : Contrast::Faint;
+        take_squares(search_.find(frame.camera, other), frame);
+      }
+    }
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
       const std::size_t i = (frames_ + k) % tracks_.size();
       if (!observations_[i].is_tracked()) recover(i, frame);
@@ -147,7 +154,6 @@ class EdgeTracker final : public MarkerTracker {
 
   void take_squares(std::span<const FoundSquare> squares, const TrackedFrame& frame,
                     bool are_covered = false) {
-    for (MarkerTrack& track : tracks_) track.is_duplicate = false;
     for (const FoundSquare& square : squares) {
       auto code = read_code(frame.image, frame.camera, square.tangent, codes_);
       // Nothing that is tracked is doubted for what was read in part, and what is read in part where another

@@ -17,7 +17,11 @@ constexpr int kMinSide = 8;
 constexpr int kRadius = 14;
 constexpr int kLeastFilled = 6;  // of the box about a region, one pixel of so many
 // A pixel is dark below this share of its neighbourhood's mean (in grey levels, so after the camera's gamma).
-constexpr int kDarkPercent = 84;
+constexpr int kDarkPercent = 84, kDeepPercent = 66, kFaintPercent = 92;
+constexpr int dark_percent(Contrast contrast) {
+  if (contrast == Contrast::Deep) return kDeepPercent;
+  return contrast == Contrast::Faint ? kFaintPercent : kDarkPercent;
+}
 constexpr int kMinMean = 8;
 constexpr double kMinFill = 0.6;  // hull / quadrilateral
 constexpr double kMaxSideRatio = 5;
@@ -72,9 +76,9 @@ void SquareSearch::look_at(const camera::GrayView& frame, const camera::CameraMo
   shrink(frame, camera);
 }
 
-std::span<const FoundSquare> SquareSearch::find(const camera::CameraModel& camera) {
+std::span<const FoundSquare> SquareSearch::find(const camera::CameraModel& camera, Contrast contrast) {
   sum_rows(false);
-  find_regions();
+  find_regions(contrast);
   for (std::size_t label = 0; label < regions_.size() && squares_.size() < kMaxSquares; ++label) {
     FoundSquare square;
     if (may_be_square(regions_[label], kLeastFilled) &&
@@ -84,12 +88,12 @@ std::span<const FoundSquare> SquareSearch::find(const camera::CameraModel& camer
   return squares_;
 }
 
-void SquareSearch::find_regions() {
+void SquareSearch::find_regions(Contrast contrast) {
   squares_.clear();
   squares_.reserve(kMaxSquares);
   regions_.clear();
   if (width_ < 2 * kMinSide || height_ < 2 * kMinSide) return;
-  mark_dark_pixels(kRadius);
+  mark_dark_pixels(kRadius, dark_percent(contrast));
   label_regions();
 }
 
@@ -146,7 +150,7 @@ void SquareSearch::sum_rows(bool without_white) {
   }
 }
 
-void SquareSearch::mark_dark_pixels(int radius) {
+void SquareSearch::mark_dark_pixels(int radius, int percent) {
   const int inner_first = std::min(radius, width_), inner_end = std::max(inner_first, width_ - radius);
   for (int y = 0; y < height_; ++y) {
     const int y0 = std::max(0, y - radius), y1 = std::min(height_, y + radius + 1);
@@ -156,7 +160,7 @@ void SquareSearch::mark_dark_pixels(int radius) {
     std::uint8_t* out = &dark_[static_cast<std::size_t>(y) * width_];
     const auto mark = [&](int x, int x0, int x1, int area) {
       const int sum = static_cast<int>(lower[x1] - lower[x0] - upper[x1] + upper[x0]);
-      out[x] = (in[x] * area * 100 < sum * kDarkPercent) & (sum > kMinMean * area);
+      out[x] = (in[x] * area * 100 < sum * percent) & (sum > kMinMean * area);
     };
     const auto mark_near_border = [&](int x) {
       const int x0 = std::max(0, x - radius), x1 = std::min(width_, x + radius + 1);

@@ -22,6 +22,11 @@ struct FoundSquare {
   double longest_side_px = 0;
 };
 
+// What counts as dark. Deep: less than usual, for where something half as dark, as blood, lies across the
+// margin and joins the square to what is beside it. Faint: more, for where a veil, as smoke, takes the
+// contrast.
+enum class Contrast { Usual, Deep, Faint };
+
 // Keeps its memory from call to call; a frame of the same size allocates nothing.
 class SquareSearch {
  public:
@@ -32,7 +37,8 @@ class SquareSearch {
   }
   // In two steps: makes the frame smaller for what is asked next; and finds the squares in it.
   void look_at(const camera::GrayView& frame, const camera::CameraModel& camera);
-  [[nodiscard]] std::span<const FoundSquare> find(const camera::CameraModel& camera);
+  [[nodiscard]] std::span<const FoundSquare> find(const camera::CameraModel& camera,
+                                                  Contrast contrast = Contrast::Usual);
   // In place of find(), or after it: all that it finds, and squares of which a part is hidden. White pixels
   // are left out of the means, since highlights raise what is thought bright; and of each dark region the
   // straight parts of the outline are sought one by one, of which four make a square, whatever lies between
@@ -60,10 +66,10 @@ class SquareSearch {
   };
   void shrink(const camera::GrayView& frame, const camera::CameraModel& camera);
   // Dark regions that may be of a square.
-  void find_regions();
+  void find_regions(Contrast contrast);
   [[nodiscard]] bool may_be_square(const Region& region, int least_filled) const;
   void sum_rows(bool without_white);
-  void mark_dark_pixels(int radius);
+  void mark_dark_pixels(int radius, int percent);
   void label_regions();
   bool outline_square(int label, const Region& region, const camera::CameraModel& camera,
                       FoundSquare& square);

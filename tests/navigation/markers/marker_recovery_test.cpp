@@ -83,6 +83,31 @@ TEST_F(MarkerRecovery, FindsAMarkerThatHighlightsCutInTwo) {
   EXPECT_FALSE(seen[1].is_tracked());
 }
 
+// From nothing, though something as dark as blood, ragged, lies across its margin and joins its square to
+// what is dark beside it.
+TEST_F(MarkerRecovery, FindsAMarkerWhoseMarginIsStained) {
+  auto shown = picture(pose_);
+  const Eigen::Vector2d edge = seen_at(pose_, 0.6, -2);
+  const int x = static_cast<int>(edge.x()), y = static_cast<int>(edge.y());
+  for (const auto& [from, up] : {std::pair(-32, 4), std::pair(-20, 12), std::pair(-8, 16), std::pair(4, 14),
+                                 std::pair(16, 22), std::pair(28, 9)})
+    shown.veil(x + from, y - up, x + from + 12, y + 40 + up, 0.32, 8);
+  for (int frame = 0; frame < 3; ++frame) (void)tracker_->track(shown.view(), camera_, frame * kFrameNs);
+  const auto seen = tracker_->track(shown.view(), camera_, 3 * kFrameNs);
+  expect_near(seen[0], pose_);
+  EXPECT_FALSE(seen[1].is_tracked());
+}
+
+// From nothing, through smoke that leaves a third of the contrast.
+TEST_F(MarkerRecovery, FindsAMarkerBehindAVeil) {
+  auto shown = picture(pose_);
+  shown.veil(0, 0, 800, 600, 0.3, 130);
+  for (int frame = 0; frame < 2; ++frame) (void)tracker_->track(shown.view(), camera_, frame * kFrameNs);
+  const auto seen = tracker_->track(shown.view(), camera_, 2 * kFrameNs);
+  expect_near(seen[0], pose_);
+  EXPECT_FALSE(seen[1].is_tracked());
+}
+
 // Out of sight for four frames, then half a side away and under a highlight.
 TEST_F(MarkerRecovery, FindsALostMarkerWhereItWentUnderAHighlight) {
   for (int frame = 0; frame < 2; ++frame)

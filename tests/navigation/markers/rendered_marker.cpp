@@ -137,6 +137,16 @@ void RenderedPicture::cover(int left, int top, int right, int bottom, std::uint8
   }
 }
 
+void RenderedPicture::veil(int left, int top, int right, int bottom, double share, double grey) {
+  for (int y = std::max(0, top); y < std::min(height_, bottom); ++y) {
+    for (int x = std::max(0, left); x < std::min(width_, right); ++x) {
+      std::uint8_t& pixel =
+          grey_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+      pixel = static_cast<std::uint8_t>(std::clamp(std::lround(share * pixel + grey), 0L, 255L));
+    }
+  }
+}
+
 void RenderedPicture::shine(double x, double y, double sigma_px, double grey) {
   for (int row = 0; row < height_; ++row) {
     for (int column = 0; column < width_; ++column) {

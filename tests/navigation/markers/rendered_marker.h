@@ -46,6 +46,8 @@ class RenderedPicture {
   void shine(double x, double y, double sigma_px, double grey);
   // Paints over everything within these bounds (pixels).
   void cover(int left, int top, int right, int bottom, std::uint8_t grey);
+  // Lays something over it that lets this share of the grey levels through and adds some.
+  void veil(int left, int top, int right, int bottom, double share, double grey);
 
  private:
   int width_, height_;
