@@ -171,7 +171,8 @@ bool may_be_tilted_back(const camera::CameraModel& camera, double size_mm,
                         const EdgePose& fit, const Corners& corners_px, const BloomPrior& bloom,
                         std::vector<char>& scratch) {
   const auto corners = refine_square_pose(camera, corners_px, size_mm, tilted_back(fit.camera_from_marker));
-  if (!corners || corners->rms_px > kNearlySamePx) return false;
+  // Where the edges are as many times farther off as they should be, so are the corners.
+  if (!corners || corners->rms_px > kNearlySamePx * std::max(1.0, fit.scale)) return false;
   const EdgePose other =
       fit_edge_pose(camera, size_mm, samples, measurements, corners->camera_from_marker, bloom, scratch);
   if (!other.converged ||

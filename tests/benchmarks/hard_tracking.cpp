@@ -124,8 +124,8 @@ void judge(const markers::MarkerObservation& seen, const MarkerTruth* truth, con
     tally.rotation_deg.push_back(error.rotation_deg);
     tally.translation_mm.push_back(error.translation_mm);
   }
-  if (tells && recipe.seed % 2 == 0 && truth->visible_share >= 0.5 &&
-      (!seen.is_tracked() || error.is_wrong() || square > 6)) {
+  const bool is_lost = !seen.is_tracked() && truth->visible_share >= 0.5;
+  if (tells && recipe.seed % 2 == 0 && (is_lost || error.is_wrong() || square > 6)) {
     const auto state = markers::to_text(seen.state);
     std::printf(
         "%s %llu frame %2d marker %d: %.*s, free %.2f, white %.2f, side %.0f px, moved %.1f px, %.2f deg "
