@@ -25,7 +25,8 @@ constexpr double kCorrelatedEdges = 2.2;
 constexpr double kCommonCornerErrorPx = 0.010;
 
 // Corners that another pose meets so closely do not tell it from this one; all edges together do, by so much.
-constexpr double kNearlySamePx = 1, kMinChiSquared = 16;
+// Of a fit whose edges are farther off than they should be by this factor the corners tell nothing.
+constexpr double kNearlySamePx = 1, kMinChiSquared = 16, kPoorScale = 1.2;
 
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
@@ -171,8 +172,7 @@ bool may_be_tilted_back(const camera::CameraModel& camera, double size_mm,
                         const EdgePose& fit, const Corners& corners_px, const BloomPrior& bloom,
                         std::vector<char>& scratch) {
   const auto corners = refine_square_pose(camera, corners_px, size_mm, tilted_back(fit.camera_from_marker));
-  // Where the edges are as many times farther off as they should be, so are the corners.
-  if (!corners || corners->rms_px > kNearlySamePx * std::max(1.0, fit.scale)) return false;
+  if (!corners || (corners->rms_px > kNearlySamePx && fit.scale < kPoorScale)) return false;
   const EdgePose other =
       fit_edge_pose(camera, size_mm, samples, measurements, corners->camera_from_marker, bloom, scratch);
   if (!other.converged ||
