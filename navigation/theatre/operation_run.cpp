@@ -53,10 +53,7 @@ void OperationRun::begin_record() {
     session_folder_ = folder;
     continues_ = folder.filename().string();
     record_->add(std::exchange(early_, {}));
-    // Where the video is costs nothing and makes the record one that can be run again.
-    if (!source_->info().encoded_file.empty())
-      record_->keep_video(KeepVideo::Refer, source_->info().encoded_file);
-    if (video_is_wanted_) record_->keep_video(way_to_keep(), source_->info().encoded_file);
+    record_->keep_video(way_to_keep(), source_->info().encoded_file);
   } catch (const std::runtime_error& error) {
     record_trouble_ = error.what();
     record_.reset();
@@ -222,8 +219,11 @@ void OperationRun::end_source() {
   record_.reset();
 }
 
+// Where the video is costs nothing and makes the record one that can be run again.
 KeepVideo OperationRun::way_to_keep() const {
-  return source_->info().encoded_file.empty() ? KeepVideo::Encode : KeepVideo::Copy;
+  const bool is_file = !source_->info().encoded_file.empty();
+  if (video_is_wanted_) return is_file ? KeepVideo::Copy : KeepVideo::Encode;
+  return is_file ? KeepVideo::Refer : KeepVideo::No;
 }
 
 bool OperationRun::keeps_video() const {
@@ -232,10 +232,7 @@ bool OperationRun::keeps_video() const {
 
 void OperationRun::keep_video(bool on) {
   video_is_wanted_ = on;
-  if (source_ == nullptr) return;
-  const std::filesystem::path& file = source_->info().encoded_file;
-  const KeepVideo otherwise = file.empty() ? KeepVideo::No : KeepVideo::Refer;
-  keep_video(on ? way_to_keep() : otherwise, file);
+  if (source_ != nullptr) keep_video(way_to_keep(), source_->info().encoded_file);
 }
 
 void OperationRun::keep_video(KeepVideo keep, const std::filesystem::path& video) {

@@ -18,6 +18,13 @@ class WorkstationTraining : public ::testing::Test {
   void SetUp() override {
     if (const std::string missing = missing_for_window_tests(); !missing.empty()) GTEST_SKIP() << missing;
   }
+  // The list of exercises, with the case's bones ready.
+  static void open_list(RunningWorkstation& app) {
+    ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+    app.press("F6");
+    ASSERT_TRUE(app.wait_for_state("train_page", "list"));
+    ASSERT_TRUE(app.wait_for_state("train_refusal", ""));
+  }
   // The one of that name below the user's data.
   [[nodiscard]] fs::path found(const std::string& name) const {
     for (const auto& entry : fs::recursive_directory_iterator(folder_.path()))
@@ -32,10 +39,7 @@ class WorkstationTraining : public ::testing::Test {
 TEST_F(WorkstationTraining, AnExerciseIsDoneByHandAndScored) {
   const VirtualDisplay display(1280, 720);
   RunningWorkstation app(display, folder_.path());
-  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
-  app.press("F6");
-  ASSERT_TRUE(app.wait_for_state("train_page", "list"));
-  EXPECT_TRUE(app.wait_for_state("train_refusal", ""));
+  ASSERT_NO_FATAL_FAILURE(open_list(app));
   EXPECT_TRUE(app.wait_for_state("train_runs", "0"));
   for (int i = 0; i < 3; ++i) app.press("Down");  // calibrate, pivot, register, aim
   app.press("space");
@@ -74,10 +78,7 @@ TEST_F(WorkstationTraining, AnExerciseIsDoneByHandAndScored) {
 TEST_F(WorkstationTraining, ACalibrationIsDoneByHandAndScored) {
   const VirtualDisplay display(1280, 720);
   RunningWorkstation app(display, folder_.path());
-  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
-  app.press("F6");
-  ASSERT_TRUE(app.wait_for_state("train_page", "list"));
-  EXPECT_TRUE(app.wait_for_state("train_refusal", ""));
+  ASSERT_NO_FATAL_FAILURE(open_list(app));
   app.press("space");
   ASSERT_TRUE(app.wait_for_state("train_hand", "board", 60));
   EXPECT_EQ(app.state("source_kind"), "SIMULATION");
@@ -104,10 +105,7 @@ TEST_F(WorkstationTraining, ACalibrationIsDoneByHandAndScored) {
 TEST_F(WorkstationTraining, Hazard40NavigateStartsNothingWhileItIsLent) {
   const VirtualDisplay display(1280, 720);
   RunningWorkstation app(display, folder_.path());
-  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
-  app.press("F6");
-  ASSERT_TRUE(app.wait_for_state("train_page", "list"));
-  EXPECT_TRUE(app.wait_for_state("train_refusal", ""));
+  ASSERT_NO_FATAL_FAILURE(open_list(app));
   for (int i = 0; i < 3; ++i) app.press("Down");
   app.press("space");
   ASSERT_TRUE(app.wait_for_state("train_hand", "guide", 120));
@@ -127,9 +125,7 @@ TEST_F(WorkstationTraining, Hazard40NavigateStartsNothingWhileItIsLent) {
 TEST_F(WorkstationTraining, WhatIsStoppedCountsNothing) {
   const VirtualDisplay display(1280, 720);
   RunningWorkstation app(display, folder_.path());
-  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
-  app.press("F6");
-  ASSERT_TRUE(app.wait_for_state("train_page", "list"));
+  ASSERT_NO_FATAL_FAILURE(open_list(app));
   for (int i = 0; i < 3; ++i) app.press("Down");
   app.press("space");
   ASSERT_TRUE(app.wait_for_state("train_hand", "guide", 120));
