@@ -1,11 +1,10 @@
 #include "app/case/plan_history.h"
 
 #include <algorithm>
-#include <array>
-#include <ctime>
 #include <map>
 #include <utility>
 
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/error.h"
 
 namespace arthronaut::open_case {
@@ -24,15 +23,6 @@ bool is_same(const cases::Plan& a, const cases::Plan& b) {
          std::ranges::equal(a.tunnels, b.tunnels, [](const auto& one, const auto& other) {
            return one.first == other.first && is_same(one.second, other.second);
          });
-}
-
-std::string clock_text() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  localtime_r(&now, &parts);
-  std::array<char, 16> text{};
-  std::strftime(text.data(), text.size(), "%H:%M:%S", &parts);
-  return text.data();
 }
 
 }  // namespace
@@ -253,7 +243,7 @@ void PlanHistory::save() {
     }
     saved_ = now;
     status_.save = PlanStatus::Save::Saved;
-    status_.text = "saved at " + clock_text();
+    status_.text = files::utc_now_as("saved at %H:%M:%S UTC");
   } catch (const IoError& error) {
     fail(error);
   } catch (const std::filesystem::filesystem_error& error) {

@@ -13,6 +13,7 @@
 #include "planning/default_plan/default_plan.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
+#include "planning/files/utc_clock.h"
 #include "planning/geometry/surface.h"
 #include "planning/plan_export/markups_file.h"
 #include "planning/plan_export/plan_export.h"
@@ -213,8 +214,8 @@ void list_versions(const PlanArguments& arguments, const Context& context, const
   const auto versions = cases::load_plan_versions(arguments.case_folder);
   if (versions.empty()) context.say("No version is kept. --keep keeps the plan as it is.");
   for (const cases::PlanVersion& version : versions) {
-    context.say("Version " + std::to_string(version.number) + ", kept " + version.kept_utc +
-                ", against the plan as it is:");
+    context.say("Version " + std::to_string(version.number) + ", kept " +
+                files::utc_in_words(version.kept_utc) + ", against the plan as it is:");
     for (const auto& difference : cases::compare_plans(knee.plan, version.plan))
       context.say("  " + difference.in_words());
   }

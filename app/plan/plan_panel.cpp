@@ -5,6 +5,7 @@
 #include "app/plan/anatomical_text.h"
 #include "app/plan/plan_view.h"
 #include "app/widgets/tooltip.h"
+#include "planning/files/utc_clock.h"
 
 namespace arthronaut::plan {
 
@@ -209,8 +210,10 @@ std::optional<std::size_t> draw_versions(const widgets::Ui& ui, const PlanPanel&
     const bool is_same = std::ranges::all_of(differences, [](const cases::TunnelDifference& difference) {
       return difference.kind == cases::TunnelDifference::Kind::Same;
     });
-    if (draw_row(ui, {"version." + std::to_string(version.number),
-                      "Version " + std::to_string(version.number) + ", " + version.kept_utc, is_same, false}))
+    if (draw_row(ui,
+                 {"version." + std::to_string(version.number),
+                  "Version " + std::to_string(version.number) + ", " + files::utc_in_words(version.kept_utc),
+                  is_same, false}))
       clicked = i;
     for (const std::string& line : against_the_plan(panel.model, panel.versions[i]))
       widgets::text_in(ui.theme.body, widgets::kQuietText, line);

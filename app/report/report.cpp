@@ -159,8 +159,8 @@ void Report::plan_page() {
   if (content_.identity) about.push_back({"Patient", content_.identity->in_words()});
   about.insert(about.end(),
                {{"Name", content_.knee.name}, {"Side", std::string(bones::to_text(content_.knee.side))}});
-  if (!options_.is_deidentified) about.push_back({"Created", utc_in_words(content_.knee.created_utc)});
-  if (options_.says_when_made) about.push_back({"Report made", files::utc_now_as("%Y-%m-%d %H:%M UTC")});
+  if (!options_.is_deidentified) about.push_back({"Created", files::utc_in_words(content_.knee.created_utc)});
+  if (options_.says_when_made) about.push_back({"Report made", files::utc_now_as("%Y-%m-%d %H:%M:%S UTC")});
   pages_.table({45, 125}, about);
   pages_.sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
   pages_.heading("Planned tunnels");
@@ -289,7 +289,7 @@ void Report::navigate_page() {
   const SessionFigures figures = figures_of(session);
   std::vector<std::vector<std::string>> rows{
       {"Session", options_.is_deidentified ? "" : header.id},
-      {"Started", options_.is_deidentified ? kNotTold : utc_in_words(header.started_utc)},
+      {"Started", options_.is_deidentified ? kNotTold : files::utc_in_words(header.started_utc)},
       {"Bone", std::string(bones::to_text(header.bone))},
       {"Source", kind_in_words(header)},
       {"Video", content_.identity ? header.source : neutral_source(header)},
@@ -347,7 +347,7 @@ void Report::settings() {
          {"Date",
           record.date_utc.empty()    ? "not recorded"
           : options_.is_deidentified ? kNotTold
-                                     : utc_in_words(record.date_utc),
+                                     : files::utc_in_words(record.date_utc),
           "Scope, head", record.scope_name + (record.head_name.empty() ? "" : ", " + record.head_name)}});
   }
   if (content_.session) {

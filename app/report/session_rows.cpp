@@ -100,12 +100,6 @@ double time_s(const recording::RecordedSession& session, std::int64_t timestamp_
   return std::max(0.0, static_cast<double>(timestamp_ns - session.frames().front().timestamp_ns) * 1e-9);
 }
 
-std::string utc_in_words(const std::string& utc) {
-  constexpr std::string_view kForm = "2026-01-31T12:00:00Z";
-  if (utc.size() != kForm.size() || utc[10] != 'T' || utc.back() != 'Z') return utc;
-  return utc.substr(0, 10) + " " + utc.substr(11, 5) + " UTC";
-}
-
 std::string clock_text(double seconds) {
   const long tenths = std::lround(10 * seconds);
   return files::format("%ld:%02ld.%ld", tenths / 600, tenths / 10 % 60, tenths % 10);

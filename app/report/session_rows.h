@@ -30,8 +30,6 @@ struct SessionFigures {
 
 // Seconds from the first frame; 0 for what was before it.
 [[nodiscard]] double time_s(const recording::RecordedSession& session, std::int64_t timestamp_ns);
-// "2026-01-31 12:00 UTC" of "2026-01-31T12:00:00Z"; anything else as it is.
-[[nodiscard]] std::string utc_in_words(const std::string& utc);
 // "1:02.3"
 [[nodiscard]] std::string clock_text(double seconds);
 

@@ -136,9 +136,8 @@ int lock_folder(const fs::path& folder, bool& is_taken) {
 }  // namespace
 
 std::string LockHolder::in_words() const {
-  std::string since = since_utc;  // "2026-01-31T12:00:00Z" as people write it
-  if (since.size() == 20) since = since.substr(0, 10) + " " + since.substr(11, 8) + " UTC";
-  return user + " on " + host + " (process " + std::to_string(process) + ") since " + since;
+  return user + " on " + host + " (process " + std::to_string(process) + ") since " +
+         files::utc_in_words(since_utc);
 }
 
 struct CaseLock::State {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <ctime>
+#include <string_view>
 
 namespace arthronaut::files {
 
@@ -14,6 +15,12 @@ std::string utc_now_as(const char* format) {
   std::array<char, 64> text{};
   std::strftime(text.data(), text.size(), format, &parts);
   return text.data();
+}
+
+std::string utc_in_words(const std::string& utc) {
+  constexpr std::string_view kForm = "2026-01-31T12:00:00Z";
+  if (utc.size() != kForm.size() || utc[10] != 'T' || utc.back() != 'Z') return utc;
+  return utc.substr(0, 10) + " " + utc.substr(11, 8) + " UTC";
 }
 
 }  // namespace arthronaut::files

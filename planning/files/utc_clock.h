@@ -10,5 +10,7 @@ namespace arthronaut::files {
 [[nodiscard]] std::string utc_now();
 // The same moment as strftime writes it: utc_now_as("%Y-%m-%d"). At most 63 characters.
 [[nodiscard]] std::string utc_now_as(const char* format);
+// As people read it: "2026-01-31 12:00:00 UTC" of "2026-01-31T12:00:00Z"; anything else as it is.
+[[nodiscard]] std::string utc_in_words(const std::string& utc);
 
 }  // namespace arthronaut::files

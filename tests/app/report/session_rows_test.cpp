@@ -23,11 +23,5 @@ TEST(SessionRows, Hazard19ARecordingsFileIsNotNamed) {
     EXPECT_EQ(neutral("live", source), source);
 }
 
-TEST(SessionRows, TimesAreReadAsPeopleWriteThem) {
-  EXPECT_EQ(utc_in_words("2026-01-31T12:05:59Z"), "2026-01-31 12:05 UTC");
-  for (const char* other : {"", "2026-01-31", "2026-01-31T12:05:59+02:00"})
-    EXPECT_EQ(utc_in_words(other), other);
-}
-
 }  // namespace
 }  // namespace arthronaut::report

@@ -24,5 +24,11 @@ TEST(UtcClock, SaysNowInUtc) {
   EXPECT_EQ(utc_now_as("%Y-%m").size(), 7U);
 }
 
+TEST(UtcClock, TimesAreReadAsPeopleWriteThem) {
+  EXPECT_EQ(utc_in_words("2026-01-31T12:05:59Z"), "2026-01-31 12:05:59 UTC");
+  for (const char* other : {"", "2026-01-31", "2026-01-31T12:05:59+02:00"})
+    EXPECT_EQ(utc_in_words(other), other);
+}
+
 }  // namespace
 }  // namespace arthronaut::files
