@@ -18,6 +18,7 @@
 #include "planning/plan_export/markups_file.h"
 #include "planning/plan_export/plan_export.h"
 #include "planning/tunnels/tunnel.h"
+#include "planning/tunnels/diameter_range.h"
 
 namespace arthronaut::command_line {
 
@@ -250,7 +251,7 @@ void add_plan_command(CLI::App& app, Context& context) {
           ->excludes(entry);
   auto* diameter =
       sub->add_option("--diameter-mm", arguments->diameter_mm, "Diameter; by default 9, of AM 7, of PL 6")
-          ->check(between(3, 15));
+          ->check(between(tunnels::kLeastDiameter_mm, tunnels::kGreatestDiameter_mm));
   auto* by_default =
       sub->add_flag(
              "--default", arguments->by_default,

@@ -7,6 +7,7 @@
 #include "app/plan/plan_view.h"
 #include "app/plan/tunnel_moves.h"
 #include "planning/tunnels/aim.h"
+#include "planning/tunnels/diameter_range.h"
 
 namespace arthronaut::plan {
 
@@ -44,6 +45,19 @@ void PlanView::add_actions(widgets::Actions& actions) {
 }
 
 // Each key makes a new tunnel of the one that is there.
+// A key that does nothing says why.
+void PlanView::widen(double by_mm) {
+  const tunnels::Tunnel now = *model_->tunnel(state_.key);
+  const tunnels::Tunnel wider = with_diameter(now, now.diameter_mm + by_mm);
+  if (wider.diameter_mm == now.diameter_mm)
+    state_.hint = {"A tunnel is planned " + widgets::fixed(tunnels::kLeastDiameter_mm, 0) + " to " +
+                       widgets::fixed(tunnels::kGreatestDiameter_mm, 0) + " mm wide: this one is " +
+                       widgets::fixed(now.diameter_mm, 1) + " mm.",
+                   false, model_->revision()};
+  else
+    change("Change the diameter of the", true, wider);
+}
+
 void PlanView::add_tunnel_actions(widgets::Actions& actions) {
   const auto has_tunnel = [this] { return model_ != nullptr && model_->tunnel(state_.key).has_value(); };
   const auto add = [&](const std::string& id, const std::string& label, const char* tooltip, int key,
@@ -52,10 +66,19 @@ void PlanView::add_tunnel_actions(widgets::Actions& actions) {
                    change(what, true, moved(*model_->tunnel(state_.key)));
                  }});
   };
-  add("plan.wider", "Wider", "Half a millimetre more", GLFW_KEY_EQUAL, 0, "Change the diameter of the",
-      [](const tunnels::Tunnel& t) { return with_diameter(t, t.diameter_mm + 0.5); });
-  add("plan.narrower", "Narrower", "Half a millimetre less", GLFW_KEY_MINUS, 0, "Change the diameter of the",
-      [](const tunnels::Tunnel& t) { return with_diameter(t, t.diameter_mm - 0.5); });
+  actions.add(
+      {"plan.wider", "Wider", "Half a millimetre more", GLFW_KEY_EQUAL, 0, true, has_tunnel, {}, [this] {
+         widen(0.5);
+       }});
+  actions.add({"plan.narrower",
+               "Narrower",
+               "Half a millimetre less",
+               GLFW_KEY_MINUS,
+               0,
+               true,
+               has_tunnel,
+               {},
+               [this] { widen(-0.5); }});
   struct Arrow {
     std::string word;
     int key;

@@ -121,6 +121,7 @@ class PlanView : public mode::Mode {
   [[nodiscard]] std::vector<PaneMark> marks() const;
   void follow(const PaneEvent& event);
   void draw_hint(const widgets::Ui& ui, const widgets::Rect& area) const;
+  void widen(double by_mm);
   [[nodiscard]] std::optional<Eigen::Vector3d> aim_handle() const;
   [[nodiscard]] const geometry::TriangleMesh& tunnel_mesh(const tunnels::TunnelKey& key);
 

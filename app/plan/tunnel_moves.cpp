@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "planning/geometry/rigid_transform.h"
+#include "planning/tunnels/diameter_range.h"
 
 namespace arthronaut::plan {
 
@@ -69,7 +70,7 @@ tunnels::Tunnel aimed(const tunnels::Tunnel& tunnel, const scene::SceneCamera& c
 
 tunnels::Tunnel with_diameter(const tunnels::Tunnel& tunnel, double diameter_mm) {
   tunnels::Tunnel result = tunnel;
-  result.diameter_mm = std::clamp(diameter_mm, 4.0, 14.0);
+  result.diameter_mm = std::clamp(diameter_mm, tunnels::kLeastDiameter_mm, tunnels::kGreatestDiameter_mm);
   return result;
 }
 

@@ -21,7 +21,7 @@ namespace arthronaut::plan {
 // Aims at where the ray meets the plane through `handle_mm` that faces the camera.
 [[nodiscard]] tunnels::Tunnel aimed(const tunnels::Tunnel& tunnel, const scene::SceneCamera& camera,
                                     const scene::SceneRay& ray, const Eigen::Vector3d& handle_mm);
-// Clamped to 4..14 mm.
+// Clamped to the range of tunnels/diameter_range.h.
 [[nodiscard]] tunnels::Tunnel with_diameter(const tunnels::Tunnel& tunnel, double diameter_mm);
 
 }  // namespace arthronaut::plan

@@ -12,6 +12,7 @@
 #include "planning/landmarks/anatomical_axes.h"
 #include "planning/landmarks/grid_landmarks.h"
 #include "planning/norms/footprint.h"
+#include "planning/tunnels/diameter_range.h"
 #include "planning/tunnels/plan_norms.h"
 #include "planning/tunnels/tunnel_pair.h"
 
@@ -205,7 +206,7 @@ double usual_diameter_mm(norms::Bundle bundle) {
 }
 
 void Options::check() const {
-  check_range("diameter_mm", diameter_mm, 3, 15);
+  check_range("diameter_mm", diameter_mm, tunnels::kLeastDiameter_mm, tunnels::kGreatestDiameter_mm);
   check_range("flexion_deg", flexion_deg, 90, 140);
   check_range("guide_deg", guide_deg, 35, 75);
 }

@@ -67,8 +67,8 @@ TEST(TunnelMoves, AimHandleFollowsTheMouse) {
 // A diameter stays within what a drill can be.
 TEST(TunnelMoves, DiameterIsClamped) {
   EXPECT_EQ(with_diameter(straight(), 9.5).diameter_mm, 9.5);
-  EXPECT_EQ(with_diameter(straight(), 99).diameter_mm, 14);
-  EXPECT_EQ(with_diameter(straight(), 0).diameter_mm, 4);
+  EXPECT_EQ(with_diameter(straight(), 99).diameter_mm, 15);
+  EXPECT_EQ(with_diameter(straight(), 0).diameter_mm, 3);
 }
 
 // A displacement in words: lateral changes sign with the side, small parts are not named, the axes are the
