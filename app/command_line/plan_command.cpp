@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "app/command_line/command.h"
 #include "app/command_line/option_checks.h"
@@ -12,13 +13,13 @@
 #include "planning/cases/plan_versions.h"
 #include "planning/default_plan/default_plan.h"
 #include "planning/files/format.h"
-#include "planning/geometry/error.h"
 #include "planning/files/utc_clock.h"
+#include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
 #include "planning/plan_export/markups_file.h"
 #include "planning/plan_export/plan_export.h"
-#include "planning/tunnels/tunnel.h"
 #include "planning/tunnels/diameter_range.h"
+#include "planning/tunnels/tunnel.h"
 
 namespace arthronaut::command_line {
 
@@ -155,10 +156,9 @@ void take_markups(const PlanArguments& arguments, const Context& context, cases:
 }
 
 void show(const PlanArguments& arguments, const Context& context, const cases::Case& knee,
-          const plan_review::CaseReview& review, const PlanVerdict& verdict) {
+          const plan_review::CaseReview& review, cases::BoneDoubts doubts, const PlanVerdict& verdict) {
   auto tunnels_json = nlohmann::ordered_json::array();
   bool has_any = false;
-  cases::BoneDoubts doubts = cases::load_bone_doubts(arguments.case_folder);
   for (const auto& [key, tunnel] : knee.plan.tunnels) {
     if (!arguments.bone.empty() && arguments.bone != bones::to_text(key.bone)) continue;
     if (arguments.names_type && arguments.type != norms::to_text(key.bundle)) continue;
@@ -342,15 +342,15 @@ void add_plan_command(CLI::App& app, Context& context) {
     }
     if (arguments->lists_versions) return list_versions(*arguments, context, knee);
     const plan_review::CaseReview review(knee);
+    cases::BoneDoubts doubts = cases::load_bone_doubts(arguments->case_folder);
     if (arguments->by_default) {
       for (std::string& wrong : tunnels::wrong_in_words(review.checks(key_of(*arguments))))
         verdict.reasons.push_back(std::move(wrong));
-      cases::BoneDoubts doubts = cases::load_bone_doubts(arguments->case_folder);
       for (const std::string& doubt : doubts[bones::bone_kind_from_text(arguments->bone)])
         verdict.reasons.push_back("the " + arguments->bone + ": " + doubt);
       verdict.is_reliable = verdict.reasons.empty();
     }
-    show(*arguments, context, knee, review, verdict);
+    show(*arguments, context, knee, review, std::move(doubts), verdict);
     if (arguments->keeps) {
       const auto kept = cases::keep_plan_version(arguments->case_folder, knee.plan);
       if (!arguments->as_json) context.say("Kept as version " + std::to_string(kept.number) + ".");

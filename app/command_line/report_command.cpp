@@ -16,6 +16,9 @@ void add_report_command(CLI::App& app, Context& context) {
   sub->add_option("-o,--output", arguments->output,
                   "PDF to write; .json or .csv: the same numbers for other programs")
       ->required();
+  sub->add_option("--session", arguments->options.session,
+                  "The session's folder name; default: the newest with a drilled tunnel, else with a "
+                  "registration");
   sub->add_flag("--with-identity", arguments->options.with_identity,
                 "Name the patient (identity.json of the case); without it the report names nobody");
   sub->add_option("--paper", arguments->paper, "a4 or letter; default: a4")

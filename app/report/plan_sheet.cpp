@@ -8,15 +8,14 @@
 #include <set>
 #include <utility>
 
+#include "app/report/report_content.h"
 #include "app/scene/grid_lines.h"
 #include "app/scene/lateral_plane.h"
 #include "app/scene/plan_picture.h"
 #include "app/scene/radiograph.h"
 #include "app/scene/reslice.h"
-#include "planning/cases/bone_doubts.h"
 #include "planning/cases/case_image.h"
 #include "planning/files/format.h"
-#include "planning/plan_review/plan_review.h"
 
 namespace arthronaut::report {
 
@@ -49,15 +48,13 @@ struct PlanePicture {
 
 class Sheet {
  public:
-  Sheet(PdfDocument& pdf, const SheetFrame& frame, const cases::Case& knee, std::filesystem::path folder,
-        norms::Bundle graft)
+  Sheet(PdfDocument& pdf, const SheetFrame& frame, const Content& content, norms::Bundle graft)
       : pdf_(pdf),
         frame_(frame),
-        knee_(knee),
-        folder_(std::move(folder)),
+        content_(content),
+        knee_(content.knee),
         graft_(graft),
-        review_(knee),
-        bone_doubts_(cases::load_bone_doubts(folder_)) {}
+        review_(*content.review) {}
 
   void draw();
 
@@ -81,11 +78,10 @@ class Sheet {
 
   PdfDocument& pdf_;
   SheetFrame frame_;
+  const Content& content_;
   const cases::Case& knee_;
-  std::filesystem::path folder_;
   norms::Bundle graft_;
-  plan_review::CaseReview review_;
-  cases::BoneDoubts bone_doubts_;
+  const plan_review::CaseReview& review_;
 };
 
 const plan_review::MeasuredTunnel* Sheet::planned(BoneKind kind) const {
@@ -106,7 +102,7 @@ std::optional<images::Volume> Sheet::volume() const {
   const auto grey = std::find_if(knee_.images.rbegin(), knee_.images.rend(),
                                  [](const cases::CaseImage& image) { return !image.is_label_map; });
   if (grey == knee_.images.rend()) return std::nullopt;
-  return cases::load_image(folder_, *grey);
+  return cases::load_image(content_.folder, *grey);
 }
 
 void Sheet::put_grey(const PlanePicture& picture, const std::vector<std::uint8_t>& grey) {
@@ -262,7 +258,7 @@ double Sheet::checks(BoneKind kind, double x_mm, double y_mm, double width_mm, d
     }
     y_mm += pdf_.paragraph_height_mm(width_mm - word_mm, text, {.size_pt = size_pt}) + gap_mm;
   };
-  if (const auto doubts = bone_doubts_.find(kind); doubts != bone_doubts_.end())
+  if (const auto doubts = content_.bone_doubts.find(kind); doubts != content_.bone_doubts.end())
     for (const std::string& doubt : doubts->second) row("look", true, "Bone: " + doubt);
   if (of_graft == nullptr) {
     if (is_drawn)
@@ -307,9 +303,8 @@ std::vector<norms::Bundle> planned_grafts(const cases::Plan& plan) {
   return {grafts.begin(), grafts.end()};
 }
 
-void draw_plan_sheet(PdfDocument& pdf, const SheetFrame& frame, const cases::Case& knee,
-                     const std::filesystem::path& case_folder, norms::Bundle graft) {
-  Sheet(pdf, frame, knee, case_folder, graft).draw();
+void draw_plan_sheet(PdfDocument& pdf, const SheetFrame& frame, const Content& content, norms::Bundle graft) {
+  Sheet(pdf, frame, content, graft).draw();
 }
 
 }  // namespace arthronaut::report

@@ -2,13 +2,14 @@
 // check with its verdict in a word.
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include "app/report/pdf_document.h"
 #include "planning/cases/case.h"
 
 namespace arthronaut::report {
+
+struct Content;
 
 struct SheetFrame {
   double left_mm = 20, top_mm = 28, width_mm = 170, bottom_mm = 285;
@@ -24,7 +25,6 @@ struct SheetFrame {
 // keeps some, else the outlines of the bones alone. Without a tunnel it says so. Throws IoError and
 // InvalidInput when an image of the case can't be read, DeviceError when no picture of the plateau can be
 // made.
-void draw_plan_sheet(PdfDocument& pdf, const SheetFrame& frame, const cases::Case& knee,
-                     const std::filesystem::path& case_folder, norms::Bundle graft);
+void draw_plan_sheet(PdfDocument& pdf, const SheetFrame& frame, const Content& content, norms::Bundle graft);
 
 }  // namespace arthronaut::report

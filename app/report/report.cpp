@@ -82,7 +82,7 @@ class Report {
                        .top_mm = pages_.y_mm(),
                        .width_mm = kWidthMm,
                        .bottom_mm = pages_.bottom_mm()},
-                      content_.knee, content_.folder, graft);
+                      content_, graft);
     }
     navigate_page();
     result_pictures();
@@ -170,11 +170,10 @@ void Report::plan_page() {
     std::vector<std::vector<std::string>> rows = {{"Tunnel", "Entry, mm (LPS)", "Direction", "Diameter",
                                                    "Length in bone", "Least wall", "Exit, mm (LPS)"}};
     for (const auto& [key, tunnel] : content_.knee.plan.tunnels) {
-      const auto bone = content_.knee.bones.find(key.bone);
-      tunnels::TunnelGeometry geometry;
-      if (bone != content_.knee.bones.end()) {
-        geometry = tunnels::measure(tunnel, geometry::Surface(bone->second.mesh));
-      }
+      const auto measured = content_.review->tunnels().find(key);
+      const tunnels::TunnelGeometry geometry = measured == content_.review->tunnels().end()
+                                                   ? tunnels::TunnelGeometry{}
+                                                   : measured->second.geometry;
       const bool in_bone = geometry.enters_bone;
       rows.push_back(
           {tunnels::name_of(key), point(tunnel.entry_mm), point(tunnel.direction, 2),

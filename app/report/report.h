@@ -18,12 +18,14 @@ struct ReportOptions {
   // Says when it was made; without it the same case gives the same bytes at any time.
   bool says_when_made = true;
   Paper paper = Paper::A4;  // of a PDF
+  // Tells of this session, by its folder's name, whatever it came to, and of what was drilled before it.
+  std::string session = {};
 };
 
-// The newest session with a registration or an achieved tunnel is reported; the report says so when there is
-// none. By the output's ending: .json and .csv are the same numbers for other programs, anything else is a
-// PDF. Atomic. Throws IoError, InvalidInput (a broken case), DeviceError (no OpenGL at all for the
-// pictures).
+// Where none is named, the newest session with a drilled tunnel is reported, else the newest with a
+// registration; the report says so when there is none. By the output's ending: .json and .csv are the same
+// numbers for other programs, anything else is a PDF. Atomic. Throws IoError, InvalidInput (a broken case, a
+// session that is not there), DeviceError (no OpenGL at all for the pictures).
 void write_report(const std::filesystem::path& case_folder, const std::filesystem::path& output,
                   const ReportOptions& options = {});
 // The bytes of such a file. Throws as write_report.

@@ -30,19 +30,41 @@ void unless_unreadable(const std::filesystem::path& session, Content& content, c
   }
 }
 
+struct ReadSession {
+  std::unique_ptr<recording::RecordedSession> session;
+  std::vector<operation::AchievedTunnel> achieved;
+};
+
+ReadSession read_session(const std::filesystem::path& folder) {
+  ReadSession read{std::make_unique<recording::RecordedSession>(folder), {}};
+  for (const auto& file : operation::achieved_files(folder))
+    read.achieved.push_back(operation::read_achieved_file(file));
+  return read;
+}
+
+void put(ReadSession read, Content& content) {
+  content.session = std::move(read.session);
+  content.achieved = std::move(read.achieved);
+}
+
 // Where it has a drilled tunnel; where it has a registration alone, only while no other one is taken.
 void take_session(const std::filesystem::path& folder, Content& content) {
   unless_unreadable(folder, content, [&] {
-    const auto achieved_files = operation::achieved_files(folder);
-    if (achieved_files.empty() && (content.session || !std::filesystem::exists(folder / "session.json")))
-      return;
-    auto session = std::make_unique<recording::RecordedSession>(folder);
-    if (achieved_files.empty() && !session->registration()) return;
-    std::vector<operation::AchievedTunnel> achieved;
-    for (const auto& file : achieved_files) achieved.push_back(operation::read_achieved_file(file));
-    content.session = std::move(session);
-    content.achieved = std::move(achieved);
+    const bool has_tunnel = !operation::achieved_files(folder).empty();
+    if (!has_tunnel && (content.session || !std::filesystem::exists(folder / "session.json"))) return;
+    ReadSession read = read_session(folder);
+    if (has_tunnel || read.session->registration()) put(std::move(read), content);
   });
+}
+
+// The one that is asked for, which must be there; what came after it is not told.
+void take_named(const std::string& name, std::vector<std::filesystem::path>& sessions, Content& content) {
+  const auto named = std::find_if(sessions.begin(), sessions.end(),
+                                  [&](const auto& folder) { return folder.filename() == name; });
+  if (named == sessions.end())
+    throw InvalidInput(content.folder, "", "holds no operation's session \"" + name + "\"");
+  sessions.erase(named + 1, sessions.end());
+  put(read_session(sessions.back()), content);
 }
 
 // The newest of each bundle that is planned and not among the session's own.
@@ -142,6 +164,7 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
   Content content{.folder = folder,
                   .knee = cases::load_case(folder),
                   .review = nullptr,
+                  .bone_doubts = cases::load_bone_doubts(folder),
                   .session = nullptr,
                   .achieved = {},
                   .earlier = {},
@@ -154,10 +177,12 @@ Content gather(const std::filesystem::path& folder, const ReportOptions& options
                   .postoperative_problem = {},
                   .identity = std::nullopt};
   if (options.with_identity && !options.is_deidentified) content.identity = cases::load_identity(folder);
-  const auto sessions = recording::operation_folders(folder);
+  auto sessions = recording::operation_folders(folder);
+  if (!options.session.empty()) take_named(options.session, sessions, content);
   // The newest session with a drilled tunnel; failing that, the newest with a registration.
-  for (auto it = sessions.rbegin(); it != sessions.rend() && content.achieved.empty(); ++it)
-    take_session(*it, content);
+  if (options.session.empty())
+    for (auto it = sessions.rbegin(); it != sessions.rend() && content.achieved.empty(); ++it)
+      take_session(*it, content);
   content.review = std::make_unique<const plan_review::CaseReview>(content.knee);
   add_earlier(sessions, content);
   add_postoperative(content);

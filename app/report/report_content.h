@@ -13,6 +13,7 @@
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session.h"
 #include "navigation/recording/session_marks.h"
+#include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/cases/identity.h"
 #include "planning/plan_review/plan_review.h"
@@ -26,6 +27,7 @@ struct Content {
   std::filesystem::path folder;
   cases::Case knee;
   std::unique_ptr<const plan_review::CaseReview> review = nullptr;  // of `knee`; never null once gathered
+  cases::BoneDoubts bone_doubts = {};
   std::unique_ptr<recording::RecordedSession> session;
   std::vector<operation::AchievedTunnel> achieved;  // in `session`
   // Tunnels of other bundles of that bone, drilled in sessions before it: after each start of a source there

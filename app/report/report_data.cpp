@@ -5,7 +5,6 @@
 #include "app/report/session_rows.h"
 #include "app/report/versions.h"
 #include "navigation/camera/medium.h"
-#include "planning/cases/bone_doubts.h"
 #include "planning/files/csv_cell.h"
 #include "planning/files/json_document.h"
 #include "planning/files/utc_clock.h"
@@ -163,7 +162,7 @@ ordered_json document_of(const Content& content, const ReportOptions& options) {
                        {"id", content.identity->patient_id},
                        {"birth_date", content.identity->birth_date}};
   json["bone_doubts"] = ordered_json::object();
-  for (const auto& [kind, doubts] : cases::load_bone_doubts(content.folder))
+  for (const auto& [kind, doubts] : content.bone_doubts)
     json["bone_doubts"][std::string(bones::to_text(kind))] = doubts;
   json["tunnels"] = tunnels_of(content);
   json["session"] = session_of(content);

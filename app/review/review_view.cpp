@@ -47,6 +47,7 @@ void ReviewView::case_opened(const mode::OpenCase& opened) {
   sessions_.open(case_folder_);
   chosen_.reset();
   open_.reset();
+  report_.reset();
   opens_for_another_case_ = opening_.is_busy();
   note_ = {};
   notice_.clear();
@@ -121,7 +122,7 @@ bool ReviewView::has_frames() const { return open_ && !open_->timeline().frames(
 bool ReviewView::runs_today() const { return open_ && open_->today && !open_->today->has_ended(); }
 
 bool ReviewView::is_busy() const {
-  return opening_.is_busy() || sessions_.is_busy() || runs_today() || postop_.is_running() ||
+  return opening_.is_busy() || sessions_.is_busy() || runs_today() || has_running_work() ||
          (open_ && open_->playback.plays);
 }
 
@@ -222,6 +223,22 @@ void ReviewView::draw_check(const widgets::Ui& ui) const {
                       is_broken ? "Not as recorded" : "Hashes", recording::check_words(check));
 }
 
+// Of whichever session it was asked for: its file names it.
+void ReviewView::draw_report(const widgets::Ui& ui) const {
+  const std::string problem = report_ != nullptr && report_->has_ended() ? report_->problem() : "";
+  ui.log.note_state("report", report_ == nullptr    ? "none"
+                              : is_writing_report() ? "running"
+                              : problem.empty()     ? "written"
+                                                    : "failed");
+  if (report_ == nullptr) return;
+  if (is_writing_report())
+    widgets::status_row(ui, widgets::Severity::Quiet, "Report", "is being written");
+  else if (problem.empty())
+    widgets::status_row(ui, widgets::Severity::Good, "Report", report_->file().string());
+  else
+    widgets::status_row(ui, widgets::Severity::Bad, "No report", problem);
+}
+
 void ReviewView::draw_buttons(const widgets::Ui& ui) {
   const float width = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
   const auto pair = [&](const char* left, const char* right) {
@@ -235,6 +252,8 @@ void ReviewView::draw_buttons(const widgets::Ui& ui) {
   pair("review.event_before", "review.event_after");
   pair("review.mark", "review.unmark");
   pair("review.today", "review.achieved");
+  widgets::action_button(ui, "review.report", width);
+  draw_report(ui);
   if (!open_ || !open_->today) return ui.log.note_state("today", "none");
   const TodayProgress progress = open_->today->progress();
   const std::string error = open_->today->error();

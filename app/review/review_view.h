@@ -14,6 +14,7 @@
 #include "app/review/check_run.h"
 #include "app/review/picture_fetcher.h"
 #include "app/review/postop_page.h"
+#include "app/review/report_run.h"
 #include "app/review/review_panels.h"
 #include "app/review/session_list.h"
 #include "app/widgets/scene_pane.h"
@@ -50,8 +51,8 @@ class ReviewView : public mode::Mode {
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
   [[nodiscard]] bool is_busy() const override;
   [[nodiscard]] bool awaits_text() const override { return note_.takes_focus || postop_.awaits_text(); }
-  // A comparison that another case or the end of the program would cut off.
-  [[nodiscard]] bool has_running_work() const override { return postop_.is_running(); }
+  // A comparison or a report that another case or the end of the program would cut off.
+  [[nodiscard]] bool has_running_work() const override { return postop_.is_running() || is_writing_report(); }
   // Images after the operation, dropped on the window: compared with the plan.
   void take_dropped(const std::filesystem::path& images);
   // Whatever a session was made of, what is shown of it is a recording; draw_origin() says what of.
@@ -79,9 +80,11 @@ class ReviewView : public mode::Mode {
   void toggle_today();
   [[nodiscard]] bool has_frames() const;
   [[nodiscard]] bool runs_today() const;
+  [[nodiscard]] bool is_writing_report() const { return report_ != nullptr && !report_->has_ended(); }
   [[nodiscard]] ReviewScreen screen() const;
   void draw_side(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_buttons(const widgets::Ui& ui);
+  void draw_report(const widgets::Ui& ui) const;
   void draw_check(const widgets::Ui& ui) const;
   void draw_note_field(const widgets::Ui& ui);
   void draw_origin(const widgets::Ui& ui, const widgets::Rect& area) const;
@@ -101,6 +104,7 @@ class ReviewView : public mode::Mode {
   worker::Awaited<SessionReview> opening_;
   bool opens_for_another_case_ = false;  // what opening_ reads is of the case that was open before
   std::optional<OpenSession> open_;
+  std::unique_ptr<ReportRun> report_;  // null: none was asked for
   NoteField note_;
   PostopPage postop_;
   bool shows_postop_ = false;  // in the place of the session

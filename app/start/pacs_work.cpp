@@ -57,15 +57,16 @@ void fetch(const PacsJob& job, const pacs::OnProgress& on_progress, PacsNews& ne
 }
 
 void write_results(const PacsJob& job, const fs::path& program, PacsNews& news) {
-  const ResultsOutcome outcome =
+  using End = own_process::CommandOutcome::End;
+  const own_process::CommandOutcome outcome =
       write_dicom_results(program, job.case_folder, job.results_folder, job.is_deidentified, job.stop);
   news.words = outcome.words;
-  if (outcome.end == ResultsOutcome::End::Failed) {
+  if (outcome.end == End::Failed) {
     news.state = State::Failed;
     return;
   }
-  if (outcome.end == ResultsOutcome::End::Stopped) return;
-  if (outcome.end == ResultsOutcome::End::Unreliable) news.state = State::Unreliable;
+  if (outcome.end == End::Stopped) return;
+  if (outcome.end == End::Unreliable) news.state = State::Unreliable;
   news.files = pacs::files_to_send({job.results_folder});
 }
 

@@ -10,6 +10,7 @@
 #include "navigation/recording/session_check.h"
 #include "navigation/recording/session_marks.h"
 #include "navigation/sources/exercise_source.h"
+#include "planning/geometry/error.h"
 #include "tests/app/report/reported_case.h"
 
 namespace arthronaut::report {
@@ -100,6 +101,20 @@ TEST_F(Report, NamesTheTunnelOfTheOtherBundleThatWasDrilledInASessionBefore) {
   record(pl, "simulation");
   write_report(knee_folder(), pdf());
   EXPECT_EQ(pdf_text().find("Planned against achieved: femur AM"), std::string::npos);
+}
+
+// Of the sessions of a case the one that is asked for is told, whatever came after it.
+TEST_F(Report, TellsTheSessionThatIsAskedFor) {
+  (void)text_of_session("live", {});
+  (void)text_of_session("simulation", {});
+  const auto folders = cases::session_folders(knee_folder());
+  const std::string first = folders.front().filename().string(), newest = folders.back().filename().string();
+  const auto json = knee_folder().parent_path() / "report.json";
+  for (const std::string& session : {first, newest}) {
+    write_report(knee_folder(), json, {.session = session});
+    expect_contains(files::read_text(json), "\"id\": \"" + session + "\"");
+  }
+  EXPECT_THROW(write_report(knee_folder(), json, {.session = "0099"}), InvalidInput);
 }
 
 // A session that a disk has spoilt takes no report away: it is named with its reason, and the one before it

@@ -177,6 +177,23 @@ TEST_F(ReviewWindow, AsksWhichOfTwoCtsIsMeant) {
   EXPECT_EQ(app.wait_for_exit(30), 0);
 }
 
+// One key gives the report that the surgeon files, of the session that is looked at, and says where it lies.
+TEST_F(ReviewWindow, WritesTheReport) {
+  const VirtualDisplay display(1920, 1080);
+  RunningWorkstation app(display, folder_.path(), {case_folder_.string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  app.press("F3");
+  ASSERT_TRUE(app.wait_for_state("session", session_.filename().string()));
+  app.press("r");
+  ASSERT_TRUE(app.wait_for_state("report", "written", 120));
+  std::ifstream report(case_folder_ / "export" / ("report_" + session_.filename().string() + ".pdf"));
+  std::string begins(5, ' ');
+  report.read(begins.data(), 5);
+  EXPECT_EQ(begins, "%PDF-");
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(30), 0);
+}
+
 // What each session was stands in the list: how long, how far, and that nobody registered.
 TEST_F(ReviewWindow, SaysWhatEachSessionWas) {
   const VirtualDisplay display(1280, 720);

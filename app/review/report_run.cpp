@@ -1,0 +1,29 @@
+#include "app/review/report_run.h"
+
+#include "planning/files/private_folder.h"
+
+namespace arthronaut::review {
+
+ReportRun::ReportRun(const std::filesystem::path& case_folder, const std::string& session,
+                     std::function<void()> on_news, const std::filesystem::path& program)
+    : file_(case_folder / "export" / ("report_" + session + ".pdf")),
+      worker_(
+          worker::Backlog::Lossless,
+          [case_folder, session, program, file = file_](auto& inbox) {
+            files::create_private_folder(file.parent_path());
+            inbox.publish(own_process::run_command(
+                program, {"report", case_folder.string(), "--session", session, "-o", file.string()},
+                file.string() + ".log", [&inbox] { return inbox.stops(); }));
+          },
+          std::move(on_news)) {}
+
+std::string ReportRun::problem() const {
+  using End = own_process::CommandOutcome::End;
+  if (const std::string failure = worker_.failure(); !failure.empty()) return failure;
+  const auto outcome = worker_.latest();
+  if (outcome == nullptr) return "the report is not written yet";
+  if (outcome->end == End::Done || outcome->end == End::Unreliable) return {};
+  return outcome->words.empty() ? "the report could not be written" : outcome->words;
+}
+
+}  // namespace arthronaut::review

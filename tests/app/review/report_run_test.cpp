@@ -1,0 +1,72 @@
+#include "app/review/report_run.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <future>
+#include <thread>
+#include <utility>
+
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::review {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class ReportRunTest : public ::testing::Test {
+ protected:
+  // Stands for the program: what it is given stands in the file "given".
+  fs::path program(const std::string& does) const {
+    const fs::path file = folder_ / "program";
+    std::ofstream(file) << "#!/bin/sh\necho \"$@\" > '" << (folder_ / "given").string() << "'\n"
+                        << does << "\n";
+    fs::permissions(file, fs::perms::owner_all);
+    return file;
+  }
+  // Of the run once it has ended.
+  std::string problem_of(const fs::path& program) const {
+    std::promise<void> woken;
+    ReportRun run(
+        folder_.path(), "0001",
+        [&, once = false]() mutable {
+          if (!std::exchange(once, true)) woken.set_value();
+        },
+        program);
+    woken.get_future().wait();
+    while (!run.has_ended()) std::this_thread::yield();
+    return run.problem();
+  }
+  const test::TemporaryFolder folder_;
+};
+
+TEST_F(ReportRunTest, AsksForTheSessionThatIsShown) {
+  EXPECT_EQ(problem_of(program("exit 0")), "");
+  std::ifstream given(folder_ / "given");
+  std::string words;
+  std::getline(given, words);
+  EXPECT_EQ(words, "report " + folder_.path().string() + " --session 0001 -o " +
+                       (folder_ / "export" / "report_0001.pdf").string());
+  EXPECT_FALSE(fs::exists(folder_ / "export" / "report_0001.pdf.log"));
+}
+
+TEST_F(ReportRunTest, SaysWhyThereIsNone) {
+  EXPECT_EQ(problem_of(program("echo 'arthronaut: plan.json: is broken' >&2; exit 2")),
+            "plan.json: is broken");
+  EXPECT_EQ(problem_of(program("kill -9 $$")), "the report could not be written");
+  EXPECT_THAT(problem_of(folder_ / "none"), HasSubstr("cannot be started"));
+}
+
+// Letting go of it ends the process: nobody waits for it.
+TEST_F(ReportRunTest, EndsWithWhoAskedForIt) {
+  {
+    const ReportRun run(
+        folder_.path(), "0001", [] {}, program("exec sleep 600"));
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "export" / "report_0001.pdf.log"));
+}
+
+}  // namespace
+}  // namespace arthronaut::review
