@@ -1,6 +1,8 @@
 #include "app/case/plan_model.h"
 
 #include <algorithm>
+#include <future>
+#include <map>
 
 #include "app/scene/lateral_plane.h"
 #include "app/scene/notch_cut.h"
@@ -36,6 +38,18 @@ geometry::Bounds joined(geometry::Bounds all, const geometry::Bounds& other) {
 }  // namespace
 
 PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
+  // Side by side, since each takes two seconds. A default plan asks for it, too, as long as somebody has to
+  // look at the grid: not then, when a key is pressed.
+  std::map<bones::BoneKind, std::future<landmarks::Proposal>> proposals;
+  for (const auto& [kind, bone] : knee_.bones) {
+    const landmarks::Landmarks& marks = knee_.landmarks[kind];
+    if (bone.mesh.empty() || (has_grid(marks, kind, bone.mesh, knee_.side) &&
+                              is_confirmed(marks, knee_.landmark_states[kind], kind)))
+      continue;
+    proposals[kind] = std::async(std::launch::async, [&mesh = bone.mesh, kind = kind, side = knee_.side] {
+      return landmarks::propose(mesh, kind, {.side = side});
+    });
+  }
   for (const auto& [kind, bone] : knee_.bones) {
     if (bone.mesh.empty()) continue;
     BoneModel& made = bones_[kind];
@@ -43,13 +57,10 @@ PlanModel::PlanModel(cases::Case knee) : knee_(std::move(knee)) {
     made.review.surface = std::make_shared<const geometry::Surface>(bone.mesh);
     made.bounds = geometry::bounds_of(bone.mesh);
     made.mesh_sha256 = bones::mesh_sha256(bone.mesh);
-    landmarks::LandmarkStates& states = knee_.landmark_states[kind];
-    const bool is_there = has_grid(knee_.landmarks[kind], kind, bone.mesh, knee_.side);
-    // A default plan asks for it, too, as long as somebody has to look at the grid: not then, when a key is
-    // pressed and the window waits.
-    if (!is_there || !is_confirmed(knee_.landmarks[kind], states, kind))
-      made.proposal = landmarks::propose(bone.mesh, kind, {.side = knee_.side});
-    if (!is_there) landmarks::take_proposal(*made.proposal, knee_.landmarks[kind], states);
+    if (const auto proposed = proposals.find(kind); proposed != proposals.end())
+      made.proposal = proposed->second.get();
+    if (!has_grid(knee_.landmarks[kind], kind, bone.mesh, knee_.side))
+      landmarks::take_proposal(*made.proposal, knee_.landmarks[kind], knee_.landmark_states[kind]);
     use_landmarks(kind);
     for (const tunnels::TunnelKey& key : knee_.plan.of(kind))
       knee_.plan.mesh_sha256.try_emplace(key, made.mesh_sha256);

@@ -45,32 +45,37 @@ void PlanView::follow_plan() {
 void PlanView::plan_bundles() {
   const bones::BoneKind bone = state_.key.bone;
   const tunnels::TunnelKey am{bone, Bundle::Anteromedial}, pl{bone, Bundle::Posterolateral};
-  const std::string what = "Plan two bundles in the " + std::string(bones::to_text(bone));
-  std::vector<MadeTunnel> both = defaults_of({am, pl});
-  const auto missing =
-      std::ranges::find_if(both, [](const MadeTunnel& one) { return !one.made.is_usable(); });
-  if (missing == both.end()) {
-    work_on(am);
-    return take_defaults(std::move(both), what);
-  }
-  // One of another surface would pass for one of this.
-  const auto single = model_->plan_fit(bone).is_valid() ? model_->tunnel(bone) : std::nullopt;
-  if (single) history_.apply_tunnels({{am, *single}}, what);
-  work_on(single ? pl : am);
-  show_page(PanelPage::Checks);  // where P places the entry
-  state_.hint = {"No default for two bundles: " + missing->made.message + ". Press P and place the entry."};
+  make_defaults({am, pl}, [this, am, pl](std::vector<MadeTunnel> both) {
+    const std::string what = "Plan two bundles in the " + std::string(bones::to_text(am.bone));
+    const auto missing =
+        std::ranges::find_if(both, [](const MadeTunnel& one) { return !one.made.is_usable(); });
+    if (missing == both.end()) {
+      work_on(am);
+      return take_defaults(std::move(both), what);
+    }
+    // One of another surface would pass for one of this.
+    const auto single = model_->plan_fit(am.bone).is_valid() ? model_->tunnel(am.bone) : std::nullopt;
+    if (single) history_.apply_tunnels({{am, *single}}, what);
+    work_on(single ? pl : am);
+    show_page(PanelPage::Checks);  // where P places the entry
+    state_.hint = {"No default for two bundles: " + missing->made.message + ". Press P and place the entry."};
+  });
 }
 
 void PlanView::plan_single() {
-  const bones::BoneKind bone = state_.key.bone;
-  const std::string what = "Plan one tunnel in the " + std::string(bones::to_text(bone));
-  const auto here = model_->plan_fit(state_.key).is_valid() ? model_->tunnel(state_.key) : std::nullopt;
-  std::vector<MadeTunnel> made = defaults_of({bone});
-  const bool is_usable = made.front().made.is_usable();
-  if (!is_usable && !here) return;
-  work_on(bone);
-  if (is_usable) return take_defaults(std::move(made), what);
-  history_.apply_tunnels({{bone, *here}}, what);
+  const tunnels::TunnelKey beside = state_.key;
+  make_defaults({beside.bone}, [this, beside](std::vector<MadeTunnel> made) {
+    const std::string what = "Plan one tunnel in the " + std::string(bones::to_text(beside.bone));
+    const auto here = model_->plan_fit(beside).is_valid() ? model_->tunnel(beside) : std::nullopt;
+    const bool is_usable = made.front().made.is_usable();
+    if (!is_usable && !here) {
+      state_.hint = {"No default for one tunnel: " + made.front().made.message + "."};
+      return;
+    }
+    work_on(beside.bone);
+    if (is_usable) return take_defaults(std::move(made), what);
+    history_.apply_tunnels({{beside.bone, *here}}, what);
+  });
 }
 
 void PlanView::add_bundle_actions(widgets::Actions& actions) {
@@ -85,9 +90,8 @@ void PlanView::add_bundle_actions(widgets::Actions& actions) {
        0,
        false,
        [this] {
-         return model_ != nullptr && model_->has_bone(state_.key.bone) &&
-                state_.key.bundle == Bundle::Whole &&
-                history_.status().save != open_case::PlanStatus::Save::ReadOnly;
+         return can_make_defaults() && model_->has_bone(state_.key.bone) &&
+                state_.key.bundle == Bundle::Whole;
        },
        {},
        [this] { plan_bundles(); }});
@@ -106,9 +110,7 @@ void PlanView::add_bundle_actions(widgets::Actions& actions) {
                GLFW_KEY_B,
                GLFW_MOD_SHIFT,
                false,
-               [this, is_of_bundle] {
-                 return is_of_bundle() && history_.status().save != open_case::PlanStatus::Save::ReadOnly;
-               },
+               [this, is_of_bundle] { return is_of_bundle() && can_make_defaults(); },
                {},
                [this] { plan_single(); }});
 }

@@ -1,14 +1,12 @@
-// Landmarks in plan mode: gone through, confirmed, moved; and the default plan that follows from them.
+// Landmarks in plan mode: gone through, confirmed, moved.
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
-#include <future>
 
 #include "app/plan/plan_view.h"
 
 namespace arthronaut::plan {
 
-using bones::BoneKind;
 using landmarks::LandmarkState;
 
 std::string PlanView::landmark() const {
@@ -54,33 +52,6 @@ void PlanView::confirm_landmarks(bool all) {
   history_.settle_now();
   if (const auto next = next_proposed(landmark_rows(*model_, state_.key.bone), state_.landmark))
     select_landmark(*next);
-}
-
-std::vector<MadeTunnel> PlanView::defaults_of(const std::vector<tunnels::TunnelKey>& keys) const {
-  // Side by side: the window waits for them.
-  std::vector<std::future<default_plan::DefaultTunnel>> running;
-  running.reserve(keys.size());
-  for (const tunnels::TunnelKey& key : keys)
-    running.push_back(std::async(std::launch::async, [this, key] { return model_->default_tunnel(key); }));
-  std::vector<MadeTunnel> made;
-  for (std::size_t i = 0; i < keys.size(); ++i) made.push_back({.key = keys[i], .made = running[i].get()});
-  return made;
-}
-
-void PlanView::take_defaults(std::vector<MadeTunnel> made, const std::string& what) {
-  const cases::Plan before = model_->knee().plan;
-  std::map<tunnels::TunnelKey, tunnels::Tunnel> tunnels;
-  for (const MadeTunnel& one : made)
-    if (one.made.is_usable()) tunnels.emplace(one.key, one.made.tunnel);
-  if (!tunnels.empty()) history_.apply_tunnels(tunnels, what);
-  for (MadeTunnel& one : made) one.checks = model_->checks(one.key);
-  const bool took_the_place = std::ranges::any_of(cases::compare_plans(model_->knee().plan, before),
-                                                  &cases::TunnelDifference::is_lost_here);
-  const bool is_as_it_should_be = std::ranges::all_of(made, [](const MadeTunnel& one) {
-    return one.made.is_usable() && one.made.doubts.empty() && tunnels::wrong_in_words(one.checks).empty();
-  });
-  state_.hint = {default_in_words(made, took_the_place), is_as_it_should_be, model_->revision()};
-  show_page(PanelPage::Checks);
 }
 
 // A landmark is placed where it is listed: elsewhere nothing shows which one a click would move.
@@ -175,25 +146,6 @@ void PlanView::add_landmark_actions(widgets::Actions& actions) {
                  states[landmark()] = LandmarkState::Proposed;
                  history_.apply_landmarks(state_.key.bone, marks, states, "As proposed: " + landmark_title(),
                                           false, widgets::GraphicsWindow::now_s());
-               }});
-  actions.add({"plan.default",
-               "Default plan",
-               "Both tunnels by the norms and the landmarks: a proposal to begin with, undo takes it back",
-               GLFW_KEY_N,
-               0,
-               false,
-               [this] {
-                 return model_ != nullptr && history_.status().save != open_case::PlanStatus::Save::ReadOnly;
-               },
-               {},
-               [this] {
-                 std::vector<tunnels::TunnelKey> keys;
-                 for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia}) {
-                   if (!model_->has_bone(bone)) continue;
-                   keys.push_back(key_in(bone));
-                   if (const auto beside = other_bundle(keys.back())) keys.push_back(*beside);
-                 }
-                 take_defaults(defaults_of(keys), "Make the default plan");
                }});
 }
 

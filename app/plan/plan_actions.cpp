@@ -16,6 +16,7 @@ using bones::BoneKind;
 void PlanView::add_actions(widgets::Actions& actions) {
   add_view_actions(actions);
   add_landmark_actions(actions);
+  add_default_actions(actions);
   add_placing_actions(actions);
   add_tunnel_actions(actions);
   add_bundle_actions(actions);
@@ -44,7 +45,6 @@ void PlanView::add_actions(widgets::Actions& actions) {
                }});
 }
 
-// Each key makes a new tunnel of the one that is there.
 // A key that does nothing says why.
 void PlanView::widen(double by_mm) {
   const tunnels::Tunnel now = *model_->tunnel(state_.key);
@@ -58,6 +58,7 @@ void PlanView::widen(double by_mm) {
     change("Change the diameter of the", true, wider);
 }
 
+// Each key makes a new tunnel of the one that is there.
 void PlanView::add_tunnel_actions(widgets::Actions& actions) {
   const auto has_tunnel = [this] { return model_ != nullptr && model_->tunnel(state_.key).has_value(); };
   const auto add = [&](const std::string& id, const std::string& label, const char* tooltip, int key,
@@ -154,7 +155,7 @@ void PlanView::add_history_actions(widgets::Actions& actions) {
 }
 
 bool PlanView::can_stop_placing() const {
-  return state_.placing != Placing::Nothing || !state_.hint.text.empty();
+  return defaults_.is_running() || state_.placing != Placing::Nothing || !state_.hint.text.empty();
 }
 
 // Where the eye sees the bone that is planned; anything else is said and changes nothing.
@@ -196,7 +197,7 @@ void PlanView::add_placing_actions(widgets::Actions& actions) {
                }});
   actions.add({"plan.stop_placing",
                "Cancel",
-               "Leaves the placing without a change",
+               "Leaves the placing, or a default plan that is being made, without a change",
                GLFW_KEY_ESCAPE,
                0,
                false,
@@ -205,6 +206,7 @@ void PlanView::add_placing_actions(widgets::Actions& actions) {
                [this] {
                  state_.placing = Placing::Nothing;
                  state_.hint = {};
+                 leave_defaults("it was left");
                }});
 }
 

@@ -51,13 +51,17 @@ PlanView::PlanView(std::function<void()> make_current, const std::function<void(
       slices_(wake),
       volume_(wake),
       survey_(wake),
-      export_(wake) {}
+      export_(wake),
+      defaults_(wake),
+      tour_defaults_(wake) {}
 
 mode::ModeTitle PlanView::title() const {
   return {"plan", "mode.plan", "Plan", "Place the tunnels", GLFW_KEY_F1};
 }
 
 void PlanView::case_opened(const mode::OpenCase& opened) {
+  defaults_.cancel();
+  tour_defaults_.cancel();
   model_ = opened.model;
   history_.open(opened.model, opened.folder, opened.read_only);
   case_folder_ = opened.folder;
@@ -79,6 +83,7 @@ void PlanView::tick(double now_s) {
   history_.settle(now_s);
   history_.look_at_disk(now_s);
   follow_plan();
+  follow_defaults();
   if (const auto exported = export_.take_outcome())
     state_.hint = {exported->in_words(case_folder_), exported->is_written && exported->doubts.empty()};
   if (volume_.is_on()) slices_.want();
@@ -286,19 +291,22 @@ void PlanView::draw_hint(const widgets::Ui& ui, const widgets::Rect& area) const
     text = "Click on the " + bone + ": the tunnel begins there. Esc leaves it.";
   if (text.empty() && state_.placing == Placing::Landmark)
     text = "Click on the " + bone + " where the landmark is. Esc leaves it.";
+  if (text.empty() && defaults_.is_running())
+    text = "Making the default plan: " + defaults_.progress() + ". Esc leaves it.";
   if (text.empty()) return;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   ImFont* font = hint.of ? ui.theme.body : text.size() > 90 ? ui.theme.strong : ui.theme.title;
   const float wrap = area.width - ui.theme.px(40), pad = ui.theme.px(6);
   const ImVec2 at{area.x + ui.theme.px(20), area.y + ui.theme.px(16)};
-  const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, wrap, text.c_str());
+  ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, wrap, text.c_str());
   // What came of something stands there until somebody has read it, and hides the bone.
+  constexpr const char* kWayOut = "Esc takes this away";
   const float way_out = hint.is_news || hint.of ? ui.theme.body->FontSize : 0;
+  if (way_out > 0) size.x = std::max(size.x, ui.theme.body->CalcTextSizeA(way_out, 1e9F, 0, kWayOut).x);
   // Read over a bright bone or a brighter MR, too.
   draw.AddRectFilled({at.x - pad, at.y - pad}, {at.x + size.x + pad, at.y + size.y + way_out + pad},
                      IM_COL32(12, 16, 20, 210), pad);
-  if (way_out > 0)
-    draw.AddText(ui.theme.body, way_out, {at.x, at.y + size.y}, widgets::kQuietText, "Esc takes this away");
+  if (way_out > 0) draw.AddText(ui.theme.body, way_out, {at.x, at.y + size.y}, widgets::kQuietText, kWayOut);
   draw.AddText(font, font->FontSize, at,
                hint.text.empty() ? widgets::kAccent
                : hint.is_news    ? widgets::kText

@@ -14,7 +14,7 @@
 #include "app/case/plan_model.h"
 #include "app/mode/mode.h"
 #include "app/plan/bone_pane.h"
-#include "app/plan/default_words.h"
+#include "app/plan/default_work.h"
 #include "app/plan/export_work.h"
 #include "app/plan/landmark_panel.h"
 #include "app/plan/lateral_view.h"
@@ -44,12 +44,13 @@ class PlanView : public mode::Mode {
   void case_opened(const mode::OpenCase& opened) override;
   void leave() override {
     history_.settle_now();
+    leave_defaults("Plan was left");  // elsewhere nobody sees the plan change
     tour_.plan_mode_left();
   }
   void tick(double now_s) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
   [[nodiscard]] bool is_busy() const override {
-    return history_.is_moving() || slices_.is_loading() || volume_.is_preparing();
+    return history_.is_moving() || defaults_.is_running() || slices_.is_loading() || volume_.is_preparing();
   }
 
  private:
@@ -80,10 +81,18 @@ class PlanView : public mode::Mode {
   void put_landmark(const Eigen::Vector3d& point_mm, const std::string& how, bool continues);
   [[nodiscard]] std::string landmark() const;  // that is selected; empty without a bone
   [[nodiscard]] std::string landmark_title() const;
-  [[nodiscard]] std::vector<MadeTunnel> defaults_of(const std::vector<tunnels::TunnelKey>& keys) const;
+  void add_landmark_marks(std::vector<PaneMark>& marks) const;
+
+  // default_actions.cpp
+  void add_default_actions(widgets::Actions& actions);
+  [[nodiscard]] bool can_make_defaults() const;
+  // then: with what was made, unless it is left before. Precondition: can_make_defaults().
+  void make_defaults(const std::vector<tunnels::TunnelKey>& keys,
+                     std::function<void(std::vector<MadeTunnel>)> then);
+  void leave_defaults(const std::string& why);  // no effect where none are being made
+  void follow_defaults();
   // Those that there are become the plan, as one step; of all of them it is said how they are.
   void take_defaults(std::vector<MadeTunnel> made, const std::string& what);
-  void add_landmark_marks(std::vector<PaneMark>& marks) const;
 
   // Where else the tunnel could begin, and from where it can be drilled: survey_view.cpp.
   void add_survey_actions(widgets::Actions& actions);
@@ -112,6 +121,7 @@ class PlanView : public mode::Mode {
   void follow_plan();
 
   // The tunnel that is worked on becomes this one; nothing where there is none.
+  void widen(double by_mm);
   void change(const std::string& what, bool continues, const std::optional<tunnels::Tunnel>& tunnel);
   void look_from(scene::ViewDirection view);
   void draw_bones(const widgets::Ui& ui, const widgets::Rect& area);
@@ -121,7 +131,6 @@ class PlanView : public mode::Mode {
   [[nodiscard]] std::vector<PaneMark> marks() const;
   void follow(const PaneEvent& event);
   void draw_hint(const widgets::Ui& ui, const widgets::Rect& area) const;
-  void widen(double by_mm);
   [[nodiscard]] std::optional<Eigen::Vector3d> aim_handle() const;
   [[nodiscard]] const geometry::TriangleMesh& tunnel_mesh(const tunnels::TunnelKey& key);
 
@@ -147,7 +156,7 @@ class PlanView : public mode::Mode {
     std::uint64_t shown_revision = 0;
     // As the tour compares the plan with it, and the landmarks that it follows from.
     std::map<bones::BoneKind, tunnels::Tunnel> defaults = {};
-    std::map<bones::BoneKind, landmarks::Landmarks> defaults_of = {};
+    std::map<bones::BoneKind, landmarks::Landmarks> defaults_of = {};  // of the whole case
   };
 
   struct TunnelMesh {
@@ -164,6 +173,8 @@ class PlanView : public mode::Mode {
   LateralView lateral_;
   TunnelSurvey survey_;
   ExportWork export_;
+  DefaultWork defaults_, tour_defaults_;  // the plan's to be, and what the tour compares the plan with
+  std::function<void(std::vector<MadeTunnel>)> take_made_;  // by defaults_
   Tour tour_{tour_file()};
   std::filesystem::path case_folder_;
   std::vector<KeptVersion> versions_;  // the oldest first

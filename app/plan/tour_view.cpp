@@ -29,17 +29,19 @@ void PlanView::add_tour_actions(widgets::Actions& actions) {
                [this] { tour_.leave(); }});
 }
 
-// The default plan follows from the landmarks alone, and is made anew when they have changed.
+// The default plan follows from the landmarks alone, and is made anew when they have changed; until it is
+// made there is none.
 void PlanView::make_tour_defaults() {
-  for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia}) {
-    if (!model_->has_bone(bone)) continue;
-    const auto of = state_.defaults_of.find(bone);
-    if (of != state_.defaults_of.end() && of->second == model_->landmarks(bone)) continue;
-    state_.defaults_of[bone] = model_->landmarks(bone);
-    const default_plan::DefaultTunnel made = model_->default_tunnel(bone);
-    state_.defaults.erase(bone);
-    if (made.is_usable()) state_.defaults.emplace(bone, made.tunnel);
-  }
+  if (const auto made = tour_defaults_.take())
+    for (const MadeTunnel& one : *made)
+      if (one.made.is_usable()) state_.defaults.emplace(one.key.bone, one.made.tunnel);
+  if (tour_defaults_.is_busy() || state_.defaults_of == model_->knee().landmarks) return;
+  state_.defaults_of = model_->knee().landmarks;
+  state_.defaults.clear();
+  std::vector<tunnels::TunnelKey> keys;
+  for (const BoneKind bone : {BoneKind::Femur, BoneKind::Tibia})
+    if (model_->has_bone(bone)) keys.emplace_back(bone);
+  tour_defaults_.start(*model_, keys);
 }
 
 void PlanView::follow_tour() {

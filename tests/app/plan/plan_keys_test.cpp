@@ -64,10 +64,11 @@ TEST(PlanKeys, NoTwoActionsShareOneWhateverWasPressed) {
     const std::string id = chosen.id;
     ++pressed[id];
     chosen.run();
-    view.tick(press);
-    for (int i = 0; i < 200 && view.is_busy(); ++i) {
+    const double now_s = 1000 + press;  // later than any movement
+    view.tick(now_s);
+    while (view.is_busy()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      view.tick(press);
+      view.tick(now_s);
     }
     for (const std::string& clash : widgets::key_clashes(actions, view.action_prefixes()))
       ADD_FAILURE() << "after " << id << ", " << clash;

@@ -1,0 +1,104 @@
+// The default plan as keys ask for it: made while the screen goes on, and taken of nothing else than it is
+// of.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include "app/plan/plan_view.h"
+#include "app/scene/offscreen_context.h"
+#include "planning/phantom/phantom_case.h"
+#include "planning/phantom/phantom_knee.h"
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::plan {
+namespace {
+
+using bones::BoneKind;
+
+class DefaultActions : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    unsetenv("DISPLAY");
+    context_.emplace();
+    view_.emplace([this] { context_->make_current(); }, [] {}, [] {});
+    view_->add_actions(actions_);
+    cases::save_case(folder_.path(), model_.knee());
+    view_->case_opened({&model_, folder_.path(), ""});
+  }
+  const widgets::Action& action(const std::string& id) const {
+    return *std::ranges::find(actions_.all(), id, [](const widgets::Action& one) { return one.id; });
+  }
+  // Until another default could be asked for: whatever ran has ended and was taken, or was not.
+  void settle() {
+    do {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      view_->tick(1000);
+    } while (!action("plan.default").can_run());
+  }
+  double femoral_mm() const { return model_.tunnel(BoneKind::Femur)->diameter_mm; }
+
+  const test::TemporaryFolder folder_;
+  open_case::PlanModel model_{phantom::case_of(phantom::make_phantom_knee({.edge_length_mm = 4}), "default")};
+  std::optional<scene::OffscreenContext> context_;
+  widgets::Actions actions_;
+  std::optional<PlanView> view_;
+};
+
+TEST_F(DefaultActions, ThePlanIsAsItWasUntilItIsMade) {
+  const Eigen::Vector3d before = model_.tunnel(BoneKind::Femur)->entry_mm;
+  action("plan.default").run();
+  EXPECT_TRUE(view_->is_busy());
+  EXPECT_FALSE(action("plan.default").can_run()) << "one at a time";
+  EXPECT_FALSE(action("plan.bundles").can_run());
+  EXPECT_EQ(model_.tunnel(BoneKind::Femur)->entry_mm, before);
+  settle();
+  EXPECT_NE(model_.tunnel(BoneKind::Femur)->entry_mm, before);
+  EXPECT_EQ(model_.tunnel(BoneKind::Femur)->entry_mm, model_.default_tunnel(BoneKind::Femur).tunnel.entry_mm);
+  action("plan.undo").run();
+  EXPECT_EQ(model_.tunnel(BoneKind::Femur)->entry_mm, before) << "one step";
+}
+
+// Esc, another mode, and a hand that was quicker: nothing of it comes into the plan.
+TEST_F(DefaultActions, WhatIsLeftOrOvertakenIsNotTaken) {
+  action("plan.wider").run();
+  view_->tick(1000);
+  const double planned_mm = femoral_mm();
+  const auto plan = model_.knee().plan;
+  const auto is_untouched = [&] {
+    return std::ranges::all_of(cases::compare_plans(model_.knee().plan, plan), [](const auto& difference) {
+      return difference.kind == cases::TunnelDifference::Kind::Same;
+    });
+  };
+  action("plan.default").run();
+  ASSERT_TRUE(action("plan.stop_placing").can_run());
+  action("plan.stop_placing").run();
+  settle();
+  EXPECT_TRUE(is_untouched());
+  action("plan.bundles").run();
+  view_->leave();
+  settle();
+  EXPECT_TRUE(is_untouched());
+  action("plan.default").run();
+  action("plan.wider").run();
+  settle();
+  EXPECT_EQ(femoral_mm(), planned_mm + 0.5);
+  EXPECT_EQ(model_.tunnel(BoneKind::Femur)->entry_mm, plan.tunnels.at(BoneKind::Femur).entry_mm);
+}
+
+// The case that it was made of is closed, then the window: neither waits for the case, nor reads it.
+TEST_F(DefaultActions, AnotherCaseKnowsNothingOfIt) {
+  action("plan.default").run();
+  auto other = std::make_unique<open_case::PlanModel>(model_.knee());
+  const Eigen::Vector3d entry_mm = other->tunnel(BoneKind::Femur)->entry_mm;
+  view_->case_opened({other.get(), folder_.path(), ""});
+  settle();
+  EXPECT_EQ(other->tunnel(BoneKind::Femur)->entry_mm, entry_mm);
+  action("plan.default").run();
+  view_.reset();
+}
+
+}  // namespace
+}  // namespace arthronaut::plan
