@@ -214,7 +214,7 @@ void PacsPane::draw_work(const widgets::Ui& ui, const widgets::Rect& area) {
 
 void PacsPane::draw_found(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::begin_panel(ui, "start.pacs.found", area);
-  if (rows_.empty() && !work_.is_busy())
+  if (rows_.empty() && !work_.is_busy() && !peers_.empty())  // else there is nobody to ask
     widgets::text_in(ui.theme.body, widgets::kQuietText,
                      "Press F and write a patient ID, a name or a date; Enter searches. * and ? stand for "
                      "anything.");

@@ -19,7 +19,7 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
   draw.AddLine({area.x, area.y + area.height}, area.max(), widgets::kPanelEdge);
   const float middle = area.y + area.height / 2;
   const ImFont* title = ui.theme.title;
-  const float width = ui.theme.px(152), height = ui.theme.px(50);
+  const float width = ui.theme.px(146), height = ui.theme.px(50);
   const widgets::Rect heart{area.x + ui.theme.px(14), middle - height / 2, height, height};
   widgets::draw_heartbeat(ui, heart, heartbeat_);
   // The same place in all modes: where the pictures come from, or else whose screen this is.
@@ -40,7 +40,7 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
     const cases::Case& knee = is_unpainted() ? *case_->unpainted() : model()->knee();
     const std::string side = std::string(bones::to_text(knee.side)) + " knee", beside = "  \u2013  " + side;
     const std::string patient = case_->identity() ? case_->identity()->in_words() : "";
-    const float right = area.x + area.width - ui.theme.px(482), room = right - x - ui.theme.px(8);
+    const float right = area.x + area.width - ui.theme.px(448), room = right - x - ui.theme.px(8);
     ImFont* const strong = ui.theme.strong;
     const float row = strong->FontSize;
     const auto width_of = [&](const std::string& words) {
@@ -66,7 +66,7 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
     }
   }
   x = area.x + area.width - ui.theme.px(12);
-  for (const auto& [id, size] : {std::pair{"app.quit", 156.F}, {"app.keys", 140.F}, {"app.cases", 140.F}}) {
+  for (const auto& [id, size] : {std::pair{"app.quit", 150.F}, {"app.keys", 126.F}, {"app.cases", 126.F}}) {
     x -= ui.theme.px(size);
     ImGui::SetCursorScreenPos({x, middle - height / 2});
     widgets::action_button(ui, id, ui.theme.px(size), height);
@@ -116,10 +116,13 @@ void WorkstationWindow::draw_header(const widgets::Ui& ui, const widgets::Rect& 
   ImFont* const font = ui.theme.body;
   const auto [text, warns] = status_words();
   const float standing = font->CalcTextSizeA(font->FontSize, 1e9F, 0, kNotice).x + ui.theme.px(20);
-  // What is to be said now is said whole: what always stands there makes room for it.
+  // What is to be said now is said whole: what always stands there goes up beside the side, and never away.
   const bool has_room =
       !warns || standing + font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x <= foot.width;
-  if (has_room) draw.AddText(font, font->FontSize, foot.min(), widgets::kQuietText, kNotice);
+  const ImVec2 notice_at =
+      has_room ? foot.min() : ImVec2{area.x + area.width - standing, rest.y + ui.theme.px(4)};
+  draw.AddText(font, font->FontSize, notice_at, widgets::kQuietText, kNotice);
+  ui.log.note("app.notice", notice_at, {notice_at.x + standing, notice_at.y + font->FontSize});
   const float left = foot.x + (has_room ? standing : 0);
   const std::string words = warns ? start::fitting(font, text, foot.x + foot.width - left) : "";
   ui.log.note_state("header_notice", words);
