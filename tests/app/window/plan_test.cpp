@@ -289,6 +289,20 @@ TEST_F(PlanWindow, DefaultPlanAndLandmarksByKeys) {
   }
 }
 
+// Where the keys end they say so; a key that does nothing would pass for one that was not heard.
+TEST_F(PlanWindow, SaysWhereADiameterEnds) {
+  const VirtualDisplay display(1280, 720);
+  RunningWorkstation app(display, folder_.path());
+  open(app);
+  for (int i = 0; i < 12; ++i) app.press("equal");  // from 9 mm by halves
+  ASSERT_TRUE(app.wait_for_state("diameter_mm", "15.00"));
+  EXPECT_EQ(app.state("hint"), "");
+  app.press("equal");
+  EXPECT_TRUE(app.wait_for_state("hint", "A tunnel is planned 3 to 15 mm wide: this one is 15.0 mm."));
+  app.press("minus");
+  EXPECT_TRUE(app.wait_for_state("hint", ""));
+}
+
 // A version is kept, found again beside the one that was changed, and taken back as a step that undo ends.
 TEST_F(PlanWindow, AVersionIsKeptAndTakenAgain) {
   const VirtualDisplay display(1280, 720);

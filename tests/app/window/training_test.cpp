@@ -113,6 +113,8 @@ TEST_F(WorkstationTraining, Hazard40NavigateStartsNothingWhileItIsLent) {
   ASSERT_TRUE(app.wait_for_state("mode", "navigate"));
   const std::string refusal = "An exercise runs here: end it in Train (F6) first";
   ASSERT_TRUE(app.hold_until("k", "notice", refusal));
+  EXPECT_EQ(app.state("header_notice"), refusal);
+  EXPECT_TRUE(app.widgets().contains("app.notice")) << "research software, beside whatever is to be said";
   EXPECT_EQ(app.state("cameras"), "none");
   EXPECT_EQ(app.state("source_kind"), "SIMULATION");
   ASSERT_TRUE(app.hold_until("Escape", "source_kind", "none", 60));
