@@ -62,7 +62,6 @@ class BonePane {
   // The images in the bones' place, cut as these are, an MR also cut open; nullptr: the bones. What is seen
   // and taken hold of stays the bones' surface, which lies where the images' does.
   void show_volume(const std::shared_ptr<const scene::VolumeItem>& item);
-  [[nodiscard]] bool shows_volume() const { return volume_ != nullptr; }
   // What is drawn beside the bones, and the tunnels' lines; kept until it is set again.
   void set_content(scene::SceneContent beside_the_bones);
 

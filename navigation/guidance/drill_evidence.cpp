@@ -120,15 +120,10 @@ void DrillEvidence::summarise(const std::vector<Pose>& poses, DrillEvidenceSumma
   summary.depth_mm = median_of(counted, [](const Pose& pose) { return pose.depth_mm; });
   summary.sigma_offset_mm = median_of(counted, [](const Pose& pose) { return pose.sigma_offset_mm; });
   summary.sigma_angle_deg = median_of(counted, [](const Pose& pose) { return pose.sigma_angle_deg; });
-  double squares_mm = 0, squares_deg = 0;
-  for (const Pose& pose : counted) {
+  double squares_mm = 0;
+  for (const Pose& pose : counted)
     squares_mm += (crossing_of(pose.point_mm, pose.direction, planned_) - summary.entry_mm).squaredNorm();
-    squares_deg +=
-        std::pow(geometry::deg_from_rad(geometry::angle_between_rad(pose.direction, summary.direction)), 2);
-  }
-  const double count = static_cast<double>(counted.size());
-  summary.spread_mm = std::sqrt(squares_mm / count);
-  summary.spread_deg = std::sqrt(squares_deg / count);
+  summary.spread_mm = std::sqrt(squares_mm / static_cast<double>(counted.size()));
   summary.timestamp_ns = counted.back().timestamp_ns;
 }
 

@@ -49,7 +49,6 @@ struct DrillEvidenceSummary {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
   double depth_mm = 0;                              // median: of the drill's tip, or of the guide's end
   double spread_mm = 0;                             // root mean square of the crossings about theirs
-  double spread_deg = 0;                            // and of the directions
   double sigma_offset_mm = 0, sigma_angle_deg = 0;  // predicted, medians
   std::int64_t timestamp_ns = 0;                    // of the last pose that counts
   [[nodiscard]] bool is_usable() const { return outcome == EvidenceOutcome::Seen; }

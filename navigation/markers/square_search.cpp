@@ -297,7 +297,6 @@ bool SquareSearch::measure_sides(const camera::CameraModel& camera,
     shortest = std::min(shortest, length);
     longest = std::max(longest, length);
   }
-  square.shortest_side_px = shortest;
   square.longest_side_px = longest;
   return longest < kMaxSideRatio * shortest && longest >= kMinSide * shrink_;
 }

@@ -18,7 +18,6 @@ namespace arthronaut::markers {
 struct FoundSquare {
   Corners corners_px;  // clockwise in the image, any of them first; good to about 2 px
   Corners tangent;     // the same, undistorted
-  double shortest_side_px = 0;
   double longest_side_px = 0;
 };
 

@@ -239,6 +239,4 @@ void OperationRun::keep_video(KeepVideo keep, const std::filesystem::path& video
   write([&](recording::OperationRecord& record) { record.keep_video(keep, video); });
 }
 
-const sources::SourceInfo& OperationRun::source_info() const { return source_->info(); }
-
 }  // namespace arthronaut::theatre

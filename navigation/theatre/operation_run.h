@@ -77,8 +77,6 @@ class OperationRun {
   void keep_video(recording::KeepVideo keep, const std::filesystem::path& video);  // see OperationRecord
 
   [[nodiscard]] bool has_source() const { return source_ != nullptr; }
-  // Of the source that runs; precondition: has_source().
-  [[nodiscard]] const sources::SourceInfo& source_info() const;
   [[nodiscard]] operation::OperationStatePtr state() { return operation_.state(); }
   [[nodiscard]] operation::OperationStatePtr state_of_frame() const { return frame_state_; }
   [[nodiscard]] operation::Operation& operation() { return operation_; }
@@ -94,7 +92,6 @@ class OperationRun {
   [[nodiscard]] const SourceWatch& watch() const { return live_.watch; }
   // How long the pictures of the source that runs, or ran last, took. Whoever takes them further adds to it.
   [[nodiscard]] LatencyMeter& latency() { return live_.meter; }
-  [[nodiscard]] const FrameLatency& newest_latency() const { return live_.newest; }
   // Why nothing is recorded any more; empty while all is well.
   [[nodiscard]] const std::string& record_trouble() const { return record_trouble_; }
 

@@ -113,10 +113,6 @@ Eigen::Vector3d project_onto(const ImplicitFunction& function, const Eigen::Vect
   return point;
 }
 
-Eigen::Vector3d normal_of(const ImplicitFunction& function, const Eigen::Vector3d& p) {
-  return gradient_of(function, p).normalized();
-}
-
 geometry::TriangleMesh mesh_of(const ImplicitFunction& function, const ImplicitMeshOptions& options) {
   const vtkNew<vtkImageData> grid = sample(function, options);
   geometry::TriangleMesh mesh = contour(grid);

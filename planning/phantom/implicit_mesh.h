@@ -23,7 +23,5 @@ struct ImplicitMeshOptions {
 // The point of the surface that Newton steps along the gradient reach; at most a few mm away for a good
 // result.
 [[nodiscard]] Eigen::Vector3d project_onto(const ImplicitFunction& function, const Eigen::Vector3d& p);
-// Unit, outward, by central differences.
-[[nodiscard]] Eigen::Vector3d normal_of(const ImplicitFunction& function, const Eigen::Vector3d& p);
 
 }  // namespace arthronaut::phantom
