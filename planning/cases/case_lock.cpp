@@ -123,15 +123,48 @@ std::string obstacle(const LockFile& lock, const fs::path& file) {
   return lives_here(lock) ? "is open elsewhere: " + lock.holder.in_words() : "";
 }
 
-// The kernel's lock on the folder. -1: somebody holds it, or the folder cannot be opened.
-int lock_folder(const fs::path& folder, bool& is_taken) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return -1;
-  is_taken = ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  if (!is_taken) return descriptor;  // also where the file system knows no such locks
-  ::close(descriptor);
-  return -1;
+// The kernel's lock on a folder.
+struct FolderLock {
+  int descriptor = -1;  // -1: somebody holds it, or the folder cannot be opened
+  bool is_taken = false;
+  bool is_known = true;  // false: the file system has no such locks
+};
+
+FolderLock lock_folder(const fs::path& folder) {
+  FolderLock lock;
+  lock.descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock.descriptor < 0 || ::flock(lock.descriptor, LOCK_EX | LOCK_NB) == 0) return lock;
+  lock.is_taken = errno == EWOULDBLOCK;
+  lock.is_known = lock.is_taken;
+  if (lock.is_taken) ::close(std::exchange(lock.descriptor, -1));
+  return lock;
 }
+
+// Where the kernel locks no folders: who has made this file alone looks at case.lock and writes it. Making it
+// is one step on every file system, a look followed by a write is not.
+class Turn {
+ public:
+  explicit Turn(fs::path file)
+      : file_(std::move(file)), descriptor_(::open(file_.c_str(), O_CREAT | O_EXCL | O_CLOEXEC, 0600)) {
+    if (descriptor_ >= 0) return;
+    refusal_ = errno == EEXIST
+                   ? "is being opened by another program. If there is none, delete " + file_.string()
+                   : "cannot be opened for writing";
+  }
+  ~Turn() {
+    if (descriptor_ < 0) return;
+    ::close(descriptor_);
+    ::unlink(file_.c_str());
+  }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+  [[nodiscard]] const std::string& refusal() const { return refusal_; }  // empty: it is ours
+
+ private:
+  fs::path file_;
+  int descriptor_;
+  std::string refusal_;
+};
 
 }  // namespace
 
@@ -168,31 +201,33 @@ struct CaseLock::State {
 
 CaseLock::CaseLock(const fs::path& case_folder) {
   const fs::path file = lock_file(case_folder);
-  bool is_taken = false;
-  const int descriptor = lock_folder(case_folder, is_taken);
-  if (descriptor < 0) {
+  const FolderLock kernel = lock_folder(case_folder);
+  if (kernel.descriptor < 0) {
     // Between the kernel's lock and the file there is a moment in which the holder is not known.
     std::optional<LockFile> lock;
     try {
       lock = read_lock(file);
     } catch (const IoError&) {
     }
-    refusal_ = !is_taken                          ? "cannot be opened for writing"
+    refusal_ = !kernel.is_taken                   ? "cannot be opened for writing"
                : lock && lock->holder.process > 0 ? "is open elsewhere: " + lock->holder.in_words()
                                                   : "is open in another program";
     return;
   }
+  std::optional<Turn> turn;
+  if (!kernel.is_known) turn.emplace(fs::path(file) += ".taking");
   try {
     const auto before = read_lock(file);
     if (before) refusal_ = obstacle(*before, file);
+    if (refusal_.empty() && turn) refusal_ = turn->refusal();
     if (refusal_.empty()) {
       make_case_private(case_folder);
       LockFile mine{{host_name(), user_name(), ::getpid(), files::utc_now()}, state_of(::getpid()).start};
       write_lock(file, mine);
-      // Where the kernel locks no folders two programs may have come so far; the later file counts.
+      // Where the kernel's locks end at this machine another one may have come so far; the later file counts.
       const auto there = read_lock(file);
       if (there && is_same(*there, mine)) {
-        state_ = std::make_unique<State>(case_folder, descriptor, std::move(mine));
+        state_ = std::make_unique<State>(case_folder, kernel.descriptor, std::move(mine));
         if (before) {
           notice_ = before->holder.process > 0
                         ? "Taken over from " + before->holder.in_words() + ", which ended without closing it"
@@ -205,7 +240,7 @@ CaseLock::CaseLock(const fs::path& case_folder) {
   } catch (const std::runtime_error& error) {  // a folder that can only be read
     refusal_ = std::string("cannot be written: ") + error.what();
   }
-  ::close(descriptor);
+  ::close(kernel.descriptor);
 }
 
 CaseLock::CaseLock() = default;

@@ -11,8 +11,12 @@
 //   somebody holds the kernel's lock                                   -> refused
 //
 // That the process is gone is told by its number and the time of its start, since numbers come again. A lock
-// of another host is never taken over: nobody here can know. Its message says what to do. Where the kernel
-// cannot lock folders (some network file systems) case.lock alone counts.
+// of another host is never taken over: nobody here can know. Its message says what to do.
+//
+// Where the kernel cannot lock folders (some network file systems) case.lock alone counts, and who wants to
+// look at it and write it makes case.lock.taking first, which one of several can: the others are refused. It
+// is gone a moment later; one that a crash in that moment has left is named in the refusal, to be deleted by
+// hand.
 //
 // Threads: each lock is one thread's at a time. A process that forks keeps the lock in the parent.
 #pragma once

@@ -2,12 +2,18 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
 #include <signal.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <chrono>
+#include <cstddef>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -172,6 +178,51 @@ TEST_F(CaseLockTest, Hazard15OneOfManyTakesADeadLockOver) {
     EXPECT_EQ(std::count_if(others.begin(), others.end(), [](const auto& other) { return other->result(); }),
               1);
   }
+}
+
+// From now on the kernel locks no folders for this process and its children, as on some network file systems.
+bool take_folder_locks_away() {
+  std::array<sock_filter, 4> refuse_flock{
+      sock_filter BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+      sock_filter BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_flock, 0, 1),
+      sock_filter BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | ENOLCK),
+      sock_filter BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)};
+  const sock_fprog program{refuse_flock.size(), refuse_flock.data()};
+  return ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+         ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
+
+// Where the kernel locks no folders, of many programs that come at once one gets the case, a dead lock in it
+// or none.
+TEST_F(CaseLockTest, Hazard15OneOfManyGetsInWithoutTheKernelsLocks) {
+  const OtherProcess trial(take_folder_locks_away);
+  if (!trial.result()) GTEST_SKIP() << "no system call can be refused here";
+  const auto taking_without = [taking = taking()] { return take_folder_locks_away() && taking(); };
+  for (int round = 0; round < 20; ++round) {
+    std::filesystem::remove(lock_file(folder_));
+    if (round % 2 == 1) write_lock(this_host(), ::getppid(), "1@an earlier start of the machine");
+    std::vector<std::unique_ptr<OtherProcess>> others(6);
+    std::vector<std::thread> starts;
+    starts.reserve(others.size());
+    for (auto& other : others)
+      starts.emplace_back([&] { other = std::make_unique<OtherProcess>(taking_without); });
+    for (auto& start : starts) start.join();
+    EXPECT_EQ(std::count_if(others.begin(), others.end(), [](const auto& other) { return other->result(); }),
+              1)
+        << round;
+  }
+}
+
+// Somebody is taking it at this moment: nobody else looks at the lock and writes it.
+TEST_F(CaseLockTest, Hazard15WithoutTheKernelsLocksOneTakesTheCaseAtATime) {
+  files::write_atomically(folder_ / "case.lock.taking", std::string_view());
+  const OtherProcess other([folder = folder_] {
+    if (!take_folder_locks_away()) return true;
+    const CaseLock lock(folder);
+    return !lock.is_held() && lock.refusal().find("case.lock.taking") != std::string::npos;
+  });
+  EXPECT_TRUE(other.result());
+  EXPECT_TRUE(CaseLock(folder_).is_held()) << "with the kernel's locks it is nobody's business";
 }
 
 // The number of a dead process comes again: its start tells the two apart.
