@@ -14,6 +14,39 @@ using files::format;
 
 double share_percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
 
+// What an exercise is for.
+bool is_of_goal(Measure measure, Goal goal) {
+  switch (goal) {
+    case Goal::Calibrate:
+      return measure == Measure::CameraError;
+    case Goal::Pivot:
+      return measure == Measure::TipError;
+    case Goal::Register:
+      return measure == Measure::TunnelError;
+    case Goal::Aim:
+    case Goal::Drill:
+      return measure == Measure::EntryOffset || measure == Measure::Angle || measure == Measure::DepthError;
+  }
+  return false;
+}
+
+// Not what was reached, but how.
+bool tells_how(Measure measure) {
+  switch (measure) {
+    case Measure::Time:
+    case Measure::Uncovered:
+    case Measure::Refused:
+    case Measure::WastedTouches:
+    case Measure::DrawnInAir:
+    case Measure::OutOfView:
+    case Measure::AlarmsIgnored:
+    case Measure::ActedOnBadData:
+      return true;
+    default:
+      return false;
+  }
+}
+
 std::optional<double> value_of(Measure measure, const ExerciseFacts& facts) {
   switch (measure) {
     case Measure::Time:
@@ -118,8 +151,9 @@ std::string never_came_to_that(Measure measure, const ExerciseFacts& facts) {
     case Measure::CameraError:
       return "No camera that may be used was found: " + facts.camera_trouble;
     case Measure::Uncovered:
+      return "No picture was taken that could cover the view";
     case Measure::Refused:
-      return "No picture was taken";
+      return "No picture was taken, whatever was refused";
     case Measure::DrawnInAir:
       return "Nothing was drawn";
     default:
@@ -187,8 +221,25 @@ ScorePart part_of(const Mark& mark, const ExerciseFacts& facts) {
                   number(mark.good, mark.measure) + " gives all points, from " +
                   number(mark.limit, mark.measure) + " on none.";
   }
-  if (part.points < part.most_points) part.advice = advice_for(mark.measure, facts);
+  // What never began is not to be done better, but to be done.
+  if (part.points < part.most_points && (part.value || !tells_how(mark.measure)))
+    part.advice = advice_for(mark.measure, facts);
   return part;
+}
+
+// Who says at once that he is done was quick, and ignored no alarm: that earns nothing where nothing was
+// reached.
+void count_how_only_where_reached(Goal goal, const ExerciseFacts& facts, std::vector<ScorePart>& parts) {
+  const bool is_reached = std::any_of(parts.begin(), parts.end(), [&](const ScorePart& part) {
+    return is_of_goal(part.measure, goal) && part.points > 0;
+  });
+  if (is_reached) return;
+  for (ScorePart& part : parts) {
+    if (!tells_how(part.measure) || !part.value) continue;
+    part.points = 0;
+    part.reason = what_was_found(part.measure, *part.value, facts) +
+                  "; how it was done counts where something was reached.";
+  }
 }
 
 }  // namespace
@@ -200,6 +251,7 @@ Score score_of(const Exercise& exercise, Level level, const ExerciseFacts& facts
   score.level = level;
   score.is_done = facts.is_done;
   for (const Mark& mark : exercise.marks) score.parts.push_back(part_of(mark, facts));
+  count_how_only_where_reached(exercise.goal, facts, score.parts);
   double sum = 0;
   for (const ScorePart& part : score.parts) sum += part.points;
   // Whoever stops half-way has made no mistakes either.

@@ -1,5 +1,6 @@
 // What an exercise was worth, part by part, each with its value, its limit, its points and one sentence that
-// says why; and what to do better. Pure: the same facts, the same score.
+// says why; and what to do better. How something was done (quickly, without waste, without a mistake) earns
+// points only where what the exercise is for has earned some. Pure: the same facts, the same score.
 #pragma once
 
 #include <cstdint>

@@ -176,5 +176,36 @@ TEST(Score, WithoutACameraSaysWhy) {
     EXPECT_EQ(part_of(score, none).points, 0);
 }
 
+// Who says "done" at once has been quick and made no mistake: no exercise gives a point for it.
+TEST(Score, DoneAtOnceEarnsNothing) {
+  for (const Exercise& exercise : exercises()) {
+    ExerciseFacts facts;
+    facts.is_done = true;
+    facts.time_s = 1;
+    facts.frames = 30;
+    // The guide was in the hand, somewhere.
+    if (exercise.goal == Goal::Aim) facts.entry_offset_mm = facts.angle_deg = 40;
+    const Score score = score_of(exercise, Level::Easy, facts);
+    EXPECT_EQ(score.points, 0) << exercise.id;
+    ASSERT_FALSE(score.better.empty()) << exercise.id;
+    for (const ScorePart& part : score.parts)
+      if (part.measure == Measure::Time || part.measure == Measure::Refused) {
+        EXPECT_EQ(part.advice, "") << exercise.id << ": it was quick, and refused nothing";
+      }
+  }
+}
+
+// What was reached on the way counts by itself, also where the tunnel was not drilled.
+TEST(Score, AVerifiedRegistrationCountsWithoutATunnel) {
+  ExerciseFacts facts = flawless();
+  facts.entry_offset_mm.reset();
+  facts.angle_deg.reset();
+  facts.depth_error_mm.reset();
+  const Score score = score_of(drilling(), Level::Easy, facts);
+  EXPECT_EQ(score.points, part_of(score, Measure::TunnelError).most_points +
+                              part_of(score, Measure::Verification).most_points);
+  EXPECT_NE(part_of(score, Measure::Time).reason.find("where something was reached"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace arthronaut::training
