@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <vector>
 
 #include "navigation/worker/worker.h"
+#include "planning/log/log.h"
 
 namespace arthronaut::sounds {
 
@@ -17,6 +19,22 @@ constexpr std::size_t kPiece = kSampleRate / 50;  // so soon the end of the prog
 
 // ALSA writes what it finds to standard error; it is told on the screen instead.
 void say_nothing(const char*, int, const char*, int, const char*, ...) {}
+
+std::string in_words(int error) {
+  switch (-error) {
+    case ENOENT:
+    case ENODEV:
+    case ENXIO:
+      return "no loudspeaker is connected";
+    case EBUSY:
+      return "another program holds the loudspeaker";
+    case EACCES:
+    case EPERM:
+      return "this user may not use the loudspeaker";
+    default:
+      return "the loudspeaker does not play";
+  }
+}
 
 class Device {
  public:
@@ -38,6 +56,7 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   [[nodiscard]] const std::string& trouble() const { return trouble_; }
+  [[nodiscard]] const std::string& system_says() const { return system_says_; }
   template <typename Stops>
   void play(const std::vector<std::int16_t>& samples, const Stops& stops) {
     for (std::size_t at = 0; at < samples.size() && trouble_.empty();) {
@@ -52,10 +71,13 @@ class Device {
   }
 
  private:
-  void fail(int error) { trouble_ = std::string("no sound device: ") + snd_strerror(error); }
+  void fail(int error) {
+    trouble_ = in_words(error);
+    system_says_ = snd_strerror(error);
+  }
 
   snd_pcm_t* pcm_ = nullptr;
-  std::string trouble_;
+  std::string trouble_, system_says_;
 };
 
 }  // namespace
@@ -64,12 +86,19 @@ struct Player::Thread {
   explicit Thread(const std::string& device)
       : worker(worker::Backlog::NewestWins, [this, device](auto& inbox) {
           snd_lib_error_set_handler(say_nothing);
-          inbox.publish(Device(device).trouble());
+          std::string told;
+          const auto tell = [&](const Device& of) {
+            if (of.trouble() != told && !of.trouble().empty())
+              log::warning("sound: " + of.trouble() + " (" + of.system_says() + ")");
+            told = of.trouble();
+            inbox.publish(told);
+          };
+          tell(Device(device));
           while (const auto sound = inbox.next()) {
             if (is_muted) continue;
             Device opened(device);
             opened.play(samples_of(*sound), [&] { return inbox.stops() || is_muted; });
-            inbox.publish(opened.trouble());
+            tell(opened);
           }
           snd_lib_error_set_handler(nullptr);
           snd_config_update_free_global();

@@ -22,7 +22,8 @@ class Player {
   void play(Sound sound);
   void mute(bool on);
   [[nodiscard]] bool is_muted() const;
-  // Why nothing can be heard ("no sound device: ..."); empty while it can, or is not known yet.
+  // Why nothing can be heard, for who stands before the screen ("no loudspeaker is connected"); empty while
+  // it can, or is not known yet. What the system calls it is in the log.
   [[nodiscard]] std::string trouble() const;
   // Waits until what was asked for is played; for tests.
   void finish() const;
