@@ -120,7 +120,7 @@ std::optional<LivePictures> CameraChoice::draw(const widgets::Ui& ui, const widg
   if (auto clicked = draw_rows(ui, box, picture)) return clicked;
   const std::string hint =
       !trouble_.empty()   ? trouble_
-      : !tracker_.empty() ? "Tools seen by " + tracker_ + ": now the pictures (igtl:// alone: not)"
+      : !tracker_.empty() ? "Tools seen by " + tracker_ + ". Now the pictures; igtl:// alone takes it back"
       : offered_.empty()  ? "No camera is connected. A stream's address, or a tracker's (igtl://HOST:PORT)"
                           : "Or a stream's address, or a tracker's (igtl://HOST:PORT)";
   widgets::text_centered(ui, box.cut_top(row), ui.theme.strong,

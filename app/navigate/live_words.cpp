@@ -53,6 +53,13 @@ std::string words_of(NextAction action) {
   return "";
 }
 
+std::string words_of_verifying(const operation::OperationState& state) {
+  const std::string words = words_of(NextAction::VerifyByTouch);
+  const int missing = state.registration->touches.places_to_verify();
+  const bool counts = state.verification != operation::Verification::ByTouches && missing > 0;
+  return counts ? words + ", " + std::to_string(missing) + " to go" : words;
+}
+
 bool must_place_anew(const operation::RegistrationState& registration) {
   return registration.alarm.seen_drift_mm > 0 && !registration.alarm.control_point_decides;
 }
@@ -122,6 +129,14 @@ Trouble trouble_of(const operation::GuideCheckState& guide, const std::string& n
                                   " mm from the control point: measure the " + name + " in Set up"};
   }
   return {};
+}
+
+Trouble trouble_of_end(const operation::OperationState& state) {
+  const bool may_be_drilled = state.registration->in_force.standing == Standing::Stands && state.plan &&
+                              state.drilled.outcome == operation::DrilledState::Outcome::NotSaid;
+  return {"The pictures have ended",
+          may_be_drilled ? "Nothing guides. Go on with others; is the tunnel drilled already, say so (J)"
+                         : "This is the last one: nothing guides"};
 }
 
 Trouble trouble_of(const lens::LensObservation& lens) {

@@ -9,6 +9,8 @@ namespace arthronaut::navigate {
 
 // What to do next: "touch the bone with the probe".
 [[nodiscard]] std::string words_of(operation::NextAction action);
+// The same of a touch that verifies, with how many are still missing.
+[[nodiscard]] std::string words_of_verifying(const operation::OperationState& state);
 // The picture shows the bone elsewhere, and no control point was set before that could deny it: what was
 // found is of a place that nobody knows. To be placed anew; and what is then to be done.
 [[nodiscard]] bool must_place_anew(const operation::RegistrationState& registration);
@@ -26,6 +28,8 @@ struct Trouble {
 [[nodiscard]] Trouble trouble_of(const operation::RegistrationState& registration);
 // Why a nominal guide of that name may not guide; empty while it may.
 [[nodiscard]] Trouble trouble_of(const operation::GuideCheckState& guide, const std::string& name);
+// Of an operation whose pictures have ended.
+[[nodiscard]] Trouble trouble_of_end(const operation::OperationState& state);
 // While the mark is found on its track: empty.
 [[nodiscard]] Trouble trouble_of(const lens::LensObservation& lens);
 

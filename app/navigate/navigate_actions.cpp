@@ -228,7 +228,11 @@ void NavigateView::add_answer_actions(widgets::Actions& actions) {
                GLFW_KEY_J,
                0,
                false,
-               [this] { return is_running() && live_->operation->plan.has_value(); },
+               // Also of pictures that have ended: the record of what they showed takes it in.
+               [this] {
+                 const bool were_there = live_->picture != nullptr && !is_under_way(*live_);
+                 return (is_running() || were_there) && live_->operation->plan.has_value();
+               },
                {},
                [this] { ask(operation::TunnelDrilled{}); },
                {"say that the tunnel is drilled"}});

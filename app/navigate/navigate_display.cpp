@@ -1,6 +1,7 @@
 #include "app/navigate/navigate_display.h"
 
 #include <Eigen/Geometry>
+#include <cctype>
 #include <cmath>
 
 namespace arthronaut::navigate {
@@ -10,13 +11,18 @@ namespace {
 using guidance::GuidanceState;
 using Phase = theatre::LiveState::Phase;
 
+// "Not seen"; empty while it is tracked.
 std::string reason_of_marker(const pipeline::FrameResult& result, int marker_id) {
+  std::string words;
   if (!result.outside.bodies.empty()) {
     const tracker::BodyState outside = tracker::state_of(result.outside, marker_id);
-    return outside == tracker::BodyState::Tracked ? "" : std::string(tracker::to_text(outside));
+    if (outside != tracker::BodyState::Tracked) words = tracker::to_text(outside);
+  } else {
+    const markers::MarkerState state = pipeline::body_in(result, marker_id).state;
+    if (state != markers::MarkerState::Tracked) words = markers::to_text(state);
   }
-  const markers::MarkerState state = pipeline::body_in(result, marker_id).state;
-  return state == markers::MarkerState::Tracked ? "" : std::string(markers::to_text(state));
+  if (!words.empty()) words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  return words;
 }
 
 void tell(NavigateDisplay& display, const Trouble& trouble) {
@@ -182,8 +188,7 @@ NavigateDisplay display_of(const theatre::LiveState* live, double now_s) {
   }
   display.has_picture = true;
   if (live->phase == Phase::Ended) {
-    display.headline = "The source has ended";
-    display.detail = "This is its last picture";
+    tell(display, trouble_of_end(*live->operation));
     return display;
   }
   display.age_s = now_s - live->captured_s;

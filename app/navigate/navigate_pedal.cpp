@@ -90,9 +90,15 @@ std::string NavigateView::next_step() {
     return stops_once_open_ ? "wait: it stops once it is open" : "wait for the first picture";
   if (takes_guide_in_simulation()) return "take the guide (simulation)";
   if (action == NextAction::CheckWorldMarker && must_place_anew(registration())) return place_anew_words();
+  if (action == NextAction::VerifyByTouch) return words_of_verifying(*live_->operation);
   const bool starts = action == NextAction::StartSource || action == NextAction::PlanTunnel;
   if (!starts) return words_of(action);
   if (must_set_up()) return "calibrate camera and tools in Set up";
+  const bool have_ended = live_->phase == Phase::Ended && live_->picture != nullptr;
+  return (have_ended ? "the pictures have ended: " : "") + words_of_start();
+}
+
+std::string NavigateView::words_of_start() const {
   const bool stands = registration().in_force.standing == operation::Standing::Stands;
   if (simulates()) return stands ? "drill (simulation)" : "start the simulated operation";
   if (kind_ == sources::SourceKind::Live) return "open the camera again";

@@ -78,6 +78,8 @@ class NavigateView : public mode::Mode {
   [[nodiscard]] const LeftBehind* left_behind();
   void resume();
   void decline_resume();
+  // How pictures are begun now: "open the camera again".
+  [[nodiscard]] std::string words_of_start() const;
   // One pedal: carries out what is a command, and starts nothing but the kind of source that was chosen.
   void take_next_step();
   [[nodiscard]] bool was_asked();

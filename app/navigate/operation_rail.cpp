@@ -22,6 +22,8 @@ struct Known {
   [[nodiscard]] bool stands() const {
     return state.registration->in_force.standing == Standing::Stands && !context.marker_is_out;
   }
+  // The pictures, of a source that there was.
+  [[nodiscard]] bool have_ended() const { return state.source != nullptr && !state.has_source; }
   [[nodiscard]] bool is_drilled() const {
     return context.is_drilled || state.drilled.outcome != operation::DrilledState::Outcome::NotSaid;
   }
@@ -105,7 +107,8 @@ Missing condition_of(Step step, const Known& known) {
       const Missing guide = known.guide_is_known() ? Missing::Nothing : Missing::GuideAxis;
       const Missing registration = known.stands() ? Missing::Nothing : Missing::Registration;
       const Missing check = state.guide_check.may_guide() ? Missing::Nothing : Missing::GuideCheck;
-      return first_of({missing_of_plan(known), time_out, guide, registration, check});
+      const Missing pictures = known.have_ended() ? Missing::Source : Missing::Nothing;
+      return first_of({missing_of_plan(known), time_out, guide, registration, check, pictures});
     }
     case Step::Finish:
       return known.is_drilled() ? Missing::Nothing : Missing::Tunnel;
@@ -133,7 +136,9 @@ Missing rest_of(Step step, const Known& known) {
       if (known.was_guided_to()) return Missing::Nothing;
       if (state.verification == operation::Verification::NotYet) return Missing::Touches;
       if (state.control_point_due != operation::ControlPointDue::None) return Missing::ControlPoint;
-      return state.guide_check.may_guide() ? Missing::Nothing : Missing::GuideCheck;
+      if (!state.guide_check.may_guide()) return Missing::GuideCheck;
+      // What was skipped is not done, however far the operation has gone on without it.
+      return state.verification == operation::Verification::ByTouches ? Missing::Nothing : Missing::Touches;
     }
     case Step::Guide:
       return known.is_drilled() ? Missing::Nothing : Missing::Tunnel;
@@ -149,6 +154,9 @@ Step now_of(const Known& known) {
   if (missing_of_plan(known) != Missing::Nothing) return Step::Plan;
   if (missing_of_camera(known) != Missing::Nothing) return Step::Calibrate;
   if (state.source == nullptr && missing_of_tools(known) != Missing::Nothing) return Step::Tools;
+  // Other pictures are wanted for what is left to do; the marker was found already.
+  if (state.next_action == NextAction::StartSource && known.have_ended() && known.stands())
+    return Step::Guide;
   // An operation that was not told yet of the plan that is there starts with its pictures.
   const Step now = operation::step_of(state.next_action);
   return now == Step::Plan ? Step::WorldMarker : now;

@@ -150,9 +150,10 @@ void draw_states(const widgets::Ui& ui, const widgets::Rect& area, const Navigat
                       : standing == operation::Standing::None ? Severity::Quiet
                                                               : Severity::Bad,
                       "Bone"});
-    states.push_back({!screen.live->record_trouble.empty() || screen.live->session_folder.empty()
-                          ? Severity::Bad
-                          : Severity::Good,
+    const bool is_kept = screen.live->record_trouble.empty() && !screen.live->session_folder.empty();
+    states.push_back({!is_kept                     ? Severity::Bad
+                      : is_under_way(*screen.live) ? Severity::Good
+                                                   : Severity::Quiet,
                       screen.live->keeps_video ? "Video" : "Record"});
     if (screen.is_muted || !screen.sound_trouble.empty())
       states.push_back({Severity::Caution, screen.is_muted ? "Muted" : "No sound"});

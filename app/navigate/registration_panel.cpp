@@ -146,7 +146,9 @@ void draw_registration(const widgets::Ui& ui, const widgets::Rect& area, const N
     ImGui::EndChild();
   }
   if (words.touch) put_row(words.touch->number);
-  put(widgets::Severity::Quiet, widgets::kText, words.missing.empty() ? state.text : words.missing);
+  // Without pictures nothing of it can be done.
+  if (screen.live->phase != theatre::LiveState::Phase::Ended)
+    put(widgets::Severity::Quiet, widgets::kText, words.missing.empty() ? state.text : words.missing);
   for (const SeverityText& row : words.numbers) put_row(row);
   if (!screen.has_source()) return;
   for (const SeverityText& row : contour_rows(*screen.live->operation)) put_row(row);

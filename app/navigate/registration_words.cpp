@@ -56,6 +56,14 @@ SeverityText against(const operation::RegistrationState& state, std::size_t i,
   return {Severity::Quiet, "", mismatch ? registration::in_words(*mismatch, entry.of, *now) : ""};
 }
 
+// What is confirmed is verified by touches.
+std::string words_of_touches(const operation::Touches& touches) {
+  const int missing = touches.places_to_verify();
+  if (missing == 0) return "The touches lie too far off the bone to verify: draw more, register anew.";
+  return "Touch " + std::to_string(missing) + (missing < touches.limits().touches_to_verify ? " more" : "") +
+         (missing == 1 ? " place" : " places") + " that you know, to verify.";
+}
+
 // Nobody should read a nought where something was measured.
 std::string tenths_of_mm(double value) {
   return (value < 0.05 ? std::string("under 0.1") : widgets::fixed(value, 1)) + " mm";
@@ -84,7 +92,7 @@ SeverityText state_of(const operation::RegistrationState& state) {
       return {Severity::Caution, "Candidate, not confirmed yet", advice};
     case OnlineState::Confirmed:
       if (standing != Standing::Stands) return {Severity::Caution, "Candidate, not in force", advice};
-      return {Severity::Good, "Confirmed", "Touch three places that you know, to verify."};
+      return {Severity::Good, "Confirmed", words_of_touches(state.touches)};
   }
   return {};
 }

@@ -163,13 +163,22 @@ TouchAlarm Touches::alarm() const {
   return alarm;
 }
 
-bool Touches::verify() const {
+std::vector<double> Touches::misses_mm() const {
   std::vector<double> misses_mm;
   for (std::size_t i = 0; i < residuals_mm_.size(); ++i)
     if (residuals_mm_[i] && touches_[i].is_new_place) misses_mm.push_back(std::abs(*residuals_mm_[i]));
-  if (static_cast<int>(misses_mm.size()) < limits_.touches_to_verify) return false;
+  return misses_mm;
+}
+
+bool Touches::verify() const {
+  if (places_to_verify() > 0) return false;
+  const std::vector<double> misses_mm = this->misses_mm();
   return *std::max_element(misses_mm.begin(), misses_mm.end()) < limits_.max_verified_mm &&
          geometry::median(misses_mm) < limits_.max_verified_median_mm;
+}
+
+int Touches::places_to_verify() const {
+  return std::max(limits_.touches_to_verify - static_cast<int>(misses_mm().size()), 0);
 }
 
 bool Touches::last_confirms() const {

@@ -103,6 +103,8 @@ class Touches {
   [[nodiscard]] TouchAlarm alarm() const;
   // Enough of them lie on the bone, at different places.
   [[nodiscard]] bool verify() const;
+  // So many different places are still to be touched before they can; 0: enough were, wherever they lie.
+  [[nodiscard]] int places_to_verify() const;
   // The newest touch alone lies on the bone, so near that a void registration is confirmed by it.
   [[nodiscard]] bool last_confirms() const;
   [[nodiscard]] const TouchLimits& limits() const { return limits_; }
@@ -113,6 +115,8 @@ class Touches {
     registration::Provenance of;
     bool is_new_place;
   };
+  // Of those that were judged and are at different places: how far off the bone they lie.
+  [[nodiscard]] std::vector<double> misses_mm() const;
   struct ControlTouch {
     Eigen::Vector3d tip_in_marker_mm;
     registration::Provenance of;

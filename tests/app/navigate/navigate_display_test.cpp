@@ -150,6 +150,7 @@ TEST(NavigateDisplay, EndAndFailureAreNotLive) {
   const auto ended = display_after([](Shown& shown) { shown.live.phase = Phase::Ended; });
   EXPECT_TRUE(ended.has_picture);
   EXPECT_FALSE(ended.is_live || ended.guidance_is_valid || ended.overlay_is_valid);
+  EXPECT_EQ(ended.headline, "The pictures have ended");
   const auto failed = display_after([](Shown& shown) {
     shown.live.phase = Phase::Failed;
     shown.live.message = "clip.mkv: frame 12 is cut off";
@@ -162,6 +163,31 @@ TEST(NavigateDisplay, EndAndFailureAreNotLive) {
     shown.live.picture = nullptr;
   });
   EXPECT_EQ(without_picture.detail, "It ended before its first picture");
+}
+
+// Pictures that end before the tunnel was said to be drilled leave two ways, and both are said.
+TEST(NavigateDisplay, PicturesThatEndBeforeTheTunnelIsSaidLeaveTheWord) {
+  const auto end_of = [](std::optional<operation::PlannedTunnel> plan, Standing standing,
+                         operation::DrilledState::Outcome said) {
+    return display_after([&](Shown& shown) {
+      shown.live.phase = Phase::Ended;
+      shown.operation.has_source = false;
+      shown.operation.plan = std::move(plan);
+      shown.operation.drilled.outcome = said;
+      shown.stand(standing, {});
+    });
+  };
+  using Outcome = operation::DrilledState::Outcome;
+  const operation::PlannedTunnel plan{{}, 30};
+  const std::string open = end_of(plan, Standing::Stands, Outcome::NotSaid).detail;
+  EXPECT_NE(open.find("Go on with others"), std::string::npos) << open;
+  EXPECT_NE(open.find("(J)"), std::string::npos) << open;
+  for (const NavigateDisplay& other :
+       {end_of(plan, Standing::Stands, Outcome::Recorded), end_of(plan, Standing::None, Outcome::NotSaid),
+        end_of(std::nullopt, Standing::Stands, Outcome::NotSaid)}) {
+    EXPECT_EQ(other.detail.find("(J)"), std::string::npos) << other.detail;
+    EXPECT_NE(other.detail.find("nothing guides"), std::string::npos) << other.detail;
+  }
 }
 
 // An alarm hides everything from this moment on, even in a frame that was computed before it.
@@ -225,7 +251,7 @@ TEST(NavigateDisplay, ALostMarkerIsSaidBeforeAMissingRegistration) {
     shown.operation.frame.markers[0].state = markers::MarkerState::Covered;
   });
   EXPECT_EQ(display.headline, "Bone marker lost");
-  EXPECT_EQ(display.detail, std::string(markers::to_text(markers::MarkerState::Covered)));
+  EXPECT_EQ(display.detail, "Covered");
 }
 
 // The reason names what the tracker said about the marker that is missing.
@@ -237,7 +263,7 @@ TEST(NavigateDisplay, NamesTheReasonOfTheMarker) {
     shown.operation.frame.markers[0].state = markers::MarkerState::Glare;
   });
   EXPECT_EQ(display.headline, "Drill guide lost");
-  EXPECT_EQ(display.detail, std::string(markers::to_text(markers::MarkerState::Glare)));
+  EXPECT_EQ(display.detail, "Glare");
 }
 
 // A tool set without the guide, and a guide whose axis nobody knows, are said as such.

@@ -149,6 +149,40 @@ TEST(OperationRail, ATunnelByWordAloneTicksNoStepBeforeIt) {
     EXPECT_NE(state_of(rail, step), StepState::Done) << name_of(step);
 }
 
+// Pictures that end on the way to the tunnel take nothing back: the marker was found, and what is left to do
+// is the tunnel, by other pictures.
+TEST(OperationRail, PicturesThatEndLeaveTheWayToTheTunnel) {
+  Course course;
+  course.verify();
+  course.state.has_source = false;
+  course.state.frame.camera_from_world.is_valid = false;
+  const Rail rail = course.rail();
+  expect_whole(rail);
+  EXPECT_EQ(step_of_now(rail), Step::Guide);
+  EXPECT_EQ(missing_of(rail, Step::Guide), Missing::Source);
+  EXPECT_EQ(state_of(rail, Step::WorldMarker), StepState::Done);
+
+  // Before anything stands they are what is missing.
+  Course early;
+  early.start();
+  early.state.has_source = false;
+  EXPECT_EQ(step_of_now(early.rail()), Step::WorldMarker);
+  EXPECT_EQ(missing_of(early.rail(), Step::WorldMarker), Missing::Source);
+}
+
+// Guidance goes on without a verification that was skipped; a tick would say that it was done.
+TEST(OperationRail, ASkippedVerificationIsNotTicked) {
+  Course course;
+  course.stand();
+  course.state.verification = operation::Verification::Skipped;
+  course.state.frame.guidance.state = guidance::GuidanceState::Valid;
+  const Rail rail = course.rail();
+  expect_whole(rail);
+  EXPECT_EQ(step_of_now(rail), Step::Guide);
+  EXPECT_EQ(state_of(rail, Step::Verify), StepState::Open);
+  EXPECT_EQ(missing_of(rail, Step::Verify), Missing::Touches);
+}
+
 // What is missing is named on the step that misses it.
 TEST(OperationRail, NamesWhatIsMissing) {
   Course course;

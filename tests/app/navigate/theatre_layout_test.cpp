@@ -63,6 +63,8 @@ std::vector<std::string> all_words() {
                                  "resume the operation that was left",
                                  "start the simulated operation",
                                  "take the guide (simulation)",
+                                 "the pictures have ended: start the simulated operation",
+                                 words_of(operation::NextAction::VerifyByTouch) + ", 3 to go",
                                  "calibrate camera and tools in Set up",
                                  "wait: the case's last operation is looked for",
                                  place_anew_words()};

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/navigate/live_words.h"
+#include "tests/planning/geometry/shapes.h"
 
 namespace arthronaut::navigate {
 namespace {
@@ -174,6 +175,27 @@ TEST(BeginningRows, ShowPlanKneeAndMedium) {
   EXPECT_EQ(rows[1].name, "Medium");
   EXPECT_EQ(rows[1].text, "saline");
   EXPECT_EQ(rows[2].text, "21.5 mm, as read");
+}
+
+// How many touches are missing stands in what is asked, where no notice takes its place.
+TEST(VerifyingWords, CountDownToTheLastPlace) {
+  const geometry::Surface surface(test::box({20, 20, 15}, {0, 0, -15}));
+  registration::RegistrationSummary fitted;
+  fitted.has_pose = true;
+  operation::OperationState state;
+  operation::RegistrationState known;
+  const auto words_after = [&](const Eigen::Vector3d& tip_mm) {
+    known.touches.add_touch(tip_mm, {});
+    known.touches.judge(&fitted, &surface, std::nullopt, {});
+    state.registration = std::make_shared<const operation::RegistrationState>(known);
+    return words_of_verifying(state);
+  };
+  state.registration = std::make_shared<const operation::RegistrationState>(known);
+  EXPECT_EQ(words_of_verifying(state), "verify: touch a place that you know, 3 to go");
+  EXPECT_EQ(words_after({0, 0, 0.2}), "verify: touch a place that you know, 2 to go");
+  EXPECT_EQ(words_after({0.5, 0, 0.2}), "verify: touch a place that you know, 2 to go") << "the same place";
+  EXPECT_EQ(words_after({6, 0, 0.2}), "verify: touch a place that you know, 1 to go");
+  EXPECT_EQ(words_after({-6, 0, 1.2}), "verify: touch a place that you know") << "enough, and one is off";
 }
 
 // Why a touch was refused is told while it can be mended: not for good when the source has ended, whose time

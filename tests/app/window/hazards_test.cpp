@@ -51,7 +51,7 @@ TEST_F(WorkstationHazards, Hazard22KeysThatEndTheOperationMustBeHeld) {
   EXPECT_TRUE(app.wait_for_state("picture", "live")) << "it goes on";
   EXPECT_EQ(app.wait_for_exit(0.1), -1);
   // The last picture stays, and is called so.
-  ASSERT_TRUE(app.hold_click_until("navigate.stop", "guidance", "The source has ended"));
+  ASSERT_TRUE(app.hold_click_until("navigate.stop", "guidance", "The pictures have ended"));
   app.press("space");
   ASSERT_TRUE(app.wait_for_state("picture", "live", 120));
   EXPECT_EQ(app.hold_to_exit("ctrl+q", 60), 0);

@@ -24,7 +24,7 @@ TEST_F(Theatre, Hazard12ASessionOfTheWindowReplaysToTheLastBit) {
     app.press("p");
     session = app.state("journal");
     std::this_thread::sleep_for(std::chrono::seconds(3));  // some frames more, with what the keys asked for
-    ASSERT_TRUE(app.hold_until("Escape", "guidance", "The source has ended", 60));
+    ASSERT_TRUE(app.hold_until("Escape", "guidance", "The pictures have ended", 60));
     app.press("ctrl+q");
     ASSERT_EQ(app.wait_for_exit(120), 0);
   }
@@ -53,7 +53,7 @@ TEST_F(Theatre, KeepsPicturesAsWasChosenAndRemembersIt) {
     app.press("ctrl+2");  // the one that runs stays as it was begun
     ASSERT_TRUE(app.wait_for_state("pictures", "lossless"));
     std::this_thread::sleep_for(std::chrono::seconds(2));
-    ASSERT_TRUE(app.hold_until("Escape", "guidance", "The source has ended", 60));
+    ASSERT_TRUE(app.hold_until("Escape", "guidance", "The pictures have ended", 60));
     app.press("ctrl+q");
     ASSERT_EQ(app.wait_for_exit(120), 0);
   }
@@ -152,7 +152,7 @@ TEST_F(Theatre, Hazard12AKilledOperationIsResumedAndGuidesAfterOneTouch) {
         400));
     next = app.state("journal");
     std::this_thread::sleep_for(std::chrono::seconds(2));
-    ASSERT_TRUE(app.hold_until("Escape", "guidance", "The source has ended", 60));
+    ASSERT_TRUE(app.hold_until("Escape", "guidance", "The pictures have ended", 60));
     app.press("ctrl+q");
     ASSERT_EQ(app.wait_for_exit(120), 0);
   }

@@ -95,7 +95,7 @@ TEST_F(Workstation, LeadsThroughItsThreeModes) {
   ASSERT_TRUE(app.wait_for_state("view", "undistorted"));
   EXPECT_GT(share(app.screenshot(), app.widgets().at("navigate.video_panel"), is_lit), 0.2);
   // A source that was stopped leaves its last picture, dimmed and called so: what was made of it stays.
-  ASSERT_TRUE(app.hold_until("Escape", "guidance", "The source has ended"));
+  ASSERT_TRUE(app.hold_until("Escape", "guidance", "The pictures have ended"));
   // A machine without a camera asks for the address of a stream, and takes no for an answer.
   if (!std::filesystem::exists("/dev/video0")) {
     app.press("k");

@@ -101,6 +101,27 @@ TEST(Touches, ThreePlacesVerify) {
   EXPECT_FALSE(verified({{0, 0, 0.7}, {6, 0, 0.7}, {-6, 0, 0.2}})) << "not near enough in the median";
 }
 
+// What is still missing are places, not touches; one that is off counts too, and verifies nothing.
+TEST(Touches, CountsThePlacesThatAreMissing) {
+  const geometry::Surface surface(block());
+  const auto registration = fitted();
+  Touches touches;
+  const auto missing_after = [&](const Eigen::Vector3d& place_mm) {
+    touches.add_touch(place_mm, kHere);
+    touches.judge(&registration, &surface, std::nullopt, kHere);
+    return touches.places_to_verify();
+  };
+  EXPECT_EQ(touches.places_to_verify(), 3);
+  EXPECT_EQ(missing_after({0, 0, 0.2}), 2);
+  EXPECT_EQ(missing_after({0.5, 0, 0.2}), 2);
+  EXPECT_EQ(missing_after({6, 0, 1.4}), 1);
+  EXPECT_EQ(missing_after({-6, 0, 0.2}), 0);
+  EXPECT_EQ(missing_after({0, 8, 0.2}), 0);
+  EXPECT_FALSE(touches.verify());
+  touches.judge(nullptr, &surface, std::nullopt, kHere);
+  EXPECT_EQ(touches.places_to_verify(), 3) << "none is judged without a registration";
+}
+
 // On cartilage that the model lacks a touch should lie as far off the bone as its thickness; where that is
 // not known, a touch says nothing and alarms nobody.
 TEST(Touches, TouchesOnCartilageAreJudgedByItsThickness) {
