@@ -1,9 +1,8 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <ranges>
 
 #include "app/guidance_severity/guidance_severity.h"
+#include "app/navigate/bullseye_rings.h"
 #include "app/navigate/navigate_panels.h"
 #include "app/widgets/afar_text.h"
 
@@ -11,29 +10,25 @@ namespace arthronaut::navigate {
 
 namespace {
 
-constexpr double kShown_mm = 6;  // radius of the whole bullseye
-constexpr std::array<double, 3> kRings_mm{1, 2, 5};
-
-void draw_target(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, float radius) {
+void draw_target(const widgets::Ui& ui, ImDrawList& draw, const ImVec2& center, float radius,
+                 ImU32 background) {
   const float per_mm = radius / static_cast<float>(kShown_mm);
-  draw.AddCircleFilled(center, radius, IM_COL32(15, 19, 24, 255), 96);
-  // Where they would stand in each other, the outer one is named.
-  float below = radius;
-  for (const double ring : kRings_mm | std::views::reverse) {
-    const float r = static_cast<float>(ring) * per_mm;
-    draw.AddCircle(center, r, ring == 1 ? widgets::kGood : IM_COL32(90, 104, 118, 255), 96,
+  draw.AddCircleFilled(center, radius, background, 96);
+  for (const double ring : kRings_mm)
+    draw.AddCircle(center, static_cast<float>(ring) * per_mm,
+                   ring == 1 ? widgets::kGood : IM_COL32(90, 104, 118, 255), 96,
                    ui.theme.px(ring == 1 ? 3 : 2));
-    const float top = r * 0.70F;
-    if (below - top < ui.theme.body->FontSize) continue;
-    below = top;
-    const std::string text = widgets::fixed(ring, 0) + (ring == 5 ? " mm" : "");
-    draw.AddText(ui.theme.body, ui.theme.body->FontSize,
-                 {center.x + r * 0.72F + ui.theme.px(3), center.y + top}, widgets::kQuietText, text.c_str());
-  }
   draw.AddLine({center.x - radius, center.y}, {center.x + radius, center.y}, IM_COL32(64, 75, 86, 255),
                ui.theme.px(1.5F));
   draw.AddLine({center.x, center.y - radius}, {center.x, center.y + radius}, IM_COL32(64, 75, 86, 255),
                ui.theme.px(1.5F));
+  ImFont* const font = ui.theme.body;
+  const auto width_of = [&](const std::string& text) {
+    return font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str()).x;
+  };
+  for (const RingLabel& label : ring_labels(radius, font->FontSize, ui.theme.px(4), width_of))
+    draw.AddText(font, font->FontSize, {center.x + label.place.x, center.y + label.place.y},
+                 widgets::kQuietText, label.text.c_str());
 }
 
 // The words in full stand beside the numbers.
@@ -143,10 +138,11 @@ void draw_bullseye(const widgets::Ui& ui, const widgets::Rect& area, const Navig
   const BullseyePoint point = bullseye_point(screen.display.guidance, *screen.plan);
   const Layout layout = layout_in(ui, area, &point);
   const float radius = layout.radius;
-  draw_target(ui, draw, center, radius);
   // The guide stands on the plan: seen at a glance, by a ring and a tick, in the first second the whole disc.
+  const bool is_just_reached = screen.reached_for_s && *screen.reached_for_s < 1;
+  draw_target(ui, draw, center, radius,
+              is_just_reached ? IM_COL32(40, 120, 92, 255) : IM_COL32(15, 19, 24, 255));
   if (screen.reached_for_s) {
-    if (*screen.reached_for_s < 1) draw.AddCircleFilled(center, radius, IM_COL32(40, 120, 92, 255), 96);
     draw.AddCircle(center, radius - ui.theme.px(6), widgets::kGood, 96, ui.theme.px(12));
     widgets::draw_sign(draw, {area.x + font * 0.6F, area.y + area.height - font * 0.6F}, font * 0.45F,
                        widgets::Severity::Good);

@@ -364,7 +364,7 @@ void WorkstationWindow::draw_screen(const widgets::Ui& ui) {
   if (shows_keys_) draw_key_list(ui, action_prefixes());
   const auto kind = shows_start() || shows_paint() ? std::nullopt : shown().source_kind();
   if (kind) widgets::draw_source_frame(ui, {0, 0, size.x, size.y}, *kind);
-  widgets::draw_hold_hint(ui, {0, 0, size.x, size.y});
+  widgets::draw_hold_hint(ui, {0, 0, size.x, size.y}, header);
   ImGui::PopFont();
   ImGui::End();
   if (!kind) log_.note_state("source_kind", "none");

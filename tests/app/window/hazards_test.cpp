@@ -40,6 +40,12 @@ TEST_F(WorkstationHazards, Hazard22KeysThatEndTheOperationMustBeHeld) {
   open_menu(app);
   app.press("Escape");
   EXPECT_TRUE(app.wait_for_state("hold", "Hold Esc to stop (let go)"));
+  // It stands over the steps: beside the picture, and above what is asked and every number.
+  const auto widgets = app.widgets();
+  ASSERT_TRUE(widgets.contains("hold_hint"));
+  const Area &hint = widgets.at("hold_hint"), &video = widgets.at("navigate.video_panel");
+  EXPECT_GE(hint.x, video.x + video.width);
+  EXPECT_LE(hint.y + hint.height, widgets.at("navigate.words").y);
   app.press("ctrl+q");
   EXPECT_TRUE(app.wait_for_state("hold", "Hold Ctrl+Q to quit (let go)"));
   app.press("g");

@@ -1,0 +1,26 @@
+// Where the rings of the bullseye bear their numbers: inside of each, right under the line to the right, so
+// that what is drawn along the rim covers none of them. Pure.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/widgets/layout.h"
+
+namespace arthronaut::navigate {
+
+inline constexpr double kShown_mm = 6;  // radius of the whole bullseye
+inline constexpr std::array<double, 3> kRings_mm{1, 2, 5};
+
+struct RingLabel {
+  std::string text;  // "2", of the outer one "5 mm"
+  widgets::Rect place;
+};
+// The rings about 0, 0, of a bullseye of that radius. Where two would stand in each other, the outer one is
+// named; where one does not fit inside its ring, it is not.
+[[nodiscard]] std::vector<RingLabel> ring_labels(float radius_px, float line_px, float gap_px,
+                                                 const std::function<float(const std::string&)>& width_of);
+
+}  // namespace arthronaut::navigate
