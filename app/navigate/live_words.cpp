@@ -135,7 +135,7 @@ Trouble trouble_of_end(const operation::OperationState& state) {
   const bool may_be_drilled = state.registration->in_force.standing == Standing::Stands && state.plan &&
                               state.drilled.outcome == operation::DrilledState::Outcome::NotSaid;
   return {"The pictures have ended",
-          may_be_drilled ? "Nothing guides. Go on with others; is the tunnel drilled already, say so (J)"
+          may_be_drilled ? "Nothing guides. Go on with others; is the tunnel drilled already, say so (hold J)"
                          : "This is the last one: nothing guides"};
 }
 

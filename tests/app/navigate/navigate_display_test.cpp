@@ -181,11 +181,11 @@ TEST(NavigateDisplay, PicturesThatEndBeforeTheTunnelIsSaidLeaveTheWord) {
   const operation::PlannedTunnel plan{{}, 30};
   const std::string open = end_of(plan, Standing::Stands, Outcome::NotSaid).detail;
   EXPECT_NE(open.find("Go on with others"), std::string::npos) << open;
-  EXPECT_NE(open.find("(J)"), std::string::npos) << open;
+  EXPECT_NE(open.find("(hold J)"), std::string::npos) << open;
   for (const NavigateDisplay& other :
        {end_of(plan, Standing::Stands, Outcome::Recorded), end_of(plan, Standing::None, Outcome::NotSaid),
         end_of(std::nullopt, Standing::Stands, Outcome::NotSaid)}) {
-    EXPECT_EQ(other.detail.find("(J)"), std::string::npos) << other.detail;
+    EXPECT_EQ(other.detail.find("(hold J)"), std::string::npos) << other.detail;
     EXPECT_NE(other.detail.find("nothing guides"), std::string::npos) << other.detail;
   }
 }
