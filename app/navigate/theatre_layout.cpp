@@ -35,6 +35,11 @@ TheatreLayout theatre_layout(const widgets::Rect& area, const TheatreLayoutOptio
     layout.scene = {left.x, left.y + side + gap, side, below - gap};
     if (options.guides) layout.target = rest.cut_top(std::min(rest.width, rest.height * 0.42F), gap);
     layout.main = rest;
+  } else if (options.guides && is_two) {
+    // A screen of its own is wide: what is aimed by is as high as its room, the 3D view stands beside it.
+    layout.target = rest.cut_left(std::min(rest.height, rest.width * 0.4F), gap);
+    layout.scene = rest.cut_left(rest.width * 0.4F, gap);
+    layout.main = rest;
   } else if (options.guides) {
     widgets::Rect column = rest.cut_left(std::min(rest.width * 0.49F, rest.height * 0.62F), gap);
     layout.target = column.cut_top(std::min(column.width, column.height * 0.6F), gap);

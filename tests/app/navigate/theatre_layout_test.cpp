@@ -131,6 +131,18 @@ TEST(TheatreLayout, AcrossTwoScreensNothingLiesOnTheSeam) {
   }
 }
 
+// Two screens have room: what is aimed by is as high as it, not a corner beside an empty panel.
+TEST(TheatreLayout, AcrossTwoScreensTheTargetIsAsHighAsItsRoom) {
+  for (const Shape& shape : kShapes) {
+    if (!std::string(shape.name).starts_with("two")) continue;
+    SCOPED_TRACE(shape.name);
+    const TheatreLayout l = Screen(shape).layout(true);
+    EXPECT_FLOAT_EQ(l.target.height, l.block.height);
+    EXPECT_FLOAT_EQ(l.target.width, std::min(l.block.height, 0.4F * l.block.width));
+    EXPECT_GT(l.main.width, 0.2F * l.block.width);
+  }
+}
+
 // Every instruction stands in letters for afar, whole, on every screen; so do the numbers.
 TEST(TheatreLayout, WhatGuidesIsReadFromAfar) {
   for (const Shape& shape : kShapes) {
