@@ -254,8 +254,9 @@ DrilledTunnel find_drilled(const images::Volume& postop, const geometry::RigidTr
   DrilledTunnel none;
   if (candidates.empty() || !candidates.front().mouth.is_open()) {
     none.reasons = {
-        files::format("no tunnel is seen within %.0f mm and %.0f deg of the plan: nothing there is "
-                      "open at the bone's surface and stands out from the bone around it",
+        files::format("no tunnel is seen within %.0f mm and %.0f deg of the plan: no bore there is open at "
+                      "the bone's surface and stands out from the bone around it; one that is plugged with "
+                      "bone is not seen",
                       kSearched_mm, kSearched_deg)};
     return none;
   }
