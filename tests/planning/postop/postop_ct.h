@@ -15,8 +15,11 @@ struct Drilled {
   double content_hu = 50;  // graft and fluid
   double widened_mm = 0;   // at the entry, added to the diameter; none at `widened_to_mm`
   double widened_to_mm = 20;
-  double rim_hu = 0, rim_mm = 0.8;  // above 0: marrow beside the tunnel is as dense as this
-  double screw_diameter_mm = 0;     // above 0: a screw of metal
+  double narrow_from_mm = 1e9, narrow_mm = 4.5;  // from here on a thinner bore
+  double rim_hu = 0, rim_mm = 0.8;  // above 0: bone beside the tunnel is as dense as this, or denser
+  double plug_diameter_mm = 0;      // above 0: a plug of bone inside
+  double plug_from_mm = 2, plug_to_mm = 22, plug_hu = 450;
+  double screw_diameter_mm = 0;  // above 0: a screw of metal
   double screw_from_mm = 1, screw_to_mm = 21, screw_aside_mm = 0, screw_hu = 3000;
 };
 
@@ -25,6 +28,10 @@ struct Drilled {
                                        const std::vector<Drilled>& drilled,
                                        const geometry::RigidTransform& postop_from_plan,
                                        KnownCtOptions options = {});
+
+// For KnownCtOptions::operate: marrow of `marrow_hu` becomes grainy, sigma and size of the grains as given.
+[[nodiscard]] std::function<void(images::Volume&)> uneven_marrow(double marrow_hu, double sigma_hu,
+                                                                 double grain_mm, std::uint64_t seed);
 
 // A turn about a direction, and a shift.
 [[nodiscard]] geometry::RigidTransform lying(double turn_deg, const Eigen::Vector3d& axis,
