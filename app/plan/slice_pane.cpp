@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/plan/pane_text.h"
+#include "app/widgets/held_mouse.h"
 
 namespace arthronaut::plan {
 
@@ -139,16 +140,17 @@ SliceEvent SlicePane::follow_mouse(const widgets::Rect& rect, const SliceContent
     if (press_paints_) event.painted = {under_mouse, under_mouse, true};
   }
   if (ImGui::IsItemActive()) {
-    press_travel_px_ += std::hypot(io.MouseDelta.x, io.MouseDelta.y);
+    const ImVec2 way = widgets::held_mouse_way_px();
+    press_travel_px_ += std::hypot(way.x, way.y);
     const bool left = ImGui::IsMouseDown(ImGuiMouseButton_Left);
-    if (ImGui::IsMouseDown(ImGuiMouseButton_Right) && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
+    if (ImGui::IsMouseDown(ImGuiMouseButton_Right) && (way.x != 0 || way.y != 0)) {
       scene::GreyWindow window = content.window;  // over the pane's height: twice the window
       const double per_px = 2 * std::max(window.width, 1.0) / rect.height;
-      window.width = std::max(window.width + per_px * io.MouseDelta.x, 1.0);
-      window.level -= per_px * io.MouseDelta.y;
+      window.width = std::max(window.width + per_px * way.x, 1.0);
+      window.level -= per_px * way.y;
       event.window = window;
     } else if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || (left && io.KeyShift)) {
-      center_mm_ -= mm_per_px_ * (io.MouseDelta.x * right_ + io.MouseDelta.y * down_);
+      center_mm_ -= mm_per_px_ * (way.x * right_ + way.y * down_);
     } else if (press_paints_) {
       if (!event.painted && under_mouse != pressed_mm_) event.painted = {pressed_mm_, under_mouse, false};
       pressed_mm_ = under_mouse;

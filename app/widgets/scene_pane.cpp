@@ -1,6 +1,6 @@
 #include "app/widgets/scene_pane.h"
 
-#include <cmath>
+#include "app/widgets/held_mouse.h"
 
 namespace arthronaut::widgets {
 
@@ -42,7 +42,7 @@ PaneInput ScenePane::draw(const Ui& ui, const char* name, const Rect& rect,
     input.handle_pressed = drags_handle_;
   }
   if (ImGui::IsItemActive()) {
-    press_travel_px_ += std::hypot(io.MouseDelta.x, io.MouseDelta.y);
+    press_travel_px_ += vector(held_mouse_way_px()).norm();
     input.handle_dragged = drags_handle_ && press_travel_px_ > 0;
   }
   if (ImGui::IsItemDeactivated()) {
@@ -62,8 +62,8 @@ PaneInput ScenePane::draw(const Ui& ui, const char* name, const Rect& rect,
 
 void ScenePane::follow_mouse(const PaneInput& input) {
   const ImGuiIO& io = ImGui::GetIO();
-  if (ImGui::IsItemActive() && !drags_handle_ && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
-    const Eigen::Vector2d drag = vector(io.MouseDelta);
+  const Eigen::Vector2d drag = vector(held_mouse_way_px());
+  if (ImGui::IsItemActive() && !drags_handle_ && !drag.isZero(0)) {
     camera_ = ImGui::IsMouseDown(ImGuiMouseButton_Left) ? scene::orbited(camera_, drag, input.size_px.y())
                                                         : scene::panned(camera_, drag, input.size_px.y());
   }
