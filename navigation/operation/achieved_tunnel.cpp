@@ -64,7 +64,7 @@ AchievedTunnel read_achieved_file(const std::filesystem::path& file) {
   achieved.measured = tunnel_from(root.object("measured"), key);
   if (root.has("depth_mm")) achieved.depth_mm = root.number("depth_mm");
   achieved.timestamp_ns = root.integer("timestamp_ns");
-  achieved.pose_count = static_cast<int>(root.integer("pose_count"));
+  achieved.pose_count = root.int32("pose_count");
   achieved.sigma_offset_mm = root.number("sigma_offset_mm");
   achieved.sigma_angle_deg = root.number("sigma_angle_deg");
   if (root.has("truth")) achieved.truth = tunnel_from(root.object("truth"), key);

@@ -116,7 +116,7 @@ GiveRegistration registration_from(const files::JsonObject& json) {
   const auto record = registration::registration_record_from(json.object("registration"));
   if (!record.of) json.fail("registration", "does not say what it is of");
   GiveRegistration give{record.registration, *record.of, json.boolean("is_resumed")};
-  give.of.placement = static_cast<int>(json.integer("placement"));
+  give.of.placement = json.int32("placement");
   return give;
 }
 
@@ -134,7 +134,7 @@ ResumeOperation resume_from(const files::JsonObject& json) {
     const auto record = registration::registration_record_from(from.object("registration"));
     if (!record.of) from.fail("registration", "does not say what it is of");
     auto of = *record.of;
-    of.placement = static_cast<int>(from.integer("placement"));
+    of.placement = from.int32("placement");
     return std::pair(record.registration, of);
   };
   resume.of = registration::provenance_from(json.object("of"));
@@ -143,7 +143,7 @@ ResumeOperation resume_from(const files::JsonObject& json) {
   if (json.has("depth_stop_mm")) resume.depth_stop_mm = json.number("depth_stop_mm");
   if (json.has("in_force"))
     std::tie(resume.registration, resume.registration_of) = given(json.object("in_force"));
-  resume.stroke_count = static_cast<int>(json.integer("stroke_count"));
+  resume.stroke_count = json.int32("stroke_count");
   const std::vector<double> drawn = numbers_by(4, json, "drawn");
   for (std::size_t i = 0; i < drawn.size(); i += 4) {
     strokes::CurvePoint& point = resume.drawn.emplace_back();
@@ -195,7 +195,7 @@ Command command_from_text(const std::string& text, const std::string& name) {
   Command command = plain(index);
   if (auto* draw = std::get_if<Draw>(&command)) draw->on = json.boolean("on");
   if (auto* exclude = std::get_if<ExcludeStroke>(&command))
-    *exclude = {static_cast<int>(json.integer("curve")), json.boolean("is_excluded")};
+    *exclude = {json.int32("curve"), json.boolean("is_excluded")};
   if (auto* choose = std::get_if<ChooseRegistration>(&command)) {
     if (json.integer("entry") < 0) json.fail("entry", "must not be negative");
     choose->entry = static_cast<std::size_t>(json.integer("entry"));

@@ -41,7 +41,7 @@ strokes::PoseRow pose_at(const Statement& row, const RecordedFrame& frame) {
   strokes::PoseRow pose;
   pose.frame = frame.index;
   pose.time_s = static_cast<double>(frame.timestamp_ns) * 1e-9;
-  pose.marker_id = static_cast<int>(row.integer(1));
+  pose.marker_id = row.int32(1);
   pose.camera_from_marker.rotation = {row.number(4), row.number(5), row.number(6), row.number(7)};
   pose.camera_from_marker.translation_mm = vector_at(row, 8);
   pose.rms_px = row.number(11);
@@ -83,7 +83,7 @@ guidance::GuidanceNumbers guidance_at(const Statement& row, const RecordedFrame&
 
 tracker::BodyPose outside_at(const Statement& row) {
   tracker::BodyPose body;
-  body.id = static_cast<int>(row.integer(2));
+  body.id = row.int32(2);
   body.state = static_cast<tracker::BodyState>(row.integer(3));
   body.tracker_from_body.rotation = {row.number(4), row.number(5), row.number(6), row.number(7)};
   body.tracker_from_body.translation_mm = vector_at(row, 8);
@@ -209,8 +209,7 @@ std::vector<RecordedFrame> read_frames(SessionDatabase& database, std::int64_t f
 
   Statement markers = database.prepare(among("SELECT * FROM markers", "frame, marker_id"));
   for_each_row(markers, frames, [](const Statement& row, RecordedFrame& frame) {
-    frame.markers.push_back(
-        {static_cast<int>(row.integer(1)), static_cast<markers::MarkerState>(row.integer(2))});
+    frame.markers.push_back({row.int32(1), static_cast<markers::MarkerState>(row.integer(2))});
     if (row.boolean(3)) frame.poses.push_back(pose_at(row, frame));
   });
   Statement guidance = database.prepare(among("SELECT * FROM guidance", "frame"));
@@ -225,7 +224,7 @@ std::vector<RecordedFrame> read_frames(SessionDatabase& database, std::int64_t f
   if (has_table("bodies")) {
     Statement bodies = database.prepare(among("SELECT * FROM bodies", "frame, body_id"));
     for_each_row(bodies, frames, [](const Statement& row, RecordedFrame& frame) {
-      RecordedBody body{static_cast<int>(row.integer(1)), {}};
+      RecordedBody body{row.int32(1), {}};
       body.camera_from_body.rotation = {row.number(2), row.number(3), row.number(4), row.number(5)};
       body.camera_from_body.translation_mm = vector_at(row, 6);
       frame.bodies.push_back(body);

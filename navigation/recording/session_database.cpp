@@ -98,6 +98,13 @@ void Statement::run() {
 }
 
 std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_, column); }
+int Statement::int32(int column) const {
+  const std::int64_t value = integer(column);
+  if (!std::in_range<int>(value))
+    throw InvalidInput(file_, sqlite3_column_name(statement_, column),
+                       std::to_string(value) + " is out of range");
+  return static_cast<int>(value);
+}
 double Statement::number(int column) const { return sqlite3_column_double(statement_, column); }
 int Statement::column_count() const { return sqlite3_column_count(statement_); }
 bool Statement::is_null(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }

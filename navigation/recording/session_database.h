@@ -31,6 +31,8 @@ class Statement {
   void run();                 // step() and reset()
 
   [[nodiscard]] std::int64_t integer(int column) const;
+  // Throws InvalidInput, which names the column, where an int does not hold it.
+  [[nodiscard]] int int32(int column) const;
   [[nodiscard]] bool boolean(int column) const { return integer(column) != 0; }
   [[nodiscard]] double number(int column) const;
   [[nodiscard]] std::string text(int column) const;

@@ -38,7 +38,7 @@ std::vector<VideoPart> video_parts_of(const files::JsonObject& json) {
     part.first_picture = object.integer("first_picture");
     part.as = pictures_as_from_option(object.text("pictures"));
     part.codec = object.text("codec");
-    part.held_back = static_cast<int>(object.integer("held_back"));
+    part.held_back = object.int32("held_back");
     // A part that lies anywhere else is no part of this record.
     if (part.file.find('/') != std::string::npos || part.held_back < 0 || part.held_back > 16 ||
         part.first_picture < (parts.empty() ? 0 : parts.back().first_picture) ||

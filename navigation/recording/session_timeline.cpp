@@ -72,7 +72,7 @@ struct SessionTimeline::State {
     RowsAlong rows(database, "SELECT frame, marker_id, has_pose FROM markers ORDER BY frame, marker_id");
     for (FrameGlance& glance : frames)
       rows.visit(glance.index, [&](const Statement& row) {
-        const std::uint32_t bit = bit_of(static_cast<int>(row.integer(1)));
+        const std::uint32_t bit = bit_of(row.int32(1));
         if (row.boolean(2)) glance.posed |= bit;
       });
   }
@@ -82,12 +82,11 @@ struct SessionTimeline::State {
     if (!database.prepare("SELECT 1 FROM sqlite_master WHERE name = 'bodies'").step()) return;
     std::uint32_t of_bodies = 0;
     Statement ids = database.prepare("SELECT DISTINCT body_id FROM bodies");
-    while (ids.step()) of_bodies |= bit_of(static_cast<int>(ids.integer(0)));
+    while (ids.step()) of_bodies |= bit_of(ids.int32(0));
     RowsAlong rows(database, "SELECT frame, body_id FROM bodies ORDER BY frame, body_id");
     for (FrameGlance& glance : frames) {
       glance.posed &= ~of_bodies;
-      rows.visit(glance.index,
-                 [&](const Statement& row) { glance.posed |= bit_of(static_cast<int>(row.integer(1))); });
+      rows.visit(glance.index, [&](const Statement& row) { glance.posed |= bit_of(row.int32(1)); });
     }
   }
 

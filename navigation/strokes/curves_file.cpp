@@ -28,7 +28,7 @@ Curves read_curves_file(const std::filesystem::path& file) {
       table.has_column("shaft_x") && table.has_column("shaft_y") && table.has_column("shaft_z");
   Curves curves(table.row_count());
   for (std::size_t row = 0; row < table.row_count(); ++row) {
-    curves[row].curve = static_cast<int>(table.integer(row, "curve"));
+    curves[row].curve = table.int32(row, "curve");
     curves[row].time_s = table.optional_number(row, "time_s");
     curves[row].position_mm = {table.number(row, "x_mm"), table.number(row, "y_mm"),
                                table.number(row, "z_mm")};

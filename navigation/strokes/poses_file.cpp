@@ -16,7 +16,7 @@ PoseRow read_row(const files::CsvTable& table, std::size_t row) {
   PoseRow pose;
   pose.frame = table.integer(row, "frame");
   pose.time_s = table.number(row, "time_s");
-  pose.marker_id = static_cast<int>(table.integer(row, "marker_id"));
+  pose.marker_id = table.int32(row, "marker_id");
   const Eigen::Quaterniond rotation(table.number(row, "qw"), table.number(row, "qx"), table.number(row, "qy"),
                                     table.number(row, "qz"));
   if (std::abs(rotation.norm() - 1.0) > kMaxNormError)

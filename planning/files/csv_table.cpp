@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
@@ -34,6 +35,8 @@ CsvTable CsvTable::parse(std::string_view text, const std::filesystem::path& nam
                          const std::vector<std::string>& required_columns) {
   CsvTable table;
   table.file_ = name;
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   bool is_header = true;
   for (std::size_t line_number = 1; !text.empty(); ++line_number) {
     const auto end = text.find('\n');
@@ -102,6 +105,12 @@ std::int64_t CsvTable::integer(std::size_t row, std::string_view column) const {
   if (error != std::errc() || end != cell.data() + cell.size())
     fail(row, column, "\"" + cell + "\" is not an integer");
   return value;
+}
+
+int CsvTable::int32(std::size_t row, std::string_view column) const {
+  const std::int64_t value = integer(row, column);
+  if (!std::in_range<int>(value)) fail(row, column, std::to_string(value) + " is out of range");
+  return static_cast<int>(value);
 }
 
 }  // namespace arthronaut::files

@@ -14,18 +14,20 @@ namespace arthronaut::files {
 class CsvTable {
  public:
   // Throws IoError when the file cannot be read, InvalidInput when the header lacks a required column or a
-  // row has another number of cells than the header. CRLF and a final empty line are accepted.
+  // row has another number of cells than the header. CRLF, a final empty line and the mark that spreadsheets
+  // begin UTF-8 with are accepted.
   static CsvTable read(const std::filesystem::path& file, const std::vector<std::string>& required_columns);
   static CsvTable parse(std::string_view text, const std::filesystem::path& name,
                         const std::vector<std::string>& required_columns);
 
   [[nodiscard]] std::size_t row_count() const { return rows_.size(); }
   [[nodiscard]] bool has_column(std::string_view column) const;
-  // Throw InvalidInput when the cell is not a finite number / an integer.
+  // Throw InvalidInput when the cell is not a finite number / an integer / one that an int holds.
   [[nodiscard]] double number(std::size_t row, std::string_view column) const;
   [[nodiscard]] std::optional<double> optional_number(std::size_t row,
                                                       std::string_view column) const;  // empty cell
   [[nodiscard]] std::int64_t integer(std::size_t row, std::string_view column) const;
+  [[nodiscard]] int int32(std::size_t row, std::string_view column) const;
   [[nodiscard]] const std::string& text(std::size_t row, std::string_view column) const;
   [[noreturn]] void fail(std::size_t row, std::string_view column, const std::string& reason) const;
 

@@ -1,8 +1,10 @@
 #include "planning/files/json_document.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
@@ -26,6 +28,34 @@ std::string line_and_column(std::string_view text, std::size_t byte) {
   }
   return "line " + std::to_string(line) + ", column " + std::to_string(column);
 }
+
+// Of a number too large for a double nlohmann's exception does not say where it stands; its parser does.
+class OutOfRangePlace : public nlohmann::json_sax<json> {
+ public:
+  explicit OutOfRangePlace(std::string_view text) : text_(text) { json::sax_parse(text, this); }
+  [[nodiscard]] const std::string& words() const { return words_; }
+
+  bool parse_error(std::size_t byte, const std::string& number, const json::exception&) override {
+    words_ = line_and_column(text_, byte + 1 - std::min(byte, number.size()));
+    return false;
+  }
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(json::number_integer_t) override { return true; }
+  bool number_unsigned(json::number_unsigned_t) override { return true; }
+  bool number_float(json::number_float_t, const std::string&) override { return true; }
+  bool string(std::string&) override { return true; }
+  bool binary(json::binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(std::string&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+
+ private:
+  std::string_view text_;
+  std::string words_;
+};
 
 // nlohmann writes a number that is not finite as null: refuse instead, the reader would.
 void refuse_not_finite(const nlohmann::ordered_json& node, const std::filesystem::path& file,
@@ -84,6 +114,12 @@ std::int64_t JsonObject::integer(std::string_view key) const {
     fail(key, "is out of range");
   }
   return value.get<std::int64_t>();
+}
+
+int JsonObject::int32(std::string_view key) const {
+  const std::int64_t value = integer(key);
+  if (!std::in_range<int>(value)) fail(key, "is out of range");
+  return static_cast<int>(value);
 }
 
 bool JsonObject::boolean(std::string_view key) const {
@@ -176,8 +212,8 @@ JsonObject parse_json(std::string_view text, const std::filesystem::path& name, 
     root.document_ = std::make_shared<json>(json::parse(text));
   } catch (const json::parse_error& error) {
     throw InvalidInput(name, line_and_column(text, error.byte), "is not valid JSON");
-  } catch (const json::exception&) {  // a number too large for a double, say
-    throw InvalidInput(name, "", "holds a number out of range");
+  } catch (const json::exception&) {
+    throw InvalidInput(name, OutOfRangePlace(text).words(), "holds a number out of range");
   }
   root.node_ = root.document_.get();
   if (!root.node_->is_object()) throw InvalidInput(name, "", "must hold a JSON object");

@@ -26,6 +26,8 @@ class JsonObject {
   [[nodiscard]] double number(std::string_view key) const;           // finite
   [[nodiscard]] double positive_number(std::string_view key) const;  // finite and > 0
   [[nodiscard]] std::int64_t integer(std::string_view key) const;
+  [[nodiscard]] int int32(
+      std::string_view key) const;  // an integer that an int holds, no other one in its place
   [[nodiscard]] bool boolean(std::string_view key) const;
   [[nodiscard]] std::string text(std::string_view key) const;
   [[nodiscard]] Eigen::Vector2d vector2(std::string_view key) const;

@@ -45,6 +45,21 @@ TEST(CsvTable, EveryErrorNamesFileLineAndColumn) {
   EXPECT_THROW((void)table.number(0, "c"), InvalidInput);
 }
 
+// 2^32 + 4 is not 4.
+TEST(CsvTable, AnIntegerThatAnIntDoesNotHoldIsRefused) {
+  const CsvTable table = CsvTable::parse("id\n4294967300\n-2147483648\n", "p.csv", {});
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)table.int32(0, "id"); }),
+              HasSubstr("line 2, column id: 4294967300 is out of range"));
+  EXPECT_EQ(table.int32(1, "id"), -2147483647 - 1);
+  EXPECT_EQ(table.integer(0, "id"), 4294967300);
+}
+
+// What a spreadsheet saves as UTF-8 begins with its mark, which is of no column's name.
+TEST(CsvTable, AByteOrderMarkIsPassedOver) {
+  const CsvTable table = CsvTable::parse("\xEF\xBB\xBFid,x_mm\n7,1.5\n", "p.csv", {"id", "x_mm"});
+  EXPECT_EQ(table.int32(0, "id"), 7);
+}
+
 // A header alone is a table without rows, as a clip without a marker writes it.
 TEST(CsvTable, AHeaderAloneIsATableWithoutRows) {
   EXPECT_EQ(CsvTable::parse("a,b\n", "p.csv", {"a"}).row_count(), 0U);

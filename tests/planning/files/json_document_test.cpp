@@ -75,6 +75,21 @@ TEST(JsonDocument, IntegersThatDoNotFitAreRefused) {
   EXPECT_THROW((void)root.integer("i"), InvalidInput);
 }
 
+// 2^32 + 4 is not 4.
+TEST(JsonDocument, AnIntegerThatAnIntDoesNotHoldIsRefused) {
+  const JsonObject root =
+      parse(R"({"format": "arthronaut.test", "version": 1, "o": {"id": 4294967300, "least": -2147483648}})");
+  EXPECT_THAT(message_of<InvalidInput>([&] { (void)root.object("o").int32("id"); }),
+              HasSubstr("a.json: o.id: is out of range"));
+  EXPECT_EQ(root.object("o").int32("least"), -2147483647 - 1);
+}
+
+// Also where a text before it reads like it.
+TEST(JsonDocument, ANumberThatNoDoubleHoldsIsToldWithItsPlace) {
+  EXPECT_THAT(message_of<InvalidInput>([] { (void)parse("{\"s\": \"1e999\",\n \"n\": -1e999}"); }),
+              HasSubstr("a.json: line 2, column 7: holds a number out of range"));
+}
+
 TEST(JsonDocument, WritesWholeAndFiniteOrNothing) {
   const TemporaryFolder folder;
   nlohmann::ordered_json document = {{"format", kFormat}, {"version", 1}, {"x", {1.0, 0.1, 1e-300}}};
