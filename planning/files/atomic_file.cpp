@@ -1,6 +1,7 @@
 #include "planning/files/atomic_file.h"
 
 #include <fcntl.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -80,9 +81,33 @@ fs::path temporary_beside(const fs::path& target) {
                                  std::to_string(counter++) + ".partial" + target.extension().string());
 }
 
+// A device or a pipe (/dev/full, /dev/stdout) is written to; renaming over it would replace it.
+bool is_written_through(const fs::path& target) {
+  std::error_code ignored;
+  return fs::is_other(target, ignored);
+}
+
+// For a writer that needs a path of its own; the folder is the user's alone, and gone afterwards.
+std::string written_elsewhere(const fs::path& target, const std::function<void(const fs::path&)>& write) {
+  struct Folder {
+    std::string path = (fs::temp_directory_path() / "arthronaut-XXXXXX").string();
+    bool is_made = ::mkdtemp(path.data()) != nullptr;
+    ~Folder() {
+      std::error_code ignored;
+      if (is_made) fs::remove_all(path, ignored);
+    }
+  } folder;
+  if (!folder.is_made) fail(folder.path, "cannot be created");
+  const fs::path file = fs::path(folder.path) / target.filename();
+  write(file);
+  return read_text(file);
+}
+
 }  // namespace
 
 void write_atomically(const fs::path& target, const std::function<void(const fs::path&)>& write) {
+  if (is_written_through(target))
+    return write_whole(target, written_elsewhere(target, write), kAsTheUserHasIt);
   const fs::path folder = folder_of(target);
   if (std::error_code ignored; !fs::is_directory(folder, ignored))
     throw IoError(target, "the folder " + folder.string() + " does not exist");
@@ -114,9 +139,7 @@ void write_atomically(const fs::path& target, std::string_view contents) {
     if (!std::cout) throw IoError("standard output: cannot write");
     return;
   }
-  // A device or a pipe (/dev/full, /dev/stdout) is written to; renaming over it would replace it.
-  if (std::error_code ignored; fs::is_other(target, ignored))
-    return write_whole(target, contents, kAsTheUserHasIt);
+  if (is_written_through(target)) return write_whole(target, contents, kAsTheUserHasIt);
   const mode_t mode = is_private(folder_of(target)) ? kOwnerAlone : kAsTheUserHasIt;
   write_atomically(target,
                    [contents, mode](const fs::path& temporary) { write_whole(temporary, contents, mode); });

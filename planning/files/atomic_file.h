@@ -10,7 +10,7 @@ namespace arthronaut::files {
 
 // Writes beside the target, fsyncs, renames over it and fsyncs the folder: after a crash at any moment the
 // target holds its old contents or the new. "-" writes to standard output. Throws IoError with the system's
-// reason; the target is then as before and nothing is left beside it.
+// reason; the target is then as before and nothing is left beside it. A device or a pipe is written to.
 //
 // A file is no more open than its folder: in one that is private (private_folder.h) it is 0600, elsewhere as
 // the umask has it. What the target's rights were before does not count.

@@ -1,12 +1,15 @@
 #include "planning/files/atomic_file.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <fstream>
 
 #include "planning/geometry/error.h"
@@ -113,6 +116,21 @@ TEST(AtomicFile, AWriterThatThrowsLeavesNothing) {
   EXPECT_THAT(
       message_of<IoError>([&] { write_atomically(folder / "a.pdf", [](const std::filesystem::path&) {}); }),
       AllOf(HasSubstr("a.pdf"), Not(HasSubstr("partial"))));
+}
+
+// A PDF or a volume into a pipe: through it, which is a pipe afterwards, and nothing beside it.
+TEST(AtomicFile, AWriterOfAFileWritesIntoAPipe) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "a.pdf").c_str(), 0600), 0);
+  const int reader = ::open((folder / "a.pdf").c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  write_atomically(folder / "a.pdf",
+                   [](const std::filesystem::path& temporary) { std::ofstream(temporary) << "whole"; });
+  EXPECT_TRUE(std::filesystem::is_fifo(folder / "a.pdf"));
+  std::array<char, 16> came{};
+  EXPECT_EQ(::read(reader, came.data(), came.size()), 5);
+  EXPECT_STREQ(came.data(), "whole");
+  ::close(reader);
+  EXPECT_EQ(folder.names().size(), 1U);
 }
 
 // kill -9 between write and rename, and at thirty other moments: the old or the new contents, never a
