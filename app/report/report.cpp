@@ -199,14 +199,17 @@ void Report::say_plan_fit(const tunnels::TunnelKey& key) {
 }
 
 void Report::registration_section(const registration::RegistrationSummary& registration) {
+  const auto of_pose = [&](double value_mm) {
+    return registration.has_pose ? number(value_mm, " mm", 2) : std::string("\u2013");
+  };
   pages_.heading("Registration of the bone");
-  pages_.table({70, 100}, {{"Quantity", "Value"},
-                           {"Verdict", registration.reliable ? "reliable" : "NOT RELIABLE"},
-                           {"Touched points", std::to_string(registration.point_count)},
-                           {"Distance of the points to the bone, RMS", number(registration.rms_mm, " mm", 2)},
-                           {"Points that fit", number(100 * registration.inlier_fraction, " %", 0)},
-                           {"Predicted error at the target, one sigma",
-                            number(registration.predicted_tre_mm, " mm", 2)}});
+  pages_.table({70, 100},
+               {{"Quantity", "Value"},
+                {"Verdict", registration.reliable ? "reliable" : "NOT RELIABLE"},
+                {"Touched points", std::to_string(registration.point_count)},
+                {"Distance of the points to the bone, RMS", of_pose(registration.rms_mm)},
+                {"Points that fit", number(100 * registration.inlier_fraction, " %", 0)},
+                {"Predicted error at the target, one sigma", of_pose(registration.predicted_tre_mm)}});
   for (const auto& reason : registration.reasons) pages_.sentence("– " + reason, {.ink = kWarning});
   for (const auto& assumption : registration.assumptions) pages_.sentence("– assumed: " + assumption);
   pages_.sentence(

@@ -63,9 +63,10 @@ ordered_json json_of(const registration::RegistrationSummary& registration) {
   return {{"reliable", registration.reliable},
           {"reasons", registration.reasons},
           {"points", registration.point_count},
-          {"rms_mm", registration.rms_mm},
+          {"rms_mm", registration.has_pose ? ordered_json(registration.rms_mm) : ordered_json()},
           {"inlier_fraction", registration.inlier_fraction},
-          {"predicted_tre_mm", registration.predicted_tre_mm}};
+          {"predicted_tre_mm",
+           registration.has_pose ? ordered_json(registration.predicted_tre_mm) : ordered_json()}};
 }
 
 ordered_json session_of(const Content& content) {

@@ -9,6 +9,7 @@
 namespace arthronaut::registration {
 
 namespace {
+using Json = nlohmann::ordered_json;
 constexpr const char* kFormat = "arthronaut.registration";
 constexpr int kVersion = 1;
 
@@ -16,15 +17,17 @@ RegistrationSummary summary_from(const files::JsonObject& document) {
   RegistrationSummary summary;
   // Other programs' files have a pose and don't say so.
   summary.has_pose = !document.has("has_pose") || document.boolean("has_pose");
-  if (summary.has_pose) summary.marker_from_bone = document.rigid_transform("marker_from_bone");
-  summary.rms_mm = document.number("rms_mm");
+  if (summary.has_pose) {
+    summary.marker_from_bone = document.rigid_transform("marker_from_bone");
+    summary.rms_mm = document.number("rms_mm");
+    summary.predicted_tre_mm = document.number("predicted_tre_mm");
+  }
   summary.inlier_fraction = document.number("inlier_fraction");
-  summary.point_count = static_cast<int>(document.integer("point_count"));
+  summary.point_count = document.int32("point_count");
   summary.reliable = document.boolean("reliable");
   summary.reasons = document.texts("reasons");
   if (summary.reliable && !summary.has_pose)
     document.fail("reliable", "must be false where no pose was found");
-  summary.predicted_tre_mm = document.number("predicted_tre_mm");
   if (document.has("runner_up_ratio")) summary.runner_up_ratio = document.number("runner_up_ratio");
   if (document.has("misfit_mm")) summary.misfit_mm = document.number("misfit_mm");
   if (document.has("shared_misfit_mm")) summary.shared_misfit_mm = document.number("shared_misfit_mm");
@@ -42,7 +45,7 @@ RegistrationSummary summary_from(const files::JsonObject& document) {
 }  // namespace
 
 nlohmann::ordered_json to_json(const Provenance& of) {
-  nlohmann::ordered_json json;
+  Json json;
   json["mesh_sha256"] = of.mesh_sha256;
   json["bone"] = bones::to_text(of.bone);
   json["marker_id"] = of.world_marker_id;
@@ -57,7 +60,7 @@ Provenance provenance_from(const files::JsonObject& json) {
   Provenance of;
   of.mesh_sha256 = json.text("mesh_sha256");
   of.bone = bones::bone_kind_from_text(json.text("bone"));
-  of.world_marker_id = static_cast<int>(json.integer("marker_id"));
+  of.world_marker_id = json.int32("marker_id");
   of.camera = json.text("camera");
   of.tools = json.text("tools");
   of.refractive_index = camera::refractive_index_from_text(json.text("medium"));
@@ -88,18 +91,20 @@ void write_registration_file(const std::filesystem::path& file, const Registrati
 }
 
 nlohmann::ordered_json to_json(const RegistrationSummary& registration, const Provenance* of) {
-  nlohmann::ordered_json document;
+  Json document;
   document["format"] = kFormat;
   document["version"] = kVersion;
   document["has_pose"] =
       registration.has_pose;  // the format wants a pose in any case: without one it is the identity
   document["marker_from_bone"] = files::to_json(registration.marker_from_bone);
-  document["rms_mm"] = registration.rms_mm;
+  // Of no pose there is no error: a 0 would read as none.
+  const auto of_pose = [&](double value) { return registration.has_pose ? Json(value) : Json(); };
+  document["rms_mm"] = of_pose(registration.rms_mm);
   document["inlier_fraction"] = registration.inlier_fraction;
   document["point_count"] = registration.point_count;
   document["reliable"] = registration.reliable;
   document["reasons"] = registration.reasons;
-  document["predicted_tre_mm"] = registration.predicted_tre_mm;
+  document["predicted_tre_mm"] = of_pose(registration.predicted_tre_mm);
   document["runner_up_ratio"] = registration.runner_up_ratio;
   document["misfit_mm"] = registration.misfit_mm;
   document["shared_misfit_mm"] = registration.shared_misfit_mm;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "planning/files/atomic_file.h"
+#include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
 #include "tests/temporary_folder.h"
 
@@ -53,6 +54,22 @@ TEST(RegistrationFile, ABrokenOfIsRefused) {
   text.replace(at, 6, "\"alive\"");
   files::write_atomically(folder / "registration.json", text);
   EXPECT_THROW((void)read_registration_record(folder / "registration.json"), InvalidInput);
+}
+
+// What found nothing has no error: null, not one of 0 mm. Files of before, which say 0, are read likewise.
+TEST(RegistrationFile, WithoutAPoseThereIsNoError) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "registration.json";
+  write_registration_file(file, RegistrationSummary());
+  const auto written = files::read_json(file, "arthronaut.registration", 1);
+  EXPECT_FALSE(written.has("rms_mm"));
+  EXPECT_FALSE(written.has("predicted_tre_mm"));
+  EXPECT_FALSE(read_registration_file(file).has_pose);
+  std::string text = files::read_text(file);
+  for (const char* key : {"\"rms_mm\": null", "\"predicted_tre_mm\": null"})
+    text.replace(text.find(key) + std::string_view(key).size() - 4, 4, "0.0");
+  files::write_atomically(file, text);
+  EXPECT_FALSE(read_registration_file(file).has_pose);
 }
 
 RegistrationSummary read_text_of(const test::TemporaryFolder& folder, const std::string& covariance) {
