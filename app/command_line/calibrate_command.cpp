@@ -68,8 +68,11 @@ void run_calibrate(Context& context, CalibrateArguments& arguments) {
   calibration::CalibrationOptions& options = arguments.options;
   options.refractive_index = arguments.medium_index.value_or(1.0);
   if (arguments.images.size() < 3)
-    throw InvalidInput("calibrate: needs three pictures or more, has " +
-                       std::to_string(arguments.images.size()));
+    throw CLI::ValidationError(
+        "IMAGE", "needs three pictures or more, has " + std::to_string(arguments.images.size()));
+  refuse_before_the_work({.read = {arguments.images.begin(), arguments.images.end()},
+                          .written = {arguments.output, arguments.plot},
+                          .makes = "camera.json"});
   const std::vector<calibration::CalibrationPicture> pictures = observe(arguments.images);
   const calibration::CalibrationSummary summary = calibration::calibrate(pictures, options);
   if (!summary.is_usable())
@@ -100,9 +103,10 @@ void add_calibrate_command(CLI::App& app, Context& context) {
                     "What the pictures were taken in: air (default), water, saline or a refractive index");
   command->add_option("--scope", arguments->options.scope_name, "Name of the scope, kept in camera.json");
   command->add_option("--head", arguments->options.head_name, "Name of the camera head, kept in camera.json");
-  command->add_option("--plot", arguments->plot, "PNG file for a plot of the residuals");
+  command->add_option("--plot", arguments->plot, "PNG file for a plot of the residuals")->check(a_file());
   command->add_option("-o,--output", arguments->output, "camera.json to write; - is standard output")
-      ->required();
+      ->required()
+      ->check(a_name());
   command->add_option("IMAGE", arguments->images, "Three or more pictures; the board may run past the view")
       ->required();
   command->callback([&context, arguments] { run_calibrate(context, *arguments); });

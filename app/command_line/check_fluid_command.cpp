@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "app/command_line/ruler_option.h"
 #include "navigation/camera/medium.h"
 #include "planning/files/format.h"
@@ -56,6 +57,9 @@ void say_table(const Context& context, const FluidCheckSummary& summary, double 
 }
 
 void run_check_fluid(Context& context, const CheckFluidArguments& arguments) {
+  refuse_before_the_work(
+      {.read = {arguments.ruler.camera, arguments.ruler.tools, arguments.ruler.ruler, arguments.ruler.video},
+       .written = {arguments.output}});
   const RulerClip seen = look_at_ruler(arguments.ruler);
   const calibration::RulerSightingsOptions& options = seen.options;
   const FluidCheckSummary& summary = seen.summary;
@@ -81,7 +85,8 @@ void add_check_fluid_command(CLI::App& app, Context& context) {
       "arthronaut check-fluid --camera camera.json --tools ruler.json --medium saline clip.mkv");
   const auto arguments = std::make_shared<CheckFluidArguments>();
   add_ruler_options(*command, arguments->ruler);
-  command->add_option("-o,--output", arguments->output, "JSON file for the result; - is standard output");
+  command->add_option("-o,--output", arguments->output, "JSON file for the result; - is standard output")
+      ->check(a_name());
   command->callback([&context, arguments] { run_check_fluid(context, *arguments); });
 }
 

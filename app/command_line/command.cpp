@@ -47,6 +47,7 @@ void Context::say_unreliable(const std::string& what, const std::vector<std::str
 void add_log_options(CLI::App& app, Context& context) {
   app.add_option("--log", context.log_file, "Append what happens to this file: sources, errors, results");
   app.add_flag("--verbose", context.verbose, "Say more, and log more");
+  app.add_flag("--quiet", context.quiet, "Say nothing but errors");
 }
 
 CLI::App* add_subcommand(CLI::App& app, Context& context, const std::string& name,
@@ -54,12 +55,12 @@ CLI::App* add_subcommand(CLI::App& app, Context& context, const std::string& nam
   CLI::App* subcommand = app.add_subcommand(name, description);
   subcommand->footer("Example:\n  " + example);
   add_log_options(*subcommand, context);
-  subcommand->add_flag("--quiet", context.quiet, "Say nothing but errors");
   return subcommand;
 }
 
 CLI::Option* add_vector_option(CLI::App& subcommand, const std::string& name, Eigen::Vector3d& value,
                                const std::string& description) {
+  constexpr double kFarthest_mm = 1e6;  // a kilometre; what is reckoned with it stays finite
   const auto parse = [&value](const CLI::results_t& results) {
     const std::string& text = results.front();
     const char* at = text.data();
@@ -67,7 +68,7 @@ CLI::Option* add_vector_option(CLI::App& subcommand, const std::string& name, Ei
     Eigen::Vector3d parsed;
     for (int i = 0; i < 3; ++i) {
       const auto [next, error] = std::from_chars(at, end, parsed[i]);
-      if (error != std::errc() || !std::isfinite(parsed[i])) return false;
+      if (error != std::errc() || !(std::abs(parsed[i]) <= kFarthest_mm)) return false;
       if (i < 2 && (next == end || *next != ',')) return false;
       at = next + (i < 2 ? 1 : 0);
     }

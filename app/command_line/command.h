@@ -43,12 +43,12 @@ struct Context {
   void say_unreliable(const std::string& what, const std::vector<std::string>& reasons);
 };
 
-// --log and --verbose, which the workstation has too.
+// --log, --verbose and --quiet, which the workstation has too.
 void add_log_options(CLI::App& app, Context& context);
 // Adds a subcommand with the options that all have (--log, --verbose, --quiet) and an example under its help.
 CLI::App* add_subcommand(CLI::App& app, Context& context, const std::string& name,
                          const std::string& description, const std::string& example);
-// Adds an option that takes "x,y,z" (mm or a direction), which may start with a minus sign.
+// Adds an option that takes "x,y,z" (mm or a direction), up to a million each; may start with a minus sign.
 CLI::Option* add_vector_option(CLI::App& subcommand, const std::string& name, Eigen::Vector3d& value,
                                const std::string& description);
 

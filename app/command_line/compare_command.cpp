@@ -3,6 +3,7 @@
 
 #include "app/case/postop_comparison.h"
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "planning/files/format.h"
 #include "planning/postop/achieved_file.h"
 
@@ -40,6 +41,7 @@ std::string line_of(const tunnels::TunnelKey& key, const postop::AchievedTunnel&
 }
 
 void compare(Context& context, const CompareArguments& arguments) {
+  refuse_before_the_work({.read = {arguments.source}, .written = {arguments.output}});
   Progress progress("Comparing", 100);
   open_case::PostopQuestion question{arguments.case_folder,
                                      arguments.source,
@@ -79,7 +81,8 @@ void add_compare_command(CLI::App& app, Context& context) {
                   "MetaImage); also a label map, or a mesh of the drilled bone")
       ->required();
   sub->add_option("-o,--output", arguments->output, "achieved.json to write; - is standard output")
-      ->required();
+      ->required()
+      ->check(a_name());
   sub->add_option("--bone", arguments->bone, "femur or tibia; default: every bone with planned tunnels")
       ->check(CLI::IsMember({"femur", "tibia"}));
   sub->add_option("--series", arguments->series, "Series number or UID, for DICOM with several");

@@ -2,8 +2,9 @@
 
 #include "app/command_line/command.h"
 #include "app/command_line/demo_operation.h"
+#include "app/command_line/option_checks.h"
 #include "app/library/workstation_library.h"
-#include "planning/geometry/error.h"
+#include "planning/files/whole_folder.h"
 
 namespace arthronaut::command_line {
 
@@ -19,8 +20,8 @@ struct DemoArguments {
 // Without a name of the user's: the first of demo.arthro, demo-2.arthro, ... that is not there.
 fs::path folder_of(const DemoArguments& arguments) {
   if (!arguments.output.empty()) {
-    if (fs::exists(arguments.output))
-      throw InvalidInput(arguments.output, "", "exists already; nothing was written");
+    files::refuse_taken(arguments.output);
+    files::refuse_unwritable(arguments.output);
     return arguments.output;
   }
   fs::path folder = "demo.arthro";
@@ -37,12 +38,15 @@ void add_demo_command(CLI::App& app, Context& context) {
                      "plan to report",
                      "arthronaut demo -o demo.arthro --side left --seed 3");
   const auto arguments = std::make_shared<DemoArguments>();
-  command->add_option("-o,--output", arguments->output,
-                      "Case folder to write; default: demo.arthro, or the next free name");
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "Case folder to write: absent, or empty; default: demo.arthro, or the next free name")
+      ->check(a_file());
   command->add_option("--side", arguments->side, "left or right")
       ->check(CLI::IsMember({"left", "right"}))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Another knee and another hand for each seed")
+      ->check(a_seed())
       ->capture_default_str();
   command->callback([&context, arguments] {
     const std::filesystem::path folder = folder_of(*arguments);

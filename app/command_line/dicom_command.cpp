@@ -1,11 +1,13 @@
 #include <algorithm>
 
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "app/report/report.h"
 #include "app/scene/plan_picture.h"
 #include "navigation/recording/case_sessions.h"
 #include "navigation/sources/frame_source.h"
 #include "planning/dicom_out/dicom_export.h"
+#include "planning/files/whole_folder.h"
 
 namespace arthronaut::command_line {
 
@@ -77,7 +79,8 @@ void add_pictures_of_operation(const fs::path& case_folder, std::vector<dicom_ou
 }
 
 void export_dicom(Context& context, const DicomArguments& arguments) {
-  dicom_out::refuse_taken_folder(arguments.output);  // before the work
+  files::refuse_taken(arguments.output);  // before the work
+  files::refuse_unwritable(arguments.output);
   dicom_out::ExportContents contents{.knee = cases::load_case(arguments.case_folder),
                                      .identity = std::nullopt,
                                      .studies = {},
@@ -108,7 +111,9 @@ void add_dicom_command(CLI::App& app, Context& context) {
       "Write bones, drilled bones, plan, report and pictures as DICOM, beside the images' study",
       "arthronaut dicom Knee.arthro -o for_the_archive");
   sub->add_option("case", arguments->case_folder, "Case folder")->required();
-  sub->add_option("-o,--output", arguments->output, "Folder to write: absent, or empty")->required();
+  sub->add_option("-o,--output", arguments->output, "Folder to write: absent, or empty")
+      ->required()
+      ->check(a_file());
   sub->add_flag(
       "--deidentified", arguments->is_deidentified,
       "Without patient, study, dates and pictures; else the patient and the study of the images are named");

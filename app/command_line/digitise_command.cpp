@@ -2,8 +2,10 @@
 #include <memory>
 
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "navigation/strokes/curves.h"
 #include "navigation/strokes/stroke_tangents.h"
+#include "planning/geometry/error.h"
 
 namespace arthronaut::command_line {
 
@@ -14,11 +16,21 @@ struct DigitiseArguments {
   bool with_shaft = false;
 };
 
+// What the tools lack is told with their file.
+strokes::Curves digitised(const DigitiseArguments& arguments, const std::vector<strokes::PoseRow>& poses,
+                          const tools::ToolSet& tools) {
+  try {
+    return strokes::digitise(poses, tools, bones::bone_kind_from_text(arguments.bone), arguments.tool);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(arguments.tools, "", error.what());
+  }
+}
+
 void digitise(Context& context, const DigitiseArguments& arguments) {
+  refuse_before_the_work({.read = {arguments.poses, arguments.tools}, .written = {arguments.output}});
   const auto poses = strokes::read_poses_file(arguments.poses);
   const auto tools = tools::read_tools_file(arguments.tools);
-  const auto curves =
-      strokes::digitise(poses, tools, bones::bone_kind_from_text(arguments.bone), arguments.tool);
+  const auto curves = digitised(arguments, poses, tools);
   strokes::write_curves_file(
       arguments.output, curves,
       arguments.with_shaft ? strokes::ShaftColumns::Write : strokes::ShaftColumns::LeaveOut);
@@ -50,7 +62,8 @@ void add_digitise_command(CLI::App& app, Context& context) {
       "--with-shaft", arguments->with_shaft,
       "Write where the probe's shaft was too; register then rules out what leads it through the bone");
   command->add_option("-o,--output", arguments->output, "curves.csv to write; - is standard output")
-      ->required();
+      ->required()
+      ->check(a_name());
   command->callback([&context, arguments] { digitise(context, *arguments); });
 }
 

@@ -118,7 +118,9 @@ void add_import_command(CLI::App& app, Context& context) {
          "Mesh (STL, PLY, OBJ, VTK, VTP), DICOM (folder, DICOMDIR or enhanced file), or volume (NIfTI, "
          "NRRD, MetaImage)")
       ->required();
-  sub->add_option("-o,--output", arguments->output, "Case folder to write or to add to")->required();
+  sub->add_option("-o,--output", arguments->output, "Case folder to write or to add to")
+      ->required()
+      ->check(a_file());
   sub->add_option("--bone", arguments->bone,
                   "femur or tibia; default: of a mesh by its name, of a CT or a label map both")
       ->check(CLI::IsMember({"femur", "tibia"}));

@@ -111,9 +111,11 @@ void add_lens_rotation_experiment(CLI::App& experiment, Context& context) {
                                      "arthronaut experiment lens-rotation --frames 500 -o rotation");
   const auto arguments = std::make_shared<LensRotationArguments>();
   command->add_option("--frames", arguments->frames, "Frames to simulate")->check(between(1, 100000));
-  command->add_option("--seed", arguments->seed,
-                      "Seed of the simulation; the same seed gives the same figures");
-  command->add_option("-o", arguments->output, "Folder for the plot and the figures of every frame");
+  command
+      ->add_option("--seed", arguments->seed, "Seed of the simulation; the same seed gives the same figures")
+      ->check(a_seed());
+  command->add_option("-o", arguments->output, "Folder for the plot and the figures of every frame")
+      ->check(a_file());
   auto* video =
       command->add_option("--video", arguments->video, "A recorded clip of a ruler instead of the simulator");
   auto* camera = command->add_option("--camera", arguments->camera, "camera.json of the clip");

@@ -89,10 +89,10 @@ pipeline::PipelineOptions pipeline_options(const NavigateArguments& arguments, c
   if (options.guide_name.empty()) {
     options.guide_name = tools::standard_guide_name(options.bone);
   } else if (!options.tools.find_tool(options.guide_name)) {
-    throw InvalidInput("--guide: the tools declare no tool named \"" + options.guide_name + "\"");
+    throw InvalidInput(tools_file, "tools", "declare none named \"" + options.guide_name + "\" (--guide)");
   }
   if (arguments.probe_option->count() > 0 && !options.tools.find_tool(options.probe_name)) {
-    throw InvalidInput("--probe: the tools declare no tool named \"" + options.probe_name + "\"");
+    throw InvalidInput(tools_file, "tools", "declare none named \"" + options.probe_name + "\" (--probe)");
   }
   return options;
 }
@@ -306,10 +306,14 @@ void add_navigate_command(CLI::App& app, Context& context) {
       "registration.json to guide by. Default: the newest reliable one of the case for this world "
       "marker; strokes of the probe give a new one");
   add_cartilage_option(*command, arguments->cartilage.mesh, "; copied into the case. Default: the case's");
-  command->add_option("--space", arguments->cartilage.space,
-                      "Frame of the cartilage's mesh when its file doesn't say: lps (default) or ras");
-  command->add_option("--unit", arguments->cartilage.unit,
-                      "Length unit of the cartilage's mesh: mm (default), cm, m or in");
+  command
+      ->add_option("--space", arguments->cartilage.space,
+                   "Frame of the cartilage's mesh when its file doesn't say: lps (default) or ras")
+      ->check(mesh_space());
+  command
+      ->add_option("--unit", arguments->cartilage.unit,
+                   "Length unit of the cartilage's mesh: mm (default), cm, m or in")
+      ->check(mesh_unit());
   arguments->probe_option =
       command->add_option("--probe", arguments->probe, "Name of the touch probe in the tools")
           ->capture_default_str();

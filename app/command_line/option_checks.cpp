@@ -1,14 +1,23 @@
 #include "app/command_line/option_checks.h"
 
+#include <algorithm>
 #include <cmath>
+#include <set>
+#include <system_error>
 #include <utility>
 
+#include "planning/bones/mesh_file.h"
+#include "planning/cases/own_files.h"
 #include "planning/files/format.h"
+#include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
+#include "planning/images/dicom_file.h"
 
 namespace arthronaut::command_line {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 // limits: as the help has them.
 CLI::Validator of_number(const std::string& limits, const std::function<bool(double)>& is_right) {
@@ -18,6 +27,46 @@ CLI::Validator of_number(const std::string& limits, const std::function<bool(dou
             return "\"" + text + "\" is not a number, " + limits;
           },
           limits};
+}
+
+bool lies_in(const fs::path& file, const fs::path& folder) {
+  std::error_code ignored;
+  const fs::path whole = fs::weakly_canonical(file, ignored), in = fs::weakly_canonical(folder, ignored);
+  return std::mismatch(in.begin(), in.end(), whole.begin(), whole.end()).first == in.end();
+}
+
+// Of a file that is there. Of a folder the DICOM images are read, not what another command has written there.
+bool is_read(const fs::path& file, const fs::path& input) {
+  std::error_code ignored;
+  if (fs::is_directory(input, ignored)) return lies_in(file, input) && images::has_dicom_mark(file);
+  const bool is_pattern = input.filename().string().find('%') != std::string::npos;
+  if (is_pattern && file.extension() == input.extension())
+    return fs::equivalent(fs::absolute(file).parent_path(), fs::absolute(input).parent_path(), ignored);
+  return fs::equivalent(file, input, ignored);
+}
+
+void refuse_loss(const fs::path& file, const NamedFiles& files) {
+  std::error_code ignored;
+  if (fs::exists(file, ignored)) {
+    for (const fs::path& input : files.read)
+      if (is_read(file, input))
+        throw InvalidInput(file, "", "is what is read: what is written needs a file of its own");
+  }
+  const bool is_made =
+      file.filename() == files.makes && fs::exists(fs::absolute(file).parent_path() / "case.json", ignored);
+  if (cases::is_own_file(file) && !is_made)
+    throw InvalidInput(file, "", "is one of the case's own files: what is written needs another name");
+}
+
+void refuse_unwritable_file(const fs::path& file) {
+  std::error_code error;
+  if (fs::is_directory(file, error)) throw IoError(file, "is a folder, not a file");
+  const fs::path folder = fs::absolute(file).parent_path();
+  if (!fs::is_directory(folder, error)) {
+    const bool is_closed = error == std::errc::permission_denied;
+    throw IoError(file, is_closed ? error.message() : "the folder " + folder.string() + " does not exist");
+  }
+  files::refuse_unwritable(folder, file);
 }
 
 }  // namespace
@@ -35,6 +84,34 @@ CLI::Validator above_zero() {
   return of_number("above 0", [](double value) { return value > 0 && std::isfinite(value); });
 }
 
+CLI::Validator a_seed() { return between(0, 0x1p53); }
+
+CLI::Validator a_marker_id() {
+  constexpr int kDictionarySize = 50;
+  return of_number("0 to 49 (DICT_4X4_50)",
+                   [](double value) { return value >= 0 && value < kDictionarySize; });
+}
+
+CLI::Validator a_name() {
+  return {[](const std::string& text) { return std::string(text.empty() ? "must not be empty" : ""); }, ""};
+}
+
+CLI::Validator a_file() {
+  return {[](const std::string& text) {
+            if (text == "-") return std::string("\"-\": what is written is no text, it needs a file");
+            return std::string(text.empty() ? "must not be empty" : "");
+          },
+          ""};
+}
+
+CLI::Validator mesh_space() {
+  return read_by([](const std::string& text) { (void)bones::space_from_text(text); });
+}
+
+CLI::Validator mesh_unit() {
+  return read_by([](const std::string& text) { (void)bones::length_unit_from_text(text); });
+}
+
 CLI::Validator read_by(std::function<void(const std::string&)> read) {
   return {[read = std::move(read)](const std::string& text) {
             try {
@@ -45,6 +122,26 @@ CLI::Validator read_by(std::function<void(const std::string&)> read) {
             return std::string();
           },
           ""};
+}
+
+void refuse_together(const std::function<void()>& check) {
+  try {
+    check();
+  } catch (const InvalidInput& error) {
+    throw CLI::ValidationError(error.what(), CLI::ExitCodes::ValidationError);
+  }
+}
+
+void refuse_before_the_work(const NamedFiles& files) {
+  std::set<fs::path> taken;
+  for (const fs::path& file : files.written) {
+    std::error_code ignored;
+    if (file.empty() || file == "-" || fs::is_other(file, ignored)) continue;
+    if (!taken.insert(fs::weakly_canonical(fs::absolute(file), ignored)).second)
+      throw InvalidInput(file, "", "is to be written twice");
+    refuse_loss(file, files);
+    refuse_unwritable_file(file);
+  }
 }
 
 }  // namespace arthronaut::command_line

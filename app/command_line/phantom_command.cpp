@@ -1,7 +1,8 @@
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "app/library/workstation_library.h"
 #include "planning/cases/case.h"
-#include "planning/geometry/error.h"
+#include "planning/files/whole_folder.h"
 #include "planning/phantom/phantom_case.h"
 
 namespace arthronaut::command_line {
@@ -15,16 +16,19 @@ void add_phantom_command(CLI::App& app, Context& context) {
   CLI::App* sub = add_subcommand(app, context, "phantom",
                                  "Write the built-in knee as a case folder: meshes, landmarks, plan",
                                  "arthronaut phantom -o Phantom.arthro --side left --seed 3");
-  sub->add_option("-o,--output", arguments->output, "Case folder to write")->required();
+  sub->add_option("-o,--output", arguments->output, "Case folder to write: absent, or empty")
+      ->required()
+      ->check(a_file());
   sub->add_option("--side", arguments->side, "left or right")
       ->check(CLI::IsMember({"left", "right"}))
       ->capture_default_str();
-  sub->add_option("--seed", arguments->seed, "Another knee for each seed")->capture_default_str();
+  sub->add_option("--seed", arguments->seed, "Another knee for each seed")
+      ->check(a_seed())
+      ->capture_default_str();
   sub->callback([arguments, &context] {
     const std::filesystem::path folder = arguments->output;
-    if (std::filesystem::exists(folder / "case.json")) {
-      throw InvalidInput(folder, "", "holds a case already; nothing was written");
-    }
+    files::refuse_taken(folder);
+    files::refuse_unwritable(folder);
     const auto knee =
         phantom::make_phantom_knee({.side = bones::side_from_text(arguments->side), .seed = arguments->seed});
     cases::save_case(folder, phantom::case_of(knee, folder.stem().string()));

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "navigation/strokes/body_rows.h"
 #include "navigation/strokes/poses_file.h"
 #include "navigation/tools/pivot_calibration.h"
@@ -161,11 +162,14 @@ void add_pivot_command(CLI::App& app, Context& context) {
       ->add_flag("--camera-fixed", arguments->camera_fixed, "The scope was clamped: use no world marker")
       ->excludes(world);
   subcommand->add_flag("--spin", arguments->spin, "The tool was turned about its own axis: find that axis");
-  subcommand->add_option("-o,--output", arguments->output, "tip.json, or - for standard output")->required();
+  subcommand->add_option("-o,--output", arguments->output, "tip.json, or - for standard output")
+      ->required()
+      ->check(a_name());
   subcommand->add_option(
       "--tools", arguments->tools,
       "tools.json: the poses of bodies of several markers, and the tip in the tool's frame");
   subcommand->callback([arguments, &context] {
+    refuse_before_the_work({.read = {arguments->poses, arguments->tools}, .written = {arguments->output}});
     // Any marker of a body stands for it.
     if (!arguments->tools.empty()) {
       const tools::ToolSet tools = tools::read_tools_file(arguments->tools);

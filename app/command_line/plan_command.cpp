@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <iostream>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -10,10 +9,13 @@
 #include "planning/cases/bone_doubts.h"
 #include "planning/cases/case.h"
 #include "planning/cases/case_lock.h"
+#include "planning/cases/own_files.h"
 #include "planning/cases/plan_versions.h"
 #include "planning/default_plan/default_plan.h"
 #include "planning/files/format.h"
+#include "planning/files/json_document.h"
 #include "planning/files/utc_clock.h"
+#include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
 #include "planning/geometry/surface.h"
 #include "planning/plan_export/markups_file.h"
@@ -69,12 +71,12 @@ tunnels::Tunnel planned_tunnel(const PlanArguments& arguments, const cases::Case
   const auto nearest = surface.closest_point(tunnel.entry_mm);
   const double off_mm = (nearest.point_mm - tunnel.entry_mm).norm();
   if (off_mm > kSnapMm) {
-    throw InvalidInput(
-        files::format("plan: --entry lies %.1f mm off the bone, more than %.0f mm", off_mm, kSnapMm));
+    throw InvalidInput(arguments.case_folder, arguments.bone,
+                       files::format("--entry lies %.1f mm off it, more than %.0f mm", off_mm, kSnapMm));
   }
   tunnel.entry_mm = nearest.point_mm;
   if (!tunnels::measure(tunnel, surface).enters_bone) {
-    throw InvalidInput("plan: --direction leads out of the bone at this entry");
+    throw InvalidInput(arguments.case_folder, arguments.bone, "--direction leads out of it at this entry");
   }
   return tunnel;
 }
@@ -180,11 +182,14 @@ void show(const PlanArguments& arguments, const Context& context, const cases::C
     return;
   }
   // Of one bone the tunnel itself; of a bone with two it is never one of them unasked.
-  if (!arguments.bone.empty() && tunnels_json.size() < 2) {
-    std::cout << (tunnels_json.empty() ? nlohmann::ordered_json() : tunnels_json[0]).dump(2) << '\n';
-  } else {
-    std::cout << nlohmann::ordered_json({{"tunnels", tunnels_json}}).dump(2) << '\n';
-  }
+  const bool is_one = !arguments.bone.empty() && tunnels_json.size() == 1;
+  nlohmann::ordered_json document = {{"format", is_one ? "arthronaut.tunnel" : "arthronaut.tunnels"},
+                                     {"version", 1}};
+  if (is_one)
+    document.update(tunnels_json[0]);
+  else
+    document["tunnels"] = std::move(tunnels_json);
+  files::write_json("-", document);
 }
 
 // Throws InvalidInput where there is no such tunnel, or two of which none is named.
@@ -192,7 +197,8 @@ void remove_tunnel(const PlanArguments& arguments, cases::Case& knee) {
   const auto keys = knee.plan.of(bones::bone_kind_from_text(arguments.bone));
   if (keys.size() == 1 && !arguments.names_type) return knee.plan.remove(keys.front());
   if (keys.size() > 1 && !arguments.names_type)
-    throw InvalidInput("plan: the " + arguments.bone + " has two tunnels: say by --type which, am or pl");
+    throw InvalidInput(arguments.case_folder, "plan.json",
+                       "plans two tunnels in the " + arguments.bone + ": say by --type which, am or pl");
   const tunnels::TunnelKey key = key_of(arguments);
   if (!knee.plan.tunnels.contains(key))
     throw InvalidInput(arguments.case_folder, "plan.json", "holds no tunnel " + tunnels::name_of(key));
@@ -220,6 +226,13 @@ void list_versions(const PlanArguments& arguments, const Context& context, const
     for (const auto& difference : cases::compare_plans(knee.plan, version.plan))
       context.say("  " + difference.in_words());
   }
+}
+
+// An earlier export may be written over, a case's plan not.
+void refuse_export(const std::string& folder) {
+  if (cases::is_own_file(std::filesystem::path(folder) / "plan.json"))
+    throw InvalidInput(folder, "", "is a case's own folder: the export needs another one");
+  files::refuse_unwritable(folder);
 }
 
 void export_to(const PlanArguments& arguments, Context& context, const cases::Case& knee) {
@@ -276,8 +289,11 @@ void add_plan_command(CLI::App& app, Context& context) {
           ->excludes(by_default)
           ->excludes(direction)
           ->excludes(remove);
-  sub->add_option("--export", arguments->export_folder,
-                  "Folder for plan.json, plan.csv, plan.mrk.json and the drilled bones");
+  sub->add_option(
+         "--export", arguments->export_folder,
+         "Folder for plan.json, plan.csv, plan.mrk.json and the drilled bones, in place of an earlier "
+         "export; no case's")
+      ->check(a_file());
   auto* json =
       sub->add_flag("--json", arguments->as_json, "Print the tunnel as JSON, without --bone every tunnel");
   sub->add_flag("--list", arguments->list, "Show the plan")
@@ -311,6 +327,7 @@ void add_plan_command(CLI::App& app, Context& context) {
       throw CLI::ValidationError("--direction", "must not be zero");
     if (arguments->names_diameter && direction->count() == 0 && !arguments->by_default)
       throw CLI::RequiredError("beside --diameter-mm, --default or --direction");
+    if (!arguments->export_folder.empty()) refuse_export(arguments->export_folder);
     cases::CaseLock lock;
     if (writes || arguments->keeps) lock = cases::lock_or_refuse(arguments->case_folder);
     if (!lock.notice().empty() && !arguments->as_json) context.say(lock.notice() + ".");

@@ -31,6 +31,7 @@ void say(const Context& context, const std::string& which, const ErrorRatios& ra
 }
 
 void run(Context& context, const PredictedErrorArguments& arguments) {
+  refuse_before_the_work({.read = {}, .written = {arguments.table}});
   experiments::PredictedErrorOptions options;
   options.operation_count = arguments.operations;
   options.seed = arguments.seed;
@@ -60,8 +61,9 @@ void add_predicted_error_experiment(CLI::App& experiment, Context& context) {
                      "arthronaut experiment predicted-error --operations 100 -o errors.csv");
   const auto arguments = std::make_shared<PredictedErrorArguments>();
   command->add_option("--operations", arguments->operations, "Number of operations")->check(above_zero());
-  command->add_option("--seed", arguments->seed,
-                      "Seed of the operations; the same seed gives the same figures");
+  command
+      ->add_option("--seed", arguments->seed, "Seed of the operations; the same seed gives the same figures")
+      ->check(a_seed());
   command->add_option("-o,--output", arguments->table, "CSV to write one row an operation into");
   command->callback([&context, arguments] { run(context, *arguments); });
 }

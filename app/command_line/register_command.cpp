@@ -4,6 +4,7 @@
 
 #include "app/command_line/cartilage_option.h"
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "navigation/registration/registration.h"
 #include "navigation/registration/registration_file.h"
 #include "planning/bones/mesh_file.h"
@@ -36,6 +37,8 @@ registration::SurfaceIndex prepare(const geometry::TriangleMesh& mesh,
 }
 
 void register_bone(Context& context, const RegisterArguments& arguments) {
+  refuse_before_the_work(
+      {.read = {arguments.bone, arguments.curves, arguments.cartilage}, .written = {arguments.output}});
   bones::MeshFileOptions mesh_options;
   if (!arguments.space.empty()) mesh_options.space = bones::space_from_text(arguments.space);
   if (!arguments.unit.empty()) mesh_options.unit = bones::length_unit_from_text(arguments.unit);
@@ -89,13 +92,19 @@ void add_register_command(CLI::App& app, Context& context) {
   add_cartilage_option(*command, arguments->cartilage);
   command->add_flag("--no-marker-prior", arguments->no_marker_prior,
                     "Don't assume that the world marker sits on the bone");
-  command->add_option("--seed", arguments->seed,
-                      "Seed of the random search; the same seed gives the same result");
-  command->add_option("--space", arguments->space,
-                      "Frame of the mesh when the file doesn't say: lps (default) or ras");
-  command->add_option("--unit", arguments->unit, "Length unit of the mesh: mm, cm, m or in");
+  command
+      ->add_option("--seed", arguments->seed,
+                   "Seed of the random search; the same seed gives the same result")
+      ->check(a_seed());
+  command
+      ->add_option("--space", arguments->space,
+                   "Frame of the mesh when the file doesn't say: lps (default) or ras")
+      ->check(mesh_space());
+  command->add_option("--unit", arguments->unit, "Length unit of the mesh: mm, cm, m or in")
+      ->check(mesh_unit());
   command->add_option("-o,--output", arguments->output, "registration.json to write; - is standard output")
-      ->required();
+      ->required()
+      ->check(a_name());
   command->callback([&context, arguments] { register_bone(context, *arguments); });
 }
 

@@ -58,6 +58,8 @@ void say_result(const Context& context, const RegistrationExperimentResult& resu
 }
 
 void run(Context& context, const ExperimentArguments& arguments) {
+  refuse_before_the_work(
+      {.read = {arguments.bone, arguments.registered_to}, .written = {arguments.plot, arguments.evidence}});
   bones::MeshFileOptions mesh_options;
   if (!arguments.space.empty()) mesh_options.space = bones::space_from_text(arguments.space);
   if (!arguments.unit.empty()) mesh_options.unit = bones::length_unit_from_text(arguments.unit);
@@ -111,7 +113,8 @@ void add_registration_experiment(CLI::App& experiment, Context& context) {
   command->add_option("--trials", arguments->trials, "Number of trials")->check(above_zero());
   command->add_option("--noise", arguments->noise, "dry, ex-vivo or hard")
       ->check(CLI::IsMember({"dry", "ex-vivo", "hard"}));
-  command->add_option("--seed", arguments->seed, "Seed of the trials; the same seed gives the same figures");
+  command->add_option("--seed", arguments->seed, "Seed of the trials; the same seed gives the same figures")
+      ->check(a_seed());
   command->add_option("--side", arguments->side, "Which knee: left or right")
       ->check(CLI::IsMember({"left", "right"}));
   arguments->area_option =
@@ -120,10 +123,13 @@ void add_registration_experiment(CLI::App& experiment, Context& context) {
                         "of the femur's notch");
   command->add_flag("--no-marker-prior", arguments->no_marker_prior,
                     "Don't assume that the world marker sits on the bone");
-  command->add_option("--space", arguments->space,
-                      "Frame of the mesh when the file doesn't say: lps (default) or ras");
-  command->add_option("--unit", arguments->unit, "Length unit of the mesh: mm, cm, m or in");
-  command->add_option("--plot", arguments->plot, "PNG to draw the paper's plot into");
+  command
+      ->add_option("--space", arguments->space,
+                   "Frame of the mesh when the file doesn't say: lps (default) or ras")
+      ->check(mesh_space());
+  command->add_option("--unit", arguments->unit, "Length unit of the mesh: mm, cm, m or in")
+      ->check(mesh_unit());
+  command->add_option("--plot", arguments->plot, "PNG to draw the paper's plot into")->check(a_file());
   command
       ->add_option("--onto", arguments->registered_to,
                    "Register the strokes to this mesh instead: another person's bone, so that none may be "

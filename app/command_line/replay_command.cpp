@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "app/command_line/tracking_report.h"
 #include "navigation/recording/cut_short.h"
 #include "navigation/recording/replay.h"
@@ -44,6 +45,7 @@ std::string table_of(const std::vector<recording::Difference>& differences) {
 }
 
 void replay(Context& context, const ReplayArguments& arguments) {
+  refuse_before_the_work({.read = {}, .written = {arguments.output}});
   const recording::RecordedSession session(session_folder(arguments));
   const recording::ReplayOptions options = recording::replay_options_of(arguments.case_folder, session);
   recording::ReplaySummary summary;
@@ -97,8 +99,10 @@ void add_replay_command(CLI::App& app, Context& context) {
   const auto arguments = std::make_shared<ReplayArguments>();
   command->add_option("CASE", arguments->case_folder, "Case folder")->required();
   command->add_option("--session", arguments->session, "The session's folder name; default: the newest");
-  command->add_option("-o,--output", arguments->output,
-                      "Table of all differences to write (CSV); - is standard output");
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "Table of all differences to write (CSV); - is standard output")
+      ->check(a_name());
   command->callback([&context, arguments] { replay(context, *arguments); });
 }
 

@@ -1,7 +1,21 @@
 #include "app/command_line/command.h"
+#include "app/command_line/option_checks.h"
 #include "app/report/report.h"
 
 namespace arthronaut::command_line {
+
+namespace {
+
+// By its ending, which also says what is written; into a device or a pipe of any name goes a PDF.
+void refuse_another_ending(const std::filesystem::path& output) {
+  std::error_code ignored;
+  const std::filesystem::path ending = output.extension();
+  if (ending == ".pdf" || ending == ".json" || ending == ".csv" || std::filesystem::is_other(output, ignored))
+    return;
+  throw CLI::ValidationError("--output", output.string() + " ends in none of .pdf, .json and .csv");
+}
+
+}  // namespace
 
 void add_report_command(CLI::App& app, Context& context) {
   struct Arguments {
@@ -15,7 +29,8 @@ void add_report_command(CLI::App& app, Context& context) {
   sub->add_option("case", arguments->case_folder, "Case folder")->required();
   sub->add_option("-o,--output", arguments->output,
                   "PDF to write; .json or .csv: the same numbers for other programs")
-      ->required();
+      ->required()
+      ->check(a_file());
   sub->add_option("--session", arguments->options.session,
                   "The session's folder name; default: the newest with a drilled tunnel, else with a "
                   "registration");
@@ -24,6 +39,8 @@ void add_report_command(CLI::App& app, Context& context) {
   sub->add_option("--paper", arguments->paper, "a4 or letter; default: a4")
       ->check(CLI::IsMember({"a4", "letter"}));
   sub->callback([arguments, &context] {
+    refuse_another_ending(arguments->output);
+    refuse_before_the_work({.read = {}, .written = {arguments->output}});
     arguments->options.paper = report::paper_from_text(arguments->paper);
     report::write_report(arguments->case_folder, arguments->output, arguments->options);
     context.say("Wrote " + arguments->output + ".");

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -19,6 +20,8 @@
 namespace arthronaut::command_line {
 
 namespace {
+
+constexpr double kStandardSize_mm = 4;
 
 struct RigArguments {
   std::string poses, tool, tools, output;
@@ -81,8 +84,9 @@ std::vector<int> markers_on_body(const RigArguments& arguments, const tools::Too
   return own;
 }
 
-double size_of(int id, const RigArguments& arguments, const tools::ToolSet& set, const Body& body) {
-  constexpr double kStandardSize_mm = 4;
+// As the tools declare it, else as the command says; nothing where neither does.
+std::optional<double> known_size_mm(int id, const RigArguments& arguments, const tools::ToolSet& set,
+                                    const Body& body) {
   const auto look = [&](const auto& bodies) -> std::optional<double> {
     for (const auto& one : bodies)
       for (const tools::BodyMarker& marker : tools::markers_of(one))
@@ -94,7 +98,7 @@ double size_of(int id, const RigArguments& arguments, const tools::ToolSet& set,
     if (const auto size_mm = look(std::span(set.tools).first(said))) return *size_mm;
     if (const auto size_mm = look(set.world_markers)) return *size_mm;
   }
-  return arguments.size_mm.value_or(kStandardSize_mm);
+  return arguments.size_mm;
 }
 
 // Where the frame of the body's tip and axis lies: with the marker asked for; else it stays where it was.
@@ -133,10 +137,13 @@ void take_to_reference(const RigArguments& arguments, const tools::RigSummary& r
 }
 
 tools::RigOptions rig_options(const RigArguments& arguments, const tools::ToolSet& set, const Body& body,
-                              const std::vector<strokes::PoseRow>& rows) {
+                              const std::vector<strokes::PoseRow>& rows, std::vector<int>& assumed_ids) {
   tools::RigOptions options;
-  for (const int id : markers_on_body(arguments, set, body, rows))
-    options.markers.emplace_back(id, size_of(id, arguments, set, body));
+  for (const int id : markers_on_body(arguments, set, body, rows)) {
+    const auto size_mm = known_size_mm(id, arguments, set, body);
+    options.markers.emplace_back(id, size_mm.value_or(kStandardSize_mm));
+    if (!size_mm) assumed_ids.push_back(id);
+  }
   if (options.markers.size() < 2)
     throw InvalidInput(arguments.poses, "marker_id",
                        "holds fewer than two markers that may be on \"" + arguments.tool +
@@ -208,6 +215,16 @@ void say_rig(const Context& context, const tools::RigSummary& rig) {
   }
 }
 
+// All that is measured is in proportion to it: never taken in silence.
+void say_assumed(const Context& context, const RigArguments& arguments, const std::vector<int>& ids) {
+  if (ids.empty() || context.quiet) return;
+  std::string names;
+  for (const int id : ids) names += (names.empty() ? "" : ", ") + std::to_string(id);
+  (arguments.output == "-" ? std::cerr : std::cout) << files::format(
+      "marker %s: taken to be %g mm wide, since no tools declare it; --size-mm says otherwise\n",
+      names.c_str(), kStandardSize_mm);
+}
+
 // What is not to be relied on is written with its reasons, but not as tools: by its format no reader takes it
 // for tools.json, so it cannot guide.
 constexpr std::string_view kDoubtfulFormat = "arthronaut.doubtful_rig";
@@ -238,12 +255,23 @@ std::filesystem::path doubtful_file(const std::filesystem::path& output) {
   return output.parent_path() / (output.stem().string() + ".doubtful.json");
 }
 
+void refuse_arguments(const RigArguments& arguments) {
+  if (const std::set<int> ids(arguments.markers.begin(), arguments.markers.end());
+      ids.size() < arguments.markers.size())
+    throw CLI::ValidationError("--markers", "names a marker twice");
+  // The tools are what it adds to: they may be written over.
+  refuse_before_the_work({.read = {arguments.poses}, .written = {arguments.output}, .makes = "tools.json"});
+}
+
 void calibrate(Context& context, const RigArguments& arguments) {
+  refuse_arguments(arguments);
   const std::vector<strokes::PoseRow> rows = strokes::read_poses_file(arguments.poses);
   tools::ToolSet set =
       arguments.tools.empty() ? tools::standard_tools() : tools::read_tools_file(arguments.tools);
   const Body body = body_of(set, arguments.tool);
-  const tools::RigOptions options = rig_options(arguments, set, body, rows);
+  std::vector<int> assumed_ids;
+  const tools::RigOptions options = rig_options(arguments, set, body, rows, assumed_ids);
+  say_assumed(context, arguments, assumed_ids);
   check_nothing_else_carries_them(arguments, set, body, options);
   std::vector<tools::RigSighting> sightings;
   for (const strokes::PoseRow& row : rows)
@@ -283,7 +311,8 @@ void add_rig_command(CLI::App& app, Context& context) {
   command
       ->add_option("--tool", arguments->tool,
                    "Name of the tool that carries the markers; femur or tibia for a world of several")
-      ->required();
+      ->required()
+      ->check(a_name());
   command->add_option("--tools", arguments->tools,
                       "tools.json to take sizes and all else from (default: the standard tools)");
   command
@@ -291,17 +320,21 @@ void add_rig_command(CLI::App& app, Context& context) {
           "--markers", arguments->markers,
           "Ids of the markers on it, 2,12,13 (default: those that the tools put on it, else all that are "
           "seen and that nothing else declares)")
-      ->delimiter(',');
-  command->add_option(
-      "--reference", arguments->reference,
-      "Id of the marker whose frame becomes the tool's; tip and axis are taken along (default: the "
-      "tool keeps its frame)");
+      ->delimiter(',')
+      ->check(a_marker_id());
+  command
+      ->add_option(
+          "--reference", arguments->reference,
+          "Id of the marker whose frame becomes the tool's; tip and axis are taken along (default: the "
+          "tool keeps its frame)")
+      ->check(a_marker_id());
   command
       ->add_option("--size-mm", arguments->size_mm,
-                   "Size of markers that the tools do not declare (default: 4)")
+                   "Size of markers that the tools do not declare (default: 4, and said so)")
       ->check(above_zero());
   command->add_option("-o,--output", arguments->output, "tools.json to write; - is standard output")
-      ->required();
+      ->required()
+      ->check(a_name());
   command->callback([&context, arguments] { calibrate(context, *arguments); });
 }
 

@@ -3,6 +3,7 @@
 #include "app/command_line/command.h"
 #include "app/command_line/frame_dump.h"
 #include "app/command_line/medium_option.h"
+#include "app/command_line/option_checks.h"
 #include "app/command_line/tracking_report.h"
 #include "navigation/camera/camera_file.h"
 #include "navigation/pipeline/track_video.h"
@@ -20,6 +21,8 @@ struct TrackArguments {
 };
 
 void track(Context& context, const TrackArguments& arguments) {
+  refuse_before_the_work(
+      {.read = {arguments.camera, arguments.tools, arguments.video}, .written = {arguments.output}});
   const camera::CalibrationRecord camera = camera::read_camera_file(arguments.camera);
   const tools::ToolSet tools = tools::read_tools_file(arguments.tools);
   if (tools.tracker)
@@ -63,7 +66,8 @@ void add_track_command(CLI::App& app, Context& context) {
   command->add_flag("--fixed-lens", arguments->fixed_lens,
                     "The lens stays at the calibration's reference angle; the lens mark is not needed");
   command->add_option("-o,--output", arguments->output, "poses.csv to write; - is standard output")
-      ->required();
+      ->required()
+      ->check(a_name());
   command->add_option(
       "--dump", arguments->dump,
       "Folder to write what the tracker saw to, frame by frame: a picture with the squares that "

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/case/exercise_case.h"
+#include "app/command_line/option_checks.h"
 #include "navigation/training/board_run.h"
 #include "navigation/training/score_file.h"
 #include "navigation/training/trainee.h"
@@ -87,6 +88,7 @@ void train(Context& context, const Arguments& arguments) {
   if (!is_operation && !arguments.case_folder.empty())
     throw InvalidInput(
         "calibrating is no operation: it needs no knee and leaves no session; leave out --case");
+  refuse_before_the_work({.read = {arguments.hand}, .written = {arguments.output, arguments.keep_hand}});
   const simulator::Hand hand = hand_of(arguments, *exercise);
   training::ExerciseSetup setup{
       .exercise = *exercise, .level = level, .knee = {}, .plan = {}, .seed = arguments.seed};
@@ -159,14 +161,15 @@ void add_train_command(CLI::App& app, Context& context) {
                   "Who does it: careful, hasty, or a file that --keep-hand has written")
       ->capture_default_str();
   sub->add_option("--seed", arguments->seed, "Another knee and other places for each seed")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53U))
+      ->check(a_seed())
       ->capture_default_str();
   sub->add_option("--case", arguments->case_folder,
                   "On this case's bones and plan; what was done becomes a session of the case");
-  sub->add_option("--keep-hand", arguments->keep_hand, "Where to keep what was pushed, to do it again");
+  sub->add_option("--keep-hand", arguments->keep_hand, "Where to keep what was pushed, to do it again")
+      ->check(a_name());
   sub->add_flag("--keep", arguments->keep, "Puts the score on the user's own list");
-  sub->add_option("-o,--output", arguments->output,
-                  "Where to write the score (JSON); \"-\": standard output");
+  sub->add_option("-o,--output", arguments->output, "Where to write the score (JSON); \"-\": standard output")
+      ->check(a_name());
   list->excludes(scores);
   sub->callback([&context, arguments] {
     if (arguments->list) return list_exercises(context);

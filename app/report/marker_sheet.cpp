@@ -111,8 +111,7 @@ void write_marker_sheet(const std::filesystem::path& file, const MarkerSheetOpti
   }
   for (const double size :
        {options.size_mm, options.ruler_size_mm, options.ruler_distance_mm, options.square_mm}) {
-    if (!(size > 0.1 && size <= 100))
-      throw InvalidInput("markers: a size must lie above 0.1 and up to 100 mm");
+    if (!(size >= 0.1 && size <= 100)) throw InvalidInput("markers: a size must lie between 0.1 and 100 mm");
   }
   if (options.ruler_distance_mm < options.ruler_size_mm) {
     throw InvalidInput("markers: the ruler's markers overlap");

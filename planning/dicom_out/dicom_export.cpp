@@ -154,17 +154,8 @@ void write_all(const fs::path& folder, std::vector<Object>& objects, ExportSumma
 
 }  // namespace
 
-void refuse_taken_folder(const fs::path& folder) {
-  std::error_code error;
-  if (!fs::exists(folder, error)) return;
-  if (!fs::is_directory(folder, error))
-    throw InvalidInput(folder, "", "is a file, not a folder: nothing was written");
-  if (!fs::is_empty(folder, error) || error)
-    throw InvalidInput(folder, "", "exists and is not empty: nothing was written");
-}
-
 ExportSummary export_dicom(const ExportContents& contents, const fs::path& folder) {
-  refuse_taken_folder(folder);
+  files::refuse_taken(folder);
   if (contents.knee.bones.empty()) throw InvalidInput("dicom: the case holds no bone");
   const Belongings belongings = belongings_of(contents);
   const Belonging& of_case = belongings.begin()->second;

@@ -59,9 +59,6 @@ struct ExportSummary {
   std::vector<std::string> doubts;           // a bone that is not there drilled, though it is planned on
 };
 
-// Throws InvalidInput unless `folder` is absent or empty. For before the work.
-void refuse_taken_folder(const std::filesystem::path& folder);
-
 // Writes the objects into `folder`, which appears whole, by renaming, as its owner's alone (0700), or not at
 // all. Throws InvalidInput: a folder that holds something, a case without a bone, a picture whose bytes do
 // not fit its size. Throws IoError.

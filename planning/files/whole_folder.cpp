@@ -40,15 +40,24 @@ void make_whole_folder(const fs::path& folder, const std::function<void(const fs
   }
 }
 
-void refuse_unwritable(const fs::path& folder) {
+void refuse_unwritable(const fs::path& folder, const fs::path& file) {
   std::error_code error;
   fs::path there = fs::absolute(folder);
   while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
   // Rights alone do not tell: of a medium that is read-only, or a file system that makes no folders.
   std::string probe = (there / ".arthronaut-XXXXXX").string();
   if (!::mkdtemp(probe.data()))
-    throw IoError(folder, std::string("cannot be written: ") + std::strerror(errno));
+    throw IoError(file.empty() ? folder : file, std::string("cannot be written: ") + std::strerror(errno));
   fs::remove(probe, error);
+}
+
+void refuse_taken(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) return;
+  if (!fs::is_directory(folder, error))
+    throw InvalidInput(folder, "", "is a file, not a folder: nothing was written");
+  if (!fs::is_empty(folder, error) || error)
+    throw InvalidInput(folder, "", "exists and is not empty: nothing was written");
 }
 
 }  // namespace arthronaut::files

@@ -14,7 +14,11 @@ void make_whole_folder(const std::filesystem::path& folder,
                        const std::function<void(const std::filesystem::path& unfinished)>& fill);
 
 // Before work whose result goes there: throws IoError, which names the folder, where nothing can be made in
-// `folder`, or, while it is not there, in the nearest one above it that is.
-void refuse_unwritable(const std::filesystem::path& folder);
+// `folder`, or, while it is not there, in the nearest one above it that is. A file that is to be written
+// there is named in its place.
+void refuse_unwritable(const std::filesystem::path& folder, const std::filesystem::path& file = {});
+
+// The same of a folder that a command makes: throws InvalidInput unless it is absent or empty.
+void refuse_taken(const std::filesystem::path& folder);
 
 }  // namespace arthronaut::files

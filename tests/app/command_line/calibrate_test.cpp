@@ -131,8 +131,9 @@ TEST_F(CalibrateCommand, RefusesTwoPictures) {
   write("a.png", simulated_stills()[0]);
   write("b.png", simulated_stills()[2]);
   const auto result = calibrate("1.5");
-  expect_refused(result);
+  EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.errors, AllOf(HasSubstr("three pictures"), HasSubstr("has 2")));
+  EXPECT_FALSE(std::filesystem::exists(camera_file()));
 }
 
 TEST_F(CalibrateCommand, RefusesPicturesOfDifferentSize) {

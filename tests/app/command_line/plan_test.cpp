@@ -103,6 +103,9 @@ TEST_F(PlanCommand, WhatWouldDoNothingIsRefused) {
   const auto file = run({"plan", "--export", folder_ / "knee.arthro" / "plan.json"});
   EXPECT_EQ(file.exit_code, 3);
   EXPECT_THAT(file.errors, HasSubstr("plan.json: cannot be written: Not a directory"));
+  const auto off = run({"plan", "--bone", "femur", "--entry", "500,0,0", "--direction", "1,0,0"});
+  EXPECT_EQ(off.exit_code, 3);
+  EXPECT_THAT(off.errors, HasSubstr("knee.arthro: femur: --entry lies"));
   EXPECT_EQ(run({"landmarks", "--roof", "flat"}).exit_code, 2) << "nothing is proposed";
   const auto set = run({"landmarks", "--set", "femur.notch_apex=1,2,nan"});
   EXPECT_EQ(set.exit_code, 2);
@@ -138,7 +141,10 @@ TEST_F(PlanCommand, ExportsPlanAndDrilledBones) {
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / file)) << file;
   // What another program reads is the document alone.
   const auto json = run({"plan", "--bone", "femur", "--json", "--export", folder_ / "again"});
-  EXPECT_TRUE(nlohmann::json::accept(json.output)) << json.output;
+  const auto document = nlohmann::json::parse(json.output);
+  EXPECT_EQ(document.at("format"), "arthronaut.tunnel");
+  EXPECT_EQ(document.at("version"), 1);
+  EXPECT_EQ(document.at("bone"), "femur");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "again" / "plan.csv"));
   EXPECT_EQ(run({"plan", "--versions", "--json"}).exit_code, 2) << "versions are listed in words";
   // Read back, they are the same plan.
@@ -165,6 +171,18 @@ TEST_F(PlanCommand, VersionsAreKeptComparedAndTaken) {
 }
 
 // One bundle after the other gives two tunnels; none of them is ever shown or changed for the other.
+// Where no tunnel is planned the list is empty: never null.
+TEST_F(PlanCommand, JsonSaysWhatItIs) {
+  EXPECT_EQ(run({"plan", "--bone", "femur", "--remove"}).exit_code, 0);
+  for (const auto& arguments :
+       {std::vector<std::string>{"plan", "--json"}, {"plan", "--bone", "femur", "--json"}}) {
+    const auto document = nlohmann::json::parse(run(arguments).output);
+    EXPECT_EQ(document.at("format"), "arthronaut.tunnels");
+    EXPECT_EQ(document.at("version"), 1);
+    EXPECT_EQ(document.at("tunnels").size(), arguments.size() == 2 ? 1U : 0U);
+  }
+}
+
 TEST_F(PlanCommand, TwoBundlesArePlannedShownExportedAndRemoved) {
   const auto am = run({"plan", "--bone", "femur", "--default", "--type", "am", "--json"});
   ASSERT_EQ(am.exit_code, 0) << am.output << am.errors;

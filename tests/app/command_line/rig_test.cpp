@@ -123,6 +123,17 @@ TEST_F(RigCommand, RefusesWhatCannotBeReliedOn) {
   EXPECT_THAT(folder_.names(), ElementsAre("out.doubtful.json", "out.json", "poses.csv"));
 }
 
+// A size that nobody has said is never taken in silence, on standard output's own side either.
+TEST_F(RigCommand, SaysWhatSizeItTakes) {
+  write_poses(25);
+  EXPECT_THAT(rig().output, HasSubstr("marker 2, 12: taken to be 4 mm wide"));
+  const auto piped = run_program({"rig", "--poses", folder_ / "poses.csv", "--tool", "probe", "-o", "-"});
+  EXPECT_THAT(piped.errors, HasSubstr("taken to be 4 mm wide"));
+  EXPECT_THAT(piped.output, ::testing::StartsWith("{"));
+  const auto said = rig({"--size-mm", "4"});
+  EXPECT_THAT(said.output + said.errors, ::testing::Not(HasSubstr("taken to be")));
+}
+
 // Wrong input names what is wrong.
 TEST_F(RigCommand, NamesWhatIsWrong) {
   write_poses(25);

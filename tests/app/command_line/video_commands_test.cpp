@@ -147,6 +147,15 @@ TEST_F(VideoCommands, NavigateRecordsWhatReplayFindsAgain) {
   EXPECT_LE(findings[0].at("from"), 7);
   EXPECT_GT(findings[0].at("to"), 7);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "differences.csv"));
+
+  // 2^32 + 2 is no marker 2.
+  ASSERT_EQ(sqlite3_open((session / "session.sqlite").c_str(), &database), SQLITE_OK);
+  sqlite3_exec(database, "UPDATE markers SET marker_id = 4294967298 WHERE frame = 7 AND marker_id = 2",
+               nullptr, nullptr, nullptr);
+  sqlite3_close(database);
+  const auto beyond = run_program({"replay", knee});
+  EXPECT_EQ(beyond.exit_code, 3);
+  EXPECT_THAT(beyond.errors, HasSubstr("session.sqlite: marker_id: 4294967298 is out of range"));
 }
 
 // A video that breaks off leaves no session in the case, and not its camera either.

@@ -54,5 +54,19 @@ TEST(WholeFolder, NeverTakesThePlaceOfOneThatHoldsSomething) {
   EXPECT_EQ(std::distance(fs::directory_iterator(parent.path()), {}), 1);
 }
 
+// What commands ask before their work: a file that stands in the way, or a folder that holds something.
+TEST(WholeFolder, OneThatIsTakenIsToldBeforeTheWork) {
+  const test::TemporaryFolder parent;
+  EXPECT_NO_THROW(refuse_taken(parent / "absent"));
+  fs::create_directory(parent / "there");
+  EXPECT_NO_THROW(refuse_taken(parent / "there"));
+  std::ofstream(parent / "there/mine") << "x";
+  EXPECT_EQ(test::message_of<InvalidInput>([&] { refuse_taken(parent / "there"); }),
+            (parent / "there").string() + ": exists and is not empty: nothing was written");
+  EXPECT_THROW(refuse_taken(parent / "there/mine"), InvalidInput);
+  EXPECT_EQ(test::message_of<IoError>([&] { refuse_unwritable(parent / "there/mine", "report.pdf"); }),
+            "report.pdf: cannot be written: Not a directory");
+}
+
 }  // namespace
 }  // namespace arthronaut::files

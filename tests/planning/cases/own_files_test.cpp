@@ -1,0 +1,29 @@
+#include "planning/cases/own_files.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/temporary_folder.h"
+
+namespace arthronaut::cases {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(OwnFiles, AreTheCasesAndNotWhatLiesBesideThem) {
+  const test::TemporaryFolder folder;
+  const fs::path knee = folder / "Knee.arthro";
+  fs::create_directories(knee / "sessions/0001");
+  std::ofstream(knee / "case.json");
+  for (const char* own : {"case.json", "plan.json", "identity.json", "femur.ply", "camera.json",
+                          "sessions/0001/session.json", "painting/strokes.nrrd", "../Knee.arthro/plan.json"})
+    EXPECT_TRUE(is_own_file(knee / own)) << own;
+  for (const char* beside : {"report.pdf", "achieved.json", "mine/plan.json", "../plan.json"})
+    EXPECT_FALSE(is_own_file(knee / beside)) << beside;
+  fs::create_directory_symlink(knee, folder / "link");
+  EXPECT_TRUE(is_own_file(folder / "link/plan.json"));
+}
+
+}  // namespace
+}  // namespace arthronaut::cases
