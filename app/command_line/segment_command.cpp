@@ -8,7 +8,6 @@
 #include "app/command_line/option_checks.h"
 #include "app/report/segmentation_sheet.h"
 #include "planning/files/format.h"
-#include "planning/files/whole_folder.h"
 #include "planning/geometry/error.h"
 #include "planning/images/volume_file.h"
 #include "planning/images/volume_writer.h"
@@ -98,11 +97,15 @@ std::vector<std::uint8_t> bone_labels(const SegmentArguments& arguments,
   return labels;
 }
 
+bool is_in(const std::vector<std::uint8_t>& labels, std::uint8_t label) {
+  return std::ranges::find(labels, label) != labels.end();
+}
+
 // Islands go first, so that nothing is filled on their account. What is no bone gives way to a bone that
 // encloses it.
 void tidy(const Context& context, const SegmentArguments& arguments, const images::Volume& volume,
           const std::vector<std::uint8_t>& bones, segmentation::Labels& labels) {
-  const auto is_bone = [&](std::uint8_t label) { return std::ranges::find(bones, label) != bones.end(); };
+  const auto is_bone = [&](std::uint8_t label) { return is_in(bones, label); };
   segmentation::Labels tidied = labels;
   for (std::uint8_t& label : tidied)
     if (!is_bone(label)) label = 0;
@@ -151,32 +154,20 @@ std::vector<std::string> judge(const Context& context, const SegmentArguments& a
   return reasons;
 }
 
-// The images and what was painted in them are nobody's to lose, and a file of another ending would be no
-// volume to anything that reads it.
-void refuse_before_the_work(const SegmentArguments& arguments) {
-  namespace fs = std::filesystem;
+// A file of another ending would be no volume to anything that reads it.
+void refuse_arguments(const SegmentArguments& arguments) {
   if (!arguments.report.empty() && arguments.bones.empty())
     throw CLI::RequiredError("beside --report, which bones it draws: --label, as in femur=1,tibia=2,");
-  const fs::path output = arguments.output;
-  if (output.extension() != ".nrrd")
-    throw CLI::ValidationError("--output", output.string() + " does not end in .nrrd, as what is written");
-  std::error_code none;
-  for (const std::string& input : {arguments.volume, arguments.seeds})
-    if (fs::equivalent(output, input, none))
-      throw InvalidInput(output, "", "is what is read: the label map needs a file of its own");
-  for (const fs::path& written : {output, fs::path(arguments.report)}) {
-    if (written.empty()) continue;
-    const fs::path folder = fs::absolute(written).parent_path();
-    if (!fs::is_directory(folder, none))
-      throw IoError(written, "the folder " + folder.string() + " does not exist");
-    files::refuse_unwritable(folder);
-  }
+  if (std::filesystem::path(arguments.output).extension() != ".nrrd")
+    throw CLI::ValidationError("--output", arguments.output + " does not end in .nrrd, as what is written");
+  refuse_before_the_work(
+      {.read = {arguments.volume, arguments.seeds}, .written = {arguments.output, arguments.report}});
 }
 
 void segment(Context& context, const SegmentArguments& arguments) {
   const auto named = arguments.bones.empty() ? std::map<bones::BoneKind, int>{}
                                              : importing::labels_from_text(arguments.bones);
-  refuse_before_the_work(arguments);
+  refuse_arguments(arguments);
   const images::Volume seeds = read(arguments.seeds, "", "Reading the seeds");
   images::Volume volume = read(arguments.volume, arguments.series, "Reading");
   const segmentation::Labels painted = labels_from(arguments.seeds, seeds, volume);
@@ -194,9 +185,15 @@ void segment(Context& context, const SegmentArguments& arguments) {
                                 painting::volume_ml(labels, volume, static_cast<std::uint8_t>(label))));
   }
   context.say("Wrote " + arguments.output + ".");
-  if (named.empty()) return;
-  if (const auto reasons = judge(context, arguments, named, volume, labels); !reasons.empty())
-    context.say_unreliable(arguments.output, reasons);
+  if (named.empty()) {
+    if (counts[0] == 0) context.say("No voxel is 0: --label says which of the labels are bones.");
+    return;
+  }
+  auto reasons = judge(context, arguments, named, volume, labels);
+  if (std::ranges::all_of(painted, [&](std::uint8_t label) { return label == 0 || is_in(bones, label); }))
+    reasons.insert(reasons.begin(),
+                   "no stroke stands for what surrounds the bones: all of it was given to them");
+  if (!reasons.empty()) context.say_unreliable(arguments.output, reasons);
 }
 
 }  // namespace
@@ -229,7 +226,8 @@ void add_segment_command(CLI::App& app, Context& context) {
                   "Fill what a bone encloses, gaps of up to twice so many mm closed before; 0 closes none")
       ->check(between(0, 5));
   sub->add_option("--report", arguments->report,
-                  "Page to write (.pdf): each bone's surface over the images, and what speaks against it");
+                  "Page to write (.pdf): each bone's surface over the images, and what speaks against it")
+      ->check(a_file());
   sub->add_option("--smooth-mm", arguments->smoothing_mm, "Round borders off at this radius; default: not")
       ->check(between(0, 5));
   sub->callback([&context, arguments] { segment(context, *arguments); });

@@ -1,4 +1,5 @@
-#include <iostream>
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -96,6 +97,10 @@ void list_series(const Context& context, const Arguments& arguments) {
                                                          ": " + list.skipped.front().reason + ")";
     throw InvalidInput(arguments.source, "", "holds no image" + first);
   }
+  // Of one file there is nothing else to list. In a folder, what is wrong with each is the list.
+  if (!std::filesystem::is_directory(arguments.source) &&
+      std::ranges::none_of(list.series, &images::ImageSeries::is_readable))
+    throw InvalidInput(arguments.source, "", "cannot be opened: " + list.series.front().refusal);
   if (arguments.as_json) {
     print_json(list);
   } else {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "planning/files/atomic_file.h"
@@ -27,8 +28,11 @@ class SegmentCommand : public ::testing::Test {
   }
   // With one voxel more, of this label.
   void write_seeds(std::uint8_t label = 0, const Eigen::Vector3i& at = {0, 0, 0}) const {
+    write_seeds(test::strokes(truth_, {5, 6}), label, at);
+  }
+  void write_seeds(const std::vector<std::uint8_t>& painted, std::uint8_t label = 0,
+                   const Eigen::Vector3i& at = {0, 0, 0}) const {
     images::Volume seeds = truth_;
-    const auto painted = test::strokes(truth_, {5, 6});
     seeds.values.assign(painted.begin(), painted.end());
     if (label != 0) seeds.values[seeds.index(at.x(), at.y(), at.z())] = label;
     images::write_volume(folder_ / "seeds.nrrd", seeds);
@@ -93,6 +97,17 @@ TEST_F(SegmentCommand, RemovesIslandsAndFillsHoles) {
   const auto filled = segment({"--label", "femur=5,tibia=6", "--largest", "--fill-holes", "1"});
   EXPECT_EQ(filled.exit_code, 0) << filled.errors;
   EXPECT_EQ(grown_at(slip), 6.0F);
+}
+
+// Where nothing was painted for what surrounds the bones, all of it becomes bone: said, and not relied on.
+TEST_F(SegmentCommand, DoubtsBonesWithoutSurroundings) {
+  auto painted = test::strokes(truth_, {5, 6});
+  std::ranges::replace(painted, test::kBackground, std::uint8_t{0});
+  write_seeds(painted);
+  const auto named = segment({"--label", "femur=5,tibia=6"});
+  EXPECT_EQ(named.exit_code, 4);
+  EXPECT_THAT(named.errors, HasSubstr("no stroke stands for what surrounds the bones"));
+  EXPECT_THAT(segment().output, HasSubstr("No voxel is 0: --label says which of the labels are bones."));
 }
 
 // What cannot be is said before anything is grown, and nothing is written.

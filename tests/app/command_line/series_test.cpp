@@ -74,6 +74,9 @@ TEST_F(SeriesCommand, WhatCannotBeLookedIntoIsSaid) {
   };
   expect_refused({"series", folder_ / "absent"}, "absent: does not exist");
   expect_refused({"series", folder_ / "disc" / "readme.txt"}, "readme.txt: is no folder and no volume");
+  // Of one file there is nothing else to list.
+  expect_refused({"series", folder_ / "disc" / "broken.nrrd"}, "broken.nrrd: cannot be opened: ");
+  expect_refused({"series", folder_ / "disc" / "broken.nrrd", "--json"}, "broken.nrrd: cannot be opened: ");
   // Without memory for the files' own codecs: the folder is named, and the program ends as it should.
   expect_refused({"series", folder_ / "disc", "--memory-limit-gib", "0.001"},
                  (folder_ / "disc").string() + ": ");
