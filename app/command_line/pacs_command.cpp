@@ -11,6 +11,7 @@
 #include "planning/files/format.h"
 #include "planning/files/json_document.h"
 #include "planning/geometry/error.h"
+#include "planning/pacs/checks.h"
 #include "planning/pacs/web.h"
 
 namespace arthronaut::command_line {
@@ -31,6 +32,8 @@ struct Connection {
   [[nodiscard]] pacs::WebServer server() const {
     pacs::WebServer all = web;
     while (all.url.ends_with('/')) all.url.pop_back();
+    // What is wrong with the address is wrong usage; with the authority's file or the password's, it is not.
+    refuse_together([&all] { pacs::check(all); });
     all.authority = tls.authority;
     if (!all.user.empty()) all.password = pacs::web_password(web_password_file);
     pacs::check(all);
@@ -42,7 +45,8 @@ struct Connection {
   }
 
   [[nodiscard]] pacs::ConnectionOptions chosen() const {
-    if (!with_tls && !is_web() && !tls.authority.empty()) throw InvalidInput("--ca is of --tls, or of --web");
+    if (!with_tls && !is_web() && !tls.authority.empty())
+      throw CLI::ValidationError("--ca", "is of --tls, or of --web");
     pacs::ConnectionOptions all = options;
     if (with_tls) all.tls = tls;
     pacs::check(all);
@@ -53,7 +57,8 @@ struct Connection {
 // The PACS is one or the other.
 CLI::Option* add_web_options(CLI::App& sub, Connection& connection) {
   CLI::Option_group* either = sub.add_option_group("Which PACS");
-  either->add_option("--peer", connection.peer, "AET@HOST:PORT of the PACS");
+  either->add_option("--peer", connection.peer, "AET@HOST:PORT of the PACS")
+      ->check(read_by([](const std::string& text) { (void)pacs::parse_peer(text); }));
   CLI::Option* web = either->add_option("--web", connection.web.url,
                                         "DICOMweb instead: https://HOST/dicom-web; --ca holds its authority, "
                                         "where that is not one of the system's");
@@ -67,7 +72,8 @@ CLI::Option* add_web_options(CLI::App& sub, Connection& connection) {
 
 void add_connection_options(CLI::App& sub, Connection& connection, bool peer_may_call_us) {
   CLI::Option* web = add_web_options(sub, connection);
-  sub.add_option("--aet", connection.options.our_ae_title, "Our own AE title; default: ARTHRONAUT");
+  sub.add_option("--aet", connection.options.our_ae_title, "Our own AE title; default: ARTHRONAUT")
+      ->check(read_by(pacs::check_ae_title));
   CLI::Option* tls =
       sub.add_flag("--tls", connection.with_tls, "Speak TLS; the peer's certificate is checked");
   CLI::Option* files[] = {sub.add_option("--cert", connection.tls.certificate, "Our certificate (PEM)"),
@@ -145,6 +151,7 @@ struct FindArguments : Connection {
 };
 
 void find(const Context& context, const FindArguments& arguments) {
+  refuse_together([&] { pacs::check(arguments.keys, arguments.find); });
   const std::string where = arguments.where();
   const pacs::ConnectionOptions chosen = arguments.chosen();
   const StopOnInterruption stop;
@@ -159,6 +166,7 @@ void find(const Context& context, const FindArguments& arguments) {
     for (const std::string& line : lines_of(found)) context.say(line);
   }
   // Beside the answer, which is a whole one.
+  if (context.quiet) return;
   if (found.patients.empty()) std::cerr << "arthronaut: " << where << " has nothing of the kind\n";
   if (found.is_cut)
     std::cerr << "arthronaut: there are more than " << arguments.find.most_studies
@@ -195,6 +203,7 @@ struct GetArguments : Connection {
 
 void get(const Context& context, const GetArguments& arguments) {
   using Outcome = pacs::RetrieveSummary::Outcome;
+  refuse_together([&] { pacs::check(arguments.request); });
   const std::string where = arguments.where();
   const pacs::ConnectionOptions connection = arguments.chosen();
   pacs::RetrieveSummary summary;
@@ -235,7 +244,8 @@ void add_get(CLI::App& pacs_app, Context& context) {
   sub->add_option("--study", arguments->request.study_uid, "UID of its study, where the PACS asks for that");
   sub->add_option("-o,--output", arguments->request.folder,
                   "Folder to write: absent, empty, or with images of this series")
-      ->required();
+      ->required()
+      ->check(a_file());
   sub->add_option_function<double>(
          "--most-gb",
          [arguments](double gigabytes) {

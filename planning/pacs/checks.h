@@ -1,4 +1,4 @@
-// What is wrong with what is asked for, whichever way it goes. Inner header of pacs.
+// What is wrong with what is asked for, whichever way it goes: for before a connection is made.
 #pragma once
 
 #include "planning/pacs/query.h"

@@ -168,6 +168,18 @@ bool add_series(Asker& asker, const FindKeys& keys, const FoundPatient& patient,
   return is_done;
 }
 
+// 20260131, or a range, of which one end may be open (PS3.5, DA).
+bool is_date_or_range(std::string_view text) {
+  const auto is_date = [](std::string_view part) {
+    constexpr std::size_t kDigits = 8;
+    return part.size() == kDigits && part.find_first_not_of("0123456789") == std::string_view::npos;
+  };
+  const auto dash = text.find('-');
+  if (dash == std::string_view::npos) return is_date(text);
+  const std::string_view from = text.substr(0, dash), to = text.substr(dash + 1);
+  return (from.empty() || is_date(from)) && (to.empty() || is_date(to)) && text.size() > 1;
+}
+
 }  // namespace
 
 void check(const FindKeys& keys, const FindOptions& options) {
@@ -180,9 +192,7 @@ void check(const FindKeys& keys, const FindOptions& options) {
        {&keys.patient_id, &keys.patient_name, &keys.accession_number, &keys.modality})
     if (text->find('\\') != std::string::npos)
       throw InvalidInput("\"" + *text + "\" holds a backslash, which DICOM keeps for lists");
-  const bool is_date = std::all_of(keys.study_date.begin(), keys.study_date.end(),
-                                   [](char c) { return (c >= '0' && c <= '9') || c == '-'; });
-  if (!is_date)
+  if (!keys.study_date.empty() && !is_date_or_range(keys.study_date))
     throw InvalidInput("\"" + keys.study_date + "\" is no date: it is written 20260131 or 20260101-20260131");
   if (options.most_studies < 1) throw InvalidInput("most_studies: must be at least 1");
 }

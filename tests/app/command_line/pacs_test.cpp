@@ -97,11 +97,12 @@ TEST_F(PacsCommand, SaysWhatIsWrong) {
   EXPECT_EQ(nothing.exit_code, 0);
   EXPECT_THAT(nlohmann::json::parse(nothing.output)["patients"], testing::IsEmpty());
   EXPECT_THAT(nothing.errors, HasSubstr("has nothing of the kind"));
+  EXPECT_EQ(run({"find", "--patient", "NOBODY", "--quiet"}).errors, "");
   const auto unknown = run({"get", "--series", "1.2.3", "-o", got_ / "scan"});
   EXPECT_EQ(unknown.exit_code, 3);
   EXPECT_THAT(unknown.errors, HasSubstr("has no series 1.2.3"));
   EXPECT_THAT(run({"get", "--series", "knee", "-o", got_ / "scan"}).errors, HasSubstr("no UID"));
-  EXPECT_EQ(run_program({"pacs", "echo", "--peer", "127.0.0.1:104"}).exit_code, 3);
+  EXPECT_EQ(run_program({"pacs", "echo", "--peer", "127.0.0.1:104"}).exit_code, 2);
   EXPECT_THAT(run_program({"pacs", "echo", "--peer", "127.0.0.1:104"}).errors, HasSubstr("has no AE title"));
   EXPECT_EQ(run_program({"pacs", "echo", "--peer", peer(), "--tls"}).exit_code, 2);
   EXPECT_EQ(run_program({"pacs"}).exit_code, 2);
@@ -134,8 +135,8 @@ TEST(PacsWebCommand, FindsFetchesAndSends) {
   EXPECT_EQ(fetched["images"], kImageCount);
   EXPECT_EQ(run({"get", "--series", "1.2.3", "-o", got / "none"}).exit_code, 3);
   EXPECT_EQ(run({"echo", "--peer", "PACS@host:104"}).exit_code, 2);
-  EXPECT_EQ(run({"echo", "--user", "me"}).exit_code, 3);  // http
-  EXPECT_EQ(run_program({"pacs", "echo", "--web", "ftp://host"}).exit_code, 3);
+  EXPECT_EQ(run({"echo", "--user", "me"}).exit_code, 2);  // http
+  EXPECT_EQ(run_program({"pacs", "echo", "--web", "ftp://host"}).exit_code, 2);
 }
 
 TEST_F(PacsCommand, AFullDiskLeavesNothingHalf) {

@@ -116,6 +116,48 @@ TEST(CommandLine, RefusesAnUnknownMedium) {
   EXPECT_THAT(result.errors, HasSubstr("mud"));
 }
 
+// Before any file is read or any peer is called: a value that cannot be right is wrong usage, and is named.
+TEST(CommandLine, AValueThatCannotBeRightIsWrongUsage) {
+  const std::vector<std::string> with_bone{"register", "--bone", "b", "--curves", "c", "-o", "r.json"};
+  const std::vector<std::string> with_case{"navigate", "Knee.arthro", "--video", "clip.mkv"};
+  const std::vector<std::string> with_peer{"--peer", "PACS@127.0.0.1:104"};
+  const auto expect_refused = [](std::vector<std::string> arguments, const std::vector<std::string>& more,
+                                 const std::string& named) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto result = run_program(arguments);
+    EXPECT_EQ(result.exit_code, 2) << named;
+    EXPECT_THAT(result.errors, HasSubstr(named));
+  };
+  for (const auto& command : {with_bone, with_case}) {
+    expect_refused(command, {"--space", "las"}, "--space");
+    expect_refused(command, {"--unit", "parsec"}, "--unit");
+  }
+  expect_refused(with_bone, {"--target", "1e308,0,0"}, "--target");
+  for (const char* command : {"demo", "phantom"})
+    expect_refused({command, "-o", "k"}, {"--seed", "-1"}, "--seed");
+  expect_refused(with_bone, {"--seed", "-1"}, "--seed");
+  expect_refused({"markers", "-o", "m.pdf"}, {"--ids", "3,50"}, "--ids");
+  expect_refused({"markers", "-o", "m.pdf"}, {"--size-mm", "101"}, "--size-mm");
+  expect_refused({"calibrate", "--square-mm", "1.5", "-o", "c.json"}, {"a.png", "b.png"}, "three pictures");
+  expect_refused({"rig", "--poses", "p.csv", "--tool", "probe", "-o", "t.json"}, {"--markers", "5,5"},
+                 "--markers");
+  expect_refused({"rig", "--poses", "p.csv", "--tool", "", "-o", "t.json"}, {}, "--tool");
+  expect_refused({"pacs", "echo"}, {"--peer", "PACS@host:0"}, "--peer");
+  expect_refused({"pacs", "echo", "--aet", "back\\slash"}, with_peer, "--aet");
+  expect_refused({"pacs", "find"}, with_peer, "names no patient");
+  for (const char* date : {"2026", "20260131-2027", "-"})
+    expect_refused({"pacs", "find", "--date=" + std::string(date)}, with_peer, "is no date");
+  expect_refused({"pacs", "get", "--series", "knee", "-o", "got"}, with_peer, "no UID");
+}
+
+// It stands on the program as well as on what it does.
+TEST(CommandLine, QuietStandsOnTheProgramToo) {
+  const test::TemporaryFolder folder;
+  const auto result = run_program({"--quiet", "phantom", "-o", folder / "Knee.arthro"});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(result.output + result.errors, "");
+}
+
 struct Help {
   std::vector<std::string> subcommands;
   std::vector<std::pair<std::string, std::string>> fractions;  // options that take them, with their type

@@ -153,7 +153,8 @@ TEST(PacsFind, RefusesASearchForEverythingAndWhatCannotBeAsked) {
   EXPECT_THAT(refusal({}), HasSubstr("names no patient"));
   EXPECT_THAT(refusal({.modality = "CT"}), HasSubstr("names no patient"));
   EXPECT_THAT(refusal({.patient_id = "1\\2"}), HasSubstr("backslash"));
-  EXPECT_THAT(refusal({.study_date = "last week"}), HasSubstr("is no date"));
+  for (const char* date : {"last week", "2026", "20260131-2027", "-"})
+    EXPECT_THAT(refusal({.study_date = date}), HasSubstr("is no date")) << date;
   EXPECT_THAT(refusal({.study_uid = "1.2.x"}), HasSubstr("is no UID"));
 }
 
