@@ -12,7 +12,6 @@ class HeldMouse : public ::testing::Test {
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = {400, 300};
-    io.ConfigInputTrickleEventQueue = false;  // a slow frame sees all that has happened at once
     io.IniFilename = nullptr;
     unsigned char* pixels = nullptr;
     int width = 0, height = 0;
@@ -24,8 +23,8 @@ class HeldMouse : public ::testing::Test {
   static ImVec2 way_in_frame(float x, float y, bool is_down) {
     ImGuiIO& io = ImGui::GetIO();
     io.DeltaTime = 0.5F;
-    io.AddMousePosEvent(x, y);
-    io.AddMouseButtonEvent(ImGuiMouseButton_Left, is_down);
+    io.MousePos = {x, y};
+    io.MouseDown[ImGuiMouseButton_Left] = is_down;
     ImGui::NewFrame();
     ImGui::SetNextWindowPos({0, 0});
     ImGui::SetNextWindowSize({400, 300});
