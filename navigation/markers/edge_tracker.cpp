@@ -162,7 +162,10 @@ class EdgeTracker final : public MarkerTracker {
         code = read_covered_code(frame.image, frame.camera, square.tangent, codes_);
         if (code && (observations_[code->index].is_tracked() || is_of_another(square))) continue;
       }
-      candidates_.push_back({square.corners_px, code ? codes_[code->index].id : MarkerCandidate::kNoCode});
+      const MarkerCandidate candidate{square.corners_px,
+                                      code ? codes_[code->index].id : MarkerCandidate::kNoCode};
+      if (is_candidate(candidate)) continue;
+      candidates_.push_back(candidate);
       if (!code) continue;
       MarkerTrack& track = tracks_[code->index];
       MarkerObservation& known = observations_[code->index];
@@ -172,6 +175,17 @@ class EdgeTracker final : public MarkerTracker {
       }
       if (attempts_[code->index]++ < kMostSquares) acquire(track, square, code->turn, frame, known);
     }
+  }
+
+  // Found in this frame before, by another contrast.
+  [[nodiscard]] bool is_candidate(const MarkerCandidate& candidate) const {
+    constexpr double kSamePx = 1;
+    const auto middle = [](const MarkerCandidate& c) {
+      return Eigen::Vector2d(0.25 * (c.corners_px[0] + c.corners_px[1] + c.corners_px[2] + c.corners_px[3]));
+    };
+    return std::any_of(candidates_.begin(), candidates_.end(), [&](const MarkerCandidate& c) {
+      return c.id == candidate.id && (middle(c) - middle(candidate)).norm() < kSamePx;
+    });
   }
 
   // Looks for a marker that was lost: where it went on to by itself, and where another one that is seen took
