@@ -306,14 +306,7 @@ void add_navigate_command(CLI::App& app, Context& context) {
       "registration.json to guide by. Default: the newest reliable one of the case for this world "
       "marker; strokes of the probe give a new one");
   add_cartilage_option(*command, arguments->cartilage.mesh, "; copied into the case. Default: the case's");
-  command
-      ->add_option("--space", arguments->cartilage.space,
-                   "Frame of the cartilage's mesh when its file doesn't say: lps (default) or ras")
-      ->check(mesh_space());
-  command
-      ->add_option("--unit", arguments->cartilage.unit,
-                   "Length unit of the cartilage's mesh: mm (default), cm, m or in")
-      ->check(mesh_unit());
+  add_mesh_options(*command, arguments->cartilage.space, arguments->cartilage.unit, "the cartilage's mesh");
   arguments->probe_option =
       command->add_option("--probe", arguments->probe, "Name of the touch probe in the tools")
           ->capture_default_str();

@@ -104,14 +104,6 @@ CLI::Validator a_file() {
           ""};
 }
 
-CLI::Validator mesh_space() {
-  return read_by([](const std::string& text) { (void)bones::space_from_text(text); });
-}
-
-CLI::Validator mesh_unit() {
-  return read_by([](const std::string& text) { (void)bones::length_unit_from_text(text); });
-}
-
 CLI::Validator read_by(std::function<void(const std::string&)> read) {
   return {[read = std::move(read)](const std::string& text) {
             try {
@@ -122,6 +114,14 @@ CLI::Validator read_by(std::function<void(const std::string&)> read) {
             return std::string();
           },
           ""};
+}
+
+void add_mesh_options(CLI::App& command, std::string& space, std::string& unit, const std::string& mesh) {
+  command
+      .add_option("--space", space, "Frame of " + mesh + " when its file doesn't say: lps (default) or ras")
+      ->check(read_by([](const std::string& text) { (void)bones::space_from_text(text); }));
+  command.add_option("--unit", unit, "Length unit of " + mesh + ": mm, cm, m or in")
+      ->check(read_by([](const std::string& text) { (void)bones::length_unit_from_text(text); }));
 }
 
 void refuse_together(const std::function<void()>& check) {

@@ -20,11 +20,10 @@ namespace arthronaut::command_line {
 // Not empty; and of what is no text, not "-" either, which stands for standard output.
 [[nodiscard]] CLI::Validator a_name();
 [[nodiscard]] CLI::Validator a_file();
-// Of a mesh: its frame (lps, ras) and its unit (mm, cm, m, in).
-[[nodiscard]] CLI::Validator mesh_space();
-[[nodiscard]] CLI::Validator mesh_unit();
 // What `read` throws of a value is what is wrong with it.
 [[nodiscard]] CLI::Validator read_by(std::function<void(const std::string&)> read);
+// --space and --unit of what `mesh` names ("the mesh"); empty where they are not given.
+void add_mesh_options(CLI::App& command, std::string& space, std::string& unit, const std::string& mesh);
 // What `check` throws of several options together is wrong usage too.
 void refuse_together(const std::function<void()>& check);
 

@@ -96,12 +96,7 @@ void add_register_command(CLI::App& app, Context& context) {
       ->add_option("--seed", arguments->seed,
                    "Seed of the random search; the same seed gives the same result")
       ->check(a_seed());
-  command
-      ->add_option("--space", arguments->space,
-                   "Frame of the mesh when the file doesn't say: lps (default) or ras")
-      ->check(mesh_space());
-  command->add_option("--unit", arguments->unit, "Length unit of the mesh: mm, cm, m or in")
-      ->check(mesh_unit());
+  add_mesh_options(*command, arguments->space, arguments->unit, "the mesh");
   command->add_option("-o,--output", arguments->output, "registration.json to write; - is standard output")
       ->required()
       ->check(a_name());

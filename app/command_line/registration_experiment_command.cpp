@@ -123,12 +123,7 @@ void add_registration_experiment(CLI::App& experiment, Context& context) {
                         "of the femur's notch");
   command->add_flag("--no-marker-prior", arguments->no_marker_prior,
                     "Don't assume that the world marker sits on the bone");
-  command
-      ->add_option("--space", arguments->space,
-                   "Frame of the mesh when the file doesn't say: lps (default) or ras")
-      ->check(mesh_space());
-  command->add_option("--unit", arguments->unit, "Length unit of the mesh: mm, cm, m or in")
-      ->check(mesh_unit());
+  add_mesh_options(*command, arguments->space, arguments->unit, "the mesh");
   command->add_option("--plot", arguments->plot, "PNG to draw the paper's plot into")->check(a_file());
   command
       ->add_option("--onto", arguments->registered_to,

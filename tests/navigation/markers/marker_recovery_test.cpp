@@ -32,6 +32,14 @@ class MarkerRecovery : public ::testing::Test {
               1.5);
     EXPECT_LT((seen.camera_from_marker.translation_mm - truth.translation_mm).norm(), 0.2);
   }
+  // From nothing, at pose_, and nothing else. In three frames, since each is searched in another way.
+  void expect_found(const RenderedPicture& shown) {
+    tracker_->reset();
+    for (int frame = 0; frame < 3; ++frame) (void)tracker_->track(shown.view(), camera_, frame * kFrameNs);
+    const auto seen = tracker_->track(shown.view(), camera_, 3 * kFrameNs);
+    expect_near(seen[0], pose_);
+    EXPECT_FALSE(seen[1].is_tracked());
+  }
 
   camera::CameraModel camera_ = small_scope();
   std::vector<MarkerCode> codes_ = codes_4x4_50();
@@ -39,34 +47,26 @@ class MarkerRecovery : public ::testing::Test {
   RigidTransform pose_ = facing_pose(0.5, 0.3, 15, 20, 12, 25);
 };
 
-// From nothing, though a highlight takes a corner with the cells about it. Three frames, since not every one
-// is searched for what is covered.
+// From nothing, though a highlight takes a corner with the cells about it.
 TEST_F(MarkerRecovery, FindsAMarkerUnderAHighlight) {
   auto shown = picture(pose_);
   const Eigen::Vector2d corner = seen_at(pose_, 1.6, 1.6);
   shown.shine(corner.x(), corner.y(), 8, kHighlight);
-  for (int frame = 0; frame < 3; ++frame) (void)tracker_->track(shown.view(), camera_, frame * kFrameNs);
-  const auto seen = tracker_->track(shown.view(), camera_, 3 * kFrameNs);
-  expect_near(seen[0], pose_);
-  EXPECT_FALSE(seen[1].is_tracked());
+  expect_found(shown);
 }
 
 // From nothing, though hardly a piece is seen of one side: the ends of those beside it say where it lies.
 TEST_F(MarkerRecovery, FindsAMarkerOfWhichAHighlightHidesOneSide) {
   for (const Eigen::Vector2d& side :
        {Eigen::Vector2d(-1, 0), Eigen::Vector2d(0, -1), Eigen::Vector2d(0, 1)}) {
-    tracker_->reset();
     auto shown = picture(pose_);
     for (const double along_mm : {-1.2, -0.4, 0.4, 1.2}) {
       const Eigen::Vector2d place_mm = 1.9 * side + along_mm * Eigen::Vector2d(side.y(), side.x());
       const Eigen::Vector2d place = seen_at(pose_, place_mm.x(), place_mm.y());
       shown.shine(place.x(), place.y(), 8, kHighlight);
     }
-    for (int frame = 0; frame < 3; ++frame) (void)tracker_->track(shown.view(), camera_, frame * kFrameNs);
-    const auto seen = tracker_->track(shown.view(), camera_, 3 * kFrameNs);
     SCOPED_TRACE(::testing::Message() << "side " << side.transpose());
-    expect_near(seen[0], pose_);
-    EXPECT_FALSE(seen[1].is_tracked());
+    expect_found(shown);
   }
 }
 
@@ -77,10 +77,7 @@ TEST_F(MarkerRecovery, FindsAMarkerThatHighlightsCutInTwo) {
     const Eigen::Vector2d place = seen_at(pose_, 0.2, y_mm);
     shown.shine(place.x(), place.y(), 5, kHighlight);
   }
-  for (int frame = 0; frame < 3; ++frame) (void)tracker_->track(shown.view(), camera_, frame * kFrameNs);
-  const auto seen = tracker_->track(shown.view(), camera_, 3 * kFrameNs);
-  expect_near(seen[0], pose_);
-  EXPECT_FALSE(seen[1].is_tracked());
+  expect_found(shown);
 }
 
 // From nothing, though something as dark as blood, ragged, lies across its margin and joins its square to
@@ -92,20 +89,14 @@ TEST_F(MarkerRecovery, FindsAMarkerWhoseMarginIsStained) {
   for (const auto& [from, up] : {std::pair(-32, 4), std::pair(-20, 12), std::pair(-8, 16), std::pair(4, 14),
                                  std::pair(16, 22), std::pair(28, 9)})
     shown.veil(x + from, y - up, x + from + 12, y + 40 + up, 0.32, 8);
-  for (int frame = 0; frame < 3; ++frame) (void)tracker_->track(shown.view(), camera_, frame * kFrameNs);
-  const auto seen = tracker_->track(shown.view(), camera_, 3 * kFrameNs);
-  expect_near(seen[0], pose_);
-  EXPECT_FALSE(seen[1].is_tracked());
+  expect_found(shown);
 }
 
 // From nothing, through smoke that leaves a third of the contrast.
 TEST_F(MarkerRecovery, FindsAMarkerBehindAVeil) {
   auto shown = picture(pose_);
   shown.veil(0, 0, 800, 600, 0.3, 130);
-  for (int frame = 0; frame < 2; ++frame) (void)tracker_->track(shown.view(), camera_, frame * kFrameNs);
-  const auto seen = tracker_->track(shown.view(), camera_, 2 * kFrameNs);
-  expect_near(seen[0], pose_);
-  EXPECT_FALSE(seen[1].is_tracked());
+  expect_found(shown);
 }
 
 // Out of sight for four frames, then half a side away and under a highlight.
