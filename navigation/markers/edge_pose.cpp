@@ -167,22 +167,33 @@ EdgePose fit_edge_pose(const camera::CameraModel& camera, double size_mm, std::s
   return result;
 }
 
-bool may_be_tilted_back(const camera::CameraModel& camera, double size_mm,
-                        std::span<const EdgeSample> samples, std::span<const EdgeMeasurement> measurements,
-                        const EdgePose& fit, const Corners& corners_px, const BloomPrior& bloom,
-                        std::vector<char>& scratch) {
+std::optional<EdgePose> rival_tilt(const camera::CameraModel& camera, double size_mm,
+                                   std::span<const EdgeSample> samples,
+                                   std::span<const EdgeMeasurement> measurements, const EdgePose& fit,
+                                   const Corners& corners_px, const BloomPrior& bloom,
+                                   std::vector<char>& scratch) {
   const auto corners = refine_square_pose(camera, corners_px, size_mm, tilted_back(fit.camera_from_marker));
-  if (!corners || (corners->rms_px > kNearlySamePx && fit.scale < kPoorScale)) return false;
+  if (!corners) return std::nullopt;
+  const bool are_near = corners->rms_px <= kNearlySamePx;
+  if (!are_near && fit.scale < kPoorScale) return std::nullopt;
   const EdgePose other =
       fit_edge_pose(camera, size_mm, samples, measurements, corners->camera_from_marker, bloom, scratch);
   if (!other.converged ||
       geometry::rotation_angle_rad(fit.camera_from_marker.rotation.conjugate() *
                                    other.camera_from_marker.rotation) < kHarmlessTiltRad) {
-    return false;
+    return std::nullopt;
   }
-  const double independent = std::min(fit.inliers, other.inliers) / kCorrelatedEdges;
   const double noise = std::max(1.0, std::min(fit.scale, other.scale));
-  return independent * (other.scale * other.scale - fit.scale * fit.scale) < kMinChiSquared * noise * noise;
+  const auto square = [noise](const EdgePose& pose) { return std::pow(pose.scale / noise, 2); };
+  // An edge that a pose leaves out speaks against it, by what Tukey's cost is at most.
+  const int most = std::max(fit.inliers, other.inliers);
+  const auto cost = [&](const EdgePose& pose) {
+    return pose.inliers * square(pose) + (most - pose.inliers) * kTukey * kTukey / 3;
+  };
+  double told = cost(other) - cost(fit);
+  if (are_near) told = std::min(told, std::min(fit.inliers, other.inliers) * (square(other) - square(fit)));
+  if (told >= kMinChiSquared * kCorrelatedEdges) return std::nullopt;
+  return other;
 }
 
 RowTrend row_trend(const camera::CameraModel& camera, double size_mm, std::span<const EdgeSample> samples,

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <span>
 
 #include "navigation/camera/camera_model.h"
@@ -41,14 +42,15 @@ struct BloomPrior {
                                      const geometry::RigidTransform& start, const BloomPrior& bloom,
                                      std::vector<char>& is_inlier);
 
-// Whether the face could as well be tilted the other way about the line of sight, by more than is harmless,
-// for all that these edges tell. `corners_px`: where the fit has its corners.
+// The pose whose face is tilted the other way about the line of sight, by more than is harmless, where these
+// edges do not tell it from the fit for the worse; it may be much the better one. nullopt: they do.
+// `corners_px`: where the fit has its corners.
 inline constexpr double kHarmlessTiltRad = 3 * geometry::kPi / 180;
-[[nodiscard]] bool may_be_tilted_back(const camera::CameraModel& camera, double size_mm,
-                                      std::span<const EdgeSample> samples,
-                                      std::span<const EdgeMeasurement> measurements, const EdgePose& fit,
-                                      const Corners& corners_px, const BloomPrior& bloom,
-                                      std::vector<char>& scratch);
+[[nodiscard]] std::optional<EdgePose> rival_tilt(const camera::CameraModel& camera, double size_mm,
+                                                 std::span<const EdgeSample> samples,
+                                                 std::span<const EdgeMeasurement> measurements,
+                                                 const EdgePose& fit, const Corners& corners_px,
+                                                 const BloomPrior& bloom, std::vector<char>& scratch);
 
 // What the edges of a pose say of when its rows were exposed.
 [[nodiscard]] RowTrend row_trend(const camera::CameraModel& camera, double size_mm,

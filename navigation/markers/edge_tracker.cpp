@@ -123,17 +123,18 @@ class EdgeTracker final : public MarkerTracker {
     // The dearer search takes the place of the other now and then; what was just lost is looked for before.
     const bool is_for_covered = searches_ % kSearchesForCovered == 0 && is_missing();
     if (!is_for_covered) {
-      take_squares(search_.find(frame.camera), frame);
+      take_squares(search_.find(frame.camera), frame, Pass::Usual);
       if (is_missing()) {
         const Contrast other = searches_ % kSearchesForCovered == 1 ? Contrast::Deep : Contrast::Faint;
-        take_squares(search_.find(frame.camera, other), frame);
+        take_squares(search_.find(frame.camera, other), frame, Pass::OtherContrast);
       }
     }
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
       const std::size_t i = (frames_ + k) % tracks_.size();
       if (!observations_[i].is_tracked()) recover(i, frame);
     }
-    if (is_for_covered && is_missing()) take_squares(search_.find_covered(frame.camera), frame, true);
+    if (is_for_covered && is_missing())
+      take_squares(search_.find_covered(frame.camera), frame, Pass::Covered);
   }
 
   // A marker is missing that was there a short while ago, or may be found for the first time.
@@ -152,39 +153,34 @@ class EdgeTracker final : public MarkerTracker {
                        [](const MarkerObservation& seen) { return !seen.is_tracked(); });
   }
 
-  void take_squares(std::span<const FoundSquare> squares, const TrackedFrame& frame,
-                    bool are_covered = false) {
+  enum class Pass { Usual, OtherContrast, Covered };
+  void take_squares(std::span<const FoundSquare> squares, const TrackedFrame& frame, Pass pass) {
     for (const FoundSquare& square : squares) {
       auto code = read_code(frame.image, frame.camera, square.tangent, codes_);
       // Nothing that is tracked is doubted for what was read in part, and what is read in part where another
       // marker stands is a part of that one.
-      if (!code && are_covered) {
+      if (!code && pass == Pass::Covered) {
         code = read_covered_code(frame.image, frame.camera, square.tangent, codes_);
         if (code && (observations_[code->index].is_tracked() || is_of_another(square))) continue;
       }
-      const MarkerCandidate candidate{square.corners_px,
-                                      code ? codes_[code->index].id : MarkerCandidate::kNoCode};
-      if (is_candidate(candidate)) continue;
-      candidates_.push_back(candidate);
+      const int id = code ? codes_[code->index].id : MarkerCandidate::kNoCode;
+      if (pass == Pass::OtherContrast && code && was_tried(square, id)) continue;
+      candidates_.push_back({square.corners_px, id});
       if (!code) continue;
       MarkerTrack& track = tracks_[code->index];
       MarkerObservation& known = observations_[code->index];
       if (known.is_tracked()) {
-        track.is_duplicate |= !is_same_place(square, known);
+        track.is_duplicate |= !are_same_place(square, known.corners_px);
         continue;
       }
       if (attempts_[code->index]++ < kMostSquares) acquire(track, square, code->turn, frame, known);
     }
   }
 
-  // Found in this frame before, by another contrast.
-  [[nodiscard]] bool is_candidate(const MarkerCandidate& candidate) const {
-    constexpr double kSamePx = 1;
-    const auto middle = [](const MarkerCandidate& c) {
-      return Eigen::Vector2d(0.25 * (c.corners_px[0] + c.corners_px[1] + c.corners_px[2] + c.corners_px[3]));
-    };
-    return std::any_of(candidates_.begin(), candidates_.end(), [&](const MarkerCandidate& c) {
-      return c.id == candidate.id && (middle(c) - middle(candidate)).norm() < kSamePx;
+  // By another contrast, in this frame. What a fit has learnt there would be overwritten by the next one.
+  [[nodiscard]] bool was_tried(const FoundSquare& square, int id) const {
+    return std::any_of(candidates_.begin(), candidates_.end(), [&](const MarkerCandidate& candidate) {
+      return candidate.id == id && are_same_place(square, candidate.corners_px);
     });
   }
 
@@ -239,7 +235,7 @@ class EdgeTracker final : public MarkerTracker {
 
   [[nodiscard]] bool is_of_another(const FoundSquare& square) const {
     return std::any_of(observations_.begin(), observations_.end(), [&](const MarkerObservation& seen) {
-      return seen.is_tracked() && is_same_place(square, seen);
+      return seen.is_tracked() && are_same_place(square, seen.corners_px);
     });
   }
 
@@ -283,9 +279,9 @@ class EdgeTracker final : public MarkerTracker {
     }
   }
 
-  static bool is_same_place(const FoundSquare& square, const MarkerObservation& known) {
+  static bool are_same_place(const FoundSquare& square, const Corners& corners_px) {
     Eigen::Vector2d apart = Eigen::Vector2d::Zero();
-    for (int i = 0; i < 4; ++i) apart += 0.25 * (square.corners_px[i] - known.corners_px[i]);
+    for (int i = 0; i < 4; ++i) apart += 0.25 * (square.corners_px[i] - corners_px[i]);
     return apart.norm() < 0.5 * square.longest_side_px;
   }
 

@@ -19,6 +19,8 @@ constexpr double kMaxNewMotionPx = 5;
 // Two starts that lead so near to each other lead to the same.
 constexpr double kSameEdgesPx = 0.1, kSameMotionPx = 0.5;
 constexpr double kSoft = 1.4;
+// A pose tilted the other way whose edges scatter by less than this share of the fit's is the right one.
+constexpr double kMuchBetter = 0.5;
 
 }  // namespace
 
@@ -341,10 +343,14 @@ RowTrend MarkerTrack::report_edges(const TrackedFrame& frame, const EdgePose& fi
       is_confirmed_by_code(frame, fit.camera_from_marker))
     observation.state = judge(fit, observation, other, false);
   if (observation.is_tracked() && is_contradicted) observation.state = MarkerState::Doubtful;
-  if (observation.is_tracked() &&
-      may_be_tilted_back(frame.camera, marker_.size_mm, samples_, measurements_, fit, corners.corners_px,
-                         frame.smear.bloom, is_inlier_)) {
-    observation.state = MarkerState::Ambiguous;
+  if (observation.is_tracked()) {
+    const auto rival = rival_tilt(frame.camera, marker_.size_mm, samples_, measurements_, fit,
+                                  corners.corners_px, frame.smear.bloom, is_inlier_);
+    if (rival) observation.state = MarkerState::Ambiguous;
+    if (rival && rival->scale < kMuchBetter * fit.scale) {
+      observation.state = MarkerState::Doubtful;  // what is ambiguous is gone on from
+      go_on_from(*rival);
+    }
   }
   const double cell = cell_px(frame, fit.camera_from_marker);
   if (observation.state == MarkerState::Covered)

@@ -47,8 +47,9 @@ TEST(EdgePose, ABadFitIsAskedWhetherItIsTiltedTheOtherWayHoweverFarItsCornersAre
   const auto edges = edges_of(camera, samples, truth, 0.4);
   std::vector<char> is_inlier;
   const auto is_asked = [&](const EdgePose& fit) {
-    return may_be_tilted_back(camera, kSize_mm, samples, edges, fit,
-                              corners_of(camera, fit.camera_from_marker), BloomPrior(), is_inlier);
+    return rival_tilt(camera, kSize_mm, samples, edges, fit, corners_of(camera, fit.camera_from_marker),
+                      BloomPrior(), is_inlier)
+        .has_value();
   };
   const EdgePose wrong =
       fit_edge_pose(camera, kSize_mm, samples, edges, tilted_back(truth), BloomPrior(), is_inlier);
