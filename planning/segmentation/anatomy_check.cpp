@@ -227,13 +227,14 @@ std::vector<std::string> anatomy_doubts(const geometry::TriangleMesh& mesh, Bone
   };
   // No knee is so deep from front to back, or so wide, unless it lies on its side or, with its shaft cut
   // where it must be, is rolled outwards.
-  const bool ends_upright =
-      expected > kLeastCap_mm2 && std::none_of(sideways().begin(), sideways().end(), is_cut_at);
   const Vector3d size = bounds.size_mm();
-  if (size.y() > kMostDepth_mm && size.y() > kLyingDown * size.z() && !ends_upright)
-    return {wrong_axes(kind, "forwards or backwards")};
-  if (size.x() > kMostWidth_mm && size.x() > kLyingDown * size.z() && !ends_upright)
-    return {wrong_axes(kind, "sideways")};
+  const bool is_deep = size.y() > kMostDepth_mm && size.y() > kLyingDown * size.z(),
+             is_wide = size.x() > kMostWidth_mm && size.x() > kLyingDown * size.z();
+  const auto ends_upright = [&] {
+    return expected > kLeastCap_mm2 && std::none_of(sideways().begin(), sideways().end(), is_cut_at);
+  };
+  if ((is_deep || is_wide) && !ends_upright())
+    return {wrong_axes(kind, is_deep ? "forwards or backwards" : "sideways")};
   const std::string amiss = amiss_along(mesh, kind, Vector3d::UnitZ());
   if (amiss.empty()) return {};
   // Not asked of a bone that fits upright: the end of a volume may have cut it flat in front.
