@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/widgets/list_rows.h"
 #include "planning/files/format.h"
 #include "planning/geometry/error.h"
 #include "planning/postop/achieved_file.h"
@@ -33,6 +34,7 @@ void PostopPage::open(const open_case::PlanModel* model, const std::filesystem::
   which_.clear();
   problem_.clear();
   field_ = {};
+  leave_browser();
   scene_is_stale_ = true;
   try {  // a broken file must not hide the case: its reason is shown
     if (std::filesystem::exists(achieved_file(case_folder_)))
@@ -49,6 +51,7 @@ void PostopPage::compare_with(const std::filesystem::path& source, const std::st
   if (is_running() || model_ == nullptr) return;
   problem_.clear();
   which_.clear();
+  leave_browser();
   source_ = source;
   run_ = std::make_unique<PostopRun>(case_folder_, source, series, read_only_.empty(), wake_);
 }
@@ -65,6 +68,11 @@ void PostopPage::choose_next() {
 }
 
 void PostopPage::ask_for_path() { field_ = {true, true, field_.text}; }
+
+void PostopPage::browse() {
+  search_.is_open = true;
+  search_.folders.enter();
+}
 
 const postop::Comparison* PostopPage::chosen() const {
   const auto found = comparisons_.find(chosen_);
@@ -125,6 +133,7 @@ void PostopPage::show_scene() {
 void PostopPage::draw(const widgets::Ui& ui, widgets::Rect area) {
   take_answer();
   ui.log.note_state("postop", is_running()           ? "running"
+                              : search_.is_open      ? "browses"
                               : !which_.empty()      ? "asks"
                               : !problem_.empty()    ? "failed"
                               : answer_ != nullptr   ? "compared"
@@ -132,13 +141,14 @@ void PostopPage::draw(const widgets::Ui& ui, widgets::Rect area) {
                                                      : "kept");
   const float gap = ui.theme.px(12);
   draw_head(ui, area.cut_top(ui.theme.px(176), gap));
+  if (search_.is_open) return draw_browser(ui, area);
   if (!which_.empty()) return draw_question(ui, area);
   if (comparisons_.empty() || !model_->has_bone(chosen_.bone)) {
     widgets::text_centered(ui, area, ui.theme.title, widgets::kQuietText,
                            is_running()
                                ? run_->progress().what
-                               : "Drop the folder of the CT after the operation here, or press C and "
-                                 "write its path.");
+                               : "Drop the folder of the CT after the operation here, or press O to look "
+                                 "for it.");
     return;
   }
   if (std::exchange(scene_is_stale_, false)) show_scene();
@@ -154,7 +164,7 @@ void PostopPage::draw(const widgets::Ui& ui, widgets::Rect area) {
 void PostopPage::draw_head(const widgets::Ui& ui, widgets::Rect area) {
   widgets::begin_panel(ui, "review.postop_head", area, "Planned against achieved");
   for (const char* action :
-       {"review.postop", "review.postop_stop", "review.postop_next", "review.achieved"}) {
+       {"review.find_ct", "review.postop", "review.postop_stop", "review.postop_next", "review.achieved"}) {
     widgets::action_button(ui, action);
     ImGui::SameLine();
   }
@@ -185,6 +195,15 @@ void PostopPage::draw_head(const widgets::Ui& ui, widgets::Rect area) {
     widgets::status_row(ui, widgets::Severity::Caution, "Not kept", read_only_);
   }
   widgets::end_panel();
+}
+
+void PostopPage::draw_browser(const widgets::Ui& ui, widgets::Rect area) {
+  widgets::draw_buttons(ui, area.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+                        {"review.folder_open", "review.folder_up", "review.folder_home", "review.folder_take",
+                         "review.folder_back"});
+  if (const auto found =
+          search_.folders.draw(ui, area, "Where is the CT after the operation?", "Compare this folder"))
+    compare_with(*found);
 }
 
 void PostopPage::draw_question(const widgets::Ui& ui, const widgets::Rect& area) {

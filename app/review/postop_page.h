@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/case/plan_model.h"
+#include "app/folders/folder_browser.h"
 #include "app/review/postop_run.h"
 #include "app/scene/reslice.h"
 #include "app/widgets/controls.h"
@@ -58,6 +59,11 @@ class PostopPage {
   [[nodiscard]] bool has_any() const { return !comparisons_.empty(); }
   void choose_next();  // of the tunnels
   void ask_for_path();
+  // The images are looked for in the folders of this machine, in the place of what is compared.
+  void browse();
+  void leave_browser() { search_.is_open = false; }
+  // Null: nothing is looked for.
+  [[nodiscard]] folders::FolderBrowser* browser() { return search_.is_open ? &search_.folders : nullptr; }
   [[nodiscard]] bool awaits_text() const { return field_.takes_focus; }
   void draw(const widgets::Ui& ui, widgets::Rect area);
 
@@ -65,6 +71,10 @@ class PostopPage {
   struct PathField {
     bool is_open = false, takes_focus = false;
     std::string text;
+  };
+  struct Search {
+    bool is_open = false;
+    folders::FolderBrowser folders{"review.folder"};
   };
   struct Slice {
     widgets::GreyTexture texture;
@@ -75,6 +85,7 @@ class PostopPage {
   [[nodiscard]] const Places& places();
   void show_scene();
   void draw_head(const widgets::Ui& ui, widgets::Rect area);
+  void draw_browser(const widgets::Ui& ui, widgets::Rect area);
   void draw_question(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_table(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_slice(const widgets::Ui& ui, const widgets::Rect& area, int quarter_turns);
@@ -98,6 +109,7 @@ class PostopPage {
   tunnels::TunnelKey chosen_{bones::BoneKind::Femur};
   bool scene_is_stale_ = true;
   PathField field_;
+  Search search_;
   std::array<Slice, 2> slices_;
 };
 

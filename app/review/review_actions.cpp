@@ -70,7 +70,7 @@ void ReviewView::toggle_today() {
 }
 
 void ReviewView::add_playing_actions(widgets::Actions& actions) {
-  const auto has = [this] { return has_frames(); };
+  const auto has = [this] { return has_frames() && !browses(); };
   const auto now = [] { return widgets::GraphicsWindow::now_s(); };
   actions.add({"review.play", "Play", "From here at the pace that is set; a loop goes round", GLFW_KEY_SPACE,
                0, false, has, [this] { return open_ && open_->playback.plays; },
@@ -162,8 +162,21 @@ void ReviewView::add_postop_actions(widgets::Actions& actions) {
   actions.add({"review.achieved", "CT after", "Planned against achieved, from the images after the operation",
                GLFW_KEY_P, 0, false, [this] { return model_ != nullptr; }, [this] { return shows_postop_; },
                [this] { shows_postop_ = !shows_postop_; }});
+  actions.add({"review.find_ct",
+               "Find a CT...",
+               "Looks for the images after the operation in the folders of this machine; or drop them on the "
+               "window",
+               GLFW_KEY_O,
+               0,
+               false,
+               [this] { return model_ != nullptr && !postop_.is_running() && !browses(); },
+               {},
+               [this] {
+                 shows_postop_ = true;
+                 postop_.browse();
+               }});
   actions.add({"review.postop",
-               "Compare with a CT",
+               "Write its path",
                "The folder or file of the images after the operation; or drop it on the window",
                GLFW_KEY_C,
                0,
@@ -172,6 +185,7 @@ void ReviewView::add_postop_actions(widgets::Actions& actions) {
                {},
                [this] {
                  shows_postop_ = true;
+                 postop_.leave_browser();
                  postop_.ask_for_path();
                }});
   actions.add({"review.postop_stop",
@@ -194,10 +208,75 @@ void ReviewView::add_postop_actions(widgets::Actions& actions) {
                [this] { postop_.choose_next(); }});
 }
 
+void ReviewView::add_folder_actions(widgets::Actions& actions) {
+  const auto looks = [this] { return browses(); };
+  const auto take = [this](const std::filesystem::path& images) { postop_.compare_with(images); };
+  struct Step {
+    const char *id, *label;
+    int key, by;
+  };
+  for (const Step& step : {Step{"review.folder_previous", "Up", GLFW_KEY_UP, -1},
+                           Step{"review.folder_next", "Down", GLFW_KEY_DOWN, 1},
+                           Step{"review.folder_page_up", "Ten up", GLFW_KEY_PAGE_UP, -10},
+                           Step{"review.folder_page_down", "Ten down", GLFW_KEY_PAGE_DOWN, 10}})
+    actions.add({step.id,
+                 step.label,
+                 "Goes through the list of the folder",
+                 step.key,
+                 0,
+                 true,
+                 looks,
+                 {},
+                 [this, by = step.by] { postop_.browser()->move_selection(by); }});
+  actions.add({"review.folder_open",
+               "Open",
+               "Goes into the folder, or compares the file that is selected",
+               GLFW_KEY_ENTER,
+               0,
+               false,
+               looks,
+               {},
+               [this, take] {
+                 if (const auto found = postop_.browser()->open_selected()) take(*found);
+               }});
+  actions.add({"review.folder_up",
+               "Folder above",
+               "Goes to the folder that this one is in",
+               GLFW_KEY_BACKSPACE,
+               0,
+               false,
+               looks,
+               {},
+               [this] { postop_.browser()->up(); }});
+  actions.add({"review.folder_home",
+               "Home",
+               "Goes to the user's own folder",
+               GLFW_KEY_HOME,
+               0,
+               false,
+               looks,
+               {},
+               [this] { postop_.browser()->home(); }});
+  actions.add({"review.folder_take",
+               "Compare this folder",
+               "Looks for a CT in this folder and all that are in it, and compares it with the plan",
+               GLFW_KEY_I,
+               0,
+               false,
+               looks,
+               {},
+               [this, take] { take(std::filesystem::path(postop_.browser()->folder())); }});
+  actions.add(
+      {"review.folder_back", "Back", "Leaves the folders", GLFW_KEY_ESCAPE, 0, false, looks, {}, [this] {
+         postop_.leave_browser();
+       }});
+}
+
 void ReviewView::add_actions(widgets::Actions& actions) {
   add_playing_actions(actions);
   add_mark_actions(actions);
   add_postop_actions(actions);
+  add_folder_actions(actions);
   actions.add(
       {"review.today", "Today",
        "What today's program makes of the same pictures and commands, beside the screen; again to stop",
@@ -221,7 +300,7 @@ void ReviewView::add_actions(widgets::Actions& actions) {
                GLFW_KEY_UP,
                0,
                false,
-               [this] { return chosen_ && *chosen_ > 0; },
+               [this] { return chosen_ && *chosen_ > 0 && !browses(); },
                {},
                [this] { choose(*chosen_ - 1); }});
   actions.add({"review.older",
@@ -230,7 +309,7 @@ void ReviewView::add_actions(widgets::Actions& actions) {
                GLFW_KEY_DOWN,
                0,
                false,
-               [this] { return chosen_ && *chosen_ + 1 < sessions_.folders().size(); },
+               [this] { return chosen_ && *chosen_ + 1 < sessions_.folders().size() && !browses(); },
                {},
                [this] { choose(*chosen_ + 1); }});
 }

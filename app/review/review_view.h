@@ -73,6 +73,7 @@ class ReviewView : public mode::Mode {
   void add_playing_actions(widgets::Actions& actions);
   void add_mark_actions(widgets::Actions& actions);
   void add_postop_actions(widgets::Actions& actions);
+  void add_folder_actions(widgets::Actions& actions);
   void begin_mark();
   void keep_mark();
   // A change that the disk refuses is told, and the marks stay as they were.
@@ -80,6 +81,8 @@ class ReviewView : public mode::Mode {
   void toggle_today();
   [[nodiscard]] bool has_frames() const;
   [[nodiscard]] bool runs_today() const;
+  // Keys are meant for the folders in which a CT is looked for.
+  [[nodiscard]] bool browses() { return shows_postop_ && postop_.browser() != nullptr; }
   [[nodiscard]] bool is_writing_report() const { return report_ != nullptr && !report_->has_ended(); }
   [[nodiscard]] ReviewScreen screen() const;
   void draw_side(const widgets::Ui& ui, const widgets::Rect& area);

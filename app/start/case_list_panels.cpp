@@ -3,7 +3,7 @@
 #include <imgui_stdlib.h>
 
 #include "app/start/case_list.h"
-#include "app/start/start_drawing.h"
+#include "app/widgets/list_rows.h"
 #include "planning/files/format.h"
 #include "planning/files/utc_clock.h"
 
@@ -61,9 +61,9 @@ void CaseList::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   if (view_.shows_trends) return draw_trends(ui, area);
   widgets::Rect rest = area;
   draw_head(ui, rest.cut_top(ui.theme.px(devices_.empty() ? 108 : 146)));
-  draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-               {"start.accept", "start.browse", "start.pacs", "start.built_in", "start.note", "start.trends",
-                "start.forget", "start.back"});
+  widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+                        {"start.accept", "start.browse", "start.pacs", "start.built_in", "start.note",
+                         "start.trends", "start.forget", "start.back"});
   const widgets::Rect side = rest.cut_right(ui.theme.px(560), ui.theme.px(12));
   draw_list(ui, rest);
   draw_details(ui, side);
@@ -72,7 +72,7 @@ void CaseList::draw(const widgets::Ui& ui, const widgets::Rect& area) {
 
 void CaseList::draw_head(const widgets::Ui& ui, widgets::Rect head) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText, "Which knee?");
+  widgets::draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText, "Which knee?");
   const std::size_t all = library_.records().size();
   const std::string count = library_.is_looking() ? "Looking through the cases\u2026"
                             : found_.size() == all
@@ -82,9 +82,9 @@ void CaseList::draw_head(const widgets::Ui& ui, widgets::Rect head) {
       library_.what().empty()
           ? count + ".  Drop the hospital's folder or a case on this window, or choose here."
           : library_.what();
-  draw_text(draw, ui.theme.body, head.x + ui.theme.px(230), head.y + ui.theme.px(8),
-            library_.what().empty() ? widgets::kQuietText : widgets::kCaution,
-            fitting(ui.theme.body, hint, head.width - ui.theme.px(230)));
+  widgets::draw_text(draw, ui.theme.body, head.x + ui.theme.px(230), head.y + ui.theme.px(8),
+                     library_.what().empty() ? widgets::kQuietText : widgets::kCaution,
+                     widgets::fitting(ui.theme.body, hint, head.width - ui.theme.px(230)));
   const float y = head.y + ui.theme.px(52), height = ui.theme.px(48);
   const float field = ui.theme.px(560);
   ImGui::SetCursorScreenPos({head.x, y});
@@ -107,7 +107,8 @@ void CaseList::draw_head(const widgets::Ui& ui, widgets::Rect head) {
     ImGui::SetCursorScreenPos({x, y});
     widgets::action_button(ui, id, width, height);
     x += width + ui.theme.px(10);
-    draw_text(draw, ui.theme.body, x, y + (height - ui.theme.body->FontSize) / 2, widgets::kText, now);
+    widgets::draw_text(draw, ui.theme.body, x, y + (height - ui.theme.body->FontSize) / 2, widgets::kText,
+                       now);
     x += ui.theme.px(140);
   };
   filter_button("start.side", view_.query.side.empty() ? "both" : view_.query.side);
@@ -122,8 +123,10 @@ void CaseList::draw_head(const widgets::Ui& ui, widgets::Rect head) {
                                      : standing.outcome == library::AccuracyStanding::Outcome::MissingToday
                                          ? widgets::Severity::Caution
                                          : widgets::Severity::Bad;
-  draw_text(draw, ui.theme.body, head.x, y + height + ui.theme.px(10), widgets::color_of(severity),
-            fitting(ui.theme.body, std::string(standing.is_fine() ? "" : "! ") + standing.text, head.width));
+  widgets::draw_text(
+      draw, ui.theme.body, head.x, y + height + ui.theme.px(10), widgets::color_of(severity),
+      widgets::fitting(ui.theme.body, std::string(standing.is_fine() ? "" : "! ") + standing.text,
+                       head.width));
 }
 
 void CaseList::draw_list(const widgets::Ui& ui, const widgets::Rect& area) {
@@ -152,26 +155,27 @@ void CaseList::draw_list(const widgets::Ui& ui, const widgets::Rect& area) {
       const bool is_built_in = i == found_.size();
       const ImVec2 at = ImGui::GetCursorScreenPos();
       const float width = ImGui::GetContentRegionAvail().x;
-      const RowPress press = draw_row(ui, {.name = "start.case." + std::to_string(i),
-                                           .number = i,
-                                           .height = height,
-                                           .is_selected = i == row,
-                                           .scrolls_here = false});
-      if (press != RowPress::None) {
+      const widgets::RowPress press = widgets::draw_row(ui, {.name = "start.case." + std::to_string(i),
+                                                             .number = i,
+                                                             .height = height,
+                                                             .is_selected = i == row,
+                                                             .scrolls_here = false});
+      if (press != widgets::RowPress::None) {
         view_.selected = is_built_in ? std::filesystem::path() : library_.records()[found_[i]].folder;
         view_.has_chosen = true;
       }
-      opens = opens || press == RowPress::Twice;
+      opens = opens || press == widgets::RowPress::Twice;
       if (!is_built_in) {
         draw_case(ui, at, width, library_.records()[found_[i]]);
         continue;
       }
       ImDrawList& draw = *ImGui::GetWindowDrawList();
-      draw_text(draw, ui.theme.strong, at.x + ui.theme.px(132), at.y + ui.theme.px(18), widgets::kText,
-                "The built-in knee");
-      draw_text(draw, ui.theme.body, at.x + ui.theme.px(132), at.y + ui.theme.px(48), widgets::kQuietText,
-                fitting(ui.theme.body, "a right knee to learn on, planned and simulated",
-                        width - ui.theme.px(150)));
+      widgets::draw_text(draw, ui.theme.strong, at.x + ui.theme.px(132), at.y + ui.theme.px(18),
+                         widgets::kText, "The built-in knee");
+      widgets::draw_text(draw, ui.theme.body, at.x + ui.theme.px(132), at.y + ui.theme.px(48),
+                         widgets::kQuietText,
+                         widgets::fitting(ui.theme.body, "a right knee to learn on, planned and simulated",
+                                          width - ui.theme.px(150)));
     }
   }
   widgets::end_panel();
@@ -185,11 +189,12 @@ void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, c
   draw_picture(draw, record.is_there && record.problem.empty() ? pictures_.of(record.folder) : nullptr,
                place);
   const float right = ui.theme.px(170), wide = at.x + width - x - right;
-  draw_text(
+  widgets::draw_text(
       draw, ui.theme.strong, x, at.y + ui.theme.px(6), record.is_there ? widgets::kText : widgets::kQuietText,
-      fitting(ui.theme.strong, record.name + (record.side.empty() ? "" : "  \u2013  " + record.side), wide));
-  draw_text(draw, ui.theme.body, at.x + width - right, at.y + ui.theme.px(6), widgets::kQuietText,
-            when_in_words(record.changed_utc, files::utc_now()));
+      widgets::fitting(ui.theme.strong, record.name + (record.side.empty() ? "" : "  \u2013  " + record.side),
+                       wide));
+  widgets::draw_text(draw, ui.theme.body, at.x + width - right, at.y + ui.theme.px(6), widgets::kQuietText,
+                     when_in_words(record.changed_utc, files::utc_now()));
   const Severity severity = severity_of(record);
   widgets::draw_sign(draw, {x + ui.theme.px(10), at.y + ui.theme.px(48)}, ui.theme.px(9), severity);
   const std::size_t count = record.sessions.size();
@@ -199,15 +204,15 @@ void CaseList::draw_case(const widgets::Ui& ui, const ImVec2& at, float width, c
   else if (count > 0)
     what += ", " + std::to_string(count) + (count == 1 ? " session" : " sessions, the last") +
             (record.last_session()->is_simulated() ? " simulated: " : ": ") + record.last_outcome();
-  draw_text(draw, ui.theme.body, x + ui.theme.px(28), at.y + ui.theme.px(35),
-            severity == Severity::Good || severity == Severity::Quiet ? widgets::kText
-                                                                      : widgets::color_of(severity),
-            fitting(ui.theme.body, what, wide + right - ui.theme.px(40)));
+  widgets::draw_text(draw, ui.theme.body, x + ui.theme.px(28), at.y + ui.theme.px(35),
+                     severity == Severity::Good || severity == Severity::Quiet ? widgets::kText
+                                                                               : widgets::color_of(severity),
+                     widgets::fitting(ui.theme.body, what, wide + right - ui.theme.px(40)));
   const std::string third = record.note.empty()
                                 ? record.folder.string()
                                 : "\u201C" + record.note.substr(0, record.note.find('\n')) + "\u201D";
-  draw_text(draw, ui.theme.body, x, at.y + ui.theme.px(64), widgets::kQuietText,
-            fitting(ui.theme.body, third, wide + right - ui.theme.px(12)));
+  widgets::draw_text(draw, ui.theme.body, x, at.y + ui.theme.px(64), widgets::kQuietText,
+                     widgets::fitting(ui.theme.body, third, wide + right - ui.theme.px(12)));
 }
 
 void CaseList::draw_details(const widgets::Ui& ui, const widgets::Rect& area) {

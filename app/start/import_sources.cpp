@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "app/start/folder_listing.h"
+#include "app/folders/folder_listing.h"
 #include "planning/bones/mesh_file.h"
 #include "planning/files/format.h"
 #include "planning/import/bone_import.h"
@@ -33,8 +33,8 @@ void add_meshes(ImportSources& found) {
     if (bones::is_mesh_file(found.root)) add_mesh(found, found.root);
     return;
   }
-  for (const FolderEntry& entry : list_folder(found.root).entries)
-    if (entry.kind == FolderEntry::Kind::Mesh) add_mesh(found, entry.path);
+  for (const folders::FolderEntry& entry : folders::list_folder(found.root).entries)
+    if (entry.kind == folders::FolderEntry::Kind::Mesh) add_mesh(found, entry.path);
 }
 
 }  // namespace

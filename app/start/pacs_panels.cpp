@@ -7,7 +7,7 @@
 #include <set>
 
 #include "app/start/pacs_pane.h"
-#include "app/start/start_drawing.h"
+#include "app/widgets/list_rows.h"
 #include "planning/files/format.h"
 
 namespace arthronaut::start {
@@ -58,7 +58,7 @@ void PacsPane::draw(const widgets::Ui& ui, const widgets::Rect& area) {
                       : view_.page == Page::Send ? "Results to the hospital's PACS"
                       : view_.edited.empty()     ? "Another PACS"
                                                  : "This PACS";
-  draw_text(*ImGui::GetWindowDrawList(), ui.theme.title, head.x, head.y, widgets::kText, title);
+  widgets::draw_text(*ImGui::GetWindowDrawList(), ui.theme.title, head.x, head.y, widgets::kText, title);
   if (view_.page == Page::Peer) return draw_form(ui, rest);
   if (view_.page == Page::Send) return draw_send(ui, rest);
   draw_search(ui, rest);
@@ -91,9 +91,9 @@ void PacsPane::note_states(const widgets::Ui& ui) const {
 
 void PacsPane::draw_search(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::Rect rest = area;
-  draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-               {"start.pacs.fetch", "start.pacs.find", "start.pacs.fields", "start.pacs.echo",
-                "start.pacs.results", "start.pacs.add", "start.back"});
+  widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+                        {"start.pacs.fetch", "start.pacs.find", "start.pacs.fields", "start.pacs.echo",
+                         "start.pacs.results", "start.pacs.add", "start.back"});
   widgets::Rect left = rest.cut_left(ui.theme.px(520), ui.theme.px(12));
   const widgets::Rect fields = left.cut_bottom(ui.theme.px(330), ui.theme.px(12));
   draw_peers(ui, left);
@@ -113,10 +113,10 @@ void PacsPane::draw_peers(const widgets::Ui& ui, const widgets::Rect& area) {
   for (std::size_t i = 0; i < peers_.size(); ++i) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x - ui.theme.px(50);
-    if (draw_row(ui, {.name = "start.pacs.peer." + std::to_string(i),
-                      .number = i,
-                      .height = height,
-                      .is_selected = i == view_.peer}) != RowPress::None &&
+    if (widgets::draw_row(ui, {.name = "start.pacs.peer." + std::to_string(i),
+                               .number = i,
+                               .height = height,
+                               .is_selected = i == view_.peer}) != widgets::RowPress::None &&
         !work_.is_busy() && i != view_.peer) {
       view_.peer = i;
       found_ = {};
@@ -131,13 +131,15 @@ void PacsPane::draw_peers(const widgets::Ui& ui, const widgets::Rect& area) {
     widgets::draw_sign(draw, {at.x + ui.theme.px(20), at.y + ui.theme.px(22)}, ui.theme.px(9),
                        light.severity);
     const float x = at.x + ui.theme.px(42);
-    draw_text(
+    widgets::draw_text(
         draw, ui.theme.strong, x, at.y + ui.theme.px(8), widgets::kText,
-        fitting(ui.theme.strong, peers_[i].name + (peers_[i].connection.tls ? "  \u2013  TLS" : ""), width));
+        widgets::fitting(ui.theme.strong, peers_[i].name + (peers_[i].connection.tls ? "  \u2013  TLS" : ""),
+                         width));
     const bool is_bad = light.severity == Severity::Bad;
-    draw_text(draw, ui.theme.body, x, at.y + ui.theme.px(40), is_bad ? widgets::kBad : widgets::kQuietText,
-              fitting(ui.theme.body, is_bad ? light.words : peers_[i].address() + "  \u2013  " + light.words,
-                      width));
+    widgets::draw_text(
+        draw, ui.theme.body, x, at.y + ui.theme.px(40), is_bad ? widgets::kBad : widgets::kQuietText,
+        widgets::fitting(ui.theme.body,
+                         is_bad ? light.words : peers_[i].address() + "  \u2013  " + light.words, width));
   }
   const auto known = peer() != nullptr ? lights_.find(peer()->name) : lights_.end();
   if (known != lights_.end() && known->second.severity == Severity::Bad)
@@ -225,13 +227,13 @@ void PacsPane::draw_found(const widgets::Ui& ui, const widgets::Rect& area) {
       continue;
     }
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const RowPress press = draw_row(ui, {.name = "start.pacs.series." + std::to_string(i),
-                                         .number = i,
-                                         .height = ui.theme.px(46),
-                                         .is_selected = i == view_.row,
-                                         .scrolls_here = view_.scrolls_to_row});
-    if (press != RowPress::None && !work_.is_busy()) view_.row = i;
-    fetches = fetches || press == RowPress::Twice;
+    const widgets::RowPress press = widgets::draw_row(ui, {.name = "start.pacs.series." + std::to_string(i),
+                                                           .number = i,
+                                                           .height = ui.theme.px(46),
+                                                           .is_selected = i == view_.row,
+                                                           .scrolls_here = view_.scrolls_to_row});
+    if (press != widgets::RowPress::None && !work_.is_busy()) view_.row = i;
+    fetches = fetches || press == widgets::RowPress::Twice;
     const ImVec2 after = ImGui::GetCursorScreenPos();
     ImGui::SetCursorScreenPos(at);
     draw_row_of(ui, rows_[i], i);
@@ -248,15 +250,16 @@ void PacsPane::draw_row_of(const widgets::Ui& ui, const Row& row, std::size_t /*
   const float width = ImGui::GetContentRegionAvail().x, right = ui.theme.px(150);
   if (row.series != nullptr) {
     const float y = at.y + (ui.theme.px(46) - ui.theme.body->FontSize) / 2;
-    draw_text(draw, ui.theme.strong, at.x + ui.theme.px(40), y, widgets::kText,
-              fitting(ui.theme.strong, row.series->modality, ui.theme.px(70)));
-    draw_text(draw, ui.theme.body, at.x + ui.theme.px(120), y, widgets::kText,
-              fitting(ui.theme.body,
-                      "series " + row.series->number +
-                          (row.series->description.empty() ? "" : "  \u2013  " + row.series->description),
-                      width - ui.theme.px(140) - right));
-    draw_text(draw, ui.theme.body, at.x + width - right, y, widgets::kQuietText,
-              counted(row.series->image_count, "image", "images"));
+    widgets::draw_text(draw, ui.theme.strong, at.x + ui.theme.px(40), y, widgets::kText,
+                       widgets::fitting(ui.theme.strong, row.series->modality, ui.theme.px(70)));
+    widgets::draw_text(
+        draw, ui.theme.body, at.x + ui.theme.px(120), y, widgets::kText,
+        widgets::fitting(ui.theme.body,
+                         "series " + row.series->number +
+                             (row.series->description.empty() ? "" : "  \u2013  " + row.series->description),
+                         width - ui.theme.px(140) - right));
+    widgets::draw_text(draw, ui.theme.body, at.x + width - right, y, widgets::kQuietText,
+                       counted(row.series->image_count, "image", "images"));
     return;
   }
   const bool is_patient = row.study == nullptr;
@@ -275,16 +278,17 @@ void PacsPane::draw_row_of(const widgets::Ui& ui, const Row& row, std::size_t /*
   const float height = ui.theme.px(is_patient ? 48 : 40);
   const float y = at.y + (height - ui.theme.body->FontSize) / 2;
   const float x = at.x + ui.theme.px(is_patient ? 8 : 24);
-  draw_text(draw, is_patient ? ui.theme.strong : ui.theme.body, x, y,
-            is_patient ? widgets::kAccent : widgets::kText,
-            fitting(ui.theme.strong, words, width - right - ui.theme.px(40)));
-  draw_text(draw, ui.theme.body, at.x + width - right, y, widgets::kQuietText, counts);
+  widgets::draw_text(draw, is_patient ? ui.theme.strong : ui.theme.body, x, y,
+                     is_patient ? widgets::kAccent : widgets::kText,
+                     widgets::fitting(ui.theme.strong, words, width - right - ui.theme.px(40)));
+  widgets::draw_text(draw, ui.theme.body, at.x + width - right, y, widgets::kQuietText, counts);
   ImGui::Dummy({width, height});
 }
 
 void PacsPane::draw_form(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::Rect rest = area;
-  draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)), {"start.pacs.keep", "start.back"});
+  widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+                        {"start.pacs.keep", "start.back"});
   widgets::begin_panel(ui, "start.pacs.form", rest);
   if (!view_.failure.empty()) widgets::status_row(ui, Severity::Bad, "Not kept", view_.failure);
   const float width = std::min(ImGui::GetContentRegionAvail().x, ui.theme.px(760));
@@ -315,9 +319,9 @@ void PacsPane::draw_form(const widgets::Ui& ui, const widgets::Rect& area) {
 
 void PacsPane::draw_send(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::Rect rest = area;
-  draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-               {view_.outgoing.empty() ? "start.pacs.write" : "start.pacs.send", "start.pacs.deidentified",
-                "start.back"});
+  widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+                        {view_.outgoing.empty() ? "start.pacs.write" : "start.pacs.send",
+                         "start.pacs.deidentified", "start.back"});
   const PacsNews& news = work_.news();
   const bool is_of_sending = news.kind == Kind::WriteResults || news.kind == Kind::Send;
   if (is_of_sending && news.state == State::Running)

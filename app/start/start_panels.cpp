@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "app/start/side_line.h"
-#include "app/start/start_drawing.h"
 #include "app/start/start_view.h"
+#include "app/widgets/list_rows.h"
 
 namespace arthronaut::start {
 
@@ -13,20 +13,6 @@ namespace {
 
 using State = ImportWork::State;
 using widgets::Severity;
-
-const char* word_of(FolderEntry::Kind kind) {
-  switch (kind) {
-    case FolderEntry::Kind::Case:
-      return "case";
-    case FolderEntry::Kind::Folder:
-      return "folder";
-    case FolderEntry::Kind::Image:
-      return "images";
-    case FolderEntry::Kind::Mesh:
-      return "mesh";
-  }
-  return "";
-}
 
 }  // namespace
 
@@ -52,56 +38,26 @@ void StartView::draw(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("start", kPages[static_cast<std::size_t>(state_.page)]);
   ui.log.note_state("import", kStates[static_cast<std::size_t>(work_.state())]);
   ui.log.note_state("import_failure", work_.failure());
-  const auto& entries = state_.listing.entries;
-  ui.log.note_state("selected", state_.page == Page::Browse && state_.selected < entries.size()
-                                    ? entries[state_.selected].name
-                                    : std::to_string(state_.selected));
+  if (state_.page != Page::Browse) ui.log.note_state("selected", std::to_string(state_.selected));
 }
 
 bool StartView::draw_page_row(const widgets::Ui& ui, const std::string& name, std::size_t row, float height) {
-  const RowPress press = draw_row(ui, {.name = name,
-                                       .number = row,
-                                       .height = height,
-                                       .is_selected = row == state_.selected,
-                                       .scrolls_here = state_.scrolls_to_selected});
-  if (press != RowPress::None) state_.selected = row;
-  return press == RowPress::Twice;
+  const widgets::RowPress press = widgets::draw_row(ui, {.name = name,
+                                                         .number = row,
+                                                         .height = height,
+                                                         .is_selected = row == state_.selected,
+                                                         .scrolls_here = state_.scrolls_to_selected});
+  if (press != widgets::RowPress::None) state_.selected = row;
+  return press == widgets::RowPress::Twice;
 }
 
 void StartView::draw_browser(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::Rect rest = area;
-  const widgets::Rect head = rest.cut_top(ui.theme.px(88));
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText, "Open a case, or import images or meshes");
-  draw_text(draw, ui.theme.body, head.x, head.y + ui.theme.px(46), widgets::kAccent,
-            fitting(ui.theme.body, state_.listing.folder.string(), head.width));
-  draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-               {"start.accept", "start.up", "start.home", "start.import_folder", "start.back"});
-  widgets::begin_panel(ui, "start.folder", rest);
-  bool opens = false;
-  const float height = ui.theme.px(44);
-  for (std::size_t i = 0; i < state_.listing.entries.size(); ++i) {
-    const FolderEntry& entry = state_.listing.entries[i];
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float width = ImGui::GetContentRegionAvail().x;
-    opens = draw_page_row(ui, "start.entry." + entry.name, i, height) || opens;
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    const float y = at.y + (height - ui.theme.body->FontSize) / 2;
-    const bool is_case = entry.kind == FolderEntry::Kind::Case;
-    draw_text(list, ui.theme.body, at.x + ui.theme.px(16), y,
-              is_case ? widgets::kAccent : widgets::kQuietText, word_of(entry.kind));
-    draw_text(list, is_case ? ui.theme.strong : ui.theme.body, at.x + ui.theme.px(120), y, widgets::kText,
-              fitting(ui.theme.body, entry.name, width - ui.theme.px(320)));
-    draw_text(list, ui.theme.body, at.x + width - ui.theme.px(170), y, widgets::kQuietText, entry.detail);
-  }
-  if (!state_.listing.failure.empty())
-    widgets::status_row(ui, Severity::Bad, "This folder cannot be looked into", state_.listing.failure);
-  if (state_.listing.other_files > 0)
-    widgets::text_in(ui.theme.body, widgets::kQuietText,
-                     std::to_string(state_.listing.other_files) +
-                         " other files. Images without an ending are found by Import this folder.");
-  widgets::end_panel();
-  if (opens) accept_entry();
+  widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+                        {"start.accept", "start.up", "start.home", "start.import_folder", "start.back"});
+  if (const auto found =
+          browser_.draw(ui, rest, "Open a case, or import images or meshes", "Import this folder"))
+    take(*found);
 }
 
 void StartView::draw_import(const widgets::Ui& ui, const widgets::Rect& area) {
@@ -126,7 +82,7 @@ void StartView::draw_import(const widgets::Ui& ui, const widgets::Rect& area) {
       draw.AddRectFilled(at, {at.x + width, at.y + height}, widgets::kPanelEdge, ui.theme.px(6));
       const auto done = static_cast<float>(std::clamp(progress.fraction, 0.0, 1.0));
       draw.AddRectFilled(at, {at.x + width * done, at.y + height}, widgets::kAccent, ui.theme.px(6));
-      draw_buttons(ui, {at.x, at.y + ui.theme.px(60), width, ui.theme.px(56)}, {"start.back"});
+      widgets::draw_buttons(ui, {at.x, at.y + ui.theme.px(60), width, ui.theme.px(56)}, {"start.back"});
       return;
     }
     case State::Asking:
@@ -141,14 +97,14 @@ void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
   const widgets::Rect head = rest.cut_top(ui.theme.px(88));
   const ImportSources& found = work_.sources();
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText,
-            found.sources.empty() ? "Nothing to import was found"
-                                  : "What was found. Take one, then make the bones");
-  draw_text(draw, ui.theme.body, head.x, head.y + ui.theme.px(46), widgets::kAccent,
-            fitting(ui.theme.body, found.root.string(), head.width));
-  draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-               {"start.import", "start.paint", "start.tick", "start.right", "start.left",
-                "start.side_unknown", "start.back"});
+  widgets::draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText,
+                     found.sources.empty() ? "Nothing to import was found"
+                                           : "What was found. Take one, then make the bones");
+  widgets::draw_text(draw, ui.theme.body, head.x, head.y + ui.theme.px(46), widgets::kAccent,
+                     widgets::fitting(ui.theme.body, found.root.string(), head.width));
+  widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+                        {"start.import", "start.paint", "start.tick", "start.right", "start.left",
+                         "start.side_unknown", "start.back"});
   widgets::begin_panel(ui, "start.sources", rest);
   if (!work_.failure().empty()) widgets::status_row(ui, Severity::Bad, "Refused", work_.failure());
   const float height = ui.theme.px(132), picture = ui.theme.px(116);
@@ -177,16 +133,17 @@ void StartView::draw_sources(const widgets::Ui& ui, const widgets::Rect& area) {
                           : is_ticked                ? Severity::Good
                                                      : Severity::Quiet;
     widgets::draw_sign(list, {x + ui.theme.px(10), at.y + ui.theme.px(24)}, ui.theme.px(9), sign);
-    draw_text(list, ui.theme.strong, x + ui.theme.px(30), at.y + ui.theme.px(10), widgets::kText,
-              fitting(ui.theme.strong, source.title + (is_ticked ? "  \u2013  taken" : ""), wrap));
-    draw_text(list, ui.theme.body, x + ui.theme.px(30), at.y + ui.theme.px(38), widgets::kQuietText,
-              source.detail);
+    widgets::draw_text(
+        list, ui.theme.strong, x + ui.theme.px(30), at.y + ui.theme.px(10), widgets::kText,
+        widgets::fitting(ui.theme.strong, source.title + (is_ticked ? "  \u2013  taken" : ""), wrap));
+    widgets::draw_text(list, ui.theme.body, x + ui.theme.px(30), at.y + ui.theme.px(38), widgets::kQuietText,
+                       source.detail);
     const std::string wrong = !source.can_be_imported() ? "Cannot be imported: " + source.refusal
                               : source.warnings.empty() ? std::string()
                                                         : source.warnings.front();
     if (!wrong.empty())
-      draw_text(list, ui.theme.body, x + ui.theme.px(30), at.y + ui.theme.px(66),
-                source.can_be_imported() ? widgets::kCaution : widgets::kBad, wrong, wrap);
+      widgets::draw_text(list, ui.theme.body, x + ui.theme.px(30), at.y + ui.theme.px(66),
+                         source.can_be_imported() ? widgets::kCaution : widgets::kBad, wrong, wrap);
   }
   for (const std::string& left : found.left_out) widgets::status_row(ui, Severity::Quiet, "Left out", left);
   widgets::end_panel();
@@ -196,13 +153,14 @@ void StartView::draw_result(const widgets::Ui& ui, const widgets::Rect& area) {
   widgets::Rect rest = area;
   const widgets::Rect head = rest.cut_top(ui.theme.px(64));
   const std::vector<std::string> doubts = work_.doubts();
-  draw_text(*ImGui::GetWindowDrawList(), ui.theme.title, head.x, head.y, widgets::kText,
-            !state_.side                   ? "Which knee is it? Nothing says so"
-            : work_.result().bones.empty() ? "The images are read. Make the case, then paint its bones"
-            : doubts.empty()               ? "The bones are made"
-                                           : "The bones are made, but look before you rely on them");
-  draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-               {"start.save", "start.right", "start.left", "start.back"});
+  widgets::draw_text(*ImGui::GetWindowDrawList(), ui.theme.title, head.x, head.y, widgets::kText,
+                     !state_.side ? "Which knee is it? Nothing says so"
+                     : work_.result().bones.empty()
+                         ? "The images are read. Make the case, then paint its bones"
+                     : doubts.empty() ? "The bones are made"
+                                      : "The bones are made, but look before you rely on them");
+  widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+                        {"start.save", "start.right", "start.left", "start.back"});
   widgets::begin_panel(ui, "start.result", rest);
   widgets::text_in(ui.theme.strong, widgets::kQuietText,
                    "Name of the case (no patient's name: it stands in exports)");

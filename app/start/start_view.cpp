@@ -14,15 +14,6 @@ namespace arthronaut::start {
 namespace fs = std::filesystem;
 using State = ImportWork::State;
 
-namespace {
-
-fs::path home_folder() {
-  const char* home = std::getenv("HOME");
-  return home != nullptr && *home != '\0' ? fs::path(home) : fs::path("/");
-}
-
-}  // namespace
-
 StartView::StartView(std::function<void(const fs::path&)> open, std::function<void()> wake)
     : open_([this, open = std::move(open)](const fs::path& folder) {
         leave();
@@ -109,7 +100,7 @@ std::size_t StartView::row_count() const {
     case Page::Cases:
       return 1;  // the built-in knee at least
     case Page::Browse:
-      return state_.listing.entries.size();
+      return browser_.has_rows() ? 1 : 0;  // it knows its own
     case Page::Import:
       return work_.state() == State::Choosing ? work_.sources().sources.size() : 0;
     case Page::Pacs:
@@ -121,6 +112,7 @@ std::size_t StartView::row_count() const {
 void StartView::move_selection(int by) {
   if (state_.page == Page::Cases) return cases_.move_selection(by);
   if (state_.page == Page::Pacs) return pacs_.move_selection(by);
+  if (state_.page == Page::Browse) return browser_.move_selection(by);
   const auto count = static_cast<long>(row_count());
   if (count == 0) return;
   state_.selected =
@@ -128,15 +120,9 @@ void StartView::move_selection(int by) {
   state_.scrolls_to_selected = true;
 }
 
-void StartView::browse(const fs::path& folder) {
-  const fs::path from = state_.listing.folder;
+void StartView::browse() {
   state_.page = Page::Browse;
-  state_.listing = list_folder(folder);
-  state_.selected = 0;
-  // Going up: where one came from is selected, so that Enter goes back down.
-  for (std::size_t i = 0; i < state_.listing.entries.size(); ++i)
-    if (state_.listing.entries[i].path == from) state_.selected = i;
-  state_.scrolls_to_selected = true;
+  browser_.enter();
 }
 
 void StartView::go_back() {
@@ -156,7 +142,7 @@ void StartView::go_back() {
         work_.cancel();
       else if (work_.state() != State::Saving) {
         work_.cancel();
-        state_.page = state_.listing.folder.empty() ? Page::Cases : Page::Browse;
+        state_.page = browser_.folder().empty() ? Page::Cases : Page::Browse;
       }
       break;
   }
@@ -164,12 +150,7 @@ void StartView::go_back() {
 }
 
 void StartView::accept_entry() {
-  if (state_.selected >= state_.listing.entries.size()) return;
-  const FolderEntry entry = state_.listing.entries[state_.selected];
-  if (entry.kind == FolderEntry::Kind::Folder)
-    browse(entry.path);
-  else
-    take(entry.path);
+  if (const auto found = browser_.open_selected()) take(*found);
 }
 
 void StartView::accept() {
@@ -226,7 +207,7 @@ void StartView::add_page_actions(widgets::Actions& actions) {
                false,
                here(Page::Cases),
                {},
-               [this] { browse(state_.listing.folder.empty() ? home_folder() : state_.listing.folder); }});
+               [this] { browse(); }});
   actions.add({"start.pacs",
                "PACS...",
                "Finds and fetches a patient's images in the hospital's archive; sends the results of the "
@@ -248,7 +229,7 @@ void StartView::add_page_actions(widgets::Actions& actions) {
                false,
                here(Page::Browse),
                {},
-               [this] { browse(state_.listing.folder.parent_path()); }});
+               [this] { browser_.up(); }});
   actions.add({"start.home",
                "Home",
                "Goes to the user's own folder",
@@ -257,7 +238,7 @@ void StartView::add_page_actions(widgets::Actions& actions) {
                false,
                here(Page::Browse),
                {},
-               [this] { browse(home_folder()); }});
+               [this] { browser_.home(); }});
   actions.add({"start.import_folder",
                "Import this folder",
                "Looks for image series in this folder and all that are in it",
@@ -266,7 +247,7 @@ void StartView::add_page_actions(widgets::Actions& actions) {
                false,
                here(Page::Browse),
                {},
-               [this] { take(state_.listing.folder); }});
+               [this] { take(browser_.folder()); }});
   struct Step {
     const char *id, *label;
     int key, by;

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "app/folders/folder_browser.h"
 #include "app/start/case_list.h"
-#include "app/start/folder_listing.h"
 #include "app/start/import_work.h"
 #include "app/start/pacs_pane.h"
 #include "app/widgets/controls.h"
@@ -51,7 +51,7 @@ class StartView {
   enum class Page { Cases, Browse, Import, Pacs };
   void add_page_actions(widgets::Actions& actions);
   void add_import_actions(widgets::Actions& actions);
-  void browse(const std::filesystem::path& folder);
+  void browse();
   void move_selection(int by);
   void go_back();
   void accept();  // Enter
@@ -74,7 +74,6 @@ class StartView {
     std::size_t selected = 0;
     bool scrolls_to_selected = false;
     bool can_close = false;
-    FolderListing listing;
     std::vector<std::size_t> ticked;  // of the sources
     std::optional<bones::Side> side;
     bool side_was_said = false;  // by a person
@@ -85,6 +84,7 @@ class StartView {
   ImportWork work_;
   CaseList cases_;
   PacsPane pacs_;
+  folders::FolderBrowser browser_{"start.entry"};
   ViewState state_;
   std::map<std::size_t, std::unique_ptr<widgets::GreyTexture>> thumbnails_;  // by source
   bool wants_to_close_ = false;

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "app/start/case_list.h"
-#include "app/start/start_drawing.h"
+#include "app/widgets/list_rows.h"
 #include "planning/files/format.h"
 #include "planning/files/utc_clock.h"
 
@@ -77,8 +77,8 @@ void draw_axis(const widgets::Ui& ui, const Chart& chart, const Charted& charted
   for (double value = step * std::ceil(chart.bottom / step); value <= chart.top; value += step) {
     const float y = chart.y_of(value);
     draw.AddLine({chart.plot.x, y}, {chart.plot.x + chart.plot.width, y}, widgets::kPanelEdge);
-    draw_text(draw, ui.theme.body, chart.plot.x - ui.theme.px(110), y - ui.theme.body->FontSize / 2,
-              widgets::kQuietText, files::format("%.4g", value) + charted.unit_text());
+    widgets::draw_text(draw, ui.theme.body, chart.plot.x - ui.theme.px(110), y - ui.theme.body->FontSize / 2,
+                       widgets::kQuietText, files::format("%.4g", value) + charted.unit_text());
   }
 }
 
@@ -169,11 +169,11 @@ void draw_chart(const widgets::Ui& ui, const widgets::Rect& area, const Charted&
   draw_points(ui, chart, charted);
   ImDrawList& plot = *ImGui::GetWindowDrawList();
   const float y = chart.plot.y + chart.plot.height + ui.theme.px(10);
-  draw_text(plot, ui.theme.body, chart.plot.x, y, widgets::kQuietText,
-            charted.points.front().when_utc.substr(0, 10));
+  widgets::draw_text(plot, ui.theme.body, chart.plot.x, y, widgets::kQuietText,
+                     charted.points.front().when_utc.substr(0, 10));
   if (charted.points.size() > 1)
-    draw_text(plot, ui.theme.body, chart.plot.x + chart.plot.width - ui.theme.px(130), y, widgets::kQuietText,
-              charted.points.back().when_utc.substr(0, 10));
+    widgets::draw_text(plot, ui.theme.body, chart.plot.x + chart.plot.width - ui.theme.px(130), y,
+                       widgets::kQuietText, charted.points.back().when_utc.substr(0, 10));
 }
 
 }  // namespace
@@ -195,15 +195,15 @@ void CaseList::draw_chart_list(const widgets::Ui& ui, const widgets::Rect& area)
   for (std::size_t i = 0; i < chart_count(); ++i) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float height = ui.theme.px(52);
-    const RowPress press = draw_row(ui, {.name = "start.trend." + std::to_string(i),
-                                         .number = i,
-                                         .height = height,
-                                         .is_selected = i == view_.chart,
-                                         .scrolls_here = false});
-    if (press != RowPress::None) view_.chart = i;
-    draw_text(*ImGui::GetWindowDrawList(), ui.theme.body, at.x + ui.theme.px(14),
-              at.y + (height - ui.theme.body->FontSize) / 2, widgets::kText,
-              fitting(ui.theme.body, chart_name(i), area.width - ui.theme.px(60)));
+    const widgets::RowPress press = widgets::draw_row(ui, {.name = "start.trend." + std::to_string(i),
+                                                           .number = i,
+                                                           .height = height,
+                                                           .is_selected = i == view_.chart,
+                                                           .scrolls_here = false});
+    if (press != widgets::RowPress::None) view_.chart = i;
+    widgets::draw_text(*ImGui::GetWindowDrawList(), ui.theme.body, at.x + ui.theme.px(14),
+                       at.y + (height - ui.theme.body->FontSize) / 2, widgets::kText,
+                       widgets::fitting(ui.theme.body, chart_name(i), area.width - ui.theme.px(60)));
   }
   widgets::end_panel();
 }
@@ -241,11 +241,11 @@ void CaseList::draw_trends(const widgets::Ui& ui, const widgets::Rect& area) {
   ui.log.note_state("trend_says", words);
 
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText, chart_name(view_.chart));
-  draw_text(draw, ui.theme.body, head.x, head.y + ui.theme.px(50), widgets::kQuietText,
-            fitting(ui.theme.body, words, head.width));
-  draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
-               {"start.trends", "start.simulated", "start.back"});
+  widgets::draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText, chart_name(view_.chart));
+  widgets::draw_text(draw, ui.theme.body, head.x, head.y + ui.theme.px(50), widgets::kQuietText,
+                     widgets::fitting(ui.theme.body, words, head.width));
+  widgets::draw_buttons(ui, rest.cut_bottom(ui.theme.px(56), ui.theme.px(12)),
+                        {"start.trends", "start.simulated", "start.back"});
   draw_chart_list(ui, rest.cut_left(ui.theme.px(420), ui.theme.px(12)));
   widgets::begin_panel(ui, "start.trend_plot", rest);
   if (charted.points.empty())

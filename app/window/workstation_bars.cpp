@@ -1,7 +1,7 @@
 // The bars above and below every screen.
 #include <utility>
 
-#include "app/start/start_drawing.h"
+#include "app/widgets/list_rows.h"
 #include "app/widgets/source_banner.h"
 #include "app/window/workstation_window.h"
 
@@ -49,7 +49,7 @@ void WorkstationWindow::draw_top_bar(const widgets::Ui& ui, const widgets::Rect&
     // A name that is too long is cut short; the side, which stands behind it, never.
     const auto line = [&](float y, ImU32 color, const std::string& words_before,
                           const std::string& rest = "") {
-      const std::string words = start::fitting(strong, words_before, room - width_of(rest)) + rest;
+      const std::string words = widgets::fitting(strong, words_before, room - width_of(rest)) + rest;
       const ImVec2 at{right - width_of(words), y};
       draw.AddText(strong, row, at, color, words.c_str());
       ui.log.note("app.whose", at, {right, y + row});
@@ -124,7 +124,7 @@ void WorkstationWindow::draw_header(const widgets::Ui& ui, const widgets::Rect& 
   draw.AddText(font, font->FontSize, notice_at, widgets::kQuietText, kNotice);
   ui.log.note("app.notice", notice_at, {notice_at.x + standing, notice_at.y + font->FontSize});
   const float left = foot.x + (has_room ? standing : 0);
-  const std::string words = warns ? start::fitting(font, text, foot.x + foot.width - left) : "";
+  const std::string words = warns ? widgets::fitting(font, text, foot.x + foot.width - left) : "";
   ui.log.note_state("header_notice", words);
   draw.AddText(font, font->FontSize, {left, foot.y}, widgets::kCaution, words.c_str());
 }

@@ -1,5 +1,6 @@
-// The whole list of exceptions that Arthronaut throws on purpose. Each message is one line whatever it quotes:
-// a control character in a file's own words or name is written as in C (a line feed as \n, an escape as \x1b).
+// The whole list of exceptions that Arthronaut throws on purpose. Each message is one line whatever it
+// quotes: a control character in a file's own words or name is written as in C (a line feed as \n, an escape
+// as \x1b).
 //
 // They are caught in four places alone: command dispatch, the top of a worker thread, the frame guard of the
 // window, and main(). The outcome of a computation is never an exception: it is a summary (see

@@ -153,8 +153,9 @@ TEST_F(ReviewWindow, SaysWhyNothingWasCompared) {
   EXPECT_EQ(app.wait_for_exit(30), 0);
 }
 
-// The folder that a hospital gives holds the scan by two kernels: it is asked which of them is meant, and the
-// one that is pressed is compared. No bone of this patient is in it, which the answer says.
+// The folder that a hospital gives, found by looking for it, holds the scan by two kernels: it is asked which
+// of them is meant, and the one that is pressed is compared. No bone of this patient is in it, which the
+// answer says.
 TEST_F(ReviewWindow, AsksWhichOfTwoCtsIsMeant) {
   for (const char* uid : {"1.2.3.1", "1.2.3.2"}) {
     test::DicomSeriesForm form;
@@ -166,10 +167,13 @@ TEST_F(ReviewWindow, AsksWhichOfTwoCtsIsMeant) {
   ASSERT_TRUE(app.wait_for_state("case", "open", 120));
   app.press("F3");
   ASSERT_TRUE(app.wait_for_state("session", session_.filename().string()));
-  app.press("c");
-  ASSERT_TRUE(app.wait_for_widget("review.postop_path"));
-  app.type((folder_ / "ct").string());
+  app.press("o");
+  ASSERT_TRUE(app.wait_for_widget("review.folder.ct"));
+  app.click("review.folder.ct");
+  ASSERT_TRUE(app.wait_for_state("selected", "ct"));
   app.press("Return");
+  ASSERT_TRUE(app.wait_for_widget("review.folder.1.2.3.2"));
+  app.press("i");
   ASSERT_TRUE(app.wait_for_state("postop", "asks", 60));
   app.click("review.postop_series_1");
   EXPECT_TRUE(app.wait_for_state("postop", "compared", 120));

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace arthronaut::start {
+namespace arthronaut::folders {
 
 struct FolderEntry {
   enum class Kind {
@@ -33,4 +33,4 @@ struct FolderListing {
 // By extension: a volume, or a DICOM file or directory.
 [[nodiscard]] bool is_image_name(const std::filesystem::path& file);
 
-}  // namespace arthronaut::start
+}  // namespace arthronaut::folders

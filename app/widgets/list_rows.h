@@ -1,4 +1,4 @@
-// What the pages of the start are drawn with.
+// Rows of a list that are chosen by key or mouse, and what they are drawn with.
 #pragma once
 
 #include <initializer_list>
@@ -6,14 +6,14 @@
 
 #include "app/widgets/controls.h"
 
-namespace arthronaut::start {
+namespace arthronaut::widgets {
 
 void draw_text(ImDrawList& draw, ImFont* font, float x, float y, ImU32 color, const std::string& words,
                float wrap = 0);
 // Cut off with an ellipsis where it is too long.
 [[nodiscard]] std::string fitting(ImFont* font, const std::string& words, float width);
 // The actions' buttons side by side.
-void draw_buttons(const widgets::Ui& ui, const widgets::Rect& bar, std::initializer_list<const char*> ids);
+void draw_buttons(const Ui& ui, const Rect& bar, std::initializer_list<const char*> ids);
 
 enum class RowPress { None, Once, Twice };
 struct ListRow {
@@ -24,6 +24,6 @@ struct ListRow {
 };
 // A row of a list at ImGui's cursor: its background, and how it was pressed. What stands in it is drawn over
 // it.
-[[nodiscard]] RowPress draw_row(const widgets::Ui& ui, const ListRow& row);
+[[nodiscard]] RowPress draw_row(const Ui& ui, const ListRow& row);
 
-}  // namespace arthronaut::start
+}  // namespace arthronaut::widgets

@@ -1,8 +1,8 @@
-#include "app/start/start_drawing.h"
+#include "app/widgets/list_rows.h"
 
 #include <algorithm>
 
-namespace arthronaut::start {
+namespace arthronaut::widgets {
 
 void draw_text(ImDrawList& draw, ImFont* font, float x, float y, ImU32 color, const std::string& words,
                float wrap) {
@@ -23,15 +23,15 @@ std::string fitting(ImFont* font, const std::string& words, float width) {
   return cut + "\u2026";
 }
 
-void draw_buttons(const widgets::Ui& ui, const widgets::Rect& bar, std::initializer_list<const char*> ids) {
+void draw_buttons(const Ui& ui, const Rect& bar, std::initializer_list<const char*> ids) {
   ImGui::SetCursorScreenPos(bar.min());
   for (const char* id : ids) {
-    widgets::action_button(ui, id, 0, bar.height);
+    action_button(ui, id, 0, bar.height);
     ImGui::SameLine();
   }
 }
 
-RowPress draw_row(const widgets::Ui& ui, const ListRow& row) {
+RowPress draw_row(const Ui& ui, const ListRow& row) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x;
   ImGui::PushID(static_cast<int>(row.number));
@@ -44,7 +44,7 @@ RowPress draw_row(const widgets::Ui& ui, const ListRow& row) {
   const ImVec2 to(at.x + width, at.y + row.height);
   if (row.is_selected) {
     draw.AddRectFilled(at, to, IM_COL32(28, 74, 104, 255), ui.theme.px(6));
-    draw.AddRect(at, to, widgets::kAccent, ui.theme.px(6), 0, ui.theme.px(2));
+    draw.AddRect(at, to, kAccent, ui.theme.px(6), 0, ui.theme.px(2));
   } else if (hovered) {
     draw.AddRectFilled(at, to, IM_COL32(38, 47, 57, 255), ui.theme.px(6));
   }
@@ -56,4 +56,4 @@ RowPress draw_row(const widgets::Ui& ui, const ListRow& row) {
   return twice ? RowPress::Twice : once ? RowPress::Once : RowPress::None;
 }
 
-}  // namespace arthronaut::start
+}  // namespace arthronaut::widgets

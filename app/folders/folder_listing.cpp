@@ -1,4 +1,4 @@
-#include "app/start/folder_listing.h"
+#include "app/folders/folder_listing.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include "planning/files/format.h"
 #include "planning/library/folder_search.h"
 
-namespace arthronaut::start {
+namespace arthronaut::folders {
 
 namespace {
 
@@ -80,4 +80,4 @@ FolderListing list_folder(const fs::path& folder) {
   return listing;
 }
 
-}  // namespace arthronaut::start
+}  // namespace arthronaut::folders

@@ -1,4 +1,4 @@
-#include "app/start/folder_listing.h"
+#include "app/folders/folder_listing.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "tests/temporary_folder.h"
 
-namespace arthronaut::start {
+namespace arthronaut::folders {
 namespace {
 
 using Kind = FolderEntry::Kind;
@@ -46,4 +46,4 @@ TEST(FolderListing, SaysWhatItCannotList) {
 }
 
 }  // namespace
-}  // namespace arthronaut::start
+}  // namespace arthronaut::folders

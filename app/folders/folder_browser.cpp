@@ -1,0 +1,112 @@
+#include "app/folders/folder_browser.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "app/widgets/list_rows.h"
+
+namespace arthronaut::folders {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path home_folder() {
+  const char* home = std::getenv("HOME");
+  return home != nullptr && *home != '\0' ? fs::path(home) : fs::path("/");
+}
+
+const char* word_of(FolderEntry::Kind kind) {
+  switch (kind) {
+    case FolderEntry::Kind::Case:
+      return "case";
+    case FolderEntry::Kind::Folder:
+      return "folder";
+    case FolderEntry::Kind::Image:
+      return "images";
+    case FolderEntry::Kind::Mesh:
+      return "mesh";
+  }
+  return "";
+}
+
+}  // namespace
+
+void FolderBrowser::enter() { look_into(listing_.folder.empty() ? home_folder() : listing_.folder); }
+
+void FolderBrowser::home() { look_into(home_folder()); }
+
+void FolderBrowser::up() { look_into(listing_.folder.parent_path()); }
+
+void FolderBrowser::look_into(const fs::path& folder) {
+  const fs::path from = listing_.folder;
+  listing_ = list_folder(folder);
+  selected_ = 0;
+  for (std::size_t i = 0; i < listing_.entries.size(); ++i)
+    if (listing_.entries[i].path == from) selected_ = i;
+  scrolls_to_selected_ = true;
+}
+
+void FolderBrowser::move_selection(int by) {
+  const auto count = static_cast<long>(listing_.entries.size());
+  if (count == 0) return;
+  selected_ = static_cast<std::size_t>(std::clamp(static_cast<long>(selected_) + by, 0L, count - 1));
+  scrolls_to_selected_ = true;
+}
+
+std::optional<fs::path> FolderBrowser::open_selected() {
+  if (!has_rows()) return std::nullopt;
+  const FolderEntry entry = listing_.entries[selected_];
+  if (entry.kind != FolderEntry::Kind::Folder) return entry.path;
+  look_into(entry.path);
+  return std::nullopt;
+}
+
+std::string FolderBrowser::selected() const { return has_rows() ? listing_.entries[selected_].name : ""; }
+
+std::optional<fs::path> FolderBrowser::draw(const widgets::Ui& ui, widgets::Rect area,
+                                            const std::string& title, const std::string& take_folder) {
+  const widgets::Rect head = area.cut_top(ui.theme.px(88));
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  widgets::draw_text(draw, ui.theme.title, head.x, head.y, widgets::kText, title);
+  widgets::draw_text(draw, ui.theme.body, head.x, head.y + ui.theme.px(46), widgets::kAccent,
+                     widgets::fitting(ui.theme.body, listing_.folder.string(), head.width));
+  widgets::begin_panel(ui, name_.c_str(), area);
+  bool opens = false;
+  const float height = ui.theme.px(44);
+  for (std::size_t i = 0; i < listing_.entries.size(); ++i) {
+    const FolderEntry& entry = listing_.entries[i];
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    const widgets::RowPress press = widgets::draw_row(ui, {.name = name_ + "." + entry.name,
+                                                           .number = i,
+                                                           .height = height,
+                                                           .is_selected = i == selected_,
+                                                           .scrolls_here = scrolls_to_selected_});
+    if (press != widgets::RowPress::None) selected_ = i;
+    opens = opens || press == widgets::RowPress::Twice;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const float y = at.y + (height - ui.theme.body->FontSize) / 2;
+    const bool is_case = entry.kind == FolderEntry::Kind::Case;
+    widgets::draw_text(list, ui.theme.body, at.x + ui.theme.px(16), y,
+                       is_case ? widgets::kAccent : widgets::kQuietText, word_of(entry.kind));
+    widgets::draw_text(list, is_case ? ui.theme.strong : ui.theme.body, at.x + ui.theme.px(120), y,
+                       widgets::kText, widgets::fitting(ui.theme.body, entry.name, width - ui.theme.px(320)));
+    widgets::draw_text(list, ui.theme.body, at.x + width - ui.theme.px(170), y, widgets::kQuietText,
+                       entry.detail);
+  }
+  scrolls_to_selected_ = false;
+  if (!listing_.failure.empty())
+    widgets::status_row(ui, widgets::Severity::Bad, "This folder cannot be looked into", listing_.failure);
+  if (listing_.other_files > 0)
+    widgets::text_in(ui.theme.body, widgets::kQuietText,
+                     std::to_string(listing_.other_files) +
+                         " other files. Images without an ending are found by " + take_folder + ".");
+  widgets::end_panel();
+  ui.log.note_state("selected", selected());
+  return opens ? open_selected() : std::nullopt;
+}
+
+}  // namespace arthronaut::folders
