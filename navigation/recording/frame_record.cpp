@@ -24,8 +24,8 @@ RecordedFrame frame_at(const Statement& row) {
   lens.circle.center_px = {row.number(3), row.number(4)};
   lens.circle.radius_px = row.number(5);
   lens.circle_coverage_deg = row.number(6);
-  lens.mark = static_cast<lens::MarkState>(row.integer(7));
-  lens.polarity = static_cast<lens::MarkPolarity>(row.integer(8));
+  lens.mark = row.one_of(7, lens::MarkState::NotSeen);
+  lens.polarity = row.one_of(8, lens::MarkPolarity::BrightOutward);
   lens.mark_angle_deg = row.number(9);
   lens.mark_sigma_deg = row.number(10);
   lens.is_stale = row.boolean(11);
@@ -52,7 +52,7 @@ strokes::PoseRow pose_at(const Statement& row, const RecordedFrame& frame) {
 guidance::GuidanceNumbers guidance_at(const Statement& row, const RecordedFrame& frame) {
   guidance::GuidanceNumbers g;
   g.timestamp_ns = frame.timestamp_ns;
-  g.state = static_cast<guidance::GuidanceState>(row.integer(1));
+  g.state = row.one_of(1, guidance::GuidanceState::GuideNotChecked);
   if (!g.is_valid()) return g;
   g.guide_point_mm = vector_at(row, 2);
   g.guide_direction = vector_at(row, 5);
@@ -84,7 +84,7 @@ guidance::GuidanceNumbers guidance_at(const Statement& row, const RecordedFrame&
 tracker::BodyPose outside_at(const Statement& row) {
   tracker::BodyPose body;
   body.id = row.int32(2);
-  body.state = static_cast<tracker::BodyState>(row.integer(3));
+  body.state = row.one_of(3, tracker::BodyState::ErrorUnknown);
   body.tracker_from_body.rotation = {row.number(4), row.number(5), row.number(6), row.number(7)};
   body.tracker_from_body.translation_mm = vector_at(row, 8);
   body.stamp_utc_s = row.number(11);
@@ -209,7 +209,7 @@ std::vector<RecordedFrame> read_frames(SessionDatabase& database, std::int64_t f
 
   Statement markers = database.prepare(among("SELECT * FROM markers", "frame, marker_id"));
   for_each_row(markers, frames, [](const Statement& row, RecordedFrame& frame) {
-    frame.markers.push_back({row.int32(1), static_cast<markers::MarkerState>(row.integer(2))});
+    frame.markers.push_back({row.int32(1), row.one_of(2, markers::MarkerState::Disagreeing)});
     if (row.boolean(3)) frame.poses.push_back(pose_at(row, frame));
   });
   Statement guidance = database.prepare(among("SELECT * FROM guidance", "frame"));

@@ -1,6 +1,7 @@
 #include "navigation/recording/session_database.h"
 
 #include <bit>
+#include <limits>
 #include <utility>
 
 #include "planning/files/private_folder.h"
@@ -99,8 +100,11 @@ void Statement::run() {
 
 std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_, column); }
 int Statement::int32(int column) const {
+  return in_range(column, std::numeric_limits<int>::min(), std::numeric_limits<int>::max());
+}
+int Statement::in_range(int column, int first, int last) const {
   const std::int64_t value = integer(column);
-  if (!std::in_range<int>(value))
+  if (value < first || value > last)
     throw InvalidInput(file_, sqlite3_column_name(statement_, column),
                        std::to_string(value) + " is out of range");
   return static_cast<int>(value);

@@ -33,6 +33,11 @@ class Statement {
   [[nodiscard]] std::int64_t integer(int column) const;
   // Throws InvalidInput, which names the column, where an int does not hold it.
   [[nodiscard]] int int32(int column) const;
+  // A value of an enumeration that counts from 0 to `last`; throws as int32 does.
+  template <typename Enumeration>
+  [[nodiscard]] Enumeration one_of(int column, Enumeration last) const {
+    return static_cast<Enumeration>(in_range(column, 0, static_cast<int>(last)));
+  }
   [[nodiscard]] bool boolean(int column) const { return integer(column) != 0; }
   [[nodiscard]] double number(int column) const;
   [[nodiscard]] std::string text(int column) const;
@@ -43,6 +48,7 @@ class Statement {
 
  private:
   void check(int result) const;
+  [[nodiscard]] int in_range(int column, int first, int last) const;
 
   sqlite3* database_;
   std::filesystem::path file_;

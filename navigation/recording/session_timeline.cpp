@@ -37,12 +37,14 @@ struct SessionTimeline::State {
   explicit State(const std::filesystem::path& folder)
       : database(SessionDatabase::open(database_file(folder))) {}
 
-  // What is read before a table breaks off stays.
+  // What is read before a table breaks off, or says what no program writes, stays.
   template <typename Read>
   void as_far_as_whole(const Read& part) {
     try {
       part();
     } catch (const IoError& error) {
+      problems.emplace_back(error.what());
+    } catch (const InvalidInput& error) {
       problems.emplace_back(error.what());
     }
   }
@@ -95,7 +97,7 @@ struct SessionTimeline::State {
     RowsAlong rows(database, "SELECT * FROM guidance ORDER BY frame");
     for (FrameGlance& glance : frames)
       rows.visit(glance.index, [&](const Statement& row) {
-        glance.guidance = static_cast<guidance::GuidanceState>(row.integer(1));
+        glance.guidance = row.one_of(1, guidance::GuidanceState::GuideNotChecked);
         if (!glance.is_guided()) return;
         constexpr int kAngle = 10, kAnterior = 11, kProximal = 12, kLateral = 17;
         const double lateral_mm = row.column_count() > kLateral ? row.number(kLateral) : 0;
@@ -143,6 +145,8 @@ const RecordedFrame& SessionTimeline::frame(std::size_t at) const {
     if (!found.empty()) s.kept = std::move(found.front());
   } catch (const IoError&) {
     // Told by problems(), since reading all of it met the same page.
+  } catch (const InvalidInput&) {
+    // A row that was changed: the check of the session names it.
   }
   s.kept_at = at;
   return s.kept;

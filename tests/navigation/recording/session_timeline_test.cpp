@@ -4,6 +4,8 @@
 
 #include <fstream>
 
+#include "navigation/recording/session_database.h"
+#include "navigation/recording/session_files.h"
 #include "navigation/recording/session_overview.h"
 #include "planning/files/atomic_file.h"
 #include "planning/geometry/error.h"
@@ -21,6 +23,11 @@ void record(const fs::path& folder, int frames = kFrames) {
   for (int i = 0; i < frames; ++i) recorder.append(test::frame_result(i));
   recorder.add_event({test::frame_result(frames - 1).timestamp_ns, "note", "the end"});
   recorder.finish();
+}
+
+// Of frame 102, on which guidance is valid.
+void change(const fs::path& folder, const std::string& values) {
+  SessionDatabase::open(database_file(folder)).execute(("UPDATE " + values + " WHERE frame = 102").c_str());
 }
 
 bool has_pose(const RecordedFrame& frame, int id) {
@@ -82,6 +89,31 @@ TEST(SessionTimeline, ReadsADamagedRecordAsFarAsItIsWhole) {
   EXPECT_THROW(RecordedSession{folder.path()}, IoError) << "whoever computes with it is told";
   const SessionOverview looked_at = read_overview(folder.path());
   EXPECT_EQ(looked_at.header.probe_name, "probe");
+}
+
+// A state that no program writes, as a changed row may hold, is never shown as one: guidance is known up to
+// there, and whoever computes with the record is told which number it is.
+TEST(SessionTimeline, ShowsNoStateThatThereIsNot) {
+  const test::TemporaryFolder folder;
+  record(folder.path(), 200);
+  change(folder.path(), "guidance SET state = 99");
+  const SessionTimeline timeline(folder.path());
+  ASSERT_EQ(timeline.frames().size(), 200U);
+  ASSERT_EQ(timeline.problems().size(), 1U);
+  EXPECT_NE(timeline.problems().front().find("session.sqlite: state: 99 is out of range"), std::string::npos)
+      << timeline.problems().front();
+  EXPECT_TRUE(timeline.frames()[99].is_guided());
+  EXPECT_FALSE(timeline.frames()[102].is_guided());
+  EXPECT_FALSE(timeline.frame(102).guidance.is_valid());
+  EXPECT_THROW(RecordedSession{folder.path()}, InvalidInput);
+  for (const char* row :
+       {"markers SET state = -1", "frames SET mark_state = 6", "frames SET mark_polarity = 3"}) {
+    SCOPED_TRACE(row);
+    const test::TemporaryFolder other;
+    record(other.path(), 110);
+    change(other.path(), row);
+    EXPECT_THROW(RecordedSession{other.path()}, InvalidInput);
+  }
 }
 
 // Files that are gone or of tomorrow: the rest is there, and each is told.
