@@ -1,6 +1,5 @@
 #include "app/report/report.h"
 
-#include <cmath>
 #include <optional>
 
 #include "app/report/flowing_pages.h"
@@ -9,11 +8,11 @@
 #include "app/report/postop_section.h"
 #include "app/report/report_content.h"
 #include "app/report/report_data.h"
+#include "app/report/report_words.h"
 #include "app/report/session_rows.h"
+#include "app/report/settings_section.h"
 #include "app/report/stills.h"
-#include "app/report/versions.h"
 #include "app/scene/plan_picture.h"
-#include "navigation/camera/camera_file.h"
 #include "navigation/camera/medium.h"
 #include "navigation/operation/achieved_tunnel.h"
 #include "navigation/recording/session.h"
@@ -29,37 +28,11 @@ namespace arthronaut::report {
 namespace {
 
 constexpr double kWidthMm = FlowingPages::kWidthMm;
-constexpr const char* kResearchSentence =
-    "Made by research software that is not a medical device. The figures are for research and teaching; they "
-    "support no "
-    "clinical claim and no decision about a patient.";
-
-// Never "-0.0".
-std::string number(double value, const char* unit, int decimals = 1) {
-  const bool is_zero = std::abs(value) < 0.5 * std::pow(10, -decimals);
-  return files::format("%.*f%s", decimals, is_zero ? 0 : value, unit);
-}
-
-std::string point(const Eigen::Vector3d& p, int decimals = 1) {
-  return number(p.x(), ", ", decimals) + number(p.y(), ", ", decimals) + number(p.z(), "", decimals);
-}
-
 // A hash is a word too long for a line: "3dd6dcd64e4a9eeb 069e29a556f187e8 ...".
 std::string in_groups(const std::string& hash) {
   std::string groups;
   for (std::size_t at = 0; at < hash.size(); at += 16) groups += (at > 0 ? " " : "") + hash.substr(at, 16);
   return groups;
-}
-
-// Of a body of several markers, all of them.
-constexpr const char* kNotTold = "not told";
-
-template <typename Body>
-std::string ids_of(const Body& body) {
-  std::string ids;
-  for (const tools::BodyMarker& marker : tools::markers_of(body))
-    ids += (ids.empty() ? "" : ", ") + std::to_string(marker.marker_id);
-  return ids;
 }
 
 class Report {
@@ -86,7 +59,7 @@ class Report {
     }
     navigate_page();
     result_pictures();
-    settings();
+    draw_settings_section(pages_, content_, options_);
     return pdf_;
   }
 
@@ -145,7 +118,6 @@ class Report {
   void time_line_section(const recording::RecordedSession& session);
   void result_section(const operation::AchievedTunnel& achieved);
   void result_pictures();
-  void settings();
 
   const Content& content_;
   const ReportOptions options_;
@@ -327,54 +299,6 @@ void Report::result_pictures() {
     legend += " Banded: as drilled, measured by navigation or, of a simulation, as it truly lies.";
   if (!touched_points().empty()) legend += " Dots: where the probe touched the bone.";
   pages_.sentence(legend, {.size_pt = 8, .ink = kGray});
-}
-
-void Report::settings() {
-  pages_.continue_as("Camera, tools and versions");
-  const auto camera_file = cases::camera_file(content_.folder);
-  if (std::filesystem::exists(camera_file)) {
-    const auto record = camera::read_camera_file(camera_file);
-    const auto& c = record.calibration;
-    pages_.heading("Camera");
-    pages_.table(
-        {38, 44, 36, 52},
-        {{"Quantity", "Value", "Quantity", "Value"},
-         {"Focal length", number(c.focal_px, " px", 2), "Distortion xi", number(c.distortion_xi, "", 4)},
-         {"Principal point",
-          number(c.principal_point_px.x(), ", ", 1) + number(c.principal_point_px.y(), " px", 1),
-          "Centre of rotation",
-          number(c.rotation_center_px.x(), ", ", 1) + number(c.rotation_center_px.y(), " px", 1)},
-         {"Reprojection error", record.rms_px >= 0 ? number(record.rms_px, " px", 2) : "not recorded",
-          "Calibrated in", camera::medium_to_text(c.refractive_index)},
-         {"Date",
-          record.date_utc.empty()    ? "not recorded"
-          : options_.is_deidentified ? kNotTold
-                                     : files::utc_in_words(record.date_utc),
-          "Scope, head", record.scope_name + (record.head_name.empty() ? "" : ", " + record.head_name)}});
-  }
-  if (content_.session) {
-    pages_.heading("Tools");
-    std::vector<std::vector<std::string>> rows = {{"Tool", "Marker", "Size", "Tip or axis in its frame, mm"}};
-    const auto options = content_.session->pipeline_options();
-    for (const auto& world : options.tools.world_markers) {
-      rows.push_back({std::string(bones::to_text(world.bone)) + " (world)", ids_of(world),
-                      number(world.size_mm, " mm", 2), ""});
-    }
-    for (const auto& tool : options.tools.tools) {
-      std::string where;
-      if (tool.tip_mm) where = "tip " + point(*tool.tip_mm, 2);
-      if (tool.axis)
-        where = "axis through " + point(tool.axis->point_mm, 2) + " along " + point(tool.axis->direction, 3);
-      rows.push_back({tool.name, ids_of(tool), number(tool.size_mm, " mm", 2), where});
-    }
-    pages_.table({34, 16, 20, 100}, rows);
-  }
-  pages_.heading("Versions", 6);
-  std::string text;
-  for (const auto& [name, version] : versions())
-    text += (text.empty() ? "" : " \u00B7 ") + name + " " + version;
-  pages_.sentence(text, {.size_pt = 8.5});
-  pages_.sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
 }
 
 Content reportable(const std::filesystem::path& case_folder, const ReportOptions& options) {

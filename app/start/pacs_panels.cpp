@@ -16,6 +16,8 @@ namespace {
 
 using Kind = PacsJob::Kind;
 using State = PacsNews::State;
+using widgets::draw_text;
+using widgets::fitting;
 using widgets::Severity;
 
 // "20260131" as 2026-01-31.
@@ -58,7 +60,7 @@ void PacsPane::draw(const widgets::Ui& ui, const widgets::Rect& area) {
                       : view_.page == Page::Send ? "Results to the hospital's PACS"
                       : view_.edited.empty()     ? "Another PACS"
                                                  : "This PACS";
-  widgets::draw_text(*ImGui::GetWindowDrawList(), ui.theme.title, head.x, head.y, widgets::kText, title);
+  draw_text(*ImGui::GetWindowDrawList(), ui.theme.title, head.x, head.y, widgets::kText, title);
   if (view_.page == Page::Peer) return draw_form(ui, rest);
   if (view_.page == Page::Send) return draw_send(ui, rest);
   draw_search(ui, rest);
@@ -131,15 +133,13 @@ void PacsPane::draw_peers(const widgets::Ui& ui, const widgets::Rect& area) {
     widgets::draw_sign(draw, {at.x + ui.theme.px(20), at.y + ui.theme.px(22)}, ui.theme.px(9),
                        light.severity);
     const float x = at.x + ui.theme.px(42);
-    widgets::draw_text(
+    draw_text(
         draw, ui.theme.strong, x, at.y + ui.theme.px(8), widgets::kText,
-        widgets::fitting(ui.theme.strong, peers_[i].name + (peers_[i].connection.tls ? "  \u2013  TLS" : ""),
-                         width));
+        fitting(ui.theme.strong, peers_[i].name + (peers_[i].connection.tls ? "  \u2013  TLS" : ""), width));
     const bool is_bad = light.severity == Severity::Bad;
-    widgets::draw_text(
-        draw, ui.theme.body, x, at.y + ui.theme.px(40), is_bad ? widgets::kBad : widgets::kQuietText,
-        widgets::fitting(ui.theme.body,
-                         is_bad ? light.words : peers_[i].address() + "  \u2013  " + light.words, width));
+    draw_text(draw, ui.theme.body, x, at.y + ui.theme.px(40), is_bad ? widgets::kBad : widgets::kQuietText,
+              fitting(ui.theme.body, is_bad ? light.words : peers_[i].address() + "  \u2013  " + light.words,
+                      width));
   }
   const auto known = peer() != nullptr ? lights_.find(peer()->name) : lights_.end();
   if (known != lights_.end() && known->second.severity == Severity::Bad)
@@ -250,16 +250,15 @@ void PacsPane::draw_row_of(const widgets::Ui& ui, const Row& row, std::size_t /*
   const float width = ImGui::GetContentRegionAvail().x, right = ui.theme.px(150);
   if (row.series != nullptr) {
     const float y = at.y + (ui.theme.px(46) - ui.theme.body->FontSize) / 2;
-    widgets::draw_text(draw, ui.theme.strong, at.x + ui.theme.px(40), y, widgets::kText,
-                       widgets::fitting(ui.theme.strong, row.series->modality, ui.theme.px(70)));
-    widgets::draw_text(
-        draw, ui.theme.body, at.x + ui.theme.px(120), y, widgets::kText,
-        widgets::fitting(ui.theme.body,
-                         "series " + row.series->number +
-                             (row.series->description.empty() ? "" : "  \u2013  " + row.series->description),
-                         width - ui.theme.px(140) - right));
-    widgets::draw_text(draw, ui.theme.body, at.x + width - right, y, widgets::kQuietText,
-                       counted(row.series->image_count, "image", "images"));
+    draw_text(draw, ui.theme.strong, at.x + ui.theme.px(40), y, widgets::kText,
+              fitting(ui.theme.strong, row.series->modality, ui.theme.px(70)));
+    draw_text(draw, ui.theme.body, at.x + ui.theme.px(120), y, widgets::kText,
+              fitting(ui.theme.body,
+                      "series " + row.series->number +
+                          (row.series->description.empty() ? "" : "  \u2013  " + row.series->description),
+                      width - ui.theme.px(140) - right));
+    draw_text(draw, ui.theme.body, at.x + width - right, y, widgets::kQuietText,
+              counted(row.series->image_count, "image", "images"));
     return;
   }
   const bool is_patient = row.study == nullptr;
@@ -278,10 +277,10 @@ void PacsPane::draw_row_of(const widgets::Ui& ui, const Row& row, std::size_t /*
   const float height = ui.theme.px(is_patient ? 48 : 40);
   const float y = at.y + (height - ui.theme.body->FontSize) / 2;
   const float x = at.x + ui.theme.px(is_patient ? 8 : 24);
-  widgets::draw_text(draw, is_patient ? ui.theme.strong : ui.theme.body, x, y,
-                     is_patient ? widgets::kAccent : widgets::kText,
-                     widgets::fitting(ui.theme.strong, words, width - right - ui.theme.px(40)));
-  widgets::draw_text(draw, ui.theme.body, at.x + width - right, y, widgets::kQuietText, counts);
+  draw_text(draw, is_patient ? ui.theme.strong : ui.theme.body, x, y,
+            is_patient ? widgets::kAccent : widgets::kText,
+            fitting(ui.theme.strong, words, width - right - ui.theme.px(40)));
+  draw_text(draw, ui.theme.body, at.x + width - right, y, widgets::kQuietText, counts);
   ImGui::Dummy({width, height});
 }
 

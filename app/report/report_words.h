@@ -1,0 +1,27 @@
+// Numbers and sentences that several parts of a report say. Inner header of report.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <string>
+
+#include "planning/files/format.h"
+
+namespace arthronaut::report {
+
+inline constexpr const char* kResearchSentence =
+    "Made by research software that is not a medical device. The figures are for research and teaching; they "
+    "support no clinical claim and no decision about a patient.";
+inline constexpr const char* kNotTold = "not told";  // of a report that names nobody
+
+// Never "-0.0".
+inline std::string number(double value, const char* unit, int decimals = 1) {
+  const bool is_zero = std::abs(value) < 0.5 * std::pow(10, -decimals);
+  return files::format("%.*f%s", decimals, is_zero ? 0 : value, unit);
+}
+
+inline std::string point(const Eigen::Vector3d& p, int decimals = 1) {
+  return number(p.x(), ", ", decimals) + number(p.y(), ", ", decimals) + number(p.z(), "", decimals);
+}
+
+}  // namespace arthronaut::report

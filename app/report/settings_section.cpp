@@ -1,0 +1,79 @@
+#include "app/report/settings_section.h"
+
+#include "app/report/report_words.h"
+#include "app/report/versions.h"
+#include "navigation/camera/camera_file.h"
+#include "navigation/camera/medium.h"
+#include "navigation/recording/session.h"
+#include "planning/cases/case.h"
+#include "planning/files/utc_clock.h"
+
+namespace arthronaut::report {
+
+namespace {
+
+// Of a body of several markers, all of them.
+template <typename Body>
+std::string ids_of(const Body& body) {
+  std::string ids;
+  for (const tools::BodyMarker& marker : tools::markers_of(body))
+    ids += (ids.empty() ? "" : ", ") + std::to_string(marker.marker_id);
+  return ids;
+}
+
+void camera_table(FlowingPages& pages, const std::filesystem::path& camera_file,
+                  const ReportOptions& options) {
+  const auto record = camera::read_camera_file(camera_file);
+  const auto& c = record.calibration;
+  pages.heading("Camera");
+  pages.table(
+      {38, 44, 36, 52},
+      {{"Quantity", "Value", "Quantity", "Value"},
+       {"Focal length", number(c.focal_px, " px", 2), "Distortion xi", number(c.distortion_xi, "", 4)},
+       {"Principal point",
+        number(c.principal_point_px.x(), ", ", 1) + number(c.principal_point_px.y(), " px", 1),
+        "Centre of rotation",
+        number(c.rotation_center_px.x(), ", ", 1) + number(c.rotation_center_px.y(), " px", 1)},
+       {"Reprojection error", record.rms_px >= 0 ? number(record.rms_px, " px", 2) : "not recorded",
+        "Calibrated in", camera::medium_to_text(c.refractive_index)},
+       {"Date",
+        record.date_utc.empty()   ? "not recorded"
+        : options.is_deidentified ? kNotTold
+                                  : files::utc_in_words(record.date_utc),
+        "Scope, head", record.scope_name + (record.head_name.empty() ? "" : ", " + record.head_name)}});
+}
+
+void tools_table(FlowingPages& pages, const recording::RecordedSession& session) {
+  pages.heading("Tools");
+  std::vector<std::vector<std::string>> rows = {{"Tool", "Marker", "Size", "Tip or axis in its frame, mm"}};
+  const auto options = session.pipeline_options();
+  for (const auto& world : options.tools.world_markers) {
+    rows.push_back({std::string(bones::to_text(world.bone)) + " (world)", ids_of(world),
+                    number(world.size_mm, " mm", 2), ""});
+  }
+  for (const auto& tool : options.tools.tools) {
+    std::string where;
+    if (tool.tip_mm) where = "tip " + point(*tool.tip_mm, 2);
+    if (tool.axis)
+      where = "axis through " + point(tool.axis->point_mm, 2) + " along " + point(tool.axis->direction, 3);
+    rows.push_back({tool.name, ids_of(tool), number(tool.size_mm, " mm", 2), where});
+  }
+  pages.table({34, 16, 20, 100}, rows);
+}
+
+}  // namespace
+
+void draw_settings_section(FlowingPages& pages, const Content& content, const ReportOptions& options) {
+  pages.continue_as("Camera, tools and versions");
+  const auto camera_file = cases::camera_file(content.folder);
+  if (std::filesystem::exists(camera_file)) camera_table(pages, camera_file, options);
+  if (content.session) tools_table(pages, *content.session);
+  pages.heading("Versions", 6);
+  std::string text;
+  for (const auto& [name, version] : versions())
+    text += (text.empty() ? "" : " \u00B7 ") + name + " " + version;
+  pages.sentence(text, {.size_pt = 8.5});
+  pages.sentence(kResearchSentence, {.size_pt = 8.5, .ink = kWarning});
+}
+
+}  // namespace arthronaut::report
