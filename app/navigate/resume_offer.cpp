@@ -10,6 +10,19 @@
 
 namespace arthronaut::navigate {
 
+namespace {
+
+bool has_sessions(const std::filesystem::path& case_folder) {
+  try {  // one that nobody may look into is found out by whoever writes into it
+    return !cases::session_folders(case_folder).empty();
+  } catch (const std::filesystem::filesystem_error& error) {
+    log::error(std::string("nothing can be resumed: ") + error.what());
+    return false;
+  }
+}
+
+}  // namespace
+
 ResumeOffer::ResumeOffer(std::function<void()> wake)
     : worker_(
           worker::Backlog::NewestWins,
@@ -23,7 +36,7 @@ void ResumeOffer::open(const open_case::PlanModel& model, const std::filesystem:
   ++number_;
   left_.clear();
   answered_.clear();
-  is_looking_ = !is_read_only && !case_folder.empty() && !cases::session_folders(case_folder).empty();
+  is_looking_ = !is_read_only && !case_folder.empty() && has_sessions(case_folder);
   if (!is_looking_) return;
   Search wanted{number_, case_folder, {}, model.knee().plan};
   for (const auto& [kind, bone] : model.knee().bones) wanted.meshes.emplace(kind, bone.mesh);

@@ -141,4 +141,15 @@ void WorkstationWindow::draw_status_bar(const widgets::Ui& ui, const widgets::Re
                warns ? widgets::kCaution : widgets::kQuietText, text.c_str());
 }
 
+void WorkstationWindow::draw_fault(const widgets::Ui& ui) const {
+  ui.log.note_state("frame_fault", fault_.words(ui.now_s));
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float height = ui.theme.body->FontSize + ui.theme.px(16), left = ui.theme.px(20);
+  ImDrawList& draw = *ImGui::GetForegroundDrawList();
+  draw.AddRectFilled({0, size.y - height}, size, widgets::kPanel);
+  const std::string words = widgets::fitting(ui.theme.body, fault_.words(ui.now_s), size.x - 2 * left);
+  draw.AddText(ui.theme.body, ui.theme.body->FontSize, {left, size.y - height + ui.theme.px(8)},
+               widgets::kCaution, words.c_str());
+}
+
 }  // namespace arthronaut::window

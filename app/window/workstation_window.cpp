@@ -8,13 +8,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "app/library/workstation_library.h"
 #include "app/review/review_view.h"
 #include "app/widgets/hold_hint.h"
 #include "app/widgets/key_clashes.h"
 #include "app/widgets/source_banner.h"
 #include "app/window/key_list.h"
-#include "planning/files/utc_clock.h"
 
 namespace arthronaut::window {
 
@@ -48,24 +46,6 @@ WorkstationWindow::WorkstationWindow(const WorkstationOptions& options)
     open({});
   else if (!options.case_folder.empty())
     start_.take(options.case_folder);
-}
-
-void WorkstationWindow::open(const std::filesystem::path& folder) {
-  if (opening_ != nullptr || has_running_work()) return;
-  const std::filesystem::path wanted = folder.empty() ? open_case::built_in_case_folder() : folder;
-  std::error_code error;
-  if (case_ != nullptr && std::filesystem::equivalent(wanted, case_->folder(), error)) {
-    close_start();  // it is open
-    return;
-  }
-  failure_.clear();
-  lender_ = nullptr;
-  const auto wake = [] { GraphicsWindow::wake(); };
-  // One that the modes still know is this program's already.
-  if (known_to_modes_ != nullptr && std::filesystem::equivalent(wanted, known_to_modes_->folder(), error))
-    lender_ = known_to_modes_.get();
-  opening_ = lender_ != nullptr ? std::make_unique<open_case::CaseOpening>(*lender_, wake)
-                                : std::make_unique<open_case::CaseOpening>(folder, wake);
 }
 
 void WorkstationWindow::add_actions() {
@@ -160,11 +140,7 @@ bool WorkstationWindow::works_elsewhere() const {
 // poll -> queues and actions -> UI (with the scenes that are dirty) -> draw -> swap
 void WorkstationWindow::frame(double timeout_s) {
   window_.begin_frame(timeout_s);
-  try {
-    work();
-  } catch (const std::runtime_error& error) {
-    fault_.note(error.what(), GraphicsWindow::now_s());
-  }
+  work();
   const widgets::Ui ui{window_.theme(), actions_, log_, GraphicsWindow::now_s()};
   heartbeat_.beat(ui.now_s, has_running_work());
   watch_.frame_drawn(has_running_work());
@@ -172,55 +148,46 @@ void WorkstationWindow::frame(double timeout_s) {
     draw_screen(ui);
   } catch (const std::runtime_error& error) {
     fault_.note(error.what(), ui.now_s);
-    ImGui::ErrorCheckEndFrameRecover(nullptr);  // ends what was begun
+    // Ends what was begun, but for fonts, over which it would end the program.
+    while (ImGui::GetCurrentContext()->FontStack.Size > 0) ImGui::PopFont();
+    ImGui::ErrorCheckEndFrameRecover(nullptr);
+    draw_fault(ui);
   }
-  actions_.advance(ui.now_s);  // after the buttons: what was let go in this frame is known
+  guarded([&] { actions_.advance(ui.now_s); });  // after the buttons: what was let go in this frame is known
   end_frame(ui.now_s);
   log_.end_frame();
 }
 
-void WorkstationWindow::work() {
-  take_dropped();
-  start_.tick();
-  take_opened_case();
-  dispatch_keys();
-  if (shows_start_ && start_.wants_to_close()) close_start();
-  for (const auto& mode : modes_) mode->tick(GraphicsWindow::now_s());
-  paint_.tick(GraphicsWindow::now_s());
-  if (std::exchange(reopens_, false)) reopen();
+bool WorkstationWindow::guarded(const std::function<void()>& part) {
+  try {
+    part();
+    return true;
+  } catch (const std::runtime_error& error) {
+    fault_.note(error.what(), GraphicsWindow::now_s());
+    return false;
+  }
 }
 
-void WorkstationWindow::take_opened_case() {
-  if (opening_ == nullptr) return;
-  const bool is_open = opening_->take();
-  if (!is_open && opening_->is_busy()) return;
-  if (!is_open) {
-    failure_ = opening_->failure();
-    if (lender_ != nullptr) lender_->keep_lock(*opening_);
-    opening_.reset();
-    return;
+void WorkstationWindow::work() {
+  // First, and whatever fails: what a held key does is not done by a hand that has let go.
+  for (const int key : window_.released_keys()) {
+    actions_.release(key);
+    actions_.release(room_.meaning_of(key));
   }
-  leave_shown();
-  if (opening_->model() != nullptr) {
-    for (const auto& mode : modes_)
-      mode->case_opened({opening_->model(), opening_->folder(), opening_->read_only_reason()});
-    known_to_modes_.reset();
-  } else if (model() != nullptr) {
-    known_to_modes_ = std::move(case_);
-  }
-  if (case_ == nullptr || case_->folder() != opening_->folder()) paint_.close();
-  case_ = std::move(opening_);  // the one before is let go when no mode knows it any more
-  lender_ = nullptr;
-  const cases::Case& knee = is_unpainted() ? *case_->unpainted() : model()->knee();
-  if (is_unpainted()) paint_.open(knee, case_->folder(), case_->is_read_only());
-  start::note_recent_case(
-      start::recent_cases_file(),
-      {case_->folder(), knee.name, std::string(bones::to_text(knee.side)), files::utc_now()});
-  workstation_library::note_case(case_->folder());
-  start_.leave();  // it may have begun a picture since, and Plan draws from here on
-  shows_start_ = shows_paint_ = false;
-  if (case_->is_read_only() && !shown().works_read_only()) shown_ = 0;
-  if (!is_unpainted()) shown().enter();
+  guarded([this] {
+    take_dropped();
+    start_.tick();
+    take_opened_case();
+  });
+  guarded([this] {
+    dispatch_keys();
+    if (shows_start_ && start_.wants_to_close()) close_start();
+  });
+  for (const auto& mode : modes_) guarded([&] { mode->tick(GraphicsWindow::now_s()); });
+  guarded([this] {
+    paint_.tick(GraphicsWindow::now_s());
+    if (std::exchange(reopens_, false)) reopen();
+  });
 }
 
 void WorkstationWindow::leave_shown() {
@@ -246,35 +213,7 @@ void WorkstationWindow::close_paint() {
   start_.enter(true);
 }
 
-void WorkstationWindow::reopen() {
-  if (opening_ != nullptr) return;
-  lender_ = case_.get();
-  opening_ = std::make_unique<open_case::CaseOpening>(*case_, [] { GraphicsWindow::wake(); });
-}
-
-void WorkstationWindow::take_dropped() {
-  const auto dropped = window_.take_dropped();
-  if (dropped.empty()) return;
-  if (has_running_work() || opening_ != nullptr) {
-    failure_ = "Stop what runs before another case is opened";
-    return;
-  }
-  failure_.clear();
-  // In Review what is dropped is what the case looks like now, unless it is another case.
-  const bool is_in_review = !shows_start() && !shows_paint() && &shown() == review_;
-  if (is_in_review && !std::filesystem::exists(dropped.front() / "case.json"))
-    return review_->take_dropped(dropped.front());
-  leave_shown();
-  shows_start_ = true;
-  start_.enter(case_ != nullptr);
-  start_.take(dropped.front());
-}
-
 void WorkstationWindow::dispatch_keys() {
-  for (const int key : window_.released_keys()) {
-    actions_.release(key);
-    actions_.release(room_.meaning_of(key));
-  }
   // Elsewhere than in theatre and in Set up a key means what it is called.
   const auto prefixes = action_prefixes();
   const bool has_pedals = std::find(prefixes.begin(), prefixes.end(), "navigate.") != prefixes.end() ||

@@ -1,6 +1,7 @@
 // The whole window: modes, bars, the open case, and the loop that keeps the frame order.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -36,9 +37,10 @@ class WorkstationWindow {
   void add_actions();
   void add_screen_actions();
   void end_frame(double now_s);
-  // A frame whose work or drawing throws is broken off there, says why, and the next one follows.
+  // A part of a frame's work or its drawing that throws is broken off there, says why, and the rest follows.
   void frame(double timeout_s);
-  void work();  // what is done in a frame before it is drawn
+  void work();                                      // what is done in a frame before it is drawn
+  bool guarded(const std::function<void()>& part);  // false: it threw
   // Empty: the built-in case. The one that is open stays open until the other one is.
   void open(const std::filesystem::path& folder);
   void take_opened_case();
@@ -58,6 +60,7 @@ class WorkstationWindow {
   // The same in one place, of a mode that has the whole window.
   void draw_header(const widgets::Ui& ui, const widgets::Rect& area);
   void draw_status_bar(const widgets::Ui& ui, const widgets::Rect& area);
+  void draw_fault(const widgets::Ui& ui) const;  // over whatever was drawn before it
   [[nodiscard]] open_case::PlanModel* model() const { return case_ != nullptr ? case_->model() : nullptr; }
   // A case of images alone is painted in, and no mode is of use there.
   [[nodiscard]] bool is_unpainted() const { return case_ != nullptr && case_->unpainted() != nullptr; }

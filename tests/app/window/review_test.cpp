@@ -53,7 +53,8 @@ TEST_F(ReviewWindow, SaysThatARecordWasChanged) {
   EXPECT_TRUE(app.wait_for_state("record", "broken"));
 }
 
-// A folder that cannot be looked into is a sentence on the screen; the workstation goes on.
+// A folder that cannot be looked into is a sentence on the screen; the workstation goes on. By key that is
+// found before a frame is drawn, by a button in the middle of drawing one.
 TEST_F(ReviewWindow, AFolderThatCannotBeReadEndsNothing) {
   const VirtualDisplay display(1920, 1080);
   RunningWorkstation app(display, folder_.path(), {case_folder_.string()});
@@ -61,17 +62,43 @@ TEST_F(ReviewWindow, AFolderThatCannotBeReadEndsNothing) {
   const auto sessions = case_folder_ / "sessions", aside = folder_ / "aside";
   std::filesystem::rename(sessions, aside);
   std::filesystem::create_symlink("sessions", sessions);  // leads to itself
+  const auto fault = [&] {
+    for (int i = 0; i < 100 && app.state("frame_fault").empty(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    return app.state("frame_fault");
+  };
   app.press("F3");
   ASSERT_TRUE(app.wait_for_state("mode", "review"));
-  for (int i = 0; i < 100 && app.state("frame_fault").empty(); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  EXPECT_NE(app.state("frame_fault").find("sessions"), std::string::npos) << app.state("frame_fault");
+  EXPECT_NE(fault().find("sessions"), std::string::npos);
+  app.press("F1");
+  ASSERT_TRUE(app.wait_for_state("mode", "plan"));
+  ASSERT_TRUE(app.wait_for_state("frame_fault", "", 30));
+  app.click("mode.review");
+  EXPECT_NE(fault().find("sessions"), std::string::npos);
   std::filesystem::remove(sessions);
   std::filesystem::rename(aside, sessions);
   app.press("F1");
   ASSERT_TRUE(app.wait_for_state("mode", "plan"));
   app.press("F3");
   EXPECT_TRUE(app.wait_for_state("session", session_.filename().string()));
+}
+
+// A case in whose sessions nobody may look is opened and planned in; nothing is practised in it.
+TEST_F(ReviewWindow, ACaseWhoseSessionsCannotBeReadIsOpened) {
+  const auto sessions = case_folder_ / "sessions";
+  std::filesystem::rename(sessions, folder_ / "aside");
+  std::filesystem::create_symlink("sessions", sessions);  // leads to itself
+  const VirtualDisplay display(1920, 1080);
+  RunningWorkstation app(display, folder_.path(), {case_folder_.string()});
+  ASSERT_TRUE(app.wait_for_state("case", "open", 120));
+  EXPECT_EQ(app.state("frame_fault"), "");
+  for (const auto& [key, mode] :
+       {std::pair{"F6", "train"}, std::pair{"F2", "navigate"}, std::pair{"F1", "plan"}}) {
+    app.press(key);
+    EXPECT_TRUE(app.wait_for_state("mode", mode));
+  }
+  app.press("ctrl+q");
+  EXPECT_EQ(app.wait_for_exit(30), 0);
 }
 
 // Opened at the last moment with guidance; by keys to the beginning, to the alarm, a frame on; a mark with a

@@ -1,0 +1,94 @@
+// How one case takes the place of another.
+#include <utility>
+
+#include "app/library/workstation_library.h"
+#include "app/review/review_view.h"
+#include "app/window/workstation_window.h"
+#include "planning/files/utc_clock.h"
+
+namespace arthronaut::window {
+
+namespace {
+
+using widgets::GraphicsWindow;
+
+}  // namespace
+
+void WorkstationWindow::open(const std::filesystem::path& folder) {
+  if (opening_ != nullptr || has_running_work()) return;
+  const std::filesystem::path wanted = folder.empty() ? open_case::built_in_case_folder() : folder;
+  std::error_code error;
+  if (case_ != nullptr && std::filesystem::equivalent(wanted, case_->folder(), error)) {
+    close_start();  // it is open
+    return;
+  }
+  failure_.clear();
+  lender_ = nullptr;
+  const auto wake = [] { GraphicsWindow::wake(); };
+  // One that the modes still know is this program's already.
+  if (known_to_modes_ != nullptr && std::filesystem::equivalent(wanted, known_to_modes_->folder(), error))
+    lender_ = known_to_modes_.get();
+  opening_ = lender_ != nullptr ? std::make_unique<open_case::CaseOpening>(*lender_, wake)
+                                : std::make_unique<open_case::CaseOpening>(folder, wake);
+}
+
+void WorkstationWindow::take_opened_case() {
+  if (opening_ == nullptr) return;
+  const bool is_open = opening_->take();
+  if (!is_open && opening_->is_busy()) return;
+  if (!is_open) {
+    failure_ = opening_->failure();
+    if (lender_ != nullptr) lender_->keep_lock(*opening_);
+    opening_.reset();
+    return;
+  }
+  leave_shown();
+  // The one before is let go when no mode knows it any more.
+  std::unique_ptr<open_case::CaseOpening> before = std::exchange(case_, std::move(opening_));
+  lender_ = nullptr;
+  bool all_know = model() != nullptr;
+  if (model() != nullptr)
+    for (const auto& mode : modes_)
+      all_know &= guarded([&] { mode->case_opened({model(), case_->folder(), case_->read_only_reason()}); });
+  if (all_know)
+    known_to_modes_.reset();
+  else if (before != nullptr && before->model() != nullptr)
+    known_to_modes_ = std::move(before);
+  if (before == nullptr || before->folder() != case_->folder()) paint_.close();
+  const cases::Case& knee = is_unpainted() ? *case_->unpainted() : model()->knee();
+  if (is_unpainted()) paint_.open(knee, case_->folder(), case_->is_read_only());
+  start::note_recent_case(
+      start::recent_cases_file(),
+      {case_->folder(), knee.name, std::string(bones::to_text(knee.side)), files::utc_now()});
+  workstation_library::note_case(case_->folder());
+  start_.leave();  // it may have begun a picture since, and Plan draws from here on
+  shows_start_ = shows_paint_ = false;
+  if (case_->is_read_only() && !shown().works_read_only()) shown_ = 0;
+  if (!is_unpainted()) shown().enter();
+}
+
+void WorkstationWindow::reopen() {
+  if (opening_ != nullptr) return;
+  lender_ = case_.get();
+  opening_ = std::make_unique<open_case::CaseOpening>(*case_, [] { GraphicsWindow::wake(); });
+}
+
+void WorkstationWindow::take_dropped() {
+  const auto dropped = window_.take_dropped();
+  if (dropped.empty()) return;
+  if (has_running_work() || opening_ != nullptr) {
+    failure_ = "Stop what runs before another case is opened";
+    return;
+  }
+  failure_.clear();
+  // In Review what is dropped is what the case looks like now, unless it is another case.
+  const bool is_in_review = !shows_start() && !shows_paint() && &shown() == review_;
+  if (is_in_review && !std::filesystem::exists(dropped.front() / "case.json"))
+    return review_->take_dropped(dropped.front());
+  leave_shown();
+  shows_start_ = true;
+  start_.enter(case_ != nullptr);
+  start_.take(dropped.front());
+}
+
+}  // namespace arthronaut::window
