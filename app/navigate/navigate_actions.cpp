@@ -202,8 +202,8 @@ void NavigateView::add_picture_actions(widgets::Actions& actions) {
                  {},
                  [this, as = way.as] { return bones_.pictures_as() == as; },
                  [this, as = way.as] {
-                   bones_.keep_pictures_as(as);
                    save_picture_keeping(picture_keeping_file(), as);
+                   bones_.keep_pictures_as(as);
                  }});
 }
 

@@ -6,8 +6,7 @@
 //   mouse     left button: the tool; right button: its handle; middle button: the scope; the wheel: nearer
 //             and away, with the right button held: the lens
 //   gamepad   left stick, triggers: the tool; right stick, D-pad up and down: its handle; D-pad left and
-//   right:
-//             the lens; left bumper: the scope instead; right bumper: the drill
+//             right: the lens; left bumper: the scope instead; right bumper: the drill
 //
 // The calibration board is a tool like the others, and the side that faces the lens its handle.
 #pragma once

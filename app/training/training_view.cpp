@@ -28,7 +28,7 @@ void HandInbox::set(const simulator::HandInput& input) {
 
 void HandInbox::press(simulator::Press press) {
   const std::lock_guard lock(mutex_);
-  press_ = press;
+  presses_.push_back(press);
 }
 
 void HandInbox::end() {
@@ -42,7 +42,10 @@ simulator::Hand HandInbox::hand(const std::shared_ptr<HandInbox>& self) const {
     const std::lock_guard lock(self->mutex_);
     if (self->is_over_) return std::nullopt;
     simulator::HandInput input = self->input_;
-    input.press = std::exchange(self->press_, simulator::Press::None);
+    if (!self->presses_.empty()) {
+      input.press = self->presses_.front();
+      self->presses_.pop_front();
+    }
     return input;
   };
 }
@@ -191,6 +194,8 @@ void TrainingView::enter() {
 
 void TrainingView::leave() {
   is_shown_ = false;
+  // It is not the theatre's, where a real operation may begin now, and takes a core of its own.
+  if (is_with_board()) return stop(false);
   if (run_) run_->inbox->set({.held = run_->held});
 }
 

@@ -10,6 +10,7 @@
 // Pages: the exercises -> one that runs, on the theatre's screen -> its score -> the exercises.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -51,14 +52,14 @@ using DrawBoard = std::function<widgets::Rect(const widgets::Ui& ui, const widge
 class HandInbox {
  public:
   void set(const simulator::HandInput& input);
-  void press(simulator::Press press);  // with the next picture, once
+  void press(simulator::Press press);  // with the next picture that none was pressed for before
   void end();
   [[nodiscard]] simulator::Hand hand(const std::shared_ptr<HandInbox>& self) const;
 
  private:
   mutable std::mutex mutex_;
   simulator::HandInput input_;
-  simulator::Press press_ = simulator::Press::None;
+  std::deque<simulator::Press> presses_;
   bool is_over_ = false;
 };
 
@@ -83,7 +84,7 @@ class TrainingView : public mode::Mode {
   [[nodiscard]] std::vector<std::string_view> action_prefixes() const override;
   void case_opened(const mode::OpenCase& opened) override;
   void enter() override;  // reads the scores again
-  void leave() override;  // lets go of everything
+  void leave() override;  // lets go of everything; a calibration is over
   void tick(double now_s) override;
   void draw(const widgets::Ui& ui, const widgets::Rect& area) override;
   [[nodiscard]] std::optional<widgets::Rect> header_in(const widgets::Ui& ui,

@@ -68,18 +68,22 @@ struct HandBoard::State {
     info.frames_per_second = options.frames_per_second;
   }
 
-  void turn(const Eigen::Quaterniond& by) {
+  // Whether it does: it is not held more aslant than a hand holds it.
+  bool turn(const Eigen::Quaterniond& by) {
     const Eigen::Quaterniond turned = (by * now.camera_from_board.rotation).normalized();
     const double aslant = geometry::angle_between_rad(turned * Vector3d::UnitZ(), -Vector3d::UnitZ());
-    if (aslant <= geometry::rad_from_deg(kMostAslant_deg)) now.camera_from_board.rotation = turned;
+    if (aslant > geometry::rad_from_deg(kMostAslant_deg)) return false;
+    now.camera_from_board.rotation = turned;
+    return true;
   }
 
   // The hand does not hold it any more as it did.
   void slip(double by_deg) {
     Random random(options.seed + 89);
     const double where = random.between(0, 2 * geometry::kPi);
-    turn(Eigen::Quaterniond(
-        Eigen::AngleAxisd(geometry::rad_from_deg(by_deg), Vector3d(std::cos(where), std::sin(where), 0))));
+    const Eigen::Quaterniond by(
+        Eigen::AngleAxisd(geometry::rad_from_deg(by_deg), Vector3d(std::cos(where), std::sin(where), 0)));
+    if (!turn(by)) turn(by.conjugate());  // it was held aslant that way already
   }
 
   void push(const HandInput& input, double dt_s) {
