@@ -49,15 +49,29 @@ struct SessionTimeline::State {
     }
   }
 
+  // What is not kept at a glance ends nothing; the first of it that is wrong is told.
+  template <typename Check>
+  void check_unkept(const Check& check) {
+    if (!unkept_is_whole) return;
+    const std::size_t told = problems.size();
+    as_far_as_whole(check);
+    unkept_is_whole = problems.size() == told;
+  }
+
   void read_frames() {
-    Statement rows =
-        database.prepare("SELECT frame, timestamp_ns, intrinsics_are_known FROM frames ORDER BY frame");
+    Statement rows = database.prepare(
+        "SELECT frame, timestamp_ns, intrinsics_are_known, mark_state, mark_polarity FROM frames ORDER BY "
+        "frame");
     while (rows.step()) {
       FrameGlance glance;
       glance.index = rows.integer(0);
       glance.timestamp_ns = rows.integer(1);
       glance.intrinsics_are_known = rows.boolean(2);
       frames.push_back(glance);
+      check_unkept([&] {
+        (void)rows.one_of(3, lens::MarkState::NotSeen);
+        (void)rows.one_of(4, lens::MarkPolarity::BrightOutward);
+      });
     }
   }
 
@@ -71,9 +85,11 @@ struct SessionTimeline::State {
   }
 
   void read_markers() {
-    RowsAlong rows(database, "SELECT frame, marker_id, has_pose FROM markers ORDER BY frame, marker_id");
+    RowsAlong rows(database,
+                   "SELECT frame, marker_id, has_pose, state FROM markers ORDER BY frame, marker_id");
     for (FrameGlance& glance : frames)
       rows.visit(glance.index, [&](const Statement& row) {
+        check_unkept([&] { (void)row.one_of(3, markers::MarkerState::Disagreeing); });
         const std::uint32_t bit = bit_of(row.int32(1));
         if (row.boolean(2)) glance.posed |= bit;
       });
@@ -111,6 +127,7 @@ struct SessionTimeline::State {
   std::vector<FrameGlance> frames;
   std::vector<int> marker_ids;
   std::vector<std::string> problems;
+  bool unkept_is_whole = true;
   mutable std::optional<std::size_t> kept_at;
   mutable RecordedFrame kept;
 };
@@ -146,7 +163,7 @@ const RecordedFrame& SessionTimeline::frame(std::size_t at) const {
   } catch (const IoError&) {
     // Told by problems(), since reading all of it met the same page.
   } catch (const InvalidInput&) {
-    // A row that was changed: the check of the session names it.
+    // Told by problems() likewise.
   }
   s.kept_at = at;
   return s.kept;

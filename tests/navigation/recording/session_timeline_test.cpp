@@ -113,6 +113,9 @@ TEST(SessionTimeline, ShowsNoStateThatThereIsNot) {
     record(other.path(), 110);
     change(other.path(), row);
     EXPECT_THROW(RecordedSession{other.path()}, InvalidInput);
+    const SessionTimeline looked_at(other.path());
+    EXPECT_EQ(looked_at.problems().size(), 1U);
+    EXPECT_EQ(looked_at.frames().size(), 110U);
   }
 }
 
